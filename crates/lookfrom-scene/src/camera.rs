@@ -1,0 +1,73 @@
+//! The eye, in the words of the lecture notes: `lookfrom`, `lookat`, `up`, `θ`. Crate `lookfrom` turns it into matrices.
+
+use glam::{DMat4, DVec3};
+
+use crate::error::Location;
+
+/// The eye as it was written. Whether it can see is checked when it is turned into matrices.
+#[derive(Clone, Debug)]
+pub struct Camera {
+    /// Where it was written.
+    pub at: Location,
+    /// Where it stands and looks.
+    pub view: View,
+    /// How space is flattened.
+    pub projection: Projection,
+    /// A lens that blurs what is not in focus; `None` is a pinhole.
+    pub lens: Option<Lens>,
+    /// `d`, the distance of the image plane: > 0. Only the `t` that is shown to people depends on it.
+    pub distance: f64,
+}
+
+/// Where the eye stands and looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum View {
+    /// As in the notes.
+    Look {
+        /// The eye.
+        lookfrom: DVec3,
+        /// What it looks at.
+        lookat: DVec3,
+        /// What is up for it; any length, any angle to the view but parallel.
+        up: DVec3,
+    },
+    /// From another format: camera space has x to the *left*, y up, z forward, as the notes' `u v w`; any invertible
+    /// affine matrix. One that mirrors makes a mirrored picture.
+    Matrix(DMat4),
+}
+
+/// How space is flattened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Rays fan out from the eye.
+    Perspective {
+        /// θ, the *vertical* field of view in degrees, in (0, 180).
+        fov: f64,
+    },
+    /// Rays are parallel.
+    Orthographic {
+        /// The height of the picture in the world: > 0.
+        height: f64,
+    },
+}
+
+/// A thin lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Radius of the aperture: ≥ 0.
+    pub radius: f64,
+    /// Distance, along the view axis, of the plane that is sharp: > 0.
+    pub focus_distance: f64,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Self {
+            at: Location::default(),
+            view: View::Look { lookfrom: DVec3::new(0.0, 1.0, 5.0), lookat: DVec3::ZERO, up: DVec3::Y },
+            projection: Projection::Perspective { fov: 45.0 },
+            lens: None,
+            distance: 1.0,
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! The one door to outside bytes: the disk, or memory in tests and other doors, always within stated limits.
+
+use std::collections::HashMap;
+use std::io::{ErrorKind as IoKind, Read};
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, ErrorKind, Location, Result, Warning};
+
+/// How much a scene may ask for. Scene files are hostile input; a limit met is an [`ErrorKind::Limit`].
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Bytes of one file.
+    pub file_bytes: u64,
+    /// How deep files may import one another.
+    pub import_depth: u32,
+    /// Triangles, vertices or spheres of one file.
+    pub elements: u64,
+    /// Texels of one image.
+    pub texels: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { file_bytes: 8 << 30, import_depth: 16, elements: 1 << 30, texels: 1 << 28 }
+    }
+}
+
+/// Where bytes come from.
+pub trait Files {
+    /// The whole content of a file of at most `limit` bytes.
+    ///
+    /// # Errors
+    /// `Io` when it cannot be read, `Limit` when it is longer than `limit`.
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>>;
+}
+
+/// The file system.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Disk;
+
+impl Files for Disk {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
+        let at = Location::file(path);
+        let io = |error: &std::io::Error| {
+            let (message, hint) = match error.kind() {
+                IoKind::NotFound => (
+                    "no such file".to_owned(),
+                    "check the name; names in a scene file are relative to that file",
+                ),
+                IoKind::IsADirectory => {
+                    ("this is a folder, not a file".to_owned(), "name a scene or model file in it")
+                }
+                IoKind::PermissionDenied => ("may not be read".to_owned(), "check the file's permissions"),
+                _ => (format!("cannot be read: {error}"), "check that the file is there and whole"),
+            };
+            Error::new(ErrorKind::Io, &at, message).hint(hint)
+        };
+        let file = std::fs::File::open(path).map_err(|e| io(&e))?;
+        let length = file.metadata().map_err(|e| io(&e))?.len();
+        if length > limit {
+            return Err(too_long(&at, limit));
+        }
+        // A device or a pipe claims length 0 and may never end: read one byte more than is allowed, at most.
+        let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
+        file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| io(&e))?;
+        if bytes.len() as u64 > limit { Err(too_long(&at, limit)) } else { Ok(bytes) }
+    }
+}
+
+fn too_long(at: &Location, limit: u64) -> Error {
+    Error::new(ErrorKind::Limit, at, format!("longer than the limit of {limit} bytes"))
+        .hint("raise `Limits::file_bytes` if the file is meant to be that long")
+}
+
+/// Files in memory, by path: for tests and for doors without a disk.
+#[derive(Clone, Debug, Default)]
+pub struct Memory(pub HashMap<PathBuf, Vec<u8>>);
+
+impl Files for Memory {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
+        let at = Location::file(path);
+        let bytes = self.0.get(path).ok_or_else(|| Error::new(ErrorKind::Io, &at, "no such file"))?;
+        if bytes.len() as u64 > limit { Err(too_long(&at, limit)) } else { Ok(bytes.clone()) }
+    }
+}
+
+/// What every reader is handed: where bytes come from, how many are allowed, and where warnings go.
+pub struct Sources<'a> {
+    /// Where bytes come from.
+    pub files: &'a dyn Files,
+    /// How much may be asked for.
+    pub limits: Limits,
+    /// What could be survived so far.
+    pub warnings: Vec<Warning>,
+}
+
+impl<'a> Sources<'a> {
+    /// Sources over `files` with the default limits.
+    pub fn new(files: &'a dyn Files) -> Self {
+        Self { files, limits: Limits::default(), warnings: Vec::new() }
+    }
+
+    /// The whole content of a file within the limits.
+    ///
+    /// # Errors
+    /// `Io` when it cannot be read, `Limit` when it is too long.
+    pub fn read(&self, path: &Path) -> Result<Vec<u8>> {
+        self.files.read(path, self.limits.file_bytes)
+    }
+
+    /// Notes something that can be survived.
+    pub fn warn(&mut self, at: &Location, message: impl Into<String>) {
+        self.warnings.push(Warning { at: at.clone(), message: message.into() });
+    }
+}

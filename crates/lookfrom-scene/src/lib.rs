@@ -1,0 +1,19 @@
+//! Everything that can be on disk: scenes, meshes and images, read into plain data.
+//!
+//! A [`scene::Scene`] is what was written. It keeps names and places, is checked as far as a file can be checked by
+//! itself, and knows nothing of rays. Start reading at [`scene`].
+
+pub mod camera;
+pub mod error;
+pub mod files;
+pub mod image;
+pub mod light;
+pub mod material;
+pub mod scene;
+pub mod settings;
+pub mod shape;
+pub mod texture;
+
+pub use error::{Error, ErrorKind, Location, Result, Warning};
+pub use files::{Disk, Files, Limits, Memory, Sources};
+pub use scene::Scene;

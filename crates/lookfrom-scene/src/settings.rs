@@ -1,0 +1,159 @@
+//! What is asked of the picture and of the computation, with the defaults.
+
+/// Size, filter and development of the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageSettings {
+    /// Columns, `nx`.
+    pub width: u32,
+    /// Rows, `ny`.
+    pub height: u32,
+    /// Only this part is computed; the picture keeps its full size.
+    pub crop: Option<Crop>,
+    /// How a pixel weighs the light around it.
+    pub filter: Filter,
+    /// In stops: the picture is multiplied by 2^exposure before the tone map.
+    pub exposure: f32,
+    /// How linear light becomes the 0…1 of an 8-bit picture.
+    pub tonemap: Tonemap,
+}
+
+impl Default for ImageSettings {
+    fn default() -> Self {
+        Self {
+            width: 640,
+            height: 480,
+            crop: None,
+            filter: Filter::default(),
+            exposure: 0.0,
+            tonemap: Tonemap::default(),
+        }
+    }
+}
+
+/// A part of the picture in pixels from the top left: `x0 ≤ x < x1`, `y0 ≤ y < y1`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// First column.
+    pub x0: u32,
+    /// First row.
+    pub y0: u32,
+    /// Beyond the last column.
+    pub x1: u32,
+    /// Beyond the last row.
+    pub y1: u32,
+}
+
+/// How a pixel weighs the light around its centre. Radii are in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filter {
+    /// All the same. Half a pixel is the pixel itself.
+    Box {
+        /// Half the width: > 0.
+        radius: f32,
+    },
+    /// A tent.
+    Triangle {
+        /// Half the width: > 0.
+        radius: f32,
+    },
+    /// A bell, shifted down so that it ends at 0.
+    Gaussian {
+        /// Half the width: > 0.
+        radius: f32,
+        /// Standard deviation: > 0.
+        sigma: f32,
+    },
+    /// Mitchell & Netravali 1988.
+    Mitchell {
+        /// Half the width: > 0.
+        radius: f32,
+        /// Blur.
+        b: f32,
+        /// Ringing.
+        c: f32,
+    },
+    /// Blackman & Harris' four-term window.
+    BlackmanHarris {
+        /// Half the width: > 0.
+        radius: f32,
+    },
+}
+
+impl Default for Filter {
+    fn default() -> Self {
+        Self::BlackmanHarris { radius: 1.5 }
+    }
+}
+
+/// How linear light becomes the 0…1 of an 8-bit picture, before the sRGB curve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tonemap {
+    /// Cut at 1.
+    #[default]
+    Clamp,
+    /// x / (1 + x) on luminance (Reinhard et al. 2002).
+    Reinhard,
+    /// A filmic curve (the fit of Narkowicz 2015 to ACES).
+    Filmic,
+}
+
+/// How light is computed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderSettings {
+    /// Which computation.
+    pub integrator: Integrator,
+    /// Samples a pixel: ≥ 1.
+    pub samples: u32,
+    /// How many times a ray may be mirrored or refracted.
+    pub depth: u32,
+    /// A branch of the tree whose share of the pixel falls below this is cut off (Whitted's adaptive depth control).
+    pub min_contribution: f32,
+    /// Which random numbers.
+    pub sampler: Sampler,
+    /// Another seed, other noise.
+    pub seed: u64,
+    /// Whether light goes straight through transparent things to what they would shadow, coloured by them.
+    pub transparent_shadows: bool,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        Self {
+            integrator: Integrator::Whitted,
+            samples: 16,
+            depth: 8,
+            min_contribution: 1.0 / 512.0,
+            sampler: Sampler::Sobol,
+            seed: 0,
+            transparent_shadows: true,
+        }
+    }
+}
+
+/// The computations there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// Appel 1968: the nearest surface, local shading, one shadow ray to each light.
+    Raycast,
+    /// Whitted 1980: the tree of rays.
+    #[default]
+    Whitted,
+    /// Shading normals as colours.
+    Normals,
+    /// Distance from the eye along the view axis.
+    Depth,
+    /// Texture coordinates as colours.
+    Uv,
+    /// A colour for each shape.
+    Id,
+}
+
+/// Where random numbers come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sampler {
+    /// Owen-scrambled Sobol' points.
+    #[default]
+    Sobol,
+    /// Independent numbers.
+    Independent,
+}
