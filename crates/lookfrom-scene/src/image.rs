@@ -1,4 +1,14 @@
-//! A decoded picture.
+//! A decoded picture, how it is read from a file and how one is written.
+
+mod openexr;
+mod read;
+mod srgb;
+mod write;
+
+pub use self::openexr::{Channels, encode_exr, read_exr};
+pub use self::read::{read, read_data};
+pub use self::srgb::{linear_from_srgb, srgb_from_linear};
+pub use self::write::{encode_hdr, encode_pfm, encode_png, encode_ppm};
 
 /// A picture of linear colours, row 0 on top.
 #[derive(Clone, Debug, Default, PartialEq)]

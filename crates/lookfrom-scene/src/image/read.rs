@@ -1,0 +1,187 @@
+//! How the bytes of a picture become linear colours. What a file is, its content says; its extension is asked only
+//! where the content has no mark (TGA). Of an animation the first picture is read; alpha is dropped.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use ::image::error::{ImageError, LimitErrorKind};
+use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+
+use super::{Image, linear_from_srgb, openexr};
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::files::{Limits, Sources};
+
+/// What can be read, for messages.
+const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF";
+
+/// Reads a picture of colours: 8- and 16-bit formats are taken to be sRGB and become linear, formats of floating-point
+/// numbers are linear already. Alpha is dropped. Values that are not finite become 0, with a warning.
+///
+/// # Errors
+/// `Io` where the file cannot be read; `Syntax` where its bytes are no whole picture; `Unsupported` where its format
+/// is not known; `Limit` where it has more texels than [`Limits::texels`], which its header is asked before anything is
+/// decoded.
+pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Image> {
+    read_as(path, sources, linear_from_srgb)
+}
+
+/// Reads a picture of numbers (bumps, weights): as [`read`], but 8- and 16-bit values are taken as they are, over 0…1.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_data(path: &Path, sources: &mut Sources<'_>) -> Result<Image> {
+    read_as(path, sources, |value| value)
+}
+
+/// `curve` takes an integer format's 0…1 to what is kept.
+fn read_as(path: &Path, sources: &mut Sources<'_>, curve: fn(f32) -> f32) -> Result<Image> {
+    let at = Location::file(path);
+    let bytes = sources.read(path)?;
+    let (width, height, mut texels) = if bytes.starts_with(&openexr::MAGIC) {
+        openexr::decode_rgb(&bytes, &at, &sources.limits)?
+    } else if bytes.starts_with(b"PF") || bytes.starts_with(b"Pf") {
+        decode_pfm(&bytes, &at, &sources.limits)?
+    } else {
+        decode(&bytes, path, &at, &sources.limits, curve)?
+    };
+    let mut bad = 0_usize;
+    for value in texels.iter_mut().flatten() {
+        if !value.is_finite() {
+            *value = 0.0;
+            bad += 1;
+        }
+    }
+    if bad > 0 {
+        sources.warn(&at, format!("{bad} values are not finite numbers; each is taken as 0"));
+    }
+    Ok(Image { name: path.display().to_string(), width, height, texels })
+}
+
+/// Checks a header's claim before memory is asked for.
+pub(super) fn check_size(width: u64, height: u64, at: &Location, limits: &Limits) -> Result<()> {
+    if width == 0 || height == 0 {
+        return Err(Error::invalid(at, format!("a picture of {width}×{height} has no texels")));
+    }
+    if width.checked_mul(height).is_none_or(|texels| texels > limits.texels) {
+        return Err(Error::new(
+            ErrorKind::Limit,
+            at,
+            format!("{width}×{height} texels are more than the limit of {}", limits.texels),
+        )
+        .hint("make the picture smaller, or raise `Limits::texels`"));
+    }
+    Ok(())
+}
+
+type Texels = (u32, u32, Vec<[f32; 3]>);
+
+fn decode(
+    bytes: &[u8],
+    path: &Path,
+    at: &Location,
+    limits: &Limits,
+    curve: fn(f32) -> f32,
+) -> Result<Texels> {
+    let fault = |error: &ImageError| wrong(error, bytes, at, limits);
+    let mut reader = ImageReader::new(Cursor::new(bytes));
+    if let Ok(format) = ImageFormat::from_path(path) {
+        reader.set_format(format);
+    }
+    let mut reader = reader.with_guessed_format().map_err(|error| fault(&ImageError::IoError(error)))?;
+
+    // The pixels, what they become, and what decoders need besides.
+    let mut crate_limits = ::image::Limits::default();
+    crate_limits.max_alloc = Some(limits.texels.saturating_mul(32).saturating_add(64 << 20));
+    reader.limits(crate_limits);
+
+    let decoder = reader.into_decoder().map_err(|error| fault(&error))?;
+    let (width, height) = decoder.dimensions();
+    check_size(width.into(), height.into(), at, limits)?;
+    let picture = DynamicImage::from_decoder(decoder).map_err(|error| fault(&error))?;
+
+    let texels = match picture {
+        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
+            picture.into_rgb32f().pixels().map(|pixel| pixel.0).collect()
+        }
+        DynamicImage::ImageLuma16(_)
+        | DynamicImage::ImageLumaA16(_)
+        | DynamicImage::ImageRgb16(_)
+        | DynamicImage::ImageRgba16(_) => {
+            let table: Vec<f32> = (0..=u16::MAX).map(|value| curve(f32::from(value) / 65535.0)).collect();
+            picture.into_rgb16().pixels().map(|pixel| pixel.0.map(|v| table[usize::from(v)])).collect()
+        }
+        _ => {
+            let table: Vec<f32> = (0..=u8::MAX).map(|value| curve(f32::from(value) / 255.0)).collect();
+            picture.into_rgb8().pixels().map(|pixel| pixel.0.map(|v| table[usize::from(v)])).collect()
+        }
+    };
+    Ok((width, height, texels))
+}
+
+/// In our words what the decoder found.
+fn wrong(error: &ImageError, bytes: &[u8], at: &Location, limits: &Limits) -> Error {
+    let whole =
+        "check that the file is whole; opening it in another program and saving it again may repair it";
+    match error {
+        _ if bytes.is_empty() => Error::syntax(at, "the file is empty; expected a picture").hint(whole),
+        ImageError::Unsupported(_) => {
+            Error::new(ErrorKind::Unsupported, at, format!("not a picture that is known: {error}"))
+                .hint(format!("save it as one of {KNOWN}"))
+        }
+        ImageError::Limits(limit) => {
+            let message = match limit.kind() {
+                LimitErrorKind::DimensionError | LimitErrorKind::InsufficientMemory => {
+                    format!("has more texels than the limit of {}", limits.texels)
+                }
+                _ => error.to_string(),
+            };
+            Error::new(ErrorKind::Limit, at, message)
+                .hint("make the picture smaller, or raise `Limits::texels`")
+        }
+        _ => Error::syntax(at, format!("not a whole picture: {error}")).hint(whole),
+    }
+}
+
+/// Portable float map: `PF` (colour) or `Pf` (grey), width, height, a scale whose sign gives the byte order, then
+/// 32-bit numbers, bottom row first.
+fn decode_pfm(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Texels> {
+    let bad = |message: String| {
+        Error::syntax(at, message)
+            .hint("a PFM file starts with `PF`, width, height and scale, each before one space")
+    };
+    let mut rest = bytes;
+    let mut word = || -> Option<&str> {
+        let start = rest.iter().position(|byte| !byte.is_ascii_whitespace())?;
+        let length = rest[start..].iter().position(u8::is_ascii_whitespace)?;
+        let found = std::str::from_utf8(&rest[start..start + length]).ok()?;
+        rest = &rest[start + length + 1..];
+        Some(found)
+    };
+    let channels = match word() {
+        Some("PF") => 3,
+        Some("Pf") => 1,
+        _ => return Err(bad("not a portable float map".to_owned())),
+    };
+    let width: u32 = word().and_then(|w| w.parse().ok()).ok_or_else(|| bad("has no width".to_owned()))?;
+    let height: u32 = word().and_then(|w| w.parse().ok()).ok_or_else(|| bad("has no height".to_owned()))?;
+    let scale: f32 = word().and_then(|w| w.parse().ok()).ok_or_else(|| bad("has no scale".to_owned()))?;
+    check_size(width.into(), height.into(), at, limits)?;
+
+    let row = width as usize * channels * 4;
+    if rest.len() / row < height as usize {
+        return Err(bad(format!("ends early: {} bytes of {}", rest.len(), row * height as usize)));
+    }
+    let number = |b: &[u8]| {
+        let b = [b[0], b[1], b[2], b[3]];
+        if scale < 0.0 { f32::from_le_bytes(b) } else { f32::from_be_bytes(b) }
+    };
+    let rows = rest[..row * height as usize].chunks_exact(row).rev();
+    let texels = rows
+        .flat_map(|row| row.chunks_exact(channels * 4))
+        .map(|pixel| {
+            let value = |channel: usize| number(&pixel[(channel % channels) * 4..]);
+            [value(0), value(1), value(2)]
+        })
+        .collect();
+    Ok((width, height, texels))
+}
