@@ -1,0 +1,272 @@
+//! How does the light of many samples become one colour a pixel, whatever the order it came in?
+//!
+//! Step 7 on the way of a pixel. Sums of floating-point numbers depend on their order, sums of integers do not. So each pixel
+//! holds three fixed-point sums of 128 bits, 64 of them behind the binary point, and any division of the work among threads,
+//! tiles, passes or machines ends in the same bytes *by construction*. How a picture is shown is left to [`crate::develop`].
+//!
+//! A pixel takes 64 bytes.
+
+use lookfrom_scene::settings::Crop;
+use lookfrom_scene::{Error, ErrorKind, Location, Result};
+use std::ops::Range;
+
+/// Films have at most this many pixels: 2²⁸, which take 16 GiB.
+pub const MOST_PIXELS: u64 = 1 << 28;
+
+/// Light is taken for at most this much: 2⁴⁰ in either direction. So the sums hold at least 2²³ samples of the very
+/// brightest, and far more of any other.
+pub const BRIGHTEST: f32 = 1_099_511_627_776.0;
+
+/// The light that a picture's samples brought, pixel by pixel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    tile: FilmTile,
+}
+
+/// The light of a rectangle of a film, for one thread to fill.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FilmTile {
+    area: Crop,
+    pixels: Vec<Pixel>,
+    dropped: u64,
+    first_dropped: Option<Address>,
+}
+
+/// Which sample of which pixel. The order is that of reading: row, column, sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Address {
+    /// Row, from the top.
+    pub y: u32,
+    /// Column, from the left.
+    pub x: u32,
+    /// Number of the sample in its pixel.
+    pub sample: u32,
+}
+
+/// Linear light, row by row from the top left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// `width` × `height` pixels: red, green, blue.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Pixel {
+    /// Multiples of 2⁻⁶⁴. Additions wrap, which keeps them independent of their order even where they overflow.
+    sums: [i128; 3],
+    samples: u64,
+}
+
+impl Film {
+    /// A black film for a picture of `width` × `height` pixels, of which only `crop` (cut to the picture) is held.
+    ///
+    /// An error if the picture has more than [`MOST_PIXELS`] or there is no memory for it.
+    pub fn new(width: u32, height: u32, crop: Option<Crop>) -> Result<Self> {
+        let pixels = u64::from(width) * u64::from(height);
+        if pixels > MOST_PIXELS {
+            return Err(too_large(format!(
+                "a picture of {width} × {height} = {pixels} pixels; at most {MOST_PIXELS} are possible"
+            )));
+        }
+        let whole = Crop { x0: 0, y0: 0, x1: width, y1: height };
+        let area = common(whole, crop.unwrap_or(whole));
+        Ok(Self { width, height, tile: FilmTile::new(area)? })
+    }
+
+    /// Columns of the picture.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows of the picture.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The part of the picture that is held.
+    pub fn area(&self) -> Crop {
+        self.tile.area
+    }
+
+    /// Adds the light of one sample to its pixel, as [`FilmTile::add`] does.
+    ///
+    /// # Panics
+    /// If the pixel is outside of [`Film::area`].
+    pub fn add(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3]) {
+        self.tile.add(x, y, sample, rgb);
+    }
+
+    /// Adds what a tile holds. What lies outside of [`Film::area`] is left out; samples that the tile dropped are counted all the same.
+    pub fn add_tile(&mut self, tile: &FilmTile) {
+        self.tile.merge(tile);
+    }
+
+    /// Adds what another film of the same picture holds: other samples, or other pixels.
+    ///
+    /// An error if the pictures differ in size.
+    pub fn merge(&mut self, other: &Self) -> Result<()> {
+        if (self.width, self.height) != (other.width, other.height) {
+            let message = format!(
+                "a film of {} × {} pixels cannot be added to one of {} × {}",
+                other.width, other.height, self.width, self.height
+            );
+            return Err(Error::invalid(&Location::default(), message)
+                .hint("merge only renders of the same scene at the same size"));
+        }
+        self.add_tile(&other.tile);
+        Ok(())
+    }
+
+    /// The mean of a pixel's samples: exact up to one rounding to f64 for the sum, one for the quotient and one to f32. Black
+    /// where there are none, and outside of [`Film::area`].
+    pub fn mean(&self, x: u32, y: u32) -> [f32; 3] {
+        self.tile.pixel(x, y).map_or([0.0; 3], Pixel::mean)
+    }
+
+    /// How many samples a pixel holds, without those that were dropped.
+    pub fn samples(&self, x: u32, y: u32) -> u64 {
+        self.tile.pixel(x, y).map_or(0, |pixel| pixel.samples)
+    }
+
+    /// How many samples were dropped because they were not finite.
+    pub fn dropped(&self) -> u64 {
+        self.tile.dropped
+    }
+
+    /// The least address of a dropped sample, which replays it: the same whatever the order of the work.
+    pub fn first_dropped(&self) -> Option<Address> {
+        self.tile.first_dropped
+    }
+
+    /// The means of all pixels, black outside of [`Film::area`].
+    pub fn picture(&self) -> Picture {
+        let mut pixels = vec![[0.0; 3]; self.width as usize * self.height as usize];
+        let Crop { x0, y0, x1, y1 } = self.tile.area;
+        for y in y0..y1 {
+            let start = y as usize * self.width as usize;
+            let row = &mut pixels[start + x0 as usize..start + x1 as usize];
+            for (mean, pixel) in row.iter_mut().zip(&self.tile.pixels[self.tile.row(y, x0, x1)]) {
+                *mean = pixel.mean();
+            }
+        }
+        Picture { width: self.width, height: self.height, pixels }
+    }
+}
+
+impl FilmTile {
+    /// A black tile. An area that ends before it begins is empty.
+    ///
+    /// An error if the area has more than [`MOST_PIXELS`] or there is no memory for it.
+    pub fn new(area: Crop) -> Result<Self> {
+        let count = u64::from(area.x1.saturating_sub(area.x0)) * u64::from(area.y1.saturating_sub(area.y0));
+        let mut pixels = Vec::new();
+        if count > MOST_PIXELS || pixels.try_reserve_exact(count as usize).is_err() {
+            return Err(too_large(format!("no memory for {count} pixels of 64 bytes")));
+        }
+        pixels.resize(count as usize, Pixel::default());
+        Ok(Self { area, pixels, dropped: 0, first_dropped: None })
+    }
+
+    /// The pixels it covers.
+    pub fn area(&self) -> Crop {
+        self.area
+    }
+
+    /// Adds the light of one sample to its pixel.
+    ///
+    /// Each of red, green and blue is cut to ±[`BRIGHTEST`], then added exactly if its magnitude is at least 2⁻⁴⁰, else cut towards
+    /// zero at 2⁻⁶⁴. A sample that is not finite in all three is dropped, counted and remembered by its address.
+    ///
+    /// # Panics
+    /// If the pixel is outside of the tile.
+    pub fn add(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3]) {
+        let index = self.index(x, y);
+        let index =
+            index.unwrap_or_else(|| panic!("pixel ({x}, {y}) is outside of the tile {:?}", self.area));
+        if !rgb.iter().all(|light| light.is_finite()) {
+            self.drop_samples(1, Some(Address { y, x, sample }));
+            return;
+        }
+        let pixel = &mut self.pixels[index];
+        for (sum, light) in pixel.sums.iter_mut().zip(rgb) {
+            *sum = sum.wrapping_add(fixed_point(light));
+        }
+        pixel.samples = pixel.samples.saturating_add(1);
+    }
+
+    /// Adds what another tile holds within the area of this one.
+    fn merge(&mut self, other: &Self) {
+        let Crop { x0, y0, x1, y1 } = common(self.area, other.area);
+        for y in y0..y1 {
+            let (mine, theirs) = (self.row(y, x0, x1), other.row(y, x0, x1));
+            for (pixel, add) in self.pixels[mine].iter_mut().zip(&other.pixels[theirs]) {
+                for (sum, add) in pixel.sums.iter_mut().zip(add.sums) {
+                    *sum = sum.wrapping_add(add);
+                }
+                pixel.samples = pixel.samples.saturating_add(add.samples);
+            }
+        }
+        self.drop_samples(other.dropped, other.first_dropped);
+    }
+
+    fn drop_samples(&mut self, count: u64, first: Option<Address>) {
+        self.dropped = self.dropped.saturating_add(count);
+        self.first_dropped = self.first_dropped.into_iter().chain(first).min();
+    }
+
+    fn pixel(&self, x: u32, y: u32) -> Option<&Pixel> {
+        self.index(x, y).map(|index| &self.pixels[index])
+    }
+
+    fn index(&self, x: u32, y: u32) -> Option<usize> {
+        let Crop { x0, y0, x1, y1 } = self.area;
+        let inside = (x0..x1).contains(&x) && (y0..y1).contains(&y);
+        inside.then(|| (y - y0) as usize * (x1 - x0) as usize + (x - x0) as usize)
+    }
+
+    /// Where the pixels of columns `from` to before `to` of row `y` are. They must be inside.
+    fn row(&self, y: u32, from: u32, to: u32) -> Range<usize> {
+        let Crop { x0, y0, x1, .. } = self.area;
+        let start = (y - y0) as usize * (x1 - x0) as usize;
+        start + (from - x0) as usize..start + (to - x0) as usize
+    }
+}
+
+impl Pixel {
+    fn mean(&self) -> [f32; 3] {
+        if self.samples == 0 {
+            return [0.0; 3];
+        }
+        let scale = self.samples as f64 * TWO_TO_64;
+        self.sums.map(|sum| (sum as f64 / scale) as f32)
+    }
+}
+
+const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
+
+/// A finite number as a multiple of 2⁻⁶⁴.
+fn fixed_point(light: f32) -> i128 {
+    // An f32 in f64 can be multiplied by a power of two exactly; the cast cuts towards zero.
+    (f64::from(light.clamp(-BRIGHTEST, BRIGHTEST)) * TWO_TO_64) as i128
+}
+
+/// What two rectangles share; where that is nothing, the empty rectangle at the origin.
+fn common(a: Crop, b: Crop) -> Crop {
+    let (x0, x1) = (a.x0.max(b.x0), a.x1.min(b.x1));
+    let (y0, y1) = (a.y0.max(b.y0), a.y1.min(b.y1));
+    if x0 < x1 && y0 < y1 { Crop { x0, y0, x1, y1 } } else { Crop { x0: 0, y0: 0, x1: 0, y1: 0 } }
+}
+
+fn too_large(message: String) -> Error {
+    Error::new(ErrorKind::Limit, &Location::default(), message)
+        .hint("make the picture smaller, or render it in several crops of a smaller one")
+}
+
+#[cfg(test)]
+mod tests;
