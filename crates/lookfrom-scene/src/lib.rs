@@ -8,11 +8,13 @@ pub mod error;
 pub mod files;
 pub mod image;
 pub mod light;
+pub mod load;
 pub mod material;
 pub mod scene;
 pub mod settings;
 pub mod shape;
 pub mod texture;
+pub mod toml;
 
 pub use error::{Error, ErrorKind, Location, Result, Warning};
 pub use files::{Disk, Files, Limits, Memory, Sources};

@@ -1,0 +1,68 @@
+//! Which reader a file is for, by its extension and else by how it begins.
+
+use std::path::Path;
+
+use glam::DMat4;
+
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::files::Sources;
+use crate::scene::{MaterialId, Scene};
+use crate::shape::{Part, Shape};
+use crate::toml;
+
+/// Reads a scene in our own format (`.toml`), or a model file, whose parts stand in the scene where the file has them
+/// and wear a grey "default" where the file gives them no material.
+///
+/// # Errors
+/// `Unsupported` where the format is not known, and what the reader of the format finds.
+pub fn scene(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
+    if is_toml(path) {
+        return toml::read(path, sources);
+    }
+    let mut scene = Scene::default();
+    let parts = parts(path, sources, &mut scene)?;
+    let default = MaterialId(scene.materials.len() as u32);
+    scene.materials.push(toml::default_material());
+    scene.shapes = shapes(parts, &Location::file(path), default);
+    Ok(scene)
+}
+
+/// Whether a file is a scene in our own format.
+pub(crate) fn is_toml(path: &Path) -> bool {
+    extension(path) == "toml"
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// What stands in a model file; its materials join the scene.
+pub(crate) fn parts(path: &Path, _sources: &mut Sources<'_>, _scene: &mut Scene) -> Result<Vec<Part>> {
+    Err(unknown(path))
+}
+
+fn unknown(path: &Path) -> Error {
+    let extension = extension(path);
+    let message = match extension.as_str() {
+        "pbrt" | "gltf" | "glb" => format!("scenes in .{extension} are not read yet; they come later"),
+        "" => "a file of an unknown format".to_owned(),
+        _ => format!("a file of an unknown format, .{extension}"),
+    };
+    Error::new(ErrorKind::Unsupported, &Location::file(path), message)
+        .hint("scenes are .toml, models .obj, .ply or .stl")
+}
+
+/// Parts as shapes that stand where the file has them.
+pub(crate) fn shapes(parts: Vec<Part>, at: &Location, default: MaterialId) -> Vec<Shape> {
+    parts
+        .into_iter()
+        .map(|part| Shape {
+            name: part.name,
+            at: at.clone(),
+            geometry: part.geometry,
+            material: part.material.unwrap_or(default),
+            emission: part.emission,
+            world_from_object: DMat4::IDENTITY,
+        })
+        .collect()
+}

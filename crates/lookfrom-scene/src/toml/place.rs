@@ -1,0 +1,116 @@
+//! Where things stand: `scale`, `rotate`, `translate` in this order, or a list `transform` of such steps in any order.
+
+use glam::{DMat4, DVec3, DVec4};
+
+use super::value::{Table, Value};
+use crate::error::Result;
+
+/// The keys that place a thing.
+pub(super) const KEYS: &[&str] = &["scale", "rotate", "translate", "transform"];
+/// The keys of one step of `transform`.
+pub(super) const STEPS: &[&str] = &["scale", "rotate", "translate", "matrix"];
+/// The keys of a rotation about an axis.
+pub(super) const ROTATION: &[&str] = &["axis", "angle"];
+
+/// The matrix from a thing's own space to the one it is placed in: affine, finite and invertible.
+pub(super) fn place(table: &Table<'_>) -> Result<DMat4> {
+    let Some(steps) = table.find("transform") else { return scale_rotate_translate(table) };
+    for key in ["scale", "rotate", "translate"] {
+        table.one_of(&[key, "transform"])?;
+    }
+    let mut matrix = DMat4::IDENTITY;
+    for step in steps.list("a list of steps, such as [{ scale = 2 }, { translate = [0, 1, 0] }]")? {
+        let step_table = step.table("a step of `transform`")?;
+        step_table.allow(&[STEPS])?;
+        let Some(one) = step_table.one_of(STEPS)? else {
+            return Err(step
+                .error("this step of `transform` is empty")
+                .hint("give one of scale, rotate, translate, matrix in each step"));
+        };
+        let step_matrix = match one.key() {
+            "scale" => scale(one)?,
+            "rotate" => rotate(one)?,
+            "translate" => DMat4::from_translation(one.vector()?),
+            _ => from_rows(one)?,
+        };
+        matrix = step_matrix * matrix;
+    }
+    invertible(matrix, steps)
+}
+
+/// `scale`, `rotate` and `translate` of a table, in this order.
+pub(super) fn scale_rotate_translate(table: &Table<'_>) -> Result<DMat4> {
+    let mut matrix = DMat4::IDENTITY;
+    for (key, step) in [
+        ("scale", scale as fn(Value<'_>) -> Result<DMat4>),
+        ("rotate", rotate),
+        ("translate", |value| Ok(DMat4::from_translation(value.vector()?))),
+    ] {
+        if let Some(value) = table.find(key) {
+            matrix = invertible(step(value)? * matrix, value)?;
+        }
+    }
+    Ok(matrix)
+}
+
+fn scale(value: Value<'_>) -> Result<DMat4> {
+    let expected = "a number or [x, y, z], none of them 0";
+    let factors = if value.is_number() {
+        DVec3::splat(value.number()?)
+    } else {
+        DVec3::from_array(value.numbers(expected)?)
+    };
+    if factors.cmpeq(DVec3::ZERO).any() {
+        return Err(value.error("`scale` by 0 leaves nothing").hint(format!("give {expected}")));
+    }
+    Ok(DMat4::from_scale(factors))
+}
+
+fn rotate(value: Value<'_>) -> Result<DMat4> {
+    if value.is_table() {
+        let table = value.table("`rotate`")?;
+        table.allow(&[ROTATION])?;
+        let axis = table.need("axis", "[0, 1, 0]")?.direction()?.normalize();
+        return Ok(about(axis, table.need("angle", "90")?.number()?));
+    }
+    let [x, y, z] = value.numbers("degrees about x, y and z, or { axis = [x, y, z], angle = degrees }")?;
+    Ok(about(DVec3::Z, z) * about(DVec3::Y, y) * about(DVec3::X, x))
+}
+
+/// The rotation about a unit axis, counter-clockwise for one whom the axis points at (Rodrigues).
+pub(super) fn about(axis: DVec3, degrees: f64) -> DMat4 {
+    let (sin, cos) = sin_cos(degrees);
+    let column = |v: DVec3| (cos * v + sin * axis.cross(v) + (1.0 - cos) * axis.dot(v) * axis).extend(0.0);
+    DMat4::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z), DVec4::W)
+}
+
+/// Sine and cosine of an angle in degrees, exact at right angles.
+fn sin_cos(degrees: f64) -> (f64, f64) {
+    let turned = degrees % 360.0;
+    match turned {
+        0.0 => (0.0, 1.0),
+        90.0 | -270.0 => (1.0, 0.0),
+        180.0 | -180.0 => (0.0, -1.0),
+        270.0 | -90.0 => (-1.0, 0.0),
+        _ => libm::sincos(turned.to_radians()),
+    }
+}
+
+fn from_rows(value: Value<'_>) -> Result<DMat4> {
+    let numbers: [f64; 16] = value.numbers("16 numbers, row by row")?;
+    if numbers[12..] != [0.0, 0.0, 0.0, 1.0] {
+        return Err(value.error("the last row of `matrix` must be 0, 0, 0, 1").hint("write it row by row"));
+    }
+    Ok(DMat4::from_cols_array(&numbers).transpose())
+}
+
+fn invertible(matrix: DMat4, value: Value<'_>) -> Result<DMat4> {
+    let determinant = matrix.determinant();
+    let usable = matrix.is_finite() && determinant.is_normal() && matrix.inverse().is_finite();
+    if usable {
+        return Ok(matrix);
+    }
+    Err(value
+        .error(format!("`{}` cannot be undone: the determinant is {determinant}", value.key()))
+        .hint("no scale may be 0 or too small or large to compute with, and the rows of a matrix must be independent"))
+}

@@ -1,0 +1,332 @@
+//! A TOML value with its place: what it is, whether it is what was expected, and an error that points at it where it
+//! is not. What the keys mean is left to the decoders beside.
+
+use ::toml::Spanned;
+use ::toml::de::{DeTable, DeValue};
+use glam::DVec3;
+
+use super::suggest::nearest;
+use crate::error::{Error, ErrorKind, Location, Result};
+
+/// A file's text, with what is needed to name places in it.
+pub(super) struct Document {
+    whole: Location,
+    text: String,
+    line_starts: Vec<usize>,
+}
+
+impl Document {
+    pub(super) fn new(whole: Location, text: String) -> Self {
+        let breaks = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n').map(|(index, _)| index + 1);
+        let line_starts = std::iter::once(0).chain(breaks).collect();
+        Self { whole, text, line_starts }
+    }
+
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The line and column of a byte.
+    pub(super) fn location(&self, offset: usize) -> Location {
+        let line = self.line_starts.partition_point(|&start| start <= offset);
+        let start = self.line_starts[line - 1];
+        let before = self.text.get(start..offset).map_or(0, |text| text.chars().count());
+        self.whole.at(u32::try_from(line).unwrap_or(0), u32::try_from(before + 1).unwrap_or(0))
+    }
+}
+
+/// A value, and the key it was given for.
+#[derive(Clone, Copy)]
+pub(super) struct Value<'a> {
+    document: &'a Document,
+    key: &'a str,
+    item: &'a Spanned<DeValue<'a>>,
+}
+
+impl<'a> Value<'a> {
+    pub(super) fn at(self) -> Location {
+        self.document.location(self.item.span().start)
+    }
+
+    pub(super) fn key(self) -> &'a str {
+        self.key
+    }
+
+    /// An error at this place.
+    pub(super) fn error(self, message: impl Into<String>) -> Error {
+        Error::invalid(&self.at(), message)
+    }
+
+    /// The error that this value is not what it should be.
+    pub(super) fn wrong(self, expected: &str) -> Error {
+        self.error(format!("`{}` is {}; expected {expected}", self.key, self.found()))
+    }
+
+    /// A file that could not be opened is this value's fault; what is wrong inside a file is not.
+    pub(super) fn blame(self, error: Error) -> Error {
+        if error.kind != ErrorKind::Io || error.at.line > 0 {
+            return error;
+        }
+        Error { message: format!("{}: {}", error.at, error.message), at: self.at(), ..error }
+    }
+
+    fn found(self) -> String {
+        match self.item.get_ref() {
+            DeValue::String(text) if text.chars().count() > 40 => "a long string".to_owned(),
+            DeValue::String(text) => format!("{text:?}"),
+            DeValue::Integer(number) => number.to_string(),
+            DeValue::Float(number) => number.to_string(),
+            DeValue::Boolean(truth) => truth.to_string(),
+            DeValue::Datetime(_) => "a date".to_owned(),
+            DeValue::Array(items) => match items.len() {
+                1 => "a list of 1 value".to_owned(),
+                count => format!("a list of {count} values"),
+            },
+            DeValue::Table(_) => "a table".to_owned(),
+        }
+    }
+
+    pub(super) fn is_number(self) -> bool {
+        matches!(self.item.get_ref(), DeValue::Integer(_) | DeValue::Float(_))
+    }
+
+    pub(super) fn is_table(self) -> bool {
+        matches!(self.item.get_ref(), DeValue::Table(_))
+    }
+
+    pub(super) fn is_list(self) -> bool {
+        matches!(self.item.get_ref(), DeValue::Array(_))
+    }
+
+    pub(super) fn as_text(self) -> Option<&'a str> {
+        match self.item.get_ref() {
+            DeValue::String(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    fn as_number(self) -> Option<f64> {
+        match self.item.get_ref() {
+            DeValue::Integer(number) if number.radix() == 10 => number.as_str().parse().ok(),
+            DeValue::Integer(number) => {
+                i64::from_str_radix(number.as_str(), number.radix()).ok().map(|number| number as f64)
+            }
+            DeValue::Float(number) => number.as_str().parse().ok(),
+            _ => None,
+        }
+    }
+
+    /// A finite number that is `ok`.
+    pub(super) fn number_where(self, expected: &str, ok: impl Fn(f64) -> bool) -> Result<f64> {
+        self.as_number()
+            .filter(|&number| number.is_finite() && ok(number))
+            .ok_or_else(|| self.wrong(expected))
+    }
+
+    /// A finite number.
+    pub(super) fn number(self) -> Result<f64> {
+        self.number_where("a finite number", |_| true)
+    }
+
+    /// A finite number > 0.
+    pub(super) fn positive(self) -> Result<f64> {
+        self.number_where("a number greater than 0", |number| number > 0.0)
+    }
+
+    /// A finite number ≥ 0.
+    pub(super) fn not_negative(self) -> Result<f64> {
+        self.number_where("a number of at least 0", |number| number >= 0.0)
+    }
+
+    /// A number that is finite as an `f32` and is `ok` as such.
+    pub(super) fn single_where(self, expected: &str, ok: impl Fn(f32) -> bool) -> Result<f32> {
+        self.number_where(expected, |number| (number as f32).is_finite() && ok(number as f32))
+            .map(|number| number as f32)
+    }
+
+    /// A number that is finite as an `f32`.
+    pub(super) fn single(self) -> Result<f32> {
+        self.single_where("a finite number", |_| true)
+    }
+
+    /// A whole number from `low` to `high`.
+    pub(super) fn integer(self, low: u64, high: u64) -> Result<u64> {
+        let found = match self.item.get_ref() {
+            DeValue::Integer(number) => u64::from_str_radix(number.as_str(), number.radix()).ok(),
+            _ => None,
+        };
+        found.filter(|number| (low..=high).contains(number)).ok_or_else(|| {
+            self.wrong(&match high {
+                u64::MAX => format!("a whole number of at least {low}"),
+                _ => format!("a whole number from {low} to {high}"),
+            })
+        })
+    }
+
+    pub(super) fn boolean(self) -> Result<bool> {
+        match self.item.get_ref() {
+            DeValue::Boolean(truth) => Ok(*truth),
+            _ => Err(self.wrong("true or false")),
+        }
+    }
+
+    /// A string that is not empty.
+    pub(super) fn text(self, expected: &str) -> Result<&'a str> {
+        self.as_text().filter(|text| !text.is_empty()).ok_or_else(|| self.wrong(expected))
+    }
+
+    /// One of a few words.
+    pub(super) fn choice<T: Copy>(self, choices: &[(&str, T)]) -> Result<T> {
+        let words = || choices.iter().map(|&(word, _)| word);
+        let expected = || words().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(", ");
+        let word = self.as_text().ok_or_else(|| self.wrong(&format!("one of {}", expected())))?;
+        choices.iter().find(|choice| choice.0 == word).map(|choice| choice.1).ok_or_else(|| {
+            let error = self.wrong(&format!("one of {}", expected()));
+            match nearest(word, words()) {
+                Some(meant) => error.hint(format!("did you mean {meant:?}?")),
+                None => error,
+            }
+        })
+    }
+
+    /// The values of a list.
+    pub(super) fn list(self, expected: &str) -> Result<impl ExactSizeIterator<Item = Value<'a>>> {
+        let DeValue::Array(items) = self.item.get_ref() else { return Err(self.wrong(expected)) };
+        Ok(items.iter().map(move |item| Value { item, ..self }))
+    }
+
+    /// The values of a list of `N`.
+    pub(super) fn list_of<const N: usize>(self, expected: &str) -> Result<[Value<'a>; N]> {
+        let items: Vec<Value<'a>> = self.list(expected)?.take(N + 1).collect();
+        items.try_into().map_err(|_| self.wrong(expected))
+    }
+
+    /// `N` finite numbers.
+    pub(super) fn numbers<const N: usize>(self, expected: &str) -> Result<[f64; N]> {
+        let items = self.list_of::<N>(expected)?;
+        let mut numbers = [0.0; N];
+        for (number, item) in numbers.iter_mut().zip(items) {
+            *number = item.number()?;
+        }
+        Ok(numbers)
+    }
+
+    /// `N` numbers that are finite as `f32`.
+    pub(super) fn singles<const N: usize>(self, expected: &str) -> Result<[f32; N]> {
+        let items = self.list_of::<N>(expected)?;
+        let mut numbers = [0.0; N];
+        for (number, item) in numbers.iter_mut().zip(items) {
+            *number = item.single()?;
+        }
+        Ok(numbers)
+    }
+
+    /// A point or vector.
+    pub(super) fn vector(self) -> Result<DVec3> {
+        self.numbers("three numbers, [x, y, z]").map(DVec3::from_array)
+    }
+
+    /// A vector that has a direction.
+    pub(super) fn direction(self) -> Result<DVec3> {
+        let vector = self.vector()?;
+        if vector.length_squared() > 0.0 && vector.length_squared().is_finite() {
+            Ok(vector)
+        } else {
+            Err(self.error(format!("`{}` has no direction: its length is {}", self.key, vector.length())))
+        }
+    }
+
+    /// A table, as `title` in messages.
+    pub(super) fn table(self, title: impl Into<String>) -> Result<Table<'a>> {
+        let DeValue::Table(map) = self.item.get_ref() else { return Err(self.wrong("a table")) };
+        Ok(Table { document: self.document, offset: self.item.span().start, title: title.into(), map })
+    }
+
+    /// The tables of an array `[[key]]`.
+    pub(super) fn tables(self) -> Result<impl Iterator<Item = Result<Table<'a>>>> {
+        let remedy = format!("write [[{}]], with two brackets, for each of them", self.key);
+        let items = self.list("an array of tables").map_err(|error| error.hint(remedy))?;
+        Ok(items.map(|item| item.table(format!("[[{}]]", item.key))))
+    }
+}
+
+/// A table whose keys are looked up by name.
+pub(super) struct Table<'a> {
+    document: &'a Document,
+    offset: usize,
+    title: String,
+    map: &'a DeTable<'a>,
+}
+
+impl<'a> Table<'a> {
+    /// The whole of a document.
+    pub(super) fn root(document: &'a Document, map: &'a DeTable<'a>) -> Self {
+        Self { document, offset: 0, title: "a scene".to_owned(), map }
+    }
+
+    pub(super) fn at(&self) -> Location {
+        self.document.location(self.offset)
+    }
+
+    /// An error about the table as a whole.
+    pub(super) fn error(&self, message: impl std::fmt::Display) -> Error {
+        Error::invalid(&self.at(), format!("{}: {message}", self.title))
+    }
+
+    /// Refuses every key that is in none of the groups: a slip of the hand must not pass in silence.
+    pub(super) fn allow(&self, groups: &[&[&'static str]]) -> Result<()> {
+        let known = || groups.iter().copied().flatten().copied();
+        let Some(key) = self.map.keys().find(|key| known().all(|word| word != key.get_ref().as_ref())) else {
+            return Ok(());
+        };
+        let at = self.document.location(key.span().start);
+        let error = Error::invalid(&at, format!("unknown key `{}` in {}", key.get_ref(), self.title));
+        Err(match nearest(key.get_ref(), known()) {
+            Some(meant) => error.hint(format!("did you mean `{meant}`?")),
+            None => error.hint(format!("it may have: {}", known().collect::<Vec<_>>().join(", "))),
+        })
+    }
+
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.map.contains_key(key)
+    }
+
+    pub(super) fn find(&self, key: &str) -> Option<Value<'a>> {
+        let (key, item) = self.map.get_key_value(key)?;
+        Some(Value { document: self.document, key: key.get_ref(), item })
+    }
+
+    /// A value that has to be there; `example` shows how it could look.
+    pub(super) fn need(&self, key: &str, example: &str) -> Result<Value<'a>> {
+        self.find(key)
+            .ok_or_else(|| self.error(format!("`{key}` is missing")).hint(format!("add `{key} = {example}`")))
+    }
+
+    /// A value decoded, or a default where it is not given.
+    pub(super) fn or<T>(
+        &self,
+        key: &str,
+        default: T,
+        decode: impl FnOnce(Value<'a>) -> Result<T>,
+    ) -> Result<T> {
+        self.find(key).map_or(Ok(default), decode)
+    }
+
+    /// At most one of these keys may be given: which, if any.
+    pub(super) fn one_of(&self, keys: &[&str]) -> Result<Option<Value<'a>>> {
+        let mut given = keys.iter().filter_map(|key| self.find(key));
+        let first = given.next();
+        match (first, given.next()) {
+            (Some(one), Some(other)) => Err(other
+                .error(format!("{} has both `{}` and `{}`", self.title, one.key, other.key))
+                .hint(format!("give one of {}", keys.join(", ")))),
+            _ => Ok(first),
+        }
+    }
+
+    /// All that is in the table, in the order of the names.
+    pub(super) fn entries(&self) -> impl Iterator<Item = Value<'a>> {
+        let document = self.document;
+        self.map.iter().map(move |(key, item)| Value { document, key: key.get_ref(), item })
+    }
+}
