@@ -1,8 +1,9 @@
 //! How does the light of many samples become one colour a pixel, whatever the order it came in?
 //!
-//! Step 7 on the way of a pixel. Sums of floating-point numbers depend on their order, sums of integers do not. So each pixel
-//! holds three fixed-point sums of 128 bits, 64 of them behind the binary point, and any division of the work among threads,
-//! tiles, passes or machines ends in the same bytes *by construction*. How a picture is shown is left to [`crate::develop`].
+//! Step 7 on the way of a pixel. Sums of floating-point numbers depend on their order, sums of integers do not. So each
+//! pixel holds three fixed-point sums of 128 bits, 64 of them behind the binary point, and any division of the work
+//! among threads, tiles, passes or machines ends in the same bytes *by construction*. How a picture is shown is left to
+//! [`crate::develop`].
 //!
 //! A pixel takes 64 bytes.
 
@@ -102,7 +103,8 @@ impl Film {
         self.tile.add(x, y, sample, rgb);
     }
 
-    /// Adds what a tile holds. What lies outside of [`Film::area`] is left out; samples that the tile dropped are counted all the same.
+    /// Adds what a tile holds. What lies outside of [`Film::area`] is left out; samples that the tile dropped are
+    /// counted all the same.
     pub fn add_tile(&mut self, tile: &FilmTile) {
         self.tile.merge(tile);
     }
@@ -123,8 +125,8 @@ impl Film {
         Ok(())
     }
 
-    /// The mean of a pixel's samples: exact up to one rounding to f64 for the sum, one for the quotient and one to f32. Black
-    /// where there are none, and outside of [`Film::area`].
+    /// The mean of a pixel's samples: exact up to one rounding to f64 for the sum, one for the quotient and one to f32.
+    /// Black where there are none, and outside of [`Film::area`].
     pub fn mean(&self, x: u32, y: u32) -> [f32; 3] {
         self.tile.pixel(x, y).map_or([0.0; 3], Pixel::mean)
     }
@@ -180,8 +182,9 @@ impl FilmTile {
 
     /// Adds the light of one sample to its pixel.
     ///
-    /// Each of red, green and blue is cut to ±[`BRIGHTEST`], then added exactly if its magnitude is at least 2⁻⁴⁰, else cut towards
-    /// zero at 2⁻⁶⁴. A sample that is not finite in all three is dropped, counted and remembered by its address.
+    /// Each of red, green and blue is cut to ±[`BRIGHTEST`], then added exactly if its magnitude is at least 2⁻⁴⁰, else
+    /// cut towards zero at 2⁻⁶⁴. A sample that is not finite in all three is dropped, counted and remembered by its
+    /// address.
     ///
     /// # Panics
     /// If the pixel is outside of the tile.

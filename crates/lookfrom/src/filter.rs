@@ -1,8 +1,9 @@
 //! How does a pixel weigh the light around its centre?
 //!
-//! Step 3 on the way of a pixel. The weight is not applied to samples that fall anywhere: places are *chosen* with a density
-//! proportional to the filter, so that a sample touches only its own pixel (filter importance sampling, Ernst, Stamminger &
-//! Greiner 2006). Where a filter is negative, so is the weight. Filters here are products of one curve along x and y.
+//! Step 3 on the way of a pixel. The weight is not applied to samples that fall anywhere: places are *chosen* with a
+//! density proportional to the filter, so that a sample touches only its own pixel (filter importance sampling, Ernst,
+//! Stamminger & Greiner 2006). Where a filter is negative, so is the weight. Filters here are products of one curve
+//! along x and y.
 //!
 //! Mitchell & Netravali 1988 (the cubic); Harris 1978 (the four-term window).
 
@@ -14,9 +15,9 @@ const CELLS: usize = 1024;
 
 /// A pixel filter, made ready for sampling.
 ///
-/// Box and triangle are inverted exactly. The others are tabulated: along each axis 1024 cells from the centre to the radius, of
-/// constant density each, with the integral over each cell right to rounding. So no sample lies farther than radius/1024
-/// pixels from where the exact inverse would put it.
+/// Box and triangle are inverted exactly. The others are tabulated: along each axis 1024 cells from the centre to the
+/// radius, of constant density each, with the integral over each cell right to rounding. So no sample lies farther than
+/// radius/1024 pixels from where the exact inverse would put it.
 #[derive(Clone, Debug)]
 pub struct Filter {
     curve: Curve,
@@ -54,8 +55,8 @@ enum Curve {
 }
 
 impl Filter {
-    /// The filter that was written. A radius that is not positive and finite is taken for ½; a shape that has no finite, positive
-    /// integral (a Gaussian without width, wild coefficients) for the box of the same radius.
+    /// The filter that was written. A radius that is not positive and finite is taken for ½; a shape that has no
+    /// finite, positive integral (a Gaussian without width, wild coefficients) for the box of the same radius.
     pub fn new(shape: Shape) -> Self {
         let (curve, radius) = match shape {
             Shape::Box { radius } => (Curve::Box, radius),
@@ -88,8 +89,8 @@ impl Filter {
 
     /// A place for a sample, as an offset in pixels from the centre of the pixel, and the weight of what is seen there.
     ///
-    /// `u` is in [0, 1)²; each coordinate of the offset grows with its own. Weights are all of one magnitude, negative where the
-    /// filter is, and 1 on the average.
+    /// `u` is in [0, 1)²; each coordinate of the offset grows with its own. Weights are all of one magnitude, negative
+    /// where the filter is, and 1 on the average.
     pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
         let [(x, x_sign), (y, y_sign)] = u.map(|u| {
             // Choose a side, and how far to go on it.

@@ -1,7 +1,7 @@
 //! How is a number turned into one that looks unrelated to it?
 //!
-//! The one mixing function behind random numbers ([`crate::sampler`]) and lattices ([`crate::noise`]). What is mixed, and
-//! in which order, is left to those who call it.
+//! The one mixing function behind random numbers ([`crate::sampler`]) and lattices ([`crate::noise`]). What is mixed,
+//! and in which order, is left to those who call it.
 //!
 //! Steele, Lea & Flood 2014 (SplitMix), with the multipliers of Stafford's variant 13.
 
@@ -15,6 +15,12 @@ pub(crate) fn mix(mut bits: u64) -> u64 {
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     bits ^ (bits >> 31)
+}
+
+/// A 64-bit hash of two numbers, whose order matters.
+#[inline]
+pub(crate) fn pair(a: u64, b: u64) -> u64 {
+    mix(mix(a.wrapping_add(GOLDEN)) ^ b)
 }
 
 #[cfg(test)]
@@ -41,6 +47,14 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn pairs_of_small_numbers_are_all_different() {
+        let mut hashes: Vec<u64> = (0..40_000).map(|i| pair(i % 200, i / 200)).collect();
+        hashes.sort_unstable();
+        hashes.dedup();
+        assert_eq!(hashes.len(), 40_000);
     }
 
     #[test]

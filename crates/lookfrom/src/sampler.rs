@@ -1,14 +1,16 @@
 //! Which random numbers does a sample of a pixel use?
 //!
-//! Step 3 on the way of a pixel, and all choices after it. A number is a pure function of (seed, pixel, sample, dimension):
-//! nothing is stored, nothing is counted, any thread may ask for any of them in any order, and the answer has the same bits
-//! on every machine. What the numbers are warped into is left to [`crate::warp`] and [`crate::filter`].
+//! Step 3 on the way of a pixel, and all choices after it. A number is a pure function of (seed, pixel, sample,
+//! dimension): nothing is stored, nothing is counted, any thread may ask for any of them in any order, and the answer
+//! has the same bits on every machine. What the numbers are warped into is left to [`crate::warp`] and
+//! [`crate::filter`].
 //!
-//! *Sobol*: each dimension is a two-dimensional pattern of its own, *padded* beside the others. It is the (0,2)-sequence of
-//! Sobol' (the first two of his dimensions), scrambled as Owen (1995) does it, with the order of the samples shuffled by the
-//! same kind of scrambling so that patterns of different dimensions and pixels are independent (Burley 2020, Practical
-//! Hash-based Owen Scrambling). Every aligned run of 2ᵐ samples of one pattern stays a (0,m,2)-net: each of the 2ᵐ boxes of
-//! any shape 2⁻ᵃ × 2⁻⁽ᵐ⁻ᵃ⁾ holds exactly one. So 2ᵐ samples are best, and a render can be continued at any count.
+//! *Sobol*: each dimension is a two-dimensional pattern of its own, *padded* beside the others. It is the
+//! (0,2)-sequence of Sobol' (the first two of his dimensions), scrambled as Owen (1995) does it, with the order of the
+//! samples shuffled by the same kind of scrambling so that patterns of different dimensions and pixels are independent
+//! (Burley 2020, Practical Hash-based Owen Scrambling). Every aligned run of 2ᵐ samples of one pattern stays a
+//! (0,m,2)-net: each of the 2ᵐ boxes of any shape 2⁻ᵃ × 2⁻⁽ᵐ⁻ᵃ⁾ holds exactly one. So 2ᵐ samples are best, and a render
+//! can be continued at any count.
 //!
 //! *Independent*: numbers without any pattern, one hash of the address each.
 
@@ -28,8 +30,8 @@ pub struct Sampler {
 impl Sampler {
     /// The sampler of one render. Another `seed` gives other noise.
     ///
-    /// None of the kinds there are looks at `_samples_per_pixel`: sample 5 of 16 is sample 5 of 64, so that a render can be
-    /// continued. A kind that must know its budget beforehand would.
+    /// None of the kinds there are looks at `_samples_per_pixel`: sample 5 of 16 is sample 5 of 64, so that a render
+    /// can be continued. A kind that must know its budget beforehand would.
     pub fn new(kind: Kind, seed: u64, _samples_per_pixel: u32) -> Self {
         Self { kind, key: mix(seed.wrapping_add(GOLDEN)) }
     }
@@ -47,8 +49,8 @@ impl Sampler {
     /// A point in [0, 1)². Coordinates are multiples of 2⁻²⁴.
     ///
     /// `dimension` names the decision that the point is for, in any way that gives each decision along one path another
-    /// number. Points of the same dimension over the samples of a pixel are well spread; points of different dimensions,
-    /// pixels or seeds are independent.
+    /// number. Points of the same dimension over the samples of a pixel are well spread; points of different
+    /// dimensions, pixels or seeds are independent.
     #[inline]
     pub fn two(&self, pixel: [u32; 2], sample: u32, dimension: u32) -> [f32; 2] {
         let pattern = self.pattern(pixel, dimension);
@@ -107,10 +109,11 @@ fn sobol_second(index: u32, pattern: u64) -> u32 {
     scramble_from_the_low_end(pascal(index), mix(pattern.wrapping_add(GOLDEN)) as u32)
 }
 
-/// The generator matrix of the second Sobol' dimension, Pascal's triangle modulo 2, times a vector of bits (bit 0 first).
+/// The generator matrix of the second Sobol' dimension, Pascal's triangle modulo 2, times a vector of bits (bit 0
+/// first).
 ///
-/// C(j, i) is odd just where the bits of i are among those of j (Lucas 1878). So bit i of the product is the parity of all
-/// bits j ⊇ i, which one pass for each of the five bits of j sums up.
+/// C(j, i) is odd just where the bits of i are among those of j (Lucas 1878). So bit i of the product is the parity of
+/// all bits j ⊇ i, which one pass for each of the five bits of j sums up.
 #[inline]
 fn pascal(mut bits: u32) -> u32 {
     bits ^= (bits >> 1) & 0x5555_5555;
@@ -120,12 +123,13 @@ fn pascal(mut bits: u32) -> u32 {
     bits ^ (bits >> 16)
 }
 
-/// Owen scrambling of a number whose bits stand in mirrored order (the most significant one is bit 0): each bit is flipped
-/// or not as a hash of all bits below it says.
+/// Owen scrambling of a number whose bits stand in mirrored order (the most significant one is bit 0): each bit is
+/// flipped or not as a hash of all bits below it says.
 ///
 /// Every step lets bits act upward only: x ^ (x · even), x + seed, x · odd. That is the construction of Laine & Karras
-/// (2011), here with the steps and constants of Vegdahl (2021, "Building a Better LK Hash"): with the original ones, some
-/// pairs among the 63 uppermost nodes agree with a probability that is 0.32 off from ½; with these, none is 0.02 off.
+/// (2011), here with the steps and constants of Vegdahl (2021, "Building a Better LK Hash"): with the original ones,
+/// some pairs among the 63 uppermost nodes agree with a probability that is 0.32 off from ½; with these, none is 0.02
+/// off.
 #[inline]
 fn scramble_from_the_low_end(mut bits: u32, seed: u32) -> u32 {
     bits ^= bits.wrapping_mul(0x3d20_adea);

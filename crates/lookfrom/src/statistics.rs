@@ -2,8 +2,8 @@
 //!
 //! Wilson & Hilferty 1931 turn a chi-square into a normal deviate.
 
-/// How many standard deviations Pearson's chi-square of the counts lies above what is expected of it. Cells in which fewer
-/// than five are expected are pooled. Above 4.5 is no accident (three in a million).
+/// How many standard deviations Pearson's chi-square of the counts lies above what is expected of it. Cells in which
+/// fewer than five are expected are pooled. Above 4.5 is no accident (three in a million).
 ///
 /// An infinity where something was counted in cells that expect nothing at all.
 pub(crate) fn chi_square_deviate(observed: &[u64], expected: &[f64]) -> f64 {

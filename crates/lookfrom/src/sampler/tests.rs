@@ -11,7 +11,8 @@ fn both_kinds() -> [Sampler; 2] {
     [sobol(7), Sampler::new(Kind::Independent, 7, 16)]
 }
 
-/// The second Sobol' dimension as textbooks compute it: direction numbers v₁ = ½, vₖ₊₁ = vₖ ⊕ vₖ/2, one for each set bit.
+/// The second Sobol' dimension as textbooks compute it: direction numbers v₁ = ½, vₖ₊₁ = vₖ ⊕ vₖ/2, one for each set
+/// bit.
 fn textbook_second(index: u32) -> u32 {
     let (mut direction, mut sum) = (1_u32 << 31, 0);
     for bit in 0..32 {
@@ -32,8 +33,8 @@ fn second_coordinate_is_that_of_the_textbook() {
     }
 }
 
-/// Owen's scrambling said slowly: in each half, quarter, eighth … of [0, 1) swap the two halves, or do not, as `swap` says of
-/// that interval (its depth, and which of the intervals of that depth it is).
+/// Owen's scrambling said slowly: in each half, quarter, eighth … of [0, 1) swap the two halves, or do not, as `swap`
+/// says of that interval (its depth, and which of the intervals of that depth it is).
 fn owen(bits: u32, swap: &dyn Fn(u32, u32) -> bool) -> u32 {
     let mut scrambled = 0;
     for depth in 0..32 {

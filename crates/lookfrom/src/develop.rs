@@ -1,0 +1,75 @@
+//! How does linear light become the bytes of a picture that screens show?
+//!
+//! Step 8 on the way of a pixel, the last: exposure, tone map, the curve of sRGB, eight bits. No dithering, so that
+//! equal light gives equal bytes. How bytes become a file is left to `lookfrom_scene::image`.
+//!
+//! IEC 61966-2-1 (sRGB); Reinhard, Stark, Shirley & Ferwerda 2002; Narkowicz 2015 (a fit to the filmic curve of ACES).
+
+use crate::film::Picture;
+use lookfrom_scene::settings::Tonemap;
+
+/// The picture in sRGB, three bytes a pixel, row by row from the top left.
+///
+/// Light is multiplied by 2^`exposure` (cut to ±128 stops; NaN is none), mapped by `tonemap`, cut to 0 … 1, bent by the
+/// exact sRGB curve and rounded to the nearest byte. NaN and negative light are black, infinite light is white.
+pub fn srgb8(picture: &Picture, exposure: f32, tonemap: Tonemap) -> Vec<u8> {
+    let thresholds = thresholds();
+    let scale = scale(exposure);
+    let mut bytes = Vec::with_capacity(3 * picture.pixels.len());
+    for &rgb in &picture.pixels {
+        // A byte is the number of thresholds that have been reached.
+        bytes.extend(
+            display(rgb, scale, tonemap)
+                .map(|value| thresholds.partition_point(|&threshold| threshold <= value) as u8),
+        );
+    }
+    bytes
+}
+
+/// The factor of an exposure in stops.
+fn scale(exposure: f32) -> f64 {
+    let stops = if exposure.is_nan() { 0.0 } else { f64::from(exposure).clamp(-128.0, 128.0) };
+    libm::exp2(stops)
+}
+
+/// What a screen should show, linear in 0 … 1.
+fn display(rgb: [f32; 3], scale: f64, tonemap: Tonemap) -> [f32; 3] {
+    // A NaN is not greater than 0; the bound keeps infinities out of the quotients.
+    let [r, g, b] = rgb.map(|light| if light > 0.0 { (f64::from(light) * scale).min(1e100) } else { 0.0 });
+    let mapped = match tonemap {
+        Tonemap::Clamp => [r, g, b],
+        Tonemap::Reinhard => {
+            let luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+            [r, g, b].map(|x| x / (1.0 + luminance))
+        }
+        Tonemap::Filmic => [r, g, b].map(|x| (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)),
+    };
+    mapped.map(|x| x.min(1.0) as f32)
+}
+
+/// The byte of a linear value in 0 … 1, by the exact curve.
+fn encode(value: f32) -> u8 {
+    let x = f64::from(value);
+    let bent = if x <= 0.0031308 { 12.92 * x } else { 1.055 * libm::pow(x, 1.0 / 2.4) - 0.055 };
+    (255.0 * bent + 0.5) as u8
+}
+
+/// The least values that [`encode`] gives the bytes 1, 2, … 255: the curve never falls, so these say all of it.
+fn thresholds() -> [f32; 255] {
+    std::array::from_fn(|below| {
+        // Bisect the bits of f32: those of positive numbers are in the order of the numbers.
+        let (mut under, mut reached) = (0.0_f32.to_bits(), 1.0_f32.to_bits());
+        while reached - under > 1 {
+            let middle = under + (reached - under) / 2;
+            if usize::from(encode(f32::from_bits(middle))) > below {
+                reached = middle;
+            } else {
+                under = middle;
+            }
+        }
+        f32::from_bits(reached)
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,138 @@
+//! Are choices as frequent as they say?
+
+use super::*;
+use crate::hash::mix;
+use crate::sampler::Sampler;
+use crate::statistics::chi_square_deviate;
+use proptest::prelude::*;
+
+fn random(i: u32) -> [f32; 2] {
+    Sampler::new(lookfrom_scene::settings::Sampler::Independent, 11, 1).two([0, 0], i, 0)
+}
+
+/// Weights of any exponent, some zero, some nonsense.
+fn any_weight() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        4 => (1_u32..255, 0_u32..1 << 23).prop_map(|(exponent, fraction)| f32::from_bits(exponent << 23 | fraction)),
+        1 => Just(0.0),
+        1 => prop_oneof![Just(-1.0), Just(f32::NAN), Just(f32::INFINITY), Just(1e-45)],
+    ]
+}
+
+#[test]
+fn entries_are_chosen_as_often_as_they_weigh() {
+    let weights = [3.0, 0.0, 1.0, 0.25, 0.0, 10.0, 2.0, 0.0];
+    let discrete = Discrete::new(&weights);
+    const N: u32 = 100_000;
+    let mut counts = [0; 8];
+    for i in 0..N {
+        counts[discrete.sample(random(i)[0]).0] += 1;
+    }
+    let expected = weights.map(|weight| f64::from(weight) / 16.25 * f64::from(N));
+    assert!(chi_square_deviate(&counts, &expected) < 4.5, "{counts:?}");
+    assert_eq!(discrete.pdf(5), 10.0 / 16.25);
+    assert_eq!(discrete.pdf(8), 0.0);
+}
+
+proptest! {
+    #[test]
+    fn choosing_agrees_with_walking_along(weights in prop::collection::vec(any_weight(), 1..40), u in 0.0_f32..1.0) {
+        let discrete = Discrete::new(&weights);
+        let (index, probability, rest) = discrete.sample(u);
+        // Slow twin: walk until the sum passes the goal.
+        let mut usable: Vec<f64> = weights.iter()
+            .map(|&w| if w > 0.0 && w < f32::INFINITY { f64::from(w) } else { 0.0 }).collect();
+        if usable.iter().all(|&w| w == 0.0) {
+            usable.fill(1.0);
+        }
+        let total: f64 = usable.iter().sum();
+        let (mut walked, mut sum) = (0, 0.0);
+        while sum + usable[walked] <= f64::from(u) * total {
+            sum += usable[walked];
+            walked += 1;
+        }
+        prop_assert_eq!(index, walked);
+        prop_assert!(usable[index] > 0.0 && probability > 0.0 && (0.0..1.0).contains(&rest));
+        prop_assert_eq!(probability, discrete.pdf(index));
+        // The new number leads back to the old one.
+        let back = (sum + f64::from(rest) * usable[index]) / total;
+        prop_assert!((back - f64::from(u)).abs() < 1e-6, "{} {}", back, u);
+    }
+
+    #[test]
+    fn probabilities_sum_to_one(weights in prop::collection::vec(any_weight(), 1..40)) {
+        let discrete = Discrete::new(&weights);
+        let sum: f64 = (0..weights.len()).map(|i| f64::from(discrete.pdf(i))).sum();
+        prop_assert!((sum - 1.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn points_lie_where_they_have_density(
+        width in 1_usize..9, height in 1_usize..9,
+        weights in prop::collection::vec(any_weight(), 64),
+        u in prop::array::uniform2(0.0_f32..1.0),
+    ) {
+        let grid = Piecewise2D::new(&weights[..width * height], width, height);
+        for u in [u, [0.0, 0.0], [ONE_MINUS_EPSILON; 2], [u[0], 0.0], [ONE_MINUS_EPSILON, u[1]]] {
+            let (point, pdf) = grid.sample(u);
+            prop_assert!(point.iter().all(|x| (0.0..1.0).contains(x)), "{:?}", point);
+            prop_assert!(pdf > 0.0, "{:?} of {:?}", u, grid);
+            prop_assert_eq!(pdf, grid.pdf(point));
+        }
+    }
+}
+
+#[test]
+fn a_number_on_an_edge_stays_in_its_cell() {
+    for cells in (1..4000).chain([4096, 8192, 16_384, 100_003]) {
+        for trial in 0..8 {
+            let index = mix(trial * 7919 + cells as u64) as usize % cells;
+            for rest in [0.0, 1e-12, 0.5, 1.0 - 1e-12, 1.0] {
+                assert_eq!(cell(place(index, rest, cells), cells), index, "{rest} of {index} of {cells}");
+            }
+        }
+    }
+}
+
+#[test]
+fn points_are_as_dense_as_they_say() {
+    // A picture with a sun, a dark row and a dark column.
+    let (width, height) = (6, 5);
+    let weights: Vec<f32> = (0..width * height)
+        .map(|i| match (i % width, i / width) {
+            (_, 2) | (4, _) => 0.0,
+            (1, 3) => 40.0,
+            (x, y) => (x + 2 * y + 1) as f32,
+        })
+        .collect();
+    let grid = Piecewise2D::new(&weights, width, height);
+    // Count in cells that cut those of the grid.
+    const N: u32 = 200_000;
+    const SIDE: usize = 12;
+    let (fine_x, fine_y) = (SIDE, 10);
+    let mut counts = vec![0; fine_x * fine_y];
+    for i in 0..N {
+        let ([x, y], _) = grid.sample(random(i));
+        counts[cell(y, fine_y) * fine_x + cell(x, fine_x)] += 1;
+    }
+    let middle = |i: usize, n: usize| (i as f32 + 0.5) / n as f32;
+    let density = |i| grid.pdf([middle(i % fine_x, fine_x), middle(i / fine_x, fine_y)]);
+    let expected: Vec<f64> =
+        (0..counts.len()).map(|i| f64::from(density(i)) * f64::from(N) / counts.len() as f64).collect();
+    assert!((expected.iter().sum::<f64>() / f64::from(N) - 1.0).abs() < 1e-5);
+    assert!(chi_square_deviate(&counts, &expected) < 4.5);
+}
+
+#[test]
+fn nothing_bright_is_uniform() {
+    for grid in [
+        Piecewise2D::new(&[0.0; 6], 3, 2),
+        Piecewise2D::new(&[-1.0, f32::NAN], 2, 1),
+        Piecewise2D::new(&[], 0, 0),
+    ] {
+        assert_eq!(grid.sample([0.25, 0.75]), ([0.25, 0.75], 1.0));
+        assert_eq!(grid.pdf([1.0, 0.0]), 1.0);
+        assert_eq!([grid.pdf([1.5, 0.0]), grid.pdf([0.5, f32::NAN])], [0.0; 2]);
+    }
+    assert_eq!(Discrete::new(&[0.0; 4]).sample(0.6), (2, 0.25, (0.6_f32 - 0.5) * 4.0));
+}

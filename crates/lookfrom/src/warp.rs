@@ -1,0 +1,94 @@
+//! How do numbers of the unit square become directions and points on shapes?
+//!
+//! Each warp takes `u` in [0, 1)² and keeps near numbers near, so that well-spread samples stay well spread; beside
+//! each stands its density. The disk is the root of all directions: Shirley & Chiu's map has no seam, and Archimedes'
+//! (a sphere's area is that of its shadow cylinder) carries it to spheres and cones. Which warp to use is left to
+//! lights and materials.
+//!
+//! Shirley & Chiu 1997 (disk); Malley (hemisphere by the disk); Heitz 2019 (triangle); Duff et al. 2017 (basis).
+
+use glam::{Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI};
+
+/// A uniform point of the unit disk, over area: the density is [`CONCENTRIC_DISK_PDF`]. The centre of the square is the
+/// centre of the disk, concentric squares become circles.
+pub fn concentric_disk(u: [f32; 2]) -> Vec2 {
+    let [a, b] = u.map(|u| 2.0 * u - 1.0);
+    if a == 0.0 && b == 0.0 {
+        return Vec2::ZERO;
+    }
+    // The radius is the side of the square through the point, the angle the place along that side.
+    let (radius, angle) =
+        if a * a > b * b { (a, FRAC_PI_4 * (b / a)) } else { (b, FRAC_PI_2 - FRAC_PI_4 * (a / b)) };
+    let (sin, cos) = libm::sincosf(angle);
+    Vec2::new(radius * cos, radius * sin)
+}
+
+/// Density of [`concentric_disk`] over area: 1/π.
+pub const CONCENTRIC_DISK_PDF: f32 = FRAC_1_PI;
+
+/// A direction about `n`, as dense as the cosine of its angle to it: [`cosine_hemisphere_pdf`]. `n` must be of unit
+/// length, the result is, up to rounding; its cosine is always positive.
+pub fn cosine_hemisphere(u: [f32; 2], n: Vec3) -> Vec3 {
+    let disk = concentric_disk(u);
+    // Lift the rim a little (2⁻¹², far below what can be seen), so that no density is 0.
+    let height = (1.0 - disk.length_squared()).max(1.0 / 16_777_216.0).sqrt();
+    let (s, t) = orthonormal_basis(n);
+    disk.x * s + disk.y * t + height * n
+}
+
+/// Density of [`cosine_hemisphere`] over solid angle, for the cosine of the direction's angle to the normal. 0 below.
+pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
+    FRAC_1_PI * cos_theta.max(0.0)
+}
+
+/// A uniform direction, of unit length up to rounding: the density over solid angle is [`UNIFORM_SPHERE_PDF`].
+pub fn uniform_sphere(u: [f32; 2]) -> Vec3 {
+    uniform_cone(u, 2.0)
+}
+
+/// Density of [`uniform_sphere`] over solid angle: 1/4π.
+pub const UNIFORM_SPHERE_PDF: f32 = 0.25 * FRAC_1_PI;
+
+/// A uniform direction within a cone about +z, of unit length up to rounding: the density is [`uniform_cone_pdf`].
+///
+/// The cone is given by `1 − cos` of the angle between its axis and its side: 0 … 2. In that form a cone may be as thin
+/// as one likes; where sin² is known (radius²/distance² of a sphere), `1 − cos = sin² / (1 + √(1 − sin²))`.
+pub fn uniform_cone(u: [f32; 2], one_minus_cos_theta_max: f32) -> Vec3 {
+    let disk = concentric_disk(u);
+    // The depth below the pole is uniform, as the square of the disk's radius is.
+    let depth = disk.length_squared().min(1.0) * one_minus_cos_theta_max;
+    // sin θ = √(depth (2 − depth)), along the disk's direction.
+    let widen = (one_minus_cos_theta_max * (2.0 - depth).max(0.0)).sqrt();
+    Vec3::new(disk.x * widen, disk.y * widen, 1.0 - depth)
+}
+
+/// Density of [`uniform_cone`] over solid angle within the cone; infinite for a cone of no width.
+pub fn uniform_cone_pdf(one_minus_cos_theta_max: f32) -> f32 {
+    1.0 / (2.0 * PI * one_minus_cos_theta_max)
+}
+
+/// Barycentric coordinates α, β, γ ≥ 0 of a uniform point of a triangle; their sum is 1 up to rounding. The density
+/// over area is [`uniform_triangle_pdf`].
+pub fn uniform_triangle([u, v]: [f32; 2]) -> [f32; 3] {
+    // Fold the square along its diagonal, each half moving towards the other two corners.
+    let (alpha, beta) = if v > u { (0.5 * u, v - 0.5 * u) } else { (u - 0.5 * v, 0.5 * v) };
+    [alpha, beta, 1.0 - (alpha + beta)]
+}
+
+/// Density of [`uniform_triangle`] over a triangle of that area.
+pub fn uniform_triangle_pdf(area: f32) -> f32 {
+    1.0 / area
+}
+
+/// Two unit vectors that make a right-handed orthonormal basis (s, t, n) with the unit vector `n`, up to rounding.
+pub fn orthonormal_basis(n: Vec3) -> (Vec3, Vec3) {
+    // No branch but the sign of z, which keeps the denominator away from 0.
+    let sign = 1.0_f32.copysign(n.z);
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    (Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), Vec3::new(b, sign + n.y * n.y * a, -n.y))
+}
+
+#[cfg(test)]
+mod tests;
