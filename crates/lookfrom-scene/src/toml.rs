@@ -287,9 +287,13 @@ fn named<Id: Copy>(known: &BTreeMap<String, Id>, what: &str, value: Value<'_>, n
     known.get(name).copied().ok_or_else(|| {
         let error = value.error(format!("there is no {what} {name:?}"));
         let names = || known.keys().map(String::as_str);
+        let example = match what {
+            "object" => format!("[[objects.{name}.sphere]]"),
+            _ => format!("[{what}s.{name}]"),
+        };
         match nearest(name, names()) {
             Some(meant) => error.hint(format!("did you mean {meant:?}?")),
-            None if known.is_empty() => error.hint(format!("write it as [{what}s.{name}]")),
+            None if known.is_empty() => error.hint(format!("there is none at all: write it as {example}")),
             None => {
                 let mut some: Vec<&str> = names().take(12).collect();
                 if known.len() > some.len() {

@@ -62,9 +62,9 @@ impl<'a> Value<'a> {
         self.error(format!("`{}` is {}; expected {expected}", self.key, self.found()))
     }
 
-    /// A file that could not be opened is this value's fault; what is wrong inside a file is not.
+    /// A file that cannot be opened or is of no known kind is this value's fault; what is wrong inside a file is not.
     pub(super) fn blame(self, error: Error) -> Error {
-        if error.kind != ErrorKind::Io || error.at.line > 0 {
+        if error.at.line > 0 || !matches!(error.kind, ErrorKind::Io | ErrorKind::Unsupported) {
             return error;
         }
         Error { message: format!("{}: {}", error.at, error.message), at: self.at(), ..error }

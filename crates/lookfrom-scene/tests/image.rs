@@ -1,0 +1,240 @@
+//! Pictures: what is written comes back, whatever the format; what is hostile is an error.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use ::image::{DynamicImage, ImageFormat, Rgb32FImage, RgbImage, RgbaImage};
+use lookfrom_scene::image::{self, Image};
+use lookfrom_scene::{ErrorKind, Memory, Sources};
+use proptest::prelude::*;
+
+fn read_as(name: &str, bytes: &[u8], texels: Option<u64>) -> lookfrom_scene::Result<(Image, usize)> {
+    let mut files = Memory::default();
+    files.0.insert(name.into(), bytes.to_vec());
+    let mut sources = Sources::new(&files);
+    sources.limits.texels = texels.unwrap_or(1 << 20);
+    image::read(Path::new(name), &mut sources).map(|image| (image, sources.warnings.len()))
+}
+
+fn gradient() -> RgbImage {
+    RgbImage::from_fn(7, 5, |x, y| ::image::Rgb([(x * 40) as u8, (y * 60) as u8, 128]))
+}
+
+fn encode(picture: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, format).expect("encodes");
+    bytes.into_inner()
+}
+
+#[test]
+fn every_lossless_format_gives_the_same_linear_colors() {
+    let picture = DynamicImage::from(gradient());
+    let expected: Vec<[f32; 3]> = gradient()
+        .pixels()
+        .map(|pixel| pixel.0.map(|value| image::linear_from_srgb(f32::from(value) / 255.0)))
+        .collect();
+    for (name, format) in [
+        ("a.png", ImageFormat::Png),
+        ("a.bmp", ImageFormat::Bmp),
+        ("a.tga", ImageFormat::Tga),
+        ("a.ppm", ImageFormat::Pnm),
+        ("a.webp", ImageFormat::WebP),
+        ("a.tif", ImageFormat::Tiff),
+    ] {
+        let bytes = encode(&picture, format);
+        let (read, _) = read_as(name, &bytes, None).expect(name);
+        assert_eq!((read.width, read.height, &read.texels), (7, 5, &expected), "{name}");
+        // The content tells, not the extension; only TGA has no mark.
+        if format != ImageFormat::Tga {
+            assert_eq!(read_as("a.jpg", &bytes, None).expect(name).0.texels, expected, "{name} named .jpg");
+        }
+    }
+    for format in [ImageFormat::Jpeg, ImageFormat::Gif] {
+        let (read, _) = read_as("a", &encode(&picture, format), None).expect("lossy formats are read");
+        assert_eq!((read.width, read.height), (7, 5));
+        let differences =
+            read.texels.as_flattened().iter().zip(expected.as_flattened()).map(|(a, b)| (a - b).abs());
+        assert!(differences.sum::<f32>() / (7.0 * 5.0 * 3.0) < 0.03, "{format:?}");
+    }
+}
+
+#[test]
+fn sixteen_bits_and_data_and_alpha() {
+    let deep = DynamicImage::from(DynamicImage::from(gradient()).into_rgb16());
+    let (read, _) = read_as("a.png", &encode(&deep, ImageFormat::Png), None).expect("16-bit PNG");
+    assert!((read.texels[0][2] - image::linear_from_srgb(128.0 / 255.0)).abs() < 1e-6);
+
+    let clear = DynamicImage::from(RgbaImage::from_pixel(2, 2, ::image::Rgba([255, 0, 128, 0])));
+    let bytes = encode(&clear, ImageFormat::Png);
+    let (read, _) = read_as("a.png", &bytes, None).expect("alpha is dropped");
+    assert_eq!(read.texels[0][0], 1.0);
+
+    let mut files = Memory::default();
+    files.0.insert("a.png".into(), bytes);
+    let data = image::read_data(Path::new("a.png"), &mut Sources::new(&files)).expect("data");
+    assert_eq!(data.texels[3], [1.0, 0.0, 128.0 / 255.0]);
+}
+
+#[test]
+fn light_is_kept_as_it_is() {
+    let texels: Vec<[f32; 3]> = (0..40 * 33)
+        .map(|i| [i as f32 * 0.25, libm::exp2f((i % 60) as f32 - 30.0), 1.0 / (1.0 + i as f32)])
+        .collect();
+    let pfm = image::encode_pfm(40, 33, &texels).expect("PFM");
+    assert_eq!(read_as("a.pfm", &pfm, None).expect("PFM").0.texels, texels);
+
+    let planes = [0, 1, 2].map(|c| texels.iter().map(|texel| texel[c]).collect::<Vec<f32>>());
+    let depth: Vec<f32> = (0..40 * 33).map(|i| i as f32).collect();
+    let channels = [
+        ("R".to_owned(), planes[0].as_slice()),
+        ("G".to_owned(), planes[1].as_slice()),
+        ("B".to_owned(), planes[2].as_slice()),
+        ("depth.Z".to_owned(), depth.as_slice()),
+    ];
+    let notes =
+        [("scene".to_owned(), "hero.toml".to_owned()), ("comments".to_owned(), "für später".to_owned())];
+    let exr = image::encode_exr(40, 33, &channels, &notes).expect("EXR");
+    assert_eq!(read_as("a.exr", &exr, None).expect("EXR").0.texels, texels);
+
+    let mut files = Memory::default();
+    files.0.insert("a.exr".into(), exr.clone());
+    let all = image::read_exr(Path::new("a.exr"), &mut Sources::new(&files)).expect("EXR");
+    assert_eq!(all.channel("depth.Z"), Some(depth.as_slice()));
+    assert!(all.attributes.contains(&notes[0]), "{:?}", all.attributes);
+
+    let mut turned = channels.clone();
+    turned.reverse();
+    assert_eq!(image::encode_exr(40, 33, &turned, &notes).expect("EXR"), exr);
+
+    // Shared exponents keep 8 bits of the largest primary.
+    let hdr = image::encode_hdr(40, 33, &texels).expect("HDR");
+    let (read, _) = read_as("a.hdr", &hdr, None).expect("HDR");
+    for (a, b) in read.texels.iter().zip(&texels) {
+        let largest = b.iter().fold(0.0_f32, |most, &value| most.max(value));
+        assert!((0..3).all(|c| (a[c] - b[c]).abs() <= largest / 100.0), "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn eight_bits_come_back() {
+    let rgb = gradient().into_raw();
+    for bytes in [image::encode_png(7, 5, &rgb).expect("PNG"), image::encode_ppm(7, 5, &rgb).expect("PPM")] {
+        let found = ::image::load_from_memory(&bytes).expect("other programs read it").into_rgb8();
+        assert_eq!(found.as_raw(), &rgb);
+    }
+    assert_eq!(image::encode_png(7, 6, &rgb).unwrap_err().kind, ErrorKind::Invalid);
+    assert_eq!(image::encode_ppm(0, 0, &[]).unwrap_err().kind, ErrorKind::Invalid);
+    let twice = [("R".to_owned(), [0.0].as_slice()), ("R".to_owned(), [0.0].as_slice())];
+    assert_eq!(image::encode_exr(1, 1, &twice, &[]).unwrap_err().kind, ErrorKind::Invalid);
+    let own = [("channels".to_owned(), String::new())];
+    assert_eq!(image::encode_exr(1, 1, &twice[..1], &own).unwrap_err().kind, ErrorKind::Invalid);
+}
+
+/// A PNG whose header claims a size, with a right checksum, and nothing behind it.
+fn png_claim(width: u32, height: u32) -> Vec<u8> {
+    let mut chunk = b"IHDR".to_vec();
+    chunk.extend(width.to_be_bytes());
+    chunk.extend(height.to_be_bytes());
+    chunk.extend([8, 2, 0, 0, 0]);
+    let mut checksum = !0_u32;
+    for &byte in &chunk {
+        checksum ^= u32::from(byte);
+        for _ in 0..8 {
+            checksum = (checksum >> 1) ^ (0xedb8_8320 & (checksum & 1).wrapping_neg());
+        }
+    }
+    let mut bytes = b"\x89PNG\r\n\x1a\n\0\0\0\r".to_vec();
+    bytes.extend(chunk);
+    bytes.extend((!checksum).to_be_bytes());
+    bytes.extend(b"\0\0\0\x04IDAT\0\0\0\0");
+    bytes
+}
+
+#[test]
+fn a_claim_is_checked_before_memory_is_asked_for() {
+    for (name, bytes) in [
+        ("a.png", png_claim(1_000_000, 1_000_000)),
+        ("b.png", png_claim(40_000, 40_000)),
+        ("a.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000 +X 1000000\n".to_vec()),
+        ("a.ppm", b"P6 1000000 1000000 255\n".to_vec()),
+        ("a.pfm", b"PF 1000000 1000000 -1.0\n".to_vec()),
+    ] {
+        let error = read_as(name, &bytes, Some(1 << 28)).unwrap_err();
+        assert_eq!(error.kind, ErrorKind::Limit, "{error}");
+        assert!(error.hint.is_some());
+    }
+    let exr = image::encode_exr(8, 8, &[("R".to_owned(), &[0.0; 64])], &[]).expect("EXR");
+    let error = read_as("a.exr", &exr, Some(63)).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "a.exr: 8×8 texels are more than the limit of 63\n  help: make the picture smaller, or raise `Limits::texels`"
+    );
+}
+
+#[test]
+fn errors_say_what_to_do() {
+    let said = |name: &str, bytes: &[u8]| read_as(name, bytes, None).unwrap_err().to_string();
+    let whole = "\n  help: check that the file is whole; opening it in another program and saving it again may repair it";
+    assert_eq!(said("a.png", b""), format!("a.png: the file is empty; expected a picture{whole}"));
+    assert!(said("a.xyz", b"what is this").starts_with("a.xyz: not a picture that is known"));
+    assert!(said("a.xyz", b"what is this").contains("save it as one of PNG, JPEG"));
+    let exr = image::encode_exr(1, 1, &[("Z".to_owned(), &[0.0])], &[]).expect("EXR");
+    assert_eq!(
+        said("a.exr", &exr),
+        "a.exr: has the channels Z; expected R, G and B, or Y\n  help: write the picture again with channels of these names"
+    );
+    let nan = image::encode_pfm(2, 1, &[[f32::NAN, 1.0, f32::INFINITY], [0.5; 3]]).expect("PFM");
+    let (read, warnings) = read_as("a.pfm", &nan, None).expect("bad values are survived");
+    assert_eq!((read.texels[0], warnings), ([0.0, 1.0, 0.0], 1));
+}
+
+fn samples() -> Vec<Vec<u8>> {
+    let picture = DynamicImage::from(gradient());
+    let float =
+        DynamicImage::from(Rgb32FImage::from_fn(7, 5, |x, y| ::image::Rgb([x as f32, y as f32, 0.5])));
+    let mut all: Vec<Vec<u8>> = [
+        ImageFormat::Png,
+        ImageFormat::Jpeg,
+        ImageFormat::Bmp,
+        ImageFormat::Tga,
+        ImageFormat::Pnm,
+        ImageFormat::WebP,
+        ImageFormat::Tiff,
+        ImageFormat::Gif,
+    ]
+    .into_iter()
+    .map(|format| encode(&picture, format))
+    .collect();
+    all.extend([ImageFormat::Hdr, ImageFormat::Tiff].map(|format| encode(&float, format)));
+    let values: Vec<f32> = (0..35).map(|i| i as f32).collect();
+    let channels = ["R", "G", "B"].map(|name| (name.to_owned(), values.as_slice()));
+    all.push(image::encode_exr(7, 5, &channels, &[("a".to_owned(), "b".to_owned())]).expect("EXR"));
+    all.push(image::encode_pfm(2, 1, &[[1.0; 3]; 2]).expect("PFM"));
+    all
+}
+
+#[test]
+fn a_picture_that_ends_early_is_an_error_or_a_picture() {
+    for sample in samples() {
+        for length in 0..sample.len() {
+            let _ = read_as("a.tga", &sample[..length], None);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(4000))]
+
+    #[test]
+    fn hostile_bytes_never_panic(
+        which in 0_usize..12,
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        let mut bytes = samples().swap_remove(which);
+        for (place, byte) in changes {
+            let place = place.index(bytes.len());
+            bytes[place] = byte;
+        }
+        let _ = read_as("a.tga", &bytes, None);
+    }
+}
