@@ -1,0 +1,108 @@
+//! Boxes along the axes.
+//!
+//! How rays meet boxes is in `node`.
+
+/// A box along the axes, its faces included. Empty where a minimum is above a maximum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Least coordinates.
+    pub min: [f32; 3],
+    /// Greatest coordinates.
+    pub max: [f32; 3],
+}
+
+/// Coordinates beyond this (2¹⁰⁰ ≈ 1.3·10³⁰) count as infinite: no sum of a few of them overflows.
+pub(crate) const LARGEST_COORDINATE: f32 = 1.267_650_6e30;
+
+impl Aabb {
+    /// The box of no points.
+    pub const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
+
+    /// The smallest box around points.
+    pub fn around(points: &[[f32; 3]]) -> Self {
+        let mut result = Self::EMPTY;
+        for &point in points {
+            result.extend(point);
+        }
+        result
+    }
+
+    /// Whether there is no point in it.
+    pub fn is_empty(&self) -> bool {
+        !(0..3).all(|axis| self.min[axis] <= self.max[axis])
+    }
+
+    /// Grows to hold a point.
+    pub fn extend(&mut self, point: [f32; 3]) {
+        self.unite(&Self { min: point, max: point });
+    }
+
+    /// Grows to hold another box.
+    #[inline]
+    pub fn unite(&mut self, other: &Self) {
+        for axis in 0..3 {
+            // Written so that it becomes one instruction, which f32::min (with its rule for NaN) does not.
+            self.min[axis] = if other.min[axis] < self.min[axis] { other.min[axis] } else { self.min[axis] };
+            self.max[axis] = if other.max[axis] > self.max[axis] { other.max[axis] } else { self.max[axis] };
+        }
+    }
+
+    /// Whether another box lies within this one.
+    pub fn contains(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
+    }
+
+    /// Half of the surface; 0 for an empty box.
+    #[inline]
+    pub fn half_area(&self) -> f32 {
+        let [x, y, z] = [0, 1, 2].map(|axis| (self.max[axis] - self.min[axis]).max(0.0));
+        x * y + y * z + z * x
+    }
+
+    /// Whether it has points and all its coordinates can be calculated with.
+    pub(crate) fn is_valid(&self) -> bool {
+        !self.is_empty()
+            && self.min.iter().chain(&self.max).all(|coordinate| coordinate.abs() <= LARGEST_COORDINATE)
+    }
+
+    /// The box moved outwards by at least one unit in the last place of its largest coordinate.
+    ///
+    /// So no box in a tree is flat, a ray that runs in a face of a primitive's box runs inside the tree's box, and
+    /// the box holds whatever a test in double precision may take for a point of the primitive.
+    pub(crate) fn padded(&self) -> Self {
+        let largest = self.min.iter().chain(&self.max).fold(0.0_f32, |m, coordinate| m.max(coordinate.abs()));
+        let pad = (largest * f32::EPSILON).max(f32::MIN_POSITIVE);
+        Self { min: self.min.map(|x| x - pad), max: self.max.map(|x| x + pad) }
+    }
+
+    /// Twice the middle.
+    #[inline]
+    pub(crate) fn twice_center(&self) -> [f32; 3] {
+        [self.min[0] + self.max[0], self.min[1] + self.max[1], self.min[2] + self.max[2]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn padding_moves_every_face() {
+        for exponent in -30..30 {
+            let x = 1.37 * 2.0_f32.powi(exponent);
+            let exact = Aabb { min: [-x, x, x], max: [-x, x, 2.0 * x] };
+            let padded = exact.padded();
+            for axis in 0..3 {
+                assert!(padded.min[axis] < exact.min[axis] && exact.max[axis] < padded.max[axis]);
+            }
+        }
+    }
+
+    #[test]
+    fn empty_boxes() {
+        assert!(Aabb::EMPTY.is_empty() && !Aabb::EMPTY.is_valid());
+        assert_eq!(Aabb::EMPTY.half_area(), 0.0);
+        assert!(!Aabb { min: [0.0; 3], max: [1.0, f32::NAN, 1.0] }.is_valid());
+        assert!(!Aabb { min: [0.0; 3], max: [f32::INFINITY; 3] }.is_valid());
+    }
+}

@@ -1,0 +1,94 @@
+//! Affine maps in double precision: where instances stand.
+
+use crate::vector::{cross, dot};
+
+/// `x ↦ matrix · x + translation`. For an instance: world from object. Mirrors, shears and any scale are allowed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Affine {
+    /// The linear part, by rows.
+    pub matrix: [[f64; 3]; 3],
+    /// Where the origin goes.
+    pub translation: [f64; 3],
+}
+
+impl Affine {
+    /// Leaves everything where it is.
+    pub const IDENTITY: Self =
+        Self { matrix: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], translation: [0.0; 3] };
+
+    /// The image of a point.
+    pub fn point(&self, p: [f64; 3]) -> [f64; 3] {
+        let moved = self.vector(p);
+        [moved[0] + self.translation[0], moved[1] + self.translation[1], moved[2] + self.translation[2]]
+    }
+
+    /// The image of a direction: without the translation.
+    pub fn vector(&self, v: [f64; 3]) -> [f64; 3] {
+        self.matrix.map(|row| dot(row, v))
+    }
+
+    /// The image of a surface normal under the map from which `self` leads *back*: multiplication by the transposed
+    /// matrix. With `self` = object from world, object normals become world normals (not of unit length).
+    pub fn normal_back(&self, n: [f64; 3]) -> [f64; 3] {
+        let m = &self.matrix;
+        [0, 1, 2].map(|i| m[0][i] * n[0] + m[1][i] * n[1] + m[2][i] * n[2])
+    }
+
+    /// The map back, where there is one within the range of numbers.
+    pub fn inverse(&self) -> Option<Self> {
+        let matrix = inverse_matrix(&self.matrix)?;
+        let back = Self { matrix, translation: [0.0; 3] }.vector(self.translation);
+        let translation = back.map(|x| -x);
+        translation.iter().all(|x| x.is_finite()).then_some(Self { matrix, translation })
+    }
+}
+
+/// The inverse by cofactors. None where the determinant vanishes (within rounding) or numbers overflow.
+pub(crate) fn inverse_matrix(m: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
+    // Scale the rows to lengths about 1, so that neither the determinant nor its error bound depends on units.
+    let scale = m.map(|row| row.iter().fold(0.0_f64, |largest, x| largest.max(x.abs())));
+    if !scale.iter().all(|&s| s.is_finite() && s > 0.0) {
+        return None;
+    }
+    let rows = [0, 1, 2].map(|i| m[i].map(|x| x / scale[i]));
+    let columns = [cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])];
+    let determinant = dot(rows[0], columns[0]);
+    if determinant.abs() < 1e-15 {
+        return None;
+    }
+    let inverse = [0, 1, 2].map(|i| [0, 1, 2].map(|j| columns[j][i] / determinant / scale[j]));
+    inverse.iter().flatten().all(|x| x.is_finite()).then_some(inverse)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverse_of_shear_scale_mirror() {
+        let map = Affine {
+            matrix: [[-2e5, 1e3, 0.0], [0.0, 3e-4, 1e-4], [0.0, 0.0, 7.0]],
+            translation: [1.0, -2.0, 3e6],
+        };
+        let back = map.inverse().unwrap();
+        for p in [[1.0, 2.0, 3.0], [-1e4, 0.5, 1e-3]] {
+            let q = back.point(map.point(p));
+            for axis in 0..3 {
+                assert!((q[axis] - p[axis]).abs() < 1e-9 * (1.0 + p[axis].abs()), "{q:?} instead of {p:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn singular_matrices_have_no_inverse() {
+        for matrix in [
+            [[0.0; 3]; 3],
+            [[1.0, 2.0, 3.0], [2.0, 4.0, 6.0], [0.0, 0.0, 1.0]],
+            [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]],
+            [[f64::NAN, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            [[f64::INFINITY, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        ] {
+            assert!(Affine { matrix, translation: [0.0; 3] }.inverse().is_none(), "{matrix:?}");
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! From the binary tree to the wide one: each node takes in its descendants, the largest first, until it has eight.
+//!
+//! Wald, Benthin, Boulos (2008), "Getting Rid of Packets". Nodes are written depth first, leaves beside them in
+//! the same order, so neighbours in space are neighbours in memory.
+
+use crate::Bvh;
+use crate::bvh::{ProceduralItem, SphereItem};
+use crate::instance::Instance;
+use crate::node::{Content, Node, WIDTH};
+use crate::triangle::TriangleBlock;
+
+use super::sah::{Binary, Reference};
+use super::{Geometry, Item, Kind};
+
+/// Makes the tree, all but its bounds and statistics.
+pub(super) fn collapse(
+    binary: &[Binary],
+    references: &[Reference],
+    items: &[Item],
+    geometries: &[Geometry],
+    instances: Vec<Instance>,
+) -> Bvh {
+    let mut bvh = Bvh::default();
+    // Procedural geometries keep their order; an item names its place among them.
+    let mut procedural_place = vec![0; geometries.len()];
+    for (index, geometry) in geometries.iter().enumerate() {
+        if let Geometry::Procedural(shapes) = geometry {
+            procedural_place[index] = bvh.procedural_shapes.len() as u32;
+            bvh.procedural_shapes.push(shapes.clone());
+        }
+    }
+    let mut collapse = Collapse { binary, references, items, geometries, procedural_place, instances, bvh };
+    if !binary.is_empty() {
+        collapse.node(0);
+    }
+    collapse.bvh
+}
+
+struct Collapse<'a> {
+    binary: &'a [Binary],
+    references: &'a [Reference],
+    items: &'a [Item],
+    geometries: &'a [Geometry],
+    procedural_place: Vec<u32>,
+    instances: Vec<Instance>,
+    bvh: Bvh,
+}
+
+impl Collapse<'_> {
+    /// Writes the node that stands for a binary one, and all below it; returns its number.
+    fn node(&mut self, root: usize) -> u32 {
+        let (children, count) = self.children(root);
+        let number = self.bvh.nodes.len();
+        self.bvh.nodes.push(Node::EMPTY);
+        for (slot, &child) in children[..count].iter().enumerate() {
+            let node = self.binary[child];
+            let (index, content) =
+                if node.right == 0 { self.leaf(&node) } else { (self.node(child), Content::Node) };
+            self.bvh.nodes[number].place(slot, &node.bounds, index, content);
+        }
+        number as u32
+    }
+
+    /// The binary nodes that become the children of one wide node.
+    fn children(&self, root: usize) -> ([usize; WIDTH], usize) {
+        let mut children = [root; WIDTH];
+        let mut count = 1;
+        while count < WIDTH {
+            // Open the largest child that can be opened.
+            let mut largest: Option<(f32, usize)> = None;
+            for (slot, &child) in children[..count].iter().enumerate() {
+                let node = &self.binary[child];
+                let area = node.bounds.half_area();
+                if node.right != 0 && largest.is_none_or(|(most, _)| area > most) {
+                    largest = Some((area, slot));
+                }
+            }
+            let Some((_, slot)) = largest else { break };
+            let opened = children[slot];
+            children[slot] = opened + 1;
+            children[count] = opened + self.binary[opened].right as usize;
+            count += 1;
+        }
+        (children, count)
+    }
+
+    /// Writes the primitives of a leaf.
+    fn leaf(&mut self, node: &Binary) -> (u32, Content) {
+        let range = node.first as usize..(node.first + node.count) as usize;
+        let mut items: Vec<&Item> =
+            self.references[range].iter().map(|reference| &self.items[reference.item as usize]).collect();
+        items.sort_unstable_by_key(|item| (item.geometry, item.primitive));
+        let count = node.count;
+        let bvh = &mut self.bvh;
+        match items[0].kind {
+            Kind::Triangle => {
+                let triangles: Vec<_> = items
+                    .iter()
+                    .filter_map(|item| match &self.geometries[item.geometry as usize] {
+                        Geometry::Triangles(corners) => {
+                            Some((corners[item.primitive as usize], item.geometry, item.primitive))
+                        }
+                        _ => None,
+                    })
+                    .collect();
+                bvh.triangles.push(TriangleBlock::new(&triangles));
+                (bvh.triangles.len() as u32 - 1, Content::Triangles(count))
+            }
+            Kind::Sphere => {
+                let first = bvh.spheres.len() as u32;
+                for item in items {
+                    if let Geometry::Spheres(spheres) = &self.geometries[item.geometry as usize] {
+                        let shape = spheres[item.primitive as usize];
+                        let (geometry, primitive) = (item.geometry, item.primitive);
+                        bvh.spheres.push(SphereItem { shape, geometry, primitive });
+                    }
+                }
+                (first, Content::Spheres(count))
+            }
+            Kind::Procedural => {
+                let first = bvh.procedurals.len() as u32;
+                for item in items {
+                    let (geometry, primitive) = (item.geometry, item.primitive);
+                    let shape = self.procedural_place[geometry as usize];
+                    bvh.procedurals.push(ProceduralItem { shape, geometry, primitive });
+                }
+                (first, Content::Procedurals(count))
+            }
+            Kind::Instance => {
+                let first = bvh.instances.len() as u32;
+                bvh.instances.extend(items.iter().map(|item| self.instances[item.geometry as usize].clone()));
+                (first, Content::Instances(count))
+            }
+        }
+    }
+}

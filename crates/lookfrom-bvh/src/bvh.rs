@@ -1,0 +1,172 @@
+//! The tree itself, and the doors to it.
+
+use std::sync::Arc;
+
+use crate::aabb::Aabb;
+use crate::instance::Instance;
+use crate::node::Node;
+use crate::prepared::Prepared;
+use crate::procedural::Procedural;
+use crate::query::{All, Any, Closest};
+use crate::ray::{Hit, NONE, Ray};
+use crate::sphere::Sphere;
+use crate::traverse::{Watch, traverse, with_stack};
+use crate::triangle::TriangleBlock;
+use crate::validate::{Invalid, Statistics};
+
+/// Rays that one thread traces before it looks for others' work.
+const BATCH: usize = 4096;
+
+/// Geometry that rays can be traced against. Made by a [`Builder`](crate::Builder); frozen, and shared between threads.
+#[derive(Debug)]
+pub struct Bvh {
+    /// The root first.
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) triangles: Vec<TriangleBlock>,
+    pub(crate) spheres: Vec<SphereItem>,
+    pub(crate) procedurals: Vec<ProceduralItem>,
+    pub(crate) procedural_shapes: Vec<Arc<dyn Procedural>>,
+    pub(crate) instances: Vec<Instance>,
+    pub(crate) bounds: Aabb,
+    pub(crate) statistics: Statistics,
+}
+
+/// A sphere and what it is called.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SphereItem {
+    pub(crate) shape: Sphere,
+    pub(crate) geometry: u32,
+    pub(crate) primitive: u32,
+}
+
+/// One of a procedural's shapes: `shape` is its place in [`Bvh::procedural_shapes`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ProceduralItem {
+    pub(crate) shape: u32,
+    pub(crate) geometry: u32,
+    pub(crate) primitive: u32,
+}
+
+impl Default for Bvh {
+    /// The tree of nothing.
+    fn default() -> Self {
+        Self {
+            nodes: Vec::new(),
+            triangles: Vec::new(),
+            spheres: Vec::new(),
+            procedurals: Vec::new(),
+            procedural_shapes: Vec::new(),
+            instances: Vec::new(),
+            bounds: Aabb::EMPTY,
+            statistics: Statistics::default(),
+        }
+    }
+}
+
+impl Bvh {
+    /// The box around everything, [`Aabb::EMPTY`] where there is nothing.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Bytes held for tracing, without the trees of instances (which are shared) and without procedural shapes.
+    pub fn memory(&self) -> usize {
+        size_of::<Self>()
+            + size_of_val(&*self.nodes)
+            + size_of_val(&*self.triangles)
+            + size_of_val(&*self.spheres)
+            + size_of_val(&*self.procedurals)
+            + size_of_val(&*self.procedural_shapes)
+            + size_of_val(&*self.instances)
+    }
+
+    /// What the tree consists of, counted when it was built.
+    pub fn statistics(&self) -> Statistics {
+        self.statistics
+    }
+
+    /// Checks every property that tracing relies on, and counts again. Slow: for tests and for doubts.
+    ///
+    /// # Errors
+    /// What is wrong, and where: a fault of this library.
+    pub fn validate(&self) -> Result<Statistics, Invalid> {
+        crate::validate::validate(self)
+    }
+
+    /// The hit with the least t in the ray's range; of several at equal t the one with the lowest ids, where geometry
+    /// outside of instances comes first, then by instance, geometry and primitive. [`Hit::MISS`] where there is none.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Hit, Ray, Sphere};
+    /// let mut builder = Builder::new();
+    /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let bvh = builder.build()?;
+    /// assert_eq!(bvh.closest_hit(&Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -2.0])).t, 1.0);
+    /// assert_eq!(bvh.closest_hit(&Ray::new([0.0, 0.0, 3.0], [0.0, 1.0, 0.0])), Hit::MISS);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn closest_hit(&self, ray: &Ray) -> Hit {
+        self.closest_hit_watched(ray, &mut ())
+    }
+
+    /// [`Self::closest_hit`], while someone watches. The answer is the same.
+    pub fn closest_hit_watched(&self, ray: &Ray, watch: &mut impl Watch) -> Hit {
+        let Some(prepared) = Prepared::new(ray) else { return Hit::MISS };
+        let mut query = Closest::new(ray.t_max);
+        with_stack(|stack| traverse(self, &prepared, NONE, &mut query, watch, stack));
+        query.hit
+    }
+
+    /// Whether anything is hit in the ray's range.
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        let Some(prepared) = Prepared::new(ray) else { return false };
+        let mut query = Any::new(ray.t_max);
+        with_stack(|stack| traverse(self, &prepared, NONE, &mut query, &mut (), stack));
+        query.found
+    }
+
+    /// Replaces the content of `hits` by all hits in the ray's range, sorted by t and then as [`Self::closest_hit`]
+    /// decides ties. A triangle gives at most one hit, a sphere two, a procedural shape one (its nearest).
+    pub fn all_hits(&self, ray: &Ray, hits: &mut Vec<Hit>) {
+        hits.clear();
+        let Some(prepared) = Prepared::new(ray) else { return };
+        let mut query = All::new(ray.t_max, hits);
+        with_stack(|stack| traverse(self, &prepared, NONE, &mut query, &mut (), stack));
+        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then_with(|| a.rank().cmp(&b.rank())));
+    }
+
+    /// [`Self::closest_hit`] for each ray, on several threads where there are many. The two slices should be equally
+    /// long; what one has more than the other is left alone.
+    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
+        for_batches(rays, hits, |rays, hits| {
+            for (ray, hit) in rays.iter().zip(hits) {
+                *hit = self.closest_hit(ray);
+            }
+        });
+    }
+
+    /// [`Self::occluded`] for each ray, on several threads where there are many. The two slices should be equally
+    /// long; what one has more than the other is left alone.
+    pub fn occluded_many(&self, rays: &[Ray], occluded: &mut [bool]) {
+        for_batches(rays, occluded, |rays, occluded| {
+            for (ray, occluded) in rays.iter().zip(occluded) {
+                *occluded = self.occluded(ray);
+            }
+        });
+    }
+}
+
+/// Deals rays and places for answers to the threads, batch by batch.
+fn for_batches<T: Send>(rays: &[Ray], answers: &mut [T], trace: impl Fn(&[Ray], &mut [T]) + Sync) {
+    #[cfg(feature = "parallel")]
+    if rays.len() > BATCH {
+        use rayon::prelude::*;
+        rays.par_chunks(BATCH)
+            .zip(answers.par_chunks_mut(BATCH))
+            .for_each(|(rays, answers)| trace(rays, answers));
+        return;
+    }
+    for (rays, answers) in rays.chunks(BATCH).zip(answers.chunks_mut(BATCH)) {
+        trace(rays, answers);
+    }
+}

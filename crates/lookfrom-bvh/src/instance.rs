@@ -1,0 +1,55 @@
+//! A tree that stands in another one, perhaps many times: two levels, no more.
+
+use std::sync::Arc;
+
+use crate::Bvh;
+use crate::aabb::Aabb;
+use crate::affine::Affine;
+use crate::vector::{round_down, round_up, wide};
+
+/// Entries of a matrix and of its inverse beyond 2⁹⁰ lead out of the range of f32.
+const LARGEST_ENTRY: f64 = 1.237_940_039_285_380_3e27;
+
+#[derive(Clone, Debug)]
+pub(crate) struct Instance {
+    pub(crate) bvh: Arc<Bvh>,
+    pub(crate) world_from_object: Affine,
+    pub(crate) object_from_world: Affine,
+    pub(crate) id: u32,
+}
+
+impl Instance {
+    /// None where the map has no usable inverse.
+    pub(crate) fn new(bvh: Arc<Bvh>, world_from_object: Affine, id: u32) -> Option<Self> {
+        let object_from_world = world_from_object.inverse()?;
+        let entries = world_from_object.matrix.iter().chain(&object_from_world.matrix).flatten();
+        let usable = entries.into_iter().all(|entry| entry.abs() < LARGEST_ENTRY);
+        usable.then_some(Self { bvh, world_from_object, object_from_world, id })
+    }
+
+    /// The box in the world: around the eight corners of the object's box, rounded outwards.
+    pub(crate) fn bounds(&self) -> Aabb {
+        let object = self.bvh.bounds();
+        if object.is_empty() {
+            return Aabb::EMPTY;
+        }
+        let sides = [wide(object.min), wide(object.max)];
+        let mut bounds = Aabb::EMPTY;
+        for axis in 0..3 {
+            let row = self.world_from_object.matrix[axis];
+            let shift = self.world_from_object.translation[axis];
+            // Each term takes its least and greatest value on its own.
+            let (mut least, mut greatest, mut magnitude) = (shift, shift, shift.abs());
+            for column in 0..3 {
+                let [a, b] = [row[column] * sides[0][column], row[column] * sides[1][column]];
+                least += a.min(b);
+                greatest += a.max(b);
+                magnitude += a.abs().max(b.abs());
+            }
+            let error = 16.0 * f64::EPSILON * magnitude;
+            bounds.min[axis] = round_down(least - error);
+            bounds.max[axis] = round_up(greatest + error);
+        }
+        bounds
+    }
+}

@@ -1,0 +1,61 @@
+//! Shapes that are neither triangles nor spheres: the caller says where they are and where rays meet them.
+
+use std::fmt::Debug;
+
+use crate::aabb::Aabb;
+use crate::ray::Ray;
+
+/// Many shapes of one kind, numbered from 0.
+///
+/// ```
+/// use lookfrom_bvh::{Aabb, Builder, Procedural, ProceduralHit, Ray};
+/// use std::sync::Arc;
+///
+/// /// The unit square in the plane z = 0.
+/// #[derive(Debug)]
+/// struct Square;
+///
+/// impl Procedural for Square {
+///     fn count(&self) -> u32 {
+///         1
+///     }
+///     fn bounds(&self, _: u32) -> Aabb {
+///         Aabb { min: [0.0; 3], max: [1.0, 1.0, 0.0] }
+///     }
+///     fn intersect(&self, _: u32, ray: &Ray) -> Option<ProceduralHit> {
+///         let t = -ray.origin[2] / ray.direction[2];
+///         let [u, v] = [0, 1].map(|i| ray.origin[i] + t * ray.direction[i]);
+///         let inside = (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v);
+///         (inside && ray.t_min < t && t < ray.t_max).then_some(ProceduralHit { t, u, v })
+///     }
+/// }
+///
+/// let mut builder = Builder::new();
+/// builder.procedural(Arc::new(Square));
+/// let hit = builder.build()?.closest_hit(&Ray::new([0.25, 0.5, 2.0], [0.0, 0.0, -1.0]));
+/// assert_eq!((hit.t, hit.u, hit.v), (2.0, 0.25, 0.5));
+/// # Ok::<(), lookfrom_bvh::BuildError>(())
+/// ```
+pub trait Procedural: Send + Sync + Debug {
+    /// How many shapes there are. Asked once, when the tree is built.
+    fn count(&self) -> u32;
+
+    /// The box around a shape, in which [`Self::intersect`] finds all its hits. A shape whose box is empty, or not
+    /// finite, is left out. Asked once or twice, when the tree is built.
+    fn bounds(&self, primitive: u32) -> Aabb;
+
+    /// The nearest hit with `ray.t_min < t < ray.t_max`; others are ignored. In an instance the ray is in the object's
+    /// space, rounded to f32, with the same `t`.
+    fn intersect(&self, primitive: u32, ray: &Ray) -> Option<ProceduralHit>;
+}
+
+/// Where a ray meets a [`Procedural`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProceduralHit {
+    /// The ray's parameter.
+    pub t: f32,
+    /// Goes into [`Hit::u`](crate::Hit::u).
+    pub u: f32,
+    /// Goes into [`Hit::v`](crate::Hit::v).
+    pub v: f32,
+}

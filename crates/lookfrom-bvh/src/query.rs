@@ -1,0 +1,93 @@
+//! What can be asked of a ray: the closest hit, whether there is any, all of them.
+
+use crate::ray::Hit;
+
+/// What is asked.
+pub(crate) trait Query {
+    /// No hit beyond this t is wanted; one at it may be.
+    fn end(&self) -> f32;
+
+    /// Hears of a hit beyond the ray's `t_min`. Returns true where no more are wanted.
+    fn accept(&mut self, hit: Hit) -> bool;
+}
+
+/// The hit with the least t; of several, that of the lowest rank.
+pub(crate) struct Closest {
+    t_max: f32,
+    end: f32,
+    pub(crate) hit: Hit,
+}
+
+impl Closest {
+    pub(crate) fn new(t_max: f32) -> Self {
+        Self { t_max, end: t_max, hit: Hit::MISS }
+    }
+}
+
+impl Query for Closest {
+    #[inline(always)]
+    fn end(&self) -> f32 {
+        self.end
+    }
+
+    #[inline(always)]
+    fn accept(&mut self, hit: Hit) -> bool {
+        if hit.t < self.t_max && hit.precedes(&self.hit) {
+            self.hit = hit;
+            self.end = hit.t;
+        }
+        false
+    }
+}
+
+/// Whether there is a hit.
+pub(crate) struct Any {
+    t_max: f32,
+    pub(crate) found: bool,
+}
+
+impl Any {
+    pub(crate) fn new(t_max: f32) -> Self {
+        Self { t_max, found: false }
+    }
+}
+
+impl Query for Any {
+    #[inline(always)]
+    fn end(&self) -> f32 {
+        self.t_max
+    }
+
+    #[inline(always)]
+    fn accept(&mut self, hit: Hit) -> bool {
+        self.found |= hit.t < self.t_max;
+        self.found
+    }
+}
+
+/// Every hit, in no order.
+pub(crate) struct All<'a> {
+    t_max: f32,
+    hits: &'a mut Vec<Hit>,
+}
+
+impl<'a> All<'a> {
+    pub(crate) fn new(t_max: f32, hits: &'a mut Vec<Hit>) -> Self {
+        Self { t_max, hits }
+    }
+}
+
+impl Query for All<'_> {
+    #[inline(always)]
+    fn end(&self) -> f32 {
+        self.t_max
+    }
+
+    #[inline(always)]
+    fn accept(&mut self, hit: Hit) -> bool {
+        if hit.t < self.t_max {
+            self.hits.push(hit);
+        }
+        false
+    }
+}

@@ -1,0 +1,73 @@
+//! What is asked of a tree, and what it answers.
+//!
+//! Rays and hits are plain data in single precision. How a ray is made ready for the tests is in `prepared`.
+
+/// "None" where an id is expected: the id of what was not hit.
+pub const NONE: u32 = u32::MAX;
+
+/// A ray, or a piece of one: the points `p(t) = origin + t · direction` with `t_min < t < t_max`.
+///
+/// The direction may have any length but zero; `t` counts in its lengths. A ray with a NaN, an infinite origin or
+/// direction, a zero direction or an empty range hits nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where `t` is zero.
+    pub origin: [f32; 3],
+    /// Hits need `t > t_min`. May be negative.
+    pub t_min: f32,
+    /// Any length but zero.
+    pub direction: [f32; 3],
+    /// Hits need `t < t_max`. May be infinite.
+    pub t_max: f32,
+}
+
+impl Ray {
+    /// The ray with `t` in (0, ∞).
+    pub const fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
+        Self { origin, t_min: 0.0, direction, t_max: f32::INFINITY }
+    }
+
+    /// The same ray with another end.
+    pub const fn until(self, t_max: f32) -> Self {
+        Self { t_max, ..self }
+    }
+}
+
+/// Where a ray meets a primitive, or [`Hit::MISS`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The ray's parameter: the hit is at `origin + t · direction`. Infinite for a miss.
+    pub t: f32,
+    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural: what it says.
+    pub u: f32,
+    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural: what it says.
+    pub v: f32,
+    /// Number of the primitive in its geometry.
+    pub primitive: u32,
+    /// Number of the geometry in its tree, in the order in which the builder was told.
+    pub geometry: u32,
+    /// Number of the instance, [`NONE`] where the geometry is not in an instance.
+    pub instance: u32,
+}
+
+impl Hit {
+    /// Nothing was hit.
+    pub const MISS: Self =
+        Self { t: f32::INFINITY, u: 0.0, v: 0.0, primitive: NONE, geometry: NONE, instance: NONE };
+
+    /// Whether something was hit.
+    pub const fn is_hit(&self) -> bool {
+        self.primitive != NONE
+    }
+
+    /// The order of hits at equal `t`, which decides ties: geometry outside of instances comes first, then by
+    /// instance, geometry and primitive.
+    pub(crate) fn rank(&self) -> (u32, u32, u32) {
+        (self.instance.wrapping_add(1), self.geometry, self.primitive)
+    }
+
+    /// Whether this hit comes before another: nearer, or as near and of lower rank.
+    pub(crate) fn precedes(&self, other: &Self) -> bool {
+        self.t < other.t || (self.t == other.t && self.rank() < other.rank())
+    }
+}

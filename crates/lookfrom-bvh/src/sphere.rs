@@ -1,0 +1,86 @@
+//! Does a ray meet a sphere, and where?
+//!
+//! Wholly in f64: Haines et al. (2019), "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7. With
+//! the vector `f` from centre to origin and half the usual linear coefficient, `A t² + 2 B t + C = 0`.
+
+use crate::aabb::{Aabb, LARGEST_COORDINATE};
+use crate::prepared::Prepared;
+use crate::vector::{dot, subtract, wide};
+
+/// A sphere's surface: rays hit it from both sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Middle.
+    pub center: [f32; 3],
+    /// Positive and finite.
+    pub radius: f32,
+}
+
+impl Sphere {
+    /// The box around it, rounded outwards.
+    pub fn bounds(&self) -> Aabb {
+        // One unit more than the sum's rounding: a point at exactly the radius is inside.
+        Aabb {
+            min: self.center.map(|x| (x - self.radius).next_down()),
+            max: self.center.map(|x| (x + self.radius).next_up()),
+        }
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        self.center.iter().all(|x| x.abs() <= LARGEST_COORDINATE) && self.radius.abs() <= LARGEST_COORDINATE
+    }
+}
+
+/// Where the whole line meets the sphere, the smaller t first. None where it passes by.
+pub(crate) fn decide(ray: &Prepared, sphere: &Sphere) -> Option<[f32; 2]> {
+    let f = subtract(ray.origin64, wide(sphere.center));
+    let d = ray.direction64;
+    let radius = f64::from(sphere.radius);
+    let a = dot(d, d);
+    let b = dot(f, d);
+
+    // Discriminant, from the line's point nearest to the centre: it does not cancel for small or far spheres.
+    let s = b / a;
+    let nearest = [f[0] - s * d[0], f[1] - s * d[1], f[2] - s * d[2]];
+    let discriminant = a * (radius * radius - dot(nearest, nearest));
+    if !(discriminant >= 0.0) {
+        return None;
+    }
+
+    // Both roots without a difference of like numbers.
+    let length = dot(f, f).sqrt();
+    let c = (length - radius) * (length + radius);
+    let q = -(b + discriminant.sqrt().copysign(b));
+    if q == 0.0 {
+        return Some([0.0; 2]);
+    }
+    let [t1, t2] = [(q / a) as f32, (c / q) as f32];
+    Some(if t1 <= t2 { [t1, t2] } else { [t2, t1] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ray::Ray;
+
+    fn roots(sphere: Sphere, origin: [f32; 3], direction: [f32; 3]) -> Option<[f32; 2]> {
+        decide(&Prepared::new(&Ray::new(origin, direction)).unwrap(), &sphere)
+    }
+
+    #[test]
+    fn from_outside_inside_and_behind() {
+        let sphere = Sphere { center: [0.0, 0.0, 5.0], radius: 1.0 };
+        assert_eq!(roots(sphere, [0.0; 3], [0.0, 0.0, 2.0]), Some([2.0, 3.0]));
+        assert_eq!(roots(sphere, [0.0, 0.0, 5.0], [0.0, 0.0, 1.0]), Some([-1.0, 1.0]));
+        assert_eq!(roots(sphere, [0.0, 0.0, 9.0], [0.0, 0.0, 1.0]), Some([-5.0, -3.0]));
+        assert_eq!(roots(sphere, [1.5, 0.0, 0.0], [0.0, 0.0, 1.0]), None);
+        assert_eq!(roots(sphere, [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]), Some([5.0, 5.0]), "tangent");
+    }
+
+    #[test]
+    fn a_small_sphere_far_away() {
+        // B² − AC in f32 would be noise here.
+        let sphere = Sphere { center: [0.0, 0.0, 1e6], radius: 0.5 };
+        assert_eq!(roots(sphere, [0.0; 3], [0.0, 0.0, 1.0]), Some([999_999.5, 1_000_000.5]));
+    }
+}

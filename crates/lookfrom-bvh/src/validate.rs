@@ -1,0 +1,226 @@
+//! Is a tree what tracing relies on, and what is it made of?
+
+use std::fmt;
+
+use crate::Bvh;
+use crate::aabb::Aabb;
+use crate::node::{Content, Node, WIDTH};
+
+/// What a tree consists of.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Triangles that rays can meet.
+    pub triangles: usize,
+    /// Spheres that rays can meet.
+    pub spheres: usize,
+    /// Procedural shapes that rays can meet.
+    pub procedurals: usize,
+    /// Instances that rays can meet.
+    pub instances: usize,
+    /// Primitives and instances that no ray can meet and that are not in the tree.
+    pub left_out: usize,
+    /// Nodes of up to eight children.
+    pub nodes: usize,
+    /// Leaves.
+    pub leaves: usize,
+    /// Levels of nodes.
+    pub depth: usize,
+    /// Expected number of nodes and leaves that a random line through the tree's box visits: their areas' sum, relative to the root's.
+    pub cost: f64,
+}
+
+/// A property that tracing relies on and that a tree does not have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Invalid(String);
+
+impl fmt::Display for Invalid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Invalid {}
+
+impl Bvh {
+    /// Counts what is there, and trusts the tree.
+    pub(crate) fn take_statistics(&self) -> Statistics {
+        let mut walk = Walk::default();
+        if !self.nodes.is_empty() {
+            walk.count(self, 0, 1);
+        }
+        walk.statistics
+    }
+}
+
+/// Checks the whole tree.
+pub(crate) fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
+    let mut check = Check {
+        bvh,
+        nodes: vec![false; bvh.nodes.len()],
+        blocks: vec![false; bvh.triangles.len()],
+        spheres: vec![false; bvh.spheres.len()],
+        procedurals: vec![false; bvh.procedurals.len()],
+        instances: vec![false; bvh.instances.len()],
+        ids: Vec::new(),
+    };
+    if !bvh.nodes.is_empty() {
+        check.node(0)?;
+    }
+
+    // Everything is reached, and only once.
+    for (name, seen) in [
+        ("node", &check.nodes),
+        ("block", &check.blocks),
+        ("sphere", &check.spheres),
+        ("procedural", &check.procedurals),
+        ("instance", &check.instances),
+    ] {
+        if let Some(missing) = seen.iter().position(|seen| !seen) {
+            return Err(Invalid(format!("{name} {missing} is not in the tree")));
+        }
+    }
+    check.ids.sort_unstable();
+    if let Some(pair) = check.ids.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(Invalid(format!("primitive {} of geometry {} is there twice", pair[0].1, pair[0].0)));
+    }
+
+    for instance in &bvh.instances {
+        if !instance.bvh.instances.is_empty() {
+            return Err(Invalid(format!("the tree of instance {} holds instances", instance.id)));
+        }
+        instance.bvh.validate()?;
+    }
+
+    let statistics = Statistics { left_out: bvh.statistics.left_out, ..bvh.take_statistics() };
+    if statistics != bvh.statistics {
+        return Err(Invalid(format!("counted {statistics:?}, but it says {:?}", bvh.statistics)));
+    }
+    Ok(statistics)
+}
+
+/// The children of a node that are there.
+fn children(node: &Node) -> impl Iterator<Item = (usize, Aabb, usize, Content)> + '_ {
+    (0..WIDTH).filter_map(|slot| {
+        let bounds = node.child_bounds(slot);
+        let (index, content) = node.child(slot);
+        (!bounds.is_empty()).then(|| (slot, bounds, index as usize, Content::unpack(content)))
+    })
+}
+
+#[derive(Default)]
+struct Walk {
+    statistics: Statistics,
+    root_area: f64,
+}
+
+impl Walk {
+    fn count(&mut self, bvh: &Bvh, number: usize, depth: usize) {
+        let node = &bvh.nodes[number];
+        if depth == 1 {
+            let mut bounds = Aabb::EMPTY;
+            children(node).for_each(|(_, child, ..)| bounds.unite(&child));
+            self.root_area = f64::from(bounds.half_area());
+        }
+        self.statistics.nodes += 1;
+        self.statistics.depth = self.statistics.depth.max(depth);
+        for (_, bounds, index, content) in children(node) {
+            if self.root_area > 0.0 {
+                self.statistics.cost += f64::from(bounds.half_area()) / self.root_area;
+            }
+            self.statistics.leaves += usize::from(content != Content::Node);
+            match content {
+                Content::Node => self.count(bvh, index, depth + 1),
+                Content::Triangles(count) => self.statistics.triangles += count as usize,
+                Content::Spheres(count) => self.statistics.spheres += count as usize,
+                Content::Procedurals(count) => self.statistics.procedurals += count as usize,
+                Content::Instances(count) => self.statistics.instances += count as usize,
+            }
+        }
+    }
+}
+
+struct Check<'a> {
+    bvh: &'a Bvh,
+    nodes: Vec<bool>,
+    blocks: Vec<bool>,
+    spheres: Vec<bool>,
+    procedurals: Vec<bool>,
+    instances: Vec<bool>,
+    /// Geometry and primitive of all but instances.
+    ids: Vec<(u32, u32)>,
+}
+
+impl Check<'_> {
+    /// Checks a node and all below it; returns the box around its children.
+    fn node(&mut self, number: usize) -> Result<Aabb, Invalid> {
+        let bvh = self.bvh;
+        mark(&mut self.nodes, number, 1, "node")?;
+        let node = &bvh.nodes[number];
+        let mut all = Aabb::EMPTY;
+        for (slot, bounds, index, content) in children(node) {
+            let inside = match content {
+                Content::Node => self.node(index)?,
+                Content::Triangles(count) => self.triangles(index, count)?,
+                Content::Spheres(count) => {
+                    let mut inside = Aabb::EMPTY;
+                    for item in mark(&mut self.spheres, index, count, "sphere")?.map(|i| &bvh.spheres[i]) {
+                        inside.unite(&item.shape.bounds());
+                        self.ids.push((item.geometry, item.primitive));
+                    }
+                    inside
+                }
+                Content::Procedurals(count) => {
+                    let mut inside = Aabb::EMPTY;
+                    let range = mark(&mut self.procedurals, index, count, "procedural")?;
+                    for item in range.map(|i| &bvh.procedurals[i]) {
+                        inside.unite(&bvh.procedural_shapes[item.shape as usize].bounds(item.primitive));
+                        self.ids.push((item.geometry, item.primitive));
+                    }
+                    inside
+                }
+                Content::Instances(count) => {
+                    let mut inside = Aabb::EMPTY;
+                    for i in mark(&mut self.instances, index, count, "instance")? {
+                        inside.unite(&bvh.instances[i].bounds());
+                    }
+                    inside
+                }
+            };
+            if !bounds.is_valid() || !bounds.contains(&inside) {
+                return Err(Invalid(format!(
+                    "node {number}, child {slot}: {bounds:?} does not hold its content, {inside:?}"
+                )));
+            }
+            all.unite(&bounds);
+        }
+        if all.is_empty() {
+            return Err(Invalid(format!("node {number} has no children")));
+        }
+        Ok(all)
+    }
+
+    fn triangles(&mut self, index: usize, count: u32) -> Result<Aabb, Invalid> {
+        let range = mark(&mut self.blocks, index, 1, "block")?;
+        let mut inside = Aabb::EMPTY;
+        for block in range.map(|i| &self.bvh.triangles[i]) {
+            for lane in 0..count as usize {
+                inside.unite(&Aabb::around(&block.corners(lane)));
+                self.ids.push(block.ids(lane));
+            }
+        }
+        Ok(inside)
+    }
+}
+
+/// Notes that some items were reached, and fails where they are not there or were reached before.
+fn mark(seen: &mut [bool], first: usize, count: u32, name: &str) -> Result<std::ops::Range<usize>, Invalid> {
+    let range = first..first + count as usize;
+    let Some(items) = seen.get_mut(range.clone()) else {
+        return Err(Invalid(format!("{name} {first} is named but not there")));
+    };
+    if items.is_empty() || items.contains(&true) {
+        return Err(Invalid(format!("{name} {first} is named twice, or a leaf is empty")));
+    }
+    items.fill(true);
+    Ok(range)
+}
