@@ -10,9 +10,14 @@ pub mod image;
 pub mod light;
 pub mod load;
 pub mod material;
+pub mod model;
+pub mod obj;
+pub mod ply;
 pub mod scene;
 pub mod settings;
 pub mod shape;
+pub mod stl;
+pub mod studio;
 pub mod texture;
 pub mod toml;
 

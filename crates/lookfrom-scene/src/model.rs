@@ -1,0 +1,94 @@
+//! Which reader reads a model file?
+//!
+//! By the ending of its name, and by its content where the name says nothing or something else. Models in formats
+//! without a camera and lights are shown in [`crate::studio`].
+
+pub(crate) mod number;
+pub(crate) mod points;
+pub(crate) mod polygon;
+pub(crate) mod scan;
+pub(crate) mod surface;
+pub(crate) mod tally;
+pub(crate) mod text;
+pub(crate) mod weld;
+
+use std::path::Path;
+
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::files::Sources;
+use crate::scene::Scene;
+use crate::shape::Part;
+use crate::{obj, ply, stl};
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Obj,
+    Ply,
+    Stl,
+}
+
+/// Whether the ending of the name is that of a model format: `.obj`, `.ply` or `.stl` in any case.
+pub fn is_model(path: &Path) -> bool {
+    by_name(path).is_some()
+}
+
+/// Reads a model: its meshes, materials, textures and pictures are added to the scene, its parts are given back and
+/// have no place in the world yet.
+///
+/// # Errors
+/// `Unsupported` where neither name nor content is that of a model; otherwise those of the format's reader.
+pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
+    let bytes = sources.read(path)?;
+    let file = Location::file(path);
+    if bytes.is_empty() {
+        return Err(Error::syntax(&file, "the file is empty"));
+    }
+    let format =
+        by_content(&bytes).or(by_name(path)).or_else(|| looks_like_obj(&bytes).then_some(Format::Obj));
+    match format {
+        Some(Format::Obj) => obj::from_bytes(&bytes, path, sources, scene),
+        Some(Format::Ply) => ply::from_bytes(&bytes, path, sources, scene),
+        Some(Format::Stl) => stl::from_bytes(&bytes, path, sources, scene),
+        None => Err(Error::new(
+            ErrorKind::Unsupported,
+            &file,
+            "neither its name nor its content is that of a model",
+        )
+        .hint("models are OBJ, PLY or STL files")),
+    }
+}
+
+fn by_name(path: &Path) -> Option<Format> {
+    let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+    match ending.as_str() {
+        "obj" => Some(Format::Obj),
+        "ply" => Some(Format::Ply),
+        "stl" => Some(Format::Stl),
+        _ => None,
+    }
+}
+
+/// What can be known for certain.
+fn by_content(bytes: &[u8]) -> Option<Format> {
+    if matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r' | b' ', ..]) {
+        Some(Format::Ply)
+    } else if stl::is_binary_by_length(bytes) || stl::is_text(bytes) {
+        Some(Format::Stl)
+    } else {
+        None
+    }
+}
+
+/// Whether a vertex is among the first lines.
+fn looks_like_obj(bytes: &[u8]) -> bool {
+    let text = text::utf8(&bytes[..bytes.len().min(1 << 16)]).into_owned();
+    let mut scanner = scan::Scanner::joining_lines(&text);
+    loop {
+        if scanner.word() == b"v" && (0..3).all(|_| number::parse_f32(scanner.word()).is_some()) {
+            return true;
+        }
+        if !scanner.next_line() {
+            return false;
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! How do the pictures and looks of a model get into a scene?
+
+use std::path::{Path, PathBuf};
+
+use crate::error::{Location, Result};
+use crate::files::Sources;
+use crate::image::{self, Image};
+use crate::material::{Color, Material, MaterialKind, Whitted};
+use crate::scene::{ImageId, MaterialId, Scene, TextureId};
+use crate::texture::{TexelFilter, Texture, TextureKind, Wrap};
+
+/// The path of a file that is named, with `/` between folders, in the file at `path`.
+pub(crate) fn beside(path: &Path, name: &str) -> PathBuf {
+    path.parent().unwrap_or(Path::new("")).join(name.trim_start_matches("./"))
+}
+
+/// What follows the last `/` of a name.
+pub(crate) fn base_name(name: &str) -> &str {
+    name.rsplit('/').next().unwrap_or(name)
+}
+
+/// The picture that is named in the file at `path`; if it is not there, the one of that name beside the file: exporters
+/// like to write the folders of their own machine.
+///
+/// # Errors
+/// Those of the first try.
+pub(crate) fn read_image(path: &Path, name: &str, sources: &mut Sources<'_>) -> Result<Image> {
+    image::read(&beside(path, name), sources)
+        .or_else(|error| image::read(&beside(path, base_name(name)), sources).map_err(|_| error))
+}
+
+/// A picture over uv, bilinear.
+pub(crate) fn picture(image: ImageId, scale: [f32; 2], offset: [f32; 2], wrap: Wrap) -> TextureKind {
+    TextureKind::Image { image, scale, offset, wrap, filter: TexelFilter::Bilinear, invert: false }
+}
+
+/// Adds a picture.
+pub(crate) fn push_image(scene: &mut Scene, image: Image) -> ImageId {
+    scene.images.push(image);
+    ImageId(scene.images.len() as u32 - 1)
+}
+
+/// Adds a texture.
+pub(crate) fn push_texture(scene: &mut Scene, name: &str, at: &Location, kind: TextureKind) -> Color {
+    scene.textures.push(Texture { name: name.to_owned(), at: at.clone(), kind });
+    Color::Texture(TextureId(scene.textures.len() as u32 - 1))
+}
+
+/// Adds a material.
+pub(crate) fn push_material(scene: &mut Scene, name: &str, at: &Location, whitted: Whitted) -> MaterialId {
+    scene.materials.push(Material {
+        name: name.to_owned(),
+        at: at.clone(),
+        kind: MaterialKind::Whitted(whitted),
+    });
+    MaterialId(scene.materials.len() as u32 - 1)
+}
+
+/// Adds a matte material with the colours of the mesh's vertices.
+pub(crate) fn push_vertex_colors(scene: &mut Scene, at: &Location) -> MaterialId {
+    let name = "vertex colours";
+    let diffuse = push_texture(scene, name, at, TextureKind::VertexColor { tint: [1.0; 3] });
+    push_material(scene, name, at, Whitted { diffuse, ..Whitted::default() })
+}

@@ -1,0 +1,44 @@
+//! How often did something survivable happen, and where first? One warning tells of all.
+
+use crate::error::Location;
+use crate::files::Sources;
+
+/// Counts one kind of mishap.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Tally {
+    count: u64,
+    first: u32,
+}
+
+impl Tally {
+    /// Counts one at a line (or 0 where lines are unknown).
+    pub(crate) fn add(&mut self, line: u32) {
+        self.add_many(1, line);
+    }
+
+    /// Counts several at a line.
+    pub(crate) fn add_many(&mut self, count: u64, line: u32) {
+        if count > 0 && self.count == 0 {
+            self.first = line;
+        }
+        self.count += count;
+    }
+
+    /// How many.
+    pub(crate) fn count(self) -> u64 {
+        self.count
+    }
+
+    /// Warns where there were any: "3 triangles `what`".
+    pub(crate) fn warn(self, noun: &str, what: &str, file: &Location, sources: &mut Sources<'_>) {
+        if self.count > 0 {
+            let (plural, first) = match (self.count, self.first) {
+                (1, _) => ("", ""),
+                (_, 0) => ("s", ""),
+                _ => ("s", " (the first is here)"),
+            };
+            let message = format!("{} {noun}{plural} {what}{first}", self.count);
+            sources.warn(&file.at(self.first, 0), message);
+        }
+    }
+}

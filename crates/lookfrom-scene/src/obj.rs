@@ -1,0 +1,74 @@
+//! How does a Wavefront OBJ file become meshes and materials?
+//!
+//! [`statement`] reads the text, [`build`] makes one mesh for each material of it, [`mtl`] reads material libraries and
+//! [`look`] turns their materials into the scene's. The format: Wavefront, "Object Files (.obj)", Advanced Visualizer
+//! manual, appendix B1; vertex colours after the coordinates are an extension that many programs write.
+
+mod build;
+mod look;
+pub mod mtl;
+mod statement;
+
+use std::path::Path;
+
+use crate::error::{Error, Location, Result};
+use crate::files::Sources;
+use crate::image::linear_from_srgb;
+use crate::model::{points, text};
+use crate::scene::{MeshId, Scene};
+use crate::shape::{Geometry, Part};
+
+/// Reads an OBJ file and the material libraries and pictures that it names. There is one part for each material; a file
+/// without faces is a cloud of points. Colours of vertices are taken to be sRGB-encoded.
+///
+/// # Errors
+/// `Io`, `Limit`, `Syntax` and `Invalid`, at line and column. After an error the scene may hold pieces of the file.
+pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
+    from_bytes(&sources.read(path)?, path, sources, scene)
+}
+
+/// The same for the content of a file; `path` is where it came from, for messages and for the files it names.
+///
+/// # Errors
+/// As [`read`].
+pub fn from_bytes(
+    bytes: &[u8],
+    path: &Path,
+    sources: &mut Sources<'_>,
+    scene: &mut Scene,
+) -> Result<Vec<Part>> {
+    let file = Location::file(path);
+    let text = text::utf8(bytes);
+    let statements = statement::parse(&text, &file, sources)?;
+    drop(text);
+    if statements.positions.is_empty() {
+        return Err(Error::syntax(&file, "no vertices: there is no line that starts with `v`")
+            .hint("check that this is a Wavefront OBJ file and that it is whole"));
+    }
+    if statements.groups.iter().all(|group| group.faces.is_empty()) {
+        return Ok(points::cloud(&statements.positions, &statements.colors, &file, sources, scene));
+    }
+    let colored = !statements.colors.is_empty();
+    let meshes = build::meshes(statements, &file, sources)?;
+    let mut looks = look::Looks::read(&meshes.libraries, path, sources);
+    let mut parts = Vec::new();
+    for piece in meshes.pieces {
+        let look = looks.look(piece.material.as_deref(), colored, &file, sources, scene);
+        let mesh = MeshId(scene.meshes.len() as u32);
+        let name = piece.material.map(|name| String::from_utf8_lossy(&name).into_owned());
+        parts.push(Part {
+            name: name.or(piece.object),
+            geometry: Geometry::Mesh(mesh),
+            material: look.material,
+            emission: look.emission,
+        });
+        scene.meshes.push(piece.mesh);
+    }
+    looks.warn(&file, sources);
+    Ok(parts)
+}
+
+/// A colour component as files have it; those of MeshLab, ZBrush and Blender are sRGB-encoded.
+fn linear_color(encoded: f32) -> f32 {
+    if encoded.is_finite() { linear_from_srgb(encoded.clamp(0.0, 1.0)) } else { 1.0 }
+}

@@ -1,0 +1,203 @@
+//! How do faces with separate indices for position, texture coordinates and normal become meshes?
+//!
+//! One mesh for each material: polygons cut into triangles, corners with equal indices made one vertex, and normals
+//! made where smoothing groups ask for them: facet normals weighted by the angle at the corner (Thürmer & Wüthrich
+//! 1998), so that they do not depend on how polygons were cut.
+
+use glam::{DVec3, Vec2, Vec3};
+
+use super::statement::{Corner, Group, NONE, Statements};
+use crate::error::{Location, Result};
+use crate::files::Sources;
+use crate::model::polygon::{Triangulator, has_area};
+use crate::model::tally::Tally;
+use crate::model::weld::Weld;
+use crate::shape::Mesh;
+
+/// All pieces of a file.
+pub(super) struct Meshes {
+    pub(super) pieces: Vec<Piece>,
+    /// Where and how material libraries are named.
+    pub(super) libraries: Vec<(Location, Vec<u8>)>,
+}
+
+/// What has one material.
+pub(super) struct Piece {
+    pub(super) material: Option<Vec<u8>>,
+    pub(super) object: Option<String>,
+    pub(super) mesh: Mesh,
+}
+
+/// What could not be used.
+#[derive(Default)]
+struct Tallies {
+    not_finite: Tally,
+    flat: Tally,
+    values: Tally,
+}
+
+/// Makes the meshes; groups without triangles are left out.
+pub(super) fn meshes(
+    mut statements: Statements,
+    file: &Location,
+    sources: &mut Sources<'_>,
+) -> Result<Meshes> {
+    let mut tallies = Tallies::default();
+    let mut triangulator = Triangulator::new();
+    make_values_finite(&mut statements, &mut tallies.values);
+    smooth(&mut statements, &mut triangulator);
+    let mut pieces = Vec::new();
+    for mut group in std::mem::take(&mut statements.groups) {
+        let mut mesh = mesh(&group, &statements, &mut triangulator, &mut tallies);
+        if !mesh.triangles.is_empty() {
+            mesh.name = file.file.to_string();
+            pieces.push(Piece { material: group.material.take(), object: group.object.take(), mesh });
+        }
+    }
+    tallies.not_finite.warn("face", "left out: a coordinate is infinite or not a number", file, sources);
+    tallies.flat.warn("triangle", "left out: without area", file, sources);
+    tallies.values.warn("normal or texture coordinate", "ignored: infinite or not a number", file, sources);
+    if triangulator.gave_up() {
+        sources.warn(
+            file,
+            "concave polygons with very many corners: some were cut without care for their shape",
+        );
+    }
+    Ok(Meshes { pieces, libraries: statements.libraries })
+}
+
+fn make_values_finite(statements: &mut Statements, tally: &mut Tally) {
+    for normal in statements.normals.iter_mut().filter(|normal| !normal.is_finite()) {
+        *normal = Vec3::ZERO;
+        tally.add(0);
+    }
+    for uv in statements.uvs.iter_mut().filter(|uv| !uv.is_finite()) {
+        *uv = Vec2::ZERO;
+        tally.add(0);
+    }
+}
+
+/// Calls `each` with the corners and line of every triangle of a group. `skipped` is told of faces with points that are
+/// not finite.
+fn triangles(
+    group: &Group,
+    positions: &[Vec3],
+    triangulator: &mut Triangulator,
+    mut skipped: impl FnMut(u32),
+    mut each: impl FnMut([usize; 3], [Vec3; 3], u32, u32),
+) {
+    let mut points = Vec::new();
+    let mut cut = Vec::new();
+    let mut start = 0;
+    for face in &group.faces {
+        let corners = &group.corners[start..start + face.corners as usize];
+        points.clear();
+        points.extend(corners.iter().map(|corner| positions[corner.position as usize]));
+        if points.iter().all(|point| point.is_finite()) {
+            cut.clear();
+            triangulator.cut(&points, &mut cut);
+            for triangle in &cut {
+                let local = triangle.map(|i| i as usize);
+                each(local.map(|i| start + i), local.map(|i| points[i]), face.line, face.smoothing);
+            }
+        } else {
+            skipped(face.line);
+        }
+        start += face.corners as usize;
+    }
+}
+
+/// Gives a normal to each corner that has none and lies in a smoothing group: one for each position and group.
+fn smooth(statements: &mut Statements, triangulator: &mut Triangulator) {
+    let Statements { groups, positions, normals, .. } = statements;
+    let mut weld = Weld::new();
+    let mut sums: Vec<DVec3> = Vec::new();
+    for group in &*groups {
+        if group.faces.iter().all(|face| face.smoothing == 0) {
+            continue;
+        }
+        triangles(
+            group,
+            positions,
+            triangulator,
+            |_| {},
+            |corners, points, _, smoothing| {
+                let points = points.map(Vec3::as_dvec3);
+                let facet = (points[1] - points[0]).cross(points[2] - points[0]).normalize_or_zero();
+                for (i, corner) in corners.into_iter().enumerate() {
+                    let Corner { position, normal, .. } = group.corners[corner];
+                    if normal == NONE && smoothing != 0 {
+                        let id = weld.id([position, smoothing]) as usize;
+                        sums.resize(sums.len().max(id + 1), DVec3::ZERO);
+                        sums[id] += facet * angle(points[i], points[(i + 1) % 3], points[(i + 2) % 3]);
+                    }
+                }
+            },
+        );
+    }
+    let first = normals.len() as u32;
+    normals.extend(sums.iter().map(|sum| sum.normalize_or_zero().as_vec3()));
+    for group in groups {
+        let mut start = 0;
+        for face in &group.faces {
+            let corners = &mut group.corners[start..start + face.corners as usize];
+            start += face.corners as usize;
+            for corner in corners.iter_mut().filter(|corner| corner.normal == NONE && face.smoothing != 0) {
+                let id = weld.id([corner.position, face.smoothing]);
+                // Corners of faces that were skipped have no sum, and no triangle will ask for one.
+                if (id as usize) < sums.len() {
+                    corner.normal = first + id;
+                }
+            }
+        }
+    }
+}
+
+/// The angle at `tip`, in radians; 0 where a side has no length.
+fn angle(tip: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let (a, b) = ((a - tip).normalize_or_zero(), (b - tip).normalize_or_zero());
+    if a == DVec3::ZERO || b == DVec3::ZERO { 0.0 } else { libm::acos(a.dot(b).clamp(-1.0, 1.0)) }
+}
+
+fn mesh(
+    group: &Group,
+    statements: &Statements,
+    triangulator: &mut Triangulator,
+    tallies: &mut Tallies,
+) -> Mesh {
+    let mut mesh = Mesh::default();
+    let mut weld = Weld::new();
+    let Tallies { not_finite, flat, .. } = tallies;
+    triangles(
+        group,
+        &statements.positions,
+        triangulator,
+        |line| not_finite.add(line),
+        |corners, points, line, _| {
+            if has_area(points) {
+                mesh.triangles.push(corners.map(|corner| {
+                    let Corner { position, uv, normal } = group.corners[corner];
+                    weld.id([position, uv, normal])
+                }));
+            } else {
+                flat.add(line);
+            }
+        },
+    );
+    let keys = weld.keys();
+    mesh.positions = keys.iter().map(|key| statements.positions[key[0] as usize]).collect();
+    if keys.iter().any(|key| key[1] != NONE) {
+        mesh.uvs = keys.iter().map(|key| value(&statements.uvs, key[1], Vec2::ZERO)).collect();
+    }
+    if keys.iter().any(|key| key[2] != NONE) {
+        mesh.normals = keys.iter().map(|key| value(&statements.normals, key[2], Vec3::ZERO)).collect();
+    }
+    if !statements.colors.is_empty() {
+        mesh.colors = keys.iter().map(|key| value(&statements.colors, key[0], [1.0; 3])).collect();
+    }
+    mesh
+}
+
+fn value<T: Copy>(values: &[T], index: u32, otherwise: T) -> T {
+    values.get(index as usize).copied().unwrap_or(otherwise)
+}

@@ -1,0 +1,256 @@
+//! What do the materials of an OBJ file look like?
+//!
+//! From MTL to Whitted's model. Colours are taken to be linear. Only materials that are used are made, and only their
+//! pictures are read. Ambient light is answered with the diffuse colour: `Ka` is rarely meant.
+//!
+//! | MTL | here |
+//! | --- | --- |
+//! | `Kd`, `map_Kd` | diffuse; the product of both, the picture alone where `Kd` is black |
+//! | `Ks`, `Ns`, where `illum` is 2 or more (or not said) and `Ns` > 0 | highlight |
+//! | `illum` 3, 5 | mirror of strength `Ks` (5: by Fresnel) |
+//! | `d` < 1 | share of the diffuse colour; the rest is let through, tinted by `Tf`, refracted where `illum` says so |
+//! | `illum` 4, 6, 7, 9 | glass: mirror `Ks`, refraction by `Ni` (7: by Fresnel) |
+//! | `Pm`, `Pr` | a metal: mirror of strength `Kd · Pm · (1 − Pr)²`, the rest a highlight |
+//! | `Ke`, `map_Ke` | emission, from both sides |
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::path::{Path, PathBuf};
+
+use super::mtl::{self, Map, MtlMaterial, shown_name};
+use crate::error::{Location, Result};
+use crate::files::Sources;
+use crate::image::Image;
+use crate::material::{Color, Whitted};
+use crate::model::surface::{
+    base_name, beside, picture, push_image, push_material, push_texture, push_vertex_colors, read_image,
+};
+use crate::model::tally::Tally;
+use crate::scene::{ImageId, MaterialId, Scene};
+use crate::shape::Emission;
+use crate::texture::{TextureKind, Wrap};
+
+/// The materials that a file may use.
+pub(super) struct Looks {
+    materials: Vec<(MtlMaterial, PathBuf)>,
+    by_name: HashMap<Vec<u8>, usize>,
+    /// Pictures by file and tint, so that each is read once; `None` where it cannot be read.
+    images: HashMap<(PathBuf, [u32; 3]), Option<ImageId>>,
+    names_libraries: bool,
+    missing: Tally,
+    missing_name: String,
+}
+
+/// How one piece looks.
+pub(super) struct Look {
+    pub(super) material: Option<MaterialId>,
+    pub(super) emission: Option<Emission>,
+}
+
+const BLACK: [f32; 3] = [0.0; 3];
+const WHITE: [f32; 3] = [1.0; 3];
+
+impl Looks {
+    /// Reads the material libraries that the file at `path` names. Those that cannot be read are warned of.
+    pub(super) fn read(libraries: &[(Location, Vec<u8>)], path: &Path, sources: &mut Sources<'_>) -> Self {
+        let mut looks = Self {
+            materials: Vec::new(),
+            by_name: HashMap::new(),
+            images: HashMap::new(),
+            names_libraries: !libraries.is_empty(),
+            missing: Tally::default(),
+            missing_name: String::new(),
+        };
+        for (at, names) in libraries {
+            let names = String::from_utf8_lossy(names).replace('\\', "/");
+            // The whole line is one name with blanks, or it is several names.
+            if looks.read_library(names.trim_matches('"'), path, sources).is_err() {
+                for name in names.split_whitespace() {
+                    if let Err(error) = looks.read_library(name, path, sources) {
+                        sources.warn(at, format!("material library `{name}`: {}", error.message));
+                    }
+                }
+            }
+        }
+        looks
+    }
+
+    fn read_library(&mut self, name: &str, path: &Path, sources: &mut Sources<'_>) -> Result<()> {
+        let first = beside(path, name);
+        let same_stem = path.with_extension("mtl");
+        let candidates = [first.clone(), beside(path, base_name(name)), same_stem];
+        let (library, bytes) = match candidates.iter().find_map(|at| Some((at, sources.read(at).ok()?))) {
+            Some(found) => found,
+            None => (&first, sources.read(&first)?),
+        };
+        if *library != first {
+            let found = library.display();
+            sources.warn(
+                &Location::file(&first),
+                format!("no such material library: `{found}` is used instead"),
+            );
+        }
+        for material in mtl::parse(&bytes, library, sources) {
+            // The first of a name counts.
+            if let Entry::Vacant(entry) = self.by_name.entry(material.name.clone()) {
+                entry.insert(self.materials.len());
+                self.materials.push((material, library.clone()));
+            }
+        }
+        Ok(())
+    }
+
+    /// The look of the pieces that name this material, added to the scene. `colored` tells that vertices have colours.
+    pub(super) fn look(
+        &mut self,
+        name: Option<&[u8]>,
+        colored: bool,
+        file: &Location,
+        sources: &mut Sources<'_>,
+        scene: &mut Scene,
+    ) -> Look {
+        let index = name.and_then(|name| self.by_name.get(name).copied());
+        if let (Some(name), None) = (name, index) {
+            if self.missing.count() == 0 {
+                self.missing_name = shown_name(name);
+            }
+            self.missing.add(0);
+        }
+        let Some(index) = index else {
+            let material = colored.then(|| push_vertex_colors(scene, file));
+            return Look { material, emission: None };
+        };
+        let (written, library) = self.materials[index].clone();
+        self.translate(&written, &library, colored, sources, scene)
+    }
+
+    /// Warns of materials that no library defines. Without any library names are only names.
+    pub(super) fn warn(&self, file: &Location, sources: &mut Sources<'_>) {
+        if !self.names_libraries {
+            return;
+        }
+        let what =
+            format!("not defined in any library, such as `{}`: the default is used", self.missing_name);
+        self.missing.warn("material", &what, file, sources);
+    }
+
+    fn translate(
+        &mut self,
+        written: &MtlMaterial,
+        library: &Path,
+        colored: bool,
+        sources: &mut Sources<'_>,
+        scene: &mut Scene,
+    ) -> Look {
+        let name = shown_name(&written.name);
+        let illumination = written.illumination.unwrap_or(2);
+        let opacity = written.opacity.unwrap_or(1.0);
+        let kd = written.diffuse.unwrap_or(if written.diffuse_map.is_some() { WHITE } else { [0.8; 3] });
+        let metallic = written.metallic.unwrap_or(0.0).min(1.0);
+        // A material that lets light through: by its opacity, or because its model is glass.
+        let is_glass = matches!(illumination, 6 | 7);
+        let passing = if is_glass && opacity == 1.0 { 1.0 } else { 1.0 - opacity };
+        let covering = (1.0 - passing) * (1.0 - metallic);
+
+        let mut color = |constant: [f32; 3], map: Option<&Map>, scale: f32, scene: &mut Scene| {
+            let constant = constant.map(|value| value * scale);
+            let picture = map.filter(|_| scale > 0.0).and_then(|map| {
+                let tint = if constant == BLACK { [scale; 3] } else { constant };
+                self.texture(map, tint, library, sources, scene)
+            });
+            picture.unwrap_or(Color::Value(constant))
+        };
+        let mut diffuse = color(kd, written.diffuse_map.as_ref(), covering, scene);
+        if let (true, Color::Value(_)) = (colored && written.diffuse_map.is_none(), diffuse) {
+            let tint = if kd == BLACK { WHITE } else { kd }.map(|value| value * covering);
+            diffuse = push_texture(scene, &name, &written.at, TextureKind::VertexColor { tint });
+        }
+        let ks = written.specular.unwrap_or(BLACK);
+        let shininess = written.shininess.unwrap_or(0.0);
+        let has_highlight = illumination >= 2 && shininess > 0.0;
+        let specular_map = written.specular_map.as_ref();
+        let mut specular = if has_highlight { color(ks, specular_map, 1.0, scene) } else { Color::BLACK };
+        let mut mirror = match illumination {
+            3..=7 => color(ks, specular_map, 1.0, scene),
+            _ => Color::BLACK,
+        };
+        let filter = written.filter.filter(|&filter| filter != BLACK).unwrap_or(WHITE);
+        let mut whitted = Whitted {
+            diffuse,
+            shininess,
+            transmission: Color::Value(filter.map(|value| value.min(1.0) * passing)),
+            ior: match (written.ior, illumination) {
+                (Some(ior), 4..=9) if ior > 0.0 => ior,
+                (_, 4 | 5 | 6 | 7 | 9) => 1.5,
+                _ => 1.0,
+            },
+            ..Whitted::default()
+        };
+        // Many programs write `Ni 1` everywhere, and with it there would be no mirror.
+        whitted.fresnel = illumination == 7 || (illumination == 5 && whitted.ior != 1.0);
+        if whitted.fresnel && passing > 0.0 {
+            // Fresnel's equations share out all the light that there is.
+            mirror = Color::Value(if ks == BLACK { WHITE } else { ks });
+        }
+        if metallic > 0.0 {
+            let roughness = written.roughness.unwrap_or(0.5).clamp(0.0, 1.0);
+            let clear = (1.0 - roughness) * (1.0 - roughness);
+            mirror = color(kd, written.diffuse_map.as_ref(), metallic * clear, scene);
+            specular = color(kd, written.diffuse_map.as_ref(), metallic * (1.0 - clear), scene);
+            // The exponent whose highlight is as wide as that of a roughness (Walter et al. 2007: α = roughness²).
+            let alpha = (roughness * roughness).max(0.01);
+            whitted.shininess = (2.0 / (alpha * alpha) - 2.0).max(1.0);
+        }
+        whitted.mirror = mirror;
+        whitted.specular = specular;
+
+        let ke = written.emission.unwrap_or(BLACK);
+        let shines = ke != BLACK || (written.emission_map.is_some() && written.emission.is_none());
+        let emission = shines.then(|| {
+            let radiance = color(ke, written.emission_map.as_ref(), 1.0, scene);
+            Emission { radiance, two_sided: true }
+        });
+        let emission = emission.filter(|emission| emission.radiance != Color::BLACK);
+        Look { material: Some(push_material(scene, &name, &written.at, whitted)), emission }
+    }
+
+    /// The texture of a map with its texels multiplied by `tint`; `None`, with a warning, where it cannot be read.
+    fn texture(
+        &mut self,
+        map: &Map,
+        tint: [f32; 3],
+        library: &Path,
+        sources: &mut Sources<'_>,
+        scene: &mut Scene,
+    ) -> Option<Color> {
+        let key = (beside(library, &map.file), tint.map(f32::to_bits));
+        let image = match self.images.get(&key) {
+            Some(image) => *image,
+            None => {
+                let image = match read_image(library, &map.file, sources) {
+                    Ok(image) => Some(push_image(scene, tinted(image, tint))),
+                    Err(error) => {
+                        let message =
+                            format!("texture `{}`: {}; the constant colour is used", map.file, error.message);
+                        sources.warn(&map.at, message);
+                        None
+                    }
+                };
+                self.images.insert(key, image);
+                image
+            }
+        }?;
+        let wrap = if map.clamp { Wrap::Black } else { Wrap::Repeat };
+        let kind = picture(image, map.scale, map.offset, wrap);
+        Some(push_texture(scene, &map.file, &map.at, kind))
+    }
+}
+
+fn tinted(mut image: Image, tint: [f32; 3]) -> Image {
+    if tint != WHITE {
+        for texel in &mut image.texels {
+            *texel = [texel[0] * tint[0], texel[1] * tint[1], texel[2] * tint[2]];
+        }
+    }
+    image
+}

@@ -1,0 +1,268 @@
+//! What does an MTL file say?
+//!
+//! Materials as they are written (Wavefront, "MTL material format", Advanced Visualizer manual, appendix B2, and the
+//! extensions of Clara.io for physically based ones). What they mean is left to the file beside this one, `look`.
+//! Nothing in a material library is an error: what is not understood is ignored with a warning.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::error::Location;
+use crate::files::Sources;
+use crate::model::number::parse_f32;
+use crate::model::scan::{Scanner, shown};
+use crate::model::tally::Tally;
+use crate::model::text;
+
+/// A material as it is written; `None` where nothing is said.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MtlMaterial {
+    /// The bytes after `newmtl`, without blanks at their ends.
+    pub name: Vec<u8>,
+    /// Where it begins.
+    pub at: Location,
+    /// `Kd`, `Ks`, `Ke` and `Tf`: finite, not negative.
+    pub diffuse: Option<[f32; 3]>,
+    /// `Ks`.
+    pub specular: Option<[f32; 3]>,
+    /// `Ke`.
+    pub emission: Option<[f32; 3]>,
+    /// `Tf`: what is let through.
+    pub filter: Option<[f32; 3]>,
+    /// `Ns`: the sharpness of the highlight.
+    pub shininess: Option<f32>,
+    /// `Ni`: the index of refraction.
+    pub ior: Option<f32>,
+    /// `d`, or 1 − `Tr`: 1 is opaque.
+    pub opacity: Option<f32>,
+    /// `illum`: which illumination model.
+    pub illumination: Option<u32>,
+    /// `Pm`: 1 is a metal.
+    pub metallic: Option<f32>,
+    /// `Pr`: 0 is a mirror.
+    pub roughness: Option<f32>,
+    /// `map_Kd`.
+    pub diffuse_map: Option<Map>,
+    /// `map_Ks`.
+    pub specular_map: Option<Map>,
+    /// `map_Ke`.
+    pub emission_map: Option<Map>,
+}
+
+/// A picture over the surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// Where it is named.
+    pub at: Location,
+    /// The file as it is written, with `/` between folders.
+    pub file: String,
+    /// `-s`: uv is multiplied by this.
+    pub scale: [f32; 2],
+    /// `-o`: then this is added.
+    pub offset: [f32; 2],
+    /// `-clamp on`: nothing lies beyond the edges.
+    pub clamp: bool,
+}
+
+/// Reads the materials of a library in the order of the file; `path` is for messages.
+pub fn parse(bytes: &[u8], path: &Path, sources: &mut Sources<'_>) -> Vec<MtlMaterial> {
+    let file = Location::file(path);
+    let text = text::utf8(bytes);
+    let mut scanner = Scanner::joining_lines(&text);
+    let mut materials: Vec<MtlMaterial> = Vec::new();
+    let mut unreadable = Tally::default();
+    let mut orphans = Tally::default();
+    let mut ignored: BTreeMap<&str, Tally> = BTreeMap::new();
+    loop {
+        let keyword = scanner.word();
+        let at_keyword = scanner.clone();
+        if keyword == b"newmtl" {
+            let name = scanner.rest_of_line().to_vec();
+            materials.push(MtlMaterial { name, at: at_keyword.at(&file), ..MtlMaterial::default() });
+        } else if !keyword.is_empty() && keyword[0] != b'#' {
+            match materials.last_mut().map(|material| material.set(keyword, &mut scanner, &file)) {
+                Some(Outcome::Done) => {}
+                Some(Outcome::Unreadable) => unreadable.add(scanner.line()),
+                Some(Outcome::Ignored(name)) => ignored.entry(name).or_default().add(scanner.line()),
+                None => orphans.add(scanner.line()),
+            }
+        }
+        if !scanner.next_line() {
+            break;
+        }
+    }
+    unreadable.warn("line", "ignored: the values are not what the keyword expects", &file, sources);
+    orphans.warn("line", "before the first `newmtl` ignored", &file, sources);
+    for (name, tally) in ignored {
+        tally.warn(&format!("`{name}` statement"), "ignored: not supported", &file, sources);
+    }
+    materials
+}
+
+enum Outcome {
+    Done,
+    Unreadable,
+    Ignored(&'static str),
+}
+
+impl MtlMaterial {
+    fn set(&mut self, keyword: &[u8], scanner: &mut Scanner<'_>, file: &Location) -> Outcome {
+        let done = |is: bool| if is { Outcome::Done } else { Outcome::Unreadable };
+        let mut color = |to: &mut Option<[f32; 3]>| {
+            let value = read_color(scanner);
+            *to = value.or(*to);
+            done(value.is_some())
+        };
+        match keyword {
+            b"Kd" => return color(&mut self.diffuse),
+            b"Ks" => return color(&mut self.specular),
+            b"Ke" => return color(&mut self.emission),
+            b"Tf" => return color(&mut self.filter),
+            _ => {}
+        }
+        let mut number = |to: &mut Option<f32>| {
+            let value = read_number(scanner);
+            *to = value.or(*to);
+            done(value.is_some())
+        };
+        match keyword {
+            b"Ns" => return number(&mut self.shininess),
+            b"Ni" => return number(&mut self.ior),
+            b"Pm" => return number(&mut self.metallic),
+            b"Pr" => return number(&mut self.roughness),
+            b"d" | b"Tr" => {
+                let mut word = scanner.word();
+                if word == b"-halo" {
+                    word = scanner.word();
+                }
+                let value = parse_f32(word).filter(|value| value.is_finite());
+                // Where both are said, `d` counts: the meaning of `Tr` was never agreed on.
+                match value {
+                    Some(d) if keyword == b"d" => self.opacity = Some(d.clamp(0.0, 1.0)),
+                    Some(tr) => self.opacity = self.opacity.or(Some(1.0 - tr.clamp(0.0, 1.0))),
+                    None => {}
+                }
+                return done(value.is_some());
+            }
+            b"illum" => {
+                let value = read_number(scanner);
+                self.illumination = value.map(|value| value as u32).or(self.illumination);
+                return done(value.is_some());
+            }
+            _ => {}
+        }
+        let mut map = |to: &mut Option<Map>| {
+            let value = read_map(scanner, file);
+            let is = value.is_some();
+            *to = value.or(to.take());
+            done(is)
+        };
+        match keyword.to_ascii_lowercase().as_slice() {
+            b"map_kd" => map(&mut self.diffuse_map),
+            b"map_ks" => map(&mut self.specular_map),
+            b"map_ke" => map(&mut self.emission_map),
+            // Ambient colours are rarely meant: most programs write black, white or the diffuse colour here.
+            b"ka" | b"map_ka" => Outcome::Done,
+            b"map_d" => Outcome::Ignored("map_d"),
+            b"map_ns" => Outcome::Ignored("map_Ns"),
+            b"map_bump" | b"bump" => Outcome::Ignored("map_Bump"),
+            b"map_pr" | b"map_pm" | b"map_ps" | b"map_rma" | b"map_orm" => Outcome::Ignored("map_Pr, map_Pm"),
+            b"norm" | b"map_kn" => Outcome::Ignored("norm"),
+            b"disp" | b"decal" => Outcome::Ignored("disp, decal"),
+            b"refl" => Outcome::Ignored("refl"),
+            b"km" => Outcome::Ignored("Km"),
+            b"sharpness" => Outcome::Ignored("sharpness"),
+            b"ps" | b"pc" | b"pcr" | b"aniso" | b"anisor" => Outcome::Ignored("Ps, Pc, aniso"),
+            _ => Outcome::Ignored("(unknown)"),
+        }
+    }
+}
+
+fn read_number(scanner: &mut Scanner<'_>) -> Option<f32> {
+    parse_f32(scanner.word()).filter(|value| value.is_finite() && *value >= 0.0)
+}
+
+/// `r [g b]` or `xyz x [y z]`; one number stands for all three.
+fn read_color(scanner: &mut Scanner<'_>) -> Option<[f32; 3]> {
+    let mut word = scanner.word();
+    let is_xyz = word == b"xyz";
+    if is_xyz {
+        word = scanner.word();
+    }
+    let mut values = [0.0; 3];
+    let mut count = 0;
+    while count < 3 && !word.is_empty() && word[0] != b'#' {
+        values[count] = parse_f32(word).filter(|value| value.is_finite())?;
+        (count, word) = (count + 1, scanner.word());
+    }
+    let [x, y, z] = match count {
+        1 => [values[0]; 3],
+        3 => values,
+        _ => return None,
+    };
+    // To linear Rec. 709 (ITU-R BT.709-6, its primaries and white).
+    let rgb = if is_xyz {
+        [
+            3.240_97 * x - 1.537_383_2 * y - 0.498_610_8 * z,
+            -0.969_243_65 * x + 1.875_967_5 * y + 0.041_555_06 * z,
+            0.055_630_08 * x - 0.203_976_96 * y + 1.056_971_5 * z,
+        ]
+    } else {
+        [x, y, z]
+    };
+    Some(rgb.map(|value| value.max(0.0)))
+}
+
+/// Options, then a file name that may have blanks in it.
+fn read_map(scanner: &mut Scanner<'_>, file: &Location) -> Option<Map> {
+    let mut map =
+        Map { at: file.clone(), file: String::new(), scale: [1.0; 2], offset: [0.0; 2], clamp: false };
+    loop {
+        let before = scanner.clone();
+        let option = scanner.word();
+        // How many words follow the option: at least, and at most as long as they are numbers.
+        let (least, most) = match option {
+            b"-s" | b"-o" | b"-t" => (1, 3),
+            b"-mm" => (2, 2),
+            b"-clamp" | b"-blendu" | b"-blendv" | b"-cc" | b"-imfchan" | b"-type" | b"-bm" | b"-boost"
+            | b"-texres" => (1, 1),
+            _ => {
+                *scanner = before;
+                let name = scanner.rest_of_line();
+                map.at = scanner.at(file);
+                let name = String::from_utf8_lossy(name.trim_ascii()).replace('\\', "/");
+                map.file = name.trim_matches('"').trim().to_owned();
+                return (!map.file.is_empty()).then_some(map);
+            }
+        };
+        let mut numbers = Vec::new();
+        for taken in 0..most {
+            let before = scanner.clone();
+            let word = scanner.word();
+            match parse_f32(word).filter(|value| value.is_finite()) {
+                Some(number) => numbers.push(number),
+                None if taken < least => map.clamp |= option == b"-clamp" && word == b"on",
+                None => {
+                    *scanner = before;
+                    break;
+                }
+            }
+        }
+        let pair = |otherwise: [f32; 2]| {
+            [
+                numbers.first().copied().unwrap_or(otherwise[0]),
+                numbers.get(1).copied().unwrap_or(otherwise[1]),
+            ]
+        };
+        match option {
+            b"-s" => map.scale = pair(map.scale),
+            b"-o" => map.offset = pair(map.offset),
+            _ => {}
+        }
+    }
+}
+
+/// The name of a material as it is shown to people.
+pub(super) fn shown_name(name: &[u8]) -> String {
+    if name.is_empty() { "(no name)".to_owned() } else { shown(name) }
+}

@@ -1,0 +1,338 @@
+//! What does an OBJ file say, statement by statement?
+//!
+//! One pass over the text (Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1). What it leaves
+//! to others: triangles and normals ([`super::build`]), materials ([`super::mtl`]).
+
+use std::collections::HashMap;
+
+use glam::{Vec2, Vec3};
+
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::files::Sources;
+use crate::model::number::parse_f32;
+use crate::model::scan::{Scanner, shown};
+use crate::model::tally::Tally;
+
+/// Stands for an index that a corner does not have.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// A corner of a face: indices, from 0, of its position, texture coordinates and normal.
+#[derive(Clone, Copy)]
+pub(super) struct Corner {
+    pub(super) position: u32,
+    pub(super) uv: u32,
+    pub(super) normal: u32,
+}
+
+/// A polygon.
+pub(super) struct Face {
+    /// How many corners it has: ≥ 3.
+    pub(super) corners: u32,
+    pub(super) line: u32,
+    /// The smoothing group; 0 is flat.
+    pub(super) smoothing: u32,
+}
+
+/// The faces of one material.
+#[derive(Default)]
+pub(super) struct Group {
+    /// The name that `usemtl` gave, as its bytes.
+    pub(super) material: Option<Vec<u8>>,
+    /// The first object or group in which it was used.
+    pub(super) object: Option<String>,
+    pub(super) faces: Vec<Face>,
+    /// The corners of all faces, one face after the other.
+    pub(super) corners: Vec<Corner>,
+}
+
+/// All that a file says, as far as it is understood.
+#[derive(Default)]
+pub(super) struct Statements {
+    pub(super) positions: Vec<Vec3>,
+    /// Linear colours of positions; may be shorter than `positions`: the rest is white.
+    pub(super) colors: Vec<[f32; 3]>,
+    pub(super) uvs: Vec<Vec2>,
+    pub(super) normals: Vec<Vec3>,
+    pub(super) groups: Vec<Group>,
+    /// Where and how `mtllib` names material libraries.
+    pub(super) libraries: Vec<(Location, Vec<u8>)>,
+}
+
+/// The largest index of a kind, and where it stands: indices may be used before what they name.
+struct Largest {
+    count: usize,
+    at: Location,
+    written: String,
+}
+
+struct Parser<'a> {
+    file: &'a Location,
+    scanner: Scanner<'a>,
+    elements: usize,
+    statements: Statements,
+    group_of_material: HashMap<Option<Vec<u8>>, usize>,
+    group: usize,
+    object: Option<String>,
+    smoothing: u32,
+    largest: [Largest; 3],
+    loose: Tally,
+    thin: Tally,
+    curves: Tally,
+    calls: Tally,
+    unknown: Tally,
+    unknown_name: String,
+}
+
+/// Reads the statements of a file.
+///
+/// # Errors
+/// `Syntax` for numbers that are none, `Invalid` for indices out of range, `Limit` for too many elements.
+pub(super) fn parse(text: &[u8], file: &Location, sources: &mut Sources<'_>) -> Result<Statements> {
+    let largest = || Largest { count: 0, at: file.clone(), written: String::new() };
+    let mut parser = Parser {
+        file,
+        scanner: Scanner::joining_lines(text),
+        // Indices must fit 32 bits besides.
+        elements: sources.limits.elements.min(u64::from(u32::MAX) / 4) as usize,
+        statements: Statements::default(),
+        group_of_material: HashMap::new(),
+        group: 0,
+        object: None,
+        smoothing: 0,
+        largest: [largest(), largest(), largest()],
+        loose: Tally::default(),
+        thin: Tally::default(),
+        curves: Tally::default(),
+        calls: Tally::default(),
+        unknown: Tally::default(),
+        unknown_name: String::new(),
+    };
+    parser.use_material(None);
+    loop {
+        parser.line()?;
+        if !parser.scanner.next_line() {
+            break;
+        }
+    }
+    parser.check_indices()?;
+    parser.warn(sources);
+    Ok(parser.statements)
+}
+
+impl Parser<'_> {
+    fn line(&mut self) -> Result<()> {
+        let keyword = self.scanner.word();
+        match keyword {
+            b"" => {}
+            b"v" => self.position()?,
+            b"vn" => {
+                let ([x, y, z], _) = self.numbers::<3>(3)?;
+                self.statements.normals.push(Vec3::new(x, y, z));
+            }
+            b"vt" => {
+                let ([u, v], _) = self.numbers::<2>(1)?;
+                self.statements.uvs.push(Vec2::new(u, v));
+            }
+            b"f" | b"fo" => self.face()?,
+            b"s" => {
+                let word = self.scanner.word();
+                self.smoothing = match std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()) {
+                    Some(group) => group,
+                    None => u32::from(word == b"on"),
+                };
+            }
+            b"usemtl" => {
+                let name = self.scanner.rest_of_line();
+                self.use_material((!name.is_empty()).then_some(name));
+            }
+            b"o" | b"g" => {
+                let name = self.scanner.rest_of_line();
+                self.object = (!name.is_empty()).then(|| String::from_utf8_lossy(name).into_owned());
+            }
+            b"mtllib" => {
+                let name = self.scanner.rest_of_line();
+                let at = self.scanner.at(self.file);
+                if !self.statements.libraries.iter().any(|(_, other)| other == name) {
+                    self.statements.libraries.push((at, name.to_vec()));
+                }
+            }
+            b"p" | b"l" => self.loose.add(self.scanner.line()),
+            b"curv" | b"curv2" | b"surf" => self.curves.add(self.scanner.line()),
+            b"call" | b"csh" => self.calls.add(self.scanner.line()),
+            // Parts of curves and surfaces, and hints to programs of the nineties.
+            b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"parm" | b"trim" | b"hole" | b"scrv"
+            | b"sp" | b"end" | b"con" | b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod"
+            | b"shadow_obj" | b"trace_obj" | b"ctech" | b"stech" | b"usemap" | b"maplib" => {}
+            [b'#', ..] => {}
+            other => {
+                if self.unknown.count() == 0 {
+                    self.unknown_name = shown(other);
+                }
+                self.unknown.add(self.scanner.line());
+            }
+        }
+        let statements = &self.statements;
+        let elements = statements.positions.len().max(statements.uvs.len()).max(statements.normals.len());
+        if elements > self.elements {
+            return Err(self.too_many("vertices"));
+        }
+        Ok(())
+    }
+
+    fn position(&mut self) -> Result<()> {
+        let (values, count) = self.numbers::<6>(3)?;
+        let [x, y, z, r, g, b] = values;
+        if count == 6 {
+            let colors = &mut self.statements.colors;
+            colors.resize(self.statements.positions.len(), [1.0; 3]);
+            colors.push([r, g, b].map(super::linear_color));
+        }
+        self.statements.positions.push(Vec3::new(x, y, z));
+        Ok(())
+    }
+
+    /// Up to N numbers, of which `least` must be there; more than N are passed over.
+    fn numbers<const N: usize>(&mut self, least: usize) -> Result<([f32; N], usize)> {
+        let mut values = [0.0; N];
+        let mut count = 0;
+        while count < N {
+            let word = self.scanner.word();
+            if word.is_empty() || word[0] == b'#' {
+                break;
+            }
+            values[count] = parse_f32(word).ok_or_else(|| {
+                let found = shown(word);
+                Error::syntax(&self.scanner.at(self.file), format!("expected a number, found `{found}`"))
+            })?;
+            count += 1;
+        }
+        if count < least {
+            let message = format!("expected {least} numbers, found {count}");
+            return Err(Error::syntax(&self.scanner.at(self.file), message));
+        }
+        Ok((values, count))
+    }
+
+    fn face(&mut self) -> Result<()> {
+        let group = &self.statements.groups[self.group];
+        let start = group.corners.len();
+        loop {
+            let word = self.scanner.word();
+            if word.is_empty() || word[0] == b'#' {
+                break;
+            }
+            let corner = self.corner(word)?;
+            self.statements.groups[self.group].corners.push(corner);
+        }
+        let line = self.scanner.line();
+        let group = &mut self.statements.groups[self.group];
+        let corners = group.corners.len() - start;
+        if corners < 3 {
+            group.corners.truncate(start);
+            self.thin.add(line);
+            return Ok(());
+        }
+        group.faces.push(Face { corners: corners as u32, line, smoothing: self.smoothing });
+        if group.corners.len() > self.elements { Err(self.too_many("corners of faces")) } else { Ok(()) }
+    }
+
+    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    fn corner(&mut self, word: &[u8]) -> Result<Corner> {
+        let counts =
+            [self.statements.positions.len(), self.statements.uvs.len(), self.statements.normals.len()];
+        let mut indices = [NONE; 3];
+        let mut rest = word;
+        for kind in 0..3 {
+            let length = rest.iter().position(|&byte| byte == b'/').unwrap_or(rest.len());
+            let (number, tail) = rest.split_at(length);
+            if !number.is_empty() || kind == 0 {
+                indices[kind] = self.index(number, word, kind, counts[kind])?;
+            }
+            match tail {
+                [b'/', tail @ ..] if kind < 2 => rest = tail,
+                [] => break,
+                _ => return Err(self.bad_corner(word)),
+            }
+        }
+        Ok(Corner { position: indices[0], uv: indices[1], normal: indices[2] })
+    }
+
+    fn index(&mut self, number: &[u8], word: &[u8], kind: usize, count: usize) -> Result<u32> {
+        let (back, digits) = match number {
+            [b'-', digits @ ..] => (true, digits),
+            [b'+', digits @ ..] => (false, digits),
+            digits => (false, digits),
+        };
+        if digits.is_empty() || digits.len() > 18 || !digits.iter().all(u8::is_ascii_digit) {
+            return Err(self.bad_corner(word));
+        }
+        let value = digits.iter().fold(0_usize, |value, digit| 10 * value + usize::from(digit - b'0'));
+        if value == 0 || (back && value > count) {
+            return Err(self.out_of_range(&self.scanner.at(self.file), &shown(number), kind, count));
+        }
+        if back {
+            return Ok((count - value) as u32);
+        }
+        // It may be defined further on: look again at the end.
+        if value > count && value > self.largest[kind].count {
+            self.largest[kind] =
+                Largest { count: value, at: self.scanner.at(self.file), written: shown(number) };
+        }
+        Ok((value - 1).min(NONE as usize - 1) as u32)
+    }
+
+    fn bad_corner(&self, word: &[u8]) -> Error {
+        let message = format!("expected a corner as `1`, `1/2`, `1//3` or `1/2/3`, found `{}`", shown(word));
+        Error::syntax(&self.scanner.at(self.file), message)
+    }
+
+    fn out_of_range(&self, at: &Location, written: &str, kind: usize, count: usize) -> Error {
+        let what = ["vertices (v)", "texture coordinates (vt)", "normals (vn)"][kind];
+        Error::invalid(at, format!("index {written} is out of range: there are {count} {what}"))
+            .hint("indices count from 1; negative ones count back from the last")
+    }
+
+    fn too_many(&self, what: &str) -> Error {
+        let message = format!("more than {} {what}", self.elements);
+        Error::new(ErrorKind::Limit, &self.file.at(self.scanner.line(), 0), message)
+            .hint("raise `Limits::elements`, or split the model")
+    }
+
+    fn use_material(&mut self, name: Option<&[u8]>) {
+        let groups = &mut self.statements.groups;
+        self.group = *self.group_of_material.entry(name.map(<[u8]>::to_vec)).or_insert_with(|| {
+            let material = name.map(<[u8]>::to_vec);
+            groups.push(Group { material, object: self.object.clone(), ..Group::default() });
+            groups.len() - 1
+        });
+    }
+
+    fn check_indices(&self) -> Result<()> {
+        let statements = &self.statements;
+        let counts = [statements.positions.len(), statements.uvs.len(), statements.normals.len()];
+        for (kind, count) in counts.into_iter().enumerate() {
+            let largest = &self.largest[kind];
+            if largest.count > count {
+                return Err(self.out_of_range(&largest.at, &largest.written, kind, count));
+            }
+        }
+        Ok(())
+    }
+
+    fn warn(&self, sources: &mut Sources<'_>) {
+        let file = self.file;
+        if self.statements.groups.iter().any(|group| !group.faces.is_empty()) {
+            self.loose.warn("point or line element", "left out: only faces are drawn", file, sources);
+        }
+        self.thin.warn("face", "left out: fewer than three corners", file, sources);
+        self.curves.warn("curve or surface", "left out: free-form geometry is not supported", file, sources);
+        self.calls.warn(
+            "`call` or `csh` statement",
+            "ignored: no other files or programs are run",
+            file,
+            sources,
+        );
+        let what = format!("with an unknown keyword ignored, such as `{}`", self.unknown_name);
+        self.unknown.warn("line", &what, file, sources);
+    }
+}

@@ -1,0 +1,395 @@
+//! Which values does a PLY file hold?
+//!
+//! Vertices and faces; other elements and properties are passed over. A header may lie: what it claims is compared
+//! with the bytes that are there before memory is asked for.
+
+use glam::{Vec2, Vec3};
+
+use super::header::{Element, Format, Header, Kind, Scalar};
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::files::Limits;
+use crate::image::linear_from_srgb;
+use crate::model::number::{parse_f32, parse_f64};
+use crate::model::scan::{Scanner, shown};
+
+/// What is understood of a file.
+#[derive(Default)]
+pub(super) struct Content {
+    /// As they are written: not necessarily finite.
+    pub(super) positions: Vec<Vec3>,
+    /// None, or one a vertex.
+    pub(super) normals: Vec<Vec3>,
+    /// None, or one a vertex.
+    pub(super) uvs: Vec<Vec2>,
+    /// None, or one a vertex; linear.
+    pub(super) colors: Vec<[f32; 3]>,
+    pub(super) faces: Vec<Face>,
+    /// The vertices of all faces, one face after the other: each is below the number of vertices.
+    pub(super) corners: Vec<u32>,
+    /// None, or texture coordinates of each corner.
+    pub(super) corner_uvs: Vec<Vec2>,
+    /// Faces with fewer than three corners, and the line of the first.
+    pub(super) thin: (u64, u32),
+}
+
+/// A polygon.
+pub(super) struct Face {
+    pub(super) corners: u32,
+    /// In binary formats 0.
+    pub(super) line: u32,
+}
+
+/// Names of vertex properties, in the order of `Row`'s values.
+const VERTEX: [&[&str]; 11] = [
+    &["x"],
+    &["y"],
+    &["z"],
+    &["nx", "normal_x"],
+    &["ny", "normal_y"],
+    &["nz", "normal_z"],
+    &["s", "u", "texture_u", "texture_s", "s0", "u0"],
+    &["t", "v", "texture_v", "texture_t", "t0", "v0"],
+    &["red", "r", "diffuse_red"],
+    &["green", "g", "diffuse_green"],
+    &["blue", "b", "diffuse_blue"],
+];
+
+/// Reads the values after the header.
+///
+/// # Errors
+/// `Syntax` where values are missing or are none, `Invalid` for indices out of range, `Limit`.
+pub(super) fn read(bytes: &[u8], header: &Header, file: &Location, limits: &Limits) -> Result<Content> {
+    let mut content = Content::default();
+    let vertices = header.elements.iter().find(|element| element.name == "vertex").map_or(0, |e| e.count);
+    let mut reader = Reader::new(bytes, header, file);
+    for element in &header.elements {
+        let least = element.least_row(header.format);
+        // The last value of a text needs no blank after it.
+        let there = reader.left() as u64 + u64::from(header.format == Format::Ascii);
+        if element.count.checked_mul(least).is_none_or(|bytes| bytes > there) {
+            return Err(too_short(element, least, there));
+        }
+        if element.count > limits.elements.min(u64::from(u32::MAX) / 4) && least > 0 {
+            let message = format!(
+                "{} rows of `{}` are more than the limit",
+                element.count,
+                shown(element.name.as_bytes())
+            );
+            return Err(Error::new(ErrorKind::Limit, &element.at, message).hint("raise `Limits::elements`"));
+        }
+        match element.name.as_str() {
+            "vertex" => read_vertices(element, &mut reader, &mut content)?,
+            "face" | "tristrips" | "tristrip" => {
+                read_faces(element, vertices, limits, &mut reader, &mut content)?;
+            }
+            _ => skip(element, least, &mut reader)?,
+        }
+    }
+    Ok(content)
+}
+
+fn too_short(element: &Element, least: u64, there: u64) -> Error {
+    let Element { name, count, at, .. } = element;
+    let message = format!(
+        "{count} rows of `{}` are declared, of at least {least} bytes each, but only {there} bytes are left",
+        shown(name.as_bytes())
+    );
+    Error::syntax(at, message).hint("the file may be cut off, or its header may be wrong")
+}
+
+fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Content) -> Result<()> {
+    let columns = VERTEX.map(|names| {
+        element.find(names).filter(|&index| matches!(element.properties[index].kind, Kind::One(_)))
+    });
+    for axis in 0..3 {
+        if columns[axis].is_none() {
+            let message = format!("element `vertex` has no property `{}`", VERTEX[axis][0]);
+            return Err(Error::syntax(&element.at, message));
+        }
+    }
+    let has = |range: std::ops::Range<usize>| range.into_iter().all(|slot| columns[slot].is_some());
+    let count = element.count as usize;
+    content.positions.reserve_exact(count);
+    let (normals, uvs, colors) = (has(3..6), has(6..8), has(8..11));
+    let mut slots = vec![VERTEX.len(); element.properties.len()];
+    for (slot, column) in columns.into_iter().enumerate() {
+        if let Some(column) = column {
+            slots[column] = slot;
+        }
+    }
+    let color_type = columns[8].map(|column| element.properties[column].kind);
+    let decode = color_decoder(color_type);
+    for _ in 0..count {
+        // One place more than there are names: what is passed over goes there.
+        let mut row = [0.0_f64; VERTEX.len() + 1];
+        for (property, &slot) in element.properties.iter().zip(&slots) {
+            match property.kind {
+                Kind::One(scalar) => row[slot] = reader.value(scalar)?,
+                Kind::List { count, item } => reader.list(count, item, |_| {})?,
+            }
+        }
+        let [x, y, z, nx, ny, nz, s, t, ..] = row.map(|value| value as f32);
+        content.positions.push(Vec3::new(x, y, z));
+        if normals {
+            content.normals.push(Vec3::new(nx, ny, nz));
+        }
+        if uvs {
+            content.uvs.push(Vec2::new(s, t));
+        }
+        if colors {
+            content.colors.push([decode(row[8]), decode(row[9]), decode(row[10])]);
+        }
+    }
+    Ok(())
+}
+
+/// To linear light: whole numbers are sRGB-encoded, others are linear.
+fn color_decoder(kind: Option<Kind>) -> impl Fn(f64) -> f32 {
+    let bytes: Vec<f32> = (0..=255).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
+    let full = match kind {
+        Some(Kind::One(Scalar::F32 | Scalar::F64)) | None => 0.0,
+        Some(Kind::One(Scalar::U16 | Scalar::I16)) => 65535.0,
+        Some(_) => 255.0,
+    };
+    move |value| match full {
+        _ if !value.is_finite() => 1.0,
+        0.0 => value.max(0.0) as f32,
+        255.0 => bytes[value.clamp(0.0, 255.0) as usize],
+        full => linear_from_srgb((value.clamp(0.0, full) / full) as f32),
+    }
+}
+
+fn read_faces(
+    element: &Element,
+    vertices: u64,
+    limits: &Limits,
+    reader: &mut Reader<'_>,
+    content: &mut Content,
+) -> Result<()> {
+    let is_list = |index: &usize| matches!(element.properties[*index].kind, Kind::List { .. });
+    let strips = element.name != "face";
+    let Some(indices) = element.find(&["vertex_indices", "vertex_index"]).filter(is_list) else {
+        if element.count == 0 {
+            return Ok(());
+        }
+        let message = format!("element `{}` has no list property `vertex_indices`", element.name);
+        return Err(Error::syntax(&element.at, message));
+    };
+    let texcoords = element.find(&["texcoord"]).filter(is_list);
+    let (mut face, mut uvs) = (Vec::new(), Vec::new());
+    for _ in 0..element.count {
+        let mut line = 0;
+        let mut place = 0;
+        uvs.clear();
+        for (index, property) in element.properties.iter().enumerate() {
+            match property.kind {
+                Kind::One(scalar) => drop(reader.value(scalar)?),
+                Kind::List { count, item } if index == indices => {
+                    face.clear();
+                    place = reader.position();
+                    reader.list(count, item, |value| face.push(value))?;
+                    line = reader.line();
+                }
+                Kind::List { count, item } if Some(index) == texcoords => {
+                    reader.list(count, item, |value| uvs.push(value as f32))?;
+                }
+                Kind::List { count, item } => reader.list(count, item, |_| {})?,
+            }
+        }
+        for value in &face {
+            let is_restart = strips && *value == -1.0;
+            if !is_restart && (value.fract() != 0.0 || *value < 0.0 || *value >= vertices as f64) {
+                let message = format!("vertex index {value} is out of range: there are {vertices} vertices");
+                return Err(reader.error_at(line, place, ErrorKind::Invalid, message));
+            }
+        }
+        if strips {
+            content.push_strips(&face, line);
+        } else {
+            content.push_face(&face, &uvs, line);
+        }
+        if content.corners.len() as u64 > limits.elements.min(u64::from(u32::MAX) / 4) {
+            return Err(Error::new(
+                ErrorKind::Limit,
+                &element.at,
+                "more corners of faces than the limit allows",
+            )
+            .hint("raise `Limits::elements`"));
+        }
+    }
+    Ok(())
+}
+
+impl Content {
+    fn push_face(&mut self, face: &[f64], uvs: &[f32], line: u32) {
+        if face.len() < 3 {
+            let first = if self.thin.0 == 0 { line } else { self.thin.1 };
+            self.thin = (self.thin.0 + 1, first);
+            return;
+        }
+        let corners = self.corners.len();
+        self.faces.push(Face { corners: face.len() as u32, line });
+        self.corners.extend(face.iter().map(|&index| index as u32));
+        if uvs.len() == 2 * face.len() {
+            self.corner_uvs.resize(corners, Vec2::ZERO);
+            self.corner_uvs.extend(uvs.chunks_exact(2).map(|uv| Vec2::new(uv[0], uv[1])));
+        } else if !self.corner_uvs.is_empty() {
+            self.corner_uvs.resize(self.corners.len(), Vec2::ZERO);
+        }
+    }
+
+    /// Triangles of strips; −1 ends a strip. Every second triangle of a strip is turned around.
+    fn push_strips(&mut self, indices: &[f64], line: u32) {
+        for strip in indices.split(|&index| index == -1.0) {
+            for (i, triangle) in strip.windows(3).enumerate() {
+                let [a, b, c] = [triangle[0], triangle[1], triangle[2]];
+                // Strips are sewn together by triangles that name a vertex twice.
+                if a != b && b != c && c != a {
+                    self.push_face(&if i % 2 == 0 { [a, b, c] } else { [b, a, c] }, &[], line);
+                }
+            }
+        }
+    }
+}
+
+fn skip(element: &Element, least: u64, reader: &mut Reader<'_>) -> Result<()> {
+    let fixed = element.properties.iter().all(|property| matches!(property.kind, Kind::One(_)));
+    if least == 0 || (fixed && reader.skip_bytes(element.count * least)) {
+        return Ok(());
+    }
+    for _ in 0..element.count {
+        for property in &element.properties {
+            match property.kind {
+                Kind::One(scalar) => drop(reader.value(scalar)?),
+                Kind::List { count, item } => reader.list(count, item, |_| {})?,
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A cursor over values.
+struct Reader<'a> {
+    file: &'a Location,
+    bytes: &'a [u8],
+    format: Format,
+    /// In binary formats.
+    position: usize,
+    /// In text.
+    scanner: Scanner<'a>,
+    header_bytes: usize,
+    header_lines: u32,
+}
+
+impl<'a> Reader<'a> {
+    fn new(bytes: &'a [u8], header: &Header, file: &'a Location) -> Self {
+        let scanner = Scanner::new(bytes);
+        let (header_bytes, header_lines) = (header.length, header.lines);
+        Self { file, bytes, format: header.format, position: 0, scanner, header_bytes, header_lines }
+    }
+
+    fn position(&self) -> usize {
+        if self.format == Format::Ascii { self.scanner.position() } else { self.position }
+    }
+
+    /// How many bytes are left.
+    fn left(&self) -> usize {
+        self.bytes.len() - self.position()
+    }
+
+    /// The line in the file; 0 in binary formats.
+    fn line(&self) -> u32 {
+        if self.format == Format::Ascii { self.header_lines + self.scanner.line() - 1 } else { 0 }
+    }
+
+    fn error_at(&self, line: u32, position: usize, kind: ErrorKind, message: String) -> Error {
+        let place = if self.format == Format::Ascii {
+            String::new()
+        } else {
+            format!(" (at byte {})", self.header_bytes + position)
+        };
+        Error::new(kind, &self.file.at(line, 0), message + &place)
+    }
+
+    fn ended(&self) -> Error {
+        self.error_at(
+            self.line(),
+            self.position(),
+            ErrorKind::Syntax,
+            "the file ends before all its values".to_owned(),
+        )
+        .hint("the file may be cut off, or its header may be wrong")
+    }
+
+    fn value(&mut self, scalar: Scalar) -> Result<f64> {
+        match self.format {
+            Format::Ascii => {
+                let word = self.scanner.word_across_lines();
+                if word.is_empty() {
+                    return Err(self.ended());
+                }
+                let number = match scalar {
+                    // Rounded once.
+                    Scalar::F32 => parse_f32(word).map(f64::from),
+                    _ => parse_f64(word),
+                };
+                number.ok_or_else(|| {
+                    let at = self.scanner.at(self.file);
+                    let at = at.at(self.line(), at.column);
+                    Error::syntax(&at, format!("expected a number, found `{}`", shown(word)))
+                })
+            }
+            Format::LittleEndian => self.binary(scalar, false),
+            Format::BigEndian => self.binary(scalar, true),
+        }
+    }
+
+    fn binary(&mut self, scalar: Scalar, big: bool) -> Result<f64> {
+        let size = scalar.size();
+        let Some(bytes) = self.bytes.get(self.position..self.position + size) else {
+            return Err(self.ended());
+        };
+        self.position += size;
+        // The bytes in the order of little-endian, then as the type.
+        let mut little = [0_u8; 8];
+        little[..size].copy_from_slice(bytes);
+        if big {
+            little[..size].reverse();
+        }
+        let bits = u64::from_le_bytes(little);
+        Ok(match scalar {
+            Scalar::I8 => f64::from(bits as i8),
+            Scalar::U8 => f64::from(bits as u8),
+            Scalar::I16 => f64::from(bits as i16),
+            Scalar::U16 => f64::from(bits as u16),
+            Scalar::I32 => f64::from(bits as i32),
+            Scalar::U32 => f64::from(bits as u32),
+            Scalar::F32 => f64::from(f32::from_bits(bits as u32)),
+            Scalar::F64 => f64::from_bits(bits),
+        })
+    }
+
+    fn list(&mut self, count: Scalar, item: Scalar, mut each: impl FnMut(f64)) -> Result<()> {
+        let position = self.position();
+        let values = self.value(count)?;
+        if values < 0.0 || values.fract() != 0.0 || values > self.left() as f64 {
+            let message = format!("a list of {values} values, where {} bytes are left", self.left());
+            return Err(self
+                .error_at(self.line(), position, ErrorKind::Syntax, message)
+                .hint("the file may be cut off, or its header may be wrong"));
+        }
+        for _ in 0..values as u64 {
+            each(self.value(item)?);
+        }
+        Ok(())
+    }
+
+    /// Passes over bytes of a binary format; false in text.
+    fn skip_bytes(&mut self, count: u64) -> bool {
+        let is_binary = self.format != Format::Ascii;
+        if is_binary {
+            self.position += count as usize;
+        }
+        is_binary
+    }
+}

@@ -1,0 +1,160 @@
+//! How do the values of a PLY file become a mesh?
+
+use std::path::Path;
+
+use glam::{Vec2, Vec3};
+
+use super::body::Content;
+use super::header::Header;
+use crate::error::{Location, Result};
+use crate::files::Sources;
+use crate::material::Whitted;
+use crate::model::points;
+use crate::model::polygon::{Triangulator, has_area};
+use crate::model::surface::{
+    picture, push_image, push_material, push_texture, push_vertex_colors, read_image,
+};
+use crate::model::tally::Tally;
+use crate::model::weld::Weld;
+use crate::scene::{MaterialId, MeshId, Scene};
+use crate::shape::{Geometry, Mesh, Part};
+use crate::texture::Wrap;
+
+/// Adds the mesh (or the points) and its material to the scene.
+pub(super) fn parts(
+    mut content: Content,
+    header: &Header,
+    path: &Path,
+    sources: &mut Sources<'_>,
+    scene: &mut Scene,
+) -> Result<Vec<Part>> {
+    let file = Location::file(path);
+    let mut thin = Tally::default();
+    thin.add_many(content.thin.0, content.thin.1);
+    thin.warn("face", "left out: fewer than three corners", &file, sources);
+    if content.positions.is_empty() {
+        sources.warn(&file, "there are no vertices");
+        return Ok(Vec::new());
+    }
+    if content.faces.is_empty() {
+        return Ok(points::cloud(&content.positions, &content.colors, &file, sources, scene));
+    }
+    make_values_finite(&mut content, &file, sources);
+    let mut mesh = mesh(content, &file, sources);
+    if mesh.triangles.is_empty() {
+        return Ok(Vec::new());
+    }
+    mesh.name = file.file.to_string();
+    let material = material(&mesh, header, path, sources, scene);
+    let geometry = Geometry::Mesh(MeshId(scene.meshes.len() as u32));
+    scene.meshes.push(mesh);
+    Ok(vec![Part { name: None, geometry, material, emission: None }])
+}
+
+fn make_values_finite(content: &mut Content, file: &Location, sources: &mut Sources<'_>) {
+    let mut tally = Tally::default();
+    for normal in content.normals.iter_mut().filter(|normal| !normal.is_finite()) {
+        *normal = Vec3::ZERO;
+        tally.add(0);
+    }
+    for uv in content.uvs.iter_mut().chain(&mut content.corner_uvs).filter(|uv| !uv.is_finite()) {
+        *uv = Vec2::ZERO;
+        tally.add(0);
+    }
+    tally.warn("normal or texture coordinate", "ignored: infinite or not a number", file, sources);
+}
+
+fn mesh(content: Content, file: &Location, sources: &mut Sources<'_>) -> Mesh {
+    let Content { mut positions, normals, uvs, colors, faces, corners, corner_uvs, .. } = content;
+    let mut triangulator = Triangulator::new();
+    let (mut not_finite, mut flat) = (Tally::default(), Tally::default());
+    // Triangles of corners.
+    let mut triangles: Vec<[u32; 3]> = Vec::with_capacity(faces.len());
+    let (mut points, mut cut) = (Vec::new(), Vec::new());
+    let mut start = 0;
+    for face in &faces {
+        points.clear();
+        let end = start + face.corners as usize;
+        points.extend(corners[start..end].iter().map(|&vertex| positions[vertex as usize]));
+        if points.iter().all(|point| point.is_finite()) {
+            cut.clear();
+            triangulator.cut(&points, &mut cut);
+            for triangle in &cut {
+                if has_area(triangle.map(|i| points[i as usize])) {
+                    triangles.push(triangle.map(|i| start as u32 + i));
+                } else {
+                    flat.add(face.line);
+                }
+            }
+        } else {
+            not_finite.add(face.line);
+        }
+        start = end;
+    }
+    not_finite.warn("face", "left out: a coordinate is infinite or not a number", file, sources);
+    flat.warn("triangle", "left out: without area", file, sources);
+    if triangulator.gave_up() {
+        sources.warn(
+            file,
+            "concave polygons with very many corners: some were cut without care for their shape",
+        );
+    }
+    if corner_uvs.is_empty() {
+        for triangle in &mut triangles {
+            *triangle = triangle.map(|corner| corners[corner as usize]);
+        }
+        // No triangle uses these any more.
+        for position in positions.iter_mut().filter(|position| !position.is_finite()) {
+            *position = Vec3::ZERO;
+        }
+        return Mesh { name: String::new(), positions, triangles, normals, uvs, colors };
+    }
+    // A vertex with different texture coordinates in different faces becomes several.
+    let mut weld = Weld::new();
+    for triangle in &mut triangles {
+        *triangle = triangle.map(|corner| {
+            let uv = corner_uvs[corner as usize];
+            weld.id([corners[corner as usize], uv.x.to_bits(), uv.y.to_bits()])
+        });
+    }
+    let keys = weld.keys();
+    Mesh {
+        name: String::new(),
+        positions: keys.iter().map(|key| positions[key[0] as usize]).collect(),
+        triangles,
+        normals: select(&normals, keys),
+        uvs: keys.iter().map(|key| Vec2::new(f32::from_bits(key[1]), f32::from_bits(key[2]))).collect(),
+        colors: select(&colors, keys),
+    }
+}
+
+fn select<T: Copy>(values: &[T], keys: &[[u32; 3]]) -> Vec<T> {
+    keys.iter().filter_map(|key| values.get(key[0] as usize).copied()).collect()
+}
+
+/// The picture that the file names where there are texture coordinates, or else the vertices' colours.
+fn material(
+    mesh: &Mesh,
+    header: &Header,
+    path: &Path,
+    sources: &mut Sources<'_>,
+    scene: &mut Scene,
+) -> Option<MaterialId> {
+    let at = Location::file(path);
+    if let (Some(name), false) = (header.textures.first(), mesh.uvs.is_empty()) {
+        if header.textures.len() > 1 {
+            sources
+                .warn(&at, format!("{} textures are named: only the first is used", header.textures.len()));
+        }
+        match read_image(path, name, sources) {
+            Ok(image) => {
+                let image = push_image(scene, image);
+                let kind = picture(image, [1.0; 2], [0.0; 2], Wrap::Repeat);
+                let diffuse = push_texture(scene, name, &at, kind);
+                return Some(push_material(scene, name, &at, Whitted { diffuse, ..Whitted::default() }));
+            }
+            Err(error) => sources.warn(&at, format!("texture `{name}`: {}; it is left out", error.message)),
+        }
+    }
+    (!mesh.colors.is_empty()).then(|| push_vertex_colors(scene, &at))
+}

@@ -1,0 +1,206 @@
+//! What does a PLY file say of itself? Its format, its elements and their properties, and the pictures it uses.
+
+use crate::error::{Error, Location, Result};
+use crate::files::Sources;
+use crate::model::scan::{Scanner, shown};
+use crate::model::tally::Tally;
+
+/// How values are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+/// Types of values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+/// One value, or a list of values after their number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    One(Scalar),
+    List { count: Scalar, item: Scalar },
+}
+
+pub(super) struct Property {
+    pub(super) name: String,
+    pub(super) kind: Kind,
+}
+
+pub(super) struct Element {
+    pub(super) name: String,
+    pub(super) count: u64,
+    pub(super) properties: Vec<Property>,
+    /// Where it is declared.
+    pub(super) at: Location,
+}
+
+pub(super) struct Header {
+    pub(super) format: Format,
+    pub(super) elements: Vec<Element>,
+    /// Pictures named by comments.
+    pub(super) textures: Vec<String>,
+    /// Bytes up to the values, and lines.
+    pub(super) length: usize,
+    pub(super) lines: u32,
+}
+
+impl Scalar {
+    /// Bytes in binary formats.
+    pub(super) fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    fn named(name: &[u8]) -> Option<Self> {
+        Some(match name {
+            b"char" | b"int8" => Self::I8,
+            b"uchar" | b"uint8" => Self::U8,
+            b"short" | b"int16" => Self::I16,
+            b"ushort" | b"uint16" => Self::U16,
+            b"int" | b"int32" => Self::I32,
+            b"uint" | b"uint32" => Self::U32,
+            b"float" | b"float32" => Self::F32,
+            b"double" | b"float64" => Self::F64,
+            _ => return None,
+        })
+    }
+}
+
+impl Element {
+    /// The fewest bytes that one row of it takes (in ASCII with the blank after each value).
+    pub(super) fn least_row(&self, format: Format) -> u64 {
+        let least = |property: &Property| match (format, property.kind) {
+            (Format::Ascii, _) => 2,
+            (_, Kind::One(scalar) | Kind::List { count: scalar, .. }) => scalar.size() as u64,
+        };
+        self.properties.iter().map(least).sum()
+    }
+
+    /// The index of the first property with one of these names.
+    pub(super) fn find(&self, names: &[&str]) -> Option<usize> {
+        self.properties.iter().position(|property| names.contains(&property.name.as_str()))
+    }
+}
+
+/// Reads the header.
+///
+/// # Errors
+/// `Syntax` at line and column.
+pub(super) fn parse(bytes: &[u8], file: &Location, sources: &mut Sources<'_>) -> Result<Header> {
+    let mut scanner = Scanner::new(bytes);
+    if scanner.word() != b"ply" {
+        return Err(Error::syntax(&file.at(1, 1), "not a PLY file: it does not start with `ply`"));
+    }
+    let mut format = None;
+    let mut elements: Vec<Element> = Vec::new();
+    let mut textures = Vec::new();
+    let mut strays = Tally::default();
+    loop {
+        if !scanner.next_line() {
+            let message = "the header does not end: expected `end_header`";
+            return Err(Error::syntax(&file.at(scanner.line(), 0), message).hint("the file may be cut off"));
+        }
+        let keyword = scanner.word();
+        let at = scanner.at(file);
+        match keyword {
+            b"" | b"obj_info" => {}
+            b"comment" => {
+                if scanner.word() == b"TextureFile" {
+                    textures.push(String::from_utf8_lossy(scanner.rest_of_line()).replace('\\', "/"));
+                }
+            }
+            b"format" => {
+                let word = scanner.word();
+                format = Some(match word {
+                    b"ascii" => Format::Ascii,
+                    b"binary_little_endian" => Format::LittleEndian,
+                    b"binary_big_endian" => Format::BigEndian,
+                    other => {
+                        let message = format!(
+                            "expected `ascii`, `binary_little_endian` or `binary_big_endian`, found `{}`",
+                            shown(other)
+                        );
+                        return Err(Error::syntax(&scanner.at(file), message));
+                    }
+                });
+            }
+            b"element" => elements.push(element(&mut scanner, at, file, &elements)?),
+            b"property" => {
+                let property = property(&mut scanner, file)?;
+                let element = elements
+                    .last_mut()
+                    .ok_or_else(|| Error::syntax(&at, "found `property` before any `element`"))?;
+                element.properties.push(property);
+            }
+            b"end_header" => break,
+            // Some programs write comments without the word.
+            _ => strays.add(scanner.line()),
+        }
+    }
+    strays.warn("line", "of the header ignored: unknown keyword", file, sources);
+    let Some(format) = format else {
+        return Err(Error::syntax(&file.at(scanner.line(), 0), "the header has no `format` line"));
+    };
+    // Values start after the line's end, which is of the same kind as the first one: a line feed may be a value.
+    let lone_returns = bytes.get(3) == Some(&b'\r') && bytes.get(4) != Some(&b'\n');
+    scanner.rest_of_line();
+    let before = scanner.position();
+    scanner.next_line();
+    let length = if lone_returns { (before + 1).min(bytes.len()) } else { scanner.position() };
+    Ok(Header { format, elements, textures, length, lines: scanner.line() })
+}
+
+fn element(scanner: &mut Scanner<'_>, at: Location, file: &Location, others: &[Element]) -> Result<Element> {
+    let name = String::from_utf8_lossy(scanner.word()).into_owned();
+    if others.iter().any(|other| other.name == name) {
+        let message = format!("element `{}` is declared twice", shown(name.as_bytes()));
+        return Err(Error::syntax(&scanner.at(file), message));
+    }
+    let word = scanner.word();
+    let count = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).ok_or_else(|| {
+        let message = format!("expected how many rows the element has, found `{}`", shown(word));
+        Error::syntax(&scanner.at(file), message)
+    })?;
+    Ok(Element { name, count, properties: Vec::new(), at })
+}
+
+fn property(scanner: &mut Scanner<'_>, file: &Location) -> Result<Property> {
+    let scalar = |word: &[u8], scanner: &Scanner<'_>| {
+        Scalar::named(word).ok_or_else(|| {
+            let message = format!("expected a type as `float` or `uchar`, found `{}`", shown(word));
+            Error::syntax(&scanner.at(file), message)
+        })
+    };
+    let word = scanner.word();
+    let kind = if word == b"list" {
+        let count = scanner.word();
+        let count = scalar(count, scanner)?;
+        if matches!(count, Scalar::F32 | Scalar::F64) {
+            return Err(Error::syntax(
+                &scanner.at(file),
+                "the number of a list's values must be a whole number's type",
+            ));
+        }
+        let item = scanner.word();
+        Kind::List { count, item: scalar(item, scanner)? }
+    } else {
+        Kind::One(scalar(word, scanner)?)
+    };
+    Ok(Property { name: String::from_utf8_lossy(scanner.word()).into_owned(), kind })
+}

@@ -1,0 +1,305 @@
+//! How does an STL file become meshes?
+//!
+//! Triangles without shared vertices, in text or binary (3D Systems, "StereoLithography Interface Specification",
+//! 1989). Vertices with the same bits are made one. The normals of facets are ignored: they are often wrong, and flat
+//! shading follows from the triangles. Colours in the attribute bytes of binary files are read in both dialects:
+//! VisCAM's and, where the header says `COLOR=`, Magics'.
+
+use std::path::Path;
+
+use glam::Vec3;
+
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::files::{Limits, Sources};
+use crate::image::linear_from_srgb;
+use crate::model::number::parse_f32;
+use crate::model::polygon::{Triangulator, has_area};
+use crate::model::scan::{Scanner, shown};
+use crate::model::surface::push_vertex_colors;
+use crate::model::tally::Tally;
+use crate::model::text;
+use crate::model::weld::Weld;
+use crate::scene::{MeshId, Scene};
+use crate::shape::{Geometry, Mesh, Part};
+
+/// Bytes before the triangles of a binary file: 80 for people, then their number.
+const HEADER: usize = 84;
+/// Bytes of a triangle: normal, three vertices, attributes.
+const TRIANGLE: usize = 50;
+/// Stands for a facet without a colour of its own.
+const NO_COLOR: u32 = u32::MAX;
+
+/// Reads an STL file: one part for each solid in it.
+///
+/// # Errors
+/// `Io`, `Limit` and `Syntax`; at line and column, or at a byte in what is binary.
+pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
+    from_bytes(&sources.read(path)?, path, sources, scene)
+}
+
+/// The same for the content of a file; `path` is where it came from, for messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn from_bytes(
+    bytes: &[u8],
+    path: &Path,
+    sources: &mut Sources<'_>,
+    scene: &mut Scene,
+) -> Result<Vec<Part>> {
+    let file = Location::file(path);
+    let mut triangles = Triangles::new(&sources.limits);
+    let solids = if is_text(bytes) {
+        read_text(&text::utf8(bytes), &file, &mut triangles, sources)?
+    } else {
+        vec![(None, read_binary(bytes, &file, &mut triangles, sources)?)]
+    };
+    triangles.not_finite.warn(
+        "triangle",
+        "left out: a coordinate is infinite or not a number",
+        &file,
+        sources,
+    );
+    triangles.flat.warn("triangle", "left out: without area", &file, sources);
+    let mut parts = Vec::new();
+    for (name, mut mesh) in solids {
+        if mesh.triangles.is_empty() {
+            continue;
+        }
+        mesh.name = file.file.to_string();
+        let material = (!mesh.colors.is_empty()).then(|| push_vertex_colors(scene, &file));
+        let geometry = Geometry::Mesh(MeshId(scene.meshes.len() as u32));
+        parts.push(Part { name, geometry, material, emission: None });
+        scene.meshes.push(mesh);
+    }
+    if parts.is_empty() {
+        sources.warn(&file, "there are no triangles");
+    }
+    Ok(parts)
+}
+
+/// Whether the length is the one that a binary file of as many triangles as it claims must have.
+pub(crate) fn is_binary_by_length(bytes: &[u8]) -> bool {
+    claimed_triangles(bytes)
+        .is_some_and(|count| HEADER as u64 + TRIANGLE as u64 * count == bytes.len() as u64)
+}
+
+/// Whether it is the text format. Headers of binary files may start with `solid` too.
+pub(crate) fn is_text(bytes: &[u8]) -> bool {
+    let text = text::utf8(&bytes[..bytes.len().min(1 << 12)]).to_ascii_lowercase();
+    let is_word = |word: &[u8]| text.windows(word.len()).any(|window| window == word);
+    !is_binary_by_length(bytes)
+        && text.trim_ascii_start().starts_with(b"solid")
+        && (is_word(b"facet") || is_word(b"endsolid"))
+}
+
+fn claimed_triangles(bytes: &[u8]) -> Option<u64> {
+    let count = bytes.get(HEADER - 4..HEADER)?;
+    Some(u64::from(u32::from_le_bytes([count[0], count[1], count[2], count[3]])))
+}
+
+/// Collects the triangles of one solid after the other.
+struct Triangles {
+    /// Bits of the coordinates, and the colour.
+    weld: Weld<4>,
+    triangles: Vec<[u32; 3]>,
+    limit: usize,
+    not_finite: Tally,
+    flat: Tally,
+}
+
+impl Triangles {
+    fn new(limits: &Limits) -> Self {
+        Self {
+            weld: Weld::new(),
+            triangles: Vec::new(),
+            limit: limits.elements.min(u64::from(u32::MAX) / 4) as usize,
+            not_finite: Tally::default(),
+            flat: Tally::default(),
+        }
+    }
+
+    fn push(&mut self, points: [Vec3; 3], color: u32, line: u32) {
+        if !points.iter().all(|point| point.is_finite()) {
+            self.not_finite.add(line);
+        } else if !has_area(points) {
+            self.flat.add(line);
+        } else {
+            self.triangles.push(points.map(|point| {
+                // Adding 0 makes −0 and 0 the same.
+                let [x, y, z] = point.to_array().map(|value| (value + 0.0).to_bits());
+                self.weld.id([x, y, z, color])
+            }));
+        }
+    }
+
+    fn take_mesh(&mut self) -> Mesh {
+        let weld = std::mem::replace(&mut self.weld, Weld::new());
+        let keys = weld.keys();
+        let mut mesh = Mesh { triangles: std::mem::take(&mut self.triangles), ..Mesh::default() };
+        mesh.positions = keys
+            .iter()
+            .map(|key| Vec3::new(f32::from_bits(key[0]), f32::from_bits(key[1]), f32::from_bits(key[2])))
+            .collect();
+        if keys.iter().any(|key| key[3] != NO_COLOR) {
+            mesh.colors = keys.iter().map(|key| linear_color(key[3])).collect();
+        }
+        mesh
+    }
+}
+
+/// 5 bits each of red (highest), green and blue, sRGB-encoded.
+fn linear_color(color: u32) -> [f32; 3] {
+    if color == NO_COLOR {
+        return [0.8; 3];
+    }
+    [color >> 10 & 31, color >> 5 & 31, color & 31].map(|part| linear_from_srgb(part as f32 / 31.0))
+}
+
+fn read_binary(
+    bytes: &[u8],
+    file: &Location,
+    triangles: &mut Triangles,
+    sources: &mut Sources<'_>,
+) -> Result<Mesh> {
+    let Some(claimed) = claimed_triangles(bytes) else {
+        let message = format!("{} bytes are too few for an STL file", bytes.len());
+        return Err(Error::syntax(file, message).hint("the file may be empty or cut off"));
+    };
+    let body = &bytes[HEADER..];
+    let there = (body.len() / TRIANGLE) as u64;
+    let is_whole = body.len().is_multiple_of(TRIANGLE);
+    let count = if claimed == 0 && is_whole && there > 0 {
+        // Some programs do not know the number when they start to write.
+        sources.warn(file, format!("the header says that there are no triangles; all {there} are read"));
+        there
+    } else {
+        claimed
+    };
+    if count > there {
+        let message = format!("{count} triangles are declared, but there are only bytes for {there}");
+        return Err(Error::syntax(file, message).hint("the file may be cut off, or it may be no STL file"));
+    }
+    if count as usize > triangles.limit {
+        let message = format!("{count} triangles are more than the limit of {}", triangles.limit);
+        return Err(Error::new(ErrorKind::Limit, file, message).hint("raise `Limits::elements`"));
+    }
+    let used = TRIANGLE * count as usize;
+    if used < body.len() {
+        sources.warn(file, format!("{} bytes after the last triangle are ignored", body.len() - used));
+    }
+    let header = &bytes[..HEADER - 4];
+    let magics = header.windows(6).position(|window| window == b"COLOR=");
+    let default_color = magics.and_then(|at| header.get(at + 6..at + 9)).map_or(NO_COLOR, |rgb| {
+        u32::from(rgb[0] >> 3) << 10 | u32::from(rgb[1] >> 3) << 5 | u32::from(rgb[2] >> 3)
+    });
+    for facet in body[..used].chunks_exact(TRIANGLE) {
+        let value = |i: usize| f32::from_le_bytes([facet[i], facet[i + 1], facet[i + 2], facet[i + 3]]);
+        let point = |i: usize| Vec3::new(value(i), value(i + 4), value(i + 8));
+        let bits = u32::from(u16::from_le_bytes([facet[48], facet[49]]));
+        let color = match (magics.is_some(), bits >> 15 == 1) {
+            (true, true) => default_color,
+            (true, false) => (bits & 31) << 10 | (bits & 0x3e0) | bits >> 10,
+            (false, true) => bits & 0x7fff,
+            (false, false) => NO_COLOR,
+        };
+        triangles.push([point(12), point(24), point(36)], color, 0);
+    }
+    Ok(triangles.take_mesh())
+}
+
+type Solid = (Option<String>, Mesh);
+
+fn read_text(
+    text: &[u8],
+    file: &Location,
+    triangles: &mut Triangles,
+    sources: &mut Sources<'_>,
+) -> Result<Vec<Solid>> {
+    let mut scanner = Scanner::new(text);
+    let mut triangulator = Triangulator::new();
+    let mut solids = Vec::new();
+    let mut name = None;
+    let (mut points, mut cut) = (Vec::new(), Vec::new());
+    let mut is_open = false;
+    let mut is_in_facet = false;
+    loop {
+        let word = scanner.word_across_lines();
+        match word.to_ascii_lowercase().as_slice() {
+            b"" => break,
+            b"solid" => {
+                if is_open {
+                    solids.push((name.take(), triangles.take_mesh()));
+                }
+                let rest = scanner.rest_of_line();
+                name = (!rest.is_empty()).then(|| String::from_utf8_lossy(rest).into_owned());
+                is_open = true;
+            }
+            // What follows is a normal.
+            b"facet" => {
+                scanner.rest_of_line();
+                is_in_facet = true;
+            }
+            b"outer" => {
+                scanner.rest_of_line();
+                points.clear();
+            }
+            b"vertex" => points.push(vertex(&mut scanner, file)?),
+            b"endloop" => {
+                if points.len() < 3 {
+                    let message = format!("a facet with {} vertices: expected three", points.len());
+                    return Err(Error::syntax(&scanner.at(file), message));
+                }
+                let line = scanner.line();
+                cut.clear();
+                if points.iter().all(|point: &Vec3| point.is_finite()) {
+                    triangulator.cut(&points, &mut cut);
+                } else {
+                    cut.push([0, 1, 2]);
+                }
+                for triangle in &cut {
+                    triangles.push(triangle.map(|i| points[i as usize]), NO_COLOR, line);
+                }
+                points.clear();
+                if triangles.triangles.len() > triangles.limit {
+                    let message = format!("more than {} triangles", triangles.limit);
+                    let error = Error::new(ErrorKind::Limit, &scanner.at(file), message);
+                    return Err(error.hint("raise `Limits::elements`"));
+                }
+            }
+            b"endfacet" => is_in_facet = false,
+            b"endsolid" => {
+                scanner.rest_of_line();
+                solids.push((name.take(), triangles.take_mesh()));
+                is_open = false;
+            }
+            b"color" | b"material" => drop(scanner.rest_of_line()),
+            _ => {
+                let message = format!("expected `facet`, `vertex` or `endsolid`, found `{}`", shown(word));
+                return Err(Error::syntax(&scanner.at(file), message));
+            }
+        }
+    }
+    if is_in_facet || !points.is_empty() {
+        return Err(Error::syntax(&file.at(scanner.line(), 0), "the file ends within a facet")
+            .hint("the file may be cut off"));
+    }
+    if is_open {
+        sources.warn(&file.at(scanner.line(), 0), "`endsolid` is missing: the file may be cut off");
+        solids.push((name.take(), triangles.take_mesh()));
+    }
+    Ok(solids)
+}
+
+fn vertex(scanner: &mut Scanner<'_>, file: &Location) -> Result<Vec3> {
+    let mut point = [0.0; 3];
+    for value in &mut point {
+        let word = scanner.word_across_lines();
+        *value = parse_f32(word).ok_or_else(|| {
+            let found =
+                if word.is_empty() { "the end of the file".to_owned() } else { format!("`{}`", shown(word)) };
+            Error::syntax(&scanner.at(file), format!("expected a coordinate, found {found}"))
+        })?;
+    }
+    Ok(Vec3::from_array(point))
+}

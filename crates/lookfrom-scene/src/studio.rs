@@ -1,0 +1,313 @@
+//! What does a model need to be shown? A camera that frames it, light, and a floor to stand on.
+//!
+//! Model files have none of these, and scenes may leave them out. Everything is proportional to the bounds, so that a
+//! model of any size makes the same picture. The arrangement is the photographer's: a three-quarter view from slightly
+//! above, a large soft key light from the upper left of the camera, and a fill from all around.
+
+use glam::{DMat4, DVec3};
+
+use crate::camera::{Camera, Projection, View};
+use crate::error::Location;
+use crate::light::{Light, LightKind, Sky};
+use crate::material::{Color, Whitted};
+use crate::model::surface::push_material;
+use crate::scene::{Bounds, Scene};
+use crate::shape::{Emission, Geometry, Shape};
+
+/// Vertical field of view in degrees, and the tangent of its half: 2 − √3.
+const FOV: f64 = 30.0;
+const TAN_HALF_FOV: f64 = 0.267_949_192_431_122_7;
+/// The share of the picture that the bounds may fill.
+const FILL: f64 = 0.88;
+/// From the model to the camera, in parts of right, up and towards: 23° above the horizon. With the field of view no
+/// horizon is in the picture: the floor fills it.
+const TO_CAMERA: [f64; 3] = [0.5, 0.42, 0.85];
+/// From the model to the key light, in parts of the camera's right, up, and its horizontal back.
+const TO_KEY: [f64; 3] = [-0.62, 0.85, 0.5];
+/// Distance of the key light, in radii of the bounds, and half the length of its sides as a part of that: soft shadows.
+const KEY_DISTANCE: f64 = 6.0;
+const KEY_HALF_SIZE: f64 = 0.16;
+/// What a white surface that faces the key light sends back; with the fill it stays below 1.
+const KEY: f64 = 0.62;
+const FILL_ZENITH: [f32; 3] = [0.40, 0.43, 0.48];
+const FILL_HORIZON: [f32; 3] = [0.30, 0.31, 0.33];
+const FILL_NADIR: [f32; 3] = [0.17, 0.165, 0.16];
+/// Radius of the floor in radii of the bounds: beyond the upper edge of the picture.
+const FLOOR_RADIUS: f64 = 60.0;
+const FLOOR_REFLECTANCE: f32 = 0.55;
+
+/// Adds what the scene lacks: a camera that frames its bounds, if there is none, and light, if there are neither lights
+/// nor shapes that shine. `up` is the direction (of any length) that is up; without it, the camera's, or else y.
+pub fn furnish(scene: &mut Scene, up: Option<DVec3>) {
+    let stage = Stage::of(scene, up);
+    stage.add_camera(scene);
+    stage.add_light(scene);
+}
+
+/// The same, and a large matte floor under everything: for models that come without surroundings.
+pub fn furnish_with_floor(scene: &mut Scene, up: Option<DVec3>) {
+    let stage = Stage::of(scene, up);
+    stage.add_camera(scene);
+    stage.add_light(scene);
+    stage.add_floor(scene);
+}
+
+/// A camera that shows the box from right, above and before, as large as it fits into a picture of this aspect ratio
+/// (width / height). An empty box is taken to be a unit box around the origin. `up` may have any length.
+pub fn framing(bounds: Bounds, aspect: f64, up: DVec3) -> Camera {
+    Stage { bounds: sane(bounds), basis: basis(up) }.camera(aspect)
+}
+
+/// The bounds to show, and what is right, up and towards the viewer there: unit vectors.
+struct Stage {
+    bounds: Bounds,
+    basis: [DVec3; 3],
+}
+
+impl Stage {
+    fn of(scene: &Scene, up: Option<DVec3>) -> Self {
+        let of_camera = || {
+            Some(match scene.camera.as_ref()?.view {
+                View::Look { up, .. } => up,
+                View::Matrix(matrix) => matrix.y_axis.truncate(),
+            })
+        };
+        Self { bounds: sane(scene.bounds()), basis: basis(up.or_else(of_camera).unwrap_or(DVec3::Y)) }
+    }
+
+    fn in_world(&self, [right, up, back]: [f64; 3]) -> DVec3 {
+        right * self.basis[0] + up * self.basis[1] + back * self.basis[2]
+    }
+
+    fn camera(&self, aspect: f64) -> Camera {
+        let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
+        let forward = -self.in_world(TO_CAMERA).normalize();
+        let right = forward.cross(self.basis[1]).normalize();
+        let up = right.cross(forward);
+        let center = self.bounds.center();
+        let size = self.bounds.max - self.bounds.min;
+        let corners = (0..8).map(|corner| {
+            let part =
+                |bit: u32, length: f64| if corner >> bit & 1 == 0 { -0.5 * length } else { 0.5 * length };
+            let p = DVec3::new(part(0, size.x), part(1, size.y), part(2, size.z));
+            [p.dot(right), p.dot(up), p.dot(forward)]
+        });
+        // A corner is inside the right edge of the picture where x − eye.x ≤ k (z − eye.z), and so on for the four
+        // edges. Opposite edges together bound eye.z; halfway between them lies the eye.
+        let slopes = [FILL * TAN_HALF_FOV * aspect, FILL * TAN_HALF_FOV];
+        let mut edges = [[f64::NEG_INFINITY; 2]; 2];
+        for corner in corners {
+            for axis in 0..2 {
+                let depth = slopes[axis] * corner[2];
+                edges[axis][0] = edges[axis][0].max(corner[axis] - depth);
+                edges[axis][1] = edges[axis][1].max(-corner[axis] - depth);
+            }
+        }
+        let [x, y] = edges.map(|[above, below]| 0.5 * (above - below));
+        let depth_for = |axis: usize| -(edges[axis][0] + edges[axis][1]) / (2.0 * slopes[axis]);
+        let z = depth_for(0).min(depth_for(1));
+        let lookat = center + x * right + y * up;
+        let view = View::Look { lookfrom: lookat + z * forward, lookat, up: self.basis[1] };
+        Camera { view, projection: Projection::Perspective { fov: FOV }, ..Camera::default() }
+    }
+
+    fn add_camera(&self, scene: &mut Scene) {
+        if scene.camera.is_none() {
+            scene.camera = Some(self.camera(f64::from(scene.image.width) / f64::from(scene.image.height)));
+        }
+    }
+
+    fn add_light(&self, scene: &mut Scene) {
+        let is_backdrop =
+            |light: &Light| matches!(light.kind, LightKind::Environment { illuminates: false, .. });
+        let in_objects = scene.objects.iter().flat_map(|object| &object.shapes);
+        let shines = scene.shapes.iter().chain(in_objects).any(|shape| shape.emission.is_some());
+        if shines || !scene.lights.iter().all(is_backdrop) {
+            return;
+        }
+        let fill = if scene.lights.is_empty() {
+            let sky = Sky::Gradient { zenith: FILL_ZENITH, horizon: FILL_HORIZON, nadir: FILL_NADIR };
+            LightKind::Environment { sky, illuminates: true }
+        } else {
+            LightKind::Ambient { color: FILL_HORIZON }
+        };
+        scene.lights.push(Light { name: Some("fill".to_owned()), at: Location::default(), kind: fill });
+        let key = self.key_light(scene);
+        scene.shapes.push(key);
+    }
+
+    /// A square that faces the middle of the bounds from the upper left of the camera.
+    fn key_light(&self, scene: &mut Scene) -> Shape {
+        let up = self.basis[1];
+        let center = self.bounds.center();
+        let to_camera = match scene.camera.as_ref().map(|camera| camera.view) {
+            Some(View::Look { lookfrom, lookat, .. }) => lookfrom - lookat,
+            Some(View::Matrix(matrix)) => -matrix.z_axis.truncate(),
+            None => self.basis[2],
+        };
+        // What is right and towards the camera, in the horizontal plane; of a camera that looks straight down, any.
+        let level = to_camera - to_camera.dot(up) * up;
+        let back = if level.length() > 1e-6 * to_camera.length() { level.normalize() } else { self.basis[2] };
+        let right = up.cross(back);
+        let direction = (TO_KEY[0] * right + TO_KEY[1] * up + TO_KEY[2] * back).normalize();
+        let distance = KEY_DISTANCE * self.bounds.radius();
+        let half_size = KEY_HALF_SIZE * distance;
+        let edge_u = 2.0 * half_size * up.cross(direction).normalize();
+        let edge_v = 2.0 * half_size * edge_u.cross(direction).normalize();
+        let corner = center + distance * direction - 0.5 * (edge_u + edge_v);
+        // Radiance that gives a white surface in the middle, facing the light, the brightness KEY: a small square of
+        // solid angle Ω gives L Ω / π.
+        let solid_angle = 4.0 * KEY_HALF_SIZE * KEY_HALF_SIZE;
+        let radiance = (KEY * std::f64::consts::PI / solid_angle) as f32;
+        let black = Whitted { diffuse: Color::BLACK, ..Whitted::default() };
+        Shape {
+            name: Some("key light".to_owned()),
+            at: Location::default(),
+            geometry: Geometry::Quad { corner, edge_u, edge_v },
+            material: push_material(scene, "key light", &Location::default(), black),
+            emission: Some(Emission { radiance: Color::gray(radiance), two_sided: false }),
+            world_from_object: DMat4::IDENTITY,
+        }
+    }
+
+    fn add_floor(&self, scene: &mut Scene) {
+        let up = self.basis[1];
+        let Bounds { min, max } = self.bounds;
+        // The lowest corner of the box along `up`.
+        let lowest = DVec3::select(up.cmpge(DVec3::ZERO), min, max).dot(up);
+        // A little below it: flat undersides must not lie in the floor.
+        let radius = self.bounds.radius();
+        let gap = 1e-3 * radius + 1e-6 * min.abs().max(max.abs()).max_element();
+        let center = self.bounds.center();
+        let center = center + (lowest - gap - center.dot(up)) * up;
+        let matte = Whitted { diffuse: Color::gray(FLOOR_REFLECTANCE), ..Whitted::default() };
+        let floor = Shape {
+            name: Some("floor".to_owned()),
+            at: Location::default(),
+            geometry: Geometry::Disk { center, normal: up, radius: FLOOR_RADIUS * radius },
+            material: push_material(scene, "floor", &Location::default(), matte),
+            emission: None,
+            world_from_object: DMat4::IDENTITY,
+        };
+        scene.shapes.push(floor);
+    }
+}
+
+/// Bounds with an extent: an empty box is a unit box around the origin, a point gets a box around it.
+fn sane(bounds: Bounds) -> Bounds {
+    if bounds.is_empty() || !bounds.min.is_finite() || !bounds.max.is_finite() {
+        return Bounds { min: DVec3::splat(-0.5), max: DVec3::splat(0.5) };
+    }
+    let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+    // What is smaller than the precision of its coordinates cannot be looked at.
+    if bounds.radius() > 1e-7 * size {
+        return bounds;
+    }
+    let half = DVec3::splat(if size > 0.0 { 1e-3 * size } else { 0.5 });
+    Bounds { min: bounds.center() - half, max: bounds.center() + half }
+}
+
+/// Right, up and towards the viewer, of unit length. The viewer of models with y up stands at +z, with z up at −y, as
+/// modelling programs have it.
+fn basis(up: DVec3) -> [DVec3; 3] {
+    let up = up.try_normalize().unwrap_or(DVec3::Y);
+    let hint = if up.x.abs() > 0.9 { DVec3::Y } else { DVec3::X };
+    let back = hint.cross(up).normalize();
+    [up.cross(back), up, back]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Where a point falls in the picture: x and y in [−1, 1], and its depth.
+    fn project(camera: &Camera, aspect: f64, p: DVec3) -> [f64; 3] {
+        let View::Look { lookfrom, lookat, up } = camera.view else { panic!("not a lookat") };
+        let w = (lookat - lookfrom).normalize();
+        let u = up.cross(w).normalize();
+        let v = w.cross(u);
+        let to = p - lookfrom;
+        let depth = to.dot(w);
+        [-to.dot(u) / (depth * TAN_HALF_FOV * aspect), to.dot(v) / (depth * TAN_HALF_FOV), depth]
+    }
+
+    proptest! {
+        #[test]
+        fn the_box_fills_the_picture(
+            size in prop::array::uniform3(-3..3_i32), center in prop::array::uniform3(-4.0..4.0),
+            scale in -30..30, flat in 0..4_usize, aspect in 0.2..5.0, up in 0..6_usize,
+        ) {
+            let scale = 2_f64.powi(scale);
+            let mut half = scale * DVec3::from_array(size.map(|exponent| 2_f64.powi(exponent)));
+            if flat < 3 { half[flat] = 0.0; }
+            let center = scale * DVec3::from_array(center);
+            let bounds = Bounds { min: center - half, max: center + half };
+            let up = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::Y, 3.0 * DVec3::Z, DVec3::new(1.0, 2.0, -1.0)][up];
+            let camera = framing(bounds, aspect, up);
+            let (mut least, mut most) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+            for corner in 0..8 {
+                let sign = |bit: u32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };
+                let [x, y, depth] = project(&camera, aspect, center + half * DVec3::new(sign(0), sign(1), sign(2)));
+                prop_assert!(depth > 0.0);
+                for (axis, value) in [x, y].into_iter().enumerate() {
+                    prop_assert!(value.abs() <= FILL + 1e-6, "{value}");
+                    least[axis] = least[axis].min(value);
+                    most[axis] = most[axis].max(value);
+                }
+            }
+            // One of the two directions is filled from edge to edge.
+            prop_assert!((0..2).any(|axis| (most[axis] - FILL).abs() < 1e-6 && (least[axis] + FILL).abs() < 1e-6));
+        }
+    }
+
+    #[test]
+    fn nothing_and_points_are_shown_too() {
+        for bounds in [Bounds::EMPTY, Bounds::EMPTY.with(DVec3::ZERO), Bounds::EMPTY.with(DVec3::splat(1e9))]
+        {
+            let View::Look { lookfrom, lookat, .. } = framing(bounds, 1.0, DVec3::Y).view else { panic!() };
+            assert!(lookfrom.is_finite() && lookat.is_finite() && lookfrom != lookat);
+        }
+    }
+
+    #[test]
+    fn what_is_there_stays() {
+        let mut scene = Scene::default();
+        let light = LightKind::Ambient { color: [1.0; 3] };
+        scene.lights.push(Light { name: None, at: Location::default(), kind: light });
+        let camera = Camera { distance: 7.0, ..Camera::default() };
+        scene.camera = Some(camera);
+        furnish(&mut scene, None);
+        assert_eq!((scene.lights.len(), scene.shapes.len()), (1, 0));
+        assert_eq!(scene.camera.unwrap().distance, 7.0);
+    }
+
+    #[test]
+    fn the_floor_lies_below_for_any_up() {
+        for up in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(-1.0, 1.0, 2.0)] {
+            let mut scene = Scene::default();
+            furnish_with_floor(&mut scene, Some(up));
+            let floor = scene.shapes.last().unwrap();
+            let Geometry::Disk { center, normal, .. } = floor.geometry else { panic!("not a disk") };
+            for corner in 0..8 {
+                let part = |bit: u32| if corner >> bit & 1 == 0 { -0.5 } else { 0.5 };
+                assert!((DVec3::new(part(0), part(1), part(2)) - center).dot(normal) > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn the_key_light_shines_on_the_model_from_the_upper_left_of_the_camera() {
+        let mut scene = Scene::default();
+        furnish(&mut scene, None);
+        let key = &scene.shapes[0];
+        let Geometry::Quad { corner, edge_u, edge_v } = key.geometry else { panic!("not a quad") };
+        let middle = corner + 0.5 * (edge_u + edge_v);
+        assert!(edge_u.cross(edge_v).dot(-middle) > 0.0, "it must face the model");
+        let [x, y, _] = project(scene.camera.as_ref().unwrap(), 4.0 / 3.0, middle);
+        let View::Look { lookfrom, lookat, .. } = scene.camera.as_ref().unwrap().view else { panic!() };
+        let right = (lookat - lookfrom).cross(DVec3::Y);
+        assert!(middle.dot(right) < 0.0 && middle.y > 0.0);
+        assert!(x.abs() > 1.0 || y.abs() > 1.0, "it must not be in the picture");
+    }
+}
