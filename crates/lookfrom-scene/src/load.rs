@@ -8,7 +8,7 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Sources;
 use crate::scene::{MaterialId, Scene};
 use crate::shape::{Part, Shape};
-use crate::toml;
+use crate::{model, toml};
 
 /// Reads a scene in our own format (`.toml`), or a model file, whose parts stand in the scene where the file has them
 /// and wear a grey "default" where the file gives them no material.
@@ -37,19 +37,21 @@ fn extension(path: &Path) -> String {
 }
 
 /// What stands in a model file; its materials join the scene.
-pub(crate) fn parts(path: &Path, _sources: &mut Sources<'_>, _scene: &mut Scene) -> Result<Vec<Part>> {
-    Err(unknown(path))
-}
-
-fn unknown(path: &Path) -> Error {
-    let extension = extension(path);
-    let message = match extension.as_str() {
-        "pbrt" | "gltf" | "glb" => format!("scenes in .{extension} are not read yet; they come later"),
-        "" => "a file of an unknown format".to_owned(),
-        _ => format!("a file of an unknown format, .{extension}"),
+pub(crate) fn parts(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
+    let unsupported = |message: String| {
+        Error::new(ErrorKind::Unsupported, &Location::file(path), message)
+            .hint("scenes are .toml files, models .obj, .ply or .stl")
     };
-    Error::new(ErrorKind::Unsupported, &Location::file(path), message)
-        .hint("scenes are .toml, models .obj, .ply or .stl")
+    let extension = extension(path);
+    if ["pbrt", "gltf", "glb"].contains(&extension.as_str()) {
+        return Err(unsupported(format!("scenes in .{extension} are not read yet; they come later")));
+    }
+    model::read(path, sources, scene).map_err(|error| match error.kind {
+        ErrorKind::Unsupported if !model::is_model(path) => {
+            unsupported("a file of a kind that is not known, by its name and by its content".to_owned())
+        }
+        _ => error,
+    })
 }
 
 /// Parts as shapes that stand where the file has them.
