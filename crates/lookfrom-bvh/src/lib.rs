@@ -36,7 +36,7 @@
 //! # Ok::<(), lookfrom_bvh::BuildError>(())
 //! ```
 //!
-//! Start reading at [`Bvh`]; the loop is in `traverse`, the two tests in `node` and `triangle`, and [`reference`] has the
+//! Start reading at [`Bvh`]; the loop is in `traverse`, the two tests in `node` and `triangle`, and [`mod@reference`] has the
 //! same in its simplest form.
 
 // Axes and lanes are indices into several arrays at once, and `!(a < b)` is how NaN is meant to fail.

@@ -39,7 +39,6 @@ pub(crate) struct Prepared {
     /// The ray in f64.
     pub(crate) origin64: [f64; 3],
     pub(crate) direction64: [f64; 3],
-    pub(crate) shear64: [f64; 2],
 }
 
 impl Prepared {
@@ -77,7 +76,6 @@ impl Prepared {
         if !length.is_finite() || length == 0.0 || !origin.iter().all(|x| x.is_finite()) {
             return None;
         }
-        let shear64 = [direction64[axes[0]] / length, direction64[axes[1]] / length];
 
         let mut near_origin = origin;
         let mut far_origin = origin;
@@ -103,12 +101,11 @@ impl Prepared {
             reciprocal,
             near_side,
             axes,
-            shear: shear64.map(|x| x as f32),
+            shear: [axes[0], axes[1]].map(|axis| (direction64[axis] / length) as f32),
             reciprocal_length: (1.0 / length) as f32,
             rounding: relative * largest,
             origin64,
             direction64,
-            shear64,
         })
     }
 }

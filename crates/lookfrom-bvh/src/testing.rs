@@ -1,4 +1,6 @@
-//! Seeded random geometry for the unit tests: random exponents, not just random numbers.
+//! Seeded random geometry for tests, those in `tests/` too: random exponents, not just random numbers.
+
+#![allow(dead_code)] // No test uses all of it.
 
 /// PCG32 (O'Neill 2014).
 pub(crate) struct Random(u64);
@@ -18,6 +20,26 @@ impl Random {
     /// In [0, 1).
     pub(crate) fn unit(&mut self) -> f32 {
         (self.next() >> 8) as f32 / 16_777_216.0
+    }
+
+    /// A whole number in 0..count.
+    pub(crate) fn below(&mut self, count: u32) -> u32 {
+        ((u64::from(self.next()) * u64::from(count)) >> 32) as u32
+    }
+
+    /// A direction of any length, now and then along an axis or in a plane of two.
+    pub(crate) fn direction(&mut self) -> [f32; 3] {
+        loop {
+            let length = self.size(-3, 3);
+            let zeros = if self.unit() < 0.2 { 0.6 } else { 0.0 };
+            let direction = [0; 3].map(|_| match self.unit() < zeros {
+                true => [0.0, -0.0][self.below(2) as usize],
+                false => length * (2.0 * self.unit() - 1.0),
+            });
+            if direction.iter().any(|&x| x != 0.0) {
+                return direction;
+            }
+        }
     }
 
     /// A positive number between two powers of ten.

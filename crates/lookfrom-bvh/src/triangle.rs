@@ -129,10 +129,12 @@ pub(crate) fn decide(ray: &Prepared, corners: &[[f32; 3]; 3]) -> Option<Crossing
     let [p0, p1, p2] = corners.map(wide);
     let [kx, ky, kz] = ray.axes;
 
-    // Move the origin to 0 and shear, so that the ray runs along the third axis.
+    // Move the origin to 0 and shear, so that the ray runs along the third axis. Multiplying by the direction's
+    // length there, in place of dividing by it, keeps whole numbers whole: edges and corners are met exactly.
+    let d = ray.direction64;
     let [a, b, c] = [p0, p1, p2].map(|p| {
         let p = subtract(p, ray.origin64);
-        [p[kx] - ray.shear64[0] * p[kz], p[ky] - ray.shear64[1] * p[kz], p[kz]]
+        [d[kz] * p[kx] - d[kx] * p[kz], d[kz] * p[ky] - d[ky] * p[kz], p[kz]]
     });
 
     // Look at the signs of the edge functions.
@@ -150,13 +152,13 @@ pub(crate) fn decide(ray: &Prepared, corners: &[[f32; 3]; 3]) -> Option<Crossing
     // Meet the plane.
     let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
     let n = cross(e1, e2);
-    let determinant = dot(n, ray.direction64);
-    let magnitude = dot(cross_magnitude(e1, e2), ray.direction64.map(f64::abs));
+    let determinant = dot(n, d);
+    let magnitude = dot(cross_magnitude(e1, e2), d.map(f64::abs));
     let t = if determinant.abs() > DETERMINANT_ERROR * magnitude {
         dot(n, subtract(p0, ray.origin64)) / determinant
     } else {
         // The ray runs along the plane, as far as f64 can tell: t is somewhere between the corners.
-        (u * a[2] + v * b[2] + w * c[2]) / (sum * ray.direction64[kz])
+        (u * a[2] + v * b[2] + w * c[2]) / (sum * d[kz])
     };
     if !(t as f32 > ray.t_min) {
         return None;
