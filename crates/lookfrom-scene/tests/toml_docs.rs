@@ -1,0 +1,93 @@
+//! The scenes of the repository are read without an error or a warning, and `docs/guide/scene-format.md` tells of every
+//! key that there is.
+
+use std::path::{Path, PathBuf};
+
+use lookfrom_scene::{Disk, Sources, load, toml};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn scenes(folder: &str) -> Vec<PathBuf> {
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(root().join(folder))
+        .expect("the folder is there")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .collect();
+    paths.sort();
+    paths
+}
+
+fn guide() -> String {
+    std::fs::read_to_string(root().join("docs/guide/scene-format.md")).expect("the guide is there")
+}
+
+#[test]
+fn all_scenes_are_read() {
+    let (own, snippets) = (scenes("scenes"), scenes("docs/guide/scenes"));
+    assert!(own.len() >= 10 && snippets.len() >= 10);
+    for path in own.iter().chain(&snippets) {
+        let mut sources = Sources::new(&Disk);
+        let scene = load::scene(path, &mut sources).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(sources.warnings, [], "{}", path.display());
+        assert!(scene.camera.is_some(), "{} has no camera", path.display());
+        assert!(!scene.bounds().is_empty(), "{} is empty", path.display());
+    }
+    for path in &own {
+        let text = std::fs::read_to_string(path).expect("a scene");
+        assert!(text.starts_with("# "), "{} does not say what it shows", path.display());
+    }
+}
+
+#[test]
+fn the_guide_tells_of_every_key() {
+    let guide = guide();
+    for (table, keys) in toml::vocabulary() {
+        for key in keys {
+            assert!(
+                guide.contains(&format!("`{key}`")),
+                "scene-format.md does not tell of `{key}` in {table}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_guide_shows_every_small_scene() {
+    let guide = guide();
+    for path in scenes("docs/guide/scenes") {
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        assert!(guide.contains(&format!("](img/{name}.png)")), "scene-format.md does not show {name}");
+        assert!(
+            guide.contains(&format!("(scenes/{name}.toml)")),
+            "scene-format.md does not name {name}.toml"
+        );
+    }
+}
+
+/// Every snippet of the guide is a scene, or becomes one with what the guide takes for granted.
+#[test]
+fn the_snippets_of_the_guide_are_read() {
+    let guide = guide();
+    let snippets: Vec<&str> =
+        guide.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(snippets.len() > 15);
+    let root = root().canonicalize().expect("a place");
+    for (index, snippet) in snippets.iter().enumerate() {
+        let mut files = lookfrom_scene::Memory::default();
+        for file in ["images/tiles.png", "models/knot.obj", "models/star.ply", "textures.toml"] {
+            files.0.insert(file.into(), std::fs::read(root.join("scenes").join(file)).expect("our own file"));
+        }
+        // Names that other snippets give.
+        let names = "[materials.red]\n[materials.glass]\n[textures.wood]\ntype = \"noise\"\n[[objects.tree.sphere]]\n";
+        files.0.insert("names.toml".into(), names.as_bytes().to_vec());
+        let own = |name: &str| snippet.contains(name);
+        let needs_names = !own("import") && !own("[materials.") && !own("[textures.") && !own("[[objects.");
+        let text = format!("{}{snippet}", if needs_names { "import = \"names.toml\"\n" } else { "" });
+        files.0.insert("snippet.toml".into(), text.into_bytes());
+        if let Err(error) = load::scene(Path::new("snippet.toml"), &mut Sources::new(&files)) {
+            panic!("snippet {index} of scene-format.md: {error}\nin\n{snippet}");
+        }
+    }
+}
