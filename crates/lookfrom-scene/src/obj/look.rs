@@ -47,6 +47,10 @@ pub(super) struct Look {
     pub(super) emission: Option<Emission>,
 }
 
+/// How many names of libraries are looked for, and how long a library may be: more is no model but an attack.
+const MOST_LIBRARIES: usize = 64;
+const LIBRARY_BYTES: u64 = 1 << 26;
+
 const BLACK: [f32; 3] = [0.0; 3];
 const WHITE: [f32; 3] = [1.0; 3];
 
@@ -61,40 +65,47 @@ impl Looks {
             missing: Tally::default(),
             missing_name: String::new(),
         };
-        for (at, names) in libraries {
+        if let Some((at, _)) = libraries.get(MOST_LIBRARIES) {
+            sources.warn(at, format!("only the first {MOST_LIBRARIES} material libraries are read"));
+        }
+        for (at, names) in libraries.iter().take(MOST_LIBRARIES) {
             let names = String::from_utf8_lossy(names).replace('\\', "/");
+            let whole = names.trim_matches('"');
             // The whole line is one name with blanks, or it is several names.
-            if looks.read_library(names.trim_matches('"'), path, sources).is_err() {
-                for name in names.split_whitespace() {
-                    if let Err(error) = looks.read_library(name, path, sources) {
-                        sources.warn(at, format!("material library `{name}`: {}", error.message));
-                    }
-                }
+            let Err(error) = looks.read_library(whole, path, sources) else { continue };
+            let words: Vec<&str> = names.split_whitespace().take(MOST_LIBRARIES).collect();
+            let mut missing = vec![(whole, error)];
+            if words.len() > 1 {
+                let tried = words.iter().map(|name| (*name, looks.read_library(name, path, sources)));
+                missing = tried.filter_map(|(name, result)| Some((name, result.err()?))).collect();
+            }
+            // Libraries are renamed along with their models, but not in them.
+            let same_stem = path.with_extension("mtl");
+            let is_replaced = missing.len() == words.len() && looks.read_at(&same_stem, sources).is_ok();
+            for (name, error) in missing {
+                let instead = if is_replaced {
+                    format!("; {} is used instead", same_stem.display())
+                } else {
+                    String::new()
+                };
+                sources.warn(at, format!("material library `{name}`: {}{instead}", error.message));
             }
         }
         looks
     }
 
     fn read_library(&mut self, name: &str, path: &Path, sources: &mut Sources<'_>) -> Result<()> {
-        let first = beside(path, name);
-        let same_stem = path.with_extension("mtl");
-        let candidates = [first.clone(), beside(path, base_name(name)), same_stem];
-        let (library, bytes) = match candidates.iter().find_map(|at| Some((at, sources.read(at).ok()?))) {
-            Some(found) => found,
-            None => (&first, sources.read(&first)?),
-        };
-        if *library != first {
-            let found = library.display();
-            sources.warn(
-                &Location::file(&first),
-                format!("no such material library: `{found}` is used instead"),
-            );
-        }
+        self.read_at(&beside(path, name), sources)
+            .or_else(|error| self.read_at(&beside(path, base_name(name)), sources).map_err(|_| error))
+    }
+
+    fn read_at(&mut self, library: &Path, sources: &mut Sources<'_>) -> Result<()> {
+        let bytes = sources.files.read(library, LIBRARY_BYTES.min(sources.limits.file_bytes))?;
         for material in mtl::parse(&bytes, library, sources) {
             // The first of a name counts.
             if let Entry::Vacant(entry) = self.by_name.entry(material.name.clone()) {
                 entry.insert(self.materials.len());
-                self.materials.push((material, library.clone()));
+                self.materials.push((material, library.to_owned()));
             }
         }
         Ok(())

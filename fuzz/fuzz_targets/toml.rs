@@ -1,0 +1,12 @@
+#![no_main]
+
+use std::path::{Path, PathBuf};
+
+use lookfrom_scene::{Memory, Sources, toml};
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let files = Memory([(PathBuf::from("a.toml"), bytes.to_vec())].into());
+    let mut sources = Sources::new(&files);
+    sources.limits = lookfrom_fuzz::limits();
+    let _ = toml::read(Path::new("a.toml"), &mut sources);
+});
