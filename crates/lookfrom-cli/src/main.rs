@@ -1,1 +1,36 @@
-fn main() {}
+//! The command `lookfrom`: files in, pictures out.
+//!
+//! A door: it parses what a person asks, calls the libraries and shows the answer. One file a subcommand. What was typed
+//! ([`args`]) is kept apart from what it changes in a scene ([`overrides`]).
+
+mod args;
+mod completions;
+mod count;
+mod exit;
+mod header;
+mod info;
+mod inspect;
+mod interrupt;
+mod output;
+mod overrides;
+mod prepare;
+mod progress;
+mod render;
+mod report;
+mod values;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::args::{Arguments, Command};
+
+fn main() -> ExitCode {
+    let code = match Arguments::parse().command {
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Info(arguments) => info::run(&arguments),
+        Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Completions { shell } => completions::run(shell),
+    };
+    ExitCode::from(code)
+}

@@ -1,0 +1,240 @@
+//! The command line as typed. What it means for a scene is in [`crate::overrides`].
+//!
+//! The doc comments here are the help texts.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
+use glam::DVec3;
+use lookfrom_scene::settings::{Crop, Filter, Integrator, Sampler, Tonemap};
+
+use crate::values;
+
+const EXAMPLES: &str = "\
+Examples:
+  lookfrom render scene.toml                     a picture, scene.png
+  lookfrom render bunny.ply -o bunny.exr         a model as it is, lit and framed
+  lookfrom inspect scene.toml 320 200            all that happens to a ray of that pixel
+  lookfrom info scene.toml                       what is in it
+
+Exit codes:
+  0    done
+  1    a scene could not be read or is invalid
+  2    wrong usage
+  3    the output could not be written
+  130  interrupted; a picture that was begun is written as far as it is
+
+The manual: docs/guide/command.md, scene files: docs/guide/scene-format.md";
+
+const RENDER_EXAMPLES: &str = "\
+Examples:
+  lookfrom render scene.toml -o picture.exr --samples 64
+  lookfrom render model.obj --lookfrom -3,2,5 --up 0,0,1
+  lookfrom render a.toml b.toml -o pictures/             pictures/a.png, pictures/b.png
+  lookfrom render *.toml -o 'out/{name}-small.png' --width 160
+  lookfrom render scene.toml -o - | display
+
+Ctrl-C stops after the tiles that are being worked on and writes the picture so far; a second one ends at once.
+Exit codes: 0 done, 1 scene, 2 usage, 3 output, 130 interrupted.";
+
+const INSPECT_EXAMPLES: &str = "\
+Examples:
+  lookfrom inspect scene.toml 320 200
+  lookfrom inspect scene.toml 320 200 --sample 5 --json
+  lookfrom inspect scene.toml 320 200 --svg rays.svg
+
+Give the options that the picture was rendered with: they decide where its rays go.";
+
+const INFO_EXAMPLES: &str = "\
+Examples:
+  lookfrom info scene.toml
+  lookfrom info models/*.ply --json | jq .triangles";
+
+const COMPLETIONS_EXAMPLES: &str = "\
+Examples:
+  lookfrom completions bash > ~/.local/share/bash-completion/completions/lookfrom
+  lookfrom completions fish > ~/.config/fish/completions/lookfrom.fish";
+
+/// A ray tracer whose every ray can be inspected.
+#[derive(Debug, Parser)]
+#[command(name = "lookfrom", version, after_help = EXAMPLES, arg_required_else_help = true)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Make pictures of scenes and models
+    #[command(after_help = RENDER_EXAMPLES)]
+    Render(RenderArguments),
+    /// Show all that happens on the way of one sample
+    #[command(after_help = INSPECT_EXAMPLES)]
+    Inspect(InspectArguments),
+    /// Say what is in scenes and models
+    #[command(after_help = INFO_EXAMPLES)]
+    Info(InfoArguments),
+    /// Print a script that completes this command in a shell
+    #[command(after_help = COMPLETIONS_EXAMPLES)]
+    Completions {
+        /// For which shell
+        shell: Shell,
+    },
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct RenderArguments {
+    /// Scenes (.toml) or models (.obj, .ply, .stl)
+    #[arg(required = true, value_name = "SCENE")]
+    pub(crate) scenes: Vec<PathBuf>,
+
+    /// Where to: a file (.png, .exr, .hdr, .pfm, .ppm), a folder, a pattern with {name}, or - for a PNG to stdout
+    ///
+    /// PNG and PPM are 8-bit sRGB after exposure and tone map; EXR, HDR and PFM are linear light as it was computed. Without
+    /// it: NAME.png in the current folder, by the name of the scene. Several scenes need a folder or a pattern.
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) common: Common,
+
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+
+    /// Write a summary of each scene to stdout, one JSON object a line
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct InspectArguments {
+    /// A scene (.toml) or a model (.obj, .ply, .stl)
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: PathBuf,
+
+    /// Column of the pixel, from the left, from 0
+    #[arg(value_name = "X")]
+    pub(crate) x: u32,
+
+    /// Row of the pixel, from the top, from 0
+    #[arg(value_name = "Y")]
+    pub(crate) y: u32,
+
+    /// Which sample of the pixel, from 0
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) sample: u32,
+
+    /// Answer with one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    /// Draw the rays into this file as well
+    #[arg(long, value_name = "FILE")]
+    pub(crate) svg: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) common: Common,
+
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct InfoArguments {
+    /// Scenes (.toml) or models (.obj, .ply, .stl)
+    #[arg(required = true, value_name = "SCENE")]
+    pub(crate) scenes: Vec<PathBuf>,
+
+    /// Answer with one JSON object a line for each scene
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    #[command(flatten)]
+    pub(crate) common: Common,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Common {
+    /// Threads to build and render with [default: as many as there are processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+
+    /// Treat warnings as errors
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
+/// What the command line says in place of the scene.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "In place of what the scene says")]
+pub(crate) struct Overrides {
+    /// Columns; alone it keeps the shape of the picture
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) width: Option<u32>,
+
+    /// Rows; alone it keeps the shape of the picture
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) height: Option<u32>,
+
+    /// Compute only this part: columns X0 to before X1, rows Y0 to before Y1, from the top left
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = values::crop, allow_hyphen_values = true)]
+    pub(crate) crop: Option<Crop>,
+
+    /// Samples a pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    pub(crate) samples: Option<u32>,
+
+    /// How light is computed; the last four show what is there
+    #[arg(long, value_name = "NAME", value_parser = values::word(values::INTEGRATORS))]
+    pub(crate) integrator: Option<Integrator>,
+
+    /// How many times a ray may be mirrored or refracted
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=256))]
+    pub(crate) depth: Option<u32>,
+
+    /// Share of the pixel below which a branch of the tree of rays is cut off
+    #[arg(long, value_name = "SHARE", value_parser = values::between(0.0f32, 1.0), allow_hyphen_values = true)]
+    pub(crate) min_contribution: Option<f32>,
+
+    /// Where random numbers come from
+    #[arg(long, value_name = "NAME", value_parser = values::word(values::SAMPLERS))]
+    pub(crate) sampler: Option<Sampler>,
+
+    /// Another seed, other noise
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+
+    /// How a pixel weighs the light around it: box, triangle, gaussian, mitchell or blackman_harris, and its radius in
+    /// pixels
+    #[arg(long, value_name = "NAME[:RADIUS]", value_parser = values::filter)]
+    pub(crate) filter: Option<Filter>,
+
+    /// Brighter (or darker) by this many stops, in PNG and PPM
+    #[arg(long, value_name = "STOPS", value_parser = values::between(-64.0f32, 64.0), allow_hyphen_values = true)]
+    pub(crate) exposure: Option<f32>,
+
+    /// From linear light to 8 bits
+    #[arg(long, value_name = "NAME", value_parser = values::word(values::TONEMAPS))]
+    pub(crate) tonemap: Option<Tonemap>,
+
+    /// Where the eye is
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    pub(crate) lookfrom: Option<DVec3>,
+
+    /// What it looks at
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    pub(crate) lookat: Option<DVec3>,
+
+    /// What is up
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    pub(crate) up: Option<DVec3>,
+
+    /// Vertical field of view in degrees
+    #[arg(long, value_name = "DEGREES", value_parser = values::field_of_view, allow_hyphen_values = true)]
+    pub(crate) fov: Option<f64>,
+}

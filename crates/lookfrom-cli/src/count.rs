@@ -1,0 +1,87 @@
+//! How much there is in a scene as it was written.
+
+use std::collections::BTreeMap;
+
+use lookfrom_scene::Scene;
+use lookfrom_scene::light::LightKind;
+use lookfrom_scene::shape::Geometry;
+use serde::Serialize;
+
+/// How much there is in a scene. What is in an object counts once, however often it is repeated.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct Counts {
+    /// Shapes by kind; those that are not there are left out.
+    pub(crate) shapes: BTreeMap<&'static str, u64>,
+    /// Of meshes, once for each shape that has the mesh; and two for each quad.
+    pub(crate) triangles: u64,
+    /// Of meshes, as they are stored.
+    pub(crate) vertices: u64,
+    /// Single ones and those of clouds.
+    pub(crate) spheres: u64,
+    pub(crate) objects: u64,
+    pub(crate) instances: u64,
+    pub(crate) materials: u64,
+    pub(crate) textures: u64,
+    pub(crate) images: Vec<ImageCount>,
+    /// Lights by kind; shapes that shine are "emissive shape".
+    pub(crate) lights: BTreeMap<&'static str, u64>,
+}
+
+/// A picture that a scene uses.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct ImageCount {
+    pub(crate) name: String,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+}
+
+impl Counts {
+    /// Counts.
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let mut counts = Self {
+            vertices: scene.meshes.iter().map(|mesh| mesh.positions.len() as u64).sum(),
+            objects: scene.objects.len() as u64,
+            instances: scene.instances.len() as u64,
+            materials: scene.materials.len() as u64,
+            textures: scene.textures.len() as u64,
+            images: scene
+                .images
+                .iter()
+                .map(|image| ImageCount {
+                    name: image.name.clone(),
+                    width: image.width,
+                    height: image.height,
+                })
+                .collect(),
+            ..Self::default()
+        };
+        let in_objects = scene.objects.iter().flat_map(|object| &object.shapes);
+        for shape in scene.shapes.iter().chain(in_objects) {
+            let (kind, triangles, spheres) = match &shape.geometry {
+                Geometry::Sphere(_) => ("sphere", 0, 1),
+                Geometry::Spheres(spheres) => ("cloud of spheres", 0, spheres.len()),
+                Geometry::Quad { .. } => ("quad", 2, 0),
+                Geometry::Disk { .. } => ("disk", 0, 0),
+                Geometry::Mesh(id) => ("mesh", scene.meshes[id.index()].triangles.len(), 0),
+            };
+            *counts.shapes.entry(kind).or_default() += 1;
+            counts.triangles += triangles as u64;
+            counts.spheres += spheres as u64;
+            if shape.emission.is_some() {
+                *counts.lights.entry("emissive shape").or_default() += 1;
+            }
+        }
+        for light in &scene.lights {
+            let kind = match light.kind {
+                LightKind::Ambient { .. } => "ambient",
+                LightKind::Point { .. } => "point",
+                LightKind::Distant { .. } => "distant",
+                LightKind::Spot { .. } => "spot",
+                LightKind::Environment { illuminates: true, .. } => "environment",
+                LightKind::Environment { illuminates: false, .. } => "backdrop",
+            };
+            *counts.lights.entry(kind).or_default() += 1;
+        }
+        counts
+    }
+}

@@ -1,0 +1,101 @@
+//! How a run ends: what went wrong in words, and the exit code that scripts read.
+
+use std::fmt;
+use std::io::{IsTerminal, Write};
+
+use lookfrom_scene::{Error, Warning};
+
+/// All that was asked is done.
+pub(crate) const DONE: u8 = 0;
+/// A scene could not be read or is invalid.
+pub(crate) const BAD_SCENE: u8 = 1;
+/// The command line does not make sense, by itself or for this scene.
+pub(crate) const BAD_USAGE: u8 = 2;
+/// The output could not be written.
+pub(crate) const BAD_OUTPUT: u8 = 3;
+/// Stopped by Ctrl-C or SIGTERM.
+pub(crate) const INTERRUPTED: u8 = 130;
+
+/// More warnings than this about one scene are only counted.
+const MOST_WARNINGS: usize = 20;
+
+/// Why a subcommand cannot go on.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// A scene could not be read or is invalid.
+    Scene(Error),
+    /// Warnings where `--strict` allows none.
+    Strict(Vec<Warning>),
+    /// The command line does not make sense, by itself or for this scene.
+    Usage(String),
+    /// The output could not be written.
+    Output(String),
+}
+
+impl Failure {
+    /// The exit code it leads to.
+    pub(crate) fn code(&self) -> u8 {
+        match self {
+            Self::Scene(_) | Self::Strict(_) => BAD_SCENE,
+            Self::Usage(_) => BAD_USAGE,
+            Self::Output(_) => BAD_OUTPUT,
+        }
+    }
+
+    /// Says it on stderr and gives back the exit code.
+    pub(crate) fn report(&self) -> u8 {
+        say(&format!("error: {self}"));
+        self.code()
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Scene(error) => error.fmt(f),
+            Self::Strict(warnings) => {
+                write!(f, "warnings, which --strict makes errors:\n  {}", listed(warnings).join("\n  "))
+            }
+            Self::Usage(message) | Self::Output(message) => message.fmt(f),
+        }
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Scene(error)
+    }
+}
+
+/// Warnings for a person: the first few, and how many more there are.
+pub(crate) fn listed(warnings: &[Warning]) -> Vec<String> {
+    let mut lines: Vec<String> = warnings.iter().take(MOST_WARNINGS).map(ToString::to_string).collect();
+    if warnings.len() > MOST_WARNINGS {
+        lines.push(format!("… and {} more", warnings.len() - MOST_WARNINGS));
+    }
+    lines
+}
+
+/// Writes a line to stderr. Where nobody listens any more, nothing is lost.
+pub(crate) fn say(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// Writes a line to stdout. A reader that has closed the pipe (`| head`) has read enough.
+///
+/// # Errors
+/// `Output` where it cannot be written for another reason.
+pub(crate) fn answer(line: &str) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout().lock();
+    match writeln!(stdout, "{line}").and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::Output(format!("cannot write to stdout: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether a person looks at stderr.
+pub(crate) fn stderr_is_terminal() -> bool {
+    std::io::stderr().is_terminal()
+}

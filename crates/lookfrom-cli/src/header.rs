@@ -1,0 +1,64 @@
+//! What an OpenEXR file says of itself: everything that decides its light, and nothing else, so that the same picture is the
+//! same bytes whatever the number of threads, the time and the machine.
+
+use std::path::Path;
+
+use glam::DVec3;
+use lookfrom_scene::camera::{Projection, View};
+use lookfrom_scene::settings::Crop;
+
+use crate::prepare::Prepared;
+use crate::values::{self, INTEGRATORS, SAMPLERS};
+
+/// The texts for the header, by name.
+pub(crate) fn attributes(scene: &Path, prepared: &Prepared, taken: Option<u64>) -> Vec<(String, String)> {
+    let Prepared { image, render, camera, .. } = prepared;
+    let mut texts = vec![
+        ("software", format!("lookfrom {}", env!("CARGO_PKG_VERSION"))),
+        ("scene", scene.display().to_string()),
+        ("size", format!("{} {}", image.width, image.height)),
+        ("integrator", values::name(INTEGRATORS, &render.integrator).to_owned()),
+        ("samples", render.samples.to_string()),
+        ("depth", render.depth.to_string()),
+        ("min_contribution", render.min_contribution.to_string()),
+        ("transparent_shadows", render.transparent_shadows.to_string()),
+        ("seed", render.seed.to_string()),
+        ("sampler", values::name(SAMPLERS, &render.sampler).to_owned()),
+        ("filter", values::filter_name(&image.filter)),
+        // What the scene asks of 8-bit pictures; the light in this file is as it was computed.
+        ("exposure", image.exposure.to_string()),
+        ("tonemap", "none".to_owned()),
+        ("camera.distance", camera.distance.to_string()),
+    ];
+    if let Some(taken) = taken {
+        texts.push(("samples_taken", taken.to_string()));
+    }
+    if let Some(Crop { x0, y0, x1, y1 }) = image.crop {
+        texts.push(("crop", format!("{x0} {y0} {x1} {y1}")));
+    }
+    match camera.view {
+        View::Look { lookfrom, lookat, up } => {
+            texts.push(("camera.lookfrom", spaced(lookfrom)));
+            texts.push(("camera.lookat", spaced(lookat)));
+            texts.push(("camera.up", spaced(up)));
+        }
+        View::Matrix(matrix) => {
+            let columns = matrix.to_cols_array().map(|number| number.to_string());
+            texts.push(("camera.matrix_by_columns", columns.join(" ")));
+        }
+    }
+    match camera.projection {
+        Projection::Perspective { fov } => texts.push(("camera.fov", fov.to_string())),
+        Projection::Orthographic { height } => texts.push(("camera.height", height.to_string())),
+    }
+    if let Some(lens) = camera.lens {
+        texts.push(("camera.lens_radius", lens.radius.to_string()));
+        texts.push(("camera.focus_distance", lens.focus_distance.to_string()));
+    }
+    texts.into_iter().map(|(name, text)| (name.to_owned(), text)).collect()
+}
+
+/// Three numbers with spaces between them.
+fn spaced(v: DVec3) -> String {
+    format!("{} {} {}", v.x, v.y, v.z)
+}

@@ -1,0 +1,235 @@
+//! `lookfrom info`: what is in scenes and models, and what they become.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use glam::DVec3;
+use lookfrom_scene::camera::{Camera, Projection, View};
+use lookfrom_scene::settings::Crop;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::args::{InfoArguments, Overrides};
+use crate::count::Counts;
+use crate::exit::{self, DONE, Failure, answer, say};
+use crate::prepare::{self, Prepared, prepare};
+use crate::report::{self, bytes, thousands};
+use crate::values::{self, INTEGRATORS, SAMPLERS, TONEMAPS};
+
+/// Describes every scene; goes on after one that fails, with the code of the first failure.
+pub(crate) fn run(arguments: &InfoArguments) -> u8 {
+    if let Err(failure) = prepare::use_threads(&arguments.common) {
+        return failure.report();
+    }
+    let mut code = DONE;
+    for scene in &arguments.scenes {
+        if let Err(failure) = info(scene, arguments) {
+            let of_failure = failure.report();
+            if arguments.json {
+                let _ = answer(&report::failure(scene, &failure)).map_err(|failure| failure.report());
+            }
+            if code == DONE {
+                code = of_failure;
+            }
+        }
+    }
+    code
+}
+
+fn info(path: &Path, arguments: &InfoArguments) -> Result<(), Failure> {
+    let prepared = prepare(path, &arguments.common, &Overrides::default())?;
+    if arguments.json {
+        return answer(&as_json(path, &prepared).to_string());
+    }
+    exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
+    answer(&for_people(path, &prepared))
+}
+
+/// What a tree consists of. Those of objects, which instances share, are not counted in.
+#[derive(Serialize)]
+struct Tree {
+    nodes: usize,
+    leaves: usize,
+    depth: usize,
+    memory_bytes: usize,
+    left_out: usize,
+}
+
+fn tree(prepared: &Prepared) -> Tree {
+    let bvh = &prepared.world.bvh;
+    let statistics = bvh.statistics();
+    Tree {
+        nodes: statistics.nodes,
+        leaves: statistics.leaves,
+        depth: statistics.depth,
+        memory_bytes: bvh.memory(),
+        left_out: statistics.left_out,
+    }
+}
+
+fn as_json(path: &Path, prepared: &Prepared) -> Value {
+    let Prepared { image, render, bounds, counts, .. } = prepared;
+    let crop = image.crop.map(|Crop { x0, y0, x1, y1 }| [x0, y0, x1, y1]);
+    let bounds =
+        (!bounds.is_empty()).then(|| json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() }));
+    let mut object = json!({
+        "scene": path.display().to_string(),
+        "bounds": bounds,
+        "camera": camera_as_json(&prepared.camera),
+        "image": {
+            "width": image.width,
+            "height": image.height,
+            "crop": crop,
+            "filter": values::filter_name(&image.filter),
+            "exposure": image.exposure,
+            "tonemap": values::name(TONEMAPS, &image.tonemap),
+        },
+        "render": {
+            "integrator": values::name(INTEGRATORS, &render.integrator),
+            "samples": render.samples,
+            "depth": render.depth,
+            "min_contribution": render.min_contribution,
+            "sampler": values::name(SAMPLERS, &render.sampler),
+            "seed": render.seed,
+            "transparent_shadows": render.transparent_shadows,
+        },
+        "bvh": tree(prepared),
+        "seconds": { "read": report::seconds(prepared.read), "build": report::seconds(prepared.build) },
+        "added": prepared.added,
+        "warnings": prepared.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+    });
+    if let (Value::Object(object), Value::Object(counts)) = (&mut object, json!(counts)) {
+        object.extend(counts);
+    }
+    object
+}
+
+fn camera_as_json(camera: &Camera) -> Value {
+    let mut object = match camera.view {
+        View::Look { lookfrom, lookat, up } => json!({
+            "lookfrom": lookfrom.to_array(),
+            "lookat": lookat.to_array(),
+            "up": up.to_array(),
+        }),
+        View::Matrix(matrix) => json!({ "matrix_by_columns": matrix.to_cols_array() }),
+    };
+    match camera.projection {
+        Projection::Perspective { fov } => object["fov"] = json!(fov),
+        Projection::Orthographic { height } => object["height"] = json!(height),
+    }
+    if let Some(lens) = camera.lens {
+        object["lens_radius"] = json!(lens.radius);
+        object["focus_distance"] = json!(lens.focus_distance);
+    }
+    object
+}
+
+fn for_people(path: &Path, prepared: &Prepared) -> String {
+    let mut lines = vec![path.display().to_string()];
+    let mut line = |name: &str, text: String| lines.push(format!("  {name:<10} {text}"));
+    contents(&prepared.counts, &mut line);
+    let bounds = prepared.bounds;
+    let size = bounds.max - bounds.min;
+    line(
+        "bounds",
+        if bounds.is_empty() {
+            "nothing".to_owned()
+        } else {
+            format!("{} to {}, size {}", numbers(bounds.min), numbers(bounds.max), numbers(size))
+        },
+    );
+    line("camera", camera_in_words(&prepared.camera));
+    let image = &prepared.image;
+    let mut picture = format!(
+        "{} × {} pixels, filter {}, exposure {}, tonemap {}",
+        image.width,
+        image.height,
+        values::filter_name(&image.filter),
+        image.exposure,
+        values::name(TONEMAPS, &image.tonemap)
+    );
+    if let Some(Crop { x0, y0, x1, y1 }) = image.crop {
+        let _ = write!(picture, ", crop {x0},{y0},{x1},{y1}");
+    }
+    line("image", picture);
+    let render = &prepared.render;
+    line(
+        "render",
+        format!(
+            "{}, {} samples, depth {}, min contribution {}, sampler {}, seed {}",
+            values::name(INTEGRATORS, &render.integrator),
+            render.samples,
+            render.depth,
+            render.min_contribution,
+            values::name(SAMPLERS, &render.sampler),
+            render.seed
+        ),
+    );
+    if !prepared.added.is_empty() {
+        line("added", format!("{} (the file has none)", prepared.added.join(", ")));
+    }
+    let Tree { nodes, leaves, depth, memory_bytes, left_out } = tree(prepared);
+    let mut tree = format!("{nodes} nodes, {leaves} leaves, depth {depth}, {}", bytes(memory_bytes as u64));
+    if left_out > 0 {
+        let _ = write!(tree, "; {left_out} primitives without size or place left out");
+    }
+    line("bvh", tree);
+    line(
+        "time",
+        format!(
+            "read {:.2} s, build {:.2} s",
+            report::seconds(prepared.read),
+            report::seconds(prepared.build)
+        ),
+    );
+    lines.join("\n")
+}
+
+/// What is there, kind by kind; kinds of which there is nothing are left out.
+fn contents(counts: &Counts, line: &mut impl FnMut(&str, String)) {
+    let kinds = |kinds: &std::collections::BTreeMap<&'static str, u64>| {
+        let each: Vec<String> =
+            kinds.iter().map(|(kind, count)| format!("{} {kind}", thousands(*count))).collect();
+        if each.is_empty() { "none".to_owned() } else { each.join(", ") }
+    };
+    line("shapes", kinds(&counts.shapes));
+    let amounts = [
+        ("triangles", counts.triangles),
+        ("vertices", counts.vertices),
+        ("spheres", counts.spheres),
+        ("objects", counts.objects),
+        ("instances", counts.instances),
+        ("materials", counts.materials),
+        ("textures", counts.textures),
+    ];
+    for (name, amount) in amounts.into_iter().filter(|(_, amount)| *amount > 0) {
+        line(name, thousands(amount));
+    }
+    for image in &counts.images {
+        line("image", format!("{}, {} × {}", image.name, image.width, image.height));
+    }
+    line("lights", kinds(&counts.lights));
+}
+
+fn camera_in_words(camera: &Camera) -> String {
+    let mut text = match camera.view {
+        View::Look { lookfrom, lookat, up } => {
+            format!("lookfrom {}, lookat {}, up {}", numbers(lookfrom), numbers(lookat), numbers(up))
+        }
+        View::Matrix(matrix) => format!("lookfrom {}, by a matrix", numbers(matrix.w_axis.truncate())),
+    };
+    let _ = match camera.projection {
+        Projection::Perspective { fov } => write!(text, ", fov {fov}°"),
+        Projection::Orthographic { height } => write!(text, ", parallel rays, height {height}"),
+    };
+    if let Some(lens) = camera.lens {
+        let _ = write!(text, ", lens of radius {} sharp at {}", lens.radius, lens.focus_distance);
+    }
+    text
+}
+
+/// Three numbers as the command line takes them, to six digits.
+fn numbers(v: DVec3) -> String {
+    let digits = |x: f64| format!("{x:.5e}").parse::<f64>().unwrap_or(x).to_string();
+    format!("{},{},{}", digits(v.x), digits(v.y), digits(v.z))
+}

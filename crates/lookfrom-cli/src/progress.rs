@@ -1,0 +1,54 @@
+//! How far a render is: a bar on stderr where a person looks at it, and the word to the library that it shall stop.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lookfrom::render::Progress;
+
+use crate::exit::stderr_is_terminal;
+use crate::interrupt;
+
+/// Shows and remembers how far a render is.
+pub(crate) struct Watcher {
+    bar: Option<ProgressBar>,
+    started: Instant,
+    done: AtomicU64,
+}
+
+impl Watcher {
+    /// Starts the clock. A bar is shown unless `quiet`, or where stderr is no terminal.
+    pub(crate) fn start(quiet: bool) -> Self {
+        let bar = (!quiet && stderr_is_terminal()).then(|| {
+            let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
+            let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
+            bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        });
+        Self { bar, started: Instant::now(), done: AtomicU64::new(0) }
+    }
+
+    /// Takes the bar away and says how many samples were taken.
+    pub(crate) fn finish(self) -> u64 {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+        self.done.into_inner()
+    }
+}
+
+impl Progress for Watcher {
+    fn advance(&self, done: u64, total: u64, rays: u64) {
+        // Threads may come here out of order; the greatest number is the latest.
+        self.done.fetch_max(done, Ordering::Relaxed);
+        if let Some(bar) = &self.bar {
+            let rate = rays as f64 * 1e-6 / self.started.elapsed().as_secs_f64();
+            bar.set_length(total);
+            bar.set_position(self.done.load(Ordering::Relaxed));
+            bar.set_message(format!("{rate:.2} Mrays/s"));
+        }
+    }
+
+    fn cancelled(&self) -> bool {
+        interrupt::asked()
+    }
+}

@@ -1,0 +1,173 @@
+//! What was done, for a person on stderr and for a program as JSON on stdout.
+
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Duration;
+
+use lookfrom::film::Address;
+use lookfrom::render::Rays;
+use serde::Serialize;
+
+use crate::exit::Failure;
+
+/// What was done for one scene. The names are those of the JSON object, which docs/guide/command.md explains.
+#[derive(Debug, Serialize)]
+pub(crate) struct Summary {
+    pub(crate) scene: String,
+    pub(crate) output: String,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) samples: u32,
+    pub(crate) samples_taken: u64,
+    pub(crate) integrator: &'static str,
+    pub(crate) seconds: Seconds,
+    pub(crate) rays: RayCounts,
+    pub(crate) mrays_per_s: f64,
+    pub(crate) peak_memory_bytes: Option<u64>,
+    pub(crate) triangles: u64,
+    pub(crate) spheres: u64,
+    pub(crate) instances: u64,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) cancelled: bool,
+    pub(crate) dropped_samples: Dropped,
+}
+
+/// Wall-clock times.
+#[derive(Debug, Serialize)]
+pub(crate) struct Seconds {
+    pub(crate) read: f64,
+    pub(crate) build: f64,
+    pub(crate) render: f64,
+    pub(crate) write: f64,
+}
+
+/// Rays by kind.
+#[derive(Debug, Serialize)]
+pub(crate) struct RayCounts {
+    pub(crate) camera: u64,
+    pub(crate) secondary: u64,
+    pub(crate) shadow: u64,
+    pub(crate) total: u64,
+}
+
+/// Samples that were not finite and left out.
+#[derive(Debug, Serialize)]
+pub(crate) struct Dropped {
+    pub(crate) count: u64,
+    pub(crate) first: Option<DroppedAddress>,
+}
+
+/// Which sample of which pixel.
+#[derive(Debug, Serialize)]
+pub(crate) struct DroppedAddress {
+    pub(crate) x: u32,
+    pub(crate) y: u32,
+    pub(crate) sample: u32,
+}
+
+impl From<Rays> for RayCounts {
+    fn from(rays: Rays) -> Self {
+        Self { camera: rays.camera, secondary: rays.secondary, shadow: rays.shadow, total: rays.total() }
+    }
+}
+
+impl From<Address> for DroppedAddress {
+    fn from(address: Address) -> Self {
+        Self { x: address.x, y: address.y, sample: address.sample }
+    }
+}
+
+impl Summary {
+    /// The summary for a person.
+    pub(crate) fn for_people(&self) -> String {
+        let Self { scene, output, width, height, samples, integrator, .. } = self;
+        let RayCounts { camera, secondary, shadow, total } = self.rays;
+        let Seconds { read, build, render, write } = self.seconds;
+        let memory = self.peak_memory_bytes.map_or("unknown".to_owned(), bytes);
+        let [camera, secondary, shadow, total] = [camera, secondary, shadow, total].map(thousands);
+        let mut text = String::new();
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{scene} → {output}: {width} × {height} pixels, {samples} samples each, {integrator}"
+        );
+        let _ = writeln!(
+            text,
+            "  rays    {total} ({camera} camera, {secondary} secondary, {shadow} shadow), {:.2} Mrays/s",
+            self.mrays_per_s
+        );
+        let _ = write!(
+            text,
+            "  time    read {read:.2} s, build {build:.2} s, render {render:.2} s, write {write:.2} s\n  memory  {memory} at the peak"
+        );
+        if self.cancelled {
+            let _ = write!(
+                text,
+                "\nstopped after {render:.1} s; {output} holds the picture so far: {} of {samples} samples",
+                self.samples_taken
+            );
+        }
+        if let Dropped { count, first: Some(DroppedAddress { x, y, sample }) } = self.dropped_samples {
+            let _ = write!(
+                text,
+                "\nwarning: {count} samples were not finite and were left out; the first is replayed, with the same options, by\n  \
+                 lookfrom inspect {scene} {x} {y} --sample {sample}"
+            );
+        }
+        text
+    }
+}
+
+/// What is said of a scene that could not be rendered, as JSON.
+pub(crate) fn failure(scene: &Path, failure: &Failure) -> String {
+    serde_json::json!({ "scene": scene.display().to_string(), "error": failure.to_string() }).to_string()
+}
+
+/// A duration in seconds, to the microsecond.
+pub(crate) fn seconds(duration: Duration) -> f64 {
+    duration.as_micros() as f64 * 1e-6
+}
+
+/// The most memory that this process has had so far, where the system tells.
+pub(crate) fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kilobytes| kilobytes * 1024)
+}
+
+/// A number with its digits in groups of three.
+pub(crate) fn thousands(number: u64) -> String {
+    let digits = number.to_string();
+    let mut grouped = String::with_capacity(digits.len() * 4 / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            grouped.push('\u{202f}');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
+
+/// A number of bytes in the unit that suits it.
+pub(crate) fn bytes(number: u64) -> String {
+    match number {
+        0..10_000 => format!("{number} bytes"),
+        10_000..10_000_000 => format!("{:.1} kB", number as f64 * 1e-3),
+        10_000_000..10_000_000_000 => format!("{:.1} MB", number as f64 * 1e-6),
+        _ => format!("{:.1} GB", number as f64 * 1e-9),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_for_people() {
+        assert_eq!(thousands(7), "7");
+        assert_eq!(thousands(123), "123");
+        assert_eq!(thousands(1_234_567), "1\u{202f}234\u{202f}567");
+        assert_eq!(bytes(999), "999 bytes");
+        assert_eq!(bytes(12_345_678), "12.3 MB");
+    }
+}

@@ -1,0 +1,166 @@
+//! The words of the command line for settings, and back: the same words as in scene files.
+
+use std::fmt::Display;
+use std::str::FromStr;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use glam::DVec3;
+use lookfrom_scene::settings::{Crop, Filter, Integrator, Sampler, Tonemap};
+
+/// The computations.
+pub(crate) const INTEGRATORS: &[(&str, Integrator)] = &[
+    ("raycast", Integrator::Raycast),
+    ("whitted", Integrator::Whitted),
+    ("normals", Integrator::Normals),
+    ("depth", Integrator::Depth),
+    ("uv", Integrator::Uv),
+    ("id", Integrator::Id),
+];
+
+/// Where random numbers come from.
+pub(crate) const SAMPLERS: &[(&str, Sampler)] =
+    &[("sobol", Sampler::Sobol), ("independent", Sampler::Independent)];
+
+/// From linear light to 8 bits.
+pub(crate) const TONEMAPS: &[(&str, Tonemap)] =
+    &[("clamp", Tonemap::Clamp), ("reinhard", Tonemap::Reinhard), ("filmic", Tonemap::Filmic)];
+
+/// Pixel filters with the radii and shapes that they have where nothing is said.
+const FILTERS: &[(&str, Filter)] = &[
+    ("box", Filter::Box { radius: 0.5 }),
+    ("triangle", Filter::Triangle { radius: 1.0 }),
+    ("gaussian", Filter::Gaussian { radius: 1.5, sigma: 0.5 }),
+    ("mitchell", Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 }),
+    ("blackman_harris", Filter::BlackmanHarris { radius: 1.5 }),
+];
+
+/// The widest filter, in pixels: as in scene files.
+const GREATEST_RADIUS: f32 = 16.0;
+
+/// The word for a value; every value has one.
+pub(crate) fn name<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'static str {
+    words.iter().find(|(_, of_word)| of_word == value).map_or("?", |(word, _)| word)
+}
+
+/// Accepts the words of a table, and shows them in the help and in completions.
+pub(crate) fn word<T: Copy + Send + Sync>(
+    words: &'static [(&'static str, T)],
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(words.iter().map(|&(word, _)| word)).try_map(move |typed| {
+        let known = words.iter().find(|(word, _)| *word == typed);
+        known.map(|&(_, value)| value).ok_or_else(|| format!("{typed:?} is not known"))
+    })
+}
+
+/// `X,Y,Z`: three finite numbers.
+pub(crate) fn vector(typed: &str) -> Result<DVec3, String> {
+    let vector = DVec3::from_array(separated(typed, "three numbers, X,Y,Z")?);
+    if vector.is_finite() { Ok(vector) } else { Err("expected finite numbers".to_owned()) }
+}
+
+/// `X0,Y0,X1,Y1`: pixels, with something between the edges.
+pub(crate) fn crop(typed: &str) -> Result<Crop, String> {
+    let [x0, y0, x1, y1] = separated(typed, "four whole numbers of pixels, X0,Y0,X1,Y1")?;
+    if x0 < x1 && y0 < y1 {
+        Ok(Crop { x0, y0, x1, y1 })
+    } else {
+        Err("expected X0 < X1 and Y0 < Y1: pixels are counted from the top left".to_owned())
+    }
+}
+
+fn separated<T: FromStr + Copy + Default, const N: usize>(
+    typed: &str,
+    expected: &str,
+) -> Result<[T; N], String> {
+    let numbers: Option<Vec<T>> = typed.split(',').map(|number| number.trim().parse().ok()).collect();
+    numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| format!("expected {expected}"))
+}
+
+/// A number within a range; NaN is in none.
+pub(crate) fn between<T>(least: T, greatest: T) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync
+where
+    T: FromStr + PartialOrd + Display + Copy + Send + Sync,
+{
+    move |typed| match typed.parse::<T>() {
+        Ok(number) if (least..=greatest).contains(&number) => Ok(number),
+        _ => Err(format!("expected a number from {least} to {greatest}")),
+    }
+}
+
+/// An angle between 0° and 180°, neither of them included.
+pub(crate) fn field_of_view(typed: &str) -> Result<f64, String> {
+    match typed.parse::<f64>() {
+        Ok(degrees) if degrees > 0.0 && degrees < 180.0 => Ok(degrees),
+        _ => Err("expected degrees between 0 and 180, neither of them included".to_owned()),
+    }
+}
+
+/// `NAME` or `NAME:RADIUS`.
+pub(crate) fn filter(typed: &str) -> Result<Filter, String> {
+    let (name, radius_typed) =
+        typed.split_once(':').map_or((typed, None), |(name, radius)| (name, Some(radius)));
+    let Some(&(_, mut filter)) = FILTERS.iter().find(|(word, _)| *word == name) else {
+        let known: Vec<&str> = FILTERS.iter().map(|&(word, _)| word).collect();
+        return Err(format!("expected NAME or NAME:RADIUS; the names are {}", known.join(", ")));
+    };
+    if let Some(typed) = radius_typed {
+        let wrong = || format!("expected a radius in pixels, more than 0 and at most {GREATEST_RADIUS}");
+        let typed: f32 = typed.parse().map_err(|_| wrong())?;
+        if !(typed > 0.0 && typed <= GREATEST_RADIUS) {
+            return Err(wrong());
+        }
+        match &mut filter {
+            Filter::Box { radius }
+            | Filter::Triangle { radius }
+            | Filter::Gaussian { radius, .. }
+            | Filter::Mitchell { radius, .. }
+            | Filter::BlackmanHarris { radius } => *radius = typed,
+        }
+    }
+    Ok(filter)
+}
+
+/// A filter in words: `NAME:RADIUS` and what shapes it besides.
+pub(crate) fn filter_name(filter: &Filter) -> String {
+    match filter {
+        Filter::Box { radius } => format!("box:{radius}"),
+        Filter::Triangle { radius } => format!("triangle:{radius}"),
+        Filter::Gaussian { radius, sigma } => format!("gaussian:{radius} sigma {sigma}"),
+        Filter::Mitchell { radius, b, c } => format!("mitchell:{radius} b {b} c {c}"),
+        Filter::BlackmanHarris { radius } => format!("blackman_harris:{radius}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_filter_keeps_its_name_and_takes_a_radius() {
+        for (name, shape) in FILTERS {
+            assert_eq!(filter(name).as_ref(), Ok(shape));
+            assert!(
+                filter_name(&filter(&format!("{name}:3.5")).unwrap()).starts_with(&format!("{name}:3.5"))
+            );
+        }
+        for wrong in ["", "cone", "box:", "box:0", "box:-1", "box:17", "box:NaN", "box:inf", "box:1:2"] {
+            assert!(filter(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn numbers_between_commas() {
+        assert_eq!(vector("-1, 2e3,.5"), Ok(DVec3::new(-1.0, 2000.0, 0.5)));
+        for wrong in ["", "1,2", "1,2,3,4", "1,,3", "1,2,x", "1,2,inf", "NaN,0,0"] {
+            assert!(vector(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(crop("1,2,3,4"), Ok(Crop { x0: 1, y0: 2, x1: 3, y1: 4 }));
+        for wrong in ["1,2,1,4", "1,4,3,4", "3,2,1,4", "-1,0,1,1", "0,0,1.5,1", "0,0,1"] {
+            assert!(crop(wrong).is_err(), "{wrong}");
+        }
+        assert!(
+            field_of_view("0").is_err() && field_of_view("180").is_err() && field_of_view("NaN").is_err()
+        );
+        assert!(between(0.0, 1.0)("NaN").is_err() && between(0.0, 1.0)("1").is_ok());
+    }
+}
