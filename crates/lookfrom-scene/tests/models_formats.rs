@@ -1,0 +1,340 @@
+//! What the readers make of good files: meshes, materials, colours, pictures.
+
+use std::path::{Path, PathBuf};
+
+use glam::{Vec2, Vec3};
+use lookfrom_scene::material::{Color, MaterialKind, Whitted};
+use lookfrom_scene::shape::{Geometry, Mesh, Part};
+use lookfrom_scene::texture::{TextureKind, Wrap};
+use lookfrom_scene::{Memory, Scene, Sources, model, ply};
+use proptest::prelude::*;
+
+struct Model {
+    scene: Scene,
+    parts: Vec<Part>,
+    warnings: Vec<String>,
+}
+
+impl Model {
+    fn of(files: &[(&str, &[u8])]) -> Self {
+        let contents = files.iter().map(|(name, content)| (PathBuf::from(name), content.to_vec())).collect();
+        let files_in_memory = Memory(contents);
+        let mut sources = Sources::new(&files_in_memory);
+        let mut scene = Scene::default();
+        let parts = model::read(Path::new(files[0].0), &mut sources, &mut scene).unwrap();
+        Self { scene, parts, warnings: sources.warnings.iter().map(ToString::to_string).collect() }
+    }
+
+    fn mesh(&self, part: usize) -> &Mesh {
+        match &self.parts[part].geometry {
+            Geometry::Mesh(mesh) => &self.scene.meshes[mesh.index()],
+            other => panic!("not a mesh: {other:?}"),
+        }
+    }
+
+    fn look(&self, part: usize) -> &Whitted {
+        let MaterialKind::Whitted(whitted) =
+            &self.scene.materials[self.parts[part].material.unwrap().index()].kind;
+        whitted
+    }
+
+    /// The picture behind a colour, and how it is laid on.
+    fn picture(&self, color: Color) -> (Vec<[f32; 3]>, [f32; 2], [f32; 2], Wrap) {
+        let Color::Texture(texture) = color else { panic!("no texture: {color:?}") };
+        match &self.scene.textures[texture.index()].kind {
+            TextureKind::Image { image, scale, offset, wrap, .. } => {
+                (self.scene.images[image.index()].texels.clone(), *scale, *offset, *wrap)
+            }
+            other => panic!("no picture: {other:?}"),
+        }
+    }
+}
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+/// An OBJ with one triangle of material `m`, whose library is `mtl`.
+fn with_material(mtl: &str, more: &[(&str, &[u8])]) -> Model {
+    let obj = format!("mtllib m.mtl\n{TRIANGLE}vt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+    let mtl = format!("newmtl m\n{mtl}");
+    Model::of(&[&[("d/a.obj", obj.as_bytes()), ("d/m.mtl", mtl.as_bytes())], more].concat())
+}
+
+/// A picture of one white texel, as PPM.
+const WHITE: &[u8] = b"P6\n1 1\n255\n\xff\xff\xff";
+
+#[test]
+fn obj_faces_share_vertices_and_have_corners_of_all_forms() {
+    let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0 0\nvt 1\nvn 0 0 2\n\
+               f 1/1/1 2/2/1 3//1 4\nf -4/-2/-1 \\\n-3/-1/-1 -2//-1\nf 3/1/1 4 1/1/1 # comment 9\n";
+    let model = Model::of(&[("a.obj", obj.as_bytes())]);
+    let mesh = model.mesh(0);
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 2], [4, 3, 0]]);
+    assert_eq!(mesh.uvs, [Vec2::ZERO, Vec2::X, Vec2::ZERO, Vec2::ZERO, Vec2::ZERO]);
+    let n = Vec3::new(0.0, 0.0, 2.0);
+    assert_eq!(mesh.normals, [n, n, n, Vec3::ZERO, n]);
+    assert_eq!(model.warnings, [""; 0]);
+}
+
+#[test]
+fn obj_faces_may_come_before_their_vertices() {
+    let model = Model::of(&[("a.obj", format!("f 1 2 3\n{TRIANGLE}").as_bytes())]);
+    assert_eq!(model.mesh(0).positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+}
+
+#[test]
+fn obj_parts_are_materials_in_the_order_of_their_use() {
+    let obj = format!(
+        "{TRIANGLE}o first\nusemtl b c\nf 1 2 3\nusemtl a\nf 1 2 3\no second\nusemtl b c  \nf 3 2 1\nusemtl\nf 1 2 3\n"
+    );
+    let model = Model::of(&[("a.obj", obj.replace('\n', "\r").as_bytes())]);
+    // The faces without a material are in front: that is where every file begins.
+    let names: Vec<_> = model.parts.iter().map(|part| part.name.as_deref()).collect();
+    assert_eq!(names, [None, Some("b c"), Some("a")]);
+    assert_eq!(model.mesh(1).triangles, [[0, 1, 2], [2, 1, 0]]);
+}
+
+#[test]
+fn obj_smoothing_groups_make_normals() {
+    // A roof: two faces that share the edge from 1 to 2.
+    let roof = "v 0 0 0\nv 1 0 0\nv 0 1 -1\nv 0 -1 -1\n";
+    let flat = Model::of(&[("a.obj", format!("{roof}s off\nf 1 2 3\nf 2 1 4\n").as_bytes())]);
+    assert_eq!(flat.mesh(0).normals, []);
+    let parted = Model::of(&[("a.obj", format!("{roof}s 1\nf 1 2 3\ns 2\nf 2 1 4\n").as_bytes())]);
+    assert_eq!(parted.mesh(0).positions.len(), 6);
+    let smooth =
+        Model::of(&[("a.obj", format!("{roof}s 1\nusemtl a\nf 1 2 3\nusemtl b\nf 2 1 4\n").as_bytes())]);
+    for mesh in [smooth.mesh(0), smooth.mesh(1)] {
+        for (position, normal) in mesh.positions.iter().zip(&mesh.normals) {
+            assert!((normal.length() - 1.0).abs() < 1e-6);
+            // On the shared edge the normal points straight up, elsewhere it is the face's.
+            let expected = Vec3::new(0.0, position.y, 1.0).normalize();
+            assert!(normal.distance(expected) < 1e-6, "{position} {normal}");
+        }
+    }
+}
+
+#[test]
+fn obj_colours_of_vertices_are_srgb_and_white_where_there_are_none() {
+    let obj = "v 0 0 0 1 0.5 0\nv 1 0 0\nv 0 1 0 0 0 1\nf 1 2 3\n";
+    let model = Model::of(&[("a.obj", obj.as_bytes())]);
+    let colors = &model.mesh(0).colors;
+    assert!((colors[0][1] - 0.214_041).abs() < 1e-6);
+    assert_eq!((colors[0][0], colors[1], colors[2]), (1.0, [1.0; 3], [0.0, 0.0, 1.0]));
+    let Color::Texture(texture) = model.look(0).diffuse else { panic!("no texture") };
+    assert_eq!(model.scene.textures[texture.index()].kind, TextureKind::VertexColor { tint: [1.0; 3] });
+}
+
+#[test]
+fn mtl_plain_and_shiny() {
+    let model = with_material("Kd 1 .5 0\nKs .25\nNs 20\nKa 1 1 1\n", &[]);
+    let look = model.look(0);
+    assert_eq!(look.diffuse, Color::Value([1.0, 0.5, 0.0]));
+    assert_eq!((look.specular, look.shininess), (Color::gray(0.25), 20.0));
+    assert_eq!((look.mirror, look.transmission, look.ambient), (Color::BLACK, Color::BLACK, None));
+    let dull = with_material("Ks 1 1 1\nNs 20\nillum 1\n", &[]);
+    assert_eq!(dull.look(0).specular, Color::BLACK);
+    let even = with_material("Ks 1 1 1\nNs 0\nillum 2\n", &[]);
+    assert_eq!(even.look(0).specular, Color::BLACK);
+    let mirror = with_material("Ks .9 .9 .9\nNs 9\nillum 3\n", &[]);
+    assert_eq!((mirror.look(0).mirror, mirror.look(0).fresnel), (Color::gray(0.9), false));
+}
+
+#[test]
+fn mtl_lets_light_through() {
+    let veil = with_material("Kd 1 1 1\nTr 0.75\nNi 1.5\n", &[]);
+    assert_eq!(veil.look(0).diffuse, Color::gray(0.25));
+    assert_eq!((veil.look(0).transmission, veil.look(0).ior), (Color::gray(0.75), 1.0));
+    let glass = with_material("Kd 1 1 1\nd 1\nTf 1 .5 1\nNi 1.6\nillum 7\n", &[]);
+    let look = glass.look(0);
+    assert_eq!((look.diffuse, look.mirror), (Color::BLACK, Color::gray(1.0)));
+    assert_eq!(look.transmission, Color::Value([1.0, 0.5, 1.0]));
+    assert_eq!((look.ior, look.fresnel), (1.6, true));
+    // `illum 4` without any transparency is an opaque thing in many files.
+    assert_eq!(with_material("Kd 1 1 1\nd 1\nillum 4\n", &[]).look(0).diffuse, Color::gray(1.0));
+}
+
+#[test]
+fn mtl_shines() {
+    let lamp = with_material("Ke 3 2 1\n", &[]).parts[0].emission.unwrap();
+    assert_eq!(lamp.radiance, Color::Value([3.0, 2.0, 1.0]));
+    assert_eq!(with_material("Ke 0 0 0\n", &[]).parts[0].emission, None);
+}
+
+#[test]
+fn mtl_pictures_are_multiplied_found_and_shared() {
+    let mtl = "Kd .5 1 1\nmap_Kd -o 0.25 0.5 0 -s 2 3 -clamp on \"x\\my white.ppm\"\nmap_Ke white.ppm\n";
+    let model = with_material(mtl, &[("d/my white.ppm", WHITE), ("d/white.ppm", WHITE)]);
+    let (texels, scale, offset, wrap) = model.picture(model.look(0).diffuse);
+    assert_eq!(texels, [[0.5, 1.0, 1.0]]);
+    assert_eq!((scale, offset, wrap), ([2.0, 3.0], [0.25, 0.5], Wrap::Black));
+    let (texels, scale, ..) = model.picture(model.parts[0].emission.unwrap().radiance);
+    assert_eq!((texels, scale), (vec![[1.0; 3]], [1.0; 2]));
+    // A black Kd is a sloppy exporter's.
+    let model = with_material("Kd 0 0 0\nmap_Kd white.ppm\n", &[("d/white.ppm", WHITE)]);
+    assert_eq!(model.picture(model.look(0).diffuse).0, [[1.0; 3]]);
+    // The same picture with the same tint is read once.
+    let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+    let mtl = b"newmtl a\nmap_Kd w.ppm\nnewmtl b\nmap_Kd ./w.ppm\nnewmtl unused\nmap_Kd no.ppm\n";
+    let model = Model::of(&[("a.obj", obj.as_bytes()), ("m.mtl", mtl), ("w.ppm", WHITE)]);
+    assert_eq!((model.scene.images.len(), model.scene.materials.len()), (1, 2));
+    assert_eq!(model.warnings, [""; 0]);
+}
+
+#[test]
+fn mtl_misses_are_warned_of() {
+    let model = with_material("Kd 1 0 0\nmap_Kd no.png\nmap_Bump b.png\nNs many\nfoo\n", &[]);
+    assert_eq!(model.look(0).diffuse, Color::Value([1.0, 0.0, 0.0]));
+    assert_eq!(
+        model.warnings,
+        [
+            "d/m.mtl:5: 1 line ignored: the values are not what the keyword expects",
+            "d/m.mtl:6: 1 `(unknown)` statement ignored: not supported",
+            "d/m.mtl:4: 1 `map_Bump` statement ignored: not supported",
+            "d/m.mtl:3:8: texture `no.png`: no such file; the constant colour is used",
+        ]
+    );
+}
+
+#[test]
+fn ply_of_all_types_in_all_formats_is_the_same() {
+    let header = |format: &str| {
+        format!(
+            "ply\nformat {format} 1.0\nobj_info x\nelement extra 1\nproperty list uchar short l\nproperty double d\n\
+             element vertex 4\nproperty double x\nproperty float32 y\nproperty int16 z\nproperty uint8 red\n\
+             property uchar green\nproperty uchar blue\nproperty char alpha\n\
+             element face 1\nproperty int flags\nproperty list uint16 uint32 vertex_index\n\
+             element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+        )
+        .into_bytes()
+    };
+    let points = [(0.5, 0.25, -3_i16), (1.0, 0.0, 7), (1.0, 1.0, 0), (0.0, 1.0, -1)];
+    let strip = [0_i32, 1, 2, 3, -1, 0, 1, 3];
+    let mut ascii = header("ascii");
+    ascii.extend(b"2 5 6 0.5\n");
+    for (x, y, z) in points {
+        ascii.extend(format!("{x} {y} {z} 255 0 128 0\n").bytes());
+    }
+    ascii.extend(b"0 4 0 1 2 3\n8 0 1 2 3 -1 0 1 3\n");
+    let (mut little, mut big) = (header("binary_little_endian"), header("binary_big_endian"));
+    macro_rules! put {
+        ($($value:expr),*) => {$( little.extend($value.to_le_bytes()); big.extend($value.to_be_bytes()); )*};
+    }
+    put!(2_u8, 5_i16, 6_i16, 0.5_f64);
+    for (x, y, z) in points {
+        put!(x as f64, y as f32, z, 255_u8, 0_u8, 128_u8, 0_i8);
+    }
+    put!(0_i32, 4_u16, 0_u32, 1_u32, 2_u32, 3_u32, 8_i32);
+    for index in strip {
+        put!(index);
+    }
+    let expected = Model::of(&[("a.ply", &ascii)]);
+    let mesh = expected.mesh(0);
+    assert_eq!(mesh.positions[0], Vec3::new(0.5, 0.25, -3.0));
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 1, 2], [2, 1, 3], [0, 1, 3]]);
+    assert_eq!(mesh.colors[0][..2], [1.0, 0.0]);
+    assert!((mesh.colors[0][2] - 0.215_861).abs() < 1e-6);
+    for bytes in [little, big] {
+        let model = Model::of(&[("a.ply", &bytes)]);
+        let other = model.mesh(0);
+        assert_eq!(
+            (&other.positions, &other.triangles, &other.colors),
+            (&mesh.positions, &mesh.triangles, &mesh.colors)
+        );
+    }
+}
+
+#[test]
+fn ply_pictures_with_coordinates_at_corners() {
+    let ply = b"ply\nformat ascii 1.0\ncomment TextureFile white.ppm\nelement vertex 4\nproperty float x\nproperty float y\n\
+        property float z\nelement face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n\
+        end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0 0 0.5 0.5 0 1\n";
+    let model = Model::of(&[("a.ply", ply), ("white.ppm", WHITE)]);
+    let mesh = model.mesh(0);
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 3, 4]]);
+    assert_eq!(mesh.uvs[3], Vec2::splat(0.5));
+    assert_eq!(model.picture(model.look(0).diffuse).0, [[1.0; 3]]);
+}
+
+#[test]
+fn stl_text_and_binary_weld_the_same() {
+    let facets = [
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        [[1.0, 0.0, -0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+    ];
+    let mut text = String::from("SOLID two words\n");
+    // The header of a binary file may begin as a text.
+    let mut binary = b"solid facet".to_vec();
+    binary.resize(80, b' ');
+    binary.extend(2_u32.to_le_bytes());
+    for facet in facets {
+        text += "Facet Normal 0 0 1\nouter loop\n";
+        binary.extend([0; 12]);
+        for [x, y, z] in facet {
+            text += &format!("vertex {x:e} {y} {z:.3}\n");
+            binary.extend([x, y, z].into_iter().flat_map(|value: f32| value.to_le_bytes()));
+        }
+        text += "endloop\nendfacet\n";
+        binary.extend([0, 0]);
+    }
+    text += "endsolid";
+    for (name, bytes) in [("a.stl", text.as_bytes()), ("a.stl", &binary), ("a", &binary), ("a.obj", &binary)]
+    {
+        let model = Model::of(&[(name, bytes)]);
+        assert_eq!(model.mesh(0).triangles, [[0, 1, 2], [1, 3, 2]]);
+        assert_eq!(model.mesh(0).normals, []);
+        assert_eq!(model.parts[0].name.is_some(), bytes[0] == b'S');
+        assert_eq!(model.warnings, [""; 0]);
+    }
+}
+
+#[test]
+fn stl_colours_in_both_dialects() {
+    let file = |header: &[u8], attribute: u16| {
+        let mut bytes = header.to_vec();
+        bytes.resize(80, b' ');
+        bytes.extend(1_u32.to_le_bytes());
+        let values = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0_f32];
+        bytes.extend(values.into_iter().flat_map(f32::to_le_bytes));
+        bytes.extend(attribute.to_le_bytes());
+        Model::of(&[("a.stl", &bytes)]).mesh(0).colors.first().copied()
+    };
+    let (red, blue) = (Some([1.0, 0.0, 0.0]), Some([0.0, 0.0, 1.0]));
+    assert_eq!(file(b"VisCAM", 1 << 15 | 31 << 10), red);
+    assert_eq!(file(b"VisCAM", 1 << 15 | 31), blue);
+    assert_eq!(file(b"VisCAM", 31 << 10), None);
+    assert_eq!(file(b"COLOR=\xff\0\0\xff", 31 << 10), blue);
+    assert_eq!(file(b"COLOR=\xff\0\0\xff", 1 << 15), red);
+}
+
+proptest! {
+    /// What is written as PLY comes back bit by bit, at any scale.
+    #[test]
+    fn ply_round_trip(
+        vertices in prop::collection::vec((any::<[u32; 3]>(), any::<[f32; 2]>()), 3..20),
+        corners in prop::collection::vec(any::<[prop::sample::Index; 3]>(), 1..20),
+        (normals, uvs, colors) in any::<(bool, bool, bool)>(),
+    ) {
+        let n = vertices.len();
+        let finite = |bits: u32| Some(f32::from_bits(bits)).filter(|value| value.is_finite()).unwrap_or(1.5);
+        let positions: Vec<Vec3> = vertices.iter().map(|(bits, _)| Vec3::from_array(bits.map(finite))).collect();
+        let triangles: Vec<[u32; 3]> = corners.iter().map(|c| c.map(|index| index.index(n) as u32)).collect();
+        let has_area = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|vertex| positions[vertex as usize].as_dvec3());
+            (b - a).cross(c - a) != glam::DVec3::ZERO
+        };
+        let triangles: Vec<_> = triangles.into_iter().filter(has_area).collect();
+        prop_assume!(!triangles.is_empty());
+        let mesh = Mesh {
+            name: String::new(),
+            triangles,
+            normals: if normals { positions.clone() } else { Vec::new() },
+            uvs: if uvs { vertices.iter().map(|(_, uv)| Vec2::from_array(*uv)).collect() } else { Vec::new() },
+            colors: if colors { positions.iter().map(|p| p.abs().to_array()).collect() } else { Vec::new() },
+            positions,
+        };
+        let model = Model::of(&[("a.ply", &ply::write(&mesh))]);
+        let back = model.mesh(0);
+        prop_assert_eq!(format!("{:?}", (&back.positions, &back.triangles, &back.normals, &back.uvs, &back.colors)),
+            format!("{:?}", (&mesh.positions, &mesh.triangles, &mesh.normals, &mesh.uvs, &mesh.colors)));
+    }
+}
