@@ -207,7 +207,7 @@ fn ply_of_all_types_in_all_formats_is_the_same() {
         )
         .into_bytes()
     };
-    let points = [(0.5, 0.25, -3_i16), (1.0, 0.0, 7), (1.0, 1.0, 0), (0.0, 1.0, -1)];
+    let points = [(0.5_f64, 0.25, -3_i16), (1.0, 0.0, 7), (1.0, 1.0, 0), (0.0, 1.0, -1)];
     let strip = [0_i32, 1, 2, 3, -1, 0, 1, 3];
     let mut ascii = header("ascii");
     ascii.extend(b"2 5 6 0.5\n");
@@ -221,7 +221,7 @@ fn ply_of_all_types_in_all_formats_is_the_same() {
     }
     put!(2_u8, 5_i16, 6_i16, 0.5_f64);
     for (x, y, z) in points {
-        put!(x as f64, y as f32, z, 255_u8, 0_u8, 128_u8, 0_i8);
+        put!(x, y as f32, z, 255_u8, 0_u8, 128_u8, 0_i8);
     }
     put!(0_i32, 4_u16, 0_u32, 1_u32, 2_u32, 3_u32, 8_i32);
     for index in strip {
