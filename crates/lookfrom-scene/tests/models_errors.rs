@@ -148,7 +148,7 @@ fn ply() {
             binary.len() - 13
         )
     );
-    let nan = format!("{}nan 0 0\n3 0 1 3\n2 0 1\n3 0 1 1\n", vertices);
+    let nan = format!("{vertices}nan 0 0\n3 0 1 3\n2 0 1\n3 0 1 1\n");
     assert_eq!(
         said("a.ply", header.replace("vertex 3", "vertex 4").replace("face 1", "face 3") + &nan),
         "a.ply:15: 1 face left out: fewer than three corners\n\
