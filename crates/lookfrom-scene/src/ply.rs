@@ -1,11 +1,12 @@
 //! How does a PLY file become a mesh or a cloud of points?
 //!
-//! [`header`] reads what the file says of itself, [`body`] its values, [`build`] makes the mesh, [`write`](mod@write) writes one. The
+//! [`header`] reads what the file says of itself, [`body`] (by way of [`values`]) its values, [`build`] makes the mesh, [`write`](mod@write) writes one. The
 //! format: Turk 1994, "The PLY Polygon File Format"; names of properties as programs have come to write them.
 
 mod body;
 mod build;
 mod header;
+mod values;
 mod write;
 
 use std::path::Path;

@@ -36,6 +36,8 @@ pub(super) struct Looks {
     by_name: HashMap<Vec<u8>, usize>,
     /// Pictures by file and tint, so that each is read once; `None` where it cannot be read.
     images: HashMap<(PathBuf, [u32; 3]), Option<ImageId>>,
+    /// Texels of all pictures so far.
+    texels: u64,
     names_libraries: bool,
     missing: Tally,
     missing_name: String,
@@ -61,6 +63,7 @@ impl Looks {
             materials: Vec::new(),
             by_name: HashMap::new(),
             images: HashMap::new(),
+            texels: 0,
             names_libraries: !libraries.is_empty(),
             missing: Tally::default(),
             missing_name: String::new(),
@@ -238,11 +241,10 @@ impl Looks {
         let image = match self.images.get(&key) {
             Some(image) => *image,
             None => {
-                let image = match read_image(library, &map.file, sources) {
-                    Ok(image) => Some(push_image(scene, tinted(image, tint))),
-                    Err(error) => {
-                        let message =
-                            format!("texture `{}`: {}; the constant colour is used", map.file, error.message);
+                let image = match self.read_tinted(&map.file, tint, library, sources) {
+                    Ok(image) => Some(push_image(scene, image)),
+                    Err(why) => {
+                        let message = format!("texture `{}`: {why}; the constant colour is used", map.file);
                         sources.warn(&map.at, message);
                         None
                     }
@@ -255,13 +257,32 @@ impl Looks {
         let kind = picture(image, map.scale, map.offset, wrap);
         Some(push_texture(scene, &map.file, &map.at, kind))
     }
-}
 
-fn tinted(mut image: Image, tint: [f32; 3]) -> Image {
-    if tint != WHITE {
-        for texel in &mut image.texels {
-            *texel = [texel[0] * tint[0], texel[1] * tint[1], texel[2] * tint[2]];
+    /// A picture with its texels multiplied. The same picture with many tints must not fill the memory: in sum there
+    /// are no more texels than one picture may have.
+    fn read_tinted(
+        &mut self,
+        name: &str,
+        tint: [f32; 3],
+        library: &Path,
+        sources: &mut Sources<'_>,
+    ) -> std::result::Result<Image, String> {
+        let left = sources.limits.texels.saturating_sub(self.texels);
+        let limit = sources.limits.texels;
+        let too_many = || format!("the pictures of this model have more than {limit} texels");
+        if left == 0 {
+            return Err(too_many());
         }
+        let mut image = read_image(library, name, sources).map_err(|error| error.message)?;
+        if image.texels.len() as u64 > left {
+            return Err(too_many());
+        }
+        self.texels += image.texels.len() as u64;
+        if tint != WHITE {
+            for texel in &mut image.texels {
+                *texel = [texel[0] * tint[0], texel[1] * tint[1], texel[2] * tint[2]];
+            }
+        }
+        Ok(image)
     }
-    image
 }

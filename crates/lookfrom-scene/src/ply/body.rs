@@ -6,11 +6,11 @@
 use glam::{Vec2, Vec3};
 
 use super::header::{Element, Format, Header, Kind, Scalar};
+use super::values::Reader;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Limits;
 use crate::image::linear_from_srgb;
-use crate::model::number::{parse_f32, parse_f64};
-use crate::model::scan::{Scanner, shown};
+use crate::model::scan::shown;
 
 /// What is understood of a file.
 #[derive(Default)]
@@ -266,130 +266,4 @@ fn skip(element: &Element, least: u64, reader: &mut Reader<'_>) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// A cursor over values.
-struct Reader<'a> {
-    file: &'a Location,
-    bytes: &'a [u8],
-    format: Format,
-    /// In binary formats.
-    position: usize,
-    /// In text.
-    scanner: Scanner<'a>,
-    header_bytes: usize,
-    header_lines: u32,
-}
-
-impl<'a> Reader<'a> {
-    fn new(bytes: &'a [u8], header: &Header, file: &'a Location) -> Self {
-        let scanner = Scanner::new(bytes);
-        let (header_bytes, header_lines) = (header.length, header.lines);
-        Self { file, bytes, format: header.format, position: 0, scanner, header_bytes, header_lines }
-    }
-
-    fn position(&self) -> usize {
-        if self.format == Format::Ascii { self.scanner.position() } else { self.position }
-    }
-
-    /// How many bytes are left.
-    fn left(&self) -> usize {
-        self.bytes.len() - self.position()
-    }
-
-    /// The line in the file; 0 in binary formats.
-    fn line(&self) -> u32 {
-        if self.format == Format::Ascii { self.header_lines + self.scanner.line() - 1 } else { 0 }
-    }
-
-    fn error_at(&self, line: u32, position: usize, kind: ErrorKind, message: String) -> Error {
-        let place = if self.format == Format::Ascii {
-            String::new()
-        } else {
-            format!(" (at byte {})", self.header_bytes + position)
-        };
-        Error::new(kind, &self.file.at(line, 0), message + &place)
-    }
-
-    fn ended(&self) -> Error {
-        self.error_at(
-            self.line(),
-            self.position(),
-            ErrorKind::Syntax,
-            "the file ends before all its values".to_owned(),
-        )
-        .hint("the file may be cut off, or its header may be wrong")
-    }
-
-    fn value(&mut self, scalar: Scalar) -> Result<f64> {
-        match self.format {
-            Format::Ascii => {
-                let word = self.scanner.word_across_lines();
-                if word.is_empty() {
-                    return Err(self.ended());
-                }
-                let number = match scalar {
-                    // Rounded once.
-                    Scalar::F32 => parse_f32(word).map(f64::from),
-                    _ => parse_f64(word),
-                };
-                number.ok_or_else(|| {
-                    let at = self.scanner.at(self.file);
-                    let at = at.at(self.line(), at.column);
-                    Error::syntax(&at, format!("expected a number, found `{}`", shown(word)))
-                })
-            }
-            Format::LittleEndian => self.binary(scalar, false),
-            Format::BigEndian => self.binary(scalar, true),
-        }
-    }
-
-    fn binary(&mut self, scalar: Scalar, big: bool) -> Result<f64> {
-        let size = scalar.size();
-        let Some(bytes) = self.bytes.get(self.position..self.position + size) else {
-            return Err(self.ended());
-        };
-        self.position += size;
-        // The bytes in the order of little-endian, then as the type.
-        let mut little = [0_u8; 8];
-        little[..size].copy_from_slice(bytes);
-        if big {
-            little[..size].reverse();
-        }
-        let bits = u64::from_le_bytes(little);
-        Ok(match scalar {
-            Scalar::I8 => f64::from(bits as i8),
-            Scalar::U8 => f64::from(bits as u8),
-            Scalar::I16 => f64::from(bits as i16),
-            Scalar::U16 => f64::from(bits as u16),
-            Scalar::I32 => f64::from(bits as i32),
-            Scalar::U32 => f64::from(bits as u32),
-            Scalar::F32 => f64::from(f32::from_bits(bits as u32)),
-            Scalar::F64 => f64::from_bits(bits),
-        })
-    }
-
-    fn list(&mut self, count: Scalar, item: Scalar, mut each: impl FnMut(f64)) -> Result<()> {
-        let position = self.position();
-        let values = self.value(count)?;
-        if values < 0.0 || values.fract() != 0.0 || values > self.left() as f64 {
-            let message = format!("a list of {values} values, where {} bytes are left", self.left());
-            return Err(self
-                .error_at(self.line(), position, ErrorKind::Syntax, message)
-                .hint("the file may be cut off, or its header may be wrong"));
-        }
-        for _ in 0..values as u64 {
-            each(self.value(item)?);
-        }
-        Ok(())
-    }
-
-    /// Passes over bytes of a binary format; false in text.
-    fn skip_bytes(&mut self, count: u64) -> bool {
-        let is_binary = self.format != Format::Ascii;
-        if is_binary {
-            self.position += count as usize;
-        }
-        is_binary
-    }
 }
