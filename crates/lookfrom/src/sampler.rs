@@ -28,11 +28,9 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// The sampler of one render. Another `seed` gives other noise.
-    ///
-    /// None of the kinds there are looks at `_samples_per_pixel`: sample 5 of 16 is sample 5 of 64, so that a render
-    /// can be continued. A kind that must know its budget beforehand would.
-    pub fn new(kind: Kind, seed: u64, _samples_per_pixel: u32) -> Self {
+    /// The sampler of one render. Another `seed` gives other noise. Sample 5 of 16 is sample 5 of 64, so that a render
+    /// can be continued.
+    pub fn new(kind: Kind, seed: u64) -> Self {
         Self { kind, key: mix(seed.wrapping_add(GOLDEN)) }
     }
 

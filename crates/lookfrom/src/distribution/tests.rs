@@ -7,7 +7,7 @@ use crate::statistics::chi_square_deviate;
 use proptest::prelude::*;
 
 fn random(i: u32) -> [f32; 2] {
-    Sampler::new(lookfrom_scene::settings::Sampler::Independent, 11, 1).two([0, 0], i, 0)
+    Sampler::new(lookfrom_scene::settings::Sampler::Independent, 11).two([0, 0], i, 0)
 }
 
 /// Weights of any exponent, some zero, some nonsense.

@@ -88,7 +88,7 @@ fn samples_follow_the_magnitude_of_the_filter() {
         let total: f64 = expected.iter().sum();
         expected.iter_mut().for_each(|e| *e *= f64::from(SAMPLES) / total);
         // Count samples, whose weights must have the sign of f.
-        let sampler = crate::sampler::Sampler::new(lookfrom_scene::settings::Sampler::Independent, 3, 1);
+        let sampler = crate::sampler::Sampler::new(lookfrom_scene::settings::Sampler::Independent, 3);
         let mut observed = vec![0; CELLS * CELLS];
         let mut wrong_signs = 0;
         for i in 0..SAMPLES {

@@ -4,11 +4,11 @@ use super::*;
 use crate::statistics::chi_square_deviate;
 
 fn sobol(seed: u64) -> Sampler {
-    Sampler::new(Kind::Sobol, seed, 16)
+    Sampler::new(Kind::Sobol, seed)
 }
 
 fn both_kinds() -> [Sampler; 2] {
-    [sobol(7), Sampler::new(Kind::Independent, 7, 16)]
+    [sobol(7), Sampler::new(Kind::Independent, 7)]
 }
 
 /// The second Sobol' dimension as textbooks compute it: direction numbers v₁ = ½, vₖ₊₁ = vₖ ⊕ vₖ/2, one for each set
@@ -125,7 +125,7 @@ fn errors_are_those_of_true_owen_scrambling() {
     });
     let sampler = sobol(1);
     let fast = variance(|seed| (0..64).map(|i| sampler.two([seed, 3], i, 9).map(f64::from)).collect());
-    let random = Sampler::new(Kind::Independent, 1, 64);
+    let random = Sampler::new(Kind::Independent, 1);
     let independent = variance(|seed| (0..64).map(|i| random.two([seed, 3], i, 9).map(f64::from)).collect());
     assert!((fast / slow - 1.0).abs() < 0.15, "hashed {fast:e}, true {slow:e}");
     assert!(independent > 50.0 * fast, "independent {independent:e}, Sobol' {fast:e}");
@@ -234,7 +234,7 @@ fn different_addresses_are_uncorrelated() {
         pairs_look_uniform("x and y, over pixels", (0..N).map(|i| s.two(pixel(i), 1, 4)));
     }
     // Two samples of one Sobol' pattern keep apart, and should.
-    let random = Sampler::new(Kind::Independent, 7, 16);
+    let random = Sampler::new(Kind::Independent, 7);
     pairs_look_uniform("two samples", (0..N).map(|i| [random.one([0, 0], 0, i), random.one([0, 0], 9, i)]));
     pairs_look_uniform(
         "successive samples",

@@ -9,7 +9,7 @@ use glam::DVec3;
 const N: u32 = 200_000;
 
 fn numbers() -> impl Iterator<Item = [f32; 2]> {
-    let sampler = Sampler::new(lookfrom_scene::settings::Sampler::Independent, 5, 1);
+    let sampler = Sampler::new(lookfrom_scene::settings::Sampler::Independent, 5);
     (0..N).map(move |i| sampler.two([0, 0], i, 0))
 }
 

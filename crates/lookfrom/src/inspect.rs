@@ -1,0 +1,457 @@
+//! What happened on the way of one sample: every matrix, every determinant, every root, the whole tree of rays.
+//!
+//! This is the render itself with a watcher listening: [`inspect`] traces the one sample through [`Frame::trace`], as a
+//! tile would, and arranges what the watcher heard. What it shows adds up, bit for bit, to what the film received.
+//! Points are shown in the world (not in render space).
+
+mod candidate;
+mod svg;
+mod text;
+
+use std::collections::BTreeMap;
+
+use glam::{DMat4, DVec3, DVec4, Vec3};
+use lookfrom_bvh::{Hit, NONE};
+use serde::Serialize;
+
+use crate::integrator::{Branch, Cut, Event, Path, Shadow, Term};
+use crate::material::Coefficients;
+use crate::render::{Frame, SampleId};
+use crate::spectrum::Spectrum;
+use crate::surface::Surface;
+use crate::world::World;
+
+pub use candidate::{Candidate, Number, Test};
+pub use svg::svg;
+
+/// Everything that happened on the way of one sample.
+#[derive(Clone, Debug, Serialize)]
+pub struct Inspection {
+    /// Column and row from the top left.
+    pub pixel: [u32; 2],
+    /// Number of the sample in its pixel.
+    pub sample: u32,
+    /// From the pixel to the world.
+    pub camera: CameraSteps,
+    /// The tree of rays, parents before children, by address.
+    pub rays: Vec<RayReport>,
+    /// The sum over the tree, added in the order of `additions`.
+    pub radiance: [f32; 3],
+    /// Every addition to the sample, in the order in which they were made.
+    pub additions: Vec<Addition>,
+    /// The filter's weight.
+    pub weight: f32,
+    /// What the film received: `radiance · weight`.
+    pub film: [f32; 3],
+    /// Whether the additions shown give, bit for bit, what the film received.
+    pub adds_up: bool,
+}
+
+/// `P_world = T4 · R3 · S2 · T1 · P_k`, each factor and each product. Matrices are rows of columns.
+#[derive(Clone, Debug, Serialize)]
+pub struct CameraSteps {
+    /// The eye.
+    pub lookfrom: [f64; 3],
+    /// To the viewer's left.
+    pub u: [f64; 3],
+    /// Up.
+    pub v: [f64; 3],
+    /// Forward.
+    pub w: [f64; 3],
+    /// The point of the image, `(x_k, y_k, 0, 1)`, `y_k` up.
+    pub p_k: [f64; 4],
+    /// Each matrix by name, the product of it with those before, and the point after it.
+    pub steps: Vec<MatrixStep>,
+    /// `b`: the point of the image plane in the world.
+    pub p_world: [f64; 3],
+    /// `a`: where the ray starts.
+    pub a: [f64; 3],
+    /// `b − a`: its direction, not of unit length; `t = 1` is the image plane.
+    pub direction: [f64; 3],
+    /// Whether a lens moved `a` away from `lookfrom`.
+    pub lens: bool,
+}
+
+/// One factor of the camera's product.
+#[derive(Clone, Debug, Serialize)]
+pub struct MatrixStep {
+    /// `T1`, `S2`, `R3` or `T4`.
+    pub name: &'static str,
+    /// What it does.
+    pub does: &'static str,
+    /// The factor.
+    pub matrix: [[f64; 4]; 4],
+    /// The product of the factors so far.
+    pub product: [[f64; 4]; 4],
+    /// The point so far.
+    pub point: [f64; 4],
+}
+
+/// One ray of the tree.
+#[derive(Clone, Debug, Serialize)]
+pub struct RayReport {
+    /// 1 is the camera's ray; the mirrored child of n is 2n, the refracted one 2n + 1.
+    pub address: u64,
+    /// `camera`, `mirrored` or `refracted`.
+    pub kind: &'static str,
+    /// How many mirrors and refractions lie behind.
+    pub depth: u32,
+    /// Where it starts.
+    pub a: [f64; 3],
+    /// Its direction, not necessarily of unit length.
+    pub direction: [f32; 3],
+    /// The share of the sample that light along it has.
+    pub share: [f32; 3],
+    /// Every primitive that was tested, in the order of the tests.
+    pub candidates: Vec<Candidate>,
+    /// What it met; `None` for the sky.
+    pub met: Option<MetReport>,
+    /// Each light that was asked.
+    pub lights: Vec<LightReport>,
+    /// Each way in which the tree grows here, or would have.
+    pub branches: Vec<BranchReport>,
+    /// What this ray's own hit added to the sample.
+    pub added: [f32; 3],
+    /// What it added with all of its descendants.
+    pub subtree: [f32; 3],
+    #[serde(skip)]
+    hit: Hit,
+}
+
+/// What a ray met.
+#[derive(Clone, Debug, Serialize)]
+pub struct MetReport {
+    /// The shape's name.
+    pub shape: String,
+    /// Triangle or sphere in its shape.
+    pub primitive: u32,
+    /// The instance, where it is in one.
+    pub instance: Option<u32>,
+    /// The kernel's `t`, in units of the direction.
+    pub t: f32,
+    /// The point.
+    pub point: [f64; 3],
+    /// How far the next ray is moved off the surface, to be safe from rounding: a bound a component.
+    pub error: [f64; 3],
+    /// Geometric normal to the outside.
+    pub ng: [f64; 3],
+    /// Shading normal on the side of the viewer.
+    pub n: [f32; 3],
+    /// Texture coordinates.
+    pub uv: [f32; 2],
+    /// Whether the outside was met.
+    pub front: bool,
+    /// The material's name.
+    pub material: String,
+    /// Its coefficients here, where the integrator asks for them.
+    pub coefficients: Option<CoefficientsReport>,
+}
+
+/// Whitted's coefficients at a point.
+#[derive(Clone, Debug, Serialize)]
+pub struct CoefficientsReport {
+    /// `k_a`.
+    pub ambient: [f32; 3],
+    /// `k_d`.
+    pub diffuse: [f32; 3],
+    /// `k_s`.
+    pub specular: [f32; 3],
+    /// `n`.
+    pub shininess: f32,
+    /// `k_r`.
+    pub mirror: [f32; 3],
+    /// `k_t`.
+    pub transmission: [f32; 3],
+    /// Inside over outside.
+    pub ior: f32,
+}
+
+/// One light's answer.
+#[derive(Clone, Debug, Serialize)]
+pub struct LightReport {
+    /// Its number.
+    pub index: u32,
+    /// Its name.
+    pub light: String,
+    /// Toward it, unit length; `None` when no light can come from there.
+    pub wi: Option<[f32; 3]>,
+    /// `I_j`: what arrives, as Whitted's formula has it.
+    pub intensity: [f32; 3],
+    /// `k_d (N·L)`.
+    pub diffuse: [f32; 3],
+    /// `k_s (N·H)ⁿ`.
+    pub specular: [f32; 3],
+    /// Where the shadow ray starts and aims at (for an infinitely far light: a direction's length away).
+    pub shadow_ray: Option<[[f64; 3]; 2]>,
+    /// What stood in the way, the first first, each with the part that it let through.
+    pub blockers: Vec<(String, [f32; 3])>,
+    /// What was added to the sample.
+    pub added: [f32; 3],
+}
+
+/// One way in which the tree grows.
+#[derive(Clone, Debug, Serialize)]
+pub struct BranchReport {
+    /// Address of the child.
+    pub address: u64,
+    /// `mirrored` or `refracted`.
+    pub kind: &'static str,
+    /// The child's share of its parent.
+    pub weight: [f32; 3],
+    /// The part that Fresnel's equations mirror.
+    pub fresnel: Option<f32>,
+    /// Whether all was reflected.
+    pub total_reflection: bool,
+    /// Why it was not followed, if so.
+    pub cut: Option<&'static str>,
+}
+
+/// One addition to the sample.
+#[derive(Clone, Debug, Serialize)]
+pub struct Addition {
+    /// The ray whose hit made it.
+    pub address: u64,
+    /// Why: `sky`, `emission`, `ambient`, `view`, or the light's name.
+    pub term: String,
+    /// How much.
+    pub value: [f32; 3],
+}
+
+/// Follows one sample and reports all that happens on its way.
+pub fn inspect(frame: &Frame<'_>, id: SampleId) -> Inspection {
+    let world = frame.world();
+    let mut events: Vec<Event> = Vec::new();
+    let (traced, _) = frame.trace(&[id], &mut events);
+    let traced = traced[0];
+
+    let mut rays: BTreeMap<u64, RayReport> = BTreeMap::new();
+    let mut sum = Spectrum::BLACK;
+    let mut additions = Vec::new();
+    for event in &events {
+        match event {
+            Event::Met { path, hit } => {
+                rays.insert(path.address, ray_report(world, path, hit));
+            }
+            Event::Add { address, term, value } => {
+                sum += *value;
+                additions.push(Addition {
+                    address: *address,
+                    term: term_name(world, *term),
+                    value: value.rgb(),
+                });
+                if let Some(ray) = rays.get_mut(address) {
+                    add(&mut ray.added, value.rgb());
+                    if let Term::Light(light) = term
+                        && let Some(report) = ray.light_mut(*light)
+                    {
+                        add(&mut report.added, value.rgb());
+                    }
+                }
+            }
+            Event::Surface { address, surface, coefficients } => {
+                if let Some(ray) = rays.get_mut(address) {
+                    ray.met = Some(met_report(world, &ray.hit, surface, coefficients.as_deref()));
+                }
+            }
+            Event::Asked { address, light, sample, diffuse, specular } => {
+                if let Some(ray) = rays.get_mut(address) {
+                    let intensity = sample.map(|sample| sample.li / (std::f32::consts::PI * sample.pdf));
+                    ray.lights.push(LightReport {
+                        index: *light,
+                        light: world.names.lights[*light as usize].clone(),
+                        wi: sample.map(|sample| sample.wi.to_array()),
+                        intensity: intensity.unwrap_or_default().rgb(),
+                        diffuse: diffuse.rgb(),
+                        specular: specular.rgb(),
+                        shadow_ray: None,
+                        blockers: Vec::new(),
+                        added: [0.0; 3],
+                    });
+                }
+            }
+            Event::Shadow { shadow, hit, passed } => {
+                if let Some(ray) = rays.get_mut(&shadow.path.address)
+                    && let Some(report) = ray.light_mut(shadow.light)
+                {
+                    report.shadow(world, shadow, hit, *passed);
+                }
+            }
+            Event::Grew { address, branch, weight, fresnel, total_reflection, cut } => {
+                if let Some(ray) = rays.get_mut(address) {
+                    let (kind, bit) = match branch {
+                        Branch::Mirrored => ("mirrored", 0),
+                        Branch::Refracted => ("refracted", 1),
+                    };
+                    ray.branches.push(BranchReport {
+                        address: address << 1 | bit,
+                        kind,
+                        weight: weight.rgb(),
+                        fresnel: *fresnel,
+                        total_reflection: *total_reflection,
+                        cut: cut.map(|cut| match cut {
+                            Cut::Contribution => "can no longer change the pixel",
+                            Cut::Depth => "the greatest depth is reached",
+                        }),
+                    });
+                }
+            }
+        }
+    }
+    sum_up_subtrees(&mut rays);
+    let film = (sum * traced.weight).rgb();
+    Inspection {
+        pixel: id.pixel,
+        sample: id.sample,
+        camera: camera_steps(frame, id),
+        rays: rays.into_values().collect(),
+        radiance: sum.rgb(),
+        additions,
+        weight: traced.weight,
+        film: traced.rgb,
+        adds_up: film.map(f32::to_bits) == traced.rgb.map(f32::to_bits),
+    }
+}
+
+fn add(sum: &mut [f32; 3], value: [f32; 3]) {
+    for (sum, value) in sum.iter_mut().zip(value) {
+        *sum += value;
+    }
+}
+
+/// Children have greater addresses than their parents: from the last to the first, each adds itself to its parent.
+fn sum_up_subtrees(rays: &mut BTreeMap<u64, RayReport>) {
+    let addresses: Vec<u64> = rays.keys().copied().collect();
+    for address in addresses.into_iter().rev() {
+        let Some(ray) = rays.get_mut(&address) else { continue };
+        let (own, of_children) = (ray.added, ray.subtree);
+        ray.subtree = std::array::from_fn(|c| own[c] + of_children[c]);
+        let subtree = ray.subtree;
+        if let Some(parent) = rays.get_mut(&(address >> 1)) {
+            add(&mut parent.subtree, subtree);
+        }
+    }
+}
+
+fn ray_report(world: &World, path: &Path, hit: &Hit) -> RayReport {
+    let kind = match (path.address, path.address & 1) {
+        (Path::ROOT, _) => "camera",
+        (_, 0) => "mirrored",
+        _ => "refracted",
+    };
+    RayReport {
+        address: path.address,
+        kind,
+        depth: path.depth,
+        a: in_world(world, path.ray.origin),
+        direction: path.ray.direction,
+        share: path.beta.rgb(),
+        candidates: candidate::candidates(world, &path.ray, hit),
+        met: None,
+        lights: Vec::new(),
+        branches: Vec::new(),
+        added: [0.0; 3],
+        subtree: [0.0; 3],
+        hit: *hit,
+    }
+}
+
+impl RayReport {
+    fn light_mut(&mut self, index: u32) -> Option<&mut LightReport> {
+        self.lights.iter_mut().find(|report| report.index == index)
+    }
+}
+
+fn met_report(world: &World, hit: &Hit, surface: &Surface, coefficients: Option<&Coefficients>) -> MetReport {
+    MetReport {
+        shape: world.names.shapes[surface.shape as usize].clone(),
+        primitive: hit.primitive,
+        instance: (hit.instance != NONE).then_some(hit.instance),
+        t: hit.t,
+        point: (world.origin + DVec3::from_array(surface.point.position)).to_array(),
+        error: surface.point.error,
+        ng: surface.ng.to_array(),
+        n: surface.ns_facing().to_array(),
+        uv: surface.uv.to_array(),
+        front: surface.front,
+        material: world.names.materials[surface.material as usize].clone(),
+        coefficients: coefficients.map(|k| CoefficientsReport {
+            ambient: k.ambient.rgb(),
+            diffuse: k.diffuse.rgb(),
+            specular: k.specular.rgb(),
+            shininess: k.shininess,
+            mirror: k.mirror.rgb(),
+            transmission: k.transmission.rgb(),
+            ior: k.ior,
+        }),
+    }
+}
+
+impl LightReport {
+    fn shadow(&mut self, world: &World, shadow: &Shadow, hit: &Hit, passed: Spectrum) {
+        let [origin, direction] =
+            [shadow.ray.origin, shadow.ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
+        let end = origin + direction;
+        let start = self.shadow_ray.map_or((world.origin + origin).to_array(), |[start, _]| start);
+        self.shadow_ray = Some([start, (world.origin + end).to_array()]);
+        if hit.is_hit() {
+            let surface = world.surface(&shadow.ray, hit);
+            self.blockers.push((world.names.shapes[surface.shape as usize].clone(), passed.rgb()));
+        }
+    }
+
+    /// Whether nothing of the light came through.
+    pub fn is_blocked(&self) -> bool {
+        self.blockers.iter().any(|(_, passed)| *passed == [0.0; 3])
+    }
+}
+
+fn term_name(world: &World, term: Term) -> String {
+    match term {
+        Term::Sky => "sky".into(),
+        Term::Emission => "emission".into(),
+        Term::Ambient => "ambient".into(),
+        Term::View => "view".into(),
+        Term::Light(light) => world.names.lights[light as usize].clone(),
+    }
+}
+
+fn in_world(world: &World, point: [f32; 3]) -> [f64; 3] {
+    (world.origin + Vec3::from_array(point).as_dvec3()).to_array()
+}
+
+fn camera_steps(frame: &Frame<'_>, id: SampleId) -> CameraSteps {
+    let camera = &frame.world().camera;
+    let (ray, _) = frame.camera_ray(id);
+    let rows = |matrix: &DMat4| matrix.transpose().to_cols_array_2d();
+    let mut product = DMat4::IDENTITY;
+    let mut step = |name, does, matrix: &DMat4, point: DVec4| {
+        product = *matrix * product;
+        MatrixStep { name, does, matrix: rows(matrix), product: rows(&product), point: point.to_array() }
+    };
+    let steps = vec![
+        step(
+            "T1",
+            "the middle of the image to the axis, the image plane to the distance d",
+            &camera.t1,
+            ray.after_t1,
+        ),
+        step("S2", "pixels to lengths; x turned round, since u points to the left", &camera.s2, ray.after_s2),
+        step("R3", "view to world, around the eye: [u v w]", &camera.r3, ray.after_r3),
+        step("T4", "the eye to lookfrom", &camera.t4, ray.p_world.extend(1.0)),
+    ];
+    let [u, v, w] =
+        [camera.r3.x_axis, camera.r3.y_axis, camera.r3.z_axis].map(|axis| axis.truncate().to_array());
+    let a = camera.lookfrom() + ray.a_from_eye;
+    CameraSteps {
+        lookfrom: camera.lookfrom().to_array(),
+        u,
+        v,
+        w,
+        p_k: ray.p_k.to_array(),
+        steps,
+        p_world: ray.p_world.to_array(),
+        a: a.to_array(),
+        direction: ray.direction.to_array(),
+        lens: camera.lens.is_some(),
+    }
+}

@@ -1,0 +1,255 @@
+//! The tree of rays as a drawing: a side view of the scene with the camera, one colour for each kind of ray, blocked
+//! shadow rays black.
+
+use std::fmt::Write;
+
+use glam::{DVec2, DVec3, Vec3};
+
+use super::{Inspection, RayReport};
+use crate::shape::Form;
+use crate::world::World;
+
+/// Width of the drawing in its own units; the height follows from the scene.
+const WIDTH: f64 = 1000.0;
+
+/// Outlines of at most so many triangles of one mesh are drawn, evenly chosen.
+const MOST_TRIANGLES: usize = 2000;
+
+/// Draws an inspection: the picture plane of the drawing holds the camera's view axis (to the right) and its up.
+pub fn svg(world: &World, inspection: &Inspection) -> String {
+    let side = SideView::new(world);
+    let segments = segments(world, &side, inspection);
+
+    // Frame the rays and the eye; what lies beyond is cut off.
+    let mut low = side.project(DVec3::from_array(inspection.camera.lookfrom));
+    let mut high = low;
+    for segment in &segments {
+        for point in [segment.from, segment.to] {
+            low = low.min(point);
+            high = high.max(point);
+        }
+    }
+    let margin = 0.1 * (high - low).max_element().max(1e-9);
+    (low, high) = (low - margin, high + margin);
+    let aspect = ((high.y - low.y) / (high.x - low.x)).clamp(0.3, 1.2);
+    let middle = 0.5 * (low + high);
+    let half_width = (0.5 * (high.x - low.x)).max(0.5 * (high.y - low.y) / aspect);
+    let scale = WIDTH / (2.0 * half_width);
+    let height = WIDTH * aspect;
+    let place = |p: DVec2| {
+        DVec2::new(WIDTH / 2.0 + (p.x - middle.x) * scale, height / 2.0 - (p.y - middle.y) * scale)
+    };
+
+    let mut out = String::new();
+    let _ = write!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" font-family=\"sans-serif\" \
+         font-size=\"14\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+    );
+    draw_scene(&mut out, world, &side, &place, scale);
+    for segment in &segments {
+        let (a, b) = (place(segment.from), place(segment.to));
+        let _ = writeln!(
+            out,
+            "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" stroke=\"{}\" stroke-width=\"{}\"{}><title>{}</title></line>",
+            a.x,
+            a.y,
+            b.x,
+            b.y,
+            segment.kind.color(),
+            segment.kind.width(),
+            segment.kind.dashes(),
+            escape(&segment.title)
+        );
+    }
+    draw_camera(&mut out, place(side.project(DVec3::from_array(inspection.camera.lookfrom))));
+    draw_legend(&mut out, height, inspection);
+    out.push_str("</svg>\n");
+    out
+}
+
+/// Seen from the camera's left: forward is to the right, up is up.
+struct SideView {
+    forward: DVec3,
+    up: DVec3,
+}
+
+impl SideView {
+    fn new(world: &World) -> Self {
+        let axes = &world.camera.r3;
+        Self { forward: axes.z_axis.truncate().normalize(), up: axes.y_axis.truncate().normalize() }
+    }
+
+    fn project(&self, point: DVec3) -> DVec2 {
+        DVec2::new(point.dot(self.forward), point.dot(self.up))
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Camera,
+    Mirrored,
+    Refracted,
+    Shadow,
+    Blocked,
+}
+
+impl Kind {
+    const ALL: [Self; 5] = [Self::Camera, Self::Mirrored, Self::Refracted, Self::Shadow, Self::Blocked];
+
+    fn color(self) -> &'static str {
+        match self {
+            Self::Camera => "#2458c5",
+            Self::Mirrored => "#1f9d55",
+            Self::Refracted => "#d9480f",
+            Self::Shadow => "#e0a800",
+            Self::Blocked => "#000000",
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Camera => "camera ray",
+            Self::Mirrored => "mirrored ray",
+            Self::Refracted => "refracted ray",
+            Self::Shadow => "shadow ray that reaches its light",
+            Self::Blocked => "shadow ray that is blocked",
+        }
+    }
+
+    fn width(self) -> f64 {
+        if matches!(self, Self::Shadow | Self::Blocked) { 1.2 } else { 2.4 }
+    }
+
+    fn dashes(self) -> &'static str {
+        if matches!(self, Self::Shadow | Self::Blocked) { " stroke-dasharray=\"6 4\"" } else { "" }
+    }
+}
+
+struct Segment {
+    kind: Kind,
+    from: DVec2,
+    to: DVec2,
+    title: String,
+}
+
+/// Every ray as a line; those that meet nothing, and shadow rays to infinitely far lights, end after a while.
+fn segments(world: &World, side: &SideView, inspection: &Inspection) -> Vec<Segment> {
+    let length = while_length(inspection);
+    let mut segments = Vec::new();
+    for ray in &inspection.rays {
+        let a = DVec3::from_array(ray.a);
+        let direction = Vec3::from_array(ray.direction).as_dvec3();
+        let end = match &ray.met {
+            Some(met) => DVec3::from_array(met.point),
+            None => a + direction.normalize() * length,
+        };
+        let kind = match ray.kind {
+            "camera" => Kind::Camera,
+            "mirrored" => Kind::Mirrored,
+            _ => Kind::Refracted,
+        };
+        let title = format!("{} ray {}, brings {:?}", ray.kind, ray.address, ray.subtree);
+        segments.push(Segment { kind, from: side.project(a), to: side.project(end), title });
+        shadow_segments(world, side, ray, length, &mut segments);
+    }
+    segments
+}
+
+fn shadow_segments(
+    world: &World,
+    side: &SideView,
+    ray: &RayReport,
+    length: f64,
+    segments: &mut Vec<Segment>,
+) {
+    for light in &ray.lights {
+        let Some([start, end]) = light.shadow_ray.map(|ends| ends.map(DVec3::from_array)) else { continue };
+        let endless =
+            world.lights.get(light.index as usize).is_some_and(crate::light::Light::is_infinitely_far);
+        let end = if endless { start + (end - start).normalize() * length } else { end };
+        let kind = if light.is_blocked() { Kind::Blocked } else { Kind::Shadow };
+        let title = format!("shadow ray to {}, brings {:?}", light.light, light.added);
+        segments.push(Segment { kind, from: side.project(start), to: side.project(end), title });
+    }
+}
+
+/// How long a ray without an end is drawn: a good part of what is seen.
+fn while_length(inspection: &Inspection) -> f64 {
+    let eye = DVec3::from_array(inspection.camera.lookfrom);
+    let points =
+        inspection.rays.iter().filter_map(|ray| ray.met.as_ref()).map(|met| DVec3::from_array(met.point));
+    let farthest = points.map(|point| point.distance(eye)).fold(0.0, f64::max);
+    if farthest > 0.0 {
+        0.4 * farthest
+    } else {
+        4.0 * DVec3::from_array(inspection.camera.direction).length()
+    }
+}
+
+fn draw_scene(out: &mut String, world: &World, side: &SideView, place: &impl Fn(DVec2) -> DVec2, scale: f64) {
+    out.push_str("<g fill=\"#00000008\" stroke=\"#9a9a9a\" stroke-width=\"0.8\">\n");
+    for form in &world.forms {
+        match form {
+            Form::Spheres(spheres) if spheres.spheres.len() <= MOST_TRIANGLES => {
+                for sphere in &spheres.spheres {
+                    let center = world.origin + Vec3::from_array(sphere.center).as_dvec3();
+                    let c = place(side.project(center));
+                    let radius = f64::from(sphere.radius) * scale;
+                    let _ = writeln!(out, "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{radius:.1}\"/>", c.x, c.y);
+                }
+            }
+            Form::Mesh(mesh) => {
+                let every = mesh.triangles.len().div_ceil(MOST_TRIANGLES).max(1);
+                for index in (0..mesh.triangles.len()).step_by(every) {
+                    let points = mesh.corners(index).map(|corner| {
+                        let p = place(side.project(world.origin + Vec3::from_array(corner).as_dvec3()));
+                        format!("{:.1},{:.1}", p.x, p.y)
+                    });
+                    let _ = writeln!(out, "<polygon points=\"{}\"/>", points.join(" "));
+                }
+            }
+            Form::Spheres(_) | Form::Disks(_) => {}
+        }
+    }
+    out.push_str("</g>\n");
+}
+
+fn draw_camera(out: &mut String, eye: DVec2) {
+    let (x, y) = (eye.x, eye.y);
+    let _ = writeln!(
+        out,
+        "<path d=\"M {:.1} {:.1} l 22 -12 v 24 z\" fill=\"#2458c5\" fill-opacity=\"0.25\" stroke=\"#2458c5\"/>\n\
+         <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"#2458c5\"/>\n<text x=\"{:.1}\" y=\"{:.1}\">lookfrom</text>",
+        x,
+        y,
+        x - 10.0,
+        y + 30.0
+    );
+}
+
+fn draw_legend(out: &mut String, height: f64, inspection: &Inspection) {
+    let [x, y] = inspection.pixel;
+    let _ = writeln!(
+        out,
+        "<text x=\"12\" y=\"22\">pixel {x} {y}, sample {}: {:?}</text>",
+        inspection.sample, inspection.film
+    );
+    for (index, kind) in Kind::ALL.into_iter().enumerate() {
+        let line = height - 16.0 - 20.0 * (Kind::ALL.len() - 1 - index) as f64;
+        let _ = writeln!(
+            out,
+            "<line x1=\"12\" y1=\"{0:.1}\" x2=\"52\" y2=\"{0:.1}\" stroke=\"{1}\" stroke-width=\"{2}\"{3}/><text x=\"60\" y=\"{4:.1}\">{5}</text>",
+            line - 5.0,
+            kind.color(),
+            kind.width(),
+            kind.dashes(),
+            line,
+            kind.name()
+        );
+    }
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}

@@ -1,0 +1,211 @@
+//! The inspection as a person reads it: from the pixel to the world, then the tree of rays, indented as the tree it is.
+
+use std::fmt::{self, Display, Formatter, Write as _};
+
+use super::candidate::{Number, Test};
+use super::{Candidate, Inspection, LightReport, MetReport, RayReport};
+
+/// How many of a ray's candidates are shown; the JSON form has all.
+const MOST_CANDIDATES: usize = 6;
+
+impl Display for Inspection {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let [x, y] = self.pixel;
+        writeln!(f, "pixel {x} {y} (column, row from the top), sample {}", self.sample)?;
+        writeln!(f)?;
+        self.write_camera(f)?;
+        writeln!(f)?;
+        writeln!(f, "The tree of rays")?;
+        if let Some(root) = self.rays.first() {
+            self.write_ray(f, root, 0)?;
+        }
+        writeln!(f)?;
+        self.write_sum(f)
+    }
+}
+
+impl Inspection {
+    fn write_camera(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let camera = &self.camera;
+        writeln!(f, "From the pixel to the world: P_world = T4 · R3 · S2 · T1 · P_k")?;
+        writeln!(f, "  P_k      = {}", vector(&camera.p_k))?;
+        for step in &camera.steps {
+            writeln!(f, "  {}: {}", step.name, step.does)?;
+            let title =
+                if step.name == "T1" { String::new() } else { format!("product up to {}", step.name) };
+            for (row, (matrix, product)) in step.matrix.iter().zip(&step.product).enumerate() {
+                let matrix = matrix.map(|x| format!("{:>11}", short(x))).join(" ");
+                let product = product.map(|x| format!("{:>11}", short(x))).join(" ");
+                match (title.is_empty(), row) {
+                    (true, _) => writeln!(f, "    [{matrix} ]")?,
+                    (false, 0) => writeln!(f, "    [{matrix} ]   [{product} ]  {title}")?,
+                    (false, _) => writeln!(f, "    [{matrix} ]   [{product} ]")?,
+                }
+            }
+            writeln!(f, "    point  = {}", vector(&step.point))?;
+        }
+        writeln!(f, "  lookfrom = {}", vector(&camera.lookfrom))?;
+        writeln!(
+            f,
+            "  u (left) = {}   v (up) = {}   w (forward) = {}",
+            vector(&camera.u),
+            vector(&camera.v),
+            vector(&camera.w)
+        )?;
+        let moved = if camera.lens { "   (a point of the lens)" } else { "" };
+        writeln!(f, "  a        = {}{moved}", vector(&camera.a))?;
+        writeln!(f, "  b        = {}   (P_world)", vector(&camera.p_world))?;
+        writeln!(
+            f,
+            "  b − a    = {}   p(t) = a + t (b − a); t = 1 is the image plane",
+            vector(&camera.direction)
+        )
+    }
+
+    fn write_ray(&self, f: &mut Formatter<'_>, ray: &RayReport, indent: usize) -> fmt::Result {
+        let pad = "  ".repeat(indent + 1);
+        writeln!(f, "{pad}{} ray {}: share {} of the pixel", ray.kind, ray.address, color(ray.share))?;
+        writeln!(f, "{pad}  a = {}   direction = {}", vector(&ray.a), vector32(&ray.direction))?;
+        self.write_candidates(f, ray, &pad)?;
+        match &ray.met {
+            None => writeln!(f, "{pad}  meets nothing: the sky")?,
+            Some(met) => write_met(f, met, &pad)?,
+        }
+        for light in &ray.lights {
+            write_light(f, light, &pad)?;
+        }
+        for addition in self.additions.iter().filter(|addition| addition.address == ray.address) {
+            writeln!(f, "{pad}  + {}   {}", color(addition.value), addition.term)?;
+        }
+        for branch in &ray.branches {
+            let mut how = String::new();
+            if let Some(fresnel) = branch.fresnel {
+                write!(how, ", Fresnel mirrors {fresnel}")?;
+            }
+            if branch.total_reflection {
+                how.push_str(", total internal reflection");
+            }
+            if let Some(cut) = branch.cut {
+                write!(how, "; not followed: {cut}")?;
+            }
+            writeln!(f, "{pad}  {} branch, weight {}{how}", branch.kind, color(branch.weight))?;
+            if let Some(child) = self.rays.iter().find(|child| child.address == branch.address) {
+                self.write_ray(f, child, indent + 2)?;
+            }
+        }
+        if !ray.branches.is_empty() {
+            writeln!(f, "{pad}  all below ray {}: {}", ray.address, color(ray.subtree))?;
+        }
+        Ok(())
+    }
+
+    fn write_candidates(&self, f: &mut Formatter<'_>, ray: &RayReport, pad: &str) -> fmt::Result {
+        let (shown, hidden) = chosen(&ray.candidates);
+        for candidate in shown {
+            writeln!(f, "{pad}  tested {}: {}", candidate.name, candidate.verdict)?;
+            write_test(f, &candidate.test, pad)?;
+        }
+        if hidden > 0 {
+            writeln!(
+                f,
+                "{pad}  … and {hidden} more candidates, all rejected or farther (--json shows them)"
+            )?;
+        }
+        Ok(())
+    }
+
+    fn write_sum(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(f, "The sum, in the order in which the film's sample was added up")?;
+        for addition in &self.additions {
+            writeln!(f, "  {}   ray {} {}", color(addition.value), addition.address, addition.term)?;
+        }
+        writeln!(f, "  = {}   times the filter's weight {}", color(self.radiance), self.weight)?;
+        let verdict = if self.adds_up { "the same, bit for bit" } else { "NOT the same: please report this" };
+        writeln!(f, "  = {}   what the film received: {verdict}", color(self.film))
+    }
+}
+
+/// The nearest hit and the first few others, and how many are left out.
+fn chosen(candidates: &[Candidate]) -> (Vec<&Candidate>, usize) {
+    let mut shown: Vec<&Candidate> = candidates.iter().filter(|candidate| candidate.is_nearest).collect();
+    shown.extend(candidates.iter().filter(|candidate| !candidate.is_nearest).take(MOST_CANDIDATES - 1));
+    let hidden = candidates.len() - shown.len();
+    (shown, hidden)
+}
+
+fn write_test(f: &mut Formatter<'_>, test: &Test, pad: &str) -> fmt::Result {
+    let numbers: &[(&str, Number)] = match test {
+        Test::Triangle { numbers } | Test::Sphere { numbers } => numbers,
+        Test::Other => return Ok(()),
+    };
+    writeln!(f, "{pad}    {:<14} {:>16} {:>24} {:>14}", "", "f32", "f64", "matching bits")?;
+    for (name, Number { f32, f64, bits }) in numbers {
+        writeln!(f, "{pad}    {name:<14} {:>16} {:>24} {bits:>14}", format!("{f32}"), format!("{f64}"))?;
+    }
+    Ok(())
+}
+
+fn write_met(f: &mut Formatter<'_>, met: &MetReport, pad: &str) -> fmt::Result {
+    let side = if met.front { "outside" } else { "inside" };
+    let instance = met.instance.map_or(String::new(), |instance| format!(" in instance {instance}"));
+    writeln!(f, "{pad}  meets {} at t = {} from {side}{instance}", met.shape, met.t)?;
+    writeln!(f, "{pad}    point = {}   known to ± {}", vector(&met.point), vector(&met.error))?;
+    writeln!(f, "{pad}    ng = {}   n = {}   uv = {}", vector(&met.ng), vector32(&met.n), vector32(&met.uv))?;
+    write!(f, "{pad}    material {}", met.material)?;
+    if let Some(k) = &met.coefficients {
+        write!(
+            f,
+            ": k_a {} k_d {} k_s {} n {}",
+            color(k.ambient),
+            color(k.diffuse),
+            color(k.specular),
+            k.shininess
+        )?;
+        write!(f, " k_r {} k_t {} ior {}", color(k.mirror), color(k.transmission), k.ior)?;
+    }
+    writeln!(f)
+}
+
+fn write_light(f: &mut Formatter<'_>, light: &LightReport, pad: &str) -> fmt::Result {
+    let Some(wi) = light.wi else {
+        return writeln!(f, "{pad}  light {}: none can come from there", light.light);
+    };
+    writeln!(f, "{pad}  light {}: L = {}   I_j = {}", light.light, vector32(&wi), color(light.intensity))?;
+    writeln!(f, "{pad}    k_d (N·L) = {}   k_s (N·H)^n = {}", color(light.diffuse), color(light.specular))?;
+    for (name, passed) in &light.blockers {
+        match *passed == [0.0; 3] {
+            true => writeln!(f, "{pad}    shadow ray: blocked by {name}")?,
+            false => writeln!(f, "{pad}    shadow ray: through {name}, which lets {} pass", color(*passed))?,
+        }
+    }
+    match (light.shadow_ray, light.is_blocked()) {
+        (None, _) => writeln!(f, "{pad}    no shadow ray: it would bring nothing"),
+        (Some(_), true) => Ok(()),
+        (Some(_), false) => writeln!(f, "{pad}    shadow ray: reaches the light"),
+    }
+}
+
+fn vector(v: &[f64]) -> String {
+    format!("({})", v.iter().map(|x| short(*x)).collect::<Vec<_>>().join(", "))
+}
+
+fn vector32(v: &[f32]) -> String {
+    format!("({})", v.iter().map(|x| short(f64::from(*x))).collect::<Vec<_>>().join(", "))
+}
+
+/// A colour in full: these numbers are to be added up.
+fn color(rgb: [f32; 3]) -> String {
+    format!("[{} {} {}]", rgb[0], rgb[1], rgb[2])
+}
+
+/// Seven digits, without an idle tail.
+fn short(x: f64) -> String {
+    // −0 reads as a slip
+    let x = if x == 0.0 { 0.0 } else { x };
+    if x != 0.0 && !(1e-4..1e7).contains(&x.abs()) {
+        return format!("{x:.4e}");
+    }
+    let digits = 6usize.saturating_sub(x.abs().log10().max(0.0) as usize);
+    let fixed = format!("{x:.digits$}");
+    if fixed.contains('.') { fixed.trim_end_matches('0').trim_end_matches('.').to_owned() } else { fixed }
+}

@@ -1,0 +1,40 @@
+//! Light that arrives straight from the lights: one shadow ray to each.
+
+use crate::integrator::{Event, Next, Numbers, Path, Probe, Shadow, Term};
+use crate::material::Coefficients;
+use crate::surface::Surface;
+use crate::world::World;
+
+/// Adds what the surface shines and `k_a I_a`, and asks every light for `k_d (N·L) I_j + k_s (N·H)ⁿ I_j`.
+pub(super) fn local_light<P: Probe>(
+    world: &World,
+    numbers: &Numbers<'_>,
+    path: &Path,
+    surface: &Surface,
+    coefficients: &Coefficients,
+    next: &mut Next<'_, P>,
+) {
+    next.add(path, Term::Emission, path.beta * world.emitted(surface));
+    next.add(path, Term::Ambient, path.beta * coefficients.ambient * world.ambient);
+    if !coefficients.is_lit() {
+        return;
+    }
+    let n = surface.ns_facing();
+    let ng = surface.ng_facing();
+    for (index, light) in world.lights.iter().enumerate() {
+        let index = index as u32;
+        let sample = light.sample(&world.textures, surface, n, numbers.two(index));
+        // What shines from behind the surface does not light its front, whatever the smoothed normal says.
+        let sample = sample.filter(|sample| ng.dot(sample.wi) > 0.0);
+        let (diffuse, specular) =
+            sample.map(|sample| coefficients.lit(n, surface.wo, sample.wi)).unwrap_or_default();
+        next.probe.notice(|| Event::Asked { address: path.address, light: index, sample, diffuse, specular });
+        let Some(sample) = sample else { continue };
+        // I_j of the notes is radiance over π: see `light`.
+        let arriving = sample.li / (std::f32::consts::PI * sample.pdf);
+        let contribution = path.beta * (diffuse + specular) * arriving;
+        if !contribution.is_black() {
+            next.shadows.push(Shadow::new(path, surface, &sample, index, contribution));
+        }
+    }
+}

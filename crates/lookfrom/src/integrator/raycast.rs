@@ -1,0 +1,37 @@
+//! Ray casting (Appel 1968): the nearest surface, local shading, one shadow ray to each light, no recursion.
+
+use lookfrom_bvh::Hit;
+
+use crate::integrator::direct::local_light;
+use crate::integrator::{Event, Integrator, Next, Numbers, Path, Probe, Term};
+use crate::material::Coefficients;
+use crate::world::World;
+
+/// Ray casting.
+#[derive(Clone, Copy, Debug)]
+pub struct Raycast;
+
+impl Integrator for Raycast {
+    fn step<P: Probe>(
+        &self,
+        world: &World,
+        numbers: &Numbers<'_>,
+        path: &Path,
+        hit: &Hit,
+        next: &mut Next<'_, P>,
+    ) {
+        if !hit.is_hit() {
+            next.add(path, Term::Sky, path.beta * world.sky(path.ray.direction));
+            return;
+        }
+        let surface = world.surface(&path.ray, hit);
+        let material = &world.materials[surface.material as usize];
+        let coefficients = Coefficients::at(material, &world.textures, &world.texture_point(&surface));
+        next.probe.notice(|| Event::Surface {
+            address: path.address,
+            surface: Box::new(surface),
+            coefficients: Some(Box::new(coefficients)),
+        });
+        local_light(world, numbers, path, &surface, &coefficients, next);
+    }
+}

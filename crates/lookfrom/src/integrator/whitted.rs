@@ -1,0 +1,122 @@
+//! Recursive ray tracing (Whitted 1980): at each hit shadow rays, one mirrored and one refracted ray, and so on. The
+//! colour of a pixel is the sum over that tree of rays.
+//!
+//! *Adaptive depth control* (Hall & Greenberg 1983): a branch that can no longer change the pixel is not followed.
+
+use glam::Vec3;
+use lookfrom_bvh::{Hit, Ray};
+
+use crate::integrator::direct::local_light;
+use crate::integrator::{Branch, Cut, Event, Integrator, Next, Numbers, Path, Probe, Term};
+use crate::material::Coefficients;
+use crate::spectrum::Spectrum;
+use crate::surface::Surface;
+use crate::world::World;
+
+/// The deepest tree that [`Path::address`] can number.
+const DEEPEST: u32 = 62;
+
+/// Recursive ray tracing.
+#[derive(Clone, Copy, Debug)]
+pub struct Whitted {
+    /// How many times a ray may be mirrored or refracted; at most 62 counts.
+    pub depth: u32,
+    /// Branches with a smaller share of the pixel are not followed.
+    pub min_contribution: f32,
+}
+
+impl Integrator for Whitted {
+    fn step<P: Probe>(
+        &self,
+        world: &World,
+        numbers: &Numbers<'_>,
+        path: &Path,
+        hit: &Hit,
+        next: &mut Next<'_, P>,
+    ) {
+        // A ray that leaves the scene sees the sky.
+        if !hit.is_hit() {
+            next.add(path, Term::Sky, path.beta * world.sky(path.ray.direction));
+            return;
+        }
+
+        // Absorb on the way to the surface.
+        let surface = world.surface(&path.ray, hit);
+        let length = Vec3::from_array(path.ray.direction).length() * hit.t;
+        let path = &Path { beta: path.beta * path.media.transmittance(world, length), ..*path };
+
+        // Shade what is seen: I_a and every light.
+        let material = &world.materials[surface.material as usize];
+        let coefficients = Coefficients::at(material, &world.textures, &world.texture_point(&surface));
+        next.probe.notice(|| Event::Surface {
+            address: path.address,
+            surface: Box::new(surface),
+            coefficients: Some(Box::new(coefficients)),
+        });
+        local_light(world, numbers, path, &surface, &coefficients, next);
+
+        // Grow the tree: k_r S and k_t T.
+        let n = surface.ns_facing();
+        let Some(branches) = coefficients.branches(n, surface.wo, surface.front) else { return };
+        let mirrored = (Branch::Mirrored, branches.mirrored);
+        let refracted = branches.refracted.map(|refracted| (Branch::Refracted, refracted));
+        for (branch, (direction, weight)) in [Some(mirrored), refracted].into_iter().flatten() {
+            let child = self.child(path, &surface, branch, direction, weight);
+            next.probe.notice(|| Event::Grew {
+                address: path.address,
+                branch,
+                weight,
+                fresnel: branches.fresnel,
+                total_reflection: branches.total_reflection,
+                cut: child.err(),
+            });
+            if let Ok(child) = child {
+                next.paths.push(child);
+            }
+        }
+    }
+}
+
+impl Whitted {
+    /// The path that goes on from a surface, or why there is none.
+    fn child(
+        &self,
+        path: &Path,
+        surface: &Surface,
+        branch: Branch,
+        direction: Vec3,
+        weight: Spectrum,
+    ) -> Result<Path, Cut> {
+        let beta = path.beta * weight;
+        if beta.max_lane() < self.min_contribution || beta.is_black() {
+            return Err(Cut::Contribution);
+        }
+        if path.depth >= self.depth.min(DEEPEST) {
+            return Err(Cut::Depth);
+        }
+        let ng = surface.ng_facing();
+        let (direction, media, last_bit) = match branch {
+            Branch::Mirrored => (same_side(direction, ng, 1.0), path.media, 0),
+            Branch::Refracted => {
+                let media =
+                    if surface.front { path.media.entered(surface.material) } else { path.media.left() };
+                (same_side(direction, ng, -1.0), media, 1)
+            }
+        };
+        Ok(Path {
+            ray: Ray::new(surface.origin(direction), direction.to_array()),
+            beta,
+            slot: path.slot,
+            depth: path.depth + 1,
+            address: path.address << 1 | last_bit,
+            media,
+        })
+    }
+}
+
+/// A smoothed normal can send a mirrored ray into the surface or a refracted one out of it: then the nearest direction
+/// that does not is taken, mirrored at the tangent plane. `side` is 1 for the side of `ng`, −1 for the other.
+fn same_side(direction: Vec3, ng: Vec3, side: f32) -> Vec3 {
+    let cos = direction.dot(ng);
+    if cos * side >= 0.0 { direction } else { direction - 2.0 * cos * ng }
+}

@@ -1,0 +1,92 @@
+//! The few vector operations that the field needs and glam lacks; no spectrum, no scene.
+
+use glam::{DMat4, DVec3, Vec3};
+use lookfrom_bvh::Affine;
+
+/// `wo` mirrored about the unit normal `n`: both point away from the surface, `2 (n·wo) n − wo`.
+pub fn reflect(wo: Vec3, n: Vec3) -> Vec3 {
+    2.0 * n.dot(wo) * n - wo
+}
+
+/// The direction into which Snell's law bends light that arrives along `−wo`, or `None` where it is totally reflected.
+///
+/// `n` is of unit length on the side of `wo`; `eta` is the index of refraction beyond the surface divided by the one on
+/// the side of `wo`. The result is of unit length (up to rounding) for a unit `wo`.
+pub fn refract(wo: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
+    let cos_i = n.dot(wo);
+    let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
+    if sin2_t >= 1.0 {
+        return None;
+    }
+    let cos_t = (1.0 - sin2_t).sqrt();
+    Some((cos_i / eta - cos_t) * n - wo / eta)
+}
+
+/// The part of unpolarised light that a dielectric mirrors (Fresnel), for `cos_i = n·wo ≥ 0` and `eta` as in [`refract`].
+pub fn fresnel_dielectric(cos_i: f32, eta: f32) -> f32 {
+    let cos_i = cos_i.clamp(0.0, 1.0);
+    let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
+    if sin2_t >= 1.0 {
+        return 1.0;
+    }
+    let cos_t = (1.0 - sin2_t).sqrt();
+    let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    0.5 * (parallel * parallel + perpendicular * perpendicular)
+}
+
+/// The kernel's form of an affine matrix.
+pub fn affine(matrix: &DMat4) -> Affine {
+    let rows = matrix.transpose();
+    Affine {
+        matrix: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.truncate().to_array()),
+        translation: matrix.w_axis.truncate().to_array(),
+    }
+}
+
+/// The direction of a normal after `matrix`, whose inverse is given: by the inverse's transpose; not of unit length.
+pub fn transform_normal(inverse: &DMat4, normal: DVec3) -> DVec3 {
+    inverse.transpose().transform_vector3(normal)
+}
+
+/// x to the n, the same on every platform; 0⁰ = 1.
+pub fn power(x: f32, n: f32) -> f32 {
+    libm::powf(x, n)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn snell_angles() {
+        let n = Vec3::Y;
+        for degrees in [0.0f32, 10.0, 30.0, 60.0, 85.0] {
+            let theta = degrees.to_radians();
+            let wo = Vec3::new(libm::sinf(theta), libm::cosf(theta), 0.0);
+            let wt = refract(wo, n, 1.5).unwrap();
+            // sin θ_t = sin θ_i / 1.5, on the other side, in the same plane
+            assert!((wt.x + wo.x / 1.5).abs() < 1e-6 && wt.y < 0.0 && wt.z == 0.0 && wt.is_normalized());
+            // and back again by the same way
+            let back = refract(wt, -n, 1.0 / 1.5).unwrap();
+            assert!((back - wo).length() < 2e-6);
+        }
+        // The critical angle of glass is asin(1/1.5) = 41.81°.
+        let inside = |degrees: f32| {
+            let theta = degrees.to_radians();
+            refract(Vec3::new(libm::sinf(theta), libm::cosf(theta), 0.0), n, 1.0 / 1.5)
+        };
+        assert!(inside(41.8).is_some() && inside(41.82).is_none());
+    }
+
+    #[test]
+    fn fresnel_known_values() {
+        assert!((fresnel_dielectric(1.0, 1.5) - 0.04).abs() < 1e-6);
+        assert!((fresnel_dielectric(0.0, 1.5) - 1.0).abs() < 1e-6);
+        // At Brewster's angle only the perpendicular half is left: ½ ((η²−1)/(η²+1))².
+        let brewster = 1.0 / (1.0f32 + 1.5 * 1.5).sqrt();
+        let expected = 0.5 * (1.25f32 / 3.25).powi(2);
+        assert!((fresnel_dielectric(brewster, 1.5) - expected).abs() < 1e-6);
+        assert_eq!(fresnel_dielectric(0.5, 1.0 / 1.5), 1.0);
+    }
+}

@@ -1,0 +1,338 @@
+//! The way of a pixel: start, hit, step, occluded, add – and the driver that runs it over a picture.
+//!
+//! [`Frame::render_tile`] is pure: the same world, settings, pixels and sample numbers give the same bits, on any machine,
+//! with any number of threads. Everything else ([`Frame::render`], the inspector, later a farm) only decides who calls it
+//! for what.
+
+use std::ops::Range;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::DVec3;
+use lookfrom_bvh::{Hit, Ray};
+use lookfrom_scene::settings::{Crop, ImageSettings, Integrator as Kind, RenderSettings};
+use lookfrom_scene::{Error, ErrorKind, Location, Result};
+use rayon::prelude::*;
+
+use crate::camera::CameraRay;
+use crate::film::{Film, FilmTile};
+use crate::filter::Filter;
+use crate::integrator::{
+    Event, Integrator, Media, Next, Numbers, Path, Probe, Raycast, View, Whitted, resolve_shadows,
+};
+use crate::sampler::Sampler;
+use crate::spectrum::Spectrum;
+use crate::world::World;
+
+/// Pixels on the side of a tile. One sample of each pixel of a tile is a batch.
+const TILE: u32 = 32;
+
+/// The greatest number of samples of a pixel between two looks at the clock and the picture.
+const LONGEST_PASS: u32 = 64;
+
+/// The dimensions of a sample's random numbers that the camera uses; rays use hashes of their place in the tree.
+const FILTER_DIMENSION: u32 = 0;
+const LENS_DIMENSION: u32 = 1;
+
+/// A world with everything that is asked of its picture.
+#[derive(Debug)]
+pub struct Frame<'a> {
+    world: &'a World,
+    filter: Filter,
+    sampler: Sampler,
+    image: ImageSettings,
+    render: RenderSettings,
+}
+
+/// Which sample of which pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SampleId {
+    /// Column and row from the top left.
+    pub pixel: [u32; 2],
+    /// Number of the sample in its pixel.
+    pub sample: u32,
+}
+
+/// How many rays were traced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rays {
+    /// From the camera.
+    pub camera: u64,
+    /// Mirrored and refracted.
+    pub secondary: u64,
+    /// To lights.
+    pub shadow: u64,
+}
+
+impl Rays {
+    /// All together.
+    pub fn total(self) -> u64 {
+        self.camera + self.secondary + self.shadow
+    }
+}
+
+impl std::ops::AddAssign for Rays {
+    fn add_assign(&mut self, other: Self) {
+        self.camera += other.camera;
+        self.secondary += other.secondary;
+        self.shadow += other.shadow;
+    }
+}
+
+/// Told how far a render is, and asked whether it shall stop. Called from many threads.
+pub trait Progress: Sync {
+    /// `done` of `total` samples are taken, with `rays` rays so far.
+    fn advance(&self, done: u64, total: u64, rays: u64);
+
+    /// Whether to stop before the next tile.
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody is told anything.
+impl Progress for () {
+    fn advance(&self, _: u64, _: u64, _: u64) {}
+}
+
+/// What came of a render.
+#[derive(Debug)]
+pub struct Rendered {
+    /// The light.
+    pub film: Film,
+    /// How many rays it took.
+    pub rays: Rays,
+    /// Whether it was stopped before the end.
+    pub cancelled: bool,
+}
+
+/// A sample's light before the film, with what the filter and the camera made of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Traced {
+    /// What the film gets: `radiance · weight`.
+    pub rgb: [f32; 3],
+    /// The sum over the tree of rays.
+    pub radiance: Spectrum,
+    /// The filter's weight: 1 or nearly so, negative in the lobes of some filters.
+    pub weight: f32,
+}
+
+impl<'a> Frame<'a> {
+    /// A picture of `world`, whose camera was made for the same size.
+    ///
+    /// # Errors
+    /// `Invalid` for no samples, a crop without pixels, or a size that is not the camera's.
+    pub fn new(world: &'a World, image: &ImageSettings, render: &RenderSettings) -> Result<Self> {
+        let invalid = |message: String| Err(Error::new(ErrorKind::Invalid, &Location::default(), message));
+        if world.camera.size != [image.width, image.height] {
+            return invalid(format!("the camera was made for {:?} pixels", world.camera.size));
+        }
+        if render.samples == 0 {
+            return invalid("0 samples a pixel; expected at least 1".into());
+        }
+        if let Some(Crop { x0, y0, x1, y1 }) = image.crop
+            && (x0 >= x1 || y0 >= y1 || x1 > image.width || y1 > image.height)
+        {
+            return invalid(format!(
+                "the crop {x0},{y0},{x1},{y1} is not a part of the picture of {} × {} pixels (x0 < x1, y0 < y1)",
+                image.width, image.height
+            ));
+        }
+        Ok(Self {
+            world,
+            filter: Filter::new(image.filter),
+            sampler: Sampler::new(render.sampler, render.seed),
+            image: image.clone(),
+            render: render.clone(),
+        })
+    }
+
+    /// The world that is pictured.
+    pub fn world(&self) -> &World {
+        self.world
+    }
+
+    /// The camera's ray for a sample and the filter's weight.
+    pub fn camera_ray(&self, id: SampleId) -> (CameraRay, f32) {
+        let [column, row] = id.pixel.map(f64::from);
+        let (offset, weight) = self.filter.sample(self.sampler.two(id.pixel, id.sample, FILTER_DIMENSION));
+        let lens = match self.world.camera.lens {
+            Some(_) => self.sampler.two(id.pixel, id.sample, LENS_DIMENSION),
+            None => [0.5; 2],
+        };
+        let x_k = column + 0.5 + f64::from(offset[0]);
+        let y_k = f64::from(self.image.height) - (row + 0.5 + f64::from(offset[1]));
+        (self.world.camera.ray([x_k, y_k], lens), weight)
+    }
+
+    /// Follows samples to their light, telling `probe` what happens. The result for a sample does not depend on the others.
+    pub fn trace<P: Probe>(&self, ids: &[SampleId], probe: &mut P) -> (Vec<Traced>, Rays) {
+        // One match a batch: an integrator is a type, and its step is compiled for it.
+        let RenderSettings { integrator, depth, min_contribution, .. } = self.render;
+        match integrator {
+            Kind::Raycast => self.trace_with(&Raycast, ids, probe),
+            Kind::Whitted => self.trace_with(&Whitted { depth, min_contribution }, ids, probe),
+            Kind::Normals => self.trace_with(&View::Normals, ids, probe),
+            Kind::Depth => self.trace_with(&View::Depth, ids, probe),
+            Kind::Uv => self.trace_with(&View::Uv, ids, probe),
+            Kind::Id => self.trace_with(&View::Id, ids, probe),
+        }
+    }
+
+    fn trace_with<I: Integrator, P: Probe>(
+        &self,
+        integrator: &I,
+        ids: &[SampleId],
+        probe: &mut P,
+    ) -> (Vec<Traced>, Rays) {
+        let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
+        let mut weights = Vec::with_capacity(ids.len());
+        let mut next = Next {
+            radiance: vec![Spectrum::BLACK; ids.len()],
+            paths: Vec::new(),
+            shadows: Vec::new(),
+            probe,
+        };
+
+        // Start: a ray from the camera for each sample.
+        for (slot, id) in ids.iter().enumerate() {
+            let (ray, weight) = self.camera_ray(*id);
+            weights.push(weight);
+            next.paths.push(Path {
+                ray: self.world.camera_ray(&ray),
+                beta: Spectrum::ONE,
+                slot: slot as u32,
+                depth: 0,
+                address: Path::ROOT,
+                media: Media::default(),
+            });
+        }
+
+        let mut paths = Vec::new();
+        let mut rays: Vec<Ray> = Vec::new();
+        let mut hits: Vec<Hit> = Vec::new();
+        while !next.paths.is_empty() {
+            // Hit: the nearest surface for every ray of the batch.
+            std::mem::swap(&mut paths, &mut next.paths);
+            next.paths.clear();
+            rays.clear();
+            rays.extend(paths.iter().map(|path| path.ray));
+            hits.clear();
+            hits.resize(rays.len(), Hit::MISS);
+            self.world.bvh.closest_hits(&rays, &mut hits);
+
+            // Step: from each hit to contributions, shadow rays and further paths.
+            for (path, hit) in paths.iter().zip(&hits) {
+                next.probe.notice(|| Event::Met { path: *path, hit: *hit });
+                let SampleId { pixel, sample } = ids[path.slot as usize];
+                let numbers = Numbers { sampler: &self.sampler, pixel, sample, address: path.address };
+                integrator.step(self.world, &numbers, path, hit, &mut next);
+            }
+
+            // Occluded: what arrives of the lights.
+            rays_traced.shadow += resolve_shadows(self.world, self.render.transparent_shadows, &mut next);
+            rays_traced.secondary += next.paths.len() as u64;
+        }
+
+        let traced = next.radiance.into_iter().zip(weights).map(|(radiance, weight)| Traced {
+            rgb: (radiance * weight).rgb(),
+            radiance,
+            weight,
+        });
+        (traced.collect(), rays_traced)
+    }
+
+    /// Adds the given samples of every pixel of a tile to its light.
+    pub fn render_tile(&self, samples: Range<u32>, tile: &mut FilmTile) -> Rays {
+        let Crop { x0, y0, x1, y1 } = tile.area();
+        let mut rays = Rays::default();
+        for sample in samples {
+            let ids: Vec<SampleId> =
+                (y0..y1).flat_map(|y| (x0..x1).map(move |x| SampleId { pixel: [x, y], sample })).collect();
+            let (traced, of_batch) = self.trace(&ids, &mut ());
+            rays += of_batch;
+            for (id, traced) in ids.iter().zip(traced) {
+                let [x, y] = id.pixel;
+                tile.add(x, y, id.sample, traced.rgb);
+            }
+        }
+        rays
+    }
+
+    /// Renders the whole picture on `threads` threads (all that there are for `None`).
+    ///
+    /// The samples of a pixel are taken in passes of 1, 1, 2, 4 … over the whole picture, so that a render that is stopped
+    /// leaves a whole picture behind. The film is the same for any number of threads.
+    ///
+    /// # Errors
+    /// `Limit` when there is no memory for the film or there are no threads to be had.
+    pub fn render(&self, threads: Option<usize>, progress: &dyn Progress) -> Result<Rendered> {
+        let film = Film::new(self.image.width, self.image.height, self.image.crop)?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
+        let pool =
+            pool.map_err(|error| Error::new(ErrorKind::Limit, &Location::default(), error.to_string()))?;
+        let tiles = tiles(film.area());
+        let pixels: u64 = tiles.iter().map(area).sum();
+        let total = pixels * u64::from(self.render.samples);
+        let film = Mutex::new((film, Rays::default()));
+        let done = AtomicU64::new(0);
+
+        pool.install(|| {
+            for pass in passes(self.render.samples) {
+                tiles.par_iter().try_for_each(|tile_area| -> Result<()> {
+                    if progress.cancelled() {
+                        return Ok(());
+                    }
+                    let mut tile = FilmTile::new(*tile_area)?;
+                    let rays = self.render_tile(pass.clone(), &mut tile);
+                    let rays_so_far = {
+                        let mut guard = film.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                        guard.0.add_tile(&tile);
+                        guard.1 += rays;
+                        guard.1.total()
+                    };
+                    let of_tile = area(tile_area) * u64::from(pass.end - pass.start);
+                    progress.advance(
+                        done.fetch_add(of_tile, Ordering::Relaxed) + of_tile,
+                        total,
+                        rays_so_far,
+                    );
+                    Ok(())
+                })?;
+            }
+            Ok(())
+        })?;
+        let (film, rays) = film.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        Ok(Rendered { film, rays, cancelled: done.into_inner() < total })
+    }
+
+    /// A point of render space in the world.
+    pub fn to_world(&self, point: [f32; 3]) -> DVec3 {
+        self.world.origin + DVec3::from_array(point.map(f64::from))
+    }
+}
+
+/// The parts of an area that threads work on.
+fn tiles(area: Crop) -> Vec<Crop> {
+    let rows = (area.y0..area.y1).step_by(TILE as usize);
+    rows.flat_map(|y0| {
+        let columns = (area.x0..area.x1).step_by(TILE as usize);
+        columns.map(move |x0| Crop { x0, y0, x1: (x0 + TILE).min(area.x1), y1: (y0 + TILE).min(area.y1) })
+    })
+    .collect()
+}
+
+fn area(tile: &Crop) -> u64 {
+    u64::from(tile.x1 - tile.x0) * u64::from(tile.y1 - tile.y0)
+}
+
+/// 0..1, 1..2, 2..4, 4..8 … up to `samples`.
+fn passes(samples: u32) -> impl Iterator<Item = Range<u32>> {
+    let mut start = 0;
+    std::iter::from_fn(move || {
+        let length = start.clamp(1, LONGEST_PASS).min(samples - start);
+        let pass = start..start + length;
+        start = pass.end;
+        (!pass.is_empty()).then_some(pass)
+    })
+}

@@ -1,0 +1,89 @@
+//! Light as four lanes.
+//!
+//! In RGB mode the lanes are linear Rec. 709 red, green, blue and an unused fourth that is always 0. All arithmetic of
+//! materials and lights is lane-wise; only where colour enters (textures, light colours) and leaves (the film) does the
+//! meaning of a lane matter, so that four wavelengths can take their place later.
+
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Sub};
+
+/// An amount of light, or a factor that light is multiplied by, in four lanes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(16))]
+pub struct Spectrum(pub [f32; 4]);
+
+impl Spectrum {
+    /// No light.
+    pub const BLACK: Self = Self([0.0; 4]);
+    /// The factor that changes nothing (in RGB mode).
+    pub const ONE: Self = Self([1.0, 1.0, 1.0, 0.0]);
+
+    /// A colour in linear Rec. 709.
+    pub fn from_rgb([r, g, b]: [f32; 3]) -> Self {
+        Self([r, g, b, 0.0])
+    }
+
+    /// The colour in linear Rec. 709.
+    pub fn rgb(self) -> [f32; 3] {
+        let [r, g, b, _] = self.0;
+        [r, g, b]
+    }
+
+    /// Each lane by `f`.
+    pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
+        Self(self.0.map(f))
+    }
+
+    /// Each pair of lanes by `f`.
+    pub fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
+        Self(std::array::from_fn(|lane| f(self.0[lane], other.0[lane])))
+    }
+
+    /// The greatest lane.
+    pub fn max_lane(self) -> f32 {
+        self.0.into_iter().fold(f32::NEG_INFINITY, f32::max)
+    }
+
+    /// Whether there is no light in any lane.
+    pub fn is_black(self) -> bool {
+        self.0 == [0.0; 4]
+    }
+}
+
+macro_rules! lane_wise {
+    ($($trait:ident $method:ident $operator:tt)*) => {$(
+        impl $trait for Spectrum {
+            type Output = Self;
+            fn $method(self, other: Self) -> Self {
+                self.zip(other, |a, b| a $operator b)
+            }
+        }
+    )*};
+}
+
+lane_wise! { Add add + Sub sub - Mul mul * }
+
+impl Mul<f32> for Spectrum {
+    type Output = Self;
+    fn mul(self, factor: f32) -> Self {
+        self.map(|lane| lane * factor)
+    }
+}
+
+impl Div<f32> for Spectrum {
+    type Output = Self;
+    fn div(self, divisor: f32) -> Self {
+        self.map(|lane| lane / divisor)
+    }
+}
+
+impl AddAssign for Spectrum {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl MulAssign for Spectrum {
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}

@@ -1,0 +1,50 @@
+//! What a ray met, computed once after the nearest hit is known: where, which way it faces, which look it has.
+//!
+//! Everything is in render space (see `world`).
+
+use glam::{DVec3, Vec2, Vec3};
+use lookfrom_bvh::Point;
+
+/// A point of a surface, seen from a direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Where, in f64, with its error bound.
+    pub point: Point,
+    /// Geometric normal to the outside, unit length.
+    pub ng: DVec3,
+    /// Shading normal, unit length, on the side of `ng`.
+    pub ns: Vec3,
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// The mesh's own linear colour here; white where it has none.
+    pub color: [f32; 3],
+    /// Back to where the ray came from, unit length.
+    pub wo: Vec3,
+    /// Whether `wo` is on the side of `ng`: the ray met the outside.
+    pub front: bool,
+    /// Index into the world's materials.
+    pub material: u32,
+    /// Index into the world's area lights, where the surface shines.
+    pub light: Option<u32>,
+    /// Which shape of the scene, counted over the whole world.
+    pub shape: u32,
+}
+
+impl Surface {
+    /// The geometric normal on the side of `wo`.
+    pub fn ng_facing(&self) -> Vec3 {
+        let n = self.ng.as_vec3();
+        if self.front { n } else { -n }
+    }
+
+    /// The shading normal on the side of `wo`; where smoothing turned it away from `wo`, the geometric one.
+    pub fn ns_facing(&self) -> Vec3 {
+        let n = if self.front { self.ns } else { -self.ns };
+        if n.dot(self.wo) > 0.0 { n } else { self.ng_facing() }
+    }
+
+    /// Where a ray into `direction` starts: beyond the error bound, on the side that it leaves to.
+    pub fn origin(&self, direction: Vec3) -> [f32; 3] {
+        self.point.origin(self.ng.to_array(), direction.to_array().map(f64::from))
+    }
+}

@@ -1,0 +1,166 @@
+//! What light meets: a scene compiled to flat arrays and integer ids, frozen.
+//!
+//! *Render space* is the world translated so that its origin is the eye: f32 is finest where the picture looks closest.
+//! After [`World::compile`] nothing fails but cancellation.
+
+mod compile;
+mod lights;
+
+use glam::{DMat4, DVec3, Vec3};
+use lookfrom_bvh::{Bvh, Hit, NONE, Ray};
+
+use crate::camera::{Camera, CameraRay};
+use crate::light::{Environment, Light};
+use crate::material::Material;
+use crate::math;
+use crate::shape::{Form, FormPoint, Look};
+use crate::spectrum::Spectrum;
+use crate::surface::Surface;
+use crate::texture::{TexturePoint, Textures};
+
+/// What light meets.
+#[derive(Debug)]
+pub struct World {
+    /// Where the origin of render space lies in the world.
+    pub origin: DVec3,
+    /// The eye.
+    pub camera: Camera,
+    /// Everything that rays can meet.
+    pub bvh: Bvh,
+    /// What stands in the world once, by the kernel's geometry id.
+    pub forms: Vec<Form>,
+    /// Objects, which instances repeat: forms by geometry id.
+    pub objects: Vec<Vec<Form>>,
+    /// By the kernel's instance id.
+    pub instances: Vec<Instance>,
+    /// Looks of surfaces.
+    pub materials: Vec<Material>,
+    /// Colours over surfaces.
+    pub textures: Textures,
+    /// Lights to be sampled.
+    pub lights: Vec<Light>,
+    /// Whitted's `I_a`.
+    pub ambient: Spectrum,
+    /// Indices into `lights` of those that are seen where a ray meets nothing.
+    pub environments: Vec<u32>,
+    /// Whether any material lets light through.
+    pub transmissive: bool,
+    /// Names of the scene's materials and shapes, for people.
+    pub names: Names,
+}
+
+/// Names, for people.
+#[derive(Clone, Debug, Default)]
+pub struct Names {
+    /// By material index.
+    pub materials: Vec<String>,
+    /// By shape number.
+    pub shapes: Vec<String>,
+    /// By light index.
+    pub lights: Vec<String>,
+}
+
+/// A repetition of an object.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// Index into [`World::objects`].
+    pub object: u32,
+    /// From the object's space to render space.
+    pub render_from_object: DMat4,
+    /// And back.
+    pub object_from_render: DMat4,
+    /// Takes the place of the materials in the object.
+    pub material: Option<u32>,
+    /// Takes the place of the whole look (of an object that only one shape repeats).
+    pub look: Option<Look>,
+}
+
+impl World {
+    /// The kernel's form of a camera ray, with `t` of the notes: 1 on the image plane.
+    pub fn camera_ray(&self, ray: &CameraRay) -> Ray {
+        let a = self.camera.lookfrom() - self.origin + ray.a_from_eye;
+        Ray::new(a.as_vec3().to_array(), ray.direction.as_vec3().to_array())
+    }
+
+    /// The form that a hit belongs to and its instance, where it is in one.
+    pub fn form(&self, hit: &Hit) -> (&Form, Option<&Instance>) {
+        if hit.instance == NONE {
+            return (&self.forms[hit.geometry as usize], None);
+        }
+        let instance = &self.instances[hit.instance as usize];
+        (&self.objects[instance.object as usize][hit.geometry as usize], Some(instance))
+    }
+
+    /// The surface that `ray` met.
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
+        let FormPoint { point, ng, ns, uv, color, look } = match self.form(hit) {
+            (form, None) => form.point(hit, origin, direction),
+            (form, Some(instance)) => {
+                let to_object = &instance.object_from_render;
+                let (origin, direction) =
+                    (to_object.transform_point3(origin), to_object.transform_vector3(direction));
+                instance.place(form.point(hit, origin, direction))
+            }
+        };
+        let wo = -direction.normalize();
+        Surface {
+            point,
+            ng,
+            ns: ns.as_vec3(),
+            uv,
+            color,
+            wo: wo.as_vec3(),
+            front: ng.dot(wo) > 0.0,
+            material: look.material,
+            light: look.light,
+            shape: look.shape,
+        }
+    }
+
+    /// What a texture may depend on at a surface.
+    pub fn texture_point(&self, surface: &Surface) -> TexturePoint {
+        let world = self.origin + DVec3::from_array(surface.point.position);
+        TexturePoint { uv: surface.uv, world, color: surface.color }
+    }
+
+    /// Radiance that a surface gives off toward `wo`.
+    pub fn emitted(&self, surface: &Surface) -> Spectrum {
+        match surface.light.map(|index| &self.lights[index as usize]) {
+            Some(Light::Area(light)) => {
+                light.emitted(&self.textures, &self.texture_point(surface), surface.front)
+            }
+            _ => Spectrum::BLACK,
+        }
+    }
+
+    /// Radiance from a direction (of any length) in which nothing stands.
+    pub fn sky(&self, direction: [f32; 3]) -> Spectrum {
+        let direction = Vec3::from_array(direction).normalize();
+        self.environments()
+            .fold(Spectrum::BLACK, |sum, environment| sum + environment.radiance(&self.textures, direction))
+    }
+
+    fn environments(&self) -> impl Iterator<Item = &Environment> {
+        self.environments.iter().filter_map(|&index| match &self.lights[index as usize] {
+            Light::Environment(environment) => Some(environment),
+            _ => None,
+        })
+    }
+}
+
+impl Instance {
+    /// A point of the object, in render space.
+    fn place(&self, of_object: FormPoint) -> FormPoint {
+        let FormPoint { point, ng, ns, uv, color, mut look } = of_object;
+        look.material = self.material.unwrap_or(look.material);
+        FormPoint {
+            point: point.transformed(&math::affine(&self.render_from_object)),
+            ng: math::transform_normal(&self.object_from_render, ng).normalize(),
+            ns: math::transform_normal(&self.object_from_render, ns).normalize(),
+            uv,
+            color,
+            look: self.look.unwrap_or(look),
+        }
+    }
+}

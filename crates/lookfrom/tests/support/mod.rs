@@ -1,0 +1,61 @@
+//! What the tests of this crate share: scenes written in the test, and short ways to a picture.
+
+#![allow(dead_code)] // each test file uses its part
+
+use std::path::{Path, PathBuf};
+
+use lookfrom::film::Film;
+use lookfrom::render::{Frame, Rendered};
+use lookfrom::world::World;
+use lookfrom_scene::{Memory, Scene, Sources};
+
+/// The scene that a TOML text means.
+pub(crate) fn scene(toml: &str) -> Scene {
+    let name = PathBuf::from("test.toml");
+    let files = Memory([(name.clone(), toml.as_bytes().to_vec())].into());
+    lookfrom_scene::load::scene(&name, &mut Sources::new(&files)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A scene from the repository's `scenes/`.
+pub(crate) fn own_scene(name: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
+    let mut sources = Sources::new(&lookfrom_scene::Disk);
+    lookfrom_scene::load::scene(&path, &mut sources).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A scene with the settings that its frame needs.
+pub(crate) struct Compiled {
+    /// What light meets.
+    pub(crate) world: World,
+    image: lookfrom_scene::settings::ImageSettings,
+    render: lookfrom_scene::settings::RenderSettings,
+}
+
+impl Compiled {
+    /// Compiles a scene.
+    pub(crate) fn new(scene: Scene) -> Self {
+        let (image, render) = (scene.image.clone(), scene.render.clone());
+        let world = World::compile(scene, &mut Vec::new()).unwrap_or_else(|error| panic!("{error}"));
+        Self { world, image, render }
+    }
+
+    /// The frame.
+    pub(crate) fn frame(&self) -> Frame<'_> {
+        Frame::new(&self.world, &self.image, &self.render).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// Renders on a number of threads.
+    pub(crate) fn render(&self, threads: usize) -> Rendered {
+        self.frame().render(Some(threads), &()).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// Renders.
+    pub(crate) fn film(&self) -> Film {
+        self.render(2).film
+    }
+}
+
+/// Whether two colours differ by at most `tolerance` in every channel.
+pub(crate) fn close(a: [f32; 3], b: [f32; 3], tolerance: f32) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance)
+}
