@@ -1,7 +1,7 @@
 //! How does a Wavefront OBJ file become meshes and materials?
 //!
-//! [`statement`] reads the text, [`build`] makes one mesh for each material of it, [`mtl`] reads material libraries and
-//! [`look`] turns their materials into the scene's. The format: Wavefront, "Object Files (.obj)", Advanced Visualizer
+//! `statement` reads the text, `build` makes one mesh for each material of it, [`mtl`] reads material libraries and
+//! `look` turns their materials into the scene's. The format: Wavefront, "Object Files (.obj)", Advanced Visualizer
 //! manual, appendix B1; vertex colours after the coordinates are an extension that many programs write.
 
 mod build;

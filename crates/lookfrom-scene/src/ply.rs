@@ -1,7 +1,8 @@
 //! How does a PLY file become a mesh or a cloud of points?
 //!
-//! [`header`] reads what the file says of itself, [`body`] (by way of [`values`]) its values, [`build`] makes the mesh, [`write`](mod@write) writes one. The
-//! format: Turk 1994, "The PLY Polygon File Format"; names of properties as programs have come to write them.
+//! `header` reads what the file says of itself, `body` (by way of `values`) what it holds, `build` makes the mesh,
+//! [`write`](fn@write) writes one. The format: Turk 1994, "The PLY Polygon File Format"; names of properties as programs have
+//! come to write them.
 
 mod body;
 mod build;
