@@ -55,7 +55,8 @@ pub fn furnish_with_floor(scene: &mut Scene, up: Option<DVec3>) {
 /// A camera that shows the box from right, above and before, as large as it fits into a picture of this aspect ratio
 /// (width / height). An empty box is taken to be a unit box around the origin. `up` may have any length.
 pub fn framing(bounds: Bounds, aspect: f64, up: DVec3) -> Camera {
-    Stage { bounds: sane(bounds), basis: basis(up) }.camera(aspect)
+    let bounds = sane(bounds);
+    Stage { bounds, basis: basis(up) }.camera(aspect, |see| corners(bounds).into_iter().for_each(see))
 }
 
 /// The bounds to show, and what is right, up and towards the viewer there: unit vectors.
@@ -79,30 +80,25 @@ impl Stage {
         right * self.basis[0] + up * self.basis[1] + back * self.basis[2]
     }
 
-    fn camera(&self, aspect: f64) -> Camera {
+    /// A camera that sees all points that `visit` shows it.
+    fn camera(&self, aspect: f64, visit: impl FnOnce(&mut dyn FnMut(DVec3))) -> Camera {
         let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
         let forward = -self.in_world(TO_CAMERA).normalize();
         let right = forward.cross(self.basis[1]).normalize();
         let up = right.cross(forward);
         let center = self.bounds.center();
-        let size = self.bounds.max - self.bounds.min;
-        let corners = (0..8).map(|corner| {
-            let part =
-                |bit: u32, length: f64| if corner >> bit & 1 == 0 { -0.5 * length } else { 0.5 * length };
-            let p = DVec3::new(part(0, size.x), part(1, size.y), part(2, size.z));
-            [p.dot(right), p.dot(up), p.dot(forward)]
-        });
-        // A corner is inside the right edge of the picture where x − eye.x ≤ k (z − eye.z), and so on for the four
-        // edges. Opposite edges together bound eye.z; halfway between them lies the eye.
+        // A point is inside the right edge of the picture where x − eye.x ≤ k (z − eye.z), and so on for the four edges.
+        // Opposite edges together bound eye.z; halfway between them lies the eye.
         let slopes = [FILL * TAN_HALF_FOV * aspect, FILL * TAN_HALF_FOV];
         let mut edges = [[f64::NEG_INFINITY; 2]; 2];
-        for corner in corners {
-            for axis in 0..2 {
-                let depth = slopes[axis] * corner[2];
-                edges[axis][0] = edges[axis][0].max(corner[axis] - depth);
-                edges[axis][1] = edges[axis][1].max(-corner[axis] - depth);
+        visit(&mut |point| {
+            let offset = point - center;
+            for (axis, along) in [offset.dot(right), offset.dot(up)].into_iter().enumerate() {
+                let depth = slopes[axis] * offset.dot(forward);
+                edges[axis][0] = edges[axis][0].max(along - depth);
+                edges[axis][1] = edges[axis][1].max(-along - depth);
             }
-        }
+        });
         let [x, y] = edges.map(|[above, below]| 0.5 * (above - below));
         let depth_for = |axis: usize| -(edges[axis][0] + edges[axis][1]) / (2.0 * slopes[axis]);
         let z = depth_for(0).min(depth_for(1));
@@ -113,7 +109,11 @@ impl Stage {
 
     fn add_camera(&self, scene: &mut Scene) {
         if scene.camera.is_none() {
-            scene.camera = Some(self.camera(f64::from(scene.image.width) / f64::from(scene.image.height)));
+            let aspect = f64::from(scene.image.width) / f64::from(scene.image.height);
+            let is_whole = self.bounds == scene.bounds();
+            scene.camera = Some(self.camera(aspect, |see| {
+                if is_whole { visit(scene, see) } else { corners(self.bounds).into_iter().for_each(see) }
+            }));
         }
     }
 
@@ -193,6 +193,45 @@ impl Stage {
     }
 }
 
+/// Shows all that stands in the world: the vertices of meshes, the corners of boxes around other things.
+fn visit(scene: &Scene, see: &mut dyn FnMut(DVec3)) {
+    for shape in &scene.shapes {
+        if let Geometry::Mesh(id) = &shape.geometry {
+            let mesh = &scene.meshes[id.index()];
+            let vertices = mesh.triangles.iter().flatten();
+            vertices
+                .map(|&vertex| mesh.positions[vertex as usize].as_dvec3())
+                .for_each(|vertex| see(shape.world_from_object.transform_point3(vertex)));
+        } else {
+            corners(shape.bounds(&scene.meshes)).into_iter().for_each(&mut *see);
+        }
+    }
+    let of = |shapes: &[Shape]| {
+        shapes.iter().map(|shape| shape.bounds(&scene.meshes)).fold(Bounds::EMPTY, Bounds::union)
+    };
+    let objects: Vec<Bounds> = scene.objects.iter().map(|object| of(&object.shapes)).collect();
+    for instance in &scene.instances {
+        let bounds = objects[instance.object.index()];
+        if !bounds.is_empty() {
+            corners(bounds)
+                .into_iter()
+                .for_each(|corner| see(instance.world_from_object.transform_point3(corner)));
+        }
+    }
+}
+
+/// The eight corners of a box.
+fn corners(Bounds { min, max }: Bounds) -> [DVec3; 8] {
+    std::array::from_fn(|corner| {
+        let is_max = |bit: usize| corner >> bit & 1 == 1;
+        DVec3::new(
+            if is_max(0) { max.x } else { min.x },
+            if is_max(1) { max.y } else { min.y },
+            if is_max(2) { max.z } else { min.z },
+        )
+    })
+}
+
 /// Bounds with an extent: an empty box is a unit box around the origin, a point gets a box around it.
 fn sane(bounds: Bounds) -> Bounds {
     if bounds.is_empty() || !bounds.min.is_finite() || !bounds.max.is_finite() {
@@ -246,9 +285,8 @@ mod tests {
             let up = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::Y, 3.0 * DVec3::Z, DVec3::new(1.0, 2.0, -1.0)][up];
             let camera = framing(bounds, aspect, up);
             let (mut least, mut most) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-            for corner in 0..8 {
-                let sign = |bit: u32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };
-                let [x, y, depth] = project(&camera, aspect, center + half * DVec3::new(sign(0), sign(1), sign(2)));
+            for corner in corners(bounds) {
+                let [x, y, depth] = project(&camera, aspect, corner);
                 prop_assert!(depth > 0.0);
                 for (axis, value) in [x, y].into_iter().enumerate() {
                     prop_assert!(value.abs() <= FILL + 1e-6, "{value}");
@@ -271,6 +309,33 @@ mod tests {
     }
 
     #[test]
+    fn a_mesh_is_framed_by_its_vertices() {
+        // A double pyramid: the corners of its box are far from it.
+        let mut positions = vec![];
+        for axis in [glam::Vec3::X, glam::Vec3::Y, glam::Vec3::Z] {
+            positions.extend([axis, -axis]);
+        }
+        let triangles = vec![[0, 2, 4], [1, 3, 5]];
+        let mut scene = Scene::default();
+        scene.meshes.push(crate::shape::Mesh { positions, triangles, ..Default::default() });
+        scene.shapes.push(Shape {
+            name: None,
+            at: Location::default(),
+            geometry: Geometry::Mesh(crate::scene::MeshId(0)),
+            material: crate::scene::MaterialId(0),
+            emission: None,
+            world_from_object: DMat4::from_scale(DVec3::splat(1e6)),
+        });
+        Stage::of(&scene, None).add_camera(&mut scene);
+        let camera = scene.camera.as_ref().unwrap();
+        let most = scene.meshes[0].positions.iter().fold(0.0_f64, |most, position| {
+            let [x, y, _] = project(camera, 4.0 / 3.0, 1e6 * position.as_dvec3());
+            most.max(x.abs()).max(y.abs())
+        });
+        assert!((most - FILL).abs() < 1e-6, "{most}");
+    }
+
+    #[test]
     fn what_is_there_stays() {
         let mut scene = Scene::default();
         let light = LightKind::Ambient { color: [1.0; 3] };
@@ -289,9 +354,8 @@ mod tests {
             furnish_with_floor(&mut scene, Some(up));
             let floor = scene.shapes.last().unwrap();
             let Geometry::Disk { center, normal, .. } = floor.geometry else { panic!("not a disk") };
-            for corner in 0..8 {
-                let part = |bit: u32| if corner >> bit & 1 == 0 { -0.5 } else { 0.5 };
-                assert!((DVec3::new(part(0), part(1), part(2)) - center).dot(normal) > 0.0);
+            for corner in corners(sane(Bounds::EMPTY)) {
+                assert!((corner - center).dot(normal) > 0.0);
             }
         }
     }
