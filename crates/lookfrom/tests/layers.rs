@@ -1,0 +1,157 @@
+//! Do the modules use only what the map of the house allows, and do the libraries stay below the doors?
+//!
+//! Reads the sources as text, which is cheaper than a crate for every module. What each module is for is in
+//! ARCHITECTURE.md; why the arrows run this way, in docs/decisions/0001-the-house.md.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Each module of this crate and the modules it may use. Rows may name only rows above them, so that there is no circle.
+const MAY_USE: &[(&str, &[&str])] = &[
+    ("hash", &[]),
+    ("math", &[]),
+    ("spectrum", &[]),
+    ("statistics", &[]),
+    ("surface", &["math"]),
+    ("warp", &["math"]),
+    ("film", &["spectrum"]),
+    ("develop", &["film"]),
+    ("sampler", &["hash"]),
+    ("noise", &["hash"]),
+    ("filter", &["sampler"]),
+    ("distribution", &["sampler"]),
+    ("camera", &["math", "warp"]),
+    ("texture", &["noise", "spectrum", "surface"]),
+    ("material", &["math", "spectrum", "surface", "texture"]),
+    ("shape", &["math", "surface", "texture"]),
+    ("light", &["distribution", "math", "shape", "spectrum", "surface", "texture", "warp"]),
+    (
+        "world",
+        &["camera", "distribution", "light", "material", "math", "shape", "spectrum", "surface", "texture"],
+    ),
+    (
+        "integrator",
+        &["hash", "light", "material", "math", "sampler", "spectrum", "surface", "texture", "warp", "world"],
+    ),
+    ("render", &["camera", "film", "filter", "integrator", "sampler", "spectrum", "world"]),
+    (
+        "inspect",
+        &["camera", "integrator", "light", "material", "render", "shape", "spectrum", "surface", "world"],
+    ),
+];
+
+/// What a library must not do: only doors speak and decide when the program ends.
+const FOR_DOORS: &[&str] = &["print!(", "println!(", "dbg!(", "process::exit", "process::abort"];
+
+/// The folder of a crate of the workspace.
+fn crate_folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)
+}
+
+/// The Rust files below a folder, sorted, without the unit tests that have a file of their own.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).expect("a folder of sources") {
+        let path = entry.expect("an entry of the folder").path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") && !path.ends_with("tests.rs") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// A file's code: without comments, and without the unit tests at its end.
+fn code(path: &Path) -> String {
+    let text = fs::read_to_string(path).expect("a source file");
+    let text = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
+}
+
+/// What stands after each `crate::`: the name of a module, or nothing where a brace follows.
+fn named_from_the_root(code: &str) -> Vec<String> {
+    let is_identifier = |c: char| c.is_alphanumeric() || c == '_';
+    code.match_indices("crate::")
+        .filter(|(at, _)| !code[..*at].ends_with(is_identifier))
+        .map(|(at, found)| code[at + found.len()..].chars().take_while(|&c| is_identifier(c)).collect())
+        .collect()
+}
+
+#[test]
+fn the_table_has_no_circle() {
+    for (row, (module, allowed)) in MAY_USE.iter().enumerate() {
+        for used in *allowed {
+            assert!(
+                MAY_USE[..row].iter().any(|(above, _)| above == used),
+                "{module} may use {used}, which is not above it in the table"
+            );
+        }
+    }
+}
+
+#[test]
+fn modules_use_only_what_the_table_allows() {
+    let root = crate_folder("lookfrom/src");
+    let mut faults = Vec::new();
+    let files = sources(&root);
+    assert!(files.len() > 20, "these are not the sources: {}", root.display());
+    for path in files.iter().filter(|path| !path.ends_with("lib.rs")) {
+        let inside = path.strip_prefix(&root).expect("a file of the crate");
+        let depth = inside.components().count();
+        let module = inside.components().next().expect("a name").as_os_str().to_string_lossy();
+        let module = module.trim_end_matches(".rs");
+        let Some((_, allowed)) = MAY_USE.iter().find(|(row, _)| *row == module) else {
+            faults.push(format!("{module} is not in the table: give it a row below all that it uses"));
+            continue;
+        };
+        let code = code(path);
+        for used in named_from_the_root(&code) {
+            if used.is_empty() {
+                faults.push(format!("{}: write one `use crate::…` a module", inside.display()));
+            } else if used != module && !allowed.contains(&used.as_str()) {
+                faults.push(format!("{}: {module} → {used} is not allowed", inside.display()));
+            }
+        }
+        // A way around `crate::` would be a way around the table.
+        if code.contains(&"super::".repeat(depth)) {
+            faults.push(format!("{}: `super::` leads out of the module; write `crate::`", inside.display()));
+        }
+    }
+    assert!(faults.is_empty(), "arrows that the table in {} does not have:\n{}", file!(), faults.join("\n"));
+}
+
+#[test]
+fn the_lower_libraries_do_not_know_each_other() {
+    for (library, others) in [
+        ("lookfrom-bvh", ["lookfrom_scene", "lookfrom-scene", "lookfrom::"]),
+        ("lookfrom-scene", ["lookfrom_bvh", "lookfrom-bvh", "lookfrom::"]),
+    ] {
+        let folder = crate_folder(library);
+        let mut files = sources(&folder.join("src"));
+        files.push(folder.join("Cargo.toml"));
+        for path in files {
+            for other in others {
+                assert!(!code(&path).contains(other), "{} names {other}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn libraries_return_and_doors_speak() {
+    for library in ["lookfrom", "lookfrom-bvh", "lookfrom-scene"] {
+        for path in sources(&crate_folder(library).join("src")) {
+            for forbidden in FOR_DOORS {
+                assert!(!code(&path).contains(forbidden), "{} says {forbidden}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn arrows_are_found() {
+    let code = "use crate::light::Light;\nfn f(x: &crate::film::Film) {}\nuse other_crate::math;\nuse crate::{a, b};";
+    assert_eq!(named_from_the_root(code), ["light", "film", ""]);
+}
