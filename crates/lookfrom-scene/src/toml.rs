@@ -54,6 +54,7 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         black: None,
         open: Vec::new(),
         done: BTreeSet::new(),
+        flake_spheres: 0,
         has_image: false,
         has_render: false,
     };
@@ -108,6 +109,8 @@ struct Reader<'s, 'f> {
     open: Vec<PathBuf>,
     /// The files that have been read.
     done: BTreeSet<PathBuf>,
+    /// Spheres of all sphereflakes so far.
+    flake_spheres: u64,
     has_image: bool,
     has_render: bool,
 }

@@ -322,6 +322,11 @@ fn limits_hold() {
     assert_eq!(error.kind, ErrorKind::Limit);
     sources.limits.elements = 820;
     assert!(load::scene(Path::new("a.toml"), &mut sources).is_ok());
+    sources_files.0.insert("a.toml".into(), "[[sphereflake]]\ndepth = 3\n".repeat(2).into_bytes());
+    let mut sources = Sources::new(&sources_files);
+    sources.limits.elements = 820;
+    let error = load::scene(Path::new("a.toml"), &mut sources).unwrap_err();
+    assert_eq!((error.kind, error.at.line), (ErrorKind::Limit, 3));
 
     let chain: String =
         (0..20).map(|i| format!("[textures.t{i}]\ntype = \"checker\"\neven = \"t{}\"\n", i + 1)).collect();

@@ -26,7 +26,7 @@ pub(super) const COMMON: &[&str] = &["name", "material", "emission", "two_sided"
 /// The keys of `[[instance]]`.
 pub(super) const INSTANCE: &[&str] = &["object", "material"];
 
-/// The deepest sphereflake: 48 million spheres.
+/// The deepest sphereflake: 5.4 million spheres.
 const DEEPEST_FLAKE: u64 = 7;
 
 impl Reader<'_, '_> {
@@ -141,9 +141,10 @@ impl Reader<'_, '_> {
     fn sphereflake(&mut self, table: &Table<'_>) -> Result<Geometry> {
         let Sphere { center, radius } = sphere(table)?;
         let depth = table.or("depth", 4, |value| value.integer(0, DEEPEST_FLAKE))? as u32;
-        let count = form::sphereflake_count(depth);
-        if count > self.sources.limits.elements {
-            return Err(too_many(table, count, self.sources.limits.elements));
+        // All of them together: a few lines of text must not fill the memory.
+        self.flake_spheres = self.flake_spheres.saturating_add(form::sphereflake_count(depth));
+        if self.flake_spheres > self.sources.limits.elements {
+            return Err(too_many(table, self.flake_spheres, self.sources.limits.elements));
         }
         let spheres = form::sphereflake(center, radius, depth);
         if spheres.iter().all(|sphere| sphere.radius.is_normal() && sphere.center.is_finite()) {
