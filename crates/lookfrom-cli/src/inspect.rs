@@ -1,20 +1,22 @@
 //! `lookfrom inspect`: all that happens on the way of one sample. The inspection itself is the library's.
 
+use lookfrom::inspect;
 use lookfrom::render::{Frame, SampleId};
 
 use crate::args::InspectArguments;
 use crate::exit::{self, DONE, Failure, say};
+use crate::output;
 use crate::prepare::{self, prepare};
 
 /// Inspects one sample of one pixel.
 pub(crate) fn run(arguments: &InspectArguments) -> u8 {
-    match inspect(arguments) {
+    match follow(arguments) {
         Ok(()) => DONE,
         Err(failure) => failure.report(),
     }
 }
 
-fn inspect(arguments: &InspectArguments) -> Result<(), Failure> {
+fn follow(arguments: &InspectArguments) -> Result<(), Failure> {
     prepare::use_threads(&arguments.common)?;
     let prepared = prepare(&arguments.scene, &arguments.common, &arguments.overrides)?;
     exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
@@ -37,6 +39,17 @@ fn inspect(arguments: &InspectArguments) -> Result<(), Failure> {
 }
 
 /// Answers as text or JSON, and with a drawing where one is asked for.
-fn report(_frame: &Frame<'_>, _id: SampleId, _arguments: &InspectArguments) -> Result<(), Failure> {
-    Err(Failure::Usage("this version cannot inspect yet".to_owned()))
+fn report(frame: &Frame<'_>, id: SampleId, arguments: &InspectArguments) -> Result<(), Failure> {
+    let inspection = inspect::inspect(frame, id);
+    if let Some(path) = &arguments.svg {
+        let drawing = inspect::svg(frame.world(), &inspection);
+        output::replace_file(path, drawing.as_bytes())
+            .map_err(|error| Failure::Output(format!("{}: {error}", path.display())))?;
+    }
+    let text = if arguments.json {
+        serde_json::to_string_pretty(&inspection).map_err(|error| Failure::Output(error.to_string()))?
+    } else {
+        inspection.to_string()
+    };
+    exit::answer(text.trim_end())
 }
