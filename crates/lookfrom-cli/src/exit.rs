@@ -2,8 +2,9 @@
 
 use std::fmt;
 use std::io::{IsTerminal, Write};
+use std::path::Path;
 
-use lookfrom_scene::{Error, Warning};
+use lookfrom_scene::{Error, Location, Warning};
 
 /// All that was asked is done.
 pub(crate) const DONE: u8 = 0;
@@ -64,6 +65,16 @@ impl fmt::Display for Failure {
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         Self::Scene(error)
+    }
+}
+
+/// What is wrong with a scene; where no place is known, its file is the place.
+pub(crate) fn in_scene(path: &Path) -> impl Fn(Error) -> Failure {
+    move |mut error| {
+        if error.at.file.is_empty() {
+            error.at = Location::file(path);
+        }
+        Failure::Scene(error)
     }
 }
 

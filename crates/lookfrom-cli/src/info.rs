@@ -223,13 +223,18 @@ fn camera_in_words(camera: &Camera) -> String {
         Projection::Orthographic { height } => write!(text, ", parallel rays, height {height}"),
     };
     if let Some(lens) = camera.lens {
-        let _ = write!(text, ", lens of radius {} sharp at {}", lens.radius, lens.focus_distance);
+        let _ =
+            write!(text, ", lens of radius {} sharp at {}", digits(lens.radius), digits(lens.focus_distance));
     }
     text
 }
 
-/// Three numbers as the command line takes them, to six digits.
+/// Three numbers as the command line takes them.
 fn numbers(v: DVec3) -> String {
-    let digits = |x: f64| format!("{x:.5e}").parse::<f64>().unwrap_or(x).to_string();
     format!("{},{},{}", digits(v.x), digits(v.y), digits(v.z))
+}
+
+/// A number to six digits.
+fn digits(x: f64) -> String {
+    format!("{x:.5e}").parse::<f64>().unwrap_or(x).to_string()
 }

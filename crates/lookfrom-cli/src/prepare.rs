@@ -11,7 +11,7 @@ use lookfrom_scene::{Disk, Sources, Warning, load, model, studio};
 
 use crate::args::{Common, Overrides};
 use crate::count::Counts;
-use crate::exit::Failure;
+use crate::exit::{self, Failure};
 
 /// A world, and what is to be said about where it came from.
 #[derive(Debug)]
@@ -78,7 +78,7 @@ pub(crate) fn prepare(path: &Path, common: &Common, overrides: &Overrides) -> Re
     // Compile.
     let (image, render) = (scene.image.clone(), scene.render.clone());
     let camera = scene.camera.clone().unwrap_or_default();
-    let world = World::compile(scene, &mut warnings)?;
+    let world = World::compile(scene, &mut warnings).map_err(exit::in_scene(path))?;
     let build = started.elapsed();
     if common.strict && !warnings.is_empty() {
         return Err(Failure::Strict(warnings));

@@ -51,14 +51,15 @@ fn render(path: &Path, target: &Target, arguments: &RenderArguments) -> Result<u
     if !arguments.quiet {
         exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
     }
-    let frame = Frame::new(&prepared.world, &prepared.image, &prepared.render)?;
+    let frame = Frame::new(&prepared.world, &prepared.image, &prepared.render);
+    let frame = frame.map_err(exit::in_scene(path))?;
     interrupt::keeping(|| {
         let summary = render_frame(path, target, &prepared, &frame, arguments)?;
         if !arguments.quiet {
             say(&summary.for_people());
         }
         if arguments.json {
-            answer(&serde_json::json!(summary).to_string())?;
+            answer(&summary.as_json())?;
         }
         Ok(if summary.cancelled { INTERRUPTED } else { DONE })
     })
@@ -77,7 +78,7 @@ fn render_frame(
     let rendered = frame.render(arguments.common.threads.map(usize::from), &watcher);
     let render_time = report::seconds(started.elapsed());
     let samples_done = watcher.finish();
-    let rendered = rendered?;
+    let rendered = rendered.map_err(exit::in_scene(path))?;
     let film = &rendered.film;
 
     // Write; before the first sample there is nothing that could be called a picture.
@@ -94,7 +95,7 @@ fn render_frame(
     let rays = rendered.rays;
     Ok(Summary {
         scene: path.display().to_string(),
-        output: target.name(),
+        output: (samples_done > 0).then(|| target.name()),
         width: prepared.image.width,
         height: prepared.image.height,
         samples: prepared.render.samples,

@@ -14,7 +14,8 @@ use crate::exit::Failure;
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     pub(crate) scene: String,
-    pub(crate) output: String,
+    /// `None` where it was stopped before there was a picture.
+    pub(crate) output: Option<String>,
     pub(crate) width: u32,
     pub(crate) height: u32,
     pub(crate) samples: u32,
@@ -78,11 +79,18 @@ impl From<Address> for DroppedAddress {
 }
 
 impl Summary {
+    /// The summary as one line of JSON.
+    pub(crate) fn as_json(&self) -> String {
+        // It has neither maps nor types that could fail.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
     /// The summary for a person.
     pub(crate) fn for_people(&self) -> String {
-        let Self { scene, output, width, height, samples, integrator, .. } = self;
+        let Self { scene, width, height, samples, integrator, .. } = self;
         let RayCounts { camera, secondary, shadow, total } = self.rays;
         let Seconds { read, build, render, write } = self.seconds;
+        let output = self.output.as_deref().unwrap_or("nothing");
         let memory = self.peak_memory_bytes.map_or("unknown".to_owned(), bytes);
         let [camera, secondary, shadow, total] = [camera, secondary, shadow, total].map(thousands);
         let mut text = String::new();
@@ -100,13 +108,17 @@ impl Summary {
             text,
             "  time    read {read:.2} s, build {build:.2} s, render {render:.2} s, write {write:.2} s\n  memory  {memory} at the peak"
         );
-        if self.cancelled {
-            let _ = write!(
+        let _ = match &self.output {
+            None => {
+                write!(text, "\nstopped after {render:.1} s, before the first samples; nothing is written")
+            }
+            Some(output) if self.cancelled => write!(
                 text,
                 "\nstopped after {render:.1} s; {output} holds the picture so far: {} of {samples} samples",
                 self.samples_taken
-            );
-        }
+            ),
+            Some(_) => Ok(()),
+        };
         if let Dropped { count, first: Some(DroppedAddress { x, y, sample }) } = self.dropped_samples {
             let _ = write!(
                 text,
@@ -125,7 +137,7 @@ pub(crate) fn failure(scene: &Path, failure: &Failure) -> String {
 
 /// A duration in seconds, to the microsecond.
 pub(crate) fn seconds(duration: Duration) -> f64 {
-    duration.as_micros() as f64 * 1e-6
+    duration.as_micros() as f64 / 1e6
 }
 
 /// The most memory that this process has had so far, where the system tells.
@@ -161,6 +173,45 @@ pub(crate) fn bytes(number: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn summary() -> Summary {
+        Summary {
+            scene: "a.toml".into(),
+            output: Some("a.png".into()),
+            width: 4,
+            height: 3,
+            samples: 64,
+            samples_taken: 64,
+            integrator: "whitted",
+            seconds: Seconds { read: 0.0, build: 0.0, render: 2.5, write: 0.0 },
+            rays: Rays { camera: 1000, secondary: 20, shadow: 3 }.into(),
+            mrays_per_s: 1.5,
+            peak_memory_bytes: None,
+            triangles: 0,
+            spheres: 0,
+            instances: 0,
+            warnings: Vec::new(),
+            cancelled: false,
+            dropped_samples: Dropped { count: 0, first: None },
+        }
+    }
+
+    #[test]
+    fn what_went_wrong_is_said() {
+        let whole = summary().for_people();
+        assert!(whole.contains("1\u{202f}023 (1\u{202f}000 camera, 20 secondary, 3 shadow)"), "{whole}");
+        assert!(
+            !whole.contains("stopped") && !whole.contains("inspect") && whole.contains("unknown"),
+            "{whole}"
+        );
+        let first = Some(DroppedAddress { x: 3, y: 1, sample: 7 });
+        let dropped = Summary { dropped_samples: Dropped { count: 5, first }, ..summary() }.for_people();
+        assert!(dropped.contains("5 samples") && dropped.contains("lookfrom inspect a.toml 3 1 --sample 7"));
+        let stopped = Summary { cancelled: true, samples_taken: 12, ..summary() }.for_people();
+        assert!(stopped.ends_with("stopped after 2.5 s; a.png holds the picture so far: 12 of 64 samples"));
+        let nothing = Summary { cancelled: true, output: None, ..summary() }.for_people();
+        assert!(nothing.contains("a.toml → nothing") && nothing.ends_with("nothing is written"), "{nothing}");
+    }
 
     #[test]
     fn numbers_for_people() {

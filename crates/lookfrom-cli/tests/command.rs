@@ -1,0 +1,11 @@
+//! The command as a person runs it: files in, pictures, words and exit codes out.
+
+mod command {
+    mod errors;
+    mod guide;
+    mod info;
+    #[cfg(unix)]
+    mod interrupt;
+    mod render;
+    mod stage;
+}

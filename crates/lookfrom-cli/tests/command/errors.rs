@@ -1,0 +1,133 @@
+//! What goes wrong is said with a place and a remedy, leads to its exit code, and leaves no files behind.
+
+use super::stage::{SCENE, Stage};
+
+/// A scene that would take hours: what is refused must be refused before it is rendered.
+fn endless(stage: &Stage) {
+    stage.write("endless.toml", &SCENE.replace("samples = 4", "samples = 10000000"));
+}
+
+#[test]
+fn a_missing_scene() {
+    let stage = Stage::new("missing");
+    stage.run("render nowhere.toml").fails(1, &["error: nowhere.toml: no such file", "help:"]);
+    stage.run("info nowhere.toml").fails(1, &["nowhere.toml: no such file"]);
+    stage.run("inspect nowhere.toml 0 0").fails(1, &["nowhere.toml: no such file"]);
+}
+
+#[test]
+fn a_bad_scene_is_told_by_line_and_column() {
+    let stage = Stage::new("bad");
+    stage.write("syntax.toml", "[camera]\nlookfrom = [0, 1\nfov = 40\n");
+    stage.run("render syntax.toml").fails(1, &["error: syntax.toml:3:"]);
+    stage.write("key.toml", &SCENE.replace("fov", "fow"));
+    stage.run("render key.toml").fails(1, &["error: key.toml:5:1: ", "fov"]);
+    stage.write("scene.pbrt", "WorldBegin");
+    stage.run("render scene.pbrt").fails(1, &["scene.pbrt"]);
+    assert!(stage.names().iter().all(|name| !name.ends_with("png")));
+}
+
+#[test]
+fn an_output_that_cannot_be_is_refused_before_rendering() {
+    let stage = Stage::new("refused");
+    endless(&stage);
+    stage.run("render endless.toml -o p.jpg").fails(2, &["p.jpg", ".jpg", ".png, .exr, .hdr, .pfm, .ppm"]);
+    stage.run("render endless.toml -o picture").fails(2, &["no extension"]);
+    stage.run("render endless.toml -o nowhere/p.png").fails(3, &["no folder nowhere"]);
+    stage.run("render endless.toml -o nowhere/").fails(3, &["no folder nowhere"]);
+    std::fs::create_dir(stage.path("folder.png")).unwrap();
+    stage.run("render endless.toml scene.toml -o {name}/p.png").fails(3, &["no folder endless"]);
+    stage.run("render endless.toml scene.toml -o p.png").fails(2, &["one file p.png", "{name}"]);
+    stage.run("render endless.toml scene.toml -o -").fails(2, &["one scene"]);
+    stage.run("render endless.toml endless.toml").fails(2, &["both be endless.png"]);
+    stage.run("render endless.toml --json -o -").fails(2, &["--json"]);
+    assert_eq!(stage.names(), ["endless.toml", "folder.png", "model.obj", "scene.toml"]);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_folder_that_cannot_be_written_to() {
+    let stage = Stage::new("unwritable");
+    endless(&stage);
+    // Not even root makes files there.
+    stage.run("render endless.toml -o /proc/p.png").fails(3, &["cannot write into the folder /proc"]);
+}
+
+#[test]
+fn options_that_make_no_sense() {
+    let stage = Stage::new("options");
+    endless(&stage);
+    for (option, says) in [
+        ("--crop 0,0,41,30", "40 × 30"),
+        ("--crop 5,5,5,9", "X0 < X1"),
+        ("--crop 1,2,3", "X0,Y0,X1,Y1"),
+        ("--width 0", "--width"),
+        ("--width 4000000000", "at most"),
+        ("--samples 0", "--samples"),
+        ("--integrator magic", "raycast"),
+        ("--filter cone", "blackman_harris"),
+        ("--lookfrom 1,2", "X,Y,Z"),
+        ("--fov 180", "0 and 180"),
+        ("--exposure NaN", "-64 to 64"),
+        ("--min-contribution -1", "0 to 1"),
+        ("--threads 0", "--threads"),
+        ("--no-such-option", "--no-such-option"),
+    ] {
+        stage.run(&format!("render endless.toml {option}")).fails(2, &["error: ", says]);
+    }
+    stage.run("").fails(2, &["Usage"]);
+    stage.run("render").fails(2, &["SCENE"]);
+    stage.run("inspect scene.toml 40 0").fails(2, &["40 × 30"]);
+    stage.run("inspect scene.toml 0 0 --sample 4").fails(2, &["4 samples"]);
+}
+
+#[test]
+fn a_camera_that_cannot_see() {
+    let stage = Stage::new("blind");
+    stage.run("render scene.toml --lookfrom 0,0.5,0").fails(1, &["the command line: ", "same point"]);
+}
+
+#[test]
+fn warnings_and_strict() {
+    let stage = Stage::new("warnings");
+    stage.write("model.obj", "mtllib none.mtl\nusemtl nothing\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let small = "render model.obj --width 8 --samples 1";
+    let run = stage.done(&format!("{small} --json"));
+    assert!(run.stderr.contains("warning: ") && run.stderr.contains("none.mtl"), "{}", run.stderr);
+    assert!(!run.json()[0]["warnings"].as_array().unwrap().is_empty());
+    std::fs::remove_file(stage.path("model.png")).unwrap();
+    stage.run(&format!("{small} --strict")).fails(1, &["--strict", "none.mtl"]);
+    assert!(!stage.path("model.png").exists());
+}
+
+#[test]
+fn many_warnings_are_counted() {
+    let stage = Stage::new("many");
+    let scaled = "[[sphere]]\nradius = 1\nscale = [1, 2, 1]\nmaterial = \"lamp\"\n".repeat(30);
+    stage.write("many.toml", &format!("{SCENE}\n[materials.lamp]\nemission = 1\n{scaled}"));
+    let run = stage.done("render many.toml --width 8 --samples 1");
+    assert_eq!(run.stderr.matches("warning: ").count(), 21, "{}", run.stderr);
+    assert!(run.stderr.contains("… and 10 more"), "{}", run.stderr);
+}
+
+#[test]
+fn the_next_scene_is_rendered_after_an_error() {
+    let stage = Stage::new("next");
+    let run = stage.run("render nowhere.toml scene.toml --json -o {name}.png");
+    assert_eq!(run.code, Some(1));
+    let objects = run.json();
+    assert!(objects[0]["error"].as_str().unwrap().contains("no such file"));
+    assert_eq!(objects[1]["output"], "scene.png");
+    assert!(stage.path("scene.png").exists());
+}
+
+#[test]
+fn a_picture_is_replaced_as_a_whole() {
+    let stage = Stage::new("replaced");
+    stage.write("p.png", "what was there before");
+    stage.run("render nowhere.toml -o p.png").fails(1, &[]);
+    assert_eq!(stage.bytes("p.png"), b"what was there before");
+    stage.done("render scene.toml -q -o p.png");
+    assert!(stage.bytes("p.png").starts_with(b"\x89PNG"));
+    assert_eq!(stage.names(), ["model.obj", "p.png", "scene.toml"]);
+}

@@ -1,0 +1,52 @@
+//! The guide is kept true: every option and every key is explained in it.
+
+use std::path::Path;
+
+use super::stage::Stage;
+
+fn guide() -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide/command.md");
+    std::fs::read_to_string(path).unwrap()
+}
+
+#[test]
+fn every_option_is_in_the_guide() {
+    let stage = Stage::new("guide");
+    let guide = guide();
+    let mut options = 0;
+    for command in ["render", "inspect", "info", "completions"] {
+        assert!(guide.contains(&format!("## lookfrom {command}")), "{command}");
+        let help = String::from_utf8(stage.done(&format!("{command} --help")).stdout).unwrap();
+        // An option's own line in the help begins with it; others only mention it.
+        for line in help.lines().map(str::trim_start).filter(|line| line.starts_with('-')) {
+            let Some(long) = line.split_whitespace().find(|word| word.starts_with("--")) else { continue };
+            assert!(guide.contains(&format!("`{long}")), "{long} is not in the guide");
+            options += 1;
+        }
+    }
+    assert!(options > 40, "only {options} options were found in the help");
+}
+
+#[test]
+fn every_option_of_the_guide_is_there() {
+    let stage = Stage::new("guide-back");
+    let help: String = ["render", "inspect", "info", "completions"]
+        .map(|command| String::from_utf8(stage.done(&format!("{command} --help")).stdout).unwrap())
+        .concat();
+    for word in guide().split(|c: char| !(c.is_ascii_alphanumeric() || c == '-')) {
+        let is_option = word.len() > 2 && word.starts_with("--") && !word.starts_with("---");
+        assert!(!is_option || help.contains(word) || word == "--version", "{word} is not in the help");
+    }
+}
+
+#[test]
+fn every_key_of_the_answers_is_in_the_guide() {
+    let stage = Stage::new("guide-keys");
+    let guide = guide();
+    let answers = [stage.json("render scene.toml --json"), stage.json("info scene.toml --json")].concat();
+    for answer in answers {
+        for key in answer.as_object().unwrap().keys() {
+            assert!(guide.contains(&format!("`{key}`")), "{key} is not in the guide");
+        }
+    }
+}

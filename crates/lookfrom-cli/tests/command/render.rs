@@ -1,0 +1,217 @@
+//! `lookfrom render` when all goes well.
+
+use std::path::Path;
+
+use lookfrom_scene::image::{self, Image};
+use lookfrom_scene::{Disk, Sources};
+
+use super::stage::Stage;
+
+fn picture(path: &Path) -> Image {
+    image::read(path, &mut Sources::new(&Disk)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn size(stage: &Stage, name: &str) -> (u32, u32) {
+    let picture = picture(&stage.path(name));
+    (picture.width, picture.height)
+}
+
+fn attribute(stage: &Stage, file: &str, name: &str) -> Option<String> {
+    let found = image::read_exr(&stage.path(file), &mut Sources::new(&Disk)).unwrap();
+    found.attributes.into_iter().find(|(found, _)| found == name).map(|(_, text)| text)
+}
+
+#[test]
+fn a_picture_by_the_name_of_the_scene() {
+    let stage = Stage::new("default");
+    let run = stage.done("render scene.toml");
+    assert!(run.stdout.is_empty());
+    for word in ["scene.toml → scene.png", "40 × 30", "4 samples", "whitted", "Mrays/s", "shadow"] {
+        assert!(run.stderr.contains(word), "{word:?} is not in: {}", run.stderr);
+    }
+    assert_eq!(size(&stage, "scene.png"), (40, 30));
+    assert_eq!(stage.names(), ["model.obj", "scene.png", "scene.toml"], "nothing else is left behind");
+}
+
+#[test]
+fn every_format_holds_the_same_light() {
+    let stage = Stage::new("formats");
+    for extension in ["exr", "pfm", "hdr", "png", "ppm"] {
+        stage.done(&format!("render scene.toml -q -o p.{extension}"));
+    }
+    let exact = picture(&stage.path("p.exr")).texels;
+    assert!(exact.iter().flatten().any(|&value| value > 0.1), "the picture is black");
+    for (extension, step) in [("pfm", 0.0), ("hdr", 0.01), ("png", 0.01), ("ppm", 0.01)] {
+        let other = picture(&stage.path(&format!("p.{extension}"))).texels;
+        for (a, b) in exact.iter().flatten().zip(other.iter().flatten()) {
+            // 8-bit pictures are cut at 1.
+            let a = if ["png", "ppm"].contains(&extension) { a.clamp(0.0, 1.0) } else { *a };
+            assert!((a - b).abs() <= step * a.max(1.0), "{extension}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn the_same_bytes_for_any_number_of_threads() {
+    let stage = Stage::new("threads");
+    for extension in ["png", "exr"] {
+        let [one, two] = [1, 2].map(|threads| {
+            stage.done(&format!("render scene.toml -q --width 100 --threads {threads} -o p.{extension}"));
+            stage.bytes(&format!("p.{extension}"))
+        });
+        assert!(one == two, "{extension} differs");
+    }
+}
+
+#[test]
+fn a_picture_through_a_pipe() {
+    let stage = Stage::new("pipe");
+    stage.done("render scene.toml -q -o p.png");
+    let run = stage.done("render scene.toml -o -");
+    assert!(run.stdout == stage.bytes("p.png"), "stdout is not the picture");
+}
+
+#[test]
+fn overrides_take_effect() {
+    let stage = Stage::new("overrides");
+    let summary = &stage.json(
+        "render scene.toml -o p.exr --json --width 20 --samples 3 --integrator raycast --depth 1 --seed 7 \
+         --sampler independent --filter gaussian:2 --exposure -1.5 --lookfrom -1,2,-5 --up 0,0,1 --fov 55.5 \
+         --min-contribution 0 --crop 0,0,10,15 --tonemap filmic",
+    )[0];
+    assert_eq!((&summary["width"], &summary["height"]), (&20.into(), &15.into()));
+    assert_eq!(summary["samples"], 3);
+    assert_eq!(summary["integrator"], "raycast");
+    assert_eq!(summary["rays"]["camera"], 10 * 15 * 3);
+    let expected = [
+        ("size", "20 15"),
+        ("samples", "3"),
+        ("integrator", "raycast"),
+        ("depth", "1"),
+        ("seed", "7"),
+        ("sampler", "independent"),
+        ("filter", "gaussian:2 sigma 0.5"),
+        ("exposure", "-1.5"),
+        ("tonemap", "none"),
+        ("crop", "0 0 10 15"),
+        ("min_contribution", "0"),
+        ("scene", "scene.toml"),
+        ("camera.lookfrom", "-1 2 -5"),
+        ("camera.lookat", "0 0.5 0"),
+        ("camera.up", "0 0 1"),
+        ("camera.fov", "55.5"),
+    ];
+    for (name, text) in expected {
+        assert_eq!(attribute(&stage, "p.exr", name).as_deref(), Some(text), "{name}");
+    }
+    // This one is of the format's own vocabulary, and not among those that the reader hands on.
+    let software = format!("lookfrom {}", env!("CARGO_PKG_VERSION"));
+    assert!(stage.bytes("p.exr").windows(software.len()).any(|bytes| bytes == software.as_bytes()));
+}
+
+#[test]
+fn settings_of_light_change_the_picture() {
+    let stage = Stage::new("settings");
+    stage.done("render scene.toml -q -o plain.ppm");
+    let plain = stage.bytes("plain.ppm");
+    for option in [
+        "--exposure 1",
+        "--tonemap reinhard",
+        "--filter box:3",
+        "--sampler independent",
+        "--seed 1",
+        "--samples 1",
+        "--depth 0",
+        "--integrator normals",
+        "--lookfrom -1,1,5",
+        "--lookat -1,0,0",
+        "--up -1,1,0",
+        "--fov 60",
+        "--crop 0,0,20,30",
+    ] {
+        stage.done(&format!("render scene.toml -q -o other.ppm {option}"));
+        assert!(stage.bytes("other.ppm") != plain, "{option} changes nothing");
+    }
+    stage.done("render scene.toml -q -o other.ppm --seed 0 --fov 40 --lookfrom 0,1,5");
+    assert!(stage.bytes("other.ppm") == plain, "what the scene says is not what it says");
+}
+
+#[test]
+fn the_summary_has_its_keys() {
+    let stage = Stage::new("summary");
+    let objects = stage.json("render scene.toml --json");
+    assert_eq!(objects.len(), 1);
+    let mut keys: Vec<&str> = objects[0].as_object().unwrap().keys().map(String::as_str).collect();
+    keys.sort_unstable();
+    assert_eq!(
+        keys,
+        [
+            "cancelled",
+            "dropped_samples",
+            "height",
+            "instances",
+            "integrator",
+            "mrays_per_s",
+            "output",
+            "peak_memory_bytes",
+            "rays",
+            "samples",
+            "samples_taken",
+            "scene",
+            "seconds",
+            "spheres",
+            "triangles",
+            "warnings",
+            "width"
+        ]
+    );
+    let summary = &objects[0];
+    assert_eq!((&summary["scene"], &summary["output"]), (&"scene.toml".into(), &"scene.png".into()));
+    assert_eq!(
+        (&summary["triangles"], &summary["spheres"], &summary["instances"]),
+        (&2.into(), &1.into(), &0.into())
+    );
+    assert_eq!((&summary["cancelled"], &summary["samples_taken"]), (&false.into(), &4.into()));
+    assert_eq!(summary["dropped_samples"], serde_json::json!({ "count": 0, "first": null }));
+    let rays = &summary["rays"];
+    let number = |key: &str| rays[key].as_u64().unwrap();
+    assert_eq!(number("camera"), 40 * 30 * 4);
+    assert!(number("shadow") > 0 && number("secondary") > 0);
+    assert_eq!(number("total"), number("camera") + number("secondary") + number("shadow"));
+    for key in ["read", "build", "render", "write"] {
+        assert!(summary["seconds"][key].as_f64().unwrap() >= 0.0);
+    }
+}
+
+#[test]
+fn several_scenes_go_into_a_folder_or_a_pattern() {
+    let stage = Stage::new("several");
+    std::fs::create_dir(stage.path("out")).unwrap();
+    stage.done("render scene.toml model.obj -q -o out --width 16 --samples 1");
+    assert_eq!((size(&stage, "out/scene.png"), size(&stage, "out/model.png")), ((16, 12), (16, 12)));
+    let objects =
+        stage.json("render scene.toml model.obj --json -o out/{name}-small.exr --width 8 --samples 1");
+    assert_eq!(objects[0]["output"], "out/scene-small.exr");
+    assert_eq!(objects[1]["output"], "out/model-small.exr");
+    assert_eq!(size(&stage, "out/model-small.exr"), (8, 6));
+}
+
+#[test]
+fn a_model_is_framed_and_lit() {
+    let stage = Stage::new("model");
+    stage.done("render model.obj -q --width 64 --samples 4 -o p.exr");
+    let texels = picture(&stage.path("p.exr")).texels;
+    let mean = texels.iter().flatten().sum::<f32>() / (texels.len() * 3) as f32;
+    assert!((0.1..1.0).contains(&mean), "the mean is {mean}");
+    stage.done("render model.obj -q --width 64 --samples 4 -o normals.exr --integrator normals");
+    let texels = picture(&stage.path("normals.exr")).texels;
+    let facing = texels.iter().filter(|texel| texel[2] > 0.9).count();
+    assert!(facing > texels.len() / 20, "{facing} pixels show the triangle");
+}
+
+#[test]
+fn quiet_is_quiet() {
+    let stage = Stage::new("quiet");
+    let run = stage.done("render scene.toml --quiet");
+    assert!(run.stdout.is_empty() && run.stderr.is_empty(), "{}", run.stderr);
+}
