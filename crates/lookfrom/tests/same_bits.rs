@@ -1,0 +1,121 @@
+//! One and the same picture, bit for bit, however the work is divided – and the inspector tells the truth about it.
+
+mod support;
+
+use lookfrom::film::FilmTile;
+use lookfrom::inspect::{inspect, svg};
+use lookfrom::render::SampleId;
+use lookfrom_scene::Scene;
+use lookfrom_scene::settings::{Crop, Integrator};
+use support::{Compiled, own_scene};
+
+const SCENES: [&str; 6] = [
+    "whitted1980.toml",
+    "glass-and-mirror.toml",
+    "soft-shadows.toml",
+    "textures.toml",
+    "instances.toml",
+    "depth-of-field.toml",
+];
+
+fn small(name: &str) -> Scene {
+    let mut scene = own_scene(name);
+    (scene.image.width, scene.image.height) = (72, 50);
+    scene.image.crop = None;
+    scene.render.samples = 3;
+    scene
+}
+
+#[test]
+fn any_number_of_threads() {
+    for name in SCENES {
+        let compiled = Compiled::new(small(name));
+        let one = compiled.render(1);
+        for threads in [2, 3] {
+            let many = compiled.render(threads);
+            assert!(one.film == many.film, "{name} differs on {threads} threads");
+            assert_eq!(one.rays, many.rays);
+        }
+    }
+}
+
+#[test]
+fn any_split_of_pixels_and_samples() {
+    let compiled = Compiled::new(small("glass-and-mirror.toml"));
+    let whole = compiled.film();
+    let frame = compiled.frame();
+    let mut merged = lookfrom::film::Film::new(72, 50, None).expect("a small film");
+    for (samples, columns) in [(2..3, 0..41), (0..2, 41..72), (0..1, 0..41), (2..3, 41..72), (1..2, 0..41)] {
+        let area = Crop { x0: columns.start, y0: 0, x1: columns.end, y1: 50 };
+        let mut tile = FilmTile::new(area).expect("a small tile");
+        frame.render_tile(samples, &mut tile);
+        merged.add_tile(&tile);
+    }
+    assert!(whole == merged);
+}
+
+#[test]
+fn a_crop_is_a_part_of_the_picture() {
+    let mut scene = small("textures.toml");
+    let whole = Compiled::new(scene.clone()).film();
+    scene.image.crop = Some(Crop { x0: 13, y0: 7, x1: 60, y1: 44 });
+    let part = Compiled::new(scene).film();
+    for (x, y) in [(13, 7), (59, 43), (30, 20)] {
+        assert_eq!(whole.mean(x, y), part.mean(x, y));
+    }
+    assert_eq!(part.samples(12, 7), 0);
+}
+
+#[test]
+fn what_the_inspector_shows_adds_up_to_what_the_film_received() {
+    for name in SCENES {
+        let mut scene = small(name);
+        for integrator in [Integrator::Whitted, Integrator::Raycast, Integrator::Normals] {
+            scene.render.integrator = integrator;
+            let compiled = Compiled::new(scene.clone());
+            let frame = compiled.frame();
+            for (x, y) in [(20, 12), (36, 25), (50, 30), (25, 40), (64, 20)] {
+                let inspection = inspect(&frame, SampleId { pixel: [x, y], sample: 2 });
+                // the additions that are shown, in their order …
+                let mut sum = [0.0f32; 3];
+                for addition in &inspection.additions {
+                    for (sum, value) in sum.iter_mut().zip(addition.value) {
+                        *sum += value;
+                    }
+                }
+                assert_eq!(sum, inspection.radiance);
+                assert!(inspection.adds_up, "{name} at {x} {y}");
+                // … are what a tile with all of its other pixels gave to the film
+                let area = Crop { x0: x / 32 * 32, y0: 0, x1: (x / 32 * 32 + 32).min(72), y1: 50 };
+                let mut tile = FilmTile::new(area).expect("a small tile");
+                frame.render_tile(2..3, &mut tile);
+                let mut film = lookfrom::film::Film::new(72, 50, None).expect("a small film");
+                film.add_tile(&tile);
+                assert_eq!(film.mean(x, y), inspection.film, "{name} at {x} {y}");
+                let text = inspection.to_string();
+                assert!(text.contains("the same, bit for bit"), "{text}");
+                assert!(svg(frame.world(), &inspection).ends_with("</svg>\n"));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_inspector_shows_every_number_of_the_notes() {
+    let compiled = Compiled::new(small("notes-exercise.toml"));
+    let frame = compiled.frame();
+    let texts: Vec<String> = [(36, 25), (20, 25), (50, 25), (30, 15), (44, 35), (55, 20)]
+        .into_iter()
+        .map(|(x, y)| inspect(&frame, SampleId { pixel: [x, y], sample: 0 }).to_string())
+        .collect();
+    let all = texts.concat();
+    for word in
+        ["T1", "S2", "R3", "T4", "P_k", "P_world", "b − a", "D1", "D2", "D3", "α", "β", "γ", "t = D3/D"]
+    {
+        assert!(all.contains(word), "{word} is missing");
+    }
+    for word in ["A  ", "B  ", "C  ", "Δ (stable)", "B² − AC", "q  ", "t₁", "t₂", "matching bits", "root"]
+    {
+        assert!(all.contains(word), "{word} is missing");
+    }
+}
