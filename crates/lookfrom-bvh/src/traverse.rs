@@ -105,10 +105,7 @@ pub(crate) fn traverse<Q: Query, W: Watch>(
 #[inline(always)]
 fn push_sorted(node: &crate::node::Node, entered: &crate::node::Entered, stack: &mut Vec<Pending>) {
     let bottom = stack.len();
-    let mut children = entered.children;
-    while children != 0 {
-        let slot = children.trailing_zeros() as usize;
-        children &= children - 1;
+    for slot in entered.children {
         let (index, content) = node.child(slot);
         let child = Pending { near: entered.near[slot], index, content };
         stack.push(child);
@@ -142,10 +139,7 @@ fn triangles<Q: Query, W: Watch>(
         let (geometry, primitive) = block.ids(lane);
         answer.watch.candidate(answer.instance, geometry, primitive);
     }
-    let mut lanes = block.filter(ray, answer.query.end()) & ((1 << count) - 1);
-    while lanes != 0 {
-        let lane = lanes.trailing_zeros() as usize;
-        lanes &= lanes - 1;
+    for lane in block.filter(ray, answer.query.end()).first(count) {
         if let Some(crossing) = triangle::decide(ray, &block.corners(lane)) {
             let (geometry, primitive) = block.ids(lane);
             let triangle::Crossing { t, u, v } = crossing;

@@ -15,7 +15,7 @@
 
 use crate::prepared::Prepared;
 use crate::ray::NONE;
-use crate::simd::Lanes;
+use crate::simd::{Chosen, Lanes};
 use crate::vector::{cross, cross_magnitude, dot, subtract, wide};
 
 /// Triangles in a block.
@@ -30,8 +30,8 @@ const CORNER_ERROR: f32 = 9.536_743e-7;
 #[derive(Clone, Debug)]
 #[repr(C, align(16))]
 pub(crate) struct TriangleBlock {
-    /// `corners[corner][axis]`; unused lanes repeat lane 0.
-    corners: [[Lanes<BLOCK>; 3]; 3],
+    /// `corners[corner][axis][lane]`; unused lanes repeat lane 0.
+    corners: [[[f32; BLOCK]; 3]; 3],
     geometry: [u32; BLOCK],
     /// [`NONE`] in unused lanes.
     primitive: [u32; BLOCK],
@@ -49,12 +49,12 @@ impl TriangleBlock {
     /// Packs one to four triangles: corners, geometry, primitive.
     pub(crate) fn new(triangles: &[([[f32; 3]; 3], u32, u32)]) -> Self {
         let mut block =
-            Self { corners: [[Lanes::splat(0.0); 3]; 3], geometry: [NONE; BLOCK], primitive: [NONE; BLOCK] };
+            Self { corners: [[[0.0; BLOCK]; 3]; 3], geometry: [NONE; BLOCK], primitive: [NONE; BLOCK] };
         for lane in 0..BLOCK {
             let (corners, geometry, primitive) = triangles.get(lane).unwrap_or(&triangles[0]);
             for corner in 0..3 {
                 for axis in 0..3 {
-                    block.corners[corner][axis].0[lane] = corners[corner][axis];
+                    block.corners[corner][axis][lane] = corners[corner][axis];
                 }
             }
             if lane < triangles.len() {
@@ -72,70 +72,98 @@ impl TriangleBlock {
 
     #[inline(always)]
     pub(crate) fn corners(&self, lane: usize) -> [[f32; 3]; 3] {
-        self.corners.map(|corner| corner.map(|coordinate| coordinate.0[lane]))
+        let mut corners = [[0.0; 3]; 3];
+        for corner in 0..3 {
+            for axis in 0..3 {
+                corners[corner][axis] = self.corners[corner][axis][lane];
+            }
+        }
+        corners
     }
 
-    /// Excludes: bit i is 0 where the ray surely does not meet triangle i at a t in `[t_min, t_max]`.
+    /// Which lanes are left when those are excluded that the ray surely does not meet at a t in `[t_min, t_max]`.
     #[inline(always)]
-    pub(crate) fn filter(&self, ray: &Prepared, t_max: f32) -> u32 {
+    pub(crate) fn filter(&self, ray: &Prepared, t_max: f32) -> Chosen {
+        let mut values = Values::default();
+        self.values(ray, &mut values);
+        let Values { least, most, bound, first, last } = &values;
+        // A miss has two edge functions of surely different signs, or is surely out of range. Comparisons with NaN are
+        // false, and exclude nothing.
+        Chosen::which::<BLOCK>(|lane| {
+            let outside = (least[lane] < -bound[lane]) & (most[lane] > bound[lane]);
+            let out_of_range = (last[lane] < ray.t_min) | (first[lane] > t_max);
+            !(outside | out_of_range)
+        })
+    }
+
+    /// What the filter compares.
+    #[inline(never)]
+    fn values(&self, ray: &Prepared, values: &mut Values) {
         let splat = Lanes::<BLOCK>::splat;
 
         // Move the origin to 0.
-        let axes = ray.axes;
-        let origin = axes.map(|axis| splat(ray.origin[axis]));
-        let moved = self.corners.map(|corner| {
-            [corner[axes[0]] - origin[0], corner[axes[1]] - origin[1], corner[axes[2]] - origin[2]]
-        });
+        let [kx, ky, kz] = ray.axes.map(|axis| axis % 3);
+        let (ox, oy, oz) = (splat(ray.origin[kx]), splat(ray.origin[ky]), splat(ray.origin[kz]));
+        let [p0, p1, p2] = &self.corners;
+        let (ax, ay, az) = (Lanes(p0[kx]) - ox, Lanes(p0[ky]) - oy, Lanes(p0[kz]) - oz);
+        let (bx, by, bz) = (Lanes(p1[kx]) - ox, Lanes(p1[ky]) - oy, Lanes(p1[kz]) - oz);
+        let (cx, cy, cz) = (Lanes(p2[kx]) - ox, Lanes(p2[ky]) - oy, Lanes(p2[kz]) - oz);
 
         // Bound the error of any coordinate.
-        let largest = moved
-            .map(|corner| corner[0].abs().max(corner[1].abs()).max(corner[2].abs()))
-            .into_iter()
-            .reduce(Lanes::max)
-            .unwrap_or(splat(f32::INFINITY));
-        let error = largest * splat(CORNER_ERROR) + splat(ray.rounding);
+        let largest_a = ax.abs().max(ay.abs()).max(az.abs());
+        let largest_b = bx.abs().max(by.abs()).max(bz.abs());
+        let largest_c = cx.abs().max(cy.abs()).max(cz.abs());
+        let error = largest_a.max(largest_b).max(largest_c) * splat(CORNER_ERROR) + splat(ray.rounding);
 
         // Shear, so that the ray runs along the third axis.
-        let shear = ray.shear.map(splat);
-        let [a, b, c] =
-            moved.map(|corner| [corner[0] - shear[0] * corner[2], corner[1] - shear[1] * corner[2]]);
+        let (sx, sy) = (splat(ray.shear[0]), splat(ray.shear[1]));
+        let (ax, ay) = (ax - sx * az, ay - sy * az);
+        let (bx, by) = (bx - sx * bz, by - sy * bz);
+        let (cx, cy) = (cx - sx * cz, cy - sy * cz);
 
         // Take the edge functions and the bound of their errors.
-        let u = c[0] * b[1] - c[1] * b[0];
-        let v = a[0] * c[1] - a[1] * c[0];
-        let w = b[0] * a[1] - b[1] * a[0];
-        let size = (a[0].abs() + a[1].abs()) + (b[0].abs() + b[1].abs()) + (c[0].abs() + c[1].abs());
+        let u = cx * by - cy * bx;
+        let v = ax * cy - ay * cx;
+        let w = bx * ay - by * ax;
+        let size = (ax.abs() + ay.abs()) + (bx.abs() + by.abs()) + (cx.abs() + cy.abs());
         let bound = error * (size + error) + splat(f32::MIN_POSITIVE);
-        let negative = splat(0.0) - bound;
-
-        // A miss has two edge functions of surely different signs.
-        let some_negative = u.below(negative) | v.below(negative) | w.below(negative);
-        let some_positive = bound.below(u) | bound.below(v) | bound.below(w);
-        let outside = some_negative.and(some_positive);
-
-        // Or it is surely out of range.
+        // Between which t the corners are.
         let scale = splat(ray.reciprocal_length);
-        let [ta, tb, tc] = moved.map(|corner| corner[2] * scale);
+        let (ta, tb, tc) = (az * scale, bz * scale, cz * scale);
         let room = error * scale.abs();
-        let before = (ta.max(tb).max(tc) + room).below(splat(ray.t_min));
-        let beyond = splat(t_max).below(ta.min(tb).min(tc) - room);
 
-        !(outside | before | beyond).bits() & ((1 << BLOCK) - 1)
+        values.least = u.min(v).min(w).0;
+        values.most = u.max(v).max(w).0;
+        values.bound = bound.0;
+        values.first = (ta.min(tb).min(tc) - room).0;
+        values.last = (ta.max(tb).max(tc) + room).0;
     }
+}
+
+/// What the filter calculates of each triangle: the least and the greatest edge function and the bound of their errors;
+/// the t before and after which no corner is.
+#[derive(Default)]
+struct Values {
+    least: [f32; BLOCK],
+    most: [f32; BLOCK],
+    bound: [f32; BLOCK],
+    first: [f32; BLOCK],
+    last: [f32; BLOCK],
 }
 
 /// Decides whether and where a ray meets a triangle, with `t_min < t`. The caller compares t with the ray's end.
 pub(crate) fn decide(ray: &Prepared, corners: &[[f32; 3]; 3]) -> Option<Crossing> {
-    let [p0, p1, p2] = corners.map(wide);
+    let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
     let [kx, ky, kz] = ray.axes;
 
     // Move the origin to 0 and shear, so that the ray runs along the third axis. Multiplying by the direction's
     // length there, in place of dividing by it, keeps whole numbers whole: edges and corners are met exactly.
     let d = ray.direction64;
-    let [a, b, c] = [p0, p1, p2].map(|p| {
+    let sheared = |p: [f64; 3]| {
         let p = subtract(p, ray.origin64);
         [d[kz] * p[kx] - d[kx] * p[kz], d[kz] * p[ky] - d[ky] * p[kz], p[kz]]
-    });
+    };
+    let (a, b, c) = (sheared(p0), sheared(p1), sheared(p2));
 
     // Look at the signs of the edge functions.
     let u = edge_function(c, b);
@@ -253,7 +281,7 @@ mod tests {
             let direction = [0, 1, 2].map(|i| target[i] - origin[i]);
             let Some(ray) = Prepared::new(&Ray::new(origin, direction)) else { continue };
             let block = TriangleBlock::new(&[(corners, 0, 0)]);
-            let keep = block.filter(&ray, f32::INFINITY) & 1;
+            let keep = block.filter(&ray, f32::INFINITY).first(1).count();
             all += 1;
             kept += keep;
             if decide(&ray, &corners).is_some() {

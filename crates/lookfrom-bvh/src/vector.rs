@@ -1,17 +1,21 @@
 //! The few operations on three components that the decisions in double precision need.
 
+#[inline(always)]
 pub(crate) fn wide(a: [f32; 3]) -> [f64; 3] {
-    a.map(f64::from)
+    [f64::from(a[0]), f64::from(a[1]), f64::from(a[2])]
 }
 
+#[inline(always)]
 pub(crate) fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
+#[inline(always)]
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+#[inline(always)]
 pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
