@@ -92,15 +92,9 @@ pub(crate) struct RenderArguments {
     /// Where to: a file (.png, .exr, .hdr, .pfm, .ppm), a folder, a pattern with {name}, or - for a PNG to stdout
     ///
     /// PNG and PPM are 8-bit sRGB after exposure and tone map; EXR, HDR and PFM are linear light as it was computed. Without
-    /// it: NAME.png in the current folder, by the name of the scene. Several scenes need a folder or a pattern.
+    /// it: NAME.png in the current folder, by the name of the scene. For several scenes give a folder or a pattern.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
-
-    #[command(flatten)]
-    pub(crate) common: Common,
-
-    #[command(flatten)]
-    pub(crate) overrides: Overrides,
 
     /// Say nothing but errors
     #[arg(short, long)]
@@ -109,6 +103,12 @@ pub(crate) struct RenderArguments {
     /// Write a summary of each scene to stdout, one JSON object a line
     #[arg(long)]
     pub(crate) json: bool,
+
+    #[command(flatten)]
+    pub(crate) common: Common,
+
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
 }
 
 #[derive(Args, Debug)]

@@ -1,5 +1,5 @@
-//! What the command line says in place of the scene, applied to the scene in two steps: the size of the picture before it is
-//! furnished (a camera is framed for a shape of picture), the camera after it (it changes what is there).
+//! What the command line says in place of the scene, applied in two steps: the settings first, since a camera is framed for a
+//! shape of picture; then the camera, which a model has only by then.
 
 use glam::{DMat3, DMat4, DVec3};
 use lookfrom_scene::camera::{Camera, Projection, View};

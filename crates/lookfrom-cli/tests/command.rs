@@ -4,6 +4,7 @@ mod command {
     mod errors;
     mod guide;
     mod info;
+    mod inspect;
     #[cfg(unix)]
     mod interrupt;
     mod render;

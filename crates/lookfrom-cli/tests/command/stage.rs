@@ -109,6 +109,11 @@ impl Stage {
         run
     }
 
+    /// Runs the command, which must succeed and answer with one JSON object over many lines.
+    pub(super) fn json_document(&self, arguments: &str) -> Value {
+        serde_json::from_slice(&self.done(arguments).stdout).unwrap()
+    }
+
     /// Runs the command, which must succeed and answer with JSON objects, one a line.
     pub(super) fn json(&self, arguments: &str) -> Vec<Value> {
         self.done(arguments).json()
