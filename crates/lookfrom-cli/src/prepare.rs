@@ -57,6 +57,9 @@ pub(crate) fn prepare(path: &Path, common: &Common, overrides: &Overrides) -> Re
     let (counts, bounds) = (Counts::of(&scene), scene.bounds());
     let had_camera = scene.camera.is_some();
     let (lights, shapes) = (scene.lights.len(), scene.shapes.len());
+    // The eye comes first: inside a room it needs other light.
+    studio::frame(&mut scene, overrides.up);
+    overrides.apply_to_camera(&mut scene)?;
     let bare_model = model::is_model(path);
     if bare_model {
         studio::furnish_with_floor(&mut scene, overrides.up);
@@ -73,7 +76,6 @@ pub(crate) fn prepare(path: &Path, common: &Common, overrides: &Overrides) -> Re
     if bare_model && scene.shapes.len() > shapes {
         added.push("floor");
     }
-    overrides.apply_to_camera(&mut scene)?;
 
     // Compile.
     let (image, render) = (scene.image.clone(), scene.render.clone());

@@ -8,7 +8,7 @@ use glam::{DMat4, DVec3};
 
 use crate::camera::{Camera, Projection, View};
 use crate::error::Location;
-use crate::light::{Light, LightKind, Sky};
+use crate::light::{Falloff, Light, LightKind, Sky};
 use crate::material::{Color, Whitted};
 use crate::model::surface::push_material;
 use crate::scene::{Bounds, Scene};
@@ -32,9 +32,17 @@ const KEY: f64 = 0.62;
 const FILL_ZENITH: [f32; 3] = [0.40, 0.43, 0.48];
 const FILL_HORIZON: [f32; 3] = [0.30, 0.31, 0.33];
 const FILL_NADIR: [f32; 3] = [0.17, 0.165, 0.16];
+/// In a room: light from everywhere, and from a lamp at the eye.
+const ROOM: f32 = 0.3;
+const LAMP: f32 = 0.55;
 /// Radius of the floor in radii of the bounds: beyond the upper edge of the picture.
 const FLOOR_RADIUS: f64 = 60.0;
 const FLOOR_REFLECTANCE: f32 = 0.55;
+
+/// Adds a camera that frames the scene's bounds, if there is none. `up` as in [`furnish`].
+pub fn frame(scene: &mut Scene, up: Option<DVec3>) {
+    Stage::of(scene, up).add_camera(scene);
+}
 
 /// Adds what the scene lacks: a camera that frames its bounds, if there is none, and light, if there are neither lights
 /// nor shapes that shine. `up` is the direction (of any length) that is up; without it, the camera's, or else y.
@@ -57,6 +65,10 @@ pub fn furnish_with_floor(scene: &mut Scene, up: Option<DVec3>) {
 pub fn framing(bounds: Bounds, aspect: f64, up: DVec3) -> Camera {
     let bounds = sane(bounds);
     Stage { bounds, basis: basis(up) }.camera(aspect, |see| corners(bounds).into_iter().for_each(see))
+}
+
+fn add(scene: &mut Scene, name: &str, kind: LightKind) {
+    scene.lights.push(Light { name: Some(name.to_owned()), at: Location::default(), kind });
 }
 
 /// The bounds to show, and what is right, up and towards the viewer there: unit vectors.
@@ -131,9 +143,28 @@ impl Stage {
         } else {
             LightKind::Ambient { color: FILL_HORIZON }
         };
-        scene.lights.push(Light { name: Some("fill".to_owned()), at: Location::default(), kind: fill });
-        let key = self.key_light(scene);
-        scene.shapes.push(key);
+        add(scene, "fill", fill);
+        match self.eye_inside(scene) {
+            Some(eye) => {
+                add(scene, "room", LightKind::Ambient { color: [ROOM; 3] });
+                let intensity = [LAMP; 3];
+                add(scene, "lamp", LightKind::Point { position: eye, intensity, falloff: Falloff::None });
+            }
+            None => {
+                let key = self.key_light(scene);
+                scene.shapes.push(key);
+            }
+        }
+    }
+
+    /// The eye, where it stands inside the bounds, as in a room, which no light from outside may reach.
+    fn eye_inside(&self, scene: &Scene) -> Option<DVec3> {
+        let eye = match scene.camera.as_ref()?.view {
+            View::Look { lookfrom, .. } => lookfrom,
+            View::Matrix(matrix) => matrix.w_axis.truncate(),
+        };
+        let Bounds { min, max } = self.bounds;
+        (eye.cmpgt(min).all() && eye.cmplt(max).all()).then_some(eye)
     }
 
     /// A square that faces the middle of the bounds from the upper left of the camera.
@@ -373,5 +404,32 @@ mod tests {
         let right = (lookat - lookfrom).cross(DVec3::Y);
         assert!(middle.dot(right) < 0.0 && middle.y > 0.0);
         assert!(x.abs() > 1.0 || y.abs() > 1.0, "it must not be in the picture");
+    }
+
+    #[test]
+    fn a_room_is_lit_from_inside() {
+        let room = || {
+            let geometry = Geometry::Sphere(crate::shape::Sphere { center: DVec3::ZERO, radius: 3.0 });
+            let mut scene = Scene::default();
+            let material = push_material(&mut scene, "walls", &Location::default(), Whitted::default());
+            scene.shapes.push(Shape {
+                name: None,
+                at: Location::default(),
+                geometry,
+                material,
+                emission: None,
+                world_from_object: DMat4::IDENTITY,
+            });
+            scene
+        };
+        let lights_with_eye_at = |z: f64| {
+            let view = View::Look { lookfrom: DVec3::new(0.0, 0.0, z), lookat: DVec3::ONE, up: DVec3::Y };
+            let mut scene = Scene { camera: Some(Camera { view, ..Camera::default() }), ..room() };
+            furnish(&mut scene, None);
+            (scene.lights.len(), scene.shapes.len())
+        };
+        // inside: the fill, light from everywhere and a lamp; outside: the fill and a key light that is a shape
+        assert_eq!(lights_with_eye_at(2.0), (3, 1));
+        assert_eq!(lights_with_eye_at(9.0), (1, 2));
     }
 }

@@ -390,7 +390,8 @@ impl LightReport {
     fn shadow(&mut self, world: &World, shadow: &Shadow, hit: &Hit, passed: Spectrum) {
         let [origin, direction] =
             [shadow.ray.origin, shadow.ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-        let end = origin + direction;
+        // t = 1 was the light when the ray began; behind a transparent surface less is left of it
+        let end = origin + direction * f64::from(shadow.ray.t_max.min(1.0));
         let start = self.shadow_ray.map_or((world.origin + origin).to_array(), |[start, _]| start);
         self.shadow_ray = Some([start, (world.origin + end).to_array()]);
         if hit.is_hit() {

@@ -15,7 +15,7 @@ const WIDTH: f64 = 1000.0;
 /// Outlines of at most so many triangles of one mesh are drawn, evenly chosen.
 const MOST_TRIANGLES: usize = 2000;
 
-/// Draws an inspection: the picture plane of the drawing holds the camera's view axis (to the right) and its up.
+/// Draws an inspection in a plane that holds the direction of view (to the right) and up.
 pub fn svg(world: &World, inspection: &Inspection) -> String {
     let side = SideView::new(world);
     let segments = segments(world, &side, inspection);
@@ -62,13 +62,15 @@ pub fn svg(world: &World, inspection: &Inspection) -> String {
             escape(&segment.title)
         );
     }
-    draw_camera(&mut out, place(side.project(DVec3::from_array(inspection.camera.lookfrom))));
+    let eye = place(side.project(DVec3::from_array(inspection.camera.lookfrom)));
+    draw_camera(&mut out, eye, side.project(world.camera.w()));
     draw_legend(&mut out, height, inspection);
     out.push_str("</svg>\n");
     out
 }
 
-/// Seen from the camera's left: forward is to the right, up is up.
+/// Seen from the camera's left: forward is to the right, up is up. The world's y is up as long as the camera does not look
+/// along it; then it is the camera's own.
 struct SideView {
     forward: DVec3,
     up: DVec3,
@@ -77,7 +79,13 @@ struct SideView {
 impl SideView {
     fn new(world: &World) -> Self {
         let axes = &world.camera.r3;
-        Self { forward: axes.z_axis.truncate().normalize(), up: axes.y_axis.truncate().normalize() }
+        let (up, forward) = (axes.y_axis.truncate().normalize(), axes.z_axis.truncate().normalize());
+        let level = forward.reject_from_normalized(DVec3::Y);
+        if level.length() > 0.3 {
+            Self { forward: level.normalize(), up: DVec3::Y }
+        } else {
+            Self { forward, up }
+        }
     }
 
     fn project(&self, point: DVec3) -> DVec2 {
@@ -215,16 +223,14 @@ fn draw_scene(out: &mut String, world: &World, side: &SideView, place: &impl Fn(
     out.push_str("</g>\n");
 }
 
-fn draw_camera(out: &mut String, eye: DVec2) {
+fn draw_camera(out: &mut String, eye: DVec2, forward: DVec2) {
+    let angle = libm::atan2(-forward.y, forward.x).to_degrees();
     let (x, y) = (eye.x, eye.y);
     let _ = writeln!(
         out,
-        "<path d=\"M {:.1} {:.1} l 22 -12 v 24 z\" fill=\"#2458c5\" fill-opacity=\"0.25\" stroke=\"#2458c5\"/>\n\
-         <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"#2458c5\"/>\n<text x=\"{:.1}\" y=\"{:.1}\">lookfrom</text>",
-        x,
-        y,
-        x - 10.0,
-        y + 30.0
+        "<g transform=\"translate({x:.1} {y:.1})\" fill=\"#2458c5\" stroke=\"#2458c5\">\n\
+         <path d=\"M 0 0 l 22 -12 v 24 z\" fill-opacity=\"0.25\" transform=\"rotate({angle:.2})\"/>\n\
+         <circle r=\"3\"/>\n<text x=\"-10\" y=\"34\" stroke=\"none\">lookfrom</text>\n</g>"
     );
 }
 
