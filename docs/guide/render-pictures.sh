@@ -14,18 +14,23 @@ if [[ -z ${LOOKFROM:-} ]]; then
     LOOKFROM=${CARGO_TARGET_DIR:-target}/release/lookfrom
 fi
 
-picture() { "$LOOKFROM" render "$1" -o "$2" --quiet --strict; }
+picture() { "$LOOKFROM" render "$@" --quiet --strict; }
+
+of_guide() {
+    local more=()
+    # Light from the whole sky is noisy at the number of samples that suits the others, and noise makes a large PNG.
+    [[ $1 == light-environment ]] && more=(--samples 512)
+    picture "docs/guide/scenes/$1.toml" -o "docs/guide/img/$1.png" ${more[@]+"${more[@]}"}
+}
 
 if (($# > 0)); then
-    for name in "$@"; do
-        picture "docs/guide/scenes/$name.toml" "docs/guide/img/$name.png"
-    done
+    for name in "$@"; do of_guide "$name"; done
     exit
 fi
 
 mkdir -p docs/guide/img docs/img
 for scene in docs/guide/scenes/*.toml; do
-    picture "$scene" "docs/guide/img/$(basename "$scene" .toml).png"
+    of_guide "$(basename "$scene" .toml)"
 done
-picture scenes/hero.toml docs/img/hero.png
-"$LOOKFROM" inspect scenes/glass-and-mirror.toml 195 275 --svg docs/guide/img/inspector-glass.svg > /dev/null
+picture scenes/hero.toml -o docs/img/hero.png
+"$LOOKFROM" inspect scenes/hero.toml 330 300 --depth 2 --svg docs/guide/img/inspector-glass.svg > /dev/null
