@@ -8,7 +8,6 @@ use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::DVec3;
 use lookfrom_bvh::{Hit, Ray};
 use lookfrom_scene::settings::{Crop, ImageSettings, Integrator as Kind, RenderSettings};
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
@@ -113,7 +112,7 @@ pub struct Traced {
     pub rgb: [f32; 3],
     /// The sum over the tree of rays.
     pub radiance: Spectrum,
-    /// The filter's weight: 1 or nearly so, negative in the lobes of some filters.
+    /// The filter's weight: 1 for filters without negative lobes.
     pub weight: f32,
 }
 
@@ -304,11 +303,6 @@ impl<'a> Frame<'a> {
         })?;
         let (film, rays) = film.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
         Ok(Rendered { film, rays, cancelled: done.into_inner() < total })
-    }
-
-    /// A point of render space in the world.
-    pub fn to_world(&self, point: [f32; 3]) -> DVec3 {
-        self.world.origin + DVec3::from_array(point.map(f64::from))
     }
 }
 

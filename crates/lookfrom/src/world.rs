@@ -5,6 +5,7 @@
 
 mod compile;
 mod lights;
+mod place;
 
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_bvh::{Bvh, Hit, NONE, Ray};

@@ -159,7 +159,7 @@ fn every_aligned_run_is_a_net() {
             }
         }
     }
-    let random = Sampler::new(Kind::Independent, 0, 16);
+    let random = Sampler::new(Kind::Independent, 0);
     assert!(!is_net(&(0..64).map(|i| random.two([0, 0], i, 0)).collect::<Vec<_>>()));
 }
 
@@ -244,7 +244,7 @@ fn different_addresses_are_uncorrelated() {
         pairs_look_uniform(
             "two seeds",
             (0..N).map(|i| {
-                let [a, b] = [0, 1].map(|add| Sampler::new(kind, u64::from(i) + add, 1));
+                let [a, b] = [0, 1].map(|add| Sampler::new(kind, u64::from(i) + add));
                 [a.one([0, 0], 0, 0), b.one([0, 0], 0, 0)]
             }),
         );
