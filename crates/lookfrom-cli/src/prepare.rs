@@ -7,7 +7,7 @@ use lookfrom::world::World;
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, RenderSettings};
-use lookfrom_scene::{Disk, Sources, Warning, load, model, studio};
+use lookfrom_scene::{Disk, Location, Sources, Warning, load, model, studio};
 
 use crate::args::{Common, Overrides};
 use crate::count::Counts;
@@ -55,6 +55,10 @@ pub(crate) fn prepare(path: &Path, common: &Common, overrides: &Overrides) -> Re
     let started = Instant::now();
     overrides.apply_to_settings(&mut scene.image, &mut scene.render)?;
     let (counts, bounds) = (Counts::of(&scene), scene.bounds());
+    if bounds.is_empty() {
+        let message = "nothing stands in this scene: the picture shows the background alone".to_owned();
+        warnings.push(Warning { at: Location::file(path), message });
+    }
     let had_camera = scene.camera.is_some();
     let (lights, shapes) = (scene.lights.len(), scene.shapes.len());
     // The eye comes first: inside a room it needs other light.

@@ -34,6 +34,9 @@ pub trait Files {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>>;
 }
 
+/// What is read, in bytes, of something that does not say how long it is.
+const MOST_OF_A_STREAM: u64 = 1 << 30;
+
 /// The file system.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Disk;
@@ -56,11 +59,13 @@ impl Files for Disk {
             Error::new(ErrorKind::Io, &at, message).hint(hint)
         };
         let file = std::fs::File::open(path).map_err(|e| io(&e))?;
-        let length = file.metadata().map_err(|e| io(&e))?.len();
+        let metadata = file.metadata().map_err(|e| io(&e))?;
+        let length = metadata.len();
         if length > limit {
             return Err(too_long(&at, limit));
         }
         // A device or a pipe claims length 0 and may never end: read one byte more than is allowed, at most.
+        let limit = if metadata.is_file() { limit } else { limit.min(MOST_OF_A_STREAM) };
         let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| io(&e))?;
         if bytes.len() as u64 > limit { Err(too_long(&at, limit)) } else { Ok(bytes) }
@@ -69,7 +74,7 @@ impl Files for Disk {
 
 fn too_long(at: &Location, limit: u64) -> Error {
     Error::new(ErrorKind::Limit, at, format!("longer than the limit of {limit} bytes"))
-        .hint("raise `Limits::file_bytes` if the file is meant to be that long")
+        .hint("divide the file, or raise `Limits::file_bytes`")
 }
 
 /// Files in memory, by path: for tests and for doors without a disk.
