@@ -8,9 +8,10 @@ use crate::node::Node;
 use crate::prepared::Prepared;
 use crate::procedural::Procedural;
 use crate::query::{All, Any, Closest};
-use crate::ray::{Hit, NONE, Ray};
+use crate::ray::{Hit, Ray};
+use crate::simd::Level;
 use crate::sphere::Sphere;
-use crate::traverse::{Watch, traverse, with_stack};
+use crate::traverse::{Trace, Watch};
 use crate::triangle::TriangleBlock;
 use crate::validate::{Invalid, Statistics};
 
@@ -23,12 +24,28 @@ pub struct Bvh {
     /// The root first.
     pub(crate) nodes: Vec<Node>,
     pub(crate) triangles: Vec<TriangleBlock>,
+    /// Those that hold no triangles.
+    pub(crate) leaves: Vec<Leaf>,
     pub(crate) spheres: Vec<SphereItem>,
     pub(crate) procedurals: Vec<ProceduralItem>,
     pub(crate) procedural_shapes: Vec<Arc<dyn Procedural>>,
     pub(crate) instances: Vec<Instance>,
     pub(crate) bounds: Aabb,
     pub(crate) statistics: Statistics,
+    /// The largest coordinate of a triangle.
+    pub(crate) largest: f32,
+    /// How many children may wait at once.
+    pub(crate) stack_length: usize,
+    /// The instructions to trace with.
+    pub(crate) level: Level,
+}
+
+/// What is in a leaf that holds no triangles: items in the array of their kind.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Leaf {
+    Spheres { first: u32, count: u32 },
+    Procedurals { first: u32, count: u32 },
+    Instances { first: u32, count: u32 },
 }
 
 /// A sphere and what it is called.
@@ -53,12 +70,16 @@ impl Default for Bvh {
         Self {
             nodes: Vec::new(),
             triangles: Vec::new(),
+            leaves: Vec::new(),
             spheres: Vec::new(),
             procedurals: Vec::new(),
             procedural_shapes: Vec::new(),
             instances: Vec::new(),
             bounds: Aabb::EMPTY,
             statistics: Statistics::default(),
+            largest: 0.0,
+            stack_length: 0,
+            level: Level::new(),
         }
     }
 }
@@ -74,6 +95,7 @@ impl Bvh {
         size_of::<Self>()
             + size_of_val(&*self.nodes)
             + size_of_val(&*self.triangles)
+            + size_of_val(&*self.leaves)
             + size_of_val(&*self.spheres)
             + size_of_val(&*self.procedurals)
             + size_of_val(&*self.procedural_shapes)
@@ -113,7 +135,7 @@ impl Bvh {
     pub fn closest_hit_watched(&self, ray: &Ray, watch: &mut impl Watch) -> Hit {
         let Some(prepared) = Prepared::new(ray) else { return Hit::MISS };
         let mut query = Closest::new(ray.t_max);
-        with_stack(|stack| traverse(self, &prepared, NONE, &mut query, watch, stack));
+        Trace { bvh: self, ray: &prepared, query: &mut query, watch }.go();
         query.hit
     }
 
@@ -121,7 +143,7 @@ impl Bvh {
     pub fn occluded(&self, ray: &Ray) -> bool {
         let Some(prepared) = Prepared::new(ray) else { return false };
         let mut query = Any::new(ray.t_max);
-        with_stack(|stack| traverse(self, &prepared, NONE, &mut query, &mut (), stack));
+        Trace { bvh: self, ray: &prepared, query: &mut query, watch: &mut () }.go();
         query.found
     }
 
@@ -131,7 +153,7 @@ impl Bvh {
         hits.clear();
         let Some(prepared) = Prepared::new(ray) else { return };
         let mut query = All::new(ray.t_max, hits);
-        with_stack(|stack| traverse(self, &prepared, NONE, &mut query, &mut (), stack));
+        Trace { bvh: self, ray: &prepared, query: &mut query, watch: &mut () }.go();
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then_with(|| a.rank().cmp(&b.rank())));
     }
 

@@ -16,9 +16,8 @@ const LARGEST_RECIPROCAL: f32 = 8.507_059e37;
 pub(crate) struct Prepared {
     /// Hits need a t above this.
     pub(crate) t_min: f32,
-    /// The ray in f32.
+    /// The origin in f32.
     pub(crate) origin: [f32; 3],
-    pub(crate) direction: [f32; 3],
 
     /// Box test: the origin, moved within its error so that near faces seem nearer and far faces farther.
     pub(crate) near_origin: [f32; 3],
@@ -28,14 +27,17 @@ pub(crate) struct Prepared {
     /// Box test: which face is met first, 0 the minimum or 1 the maximum.
     pub(crate) near_side: [usize; 3],
 
-    /// The axes, so permuted that the direction is longest along the last.
-    pub(crate) axes: [usize; 3],
-    /// Triangle filter: what takes the direction to the last axis, and 1 / its length there.
-    pub(crate) shear: [f32; 2],
-    pub(crate) reciprocal_length: f32,
-    /// Triangle filter: what the origin's rounding to f32 may add to the error of a coordinate.
+    /// Triangle filter: the direction in f32 times a power of two, its longest component below 4.
+    pub(crate) scaled_direction: [f32; 3],
+    /// Triangle filter: what takes t to that direction: the power of two's inverse.
+    pub(crate) t_scale: f32,
+    /// Triangle filter: what the origin's rounding to f32 is relative to; 0 for a ray in the world.
     pub(crate) rounding: f32,
+    /// The largest of the origin's coordinates.
+    pub(crate) largest: f32,
 
+    /// Triangle decision: the axes, so permuted that the direction is longest along the last.
+    pub(crate) axes: [usize; 3],
     /// The ray in f64.
     pub(crate) origin64: [f64; 3],
     pub(crate) direction64: [f64; 3],
@@ -91,19 +93,24 @@ impl Prepared {
             near_side[axis] = usize::from(negative);
         }
 
+        // A power of two within the range of f32, and its inverse.
+        let exponent = (direction[axes[2]].to_bits() & 0x7f80_0000).clamp(1 << 23, 253 << 23);
+        let scale = f32::from_bits((254 << 23) - exponent);
+        let t_scale = f32::from_bits(exponent);
+
         let largest = origin.iter().fold(0.0_f32, |largest, x| largest.max(x.abs()));
         Some(Self {
             t_min,
             origin,
-            direction,
             near_origin,
             far_origin,
             reciprocal,
             near_side,
+            scaled_direction: direction.map(|x| x * scale),
+            t_scale,
+            rounding: if relative > 0.0 { largest } else { 0.0 },
+            largest,
             axes,
-            shear: [axes[0], axes[1]].map(|axis| (direction64[axis] / length) as f32),
-            reciprocal_length: (1.0 / length) as f32,
-            rounding: relative * largest,
             origin64,
             direction64,
         })

@@ -4,6 +4,9 @@ use crate::ray::Hit;
 
 /// What is asked.
 pub(crate) trait Query {
+    /// Whether near children are to be visited before far ones.
+    const NEAREST_FIRST: bool;
+
     /// No hit beyond this t is wanted; one at it may be.
     fn end(&self) -> f32;
 
@@ -25,6 +28,8 @@ impl Closest {
 }
 
 impl Query for Closest {
+    const NEAREST_FIRST: bool = true;
+
     #[inline(always)]
     fn end(&self) -> f32 {
         self.end
@@ -53,6 +58,8 @@ impl Any {
 }
 
 impl Query for Any {
+    const NEAREST_FIRST: bool = false;
+
     #[inline(always)]
     fn end(&self) -> f32 {
         self.t_max
@@ -78,6 +85,8 @@ impl<'a> All<'a> {
 }
 
 impl Query for All<'_> {
+    const NEAREST_FIRST: bool = false;
+
     #[inline(always)]
     fn end(&self) -> f32 {
         self.t_max

@@ -1,93 +1,31 @@
-//! A few f32 side by side.
+//! Which vector instructions are there, and how is code compiled for them?
 //!
-//! Plain arrays whose loops the compiler turns into vector instructions, which it does where results end up in memory one
-//! after another: so the box test and the triangle filter are functions that are not inlined and write arrays, and
-//! comparisons follow on these. Explicit SIMD, when it comes, goes here.
+//! The only file that names the dependency, `fearless_simd`. Code that is generic over [`Simd`] is compiled once a level and
+//! chosen when a ray (or a batch) starts, by [`at_level`]. Everything between there and the vectors must be
+//! `#[inline(always)]`: a function that is called, not inlined, is compiled for the lowest level.
+//!
+//! Vectors only ever *exclude*, with room for errors, so hits have the same bits at every level.
 
-use std::ops::{Add, Mul, Sub};
+use fearless_simd::dispatch;
+pub(crate) use fearless_simd::{Level, Simd, f32x4, f32x8, prelude, u32x4};
 
-/// `N` numbers that are calculated with at once.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lanes<const N: usize>(pub(crate) [f32; N]);
+/// What is to be done at a level that is known only when the program runs.
+pub(crate) trait Work {
+    type Output;
 
-impl<const N: usize> Lanes<N> {
-    #[inline(always)]
-    pub(crate) fn splat(x: f32) -> Self {
-        Self([x; N])
-    }
-
-    #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
-        let mut result = [0.0; N];
-        for lane in 0..N {
-            result[lane] = f(self.0[lane], other.0[lane]);
-        }
-        Self(result)
-    }
-
-    /// The smaller of two; the second where either is NaN.
-    #[inline(always)]
-    pub(crate) fn min(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a < b { a } else { b })
-    }
-
-    /// The greater of two; the second where either is NaN.
-    #[inline(always)]
-    pub(crate) fn max(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a > b { a } else { b })
-    }
-
-    #[inline(always)]
-    pub(crate) fn abs(self) -> Self {
-        self.zip(self, |a, _| a.abs())
-    }
+    /// Does it. Implementations are `#[inline(always)]`.
+    fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
-impl<const N: usize> Add for Lanes<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
-    }
-}
-
-impl<const N: usize> Sub for Lanes<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
-    }
-}
-
-impl<const N: usize> Mul for Lanes<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
-    }
+/// Does the work with the instructions of a level.
+#[inline(always)]
+pub(crate) fn at_level<W: Work>(level: Level, work: W) -> W::Output {
+    dispatch!(level, simd => work.run(simd))
 }
 
 /// The numbers of the lanes that were chosen, from the least; bit i stands for lane i.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Chosen(u32);
-
-impl Chosen {
-    /// The lanes for which something holds.
-    #[inline(always)]
-    pub(crate) fn which<const N: usize>(holds: impl Fn(usize) -> bool) -> Self {
-        let mut bits = 0;
-        for lane in 0..N {
-            bits |= u32::from(holds(lane)) << lane;
-        }
-        Self(bits)
-    }
-
-    /// Only the first lanes.
-    #[inline(always)]
-    pub(crate) fn first(self, count: u32) -> Self {
-        Self(self.0 & ((1 << count) - 1))
-    }
-}
+pub(crate) struct Chosen(pub(crate) u32);
 
 impl Iterator for Chosen {
     type Item = usize;
@@ -99,14 +37,26 @@ impl Iterator for Chosen {
     }
 }
 
+/// Every level that this machine has.
+#[cfg(test)]
+pub(crate) fn levels() -> Vec<Level> {
+    let best = Level::new();
+    let mut levels = vec![Level::fallback(), Level::baseline(), best];
+    #[cfg(target_arch = "x86_64")]
+    {
+        levels.extend(best.as_sse4_2().map(Simd::level));
+        levels.extend(best.as_avx2().map(Simd::level));
+    }
+    levels
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn chosen_lanes_come_in_order() {
-        assert_eq!(Chosen::which::<8>(|lane| [1, 2, 5, 7].contains(&lane)).collect::<Vec<_>>(), [1, 2, 5, 7]);
-        assert_eq!(Chosen::which::<4>(|_| true).first(3).collect::<Vec<_>>(), [0, 1, 2]);
-        assert_eq!(Chosen::which::<4>(|_| false).next(), None);
+        assert_eq!(Chosen(0b1010_0110).collect::<Vec<_>>(), [1, 2, 5, 7]);
+        assert_eq!(Chosen(0).next(), None);
     }
 }

@@ -7,14 +7,20 @@
 use std::cell::Cell;
 
 use crate::Bvh;
-use crate::node::{Content, with_room};
+use crate::bvh::Leaf;
+use crate::node::{Child, Content, Entered, Node, Slabs, WIDTH, with_room};
 use crate::prepared::Prepared;
 use crate::query::Query;
 use crate::ray::{Hit, NONE, Ray};
+use crate::simd::{Simd, Work, at_level};
+use crate::triangle::Sieve;
 use crate::{sphere, triangle};
 
 /// Listens while a ray is traced. Every method does nothing unless written; `()` listens to nothing and costs nothing.
 pub trait Watch {
+    /// Whether [`Self::candidate`] is to be called at all.
+    const LISTENS: bool = true;
+
     /// The ray visits a node of a tree; `instance` is [`NONE`] in the outer tree.
     fn node(&mut self, instance: u32, node: u32) {
         let _ = (instance, node);
@@ -26,97 +32,249 @@ pub trait Watch {
     }
 }
 
-impl Watch for () {}
-
-/// A child that waits for its visit.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pending {
-    near: f32,
-    index: u32,
-    content: u32,
+impl Watch for () {
+    const LISTENS: bool = false;
 }
+
+/// A child that waits for its visit: where the ray enters it (f32 bits) above what it is. Positive distances are ordered
+/// as these numbers are; the others only cost time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Pending(u64);
+
+impl Pending {
+    const NONE: Self = Self(0);
+
+    #[inline(always)]
+    fn new(near: f32, child: Child) -> Self {
+        Self(u64::from(near.to_bits()) << 32 | u64::from(child.0))
+    }
+
+    #[inline(always)]
+    fn near(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+
+    #[inline(always)]
+    fn child(self) -> Child {
+        Child(self.0 as u32)
+    }
+}
+
+/// Children that wait. Long enough for the tree, so that nothing is checked or allocated on the way.
+#[derive(Default)]
+pub(crate) struct Stack(Vec<Pending>);
 
 thread_local! {
     /// The last traversal's stack, kept so that a ray costs no allocation. Taken while in use, so a procedural that
     /// traces rays of its own gets a new one.
-    static STACK: Cell<Vec<Pending>> = const { Cell::new(Vec::new()) };
+    static STACK: Cell<Stack> = const { Cell::new(Stack(Vec::new())) };
 }
 
-/// Runs `work` with a stack.
-pub(crate) fn with_stack<R>(work: impl FnOnce(&mut Vec<Pending>) -> R) -> R {
+/// Runs `work` with a stack that is long enough for a tree.
+#[inline(always)]
+pub(crate) fn with_stack<R>(bvh: &Bvh, work: impl FnOnce(&mut Stack) -> R) -> R {
     let mut stack = STACK.take();
-    stack.clear();
+    if stack.0.len() < bvh.stack_length {
+        stack.0.resize(bvh.stack_length, Pending::NONE);
+    }
     let result = work(&mut stack);
     STACK.set(stack);
     result
 }
 
-/// Traces a ray through a tree. Returns true where the query wants no more.
-pub(crate) fn traverse<Q: Query, W: Watch>(
+/// Traces one ray at the best level that there is.
+pub(crate) struct Trace<'a, Q, W> {
+    pub(crate) bvh: &'a Bvh,
+    pub(crate) ray: &'a Prepared,
+    pub(crate) query: &'a mut Q,
+    pub(crate) watch: &'a mut W,
+}
+
+impl<Q: Query, W: Watch> Trace<'_, Q, W> {
+    #[inline(always)]
+    pub(crate) fn go(self) {
+        at_level(self.bvh.level, self);
+    }
+}
+
+impl<Q: Query, W: Watch> Work for Trace<'_, Q, W> {
+    type Output = ();
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { bvh, ray, query, watch } = self;
+        with_stack(
+            bvh,
+            #[inline(always)]
+            |stack| outer(simd, bvh, ray, query, watch, &mut stack.0),
+        );
+    }
+}
+
+/// Traces a ray through a tree and the trees in it.
+#[inline(always)]
+fn outer<S: Simd, Q: Query, W: Watch>(
+    simd: S,
+    bvh: &Bvh,
+    ray: &Prepared,
+    query: &mut Q,
+    watch: &mut W,
+    stack: &mut [Pending],
+) -> bool {
+    traverse(
+        simd,
+        bvh,
+        ray,
+        NONE,
+        query,
+        watch,
+        stack,
+        #[inline(always)]
+        |leaf, query, watch, stack| match *leaf {
+            Leaf::Instances { first, count } => instances(simd, bvh, ray, first, count, query, watch, stack),
+            _ => primitives(bvh, ray, leaf, &mut Answer { instance: NONE, query, watch }),
+        },
+    )
+}
+
+/// Traces a ray through an instance's tree.
+#[inline(always)]
+fn inner<S: Simd, Q: Query, W: Watch>(
+    simd: S,
     bvh: &Bvh,
     ray: &Prepared,
     instance: u32,
     query: &mut Q,
     watch: &mut W,
-    stack: &mut Vec<Pending>,
+    stack: &mut [Pending],
+) -> bool {
+    traverse(
+        simd,
+        bvh,
+        ray,
+        instance,
+        query,
+        watch,
+        stack,
+        #[inline(always)]
+        |leaf, query, watch, _| primitives(bvh, ray, leaf, &mut Answer { instance, query, watch }),
+    )
+}
+
+/// Traces a ray through a tree. Returns true where the query wants no more.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)] // One loop, and these are its state.
+fn traverse<S: Simd, Q: Query, W: Watch>(
+    simd: S,
+    bvh: &Bvh,
+    ray: &Prepared,
+    instance: u32,
+    query: &mut Q,
+    watch: &mut W,
+    stack: &mut [Pending],
+    mut visit_leaf: impl FnMut(&Leaf, &mut Q, &mut W, &mut [Pending]) -> bool,
 ) -> bool {
     if bvh.nodes.is_empty() {
         return false;
     }
-    let base = stack.len();
-    let mut current = Pending { near: f32::NEG_INFINITY, index: 0, content: Content::Node.pack() };
+    let slabs = Slabs::new(simd, ray);
+    let sieve = Sieve::new(simd, ray, bvh.largest);
+    let mut height = 0;
+    let mut current = Child::ROOT;
     loop {
-        if current.near <= with_room(query.end()) {
-            let first = current.index as usize;
-            let stop = match Content::unpack(current.content) {
-                Content::Node => {
-                    // Visit the children that the ray enters, the nearest first.
-                    watch.node(instance, current.index);
-                    let node = &bvh.nodes[first];
-                    let entered = node.enter(ray, query.end());
-                    push_sorted(node, &entered, stack);
-                    false
-                }
-                Content::Triangles(count) => {
-                    triangles(bvh, ray, first, count, &mut Answer { instance, query, watch })
-                }
-                Content::Spheres(count) => {
-                    spheres(bvh, ray, first, count, &mut Answer { instance, query, watch })
-                }
-                Content::Procedurals(count) => {
-                    procedurals(bvh, ray, first, count, &mut Answer { instance, query, watch })
-                }
-                Content::Instances(count) => instances(bvh, ray, first, count, query, watch, stack),
-            };
-            if stop {
-                stack.truncate(base);
-                return true;
+        // Go down, each time to the nearest child that the ray enters; the others wait.
+        while let Content::Node(number) = current.content() {
+            watch.node(instance, number as u32);
+            let node = &bvh.nodes[number];
+            let entered = node.enter(simd, &slabs, query.end());
+            match push::<Q>(node, &entered, stack, &mut height) {
+                Some(child) => current = child,
+                None => match pop(stack, &mut height, query.end()) {
+                    Some(child) => current = child,
+                    None => return false,
+                },
             }
         }
-        if stack.len() == base {
-            return false;
+
+        // Test what is in a leaf.
+        let stop = match current.content() {
+            Content::Triangles(number) => {
+                let block = &bvh.triangles[number];
+                triangles(simd, block, ray, &sieve, &mut Answer { instance, query, watch })
+            }
+            Content::Leaf(number) => visit_leaf(&bvh.leaves[number], query, watch, &mut stack[height..]),
+            Content::Node(_) => false,
+        };
+        if stop {
+            return true;
         }
-        let Some(next) = stack.pop() else { return false };
-        current = next;
+        match pop(stack, &mut height, query.end()) {
+            Some(child) => current = child,
+            None => return false,
+        }
     }
 }
 
-/// Pushes the children that were entered so that the nearest is popped first.
+/// The next child that is not beyond the end.
 #[inline(always)]
-fn push_sorted(node: &crate::node::Node, entered: &crate::node::Entered, stack: &mut Vec<Pending>) {
-    let bottom = stack.len();
-    for slot in entered.children {
-        let (index, content) = node.child(slot);
-        let child = Pending { near: entered.near[slot], index, content };
-        stack.push(child);
-        // Insert: what is farther stays below.
-        let mut place = stack.len() - 1;
-        while place > bottom && stack[place - 1].near < child.near {
-            stack[place] = stack[place - 1];
-            place -= 1;
+fn pop(stack: &[Pending], height: &mut usize, end: f32) -> Option<Child> {
+    let end = with_room(end);
+    while *height > 0 {
+        *height -= 1;
+        let pending = stack[*height];
+        if pending.near() <= end {
+            return Some(pending.child());
         }
-        stack[place] = child;
     }
+    None
+}
+
+/// Pushes the children that were entered but one, the nearest last, and returns that one, which is nearer.
+#[inline(always)]
+fn push<Q: Query>(
+    node: &Node,
+    entered: &Entered,
+    stack: &mut [Pending],
+    height: &mut usize,
+) -> Option<Child> {
+    if entered.children == 0 {
+        return None;
+    }
+    let mut children = entered.children;
+    let first = next(node, entered, &mut children);
+    if children == 0 {
+        return Some(first.child());
+    }
+    let second = next(node, entered, &mut children);
+    let (mut nearest, farther) =
+        if Q::NEAREST_FIRST { (first.min(second), first.max(second)) } else { (first, second) };
+    let bottom = *height;
+    stack[bottom] = farther;
+    *height += 1;
+    while children != 0 {
+        let mut waits = next(node, entered, &mut children);
+        if Q::NEAREST_FIRST {
+            (nearest, waits) = (nearest.min(waits), nearest.max(waits));
+            // Insert: what is farther stays below.
+            let mut place = *height;
+            while place > bottom && stack[place - 1] < waits {
+                stack[place] = stack[place - 1];
+                place -= 1;
+            }
+            stack[place] = waits;
+        } else {
+            stack[*height] = waits;
+        }
+        *height += 1;
+    }
+    Some(nearest.child())
+}
+
+/// Takes the first of some children.
+#[inline(always)]
+fn next(node: &Node, entered: &Entered, children: &mut u32) -> Pending {
+    let slot = children.trailing_zeros() as usize % WIDTH;
+    *children &= children.wrapping_sub(1);
+    Pending::new(entered.near[slot], node.child(slot))
 }
 
 /// Whom to tell.
@@ -127,19 +285,20 @@ struct Answer<'a, Q, W> {
 }
 
 #[inline(always)]
-fn triangles<Q: Query, W: Watch>(
-    bvh: &Bvh,
+fn triangles<S: Simd, Q: Query, W: Watch>(
+    simd: S,
+    block: &triangle::TriangleBlock,
     ray: &Prepared,
-    first: usize,
-    count: u32,
+    sieve: &Sieve<S>,
     answer: &mut Answer<'_, Q, W>,
 ) -> bool {
-    let block = &bvh.triangles[first];
-    for lane in 0..count as usize {
-        let (geometry, primitive) = block.ids(lane);
-        answer.watch.candidate(answer.instance, geometry, primitive);
+    if W::LISTENS {
+        for lane in 0..block.count() {
+            let (geometry, primitive) = block.ids(lane);
+            answer.watch.candidate(answer.instance, geometry, primitive);
+        }
     }
-    for lane in block.filter(ray, answer.query.end()).first(count) {
+    for lane in block.filter(simd, sieve, answer.query.end()) {
         if let Some(crossing) = triangle::decide(ray, &block.corners(lane)) {
             let (geometry, primitive) = block.ids(lane);
             let triangle::Crossing { t, u, v } = crossing;
@@ -149,6 +308,21 @@ fn triangles<Q: Query, W: Watch>(
         }
     }
     false
+}
+
+/// Tests what is not a triangle and not an instance.
+#[inline(never)]
+fn primitives<Q: Query, W: Watch>(
+    bvh: &Bvh,
+    ray: &Prepared,
+    leaf: &Leaf,
+    answer: &mut Answer<'_, Q, W>,
+) -> bool {
+    match *leaf {
+        Leaf::Spheres { first, count } => spheres(bvh, ray, first as usize, count, answer),
+        Leaf::Procedurals { first, count } => procedurals(bvh, ray, first as usize, count, answer),
+        Leaf::Instances { .. } => false,
+    }
 }
 
 fn spheres<Q: Query, W: Watch>(
@@ -185,7 +359,8 @@ fn procedurals<Q: Query, W: Watch>(
         answer.watch.candidate(instance, geometry, primitive);
         // Ask one step beyond the end: a hit at the same t may win the tie.
         let t_max = answer.query.end().next_up();
-        let asked = Ray { origin: ray.origin, t_min: ray.t_min, direction: ray.direction, t_max };
+        let direction = ray.direction64.map(|x| x as f32);
+        let asked = Ray { origin: ray.origin, t_min: ray.t_min, direction, t_max };
         let Some(found) = bvh.procedural_shapes[item.shape as usize].intersect(primitive, &asked) else {
             continue;
         };
@@ -198,18 +373,28 @@ fn procedurals<Q: Query, W: Watch>(
     false
 }
 
-fn instances<Q: Query, W: Watch>(
+/// Not inlined, but compiled for the level: the loop in its loop.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)]
+fn instances<S: Simd, Q: Query, W: Watch>(
+    simd: S,
     bvh: &Bvh,
     ray: &Prepared,
-    first: usize,
+    first: u32,
     count: u32,
     query: &mut Q,
     watch: &mut W,
-    stack: &mut Vec<Pending>,
+    stack: &mut [Pending],
 ) -> bool {
-    bvh.instances[first..first + count as usize].iter().any(|instance| {
+    let range = first as usize..(first + count) as usize;
+    bvh.instances[range].iter().any(|instance| {
         debug_assert_ne!(instance.id, NONE);
-        ray.in_object(&instance.world_from_object, &instance.object_from_world)
-            .is_some_and(|inside| traverse(&instance.bvh, &inside, instance.id, query, watch, stack))
+        let Some(inside) = ray.in_object(&instance.world_from_object, &instance.object_from_world) else {
+            return false;
+        };
+        simd.vectorize(
+            #[inline(always)]
+            || inner(simd, &instance.bvh, &inside, instance.id, query, watch, stack),
+        )
     })
 }

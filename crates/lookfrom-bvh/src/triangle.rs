@@ -15,23 +15,40 @@
 
 use crate::prepared::Prepared;
 use crate::ray::NONE;
-use crate::simd::{Chosen, Lanes};
+use crate::simd::{Chosen, Simd, f32x4, prelude::*, u32x4};
 use crate::vector::{cross, cross_magnitude, dot, subtract, wide};
 
 /// Triangles in a block.
 pub(crate) const BLOCK: usize = 4;
 
-/// Relative error of a corner's coordinates after translation and shear in f32: at most 8 units of rounding of the
-/// largest coordinate (differences 1 each, the factor 1, the product 1, the sum 1); twice that, since it stands also for
-/// the rounding of the products in the edge functions.
-const CORNER_ERROR: f32 = 9.536_743e-7;
+/// As many numbers as a block has triangles.
+type Lanes<S> = f32x4<S>;
+
+/// Errors of the filter's determinants: 160 units of rounding, times 4 for the longest component of the direction.
+///
+/// Relative to the largest component e of the edges and c of the way to the first corner: an edge function is a sum of
+/// three products of e and a sum of two products of c and the direction; with one unit for each rounding its error is
+/// below 45 e c units, that of the determinant N·d below 45 e e, and that of the third edge function, which is the
+/// determinant less the other two, below 114 e c + 57 e e. An origin that was rounded adds to c.
+const ERROR: f32 = 160.0 * 4.0 / 16_777_216.0;
+
+/// What underflow may add: some products that are less than this.
+const UNDERFLOW: f32 = 64.0 * f32::MIN_POSITIVE;
+
+/// Room for the rounding of a t so small that rounding is not relative to it: 2⁻¹⁰⁰.
+const TINY: f32 = 7.888_609e-31;
+
+/// Beyond this (2⁴⁰) the filter's products may overflow, and it excludes nothing.
+pub(crate) const LARGEST_FILTERED: f32 = 1.099_511_6e12;
 
 /// Four triangles, component by component.
 #[derive(Clone, Debug)]
-#[repr(C, align(16))]
+#[repr(C, align(64))]
 pub(crate) struct TriangleBlock {
     /// `corners[corner][axis][lane]`; unused lanes repeat lane 0.
     corners: [[[f32; BLOCK]; 3]; 3],
+    /// The largest component of the edges at the first corner.
+    extent: [f32; BLOCK],
     geometry: [u32; BLOCK],
     /// [`NONE`] in unused lanes.
     primitive: [u32; BLOCK],
@@ -45,16 +62,65 @@ pub(crate) struct Crossing {
     pub(crate) v: f32,
 }
 
+/// What the filter needs of a ray, in every lane.
+pub(crate) struct Sieve<S: Simd> {
+    origin: [Lanes<S>; 3],
+    direction: [Lanes<S>; 3],
+    t_min: Lanes<S>,
+    t_min_size: Lanes<S>,
+    t_scale: f32,
+    error: Lanes<S>,
+    rounding: Lanes<S>,
+}
+
+impl<S: Simd> Sieve<S> {
+    /// `largest` is the tree's largest coordinate.
+    #[inline(always)]
+    pub(crate) fn new(simd: S, ray: &Prepared, largest: f32) -> Self {
+        let in_range = ray.largest < LARGEST_FILTERED && largest < LARGEST_FILTERED;
+        let t_min = ray.t_min * ray.t_scale - ray.t_scale * TINY;
+        Self {
+            origin: splat_all(simd, ray.origin),
+            direction: splat_all(simd, ray.scaled_direction),
+            t_min: Lanes::splat(simd, t_min),
+            t_min_size: Lanes::splat(simd, t_min.abs()),
+            t_scale: ray.t_scale,
+            error: Lanes::splat(simd, if in_range { ERROR } else { f32::INFINITY }),
+            rounding: Lanes::splat(simd, ray.rounding),
+        }
+    }
+}
+
+#[inline(always)]
+fn splat_all<S: Simd>(simd: S, values: [f32; 3]) -> [Lanes<S>; 3] {
+    [Lanes::splat(simd, values[0]), Lanes::splat(simd, values[1]), Lanes::splat(simd, values[2])]
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, values: &[[f32; BLOCK]; 3]) -> [Lanes<S>; 3] {
+    [
+        Lanes::load_array_ref(simd, &values[0]),
+        Lanes::load_array_ref(simd, &values[1]),
+        Lanes::load_array_ref(simd, &values[2]),
+    ]
+}
+
 impl TriangleBlock {
     /// Packs one to four triangles: corners, geometry, primitive.
     pub(crate) fn new(triangles: &[([[f32; 3]; 3], u32, u32)]) -> Self {
-        let mut block =
-            Self { corners: [[[0.0; BLOCK]; 3]; 3], geometry: [NONE; BLOCK], primitive: [NONE; BLOCK] };
+        let mut block = Self {
+            corners: [[[0.0; BLOCK]; 3]; 3],
+            extent: [0.0; BLOCK],
+            geometry: [NONE; BLOCK],
+            primitive: [NONE; BLOCK],
+        };
         for lane in 0..BLOCK {
             let (corners, geometry, primitive) = triangles.get(lane).unwrap_or(&triangles[0]);
             for corner in 0..3 {
                 for axis in 0..3 {
                     block.corners[corner][axis][lane] = corners[corner][axis];
+                    let edge = (corners[corner][axis] - corners[0][axis]).abs();
+                    block.extent[lane] = block.extent[lane].max(edge);
                 }
             }
             if lane < triangles.len() {
@@ -65,13 +131,20 @@ impl TriangleBlock {
         block
     }
 
+    /// How many triangles there are.
+    pub(crate) fn count(&self) -> usize {
+        self.primitive.iter().filter(|&&primitive| primitive != NONE).count()
+    }
+
     #[inline(always)]
     pub(crate) fn ids(&self, lane: usize) -> (u32, u32) {
+        let lane = lane & (BLOCK - 1);
         (self.geometry[lane], self.primitive[lane])
     }
 
     #[inline(always)]
     pub(crate) fn corners(&self, lane: usize) -> [[f32; 3]; 3] {
+        let lane = lane & (BLOCK - 1);
         let mut corners = [[0.0; 3]; 3];
         for corner in 0..3 {
             for axis in 0..3 {
@@ -82,73 +155,58 @@ impl TriangleBlock {
     }
 
     /// Which lanes are left when those are excluded that the ray surely does not meet at a t in `[t_min, t_max]`.
+    ///
+    /// Möller, Trumbore (1997), "Fast, Minimum Storage Ray/Triangle Intersection", without the division.
     #[inline(always)]
-    pub(crate) fn filter(&self, ray: &Prepared, t_max: f32) -> Chosen {
-        let mut values = Values::default();
-        self.values(ray, &mut values);
-        let Values { least, most, bound, first, last } = &values;
-        // A miss has two edge functions of surely different signs, or is surely out of range. Comparisons with NaN are
-        // false, and exclude nothing.
-        Chosen::which::<BLOCK>(|lane| {
-            let outside = (least[lane] < -bound[lane]) & (most[lane] > bound[lane]);
-            let out_of_range = (last[lane] < ray.t_min) | (first[lane] > t_max);
-            !(outside | out_of_range)
-        })
+    pub(crate) fn filter<S: Simd>(&self, simd: S, ray: &Sieve<S>, t_max: f32) -> Chosen {
+        let [ax, ay, az] = load(simd, &self.corners[0]);
+        let [bx, by, bz] = load(simd, &self.corners[1]);
+        let [gx, gy, gz] = load(simd, &self.corners[2]);
+        let [dx, dy, dz] = ray.direction;
+
+        // The edges, the way to the first corner, and the normal.
+        let (ex, ey, ez) = (bx - ax, by - ay, bz - az);
+        let (fx, fy, fz) = (gx - ax, gy - ay, gz - az);
+        let (cx, cy, cz) = (ax - ray.origin[0], ay - ray.origin[1], az - ray.origin[2]);
+        let nx = ey.mul_sub(fz, ez * fy);
+        let ny = ez.mul_sub(fx, ex * fz);
+        let nz = ex.mul_sub(fy, ey * fx);
+
+        // The determinant, and the edge functions: its parts that belong to the corners.
+        let rx = cy.mul_sub(dz, cz * dy);
+        let ry = cz.mul_sub(dx, cx * dz);
+        let rz = cx.mul_sub(dy, cy * dx);
+        let determinant = nx.mul_add(dx, ny.mul_add(dy, nz * dz));
+        let u = fx.mul_add(rx, fy.mul_add(ry, fz * rz));
+        let v = -ex.mul_add(rx, ey.mul_add(ry, ez * rz));
+        let w = determinant - (u + v);
+
+        // Bound their errors.
+        let underflow = Lanes::splat(simd, UNDERFLOW);
+        let extent = Lanes::load_array_ref(simd, &self.extent);
+        let relative = extent.mul_add(ray.error, underflow);
+        let reach = cx.abs().max(cy.abs()).max(cz.abs()) + ray.rounding;
+        let bound = (reach + extent).mul_add(relative, underflow);
+
+        // A miss has two edge functions of surely different signs. Comparisons with NaN are false, and exclude nothing.
+        let least = u.min(v).min(w);
+        let most = u.max(v).max(w);
+        let outside = least.simd_lt(-bound) & most.simd_gt(bound);
+
+        // Or its t is surely out of range, where the determinant's sign is sure.
+        let size = determinant.abs();
+        let distance =
+            nx.mul_add(cx, ny.mul_add(cy, nz * cz)) * Lanes::splat(simd, 1.0).copysign(determinant);
+        let error = extent.mul_add(relative, underflow);
+        let t_max = Lanes::splat(simd, (t_max + TINY) * ray.t_scale);
+        let beyond = distance.simd_gt(t_max.mul_add(size, error * (reach + t_max.abs())));
+        let before = distance.simd_lt(ray.t_min.mul_sub(size, error * (reach + ray.t_min_size)));
+        let out_of_range = size.simd_gt(error) & (beyond | before);
+
+        let used = u32x4::load_array_ref(simd, &self.primitive).simd_eq(u32x4::splat(simd, NONE));
+        let excluded = outside | out_of_range | used;
+        Chosen(!excluded.to_bitmask() as u32 & ((1 << BLOCK) - 1))
     }
-
-    /// What the filter compares.
-    #[inline(never)]
-    fn values(&self, ray: &Prepared, values: &mut Values) {
-        let splat = Lanes::<BLOCK>::splat;
-
-        // Move the origin to 0.
-        let [kx, ky, kz] = ray.axes.map(|axis| axis % 3);
-        let (ox, oy, oz) = (splat(ray.origin[kx]), splat(ray.origin[ky]), splat(ray.origin[kz]));
-        let [p0, p1, p2] = &self.corners;
-        let (ax, ay, az) = (Lanes(p0[kx]) - ox, Lanes(p0[ky]) - oy, Lanes(p0[kz]) - oz);
-        let (bx, by, bz) = (Lanes(p1[kx]) - ox, Lanes(p1[ky]) - oy, Lanes(p1[kz]) - oz);
-        let (cx, cy, cz) = (Lanes(p2[kx]) - ox, Lanes(p2[ky]) - oy, Lanes(p2[kz]) - oz);
-
-        // Bound the error of any coordinate.
-        let largest_a = ax.abs().max(ay.abs()).max(az.abs());
-        let largest_b = bx.abs().max(by.abs()).max(bz.abs());
-        let largest_c = cx.abs().max(cy.abs()).max(cz.abs());
-        let error = largest_a.max(largest_b).max(largest_c) * splat(CORNER_ERROR) + splat(ray.rounding);
-
-        // Shear, so that the ray runs along the third axis.
-        let (sx, sy) = (splat(ray.shear[0]), splat(ray.shear[1]));
-        let (ax, ay) = (ax - sx * az, ay - sy * az);
-        let (bx, by) = (bx - sx * bz, by - sy * bz);
-        let (cx, cy) = (cx - sx * cz, cy - sy * cz);
-
-        // Take the edge functions and the bound of their errors.
-        let u = cx * by - cy * bx;
-        let v = ax * cy - ay * cx;
-        let w = bx * ay - by * ax;
-        let size = (ax.abs() + ay.abs()) + (bx.abs() + by.abs()) + (cx.abs() + cy.abs());
-        let bound = error * (size + error) + splat(f32::MIN_POSITIVE);
-        // Between which t the corners are.
-        let scale = splat(ray.reciprocal_length);
-        let (ta, tb, tc) = (az * scale, bz * scale, cz * scale);
-        let room = error * scale.abs();
-
-        values.least = u.min(v).min(w).0;
-        values.most = u.max(v).max(w).0;
-        values.bound = bound.0;
-        values.first = (ta.min(tb).min(tc) - room).0;
-        values.last = (ta.max(tb).max(tc) + room).0;
-    }
-}
-
-/// What the filter calculates of each triangle: the least and the greatest edge function and the bound of their errors;
-/// the t before and after which no corner is.
-#[derive(Default)]
-struct Values {
-    least: [f32; BLOCK],
-    most: [f32; BLOCK],
-    bound: [f32; BLOCK],
-    first: [f32; BLOCK],
-    last: [f32; BLOCK],
 }
 
 /// Decides whether and where a ray meets a triangle, with `t_min < t`. The caller compares t with the ray's end.
@@ -247,6 +305,17 @@ fn clamp_to_box(ray: &Prepared, corners: &[[f32; 3]; 3], t: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::ray::Ray;
+    use crate::simd::{Work, at_level, levels};
+
+    struct Filter<'a>(&'a TriangleBlock, &'a Prepared);
+
+    impl Work for Filter<'_> {
+        type Output = Chosen;
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Chosen {
+            self.0.filter(simd, &Sieve::new(simd, self.1, 0.0), f32::INFINITY)
+        }
+    }
 
     #[test]
     fn the_error_of_a_product_is_exact() {
@@ -271,6 +340,7 @@ mod tests {
     #[test]
     fn the_filter_keeps_what_is_decided_to_be_hit() {
         let mut random = crate::testing::Random::new(7);
+        let levels = levels();
         let (mut hits, mut kept, mut all) = (0, 0, 0);
         for _ in 0..200_000 {
             let center = random.point_with_exponents(-8, 8);
@@ -281,7 +351,7 @@ mod tests {
             let direction = [0, 1, 2].map(|i| target[i] - origin[i]);
             let Some(ray) = Prepared::new(&Ray::new(origin, direction)) else { continue };
             let block = TriangleBlock::new(&[(corners, 0, 0)]);
-            let keep = block.filter(&ray, f32::INFINITY).first(1).count();
+            let keep = at_level(levels[all % levels.len()], Filter(&block, &ray)).count();
             all += 1;
             kept += keep;
             if decide(&ray, &corners).is_some() {

@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::Bvh;
 use crate::aabb::Aabb;
+use crate::bvh::Leaf;
 use crate::node::{Content, Node, WIDTH};
 
 /// What a tree consists of.
@@ -58,6 +59,7 @@ pub(crate) fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
         bvh,
         nodes: vec![false; bvh.nodes.len()],
         blocks: vec![false; bvh.triangles.len()],
+        leaves: vec![false; bvh.leaves.len()],
         spheres: vec![false; bvh.spheres.len()],
         procedurals: vec![false; bvh.procedurals.len()],
         instances: vec![false; bvh.instances.len()],
@@ -71,6 +73,7 @@ pub(crate) fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
     for (name, seen) in [
         ("node", &check.nodes),
         ("block", &check.blocks),
+        ("leaf", &check.leaves),
         ("sphere", &check.spheres),
         ("procedural", &check.procedurals),
         ("instance", &check.instances),
@@ -99,11 +102,10 @@ pub(crate) fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
 }
 
 /// The children of a node that are there.
-fn children(node: &Node) -> impl Iterator<Item = (usize, Aabb, usize, Content)> + '_ {
+fn children(node: &Node) -> impl Iterator<Item = (usize, Aabb, Content)> + '_ {
     (0..WIDTH).filter_map(|slot| {
         let bounds = node.child_bounds(slot);
-        let (index, content) = node.child(slot);
-        (!bounds.is_empty()).then(|| (slot, bounds, index as usize, Content::unpack(content)))
+        (!bounds.is_empty()).then(|| (slot, bounds, node.child(slot).content()))
     })
 }
 
@@ -123,17 +125,19 @@ impl Walk {
         }
         self.statistics.nodes += 1;
         self.statistics.depth = self.statistics.depth.max(depth);
-        for (_, bounds, index, content) in children(node) {
+        for (_, bounds, content) in children(node) {
             if self.root_area > 0.0 {
                 self.statistics.cost += f64::from(bounds.half_area()) / self.root_area;
             }
-            self.statistics.leaves += usize::from(content != Content::Node);
+            self.statistics.leaves += usize::from(!matches!(content, Content::Node(_)));
             match content {
-                Content::Node => self.count(bvh, index, depth + 1),
-                Content::Triangles(count) => self.statistics.triangles += count as usize,
-                Content::Spheres(count) => self.statistics.spheres += count as usize,
-                Content::Procedurals(count) => self.statistics.procedurals += count as usize,
-                Content::Instances(count) => self.statistics.instances += count as usize,
+                Content::Node(child) => self.count(bvh, child, depth + 1),
+                Content::Triangles(block) => self.statistics.triangles += bvh.triangles[block].count(),
+                Content::Leaf(leaf) => match bvh.leaves[leaf] {
+                    Leaf::Spheres { count, .. } => self.statistics.spheres += count as usize,
+                    Leaf::Procedurals { count, .. } => self.statistics.procedurals += count as usize,
+                    Leaf::Instances { count, .. } => self.statistics.instances += count as usize,
+                },
             }
         }
     }
@@ -143,6 +147,7 @@ struct Check<'a> {
     bvh: &'a Bvh,
     nodes: Vec<bool>,
     blocks: Vec<bool>,
+    leaves: Vec<bool>,
     spheres: Vec<bool>,
     procedurals: Vec<bool>,
     instances: Vec<bool>,
@@ -157,34 +162,11 @@ impl Check<'_> {
         mark(&mut self.nodes, number, 1, "node")?;
         let node = &bvh.nodes[number];
         let mut all = Aabb::EMPTY;
-        for (slot, bounds, index, content) in children(node) {
+        for (slot, bounds, content) in children(node) {
             let inside = match content {
-                Content::Node => self.node(index)?,
-                Content::Triangles(count) => self.triangles(index, count)?,
-                Content::Spheres(count) => {
-                    let mut inside = Aabb::EMPTY;
-                    for item in mark(&mut self.spheres, index, count, "sphere")?.map(|i| &bvh.spheres[i]) {
-                        inside.unite(&item.shape.bounds());
-                        self.ids.push((item.geometry, item.primitive));
-                    }
-                    inside
-                }
-                Content::Procedurals(count) => {
-                    let mut inside = Aabb::EMPTY;
-                    let range = mark(&mut self.procedurals, index, count, "procedural")?;
-                    for item in range.map(|i| &bvh.procedurals[i]) {
-                        inside.unite(&bvh.procedural_shapes[item.shape as usize].bounds(item.primitive));
-                        self.ids.push((item.geometry, item.primitive));
-                    }
-                    inside
-                }
-                Content::Instances(count) => {
-                    let mut inside = Aabb::EMPTY;
-                    for i in mark(&mut self.instances, index, count, "instance")? {
-                        inside.unite(&bvh.instances[i].bounds());
-                    }
-                    inside
-                }
+                Content::Node(child) => self.node(child)?,
+                Content::Triangles(block) => self.triangles(block)?,
+                Content::Leaf(leaf) => self.leaf(leaf)?,
             };
             if !bounds.is_valid() || !bounds.contains(&inside) {
                 return Err(Invalid(format!(
@@ -199,13 +181,41 @@ impl Check<'_> {
         Ok(all)
     }
 
-    fn triangles(&mut self, index: usize, count: u32) -> Result<Aabb, Invalid> {
-        let range = mark(&mut self.blocks, index, 1, "block")?;
+    fn triangles(&mut self, block: usize) -> Result<Aabb, Invalid> {
+        mark(&mut self.blocks, block, 1, "block")?;
+        let block = &self.bvh.triangles[block];
         let mut inside = Aabb::EMPTY;
-        for block in range.map(|i| &self.bvh.triangles[i]) {
-            for lane in 0..count as usize {
-                inside.unite(&Aabb::around(&block.corners(lane)));
-                self.ids.push(block.ids(lane));
+        for lane in 0..block.count() {
+            inside.unite(&Aabb::around(&block.corners(lane)));
+            self.ids.push(block.ids(lane));
+        }
+        Ok(inside)
+    }
+
+    fn leaf(&mut self, leaf: usize) -> Result<Aabb, Invalid> {
+        mark(&mut self.leaves, leaf, 1, "leaf")?;
+        let bvh = self.bvh;
+        let mut inside = Aabb::EMPTY;
+        match bvh.leaves[leaf] {
+            Leaf::Spheres { first, count } => {
+                for item in &bvh.spheres[mark(&mut self.spheres, first as usize, count, "sphere")?] {
+                    inside.unite(&item.shape.bounds());
+                    self.ids.push((item.geometry, item.primitive));
+                }
+            }
+            Leaf::Procedurals { first, count } => {
+                for item in
+                    &bvh.procedurals[mark(&mut self.procedurals, first as usize, count, "procedural")?]
+                {
+                    inside.unite(&bvh.procedural_shapes[item.shape as usize].bounds(item.primitive));
+                    self.ids.push((item.geometry, item.primitive));
+                }
+            }
+            Leaf::Instances { first, count } => {
+                for instance in &bvh.instances[mark(&mut self.instances, first as usize, count, "instance")?]
+                {
+                    inside.unite(&instance.bounds());
+                }
             }
         }
         Ok(inside)

@@ -4,9 +4,9 @@
 //! the same order, so neighbours in space are neighbours in memory.
 
 use crate::Bvh;
-use crate::bvh::{ProceduralItem, SphereItem};
+use crate::bvh::{Leaf, ProceduralItem, SphereItem};
 use crate::instance::Instance;
-use crate::node::{Content, Node, WIDTH};
+use crate::node::{Child, Node, WIDTH};
 use crate::triangle::TriangleBlock;
 
 use super::sah::{Binary, Reference};
@@ -47,18 +47,17 @@ struct Collapse<'a> {
 }
 
 impl Collapse<'_> {
-    /// Writes the node that stands for a binary one, and all below it; returns its number.
-    fn node(&mut self, root: usize) -> u32 {
+    /// Writes the node that stands for a binary one, and all below it; returns it.
+    fn node(&mut self, root: usize) -> Child {
         let (children, count) = self.children(root);
         let number = self.bvh.nodes.len();
         self.bvh.nodes.push(Node::EMPTY);
         for (slot, &child) in children[..count].iter().enumerate() {
             let node = self.binary[child];
-            let (index, content) =
-                if node.right == 0 { self.leaf(&node) } else { (self.node(child), Content::Node) };
-            self.bvh.nodes[number].place(slot, &node.bounds, index, content);
+            let placed = if node.right == 0 { self.leaf(&node) } else { self.node(child) };
+            self.bvh.nodes[number].place(slot, &node.bounds, placed);
         }
-        number as u32
+        Child::node(number)
     }
 
     /// The binary nodes that become the children of one wide node.
@@ -85,14 +84,14 @@ impl Collapse<'_> {
     }
 
     /// Writes the primitives of a leaf.
-    fn leaf(&mut self, node: &Binary) -> (u32, Content) {
+    fn leaf(&mut self, node: &Binary) -> Child {
         let range = node.first as usize..(node.first + node.count) as usize;
         let mut items: Vec<&Item> =
             self.references[range].iter().map(|reference| &self.items[reference.item as usize]).collect();
         items.sort_unstable_by_key(|item| (item.geometry, item.primitive));
         let count = node.count;
         let bvh = &mut self.bvh;
-        match items[0].kind {
+        let leaf = match items[0].kind {
             Kind::Triangle => {
                 let triangles: Vec<_> = items
                     .iter()
@@ -104,7 +103,7 @@ impl Collapse<'_> {
                     })
                     .collect();
                 bvh.triangles.push(TriangleBlock::new(&triangles));
-                (bvh.triangles.len() as u32 - 1, Content::Triangles(count))
+                return Child::triangles(bvh.triangles.len() - 1);
             }
             Kind::Sphere => {
                 let first = bvh.spheres.len() as u32;
@@ -115,7 +114,7 @@ impl Collapse<'_> {
                         bvh.spheres.push(SphereItem { shape, geometry, primitive });
                     }
                 }
-                (first, Content::Spheres(count))
+                Leaf::Spheres { first, count }
             }
             Kind::Procedural => {
                 let first = bvh.procedurals.len() as u32;
@@ -124,13 +123,15 @@ impl Collapse<'_> {
                     let shape = self.procedural_place[geometry as usize];
                     bvh.procedurals.push(ProceduralItem { shape, geometry, primitive });
                 }
-                (first, Content::Procedurals(count))
+                Leaf::Procedurals { first, count }
             }
             Kind::Instance => {
                 let first = bvh.instances.len() as u32;
                 bvh.instances.extend(items.iter().map(|item| self.instances[item.geometry as usize].clone()));
-                (first, Content::Instances(count))
+                Leaf::Instances { first, count }
             }
-        }
+        };
+        bvh.leaves.push(leaf);
+        Child::leaf(bvh.leaves.len() - 1)
     }
 }

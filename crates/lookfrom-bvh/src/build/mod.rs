@@ -13,6 +13,7 @@ use crate::Bvh;
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
 use crate::affine::Affine;
 use crate::instance::Instance;
+use crate::node::{Child, WIDTH};
 use crate::procedural::Procedural;
 use crate::ray::NONE;
 use crate::sphere::Sphere;
@@ -89,7 +90,11 @@ impl fmt::Display for BuildError {
                 "the matrix of instance {instance} has no usable inverse; scales need to be finite and other than 0"
             ),
             Self::TooMany { primitives } => {
-                write!(f, "{primitives} primitives, but ids reach only to {}; use several trees", NONE - 1)
+                write!(
+                    f,
+                    "{primitives} primitives, but ids reach only to {}; use several trees",
+                    Child::LIMIT - 1
+                )
             }
         }
     }
@@ -229,7 +234,7 @@ impl Builder {
         }
         let instances = self.usable_instances()?;
         let primitives = self.count() + instances.len() as u64;
-        if primitives >= u64::from(NONE) || self.geometries.len() as u64 >= u64::from(NONE) {
+        if primitives >= Child::LIMIT || self.geometries.len() as u64 >= u64::from(NONE) {
             return Err(BuildError::TooMany { primitives });
         }
         let mut statistics = Statistics::default();
@@ -243,6 +248,10 @@ impl Builder {
         let mut bvh = collapse::collapse(&binary, &references, &items, &self.geometries, instances);
         bvh.bounds = bounds;
         bvh.statistics = Statistics { left_out: statistics.left_out, ..bvh.take_statistics() };
+        bvh.largest = bounds.min.iter().chain(&bounds.max).fold(0.0, |largest, x| x.abs().max(largest));
+        // All children of a node but one wait, on each level, and those of one instance on top.
+        let inside = bvh.instances.iter().map(|instance| instance.bvh.stack_length).max().unwrap_or(0);
+        bvh.stack_length = bvh.statistics.depth * (WIDTH - 1) + inside;
         Ok(bvh)
     }
 
