@@ -11,13 +11,19 @@ pub(super) fn local_light<P: Probe>(
     numbers: &Numbers<'_>,
     path: &Path,
     surface: &Surface,
-    coefficients: &Coefficients,
     next: &mut Next<'_, P>,
-) {
+) -> Coefficients {
+    let material = &world.materials[surface.material as usize];
+    let coefficients = Coefficients::at(material, &world.textures, &world.texture_point(surface));
+    next.probe.notice(|| Event::Surface {
+        address: path.address,
+        surface: Box::new(*surface),
+        coefficients: Some(Box::new(coefficients)),
+    });
     next.add(path, Term::Emission, path.beta * world.emitted(surface));
     next.add(path, Term::Ambient, path.beta * coefficients.ambient * world.ambient);
     if !coefficients.is_lit() {
-        return;
+        return coefficients;
     }
     let n = surface.ns_facing();
     let ng = surface.ng_facing();
@@ -37,4 +43,5 @@ pub(super) fn local_light<P: Probe>(
             next.shadows.push(Shadow::new(path, surface, &sample, index, contribution));
         }
     }
+    coefficients
 }

@@ -3,8 +3,7 @@
 use lookfrom_bvh::Hit;
 
 use crate::integrator::direct::local_light;
-use crate::integrator::{Event, Integrator, Next, Numbers, Path, Probe, Term};
-use crate::material::Coefficients;
+use crate::integrator::{Integrator, Next, Numbers, Path, Probe, Term};
 use crate::world::World;
 
 /// Ray casting.
@@ -25,13 +24,6 @@ impl Integrator for Raycast {
             return;
         }
         let surface = world.surface(&path.ray, hit);
-        let material = &world.materials[surface.material as usize];
-        let coefficients = Coefficients::at(material, &world.textures, &world.texture_point(&surface));
-        next.probe.notice(|| Event::Surface {
-            address: path.address,
-            surface: Box::new(surface),
-            coefficients: Some(Box::new(coefficients)),
-        });
-        local_light(world, numbers, path, &surface, &coefficients, next);
+        local_light(world, numbers, path, &surface, next);
     }
 }

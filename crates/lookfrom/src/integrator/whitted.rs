@@ -8,7 +8,6 @@ use lookfrom_bvh::{Hit, Ray};
 
 use crate::integrator::direct::local_light;
 use crate::integrator::{Branch, Cut, Event, Integrator, Next, Numbers, Path, Probe, Term};
-use crate::material::Coefficients;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::world::World;
@@ -46,14 +45,7 @@ impl Integrator for Whitted {
         let path = &Path { beta: path.beta * path.media.transmittance(world, length), ..*path };
 
         // Shade what is seen: I_a and every light.
-        let material = &world.materials[surface.material as usize];
-        let coefficients = Coefficients::at(material, &world.textures, &world.texture_point(&surface));
-        next.probe.notice(|| Event::Surface {
-            address: path.address,
-            surface: Box::new(surface),
-            coefficients: Some(Box::new(coefficients)),
-        });
-        local_light(world, numbers, path, &surface, &coefficients, next);
+        let coefficients = local_light(world, numbers, path, &surface, next);
 
         // Grow the tree: k_r S and k_t T.
         let n = surface.ns_facing();
