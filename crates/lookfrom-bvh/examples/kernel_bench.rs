@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-use lookfrom_bvh::{Builder, Bvh, NONE, Quality, Ray, Triangles};
+use lookfrom_bvh::{Builder, Bvh, NONE, Quality, Ray, Triangles, Watch};
 
 /// Rays that are dealt to a thread at once.
 const CHUNK: usize = 4096;
@@ -135,6 +135,23 @@ fn trace(bvh: &Bvh, rays: &[Ray], any: bool, answers: &mut [Answer]) {
     }
 }
 
+/// Counts what closest hits visit.
+#[derive(Default)]
+struct Counts {
+    nodes: u64,
+    triangles: u64,
+}
+
+impl Watch for Counts {
+    fn node(&mut self, _instance: u32, _node: u32) {
+        self.nodes += 1;
+    }
+
+    fn candidate(&mut self, _instance: u32, _geometry: u32, _primitive: u32) {
+        self.triangles += 1;
+    }
+}
+
 /// Deals chunks of rays to threads; returns CPU seconds summed over them.
 fn trace_all(bvh: &Bvh, rays: &[Ray], any: bool, answers: &mut [Answer], threads: usize) -> f64 {
     let measure = |work: &mut dyn FnMut()| {
@@ -217,6 +234,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let Some(folder) = &options.rays else { return Ok(()) };
     for (kind, any) in [("primary", false), ("bounce", false), ("shadow", true)] {
         let rays = read_rays(&folder.join(format!("{}.{kind}.rays", options.name)))?;
+        if !any {
+            let mut counts = Counts::default();
+            for ray in &rays {
+                bvh.closest_hit_watched(ray, &mut counts);
+            }
+            let per_ray = |count: u64| count as f64 / rays.len() as f64;
+            eprintln!("{kind}: {:.4} nodes, {:.4} triangles a ray", per_ray(counts.nodes), per_ray(counts.triangles));
+        }
         let mut answers = vec![(0.0, NONE); rays.len()];
         let (mut wall, mut cpu) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..options.reps.max(1) {

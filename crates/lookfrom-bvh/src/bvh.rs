@@ -5,7 +5,6 @@ use std::sync::Arc;
 use crate::aabb::Aabb;
 use crate::instance::Instance;
 use crate::node::Node;
-use crate::prepared::Prepared;
 use crate::procedural::Procedural;
 use crate::query::{All, Any, Closest};
 use crate::ray::{Hit, Ray};
@@ -133,17 +132,15 @@ impl Bvh {
 
     /// [`Self::closest_hit`], while someone watches. The answer is the same.
     pub fn closest_hit_watched(&self, ray: &Ray, watch: &mut impl Watch) -> Hit {
-        let Some(prepared) = Prepared::new(ray) else { return Hit::MISS };
         let mut query = Closest::new(ray.t_max);
-        Trace { bvh: self, ray: &prepared, query: &mut query, watch }.go();
+        Trace { bvh: self, ray, query: &mut query, watch }.go();
         query.hit
     }
 
     /// Whether anything is hit in the ray's range.
     pub fn occluded(&self, ray: &Ray) -> bool {
-        let Some(prepared) = Prepared::new(ray) else { return false };
         let mut query = Any::new(ray.t_max);
-        Trace { bvh: self, ray: &prepared, query: &mut query, watch: &mut () }.go();
+        Trace { bvh: self, ray, query: &mut query, watch: &mut () }.go();
         query.found
     }
 
@@ -151,9 +148,8 @@ impl Bvh {
     /// decides ties. A triangle gives at most one hit, a sphere two, a procedural shape one (its nearest).
     pub fn all_hits(&self, ray: &Ray, hits: &mut Vec<Hit>) {
         hits.clear();
-        let Some(prepared) = Prepared::new(ray) else { return };
         let mut query = All::new(ray.t_max, hits);
-        Trace { bvh: self, ray: &prepared, query: &mut query, watch: &mut () }.go();
+        Trace { bvh: self, ray, query: &mut query, watch: &mut () }.go();
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then_with(|| a.rank().cmp(&b.rank())));
     }
 

@@ -45,6 +45,7 @@ pub(crate) struct Prepared {
 
 impl Prepared {
     /// A ray in the world. None where it cannot hit anything.
+    #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Option<Self> {
         let finite = ray.origin.iter().chain(&ray.direction).all(|x| x.is_finite());
         if !finite || !(ray.t_min < ray.t_max) {
@@ -61,6 +62,7 @@ impl Prepared {
         Self::with_rounding(origin, direction, self.t_min, f32::EPSILON)
     }
 
+    #[inline(always)]
     fn with_rounding(origin64: [f64; 3], direction64: [f64; 3], t_min: f32, relative: f32) -> Option<Self> {
         let origin = origin64.map(|x| x as f32);
         let direction = direction64.map(|x| x as f32);

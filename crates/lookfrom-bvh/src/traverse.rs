@@ -85,7 +85,7 @@ pub(crate) fn with_stack<R>(bvh: &Bvh, work: impl FnOnce(&mut Stack) -> R) -> R 
 /// Traces one ray at the best level that there is.
 pub(crate) struct Trace<'a, Q, W> {
     pub(crate) bvh: &'a Bvh,
-    pub(crate) ray: &'a Prepared,
+    pub(crate) ray: &'a Ray,
     pub(crate) query: &'a mut Q,
     pub(crate) watch: &'a mut W,
 }
@@ -102,10 +102,11 @@ impl<Q: Query, W: Watch> Work for Trace<'_, Q, W> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { bvh, ray, query, watch } = self;
+        let Some(ray) = Prepared::new(ray) else { return };
         with_stack(
             bvh,
             #[inline(always)]
-            |stack| outer(simd, bvh, ray, query, watch, &mut stack.0),
+            |stack| outer(simd, bvh, &ray, query, watch, &mut stack.0),
         );
     }
 }
@@ -373,8 +374,8 @@ fn procedurals<Q: Query, W: Watch>(
     false
 }
 
-/// Not inlined, but compiled for the level: the loop in its loop.
-#[inline(always)]
+/// Not inlined, so that the loop over the outer tree keeps its registers; compiled for the level again inside.
+#[inline(never)]
 #[allow(clippy::too_many_arguments)]
 fn instances<S: Simd, Q: Query, W: Watch>(
     simd: S,

@@ -210,6 +210,7 @@ impl TriangleBlock {
 }
 
 /// Decides whether and where a ray meets a triangle, with `t_min < t`. The caller compares t with the ray's end.
+#[inline(always)]
 pub(crate) fn decide(ray: &Prepared, corners: &[[f32; 3]; 3]) -> Option<Crossing> {
     let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
     let [kx, ky, kz] = ray.axes;
