@@ -240,7 +240,11 @@ fn main() -> Result<(), Box<dyn Error>> {
                 bvh.closest_hit_watched(ray, &mut counts);
             }
             let per_ray = |count: u64| count as f64 / rays.len() as f64;
-            eprintln!("{kind}: {:.4} nodes, {:.4} triangles a ray", per_ray(counts.nodes), per_ray(counts.triangles));
+            eprintln!(
+                "{kind}: {:.4} nodes, {:.4} triangles a ray",
+                per_ray(counts.nodes),
+                per_ray(counts.triangles)
+            );
         }
         let mut answers = vec![(0.0, NONE); rays.len()];
         let (mut wall, mut cpu) = (f64::INFINITY, f64::INFINITY);

@@ -1,14 +1,14 @@
-//! From the binary tree to the wide one: each node takes in its descendants, the largest first, until it has eight.
+//! From the binary tree to the wide one, as `plan` has chosen.
 //!
-//! Wald, Benthin, Boulos (2008), "Getting Rid of Packets". Nodes are written depth first, leaves beside them in
-//! the same order, so neighbours in space are neighbours in memory.
+//! Nodes are written depth first, leaves beside them in the same order, so neighbours in space are neighbours in memory.
 
 use crate::Bvh;
 use crate::bvh::{Leaf, ProceduralItem, SphereItem};
 use crate::instance::Instance;
-use crate::node::{Child, Node, WIDTH};
+use crate::node::{Child, Node};
 use crate::triangle::TriangleBlock;
 
+use super::plan::Plan;
 use super::sah::{Binary, Reference};
 use super::{Geometry, Item, Kind};
 
@@ -29,7 +29,9 @@ pub(super) fn collapse(
             bvh.procedural_shapes.push(shapes.clone());
         }
     }
-    let mut collapse = Collapse { binary, references, items, geometries, procedural_place, instances, bvh };
+    let plan = Plan::new(binary, references, items);
+    let mut collapse =
+        Collapse { plan, binary, references, items, geometries, procedural_place, instances, bvh };
     if !binary.is_empty() {
         collapse.node(0);
     }
@@ -37,6 +39,7 @@ pub(super) fn collapse(
 }
 
 struct Collapse<'a> {
+    plan: Plan<'a>,
     binary: &'a [Binary],
     references: &'a [Reference],
     items: &'a [Item],
@@ -49,38 +52,15 @@ struct Collapse<'a> {
 impl Collapse<'_> {
     /// Writes the node that stands for a binary one, and all below it; returns it.
     fn node(&mut self, root: usize) -> Child {
-        let (children, count) = self.children(root);
+        let (children, count) = self.plan.children(root);
         let number = self.bvh.nodes.len();
         self.bvh.nodes.push(Node::EMPTY);
         for (slot, &child) in children[..count].iter().enumerate() {
             let node = self.binary[child];
-            let placed = if node.right == 0 { self.leaf(&node) } else { self.node(child) };
+            let placed = if self.plan.is_leaf(child) { self.leaf(&node) } else { self.node(child) };
             self.bvh.nodes[number].place(slot, &node.bounds, placed);
         }
         Child::node(number)
-    }
-
-    /// The binary nodes that become the children of one wide node.
-    fn children(&self, root: usize) -> ([usize; WIDTH], usize) {
-        let mut children = [root; WIDTH];
-        let mut count = 1;
-        while count < WIDTH {
-            // Open the largest child that can be opened.
-            let mut largest: Option<(f32, usize)> = None;
-            for (slot, &child) in children[..count].iter().enumerate() {
-                let node = &self.binary[child];
-                let area = node.bounds.half_area();
-                if node.right != 0 && largest.is_none_or(|(most, _)| area > most) {
-                    largest = Some((area, slot));
-                }
-            }
-            let Some((_, slot)) = largest else { break };
-            let opened = children[slot];
-            children[slot] = opened + 1;
-            children[count] = opened + self.binary[opened].right as usize;
-            count += 1;
-        }
-        (children, count)
     }
 
     /// Writes the primitives of a leaf.

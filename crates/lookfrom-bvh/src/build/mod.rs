@@ -4,6 +4,8 @@
 //! again, and `collapse` turns that binary tree into the wide one that rays walk.
 
 mod collapse;
+mod plan;
+mod reinsert;
 mod sah;
 
 use std::fmt;
@@ -244,7 +246,10 @@ impl Builder {
             .enumerate()
             .map(|(index, item)| sah::Reference { bounds: item.bounds, item: index as u32 })
             .collect();
-        let binary = sah::build(&mut references, &items, self.quality);
+        let mut binary = sah::build(&mut references, self.quality);
+        if self.quality == Quality::Best {
+            reinsert::reinsert(&mut binary, &mut references);
+        }
         let mut bvh = collapse::collapse(&binary, &references, &items, &self.geometries, instances);
         bvh.bounds = bounds;
         bvh.statistics = Statistics { left_out: statistics.left_out, ..bvh.take_statistics() };

@@ -7,7 +7,7 @@
 
 use crate::aabb::Aabb;
 
-use super::{Item, Quality};
+use super::Quality;
 
 /// Levels on which the heuristic decides; below, the median does.
 const HEURISTIC_DEPTH: u32 = 64;
@@ -38,7 +38,7 @@ pub(super) struct Binary {
 }
 
 /// Sorts the references and returns the tree over them, its root first. Empty where there are none.
-pub(super) fn build(references: &mut [Reference], items: &[Item], quality: Quality) -> Vec<Binary> {
+pub(super) fn build(references: &mut [Reference], quality: Quality) -> Vec<Binary> {
     let mut tree = Vec::new();
     if !references.is_empty() {
         let bins = match quality {
@@ -46,18 +46,17 @@ pub(super) fn build(references: &mut [Reference], items: &[Item], quality: Quali
             Quality::Balanced => 16,
             Quality::Best => MAX_BINS,
         };
-        split(references, 0, 0, &Task { items, bins }, &mut tree);
+        split(references, 0, 0, &Task { bins }, &mut tree);
     }
     tree
 }
 
-struct Task<'a> {
-    items: &'a [Item],
+struct Task {
     bins: usize,
 }
 
 /// Appends the tree over some references.
-fn split(references: &mut [Reference], first: u32, depth: u32, task: &Task<'_>, tree: &mut Vec<Binary>) {
+fn split(references: &mut [Reference], first: u32, depth: u32, task: &Task, tree: &mut Vec<Binary>) {
     let mut bounds = Aabb::EMPTY;
     let mut centers = Aabb::EMPTY;
     for reference in &*references {
@@ -66,11 +65,13 @@ fn split(references: &mut [Reference], first: u32, depth: u32, task: &Task<'_>, 
     }
     let here = tree.len();
     tree.push(Binary { bounds, right: 0, first, count: references.len() as u32 });
-    if is_leaf(references, task.items) {
+    if references.len() == 1 {
         return;
     }
 
-    let heuristic = (depth < HEURISTIC_DEPTH).then(|| best_split(references, &centers, task.bins)).flatten();
+    let heuristic = (depth < HEURISTIC_DEPTH)
+        .then(|| best_split(references, &centers, task.bins.min(references.len().max(4))))
+        .flatten();
     let middle = match heuristic {
         Some(split) => partition(references, |reference| split.is_left(reference)),
         None => median(references, &centers),
@@ -94,13 +95,6 @@ fn split(references: &mut [Reference], first: u32, depth: u32, task: &Task<'_>, 
     split(left, first, depth + 1, task, tree);
     tree[here].right = (tree.len() - here) as u32;
     split(right, second, depth + 1, task, tree);
-}
-
-/// A leaf holds few items, of one kind.
-fn is_leaf(references: &[Reference], items: &[Item]) -> bool {
-    let kind = |reference: &Reference| items[reference.item as usize].kind;
-    let first = kind(&references[0]);
-    references.len() <= first.leaf_capacity() && references.iter().all(|reference| kind(reference) == first)
 }
 
 /// Where to cut: before bin `bin` on an axis.

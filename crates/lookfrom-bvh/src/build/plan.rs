@@ -1,0 +1,115 @@
+//! Which binary nodes become the children of wide ones, and which become leaves?
+//!
+//! The cheapest choice under the surface area heuristic, by dynamic programming from the leaves up: Ylitie, Karras, Laine
+//! (2017), "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3. `cost[n][i − 1]` is
+//! the least cost of all below binary node n when it may take up to i places in a wide node.
+
+use crate::node::WIDTH;
+
+use super::Item;
+use super::sah::{Binary, Reference};
+
+/// Places that a child may take.
+const PLACES: usize = WIDTH - 1;
+
+/// What a wide node costs that is visited.
+const NODE: f32 = 1.0;
+
+/// What a leaf costs that is visited, measured in nodes.
+const LEAF: f32 = 1.0;
+
+/// The choice for one binary node.
+#[derive(Clone, Copy, Default)]
+struct Choice {
+    cost: [f32; PLACES],
+    /// How many places the left child gets where there are two to eight: `left[i − 2]`; 0 to use one place less.
+    left: [u8; PLACES],
+    leaf: bool,
+}
+
+/// The choices for all binary nodes.
+pub(super) struct Plan<'a> {
+    binary: &'a [Binary],
+    choices: Vec<Choice>,
+}
+
+impl<'a> Plan<'a> {
+    pub(super) fn new(binary: &'a [Binary], references: &[Reference], items: &[Item]) -> Self {
+        let mut choices = vec![Choice::default(); binary.len()];
+        // Children follow their parents.
+        for (number, node) in binary.iter().enumerate().rev() {
+            let area = node.bounds.half_area();
+            let mut choice = Choice::default();
+            let leaf = if fits_a_leaf(node, references, items) { LEAF * area } else { f32::INFINITY };
+            if node.right == 0 {
+                choice.leaf = true;
+                choice.cost = [leaf; PLACES];
+                choices[number] = choice;
+                continue;
+            }
+
+            // Share out two to eight places; the last are those of a wide node of its own.
+            let (left, right) = (&choices[number + 1].cost, &choices[number + node.right as usize].cost);
+            let mut shared = [f32::INFINITY; WIDTH + 1];
+            for places in 2..=WIDTH {
+                for to_left in 1..places {
+                    let cost = left[to_left - 1] + right[places - to_left - 1];
+                    if cost < shared[places] {
+                        shared[places] = cost;
+                        choice.left[places - 2] = to_left as u8;
+                    }
+                }
+            }
+            let own_node = NODE * area + shared[WIDTH];
+            choice.leaf = leaf <= own_node;
+            choice.cost[0] = leaf.min(own_node);
+            for places in 2..=PLACES {
+                choice.cost[places - 1] = shared[places];
+                if choice.cost[places - 2] <= shared[places] {
+                    choice.cost[places - 1] = choice.cost[places - 2];
+                    choice.left[places - 2] = 0;
+                }
+            }
+            choices[number] = choice;
+        }
+        Self { binary, choices }
+    }
+
+    /// Whether a binary node becomes a leaf.
+    pub(super) fn is_leaf(&self, number: usize) -> bool {
+        self.choices[number].leaf
+    }
+
+    /// The binary nodes that become the children of the wide node that stands for one.
+    pub(super) fn children(&self, root: usize) -> ([usize; WIDTH], usize) {
+        let mut children = [root; WIDTH];
+        let mut count = 0;
+        self.collect(root, WIDTH, &mut children, &mut count);
+        (children, count)
+    }
+
+    fn collect(&self, number: usize, places: usize, children: &mut [usize; WIDTH], count: &mut usize) {
+        let choice = &self.choices[number];
+        let mut places = places;
+        while places > 1 && choice.left[places - 2] == 0 {
+            places -= 1;
+        }
+        if places == 1 {
+            children[*count] = number;
+            *count += 1;
+            return;
+        }
+        let left = usize::from(choice.left[places - 2]);
+        self.collect(number + 1, left, children, count);
+        self.collect(number + self.binary[number].right as usize, places - left, children, count);
+    }
+}
+
+/// A leaf holds few items, of one kind.
+fn fits_a_leaf(node: &Binary, references: &[Reference], items: &[Item]) -> bool {
+    let kind = |reference: &Reference| items[reference.item as usize].kind;
+    let references = &references[node.first as usize..];
+    let first = kind(&references[0]);
+    node.count as usize <= first.leaf_capacity()
+        && references[..node.count as usize].iter().all(|reference| kind(reference) == first)
+}

@@ -1,0 +1,245 @@
+//! Makes a binary tree cheaper: takes subtrees out and puts them where they enlarge the least.
+//!
+//! Meister, Bittner (2018), "Parallel Reinsertion for Bounding Volume Hierarchy Optimization": the largest nodes look
+//! for better places, all at once in the tree as it is; then the moves are made, those that gain most first, where they do
+//! not touch what another has changed. The search is branch and bound. The result does not depend on the number of threads.
+
+use crate::aabb::Aabb;
+
+use super::sah::{Binary, Reference};
+
+/// How often all is searched and moved.
+const ROUNDS: usize = 4;
+
+/// One node of this many is moved in a round.
+const SHARE: usize = 8;
+
+/// A tree that would become deeper is left as it is.
+const DEPTH_LIMIT: u32 = 160;
+
+const NONE: u32 = u32::MAX;
+
+/// A node while the tree changes.
+#[derive(Clone, Copy)]
+struct Spot {
+    bounds: Aabb,
+    area: f32,
+    parent: u32,
+    /// [`NONE`] for a leaf.
+    left: u32,
+    /// Of a leaf: the reference.
+    right: u32,
+}
+
+/// A subtree's move above another node.
+#[derive(Clone, Copy)]
+struct Move {
+    node: u32,
+    to: u32,
+    gain: f32,
+}
+
+/// Optimizes a tree of single references, and sorts these in the new tree's order.
+pub(super) fn reinsert(tree: &mut Vec<Binary>, references: &mut [Reference]) {
+    if tree.len() < 8 {
+        return;
+    }
+    let mut spots = Spots::new(tree);
+    for _ in 0..ROUNDS {
+        let moves = spots.find_moves();
+        spots.make_moves(&moves);
+    }
+    if let Some((better, order)) = spots.binary() {
+        *tree = better;
+        let sorted: Vec<Reference> = order.iter().map(|&place| references[place as usize]).collect();
+        references.copy_from_slice(&sorted);
+    }
+}
+
+struct Spots(Vec<Spot>);
+
+impl Spots {
+    fn new(tree: &[Binary]) -> Self {
+        let mut spots: Vec<Spot> = tree
+            .iter()
+            .enumerate()
+            .map(|(number, node)| Spot {
+                bounds: node.bounds,
+                area: node.bounds.half_area(),
+                parent: NONE,
+                left: if node.right == 0 { NONE } else { number as u32 + 1 },
+                right: if node.right == 0 { node.first } else { number as u32 + node.right },
+            })
+            .collect();
+        for number in 0..spots.len() {
+            if spots[number].left != NONE {
+                let Spot { left, right, .. } = spots[number];
+                spots[left as usize].parent = number as u32;
+                spots[right as usize].parent = number as u32;
+            }
+        }
+        Self(spots)
+    }
+
+    fn at(&self, number: u32) -> &Spot {
+        &self.0[number as usize]
+    }
+
+    fn sibling(&self, number: u32) -> u32 {
+        let parent = self.at(self.at(number).parent);
+        if parent.left == number { parent.right } else { parent.left }
+    }
+
+    /// The best move of each of the largest nodes, the most useful first.
+    fn find_moves(&self) -> Vec<Move> {
+        // The root and its children stay.
+        let mut largest: Vec<u32> = (1..self.0.len() as u32).filter(|&n| self.at(n).parent != 0).collect();
+        let count = (self.0.len() / SHARE).max(1).min(largest.len());
+        if count == 0 {
+            return Vec::new();
+        }
+        largest.select_nth_unstable_by(count - 1, |&a, &b| {
+            self.at(b).area.total_cmp(&self.at(a).area).then(a.cmp(&b))
+        });
+        largest.truncate(count);
+        let find = |&node: &u32| self.find_move(node);
+        #[cfg(feature = "parallel")]
+        let mut moves: Vec<Move> = {
+            use rayon::prelude::*;
+            largest.par_iter().with_min_len(256).filter_map(find).collect()
+        };
+        #[cfg(not(feature = "parallel"))]
+        let mut moves: Vec<Move> = largest.iter().filter_map(find).collect();
+        moves.sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.node.cmp(&b.node)));
+        moves
+    }
+
+    /// Where a subtree would cost the least, if that is less than where it is.
+    fn find_move(&self, node: u32) -> Option<Move> {
+        let moved = self.at(node);
+        let parent = moved.parent;
+        let mut best = Move { node, to: NONE, gain: 0.0 };
+
+        // Go up, and at each step search the subtree on the other side. `saved` is what taking the node out saves on
+        // the way up: its parent, and what its ancestors shrink.
+        let mut saved = self.at(parent).area;
+        let mut other = self.sibling(node);
+        let mut pivot = parent;
+        let mut shrunk = self.at(other).bounds;
+        let mut stack = Vec::with_capacity(64);
+        loop {
+            stack.push((saved, other));
+            while let Some((saved, to)) = stack.pop() {
+                if saved - moved.area <= best.gain {
+                    continue;
+                }
+                let spot = self.at(to);
+                let mut merged = spot.bounds;
+                merged.unite(&moved.bounds);
+                let gain = saved - merged.half_area();
+                if gain > best.gain {
+                    best = Move { node, to, gain };
+                }
+                let below = gain + spot.area;
+                if spot.left != NONE && below - moved.area > best.gain {
+                    stack.push((below, spot.left));
+                    stack.push((below, spot.right));
+                }
+            }
+            if pivot != parent {
+                shrunk.unite(&self.at(other).bounds);
+                saved += self.at(pivot).area - shrunk.half_area();
+            }
+            if pivot == 0 {
+                break;
+            }
+            other = self.sibling(pivot);
+            pivot = self.at(pivot).parent;
+        }
+        let stays = best.to == NONE || best.to == parent || best.to == self.sibling(node);
+        (!stays).then_some(best)
+    }
+
+    fn make_moves(&mut self, moves: &[Move]) {
+        let mut touched = vec![false; self.0.len()];
+        for &Move { node, to, .. } in moves {
+            let parent = self.at(node).parent;
+            let sibling = self.sibling(node);
+            let above = self.at(parent).parent;
+            let above_to = self.at(to).parent;
+            let changed = [node, parent, sibling, above, to, above_to];
+            if changed.iter().any(|&n| n == NONE || touched[n as usize]) {
+                continue;
+            }
+            changed.iter().for_each(|&n| touched[n as usize] = true);
+
+            // The sibling takes the parent's place, and the parent goes with the node.
+            self.replace_child(above, parent, sibling);
+            self.replace_child(above_to, to, parent);
+            self.0[parent as usize].left = node;
+            self.0[parent as usize].right = to;
+            self.0[to as usize].parent = parent;
+            self.refit(above);
+            self.refit(parent);
+        }
+    }
+
+    fn replace_child(&mut self, parent: u32, old: u32, new: u32) {
+        let spot = &mut self.0[parent as usize];
+        if spot.left == old {
+            spot.left = new;
+        } else {
+            spot.right = new;
+        }
+        self.0[new as usize].parent = parent;
+    }
+
+    /// Fits the boxes from a node up to the root.
+    fn refit(&mut self, from: u32) {
+        let mut number = from;
+        while number != NONE {
+            let spot = self.at(number);
+            let mut bounds = self.at(spot.left).bounds;
+            bounds.unite(&self.at(spot.right).bounds);
+            let parent = spot.parent;
+            let spot = &mut self.0[number as usize];
+            spot.bounds = bounds;
+            spot.area = bounds.half_area();
+            number = parent;
+        }
+    }
+
+    /// The tree in depth-first order, and the references in that order. None where it has become too deep.
+    fn binary(&self) -> Option<(Vec<Binary>, Vec<u32>)> {
+        let mut tree: Vec<Binary> = Vec::with_capacity(self.0.len());
+        let mut order = Vec::with_capacity(self.0.len() / 2 + 1);
+        // What is to be written: a node, its depth, and whose right child it is.
+        let mut stack = vec![(0_u32, 0_u32, None::<usize>)];
+        while let Some((number, depth, right_of)) = stack.pop() {
+            if depth > DEPTH_LIMIT {
+                return None;
+            }
+            let here = tree.len();
+            if let Some(parent) = right_of {
+                tree[parent].right = (here - parent) as u32;
+            }
+            let spot = self.at(number);
+            let leaf = spot.left == NONE;
+            tree.push(Binary { bounds: spot.bounds, right: 0, first: order.len() as u32, count: 1 });
+            if leaf {
+                order.push(spot.right);
+            } else {
+                stack.push((spot.right, depth + 1, Some(here)));
+                stack.push((spot.left, depth + 1, None));
+            }
+        }
+        // Children follow their parents.
+        for number in (0..tree.len()).rev() {
+            if tree[number].right != 0 {
+                tree[number].count =
+                    tree[number + 1].count + tree[number + tree[number].right as usize].count;
+            }
+        }
+        Some((tree, order))
+    }
+}
