@@ -11,19 +11,15 @@
 //! Example: `0x8000_0005` is the triangles of block 5.
 //!
 //! The box test never excludes a box that the exact ray meets: Ize (2013), "Robust BVH Ray Traversal", with the room
-//! for errors widened to [`ROOM`], and the same room for the end of the ray, so that a hit at exactly the distance of
-//! the best one so far is still found and ties do not depend on the tree.
+//! for errors widened (see `prepared`), and the same room for the end of the ray, so that a hit at exactly the distance of
+//! the best one so far is still found and ties do not depend on the tree. Distances are along the scaled direction.
 
 use crate::aabb::Aabb;
-use crate::prepared::Prepared;
+use crate::prepared::{Prepared, ROOM};
 use crate::simd::{Simd, f32x8, prelude::*};
 
 /// How many children a node has at most.
 pub(crate) const WIDTH: usize = 8;
-
-/// Room for rounding in distances along a ray, relative: 2⁻²⁰, sixteen units of rounding. Four are needed for a slab
-/// (subtraction, reciprocal, product, and the f32 t that it is compared with), on either side.
-const ROOM: f32 = 9.536_743e-7;
 
 /// What a child is: a kind and a number, packed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,19 +78,15 @@ pub(crate) struct Entered {
     pub(crate) near: [f32; WIDTH],
 }
 
-/// The end of a ray, with room for the errors of what is compared with it.
-#[inline(always)]
-pub(crate) fn with_room(t: f32) -> f32 {
-    t + t.abs() * ROOM
-}
-
 /// What the box test needs of a ray, in every lane.
 pub(crate) struct Slabs<S: Simd> {
     near_side: [usize; 3],
-    near_origin: [f32x8<S>; 3],
-    far_origin: [f32x8<S>; 3],
-    reciprocal: [f32x8<S>; 3],
+    near_reciprocal: [f32x8<S>; 3],
+    far_reciprocal: [f32x8<S>; 3],
+    near_product: [f32x8<S>; 3],
+    far_product: [f32x8<S>; 3],
     t_min: f32x8<S>,
+    starts_behind: bool,
 }
 
 impl<S: Simd> Slabs<S> {
@@ -102,10 +94,12 @@ impl<S: Simd> Slabs<S> {
     pub(crate) fn new(simd: S, ray: &Prepared) -> Self {
         Self {
             near_side: ray.near_side,
-            near_origin: splat_all(simd, ray.near_origin),
-            far_origin: splat_all(simd, ray.far_origin),
-            reciprocal: splat_all(simd, ray.reciprocal),
-            t_min: f32x8::splat(simd, ray.t_min),
+            near_reciprocal: splat_all(simd, ray.near_reciprocal),
+            far_reciprocal: splat_all(simd, ray.far_reciprocal),
+            near_product: splat_all(simd, ray.near_product),
+            far_product: splat_all(simd, ray.far_product),
+            t_min: f32x8::splat(simd, ray.scaled_t_min),
+            starts_behind: ray.t_min < 0.0,
         }
     }
 }
@@ -142,20 +136,22 @@ impl Node {
         }
     }
 
-    /// Which children the ray meets between its `t_min` and `t_max`.
+    /// Which children the ray meets between its `t_min` and a scaled end.
     #[inline(always)]
-    pub(crate) fn enter<S: Simd>(&self, simd: S, ray: &Slabs<S>, t_max: f32) -> Entered {
-        let mut near = ray.t_min;
-        let mut far = f32x8::splat(simd, t_max);
-        for axis in 0..3 {
-            let side = ray.near_side[axis] & 1;
-            let near_face = f32x8::load_array_ref(simd, &self.bounds[axis][side]) - ray.near_origin[axis];
-            let far_face = f32x8::load_array_ref(simd, &self.bounds[axis][side ^ 1]) - ray.far_origin[axis];
-            // The second operand stays where the first is NaN.
-            near = (near_face * ray.reciprocal[axis]).max(near);
-            far = (far_face * ray.reciprocal[axis]).min(far);
+    pub(crate) fn enter<S: Simd>(&self, simd: S, ray: &Slabs<S>, end: f32) -> Entered {
+        let face = |axis: usize, side: usize| f32x8::load_array_ref(simd, &self.bounds[axis][side & 1]);
+        let near = |axis: usize| {
+            face(axis, ray.near_side[axis]).mul_sub(ray.near_reciprocal[axis], ray.near_product[axis])
+        };
+        let far = |axis: usize| {
+            face(axis, ray.near_side[axis] ^ 1).mul_sub(ray.far_reciprocal[axis], ray.far_product[axis])
+        };
+        let near = near(0).max(near(1)).max(near(2).max(ray.t_min));
+        let mut far = far(0).min(far(1)).min(far(2).min(f32x8::splat(simd, end)));
+        if ray.starts_behind {
+            // There the room in the reciprocal is on the wrong side.
+            far = far.abs().mul_add(f32x8::splat(simd, 4.0 * ROOM), far);
         }
-        let far = far.abs().mul_add(f32x8::splat(simd, ROOM), far);
         Entered { children: near.simd_le(far).to_bitmask() as u32, near: near.into() }
     }
 }
@@ -173,7 +169,7 @@ mod tests {
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> u32 {
             let ray = Prepared::new(self.1).unwrap();
-            self.0.enter(simd, &Slabs::new(simd, &ray), self.1.t_max).children
+            self.0.enter(simd, &Slabs::new(simd, &ray), ray.scaled_end(self.1.t_max)).children
         }
     }
 

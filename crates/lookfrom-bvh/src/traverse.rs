@@ -8,7 +8,7 @@ use std::cell::Cell;
 
 use crate::Bvh;
 use crate::bvh::Leaf;
-use crate::node::{Child, Content, Entered, Node, Slabs, WIDTH, with_room};
+use crate::node::{Child, Content, Entered, Node, Slabs, WIDTH};
 use crate::prepared::Prepared;
 use crate::query::Query;
 use crate::ray::{Hit, NONE, Ray};
@@ -181,15 +181,16 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
     let sieve = Sieve::new(simd, ray, bvh.largest);
     let mut height = 0;
     let mut current = Child::ROOT;
+    let mut end = ray.scaled_end(query.end());
     loop {
         // Go down, each time to the nearest child that the ray enters; the others wait.
         while let Content::Node(number) = current.content() {
             watch.node(instance, number as u32);
             let node = &bvh.nodes[number];
-            let entered = node.enter(simd, &slabs, query.end());
+            let entered = node.enter(simd, &slabs, end);
             match push::<Q>(node, &entered, stack, &mut height) {
                 Some(child) => current = child,
-                None => match pop(stack, &mut height, query.end()) {
+                None => match pop(stack, &mut height, end) {
                     Some(child) => current = child,
                     None => return false,
                 },
@@ -200,7 +201,7 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
         let stop = match current.content() {
             Content::Triangles(number) => {
                 let block = &bvh.triangles[number];
-                triangles(simd, block, ray, &sieve, &mut Answer { instance, query, watch })
+                triangles(simd, block, ray, &sieve, end, &mut Answer { instance, query, watch })
             }
             Content::Leaf(number) => visit_leaf(&bvh.leaves[number], query, watch, &mut stack[height..]),
             Content::Node(_) => false,
@@ -208,7 +209,8 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
         if stop {
             return true;
         }
-        match pop(stack, &mut height, query.end()) {
+        end = ray.scaled_end(query.end());
+        match pop(stack, &mut height, end) {
             Some(child) => current = child,
             None => return false,
         }
@@ -218,7 +220,6 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
 /// The next child that is not beyond the end.
 #[inline(always)]
 fn pop(stack: &[Pending], height: &mut usize, end: f32) -> Option<Child> {
-    let end = with_room(end);
     while *height > 0 {
         *height -= 1;
         let pending = stack[*height];
@@ -291,6 +292,7 @@ fn triangles<S: Simd, Q: Query, W: Watch>(
     block: &triangle::TriangleBlock,
     ray: &Prepared,
     sieve: &Sieve<S>,
+    end: f32,
     answer: &mut Answer<'_, Q, W>,
 ) -> bool {
     if W::LISTENS {
@@ -299,8 +301,8 @@ fn triangles<S: Simd, Q: Query, W: Watch>(
             answer.watch.candidate(answer.instance, geometry, primitive);
         }
     }
-    for lane in block.filter(simd, sieve, answer.query.end()) {
-        if let Some(crossing) = triangle::decide(ray, &block.corners(lane)) {
+    for lane in block.filter(simd, sieve, end) {
+        if let Some(crossing) = triangle::decide(ray, &block.corners(lane), block.extent(lane)) {
             let (geometry, primitive) = block.ids(lane);
             let triangle::Crossing { t, u, v } = crossing;
             if answer.query.accept(Hit { t, u, v, primitive, geometry, instance: answer.instance }) {

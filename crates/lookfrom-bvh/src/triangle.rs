@@ -35,9 +35,6 @@ const ERROR: f32 = 160.0 * 4.0 / 16_777_216.0;
 /// What underflow may add: some products that are less than this.
 const UNDERFLOW: f32 = 64.0 * f32::MIN_POSITIVE;
 
-/// Room for the rounding of a t so small that rounding is not relative to it: 2⁻¹⁰⁰.
-const TINY: f32 = 7.888_609e-31;
-
 /// Beyond this (2⁴⁰) the filter's products may overflow, and it excludes nothing.
 pub(crate) const LARGEST_FILTERED: f32 = 1.099_511_6e12;
 
@@ -67,8 +64,6 @@ pub(crate) struct Sieve<S: Simd> {
     origin: [Lanes<S>; 3],
     direction: [Lanes<S>; 3],
     t_min: Lanes<S>,
-    t_min_size: Lanes<S>,
-    t_scale: f32,
     error: Lanes<S>,
     rounding: Lanes<S>,
 }
@@ -78,13 +73,10 @@ impl<S: Simd> Sieve<S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, ray: &Prepared, largest: f32) -> Self {
         let in_range = ray.largest < LARGEST_FILTERED && largest < LARGEST_FILTERED;
-        let t_min = ray.t_min * ray.t_scale - ray.t_scale * TINY;
         Self {
             origin: splat_all(simd, ray.origin),
             direction: splat_all(simd, ray.scaled_direction),
-            t_min: Lanes::splat(simd, t_min),
-            t_min_size: Lanes::splat(simd, t_min.abs()),
-            t_scale: ray.t_scale,
+            t_min: Lanes::splat(simd, ray.scaled_t_min),
             error: Lanes::splat(simd, if in_range { ERROR } else { f32::INFINITY }),
             rounding: Lanes::splat(simd, ray.rounding),
         }
@@ -142,6 +134,12 @@ impl TriangleBlock {
         (self.geometry[lane], self.primitive[lane])
     }
 
+    /// The largest component of the edges at the first corner.
+    #[inline(always)]
+    pub(crate) fn extent(&self, lane: usize) -> f32 {
+        self.extent[lane & (BLOCK - 1)]
+    }
+
     #[inline(always)]
     pub(crate) fn corners(&self, lane: usize) -> [[f32; 3]; 3] {
         let lane = lane & (BLOCK - 1);
@@ -154,11 +152,12 @@ impl TriangleBlock {
         corners
     }
 
-    /// Which lanes are left when those are excluded that the ray surely does not meet at a t in `[t_min, t_max]`.
+    /// Which lanes are left when those are excluded that the ray surely does not meet between its
+    /// `t_min` and a scaled end.
     ///
     /// Möller, Trumbore (1997), "Fast, Minimum Storage Ray/Triangle Intersection", without the division.
     #[inline(always)]
-    pub(crate) fn filter<S: Simd>(&self, simd: S, ray: &Sieve<S>, t_max: f32) -> Chosen {
+    pub(crate) fn filter<S: Simd>(&self, simd: S, ray: &Sieve<S>, end: f32) -> Chosen {
         let [ax, ay, az] = load(simd, &self.corners[0]);
         let [bx, by, bz] = load(simd, &self.corners[1]);
         let [gx, gy, gz] = load(simd, &self.corners[2]);
@@ -198,9 +197,9 @@ impl TriangleBlock {
         let distance =
             nx.mul_add(cx, ny.mul_add(cy, nz * cz)) * Lanes::splat(simd, 1.0).copysign(determinant);
         let error = extent.mul_add(relative, underflow);
-        let t_max = Lanes::splat(simd, (t_max + TINY) * ray.t_scale);
+        let t_max = Lanes::splat(simd, end);
         let beyond = distance.simd_gt(t_max.mul_add(size, error * (reach + t_max.abs())));
-        let before = distance.simd_lt(ray.t_min.mul_sub(size, error * (reach + ray.t_min_size)));
+        let before = distance.simd_lt(ray.t_min.mul_sub(size, error * (reach + ray.t_min.abs())));
         let out_of_range = size.simd_gt(error) & (beyond | before);
 
         let used = u32x4::load_array_ref(simd, &self.primitive).simd_eq(u32x4::splat(simd, NONE));
@@ -210,8 +209,10 @@ impl TriangleBlock {
 }
 
 /// Decides whether and where a ray meets a triangle, with `t_min < t`. The caller compares t with the ray's end.
+///
+/// No component of the edges at the first corner is larger than `extent` (but for rounding to f32).
 #[inline(always)]
-pub(crate) fn decide(ray: &Prepared, corners: &[[f32; 3]; 3]) -> Option<Crossing> {
+pub(crate) fn decide(ray: &Prepared, corners: &[[f32; 3]; 3], extent: f32) -> Option<Crossing> {
     let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
     let [kx, ky, kz] = ray.axes;
 
@@ -228,7 +229,8 @@ pub(crate) fn decide(ray: &Prepared, corners: &[[f32; 3]; 3]) -> Option<Crossing
     let u = edge_function(c, b);
     let v = edge_function(a, c);
     let w = edge_function(b, a);
-    if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+    // Without short cuts: which of the signs it is cannot be predicted.
+    if ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0)) {
         return None;
     }
     let sum = u + v + w;
@@ -240,21 +242,37 @@ pub(crate) fn decide(ray: &Prepared, corners: &[[f32; 3]; 3]) -> Option<Crossing
     let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
     let n = cross(e1, e2);
     let determinant = dot(n, d);
+    // No product of the determinant is larger than extent² times the direction; mostly that shows that it is clear.
+    let largest = 6.5 * f64::from(extent) * f64::from(extent) * d[kz].abs();
+    let t = if determinant.abs() > GRAZING * largest {
+        (dot(n, subtract(p0, ray.origin64)) / determinant) as f32
+    } else {
+        let along = (u * a[2] + v * b[2] + w * c[2]) / (sum * d[kz]);
+        grazing(ray, corners, along)
+    };
+    (t > ray.t_min).then_some(Crossing { t, u: (v / sum) as f32, v: (w / sum) as f32 })
+}
+
+/// `t` where the ray runs nearly along the triangle's plane; `along` is the t between those of the corners.
+#[cold]
+#[inline(never)]
+fn grazing(ray: &Prepared, corners: &[[f32; 3]; 3], along: f64) -> f32 {
+    let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
+    let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
+    let (n, d) = (cross(e1, e2), ray.direction64);
+    let determinant = dot(n, d);
     let magnitude = dot(cross_magnitude(e1, e2), d.map(f64::abs));
     let t = if determinant.abs() > DETERMINANT_ERROR * magnitude {
         dot(n, subtract(p0, ray.origin64)) / determinant
     } else {
         // The ray runs along the plane, as far as f64 can tell: t is somewhere between the corners.
-        (u * a[2] + v * b[2] + w * c[2]) / (sum * d[kz])
+        along
     };
     if !(t as f32 > ray.t_min) {
-        return None;
+        return f32::NAN;
     }
-
     // At grazing angles keep t inside the triangle's box, where every tree looks for it.
-    let t = if determinant.abs() < GRAZING * magnitude { clamp_to_box(ray, corners, t) } else { t };
-    let t = t as f32;
-    (t > ray.t_min).then_some(Crossing { t, u: (v / sum) as f32, v: (w / sum) as f32 })
+    if determinant.abs() < GRAZING * magnitude { clamp_to_box(ray, corners, t) as f32 } else { t as f32 }
 }
 
 /// Relative error of the determinant n·d, with much room: 2⁻⁴⁸ (rounding: about 6 · 2⁻⁵³).
@@ -288,7 +306,6 @@ fn product_error(a: f64, b: f64, product: f64) -> f64 {
 }
 
 /// Moves t into the interval in which the ray is inside the triangle's box.
-#[cold]
 fn clamp_to_box(ray: &Prepared, corners: &[[f32; 3]; 3], t: f64) -> f64 {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
@@ -333,7 +350,7 @@ mod tests {
         for direction in [[0.3, -0.2, 1.0], [0.3, -0.2, 1e-6], [1e3, 0.0, 1e-3]] {
             for (z, above) in [(height, true), (height.next_up(), true), (height.next_down(), false)] {
                 let ray = Prepared::new(&Ray::new([0.1, -0.3, z], direction)).unwrap();
-                assert_eq!(decide(&ray, &corners).is_none(), above, "{direction:?} from {z}");
+                assert_eq!(decide(&ray, &corners, 4e6).is_none(), above, "{direction:?} from {z}");
             }
         }
     }
@@ -355,7 +372,7 @@ mod tests {
             let keep = at_level(levels[all % levels.len()], Filter(&block, &ray)).count();
             all += 1;
             kept += keep;
-            if decide(&ray, &corners).is_some() {
+            if decide(&ray, &corners, block.extent(0)).is_some() {
                 hits += 1;
                 assert_eq!(keep, 1, "{corners:?} {ray:?}");
             }
