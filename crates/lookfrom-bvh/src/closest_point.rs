@@ -1,0 +1,320 @@
+//! Which point of the geometry is nearest to a given one?
+//!
+//! Boxes are opened in the order of their distances, until the next is farther than the best point so far. As with rays,
+//! single precision only excludes: each primitive's distance is decided in f64, on its own, so the tree never shows in an
+//! answer. Primitives of instances are measured in the world, under any map: triangles by their mapped corners, spheres as
+//! the ellipsoids that they become (`ellipsoid`).
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use crate::Bvh;
+use crate::aabb::{Aabb, LARGEST_COORDINATE};
+use crate::affine::Affine;
+use crate::bvh::Leaf;
+use crate::ellipsoid::nearest_on_ellipsoid;
+use crate::node::{Child, Content, WIDTH};
+use crate::ray::NONE;
+use crate::sphere::Sphere;
+use crate::vector::{cross, dot, subtract, wide};
+
+/// Room for the rounding of distances, relative: 2⁻²⁰.
+const ROOM: f64 = 1.0 + 9.536_743_164_062_5e-7;
+
+/// Relative error of a mapped box, with much room: 2⁻⁴⁶.
+const MAPPED_ERROR: f64 = 1.421_085_471_520_200_4e-14;
+
+/// The nearest point of some geometry, as [`Bvh::closest_point`] finds it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClosestPoint {
+    /// Where it is, in the world.
+    pub position: [f32; 3],
+    /// How far that is from the point asked about, not negative.
+    pub distance: f32,
+    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0.
+    pub u: f32,
+    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0.
+    pub v: f32,
+    /// Number of the primitive in its geometry.
+    pub primitive: u32,
+    /// Number of the geometry in its tree.
+    pub geometry: u32,
+    /// Number of the instance, [`NONE`] where the geometry is not in an instance.
+    pub instance: u32,
+}
+
+impl ClosestPoint {
+    /// The order of points at equal distance: as hits at equal t.
+    fn rank(&self) -> (u32, u32, u32) {
+        (self.instance.wrapping_add(1), self.geometry, self.primitive)
+    }
+
+    fn precedes(&self, other: &Self) -> bool {
+        self.distance < other.distance || (self.distance == other.distance && self.rank() < other.rank())
+    }
+}
+
+impl Bvh {
+    /// The point of triangles and of spheres' surfaces that is nearest to `point`, and at most `max_distance` away. Of
+    /// several at the same distance (in f32) that with the lowest ids, as [`Self::closest_hit`] decides.
+    ///
+    /// Distances are right to rounding in f32, and to about 10⁻¹⁵ of the triangle's or sphere's size. Instances may be
+    /// mapped in any way. Procedural shapes do not say where their surfaces are, and take no part. None where nothing is near
+    /// enough, for a point that is NaN or beyond 2¹⁰⁰, and where `max_distance` is NaN or negative.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Triangles};
+    /// let positions = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+    /// let mut builder = Builder::new();
+    /// builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
+    /// let bvh = builder.build()?;
+    /// let nearest = bvh.closest_point([1.0, 2.0, -3.0], f32::INFINITY).unwrap();
+    /// assert_eq!((nearest.position, nearest.distance), ([1.0, 2.0, 0.0], 3.0));
+    /// assert_eq!((nearest.u, nearest.v), (0.25, 0.5));
+    /// assert!(bvh.closest_point([1.0, 2.0, -3.0], 2.5).is_none());
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn closest_point(&self, point: [f32; 3], max_distance: f32) -> Option<ClosestPoint> {
+        let usable = point.iter().all(|x| x.abs() <= LARGEST_COORDINATE) && max_distance >= 0.0;
+        if !usable || self.nodes.is_empty() {
+            return None;
+        }
+        let mut search =
+            Search { outer: self, point: wide(point), max_distance, best: None, waiting: BinaryHeap::new() };
+        search.waiting.push(Waiting { distance: 0.0, child: Child::ROOT, place: NONE });
+        search.run();
+        search.best
+    }
+}
+
+/// A child that is yet to be opened.
+struct Waiting {
+    /// All in it is at least this far away.
+    distance: f64,
+    child: Child,
+    /// Place of the instance in the outer tree's list; [`NONE`] for the outer tree itself.
+    place: u32,
+}
+
+impl Ord for Waiting {
+    /// The nearest is the greatest, which a heap gives first.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.distance.total_cmp(&self.distance)
+    }
+}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Waiting {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Waiting {}
+
+struct Search<'a> {
+    outer: &'a Bvh,
+    point: [f64; 3],
+    max_distance: f32,
+    best: Option<ClosestPoint>,
+    waiting: BinaryHeap<Waiting>,
+}
+
+impl Search<'_> {
+    fn run(&mut self) {
+        while let Some(Waiting { distance, child, place }) = self.waiting.pop() {
+            if distance > self.end() {
+                break;
+            }
+            let instance = self.outer.instances.get(place as usize);
+            let bvh = instance.map_or(self.outer, |instance| &*instance.bvh);
+            let space = match instance {
+                Some(instance) => Space::new(&instance.world_from_object, self.point, instance.id),
+                None => Space::world(self.point),
+            };
+            match child.content() {
+                Content::Node(number) => {
+                    let node = &bvh.nodes[number];
+                    for slot in 0..WIDTH {
+                        let bounds = node.child_bounds(slot);
+                        if bounds.is_empty() {
+                            continue;
+                        }
+                        let distance = space.distance_to_box(&bounds);
+                        if distance <= self.end() {
+                            self.waiting.push(Waiting { distance, child: node.child(slot), place });
+                        }
+                    }
+                }
+                Content::Triangles(block) => {
+                    let block = &bvh.triangles[block];
+                    for lane in 0..block.count() {
+                        let nearest = nearest_on_triangle(&space.corners(&block.corners(lane)));
+                        self.offer(&space, block.ids(lane), nearest);
+                    }
+                }
+                Content::Leaf(leaf) => match bvh.leaves[leaf] {
+                    Leaf::Spheres { first, count } => {
+                        for item in &bvh.spheres[first as usize..(first + count) as usize] {
+                            self.offer(&space, (item.geometry, item.primitive), space.sphere(&item.shape));
+                        }
+                    }
+                    Leaf::Procedurals { .. } => {}
+                    Leaf::Instances { first, count } => {
+                        let roots = (first..first + count)
+                            .filter(|&place| !self.outer.instances[place as usize].bvh.nodes.is_empty())
+                            .map(|place| Waiting { distance, child: Child::ROOT, place });
+                        self.waiting.extend(roots);
+                    }
+                },
+            }
+        }
+    }
+
+    /// Boxes beyond this hold nothing that is wanted.
+    fn end(&self) -> f64 {
+        f64::from(self.best.map_or(self.max_distance, |best| best.distance)) * ROOM
+    }
+
+    /// Hears of a primitive's nearest point.
+    fn offer(&mut self, space: &Space<'_>, (geometry, primitive): (u32, u32), nearest: Nearest) {
+        let offset = nearest.offset;
+        let found = ClosestPoint {
+            position: [0, 1, 2].map(|axis| (self.point[axis] + offset[axis]) as f32),
+            distance: nearest.distance as f32,
+            u: nearest.u as f32,
+            v: nearest.v as f32,
+            primitive,
+            geometry,
+            instance: space.instance,
+        };
+        if found.distance <= self.max_distance && self.best.is_none_or(|best| found.precedes(&best)) {
+            self.best = Some(found);
+        }
+    }
+}
+
+/// The nearest point of a primitive.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nearest {
+    /// From the point asked about.
+    pub(crate) offset: [f64; 3],
+    pub(crate) distance: f64,
+    pub(crate) u: f64,
+    pub(crate) v: f64,
+}
+
+/// A tree's space, as seen from the point asked about: axes as in the world, the point at 0.
+struct Space<'a> {
+    /// None for the world itself.
+    map: Option<&'a Affine>,
+    /// From the point asked about to where the space's origin is.
+    origin: [f64; 3],
+    instance: u32,
+}
+
+impl<'a> Space<'a> {
+    fn world(point: [f64; 3]) -> Self {
+        Self { map: None, origin: point.map(|x| -x), instance: NONE }
+    }
+
+    fn new(map: &'a Affine, point: [f64; 3], instance: u32) -> Self {
+        Self { map: Some(map), origin: subtract(map.translation, point), instance }
+    }
+
+    /// From the point asked about to one of the space.
+    fn offset(&self, p: [f32; 3]) -> [f64; 3] {
+        let p = self.map.map_or(wide(p), |map| map.vector(wide(p)));
+        [0, 1, 2].map(|axis| p[axis] + self.origin[axis])
+    }
+
+    fn corners(&self, corners: &[[f32; 3]; 3]) -> [[f64; 3]; 3] {
+        corners.map(|corner| self.offset(corner))
+    }
+
+    /// All in a box is at least this far away.
+    fn distance_to_box(&self, bounds: &Aabb) -> f64 {
+        let (mut low, mut high) = (self.origin, self.origin);
+        for axis in 0..3 {
+            match self.map {
+                None => {
+                    low[axis] += f64::from(bounds.min[axis]);
+                    high[axis] += f64::from(bounds.max[axis]);
+                }
+                Some(map) => {
+                    // Each term takes its least and greatest value on its own.
+                    let mut magnitude = self.origin[axis].abs();
+                    for column in 0..3 {
+                        let entry = map.matrix[axis][column];
+                        let a = entry * f64::from(bounds.min[column]);
+                        let b = entry * f64::from(bounds.max[column]);
+                        low[axis] += a.min(b);
+                        high[axis] += a.max(b);
+                        magnitude += a.abs().max(b.abs());
+                    }
+                    low[axis] -= MAPPED_ERROR * magnitude;
+                    high[axis] += MAPPED_ERROR * magnitude;
+                }
+            }
+        }
+        let outside = [0, 1, 2].map(|axis| low[axis].max(-high[axis]).max(0.0));
+        dot(outside, outside).sqrt()
+    }
+
+    fn sphere(&self, sphere: &Sphere) -> Nearest {
+        let center = self.offset(sphere.center);
+        let radius = f64::from(sphere.radius);
+        if let Some(map) = self.map {
+            return nearest_on_ellipsoid(center, &map.matrix, radius);
+        }
+        let length = dot(center, center).sqrt();
+        // At the centre all directions are as good.
+        let toward = if length > 0.0 { center.map(|x| -x / length) } else { [1.0, 0.0, 0.0] };
+        let offset = [0, 1, 2].map(|axis| center[axis] + radius * toward[axis]);
+        Nearest { offset, distance: (length - radius).abs(), u: 0.0, v: 0.0 }
+    }
+}
+
+/// The triangle's point nearest to 0: the foot of the perpendicular where that is inside, else the best on the edges.
+///
+/// Each candidate is a mean of corners with weights that are not negative, so it is on the triangle however thin that is.
+pub(crate) fn nearest_on_triangle(&[a, b, c]: &[[f64; 3]; 3]) -> Nearest {
+    let candidate = |u: f64, v: f64| {
+        let w = 1.0 - u - v;
+        let offset = [0, 1, 2].map(|axis| w * a[axis] + u * b[axis] + v * c[axis]);
+        Nearest { offset, distance: dot(offset, offset).sqrt(), u, v }
+    };
+
+    // The edges, in the order of their corners.
+    let along = |from: [f64; 3], to: [f64; 3]| {
+        let edge = subtract(to, from);
+        let length = dot(edge, edge);
+        if length > 0.0 { (-dot(from, edge) / length).clamp(0.0, 1.0) } else { 0.0 }
+    };
+    let s = along(b, c);
+    let mut best = candidate(along(a, b), 0.0);
+    for other in [candidate(0.0, along(a, c)), candidate(1.0 - s, s)] {
+        if other.distance < best.distance {
+            best = other;
+        }
+    }
+
+    // The foot of the perpendicular.
+    let [e1, e2] = [subtract(b, a), subtract(c, a)];
+    let n = cross(e1, e2);
+    let area = dot(n, n);
+    let u = dot(cross(e2, a), n) / area;
+    let v = dot(cross(a, e1), n) / area;
+    if u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
+        let foot = candidate(u, v);
+        if foot.distance < best.distance {
+            best = foot;
+        }
+    }
+    best
+}
