@@ -6,7 +6,6 @@
 //!
 //! Vectors only ever *exclude*, with room for errors, so hits have the same bits at every level.
 
-use fearless_simd::dispatch;
 pub(crate) use fearless_simd::{Level, Simd, f32x4, f32x8, prelude, u32x4};
 
 /// What is to be done at a level that is known only when the program runs.
@@ -18,9 +17,29 @@ pub(crate) trait Work {
 }
 
 /// Does the work with the instructions of a level.
+///
+/// AVX-512 is left aside: masks and twice the registers, but measured on four meshes no faster than AVX2, since rays wait
+/// for nodes and branches and not for arithmetic. So is SSE4.2, which lacks what matters as SSE2 does.
 #[inline(always)]
 pub(crate) fn at_level<W: Work>(level: Level, work: W) -> W::Output {
-    dispatch!(level, simd => work.run(simd))
+    #[cfg(target_arch = "x86_64")]
+    {
+        if let Some(simd) = level.as_avx2() {
+            return simd.vectorize(
+                #[inline(always)]
+                || work.run(simd),
+            );
+        }
+        if let Some(simd) = level.as_sse2() {
+            return work.run(simd);
+        }
+        #[cfg(test)]
+        return work.run(fearless_simd::Fallback::new());
+        #[cfg(not(test))]
+        unreachable!("x86-64 has SSE2")
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    fearless_simd::dispatch!(level, simd => work.run(simd))
 }
 
 /// The numbers of the lanes that were chosen, from the least; bit i stands for lane i.
@@ -40,14 +59,7 @@ impl Iterator for Chosen {
 /// Every level that this machine has.
 #[cfg(test)]
 pub(crate) fn levels() -> Vec<Level> {
-    let best = Level::new();
-    let mut levels = vec![Level::fallback(), Level::baseline(), best];
-    #[cfg(target_arch = "x86_64")]
-    {
-        levels.extend(best.as_sse4_2().map(Simd::level));
-        levels.extend(best.as_avx2().map(Simd::level));
-    }
-    levels
+    vec![Level::fallback(), Level::baseline(), Level::new()]
 }
 
 #[cfg(test)]
