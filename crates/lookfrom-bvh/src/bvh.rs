@@ -89,6 +89,11 @@ impl Bvh {
         self.bounds
     }
 
+    pub(crate) fn set_bounds(&mut self, bounds: Aabb) {
+        self.bounds = bounds;
+        self.largest = bounds.min.iter().chain(&bounds.max).fold(0.0, |largest, x| x.abs().max(largest));
+    }
+
     /// Bytes held for tracing, without the trees of instances (which are shared) and without procedural shapes.
     pub fn memory(&self) -> usize {
         size_of::<Self>()

@@ -56,6 +56,7 @@ mod procedural;
 mod query;
 mod ray;
 pub mod reference;
+mod refit;
 mod simd;
 mod sphere;
 #[cfg(test)]
@@ -73,6 +74,7 @@ pub use closest_point::ClosestPoint;
 pub use origin::Point;
 pub use procedural::{Procedural, ProceduralHit};
 pub use ray::{Hit, NONE, Ray};
+pub use refit::{Moved, RefitError};
 pub use sphere::Sphere;
 pub use traverse::Watch;
 pub use validate::{Invalid, Statistics};

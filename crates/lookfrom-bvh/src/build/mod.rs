@@ -251,9 +251,8 @@ impl Builder {
             reinsert::reinsert(&mut binary, &mut references);
         }
         let mut bvh = collapse::collapse(&binary, &references, &items, &self.geometries, instances);
-        bvh.bounds = bounds;
+        bvh.set_bounds(bounds);
         bvh.statistics = Statistics { left_out: statistics.left_out, ..bvh.take_statistics() };
-        bvh.largest = bounds.min.iter().chain(&bounds.max).fold(0.0, |largest, x| x.abs().max(largest));
         // All children of a node but one wait, on each level, and those of one instance on top.
         let inside = bvh.instances.iter().map(|instance| instance.bvh.stack_length).max().unwrap_or(0);
         bvh.stack_length = bvh.statistics.depth * (WIDTH - 1) + inside;
@@ -308,8 +307,7 @@ impl Builder {
                 }
                 Geometry::Spheres(spheres) => {
                     for (primitive, sphere) in spheres.iter().enumerate() {
-                        let usable = sphere.radius > 0.0 && sphere.is_finite();
-                        add(sphere.bounds(), usable, Kind::Sphere, index, primitive);
+                        add(sphere.bounds(), has_surface(sphere), Kind::Sphere, index, primitive);
                     }
                 }
                 Geometry::Procedural(shapes) => {
@@ -327,10 +325,15 @@ impl Builder {
 }
 
 /// Whether the corners are finite numbers and do not lie on a line.
-fn has_area(corners: &[[f32; 3]; 3]) -> bool {
+pub(crate) fn has_area(corners: &[[f32; 3]; 3]) -> bool {
     if !corners.iter().flatten().all(|x| x.abs() <= LARGEST_COORDINATE) {
         return false;
     }
     let [a, b, c] = corners.map(wide);
     cross(subtract(b, a), subtract(c, a)).iter().any(|&x| x != 0.0)
+}
+
+/// Whether the sphere is finite and larger than a point.
+pub(crate) fn has_surface(sphere: &Sphere) -> bool {
+    sphere.radius > 0.0 && sphere.is_finite() && sphere.bounds().is_valid()
 }

@@ -1,0 +1,225 @@
+//! How does a tree follow geometry that moves?
+//!
+//! Its shape stays and its boxes are fitted again, from the leaves up: Wald, Boulos, Shirley (2007), "Ray Tracing Deformable
+//! Scenes Using Dynamic Bounding Volume Hierarchies". Answers are exact after any motion; tracing takes longer the more
+//! neighbours have parted, which [`Statistics::cost`](crate::Statistics::cost) shows, and then a new tree pays.
+
+use std::fmt;
+
+use crate::Bvh;
+use crate::aabb::Aabb;
+use crate::build::{Triangles, has_area, has_surface};
+use crate::bvh::Leaf;
+use crate::instance::Instance;
+use crate::node::{Content, WIDTH};
+use crate::sphere::Sphere;
+use crate::triangle::TriangleBlock;
+use crate::validate::Statistics;
+
+/// Where a geometry is now, all of its primitives in the order in which the builder was told.
+#[derive(Clone, Copy, Debug)]
+pub enum Moved<'a> {
+    /// Triangles. They may name other corners than before.
+    Triangles(Triangles<'a>),
+    /// Spheres. Radii may change too.
+    Spheres(&'a [Sphere]),
+}
+
+/// Why a tree cannot follow; it needs to be built again.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RefitError {
+    /// A triangle names a corner that is not there.
+    IndexOutOfRange {
+        /// The geometry.
+        geometry: u32,
+        /// The triangle in it.
+        triangle: u32,
+        /// How many positions there are.
+        positions: usize,
+    },
+    /// The tree holds other primitives of a geometry than those that rays can now meet: there are more or fewer, or of
+    /// another kind, or some were left out of the tree (see [`Builder::build`](crate::Builder::build)) or now would be.
+    OtherPrimitives {
+        /// The geometry.
+        geometry: u32,
+        /// The first primitive that is in the tree or to be met by rays, but not both.
+        primitive: u32,
+    },
+}
+
+impl fmt::Display for RefitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::IndexOutOfRange { geometry, triangle, positions } => write!(
+                f,
+                "triangle {triangle} of geometry {geometry} names a position that is not there; there are {positions}, \
+                 counted from 0"
+            ),
+            Self::OtherPrimitives { geometry, primitive } => write!(
+                f,
+                "primitive {primitive} of geometry {geometry} can be met by rays only before or only after the motion, or \
+                 has become one of another kind; build the tree again"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for RefitError {}
+
+impl Bvh {
+    /// Moves geometries of this tree and fits its boxes to them. What is not named stays where it is. Of several motions of
+    /// one geometry the last counts.
+    ///
+    /// The answers are those of a new tree. Takes time in proportion to the whole tree, a small part of what building takes.
+    ///
+    /// # Errors
+    /// See [`RefitError`]. The tree is then as it was.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Moved, Ray, Sphere};
+    /// let mut builder = Builder::new();
+    /// let balls = builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let mut bvh = builder.build()?;
+    /// bvh.refit(&[(balls, Moved::Spheres(&[Sphere { center: [0.0, 5.0, 0.0], radius: 2.0 }]))])?;
+    /// assert_eq!(bvh.closest_hit(&Ray::new([0.0; 3], [0.0, 1.0, 0.0])).t, 3.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn refit(&mut self, moved: &[(u32, Moved<'_>)]) -> Result<(), RefitError> {
+        // Check everything before anything changes.
+        for (geometry, moved) in moved {
+            self.check(*geometry, moved)?;
+        }
+        for (geometry, moved) in moved {
+            match moved {
+                Moved::Triangles(triangles) => self.move_triangles(*geometry, triangles),
+                Moved::Spheres(spheres) => self.move_spheres(*geometry, spheres),
+            }
+        }
+        if self.nodes.is_empty() {
+            return Ok(());
+        }
+        let [exact, _] = self.fit(0);
+        self.set_bounds(exact);
+        self.statistics = Statistics { left_out: self.statistics.left_out, ..self.take_statistics() };
+        Ok(())
+    }
+
+    /// Whether the tree holds just those primitives that rays can meet after the motion.
+    fn check(&self, geometry: u32, moved: &Moved<'_>) -> Result<(), RefitError> {
+        let mut usable = match moved {
+            Moved::Triangles(triangles) => usable_triangles(geometry, triangles)?,
+            Moved::Spheres(spheres) => spheres.iter().map(has_surface).collect(),
+        };
+        let triangles =
+            self.triangles.iter().flat_map(|block| (0..block.count()).map(|lane| block.ids(lane)));
+        let spheres = self.spheres.iter().map(|item| (item.geometry, item.primitive));
+        let procedurals = self.procedurals.iter().map(|item| (item.geometry, item.primitive));
+
+        // Strike out what is in the tree; what is of another kind is in it and cannot be.
+        let is_triangles = matches!(moved, Moved::Triangles(_));
+        let held = triangles
+            .map(|ids| (ids, is_triangles))
+            .chain(spheres.map(|ids| (ids, !is_triangles)))
+            .chain(procedurals.map(|ids| (ids, false)))
+            .filter(|((of, _), _)| *of == geometry);
+        let mut other: Option<u32> = None;
+        for ((_, primitive), right_kind) in held {
+            match usable.get_mut(primitive as usize) {
+                Some(usable) if *usable && right_kind => *usable = false,
+                _ => other = Some(other.map_or(primitive, |least| least.min(primitive))),
+            }
+        }
+        let added = usable.iter().position(|&usable| usable).map(|primitive| primitive as u32);
+        match [other, added].into_iter().flatten().min() {
+            Some(primitive) => Err(RefitError::OtherPrimitives { geometry, primitive }),
+            None => Ok(()),
+        }
+    }
+
+    fn move_triangles(&mut self, geometry: u32, triangles: &Triangles<'_>) {
+        let mut lanes = Vec::new();
+        for block in &mut self.triangles {
+            lanes.clear();
+            let mut touched = false;
+            for lane in 0..block.count() {
+                let (of, primitive) = block.ids(lane);
+                let corners = if of == geometry {
+                    touched = true;
+                    triangles.indices[primitive as usize].map(|index| triangles.positions[index as usize])
+                } else {
+                    block.corners(lane)
+                };
+                lanes.push((corners, of, primitive));
+            }
+            if touched {
+                *block = TriangleBlock::new(&lanes);
+            }
+        }
+    }
+
+    fn move_spheres(&mut self, geometry: u32, spheres: &[Sphere]) {
+        for item in self.spheres.iter_mut().filter(|item| item.geometry == geometry) {
+            item.shape = spheres[item.primitive as usize];
+        }
+    }
+
+    /// Fits the boxes of a node and of all below it. Returns the box around their primitives, and the node's own, which
+    /// holds the primitives' padded boxes.
+    fn fit(&mut self, number: usize) -> [Aabb; 2] {
+        let mut all = [Aabb::EMPTY; 2];
+        for slot in 0..WIDTH {
+            let kept = self.nodes[number].child_bounds(slot);
+            if kept.is_empty() {
+                continue;
+            }
+            let child = self.nodes[number].child(slot);
+            let [exact, padded] = match child.content() {
+                Content::Node(below) => self.fit(below),
+                Content::Triangles(block) => {
+                    let block = &self.triangles[block];
+                    around((0..block.count()).map(|lane| Aabb::around(&block.corners(lane))))
+                }
+                Content::Leaf(leaf) => match self.leaves[leaf] {
+                    Leaf::Spheres { first, count } => {
+                        let range = first as usize..(first + count) as usize;
+                        around(self.spheres[range].iter().map(|item| item.shape.bounds()))
+                    }
+                    Leaf::Procedurals { .. } => [kept; 2],
+                    Leaf::Instances { first, count } => {
+                        let range = first as usize..(first + count) as usize;
+                        around(self.instances[range].iter().map(Instance::bounds))
+                    }
+                },
+            };
+            self.nodes[number].place(slot, &padded, child);
+            all[0].unite(&exact);
+            all[1].unite(&padded);
+        }
+        all
+    }
+}
+
+/// The box around some boxes, and the box around these padded.
+fn around(boxes: impl Iterator<Item = Aabb>) -> [Aabb; 2] {
+    boxes.fold([Aabb::EMPTY; 2], |[mut exact, mut padded], bounds| {
+        exact.unite(&bounds);
+        padded.unite(&bounds.padded());
+        [exact, padded]
+    })
+}
+
+/// For each triangle whether rays can meet it.
+fn usable_triangles(geometry: u32, triangles: &Triangles<'_>) -> Result<Vec<bool>, RefitError> {
+    let positions = triangles.positions;
+    let usable = |(triangle, indices): (usize, &[u32; 3])| {
+        let corner = |i: usize| positions.get(indices[i] as usize).copied();
+        match (corner(0), corner(1), corner(2)) {
+            (Some(a), Some(b), Some(c)) => Ok(has_area(&[a, b, c])),
+            _ => {
+                let triangle = triangle as u32;
+                Err(RefitError::IndexOutOfRange { geometry, triangle, positions: positions.len() })
+            }
+        }
+    };
+    triangles.indices.iter().enumerate().map(usable).collect()
+}
