@@ -252,6 +252,7 @@ fn camera_steps(frame: &Frame<'_>, id: SampleId) -> CameraSteps {
         steps,
         p_world: ray.p_world.to_array(),
         a: a.to_array(),
+        b: if camera.lens.is_some() { a + ray.direction } else { ray.p_world }.to_array(),
         direction: ray.direction.to_array(),
         lens: camera.lens.is_some(),
     }

@@ -43,10 +43,12 @@ pub struct CameraSteps {
     pub p_k: [f64; 4],
     /// Each matrix by name, the product of it with those before, and the point after it.
     pub steps: Vec<MatrixStep>,
-    /// `b`: the point of the image plane in the world.
+    /// `P_world`: the point of the image plane in the world.
     pub p_world: [f64; 3],
     /// `a`: where the ray starts.
     pub a: [f64; 3],
+    /// `b`: where it crosses the image plane; `P_world`, unless a lens moved `a` away.
+    pub b: [f64; 3],
     /// `b − a`: its direction, not of unit length; `t = 1` is the image plane.
     pub direction: [f64; 3],
     /// Whether a lens moved `a` away from `lookfrom`.

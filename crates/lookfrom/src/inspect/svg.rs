@@ -13,7 +13,7 @@ use crate::world::World;
 const WIDTH: f64 = 1000.0;
 
 /// Outlines of at most so many triangles of one mesh are drawn, evenly chosen.
-const MOST_TRIANGLES: usize = 2000;
+const MOST_TRIANGLES: usize = 600;
 
 /// Draws an inspection in a plane that holds the direction of view (to the right) and up.
 pub fn svg(world: &World, inspection: &Inspection) -> String {

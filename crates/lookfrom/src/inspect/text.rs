@@ -54,7 +54,9 @@ impl Inspection {
         )?;
         let moved = if camera.lens { "   (a point of the lens)" } else { "" };
         writeln!(f, "  a        = {}{moved}", vector(&camera.a))?;
-        writeln!(f, "  b        = {}   (P_world)", vector(&camera.p_world))?;
+        let on_plane =
+            if camera.lens { "where the ray from the lens crosses the image plane" } else { "P_world" };
+        writeln!(f, "  b        = {}   ({on_plane})", vector(&camera.b))?;
         writeln!(
             f,
             "  b − a    = {}   p(t) = a + t (b − a); t = 1 is the image plane",
@@ -195,7 +197,12 @@ fn vector32(v: &[f32]) -> String {
 
 /// A colour in full: these numbers are to be added up.
 fn color(rgb: [f32; 3]) -> String {
-    format!("[{} {} {}]", rgb[0], rgb[1], rgb[2])
+    format!("[{}]", rgb.map(full).join(" "))
+}
+
+/// As many digits as it takes to read the same number back.
+fn full(x: f32) -> String {
+    if x != 0.0 && x.abs() < 1e-5 { format!("{x:e}") } else { format!("{x}") }
 }
 
 /// Seven digits, without an idle tail.
