@@ -168,7 +168,7 @@ mod tests {
         type Output = u32;
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> u32 {
-            let ray = Prepared::new(self.1).unwrap();
+            let ray = Prepared::new(simd, self.1).unwrap();
             self.0.enter(simd, &Slabs::new(simd, &ray), ray.scaled_end(self.1.t_max)).children
         }
     }

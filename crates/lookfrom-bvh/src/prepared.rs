@@ -6,6 +6,7 @@
 
 use crate::affine::Affine;
 use crate::ray::Ray;
+use crate::simd::{Simd, f32x4, prelude::*};
 use crate::vector::{subtract, wide};
 
 /// The largest product of an origin and a reciprocal, 2¹²⁶: beyond it a reciprocal is made smaller, that of 0 too. So no
@@ -62,34 +63,58 @@ pub(crate) struct Prepared {
 impl Prepared {
     /// A ray in the world. None where it cannot hit anything.
     #[inline(always)]
-    pub(crate) fn new(ray: &Ray) -> Option<Self> {
-        let finite = ray.origin.iter().chain(&ray.direction).all(|x| x.is_finite());
-        if !finite || !(ray.t_min < ray.t_max) {
+    pub(crate) fn new<S: Simd>(simd: S, ray: &Ray) -> Option<Self> {
+        if !(ray.t_min < ray.t_max) {
             return None;
         }
-        Self::with_rounding(wide(ray.origin), wide(ray.direction), ray.t_min, 0.0)
+        Self::with_rounding(
+            simd,
+            ray.origin,
+            ray.direction,
+            wide(ray.origin),
+            wide(ray.direction),
+            ray.t_min,
+            0.0,
+        )
     }
 
     /// The same ray in an object's space; t stays what it is.
-    pub(crate) fn in_object(&self, world_from_object: &Affine, object_from_world: &Affine) -> Option<Self> {
+    #[inline(always)]
+    pub(crate) fn in_object<S: Simd>(
+        &self,
+        simd: S,
+        world_from_object: &Affine,
+        object_from_world: &Affine,
+    ) -> Option<Self> {
         // Subtract first: near the object that is where the digits are.
         let origin = object_from_world.vector(subtract(self.origin64, world_from_object.translation));
         let direction = object_from_world.vector(self.direction64);
-        Self::with_rounding(origin, direction, self.t_min, f32::EPSILON)
+        let narrow = |x: [f64; 3]| x.map(|x| x as f32);
+        Self::with_rounding(simd, narrow(origin), narrow(direction), origin, direction, self.t_min, 1.0)
     }
 
+    /// `rounding` is 1 where the f32 values are rounded, else 0.
     #[inline(always)]
-    fn with_rounding(origin64: [f64; 3], direction64: [f64; 3], t_min: f32, relative: f32) -> Option<Self> {
-        let origin = origin64.map(|x| x as f32);
-        let direction = direction64.map(|x| x as f32);
-
+    fn with_rounding<S: Simd>(
+        simd: S,
+        origin: [f32; 3],
+        direction: [f32; 3],
+        origin64: [f64; 3],
+        direction64: [f64; 3],
+        t_min: f32,
+        rounding: f32,
+    ) -> Option<Self> {
         // Shear along the longest component, so that both factors are at most 1.
-        let [x, y, z] = direction64.map(f64::abs);
-        let last = if (x > y) & (x > z) { 0 } else { 2 - usize::from(y > z) };
         let [x, y, z] = direction.map(f32::abs);
+        let last = if (x > y) & (x > z) { 0 } else { 2 - usize::from(y > z) };
         let length = greater(greater(x, y), z);
         let largest = greater(greater(origin[0].abs(), origin[1].abs()), origin[2].abs());
-        if !(length > 0.0 && length < f32::INFINITY && largest < f32::INFINITY) {
+        // The sum is NaN where one of them is not finite.
+        let zero = f32x4::splat(simd, 0.0);
+        let o = f32x4::load_array(simd, [origin[0], origin[1], origin[2], 0.0]);
+        let d = f32x4::load_array(simd, [direction[0], direction[1], direction[2], 0.0]);
+        let finite = (o * zero + d * zero).simd_eq(zero).all_true();
+        if !(finite & (length > 0.0)) {
             return None;
         }
 
@@ -97,25 +122,18 @@ impl Prepared {
         let exponent = (length.to_bits() & 0x7f80_0000).clamp(1 << 23, 253 << 23);
         let scale = f32::from_bits((254 << 23) - exponent);
         let t_scale = f32::from_bits(exponent);
-        let scaled_direction = direction.map(|x| x * scale);
 
-        let mut near_reciprocal = [0.0; 3];
-        let mut far_reciprocal = [0.0; 3];
-        let mut near_product = [0.0; 3];
-        let mut far_product = [0.0; 3];
-        let mut near_side = [0; 3];
-        for axis in 0..3 {
-            let reciprocal = 1.0 / scaled_direction[axis].abs();
-            let most = LARGEST_PRODUCT / greater(origin[axis].abs(), 1.0);
-            let reciprocal = if reciprocal < most { reciprocal } else { most };
-            near_reciprocal[axis] = reciprocal.copysign(direction[axis]);
-            far_reciprocal[axis] = near_reciprocal[axis] * (1.0 + ROOM);
-            let product = near_reciprocal[axis] * origin[axis];
-            near_product[axis] = product + product.abs() * PRODUCT_ROOM;
-            let product = far_reciprocal[axis] * origin[axis];
-            far_product[axis] = product - product.abs() * PRODUCT_ROOM;
-            near_side[axis] = (direction[axis].to_bits() >> 31) as usize;
-        }
+        // The slabs' constants, three axes at once.
+        let scaled = d * scale;
+        let one = f32x4::splat(simd, 1.0);
+        let largest_reciprocal = f32x4::splat(simd, LARGEST_PRODUCT) / o.abs().max(one);
+        let near_reciprocal = (one / scaled.abs()).min(largest_reciprocal).copysign(d);
+        let far_reciprocal = near_reciprocal * (1.0 + ROOM);
+        let near_product = near_reciprocal * o;
+        let near_product = near_product + near_product.abs() * PRODUCT_ROOM;
+        let far_product = far_reciprocal * o;
+        let far_product = far_product - far_product.abs() * PRODUCT_ROOM;
+        let near_side = direction.map(|x| (x.to_bits() >> 31) as usize);
 
         // Where it can, it stays positive: so are then all distances, and in order as bits.
         let start = (t_min - t_min.abs() * ROOM - TINY) * t_scale;
@@ -123,14 +141,14 @@ impl Prepared {
             t_min,
             scaled_t_min: if t_min < 0.0 { start } else { greater(start, 0.0) },
             origin,
-            scaled_direction,
+            scaled_direction: first_three(scaled),
             t_scale,
-            near_reciprocal,
-            far_reciprocal,
-            near_product,
-            far_product,
+            near_reciprocal: first_three(near_reciprocal),
+            far_reciprocal: first_three(far_reciprocal),
+            near_product: first_three(near_product),
+            far_product: first_three(far_product),
             near_side,
-            rounding: if relative > 0.0 { largest } else { 0.0 },
+            rounding: rounding * largest,
             largest,
             axes: AXES[last],
             origin64,
@@ -143,6 +161,11 @@ impl Prepared {
     pub(crate) fn scaled_end(&self, t_max: f32) -> f32 {
         (t_max + t_max.abs() * ROOM + TINY) * self.t_scale
     }
+}
+
+#[inline(always)]
+fn first_three<S: Simd>(values: f32x4<S>) -> [f32; 3] {
+    [values[0], values[1], values[2]]
 }
 
 /// The greater of two numbers, the second where there is a NaN.

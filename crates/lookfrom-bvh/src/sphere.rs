@@ -64,7 +64,7 @@ mod tests {
     use crate::ray::Ray;
 
     fn roots(sphere: Sphere, origin: [f32; 3], direction: [f32; 3]) -> Option<[f32; 2]> {
-        decide(&Prepared::new(&Ray::new(origin, direction)).unwrap(), &sphere)
+        decide(&Prepared::new(fearless_simd::Fallback::new(), &Ray::new(origin, direction)).unwrap(), &sphere)
     }
 
     #[test]

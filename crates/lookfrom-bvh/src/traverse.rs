@@ -102,7 +102,7 @@ impl<Q: Query, W: Watch> Work for Trace<'_, Q, W> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { bvh, ray, query, watch } = self;
-        let Some(ray) = Prepared::new(ray) else { return };
+        let Some(ray) = Prepared::new(simd, ray) else { return };
         with_stack(
             bvh,
             #[inline(always)]
@@ -178,7 +178,6 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
         return false;
     }
     let slabs = Slabs::new(simd, ray);
-    let sieve = Sieve::new(simd, ray, bvh.largest);
     let mut height = 0;
     let mut current = Child::ROOT;
     let mut end = ray.scaled_end(query.end());
@@ -201,7 +200,14 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
         let stop = match current.content() {
             Content::Triangles(number) => {
                 let block = &bvh.triangles[number];
-                triangles(simd, block, ray, &sieve, end, &mut Answer { instance, query, watch })
+                triangles(
+                    simd,
+                    block,
+                    ray,
+                    &Sieve::new(simd, ray, bvh.largest),
+                    end,
+                    &mut Answer { instance, query, watch },
+                )
             }
             Content::Leaf(number) => visit_leaf(&bvh.leaves[number], query, watch, &mut stack[height..]),
             Content::Node(_) => false,
@@ -392,12 +398,13 @@ fn instances<S: Simd, Q: Query, W: Watch>(
     let range = first as usize..(first + count) as usize;
     bvh.instances[range].iter().any(|instance| {
         debug_assert_ne!(instance.id, NONE);
-        let Some(inside) = ray.in_object(&instance.world_from_object, &instance.object_from_world) else {
-            return false;
-        };
         simd.vectorize(
             #[inline(always)]
-            || inner(simd, &instance.bvh, &inside, instance.id, query, watch, stack),
+            || {
+                ray.in_object(simd, &instance.world_from_object, &instance.object_from_world).is_some_and(
+                    |inside| inner(simd, &instance.bvh, &inside, instance.id, query, watch, stack),
+                )
+            },
         )
     })
 }
