@@ -72,10 +72,11 @@ pub(crate) struct Node {
 }
 
 /// Which children a ray enters, and where.
-pub(crate) struct Entered {
+pub(crate) struct Entered<S: Simd> {
     /// Bit i stands for child i.
     pub(crate) children: u32,
-    pub(crate) near: [f32; WIDTH],
+    /// A vector, so that it lies in one cache line.
+    pub(crate) near: f32x8<S>,
 }
 
 /// What the box test needs of a ray, in every lane.
@@ -138,7 +139,7 @@ impl Node {
 
     /// Which children the ray meets between its `t_min` and a scaled end.
     #[inline(always)]
-    pub(crate) fn enter<S: Simd>(&self, simd: S, ray: &Slabs<S>, end: f32) -> Entered {
+    pub(crate) fn enter<S: Simd>(&self, simd: S, ray: &Slabs<S>, end: f32) -> Entered<S> {
         let face = |axis: usize, side: usize| f32x8::load_array_ref(simd, &self.bounds[axis][side & 1]);
         let near = |axis: usize| {
             face(axis, ray.near_side[axis]).mul_sub(ray.near_reciprocal[axis], ray.near_product[axis])
@@ -152,7 +153,7 @@ impl Node {
             // There the room in the reciprocal is on the wrong side.
             far = far.abs().mul_add(f32x8::splat(simd, 4.0 * ROOM), far);
         }
-        Entered { children: near.simd_le(far).to_bitmask() as u32, near: near.into() }
+        Entered { children: near.simd_le(far).to_bitmask() as u32, near }
     }
 }
 

@@ -187,7 +187,7 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
             watch.node(instance, number as u32);
             let node = &bvh.nodes[number];
             let entered = node.enter(simd, &slabs, end);
-            match push::<Q>(node, &entered, stack, &mut height) {
+            match push::<S, Q>(node, &entered, stack, &mut height) {
                 Some(child) => current = child,
                 None => match pop(stack, &mut height, end) {
                     Some(child) => current = child,
@@ -238,9 +238,9 @@ fn pop(stack: &[Pending], height: &mut usize, end: f32) -> Option<Child> {
 
 /// Pushes the children that were entered but one, the nearest last, and returns that one, which is nearer.
 #[inline(always)]
-fn push<Q: Query>(
+fn push<S: Simd, Q: Query>(
     node: &Node,
-    entered: &Entered,
+    entered: &Entered<S>,
     stack: &mut [Pending],
     height: &mut usize,
 ) -> Option<Child> {
@@ -279,7 +279,7 @@ fn push<Q: Query>(
 
 /// Takes the first of some children.
 #[inline(always)]
-fn next(node: &Node, entered: &Entered, children: &mut u32) -> Pending {
+fn next<S: Simd>(node: &Node, entered: &Entered<S>, children: &mut u32) -> Pending {
     let slot = children.trailing_zeros() as usize % WIDTH;
     *children &= children.wrapping_sub(1);
     Pending::new(entered.near[slot], node.child(slot))
