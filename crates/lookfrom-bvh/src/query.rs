@@ -7,6 +7,9 @@ pub(crate) trait Query {
     /// Whether near children are to be visited before far ones.
     const NEAREST_FIRST: bool;
 
+    /// Whether any hit will do, wherever in the ray's range it is.
+    const ANY_HIT: bool;
+
     /// No hit beyond this t is wanted; one at it may be.
     fn end(&self) -> f32;
 
@@ -29,6 +32,7 @@ impl Closest {
 
 impl Query for Closest {
     const NEAREST_FIRST: bool = true;
+    const ANY_HIT: bool = false;
 
     #[inline(always)]
     fn end(&self) -> f32 {
@@ -59,6 +63,7 @@ impl Any {
 
 impl Query for Any {
     const NEAREST_FIRST: bool = false;
+    const ANY_HIT: bool = true;
 
     #[inline(always)]
     fn end(&self) -> f32 {
@@ -86,6 +91,7 @@ impl<'a> All<'a> {
 
 impl Query for All<'_> {
     const NEAREST_FIRST: bool = false;
+    const ANY_HIT: bool = false;
 
     #[inline(always)]
     fn end(&self) -> f32 {

@@ -12,7 +12,7 @@ use crate::node::{Child, Content, Entered, Node, Slabs, WIDTH};
 use crate::prepared::Prepared;
 use crate::query::Query;
 use crate::ray::{Hit, NONE, Ray};
-use crate::simd::{Simd, Work, at_level};
+use crate::simd::{Chosen, Simd, Work, at_level};
 use crate::triangle::Sieve;
 use crate::{sphere, triangle};
 
@@ -307,7 +307,12 @@ fn triangles<S: Simd, Q: Query, W: Watch>(
             answer.watch.candidate(answer.instance, geometry, primitive);
         }
     }
-    for lane in block.filter(simd, sieve, end) {
+    let sifted = block.filter(simd, sieve, end);
+    if Q::ANY_HIT && sifted.surely_hit != Chosen(0) {
+        let (geometry, primitive) = block.ids(sifted.surely_hit.0.trailing_zeros() as usize);
+        return answer.query.accept(Hit { t: ray.t_min, geometry, primitive, ..Hit::MISS });
+    }
+    for lane in sifted.kept {
         if let Some(crossing) = triangle::decide(ray, &block.corners(lane), block.extent(lane)) {
             let (geometry, primitive) = block.ids(lane);
             let triangle::Crossing { t, u, v } = crossing;
