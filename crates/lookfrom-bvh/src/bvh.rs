@@ -155,7 +155,10 @@ impl Bvh {
         hits.clear();
         let mut query = All::new(ray.t_max, hits);
         Trace { bvh: self, ray, query: &mut query, watch: &mut () }.go();
-        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then_with(|| a.rank().cmp(&b.rank())));
+        // A zero is a zero, whatever its sign.
+        hits.sort_unstable_by(|a, b| {
+            (a.t + 0.0).total_cmp(&(b.t + 0.0)).then_with(|| a.rank().cmp(&b.rank()))
+        });
     }
 
     /// [`Self::closest_hit`] for each ray, on several threads where there are many. The two slices should be equally

@@ -413,3 +413,58 @@ fn instances<S: Simd, Q: Query, W: Watch>(
         )
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::simd::levels;
+    use crate::testing::Random;
+    use crate::{Builder, Ray, Sphere, Triangles};
+
+    #[test]
+    fn every_level_gives_the_same_bits() {
+        let mut random = Random::new(3);
+        let (mut hits, mut misses) = (0, 0);
+        for _ in 0..60 {
+            let (center, size) = (random.point_with_exponents(-6, 6), random.size(-6, 6));
+            let positions: Vec<[f32; 3]> = (0..600).map(|_| random.near(center, size)).collect();
+            let indices: Vec<[u32; 3]> = (0..400).map(|_| [0; 3].map(|_| random.below(600))).collect();
+            let mut builder = Builder::new();
+            builder.triangles(Triangles { positions: &positions, indices: &indices });
+            builder.spheres(&[Sphere { center: random.near(center, size), radius: 0.2 * size }]);
+            let mut bvh = builder.build().unwrap();
+            let rays: Vec<Ray> = (0..300)
+                .map(|_| {
+                    let origin = random.near(center, 2.0 * size);
+                    let target = positions[random.below(600) as usize];
+                    let toward = [0, 1, 2].map(|axis| target[axis] - origin[axis]);
+                    let direction = if random.unit() < 0.7 { toward } else { random.direction() };
+                    let t_max = if random.unit() < 0.5 { 1.0 } else { f32::INFINITY };
+                    let t_min = if random.unit() < 0.2 { -1.0 } else { 0.0 };
+                    Ray { origin, t_min, direction, t_max }
+                })
+                .collect();
+            let mut answers = Vec::new();
+            for level in levels() {
+                bvh.level = level;
+                let mut all = Vec::new();
+                let answer: Vec<_> = rays
+                    .iter()
+                    .map(|ray| {
+                        bvh.all_hits(ray, &mut all);
+                        let closest = bvh.closest_hit(ray);
+                        assert_eq!(all.first().copied(), closest.is_hit().then_some(closest), "{ray:?}");
+                        assert_eq!(bvh.occluded(ray), closest.is_hit(), "{ray:?}");
+                        let bits = [closest.t, closest.u, closest.v].map(f32::to_bits);
+                        (bits, closest.primitive, closest.geometry, all.len())
+                    })
+                    .collect();
+                answers.push(answer);
+            }
+            assert!(answers.iter().all(|answer| *answer == answers[0]));
+            let found = answers[0].iter().filter(|answer| answer.3 > 0).count();
+            hits += found;
+            misses += rays.len() - found;
+        }
+        assert!(hits > 1000 && misses > 1000, "{hits} hits, {misses} misses");
+    }
+}
