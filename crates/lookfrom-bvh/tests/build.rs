@@ -175,6 +175,33 @@ fn threads_and_batches_change_nothing() {
 }
 
 #[test]
+fn the_best_trees_cost_no_more() {
+    // Nothing can be gained where all boxes overlap, and much where long triangles cross a room.
+    let mut random = Random::new(5);
+    let everywhere = (0..4000).map(|_| [0; 3].map(|_| random.near([0.0; 3], 1.0))).collect();
+    let mut beams = Vec::new();
+    for _ in 0..2000 {
+        let corner = random.near([0.0; 3], 10.0);
+        let mut far = corner;
+        far[random.below(3) as usize] += random.size(-1, 1);
+        beams.push([corner, far, random.near(corner, 0.05)]);
+    }
+    for (name, corners, least_gain) in [("everywhere", everywhere, -0.01), ("beams", beams, 0.02)] {
+        let corners: Vec<[[f32; 3]; 3]> = corners;
+        let positions: Vec<[f32; 3]> = corners.iter().flatten().copied().collect();
+        let indices: Vec<[u32; 3]> =
+            (0..corners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let [balanced, best] = [Quality::Balanced, Quality::Best].map(|quality| {
+            let mut builder = Builder::new();
+            builder.quality(quality);
+            builder.triangles(Triangles { positions: &positions, indices: &indices });
+            builder.build().unwrap().validate().unwrap().cost
+        });
+        assert!(best < (1.0 - least_gain) * balanced, "{name}: {best} after {balanced}");
+    }
+}
+
+#[test]
 fn watchers_see_what_is_visited() {
     #[derive(Default)]
     struct Count {

@@ -247,8 +247,16 @@ impl Builder {
             .map(|(index, item)| sah::Reference { bounds: item.bounds, item: index as u32 })
             .collect();
         let mut binary = sah::build(&mut references, self.quality);
-        if self.quality == Quality::Best {
-            reinsert::reinsert(&mut binary, &mut references);
+        if self.quality == Quality::Best
+            && let Some((other, sorted)) = reinsert::reinsert(&binary, &references)
+        {
+            // A cheaper binary tree may make a dearer wide one, where leaves no longer fill up.
+            let cost = |binary: &[sah::Binary], references: &[sah::Reference]| {
+                plan::Plan::new(binary, references, &items).cost()
+            };
+            if cost(&other, &sorted) < cost(&binary, &references) {
+                (binary, references) = (other, sorted);
+            }
         }
         let mut bvh = collapse::collapse(&binary, &references, &items, &self.geometries, instances);
         bvh.set_bounds(bounds);

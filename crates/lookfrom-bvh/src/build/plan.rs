@@ -75,6 +75,11 @@ impl<'a> Plan<'a> {
         Self { binary, choices }
     }
 
+    /// What rays are expected to visit, in the area of boxes.
+    pub(super) fn cost(&self) -> f32 {
+        self.choices.first().map_or(0.0, |root| root.cost[0])
+    }
+
     /// Whether a binary node becomes a leaf.
     pub(super) fn is_leaf(&self, number: usize) -> bool {
         self.choices[number].leaf

@@ -18,6 +18,10 @@ const WORTHWHILE: f64 = 1.0 / 256.0;
 /// One node of this many is moved in a round.
 const SHARE: usize = 8;
 
+/// Nodes that the search for one move looks at. Scanned meshes and rooms need fewer; where all boxes overlap this keeps the time
+/// from growing with the square of their number.
+const VISITS: usize = 200;
+
 /// A tree that would become deeper is left as it is.
 const DEPTH_LIMIT: u32 = 160;
 
@@ -43,10 +47,10 @@ struct Move {
     gain: f32,
 }
 
-/// Optimizes a tree of single references, and sorts these in the new tree's order.
-pub(super) fn reinsert(tree: &mut Vec<Binary>, references: &mut [Reference]) {
+/// The optimized tree of single references, and these in its order. None where it would be too deep.
+pub(super) fn reinsert(tree: &[Binary], references: &[Reference]) -> Option<(Vec<Binary>, Vec<Reference>)> {
     if tree.len() < 8 {
-        return;
+        return None;
     }
     let mut spots = Spots::new(tree);
     let mut cost = spots.cost();
@@ -59,11 +63,9 @@ pub(super) fn reinsert(tree: &mut Vec<Binary>, references: &mut [Reference]) {
             break;
         }
     }
-    if let Some((better, order)) = spots.binary() {
-        *tree = better;
-        let sorted: Vec<Reference> = order.iter().map(|&place| references[place as usize]).collect();
-        references.copy_from_slice(&sorted);
-    }
+    let (better, order) = spots.binary()?;
+    let sorted = order.iter().map(|&place| references[place as usize]).collect();
+    Some((better, sorted))
 }
 
 struct Spots(Vec<Spot>);
@@ -142,12 +144,16 @@ impl Spots {
         let mut pivot = parent;
         let mut shrunk = self.at(other).bounds;
         let mut stack = Vec::with_capacity(64);
+        let mut visits = 0;
         loop {
             stack.push((saved, other));
-            while let Some((saved, to)) = stack.pop() {
+            while visits < VISITS
+                && let Some((saved, to)) = stack.pop()
+            {
                 if saved - moved.area <= best.gain {
                     continue;
                 }
+                visits += 1;
                 let spot = self.at(to);
                 let mut merged = spot.bounds;
                 merged.unite(&moved.bounds);
@@ -165,7 +171,7 @@ impl Spots {
                 shrunk.unite(&self.at(other).bounds);
                 saved += self.at(pivot).area - shrunk.half_area();
             }
-            if pivot == 0 {
+            if pivot == 0 || visits == VISITS {
                 break;
             }
             other = self.sibling(pivot);
