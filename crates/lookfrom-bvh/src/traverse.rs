@@ -13,7 +13,7 @@ use crate::prepared::Prepared;
 use crate::query::Query;
 use crate::ray::{Hit, NONE, Ray};
 use crate::simd::{Chosen, Simd, Work, at_level};
-use crate::triangle::Sieve;
+use crate::triangle::{Sieve, TriangleBlock};
 use crate::{sphere, triangle};
 
 /// Listens while a ray is traced. Every method does nothing unless written; `()` listens to nothing and costs nothing.
@@ -181,7 +181,8 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
     let mut height = 0;
     let mut current = Child::ROOT;
     let mut end = ray.scaled_end(query.end());
-    loop {
+    let mut waiting = None;
+    'ray: loop {
         // Go down, each time to the nearest child that the ray enters; the others wait.
         while let Content::Node(number) = current.content() {
             watch.node(instance, number as u32);
@@ -191,7 +192,7 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
                 Some(child) => current = child,
                 None => match pop(stack, &mut height, end) {
                     Some(child) => current = child,
-                    None => return false,
+                    None => break 'ray,
                 },
             }
         }
@@ -205,7 +206,8 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
                     block,
                     ray,
                     &Sieve::new(simd, ray, bvh.largest),
-                    end,
+                    &mut end,
+                    &mut waiting,
                     &mut Answer { instance, query, watch },
                 )
             }
@@ -215,12 +217,16 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
         if stop {
             return true;
         }
-        end = ray.scaled_end(query.end());
+        let decided = ray.scaled_end(query.end());
+        end = if decided < end { decided } else { end };
         match pop(stack, &mut height, end) {
             Some(child) => current = child,
-            None => return false,
+            None => break,
         }
     }
+    waiting.is_some_and(|Waiting { block, lane, .. }| {
+        decide(block, lane, ray, &mut Answer { instance, query, watch })
+    })
 }
 
 /// The next child that is not beyond the end.
@@ -293,12 +299,13 @@ struct Answer<'a, Q, W> {
 }
 
 #[inline(always)]
-fn triangles<S: Simd, Q: Query, W: Watch>(
+fn triangles<'a, S: Simd, Q: Query, W: Watch>(
     simd: S,
-    block: &triangle::TriangleBlock,
+    block: &'a TriangleBlock,
     ray: &Prepared,
     sieve: &Sieve<S>,
-    end: f32,
+    end: &mut f32,
+    waiting: &mut Option<Waiting<'a>>,
     answer: &mut Answer<'_, Q, W>,
 ) -> bool {
     if W::LISTENS {
@@ -307,21 +314,55 @@ fn triangles<S: Simd, Q: Query, W: Watch>(
             answer.watch.candidate(answer.instance, geometry, primitive);
         }
     }
-    let sifted = block.filter(simd, sieve, end);
+    let sifted = block.filter(simd, sieve, *end);
     if Q::ANY_HIT && sifted.surely_hit != Chosen(0) {
         let (geometry, primitive) = block.ids(sifted.surely_hit.0.trailing_zeros() as usize);
         return answer.query.accept(Hit { t: ray.t_min, geometry, primitive, ..Hit::MISS });
     }
     for lane in sifted.kept {
-        if let Some(crossing) = triangle::decide(ray, &block.corners(lane), block.extent(lane)) {
-            let (geometry, primitive) = block.ids(lane);
-            let triangle::Crossing { t, u, v } = crossing;
-            if answer.query.accept(Hit { t, u, v, primitive, geometry, instance: answer.instance }) {
-                return true;
+        if Q::NEAREST_FIRST && sifted.surely_hit.0 >> lane & 1 != 0 {
+            // A sure hit ends the ray; it is decided later, if none is surely nearer.
+            let [first, last] = sifted.between();
+            let (first, last) = (first[lane], last[lane]);
+            if let Some(earlier) = waiting {
+                if first > earlier.last {
+                    continue;
+                }
+                if last >= earlier.first {
+                    decide(earlier.block, earlier.lane, ray, answer);
+                }
             }
+            *waiting = Some(Waiting { block, lane, first, last });
+            *end = if last < *end { last } else { *end };
+        } else if decide(block, lane, ray, answer) {
+            return true;
         }
     }
     false
+}
+
+/// A triangle that is surely hit, between two scaled t, and waits for its decision.
+struct Waiting<'a> {
+    block: &'a TriangleBlock,
+    lane: usize,
+    first: f32,
+    last: f32,
+}
+
+/// Decides whether and where a triangle is hit, and tells.
+#[inline(always)]
+fn decide<Q: Query, W: Watch>(
+    block: &TriangleBlock,
+    lane: usize,
+    ray: &Prepared,
+    answer: &mut Answer<'_, Q, W>,
+) -> bool {
+    let Some(crossing) = triangle::decide(ray, &block.corners(lane), block.extent(lane)) else {
+        return false;
+    };
+    let (geometry, primitive) = block.ids(lane);
+    let triangle::Crossing { t, u, v } = crossing;
+    answer.query.accept(Hit { t, u, v, primitive, geometry, instance: answer.instance })
 }
 
 /// Tests what is not a triangle and not an instance.

@@ -60,11 +60,24 @@ pub(crate) struct Crossing {
 }
 
 /// What the filter says of a block.
-pub(crate) struct Sifted {
+pub(crate) struct Sifted<S: Simd> {
     /// Those that are not surely missed: they are to be decided.
     pub(crate) kept: Chosen,
     /// Those of which the decision is known: a hit in the ray's range.
     pub(crate) surely_hit: Chosen,
+    distance: Lanes<S>,
+    size: Lanes<S>,
+    reach: Lanes<S>,
+    room: Lanes<S>,
+}
+
+impl<S: Simd> Sifted<S> {
+    /// Between which scaled t each of those that are surely hit is surely hit.
+    #[inline(always)]
+    pub(crate) fn between(&self) -> [Lanes<S>; 2] {
+        let room = self.room * self.reach;
+        [(self.distance - room) / (self.size + self.room), (self.distance + room) / (self.size - self.room)]
+    }
 }
 
 /// Scaled distances of sure hits are above this, 2⁻⁶⁰, and below 2⁶⁰.
@@ -172,7 +185,7 @@ impl TriangleBlock {
     ///
     /// Möller, Trumbore (1997), "Fast, Minimum Storage Ray/Triangle Intersection", without the division.
     #[inline(always)]
-    pub(crate) fn filter<S: Simd>(&self, simd: S, ray: &Sieve<S>, end: f32) -> Sifted {
+    pub(crate) fn filter<S: Simd>(&self, simd: S, ray: &Sieve<S>, end: f32) -> Sifted<S> {
         let [ax, ay, az] = load(simd, &self.corners[0]);
         let [bx, by, bz] = load(simd, &self.corners[1]);
         let [gx, gy, gz] = load(simd, &self.corners[2]);
@@ -232,6 +245,10 @@ impl TriangleBlock {
         Sifted {
             kept: Chosen(!excluded.to_bitmask() as u32 & lanes),
             surely_hit: Chosen(sure.to_bitmask() as u32 & lanes),
+            distance,
+            size,
+            reach,
+            room,
         }
     }
 }
@@ -360,10 +377,12 @@ mod tests {
     struct Filter<'a>(&'a TriangleBlock, &'a Prepared);
 
     impl Work for Filter<'_> {
-        type Output = Sifted;
+        type Output = (Chosen, Chosen, [f32; 2]);
         #[inline(always)]
-        fn run<S: Simd>(self, simd: S) -> Sifted {
-            self.0.filter(simd, &Sieve::new(simd, self.1, 0.0), f32::INFINITY)
+        fn run<S: Simd>(self, simd: S) -> (Chosen, Chosen, [f32; 2]) {
+            let sifted = self.0.filter(simd, &Sieve::new(simd, self.1, 0.0), f32::INFINITY);
+            let [first, last] = sifted.between();
+            (sifted.kept, sifted.surely_hit, [first[0], last[0]])
         }
     }
 
@@ -401,18 +420,20 @@ mod tests {
             let direction = [0, 1, 2].map(|i| target[i] - origin[i]);
             let Some(ray) = prepared(&Ray::new(origin, direction)) else { continue };
             let block = TriangleBlock::new(&[(corners, 0, 0)]);
-            let sifted = at_level(levels[all % levels.len()], Filter(&block, &ray));
-            let keep = sifted.kept.count();
+            let (chosen, surely_hit, [first, last]) =
+                at_level(levels[all % levels.len()], Filter(&block, &ray));
+            let keep = chosen.count();
             all += 1;
             kept += keep;
-            let hit = decide(&ray, &corners, block.extent(0)).is_some();
-            if hit {
+            let hit = decide(&ray, &corners, block.extent(0));
+            if hit.is_some() {
                 hits += 1;
                 assert_eq!(keep, 1, "{corners:?} {ray:?}");
             }
-            if sifted.surely_hit != Chosen(0) {
+            if surely_hit != Chosen(0) {
                 sure += 1;
-                assert!(hit, "{corners:?} {ray:?}");
+                let t = f64::from(hit.unwrap().t) * f64::from(ray.t_scale);
+                assert!(f64::from(first) < t && t < f64::from(last), "{corners:?} {ray:?}");
             }
         }
         assert!(
