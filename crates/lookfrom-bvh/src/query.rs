@@ -62,7 +62,7 @@ impl Any {
 }
 
 impl Query for Any {
-    const NEAREST_FIRST: bool = false;
+    const NEAREST_FIRST: bool = true;
     const ANY_HIT: bool = true;
 
     #[inline(always)]
