@@ -52,11 +52,11 @@ impl Aabb {
         (0..3).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
     }
 
-    /// Half of the surface; 0 for an empty box.
+    /// Half of the surface, or 10³⁰ where it is larger, so that sums and quotients of areas are numbers; 0 for an empty box.
     #[inline]
     pub fn half_area(&self) -> f32 {
         let [x, y, z] = [0, 1, 2].map(|axis| (self.max[axis] - self.min[axis]).max(0.0));
-        x * y + y * z + z * x
+        (x * y + y * z + z * x).min(1e30)
     }
 
     /// Whether it has points and all its coordinates can be calculated with.
@@ -102,6 +102,7 @@ mod tests {
     fn empty_boxes() {
         assert!(Aabb::EMPTY.is_empty() && !Aabb::EMPTY.is_valid());
         assert_eq!(Aabb::EMPTY.half_area(), 0.0);
+        assert_eq!(Aabb { min: [-1e30; 3], max: [1e30; 3] }.half_area(), 1e30);
         assert!(!Aabb { min: [0.0; 3], max: [1.0, f32::NAN, 1.0] }.is_valid());
         assert!(!Aabb { min: [0.0; 3], max: [f32::INFINITY; 3] }.is_valid());
     }

@@ -168,7 +168,9 @@ impl Check<'_> {
                 Content::Triangles(block) => self.triangles(block)?,
                 Content::Leaf(leaf) => self.leaf(leaf)?,
             };
-            if !bounds.is_valid() || !bounds.contains(&inside) {
+            // (Boxes are a little larger than the largest coordinate there may be.)
+            let is_finite = bounds.min.iter().chain(&bounds.max).all(|x| x.is_finite());
+            if !is_finite || !bounds.contains(&inside) {
                 return Err(Invalid(format!(
                     "node {number}, child {slot}: {bounds:?} does not hold its content, {inside:?}"
                 )));
