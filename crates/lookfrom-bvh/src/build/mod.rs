@@ -246,7 +246,7 @@ impl Builder {
             .enumerate()
             .map(|(index, item)| sah::Reference { bounds: item.bounds, item: index as u32 })
             .collect();
-        let mut binary = sah::build(&mut references, self.quality);
+        let mut binary = sah::build(&mut references, &items, self.quality);
         if self.quality == Quality::Best
             && let Some((other, sorted)) = reinsert::reinsert(&binary, &references)
         {

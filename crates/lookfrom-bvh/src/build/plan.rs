@@ -7,7 +7,7 @@
 use crate::node::WIDTH;
 
 use super::Item;
-use super::sah::{Binary, Reference};
+use super::sah::{Binary, Reference, fits_a_leaf};
 
 /// Places that a child may take.
 const PLACES: usize = WIDTH - 1;
@@ -40,7 +40,11 @@ impl<'a> Plan<'a> {
         for (number, node) in binary.iter().enumerate().rev() {
             let area = node.bounds.half_area();
             let mut choice = Choice::default();
-            let leaf = if fits_a_leaf(node, references, items) { LEAF * area } else { f32::INFINITY };
+            let leaf = if fits_a_leaf(&references[node.first as usize..][..node.count as usize], items) {
+                LEAF * area
+            } else {
+                f32::INFINITY
+            };
             if node.right == 0 {
                 choice.leaf = true;
                 choice.cost = [leaf; PLACES];
@@ -108,13 +112,4 @@ impl<'a> Plan<'a> {
         self.collect(number + 1, left, children, count);
         self.collect(number + self.binary[number].right as usize, places - left, children, count);
     }
-}
-
-/// A leaf holds few items, of one kind.
-fn fits_a_leaf(node: &Binary, references: &[Reference], items: &[Item]) -> bool {
-    let kind = |reference: &Reference| items[reference.item as usize].kind;
-    let references = &references[node.first as usize..];
-    let first = kind(&references[0]);
-    node.count as usize <= first.leaf_capacity()
-        && references[..node.count as usize].iter().all(|reference| kind(reference) == first)
 }
