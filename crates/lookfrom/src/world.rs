@@ -98,9 +98,7 @@ impl World {
         let FormPoint { point, ng, ns, uv, color, look } = match self.form(hit) {
             (form, None) => form.point(hit, origin, direction),
             (form, Some(instance)) => {
-                let to_object = &instance.object_from_render;
-                let (origin, direction) =
-                    (to_object.transform_point3(origin), to_object.transform_vector3(direction));
+                let (origin, direction) = instance.in_object(origin, direction);
                 instance.place(form.point(hit, origin, direction))
             }
         };
@@ -151,6 +149,12 @@ impl World {
 }
 
 impl Instance {
+    /// A ray's origin and direction in the object's space; its t stays the same.
+    pub fn in_object(&self, origin: DVec3, direction: DVec3) -> (DVec3, DVec3) {
+        let to_object = &self.object_from_render;
+        (to_object.transform_point3(origin), to_object.transform_vector3(direction))
+    }
+
     /// A point of the object, in render space.
     fn place(&self, of_object: FormPoint) -> FormPoint {
         let FormPoint { point, ng, ns, uv, color, mut look } = of_object;

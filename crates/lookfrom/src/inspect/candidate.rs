@@ -103,11 +103,8 @@ fn candidate(
         None => *ray,
         Some(placed) => {
             let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-            Ray {
-                origin: placed.object_from_render.transform_point3(origin).as_vec3().to_array(),
-                direction: placed.object_from_render.transform_vector3(direction).as_vec3().to_array(),
-                ..*ray
-            }
+            let (origin, direction) = placed.in_object(origin, direction);
+            Ray { origin: origin.as_vec3().to_array(), direction: direction.as_vec3().to_array(), ..*ray }
         }
     };
     let index = primitive as usize;

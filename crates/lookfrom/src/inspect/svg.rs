@@ -143,7 +143,7 @@ struct Segment {
 
 /// Every ray as a line; those that meet nothing, and shadow rays to infinitely far lights, end after a while.
 fn segments(world: &World, side: &SideView, inspection: &Inspection) -> Vec<Segment> {
-    let length = while_length(inspection);
+    let length = length_without_end(inspection);
     let mut segments = Vec::new();
     for ray in &inspection.rays {
         let a = DVec3::from_array(ray.a);
@@ -183,7 +183,7 @@ fn shadow_segments(
 }
 
 /// How long a ray without an end is drawn: a good part of what is seen.
-fn while_length(inspection: &Inspection) -> f64 {
+fn length_without_end(inspection: &Inspection) -> f64 {
     let eye = DVec3::from_array(inspection.camera.lookfrom);
     let points =
         inspection.rays.iter().filter_map(|ray| ray.met.as_ref()).map(|met| DVec3::from_array(met.point));
