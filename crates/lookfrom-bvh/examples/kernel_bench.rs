@@ -108,8 +108,9 @@ fn write_hits(path: &Path, hits: &[Answer]) -> std::io::Result<()> {
     std::fs::write(path, bytes)
 }
 
-/// CPU seconds of this thread.
+/// CPU seconds of this thread. To yield brings the kernel's account up to date, which else lags by a tick.
 fn thread_seconds() -> Option<f64> {
+    std::thread::yield_now();
     schedstat(Path::new("/proc/thread-self/schedstat"))
 }
 

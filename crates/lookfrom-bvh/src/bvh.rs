@@ -33,8 +33,6 @@ pub struct Bvh {
     pub(crate) statistics: Statistics,
     /// The largest coordinate of a triangle.
     pub(crate) largest: f32,
-    /// How many children may wait at once.
-    pub(crate) stack_length: usize,
     /// The instructions to trace with.
     pub(crate) level: Level,
 }
@@ -77,7 +75,6 @@ impl Default for Bvh {
             bounds: Aabb::EMPTY,
             statistics: Statistics::default(),
             largest: 0.0,
-            stack_length: 0,
             level: Level::new(),
         }
     }
@@ -132,29 +129,25 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn closest_hit(&self, ray: &Ray) -> Hit {
-        self.closest_hit_watched(ray, &mut ())
+        Trace { bvh: self, ray, ask: Closest::new, watch: () }.go().hit
     }
 
     /// [`Self::closest_hit`], while someone watches. The answer is the same.
     pub fn closest_hit_watched(&self, ray: &Ray, watch: &mut impl Watch) -> Hit {
-        let mut query = Closest::new(ray.t_max);
-        Trace { bvh: self, ray, query: &mut query, watch }.go();
-        query.hit
+        Trace { bvh: self, ray, ask: Closest::new, watch }.go().hit
     }
 
     /// Whether anything is hit in the ray's range.
     pub fn occluded(&self, ray: &Ray) -> bool {
-        let mut query = Any::new(ray.t_max);
-        Trace { bvh: self, ray, query: &mut query, watch: &mut () }.go();
-        query.found
+        Trace { bvh: self, ray, ask: Any::new, watch: () }.go().found
     }
 
     /// Replaces the content of `hits` by all hits in the ray's range, sorted by t and then as [`Self::closest_hit`]
     /// decides ties. A triangle gives at most one hit, a sphere two, a procedural shape one (its nearest).
     pub fn all_hits(&self, ray: &Ray, hits: &mut Vec<Hit>) {
         hits.clear();
-        let mut query = All::new(ray.t_max, hits);
-        Trace { bvh: self, ray, query: &mut query, watch: &mut () }.go();
+        let room = std::mem::take(hits);
+        *hits = Trace { bvh: self, ray, ask: move |ray: &Ray| All::new(ray, room), watch: () }.go().hits;
         // A zero is a zero, whatever its sign.
         hits.sort_unstable_by(|a, b| {
             (a.t + 0.0).total_cmp(&(b.t + 0.0)).then_with(|| a.rank().cmp(&b.rank()))

@@ -8,6 +8,7 @@ mod build;
 mod bvh;
 mod closest_point;
 mod ellipsoid;
+mod exact;
 mod instance;
 mod node;
 mod origin;

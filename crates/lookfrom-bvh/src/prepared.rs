@@ -1,13 +1,16 @@
-//! A ray made ready for the tests: once in the world, and once more in each instance that it enters.
+//! A ray made ready for the box test and the triangle filter: its shadow in f32, once in the world and once more in each
+//! instance that it enters.
 //!
-//! The f32 values serve the box test and the triangle filter, which only *exclude*, with room for their errors; the
-//! f64 values serve the decisions. Inside an instance the f64 ray is not rounded, only its f32 shadow is, and the
-//! difference is part of the room: the products' and `rounding`.
+//! These tests only *exclude*, with room for their errors; what is hit is decided with the ray in f64 (see `exact`). Where the
+//! shadow's origin is rounded, the difference is part of the room: the products' and `rounding`.
+//!
+//! A shadow never starts behind its origin: for a ray with a negative `t_min` it is moved back along the ray. So its distances are
+//! positive, and their bits are in their order.
 
-use crate::affine::Affine;
+use crate::exact::Exact;
 use crate::ray::Ray;
 use crate::simd::{Simd, f32x4, prelude::*};
-use crate::vector::{subtract, wide};
+use crate::triangle::{self, LARGEST_FILTERED, SURE_AFTER};
 
 /// The largest product of an origin and a reciprocal, 2¹²⁶: beyond it a reciprocal is made smaller, that of 0 too. So no
 /// slab distance is ever NaN, and inside a padded box such a component leaves t free.
@@ -18,27 +21,25 @@ const PRODUCT_ROOM: f32 = 2.384_185_8e-7;
 
 /// Room for rounding in distances along a ray, relative: 2⁻²⁰, sixteen units of rounding. Four are needed for a slab
 /// (reciprocal, product, and the f32 t that it is compared with), on either side.
-pub(crate) const ROOM: f32 = 9.536_743e-7;
+const ROOM: f32 = 9.536_743e-7;
 
 /// Room for the rounding of a t so small that rounding is not relative to it: 2⁻¹⁰⁰.
 const TINY: f32 = 7.888_609e-31;
 
-/// The axes in a turn, by the last.
-static AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+/// Usual directions are longer than this, 2⁻²⁰, and no component is longer than its inverse.
+const SHORT: f32 = 9.536_743e-7;
+
+/// Usual origins have no coordinate from here on, 2²⁴.
+const FAR: f32 = 16_777_216.0;
+
+/// Room for rounding in f64 where a start is moved, relative: 2⁻⁴⁸.
+const MOVED_ROOM: f64 = 3.552_713_678_800_501e-15;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Prepared {
-    /// Hits need a t above this.
+    pub(crate) shadow: Shadow,
+    /// The first distance, with room.
     pub(crate) t_min: f32,
-    /// Box test and triangle filter: the start of the ray, with room, in terms of the scaled direction.
-    pub(crate) scaled_t_min: f32,
-    /// The origin in f32.
-    pub(crate) origin: [f32; 3],
-    /// Box test and triangle filter: the direction in f32 times a power of two, its longest component in [1, 4).
-    pub(crate) scaled_direction: [f32; 3],
-    /// What takes t to that direction: the power of two's inverse.
-    pub(crate) t_scale: f32,
-
     /// Box test: 1 / direction, and the same with room for farther faces.
     pub(crate) near_reciprocal: [f32; 3],
     pub(crate) far_reciprocal: [f32; 3],
@@ -47,120 +48,165 @@ pub(crate) struct Prepared {
     pub(crate) far_product: [f32; 3],
     /// Box test: which face is met first, 0 the minimum or 1 the maximum.
     pub(crate) near_side: [usize; 3],
+}
 
-    /// Triangle filter: what the origin's rounding to f32 is relative to; 0 for a ray in the world.
+/// The shadow. Distances along it count from its origin and in lengths of its direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shadow {
+    pub(crate) origin: [f32; 3],
+    /// The ray's, times a power of two where that is very short or long.
+    pub(crate) direction: [f32; 3],
+    /// The ray's t at the origin: 0, or less.
+    start: f32,
+    /// What takes t to distances: the power of two's inverse.
+    pub(crate) scale: f32,
+    /// How large reciprocals may be.
+    largest_reciprocal: [f32; 3],
+    /// The error of the origin, beyond its rounding to f32.
+    moved: f32,
+    /// What the origin's rounding to f32 is relative to; 0 where it is not rounded.
     pub(crate) rounding: f32,
-    /// The largest of the origin's coordinates.
-    pub(crate) largest: f32,
-
-    /// Triangle decision: the axes, so permuted that the direction is longest along the last.
-    pub(crate) axes: [usize; 3],
-    /// The ray in f64.
-    pub(crate) origin64: [f64; 3],
-    pub(crate) direction64: [f64; 3],
+    /// The triangle filter's errors, relative and absolute.
+    pub(crate) error: f32,
+    pub(crate) underflow: f32,
+    /// The distance before which the filter may be sure of a hit.
+    pub(crate) sure_before: f32,
 }
 
 impl Prepared {
-    /// A ray in the world. None where it cannot hit anything.
+    /// A ray in the world, in which no coordinate is beyond `largest`. None where it cannot hit anything.
     #[inline(always)]
-    pub(crate) fn new<S: Simd>(simd: S, ray: &Ray) -> Option<Self> {
+    pub(crate) fn new<S: Simd>(simd: S, ray: &Ray, largest: f32) -> Option<Self> {
         if !(ray.t_min < ray.t_max) {
             return None;
         }
-        Self::with_rounding(
-            simd,
-            ray.origin,
-            ray.direction,
-            wide(ray.origin),
-            wide(ray.direction),
-            ray.t_min,
-            0.0,
-        )
+        Self::cast(simd, ray.origin, ray.direction, ray.t_min, 0.0, largest, || Exact::new(ray))
     }
 
-    /// The same ray in an object's space; t stays what it is.
+    /// A ray in an object's space, in which no coordinate is beyond `largest`.
     #[inline(always)]
-    pub(crate) fn in_object<S: Simd>(
-        &self,
-        simd: S,
-        world_from_object: &Affine,
-        object_from_world: &Affine,
-    ) -> Option<Self> {
-        // Subtract first: near the object that is where the digits are.
-        let origin = object_from_world.vector(subtract(self.origin64, world_from_object.translation));
-        let direction = object_from_world.vector(self.direction64);
-        let narrow = |x: [f64; 3]| x.map(|x| x as f32);
-        Self::with_rounding(simd, narrow(origin), narrow(direction), origin, direction, self.t_min, 1.0)
+    pub(crate) fn in_object<S: Simd>(simd: S, exact: &Exact, largest: f32) -> Option<Self> {
+        let origin = exact.origin.map(|x| x as f32);
+        let direction = exact.direction.map(|x| x as f32);
+        Self::cast(simd, origin, direction, exact.t_min, greatest(origin), largest, || *exact)
     }
 
-    /// `rounding` is 1 where the f32 values are rounded, else 0.
+    /// `rounding` is 0 where origin and direction are exact.
     #[inline(always)]
-    fn with_rounding<S: Simd>(
+    fn cast<S: Simd>(
         simd: S,
         origin: [f32; 3],
         direction: [f32; 3],
-        origin64: [f64; 3],
-        direction64: [f64; 3],
         t_min: f32,
         rounding: f32,
+        largest: f32,
+        exact: impl Fn() -> Exact,
     ) -> Option<Self> {
-        // Shear along the longest component, so that both factors are at most 1.
-        let [x, y, z] = direction.map(f32::abs);
-        let last = if (x > y) & (x > z) { 0 } else { 2 - usize::from(y > z) };
-        let length = greater(greater(x, y), z);
-        let largest = greater(greater(origin[0].abs(), origin[1].abs()), origin[2].abs());
-        // The sum is NaN where one of them is not finite.
-        let zero = f32x4::splat(simd, 0.0);
-        let o = f32x4::load_array(simd, [origin[0], origin[1], origin[2], 0.0]);
-        let d = f32x4::load_array(simd, [direction[0], direction[1], direction[2], 0.0]);
-        let finite = (o * zero + d * zero).simd_eq(zero).all_true();
-        if !(finite & (length > 0.0)) {
-            return None;
-        }
-
-        // A power of two within the range of f32, and its inverse.
-        let exponent = (length.to_bits() & 0x7f80_0000).clamp(1 << 23, 253 << 23);
-        let scale = f32::from_bits((254 << 23) - exponent);
-        let t_scale = f32::from_bits(exponent);
+        let lanes = |[x, y, z]: [f32; 3]| f32x4::load_array(simd, [x, y, z, 0.0]);
+        let length = greatest(direction);
+        let in_range = lanes(origin).abs().simd_lt(FAR) & lanes(direction).abs().simd_lt(1.0 / SHORT);
+        let usual = in_range.all_true() & (length > SHORT) & (largest < LARGEST_FILTERED) & (t_min >= 0.0);
+        let shadow = if usual {
+            Shadow {
+                origin,
+                direction,
+                start: 0.0,
+                scale: 1.0,
+                largest_reciprocal: [LARGEST_PRODUCT / FAR; 3],
+                moved: 0.0,
+                rounding,
+                error: triangle::ERROR * length,
+                underflow: triangle::UNDERFLOW / SHORT,
+                sure_before: 1.0 / SURE_AFTER,
+            }
+        } else {
+            Shadow::unusual(&exact(), rounding != 0.0, largest)?
+        };
 
         // The slabs' constants, three axes at once.
-        let scaled = d * scale;
-        let one = f32x4::splat(simd, 1.0);
-        let largest_reciprocal = f32x4::splat(simd, LARGEST_PRODUCT) / o.abs().max(one);
-        let near_reciprocal = (one / scaled.abs()).min(largest_reciprocal).copysign(d);
+        let (o, d) = (lanes(shadow.origin), lanes(shadow.direction));
+        let reciprocal = f32x4::splat(simd, 1.0) / d.abs();
+        let near_reciprocal = reciprocal.min(lanes(shadow.largest_reciprocal)).copysign(d);
         let far_reciprocal = near_reciprocal * (1.0 + ROOM);
+        let moved = near_reciprocal.abs() * shadow.moved;
         let near_product = near_reciprocal * o;
-        let near_product = near_product + near_product.abs() * PRODUCT_ROOM;
+        let near_product = near_product + (near_product.abs() * PRODUCT_ROOM + moved);
         let far_product = far_reciprocal * o;
-        let far_product = far_product - far_product.abs() * PRODUCT_ROOM;
-        let near_side = direction.map(|x| (x.to_bits() >> 31) as usize);
+        let far_product = far_product - (far_product.abs() * PRODUCT_ROOM + moved);
 
-        // Where it can, it stays positive: so are then all distances, and in order as bits.
-        let start = (t_min - t_min.abs() * ROOM - TINY) * t_scale;
+        let Shadow { start, scale, .. } = shadow;
+        let first = (t_min - start) - ((t_min.abs() - start) * ROOM + TINY);
         Some(Self {
-            t_min,
-            scaled_t_min: if t_min < 0.0 { start } else { greater(start, 0.0) },
-            origin,
-            scaled_direction: first_three(scaled),
-            t_scale,
+            shadow,
+            t_min: greater(first * scale, 0.0),
             near_reciprocal: first_three(near_reciprocal),
             far_reciprocal: first_three(far_reciprocal),
             near_product: first_three(near_product),
             far_product: first_three(far_product),
-            near_side,
-            rounding: rounding * largest,
-            largest,
-            axes: AXES[last],
-            origin64,
-            direction64,
+            near_side: direction.map(|x| (x.to_bits() >> 31) as usize),
         })
     }
 
-    /// The end of the ray, with room, in terms of the scaled direction.
+    /// A ray's end as a distance, with room. 0 or more.
     #[inline(always)]
-    pub(crate) fn scaled_end(&self, t_max: f32) -> f32 {
-        (t_max + t_max.abs() * ROOM + TINY) * self.t_scale
+    pub(crate) fn end(&self, t_max: f32) -> f32 {
+        let Shadow { start, scale, .. } = self.shadow;
+        greater(((t_max - start) + ((t_max.abs() - start) * ROOM + TINY)) * scale, 0.0)
     }
+}
+
+impl Shadow {
+    /// The shadow of a ray that starts behind its origin or has numbers out of the usual range. None where one of them is not
+    /// finite, or the direction vanishes.
+    #[cold]
+    #[inline(never)]
+    fn unusual(exact: &Exact, rounded: bool, largest: f32) -> Option<Self> {
+        let widest = |x: [f64; 3]| x.iter().fold(0.0_f64, |widest, x| widest.max(x.abs()));
+        let (o, d) = (exact.origin, exact.direction);
+        let direction = d.map(|x| x as f32);
+        let length = greatest(direction);
+        if !(o.iter().chain(&d).all(|x| x.is_finite()) && length > 0.0 && length.is_finite()) {
+            return None;
+        }
+
+        // Go back, but not farther than where everything is ahead.
+        let everything = -1.001 * (widest(o) + f64::from(largest)) / widest(d);
+        let start = f64::from(exact.t_min.min(0.0)).max(everything).max(f64::from(-LARGEST_PRODUCT)) as f32;
+        let t = f64::from(start);
+        let origin = [0, 1, 2].map(|axis| (o[axis] + t * d[axis]) as f32);
+        let moved = if start < 0.0 { ((widest(o) - t * widest(d)) * MOVED_ROOM) as f32 } else { 0.0 };
+        let farthest = greatest(origin);
+        if !farthest.is_finite() {
+            return None;
+        }
+
+        // A power of two within the range of f32 that makes the direction's length 1 to 4, and its inverse.
+        let exponent = (length.to_bits() & 0x7f80_0000).clamp(1 << 23, 253 << 23);
+        let (shorten, scale) = (f32::from_bits((254 << 23) - exponent), f32::from_bits(exponent));
+
+        let in_range = farthest < LARGEST_FILTERED && largest < LARGEST_FILTERED;
+        // Not where t itself might leave the range of f32.
+        let may_be_sure = scale > SURE_AFTER && scale < 1.0 / SURE_AFTER;
+        Some(Self {
+            origin,
+            direction: direction.map(|x| x * shorten),
+            start,
+            scale,
+            largest_reciprocal: origin.map(|x| LARGEST_PRODUCT / x.abs().max(1.0)),
+            moved,
+            rounding: if rounded || start < 0.0 { farthest + moved } else { 0.0 },
+            error: if in_range { triangle::ERROR * (length * shorten) } else { f32::INFINITY },
+            underflow: triangle::UNDERFLOW * 4.0,
+            sure_before: if may_be_sure { 1.0 / SURE_AFTER } else { -1.0 },
+        })
+    }
+}
+
+/// The greatest magnitude.
+#[inline(always)]
+fn greatest(values: [f32; 3]) -> f32 {
+    let [x, y, z] = values.map(f32::abs);
+    greater(greater(x, y), z)
 }
 
 #[inline(always)]

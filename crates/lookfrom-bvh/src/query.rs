@@ -1,6 +1,6 @@
 //! What can be asked of a ray: the closest hit, whether there is any, all of them.
 
-use crate::ray::Hit;
+use crate::ray::{Hit, Ray};
 
 /// What is asked.
 pub(crate) trait Query {
@@ -25,8 +25,9 @@ pub(crate) struct Closest {
 }
 
 impl Closest {
-    pub(crate) fn new(t_max: f32) -> Self {
-        Self { t_max, end: t_max, hit: Hit::MISS }
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray) -> Self {
+        Self { t_max: ray.t_max, end: ray.t_max, hit: Hit::MISS }
     }
 }
 
@@ -56,8 +57,9 @@ pub(crate) struct Any {
 }
 
 impl Any {
-    pub(crate) fn new(t_max: f32) -> Self {
-        Self { t_max, found: false }
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray) -> Self {
+        Self { t_max: ray.t_max, found: false }
     }
 }
 
@@ -78,18 +80,18 @@ impl Query for Any {
 }
 
 /// Every hit, in no order.
-pub(crate) struct All<'a> {
+pub(crate) struct All {
     t_max: f32,
-    hits: &'a mut Vec<Hit>,
+    pub(crate) hits: Vec<Hit>,
 }
 
-impl<'a> All<'a> {
-    pub(crate) fn new(t_max: f32, hits: &'a mut Vec<Hit>) -> Self {
-        Self { t_max, hits }
+impl All {
+    pub(crate) fn new(ray: &Ray, hits: Vec<Hit>) -> Self {
+        Self { t_max: ray.t_max, hits }
     }
 }
 
-impl Query for All<'_> {
+impl Query for All {
     const NEAREST_FIRST: bool = false;
     const ANY_HIT: bool = false;
 

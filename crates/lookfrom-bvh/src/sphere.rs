@@ -4,7 +4,7 @@
 //! the vector `f` from centre to origin and half the usual linear coefficient, `A t² + 2 B t + C = 0`.
 
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
-use crate::prepared::Prepared;
+use crate::exact::Exact;
 use crate::vector::{dot, subtract, wide};
 
 /// A sphere's surface: rays hit it from both sides.
@@ -32,9 +32,9 @@ impl Sphere {
 }
 
 /// Where the whole line meets the sphere, the smaller t first. None where it passes by.
-pub(crate) fn decide(ray: &Prepared, sphere: &Sphere) -> Option<[f32; 2]> {
-    let f = subtract(ray.origin64, wide(sphere.center));
-    let d = ray.direction64;
+pub(crate) fn decide(ray: &Exact, sphere: &Sphere) -> Option<[f32; 2]> {
+    let f = subtract(ray.origin, wide(sphere.center));
+    let d = ray.direction;
     let radius = f64::from(sphere.radius);
     let a = dot(d, d);
     let b = dot(f, d);
@@ -64,7 +64,7 @@ mod tests {
     use crate::ray::Ray;
 
     fn roots(sphere: Sphere, origin: [f32; 3], direction: [f32; 3]) -> Option<[f32; 2]> {
-        decide(&Prepared::new(fearless_simd::Fallback::new(), &Ray::new(origin, direction)).unwrap(), &sphere)
+        decide(&Exact::new(&Ray::new(origin, direction)), &sphere)
     }
 
     #[test]

@@ -8,7 +8,9 @@ use std::cell::Cell;
 
 use crate::Bvh;
 use crate::bvh::Leaf;
-use crate::node::{Child, Content, Entered, Node, Slabs, WIDTH};
+use crate::exact::Exact;
+use crate::instance::Instance;
+use crate::node::{Child, Content, Entered, LARGEST_DEPTH, Node, Slabs, WIDTH};
 use crate::prepared::Prepared;
 use crate::query::Query;
 use crate::ray::{Hit, NONE, Ray};
@@ -36,10 +38,22 @@ impl Watch for () {
     const LISTENS: bool = false;
 }
 
+impl<W: Watch> Watch for &mut W {
+    const LISTENS: bool = W::LISTENS;
+
+    fn node(&mut self, instance: u32, node: u32) {
+        (**self).node(instance, node);
+    }
+
+    fn candidate(&mut self, instance: u32, geometry: u32, primitive: u32) {
+        (**self).candidate(instance, geometry, primitive);
+    }
+}
+
 /// A child that waits for its visit: where the ray enters it (f32 bits) above what it is. Positive distances are ordered
 /// as these numbers are; the others only cost time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Pending(u64);
+pub(crate) struct Pending(u64);
 
 impl Pending {
     const NONE: Self = Self(0);
@@ -60,140 +74,164 @@ impl Pending {
     }
 }
 
-/// Children that wait. Long enough for the tree, so that nothing is checked or allocated on the way.
-#[derive(Default)]
-pub(crate) struct Stack(Vec<Pending>);
+/// How many children may wait: all but one on each level of a tree, and of an instance's. A power of two.
+const STACK: usize = (2 * LARGEST_DEPTH * (WIDTH - 1)).next_power_of_two();
+
+/// Children that wait. Long enough for any tree, so that nothing is allocated on the way.
+pub(crate) type Stack = [Pending; STACK];
 
 thread_local! {
     /// The last traversal's stack, kept so that a ray costs no allocation. Taken while in use, so a procedural that
     /// traces rays of its own gets a new one.
-    static STACK: Cell<Stack> = const { Cell::new(Stack(Vec::new())) };
+    static KEPT: Cell<Option<Box<Stack>>> = const { Cell::new(None) };
 }
 
-/// Runs `work` with a stack that is long enough for a tree.
+/// Runs `work` with a stack.
 #[inline(always)]
-pub(crate) fn with_stack<R>(bvh: &Bvh, work: impl FnOnce(&mut Stack) -> R) -> R {
-    let mut stack = STACK.take();
-    if stack.0.len() < bvh.stack_length {
-        stack.0.resize(bvh.stack_length, Pending::NONE);
-    }
+pub(crate) fn with_stack<R>(work: impl FnOnce(&mut Stack) -> R) -> R {
+    let mut stack = KEPT.take().unwrap_or_else(new_stack);
     let result = work(&mut stack);
-    STACK.set(stack);
+    KEPT.set(Some(stack));
     result
 }
 
-/// Traces one ray at the best level that there is.
-pub(crate) struct Trace<'a, Q, W> {
+#[cold]
+fn new_stack() -> Box<Stack> {
+    Box::new([Pending::NONE; STACK])
+}
+
+/// Traces one ray at the best level that there is, and gives back the query. `ask` makes it: inside of the code for the level, so
+/// that it may live in registers.
+pub(crate) struct Trace<'a, F, W> {
     pub(crate) bvh: &'a Bvh,
     pub(crate) ray: &'a Ray,
-    pub(crate) query: &'a mut Q,
-    pub(crate) watch: &'a mut W,
+    pub(crate) ask: F,
+    pub(crate) watch: W,
 }
 
-impl<Q: Query, W: Watch> Trace<'_, Q, W> {
+impl<Q: Query, F: FnOnce(&Ray) -> Q, W: Watch> Trace<'_, F, W> {
     #[inline(always)]
-    pub(crate) fn go(self) {
-        at_level(self.bvh.level, self);
+    pub(crate) fn go(self) -> Q {
+        at_level(self.bvh.level, self)
     }
 }
 
-impl<Q: Query, W: Watch> Work for Trace<'_, Q, W> {
-    type Output = ();
+impl<Q: Query, F: FnOnce(&Ray) -> Q, W: Watch> Work for Trace<'_, F, W> {
+    type Output = Q;
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let Self { bvh, ray, query, watch } = self;
-        let Some(ray) = Prepared::new(simd, ray) else { return };
-        with_stack(
-            bvh,
-            #[inline(always)]
-            |stack| outer(simd, bvh, &ray, query, watch, &mut stack.0),
-        );
+    fn run<S: Simd>(self, simd: S) -> Q {
+        let Self { bvh, ray, ask, watch } = self;
+        let mut answer = Answer { instance: NONE, query: ask(ray), watch };
+        if !bvh.nodes.is_empty()
+            && let Some(shadow) = Prepared::new(simd, ray, bvh.largest)
+        {
+            with_stack(
+                #[inline(always)]
+                |stack| {
+                    outer(simd, bvh, ray, &shadow, &mut answer, stack);
+                },
+            );
+        }
+        answer.query
     }
 }
 
-/// Traces a ray through a tree and the trees in it.
+/// Traces a ray through a tree and the trees in it. Returns true where the query wants no more, as all that follow.
 #[inline(always)]
 fn outer<S: Simd, Q: Query, W: Watch>(
     simd: S,
     bvh: &Bvh,
-    ray: &Prepared,
-    query: &mut Q,
-    watch: &mut W,
-    stack: &mut [Pending],
+    ray: &Ray,
+    shadow: &Prepared,
+    answer: &mut Answer<Q, W>,
+    stack: &mut Stack,
 ) -> bool {
+    // Made anew where it is needed: few rays need it, and the black box keeps it from being made for all.
+    let exact = || Exact::new(std::hint::black_box(ray));
+    let mut waiting = Waiting { stack, bottom: 0, height: 0 };
     traverse(
         simd,
         bvh,
-        ray,
-        NONE,
-        query,
-        watch,
-        stack,
+        shadow,
+        exact,
+        answer,
+        &mut waiting,
         #[inline(always)]
-        |leaf, query, watch, stack| match *leaf {
-            Leaf::Instances { first, count } => instances(simd, bvh, ray, first, count, query, watch, stack),
-            _ => primitives(bvh, ray, leaf, &mut Answer { instance: NONE, query, watch }),
+        |leaf, answer, waiting| match *leaf {
+            Leaf::Instances { first, count } => instances(simd, bvh, ray, first, count, answer, waiting),
+            _ => primitives(bvh, &exact(), leaf, answer),
         },
     )
 }
 
-/// Traces a ray through an instance's tree.
-#[inline(always)]
-fn inner<S: Simd, Q: Query, W: Watch>(
+/// Not inlined, so that the loop over the outer tree keeps its registers; compiled for the level again inside.
+#[inline(never)]
+fn instances<S: Simd, Q: Query, W: Watch>(
     simd: S,
     bvh: &Bvh,
-    ray: &Prepared,
-    instance: u32,
-    query: &mut Q,
-    watch: &mut W,
-    stack: &mut [Pending],
+    ray: &Ray,
+    first: u32,
+    count: u32,
+    answer: &mut Answer<Q, W>,
+    waiting: &mut Waiting<'_>,
 ) -> bool {
-    traverse(
-        simd,
-        bvh,
-        ray,
-        instance,
-        query,
-        watch,
-        stack,
-        #[inline(always)]
-        |leaf, query, watch, _| primitives(bvh, ray, leaf, &mut Answer { instance, query, watch }),
-    )
+    let range = first as usize..(first + count) as usize;
+    bvh.instances[range].iter().any(|instance| {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let Instance { bvh, id, world_from_object, object_from_world } = instance;
+                let exact = Exact::new(ray).in_object(world_from_object, object_from_world);
+                let Some(shadow) = Prepared::in_object(simd, &exact, bvh.largest) else { return false };
+                answer.instance = *id;
+                let Waiting { stack, height, .. } = waiting;
+                let mut waiting = Waiting { stack, bottom: *height, height: *height };
+                let stop = traverse(
+                    simd,
+                    bvh,
+                    &shadow,
+                    || exact,
+                    answer,
+                    &mut waiting,
+                    #[inline(always)]
+                    |leaf, answer, _| primitives(bvh, &exact, leaf, answer),
+                );
+                answer.instance = NONE;
+                stop
+            },
+        )
+    })
 }
 
-/// Traces a ray through a tree. Returns true where the query wants no more.
+/// Traces a ray through one tree that is not empty.
 #[inline(always)]
-#[allow(clippy::too_many_arguments)] // One loop, and these are its state.
-fn traverse<S: Simd, Q: Query, W: Watch>(
+fn traverse<'a, S: Simd, Q: Query, W: Watch>(
     simd: S,
-    bvh: &Bvh,
+    bvh: &'a Bvh,
     ray: &Prepared,
-    instance: u32,
-    query: &mut Q,
-    watch: &mut W,
-    stack: &mut [Pending],
-    mut visit_leaf: impl FnMut(&Leaf, &mut Q, &mut W, &mut [Pending]) -> bool,
+    exact: impl Fn() -> Exact + Copy,
+    answer: &mut Answer<Q, W>,
+    waiting: &mut Waiting<'_>,
+    mut visit_leaf: impl FnMut(&Leaf, &mut Answer<Q, W>, &mut Waiting<'_>) -> bool,
 ) -> bool {
-    if bvh.nodes.is_empty() {
-        return false;
-    }
     let slabs = Slabs::new(simd, ray);
-    let mut height = 0;
     let mut current = Child::ROOT;
-    let mut end = ray.scaled_end(query.end());
-    let mut waiting = None;
+    let mut end = ray.end(answer.query.end());
+    let mut undecided = None;
     'ray: loop {
         // Go down, each time to the nearest child that the ray enters; the others wait.
         while let Content::Node(number) = current.content() {
-            watch.node(instance, number as u32);
+            answer.watch.node(answer.instance, number as u32);
             let node = &bvh.nodes[number];
             let entered = node.enter(simd, &slabs, end);
-            match push::<S, Q>(node, &entered, stack, &mut height) {
+            let next = if entered.children == 0 {
+                waiting.pop(end)
+            } else {
+                Some(waiting.push_all_but_nearest::<S, Q>(node, &entered))
+            };
+            match next {
                 Some(child) => current = child,
-                None => match pop(stack, &mut height, end) {
-                    Some(child) => current = child,
-                    None => break 'ray,
-                },
+                None => break 'ray,
             }
         }
 
@@ -201,86 +239,84 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
         let stop = match current.content() {
             Content::Triangles(number) => {
                 let block = &bvh.triangles[number];
-                triangles(
-                    simd,
-                    block,
-                    ray,
-                    &Sieve::new(simd, ray, bvh.largest),
-                    &mut end,
-                    &mut waiting,
-                    &mut Answer { instance, query, watch },
-                )
+                let sieve = Sieve::new(simd, ray);
+                triangles(simd, block, &sieve, exact, &mut end, &mut undecided, answer)
             }
-            Content::Leaf(number) => visit_leaf(&bvh.leaves[number], query, watch, &mut stack[height..]),
+            Content::Leaf(number) => visit_leaf(&bvh.leaves[number], answer, waiting),
             Content::Node(_) => false,
         };
         if stop {
             return true;
         }
-        let decided = ray.scaled_end(query.end());
+        let decided = ray.end(answer.query.end());
         end = if decided < end { decided } else { end };
-        match pop(stack, &mut height, end) {
+        match waiting.pop(end) {
             Some(child) => current = child,
             None => break,
         }
     }
-    waiting.is_some_and(|Waiting { block, lane, .. }| {
-        decide(block, lane, ray, &mut Answer { instance, query, watch })
-    })
+    undecided.is_some_and(|Undecided { block, lane, .. }| decide(block, lane, &exact(), answer))
 }
 
-/// The next child that is not beyond the end.
-#[inline(always)]
-fn pop(stack: &[Pending], height: &mut usize, end: f32) -> Option<Child> {
-    while *height > 0 {
-        *height -= 1;
-        let pending = stack[*height];
-        if pending.near() <= end {
-            return Some(pending.child());
-        }
-    }
-    None
+/// The children that wait in one tree, above those of the tree around it.
+struct Waiting<'a> {
+    stack: &'a mut Stack,
+    bottom: usize,
+    height: usize,
 }
 
-/// Pushes the children that were entered but one, the nearest last, and returns that one, which is nearer.
-#[inline(always)]
-fn push<S: Simd, Q: Query>(
-    node: &Node,
-    entered: &Entered<S>,
-    stack: &mut [Pending],
-    height: &mut usize,
-) -> Option<Child> {
-    if entered.children == 0 {
-        return None;
-    }
-    let mut children = entered.children;
-    let first = next(node, entered, &mut children);
-    if children == 0 {
-        return Some(first.child());
-    }
-    let second = next(node, entered, &mut children);
-    let (mut nearest, farther) =
-        if Q::NEAREST_FIRST { (first.min(second), first.max(second)) } else { (first, second) };
-    let bottom = *height;
-    stack[bottom] = farther;
-    *height += 1;
-    while children != 0 {
-        let mut waits = next(node, entered, &mut children);
-        if Q::NEAREST_FIRST {
-            (nearest, waits) = (nearest.min(waits), nearest.max(waits));
-            // Insert: what is farther stays below.
-            let mut place = *height;
-            while place > bottom && stack[place - 1] < waits {
-                stack[place] = stack[place - 1];
-                place -= 1;
+impl Waiting<'_> {
+    /// The next child that is not beyond the end.
+    #[inline(always)]
+    fn pop(&mut self, end: f32) -> Option<Child> {
+        while self.height > self.bottom {
+            self.height -= 1;
+            let pending = self.stack[self.height % STACK];
+            if pending.near() <= end {
+                return Some(pending.child());
             }
-            stack[place] = waits;
-        } else {
-            stack[*height] = waits;
         }
-        *height += 1;
+        None
     }
-    Some(nearest.child())
+
+    #[inline(always)]
+    fn push(&mut self, pending: Pending) {
+        self.stack[self.height % STACK] = pending;
+        self.height += 1;
+    }
+
+    /// Pushes the children that were entered but one, the nearest last, and returns that one, which is nearer. There is
+    /// one at least.
+    #[inline(always)]
+    fn push_all_but_nearest<S: Simd, Q: Query>(&mut self, node: &Node, entered: &Entered<S>) -> Child {
+        let mut children = entered.children;
+        let first = next(node, entered, &mut children);
+        if children == 0 {
+            return first.child();
+        }
+        let second = next(node, entered, &mut children);
+        let (mut nearest, farther) =
+            if Q::NEAREST_FIRST { (first.min(second), first.max(second)) } else { (first, second) };
+        let bottom = self.height;
+        self.push(farther);
+        while children != 0 {
+            let mut waits = next(node, entered, &mut children);
+            if Q::NEAREST_FIRST {
+                (nearest, waits) = (nearest.min(waits), nearest.max(waits));
+                // Insert: what is farther stays below.
+                let mut place = self.height;
+                while place > bottom && self.stack[(place - 1) % STACK] < waits {
+                    self.stack[place % STACK] = self.stack[(place - 1) % STACK];
+                    place -= 1;
+                }
+                self.stack[place % STACK] = waits;
+                self.height += 1;
+            } else {
+                self.push(waits);
+            }
+        }
+        nearest.child()
+    }
 }
 
 /// Takes the first of some children.
@@ -292,21 +328,22 @@ fn next<S: Simd>(node: &Node, entered: &Entered<S>, children: &mut u32) -> Pendi
 }
 
 /// Whom to tell.
-struct Answer<'a, Q, W> {
+struct Answer<Q, W> {
+    /// In which instance the ray is.
     instance: u32,
-    query: &'a mut Q,
-    watch: &'a mut W,
+    query: Q,
+    watch: W,
 }
 
 #[inline(always)]
 fn triangles<'a, S: Simd, Q: Query, W: Watch>(
     simd: S,
     block: &'a TriangleBlock,
-    ray: &Prepared,
     sieve: &Sieve<S>,
+    exact: impl Fn() -> Exact,
     end: &mut f32,
-    waiting: &mut Option<Waiting<'a>>,
-    answer: &mut Answer<'_, Q, W>,
+    undecided: &mut Option<Undecided<'a>>,
+    answer: &mut Answer<Q, W>,
 ) -> bool {
     if W::LISTENS {
         for lane in 0..block.count() {
@@ -317,32 +354,32 @@ fn triangles<'a, S: Simd, Q: Query, W: Watch>(
     let sifted = block.filter(simd, sieve, *end);
     if Q::ANY_HIT && sifted.surely_hit != Chosen(0) {
         let (geometry, primitive) = block.ids(sifted.surely_hit.0.trailing_zeros() as usize);
-        return answer.query.accept(Hit { t: ray.t_min, geometry, primitive, ..Hit::MISS });
+        return answer.query.accept(Hit { t: exact().t_min, geometry, primitive, ..Hit::MISS });
     }
     for lane in sifted.kept {
         if Q::NEAREST_FIRST && sifted.surely_hit.0 >> lane & 1 != 0 {
             // A sure hit ends the ray; it is decided later, if none is surely nearer.
             let [first, last] = sifted.between();
             let (first, last) = (first[lane], last[lane]);
-            if let Some(earlier) = waiting {
+            if let Some(earlier) = undecided {
                 if first > earlier.last {
                     continue;
                 }
                 if last >= earlier.first {
-                    decide(earlier.block, earlier.lane, ray, answer);
+                    decide(earlier.block, earlier.lane, &exact(), answer);
                 }
             }
-            *waiting = Some(Waiting { block, lane, first, last });
+            *undecided = Some(Undecided { block, lane, first, last });
             *end = if last < *end { last } else { *end };
-        } else if decide(block, lane, ray, answer) {
+        } else if decide(block, lane, &exact(), answer) {
             return true;
         }
     }
     false
 }
 
-/// A triangle that is surely hit, between two scaled t, and waits for its decision.
-struct Waiting<'a> {
+/// A triangle that is surely hit, between two distances, and waits for its decision.
+struct Undecided<'a> {
     block: &'a TriangleBlock,
     lane: usize,
     first: f32,
@@ -354,8 +391,8 @@ struct Waiting<'a> {
 fn decide<Q: Query, W: Watch>(
     block: &TriangleBlock,
     lane: usize,
-    ray: &Prepared,
-    answer: &mut Answer<'_, Q, W>,
+    ray: &Exact,
+    answer: &mut Answer<Q, W>,
 ) -> bool {
     let Some(crossing) = triangle::decide(ray, &block.corners(lane), block.extent(lane)) else {
         return false;
@@ -367,12 +404,7 @@ fn decide<Q: Query, W: Watch>(
 
 /// Tests what is not a triangle and not an instance.
 #[inline(never)]
-fn primitives<Q: Query, W: Watch>(
-    bvh: &Bvh,
-    ray: &Prepared,
-    leaf: &Leaf,
-    answer: &mut Answer<'_, Q, W>,
-) -> bool {
+fn primitives<Q: Query, W: Watch>(bvh: &Bvh, ray: &Exact, leaf: &Leaf, answer: &mut Answer<Q, W>) -> bool {
     match *leaf {
         Leaf::Spheres { first, count } => spheres(bvh, ray, first as usize, count, answer),
         Leaf::Procedurals { first, count } => procedurals(bvh, ray, first as usize, count, answer),
@@ -382,10 +414,10 @@ fn primitives<Q: Query, W: Watch>(
 
 fn spheres<Q: Query, W: Watch>(
     bvh: &Bvh,
-    ray: &Prepared,
+    ray: &Exact,
     first: usize,
     count: u32,
-    answer: &mut Answer<'_, Q, W>,
+    answer: &mut Answer<Q, W>,
 ) -> bool {
     for item in &bvh.spheres[first..first + count as usize] {
         let (geometry, primitive, instance) = (item.geometry, item.primitive, answer.instance);
@@ -404,18 +436,18 @@ fn spheres<Q: Query, W: Watch>(
 
 fn procedurals<Q: Query, W: Watch>(
     bvh: &Bvh,
-    ray: &Prepared,
+    ray: &Exact,
     first: usize,
     count: u32,
-    answer: &mut Answer<'_, Q, W>,
+    answer: &mut Answer<Q, W>,
 ) -> bool {
     for item in &bvh.procedurals[first..first + count as usize] {
         let (geometry, primitive, instance) = (item.geometry, item.primitive, answer.instance);
         answer.watch.candidate(instance, geometry, primitive);
         // Ask one step beyond the end: a hit at the same t may win the tie.
         let t_max = answer.query.end().next_up();
-        let direction = ray.direction64.map(|x| x as f32);
-        let asked = Ray { origin: ray.origin, t_min: ray.t_min, direction, t_max };
+        let [origin, direction] = [ray.origin, ray.direction].map(|x| x.map(|x| x as f32));
+        let asked = Ray { origin, t_min: ray.t_min, direction, t_max };
         let Some(found) = bvh.procedural_shapes[item.shape as usize].intersect(primitive, &asked) else {
             continue;
         };
@@ -426,33 +458,6 @@ fn procedurals<Q: Query, W: Watch>(
         }
     }
     false
-}
-
-/// Not inlined, so that the loop over the outer tree keeps its registers; compiled for the level again inside.
-#[inline(never)]
-#[allow(clippy::too_many_arguments)]
-fn instances<S: Simd, Q: Query, W: Watch>(
-    simd: S,
-    bvh: &Bvh,
-    ray: &Prepared,
-    first: u32,
-    count: u32,
-    query: &mut Q,
-    watch: &mut W,
-    stack: &mut [Pending],
-) -> bool {
-    let range = first as usize..(first + count) as usize;
-    bvh.instances[range].iter().any(|instance| {
-        debug_assert_ne!(instance.id, NONE);
-        simd.vectorize(
-            #[inline(always)]
-            || {
-                ray.in_object(simd, &instance.world_from_object, &instance.object_from_world).is_some_and(
-                    |inside| inner(simd, &instance.bvh, &inside, instance.id, query, watch, stack),
-                )
-            },
-        )
-    })
 }
 
 #[cfg(test)]

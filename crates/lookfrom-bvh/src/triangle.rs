@@ -13,27 +13,28 @@
 //! `t` is the plane's, `n·(p0 − o) / n·d`, from differences of f32 values that f64 holds (nearly) exactly: its sign is
 //! right to about 10⁻¹⁵ of the triangle's size, however near the origin is to the plane.
 
+use crate::exact::Exact;
 use crate::prepared::Prepared;
 use crate::ray::NONE;
-use crate::simd::{Chosen, Simd, f32x4, prelude::*, u32x4};
+use crate::simd::{Chosen, Simd, f32x8, prelude::*, u32x8};
 use crate::vector::{cross, cross_magnitude, dot, subtract, wide};
 
 /// Triangles in a block.
-pub(crate) const BLOCK: usize = 4;
+pub(crate) const BLOCK: usize = 8;
 
 /// As many numbers as a block has triangles.
-type Lanes<S> = f32x4<S>;
+type Lanes<S> = f32x8<S>;
 
-/// Errors of the filter's determinants: 160 units of rounding, times 4 for the longest component of the direction.
+/// Errors of the filter's determinants: 160 units of rounding, relative to the longest component of the direction.
 ///
 /// Relative to the largest component e of the edges and c of the way to the first corner: an edge function is a sum of
 /// three products of e and a sum of two products of c and the direction; with one unit for each rounding its error is
 /// below 45 e c units, that of the determinant N·d below 45 e e, and that of the third edge function, which is the
 /// determinant less the other two, below 114 e c + 57 e e. An origin that was rounded adds to c.
-const ERROR: f32 = 160.0 * 4.0 / 16_777_216.0;
+pub(crate) const ERROR: f32 = 160.0 / 16_777_216.0;
 
-/// What underflow may add: some products that are less than this.
-const UNDERFLOW: f32 = 64.0 * f32::MIN_POSITIVE;
+/// What underflow may add, relative to the direction where that is longer than 1: some products that are less than this.
+pub(crate) const UNDERFLOW: f32 = 64.0 * f32::MIN_POSITIVE;
 
 /// Beyond this (2⁴⁰) the filter's products may overflow, and it excludes nothing.
 pub(crate) const LARGEST_FILTERED: f32 = 1.099_511_6e12;
@@ -81,7 +82,7 @@ impl<S: Simd> Sifted<S> {
 }
 
 /// Scaled distances of sure hits are above this, 2⁻⁶⁰, and below 2⁶⁰.
-const SURE_AFTER: f32 = 8.673_617e-19;
+pub(crate) const SURE_AFTER: f32 = 8.673_617e-19;
 
 /// What the filter needs of a ray, in every lane.
 pub(crate) struct Sieve<S: Simd> {
@@ -90,24 +91,21 @@ pub(crate) struct Sieve<S: Simd> {
     t_min: Lanes<S>,
     sure_before: Lanes<S>,
     error: Lanes<S>,
+    underflow: Lanes<S>,
     rounding: Lanes<S>,
 }
 
 impl<S: Simd> Sieve<S> {
-    /// `largest` is the tree's largest coordinate.
     #[inline(always)]
-    pub(crate) fn new(simd: S, ray: &Prepared, largest: f32) -> Self {
-        let in_range = ray.largest < LARGEST_FILTERED && largest < LARGEST_FILTERED;
-        // Not where t itself might leave the range of f32.
-        let usual = ray.t_scale > SURE_AFTER && ray.t_scale < 1.0 / SURE_AFTER;
-        let sure_before = if usual { 1.0 / SURE_AFTER } else { -1.0 };
+    pub(crate) fn new(simd: S, ray: &Prepared) -> Self {
         Self {
-            origin: splat_all(simd, ray.origin),
-            direction: splat_all(simd, ray.scaled_direction),
-            t_min: Lanes::splat(simd, ray.scaled_t_min),
-            sure_before: Lanes::splat(simd, sure_before),
-            error: Lanes::splat(simd, if in_range { ERROR } else { f32::INFINITY }),
-            rounding: Lanes::splat(simd, ray.rounding),
+            origin: splat_all(simd, ray.shadow.origin),
+            direction: splat_all(simd, ray.shadow.direction),
+            t_min: Lanes::splat(simd, ray.t_min),
+            sure_before: Lanes::splat(simd, ray.shadow.sure_before),
+            error: Lanes::splat(simd, ray.shadow.error),
+            underflow: Lanes::splat(simd, ray.shadow.underflow),
+            rounding: Lanes::splat(simd, ray.shadow.rounding),
         }
     }
 }
@@ -209,7 +207,7 @@ impl TriangleBlock {
         let w = determinant - (u + v);
 
         // Bound their errors.
-        let underflow = Lanes::splat(simd, UNDERFLOW);
+        let underflow = ray.underflow;
         let extent = Lanes::load_array_ref(simd, &self.extent);
         let relative = extent.mul_add(ray.error, underflow);
         let reach = cx.abs().max(cy.abs()).max(cz.abs()) + ray.rounding;
@@ -230,7 +228,7 @@ impl TriangleBlock {
         let before = distance.simd_lt(ray.t_min.mul_sub(size, error * (reach + ray.t_min.abs())));
         let out_of_range = size.simd_gt(error) & (beyond | before);
 
-        let used = u32x4::load_array_ref(simd, &self.primitive).simd_eq(u32x4::splat(simd, NONE));
+        let used = u32x8::load_array_ref(simd, &self.primitive).simd_eq(u32x8::splat(simd, NONE));
         let excluded = outside | out_of_range | used;
 
         // A hit is sure where all that is the other way round, with twice the room for what is compared.
@@ -257,15 +255,15 @@ impl TriangleBlock {
 ///
 /// No component of the edges at the first corner is larger than `extent` (but for rounding to f32).
 #[inline(always)]
-pub(crate) fn decide(ray: &Prepared, corners: &[[f32; 3]; 3], extent: f32) -> Option<Crossing> {
+pub(crate) fn decide(ray: &Exact, corners: &[[f32; 3]; 3], extent: f32) -> Option<Crossing> {
     let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
-    let [kx, ky, kz] = ray.axes;
+    let [kx, ky, kz] = ray.axes();
 
     // Move the origin to 0 and shear, so that the ray runs along the third axis. Multiplying by the direction's
     // length there, in place of dividing by it, keeps whole numbers whole: edges and corners are met exactly.
-    let d = ray.direction64;
+    let d = ray.direction;
     let sheared = |p: [f64; 3]| {
-        let p = subtract(p, ray.origin64);
+        let p = subtract(p, ray.origin);
         [d[kz] * p[kx] - d[kx] * p[kz], d[kz] * p[ky] - d[ky] * p[kz], p[kz]]
     };
     let (a, b, c) = (sheared(p0), sheared(p1), sheared(p2));
@@ -290,7 +288,7 @@ pub(crate) fn decide(ray: &Prepared, corners: &[[f32; 3]; 3], extent: f32) -> Op
     // No product of the determinant is larger than extent² times the direction; mostly that shows that it is clear.
     let largest = 6.5 * f64::from(extent) * f64::from(extent) * d[kz].abs();
     let t = if determinant.abs() > GRAZING * largest {
-        (dot(n, subtract(p0, ray.origin64)) / determinant) as f32
+        (dot(n, subtract(p0, ray.origin)) / determinant) as f32
     } else {
         let along = (u * a[2] + v * b[2] + w * c[2]) / (sum * d[kz]);
         grazing(ray, corners, along)
@@ -301,14 +299,14 @@ pub(crate) fn decide(ray: &Prepared, corners: &[[f32; 3]; 3], extent: f32) -> Op
 /// `t` where the ray runs nearly along the triangle's plane; `along` is the t between those of the corners.
 #[cold]
 #[inline(never)]
-fn grazing(ray: &Prepared, corners: &[[f32; 3]; 3], along: f64) -> f32 {
+fn grazing(ray: &Exact, corners: &[[f32; 3]; 3], along: f64) -> f32 {
     let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
     let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
-    let (n, d) = (cross(e1, e2), ray.direction64);
+    let (n, d) = (cross(e1, e2), ray.direction);
     let determinant = dot(n, d);
     let magnitude = dot(cross_magnitude(e1, e2), d.map(f64::abs));
     let t = if determinant.abs() > DETERMINANT_ERROR * magnitude {
-        dot(n, subtract(p0, ray.origin64)) / determinant
+        dot(n, subtract(p0, ray.origin)) / determinant
     } else {
         // The ray runs along the plane, as far as f64 can tell: t is somewhere between the corners.
         along
@@ -351,11 +349,11 @@ fn product_error(a: f64, b: f64, product: f64) -> f64 {
 }
 
 /// Moves t into the interval in which the ray is inside the triangle's box.
-fn clamp_to_box(ray: &Prepared, corners: &[[f32; 3]; 3], t: f64) -> f64 {
+fn clamp_to_box(ray: &Exact, corners: &[[f32; 3]; 3], t: f64) -> f64 {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
-        if ray.direction64[axis] != 0.0 {
-            let at = |p: &[f32; 3]| (f64::from(p[axis]) - ray.origin64[axis]) / ray.direction64[axis];
+        if ray.direction[axis] != 0.0 {
+            let at = |p: &[f32; 3]| (f64::from(p[axis]) - ray.origin[axis]) / ray.direction[axis];
             let [a, b, c] = [at(&corners[0]), at(&corners[1]), at(&corners[2])];
             near = near.max(a.min(b).min(c));
             far = far.min(a.max(b).max(c));
@@ -370,17 +368,13 @@ mod tests {
     use crate::ray::Ray;
     use crate::simd::{Work, at_level, levels};
 
-    fn prepared(ray: &Ray) -> Option<Prepared> {
-        Prepared::new(fearless_simd::Fallback::new(), ray)
-    }
-
     struct Filter<'a>(&'a TriangleBlock, &'a Prepared);
 
     impl Work for Filter<'_> {
         type Output = (Chosen, Chosen, [f32; 2]);
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> (Chosen, Chosen, [f32; 2]) {
-            let sifted = self.0.filter(simd, &Sieve::new(simd, self.1, 0.0), f32::INFINITY);
+            let sifted = self.0.filter(simd, &Sieve::new(simd, self.1), f32::INFINITY);
             let [first, last] = sifted.between();
             (sifted.kept, sifted.surely_hit, [first[0], last[0]])
         }
@@ -400,7 +394,7 @@ mod tests {
         let corners = [[-1e6, -1e6, height], [1e6, -1e6, height], [3.0, 1e6, height]];
         for direction in [[0.3, -0.2, 1.0], [0.3, -0.2, 1e-6], [1e3, 0.0, 1e-3]] {
             for (z, above) in [(height, true), (height.next_up(), true), (height.next_down(), false)] {
-                let ray = prepared(&Ray::new([0.1, -0.3, z], direction)).unwrap();
+                let ray = Exact::new(&Ray::new([0.1, -0.3, z], direction));
                 assert_eq!(decide(&ray, &corners, 4e6).is_none(), above, "{direction:?} from {z}");
             }
         }
@@ -418,21 +412,22 @@ mod tests {
             let origin = random.point_with_exponents(-8, 8);
             let target = random.on_triangle(&corners);
             let direction = [0, 1, 2].map(|i| target[i] - origin[i]);
-            let Some(ray) = prepared(&Ray::new(origin, direction)) else { continue };
+            let ray = Ray::new(origin, direction);
+            let Some(shadow) = Prepared::new(fearless_simd::Fallback::new(), &ray, 0.0) else { continue };
             let block = TriangleBlock::new(&[(corners, 0, 0)]);
             let (chosen, surely_hit, [first, last]) =
-                at_level(levels[all % levels.len()], Filter(&block, &ray));
+                at_level(levels[all % levels.len()], Filter(&block, &shadow));
             let keep = chosen.count();
             all += 1;
             kept += keep;
-            let hit = decide(&ray, &corners, block.extent(0));
+            let hit = decide(&Exact::new(&ray), &corners, block.extent(0));
             if hit.is_some() {
                 hits += 1;
                 assert_eq!(keep, 1, "{corners:?} {ray:?}");
             }
             if surely_hit != Chosen(0) {
                 sure += 1;
-                let t = f64::from(hit.unwrap().t) * f64::from(ray.t_scale);
+                let t = f64::from(hit.unwrap().t) * f64::from(shadow.shadow.scale);
                 assert!(f64::from(first) < t && t < f64::from(last), "{corners:?} {ray:?}");
             }
         }

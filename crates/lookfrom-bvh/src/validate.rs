@@ -5,7 +5,7 @@ use std::fmt;
 use crate::Bvh;
 use crate::aabb::Aabb;
 use crate::bvh::Leaf;
-use crate::node::{Content, Node, WIDTH};
+use crate::node::{Content, LARGEST_DEPTH, Node, WIDTH};
 
 /// What a tree consists of.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -97,6 +97,9 @@ pub(crate) fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
     let statistics = Statistics { left_out: bvh.statistics.left_out, ..bvh.take_statistics() };
     if statistics != bvh.statistics {
         return Err(Invalid(format!("counted {statistics:?}, but it says {:?}", bvh.statistics)));
+    }
+    if statistics.depth > LARGEST_DEPTH {
+        return Err(Invalid(format!("{} levels, more than {LARGEST_DEPTH}", statistics.depth)));
     }
     Ok(statistics)
 }

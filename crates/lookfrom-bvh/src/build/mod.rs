@@ -15,7 +15,7 @@ use crate::Bvh;
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
 use crate::affine::Affine;
 use crate::instance::Instance;
-use crate::node::{Child, WIDTH};
+use crate::node::Child;
 use crate::procedural::Procedural;
 use crate::ray::NONE;
 use crate::sphere::Sphere;
@@ -166,7 +166,7 @@ impl Kind {
     /// How many fit into a leaf.
     fn leaf_capacity(self) -> usize {
         match self {
-            Self::Triangle | Self::Sphere => 4,
+            Self::Triangle | Self::Sphere => 8,
             Self::Procedural | Self::Instance => 1,
         }
     }
@@ -261,9 +261,6 @@ impl Builder {
         let mut bvh = collapse::collapse(&binary, &references, &items, &self.geometries, instances);
         bvh.set_bounds(bounds);
         bvh.statistics = Statistics { left_out: statistics.left_out, ..bvh.take_statistics() };
-        // All children of a node but one wait, on each level, and those of one instance on top.
-        let inside = bvh.instances.iter().map(|instance| instance.bvh.stack_length).max().unwrap_or(0);
-        bvh.stack_length = bvh.statistics.depth * (WIDTH - 1) + inside;
         Ok(bvh)
     }
 

@@ -5,6 +5,7 @@
 //! not touch what another has changed. The search is branch and bound. The result does not depend on the number of threads.
 
 use crate::aabb::Aabb;
+use crate::node::LARGEST_DEPTH;
 
 use super::sah::{Binary, Reference};
 
@@ -21,9 +22,6 @@ const SHARE: usize = 8;
 /// Nodes that the search for one move looks at. Scanned meshes and rooms need fewer; where all boxes overlap this keeps the time
 /// from growing with the square of their number.
 const VISITS: usize = 200;
-
-/// A tree that would become deeper is left as it is.
-const DEPTH_LIMIT: u32 = 160;
 
 const NONE: u32 = u32::MAX;
 
@@ -237,7 +235,7 @@ impl Spots {
         // What is to be written: a node, its depth, and whose right child it is.
         let mut stack = vec![(0_u32, 0_u32, None::<usize>)];
         while let Some((number, depth, right_of)) = stack.pop() {
-            if depth > DEPTH_LIMIT {
+            if depth as usize > LARGEST_DEPTH {
                 return None;
             }
             let here = tree.len();

@@ -191,7 +191,7 @@ fn best_split(references: &[Reference], centers: &Aabb, bins: usize) -> Option<S
 
 /// What primitives cost: they are tested in fours.
 fn blocks(count: u32) -> f32 {
-    count.div_ceil(4) as f32
+    count.div_ceil(8) as f32
 }
 
 /// Moves what is left to the front and returns how many those are.

@@ -1,0 +1,45 @@
+//! The ray as the decisions see it: in f64, in the world or in an object's space.
+
+use crate::affine::Affine;
+use crate::ray::Ray;
+use crate::vector::{subtract, wide};
+
+/// A ray for decisions. In an instance it is not rounded to f32.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exact {
+    pub(crate) origin: [f64; 3],
+    pub(crate) direction: [f64; 3],
+    /// Hits need a t above this.
+    pub(crate) t_min: f32,
+}
+
+impl Exact {
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray) -> Self {
+        Self { origin: wide(ray.origin), direction: wide(ray.direction), t_min: ray.t_min }
+    }
+
+    /// The same ray in an object's space; t stays what it is.
+    #[inline(always)]
+    pub(crate) fn in_object(&self, world_from_object: &Affine, object_from_world: &Affine) -> Self {
+        Self {
+            // Subtract first: near the object that is where the digits are.
+            origin: object_from_world.vector(subtract(self.origin, world_from_object.translation)),
+            direction: object_from_world.vector(self.direction),
+            t_min: self.t_min,
+        }
+    }
+
+    /// The axes in a turn, the one along which the direction is longest last.
+    #[inline(always)]
+    pub(crate) fn axes(&self) -> [usize; 3] {
+        let [x, y, z] = self.direction.map(f64::abs);
+        if (x > y) & (x > z) {
+            [1, 2, 0]
+        } else if y > z {
+            [2, 0, 1]
+        } else {
+            [0, 1, 2]
+        }
+    }
+}
