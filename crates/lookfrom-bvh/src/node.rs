@@ -166,6 +166,7 @@ impl Node {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::exact::Exact;
     use crate::ray::Ray;
     use crate::simd::{Work, at_level, levels};
 
@@ -175,7 +176,7 @@ mod tests {
         type Output = u32;
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> u32 {
-            let ray = Prepared::new(simd, self.1, 10.0).unwrap();
+            let ray = Prepared::new(simd, &Exact::new(self.1), 10.0).unwrap();
             self.0.enter(simd, &Slabs::new(simd, &ray), ray.end(self.1.t_max)).children
         }
     }

@@ -74,56 +74,34 @@ pub(crate) struct Shadow {
 }
 
 impl Prepared {
-    /// A ray in the world, in which no coordinate is beyond `largest`. None where it cannot hit anything.
+    /// A usual ray in the world, in which no coordinate is beyond `largest`. None for one that does not start before its origin,
+    /// or that has numbers so large or so small that they need care.
     #[inline(always)]
-    pub(crate) fn new<S: Simd>(simd: S, ray: &Ray, largest: f32) -> Option<Self> {
-        if !(ray.t_min < ray.t_max) {
-            return None;
-        }
-        Self::cast(simd, ray.origin, ray.direction, ray.t_min, 0.0, largest, || Exact::new(ray))
+    pub(crate) fn usual<S: Simd>(simd: S, ray: &Ray, largest: f32) -> Option<Self> {
+        let &Ray { origin, t_min, direction, .. } = ray;
+        is_usual(simd, origin, direction, t_min, largest).then(
+            #[inline(always)]
+            || Self::cast(simd, &Shadow::usual(origin, direction, 0.0), direction, t_min),
+        )
     }
 
-    /// A ray in an object's space, in which no coordinate is beyond `largest`.
+    /// Any ray, in any space in which no coordinate is beyond `largest`. None where it cannot hit anything.
     #[inline(always)]
-    pub(crate) fn in_object<S: Simd>(simd: S, exact: &Exact, largest: f32) -> Option<Self> {
+    pub(crate) fn new<S: Simd>(simd: S, exact: &Exact, largest: f32) -> Option<Self> {
         let origin = exact.origin.map(|x| x as f32);
         let direction = exact.direction.map(|x| x as f32);
-        Self::cast(simd, origin, direction, exact.t_min, greatest(origin), largest, || *exact)
+        let shadow = if is_usual(simd, origin, direction, exact.t_min, largest) {
+            Shadow::usual(origin, direction, greatest(origin))
+        } else {
+            Shadow::unusual(exact, largest)?
+        };
+        Some(Self::cast(simd, &shadow, direction, exact.t_min))
     }
 
-    /// `rounding` is 0 where origin and direction are exact.
     #[inline(always)]
-    fn cast<S: Simd>(
-        simd: S,
-        origin: [f32; 3],
-        direction: [f32; 3],
-        t_min: f32,
-        rounding: f32,
-        largest: f32,
-        exact: impl Fn() -> Exact,
-    ) -> Option<Self> {
-        let lanes = |[x, y, z]: [f32; 3]| f32x4::load_array(simd, [x, y, z, 0.0]);
-        let length = greatest(direction);
-        let in_range = lanes(origin).abs().simd_lt(FAR) & lanes(direction).abs().simd_lt(1.0 / SHORT);
-        let usual = in_range.all_true() & (length > SHORT) & (largest < LARGEST_FILTERED) & (t_min >= 0.0);
-        let shadow = if usual {
-            Shadow {
-                origin,
-                direction,
-                start: 0.0,
-                scale: 1.0,
-                largest_reciprocal: [LARGEST_PRODUCT / FAR; 3],
-                moved: 0.0,
-                rounding,
-                error: triangle::ERROR * length,
-                underflow: triangle::UNDERFLOW / SHORT,
-                sure_before: 1.0 / SURE_AFTER,
-            }
-        } else {
-            Shadow::unusual(&exact(), rounding != 0.0, largest)?
-        };
-
+    fn cast<S: Simd>(simd: S, shadow: &Shadow, direction: [f32; 3], t_min: f32) -> Self {
         // The slabs' constants, three axes at once.
+        let lanes = |[x, y, z]: [f32; 3]| f32x4::load_array(simd, [x, y, z, 0.0]);
         let (o, d) = (lanes(shadow.origin), lanes(shadow.direction));
         let reciprocal = f32x4::splat(simd, 1.0) / d.abs();
         let near_reciprocal = reciprocal.min(lanes(shadow.largest_reciprocal)).copysign(d);
@@ -134,17 +112,17 @@ impl Prepared {
         let far_product = far_reciprocal * o;
         let far_product = far_product - (far_product.abs() * PRODUCT_ROOM + moved);
 
-        let Shadow { start, scale, .. } = shadow;
+        let &Shadow { start, scale, .. } = shadow;
         let first = (t_min - start) - ((t_min.abs() - start) * ROOM + TINY);
-        Some(Self {
-            shadow,
+        Self {
+            shadow: *shadow,
             t_min: greater(first * scale, 0.0),
             near_reciprocal: first_three(near_reciprocal),
             far_reciprocal: first_three(far_reciprocal),
             near_product: first_three(near_product),
             far_product: first_three(far_product),
             near_side: direction.map(|x| (x.to_bits() >> 31) as usize),
-        })
+        }
     }
 
     /// A ray's end as a distance, with room. 0 or more.
@@ -155,12 +133,37 @@ impl Prepared {
     }
 }
 
+/// Whether a ray does not start behind its origin and no number is so large or small as to need care.
+#[inline(always)]
+fn is_usual<S: Simd>(simd: S, origin: [f32; 3], direction: [f32; 3], t_min: f32, largest: f32) -> bool {
+    let lanes = |[x, y, z]: [f32; 3]| f32x4::load_array(simd, [x, y, z, 0.0]);
+    let in_range = lanes(origin).abs().simd_lt(FAR) & lanes(direction).abs().simd_lt(1.0 / SHORT);
+    in_range.all_true() & (greatest(direction) > SHORT) & (largest < LARGEST_FILTERED) & (t_min >= 0.0)
+}
+
 impl Shadow {
+    /// `rounding` is 0 where origin and direction are exact.
+    #[inline(always)]
+    fn usual(origin: [f32; 3], direction: [f32; 3], rounding: f32) -> Self {
+        Self {
+            origin,
+            direction,
+            start: 0.0,
+            scale: 1.0,
+            largest_reciprocal: [LARGEST_PRODUCT / FAR; 3],
+            moved: 0.0,
+            rounding,
+            error: triangle::ERROR * greatest(direction),
+            underflow: triangle::UNDERFLOW / SHORT,
+            sure_before: 1.0 / SURE_AFTER,
+        }
+    }
+
     /// The shadow of a ray that starts behind its origin or has numbers out of the usual range. None where one of them is not
     /// finite, or the direction vanishes.
     #[cold]
     #[inline(never)]
-    fn unusual(exact: &Exact, rounded: bool, largest: f32) -> Option<Self> {
+    fn unusual(exact: &Exact, largest: f32) -> Option<Self> {
         let widest = |x: [f64; 3]| x.iter().fold(0.0_f64, |widest, x| widest.max(x.abs()));
         let (o, d) = (exact.origin, exact.direction);
         let direction = d.map(|x| x as f32);
@@ -194,7 +197,7 @@ impl Shadow {
             scale,
             largest_reciprocal: origin.map(|x| LARGEST_PRODUCT / x.abs().max(1.0)),
             moved,
-            rounding: if rounded || start < 0.0 { farthest + moved } else { 0.0 },
+            rounding: farthest + moved,
             error: if in_range { triangle::ERROR * (length * shorten) } else { f32::INFINITY },
             underflow: triangle::UNDERFLOW * 4.0,
             sure_before: if may_be_sure { 1.0 / SURE_AFTER } else { -1.0 },

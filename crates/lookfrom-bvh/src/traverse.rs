@@ -5,9 +5,10 @@
 //! a result: ends are compared with room for errors (see `node`), and ties are decided by ids (see `Hit`).
 
 use std::cell::Cell;
+use std::ops::Range;
 
 use crate::Bvh;
-use crate::bvh::Leaf;
+use crate::bvh::{Leaf, SphereItem};
 use crate::exact::Exact;
 use crate::instance::Instance;
 use crate::node::{Child, Content, Entered, LARGEST_DEPTH, Node, Slabs, WIDTH};
@@ -15,7 +16,7 @@ use crate::prepared::Prepared;
 use crate::query::Query;
 use crate::ray::{Hit, NONE, Ray};
 use crate::simd::{Chosen, Simd, Work, at_level};
-use crate::triangle::{Sieve, TriangleBlock};
+use crate::triangle::{Crossing, Sieve, TriangleBlock};
 use crate::{sphere, triangle};
 
 /// Listens while a ray is traced. Every method does nothing unless written; `()` listens to nothing and costs nothing.
@@ -122,97 +123,84 @@ impl<Q: Query, F: FnOnce(&Ray) -> Q, W: Watch> Work for Trace<'_, F, W> {
     fn run<S: Simd>(self, simd: S) -> Q {
         let Self { bvh, ray, ask, watch } = self;
         let mut answer = Answer { instance: NONE, query: ask(ray), watch };
-        if !bvh.nodes.is_empty()
-            && let Some(shadow) = Prepared::new(simd, ray, bvh.largest)
-        {
+        if !bvh.nodes.is_empty() && ray.t_min < ray.t_max {
             with_stack(
                 #[inline(always)]
-                |stack| {
-                    outer(simd, bvh, ray, &shadow, &mut answer, stack);
-                },
+                |stack| trace(simd, bvh, ray, &mut answer, Waiting { stack, bottom: 0, height: 0 }),
             );
         }
         answer.query
     }
 }
 
-/// Traces a ray through a tree and the trees in it. Returns true where the query wants no more, as all that follow.
+/// Traces a ray in the world through a tree that is not empty.
 #[inline(always)]
-fn outer<S: Simd, Q: Query, W: Watch>(
+fn trace<S: Simd, Q: Query, W: Watch>(
     simd: S,
     bvh: &Bvh,
     ray: &Ray,
-    shadow: &Prepared,
     answer: &mut Answer<Q, W>,
-    stack: &mut Stack,
-) -> bool {
+    mut waiting: Waiting<'_>,
+) {
+    let Some(shadow) = Prepared::usual(simd, ray, bvh.largest) else {
+        trace_any(simd, bvh, &Exact::new(ray), answer, &mut waiting);
+        return;
+    };
     // Made anew where it is needed: few rays need it, and the black box keeps it from being made for all.
     let exact = || Exact::new(std::hint::black_box(ray));
-    let mut waiting = Waiting { stack, bottom: 0, height: 0 };
-    traverse(
-        simd,
-        bvh,
-        shadow,
-        exact,
-        answer,
-        &mut waiting,
+    traverse(simd, bvh, &shadow, exact, answer, &mut waiting);
+}
+
+/// Traces any ray, in the world or in an object's space, through a tree that is not empty. Returns true where the query wants
+/// no more, as all that follow.
+///
+/// Not inlined, so that the loop over the outer tree keeps its registers; compiled for the level again inside.
+#[inline(never)]
+fn trace_any<S: Simd, Q: Query, W: Watch>(
+    simd: S,
+    bvh: &Bvh,
+    exact: &Exact,
+    answer: &mut Answer<Q, W>,
+    waiting: &mut Waiting<'_>,
+) -> bool {
+    simd.vectorize(
         #[inline(always)]
-        |leaf, answer, waiting| match *leaf {
-            Leaf::Instances { first, count } => instances(simd, bvh, ray, first, count, answer, waiting),
-            _ => primitives(bvh, &exact(), leaf, answer),
+        || {
+            Prepared::new(simd, exact, bvh.largest)
+                .is_some_and(|shadow| traverse(simd, bvh, &shadow, || *exact, answer, waiting))
         },
     )
 }
 
-/// Not inlined, so that the loop over the outer tree keeps its registers; compiled for the level again inside.
-#[inline(never)]
+/// Takes a ray into instances.
 fn instances<S: Simd, Q: Query, W: Watch>(
     simd: S,
-    bvh: &Bvh,
-    ray: &Ray,
-    first: u32,
-    count: u32,
+    instances: &[Instance],
+    exact: &Exact,
     answer: &mut Answer<Q, W>,
     waiting: &mut Waiting<'_>,
 ) -> bool {
-    let range = first as usize..(first + count) as usize;
-    bvh.instances[range].iter().any(|instance| {
-        simd.vectorize(
-            #[inline(always)]
-            || {
-                let Instance { bvh, id, world_from_object, object_from_world } = instance;
-                let exact = Exact::new(ray).in_object(world_from_object, object_from_world);
-                let Some(shadow) = Prepared::in_object(simd, &exact, bvh.largest) else { return false };
-                answer.instance = *id;
-                let Waiting { stack, height, .. } = waiting;
-                let mut waiting = Waiting { stack, bottom: *height, height: *height };
-                let stop = traverse(
-                    simd,
-                    bvh,
-                    &shadow,
-                    || exact,
-                    answer,
-                    &mut waiting,
-                    #[inline(always)]
-                    |leaf, answer, _| primitives(bvh, &exact, leaf, answer),
-                );
-                answer.instance = NONE;
-                stop
-            },
-        )
+    instances.iter().any(|instance| {
+        let Instance { bvh, id, world_from_object, object_from_world } = instance;
+        let inside = exact.in_object(world_from_object, object_from_world);
+        let Waiting { stack, height, .. } = waiting;
+        answer.instance = *id;
+        let stop =
+            trace_any(simd, bvh, &inside, answer, &mut Waiting { stack, bottom: *height, height: *height });
+        answer.instance = NONE;
+        stop
     })
 }
 
 /// Traces a ray through one tree that is not empty.
 #[inline(always)]
-fn traverse<'a, S: Simd, Q: Query, W: Watch>(
+fn traverse<S: Simd, Q: Query, W: Watch>(
     simd: S,
-    bvh: &'a Bvh,
+    bvh: &Bvh,
     ray: &Prepared,
     exact: impl Fn() -> Exact + Copy,
     answer: &mut Answer<Q, W>,
     waiting: &mut Waiting<'_>,
-    mut visit_leaf: impl FnMut(&Leaf, &mut Answer<Q, W>, &mut Waiting<'_>) -> bool,
 ) -> bool {
     let slabs = Slabs::new(simd, ray);
     let mut current = Child::ROOT;
@@ -242,7 +230,7 @@ fn traverse<'a, S: Simd, Q: Query, W: Watch>(
                 let sieve = Sieve::new(simd, ray);
                 triangles(simd, block, &sieve, exact, &mut end, &mut undecided, answer)
             }
-            Content::Leaf(number) => visit_leaf(&bvh.leaves[number], answer, waiting),
+            Content::Leaf(number) => other_leaf(simd, bvh, &bvh.leaves[number], &exact(), answer, waiting),
             Content::Node(_) => false,
         };
         if stop {
@@ -255,7 +243,7 @@ fn traverse<'a, S: Simd, Q: Query, W: Watch>(
             None => break,
         }
     }
-    undecided.is_some_and(|Undecided { block, lane, .. }| decide(block, lane, &exact(), answer))
+    undecided.is_some_and(|Undecided { block, lane, .. }| cross_surely(block, lane, exact, answer))
 }
 
 /// The children that wait in one tree, above those of the tree around it.
@@ -387,39 +375,66 @@ struct Undecided<'a> {
 }
 
 /// Decides whether and where a triangle is hit, and tells.
-#[inline(always)]
+#[cold]
+#[inline(never)]
 fn decide<Q: Query, W: Watch>(
     block: &TriangleBlock,
     lane: usize,
     ray: &Exact,
     answer: &mut Answer<Q, W>,
 ) -> bool {
-    let Some(crossing) = triangle::decide(ray, &block.corners(lane), block.extent(lane)) else {
-        return false;
-    };
+    triangle::decide(ray, &block.corners(lane), block.extent(lane))
+        .is_some_and(|crossing| tell(crossing, block, lane, answer))
+}
+
+/// The same for a triangle that is surely hit.
+///
+/// Not inlined: compiled for AVX-512, its scattered loads become vectors of 512 bits, which slow down all that is around them.
+#[inline(never)]
+fn cross_surely<Q: Query, W: Watch>(
+    block: &TriangleBlock,
+    lane: usize,
+    exact: impl Fn() -> Exact,
+    answer: &mut Answer<Q, W>,
+) -> bool {
+    tell(triangle::cross_surely(&exact(), &block.corners(lane)), block, lane, answer)
+}
+
+/// Tells where a triangle is hit.
+#[inline(always)]
+fn tell<Q: Query, W: Watch>(
+    crossing: Crossing,
+    block: &TriangleBlock,
+    lane: usize,
+    answer: &mut Answer<Q, W>,
+) -> bool {
     let (geometry, primitive) = block.ids(lane);
-    let triangle::Crossing { t, u, v } = crossing;
+    let Crossing { t, u, v } = crossing;
     answer.query.accept(Hit { t, u, v, primitive, geometry, instance: answer.instance })
 }
 
-/// Tests what is not a triangle and not an instance.
+/// Tests what is not a triangle.
 #[inline(never)]
-fn primitives<Q: Query, W: Watch>(bvh: &Bvh, ray: &Exact, leaf: &Leaf, answer: &mut Answer<Q, W>) -> bool {
+fn other_leaf<S: Simd, Q: Query, W: Watch>(
+    simd: S,
+    bvh: &Bvh,
+    leaf: &Leaf,
+    ray: &Exact,
+    answer: &mut Answer<Q, W>,
+    waiting: &mut Waiting<'_>,
+) -> bool {
+    let range = |first: u32, count: u32| first as usize..(first + count) as usize;
     match *leaf {
-        Leaf::Spheres { first, count } => spheres(bvh, ray, first as usize, count, answer),
-        Leaf::Procedurals { first, count } => procedurals(bvh, ray, first as usize, count, answer),
-        Leaf::Instances { .. } => false,
+        Leaf::Spheres { first, count } => spheres(&bvh.spheres[range(first, count)], ray, answer),
+        Leaf::Procedurals { first, count } => procedurals(bvh, range(first, count), ray, answer),
+        Leaf::Instances { first, count } => {
+            instances(simd, &bvh.instances[range(first, count)], ray, answer, waiting)
+        }
     }
 }
 
-fn spheres<Q: Query, W: Watch>(
-    bvh: &Bvh,
-    ray: &Exact,
-    first: usize,
-    count: u32,
-    answer: &mut Answer<Q, W>,
-) -> bool {
-    for item in &bvh.spheres[first..first + count as usize] {
+fn spheres<Q: Query, W: Watch>(spheres: &[SphereItem], ray: &Exact, answer: &mut Answer<Q, W>) -> bool {
+    for item in spheres {
         let (geometry, primitive, instance) = (item.geometry, item.primitive, answer.instance);
         answer.watch.candidate(instance, geometry, primitive);
         let Some([t1, t2]) = sphere::decide(ray, &item.shape) else { continue };
@@ -436,12 +451,11 @@ fn spheres<Q: Query, W: Watch>(
 
 fn procedurals<Q: Query, W: Watch>(
     bvh: &Bvh,
+    range: Range<usize>,
     ray: &Exact,
-    first: usize,
-    count: u32,
     answer: &mut Answer<Q, W>,
 ) -> bool {
-    for item in &bvh.procedurals[first..first + count as usize] {
+    for item in &bvh.procedurals[range] {
         let (geometry, primitive, instance) = (item.geometry, item.primitive, answer.instance);
         answer.watch.candidate(instance, geometry, primitive);
         // Ask one step beyond the end: a hit at the same t may win the tie.

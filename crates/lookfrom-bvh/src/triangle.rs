@@ -16,7 +16,7 @@
 use crate::exact::Exact;
 use crate::prepared::Prepared;
 use crate::ray::NONE;
-use crate::simd::{Chosen, Simd, f32x8, prelude::*, u32x8};
+use crate::simd::{Chosen, Simd, f32x8, prelude::*};
 use crate::vector::{cross, cross_magnitude, dot, subtract, wide};
 
 /// Triangles in a block.
@@ -45,12 +45,15 @@ pub(crate) const LARGEST_FILTERED: f32 = 1.099_511_6e12;
 pub(crate) struct TriangleBlock {
     /// `corners[corner][axis][lane]`; unused lanes repeat lane 0.
     corners: [[[f32; BLOCK]; 3]; 3],
-    /// The largest component of the edges at the first corner.
+    /// The largest component of the edges at the first corner; −1 in unused lanes.
     extent: [f32; BLOCK],
     geometry: [u32; BLOCK],
     /// [`NONE`] in unused lanes.
     primitive: [u32; BLOCK],
 }
+
+/// The extent that marks unused lanes.
+const UNUSED: f32 = -1.0;
 
 /// Where a triangle is met: `t`, and the weights of its second and third corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -145,6 +148,8 @@ impl TriangleBlock {
             if lane < triangles.len() {
                 block.geometry[lane] = *geometry;
                 block.primitive[lane] = *primitive;
+            } else {
+                block.extent[lane] = UNUSED;
             }
         }
         block
@@ -228,8 +233,8 @@ impl TriangleBlock {
         let before = distance.simd_lt(ray.t_min.mul_sub(size, error * (reach + ray.t_min.abs())));
         let out_of_range = size.simd_gt(error) & (beyond | before);
 
-        let used = u32x8::load_array_ref(simd, &self.primitive).simd_eq(u32x8::splat(simd, NONE));
-        let excluded = outside | out_of_range | used;
+        let unused = extent.simd_lt(0.0);
+        let excluded = outside | out_of_range | unused;
 
         // A hit is sure where all that is the other way round, with twice the room for what is compared.
         let inside = least.simd_gt(bound) | most.simd_lt(-bound);
@@ -238,7 +243,7 @@ impl TriangleBlock {
         let last = t_max.min(ray.sure_before);
         let in_range = distance.simd_gt(first.mul_add(size, room * (reach + first)))
             & distance.simd_lt(last.mul_sub(size, room * (reach + last)));
-        let sure = inside & in_range & size.simd_gt(room) & !used;
+        let sure = inside & in_range & size.simd_gt(room) & !unused;
         let lanes = (1 << BLOCK) - 1;
         Sifted {
             kept: Chosen(!excluded.to_bitmask() as u32 & lanes),
@@ -256,66 +261,116 @@ impl TriangleBlock {
 /// No component of the edges at the first corner is larger than `extent` (but for rounding to f32).
 #[inline(always)]
 pub(crate) fn decide(ray: &Exact, corners: &[[f32; 3]; 3], extent: f32) -> Option<Crossing> {
-    let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
-    let [kx, ky, kz] = ray.axes();
-
-    // Move the origin to 0 and shear, so that the ray runs along the third axis. Multiplying by the direction's
-    // length there, in place of dividing by it, keeps whole numbers whole: edges and corners are met exactly.
-    let d = ray.direction;
-    let sheared = |p: [f64; 3]| {
-        let p = subtract(p, ray.origin);
-        [d[kz] * p[kx] - d[kx] * p[kz], d[kz] * p[ky] - d[ky] * p[kz], p[kz]]
-    };
-    let (a, b, c) = (sheared(p0), sheared(p1), sheared(p2));
-
-    // Look at the signs of the edge functions.
-    let u = edge_function(c, b);
-    let v = edge_function(a, c);
-    let w = edge_function(b, a);
-    // Without short cuts: which of the signs it is cannot be predicted.
-    if ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0)) {
+    let sheared = Sheared::new(ray, corners);
+    if !sheared.is_met() {
         return None;
     }
-    let sum = u + v + w;
-    if sum == 0.0 {
-        return None;
-    }
-
-    // Meet the plane.
-    let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
-    let n = cross(e1, e2);
-    let determinant = dot(n, d);
+    let crossing = meet(ray, corners);
     // No product of the determinant is larger than extent² times the direction; mostly that shows that it is clear.
-    let largest = 6.5 * f64::from(extent) * f64::from(extent) * d[kz].abs();
-    let t = if determinant.abs() > GRAZING * largest {
-        (dot(n, subtract(p0, ray.origin)) / determinant) as f32
+    let [x, y, z] = ray.direction.map(f64::abs);
+    let largest = 6.5 * f64::from(extent) * f64::from(extent) * x.max(y).max(z);
+    let crossing = if crossing.determinant.abs() > GRAZING * largest {
+        crossing.round()
     } else {
-        let along = (u * a[2] + v * b[2] + w * c[2]) / (sum * d[kz]);
-        grazing(ray, corners, along)
+        sheared.grazing(ray, corners)
     };
-    (t > ray.t_min).then_some(Crossing { t, u: (v / sum) as f32, v: (w / sum) as f32 })
+    (crossing.t > ray.t_min).then_some(crossing)
 }
 
-/// `t` where the ray runs nearly along the triangle's plane; `along` is the t between those of the corners.
-#[cold]
-#[inline(never)]
-fn grazing(ray: &Exact, corners: &[[f32; 3]; 3], along: f64) -> f32 {
+/// Where a ray meets the plane of a triangle, for one that the filter is sure of: all else that [`decide`] looks at is known.
+#[inline(always)]
+pub(crate) fn cross_surely(ray: &Exact, corners: &[[f32; 3]; 3]) -> Crossing {
+    meet(ray, corners).round()
+}
+
+/// A meeting before it is rounded.
+struct Meeting {
+    determinant: f64,
+    t: f64,
+    u: f64,
+    v: f64,
+}
+
+impl Meeting {
+    /// Weights that are less than 0 are so by their rounding alone.
+    #[inline(always)]
+    fn round(&self) -> Crossing {
+        let weight = |x: f64| if x > 0.0 { x as f32 } else { 0.0 };
+        Crossing { t: self.t as f32, u: weight(self.u), v: weight(self.v) }
+    }
+}
+
+/// Where a ray meets the plane of a triangle: Cramer's rule, as Möller and Trumbore (1997) arrange it.
+#[inline(always)]
+fn meet(ray: &Exact, corners: &[[f32; 3]; 3]) -> Meeting {
     let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
     let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
-    let (n, d) = (cross(e1, e2), ray.direction);
-    let determinant = dot(n, d);
-    let magnitude = dot(cross_magnitude(e1, e2), d.map(f64::abs));
-    let t = if determinant.abs() > DETERMINANT_ERROR * magnitude {
-        dot(n, subtract(p0, ray.origin)) / determinant
-    } else {
-        // The ray runs along the plane, as far as f64 can tell: t is somewhere between the corners.
-        along
-    };
-    if !(t as f32 > ray.t_min) {
-        return f32::NAN;
+    let c = subtract(p0, ray.origin);
+    let n = cross(e1, e2);
+    let r = cross(c, ray.direction);
+    let determinant = dot(n, ray.direction);
+    let inverse = 1.0 / determinant;
+    Meeting { determinant, t: dot(n, c) * inverse, u: dot(e2, r) * inverse, v: -dot(e1, r) * inverse }
+}
+
+/// A triangle moved to the ray's origin and sheared so that the ray runs along the third axis, and its edge functions.
+struct Sheared {
+    corners: [[f64; 3]; 3],
+    edges: [f64; 3],
+    /// The direction's component along that axis.
+    along: f64,
+}
+
+impl Sheared {
+    #[inline(always)]
+    fn new(ray: &Exact, corners: &[[f32; 3]; 3]) -> Self {
+        let [kx, ky, kz] = ray.axes();
+        let d = ray.direction;
+        // Multiplying by the direction's length, in place of dividing by it, keeps whole numbers whole: edges and
+        // corners are met exactly.
+        let shear = |corner: usize| {
+            let p = subtract(wide(corners[corner]), ray.origin);
+            [d[kz] * p[kx] - d[kx] * p[kz], d[kz] * p[ky] - d[ky] * p[kz], p[kz]]
+        };
+        let [a, b, c] = [shear(0), shear(1), shear(2)];
+        let edges = [edge_function(c, b), edge_function(a, c), edge_function(b, a)];
+        Self { corners: [a, b, c], edges, along: d[kz] }
     }
-    // At grazing angles keep t inside the triangle's box, where every tree looks for it.
-    if determinant.abs() < GRAZING * magnitude { clamp_to_box(ray, corners, t) as f32 } else { t as f32 }
+
+    /// Whether the ray meets the triangle or its edges. One that is seen edge on is not met.
+    #[inline(always)]
+    fn is_met(&self) -> bool {
+        let [u, v, w] = self.edges;
+        // Without short cuts: which of the signs it is cannot be predicted.
+        let outside = ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0));
+        !outside & (u + v + w != 0.0)
+    }
+
+    /// The crossing where the ray runs nearly along the triangle's plane. NaN where it is before the ray.
+    #[cold]
+    #[inline(never)]
+    fn grazing(&self, ray: &Exact, corners: &[[f32; 3]; 3]) -> Crossing {
+        let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
+        let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
+        let (n, d) = (cross(e1, e2), ray.direction);
+        let determinant = dot(n, d);
+        let magnitude = dot(cross_magnitude(e1, e2), d.map(f64::abs));
+        let ([u, v, w], [a, b, c]) = (self.edges, self.corners);
+        let sum = u + v + w;
+        let mut t = if determinant.abs() > DETERMINANT_ERROR * magnitude {
+            dot(n, subtract(p0, ray.origin)) / determinant
+        } else {
+            // The ray runs along the plane, as far as f64 can tell: t is somewhere between the corners.
+            (u * a[2] + v * b[2] + w * c[2]) / (sum * self.along)
+        };
+        if !(t as f32 > ray.t_min) {
+            t = f64::NAN;
+        } else if determinant.abs() < GRAZING * magnitude {
+            // Keep it inside the triangle's box, where every tree looks for it.
+            t = clamp_to_box(ray, corners, t);
+        }
+        Crossing { t: t as f32, u: (v / sum) as f32, v: (w / sum) as f32 }
+    }
 }
 
 /// Relative error of the determinant n·d, with much room: 2⁻⁴⁸ (rounding: about 6 · 2⁻⁵³).
@@ -413,14 +468,15 @@ mod tests {
             let target = random.on_triangle(&corners);
             let direction = [0, 1, 2].map(|i| target[i] - origin[i]);
             let ray = Ray::new(origin, direction);
-            let Some(shadow) = Prepared::new(fearless_simd::Fallback::new(), &ray, 0.0) else { continue };
+            let exact = Exact::new(&ray);
+            let Some(shadow) = Prepared::new(fearless_simd::Fallback::new(), &exact, 0.0) else { continue };
             let block = TriangleBlock::new(&[(corners, 0, 0)]);
             let (chosen, surely_hit, [first, last]) =
                 at_level(levels[all % levels.len()], Filter(&block, &shadow));
             let keep = chosen.count();
             all += 1;
             kept += keep;
-            let hit = decide(&Exact::new(&ray), &corners, block.extent(0));
+            let hit = decide(&exact, &corners, block.extent(0));
             if hit.is_some() {
                 hits += 1;
                 assert_eq!(keep, 1, "{corners:?} {ray:?}");
