@@ -70,17 +70,19 @@ pub(crate) struct Sifted<S: Simd> {
     /// Those of which the decision is known: a hit in the ray's range.
     pub(crate) surely_hit: Chosen,
     distance: Lanes<S>,
+    distance_room: Lanes<S>,
     size: Lanes<S>,
-    reach: Lanes<S>,
-    room: Lanes<S>,
+    size_room: Lanes<S>,
 }
 
 impl<S: Simd> Sifted<S> {
     /// Between which scaled t each of those that are surely hit is surely hit.
     #[inline(always)]
     pub(crate) fn between(&self) -> [Lanes<S>; 2] {
-        let room = self.room * self.reach;
-        [(self.distance - room) / (self.size + self.room), (self.distance + room) / (self.size - self.room)]
+        [
+            (self.distance - self.distance_room) / (self.size + self.size_room),
+            (self.distance + self.distance_room) / (self.size - self.size_room),
+        ]
     }
 }
 
@@ -211,12 +213,13 @@ impl TriangleBlock {
         let v = -ex.mul_add(rx, ey.mul_add(ry, ez * rz));
         let w = determinant - (u + v);
 
-        // Bound their errors.
+        // Bound their errors: of what holds the direction once, relative to its length.
         let underflow = ray.underflow;
         let extent = Lanes::load_array_ref(simd, &self.extent);
         let relative = extent.mul_add(ray.error, underflow);
         let reach = cx.abs().max(cy.abs()).max(cz.abs()) + ray.rounding;
         let bound = (reach + extent).mul_add(relative, underflow);
+        let size_error = extent.mul_add(relative, underflow);
 
         // A miss has two edge functions of surely different signs. Comparisons with NaN are false, and exclude nothing.
         let least = u.min(v).min(w);
@@ -227,31 +230,30 @@ impl TriangleBlock {
         let size = determinant.abs();
         let distance =
             nx.mul_add(cx, ny.mul_add(cy, nz * cz)) * Lanes::splat(simd, 1.0).copysign(determinant);
-        let error = extent.mul_add(relative, underflow);
+        let distance_error = extent.mul_add(extent.mul_add(ERROR, underflow), underflow) * reach;
         let t_max = Lanes::splat(simd, end);
-        let beyond = distance.simd_gt(t_max.mul_add(size, error * (reach + t_max.abs())));
-        let before = distance.simd_lt(ray.t_min.mul_sub(size, error * (reach + ray.t_min.abs())));
-        let out_of_range = size.simd_gt(error) & (beyond | before);
-
+        let beyond = distance.simd_gt(t_max.mul_add(size, size_error.mul_add(t_max.abs(), distance_error)));
+        let before = distance.simd_lt(ray.t_min.mul_sub(size, size_error.mul_add(ray.t_min, distance_error)));
+        let out_of_range = size.simd_gt(size_error) & (beyond | before);
         let unused = extent.simd_lt(0.0);
         let excluded = outside | out_of_range | unused;
 
         // A hit is sure where all that is the other way round, with twice the room for what is compared.
         let inside = least.simd_gt(bound) | most.simd_lt(-bound);
-        let room = error + error;
-        let first = ray.t_min.max(Lanes::splat(simd, SURE_AFTER));
+        let (size_room, distance_room) = (size_error + size_error, distance_error + distance_error);
+        let first = ray.t_min.max(SURE_AFTER);
         let last = t_max.min(ray.sure_before);
-        let in_range = distance.simd_gt(first.mul_add(size, room * (reach + first)))
-            & distance.simd_lt(last.mul_sub(size, room * (reach + last)));
-        let sure = inside & in_range & size.simd_gt(room) & !unused;
+        let in_range = distance.simd_gt(first.mul_add(size, size_room.mul_add(first, distance_room)))
+            & distance.simd_lt(last.mul_sub(size, size_room.mul_add(last, distance_room)));
+        let sure = inside & in_range & size.simd_gt(size_room) & !unused;
         let lanes = (1 << BLOCK) - 1;
         Sifted {
             kept: Chosen(!excluded.to_bitmask() as u32 & lanes),
             surely_hit: Chosen(sure.to_bitmask() as u32 & lanes),
             distance,
+            distance_room,
             size,
-            reach,
-            room,
+            size_room,
         }
     }
 }
@@ -265,19 +267,31 @@ pub(crate) fn decide(ray: &Exact, corners: &[[f32; 3]; 3], extent: f32) -> Optio
     if !sheared.is_met() {
         return None;
     }
-    let crossing = meet(ray, corners);
-    // No product of the determinant is larger than extent² times the direction; mostly that shows that it is clear.
-    let [x, y, z] = ray.direction.map(f64::abs);
-    let largest = 6.5 * f64::from(extent) * f64::from(extent) * x.max(y).max(z);
-    let crossing = if crossing.determinant.abs() > GRAZING * largest {
-        crossing.round()
-    } else {
-        sheared.grazing(ray, corners)
-    };
+    let meeting = meet(ray, corners);
+    let extent = f64::from(extent);
+    let product = extent * widest(ray.direction);
+    let determinant = meeting.determinant.abs();
+    let crossing =
+        if determinant > CLEAR * product * (extent + widest(subtract(wide(corners[0]), ray.origin))) {
+            meeting.round()
+        } else if determinant > GRAZING * 6.5 * product * extent {
+            // No product of the determinant is larger: t is right, the weights may have lost their digits.
+            let [u, v] = sheared.weights();
+            Crossing { t: meeting.t as f32, u, v }
+        } else {
+            sheared.grazing(ray, corners)
+        };
     (crossing.t > ray.t_min).then_some(crossing)
 }
 
-/// Where a ray meets the plane of a triangle, for one that the filter is sure of: all else that [`decide`] looks at is known.
+/// The largest magnitude.
+fn widest([x, y, z]: [f64; 3]) -> f64 {
+    x.abs().max(y.abs()).max(z.abs())
+}
+
+/// Where a ray meets the plane of a triangle, for one that the filter is sure of: all else that [`decide`] looks at is known. Its
+/// determinant is clear: it is the sum of three edge functions that are beyond their error, which is [`ERROR`] relative to what
+/// [`CLEAR`] is relative to.
 #[inline(always)]
 pub(crate) fn cross_surely(ray: &Exact, corners: &[[f32; 3]; 3]) -> Crossing {
     meet(ray, corners).round()
@@ -369,7 +383,15 @@ impl Sheared {
             // Keep it inside the triangle's box, where every tree looks for it.
             t = clamp_to_box(ray, corners, t);
         }
-        Crossing { t: t as f32, u: (v / sum) as f32, v: (w / sum) as f32 }
+        let [u, v] = self.weights();
+        Crossing { t: t as f32, u, v }
+    }
+
+    /// The weights of the second and third corner: never outside of the triangle, however far away that is.
+    fn weights(&self) -> [f32; 2] {
+        let [u, v, w] = self.edges;
+        let sum = u + v + w;
+        [(v / sum) as f32, (w / sum) as f32]
     }
 }
 
@@ -379,6 +401,9 @@ const DETERMINANT_ERROR: f64 = 3.552_713_678_800_501e-15;
 /// Below this relative determinant, 2⁻³⁰, the errors of t and of the edge functions may differ by more than 2⁻²² of the
 /// triangle's size, which comes near the room of the box test.
 const GRAZING: f64 = 9.313_225_746_154_785e-10;
+
+/// From this relative determinant on, 2⁻¹⁷, the weights of Cramer's rule have f32's digits.
+const CLEAR: f64 = 7.629_394_531_25e-6;
 
 /// `p.x q.y − p.y q.x` with the right sign.
 #[inline(always)]
