@@ -61,8 +61,11 @@ impl Aabb {
 
     /// Whether it has points and all its coordinates can be calculated with.
     pub(crate) fn is_valid(&self) -> bool {
-        !self.is_empty()
-            && self.min.iter().chain(&self.max).all(|coordinate| coordinate.abs() <= LARGEST_COORDINATE)
+        (0..3).all(|axis| {
+            -LARGEST_COORDINATE <= self.min[axis]
+                && self.min[axis] <= self.max[axis]
+                && self.max[axis] <= LARGEST_COORDINATE
+        })
     }
 
     /// The box moved outwards by at least one unit in the last place of its largest coordinate.
@@ -70,7 +73,12 @@ impl Aabb {
     /// So no box in a tree is flat, a ray that runs in a face of a primitive's box runs inside the tree's box, and
     /// the box holds whatever a test in double precision may take for a point of the primitive.
     pub(crate) fn padded(&self) -> Self {
-        let largest = self.min.iter().chain(&self.max).fold(0.0_f32, |m, coordinate| m.max(coordinate.abs()));
+        let mut largest = 0.0;
+        for axis in 0..3 {
+            for coordinate in [self.min[axis].abs(), self.max[axis].abs()] {
+                largest = if coordinate > largest { coordinate } else { largest };
+            }
+        }
         let pad = (largest * f32::EPSILON).max(f32::MIN_POSITIVE);
         Self { min: self.min.map(|x| x - pad), max: self.max.map(|x| x + pad) }
     }

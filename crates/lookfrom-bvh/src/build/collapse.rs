@@ -4,55 +4,57 @@
 
 use crate::Bvh;
 use crate::bvh::{Leaf, ProceduralItem, SphereItem};
-use crate::instance::Instance;
 use crate::node::{Child, Node};
 use crate::triangle::TriangleBlock;
 
+use super::parallel;
 use super::plan::Plan;
-use super::sah::{Binary, Reference};
-use super::{Geometry, Item, Kind};
+use super::reference::Reference;
+use super::sah::Binary;
+use super::{Geometry, Kind, Primitives};
 
 /// Makes the tree, all but its bounds and statistics.
 pub(super) fn collapse(
     binary: &[Binary],
+    plan: &Plan,
     references: &[Reference],
-    items: &[Item],
-    geometries: &[Geometry],
-    instances: Vec<Instance>,
+    primitives: &Primitives<'_>,
 ) -> Bvh {
     let mut bvh = Bvh::default();
     // Procedural geometries keep their order; an item names its place among them.
-    let mut procedural_place = vec![0; geometries.len()];
-    for (index, geometry) in geometries.iter().enumerate() {
+    let mut procedural_place = vec![0; primitives.geometries.len()];
+    for (index, geometry) in primitives.geometries.iter().enumerate() {
         if let Geometry::Procedural(shapes) = geometry {
             procedural_place[index] = bvh.procedural_shapes.len() as u32;
             bvh.procedural_shapes.push(shapes.clone());
         }
     }
-    let plan = Plan::new(binary, references, items);
     let mut collapse =
-        Collapse { plan, binary, references, items, geometries, procedural_place, instances, bvh };
+        Collapse { plan, binary, references, primitives, procedural_place, blocks: Vec::new(), bvh };
     if !binary.is_empty() {
         collapse.node(0);
     }
-    collapse.bvh
+    let Collapse { blocks, mut bvh, .. } = collapse;
+    bvh.triangles =
+        parallel::collect(blocks.len(), 1024, |block| triangle_block(&blocks[block], references, primitives));
+    bvh
 }
 
 struct Collapse<'a> {
-    plan: Plan<'a>,
+    plan: &'a Plan,
     binary: &'a [Binary],
     references: &'a [Reference],
-    items: &'a [Item],
-    geometries: &'a [Geometry],
+    primitives: &'a Primitives<'a>,
     procedural_place: Vec<u32>,
-    instances: Vec<Instance>,
+    /// The leaves of triangles.
+    blocks: Vec<Binary>,
     bvh: Bvh,
 }
 
 impl Collapse<'_> {
     /// Writes the node that stands for a binary one, and all below it; returns it.
     fn node(&mut self, root: usize) -> Child {
-        let (children, count) = self.plan.children(root);
+        let (children, count) = self.plan.children(self.binary, root);
         let number = self.bvh.nodes.len();
         self.bvh.nodes.push(Node::EMPTY);
         for (slot, &child) in children[..count].iter().enumerate() {
@@ -63,34 +65,23 @@ impl Collapse<'_> {
         Child::node(number)
     }
 
-    /// Writes the primitives of a leaf.
+    /// Writes the primitives of a leaf, or notes them where they are triangles.
     fn leaf(&mut self, node: &Binary) -> Child {
-        let range = node.first as usize..(node.first + node.count) as usize;
-        let mut items: Vec<&Item> =
-            self.references[range].iter().map(|reference| &self.items[reference.item as usize]).collect();
-        items.sort_unstable_by_key(|item| (item.geometry, item.primitive));
+        let kind = self.references[node.first as usize].kind();
+        if kind == Kind::Triangle {
+            self.blocks.push(*node);
+            return Child::triangles(self.blocks.len() - 1);
+        }
+        let (numbers, count) = sorted_numbers(node, self.references);
+        let ids = numbers[..count].iter().map(|&number| self.primitives.ids(number));
         let count = node.count;
         let bvh = &mut self.bvh;
-        let leaf = match items[0].kind {
-            Kind::Triangle => {
-                let triangles: Vec<_> = items
-                    .iter()
-                    .filter_map(|item| match &self.geometries[item.geometry as usize] {
-                        Geometry::Triangles(corners) => {
-                            Some((corners[item.primitive as usize], item.geometry, item.primitive))
-                        }
-                        _ => None,
-                    })
-                    .collect();
-                bvh.triangles.push(TriangleBlock::new(&triangles));
-                return Child::triangles(bvh.triangles.len() - 1);
-            }
+        let leaf = match kind {
             Kind::Sphere => {
                 let first = bvh.spheres.len() as u32;
-                for item in items {
-                    if let Geometry::Spheres(spheres) = &self.geometries[item.geometry as usize] {
-                        let shape = spheres[item.primitive as usize];
-                        let (geometry, primitive) = (item.geometry, item.primitive);
+                for (geometry, primitive) in ids {
+                    if let Geometry::Spheres(spheres) = &self.primitives.geometries[geometry as usize] {
+                        let shape = spheres[primitive as usize];
                         bvh.spheres.push(SphereItem { shape, geometry, primitive });
                     }
                 }
@@ -98,20 +89,42 @@ impl Collapse<'_> {
             }
             Kind::Procedural => {
                 let first = bvh.procedurals.len() as u32;
-                for item in items {
-                    let (geometry, primitive) = (item.geometry, item.primitive);
+                for (geometry, primitive) in ids {
                     let shape = self.procedural_place[geometry as usize];
                     bvh.procedurals.push(ProceduralItem { shape, geometry, primitive });
                 }
                 Leaf::Procedurals { first, count }
             }
-            Kind::Instance => {
+            Kind::Instance | Kind::Triangle => {
                 let first = bvh.instances.len() as u32;
-                bvh.instances.extend(items.iter().map(|item| self.instances[item.geometry as usize].clone()));
+                bvh.instances.extend(ids.map(|(_, place)| self.primitives.instances[place as usize].clone()));
                 Leaf::Instances { first, count }
             }
         };
         bvh.leaves.push(leaf);
         Child::leaf(bvh.leaves.len() - 1)
     }
+}
+
+/// The primitives of a leaf.
+fn sorted_numbers(node: &Binary, references: &[Reference]) -> ([u32; Kind::MOST_IN_A_LEAF], usize) {
+    let mut numbers = [u32::MAX; Kind::MOST_IN_A_LEAF];
+    let references = &references[node.first as usize..][..node.count as usize];
+    for (number, reference) in numbers.iter_mut().zip(references) {
+        *number = reference.number();
+    }
+    numbers.sort_unstable();
+    (numbers, references.len())
+}
+
+fn triangle_block(node: &Binary, references: &[Reference], primitives: &Primitives<'_>) -> TriangleBlock {
+    let (numbers, count) = sorted_numbers(node, references);
+    let mut triangles = [Default::default(); Kind::MOST_IN_A_LEAF];
+    for (triangle, &number) in triangles.iter_mut().zip(&numbers[..count]) {
+        let (geometry, primitive) = primitives.ids(number);
+        if let Geometry::Triangles(corners) = &primitives.geometries[geometry as usize] {
+            *triangle = (corners[primitive as usize], geometry, primitive);
+        }
+    }
+    TriangleBlock::new(&triangles[..count])
 }

@@ -4,7 +4,10 @@
 //! again, and `collapse` turns that binary tree into the wide one that rays walk.
 
 mod collapse;
+mod cut;
+mod parallel;
 mod plan;
+mod reference;
 mod reinsert;
 mod sah;
 
@@ -18,9 +21,13 @@ use crate::instance::Instance;
 use crate::node::Child;
 use crate::procedural::Procedural;
 use crate::ray::NONE;
+use crate::simd::Level;
 use crate::sphere::Sphere;
 use crate::validate::Statistics;
 use crate::vector::{cross, subtract, wide};
+
+use plan::Plan;
+use reference::Reference;
 
 /// Triangles over shared corners, borrowed while the builder copies them. Rays hit both faces.
 #[derive(Clone, Copy, Debug)]
@@ -142,18 +149,120 @@ enum Geometry {
     Procedural(Arc<dyn Procedural>),
 }
 
-/// One thing that goes into the tree.
-#[derive(Clone, Copy, Debug)]
-struct Item {
-    /// Padded.
-    bounds: Aabb,
-    kind: Kind,
-    /// Number of the geometry; of an instance, its place in the list of usable instances.
-    geometry: u32,
-    primitive: u32,
+impl Geometry {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Triangles(_) => Kind::Triangle,
+            Self::Spheres(_) => Kind::Sphere,
+            Self::Procedural(_) => Kind::Procedural,
+        }
+    }
+
+    fn count(&self) -> usize {
+        match self {
+            Self::Triangles(corners) => corners.len(),
+            Self::Spheres(spheres) => spheres.len(),
+            Self::Procedural(shapes) => shapes.count() as usize,
+        }
+    }
+
+    fn bounds(&self, primitive: u32) -> Aabb {
+        match self {
+            Self::Triangles(corners) => Aabb::around(&corners[primitive as usize]),
+            Self::Spheres(spheres) => spheres[primitive as usize].bounds(),
+            Self::Procedural(shapes) => shapes.bounds(primitive),
+        }
+    }
+
+    /// Whether a ray can meet a primitive, its box aside.
+    fn is_usable(&self, primitive: u32) -> bool {
+        match self {
+            Self::Triangles(corners) => has_area(&corners[primitive as usize]),
+            Self::Spheres(spheres) => has_surface(&spheres[primitive as usize]),
+            Self::Procedural(_) => true,
+        }
+    }
 }
 
-/// What an item is. A leaf holds items of one kind.
+/// All that may go into the tree, numbered: the primitives of one geometry after the other, then the instances.
+struct Primitives<'a> {
+    geometries: &'a [Geometry],
+    instances: Vec<Instance>,
+    /// The first number of each geometry, and of the instances.
+    first: Vec<u32>,
+}
+
+impl<'a> Primitives<'a> {
+    fn new(geometries: &'a [Geometry], instances: Vec<Instance>) -> Result<Self, BuildError> {
+        let mut primitives = 0;
+        let mut first = vec![0];
+        for geometry in geometries {
+            primitives += geometry.count() as u64;
+            first.push(primitives as u32);
+        }
+        primitives += instances.len() as u64;
+        if primitives >= Child::LIMIT || geometries.len() as u64 >= u64::from(NONE) {
+            return Err(BuildError::TooMany { primitives });
+        }
+        Ok(Self { geometries, instances, first })
+    }
+
+    fn count(&self) -> usize {
+        self.first[self.geometries.len()] as usize + self.instances.len()
+    }
+
+    /// Geometry and primitive; of an instance, the number of geometries and its place.
+    fn ids(&self, number: u32) -> (u32, u32) {
+        let geometry = self.first.partition_point(|&first| first <= number) - 1;
+        (geometry as u32, number - self.first[geometry])
+    }
+
+    fn bounds(&self, number: u32) -> Aabb {
+        let (geometry, primitive) = self.ids(number);
+        match self.geometries.get(geometry as usize) {
+            Some(geometry) => geometry.bounds(primitive),
+            None => self.instances[primitive as usize].bounds(),
+        }
+    }
+
+    /// What is to be sorted, with a padded box; an empty one where no ray can meet the primitive.
+    fn reference(&self, number: u32) -> Reference {
+        let (geometry, primitive) = self.ids(number);
+        let (usable, kind) = match self.geometries.get(geometry as usize) {
+            Some(geometry) => (geometry.is_usable(primitive), geometry.kind()),
+            None => (true, Kind::Instance),
+        };
+        let bounds = self.bounds(number);
+        let bounds = if usable && bounds.is_valid() { bounds.padded() } else { Aabb::EMPTY };
+        Reference::new(&bounds, number, kind)
+    }
+
+    /// Everything that rays can meet.
+    fn references(&self) -> Vec<Reference> {
+        let make = |number| self.reference(number as u32);
+        let mut references = parallel::collect(self.count(), parallel::GRAIN, make);
+        let is_left_out = |reference: &Reference| reference.bounds().is_empty();
+        if parallel::chunks(&references, |references| references.iter().any(is_left_out)).contains(&true) {
+            references.retain(|reference| !is_left_out(reference));
+        }
+        references
+    }
+
+    /// The box around what is referred to.
+    fn bounds_of(&self, references: &[Reference]) -> Aabb {
+        let chunks = parallel::chunks(references, |references| {
+            let mut bounds = Aabb::EMPTY;
+            references.iter().for_each(|reference| bounds.unite(&self.bounds(reference.number())));
+            bounds
+        });
+        chunks.iter().fold(Aabb::EMPTY, |mut all, bounds| {
+            all.unite(bounds);
+            all
+        })
+    }
+}
+
+/// What a primitive is. A leaf holds those of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Triangle,
@@ -163,10 +272,13 @@ enum Kind {
 }
 
 impl Kind {
+    /// The most of the numbers below.
+    const MOST_IN_A_LEAF: usize = 8;
+
     /// How many fit into a leaf.
     fn leaf_capacity(self) -> usize {
         match self {
-            Self::Triangle | Self::Sphere => 8,
+            Self::Triangle | Self::Sphere => Self::MOST_IN_A_LEAF,
             Self::Procedural | Self::Instance => 1,
         }
     }
@@ -187,19 +299,27 @@ impl Builder {
     /// Adds triangles and returns their geometry's number. An index out of range makes [`Self::build`] fail.
     pub fn triangles(&mut self, triangles: Triangles<'_>) -> u32 {
         let geometry = self.geometries.len() as u32;
-        let mut corners = Vec::with_capacity(triangles.indices.len());
-        for (triangle, indices) in triangles.indices.iter().enumerate() {
-            let corner = |i: usize| triangles.positions.get(indices[i] as usize).copied();
-            if let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2)) {
-                corners.push([a, b, c]);
-                continue;
+        let Triangles { positions, indices } = triangles;
+        let out_of_range =
+            |indices: &[u32; 3]| indices.iter().copied().find(|&i| i as usize >= positions.len());
+        let firsts = parallel::chunks(indices, |indices| indices.iter().find_map(out_of_range));
+        let corners = if firsts.iter().all(Option::is_none) {
+            parallel::collect(indices.len(), parallel::GRAIN, |i| indices[i].map(|i| positions[i as usize]))
+        } else {
+            for (triangle, indices) in indices.iter().enumerate() {
+                if let Some(index) = out_of_range(indices) {
+                    let (triangle, positions) = (triangle as u32, positions.len());
+                    self.error.get_or_insert(BuildError::IndexOutOfRange {
+                        geometry,
+                        triangle,
+                        index,
+                        positions,
+                    });
+                    break;
+                }
             }
-            let positions = triangles.positions.len();
-            let index = indices.iter().copied().find(|&i| i as usize >= positions).unwrap_or(NONE);
-            let triangle = triangle as u32;
-            self.error.get_or_insert(BuildError::IndexOutOfRange { geometry, triangle, index, positions });
-            break;
-        }
+            Vec::new()
+        };
         self.geometries.push(Geometry::Triangles(corners));
         geometry
     }
@@ -234,46 +354,25 @@ impl Builder {
         if let Some(error) = &self.error {
             return Err(error.clone());
         }
-        let instances = self.usable_instances()?;
-        let primitives = self.count() + instances.len() as u64;
-        if primitives >= Child::LIMIT || self.geometries.len() as u64 >= u64::from(NONE) {
-            return Err(BuildError::TooMany { primitives });
-        }
-        let mut statistics = Statistics::default();
-        let (items, bounds) = self.items(&instances, &mut statistics);
-        let mut references: Vec<sah::Reference> = items
-            .iter()
-            .enumerate()
-            .map(|(index, item)| sah::Reference { bounds: item.bounds, item: index as u32 })
-            .collect();
-        let mut binary = sah::build(&mut references, &items, self.quality);
+        let primitives = Primitives::new(&self.geometries, self.usable_instances()?)?;
+        let mut references = primitives.references();
+        let bounds = primitives.bounds_of(&references);
+        let left_out = primitives.count() - references.len();
+        let mut binary = sah::build(&mut references, self.quality, Level::new());
+        let mut plan = Plan::new(&binary, &references);
         if self.quality == Quality::Best
             && let Some((other, sorted)) = reinsert::reinsert(&binary, &references)
         {
             // A cheaper binary tree may make a dearer wide one, where leaves no longer fill up.
-            let cost = |binary: &[sah::Binary], references: &[sah::Reference]| {
-                plan::Plan::new(binary, references, &items).cost()
-            };
-            if cost(&other, &sorted) < cost(&binary, &references) {
-                (binary, references) = (other, sorted);
+            let other_plan = Plan::new(&other, &sorted);
+            if other_plan.cost() < plan.cost() {
+                (binary, references, plan) = (other, sorted, other_plan);
             }
         }
-        let mut bvh = collapse::collapse(&binary, &references, &items, &self.geometries, instances);
+        let mut bvh = collapse::collapse(&binary, &plan, &references, &primitives);
         bvh.set_bounds(bounds);
-        bvh.statistics = Statistics { left_out: statistics.left_out, ..bvh.take_statistics() };
+        bvh.statistics = Statistics { left_out, ..bvh.take_statistics() };
         Ok(bvh)
-    }
-
-    /// Number of primitives, instances aside.
-    fn count(&self) -> u64 {
-        self.geometries
-            .iter()
-            .map(|geometry| match geometry {
-                Geometry::Triangles(corners) => corners.len() as u64,
-                Geometry::Spheres(spheres) => spheres.len() as u64,
-                Geometry::Procedural(shapes) => u64::from(shapes.count()),
-            })
-            .sum()
     }
 
     fn usable_instances(&self) -> Result<Vec<Instance>, BuildError> {
@@ -288,54 +387,16 @@ impl Builder {
         }
         Ok(usable)
     }
-
-    /// Everything that rays can meet, and the box around it.
-    fn items(&self, instances: &[Instance], statistics: &mut Statistics) -> (Vec<Item>, Aabb) {
-        let mut items = Vec::with_capacity(self.count() as usize + instances.len());
-        let mut all = Aabb::EMPTY;
-        let mut add = |bounds: Aabb, usable: bool, kind, geometry: usize, primitive: usize| {
-            if !usable || !bounds.is_valid() {
-                statistics.left_out += 1;
-                return;
-            }
-            all.unite(&bounds);
-            let (geometry, primitive) = (geometry as u32, primitive as u32);
-            items.push(Item { bounds: bounds.padded(), kind, geometry, primitive });
-        };
-        for (index, geometry) in self.geometries.iter().enumerate() {
-            match geometry {
-                Geometry::Triangles(corners) => {
-                    for (primitive, corners) in corners.iter().enumerate() {
-                        let bounds = Aabb::around(corners);
-                        add(bounds, has_area(corners), Kind::Triangle, index, primitive);
-                    }
-                }
-                Geometry::Spheres(spheres) => {
-                    for (primitive, sphere) in spheres.iter().enumerate() {
-                        add(sphere.bounds(), has_surface(sphere), Kind::Sphere, index, primitive);
-                    }
-                }
-                Geometry::Procedural(shapes) => {
-                    for primitive in 0..shapes.count() {
-                        add(shapes.bounds(primitive), true, Kind::Procedural, index, primitive as usize);
-                    }
-                }
-            }
-        }
-        for (place, instance) in instances.iter().enumerate() {
-            add(instance.bounds(), true, Kind::Instance, place, instance.id as usize);
-        }
-        (items, all)
-    }
 }
 
 /// Whether the corners are finite numbers and do not lie on a line.
 pub(crate) fn has_area(corners: &[[f32; 3]; 3]) -> bool {
-    if !corners.iter().flatten().all(|x| x.abs() <= LARGEST_COORDINATE) {
-        return false;
-    }
+    // (A sum of magnitudes is compared once, and is NaN where one of them is.)
+    let sum: f32 = corners.iter().flatten().map(|x| x.abs()).sum();
+    let is_finite =
+        sum <= LARGEST_COORDINATE || corners.iter().flatten().all(|x| x.abs() <= LARGEST_COORDINATE);
     let [a, b, c] = corners.map(wide);
-    cross(subtract(b, a), subtract(c, a)).iter().any(|&x| x != 0.0)
+    is_finite && cross(subtract(b, a), subtract(c, a)) != [0.0; 3]
 }
 
 /// Whether the sphere is finite and larger than a point.

@@ -6,8 +6,9 @@
 
 use crate::node::WIDTH;
 
-use super::Item;
-use super::sah::{Binary, Reference, fits_a_leaf};
+use super::parallel::{self, join};
+use super::reference::{Reference, fits_a_leaf};
+use super::sah::Binary;
 
 /// Places that a child may take.
 const PLACES: usize = WIDTH - 1;
@@ -28,77 +29,44 @@ struct Choice {
 }
 
 /// The choices for all binary nodes.
-pub(super) struct Plan<'a> {
-    binary: &'a [Binary],
-    choices: Vec<Choice>,
-}
+pub(super) struct Plan(Vec<Choice>);
 
-impl<'a> Plan<'a> {
-    pub(super) fn new(binary: &'a [Binary], references: &[Reference], items: &[Item]) -> Self {
+impl Plan {
+    pub(super) fn new(binary: &[Binary], references: &[Reference]) -> Self {
         let mut choices = vec![Choice::default(); binary.len()];
-        // Children follow their parents.
-        for (number, node) in binary.iter().enumerate().rev() {
-            let area = node.bounds.half_area();
-            let mut choice = Choice::default();
-            let leaf = if fits_a_leaf(&references[node.first as usize..][..node.count as usize], items) {
-                LEAF * area
-            } else {
-                f32::INFINITY
-            };
-            if node.right == 0 {
-                choice.leaf = true;
-                choice.cost = [leaf; PLACES];
-                choices[number] = choice;
-                continue;
-            }
-
-            // Share out two to eight places; the last are those of a wide node of its own.
-            let (left, right) = (&choices[number + 1].cost, &choices[number + node.right as usize].cost);
-            let mut shared = [f32::INFINITY; WIDTH + 1];
-            for places in 2..=WIDTH {
-                for to_left in 1..places {
-                    let cost = left[to_left - 1] + right[places - to_left - 1];
-                    if cost < shared[places] {
-                        shared[places] = cost;
-                        choice.left[places - 2] = to_left as u8;
-                    }
-                }
-            }
-            let own_node = NODE * area + shared[WIDTH];
-            choice.leaf = leaf <= own_node;
-            choice.cost[0] = leaf.min(own_node);
-            for places in 2..=PLACES {
-                choice.cost[places - 1] = shared[places];
-                if choice.cost[places - 2] <= shared[places] {
-                    choice.cost[places - 1] = choice.cost[places - 2];
-                    choice.left[places - 2] = 0;
-                }
-            }
-            choices[number] = choice;
+        if !binary.is_empty() {
+            choose_all(binary, references, &mut choices);
         }
-        Self { binary, choices }
+        Self(choices)
     }
 
     /// What rays are expected to visit, in the area of boxes.
     pub(super) fn cost(&self) -> f32 {
-        self.choices.first().map_or(0.0, |root| root.cost[0])
+        self.0.first().map_or(0.0, |root| root.cost[0])
     }
 
     /// Whether a binary node becomes a leaf.
     pub(super) fn is_leaf(&self, number: usize) -> bool {
-        self.choices[number].leaf
+        self.0[number].leaf
     }
 
     /// The binary nodes that become the children of the wide node that stands for one.
-    pub(super) fn children(&self, root: usize) -> ([usize; WIDTH], usize) {
+    pub(super) fn children(&self, binary: &[Binary], root: usize) -> ([usize; WIDTH], usize) {
         let mut children = [root; WIDTH];
         let mut count = 0;
-        self.collect(root, WIDTH, &mut children, &mut count);
+        self.collect(binary, root, WIDTH, &mut children, &mut count);
         (children, count)
     }
 
-    fn collect(&self, number: usize, places: usize, children: &mut [usize; WIDTH], count: &mut usize) {
-        let choice = &self.choices[number];
+    fn collect(
+        &self,
+        binary: &[Binary],
+        number: usize,
+        places: usize,
+        children: &mut [usize; WIDTH],
+        count: &mut usize,
+    ) {
+        let choice = &self.0[number];
         let mut places = places;
         while places > 1 && choice.left[places - 2] == 0 {
             places -= 1;
@@ -109,7 +77,66 @@ impl<'a> Plan<'a> {
             return;
         }
         let left = usize::from(choice.left[places - 2]);
-        self.collect(number + 1, left, children, count);
-        self.collect(number + self.binary[number].right as usize, places - left, children, count);
+        self.collect(binary, number + 1, left, children, count);
+        self.collect(binary, number + binary[number].right as usize, places - left, children, count);
     }
+}
+
+/// Makes the choices for a binary node and all below it.
+fn choose_all(binary: &[Binary], references: &[Reference], choices: &mut [Choice]) {
+    let right = binary[0].right as usize;
+    if binary.len() < parallel::GRAIN || right == 0 {
+        // Children follow their parents.
+        for number in (0..binary.len()).rev() {
+            choices[number] = choose(&binary[number..], references, &choices[number..]);
+        }
+        return;
+    }
+    let (first, rest) = choices.split_at_mut(right);
+    join(
+        || choose_all(&binary[1..right], references, &mut first[1..]),
+        || choose_all(&binary[right..], references, rest),
+    );
+    choices[0] = choose(binary, references, choices);
+}
+
+/// The choice for the first of some binary nodes, where those for its children are made.
+fn choose(binary: &[Binary], references: &[Reference], choices: &[Choice]) -> Choice {
+    let node = &binary[0];
+    let area = node.bounds.half_area();
+    let mut choice = Choice::default();
+    let leaf = if fits_a_leaf(&references[node.first as usize..][..node.count as usize]) {
+        LEAF * area
+    } else {
+        f32::INFINITY
+    };
+    if node.right == 0 {
+        choice.leaf = true;
+        choice.cost = [leaf; PLACES];
+        return choice;
+    }
+
+    // Share out two to eight places; the last are those of a wide node of its own.
+    let (left, right) = (&choices[1].cost, &choices[node.right as usize].cost);
+    let mut shared = [f32::INFINITY; WIDTH + 1];
+    for places in 2..=WIDTH {
+        for to_left in 1..places {
+            let cost = left[to_left - 1] + right[places - to_left - 1];
+            if cost < shared[places] {
+                shared[places] = cost;
+                choice.left[places - 2] = to_left as u8;
+            }
+        }
+    }
+    let own_node = NODE * area + shared[WIDTH];
+    choice.leaf = leaf <= own_node;
+    choice.cost[0] = leaf.min(own_node);
+    for places in 2..=PLACES {
+        choice.cost[places - 1] = shared[places];
+        if choice.cost[places - 2] <= shared[places] {
+            choice.cost[places - 1] = choice.cost[places - 2];
+            choice.left[places - 2] = 0;
+        }
+    }
+    choice
 }

@@ -7,7 +7,8 @@
 use crate::aabb::Aabb;
 use crate::node::LARGEST_DEPTH;
 
-use super::sah::{Binary, Reference};
+use super::reference::Reference;
+use super::sah::Binary;
 
 /// How often all is searched and moved at most.
 const ROUNDS: usize = 12;

@@ -1,0 +1,204 @@
+//! Where to cut a set of primitives in two: the surface area heuristic, and the cut itself.
+//!
+//! Centroids fall into bins on all three axes in one pass: Wald (2007), "On fast Construction of SAH-based Bounding Volume
+//! Hierarchies". A few primitives get a bin each, in the order of their centroids, which makes the heuristic exact.
+
+use crate::aabb::Aabb;
+use crate::simd::{Simd, Work, f32x4, f32x8, prelude::*, u32x4};
+
+use super::reference::{Covered, Reference};
+
+/// Bins per axis at most.
+pub(super) const MAX_BINS: usize = 32;
+
+/// Where these are enough, less is to be cleared.
+const FEW_BINS: usize = 8;
+
+/// Cuts two or more references: sorts those of the left side to the front. Gives their number and what the two sides cover, or
+/// none where no cut between bins separates anything.
+pub(super) struct Cut<'a> {
+    pub(super) references: &'a mut [Reference],
+    pub(super) centers: &'a Aabb,
+    /// Per axis, at most [`MAX_BINS`].
+    pub(super) bins: usize,
+}
+
+impl Work for Cut<'_> {
+    type Output = Option<(usize, [Covered; 2])>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        if self.bins <= FEW_BINS { self.cut::<S, FEW_BINS>(simd) } else { self.cut::<S, MAX_BINS>(simd) }
+    }
+}
+
+impl Cut<'_> {
+    #[inline(always)]
+    fn cut<S: Simd, const BINS: usize>(self, simd: S) -> Option<(usize, [Covered; 2])> {
+        let binning = Binning::new(simd, self.centers, self.bins);
+        let mut bins = Bins::<S, BINS>::new(simd);
+        for reference in &*self.references {
+            let lanes = reference.lanes(simd);
+            let numbers = binning.bins(simd, twice_center(lanes));
+            for axis in 0..3 {
+                let bin = numbers[axis] as usize % BINS;
+                bins.boxes[bin][axis] = bins.boxes[bin][axis].min(lanes);
+                bins.counts[bin][axis] += 1;
+            }
+        }
+        let (axis, cut) = bins.cheapest_cut(simd, self.bins)?;
+
+        // Move what is left to the front, without a branch, since none could be foreseen.
+        let mut centers = [f32x8::splat(simd, f32::INFINITY); 2];
+        let mut middle = 0;
+        for place in 0..self.references.len() {
+            let reference = self.references[place];
+            let center = twice_center(reference.lanes(simd));
+            let is_left = usize::from((binning.bins(simd, center)[axis] as usize) < cut);
+            let center = point(center);
+            // What lies on the other side is moved to infinity.
+            centers[0] = centers[0].min(center + f32x8::splat(simd, [f32::INFINITY, 0.0][is_left]));
+            centers[1] = centers[1].min(center + f32x8::splat(simd, [0.0, f32::INFINITY][is_left]));
+            self.references[place] = self.references[middle];
+            self.references[middle] = reference;
+            middle += is_left;
+        }
+        Some((middle, bins.covered(axis, cut, self.bins, centers)))
+    }
+}
+
+#[inline(always)]
+fn twice_center<S: Simd>(lanes: f32x8<S>) -> f32x4<S> {
+    let (min, negated_max) = lanes.split();
+    min - negated_max
+}
+
+/// The box of one point.
+#[inline(always)]
+fn point<S: Simd>(center: f32x4<S>) -> f32x8<S> {
+    center.combine(-center)
+}
+
+#[inline(always)]
+fn aabb<S: Simd>(lanes: f32x8<S>) -> Aabb {
+    let [x, y, z, _, u, v, w, _]: [f32; 8] = lanes.into();
+    Aabb { min: [x, y, z], max: [-u, -v, -w] }
+}
+
+/// Which bins a centroid falls into.
+struct Binning<S: Simd> {
+    origin: f32x4<S>,
+    scale: f32x4<S>,
+    last: f32x4<S>,
+}
+
+impl<S: Simd> Binning<S> {
+    #[inline(always)]
+    fn new(simd: S, centers: &Aabb, bins: usize) -> Self {
+        let [x, y, z] = centers.min;
+        let [u, v, w] = [0, 1, 2].map(|axis| {
+            let scale = bins as f32 / (centers.max[axis] - centers.min[axis]);
+            if scale.is_finite() { scale } else { 0.0 }
+        });
+        Self {
+            origin: f32x4::simd_from(simd, [x, y, z, 0.0]),
+            scale: f32x4::simd_from(simd, [u, v, w, 0.0]),
+            last: f32x4::splat(simd, (bins - 1) as f32),
+        }
+    }
+
+    /// The bins on the three axes. (The fourth lane means nothing.)
+    #[inline(always)]
+    fn bins(&self, simd: S, twice_center: f32x4<S>) -> [i32; 4] {
+        let place = (twice_center - self.origin) * self.scale;
+        simd.cvt_i32_f32x4(place.min(self.last)).into()
+    }
+}
+
+/// What is in the bins of the three axes.
+struct Bins<S: Simd, const BINS: usize> {
+    boxes: [[f32x8<S>; 3]; BINS],
+    counts: [[u32; 4]; BINS],
+}
+
+impl<S: Simd, const BINS: usize> Bins<S, BINS> {
+    #[inline(always)]
+    fn new(simd: S) -> Self {
+        Self { boxes: [[f32x8::splat(simd, f32::INFINITY); 3]; BINS], counts: [[0; 4]; BINS] }
+    }
+
+    /// The axis of the cheapest cut, and the first bin to its right.
+    #[inline(always)]
+    fn cheapest_cut(&self, simd: S, bins: usize) -> Option<(usize, usize)> {
+        // Sweep from the right: what would lie right of each cut.
+        let nothing = f32x4::splat(simd, f32::INFINITY);
+        let mut right = [nothing; BINS];
+        let mut side = Side::new(simd);
+        for bin in (1..bins).rev() {
+            right[bin] = side.add(simd, &self.boxes[bin], &self.counts[bin]);
+        }
+        // Sweep from the left and compare.
+        let mut least = nothing;
+        let mut best = f32x4::splat(simd, 0.0);
+        let mut side = Side::new(simd);
+        for bin in 1..bins {
+            let cost = side.add(simd, &self.boxes[bin - 1], &self.counts[bin - 1]) + right[bin];
+            let less = cost.simd_lt(least);
+            least = less.select(cost, least);
+            best = less.select(f32x4::splat(simd, bin as f32), best);
+        }
+        let (least, best): ([f32; 4], [f32; 4]) = (least.into(), best.into());
+        let axis = (1..3).fold(0, |axis, other| if least[other] < least[axis] { other } else { axis });
+        (least[axis] < f32::INFINITY).then_some((axis, best[axis] as usize))
+    }
+
+    /// What the two sides of a cut cover.
+    #[inline(always)]
+    fn covered(&self, axis: usize, cut: usize, bins: usize, centers: [f32x8<S>; 2]) -> [Covered; 2] {
+        let mut sides = [self.boxes[0][axis], self.boxes[cut][axis]];
+        for bin in 1..bins {
+            let side = usize::from(bin >= cut);
+            sides[side] = sides[side].min(self.boxes[bin][axis]);
+        }
+        [0, 1].map(
+            #[inline(always)]
+            |side| Covered { bounds: aabb(sides[side]), centers: aabb(centers[side]) },
+        )
+    }
+}
+
+/// What lies on one side of a cut, for each axis along which to cut.
+struct Side<S: Simd> {
+    bounds: [f32x8<S>; 3],
+    /// Lane by lane.
+    counts: u32x4<S>,
+}
+
+impl<S: Simd> Side<S> {
+    #[inline(always)]
+    fn new(simd: S) -> Self {
+        Self { bounds: [f32x8::splat(simd, f32::INFINITY); 3], counts: u32x4::splat(simd, 0) }
+    }
+
+    /// Adds a bin of each axis. Returns, in a lane for each axis, half the area times the number of blocks, since primitives
+    /// are tested in eights; infinity where there is nothing. (The fourth lane means nothing.)
+    #[inline(always)]
+    fn add(&mut self, simd: S, boxes: &[f32x8<S>; 3], counts: &[u32; 4]) -> f32x4<S> {
+        self.counts += u32x4::load_array_ref(simd, counts);
+        let mut extents = [f32x4::splat(simd, 0.0); 3];
+        for axis in 0..3 {
+            self.bounds[axis] = self.bounds[axis].min(boxes[axis]);
+            let (min, negated_max) = self.bounds[axis].split();
+            extents[axis] = min + negated_max;
+        }
+        // From a vector for each cut to a vector for each dimension. Extents are negated, their products are not.
+        let [a, b, c] = extents;
+        let (xy_ac, xy_b) = (a.zip_low(c), b.zip_low(b));
+        let [x, y] = [xy_ac.zip_low(xy_b), xy_ac.zip_high(xy_b)];
+        let z = a.zip_high(c).zip_low(b.zip_high(b));
+        let half_areas = (x * (y + z) + y * z).min(f32x4::splat(simd, 1e30));
+        let blocks = simd.cvt_f32_u32x4((self.counts + u32x4::splat(simd, 7)) >> 3);
+        let empty = self.counts.simd_eq(u32x4::splat(simd, 0));
+        empty.select(f32x4::splat(simd, f32::INFINITY), half_areas * blocks)
+    }
+}
