@@ -9,9 +9,9 @@ use crate::triangle::TriangleBlock;
 
 use super::parallel;
 use super::plan::Plan;
+use super::primitives::{Geometry, Kind, Primitives};
 use super::reference::Reference;
 use super::sah::Binary;
-use super::{Geometry, Kind, Primitives};
 
 /// Makes the tree, all but its bounds and statistics.
 pub(super) fn collapse(

@@ -3,7 +3,7 @@
 use crate::aabb::Aabb;
 use crate::simd::{Simd, f32x8, prelude::*};
 
-use super::Kind;
+use super::primitives::Kind;
 
 /// Eight lanes: minimum x, y, z, and the primitive's number (as bits); negated maximum x, y, z, and its kind.
 ///
@@ -51,7 +51,7 @@ pub(super) fn fits_a_leaf(references: &[Reference]) -> bool {
 }
 
 /// What some references cover.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Covered {
     pub(super) bounds: Aabb,
     /// The box around their boxes' centers, times two.

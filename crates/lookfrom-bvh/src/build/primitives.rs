@@ -1,0 +1,174 @@
+//! What goes into a tree: everything that the builder was told, under one number each, and the box of each.
+
+use std::sync::Arc;
+
+use crate::aabb::{Aabb, LARGEST_COORDINATE};
+use crate::instance::Instance;
+use crate::node::Child;
+use crate::procedural::Procedural;
+use crate::ray::NONE;
+use crate::sphere::Sphere;
+use crate::triangle::BLOCK;
+use crate::vector::{cross, subtract, wide};
+
+use super::reference::Reference;
+use super::{BuildError, parallel};
+
+/// What the builder was told.
+#[derive(Debug)]
+pub(super) enum Geometry {
+    /// Three corners a triangle.
+    Triangles(Vec<[[f32; 3]; 3]>),
+    Spheres(Vec<Sphere>),
+    Procedural(Arc<dyn Procedural>),
+}
+
+impl Geometry {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Triangles(_) => Kind::Triangle,
+            Self::Spheres(_) => Kind::Sphere,
+            Self::Procedural(_) => Kind::Procedural,
+        }
+    }
+
+    fn count(&self) -> usize {
+        match self {
+            Self::Triangles(corners) => corners.len(),
+            Self::Spheres(spheres) => spheres.len(),
+            Self::Procedural(shapes) => shapes.count() as usize,
+        }
+    }
+
+    fn bounds(&self, primitive: u32) -> Aabb {
+        match self {
+            Self::Triangles(corners) => Aabb::around(&corners[primitive as usize]),
+            Self::Spheres(spheres) => spheres[primitive as usize].bounds(),
+            Self::Procedural(shapes) => shapes.bounds(primitive),
+        }
+    }
+
+    /// Whether a ray can meet a primitive, its box aside.
+    fn is_usable(&self, primitive: u32) -> bool {
+        match self {
+            Self::Triangles(corners) => has_area(&corners[primitive as usize]),
+            Self::Spheres(spheres) => has_surface(&spheres[primitive as usize]),
+            Self::Procedural(_) => true,
+        }
+    }
+}
+
+/// All that may go into the tree, numbered: the primitives of one geometry after the other, then the instances.
+pub(super) struct Primitives<'a> {
+    pub(super) geometries: &'a [Geometry],
+    pub(super) instances: Vec<Instance>,
+    /// The first number of each geometry, and of the instances.
+    first: Vec<u32>,
+}
+
+impl<'a> Primitives<'a> {
+    pub(super) fn new(geometries: &'a [Geometry], instances: Vec<Instance>) -> Result<Self, BuildError> {
+        let mut primitives = 0;
+        let mut first = vec![0];
+        for geometry in geometries {
+            primitives += geometry.count() as u64;
+            first.push(primitives as u32);
+        }
+        primitives += instances.len() as u64;
+        if primitives >= Child::LIMIT || geometries.len() as u64 >= u64::from(NONE) {
+            return Err(BuildError::TooMany { primitives });
+        }
+        Ok(Self { geometries, instances, first })
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.first[self.geometries.len()] as usize + self.instances.len()
+    }
+
+    /// Geometry and primitive; of an instance, the number of geometries and its place.
+    pub(super) fn ids(&self, number: u32) -> (u32, u32) {
+        let geometry = self.first.partition_point(|&first| first <= number) - 1;
+        (geometry as u32, number - self.first[geometry])
+    }
+
+    fn bounds(&self, number: u32) -> Aabb {
+        let (geometry, primitive) = self.ids(number);
+        match self.geometries.get(geometry as usize) {
+            Some(geometry) => geometry.bounds(primitive),
+            None => self.instances[primitive as usize].bounds(),
+        }
+    }
+
+    /// What is to be sorted, with a padded box; an empty one where no ray can meet the primitive.
+    fn reference(&self, number: u32) -> Reference {
+        let (geometry, primitive) = self.ids(number);
+        let (usable, kind) = match self.geometries.get(geometry as usize) {
+            Some(geometry) => (geometry.is_usable(primitive), geometry.kind()),
+            None => (true, Kind::Instance),
+        };
+        let bounds = self.bounds(number);
+        let bounds = if usable && bounds.is_valid() { bounds.padded() } else { Aabb::EMPTY };
+        Reference::new(&bounds, number, kind)
+    }
+
+    /// Everything that rays can meet.
+    pub(super) fn references(&self) -> Vec<Reference> {
+        let make = |number| self.reference(number as u32);
+        let mut references = parallel::collect(self.count(), parallel::GRAIN, make);
+        let is_left_out = |reference: &Reference| reference.bounds().is_empty();
+        if parallel::chunks(&references, |references| references.iter().any(is_left_out)).contains(&true) {
+            references.retain(|reference| !is_left_out(reference));
+        }
+        references
+    }
+
+    /// The box around what is referred to.
+    pub(super) fn bounds_of(&self, references: &[Reference]) -> Aabb {
+        let chunks = parallel::chunks(references, |references| {
+            let mut bounds = Aabb::EMPTY;
+            references.iter().for_each(|reference| bounds.unite(&self.bounds(reference.number())));
+            bounds
+        });
+        chunks.iter().fold(Aabb::EMPTY, |mut all, bounds| {
+            all.unite(bounds);
+            all
+        })
+    }
+}
+
+/// What a primitive is. A leaf holds those of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Triangle,
+    Sphere,
+    Procedural,
+    Instance,
+}
+
+impl Kind {
+    /// The most of the numbers below.
+    pub(super) const MOST_IN_A_LEAF: usize = BLOCK;
+
+    /// How many fit into a leaf.
+    pub(super) fn leaf_capacity(self) -> usize {
+        match self {
+            Self::Triangle | Self::Sphere => Self::MOST_IN_A_LEAF,
+            Self::Procedural | Self::Instance => 1,
+        }
+    }
+}
+
+/// Whether the corners are finite numbers and do not lie on a line.
+pub(crate) fn has_area(corners: &[[f32; 3]; 3]) -> bool {
+    // (A sum of magnitudes is compared once, and is NaN where one of them is.)
+    let sum: f32 = corners.iter().flatten().map(|x| x.abs()).sum();
+    let is_finite =
+        sum <= LARGEST_COORDINATE || corners.iter().flatten().all(|x| x.abs() <= LARGEST_COORDINATE);
+    let [a, b, c] = corners.map(wide);
+    is_finite && cross(subtract(b, a), subtract(c, a)) != [0.0; 3]
+}
+
+/// Whether the sphere is finite and larger than a point.
+pub(crate) fn has_surface(sphere: &Sphere) -> bool {
+    sphere.radius > 0.0 && sphere.is_finite() && sphere.bounds().is_valid()
+}
