@@ -7,6 +7,7 @@
 use crate::aabb::Aabb;
 use crate::node::LARGEST_DEPTH;
 
+use super::parallel;
 use super::reference::Reference;
 use super::sah::Binary;
 
@@ -109,23 +110,19 @@ impl Spots {
     /// The best move of each of the largest nodes, the most useful first.
     fn find_moves(&self) -> Vec<Move> {
         // The root and its children stay.
-        let mut largest: Vec<u32> = (1..self.0.len() as u32).filter(|&n| self.at(n).parent != 0).collect();
+        // Areas are not negative, so their bits are in their order; of equal ones the first node comes first.
+        let by_area = |n: u32| u64::from(!self.at(n).area.to_bits()) << 32 | u64::from(n);
+        let nodes = 1..self.0.len() as u32;
+        let mut largest: Vec<u64> = nodes.filter(|&n| self.at(n).parent != 0).map(by_area).collect();
         let count = (self.0.len() / SHARE).max(1).min(largest.len());
         if count == 0 {
             return Vec::new();
         }
-        largest.select_nth_unstable_by(count - 1, |&a, &b| {
-            self.at(b).area.total_cmp(&self.at(a).area).then(a.cmp(&b))
-        });
+        largest.select_nth_unstable(count - 1);
         largest.truncate(count);
-        let find = |&node: &u32| self.find_move(node);
-        #[cfg(feature = "parallel")]
-        let mut moves: Vec<Move> = {
-            use rayon::prelude::*;
-            largest.par_iter().with_min_len(256).filter_map(find).collect()
-        };
-        #[cfg(not(feature = "parallel"))]
-        let mut moves: Vec<Move> = largest.iter().filter_map(find).collect();
+        let find = |place: usize| self.find_move(largest[place] as u32);
+        let found = parallel::collect(largest.len(), 256, find);
+        let mut moves: Vec<Move> = found.into_iter().flatten().collect();
         moves.sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.node.cmp(&b.node)));
         moves
     }
@@ -214,13 +211,16 @@ impl Spots {
         self.0[new as usize].parent = parent;
     }
 
-    /// Fits the boxes from a node up to the root.
+    /// Fits the boxes from a node up to where nothing changes.
     fn refit(&mut self, from: u32) {
         let mut number = from;
         while number != NONE {
             let spot = self.at(number);
             let mut bounds = self.at(spot.left).bounds;
             bounds.unite(&self.at(spot.right).bounds);
+            if number != from && bounds == spot.bounds {
+                break;
+            }
             let parent = spot.parent;
             let spot = &mut self.0[number as usize];
             spot.bounds = bounds;
