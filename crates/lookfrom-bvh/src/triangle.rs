@@ -97,6 +97,7 @@ pub(crate) struct Sieve<S: Simd> {
     sure_before: Lanes<S>,
     error: Lanes<S>,
     underflow: Lanes<S>,
+    per_length: Lanes<S>,
     rounding: Lanes<S>,
 }
 
@@ -110,6 +111,7 @@ impl<S: Simd> Sieve<S> {
             sure_before: Lanes::splat(simd, ray.shadow.sure_before),
             error: Lanes::splat(simd, ray.shadow.error),
             underflow: Lanes::splat(simd, ray.shadow.underflow),
+            per_length: Lanes::splat(simd, ray.shadow.per_length),
             rounding: Lanes::splat(simd, ray.shadow.rounding),
         }
     }
@@ -226,7 +228,9 @@ impl TriangleBlock {
         let most = u.max(v).max(w);
         let outside = least.simd_lt(-bound) & most.simd_gt(bound);
 
-        // Or its t is surely out of range, where the determinant's sign is sure.
+        // Or its t is surely out of range, where the determinant's sign is sure. Errors of t are relative to the reach in
+        // lengths of the direction.
+        let reach = reach * ray.per_length;
         let size = determinant.abs();
         let distance =
             nx.mul_add(cx, ny.mul_add(cy, nz * cz)) * Lanes::splat(simd, 1.0).copysign(determinant);
@@ -489,9 +493,16 @@ mod tests {
             let center = random.point_with_exponents(-8, 8);
             let size = random.size(-8, 8);
             let corners = [0; 3].map(|_| random.near(center, size));
-            let origin = random.point_with_exponents(-8, 8);
             let target = random.on_triangle(&corners);
-            let direction = [0, 1, 2].map(|i| target[i] - origin[i]);
+            let away = size * random.size(-9, 0);
+            let from_afar = random.unit() < 0.5;
+            let origin =
+                if from_afar { random.point_with_exponents(-8, 8) } else { random.near(target, away) };
+            let stretch = random.size(-8, 8);
+            let direction = match from_afar {
+                true => [0, 1, 2].map(|i| stretch * (target[i] - origin[i])),
+                false => random.near([0.0; 3], stretch),
+            };
             let ray = Ray::new(origin, direction);
             let exact = Exact::new(&ray);
             let Some(shadow) = Prepared::new(fearless_simd::Fallback::new(), &exact, 0.0) else { continue };
