@@ -69,8 +69,6 @@ pub(crate) struct Shadow {
     /// The triangle filter's errors, relative and absolute.
     pub(crate) error: f32,
     pub(crate) underflow: f32,
-    /// What a way is multiplied by to count in lengths of the direction, where that is shorter than 1; else 1.
-    pub(crate) per_length: f32,
     /// The distance before which the filter may be sure of a hit.
     pub(crate) sure_before: f32,
 }
@@ -157,7 +155,6 @@ impl Shadow {
             rounding,
             error: triangle::ERROR * greatest(direction),
             underflow: triangle::UNDERFLOW / SHORT,
-            per_length: greater(1.0 / greatest(direction), 1.0),
             sure_before: 1.0 / SURE_AFTER,
         }
     }
@@ -203,7 +200,6 @@ impl Shadow {
             rounding: farthest + moved,
             error: if in_range { triangle::ERROR * (length * shorten) } else { f32::INFINITY },
             underflow: triangle::UNDERFLOW * 4.0,
-            per_length: 1.0,
             sure_before: if may_be_sure { 1.0 / SURE_AFTER } else { -1.0 },
         })
     }

@@ -97,7 +97,6 @@ pub(crate) struct Sieve<S: Simd> {
     sure_before: Lanes<S>,
     error: Lanes<S>,
     underflow: Lanes<S>,
-    per_length: Lanes<S>,
     rounding: Lanes<S>,
 }
 
@@ -111,7 +110,6 @@ impl<S: Simd> Sieve<S> {
             sure_before: Lanes::splat(simd, ray.shadow.sure_before),
             error: Lanes::splat(simd, ray.shadow.error),
             underflow: Lanes::splat(simd, ray.shadow.underflow),
-            per_length: Lanes::splat(simd, ray.shadow.per_length),
             rounding: Lanes::splat(simd, ray.shadow.rounding),
         }
     }
@@ -228,9 +226,7 @@ impl TriangleBlock {
         let most = u.max(v).max(w);
         let outside = least.simd_lt(-bound) & most.simd_gt(bound);
 
-        // Or its t is surely out of range, where the determinant's sign is sure. Errors of t are relative to the reach in
-        // lengths of the direction.
-        let reach = reach * ray.per_length;
+        // Or its t is surely out of range, where the determinant's sign is sure.
         let size = determinant.abs();
         let distance =
             nx.mul_add(cx, ny.mul_add(cy, nz * cz)) * Lanes::splat(simd, 1.0).copysign(determinant);
