@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-use lookfrom_bvh::{Builder, Bvh, NONE, Quality, Ray, Triangles, Watch};
+use lookfrom_bvh::{Builder, Bvh, Hit, NONE, Quality, Ray, Triangles, Watch};
 
 /// Rays that are dealt to a thread at once.
 const CHUNK: usize = 4096;
@@ -125,9 +125,26 @@ fn schedstat(path: &Path) -> Option<f64> {
     text.split_whitespace().next()?.parse::<f64>().ok().map(|nanoseconds| nanoseconds * 1e-9)
 }
 
-fn trace(bvh: &Bvh, rays: &[Ray], any: bool, answers: &mut [Answer]) {
+/// How rays are traced.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    Closest,
+    Any,
+    /// Closest hits in a batch.
+    Batch,
+}
+
+fn trace(bvh: &Bvh, rays: &[Ray], way: Way, answers: &mut [Answer]) {
+    if way == Way::Batch {
+        let mut hits = vec![Hit::MISS; rays.len()];
+        bvh.closest_hits(rays, &mut hits);
+        for (hit, answer) in hits.iter().zip(answers) {
+            *answer = (hit.t, hit.primitive);
+        }
+        return;
+    }
     for (ray, answer) in rays.iter().zip(answers) {
-        *answer = if any {
+        *answer = if way == Way::Any {
             (0.0, if bvh.occluded(ray) { 0 } else { NONE })
         } else {
             let hit = bvh.closest_hit(ray);
@@ -154,7 +171,7 @@ impl Watch for Counts {
 }
 
 /// Deals chunks of rays to threads; returns CPU seconds summed over them.
-fn trace_all(bvh: &Bvh, rays: &[Ray], any: bool, answers: &mut [Answer], threads: usize) -> f64 {
+fn trace_all(bvh: &Bvh, rays: &[Ray], way: Way, answers: &mut [Answer], threads: usize) -> f64 {
     let measure = |work: &mut dyn FnMut()| {
         let (start, wall) = (thread_seconds(), Instant::now());
         work();
@@ -166,7 +183,7 @@ fn trace_all(bvh: &Bvh, rays: &[Ray], any: bool, answers: &mut [Answer], threads
     if threads == 1 {
         return measure(&mut || {
             for (rays, answers) in rays.chunks(CHUNK).zip(answers.chunks_mut(CHUNK)) {
-                trace(bvh, rays, any, answers);
+                trace(bvh, rays, way, answers);
             }
         });
     }
@@ -182,7 +199,7 @@ fn trace_all(bvh: &Bvh, rays: &[Ray], any: bool, answers: &mut [Answer], threads
                 while let Some(chunk) = chunks.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let taken = chunk.lock().ok().and_then(|mut chunk| chunk.take());
                     if let Some((rays, answers)) = taken {
-                        trace(bvh, rays, any, answers);
+                        trace(bvh, rays, way, answers);
                     }
                 }
             })
@@ -233,9 +250,15 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Trace.
     let Some(folder) = &options.rays else { return Ok(()) };
-    for (kind, any) in [("primary", false), ("bounce", false), ("shadow", true)] {
-        let rays = read_rays(&folder.join(format!("{}.{kind}.rays", options.name)))?;
-        if !any {
+    for (kind, file, way) in [
+        ("primary", "primary", Way::Closest),
+        ("bounce", "bounce", Way::Closest),
+        ("shadow", "shadow", Way::Any),
+        ("primary16", "primary", Way::Batch),
+        ("bounce16", "bounce", Way::Batch),
+    ] {
+        let rays = read_rays(&folder.join(format!("{}.{file}.rays", options.name)))?;
+        if way == Way::Closest {
             let mut counts = Counts::default();
             for ray in &rays {
                 bvh.closest_hit_watched(ray, &mut counts);
@@ -251,7 +274,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (mut wall, mut cpu) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..options.reps.max(1) {
             let start = Instant::now();
-            cpu = cpu.min(trace_all(&bvh, &rays, any, &mut answers, options.threads));
+            cpu = cpu.min(trace_all(&bvh, &rays, way, &mut answers, options.threads));
             wall = wall.min(start.elapsed().as_secs_f64());
         }
         let millions = rays.len() as f64 * 1e-6;

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use crate::aabb::Aabb;
 use crate::instance::Instance;
 use crate::node::Node;
+use crate::packet::TraceMany;
 use crate::procedural::Procedural;
 use crate::query::{All, Any, Closest};
 use crate::ray::{Hit, Ray};
-use crate::simd::Level;
+use crate::simd::{Level, at_level};
 use crate::sphere::Sphere;
 use crate::traverse::{Trace, Watch};
 use crate::triangle::TriangleBlock;
@@ -158,9 +159,7 @@ impl Bvh {
     /// long; what one has more than the other is left alone.
     pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
         for_batches(rays, hits, |rays, hits| {
-            for (ray, hit) in rays.iter().zip(hits) {
-                *hit = self.closest_hit(ray);
-            }
+            at_level(self.level, TraceMany { bvh: self, rays, hits });
         });
     }
 

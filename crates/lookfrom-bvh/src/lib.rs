@@ -12,6 +12,7 @@ mod exact;
 mod instance;
 mod node;
 mod origin;
+mod packet;
 mod prepared;
 mod procedural;
 mod query;

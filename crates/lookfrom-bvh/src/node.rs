@@ -139,13 +139,19 @@ impl Node {
         }
     }
 
+    /// A face of all children.
+    #[inline(always)]
+    pub(crate) fn face<S: Simd>(&self, simd: S, axis: usize, side: usize) -> f32x8<S> {
+        f32x8::load_array_ref(simd, &self.bounds[axis][side & 1])
+    }
+
     /// Which children the ray meets between its `t_min` and a scaled end.
     ///
     /// Distances are compared as whole numbers, which is sooner done: floats from 0 on are in the order of their bits, and the
     /// bits of all others are less.
     #[inline(always)]
     pub(crate) fn enter<S: Simd>(&self, simd: S, ray: &Slabs<S>, end: f32) -> Entered<S> {
-        let face = |axis: usize, side: usize| f32x8::load_array_ref(simd, &self.bounds[axis][side & 1]);
+        let face = |axis: usize, side: usize| self.face(simd, axis, side);
         let near = |axis: usize| {
             face(axis, ray.near_side[axis])
                 .mul_sub(ray.near_reciprocal[axis], ray.near_product[axis])

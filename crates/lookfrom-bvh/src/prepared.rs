@@ -21,16 +21,22 @@ const PRODUCT_ROOM: f32 = 2.384_185_8e-7;
 
 /// Room for rounding in distances along a ray, relative: 2⁻²⁰, sixteen units of rounding. Four are needed for a slab
 /// (reciprocal, product, and the f32 t that it is compared with), on either side.
-const ROOM: f32 = 9.536_743e-7;
+pub(crate) const ROOM: f32 = 9.536_743e-7;
 
 /// Room for the rounding of a t so small that rounding is not relative to it: 2⁻¹⁰⁰.
-const TINY: f32 = 7.888_609e-31;
+pub(crate) const TINY: f32 = 7.888_609e-31;
 
 /// Usual directions are longer than this, 2⁻²⁰, and no component is longer than its inverse.
-const SHORT: f32 = 9.536_743e-7;
+pub(crate) const SHORT: f32 = 9.536_743e-7;
 
 /// Usual origins have no coordinate from here on, 2²⁴.
-const FAR: f32 = 16_777_216.0;
+pub(crate) const FAR: f32 = 16_777_216.0;
+
+/// How large a reciprocal may be for usual origins.
+pub(crate) const LARGEST_RECIPROCAL: f32 = LARGEST_PRODUCT / FAR;
+
+/// The triangle filter's absolute error for usual directions.
+pub(crate) const USUAL_UNDERFLOW: f32 = triangle::UNDERFLOW / SHORT;
 
 /// Room for rounding in f64 where a start is moved, relative: 2⁻⁴⁸.
 const MOVED_ROOM: f64 = 3.552_713_678_800_501e-15;
@@ -103,14 +109,8 @@ impl Prepared {
         // The slabs' constants, three axes at once.
         let lanes = |[x, y, z]: [f32; 3]| f32x4::load_array(simd, [x, y, z, 0.0]);
         let (o, d) = (lanes(shadow.origin), lanes(shadow.direction));
-        let reciprocal = f32x4::splat(simd, 1.0) / d.abs();
-        let near_reciprocal = reciprocal.min(lanes(shadow.largest_reciprocal)).copysign(d);
-        let far_reciprocal = near_reciprocal * (1.0 + ROOM);
-        let moved = near_reciprocal.abs() * shadow.moved;
-        let near_product = near_reciprocal * o;
-        let near_product = near_product + (near_product.abs() * PRODUCT_ROOM + moved);
-        let far_product = far_reciprocal * o;
-        let far_product = far_product - (far_product.abs() * PRODUCT_ROOM + moved);
+        let [near_reciprocal, far_reciprocal, near_product, far_product] =
+            slabs(simd, o, d, lanes(shadow.largest_reciprocal), shadow.moved);
 
         let &Shadow { start, scale, .. } = shadow;
         let first = (t_min - start) - ((t_min.abs() - start) * ROOM + TINY);
@@ -133,6 +133,26 @@ impl Prepared {
     }
 }
 
+/// The slabs' constants, lane by lane: 1 / direction near and far, and their products with the origin.
+#[inline(always)]
+pub(crate) fn slabs<S: Simd, V: SimdFloat<S, Element = f32>>(
+    simd: S,
+    origin: V,
+    direction: V,
+    largest_reciprocal: V,
+    moved: f32,
+) -> [V; 4] {
+    let reciprocal = V::splat(simd, 1.0) / direction.abs();
+    let near_reciprocal = reciprocal.min(largest_reciprocal).copysign(direction);
+    let far_reciprocal = near_reciprocal * (1.0 + ROOM);
+    let moved = near_reciprocal.abs() * moved;
+    let near_product = near_reciprocal * origin;
+    let near_product = near_product + (near_product.abs() * PRODUCT_ROOM + moved);
+    let far_product = far_reciprocal * origin;
+    let far_product = far_product - (far_product.abs() * PRODUCT_ROOM + moved);
+    [near_reciprocal, far_reciprocal, near_product, far_product]
+}
+
 /// Whether a ray does not start behind its origin and no number is so large or small as to need care.
 #[inline(always)]
 fn is_usual<S: Simd>(simd: S, origin: [f32; 3], direction: [f32; 3], t_min: f32, largest: f32) -> bool {
@@ -150,11 +170,11 @@ impl Shadow {
             direction,
             start: 0.0,
             scale: 1.0,
-            largest_reciprocal: [LARGEST_PRODUCT / FAR; 3],
+            largest_reciprocal: [LARGEST_RECIPROCAL; 3],
             moved: 0.0,
             rounding,
             error: triangle::ERROR * greatest(direction),
-            underflow: triangle::UNDERFLOW / SHORT,
+            underflow: USUAL_UNDERFLOW,
             sure_before: 1.0 / SURE_AFTER,
         }
     }

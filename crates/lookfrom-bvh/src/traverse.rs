@@ -122,33 +122,36 @@ impl<Q: Query, F: FnOnce(&Ray) -> Q, W: Watch> Work for Trace<'_, F, W> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Q {
         let Self { bvh, ray, ask, watch } = self;
-        let mut answer = Answer { instance: NONE, query: ask(ray), watch };
-        if !bvh.nodes.is_empty() && ray.t_min < ray.t_max {
-            with_stack(
-                #[inline(always)]
-                |stack| trace(simd, bvh, ray, &mut answer, Waiting { stack, bottom: 0, height: 0 }),
-            );
-        }
-        answer.query
+        with_stack(
+            #[inline(always)]
+            |stack| trace(simd, bvh, ray, ask, watch, stack),
+        )
     }
 }
 
-/// Traces a ray in the world through a tree that is not empty.
+/// Traces a ray in the world.
 #[inline(always)]
-fn trace<S: Simd, Q: Query, W: Watch>(
+pub(crate) fn trace<S: Simd, Q: Query, W: Watch>(
     simd: S,
     bvh: &Bvh,
     ray: &Ray,
-    answer: &mut Answer<Q, W>,
-    mut waiting: Waiting<'_>,
-) {
-    let Some(shadow) = Prepared::usual(simd, ray, bvh.largest) else {
-        trace_any(simd, bvh, &Exact::new(ray), answer, &mut waiting);
-        return;
-    };
-    // Made anew where it is needed: few rays need it, and the black box keeps it from being made for all.
-    let exact = || Exact::new(std::hint::black_box(ray));
-    traverse(simd, bvh, &shadow, exact, answer, &mut waiting);
+    ask: impl FnOnce(&Ray) -> Q,
+    watch: W,
+    stack: &mut Stack,
+) -> Q {
+    let mut answer = Answer { instance: NONE, query: ask(ray), watch };
+    if bvh.nodes.is_empty() || !(ray.t_min < ray.t_max) {
+        return answer.query;
+    }
+    let waiting = &mut Waiting { stack, bottom: 0, height: 0 };
+    if let Some(shadow) = Prepared::usual(simd, ray, bvh.largest) {
+        // Made anew where it is needed: few rays need it, and the black box keeps it from being made for all.
+        let exact = || Exact::new(std::hint::black_box(ray));
+        traverse(simd, bvh, &shadow, exact, &mut answer, waiting);
+    } else {
+        trace_any(simd, bvh, &Exact::new(ray), &mut answer, waiting);
+    }
+    answer.query
 }
 
 /// Traces any ray, in the world or in an object's space, through a tree that is not empty. Returns true where the query wants
@@ -247,16 +250,16 @@ fn traverse<S: Simd, Q: Query, W: Watch>(
 }
 
 /// The children that wait in one tree, above those of the tree around it.
-struct Waiting<'a> {
-    stack: &'a mut Stack,
-    bottom: usize,
-    height: usize,
+pub(crate) struct Waiting<'a> {
+    pub(crate) stack: &'a mut Stack,
+    pub(crate) bottom: usize,
+    pub(crate) height: usize,
 }
 
 impl Waiting<'_> {
     /// The next child that is not beyond the end.
     #[inline(always)]
-    fn pop(&mut self, end: f32) -> Option<Child> {
+    pub(crate) fn pop(&mut self, end: f32) -> Option<Child> {
         while self.height > self.bottom {
             self.height -= 1;
             let pending = self.stack[self.height % STACK];
@@ -276,7 +279,11 @@ impl Waiting<'_> {
     /// Pushes the children that were entered but one, the nearest last, and returns that one, which is nearer. There is
     /// one at least.
     #[inline(always)]
-    fn push_all_but_nearest<S: Simd, Q: Query>(&mut self, node: &Node, entered: &Entered<S>) -> Child {
+    pub(crate) fn push_all_but_nearest<S: Simd, Q: Query>(
+        &mut self,
+        node: &Node,
+        entered: &Entered<S>,
+    ) -> Child {
         let mut children = entered.children;
         let first = next(node, entered, &mut children);
         if children == 0 {
@@ -316,11 +323,11 @@ fn next<S: Simd>(node: &Node, entered: &Entered<S>, children: &mut u32) -> Pendi
 }
 
 /// Whom to tell.
-struct Answer<Q, W> {
+pub(crate) struct Answer<Q, W> {
     /// In which instance the ray is.
-    instance: u32,
-    query: Q,
-    watch: W,
+    pub(crate) instance: u32,
+    pub(crate) query: Q,
+    pub(crate) watch: W,
 }
 
 #[inline(always)]
@@ -377,7 +384,7 @@ struct Undecided<'a> {
 /// Decides whether and where a triangle is hit, and tells.
 #[cold]
 #[inline(never)]
-fn decide<Q: Query, W: Watch>(
+pub(crate) fn decide<Q: Query, W: Watch>(
     block: &TriangleBlock,
     lane: usize,
     ray: &Exact,
@@ -391,7 +398,7 @@ fn decide<Q: Query, W: Watch>(
 ///
 /// Not inlined: compiled for AVX-512, its scattered loads become vectors of 512 bits, which slow down all that is around them.
 #[inline(never)]
-fn cross_surely<Q: Query, W: Watch>(
+pub(crate) fn cross_surely<Q: Query, W: Watch>(
     block: &TriangleBlock,
     lane: usize,
     exact: impl Fn() -> Exact,

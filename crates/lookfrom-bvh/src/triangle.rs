@@ -13,8 +13,9 @@
 //! `t` is the plane's, `n·(p0 − o) / n·d`, from differences of f32 values that f64 holds (nearly) exactly: its sign is
 //! right to about 10⁻¹⁵ of the triangle's size, however near the origin is to the plane.
 
+use crate::aabb::Aabb;
 use crate::exact::Exact;
-use crate::prepared::Prepared;
+use crate::prepared::{self, Prepared};
 use crate::ray::NONE;
 use crate::simd::{Chosen, Simd, f32x8, prelude::*};
 use crate::vector::{cross, cross_magnitude, dot, subtract, wide};
@@ -113,6 +114,24 @@ impl<S: Simd> Sieve<S> {
             rounding: Lanes::splat(simd, ray.shadow.rounding),
         }
     }
+
+    /// A usual ray of the world in each lane; `error` is [`ERROR`] times the longest component of its direction.
+    #[inline(always)]
+    pub(crate) fn of_rays(
+        simd: S,
+        origin: [Lanes<S>; 3],
+        direction: [Lanes<S>; 3],
+        t_min: Lanes<S>,
+        error: Lanes<S>,
+    ) -> Self {
+        let sure_before = Lanes::splat(simd, 1.0 / SURE_AFTER);
+        let underflow = Lanes::splat(simd, prepared::USUAL_UNDERFLOW);
+        Self { origin, direction, t_min, sure_before, error, underflow, rounding: Lanes::splat(simd, 0.0) }
+    }
+
+    pub(crate) fn t_min(&self) -> Lanes<S> {
+        self.t_min
+    }
 }
 
 #[inline(always)]
@@ -186,14 +205,54 @@ impl TriangleBlock {
         corners
     }
 
-    /// Which lanes the ray may meet between its `t_min` and a scaled end, and which it surely does.
+    /// Which of the triangles the ray may meet between its `t_min` and an end, and which it surely does.
+    #[inline(always)]
+    pub(crate) fn filter<S: Simd>(&self, simd: S, ray: &Sieve<S>, end: f32) -> Sifted<S> {
+        let corners =
+            [load(simd, &self.corners[0]), load(simd, &self.corners[1]), load(simd, &self.corners[2])];
+        let extent = Lanes::load_array_ref(simd, &self.extent);
+        TriangleLanes { corners, extent }.sift(simd, ray, Lanes::splat(simd, end))
+    }
+
+    /// The box around the triangles.
+    #[inline(always)]
+    pub(crate) fn bounds<S: Simd>(&self, simd: S) -> Aabb {
+        let [a, b, c] =
+            [load(simd, &self.corners[0]), load(simd, &self.corners[1]), load(simd, &self.corners[2])];
+        let mut bounds = Aabb::EMPTY;
+        for axis in 0..3 {
+            let [min, max] = [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])];
+            for lane in 0..BLOCK {
+                bounds.min[axis] = bounds.min[axis].min(min[lane]);
+                bounds.max[axis] = bounds.max[axis].max(max[lane]);
+            }
+        }
+        bounds
+    }
+}
+
+/// Triangles in lanes: several, or one in all of them.
+pub(crate) struct TriangleLanes<S: Simd> {
+    /// `corners[corner][axis]`.
+    corners: [[Lanes<S>; 3]; 3],
+    extent: Lanes<S>,
+}
+
+impl<S: Simd> TriangleLanes<S> {
+    /// One of a block's triangles in every lane.
+    #[inline(always)]
+    pub(crate) fn splat(simd: S, block: &TriangleBlock, lane: usize) -> Self {
+        let corners = block.corners(lane);
+        let corners = [splat_all(simd, corners[0]), splat_all(simd, corners[1]), splat_all(simd, corners[2])];
+        Self { corners, extent: Lanes::splat(simd, block.extent(lane)) }
+    }
+
+    /// Lane by lane: may the ray meet the triangle between its `t_min` and an end, and does it surely?
     ///
     /// Möller, Trumbore (1997), "Fast, Minimum Storage Ray/Triangle Intersection", without the division.
     #[inline(always)]
-    pub(crate) fn filter<S: Simd>(&self, simd: S, ray: &Sieve<S>, end: f32) -> Sifted<S> {
-        let [ax, ay, az] = load(simd, &self.corners[0]);
-        let [bx, by, bz] = load(simd, &self.corners[1]);
-        let [gx, gy, gz] = load(simd, &self.corners[2]);
+    pub(crate) fn sift(&self, simd: S, ray: &Sieve<S>, t_max: Lanes<S>) -> Sifted<S> {
+        let ([[ax, ay, az], [bx, by, bz], [gx, gy, gz]], extent) = (self.corners, self.extent);
         let [dx, dy, dz] = ray.direction;
 
         // The edges, the way to the first corner, and the normal.
@@ -215,7 +274,6 @@ impl TriangleBlock {
 
         // Bound their errors: of what holds the direction once, relative to its length.
         let underflow = ray.underflow;
-        let extent = Lanes::load_array_ref(simd, &self.extent);
         let relative = extent.mul_add(ray.error, underflow);
         let reach = cx.abs().max(cy.abs()).max(cz.abs()) + ray.rounding;
         let bound = (reach + extent).mul_add(relative, underflow);
@@ -231,7 +289,6 @@ impl TriangleBlock {
         let distance =
             nx.mul_add(cx, ny.mul_add(cy, nz * cz)) * Lanes::splat(simd, 1.0).copysign(determinant);
         let distance_error = extent.mul_add(extent.mul_add(ERROR, underflow), underflow) * reach;
-        let t_max = Lanes::splat(simd, end);
         let beyond = distance.simd_gt(t_max.mul_add(size, size_error.mul_add(t_max.abs(), distance_error)));
         let before = distance.simd_lt(ray.t_min.mul_sub(size, size_error.mul_add(ray.t_min, distance_error)));
         let out_of_range = size.simd_gt(size_error) & (beyond | before);
