@@ -10,7 +10,7 @@ use crate::aabb::Aabb;
 use crate::exact::Exact;
 use crate::node::{Child, Content, Entered, Node};
 use crate::prepared::{self, FAR, LARGEST_RECIPROCAL, SHORT};
-use crate::query::{Closest, Query};
+use crate::query::Closest;
 use crate::ray::{Hit, NONE, Ray};
 use crate::simd::{Chosen, Simd, Work, f32x8, i32x8, prelude::*};
 use crate::traverse::{Answer, Stack, Waiting, cross_surely, decide, trace, with_stack};
@@ -30,6 +30,9 @@ const SPREAD: f32 = 0.25;
 
 /// Origins of a packet differ by at most this part of the tree's largest coordinate.
 const NEARNESS: f32 = 1.0 / 32.0;
+
+/// The number of no block.
+const NO_BLOCK: i32 = -1;
 
 /// Far beyond every distance.
 const BEYOND: f32 = 1e37;
@@ -74,19 +77,38 @@ fn trace_singly<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut [Hit], sta
 /// Traces rays as a packet. False, and nothing done, where they are not alike, too few, or out of the usual range.
 #[inline(never)]
 fn trace_packet<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut [Hit], stack: &mut Stack) -> bool {
-    if rays.len() < SIZE || hits.len() < SIZE || !bvh.leaves.is_empty() || !(bvh.largest < LARGEST_FILTERED) {
+    if rays.len() < SIZE
+        || hits.len() < SIZE
+        || !seem_alike(rays)
+        || !bvh.leaves.is_empty()
+        || !(bvh.largest < LARGEST_FILTERED)
+    {
         return false;
     }
     simd.vectorize(
         #[inline(always)]
         || {
-            let Some(beam) = Beam::around(simd, rays, bvh.largest) else { return false };
-            let Some(mut packet) = Packet::new(simd, bvh, rays) else { return false };
+            let mut groups = [Group::new(simd, &rays[..LANES]); GROUPS];
+            for (group, rays) in groups.iter_mut().zip(rays.chunks_exact(LANES)).skip(1) {
+                *group = Group::new(simd, rays);
+            }
+            let Some(beam) = Beam::around(simd, &groups, bvh.largest) else { return false };
+            hits[..SIZE].fill(Hit::MISS);
+            let mut packet = Packet { bvh, rays, groups, hits };
             packet.traverse(simd, &beam, &mut Waiting { stack, bottom: 0, height: 0 });
-            packet.finish(hits);
+            packet.finish();
             true
         },
     )
+}
+
+/// Whether the first and some other rays have like directions: a look before the work.
+fn seem_alike(rays: &[Ray]) -> bool {
+    let first = rays[0].direction;
+    let length = first.iter().fold(0.0_f32, |length, x| length.max(x.abs()));
+    [SIZE / 3, 2 * SIZE / 3, SIZE - 1]
+        .iter()
+        .all(|&other| (0..3).all(|axis| (rays[other].direction[axis] - first[axis]).abs() < SPREAD * length))
 }
 
 /// What holds for all rays of a packet, for a test of eight boxes at once.
@@ -102,27 +124,38 @@ struct Beam<S: Simd> {
 }
 
 impl<S: Simd> Beam<S> {
-    /// None where the rays are too different to go together.
+    /// None where the rays are too different to go together, or not usual ones.
     #[inline(always)]
-    fn around(simd: S, rays: &[Ray], largest: f32) -> Option<Self> {
-        let mut origins = Aabb::EMPTY;
-        let mut directions = Aabb::EMPTY;
-        let mut t_min = f32::INFINITY;
-        for ray in rays {
-            origins.extend(ray.origin);
-            directions.extend(ray.direction);
-            t_min = t_min.min(ray.t_min);
+    fn around(simd: S, groups: &[Group<S>; GROUPS], largest: f32) -> Option<Self> {
+        let mut usual = groups[0].usual;
+        let mut t_min = groups[0].sieve.t_min;
+        let (mut origins, mut directions) = ([groups[0].sieve.origin; 2], [groups[0].sieve.direction; 2]);
+        for group in &groups[1..] {
+            usual &= group.usual;
+            t_min = t_min.min(group.sieve.t_min);
+            for axis in 0..3 {
+                let (o, d) = (group.sieve.origin[axis], group.sieve.direction[axis]);
+                origins[0][axis] = origins[0][axis].min(o);
+                origins[1][axis] = origins[1][axis].max(o);
+                directions[0][axis] = directions[0][axis].min(d);
+                directions[1][axis] = directions[1][axis].max(d);
+            }
         }
+        let boxed = |[min, max]: [[f32x8<S>; 3]; 2]| Aabb {
+            min: [least(min[0]), least(min[1]), least(min[2])],
+            max: [-least(-max[0]), -least(-max[1]), -least(-max[2])],
+        };
+        let (origins, directions) = (boxed(origins), boxed(directions));
         let greatest = |x: [f32; 3]| x.iter().fold(0.0_f32, |greatest, x| greatest.max(x.abs()));
         let spread = [0, 1, 2].map(|axis| directions.max[axis] - directions.min[axis]);
         let apart = [0, 1, 2].map(|axis| origins.max[axis] - origins.min[axis]);
         let alike = greatest(spread) < SPREAD * greatest(directions.min).min(greatest(directions.max))
             && greatest(apart) <= NEARNESS * largest;
-        if !alike {
+        if usual != 0xff || !alike {
             return None;
         }
 
-        let origin = rays[0].origin;
+        let origin = origins.min;
         let splat = |[a, b]: [f32; 2]| [f32x8::splat(simd, a), f32x8::splat(simd, b)];
         let mut near_side = [0; 3];
         // An axis along which some rays go forth and some back limits nothing.
@@ -147,7 +180,7 @@ impl<S: Simd> Beam<S> {
             near_side,
             reciprocal: reciprocal.map(splat),
             offset: offset.map(splat),
-            t_min: i32x8::splat(simd, (t_min * (1.0 - prepared::ROOM)).to_bits() as i32),
+            t_min: i32x8::splat(simd, least(t_min).to_bits() as i32),
         })
     }
 
@@ -172,9 +205,25 @@ impl<S: Simd> Beam<S> {
     }
 }
 
+/// The least of some numbers.
+#[inline(always)]
+fn least<S: Simd>(numbers: f32x8<S>) -> f32 {
+    let numbers: [f32; LANES] = numbers.into();
+    let [a, b, c, d] = [0, 1, 2, 3].map(|i| smaller(numbers[i], numbers[i + 4]));
+    smaller(smaller(a, b), smaller(c, d))
+}
+
+#[inline(always)]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
 /// Eight rays, one in each lane.
+#[derive(Clone, Copy)]
 struct Group<S: Simd> {
     sieve: Sieve<S>,
+    /// Which of them are usual rays; the others' lanes hold nothing of use.
+    usual: u32,
     near_reciprocal: [f32x8<S>; 3],
     far_reciprocal: [f32x8<S>; 3],
     near_product: [f32x8<S>; 3],
@@ -183,27 +232,35 @@ struct Group<S: Simd> {
     /// Between which distances a sure hit lies that waits for its decision; ∞ where there is none.
     first: f32x8<S>,
     last: f32x8<S>,
-    /// That hit's block and lane.
-    sure: [(u32, u32); LANES],
+    /// That hit's block and its lane in it.
+    block: i32x8<S>,
+    lane: i32x8<S>,
 }
 
 impl<S: Simd> Group<S> {
-    /// None where a ray is not a usual one.
     #[inline(always)]
-    fn new(simd: S, rays: &[Ray]) -> Option<Self> {
-        let lanes = |of: &dyn Fn(&Ray) -> f32| {
-            f32x8::load_array(
-                simd,
-                std::array::from_fn(
-                    #[inline(always)]
-                    |lane| of(&rays[lane]),
-                ),
-            )
+    fn new(simd: S, rays: &[Ray]) -> Self {
+        let row = |lane: usize| {
+            let Ray { origin: [ox, oy, oz], t_min, direction: [dx, dy, dz], t_max } = rays[lane];
+            f32x8::load_array(simd, [ox, oy, oz, t_min, dx, dy, dz, t_max])
         };
-        let origin = [lanes(&|ray| ray.origin[0]), lanes(&|ray| ray.origin[1]), lanes(&|ray| ray.origin[2])];
-        let direction =
-            [lanes(&|ray| ray.direction[0]), lanes(&|ray| ray.direction[1]), lanes(&|ray| ray.direction[2])];
-        let (t_min, t_max) = (lanes(&|ray| ray.t_min), lanes(&|ray| ray.t_max));
+        let mut v = [row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)];
+        // Three times like shuffling cards, and rows are columns.
+        for _ in 0..3 {
+            let [a, b, c, d, e, f, g, h] = v;
+            v = [
+                a.zip_low(e),
+                a.zip_high(e),
+                b.zip_low(f),
+                b.zip_high(f),
+                c.zip_low(g),
+                c.zip_high(g),
+                d.zip_low(h),
+                d.zip_high(h),
+            ];
+        }
+        let [ox, oy, oz, t_min, dx, dy, dz, t_max] = v;
+        let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);
         let greatest = |[x, y, z]: [f32x8<S>; 3]| x.abs().max(y.abs()).max(z.abs());
         let length = greatest(direction);
         let usual = greatest(origin).simd_lt(FAR)
@@ -211,37 +268,33 @@ impl<S: Simd> Group<S> {
             & length.simd_gt(SHORT)
             & t_min.simd_ge(0.0)
             & t_min.simd_lt(t_max);
-        let nan = f32x8::splat(simd, 0.0);
-        let finite = (origin[0] * nan + origin[1] * nan + origin[2] * nan).simd_eq(nan)
-            & (direction[0] * nan + direction[1] * nan + direction[2] * nan).simd_eq(nan);
-        if !(usual & finite).all_true() {
-            return None;
-        }
-
+        let zero = f32x8::splat(simd, 0.0);
+        let sum = |[x, y, z]: [f32x8<S>; 3]| x + y + z;
+        let finite = ((sum(origin) + sum(direction)) * zero).simd_eq(zero);
         let cap = f32x8::splat(simd, LARGEST_RECIPROCAL);
-        let slabs = [0, 1, 2].map(
-            #[inline(always)]
-            |axis| prepared::slabs(simd, origin[axis], direction[axis], cap, 0.0),
-        );
+        let slabs = |axis: usize| prepared::slabs(simd, origin[axis], direction[axis], cap, 0.0);
+        let [x, y, z] = [slabs(0), slabs(1), slabs(2)];
         let first = (t_min - (t_min * prepared::ROOM + prepared::TINY)).max(0.0);
         let none = f32x8::splat(simd, f32::INFINITY);
-        Some(Self {
+        Self {
+            usual: (usual & finite).to_bitmask() as u32 & 0xff,
             sieve: Sieve::of_rays(simd, origin, direction, first, length * triangle::ERROR),
-            near_reciprocal: slabs.map(|slab| slab[0]),
-            far_reciprocal: slabs.map(|slab| slab[1]),
-            near_product: slabs.map(|slab| slab[2]),
-            far_product: slabs.map(|slab| slab[3]),
+            near_reciprocal: [x[0], y[0], z[0]],
+            far_reciprocal: [x[1], y[1], z[1]],
+            near_product: [x[2], y[2], z[2]],
+            far_product: [x[3], y[3], z[3]],
             end: t_max + (t_max.abs() * prepared::ROOM + prepared::TINY),
             first: none,
             last: none,
-            sure: [(NONE, 0); LANES],
-        })
+            block: i32x8::splat(simd, NO_BLOCK),
+            lane: i32x8::splat(simd, 0),
+        }
     }
 
     /// Which rays meet a box before their ends.
     #[inline(always)]
     fn meet(&self, bounds: &Aabb) -> u32 {
-        let mut near = self.sieve.t_min();
+        let mut near = self.sieve.t_min;
         let mut far = self.end;
         for axis in 0..3 {
             let [a, b] = [bounds.min[axis], bounds.max[axis]];
@@ -259,30 +312,19 @@ struct Packet<'a, S: Simd> {
     bvh: &'a Bvh,
     rays: &'a [Ray],
     groups: [Group<S>; GROUPS],
-    answers: [Answer<Closest, ()>; SIZE],
+    /// The closest hits that are decided.
+    hits: &'a mut [Hit],
 }
 
-impl<'a, S: Simd> Packet<'a, S> {
-    #[inline(always)]
-    fn new(simd: S, bvh: &'a Bvh, rays: &'a [Ray]) -> Option<Self> {
-        let mut groups = [const { None }; GROUPS];
-        for (group, rays) in groups.iter_mut().zip(rays.chunks_exact(LANES)) {
-            *group = Some(Group::new(simd, rays)?);
-        }
-        let groups = groups.map(|group| group.expect("as many chunks as groups"));
-        let answers =
-            std::array::from_fn(|i| Answer { instance: NONE, query: Closest::new(&rays[i]), watch: () });
-        Some(Self { bvh, rays, groups, answers })
-    }
-
+impl<S: Simd> Packet<'_, S> {
     /// The end of the longest ray.
     #[inline(always)]
     fn end(&self) -> f32 {
-        let longest = self.groups.iter().map(|group| group.end).reduce(
-            #[inline(always)]
-            |a, b| a.max(b),
-        );
-        longest.map_or(0.0, |ends| ends.as_slice().iter().fold(0.0, |a, &b| if a > b { a } else { b }))
+        let mut longest = self.groups[0].end;
+        for group in &self.groups[1..] {
+            longest = longest.max(group.end);
+        }
+        -least(-longest)
     }
 
     #[inline(always)]
@@ -306,7 +348,7 @@ impl<'a, S: Simd> Packet<'a, S> {
         }
     }
 
-    /// Tests a block of triangles. Whether something was hit.
+    /// Tests a block of triangles. False where no ray meets its box.
     #[inline(always)]
     fn leaf(&mut self, simd: S, number: usize) -> bool {
         let block = &self.bvh.triangles[number];
@@ -320,82 +362,80 @@ impl<'a, S: Simd> Packet<'a, S> {
         if any == 0 {
             return false;
         }
-        let mut hit = false;
-        for lane in 0..block.count() {
-            let triangle = TriangleLanes::splat(simd, block, lane);
-            for index in 0..GROUPS {
-                if meeting[index] != 0 {
-                    hit |= self.test(simd, &triangle, (number, lane), index, meeting[index]);
-                }
-            }
-        }
-        hit
-    }
-
-    /// Tests a triangle against some rays of a group.
-    #[inline(always)]
-    fn test(
-        &mut self,
-        simd: S,
-        triangle: &TriangleLanes<S>,
-        place: (usize, usize),
-        index: usize,
-        rays: u32,
-    ) -> bool {
-        let group = &mut self.groups[index];
-        let sifted = triangle.sift(simd, &group.sieve, group.end);
-        let kept = sifted.kept.0 & rays;
-        if kept == 0 {
-            return false;
-        }
-        let sure = sifted.surely_hit.0 & rays;
-        for lane in Chosen(kept & !sure) {
-            self.decide(place, index, lane);
-        }
-        if sure != 0 {
-            // Put off the decision, unless another sure hit is surely nearer; decide that where it may be as near.
-            let group = &self.groups[index];
-            let [first, last] = sifted.between();
-            let nearer = sure & first.simd_le(group.last).to_bitmask() as u32;
-            let unclear = nearer & last.simd_ge(group.first).to_bitmask() as u32;
-            for lane in Chosen(unclear) {
-                let (block, of) = self.groups[index].sure[lane];
-                self.decide((block as usize, of as usize), index, lane);
-            }
-            let group = &mut self.groups[index];
-            for lane in Chosen(nearer) {
-                group.first[lane] = first[lane];
-                group.last[lane] = last[lane];
-                group.end[lane] = if last[lane] < group.end[lane] { last[lane] } else { group.end[lane] };
-                group.sure[lane] = (place.0 as u32, place.1 as u32);
+        for index in 0..GROUPS {
+            if meeting[index] != 0 {
+                self.test(simd, number, index, meeting[index]);
             }
         }
         true
+    }
+
+    /// Tests a block of triangles against some rays of a group. Nothing here branches on what is hit: it could not be predicted.
+    #[inline(always)]
+    fn test(&mut self, simd: S, number: usize, index: usize, rays: u32) {
+        let block = &self.bvh.triangles[number];
+        for of in 0..block.count() {
+            let group = &mut self.groups[index];
+            let sifted = TriangleLanes::splat(simd, block, of).sift(simd, &group.sieve, group.end);
+
+            // Put off the decision of a sure hit, unless another is surely nearer.
+            let [first, last] = sifted.between();
+            let nearer = sifted.sure & first.simd_le(group.last);
+            let unclear = nearer & last.simd_ge(group.first);
+            let (blocks, lanes) = (group.block, group.lane);
+            group.first = nearer.select(first, group.first);
+            group.last = nearer.select(last, group.last);
+            group.end = nearer.select(last.min(group.end), group.end);
+            group.block = nearer.select(i32x8::splat(simd, number as i32), blocks);
+            group.lane = nearer.select(i32x8::splat(simd, of as i32), lanes);
+
+            // Decide what the filter cannot tell, and sure hits that may be as near.
+            let open = sifted.kept.0 & !sifted.surely_hit.0 & rays;
+            let unclear = unclear.to_bitmask() as u32 & rays;
+            if open | unclear != 0 {
+                for lane in Chosen(open) {
+                    self.decide((number, of), index, lane);
+                }
+                for lane in Chosen(unclear) {
+                    self.decide((blocks[lane] as usize, lanes[lane] as usize), index, lane);
+                }
+            }
+        }
     }
 
     /// Decides whether a ray meets a triangle.
     #[cold]
     #[inline(never)]
     fn decide(&mut self, (block, of): (usize, usize), index: usize, lane: usize) {
-        let ray = &self.rays[index * LANES + lane];
-        let answer = &mut self.answers[index * LANES + lane];
-        decide(&self.bvh.triangles[block], of, &Exact::new(ray), answer);
-        let t = answer.query.end();
-        let end = t + (t.abs() * prepared::ROOM + prepared::TINY);
+        let place = index * LANES + lane;
+        let ray = &self.rays[place];
+        let mut answer = self.answer(place);
+        decide(&self.bvh.triangles[block], of, &Exact::new(ray), &mut answer);
+        self.hits[place] = answer.query.hit;
+        let end = smaller(ray.t_max, answer.query.hit.t);
+        let end = end + (end.abs() * prepared::ROOM + prepared::TINY);
         let ends = &mut self.groups[index].end;
-        ends[lane] = if end < ends[lane] { end } else { ends[lane] };
+        ends[lane] = smaller(end, ends[lane]);
+    }
+
+    /// A ray's query as it stands.
+    #[inline(always)]
+    fn answer(&self, place: usize) -> Answer<Closest, ()> {
+        Answer { instance: NONE, query: Closest::after(&self.rays[place], self.hits[place]), watch: () }
     }
 
     /// Decides where the sure hits are, and tells all.
     #[inline(always)]
-    fn finish(mut self, hits: &mut [Hit]) {
-        for (index, (hit, answer)) in hits.iter_mut().zip(&mut self.answers).enumerate() {
-            let (block, lane) = self.groups[index / LANES].sure[index % LANES];
-            if block != NONE {
+    fn finish(&mut self) {
+        for place in 0..SIZE {
+            let group = &self.groups[place / LANES];
+            let (block, lane) = (group.block[place % LANES], group.lane[place % LANES]);
+            if block != NO_BLOCK {
+                let mut answer = self.answer(place);
                 let block = &self.bvh.triangles[block as usize];
-                cross_surely(block, lane as usize, || Exact::new(&self.rays[index]), answer);
+                cross_surely(block, lane as usize, || Exact::new(&self.rays[place]), &mut answer);
+                self.hits[place] = answer.query.hit;
             }
-            *hit = answer.query.hit;
         }
     }
 }

@@ -27,7 +27,13 @@ pub(crate) struct Closest {
 impl Closest {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
-        Self { t_max: ray.t_max, end: ray.t_max, hit: Hit::MISS }
+        Self::after(ray, Hit::MISS)
+    }
+
+    /// The query that has heard of a hit.
+    #[inline(always)]
+    pub(crate) fn after(ray: &Ray, hit: Hit) -> Self {
+        Self { t_max: ray.t_max, end: if hit.t < ray.t_max { hit.t } else { ray.t_max }, hit }
     }
 }
 

@@ -6,7 +6,7 @@
 //!
 //! Vectors only ever *exclude*, with room for errors, so hits have the same bits at every level.
 
-pub(crate) use fearless_simd::{Level, Simd, f32x4, f32x8, i32x8, prelude, u32x4};
+pub(crate) use fearless_simd::{Level, Simd, f32x4, f32x8, i32x8, mask32x8, prelude, u32x4};
 
 /// What is to be done at a level that is known only when the program runs.
 pub(crate) trait Work {

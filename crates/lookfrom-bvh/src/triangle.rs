@@ -17,7 +17,7 @@ use crate::aabb::Aabb;
 use crate::exact::Exact;
 use crate::prepared::{self, Prepared};
 use crate::ray::NONE;
-use crate::simd::{Chosen, Simd, f32x8, prelude::*};
+use crate::simd::{Chosen, Simd, f32x8, mask32x8, prelude::*};
 use crate::vector::{cross, cross_magnitude, dot, subtract, wide};
 
 /// Triangles in a block.
@@ -70,6 +70,8 @@ pub(crate) struct Sifted<S: Simd> {
     pub(crate) kept: Chosen,
     /// Those of which the decision is known: a hit in the ray's range.
     pub(crate) surely_hit: Chosen,
+    /// The same as a mask.
+    pub(crate) sure: mask32x8<S>,
     distance: Lanes<S>,
     distance_room: Lanes<S>,
     size: Lanes<S>,
@@ -91,10 +93,11 @@ impl<S: Simd> Sifted<S> {
 pub(crate) const SURE_AFTER: f32 = 8.673_617e-19;
 
 /// What the filter needs of a ray, in every lane.
+#[derive(Clone, Copy)]
 pub(crate) struct Sieve<S: Simd> {
-    origin: [Lanes<S>; 3],
-    direction: [Lanes<S>; 3],
-    t_min: Lanes<S>,
+    pub(crate) origin: [Lanes<S>; 3],
+    pub(crate) direction: [Lanes<S>; 3],
+    pub(crate) t_min: Lanes<S>,
     sure_before: Lanes<S>,
     error: Lanes<S>,
     underflow: Lanes<S>,
@@ -127,10 +130,6 @@ impl<S: Simd> Sieve<S> {
         let sure_before = Lanes::splat(simd, 1.0 / SURE_AFTER);
         let underflow = Lanes::splat(simd, prepared::USUAL_UNDERFLOW);
         Self { origin, direction, t_min, sure_before, error, underflow, rounding: Lanes::splat(simd, 0.0) }
-    }
-
-    pub(crate) fn t_min(&self) -> Lanes<S> {
-        self.t_min
     }
 }
 
@@ -307,6 +306,7 @@ impl<S: Simd> TriangleLanes<S> {
         Sifted {
             kept: Chosen(!excluded.to_bitmask() as u32 & lanes),
             surely_hit: Chosen(sure.to_bitmask() as u32 & lanes),
+            sure,
             distance,
             distance_room,
             size,
