@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::aabb::Aabb;
 use crate::instance::Instance;
+use crate::masks::Masks;
 use crate::node::Node;
 use crate::packet::TraceMany;
 use crate::procedural::Procedural;
@@ -15,10 +16,20 @@ use crate::traverse::{Trace, Watch};
 use crate::triangle::TriangleBlock;
 use crate::validate::{Invalid, Statistics};
 
-/// Rays that one thread traces before it looks for others' work.
+/// Rays (or points) that one thread answers before it looks for others' work.
+#[cfg(feature = "parallel")]
 const BATCH: usize = 4096;
 
 /// Geometry that rays can be traced against. Made by a [`Builder`](crate::Builder); frozen, and shared between threads.
+///
+/// ```
+/// # use lookfrom_bvh::{Builder, Ray, Sphere};
+/// # let mut builder = Builder::new();
+/// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+/// # let bvh = builder.build()?;
+/// assert!(bvh.occluded(&Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0])));
+/// # Ok::<(), lookfrom_bvh::BuildError>(())
+/// ```
 #[derive(Debug)]
 pub struct Bvh {
     /// The root first.
@@ -30,6 +41,7 @@ pub struct Bvh {
     pub(crate) procedurals: Vec<ProceduralItem>,
     pub(crate) procedural_shapes: Vec<Arc<dyn Procedural>>,
     pub(crate) instances: Vec<Instance>,
+    pub(crate) masks: Masks,
     pub(crate) bounds: Aabb,
     pub(crate) statistics: Statistics,
     /// The largest coordinate of a triangle.
@@ -73,6 +85,7 @@ impl Default for Bvh {
             procedurals: Vec::new(),
             procedural_shapes: Vec::new(),
             instances: Vec::new(),
+            masks: Masks::default(),
             bounds: Aabb::EMPTY,
             statistics: Statistics::default(),
             largest: 0.0,
@@ -83,6 +96,15 @@ impl Default for Bvh {
 
 impl Bvh {
     /// The box around everything, [`Aabb::EMPTY`] where there is nothing.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// assert!(bvh.bounds().max[0] >= 1.0);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
@@ -93,6 +115,15 @@ impl Bvh {
     }
 
     /// Bytes held for tracing, without the trees of instances (which are shared) and without procedural shapes.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// assert!(bvh.memory() > 0);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn memory(&self) -> usize {
         size_of::<Self>()
             + size_of_val(&*self.nodes)
@@ -102,9 +133,19 @@ impl Bvh {
             + size_of_val(&*self.procedurals)
             + size_of_val(&*self.procedural_shapes)
             + size_of_val(&*self.instances)
+            + self.masks.memory()
     }
 
     /// What the tree consists of, counted when it was built.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// assert_eq!(bvh.statistics().spheres, 1);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn statistics(&self) -> Statistics {
         self.statistics
     }
@@ -113,6 +154,15 @@ impl Bvh {
     ///
     /// # Errors
     /// What is wrong, and where: a fault of this library.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// assert_eq!(bvh.validate(), Ok(bvh.statistics()));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn validate(&self) -> Result<Statistics, Invalid> {
         crate::validate::validate(self)
     }
@@ -134,29 +184,77 @@ impl Bvh {
     }
 
     /// [`Self::closest_hit`], while someone watches. The answer is the same.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// # use lookfrom_bvh::Watch;
+    /// struct Candidates(u32);
+    /// impl Watch for Candidates {
+    ///     fn candidate(&mut self, _: u32, _: u32, _: u32) {
+    ///         self.0 += 1;
+    ///     }
+    /// }
+    /// let mut candidates = Candidates(0);
+    /// let hit = bvh.closest_hit_watched(&Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]), &mut candidates);
+    /// assert_eq!((hit.t, candidates.0), (2.0, 1));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn closest_hit_watched(&self, ray: &Ray, watch: &mut impl Watch) -> Hit {
         Trace { bvh: self, ray, ask: Closest::new, watch }.go().hit
     }
 
     /// Whether anything is hit in the ray's range.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    /// assert!(bvh.occluded(&ray) && !bvh.occluded(&ray.until(2.0)));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn occluded(&self, ray: &Ray) -> bool {
         Trace { bvh: self, ray, ask: Any::new, watch: () }.go().found
     }
 
     /// Replaces the content of `hits` by all hits in the ray's range, sorted by t and then as [`Self::closest_hit`]
     /// decides ties. A triangle gives at most one hit, a sphere two, a procedural shape one (its nearest).
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// let mut hits = Vec::new();
+    /// bvh.all_hits(&Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]), &mut hits);
+    /// assert_eq!(hits.iter().map(|hit| hit.t).collect::<Vec<_>>(), [2.0, 4.0]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn all_hits(&self, ray: &Ray, hits: &mut Vec<Hit>) {
         hits.clear();
         let room = std::mem::take(hits);
         *hits = Trace { bvh: self, ray, ask: move |ray: &Ray| All::new(ray, room), watch: () }.go().hits;
-        // A zero is a zero, whatever its sign.
-        hits.sort_unstable_by(|a, b| {
-            (a.t + 0.0).total_cmp(&(b.t + 0.0)).then_with(|| a.rank().cmp(&b.rank()))
-        });
+        sort(hits);
     }
 
     /// [`Self::closest_hit`] for each ray, on several threads where there are many. The two slices should be equally
     /// long; what one has more than the other is left alone.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Hit, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// let rays = [3.0, -3.0].map(|z| Ray::new([0.0, 0.0, z], [0.0, 0.0, -1.0]));
+    /// let mut hits = [Hit::MISS; 2];
+    /// bvh.closest_hits(&rays, &mut hits);
+    /// assert_eq!(hits.map(|hit| hit.is_hit()), [true, false]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
         for_batches(rays, hits, |rays, hits| {
             at_level(self.level, TraceMany { bvh: self, rays, hits });
@@ -165,26 +263,46 @@ impl Bvh {
 
     /// [`Self::occluded`] for each ray, on several threads where there are many. The two slices should be equally
     /// long; what one has more than the other is left alone.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// let rays = [3.0, -3.0].map(|z| Ray::new([0.0, 0.0, z], [0.0, 0.0, -1.0]));
+    /// let mut occluded = [false; 2];
+    /// bvh.occluded_many(&rays, &mut occluded);
+    /// assert_eq!(occluded, [true, false]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn occluded_many(&self, rays: &[Ray], occluded: &mut [bool]) {
-        for_batches(rays, occluded, |rays, occluded| {
-            for (ray, occluded) in rays.iter().zip(occluded) {
-                *occluded = self.occluded(ray);
-            }
-        });
+        for_each(rays, occluded, |ray, occluded| *occluded = self.occluded(ray));
     }
 }
 
-/// Deals rays and places for answers to the threads, batch by batch.
-fn for_batches<T: Send>(rays: &[Ray], answers: &mut [T], trace: impl Fn(&[Ray], &mut [T]) + Sync) {
+/// Sorts hits by t and then as ties are decided.
+pub(crate) fn sort(hits: &mut [Hit]) {
+    // A zero is a zero, whatever its sign.
+    hits.sort_unstable_by(|a, b| (a.t + 0.0).total_cmp(&(b.t + 0.0)).then_with(|| a.rank().cmp(&b.rank())));
+}
+
+/// Answers each question in its place, batch by batch on several threads where there are many.
+pub(crate) fn for_each<Q: Sync, A: Send>(
+    questions: &[Q],
+    answers: &mut [A],
+    answer: impl Fn(&Q, &mut A) + Sync,
+) {
+    let batch = |questions: &[Q], answers: &mut [A]| {
+        questions.iter().zip(answers).for_each(|(question, place)| answer(question, place));
+    };
     #[cfg(feature = "parallel")]
-    if rays.len() > BATCH {
+    if questions.len() > BATCH {
         use rayon::prelude::*;
-        rays.par_chunks(BATCH)
+        questions
+            .par_chunks(BATCH)
             .zip(answers.par_chunks_mut(BATCH))
-            .for_each(|(rays, answers)| trace(rays, answers));
+            .for_each(|(questions, answers)| batch(questions, answers));
         return;
     }
-    for (rays, answers) in rays.chunks(BATCH).zip(answers.chunks_mut(BATCH)) {
-        trace(rays, answers);
-    }
+    batch(questions, answers);
 }

@@ -6,11 +6,30 @@ use crate::vector::{subtract, wide};
 
 /// A ray for decisions. In an instance it is not rounded to f32.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Exact {
+pub(crate) struct Exact<T = f32> {
     pub(crate) origin: [f64; 3],
     pub(crate) direction: [f64; 3],
-    /// Hits need a t above this.
-    pub(crate) t_min: f32,
+    /// Hits need a t above this, when it is rounded to the same type.
+    pub(crate) t_min: T,
+}
+
+/// What a decision is rounded to: f32, or f64 as it is.
+pub(crate) trait Rounded: Copy + PartialOrd {
+    fn rounded(x: f64) -> Self;
+}
+
+impl Rounded for f32 {
+    #[inline(always)]
+    fn rounded(x: f64) -> Self {
+        x as Self
+    }
+}
+
+impl Rounded for f64 {
+    #[inline(always)]
+    fn rounded(x: f64) -> Self {
+        x
+    }
 }
 
 impl Exact {
@@ -18,7 +37,9 @@ impl Exact {
     pub(crate) fn new(ray: &Ray) -> Self {
         Self { origin: wide(ray.origin), direction: wide(ray.direction), t_min: ray.t_min }
     }
+}
 
+impl<T: Rounded> Exact<T> {
     /// The same ray in an object's space; t stays what it is.
     #[inline(always)]
     pub(crate) fn in_object(&self, world_from_object: &Affine, object_from_world: &Affine) -> Self {

@@ -10,11 +10,35 @@ pub(crate) trait Query {
     /// Whether any hit will do, wherever in the ray's range it is.
     const ANY_HIT: bool;
 
+    /// Whether the query is about a part of the geometry, so that the methods below `accept` are to be asked.
+    const SELECTS: bool = false;
+
     /// No hit beyond this t is wanted; one at it may be.
     fn end(&self) -> f32;
 
     /// Hears of a hit beyond the ray's `t_min`. Returns true where no more are wanted.
     fn accept(&mut self, hit: Hit) -> bool;
+
+    /// The ray is about to enter an instance, named by its place in the outer tree's list. False where it is not to.
+    fn enter_instance(&mut self, place: usize) -> bool {
+        let _ = place;
+        true
+    }
+
+    /// The ray is in the outer tree again.
+    fn leave_instance(&mut self) {}
+
+    /// Whether the query is about a primitive of the tree that the ray is in.
+    fn shows(&self, geometry: u32, primitive: u32) -> bool {
+        let _ = (geometry, primitive);
+        true
+    }
+
+    /// Whether the query is about the face that the ray looks at.
+    fn shows_face(&self, is_front: impl FnOnce() -> bool) -> bool {
+        let _ = is_front;
+        true
+    }
 }
 
 /// The hit with the least t; of several, that of the lowest rank.

@@ -4,10 +4,18 @@
 //! the vector `f` from centre to origin and half the usual linear coefficient, `A t² + 2 B t + C = 0`.
 
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
-use crate::exact::Exact;
+use crate::exact::{Exact, Rounded};
 use crate::vector::{dot, subtract, wide};
 
 /// A sphere's surface: rays hit it from both sides.
+///
+/// ```
+/// use lookfrom_bvh::{Builder, Sphere};
+/// let mut builder = Builder::new();
+/// builder.spheres(&[Sphere { center: [0.0, 1.0, 0.0], radius: 0.5 }]);
+/// # assert_eq!(builder.build()?.statistics().spheres, 1);
+/// # Ok::<(), lookfrom_bvh::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     /// Middle.
@@ -18,6 +26,12 @@ pub struct Sphere {
 
 impl Sphere {
     /// The box around it, rounded outwards.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Sphere;
+    /// let bounds = Sphere { center: [0.0; 3], radius: 1.0 }.bounds();
+    /// assert!(bounds.min[0] < -1.0 && bounds.max[0] > 1.0);
+    /// ```
     pub fn bounds(&self) -> Aabb {
         // One unit more than the sum's rounding: a point at exactly the radius is inside.
         Aabb {
@@ -32,7 +46,7 @@ impl Sphere {
 }
 
 /// Where the whole line meets the sphere, the smaller t first. None where it passes by.
-pub(crate) fn decide(ray: &Exact, sphere: &Sphere) -> Option<[f32; 2]> {
+pub(crate) fn decide<T: Rounded>(ray: &Exact<T>, sphere: &Sphere) -> Option<[T; 2]> {
     let f = subtract(ray.origin, wide(sphere.center));
     let d = ray.direction;
     let radius = f64::from(sphere.radius);
@@ -52,9 +66,9 @@ pub(crate) fn decide(ray: &Exact, sphere: &Sphere) -> Option<[f32; 2]> {
     let c = (length - radius) * (length + radius);
     let q = -(b + discriminant.sqrt().copysign(b));
     if q == 0.0 {
-        return Some([0.0; 2]);
+        return Some([T::rounded(0.0); 2]);
     }
-    let [t1, t2] = [(q / a) as f32, (c / q) as f32];
+    let [t1, t2] = [T::rounded(q / a), T::rounded(c / q)];
     Some(if t1 <= t2 { [t1, t2] } else { [t2, t1] })
 }
 

@@ -15,6 +15,7 @@ use crate::node::{Child, Content, Entered, LARGEST_DEPTH, Node, Slabs, WIDTH};
 use crate::prepared::Prepared;
 use crate::query::Query;
 use crate::ray::{Hit, NONE, Ray};
+use crate::selection::shown;
 use crate::simd::{Chosen, Simd, Work, at_level};
 use crate::triangle::{Crossing, Sieve, TriangleBlock};
 use crate::{sphere, triangle};
@@ -178,19 +179,26 @@ fn trace_any<S: Simd, Q: Query, W: Watch>(
 /// Takes a ray into instances.
 fn instances<S: Simd, Q: Query, W: Watch>(
     simd: S,
-    instances: &[Instance],
+    bvh: &Bvh,
+    mut range: Range<usize>,
     exact: &Exact,
     answer: &mut Answer<Q, W>,
     waiting: &mut Waiting<'_>,
 ) -> bool {
-    instances.iter().any(|instance| {
-        let Instance { bvh, id, world_from_object, object_from_world } = instance;
+    range.any(|place| {
+        if Q::SELECTS && !answer.query.enter_instance(place) {
+            return false;
+        }
+        let Instance { bvh, id, world_from_object, object_from_world } = &bvh.instances[place];
         let inside = exact.in_object(world_from_object, object_from_world);
         let Waiting { stack, height, .. } = waiting;
         answer.instance = *id;
         let stop =
             trace_any(simd, bvh, &inside, answer, &mut Waiting { stack, bottom: *height, height: *height });
         answer.instance = NONE;
+        if Q::SELECTS {
+            answer.query.leave_instance();
+        }
         stop
     })
 }
@@ -346,7 +354,12 @@ fn triangles<'a, S: Simd, Q: Query, W: Watch>(
             answer.watch.candidate(answer.instance, geometry, primitive);
         }
     }
-    let sifted = block.filter(simd, sieve, *end);
+    let mut sifted = block.filter(simd, sieve, *end);
+    if Q::SELECTS {
+        let shown = shown(&answer.query, block, &exact(), sifted.kept);
+        sifted.kept.0 &= shown;
+        sifted.surely_hit.0 &= shown;
+    }
     if Q::ANY_HIT && sifted.surely_hit != Chosen(0) {
         let (geometry, primitive) = block.ids(sifted.surely_hit.0.trailing_zeros() as usize);
         return answer.query.accept(Hit { t: exact().t_min, geometry, primitive, ..Hit::MISS });
@@ -434,9 +447,7 @@ fn other_leaf<S: Simd, Q: Query, W: Watch>(
     match *leaf {
         Leaf::Spheres { first, count } => spheres(&bvh.spheres[range(first, count)], ray, answer),
         Leaf::Procedurals { first, count } => procedurals(bvh, range(first, count), ray, answer),
-        Leaf::Instances { first, count } => {
-            instances(simd, &bvh.instances[range(first, count)], ray, answer, waiting)
-        }
+        Leaf::Instances { first, count } => instances(simd, bvh, range(first, count), ray, answer, waiting),
     }
 }
 
@@ -444,10 +455,15 @@ fn spheres<Q: Query, W: Watch>(spheres: &[SphereItem], ray: &Exact, answer: &mut
     for item in spheres {
         let (geometry, primitive, instance) = (item.geometry, item.primitive, answer.instance);
         answer.watch.candidate(instance, geometry, primitive);
+        if Q::SELECTS && !answer.query.shows(geometry, primitive) {
+            continue;
+        }
         let Some([t1, t2]) = sphere::decide(ray, &item.shape) else { continue };
         let roots = if t1 < t2 { &[t1, t2][..] } else { &[t1][..] };
-        for &t in roots {
-            if t > ray.t_min && answer.query.accept(Hit { t, u: 0.0, v: 0.0, primitive, geometry, instance })
+        for (root, &t) in roots.iter().enumerate() {
+            if t > ray.t_min
+                && (!Q::SELECTS || answer.query.shows_face(|| root == 0))
+                && answer.query.accept(Hit { t, u: 0.0, v: 0.0, primitive, geometry, instance })
             {
                 return true;
             }
@@ -465,6 +481,9 @@ fn procedurals<Q: Query, W: Watch>(
     for item in &bvh.procedurals[range] {
         let (geometry, primitive, instance) = (item.geometry, item.primitive, answer.instance);
         answer.watch.candidate(instance, geometry, primitive);
+        if Q::SELECTS && !answer.query.shows(geometry, primitive) {
+            continue;
+        }
         // Ask one step beyond the end: a hit at the same t may win the tie.
         let t_max = answer.query.end().next_up();
         let [origin, direction] = [ray.origin, ray.direction].map(|x| x.map(|x| x as f32));

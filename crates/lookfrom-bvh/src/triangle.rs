@@ -14,7 +14,7 @@
 //! right to about 10⁻¹⁵ of the triangle's size, however near the origin is to the plane.
 
 use crate::aabb::Aabb;
-use crate::exact::Exact;
+use crate::exact::{Exact, Rounded};
 use crate::prepared::{self, Prepared};
 use crate::ray::NONE;
 use crate::simd::{Chosen, Simd, f32x8, mask32x8, prelude::*};
@@ -58,10 +58,10 @@ const UNUSED: f32 = -1.0;
 
 /// Where a triangle is met: `t`, and the weights of its second and third corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Crossing {
-    pub(crate) t: f32,
-    pub(crate) u: f32,
-    pub(crate) v: f32,
+pub(crate) struct Crossing<T = f32> {
+    pub(crate) t: T,
+    pub(crate) u: T,
+    pub(crate) v: T,
 }
 
 /// What the filter says of a block.
@@ -319,7 +319,11 @@ impl<S: Simd> TriangleLanes<S> {
 ///
 /// No component of the edges at the first corner is larger than `extent` (but for rounding to f32).
 #[inline(always)]
-pub(crate) fn decide(ray: &Exact, corners: &[[f32; 3]; 3], extent: f32) -> Option<Crossing> {
+pub(crate) fn decide<T: Rounded>(
+    ray: &Exact<T>,
+    corners: &[[f32; 3]; 3],
+    extent: f32,
+) -> Option<Crossing<T>> {
     let sheared = Sheared::new(ray, corners);
     if !sheared.is_met() {
         return None;
@@ -334,7 +338,7 @@ pub(crate) fn decide(ray: &Exact, corners: &[[f32; 3]; 3], extent: f32) -> Optio
         } else if determinant > GRAZING * 6.5 * product * extent {
             // No product of the determinant is larger: t is right, the weights may have lost their digits.
             let [u, v] = sheared.weights();
-            Crossing { t: meeting.t as f32, u, v }
+            Crossing { t: T::rounded(meeting.t), u, v }
         } else {
             sheared.grazing(ray, corners)
         };
@@ -354,6 +358,14 @@ pub(crate) fn cross_surely(ray: &Exact, corners: &[[f32; 3]; 3]) -> Crossing {
     meet(ray, corners).round()
 }
 
+/// Whether the ray looks at the front of a triangle that it meets: the face from which its corners are seen
+/// counter-clockwise. Signs are those of the decision, so a closed mesh is left through as many backs as it is entered
+/// through fronts.
+pub(crate) fn is_front(ray: &Exact, corners: &[[f32; 3]; 3]) -> bool {
+    let Sheared { edges: [u, v, w], along, .. } = Sheared::new(ray, corners);
+    (u + v + w > 0.0) == (along > 0.0)
+}
+
 /// A meeting before it is rounded.
 struct Meeting {
     determinant: f64,
@@ -365,15 +377,15 @@ struct Meeting {
 impl Meeting {
     /// Weights that are less than 0 are so by their rounding alone.
     #[inline(always)]
-    fn round(&self) -> Crossing {
-        let weight = |x: f64| if x > 0.0 { x as f32 } else { 0.0 };
-        Crossing { t: self.t as f32, u: weight(self.u), v: weight(self.v) }
+    fn round<T: Rounded>(&self) -> Crossing<T> {
+        let weight = |x: f64| T::rounded(if x > 0.0 { x } else { 0.0 });
+        Crossing { t: T::rounded(self.t), u: weight(self.u), v: weight(self.v) }
     }
 }
 
 /// Where a ray meets the plane of a triangle: Cramer's rule, as Möller and Trumbore (1997) arrange it.
 #[inline(always)]
-fn meet(ray: &Exact, corners: &[[f32; 3]; 3]) -> Meeting {
+fn meet<T: Rounded>(ray: &Exact<T>, corners: &[[f32; 3]; 3]) -> Meeting {
     let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
     let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
     let c = subtract(p0, ray.origin);
@@ -394,7 +406,7 @@ struct Sheared {
 
 impl Sheared {
     #[inline(always)]
-    fn new(ray: &Exact, corners: &[[f32; 3]; 3]) -> Self {
+    fn new<T: Rounded>(ray: &Exact<T>, corners: &[[f32; 3]; 3]) -> Self {
         let [kx, ky, kz] = ray.axes();
         let d = ray.direction;
         // Multiplying by the direction's length, in place of dividing by it, keeps whole numbers whole: edges and
@@ -420,7 +432,7 @@ impl Sheared {
     /// The crossing where the ray runs nearly along the triangle's plane. NaN where it is before the ray.
     #[cold]
     #[inline(never)]
-    fn grazing(&self, ray: &Exact, corners: &[[f32; 3]; 3]) -> Crossing {
+    fn grazing<T: Rounded>(&self, ray: &Exact<T>, corners: &[[f32; 3]; 3]) -> Crossing<T> {
         let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
         let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
         let (n, d) = (cross(e1, e2), ray.direction);
@@ -434,21 +446,21 @@ impl Sheared {
             // The ray runs along the plane, as far as f64 can tell: t is somewhere between the corners.
             (u * a[2] + v * b[2] + w * c[2]) / (sum * self.along)
         };
-        if !(t as f32 > ray.t_min) {
+        if !(T::rounded(t) > ray.t_min) {
             t = f64::NAN;
         } else if determinant.abs() < GRAZING * magnitude {
             // Keep it inside the triangle's box, where every tree looks for it.
             t = clamp_to_box(ray, corners, t);
         }
         let [u, v] = self.weights();
-        Crossing { t: t as f32, u, v }
+        Crossing { t: T::rounded(t), u, v }
     }
 
     /// The weights of the second and third corner: never outside of the triangle, however far away that is.
-    fn weights(&self) -> [f32; 2] {
+    fn weights<T: Rounded>(&self) -> [T; 2] {
         let [u, v, w] = self.edges;
         let sum = u + v + w;
-        [(v / sum) as f32, (w / sum) as f32]
+        [T::rounded(v / sum), T::rounded(w / sum)]
     }
 }
 
@@ -486,7 +498,7 @@ fn product_error(a: f64, b: f64, product: f64) -> f64 {
 }
 
 /// Moves t into the interval in which the ray is inside the triangle's box.
-fn clamp_to_box(ray: &Exact, corners: &[[f32; 3]; 3], t: f64) -> f64 {
+fn clamp_to_box<T: Rounded>(ray: &Exact<T>, corners: &[[f32; 3]; 3], t: f64) -> f64 {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
         if ray.direction[axis] != 0.0 {

@@ -5,6 +5,7 @@
 
 mod collapse;
 mod cut;
+mod masks;
 mod parallel;
 mod plan;
 mod primitives;
@@ -18,6 +19,7 @@ use std::sync::Arc;
 use crate::Bvh;
 use crate::affine::Affine;
 use crate::instance::Instance;
+use crate::masks::Masks;
 use crate::node::Child;
 use crate::procedural::Procedural;
 use crate::simd::Level;
@@ -29,6 +31,15 @@ use primitives::{Geometry, Primitives};
 pub(crate) use primitives::{has_area, has_surface};
 
 /// Triangles over shared corners, borrowed while the builder copies them. Rays hit both faces.
+///
+/// ```
+/// use lookfrom_bvh::{Builder, Triangles};
+/// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mut builder = Builder::new();
+/// builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
+/// assert_eq!(builder.build()?.statistics().triangles, 1);
+/// # Ok::<(), lookfrom_bvh::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Triangles<'a> {
     /// Corners.
@@ -38,6 +49,15 @@ pub struct Triangles<'a> {
 }
 
 /// How much time to spend on the tree. The answers to rays do not depend on it.
+///
+/// ```
+/// use lookfrom_bvh::{Builder, Quality, Sphere};
+/// let mut builder = Builder::new();
+/// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+/// let bvh = builder.quality(Quality::Fast).build()?;
+/// # assert_eq!(bvh.statistics().spheres, 1);
+/// # Ok::<(), lookfrom_bvh::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
     /// Built soonest.
@@ -50,6 +70,15 @@ pub enum Quality {
 }
 
 /// What a tree cannot be built from.
+///
+/// ```
+/// use lookfrom_bvh::{Builder, BuildError, Triangles};
+/// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mut builder = Builder::new();
+/// builder.triangles(Triangles { positions: &positions, indices: &[[1, 2, 3]] });
+/// let error = builder.build().unwrap_err();
+/// assert_eq!(error, BuildError::IndexOutOfRange { geometry: 0, triangle: 0, index: 3, positions: 3 });
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BuildError {
     /// A triangle names a corner that is not there.
@@ -72,6 +101,29 @@ pub enum BuildError {
     SingularMatrix {
         /// The instance, as the builder numbered it.
         instance: u32,
+    },
+    /// A mask is for a geometry that is not there.
+    NoSuchGeometry {
+        /// What was named.
+        geometry: u32,
+        /// How many geometries there were then.
+        geometries: usize,
+    },
+    /// A mask is for an instance that is not there.
+    NoSuchInstance {
+        /// What was named.
+        instance: u32,
+        /// How many instances there were then.
+        instances: usize,
+    },
+    /// There are more or fewer masks than primitives.
+    MaskCount {
+        /// The geometry, as the builder numbered it.
+        geometry: u32,
+        /// How many masks there are.
+        masks: usize,
+        /// How many primitives the geometry has.
+        primitives: u64,
     },
     /// Ids are 32 bits wide.
     TooMany {
@@ -97,6 +149,17 @@ impl fmt::Display for BuildError {
                 f,
                 "the matrix of instance {instance} has no usable inverse; scales need to be finite and other than 0"
             ),
+            Self::NoSuchGeometry { geometry, geometries } => write!(
+                f,
+                "a mask is for geometry {geometry}, but there are {geometries}, counted from 0; add the geometry first"
+            ),
+            Self::NoSuchInstance { instance, instances } => write!(
+                f,
+                "a mask is for instance {instance}, but there are {instances}, counted from 0; add the instance first"
+            ),
+            Self::MaskCount { geometry, masks, primitives } => {
+                write!(f, "geometry {geometry} has {primitives} primitives, but {masks} masks; give each one")
+            }
             Self::TooMany { primitives } => {
                 write!(
                     f,
@@ -136,22 +199,44 @@ pub struct Builder {
     quality: Quality,
     geometries: Vec<Geometry>,
     instances: Vec<(Arc<Bvh>, Affine)>,
+    masks: Masks,
     error: Option<BuildError>,
 }
 
 impl Builder {
     /// A builder of nothing yet, with [`Quality::Balanced`].
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Aabb, Builder};
+    /// assert_eq!(Builder::new().build()?.bounds(), Aabb::EMPTY);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn new() -> Self {
         Self::default()
     }
 
     /// How much time to spend on the tree.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Quality};
+    /// let bvh = Builder::new().quality(Quality::Best).build()?;
+    /// # assert!(bvh.bounds().is_empty());
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn quality(&mut self, quality: Quality) -> &mut Self {
         self.quality = quality;
         self
     }
 
     /// Adds triangles and returns their geometry's number. An index out of range makes [`Self::build`] fail.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Triangles};
+    /// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let mut builder = Builder::new();
+    /// let triangles = Triangles { positions: &positions, indices: &[[0, 1, 2]] };
+    /// assert_eq!((builder.triangles(triangles), builder.triangles(triangles)), (0, 1));
+    /// ```
     pub fn triangles(&mut self, triangles: Triangles<'_>) -> u32 {
         let geometry = self.geometries.len() as u32;
         let Triangles { positions, indices } = triangles;
@@ -176,12 +261,43 @@ impl Builder {
     }
 
     /// Adds spheres and returns their geometry's number.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Sphere};
+    /// let mut builder = Builder::new();
+    /// assert_eq!(builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]), 0);
+    /// ```
     pub fn spheres(&mut self, spheres: &[Sphere]) -> u32 {
         self.geometries.push(Geometry::Spheres(spheres.to_vec()));
         self.geometries.len() as u32 - 1
     }
 
     /// Adds shapes that the caller defines and returns their geometry's number.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Aabb, Builder, Procedural, ProceduralHit, Ray};
+    /// use std::sync::Arc;
+    ///
+    /// /// Everything above the plane z = 0 counts as a wall there. (See [`Procedural`] for a whole example.)
+    /// #[derive(Debug)]
+    /// struct Floor;
+    ///
+    /// impl Procedural for Floor {
+    ///     fn count(&self) -> u32 {
+    ///         1
+    ///     }
+    ///     fn bounds(&self, _: u32) -> Aabb {
+    ///         Aabb { min: [-9.0, -9.0, 0.0], max: [9.0, 9.0, 0.0] }
+    ///     }
+    ///     fn intersect(&self, _: u32, ray: &Ray) -> Option<ProceduralHit> {
+    ///         let t = -ray.origin[2] / ray.direction[2];
+    ///         (ray.t_min < t && t < ray.t_max).then_some(ProceduralHit { t, u: 0.0, v: 0.0 })
+    ///     }
+    /// }
+    ///
+    /// let mut builder = Builder::new();
+    /// assert_eq!(builder.procedural(Arc::new(Floor)), 0);
+    /// ```
     pub fn procedural(&mut self, shapes: Arc<dyn Procedural>) -> u32 {
         self.geometries.push(Geometry::Procedural(shapes));
         self.geometries.len() as u32 - 1
@@ -189,6 +305,18 @@ impl Builder {
 
     /// Places another tree in this one and returns the instance's number. A tree that holds instances itself, or a
     /// map without an inverse, makes [`Self::build`] fail.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Affine, Builder, Ray, Sphere};
+    /// use std::sync::Arc;
+    /// let mut ball = Builder::new();
+    /// ball.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let mut scene = Builder::new();
+    /// let up = Affine { translation: [0.0, 0.0, 5.0], ..Affine::IDENTITY };
+    /// assert_eq!(scene.instance(Arc::new(ball.build()?), up), 0);
+    /// assert_eq!(scene.build()?.closest_hit(&Ray::new([0.0; 3], [0.0, 0.0, 1.0])).t, 4.0);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn instance(&mut self, bvh: Arc<Bvh>, world_from_object: Affine) -> u32 {
         self.instances.push((bvh, world_from_object));
         self.instances.len() as u32 - 1
@@ -201,6 +329,15 @@ impl Builder {
     ///
     /// # Errors
     /// See [`BuildError`].
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Sphere};
+    /// let mut builder = Builder::new();
+    /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }, Sphere { center: [f32::NAN; 3], radius: 1.0 }]);
+    /// let statistics = builder.build()?.statistics();
+    /// assert_eq!((statistics.spheres, statistics.left_out), (1, 1));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
     pub fn build(&self) -> Result<Bvh, BuildError> {
         if let Some(error) = &self.error {
             return Err(error.clone());
@@ -222,6 +359,7 @@ impl Builder {
         }
         let mut bvh = collapse::collapse(&binary, &plan, &references, &primitives);
         bvh.set_bounds(bounds);
+        bvh.masks = self.masks.clone();
         bvh.statistics = Statistics { left_out, ..bvh.take_statistics() };
         Ok(bvh)
     }

@@ -32,7 +32,7 @@ impl Geometry {
         }
     }
 
-    fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         match self {
             Self::Triangles(corners) => corners.len(),
             Self::Spheres(spheres) => spheres.len(),

@@ -1,0 +1,100 @@
+//! Telling a builder what has which mask.
+
+use super::{BuildError, Builder};
+
+impl Builder {
+    /// Gives a geometry a mask, in place of all bits. Rays with a mask of their own ([`Selection`](crate::Selection)) see
+    /// it where the two have a bit in common. A number that no geometry has makes [`Self::build`] fail.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Ray, Selection, Sphere};
+    /// let mut builder = Builder::new();
+    /// let glass = builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// builder.geometry_mask(glass, 0b10);
+    /// let bvh = builder.build()?;
+    /// let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    /// assert!(bvh.select(Selection { mask: 0b110, ..Selection::ALL }).occluded(&ray));
+    /// assert!(!bvh.select(Selection { mask: 0b101, ..Selection::ALL }).occluded(&ray));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn geometry_mask(&mut self, geometry: u32, mask: u32) -> &mut Self {
+        if self.has_geometry(geometry) {
+            place(&mut self.masks.geometries, geometry, u32::MAX, mask);
+        }
+        self
+    }
+
+    /// Gives each primitive of a geometry a mask of its own, beside the geometry's: a ray sees a primitive where its mask
+    /// has a bit in common with each of the two. Too many or too few of them make [`Self::build`] fail.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Ray, Selection, Sphere};
+    /// let mut builder = Builder::new();
+    /// let [near, far] = [2.0, -2.0].map(|z| Sphere { center: [0.0, 0.0, z], radius: 1.0 });
+    /// let balls = builder.spheres(&[near, far]);
+    /// builder.primitive_masks(balls, &[0b01, 0b11]);
+    /// let bvh = builder.build()?;
+    /// let ray = Ray::new([0.0, 0.0, 5.0], [0.0, 0.0, -1.0]);
+    /// let seen = |mask| bvh.select(Selection { mask, ..Selection::ALL }).closest_hit(&ray).primitive;
+    /// assert_eq!((seen(0b01), seen(0b10)), (0, 1));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn primitive_masks(&mut self, geometry: u32, masks: &[u32]) -> &mut Self {
+        if !self.has_geometry(geometry) {
+            return self;
+        }
+        let primitives = self.geometries[geometry as usize].count() as u64;
+        if masks.len() as u64 != primitives {
+            let masks = masks.len();
+            self.error.get_or_insert(BuildError::MaskCount { geometry, masks, primitives });
+            return self;
+        }
+        place(&mut self.masks.primitives, geometry, Vec::new(), masks.to_vec());
+        self
+    }
+
+    /// Gives an instance a mask, in place of all bits: a ray sees what is in it where its mask has a bit in common with
+    /// the instance's and with those of the geometry inside. A number that no instance has makes [`Self::build`] fail.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Affine, Builder, Ray, Selection, Sphere};
+    /// use std::sync::Arc;
+    /// let mut ball = Builder::new();
+    /// ball.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let mut scene = Builder::new();
+    /// let instance = scene.instance(Arc::new(ball.build()?), Affine::IDENTITY);
+    /// scene.instance_mask(instance, 0b10);
+    /// let scene = scene.build()?;
+    /// let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    /// assert!(!scene.select(Selection { mask: 0b01, ..Selection::ALL }).occluded(&ray));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn instance_mask(&mut self, instance: u32, mask: u32) -> &mut Self {
+        let instances = self.instances.len();
+        if (instance as usize) < instances {
+            place(&mut self.masks.instances, instance, u32::MAX, mask);
+        } else {
+            self.error.get_or_insert(BuildError::NoSuchInstance { instance, instances });
+        }
+        self
+    }
+
+    /// Whether there is a geometry of that number; if not, that is the error.
+    fn has_geometry(&mut self, geometry: u32) -> bool {
+        let geometries = self.geometries.len();
+        let is_there = (geometry as usize) < geometries;
+        if !is_there {
+            self.error.get_or_insert(BuildError::NoSuchGeometry { geometry, geometries });
+        }
+        is_there
+    }
+}
+
+/// Writes into a list, which grows as needed.
+fn place<T: Clone>(list: &mut Vec<T>, number: u32, unset: T, value: T) {
+    let number = number as usize;
+    if list.len() <= number {
+        list.resize(number + 1, unset);
+    }
+    list[number] = value;
+}
