@@ -11,7 +11,7 @@ use std::collections::BinaryHeap;
 use crate::Bvh;
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
 use crate::affine::Affine;
-use crate::bvh::Leaf;
+use crate::bvh::{Leaf, for_each};
 use crate::ellipsoid::nearest_on_ellipsoid;
 use crate::node::{Child, Content, WIDTH};
 use crate::ray::NONE;
@@ -25,6 +25,16 @@ const ROOM: f64 = 1.0 + 9.536_743_164_062_5e-7;
 const MAPPED_ERROR: f64 = 1.421_085_471_520_200_4e-14;
 
 /// The nearest point of some geometry, as [`Bvh::closest_point`] finds it.
+///
+/// ```
+/// # use lookfrom_bvh::{Builder, Sphere};
+/// # let mut builder = Builder::new();
+/// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+/// # let bvh = builder.build()?;
+/// let nearest = bvh.closest_point([0.0, 0.0, 3.0], f32::INFINITY).unwrap();
+/// assert_eq!((nearest.position, nearest.distance), ([0.0, 0.0, 1.0], 2.0));
+/// # Ok::<(), lookfrom_bvh::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosestPoint {
     /// Where it is, in the world.
@@ -75,12 +85,69 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn closest_point(&self, point: [f32; 3], max_distance: f32) -> Option<ClosestPoint> {
+        self.search_points(point, max_distance, false)
+    }
+
+    /// [`Self::closest_point`] for each point, on several threads where there are many. The two slices should be equally
+    /// long; what one has more than the other is left alone.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Sphere};
+    /// let mut builder = Builder::new();
+    /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let bvh = builder.build()?;
+    /// let mut nearest = [None; 2];
+    /// bvh.closest_points(&[[3.0, 0.0, 0.0], [0.0, 0.5, 0.0]], 1.0, &mut nearest);
+    /// assert!(nearest[0].is_none());
+    /// assert_eq!(nearest[1].unwrap().distance, 0.5);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn closest_points(
+        &self,
+        points: &[[f32; 3]],
+        max_distance: f32,
+        nearest: &mut [Option<ClosestPoint>],
+    ) {
+        for_each(points, nearest, |&point, nearest| *nearest = self.closest_point(point, max_distance));
+    }
+
+    /// Whether [`Self::closest_point`] would find any: stops at the first primitive that is near enough.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Sphere};
+    /// let mut builder = Builder::new();
+    /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let bvh = builder.build()?;
+    /// assert!(bvh.is_near([3.0, 0.0, 0.0], 2.0) && !bvh.is_near([3.0, 0.0, 0.0], 1.9));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn is_near(&self, point: [f32; 3], max_distance: f32) -> bool {
+        self.search_points(point, max_distance, true).is_some()
+    }
+
+    /// [`Self::is_near`] for each point, on several threads where there are many. The two slices should be equally long;
+    /// what one has more than the other is left alone.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Sphere};
+    /// let mut builder = Builder::new();
+    /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let mut near = [false; 2];
+    /// builder.build()?.are_near(&[[3.0, 0.0, 0.0], [0.0, 0.5, 0.0]], 1.0, &mut near);
+    /// assert_eq!(near, [false, true]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn are_near(&self, points: &[[f32; 3]], max_distance: f32, near: &mut [bool]) {
+        for_each(points, near, |&point, near| *near = self.is_near(point, max_distance));
+    }
+
+    fn search_points(&self, point: [f32; 3], max_distance: f32, any: bool) -> Option<ClosestPoint> {
         let usable = point.iter().all(|x| x.abs() <= LARGEST_COORDINATE) && max_distance >= 0.0;
         if !usable || self.nodes.is_empty() {
             return None;
         }
-        let mut search =
-            Search { outer: self, point: wide(point), max_distance, best: None, waiting: BinaryHeap::new() };
+        let (point, waiting) = (wide(point), BinaryHeap::new());
+        let mut search = Search { outer: self, point, max_distance, any, best: None, waiting };
         search.waiting.push(Waiting { distance: 0.0, child: Child::ROOT, place: NONE });
         search.run();
         search.best
@@ -121,6 +188,8 @@ struct Search<'a> {
     outer: &'a Bvh,
     point: [f64; 3],
     max_distance: f32,
+    /// Whether any point that is near enough will do.
+    any: bool,
     best: Option<ClosestPoint>,
     waiting: BinaryHeap<Waiting>,
 }
@@ -128,7 +197,7 @@ struct Search<'a> {
 impl Search<'_> {
     fn run(&mut self) {
         while let Some(Waiting { distance, child, place }) = self.waiting.pop() {
-            if distance > self.end() {
+            if distance > self.end() || (self.any && self.best.is_some()) {
                 break;
             }
             let instance = self.outer.instances.get(place as usize);

@@ -122,6 +122,29 @@ fn trees_answer_as_their_primitives_do() {
 }
 
 #[test]
+fn batches_answer_as_points_one_by_one() {
+    let mut random = Random::new(13);
+    let (corners, spheres) = soup(&mut random, false);
+    let bvh = tree(&corners, &spheres, Quality::Balanced);
+    let points: Vec<[f32; 3]> = (0..10_000).map(|_| random.point_with_exponents(-4, 4)).collect();
+    for max in [0.01, 3.0, f32::INFINITY, f32::NAN] {
+        let expected: Vec<Option<ClosestPoint>> = points.iter().map(|&p| bvh.closest_point(p, max)).collect();
+        let mut nearest = vec![None; points.len()];
+        bvh.closest_points(&points, max, &mut nearest);
+        assert_eq!(nearest, expected);
+        let mut near = vec![false; points.len()];
+        bvh.are_near(&points, max, &mut near);
+        assert!(near.iter().zip(&expected).all(|(near, expected)| *near == expected.is_some()));
+        let count = near.iter().filter(|&&near| near).count();
+        assert_eq!(count == points.len(), max == f32::INFINITY);
+        assert_eq!(count == 0, max.is_nan());
+    }
+    let mut rest = [None; 2];
+    bvh.closest_points(&points[..1], f32::INFINITY, &mut rest);
+    assert!(rest[0].is_some() && rest[1].is_none(), "what is left over is left alone");
+}
+
+#[test]
 fn no_point_of_a_triangle_is_nearer() {
     let mut random = Random::new(12);
     for _ in 0..3000 {
