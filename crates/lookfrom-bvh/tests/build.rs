@@ -137,6 +137,42 @@ fn long_thin_triangles_and_sizes_that_double() {
     built_soon("doubling", &doubling);
 }
 
+/// `cargo test --release -p lookfrom-bvh --test build -- --ignored --nocapture`: two gigabytes, and some seconds.
+#[test]
+#[ignore = "takes two gigabytes"]
+fn ten_million_triangles() {
+    let side = 2237;
+    let height = |i: u32, j: u32| ((i * 7 + j * 13) % 11) as f32 * 0.1;
+    let positions: Vec<[f32; 3]> =
+        (0..=side).flat_map(|j| (0..=side).map(move |i| [i as f32, j as f32, height(i, j)])).collect();
+    let mut indices = Vec::new();
+    for corner in (0..side).flat_map(|j| (0..side).map(move |i| j * (side + 1) + i)) {
+        indices.extend([
+            [corner, corner + 1, corner + side + 2],
+            [corner, corner + side + 2, corner + side + 1],
+        ]);
+    }
+    for quality in [Quality::Fast, Quality::Balanced, Quality::Best] {
+        let mut builder = Builder::new();
+        builder.quality(quality).triangles(Triangles { positions: &positions, indices: &indices });
+        let start = Instant::now();
+        let bvh = builder.build().unwrap();
+        let seconds = start.elapsed().as_secs_f64();
+        println!("{quality:?}: {seconds:.1} s, {} bytes, {:?}", bvh.memory(), bvh.statistics());
+        assert_eq!((bvh.statistics().triangles, bvh.statistics().left_out), (indices.len(), 0));
+        assert!(seconds < 120.0 && bvh.statistics().depth < 30);
+        bvh.validate().unwrap();
+        // Straight down, everywhere.
+        let mut random = Random::new(33);
+        for _ in 0..100_000 {
+            let [x, y] = [0; 2].map(|_| random.below(side) as f32 + 0.01 + 0.98 * random.unit());
+            let hit = bvh.closest_hit(&Ray::new([x, y, 10.0], [0.0, 0.0, -1.0]));
+            let quad = (y as u32 * side + x as u32) * 2;
+            assert!((hit.primitive == quad || hit.primitive == quad + 1) && hit.t >= 9.0, "{x} {y}: {hit:?}");
+        }
+    }
+}
+
 #[test]
 fn threads_and_batches_change_nothing() {
     let mut random = Random::new(32);
