@@ -3,6 +3,12 @@
 //! How rays meet boxes is in `node`.
 
 /// A box along the axes, its faces included. Empty where a minimum is above a maximum.
+///
+/// ```
+/// use lookfrom_bvh::Aabb;
+/// let unit = Aabb { min: [0.0; 3], max: [1.0; 3] };
+/// assert!(!unit.is_empty());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// Least coordinates.
@@ -16,9 +22,19 @@ pub(crate) const LARGEST_COORDINATE: f32 = 1.267_650_6e30;
 
 impl Aabb {
     /// The box of no points.
+    ///
+    /// ```
+    /// assert!(lookfrom_bvh::Aabb::EMPTY.is_empty());
+    /// ```
     pub const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
 
     /// The smallest box around points.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Aabb;
+    /// let bounds = Aabb::around(&[[0.0, 5.0, 1.0], [2.0, 3.0, 1.0]]);
+    /// assert_eq!((bounds.min, bounds.max), ([0.0, 3.0, 1.0], [2.0, 5.0, 1.0]));
+    /// ```
     pub fn around(points: &[[f32; 3]]) -> Self {
         let mut result = Self::EMPTY;
         for &point in points {
@@ -28,16 +44,36 @@ impl Aabb {
     }
 
     /// Whether there is no point in it.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Aabb;
+    /// assert!(Aabb::around(&[]).is_empty());
+    /// assert!(!Aabb::around(&[[1.0; 3]]).is_empty(), "a box of one point");
+    /// ```
     pub fn is_empty(&self) -> bool {
         !(0..3).all(|axis| self.min[axis] <= self.max[axis])
     }
 
     /// Grows to hold a point.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Aabb;
+    /// let mut bounds = Aabb::EMPTY;
+    /// bounds.extend([1.0; 3]);
+    /// assert_eq!(bounds, Aabb::around(&[[1.0; 3]]));
+    /// ```
     pub fn extend(&mut self, point: [f32; 3]) {
         self.unite(&Self { min: point, max: point });
     }
 
     /// Grows to hold another box.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Aabb;
+    /// let mut bounds = Aabb::around(&[[0.0; 3]]);
+    /// bounds.unite(&Aabb::around(&[[1.0; 3]]));
+    /// assert_eq!(bounds.max, [1.0; 3]);
+    /// ```
     #[inline]
     pub fn unite(&mut self, other: &Self) {
         for axis in 0..3 {
@@ -48,11 +84,22 @@ impl Aabb {
     }
 
     /// Whether another box lies within this one.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Aabb;
+    /// let unit = Aabb { min: [0.0; 3], max: [1.0; 3] };
+    /// assert!(unit.contains(&Aabb::around(&[[0.0; 3], [0.5; 3]])));
+    /// ```
     pub fn contains(&self, other: &Self) -> bool {
         (0..3).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
     }
 
     /// Half of the surface, or 10³⁰ where it is larger, so that sums and quotients of areas are numbers; 0 for an empty box.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Aabb;
+    /// assert_eq!(Aabb { min: [0.0; 3], max: [1.0, 2.0, 3.0] }.half_area(), 11.0);
+    /// ```
     #[inline]
     pub fn half_area(&self) -> f32 {
         let [x, y, z] = [0, 1, 2].map(|axis| (self.max[axis] - self.min[axis]).max(0.0));

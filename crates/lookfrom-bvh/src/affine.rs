@@ -3,6 +3,12 @@
 use crate::vector::{cross, dot};
 
 /// `x ↦ matrix · x + translation`. For an instance: world from object. Mirrors, shears and any scale are allowed.
+///
+/// ```
+/// use lookfrom_bvh::Affine;
+/// let mirror = Affine { matrix: [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.0]], translation: [5.0, 0.0, 0.0] };
+/// assert_eq!(mirror.point([1.0, 2.0, 3.0]), [4.0, 2.0, 6.0]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine {
     /// The linear part, by rows.
@@ -13,28 +19,60 @@ pub struct Affine {
 
 impl Affine {
     /// Leaves everything where it is.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Affine;
+    /// let up = Affine { translation: [0.0, 0.0, 1.0], ..Affine::IDENTITY };
+    /// assert_eq!(up.point([1.0; 3]), [1.0, 1.0, 2.0]);
+    /// ```
     pub const IDENTITY: Self =
         Self { matrix: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], translation: [0.0; 3] };
 
     /// The image of a point.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Affine;
+    /// let up = Affine { translation: [0.0, 0.0, 1.0], ..Affine::IDENTITY };
+    /// assert_eq!(up.point([0.0; 3]), [0.0, 0.0, 1.0]);
+    /// ```
     pub fn point(&self, p: [f64; 3]) -> [f64; 3] {
         let moved = self.vector(p);
         [moved[0] + self.translation[0], moved[1] + self.translation[1], moved[2] + self.translation[2]]
     }
 
     /// The image of a direction: without the translation.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Affine;
+    /// let up = Affine { translation: [0.0, 0.0, 1.0], ..Affine::IDENTITY };
+    /// assert_eq!(up.vector([0.0, 2.0, 0.0]), [0.0, 2.0, 0.0]);
+    /// ```
     pub fn vector(&self, v: [f64; 3]) -> [f64; 3] {
         self.matrix.map(|row| dot(row, v))
     }
 
     /// The image of a surface normal under the map from which `self` leads *back*: multiplication by the transposed
     /// matrix. With `self` = object from world, object normals become world normals (not of unit length).
+    ///
+    /// ```
+    /// use lookfrom_bvh::Affine;
+    /// let world_from_object = Affine { matrix: [[2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], ..Affine::IDENTITY };
+    /// let object_from_world = world_from_object.inverse().unwrap();
+    /// assert_eq!(object_from_world.normal_back([1.0, 1.0, 0.0]), [0.5, 1.0, 0.0]);
+    /// ```
     pub fn normal_back(&self, n: [f64; 3]) -> [f64; 3] {
         let m = &self.matrix;
         [0, 1, 2].map(|i| m[0][i] * n[0] + m[1][i] * n[1] + m[2][i] * n[2])
     }
 
     /// The map back, where there is one within the range of numbers.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Affine;
+    /// let up = Affine { translation: [0.0, 0.0, 1.0], ..Affine::IDENTITY };
+    /// assert_eq!(up.inverse().unwrap().point([0.0, 0.0, 1.0]), [0.0; 3]);
+    /// assert_eq!(Affine { matrix: [[0.0; 3]; 3], ..up }.inverse(), None);
+    /// ```
     pub fn inverse(&self) -> Option<Self> {
         let matrix = inverse_matrix(&self.matrix)?;
         let back = Self { matrix, translation: [0.0; 3] }.vector(self.translation);

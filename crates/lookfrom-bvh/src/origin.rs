@@ -20,6 +20,13 @@ const UNIT: f64 = f64::EPSILON / 2.0;
 const UNIT32: f64 = 5.960_464_477_539_063e-8;
 
 /// A point on a surface and a bound of its error.
+///
+/// ```
+/// use lookfrom_bvh::Point;
+/// let point = Point { position: [0.1, 0.2, 0.3], error: [1e-9; 3] };
+/// let origin = point.origin([0.0, 0.0, 1.0], [0.0_f32, 0.0, 1.0]);
+/// assert!(f64::from(origin[2]) > 0.3 + 1e-9);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Where it is.
@@ -33,6 +40,12 @@ impl Point {
     /// The point of a triangle that a hit names: `p0 + u (p1 − p0) + v (p2 − p0)`.
     ///
     /// An error of `u` or `v` moves it inside the plane, so the bound does not hold them.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Point;
+    /// let point = Point::on_triangle([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], 0.25, 0.5);
+    /// assert_eq!(point.position, [0.25, 0.5, 0.0]);
+    /// ```
     pub fn on_triangle(p0: [f32; 3], p1: [f32; 3], p2: [f32; 3], u: f32, v: f32) -> Self {
         let [p0, p1, p2] = [p0, p1, p2].map(wide);
         let (u, v) = (f64::from(u), f64::from(v));
@@ -53,6 +66,12 @@ impl Point {
     }
 
     /// The point of a sphere that is nearest to `hit`, which should be a point on it but for its errors.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Point;
+    /// let point = Point::on_sphere([0.0; 3], 2.0, [0.0, 0.0, 1.999_999_9]);
+    /// assert_eq!(point.position, [0.0, 0.0, 2.0]);
+    /// ```
     pub fn on_sphere(center: [f32; 3], radius: f32, hit: [f64; 3]) -> Self {
         let center = wide(center);
         let radius = f64::from(radius);
@@ -68,6 +87,13 @@ impl Point {
     ///
     /// The bound grows by the rounding errors here and by those of the ray on its way back to the object's space, its
     /// rounding to f32 there included (which procedural shapes see).
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Affine, Point};
+    /// let up = Affine { translation: [0.0, 0.0, 5.0], ..Affine::IDENTITY };
+    /// let point = Point::on_triangle([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], 0.25, 0.5).transformed(&up);
+    /// assert_eq!(point.position, [0.25, 0.5, 5.0]);
+    /// ```
     pub fn transformed(&self, world_from_object: &Affine) -> Self {
         let matrix = &world_from_object.matrix;
         let relative = world_from_object.vector(self.position);
@@ -100,6 +126,13 @@ impl Point {
     ///
     /// `normal` is the surface's geometric normal, of any length but zero and with either sign; the ray starts on the side
     /// that `direction` (of any length) leads to. The origin is beyond the error and rounded away from the surface, no more.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Point;
+    /// let point = Point::on_triangle([0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0], 0.25, 0.25);
+    /// let below = point.origin([0.0, 0.0, 1.0], [0.5_f32, 0.0, -1.0]);
+    /// assert_eq!(below, [0.25, 0.25, 1.0_f32.next_down()]);
+    /// ```
     pub fn origin<D: Copy + Into<f64>>(&self, normal: [f64; 3], direction: [D; 3]) -> [f32; 3] {
         let direction: [f64; 3] = direction.map(Into::into);
         let side = if dot(normal, direction) < 0.0 { -1.0 } else { 1.0 };

@@ -50,6 +50,11 @@ pub trait Procedural: Send + Sync + Debug {
 }
 
 /// Where a ray meets a [`Procedural`].
+///
+/// ```
+/// let hit = lookfrom_bvh::ProceduralHit { t: 2.0, u: 0.0, v: 0.0 };
+/// # assert_eq!(hit.t, 2.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProceduralHit {
     /// The ray's parameter.

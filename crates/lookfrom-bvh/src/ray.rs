@@ -3,12 +3,23 @@
 //! Rays and hits are plain data in single precision. How a ray is made ready for the tests is in `prepared`.
 
 /// "None" where an id is expected: the id of what was not hit.
+///
+/// ```
+/// use lookfrom_bvh::{Hit, NONE};
+/// assert_eq!(Hit::MISS.instance, NONE);
+/// ```
 pub const NONE: u32 = u32::MAX;
 
 /// A ray, or a piece of one: the points `p(t) = origin + t · direction` with `t_min < t < t_max`.
 ///
 /// The direction may have any length but zero; `t` counts in its lengths. A ray with a NaN, an infinite origin or
 /// direction, a zero direction or an empty range hits nothing.
+///
+/// ```
+/// use lookfrom_bvh::Ray;
+/// let ray = Ray { t_min: 0.5, ..Ray::new([0.0; 3], [0.0, 0.0, -2.0]).until(1.0) };
+/// assert_eq!((ray.t_min, ray.t_max), (0.5, 1.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// Where `t` is zero.
@@ -23,17 +34,38 @@ pub struct Ray {
 
 impl Ray {
     /// The ray with `t` in (0, ∞).
+    ///
+    /// ```
+    /// use lookfrom_bvh::Ray;
+    /// let ray = Ray::new([0.0; 3], [0.0, 0.0, -2.0]);
+    /// assert_eq!((ray.t_min, ray.t_max), (0.0, f32::INFINITY));
+    /// ```
     pub const fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
         Self { origin, t_min: 0.0, direction, t_max: f32::INFINITY }
     }
 
     /// The same ray with another end.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Ray;
+    /// assert_eq!(Ray::new([0.0; 3], [0.0, 0.0, -2.0]).until(4.0).t_max, 4.0);
+    /// ```
     pub const fn until(self, t_max: f32) -> Self {
         Self { t_max, ..self }
     }
 }
 
 /// Where a ray meets a primitive, or [`Hit::MISS`].
+///
+/// ```
+/// # use lookfrom_bvh::{Builder, Ray, Sphere};
+/// # let mut builder = Builder::new();
+/// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+/// # let bvh = builder.build()?;
+/// let hit = bvh.closest_hit(&Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]));
+/// assert_eq!((hit.t, hit.geometry, hit.primitive), (2.0, 0, 0));
+/// # Ok::<(), lookfrom_bvh::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The ray's parameter: the hit is at `origin + t · direction`. Infinite for a miss.
@@ -52,10 +84,19 @@ pub struct Hit {
 
 impl Hit {
     /// Nothing was hit.
+    ///
+    /// ```
+    /// assert_eq!(lookfrom_bvh::Hit::MISS.t, f32::INFINITY);
+    /// ```
     pub const MISS: Self =
         Self { t: f32::INFINITY, u: 0.0, v: 0.0, primitive: NONE, geometry: NONE, instance: NONE };
 
     /// Whether something was hit.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Hit;
+    /// assert!(!Hit::MISS.is_hit() && Hit { primitive: 0, ..Hit::MISS }.is_hit());
+    /// ```
     pub const fn is_hit(&self) -> bool {
         self.primitive != NONE
     }

@@ -7,6 +7,14 @@ use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// f32 or f64.
+///
+/// ```
+/// use lookfrom_bvh::reference::Real;
+/// fn twice<T: Real>(x: f32) -> T {
+///     T::from_single(x) + T::from_single(x)
+/// }
+/// assert_eq!(twice::<f64>(1.5), 3.0);
+/// ```
 pub trait Real:
     Copy
     + Debug
@@ -50,6 +58,12 @@ impl Real for f64 {
 }
 
 /// Why something is not hit. The first reason in this order is given.
+///
+/// ```
+/// use lookfrom_bvh::reference::{Rejection, cramer};
+/// let rule = cramer([0.25, 0.5, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 2.0], [1.0, 0.0, 2.0], [0.0, 1.0, 2.0]);
+/// assert_eq!(rule.accept(0.0, 1.0), Err(Rejection::BeyondTMax));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rejection {
     /// D = 0: the ray runs along the plane, or the triangle has no area.
@@ -71,6 +85,12 @@ pub enum Rejection {
 /// Cramer's rule for `a + t d = P0 + β (P1 − P0) + γ (P2 − P0)`, with every number that it takes.
 ///
 /// Nothing is checked: where `d` is 0, quotients are NaN or infinite.
+///
+/// ```
+/// use lookfrom_bvh::reference::cramer;
+/// let rule = cramer([0.25, 0.5, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 2.0], [1.0, 0.0, 2.0], [0.0, 1.0, 2.0]);
+/// assert_eq!((rule.beta, rule.gamma, rule.t), (0.25, 0.5, 2.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cramer<T> {
     /// `D = det[P1−P0, P2−P0, −d]`.
@@ -121,6 +141,12 @@ impl<T: Real> Cramer<T> {
     ///
     /// # Errors
     /// The first reason that applies.
+    ///
+    /// ```
+    /// use lookfrom_bvh::reference::cramer;
+    /// let rule = cramer([0.25, 0.5, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 2.0], [1.0, 0.0, 2.0], [0.0, 1.0, 2.0]);
+    /// assert_eq!(rule.accept(0.0, f64::INFINITY), Ok(2.0));
+    /// ```
     pub fn accept(&self, t_min: T, t_max: T) -> Result<T, Rejection> {
         if self.d == T::ZERO {
             Err(Rejection::Parallel)
@@ -143,6 +169,12 @@ impl<T: Real> Cramer<T> {
 /// The quadratic equation of a ray and a sphere, `A t² + 2 B t + C = 0`, with every number that it takes.
 ///
 /// Nothing is checked: where the discriminant is negative, `q` and the roots are NaN.
+///
+/// ```
+/// use lookfrom_bvh::reference::sphere;
+/// let ball = sphere([0.0, 0.0, 3.0], [0.0, 0.0, -1.0], [0.0; 3], 1.0);
+/// assert_eq!((ball.t1, ball.t2), (4.0, 2.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quadratic<T> {
     /// `A = d·d`.
@@ -164,6 +196,12 @@ pub struct Quadratic<T> {
 }
 
 /// Which root of a [`Quadratic`] was taken.
+///
+/// ```
+/// use lookfrom_bvh::reference::{Root, sphere};
+/// let ball = sphere([0.0, 0.0, 3.0], [0.0, 0.0, -1.0], [0.0; 3], 1.0);
+/// assert_eq!(ball.accept(2.0, 9.0), Ok((Root::Far, 4.0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Root {
     /// The smaller one: the ray enters the sphere.
@@ -203,6 +241,12 @@ impl<T: Real> Quadratic<T> {
     ///
     /// # Errors
     /// The first reason that applies.
+    ///
+    /// ```
+    /// use lookfrom_bvh::reference::{Root, sphere};
+    /// let ball = sphere([0.0, 0.0, 3.0], [0.0, 0.0, -1.0], [0.0; 3], 1.0);
+    /// assert_eq!(ball.accept(0.0, 9.0), Ok((Root::Near, 2.0)));
+    /// ```
     pub fn accept(&self, t_min: T, t_max: T) -> Result<(Root, T), Rejection> {
         if !(self.discriminant >= T::ZERO) {
             return Err(Rejection::NoRealRoot);
@@ -220,6 +264,12 @@ impl<T: Real> Quadratic<T> {
 }
 
 /// Something to hit, for the searches by brute force.
+///
+/// ```
+/// use lookfrom_bvh::reference::Shape;
+/// let ball = Shape::Sphere([0.0; 3], 1.0);
+/// # assert!(ball.intersect([0.0; 3], [0.0, 0.0, 1.0], 0.0, 9.0).is_ok());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape<T> {
     /// Three corners.
@@ -233,6 +283,12 @@ impl<T: Real> Shape<T> {
     ///
     /// # Errors
     /// Why it does not.
+    ///
+    /// ```
+    /// use lookfrom_bvh::reference::Shape;
+    /// let ball = Shape::Sphere([0.0; 3], 1.0);
+    /// assert_eq!(ball.intersect([0.0, 0.0, 3.0], [0.0, 0.0, -1.0], 0.0, 9.0), Ok(2.0));
+    /// ```
     pub fn intersect(&self, a: [T; 3], d: [T; 3], t_min: T, t_max: T) -> Result<T, Rejection> {
         match *self {
             Self::Triangle([p0, p1, p2]) => cramer(a, d, p0, p1, p2).accept(t_min, t_max),
@@ -242,6 +298,13 @@ impl<T: Real> Shape<T> {
 }
 
 /// The first of the nearest hits among shapes: which, and its t.
+///
+/// ```
+/// use lookfrom_bvh::reference::{Shape, closest};
+/// let shapes = [Shape::Sphere([0.0, 0.0, -9.0], 1.0), Shape::Sphere([0.0; 3], 1.0)];
+/// let (a, d) = ([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+/// assert_eq!(closest(&shapes, a, d, 0.0, 99.0), Some((1, 2.0)));
+/// ```
 pub fn closest<T: Real>(shapes: &[Shape<T>], a: [T; 3], d: [T; 3], t_min: T, t_max: T) -> Option<(usize, T)> {
     let mut best: Option<(usize, T)> = None;
     for (index, shape) in shapes.iter().enumerate() {
@@ -255,11 +318,25 @@ pub fn closest<T: Real>(shapes: &[Shape<T>], a: [T; 3], d: [T; 3], t_min: T, t_m
 }
 
 /// Whether any shape is hit.
+///
+/// ```
+/// use lookfrom_bvh::reference::{Shape, any};
+/// let shapes = [Shape::Sphere([0.0, 0.0, -9.0], 1.0), Shape::Sphere([0.0; 3], 1.0)];
+/// let (a, d) = ([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+/// assert!(any(&shapes, a, d, 0.0, 3.0) && !any(&shapes, a, d, 0.0, 2.0));
+/// ```
 pub fn any<T: Real>(shapes: &[Shape<T>], a: [T; 3], d: [T; 3], t_min: T, t_max: T) -> bool {
     shapes.iter().any(|shape| shape.intersect(a, d, t_min, t_max).is_ok())
 }
 
 /// The nearest hit of each shape that is hit, in the order of the shapes: which, and its t.
+///
+/// ```
+/// use lookfrom_bvh::reference::{Shape, all};
+/// let shapes = [Shape::Sphere([0.0, 0.0, -9.0], 1.0), Shape::Sphere([0.0; 3], 1.0)];
+/// let (a, d) = ([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+/// assert_eq!(all(&shapes, a, d, 0.0, 99.0), [(0, 11.0), (1, 2.0)]);
+/// ```
 pub fn all<T: Real>(shapes: &[Shape<T>], a: [T; 3], d: [T; 3], t_min: T, t_max: T) -> Vec<(usize, T)> {
     let hit =
         |(index, shape): (usize, &Shape<T>)| shape.intersect(a, d, t_min, t_max).ok().map(|t| (index, t));

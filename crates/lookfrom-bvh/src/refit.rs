@@ -17,6 +17,17 @@ use crate::triangle::TriangleBlock;
 use crate::validate::Statistics;
 
 /// Where a geometry is now, all of its primitives in the order in which the builder was told.
+///
+/// ```
+/// use lookfrom_bvh::{Builder, Moved, Sphere};
+/// let ball = Sphere { center: [0.0; 3], radius: 1.0 };
+/// let mut builder = Builder::new();
+/// let balls = builder.spheres(&[ball]);
+/// let mut bvh = builder.build()?;
+/// bvh.refit(&[(balls, Moved::Spheres(&[Sphere { radius: 2.0, ..ball }]))])?;
+/// assert!(bvh.bounds().max[0] >= 2.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub enum Moved<'a> {
     /// Triangles. They may name other corners than before.
@@ -26,6 +37,16 @@ pub enum Moved<'a> {
 }
 
 /// Why a tree cannot follow; it needs to be built again.
+///
+/// ```
+/// use lookfrom_bvh::{Builder, Moved, RefitError, Sphere};
+/// let ball = Sphere { center: [0.0; 3], radius: 1.0 };
+/// let mut builder = Builder::new();
+/// let balls = builder.spheres(&[ball]);
+/// let error = builder.build()?.refit(&[(balls, Moved::Spheres(&[ball; 2]))]).unwrap_err();
+/// assert_eq!(error, RefitError::OtherPrimitives { geometry: balls, primitive: 1 });
+/// # Ok::<(), lookfrom_bvh::BuildError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RefitError {
     /// A triangle names a corner that is not there.

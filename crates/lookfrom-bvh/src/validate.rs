@@ -8,6 +8,16 @@ use crate::bvh::Leaf;
 use crate::node::{Content, LARGEST_DEPTH, Node, WIDTH};
 
 /// What a tree consists of.
+///
+/// ```
+/// # use lookfrom_bvh::{Builder, Sphere};
+/// # let mut builder = Builder::new();
+/// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+/// # let bvh = builder.build()?;
+/// let statistics = bvh.statistics();
+/// assert_eq!((statistics.spheres, statistics.nodes, statistics.left_out), (1, 1, 0));
+/// # Ok::<(), lookfrom_bvh::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
     /// Triangles that rays can meet.
@@ -31,6 +41,17 @@ pub struct Statistics {
 }
 
 /// A property that tracing relies on and that a tree does not have.
+///
+/// ```
+/// # use lookfrom_bvh::{Builder, Sphere};
+/// # let mut builder = Builder::new();
+/// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+/// # let bvh = builder.build()?;
+/// if let Err(invalid) = bvh.validate() {
+///     unreachable!("a fault of lookfrom-bvh: {invalid}");
+/// }
+/// # Ok::<(), lookfrom_bvh::BuildError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Invalid(String);
 
