@@ -292,17 +292,21 @@ pub(crate) fn for_each<Q: Sync, A: Send>(
     answers: &mut [A],
     answer: impl Fn(&Q, &mut A) + Sync,
 ) {
-    let batch = |questions: &[Q], answers: &mut [A]| {
+    for_batches(questions, answers, |questions, answers| {
         questions.iter().zip(answers).for_each(|(question, place)| answer(question, place));
-    };
+    });
+}
+
+/// The same, batch by batch.
+fn for_batches<Q: Sync, A: Send>(questions: &[Q], answers: &mut [A], answer: impl Fn(&[Q], &mut [A]) + Sync) {
     #[cfg(feature = "parallel")]
     if questions.len() > BATCH {
         use rayon::prelude::*;
         questions
             .par_chunks(BATCH)
             .zip(answers.par_chunks_mut(BATCH))
-            .for_each(|(questions, answers)| batch(questions, answers));
+            .for_each(|(questions, answers)| answer(questions, answers));
         return;
     }
-    batch(questions, answers);
+    answer(questions, answers);
 }
