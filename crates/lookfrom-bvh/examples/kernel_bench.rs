@@ -136,10 +136,12 @@ enum Way {
 
 fn trace(bvh: &Bvh, rays: &[Ray], way: Way, answers: &mut [Answer]) {
     if way == Way::Batch {
-        let mut hits = vec![Hit::MISS; rays.len()];
-        bvh.closest_hits(rays, &mut hits);
-        for (hit, answer) in hits.iter().zip(answers) {
-            *answer = (hit.t, hit.primitive);
+        let mut hits = [Hit::MISS; 256];
+        for (rays, answers) in rays.chunks(hits.len()).zip(answers.chunks_mut(hits.len())) {
+            bvh.closest_hits(rays, &mut hits);
+            for (hit, answer) in hits.iter().zip(answers) {
+                *answer = (hit.t, hit.primitive);
+            }
         }
         return;
     }

@@ -14,7 +14,7 @@ use crate::query::Closest;
 use crate::ray::{Hit, NONE, Ray};
 use crate::simd::{Chosen, Simd, Work, f32x8, i32x8, prelude::*};
 use crate::traverse::{Answer, Stack, Waiting, cross_surely, decide, trace, with_stack};
-use crate::triangle::{self, LARGEST_FILTERED, Sieve, TriangleLanes};
+use crate::triangle::{self, LARGEST_FILTERED, SeenBlock, Sieve, Sifted, TriangleLanes};
 
 /// Rays in a group.
 const LANES: usize = 8;
@@ -115,6 +115,8 @@ fn seem_alike(rays: &[Ray]) -> bool {
 struct Beam<S: Simd> {
     /// One of the origins.
     origin: [f32; 3],
+    /// The origin of all rays, where that is one.
+    common_origin: Option<[f32; 3]>,
     near_side: [usize; 3],
     /// Least and greatest 1 / direction, with room.
     reciprocal: [[f32x8<S>; 2]; 3],
@@ -177,6 +179,7 @@ impl<S: Simd> Beam<S> {
         }
         Some(Self {
             origin,
+            common_origin: (apart == [0.0; 3]).then_some(origin),
             near_side,
             reciprocal: reciprocal.map(splat),
             offset: offset.map(splat),
@@ -224,6 +227,8 @@ struct Group<S: Simd> {
     sieve: Sieve<S>,
     /// Which of them are usual rays; the others' lanes hold nothing of use.
     usual: u32,
+    /// The longest component of their directions.
+    length: f32x8<S>,
     near_reciprocal: [f32x8<S>; 3],
     far_reciprocal: [f32x8<S>; 3],
     near_product: [f32x8<S>; 3],
@@ -279,6 +284,7 @@ impl<S: Simd> Group<S> {
         Self {
             usual: (usual & finite).to_bitmask() as u32 & 0xff,
             sieve: Sieve::of_rays(simd, origin, direction, first, length * triangle::ERROR),
+            length,
             near_reciprocal: [x[0], y[0], z[0]],
             far_reciprocal: [x[1], y[1], z[1]],
             near_product: [x[2], y[2], z[2]],
@@ -340,7 +346,7 @@ impl<S: Simd> Packet<'_, S> {
                     continue;
                 }
             } else if let Content::Triangles(number) = child.content()
-                && self.leaf(simd, number)
+                && self.leaf(simd, beam, number)
             {
                 end = self.end();
             }
@@ -350,7 +356,7 @@ impl<S: Simd> Packet<'_, S> {
 
     /// Tests a block of triangles. False where no ray meets its box.
     #[inline(always)]
-    fn leaf(&mut self, simd: S, number: usize) -> bool {
+    fn leaf(&mut self, simd: S, beam: &Beam<S>, number: usize) -> bool {
         let block = &self.bvh.triangles[number];
         let bounds = block.bounds(simd).padded();
         let mut meeting = [0; GROUPS];
@@ -362,21 +368,37 @@ impl<S: Simd> Packet<'_, S> {
         if any == 0 {
             return false;
         }
-        for index in 0..GROUPS {
-            if meeting[index] != 0 {
-                self.test(simd, number, index, meeting[index]);
-            }
+        if let Some(origin) = beam.common_origin {
+            let seen = SeenBlock::new(simd, block, origin);
+            self.test(simd, number, &meeting, |of, group| {
+                seen.sift(simd, of, &group.sieve, group.length, group.end)
+            });
+        } else {
+            self.test(simd, number, &meeting, |of, group| {
+                TriangleLanes::splat(simd, block, of).sift(simd, &group.sieve, group.end)
+            });
         }
         true
     }
 
-    /// Tests a block of triangles against some rays of a group. Nothing here branches on what is hit: it could not be predicted.
+    /// Tests a block of triangles against those rays of each group that may meet it. Nothing here branches on what is hit: it could
+    /// not be predicted.
     #[inline(always)]
-    fn test(&mut self, simd: S, number: usize, index: usize, rays: u32) {
-        let block = &self.bvh.triangles[number];
-        for of in 0..block.count() {
+    fn test(
+        &mut self,
+        simd: S,
+        number: usize,
+        meeting: &[u32; GROUPS],
+        sift: impl Fn(usize, &Group<S>) -> Sifted<S>,
+    ) {
+        let count = self.bvh.triangles[number].count();
+        let tests = (0..GROUPS)
+            .filter(|&index| meeting[index] != 0)
+            .flat_map(|index| (0..count).map(move |of| (index, of)));
+        for (index, of) in tests {
+            let rays = meeting[index];
             let group = &mut self.groups[index];
-            let sifted = TriangleLanes::splat(simd, block, of).sift(simd, &group.sieve, group.end);
+            let sifted = sift(of, group);
 
             // Put off the decision of a sure hit, unless another is surely nearer.
             let [first, last] = sifted.between();
@@ -437,5 +459,65 @@ impl<S: Simd> Packet<'_, S> {
                 self.hits[place] = answer.query.hit;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::ray::{Hit, Ray};
+    use crate::simd::levels;
+    use crate::testing::Random;
+    use crate::{Builder, Triangles};
+
+    /// Neighbouring rays towards a target, from one origin or from several, some with an end, some of them odd.
+    fn neighbours(random: &mut Random, target: [f32; 3], size: f32) -> Vec<Ray> {
+        let from = random.near(target, 4.0 * size);
+        let (lens, opening) = (random.unit() < 0.3, size * random.size(-3, 0));
+        let ends = random.unit() < 0.3;
+        let odd = random.unit() < 0.1;
+        let mut ray = |number: u32| {
+            let origin = if lens { random.near(from, 0.01 * size) } else { from };
+            let towards = random.near(target, opening);
+            let direction = [0, 1, 2].map(|axis| towards[axis] - origin[axis]);
+            let t_max = if ends { 2.0 * random.unit() } else { f32::INFINITY };
+            let t_min = if odd && number == 17 { f32::NAN } else { 0.0 };
+            Ray { origin, t_min, direction, t_max }
+        };
+        (0..150).map(&mut ray).collect()
+    }
+
+    #[test]
+    fn packets_say_what_single_rays_say() {
+        let mut random = Random::new(9);
+        let (mut hits, mut misses) = (0, 0);
+        for _ in 0..60 {
+            let (center, size) = (random.point_with_exponents(-6, 6), random.size(-6, 6));
+            let mut positions: Vec<[f32; 3]> = (0..600).map(|_| random.near(center, size)).collect();
+            // Doubled corners make flat and doubled triangles.
+            for corner in 1..60 {
+                positions[10 * corner] = positions[corner];
+            }
+            let mut indices: Vec<[u32; 3]> = (0..300).map(|_| [0; 3].map(|_| random.below(600))).collect();
+            indices.extend_from_within(..30);
+            let mut builder = Builder::new();
+            builder.triangles(Triangles { positions: &positions, indices: &indices });
+            let mut bvh = builder.build().unwrap();
+            for _ in 0..10 {
+                let target = positions[random.below(600) as usize];
+                let rays = neighbours(&mut random, target, size);
+                for level in levels() {
+                    bvh.level = level;
+                    let mut together = vec![Hit::MISS; rays.len()];
+                    bvh.closest_hits(&rays, &mut together);
+                    for (ray, hit) in rays.iter().zip(&together) {
+                        assert_eq!(*hit, bvh.closest_hit(ray), "{ray:?}");
+                    }
+                    let hit = together.iter().filter(|hit| hit.is_hit()).count();
+                    hits += hit;
+                    misses += rays.len() - hit;
+                }
+            }
+        }
+        assert!(hits > 10_000 && misses > 10_000, "{hits} hits, {misses} misses");
     }
 }

@@ -278,6 +278,31 @@ impl<S: Simd> TriangleLanes<S> {
         let bound = (reach + extent).mul_add(relative, underflow);
         let size_error = extent.mul_add(relative, underflow);
 
+        let distance = nx.mul_add(cx, ny.mul_add(cy, nz * cz));
+        let distance_error = extent.mul_add(extent.mul_add(ERROR, underflow), underflow) * reach;
+        let unused = extent.simd_lt(0.0);
+        let found = Found { edges: [u, v, w], bound, determinant, size_error, distance, distance_error };
+        found.sift(simd, ray, t_max, unused)
+    }
+}
+
+/// What the filter compares: numbers and bounds of their errors.
+struct Found<S: Simd> {
+    /// The edge functions.
+    edges: [Lanes<S>; 3],
+    bound: Lanes<S>,
+    /// Their sum.
+    determinant: Lanes<S>,
+    size_error: Lanes<S>,
+    /// t times the determinant.
+    distance: Lanes<S>,
+    distance_error: Lanes<S>,
+}
+
+impl<S: Simd> Found<S> {
+    #[inline(always)]
+    fn sift(&self, simd: S, ray: &Sieve<S>, t_max: Lanes<S>, unused: mask32x8<S>) -> Sifted<S> {
+        let &Self { edges: [u, v, w], bound, determinant, size_error, distance, distance_error } = self;
         // A miss has two edge functions of surely different signs. Comparisons with NaN are false, and exclude nothing.
         let least = u.min(v).min(w);
         let most = u.max(v).max(w);
@@ -285,13 +310,10 @@ impl<S: Simd> TriangleLanes<S> {
 
         // Or its t is surely out of range, where the determinant's sign is sure.
         let size = determinant.abs();
-        let distance =
-            nx.mul_add(cx, ny.mul_add(cy, nz * cz)) * Lanes::splat(simd, 1.0).copysign(determinant);
-        let distance_error = extent.mul_add(extent.mul_add(ERROR, underflow), underflow) * reach;
+        let distance = distance * Lanes::splat(simd, 1.0).copysign(determinant);
         let beyond = distance.simd_gt(t_max.mul_add(size, size_error.mul_add(t_max.abs(), distance_error)));
         let before = distance.simd_lt(ray.t_min.mul_sub(size, size_error.mul_add(ray.t_min, distance_error)));
         let out_of_range = size.simd_gt(size_error) & (beyond | before);
-        let unused = extent.simd_lt(0.0);
         let excluded = outside | out_of_range | unused;
 
         // A hit is sure where all that is the other way round, with twice the room for what is compared.
@@ -312,6 +334,81 @@ impl<S: Simd> TriangleLanes<S> {
             size,
             size_room,
         }
+    }
+}
+
+/// A block's triangles as they are seen from a point: what is the same for all rays that start there.
+pub(crate) struct SeenBlock {
+    /// `normal[axis][lane]`, and likewise what the direction is multiplied by for the edge functions.
+    normal: [[f32; BLOCK]; 3],
+    u: [[f32; BLOCK]; 3],
+    v: [[f32; BLOCK]; 3],
+    distance: [f32; BLOCK],
+    /// Errors, without the direction's.
+    bound: [f32; BLOCK],
+    size_error: [f32; BLOCK],
+    distance_error: [f32; BLOCK],
+}
+
+impl SeenBlock {
+    #[inline(always)]
+    pub(crate) fn new<S: Simd>(simd: S, block: &TriangleBlock, origin: [f32; 3]) -> Self {
+        let [a, b, c] = [0, 1, 2].map(
+            #[inline(always)]
+            |corner| load(simd, &block.corners[corner]),
+        );
+        let extent = Lanes::load_array_ref(simd, &block.extent).abs();
+        let minus = |p: [Lanes<S>; 3], q: [Lanes<S>; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+        let cross = |p: [Lanes<S>; 3], q: [Lanes<S>; 3]| {
+            [
+                p[1].mul_sub(q[2], p[2] * q[1]),
+                p[2].mul_sub(q[0], p[0] * q[2]),
+                p[0].mul_sub(q[1], p[1] * q[0]),
+            ]
+        };
+        let (e, f) = (minus(b, a), minus(c, a));
+        let way = [a[0] - origin[0], a[1] - origin[1], a[2] - origin[2]];
+        let normal = cross(e, f);
+        let reach = way[0].abs().max(way[1].abs()).max(way[2].abs());
+        let relative = extent.mul_add(ERROR, Lanes::splat(simd, prepared::USUAL_UNDERFLOW));
+        let [u, v] = [cross(f, way), cross(way, e)];
+        let arrays = |x: [Lanes<S>; 3]| [x[0].into(), x[1].into(), x[2].into()];
+        Self {
+            normal: arrays(normal),
+            u: arrays(u),
+            v: arrays(v),
+            distance: normal[0].mul_add(way[0], normal[1].mul_add(way[1], normal[2] * way[2])).into(),
+            bound: ((reach + extent) * relative).into(),
+            size_error: (extent * relative).into(),
+            distance_error: (extent.mul_add(relative, prepared::USUAL_UNDERFLOW) * reach).into(),
+        }
+    }
+
+    /// [`TriangleLanes::sift`] for one of the triangles and rays from that point; `length` is the longest component of each ray's
+    /// direction. d·(f × c) takes the place of f·(c × d): the same products, so the same errors.
+    #[inline(always)]
+    pub(crate) fn sift<S: Simd>(
+        &self,
+        simd: S,
+        lane: usize,
+        ray: &Sieve<S>,
+        length: Lanes<S>,
+        t_max: Lanes<S>,
+    ) -> Sifted<S> {
+        let lane = lane & (BLOCK - 1);
+        let [dx, dy, dz] = ray.direction;
+        let along = |n: &[[f32; BLOCK]; 3]| dx.mul_add(n[0][lane], dy.mul_add(n[1][lane], dz * n[2][lane]));
+        let (determinant, u, v) = (along(&self.normal), along(&self.u), along(&self.v));
+        let w = determinant - (u + v);
+        let found = Found {
+            edges: [u, v, w],
+            bound: length.mul_add(self.bound[lane], ray.underflow),
+            determinant,
+            size_error: length.mul_add(self.size_error[lane], ray.underflow),
+            distance: Lanes::splat(simd, self.distance[lane]),
+            distance_error: Lanes::splat(simd, self.distance_error[lane]),
+        };
+        found.sift(simd, ray, t_max, mask32x8::splat(simd, false))
     }
 }
 
