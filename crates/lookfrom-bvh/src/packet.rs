@@ -88,8 +88,8 @@ fn trace_packet<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut [Hit], sta
     simd.vectorize(
         #[inline(always)]
         || {
-            let mut groups = [Group::new(simd, &rays[..LANES]); GROUPS];
-            for (group, rays) in groups.iter_mut().zip(rays.chunks_exact(LANES)).skip(1) {
+            let mut groups = [Group::empty(simd); GROUPS];
+            for (group, rays) in groups.iter_mut().zip(rays.chunks_exact(LANES)) {
                 *group = Group::new(simd, rays);
             }
             let Some(beam) = Beam::around(simd, &groups, bvh.largest) else { return false };
@@ -243,6 +243,27 @@ struct Group<S: Simd> {
 }
 
 impl<S: Simd> Group<S> {
+    /// No rays.
+    #[inline(always)]
+    fn empty(simd: S) -> Self {
+        let zero = f32x8::splat(simd, 0.0);
+        let (zeros, number) = ([zero; 3], i32x8::splat(simd, NO_BLOCK));
+        Self {
+            sieve: Sieve::of_rays(simd, zeros, zeros, zero, zero),
+            usual: 0,
+            length: zero,
+            near_reciprocal: zeros,
+            far_reciprocal: zeros,
+            near_product: zeros,
+            far_product: zeros,
+            end: zero,
+            first: zero,
+            last: zero,
+            block: number,
+            lane: number,
+        }
+    }
+
     #[inline(always)]
     fn new(simd: S, rays: &[Ray]) -> Self {
         let row = |lane: usize| {
