@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::aabb::Aabb;
+use crate::filter::TriangleBlock;
 use crate::instance::Instance;
 use crate::masks::Masks;
 use crate::node::Node;
@@ -13,7 +14,6 @@ use crate::ray::{Hit, Ray};
 use crate::simd::{Level, at_level};
 use crate::sphere::Sphere;
 use crate::traverse::{Trace, Watch};
-use crate::triangle::TriangleBlock;
 use crate::validate::{Invalid, Statistics};
 
 /// Rays (or points) that one thread answers before it looks for others' work.

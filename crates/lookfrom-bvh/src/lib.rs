@@ -4,12 +4,15 @@
 
 mod aabb;
 mod affine;
+mod beam;
 mod build;
 mod bvh;
 mod closest_point;
 mod double;
 mod ellipsoid;
 mod exact;
+mod filter;
+mod group;
 mod instance;
 mod masks;
 mod node;

@@ -8,9 +8,9 @@
 //! positive, and their bits are in their order.
 
 use crate::exact::Exact;
+use crate::filter::{self, LARGEST_FILTERED, SURE_AFTER};
 use crate::ray::Ray;
 use crate::simd::{Simd, f32x4, prelude::*};
-use crate::triangle::{self, LARGEST_FILTERED, SURE_AFTER};
 
 /// The largest product of an origin and a reciprocal, 2¹²⁶: beyond it a reciprocal is made smaller, that of 0 too. So no
 /// slab distance is ever NaN, and inside a padded box such a component leaves t free.
@@ -36,7 +36,7 @@ pub(crate) const FAR: f32 = 16_777_216.0;
 pub(crate) const LARGEST_RECIPROCAL: f32 = LARGEST_PRODUCT / FAR;
 
 /// The triangle filter's absolute error for usual directions.
-pub(crate) const USUAL_UNDERFLOW: f32 = triangle::UNDERFLOW / SHORT;
+pub(crate) const USUAL_UNDERFLOW: f32 = filter::UNDERFLOW / SHORT;
 
 /// Room for rounding in f64 where a start is moved, relative: 2⁻⁴⁸.
 const MOVED_ROOM: f64 = 3.552_713_678_800_501e-15;
@@ -173,7 +173,7 @@ impl Shadow {
             largest_reciprocal: [LARGEST_RECIPROCAL; 3],
             moved: 0.0,
             rounding,
-            error: triangle::ERROR * greatest(direction),
+            error: filter::ERROR * greatest(direction),
             underflow: USUAL_UNDERFLOW,
             sure_before: 1.0 / SURE_AFTER,
         }
@@ -218,8 +218,8 @@ impl Shadow {
             largest_reciprocal: origin.map(|x| LARGEST_PRODUCT / x.abs().max(1.0)),
             moved,
             rounding: farthest + moved,
-            error: if in_range { triangle::ERROR * (length * shorten) } else { f32::INFINITY },
-            underflow: triangle::UNDERFLOW * 4.0,
+            error: if in_range { filter::ERROR * (length * shorten) } else { f32::INFINITY },
+            underflow: filter::UNDERFLOW * 4.0,
             sure_before: if may_be_sure { 1.0 / SURE_AFTER } else { -1.0 },
         })
     }

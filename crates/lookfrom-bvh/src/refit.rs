@@ -10,10 +10,10 @@ use crate::Bvh;
 use crate::aabb::Aabb;
 use crate::build::{Triangles, has_area, has_surface};
 use crate::bvh::Leaf;
+use crate::filter::TriangleBlock;
 use crate::instance::Instance;
 use crate::node::{Content, WIDTH};
 use crate::sphere::Sphere;
-use crate::triangle::TriangleBlock;
 use crate::validate::Statistics;
 
 /// Where a geometry is now, all of its primitives in the order in which the builder was told.

@@ -4,12 +4,13 @@
 
 use crate::Bvh;
 use crate::exact::Exact;
+use crate::filter::TriangleBlock;
 use crate::masks::Masks;
 use crate::query::{All, Any, Closest, Query};
 use crate::ray::{Hit, Ray};
 use crate::simd::Chosen;
 use crate::traverse::{Trace, Watch};
-use crate::triangle::{self, TriangleBlock};
+use crate::triangle;
 
 /// Which faces of surfaces rays hit.
 ///

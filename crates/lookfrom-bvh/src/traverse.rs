@@ -10,6 +10,7 @@ use std::ops::Range;
 use crate::Bvh;
 use crate::bvh::{Leaf, SphereItem};
 use crate::exact::Exact;
+use crate::filter::{Sieve, TriangleBlock};
 use crate::instance::Instance;
 use crate::node::{Child, Content, Entered, LARGEST_DEPTH, Node, Slabs, WIDTH};
 use crate::prepared::Prepared;
@@ -17,7 +18,7 @@ use crate::query::Query;
 use crate::ray::{Hit, NONE, Ray};
 use crate::selection::shown;
 use crate::simd::{Chosen, Simd, Work, at_level};
-use crate::triangle::{Crossing, Sieve, TriangleBlock};
+use crate::triangle::Crossing;
 use crate::{sphere, triangle};
 
 /// Listens while a ray is traced. Every method does nothing unless written; `()` listens to nothing and costs nothing.

@@ -4,8 +4,8 @@
 
 use crate::Bvh;
 use crate::bvh::{Leaf, ProceduralItem, SphereItem};
+use crate::filter::TriangleBlock;
 use crate::node::{Child, Node};
-use crate::triangle::TriangleBlock;
 
 use super::parallel;
 use super::plan::Plan;

@@ -4,8 +4,8 @@
 //! Hierarchies". Minima and negated maxima lie in one vector, so one instruction unites boxes.
 
 use crate::aabb::Aabb;
+use crate::filter::BLOCK;
 use crate::simd::{Simd, Work, f32x4, f32x8, prelude::*, u32x4};
-use crate::triangle::BLOCK;
 
 use super::reference::{Covered, Reference};
 

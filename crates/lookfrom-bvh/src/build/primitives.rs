@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
+use crate::filter::BLOCK;
 use crate::instance::Instance;
 use crate::node::Child;
 use crate::procedural::Procedural;
 use crate::ray::NONE;
 use crate::sphere::Sphere;
-use crate::triangle::BLOCK;
 use crate::vector::{cross, subtract, wide};
 
 use super::reference::Reference;

@@ -1,0 +1,123 @@
+//! What holds for all rays of a packet, so that one test of eight boxes serves them all.
+
+use crate::aabb::Aabb;
+use crate::group::{GROUPS, Group, RAYS, least};
+use crate::node::{Entered, Node};
+use crate::prepared::{self, SHORT};
+use crate::ray::Ray;
+use crate::simd::{Simd, f32x8, i32x8, prelude::*};
+
+/// Directions of a packet differ by at most this part of their length.
+const SPREAD: f32 = 0.25;
+
+/// Origins of a packet differ by at most this part of the tree's largest coordinate.
+const NEARNESS: f32 = 1.0 / 32.0;
+
+/// Far beyond every distance.
+const BEYOND: f32 = 1e37;
+
+/// Whether the first and some other rays have like directions: a look before the work.
+pub(crate) fn seem_alike(rays: &[Ray]) -> bool {
+    let first = rays[0].direction;
+    let length = first.iter().fold(0.0_f32, |length, x| length.max(x.abs()));
+    [RAYS / 3, 2 * RAYS / 3, RAYS - 1]
+        .iter()
+        .all(|&other| (0..3).all(|axis| (rays[other].direction[axis] - first[axis]).abs() < SPREAD * length))
+}
+
+/// What holds for all rays of a packet, for a test of eight boxes at once.
+pub(crate) struct Beam<S: Simd> {
+    /// One of the origins.
+    origin: [f32; 3],
+    /// The origin of all rays, where that is one.
+    pub(crate) common_origin: Option<[f32; 3]>,
+    near_side: [usize; 3],
+    /// Least and greatest 1 / direction, with room.
+    reciprocal: [[f32x8<S>; 2]; 3],
+    /// Least and greatest way from that origin to the others, in distances along the rays.
+    offset: [[f32x8<S>; 2]; 3],
+    t_min: i32x8<S>,
+}
+
+impl<S: Simd> Beam<S> {
+    /// None where the rays are too different to go together, or not usual ones.
+    #[inline(always)]
+    pub(crate) fn around(simd: S, groups: &[Group<S>; GROUPS], largest: f32) -> Option<Self> {
+        let mut usual = groups[0].usual;
+        let mut t_min = groups[0].sieve.t_min;
+        let (mut origins, mut directions) = ([groups[0].sieve.origin; 2], [groups[0].sieve.direction; 2]);
+        for group in &groups[1..] {
+            usual &= group.usual;
+            t_min = t_min.min(group.sieve.t_min);
+            for axis in 0..3 {
+                let (o, d) = (group.sieve.origin[axis], group.sieve.direction[axis]);
+                origins[0][axis] = origins[0][axis].min(o);
+                origins[1][axis] = origins[1][axis].max(o);
+                directions[0][axis] = directions[0][axis].min(d);
+                directions[1][axis] = directions[1][axis].max(d);
+            }
+        }
+        let boxed = |[min, max]: [[f32x8<S>; 3]; 2]| Aabb {
+            min: [least(min[0]), least(min[1]), least(min[2])],
+            max: [-least(-max[0]), -least(-max[1]), -least(-max[2])],
+        };
+        let (origins, directions) = (boxed(origins), boxed(directions));
+        let greatest = |x: [f32; 3]| x.iter().fold(0.0_f32, |greatest, x| greatest.max(x.abs()));
+        let spread = [0, 1, 2].map(|axis| directions.max[axis] - directions.min[axis]);
+        let apart = [0, 1, 2].map(|axis| origins.max[axis] - origins.min[axis]);
+        let alike = greatest(spread) < SPREAD * greatest(directions.min).min(greatest(directions.max))
+            && greatest(apart) <= NEARNESS * largest;
+        if usual != 0xff || !alike {
+            return None;
+        }
+
+        let origin = origins.min;
+        let splat = |[a, b]: [f32; 2]| [f32x8::splat(simd, a), f32x8::splat(simd, b)];
+        let mut near_side = [0; 3];
+        // An axis along which some rays go forth and some back limits nothing.
+        let mut reciprocal = [[1.0 / BEYOND; 2]; 3];
+        let mut offset = [[-BEYOND, BEYOND]; 3];
+        for axis in 0..3 {
+            let (slow, fast) = (directions.min[axis], directions.max[axis]);
+            near_side[axis] = usize::from(fast < 0.0);
+            if slow > SHORT || fast < -SHORT {
+                let room = 4.0 * prepared::ROOM;
+                let [a, b] = [1.0 / fast, 1.0 / slow];
+                let (least, most) = (a.min(b), a.max(b));
+                reciprocal[axis] = [least - least.abs() * room, most + most.abs() * room];
+                let ways = [origins.min[axis] - origin[axis], origins.max[axis] - origin[axis]];
+                let reach =
+                    greatest([ways[0], ways[1], 0.0]) * greatest([least, most, 0.0]) * (1.0 + 2.0 * room);
+                offset[axis] = [-reach, reach];
+            }
+        }
+        Some(Self {
+            origin,
+            common_origin: (apart == [0.0; 3]).then_some(origin),
+            near_side,
+            reciprocal: reciprocal.map(splat),
+            offset: offset.map(splat),
+            t_min: i32x8::splat(simd, least(t_min).to_bits() as i32),
+        })
+    }
+
+    /// Which children some ray may meet before the end, and where the first would. As [`Node::enter`] for one ray.
+    #[inline(always)]
+    pub(crate) fn enter(&self, simd: S, node: &Node, end: f32) -> Entered<S> {
+        let way = |axis: usize, side: usize| node.face(simd, axis, side) - self.origin[axis];
+        let near = |axis: usize| {
+            let way = way(axis, self.near_side[axis]);
+            let [least, most] = self.reciprocal[axis];
+            ((way * least).min(way * most) - self.offset[axis][1]).bitcast::<i32x8<S>>()
+        };
+        let far = |axis: usize| {
+            let way = way(axis, self.near_side[axis] ^ 1);
+            let [least, most] = self.reciprocal[axis];
+            ((way * least).max(way * most) - self.offset[axis][0]).bitcast::<i32x8<S>>()
+        };
+        let near = near(0).max(near(1)).max(near(2).max(self.t_min));
+        let far = far(0).min(far(1)).min(far(2).min(i32x8::splat(simd, end.to_bits() as i32)));
+        let missed = near.simd_gt(far).to_bitmask() as u32;
+        Entered { children: missed ^ 0xff, near: near.bitcast() }
+    }
+}

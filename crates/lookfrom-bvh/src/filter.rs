@@ -1,0 +1,459 @@
+//! Which triangles does a ray surely miss, and which does it surely hit? Eight at a time, in f32.
+//!
+//! The first of two steps (see `triangle`): what it leaves open is decided in f64. It may be calculated in any way, as long as it
+//! knows its errors. Lanes hold eight triangles and one ray, or, in packets, eight rays and one triangle.
+
+use crate::aabb::Aabb;
+use crate::prepared::{self, Prepared};
+use crate::ray::NONE;
+use crate::simd::{Chosen, Simd, f32x8, mask32x8, prelude::*};
+
+/// Triangles in a block.
+pub(crate) const BLOCK: usize = 8;
+
+/// As many numbers as a block has triangles.
+type Lanes<S> = f32x8<S>;
+
+/// Errors of the filter's determinants: 160 units of rounding, relative to the longest component of the direction.
+///
+/// Relative to the largest component e of the edges and c of the way to the first corner: an edge function is a sum of
+/// three products of e and a sum of two products of c and the direction; with one unit for each rounding its error is
+/// below 45 e c units, that of the determinant N·d below 45 e e, and that of the third edge function, which is the
+/// determinant less the other two, below 114 e c + 57 e e. An origin that was rounded adds to c.
+pub(crate) const ERROR: f32 = 160.0 / 16_777_216.0;
+
+/// What underflow may add, relative to the direction where that is longer than 1: some products that are less than this.
+pub(crate) const UNDERFLOW: f32 = 64.0 * f32::MIN_POSITIVE;
+
+/// Beyond this (2⁴⁰) the filter's products may overflow, and it excludes nothing.
+pub(crate) const LARGEST_FILTERED: f32 = 1.099_511_6e12;
+
+/// Eight triangles, component by component. 416 bytes of which a ray reads the first 320, five cache lines.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct TriangleBlock {
+    /// `corners[corner][axis][lane]`; unused lanes repeat lane 0.
+    corners: [[[f32; BLOCK]; 3]; 3],
+    /// The largest component of the edges at the first corner; −1 in unused lanes.
+    extent: [f32; BLOCK],
+    geometry: [u32; BLOCK],
+    /// [`NONE`] in unused lanes.
+    primitive: [u32; BLOCK],
+}
+
+/// The extent that marks unused lanes.
+const UNUSED: f32 = -1.0;
+
+/// What the filter says of a block.
+pub(crate) struct Sifted<S: Simd> {
+    /// Those that are not surely missed: they are to be decided.
+    pub(crate) kept: Chosen,
+    /// Those of which the decision is known: a hit in the ray's range.
+    pub(crate) surely_hit: Chosen,
+    /// The same as a mask.
+    pub(crate) sure: mask32x8<S>,
+    distance: Lanes<S>,
+    distance_room: Lanes<S>,
+    size: Lanes<S>,
+    size_room: Lanes<S>,
+}
+
+impl<S: Simd> Sifted<S> {
+    /// Between which scaled t each of those that are surely hit is surely hit.
+    #[inline(always)]
+    pub(crate) fn between(&self) -> [Lanes<S>; 2] {
+        [
+            (self.distance - self.distance_room) / (self.size + self.size_room),
+            (self.distance + self.distance_room) / (self.size - self.size_room),
+        ]
+    }
+}
+
+/// Scaled distances of sure hits are above this, 2⁻⁶⁰, and below 2⁶⁰.
+pub(crate) const SURE_AFTER: f32 = 8.673_617e-19;
+
+/// What the filter needs of a ray, in every lane.
+#[derive(Clone, Copy)]
+pub(crate) struct Sieve<S: Simd> {
+    pub(crate) origin: [Lanes<S>; 3],
+    pub(crate) direction: [Lanes<S>; 3],
+    pub(crate) t_min: Lanes<S>,
+    sure_before: Lanes<S>,
+    error: Lanes<S>,
+    underflow: Lanes<S>,
+    rounding: Lanes<S>,
+}
+
+impl<S: Simd> Sieve<S> {
+    #[inline(always)]
+    pub(crate) fn new(simd: S, ray: &Prepared) -> Self {
+        Self {
+            origin: splat_all(simd, ray.shadow.origin),
+            direction: splat_all(simd, ray.shadow.direction),
+            t_min: Lanes::splat(simd, ray.t_min),
+            sure_before: Lanes::splat(simd, ray.shadow.sure_before),
+            error: Lanes::splat(simd, ray.shadow.error),
+            underflow: Lanes::splat(simd, ray.shadow.underflow),
+            rounding: Lanes::splat(simd, ray.shadow.rounding),
+        }
+    }
+
+    /// A usual ray of the world in each lane; `error` is [`ERROR`] times the longest component of its direction.
+    #[inline(always)]
+    pub(crate) fn of_rays(
+        simd: S,
+        origin: [Lanes<S>; 3],
+        direction: [Lanes<S>; 3],
+        t_min: Lanes<S>,
+        error: Lanes<S>,
+    ) -> Self {
+        let sure_before = Lanes::splat(simd, 1.0 / SURE_AFTER);
+        let underflow = Lanes::splat(simd, prepared::USUAL_UNDERFLOW);
+        Self { origin, direction, t_min, sure_before, error, underflow, rounding: Lanes::splat(simd, 0.0) }
+    }
+}
+
+#[inline(always)]
+fn splat_all<S: Simd>(simd: S, values: [f32; 3]) -> [Lanes<S>; 3] {
+    [Lanes::splat(simd, values[0]), Lanes::splat(simd, values[1]), Lanes::splat(simd, values[2])]
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, values: &[[f32; BLOCK]; 3]) -> [Lanes<S>; 3] {
+    [
+        Lanes::load_array_ref(simd, &values[0]),
+        Lanes::load_array_ref(simd, &values[1]),
+        Lanes::load_array_ref(simd, &values[2]),
+    ]
+}
+
+impl TriangleBlock {
+    /// Packs one to four triangles: corners, geometry, primitive.
+    pub(crate) fn new(triangles: &[([[f32; 3]; 3], u32, u32)]) -> Self {
+        let mut block = Self {
+            corners: [[[0.0; BLOCK]; 3]; 3],
+            extent: [0.0; BLOCK],
+            geometry: [NONE; BLOCK],
+            primitive: [NONE; BLOCK],
+        };
+        for lane in 0..BLOCK {
+            let (corners, geometry, primitive) = triangles.get(lane).unwrap_or(&triangles[0]);
+            for corner in 0..3 {
+                for axis in 0..3 {
+                    block.corners[corner][axis][lane] = corners[corner][axis];
+                    let edge = (corners[corner][axis] - corners[0][axis]).abs();
+                    block.extent[lane] = block.extent[lane].max(edge);
+                }
+            }
+            if lane < triangles.len() {
+                block.geometry[lane] = *geometry;
+                block.primitive[lane] = *primitive;
+            } else {
+                block.extent[lane] = UNUSED;
+            }
+        }
+        block
+    }
+
+    /// How many triangles there are.
+    pub(crate) fn count(&self) -> usize {
+        self.primitive.iter().filter(|&&primitive| primitive != NONE).count()
+    }
+
+    #[inline(always)]
+    pub(crate) fn ids(&self, lane: usize) -> (u32, u32) {
+        let lane = lane & (BLOCK - 1);
+        (self.geometry[lane], self.primitive[lane])
+    }
+
+    /// The largest component of the edges at the first corner.
+    #[inline(always)]
+    pub(crate) fn extent(&self, lane: usize) -> f32 {
+        self.extent[lane & (BLOCK - 1)]
+    }
+
+    #[inline(always)]
+    pub(crate) fn corners(&self, lane: usize) -> [[f32; 3]; 3] {
+        let lane = lane & (BLOCK - 1);
+        let mut corners = [[0.0; 3]; 3];
+        for corner in 0..3 {
+            for axis in 0..3 {
+                corners[corner][axis] = self.corners[corner][axis][lane];
+            }
+        }
+        corners
+    }
+
+    /// Which of the triangles the ray may meet between its `t_min` and an end, and which it surely does.
+    #[inline(always)]
+    pub(crate) fn filter<S: Simd>(&self, simd: S, ray: &Sieve<S>, end: f32) -> Sifted<S> {
+        let corners =
+            [load(simd, &self.corners[0]), load(simd, &self.corners[1]), load(simd, &self.corners[2])];
+        let extent = Lanes::load_array_ref(simd, &self.extent);
+        TriangleLanes { corners, extent }.sift(simd, ray, Lanes::splat(simd, end))
+    }
+
+    /// The box around the triangles.
+    #[inline(always)]
+    pub(crate) fn bounds<S: Simd>(&self, simd: S) -> Aabb {
+        let [a, b, c] =
+            [load(simd, &self.corners[0]), load(simd, &self.corners[1]), load(simd, &self.corners[2])];
+        let mut bounds = Aabb::EMPTY;
+        for axis in 0..3 {
+            let [min, max] = [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])];
+            for lane in 0..BLOCK {
+                bounds.min[axis] = bounds.min[axis].min(min[lane]);
+                bounds.max[axis] = bounds.max[axis].max(max[lane]);
+            }
+        }
+        bounds
+    }
+}
+
+/// Triangles in lanes: several, or one in all of them.
+pub(crate) struct TriangleLanes<S: Simd> {
+    /// `corners[corner][axis]`.
+    corners: [[Lanes<S>; 3]; 3],
+    extent: Lanes<S>,
+}
+
+impl<S: Simd> TriangleLanes<S> {
+    /// One of a block's triangles in every lane.
+    #[inline(always)]
+    pub(crate) fn splat(simd: S, block: &TriangleBlock, lane: usize) -> Self {
+        let corners = block.corners(lane);
+        let corners = [splat_all(simd, corners[0]), splat_all(simd, corners[1]), splat_all(simd, corners[2])];
+        Self { corners, extent: Lanes::splat(simd, block.extent(lane)) }
+    }
+
+    /// Lane by lane: may the ray meet the triangle between its `t_min` and an end, and does it surely?
+    ///
+    /// Möller, Trumbore (1997), "Fast, Minimum Storage Ray/Triangle Intersection", without the division.
+    #[inline(always)]
+    pub(crate) fn sift(&self, simd: S, ray: &Sieve<S>, t_max: Lanes<S>) -> Sifted<S> {
+        let ([[ax, ay, az], [bx, by, bz], [gx, gy, gz]], extent) = (self.corners, self.extent);
+        let [dx, dy, dz] = ray.direction;
+
+        // The edges, the way to the first corner, and the normal.
+        let (ex, ey, ez) = (bx - ax, by - ay, bz - az);
+        let (fx, fy, fz) = (gx - ax, gy - ay, gz - az);
+        let (cx, cy, cz) = (ax - ray.origin[0], ay - ray.origin[1], az - ray.origin[2]);
+        let nx = ey.mul_sub(fz, ez * fy);
+        let ny = ez.mul_sub(fx, ex * fz);
+        let nz = ex.mul_sub(fy, ey * fx);
+
+        // The determinant, and the edge functions: its parts that belong to the corners.
+        let rx = cy.mul_sub(dz, cz * dy);
+        let ry = cz.mul_sub(dx, cx * dz);
+        let rz = cx.mul_sub(dy, cy * dx);
+        let determinant = nx.mul_add(dx, ny.mul_add(dy, nz * dz));
+        let u = fx.mul_add(rx, fy.mul_add(ry, fz * rz));
+        let v = -ex.mul_add(rx, ey.mul_add(ry, ez * rz));
+        let w = determinant - (u + v);
+
+        // Bound their errors: of what holds the direction once, relative to its length.
+        let underflow = ray.underflow;
+        let relative = extent.mul_add(ray.error, underflow);
+        let reach = cx.abs().max(cy.abs()).max(cz.abs()) + ray.rounding;
+        let bound = (reach + extent).mul_add(relative, underflow);
+        let size_error = extent.mul_add(relative, underflow);
+
+        let distance = nx.mul_add(cx, ny.mul_add(cy, nz * cz));
+        let distance_error = extent.mul_add(extent.mul_add(ERROR, underflow), underflow) * reach;
+        let unused = extent.simd_lt(0.0);
+        let found = Found { edges: [u, v, w], bound, determinant, size_error, distance, distance_error };
+        found.sift(simd, ray, t_max, unused)
+    }
+}
+
+/// What the filter compares: numbers and bounds of their errors.
+struct Found<S: Simd> {
+    /// The edge functions.
+    edges: [Lanes<S>; 3],
+    bound: Lanes<S>,
+    /// Their sum.
+    determinant: Lanes<S>,
+    size_error: Lanes<S>,
+    /// t times the determinant.
+    distance: Lanes<S>,
+    distance_error: Lanes<S>,
+}
+
+impl<S: Simd> Found<S> {
+    #[inline(always)]
+    fn sift(&self, simd: S, ray: &Sieve<S>, t_max: Lanes<S>, unused: mask32x8<S>) -> Sifted<S> {
+        let &Self { edges: [u, v, w], bound, determinant, size_error, distance, distance_error } = self;
+        // A miss has two edge functions of surely different signs. Comparisons with NaN are false, and exclude nothing.
+        let least = u.min(v).min(w);
+        let most = u.max(v).max(w);
+        let outside = least.simd_lt(-bound) & most.simd_gt(bound);
+
+        // Or its t is surely out of range, where the determinant's sign is sure.
+        let size = determinant.abs();
+        let distance = distance * Lanes::splat(simd, 1.0).copysign(determinant);
+        let beyond = distance.simd_gt(t_max.mul_add(size, size_error.mul_add(t_max.abs(), distance_error)));
+        let before = distance.simd_lt(ray.t_min.mul_sub(size, size_error.mul_add(ray.t_min, distance_error)));
+        let out_of_range = size.simd_gt(size_error) & (beyond | before);
+        let excluded = outside | out_of_range | unused;
+
+        // A hit is sure where all that is the other way round, with twice the room for what is compared.
+        let inside = least.simd_gt(bound) | most.simd_lt(-bound);
+        let (size_room, distance_room) = (size_error + size_error, distance_error + distance_error);
+        let first = ray.t_min.max(SURE_AFTER);
+        let last = t_max.min(ray.sure_before);
+        let in_range = distance.simd_gt(first.mul_add(size, size_room.mul_add(first, distance_room)))
+            & distance.simd_lt(last.mul_sub(size, size_room.mul_add(last, distance_room)));
+        let sure = inside & in_range & size.simd_gt(size_room) & !unused;
+        let lanes = (1 << BLOCK) - 1;
+        Sifted {
+            kept: Chosen(!excluded.to_bitmask() as u32 & lanes),
+            surely_hit: Chosen(sure.to_bitmask() as u32 & lanes),
+            sure,
+            distance,
+            distance_room,
+            size,
+            size_room,
+        }
+    }
+}
+
+/// A block's triangles as they are seen from a point: what is the same for all rays that start there.
+pub(crate) struct SeenBlock {
+    /// `normal[axis][lane]`, and likewise what the direction is multiplied by for the edge functions.
+    normal: [[f32; BLOCK]; 3],
+    u: [[f32; BLOCK]; 3],
+    v: [[f32; BLOCK]; 3],
+    distance: [f32; BLOCK],
+    /// Errors, without the direction's.
+    bound: [f32; BLOCK],
+    size_error: [f32; BLOCK],
+    distance_error: [f32; BLOCK],
+}
+
+impl SeenBlock {
+    #[inline(always)]
+    pub(crate) fn new<S: Simd>(simd: S, block: &TriangleBlock, origin: [f32; 3]) -> Self {
+        let [a, b, c] = [0, 1, 2].map(
+            #[inline(always)]
+            |corner| load(simd, &block.corners[corner]),
+        );
+        let extent = Lanes::load_array_ref(simd, &block.extent).abs();
+        let minus = |p: [Lanes<S>; 3], q: [Lanes<S>; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+        let cross = |p: [Lanes<S>; 3], q: [Lanes<S>; 3]| {
+            [
+                p[1].mul_sub(q[2], p[2] * q[1]),
+                p[2].mul_sub(q[0], p[0] * q[2]),
+                p[0].mul_sub(q[1], p[1] * q[0]),
+            ]
+        };
+        let (e, f) = (minus(b, a), minus(c, a));
+        let way = [a[0] - origin[0], a[1] - origin[1], a[2] - origin[2]];
+        let normal = cross(e, f);
+        let reach = way[0].abs().max(way[1].abs()).max(way[2].abs());
+        let relative = extent.mul_add(ERROR, Lanes::splat(simd, prepared::USUAL_UNDERFLOW));
+        let [u, v] = [cross(f, way), cross(way, e)];
+        let arrays = |x: [Lanes<S>; 3]| [x[0].into(), x[1].into(), x[2].into()];
+        Self {
+            normal: arrays(normal),
+            u: arrays(u),
+            v: arrays(v),
+            distance: normal[0].mul_add(way[0], normal[1].mul_add(way[1], normal[2] * way[2])).into(),
+            bound: ((reach + extent) * relative).into(),
+            size_error: (extent * relative).into(),
+            distance_error: (extent.mul_add(relative, prepared::USUAL_UNDERFLOW) * reach).into(),
+        }
+    }
+
+    /// [`TriangleLanes::sift`] for one of the triangles and rays from that point; `length` is the longest component of each ray's
+    /// direction. d·(f × c) takes the place of f·(c × d): the same products, so the same errors.
+    #[inline(always)]
+    pub(crate) fn sift<S: Simd>(
+        &self,
+        simd: S,
+        lane: usize,
+        ray: &Sieve<S>,
+        length: Lanes<S>,
+        t_max: Lanes<S>,
+    ) -> Sifted<S> {
+        let lane = lane & (BLOCK - 1);
+        let [dx, dy, dz] = ray.direction;
+        let along = |n: &[[f32; BLOCK]; 3]| dx.mul_add(n[0][lane], dy.mul_add(n[1][lane], dz * n[2][lane]));
+        let (determinant, u, v) = (along(&self.normal), along(&self.u), along(&self.v));
+        let w = determinant - (u + v);
+        let found = Found {
+            edges: [u, v, w],
+            bound: length.mul_add(self.bound[lane], ray.underflow),
+            determinant,
+            size_error: length.mul_add(self.size_error[lane], ray.underflow),
+            distance: Lanes::splat(simd, self.distance[lane]),
+            distance_error: Lanes::splat(simd, self.distance_error[lane]),
+        };
+        found.sift(simd, ray, t_max, mask32x8::splat(simd, false))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::Exact;
+    use crate::ray::Ray;
+    use crate::simd::{Work, at_level, levels};
+    use crate::triangle::decide;
+
+    struct Filter<'a>(&'a TriangleBlock, &'a Prepared);
+
+    impl Work for Filter<'_> {
+        type Output = (Chosen, Chosen, [f32; 2]);
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> (Chosen, Chosen, [f32; 2]) {
+            let sifted = self.0.filter(simd, &Sieve::new(simd, self.1), f32::INFINITY);
+            let [first, last] = sifted.between();
+            (sifted.kept, sifted.surely_hit, [first[0], last[0]])
+        }
+    }
+
+    #[test]
+    fn the_filter_keeps_what_is_decided_to_be_hit() {
+        let mut random = crate::testing::Random::new(7);
+        let levels = levels();
+        let (mut hits, mut sure, mut kept, mut all) = (0, 0, 0, 0);
+        for _ in 0..200_000 {
+            let center = random.point_with_exponents(-8, 8);
+            let size = random.size(-8, 8);
+            let corners = [0; 3].map(|_| random.near(center, size));
+            let target = random.on_triangle(&corners);
+            let away = size * random.size(-9, 0);
+            let from_afar = random.unit() < 0.5;
+            let origin =
+                if from_afar { random.point_with_exponents(-8, 8) } else { random.near(target, away) };
+            let stretch = random.size(-8, 8);
+            let direction = match from_afar {
+                true => [0, 1, 2].map(|i| stretch * (target[i] - origin[i])),
+                false => random.near([0.0; 3], stretch),
+            };
+            let ray = Ray::new(origin, direction);
+            let exact = Exact::new(&ray);
+            let Some(shadow) = Prepared::new(fearless_simd::Fallback::new(), &exact, 0.0) else { continue };
+            let block = TriangleBlock::new(&[(corners, 0, 0)]);
+            let (chosen, surely_hit, [first, last]) =
+                at_level(levels[all % levels.len()], Filter(&block, &shadow));
+            let keep = chosen.count();
+            all += 1;
+            kept += keep;
+            let hit = decide(&exact, &corners, block.extent(0));
+            if hit.is_some() {
+                hits += 1;
+                assert_eq!(keep, 1, "{corners:?} {ray:?}");
+            }
+            if surely_hit != Chosen(0) {
+                sure += 1;
+                let t = f64::from(hit.unwrap().t) * f64::from(shadow.shadow.scale);
+                assert!(f64::from(first) < t && t < f64::from(last), "{corners:?} {ray:?}");
+            }
+        }
+        assert!(
+            10_000 < sure && sure < hits && hits < kept && kept < all,
+            "{sure} sure, {hits} hits, {kept} kept of {all}"
+        );
+    }
+}

@@ -1,0 +1,145 @@
+//! Eight rays of a packet, one in each lane.
+
+use crate::aabb::Aabb;
+use crate::filter::{self, Sieve};
+use crate::prepared::{self, FAR, LARGEST_RECIPROCAL, SHORT};
+use crate::ray::Ray;
+use crate::simd::{Simd, f32x8, i32x8, prelude::*};
+
+/// Rays in a group.
+pub(crate) const LANES: usize = 8;
+
+/// Groups in a packet.
+pub(crate) const GROUPS: usize = 8;
+
+/// Rays in a packet.
+pub(crate) const RAYS: usize = LANES * GROUPS;
+
+/// The number of no block.
+pub(crate) const NO_BLOCK: i32 = -1;
+
+/// Eight rays, one in each lane.
+#[derive(Clone, Copy)]
+pub(crate) struct Group<S: Simd> {
+    pub(crate) sieve: Sieve<S>,
+    /// Which of them are usual rays; the others' lanes hold nothing of use.
+    pub(crate) usual: u32,
+    /// The longest component of their directions.
+    pub(crate) length: f32x8<S>,
+    pub(crate) near_reciprocal: [f32x8<S>; 3],
+    pub(crate) far_reciprocal: [f32x8<S>; 3],
+    pub(crate) near_product: [f32x8<S>; 3],
+    pub(crate) far_product: [f32x8<S>; 3],
+    pub(crate) end: f32x8<S>,
+    /// Between which distances a sure hit lies that waits for its decision; ∞ where there is none.
+    pub(crate) first: f32x8<S>,
+    pub(crate) last: f32x8<S>,
+    /// That hit's block and its lane in it.
+    pub(crate) block: i32x8<S>,
+    pub(crate) lane: i32x8<S>,
+}
+
+impl<S: Simd> Group<S> {
+    /// No rays.
+    #[inline(always)]
+    pub(crate) fn empty(simd: S) -> Self {
+        let zero = f32x8::splat(simd, 0.0);
+        let (zeros, number) = ([zero; 3], i32x8::splat(simd, NO_BLOCK));
+        Self {
+            sieve: Sieve::of_rays(simd, zeros, zeros, zero, zero),
+            usual: 0,
+            length: zero,
+            near_reciprocal: zeros,
+            far_reciprocal: zeros,
+            near_product: zeros,
+            far_product: zeros,
+            end: zero,
+            first: zero,
+            last: zero,
+            block: number,
+            lane: number,
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn new(simd: S, rays: &[Ray]) -> Self {
+        let row = |lane: usize| {
+            let Ray { origin: [ox, oy, oz], t_min, direction: [dx, dy, dz], t_max } = rays[lane];
+            f32x8::load_array(simd, [ox, oy, oz, t_min, dx, dy, dz, t_max])
+        };
+        let mut v = [row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)];
+        // Three times like shuffling cards, and rows are columns.
+        for _ in 0..3 {
+            let [a, b, c, d, e, f, g, h] = v;
+            v = [
+                a.zip_low(e),
+                a.zip_high(e),
+                b.zip_low(f),
+                b.zip_high(f),
+                c.zip_low(g),
+                c.zip_high(g),
+                d.zip_low(h),
+                d.zip_high(h),
+            ];
+        }
+        let [ox, oy, oz, t_min, dx, dy, dz, t_max] = v;
+        let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);
+        let greatest = |[x, y, z]: [f32x8<S>; 3]| x.abs().max(y.abs()).max(z.abs());
+        let length = greatest(direction);
+        let usual = greatest(origin).simd_lt(FAR)
+            & length.simd_lt(1.0 / SHORT)
+            & length.simd_gt(SHORT)
+            & t_min.simd_ge(0.0)
+            & t_min.simd_lt(t_max);
+        let zero = f32x8::splat(simd, 0.0);
+        let sum = |[x, y, z]: [f32x8<S>; 3]| x + y + z;
+        let finite = ((sum(origin) + sum(direction)) * zero).simd_eq(zero);
+        let cap = f32x8::splat(simd, LARGEST_RECIPROCAL);
+        let slabs = |axis: usize| prepared::slabs(simd, origin[axis], direction[axis], cap, 0.0);
+        let [x, y, z] = [slabs(0), slabs(1), slabs(2)];
+        let first = (t_min - (t_min * prepared::ROOM + prepared::TINY)).max(0.0);
+        let none = f32x8::splat(simd, f32::INFINITY);
+        Self {
+            usual: (usual & finite).to_bitmask() as u32 & 0xff,
+            sieve: Sieve::of_rays(simd, origin, direction, first, length * filter::ERROR),
+            length,
+            near_reciprocal: [x[0], y[0], z[0]],
+            far_reciprocal: [x[1], y[1], z[1]],
+            near_product: [x[2], y[2], z[2]],
+            far_product: [x[3], y[3], z[3]],
+            end: t_max + (t_max.abs() * prepared::ROOM + prepared::TINY),
+            first: none,
+            last: none,
+            block: i32x8::splat(simd, NO_BLOCK),
+            lane: i32x8::splat(simd, 0),
+        }
+    }
+
+    /// Which rays meet a box before their ends.
+    #[inline(always)]
+    pub(crate) fn meet(&self, bounds: &Aabb) -> u32 {
+        let mut near = self.sieve.t_min;
+        let mut far = self.end;
+        for axis in 0..3 {
+            let [a, b] = [bounds.min[axis], bounds.max[axis]];
+            let at = |face: f32| self.near_reciprocal[axis] * face - self.near_product[axis];
+            near = near.max(at(a).min(at(b)));
+            let at = |face: f32| self.far_reciprocal[axis] * face - self.far_product[axis];
+            far = far.min(at(a).max(at(b)));
+        }
+        near.simd_le(far).to_bitmask() as u32 & 0xff
+    }
+}
+
+/// The least of some numbers.
+#[inline(always)]
+pub(crate) fn least<S: Simd>(numbers: f32x8<S>) -> f32 {
+    let numbers: [f32; LANES] = numbers.into();
+    let [a, b, c, d] = [0, 1, 2, 3].map(|i| smaller(numbers[i], numbers[i + 4]));
+    smaller(smaller(a, b), smaller(c, d))
+}
+
+#[inline(always)]
+pub(crate) fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
