@@ -13,8 +13,9 @@ use crate::query::{All, Any, Closest};
 use crate::ray::{Hit, Ray};
 use crate::simd::{Level, at_level};
 use crate::sphere::Sphere;
-use crate::traverse::{Trace, Watch};
+use crate::traverse::Trace;
 use crate::validate::{Invalid, Statistics};
+use crate::watch::Watch;
 
 /// Rays (or points) that one thread answers before it looks for others' work.
 #[cfg(feature = "parallel")]

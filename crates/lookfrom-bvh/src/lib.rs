@@ -33,6 +33,8 @@ mod traverse;
 mod triangle;
 mod validate;
 mod vector;
+mod waiting;
+mod watch;
 
 pub use aabb::Aabb;
 pub use affine::Affine;
@@ -46,5 +48,5 @@ pub use ray::{Hit, NONE, Ray};
 pub use refit::{Moved, RefitError};
 pub use selection::{Faces, Selected, Selection};
 pub use sphere::Sphere;
-pub use traverse::Watch;
 pub use validate::{Invalid, Statistics};
+pub use watch::Watch;

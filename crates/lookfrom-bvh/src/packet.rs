@@ -15,7 +15,8 @@ use crate::prepared;
 use crate::query::Closest;
 use crate::ray::{Hit, NONE, Ray};
 use crate::simd::{Chosen, Simd, Work, i32x8, prelude::*};
-use crate::traverse::{Answer, Stack, Waiting, cross_surely, decide, trace, with_stack};
+use crate::traverse::{Answer, cross_surely, decide, trace};
+use crate::waiting::{Stack, Waiting, with_stack};
 
 /// The closest hits of rays, in their order; as many as there are places for.
 pub(crate) struct TraceMany<'a> {

@@ -9,8 +9,9 @@ use crate::masks::Masks;
 use crate::query::{All, Any, Closest, Query};
 use crate::ray::{Hit, Ray};
 use crate::simd::Chosen;
-use crate::traverse::{Trace, Watch};
+use crate::traverse::Trace;
 use crate::triangle;
+use crate::watch::Watch;
 
 /// Which faces of surfaces rays hit.
 ///

@@ -1,0 +1,130 @@
+//! The children of nodes that wait for their visit, nearest on top.
+
+use std::cell::Cell;
+
+use crate::node::{Child, Entered, LARGEST_DEPTH, Node, WIDTH};
+use crate::query::Query;
+use crate::simd::Simd;
+
+/// A child that waits for its visit: where the ray enters it (f32 bits) above what it is. Positive distances are ordered
+/// as these numbers are; the others only cost time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Pending(u64);
+
+impl Pending {
+    const NONE: Self = Self(0);
+
+    #[inline(always)]
+    fn new(near: f32, child: Child) -> Self {
+        Self(u64::from(near.to_bits()) << 32 | u64::from(child.0))
+    }
+
+    #[inline(always)]
+    fn near(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+
+    #[inline(always)]
+    fn child(self) -> Child {
+        Child(self.0 as u32)
+    }
+}
+
+/// How many children may wait: all but one on each level of a tree, and of an instance's. A power of two.
+const STACK: usize = (2 * LARGEST_DEPTH * (WIDTH - 1)).next_power_of_two();
+
+/// Children that wait. Long enough for any tree, so that nothing is allocated on the way.
+pub(crate) type Stack = [Pending; STACK];
+
+thread_local! {
+    /// The last traversal's stack, kept so that a ray costs no allocation. Taken while in use, so a procedural that
+    /// traces rays of its own gets a new one.
+    static KEPT: Cell<Option<Box<Stack>>> = const { Cell::new(None) };
+}
+
+/// Runs `work` with a stack.
+#[inline(always)]
+pub(crate) fn with_stack<R>(work: impl FnOnce(&mut Stack) -> R) -> R {
+    let mut stack = KEPT.take().unwrap_or_else(new_stack);
+    let result = work(&mut stack);
+    KEPT.set(Some(stack));
+    result
+}
+
+#[cold]
+fn new_stack() -> Box<Stack> {
+    Box::new([Pending::NONE; STACK])
+}
+
+/// The children that wait in one tree, above those of the tree around it.
+pub(crate) struct Waiting<'a> {
+    pub(crate) stack: &'a mut Stack,
+    pub(crate) bottom: usize,
+    pub(crate) height: usize,
+}
+
+impl Waiting<'_> {
+    /// The next child that is not beyond the end.
+    #[inline(always)]
+    pub(crate) fn pop(&mut self, end: f32) -> Option<Child> {
+        while self.height > self.bottom {
+            self.height -= 1;
+            let pending = self.stack[self.height % STACK];
+            if pending.near() <= end {
+                return Some(pending.child());
+            }
+        }
+        None
+    }
+
+    #[inline(always)]
+    fn push(&mut self, pending: Pending) {
+        self.stack[self.height % STACK] = pending;
+        self.height += 1;
+    }
+
+    /// Pushes the children that were entered but one, the nearest last, and returns that one, which is nearer. There is
+    /// one at least.
+    #[inline(always)]
+    pub(crate) fn push_all_but_nearest<S: Simd, Q: Query>(
+        &mut self,
+        node: &Node,
+        entered: &Entered<S>,
+    ) -> Child {
+        let mut children = entered.children;
+        let first = next(node, entered, &mut children);
+        if children == 0 {
+            return first.child();
+        }
+        let second = next(node, entered, &mut children);
+        let (mut nearest, farther) =
+            if Q::NEAREST_FIRST { (first.min(second), first.max(second)) } else { (first, second) };
+        let bottom = self.height;
+        self.push(farther);
+        while children != 0 {
+            let mut waits = next(node, entered, &mut children);
+            if Q::NEAREST_FIRST {
+                (nearest, waits) = (nearest.min(waits), nearest.max(waits));
+                // Insert: what is farther stays below.
+                let mut place = self.height;
+                while place > bottom && self.stack[(place - 1) % STACK] < waits {
+                    self.stack[place % STACK] = self.stack[(place - 1) % STACK];
+                    place -= 1;
+                }
+                self.stack[place % STACK] = waits;
+                self.height += 1;
+            } else {
+                self.push(waits);
+            }
+        }
+        nearest.child()
+    }
+}
+
+/// Takes the first of some children.
+#[inline(always)]
+fn next<S: Simd>(node: &Node, entered: &Entered<S>, children: &mut u32) -> Pending {
+    let slot = children.trailing_zeros() as usize % WIDTH;
+    *children &= children.wrapping_sub(1);
+    Pending::new(entered.near[slot], node.child(slot))
+}

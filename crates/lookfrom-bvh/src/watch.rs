@@ -1,0 +1,53 @@
+//! Who listens while a ray is traced: counters, explainers, or nobody.
+
+/// Listens while a ray is traced. Every method does nothing unless written; `()` listens to nothing and costs nothing.
+///
+/// ```
+/// use lookfrom_bvh::{Builder, Ray, Sphere, Watch};
+///
+/// /// Counts nodes.
+/// struct Nodes(u32);
+///
+/// impl Watch for Nodes {
+///     fn node(&mut self, _instance: u32, _node: u32) {
+///         self.0 += 1;
+///     }
+/// }
+///
+/// let mut builder = Builder::new();
+/// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+/// let mut nodes = Nodes(0);
+/// builder.build()?.closest_hit_watched(&Ray::new([0.0; 3], [0.0, 0.0, 1.0]), &mut nodes);
+/// assert_eq!(nodes.0, 1);
+/// # Ok::<(), lookfrom_bvh::BuildError>(())
+/// ```
+pub trait Watch {
+    /// Whether [`Self::candidate`] is to be called at all.
+    const LISTENS: bool = true;
+
+    /// The ray visits a node of a tree; `instance` is [`NONE`] in the outer tree.
+    fn node(&mut self, instance: u32, node: u32) {
+        let _ = (instance, node);
+    }
+
+    /// The ray is about to be tested against a primitive.
+    fn candidate(&mut self, instance: u32, geometry: u32, primitive: u32) {
+        let _ = (instance, geometry, primitive);
+    }
+}
+
+impl Watch for () {
+    const LISTENS: bool = false;
+}
+
+impl<W: Watch> Watch for &mut W {
+    const LISTENS: bool = W::LISTENS;
+
+    fn node(&mut self, instance: u32, node: u32) {
+        (**self).node(instance, node);
+    }
+
+    fn candidate(&mut self, instance: u32, geometry: u32, primitive: u32) {
+        (**self).candidate(instance, geometry, primitive);
+    }
+}
