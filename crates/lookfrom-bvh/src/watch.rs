@@ -25,7 +25,7 @@ pub trait Watch {
     /// Whether [`Self::candidate`] is to be called at all.
     const LISTENS: bool = true;
 
-    /// The ray visits a node of a tree; `instance` is [`NONE`] in the outer tree.
+    /// The ray visits a node of a tree; `instance` is [`NONE`](crate::NONE) in the outer tree.
     fn node(&mut self, instance: u32, node: u32) {
         let _ = (instance, node);
     }
