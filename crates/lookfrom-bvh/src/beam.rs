@@ -27,15 +27,15 @@ pub(crate) fn seem_alike(rays: &[Ray]) -> bool {
 
 /// What holds for all rays of a packet, for a test of eight boxes at once.
 pub(crate) struct Beam<S: Simd> {
-    /// One of the origins.
+    /// The least corner of the box around the origins.
     origin: [f32; 3],
     /// The origin of all rays, where that is one.
     pub(crate) common_origin: Option<[f32; 3]>,
     near_side: [usize; 3],
     /// Least and greatest 1 / direction, with room.
     reciprocal: [[f32x8<S>; 2]; 3],
-    /// Least and greatest way from that origin to the others, in distances along the rays.
-    offset: [[f32x8<S>; 2]; 3],
+    /// How far the origins may be from there, in distances along the rays.
+    offset: [f32x8<S>; 3],
     t_min: i32x8<S>,
 }
 
@@ -76,7 +76,7 @@ impl<S: Simd> Beam<S> {
         let mut near_side = [0; 3];
         // An axis along which some rays go forth and some back limits nothing.
         let mut reciprocal = [[1.0 / BEYOND; 2]; 3];
-        let mut offset = [[-BEYOND, BEYOND]; 3];
+        let mut offset = [BEYOND; 3];
         for axis in 0..3 {
             let (slow, fast) = (directions.min[axis], directions.max[axis]);
             near_side[axis] = usize::from(fast < 0.0);
@@ -85,10 +85,7 @@ impl<S: Simd> Beam<S> {
                 let [a, b] = [1.0 / fast, 1.0 / slow];
                 let (least, most) = (a.min(b), a.max(b));
                 reciprocal[axis] = [least - least.abs() * room, most + most.abs() * room];
-                let ways = [origins.min[axis] - origin[axis], origins.max[axis] - origin[axis]];
-                let reach =
-                    greatest([ways[0], ways[1], 0.0]) * greatest([least, most, 0.0]) * (1.0 + 2.0 * room);
-                offset[axis] = [-reach, reach];
+                offset[axis] = apart[axis] * least.abs().max(most.abs()) * (1.0 + 2.0 * room);
             }
         }
         Some(Self {
@@ -96,7 +93,7 @@ impl<S: Simd> Beam<S> {
             common_origin: (apart == [0.0; 3]).then_some(origin),
             near_side,
             reciprocal: reciprocal.map(splat),
-            offset: offset.map(splat),
+            offset: offset.map(|offset| f32x8::splat(simd, offset)),
             t_min: i32x8::splat(simd, least(t_min).to_bits() as i32),
         })
     }
@@ -108,12 +105,12 @@ impl<S: Simd> Beam<S> {
         let near = |axis: usize| {
             let way = way(axis, self.near_side[axis]);
             let [least, most] = self.reciprocal[axis];
-            ((way * least).min(way * most) - self.offset[axis][1]).bitcast::<i32x8<S>>()
+            ((way * least).min(way * most) - self.offset[axis]).bitcast::<i32x8<S>>()
         };
         let far = |axis: usize| {
             let way = way(axis, self.near_side[axis] ^ 1);
             let [least, most] = self.reciprocal[axis];
-            ((way * least).max(way * most) - self.offset[axis][0]).bitcast::<i32x8<S>>()
+            ((way * least).max(way * most) + self.offset[axis]).bitcast::<i32x8<S>>()
         };
         let near = near(0).max(near(1)).max(near(2).max(self.t_min));
         let far = far(0).min(far(1)).min(far(2).min(i32x8::splat(simd, end.to_bits() as i32)));

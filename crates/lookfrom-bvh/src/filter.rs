@@ -128,7 +128,7 @@ fn load<S: Simd>(simd: S, values: &[[f32; BLOCK]; 3]) -> [Lanes<S>; 3] {
 }
 
 impl TriangleBlock {
-    /// Packs one to four triangles: corners, geometry, primitive.
+    /// Packs one to eight triangles: corners, geometry, primitive.
     pub(crate) fn new(triangles: &[([[f32; 3]; 3], u32, u32)]) -> Self {
         let mut block = Self {
             corners: [[[0.0; BLOCK]; 3]; 3],

@@ -115,6 +115,12 @@ impl<S: Simd> Group<S> {
         }
     }
 
+    /// Ends a ray at a hit, with the same room as [`Self::new`] gives it, unless it ends sooner.
+    pub(crate) fn shorten(&mut self, lane: usize, t: f32) {
+        let end = t + (t.abs() * prepared::ROOM + prepared::TINY);
+        self.end[lane] = smaller(end, self.end[lane]);
+    }
+
     /// Which rays meet a box before their ends.
     #[inline(always)]
     pub(crate) fn meet(&self, bounds: &Aabb) -> u32 {
@@ -140,6 +146,6 @@ pub(crate) fn least<S: Simd>(numbers: f32x8<S>) -> f32 {
 }
 
 #[inline(always)]
-pub(crate) fn smaller(a: f32, b: f32) -> f32 {
+fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }

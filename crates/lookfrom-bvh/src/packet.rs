@@ -9,9 +9,8 @@ use crate::Bvh;
 use crate::beam::{Beam, seem_alike};
 use crate::exact::Exact;
 use crate::filter::{LARGEST_FILTERED, SeenBlock, Sifted, TriangleLanes};
-use crate::group::{GROUPS, Group, LANES, NO_BLOCK, RAYS, least, smaller};
+use crate::group::{GROUPS, Group, LANES, NO_BLOCK, RAYS, least};
 use crate::node::{Child, Content};
-use crate::prepared;
 use crate::query::Closest;
 use crate::ray::{Hit, NONE, Ray};
 use crate::simd::{Chosen, Simd, Work, i32x8, prelude::*};
@@ -204,10 +203,7 @@ impl<S: Simd> Packet<'_, S> {
         let mut answer = self.answer(place);
         decide(&self.bvh.triangles[block], of, &Exact::new(ray), &mut answer);
         self.hits[place] = answer.query.hit;
-        let end = smaller(ray.t_max, answer.query.hit.t);
-        let end = end + (end.abs() * prepared::ROOM + prepared::TINY);
-        let ends = &mut self.groups[index].end;
-        ends[lane] = smaller(end, ends[lane]);
+        self.groups[index].shorten(lane, answer.query.hit.t);
     }
 
     /// A ray's query as it stands.
