@@ -62,6 +62,11 @@ impl Counts {
                 Geometry::Spheres(spheres) => ("cloud of spheres", 0, spheres.len()),
                 Geometry::Quad { .. } => ("quad", 2, 0),
                 Geometry::Disk { .. } => ("disk", 0, 0),
+                Geometry::PartialSphere { .. } => ("partial sphere", 0, 0),
+                Geometry::PartialDisk { .. } => ("partial disk", 0, 0),
+                Geometry::Cylinder { .. } => ("cylinder", 0, 0),
+                Geometry::Bilinear(_) => ("bilinear mesh", 0, 0),
+                Geometry::Curves(_) => ("curves", 0, 0),
                 Geometry::Mesh(id) => ("mesh", scene.meshes[id.index()].triangles.len(), 0),
             };
             *counts.shapes.entry(kind).or_default() += 1;
@@ -77,6 +82,8 @@ impl Counts {
                 LightKind::Point { .. } => "point",
                 LightKind::Distant { .. } => "distant",
                 LightKind::Spot { .. } => "spot",
+                LightKind::Projection { .. } => "projection",
+                LightKind::Goniometric { .. } => "goniometric",
                 LightKind::Environment { illuminates: true, .. } => "environment",
                 LightKind::Environment { illuminates: false, .. } => "backdrop",
             };

@@ -50,6 +50,8 @@ pub(crate) fn attributes(scene: &Path, prepared: &Prepared, taken: Option<u64>) 
     match camera.projection {
         Projection::Perspective { fov } => texts.push(("camera.fov", fov.to_string())),
         Projection::Orthographic { height } => texts.push(("camera.height", height.to_string())),
+        Projection::Equirectangular => texts.push(("camera.projection", "equirectangular".to_owned())),
+        Projection::Octahedral => texts.push(("camera.projection", "octahedral".to_owned())),
     }
     if let Some(lens) = camera.lens {
         texts.push(("camera.lens_radius", lens.radius.to_string()));

@@ -116,6 +116,8 @@ fn camera_as_json(camera: &Camera) -> Value {
     match camera.projection {
         Projection::Perspective { fov } => object["fov"] = json!(fov),
         Projection::Orthographic { height } => object["height"] = json!(height),
+        Projection::Equirectangular => object["projection"] = json!("equirectangular"),
+        Projection::Octahedral => object["projection"] = json!("octahedral"),
     }
     if let Some(lens) = camera.lens {
         object["lens_radius"] = json!(lens.radius);
@@ -221,6 +223,8 @@ fn camera_in_words(camera: &Camera) -> String {
     let _ = match camera.projection {
         Projection::Perspective { fov } => write!(text, ", fov {fov}°"),
         Projection::Orthographic { height } => write!(text, ", parallel rays, height {height}"),
+        Projection::Equirectangular => write!(text, ", all around by latitude and longitude"),
+        Projection::Octahedral => write!(text, ", all around on an octahedral square"),
     };
     if let Some(lens) = camera.lens {
         let _ =

@@ -15,6 +15,8 @@ pub struct Camera {
     pub projection: Projection,
     /// A lens that blurs what is not in focus; `None` is a pinhole.
     pub lens: Option<Lens>,
+    /// Which part of the image plane the picture shows; `None` is what the projection says, around the axis.
+    pub window: Option<Window>,
     /// `d`, the distance of the image plane: > 0. Only the `t` that is shown to people depends on it.
     pub distance: f64,
 }
@@ -49,6 +51,20 @@ pub enum Projection {
         /// The height of the picture in the world: > 0.
         height: f64,
     },
+    /// All around: rows are angles from the up axis, columns go around it.
+    Equirectangular,
+    /// All around, on a square of equal area folded from an octahedron (Clarberg 2008).
+    Octahedral,
+}
+
+/// A part of the image plane, in units of half the height that the projection gives: x to the right, y up. Without one
+/// the picture shows x ∈ [−nx/ny, nx/ny], y ∈ [−1, 1].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// From left to right.
+    pub x: [f64; 2],
+    /// From bottom to top.
+    pub y: [f64; 2],
 }
 
 /// A thin lens.
@@ -67,6 +83,7 @@ impl Default for Camera {
             view: View::Look { lookfrom: DVec3::new(0.0, 1.0, 5.0), lookat: DVec3::ZERO, up: DVec3::Y },
             projection: Projection::Perspective { fov: 45.0 },
             lens: None,
+            window: None,
             distance: 1.0,
         }
     }

@@ -16,6 +16,7 @@ pub mod ply;
 pub mod scene;
 pub mod settings;
 pub mod shape;
+pub mod spectrum;
 pub mod stl;
 pub mod studio;
 pub mod texture;

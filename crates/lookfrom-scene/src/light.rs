@@ -7,6 +7,7 @@
 use glam::{DMat4, DVec3};
 
 use crate::error::Location;
+use crate::material::Color;
 use crate::scene::ImageId;
 
 /// A light.
@@ -18,6 +19,33 @@ pub struct Light {
     pub at: Location,
     /// What kind of light.
     pub kind: LightKind,
+    /// How much of it.
+    pub amount: Amount,
+}
+
+/// How much light there is of a colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Amount {
+    /// Multiplies the colour.
+    pub scale: f32,
+    /// What the light comes to as a whole before `scale`: the illuminance on a surface that faces it for distant lights
+    /// and environments, else the power of all that is sent out, both in units whose white light of radiance 1 has
+    /// luminance 1. `None` leaves the colour as bright as it is written.
+    pub total: Option<f32>,
+    /// Whether a curve's brightness counts; otherwise it is divided by its own luminance first, as colours are whose
+    /// white has luminance 1.
+    pub absolute: bool,
+}
+
+impl Amount {
+    /// As much as the colour says.
+    pub const AS_WRITTEN: Self = Self { scale: 1.0, total: None, absolute: false };
+}
+
+impl Default for Amount {
+    fn default() -> Self {
+        Self::AS_WRITTEN
+    }
 }
 
 /// The lights there are.
@@ -33,7 +61,7 @@ pub enum LightKind {
         /// Where.
         position: DVec3,
         /// `I_j` at a distance of 1.
-        intensity: [f32; 3],
+        intensity: Color,
         /// How it fades.
         falloff: Falloff,
     },
@@ -42,7 +70,7 @@ pub enum LightKind {
         /// Where the light goes *to*; any length but zero.
         direction: DVec3,
         /// `I_j`.
-        intensity: [f32; 3],
+        intensity: Color,
     },
     /// From a point into a cone.
     Spot {
@@ -51,7 +79,7 @@ pub enum LightKind {
         /// Where the axis goes to; any length but zero.
         direction: DVec3,
         /// `I_j` on the axis at a distance of 1.
-        intensity: [f32; 3],
+        intensity: Color,
         /// Half-angle beyond which it is dark, in degrees, in (0, 180].
         cone_angle: f64,
         /// Half-angle up to which it is full, in degrees, in [0, cone_angle]; a smooth step lies between.
@@ -59,10 +87,32 @@ pub enum LightKind {
         /// How it fades.
         falloff: Falloff,
     },
+    /// From a point, a picture thrown into a rectangle.
+    Projection {
+        /// The picture.
+        image: ImageId,
+        /// `I_j` of a white texel, at a distance of 1.
+        intensity: f32,
+        /// Field of view along the picture's shorter side, in degrees, in (0, 180).
+        fov: f32,
+        /// The light's space: it looks along +z, y is up, x to the right of the picture. Any invertible matrix.
+        world_from_light: DMat4,
+    },
+    /// From a point, more or less by direction.
+    Goniometric {
+        /// `I_j` at a distance of 1 where the picture is white.
+        intensity: Color,
+        /// By direction, in the octahedral equal-area square of [`Sky::Octahedral`]; only brightness counts.
+        image: ImageId,
+        /// How the light's space is placed in the world.
+        world_from_light: DMat4,
+    },
     /// From all around, infinitely far.
     Environment {
         /// Its colours.
         sky: Sky,
+        /// The corners of the one opening through which it is seen (in the world), in order around it.
+        portal: Option<[DVec3; 4]>,
         /// Whether it lights surfaces; otherwise it is only seen, by camera, mirrored and refracted rays.
         illuminates: bool,
     },
@@ -84,7 +134,7 @@ pub enum Falloff {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sky {
     /// The same everywhere.
-    Constant([f32; 3]),
+    Constant(Color),
     /// By the height y of the unit direction: from `nadir` (y = −1) over `horizon` (0) to `zenith` (1), linear in y.
     Gradient {
         /// Straight up.
@@ -102,6 +152,16 @@ pub enum Sky {
         /// Multiplies it.
         scale: [f32; 3],
         /// How the light's space is turned in the world: a rotation.
+        world_from_light: DMat4,
+    },
+    /// A square picture over the sphere of directions folded to an octahedron, of equal area (Clarberg 2008), as pbrt-v4
+    /// has it: z of the light's space is the middle of the square.
+    Octahedral {
+        /// The picture; square.
+        image: ImageId,
+        /// Multiplies it.
+        scale: [f32; 3],
+        /// How the light's space is placed in the world: turned, mirrored.
         world_from_light: DMat4,
     },
 }

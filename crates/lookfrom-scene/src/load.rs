@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use glam::DMat4;
-
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Sources;
 use crate::scene::{MaterialId, Scene};
@@ -60,11 +58,8 @@ pub(crate) fn shapes(parts: Vec<Part>, at: &Location, default: MaterialId) -> Ve
         .into_iter()
         .map(|part| Shape {
             name: part.name,
-            at: at.clone(),
-            geometry: part.geometry,
-            material: part.material.unwrap_or(default),
             emission: part.emission,
-            world_from_object: DMat4::IDENTITY,
+            ..Shape::new(at.clone(), part.geometry, part.material.unwrap_or(default))
         })
         .collect()
 }

@@ -12,6 +12,7 @@ use crate::light::Light;
 use crate::material::Material;
 use crate::settings::{ImageSettings, RenderSettings};
 use crate::shape::{Mesh, Shape};
+use crate::spectrum::Curve;
 use crate::texture::Texture;
 
 macro_rules! ids {
@@ -33,6 +34,8 @@ ids! {
     TextureId
     /// Index into [`Scene::images`].
     ImageId
+    /// Index into [`Scene::curves`].
+    CurveId
     /// Index into [`Scene::meshes`].
     MeshId
     /// Index into [`Scene::objects`].
@@ -52,6 +55,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Colour over surfaces.
     pub textures: Vec<Texture>,
+    /// Values by wavelength, shared by whatever has a colour.
+    pub curves: Vec<Curve>,
     /// Decoded pictures, shared by textures and environment lights.
     pub images: Vec<Image>,
     /// Triangles, shared by shapes.

@@ -15,6 +15,37 @@ pub struct ImageSettings {
     pub exposure: f32,
     /// How linear light becomes the 0…1 of an 8-bit picture.
     pub tonemap: Tonemap,
+    /// What light is turned into colour by.
+    pub sensor: Sensor,
+    /// Which layers an EXR gets besides the picture.
+    pub layers: Layers,
+}
+
+/// What turns light into colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensor {
+    /// Multiplies all light: exposure time × ISO / 100 of pbrt's films.
+    pub imaging_ratio: f32,
+    /// The colour temperature, in kelvin, of the light that shall look white; `None` leaves colours as they are.
+    pub white_balance: Option<f32>,
+    /// A sample whose greatest channel is brighter is darkened to it: a bias against fireflies. Infinite is none.
+    pub max_component: f32,
+}
+
+impl Default for Sensor {
+    fn default() -> Self {
+        Self { imaging_ratio: 1.0, white_balance: None, max_component: f32::INFINITY }
+    }
+}
+
+/// Which layers an EXR gets besides the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Layers {
+    /// None.
+    #[default]
+    None,
+    /// Albedo, normals, position, depth, uv and variance of what the camera sees first.
+    Geometry,
 }
 
 impl Default for ImageSettings {
@@ -26,6 +57,8 @@ impl Default for ImageSettings {
             filter: Filter::default(),
             exposure: 0.0,
             tonemap: Tonemap::default(),
+            sensor: Sensor::default(),
+            layers: Layers::None,
         }
     }
 }
@@ -104,7 +137,7 @@ pub struct RenderSettings {
     pub integrator: Integrator,
     /// Samples a pixel: ≥ 1.
     pub samples: u32,
-    /// How many times a ray may be mirrored or refracted.
+    /// How many times a ray may be mirrored, refracted or scattered.
     pub depth: u32,
     /// A branch of the tree whose share of the pixel falls below this is cut off (Whitted's adaptive depth control).
     pub min_contribution: f32,
@@ -114,6 +147,36 @@ pub struct RenderSettings {
     pub seed: u64,
     /// Whether light goes straight through transparent things to what they would shadow, coloured by them.
     pub transparent_shadows: bool,
+    /// What the four lanes of light mean.
+    pub color: ColorMode,
+    /// How a light is chosen where one of many is asked.
+    pub light_sampler: LightSampler,
+    /// Whether the path tracer blurs what it sees after the first diffuse bounce: less noise, slightly wrong.
+    pub regularize: bool,
+    /// How far ambient occlusion looks.
+    pub occlusion_distance: f32,
+}
+
+/// What the four lanes of light mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorMode {
+    /// Linear Rec. 709.
+    #[default]
+    Rgb,
+    /// Four wavelengths, chosen anew for each sample.
+    Spectral,
+}
+
+/// How a light is chosen where one of many is asked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightSampler {
+    /// All the same.
+    Uniform,
+    /// By what they send out.
+    Power,
+    /// By what they may send to where it is asked (Conty Estevez & Kulla 2018).
+    #[default]
+    Bvh,
 }
 
 impl Default for RenderSettings {
@@ -126,6 +189,10 @@ impl Default for RenderSettings {
             sampler: Sampler::Sobol,
             seed: 0,
             transparent_shadows: true,
+            color: ColorMode::Rgb,
+            light_sampler: LightSampler::Bvh,
+            regularize: false,
+            occlusion_distance: f32::INFINITY,
         }
     }
 }
@@ -138,6 +205,17 @@ pub enum Integrator {
     /// Whitted 1980: the tree of rays.
     #[default]
     Whitted,
+    /// Kajiya 1986 with everything that has been learned since: lights and materials sampled together.
+    Path,
+    /// The same without asking lights wisely: a check of `Path`.
+    SimplePath,
+    /// Directions all around at each hit: a check of both.
+    RandomWalk,
+    /// How much of the sky a white surface would see.
+    AmbientOcclusion {
+        /// Whether directions are chosen by the cosine.
+        cosine: bool,
+    },
     /// Shading normals as colours.
     Normals,
     /// Distance from the eye along the view axis.

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
 use crate::error::Location;
-use crate::material::Color;
+use crate::light::Amount;
+use crate::material::{Color, Scalar};
 use crate::scene::{Bounds, MaterialId, MeshId};
 
 /// One thing in the world (or in an object).
@@ -21,8 +22,28 @@ pub struct Shape {
     pub material: MaterialId,
     /// The light it gives off.
     pub emission: Option<Emission>,
+    /// The part of it that is there: light passes where chance says that it is not. `None` is all of it.
+    pub alpha: Option<Scalar>,
+    /// Whether outside and inside change places.
+    pub reverse_orientation: bool,
     /// From the shape's space to the world: any invertible affine matrix.
     pub world_from_object: DMat4,
+}
+
+impl Shape {
+    /// A form with a look, at the origin, whole, without light of its own.
+    pub fn new(at: Location, geometry: Geometry, material: MaterialId) -> Self {
+        Self {
+            name: None,
+            at,
+            geometry,
+            material,
+            emission: None,
+            alpha: None,
+            reverse_orientation: false,
+            world_from_object: DMat4::IDENTITY,
+        }
+    }
 }
 
 /// The light that a surface gives off, the same in all directions.
@@ -30,8 +51,17 @@ pub struct Shape {
 pub struct Emission {
     /// Emitted radiance.
     pub radiance: Color,
+    /// How much of it.
+    pub amount: Amount,
     /// Whether both sides shine; otherwise the side that the normal points to.
     pub two_sided: bool,
+}
+
+impl Emission {
+    /// As much as the colour says.
+    pub fn new(radiance: Color, two_sided: bool) -> Self {
+        Self { radiance, amount: Amount::AS_WRITTEN, two_sided }
+    }
 }
 
 /// Form, in the shape's space.
@@ -61,6 +91,74 @@ pub enum Geometry {
     },
     /// Triangles.
     Mesh(MeshId),
+    /// A part of a sphere around the origin; poles on z, uv as pbrt has them.
+    PartialSphere {
+        /// Radius, positive.
+        radius: f64,
+        /// Cut below and above.
+        z: [f64; 2],
+        /// Swept from +x toward +y, in degrees, in (0, 360].
+        phi_max: f64,
+    },
+    /// A round plate across the z axis that looks along +z, perhaps with a hole; uv as pbrt has them.
+    PartialDisk {
+        /// At this z.
+        height: f64,
+        /// Radius, positive.
+        radius: f64,
+        /// Of the hole: ≥ 0.
+        inner_radius: f64,
+        /// Swept from +x toward +y, in degrees, in (0, 360].
+        phi_max: f64,
+    },
+    /// A tube around the z axis; uv as pbrt has them.
+    Cylinder {
+        /// Radius, positive.
+        radius: f64,
+        /// From and to.
+        z: [f64; 2],
+        /// Swept from +x toward +y, in degrees, in (0, 360].
+        phi_max: f64,
+    },
+    /// Patches, each blended from four corners.
+    Bilinear(Arc<Patches>),
+    /// Hairs, wires, ribbons.
+    Curves(Arc<[Strand]>),
+}
+
+/// Bilinear patches over shared vertices: `(1−u)(1−v) p0 + u(1−v) p1 + (1−u)v p2 + uv p3`, outside along `∂u × ∂v`.
+#[derive(Clone, Debug, Default)]
+pub struct Patches {
+    /// Vertices: finite.
+    pub positions: Vec<Vec3>,
+    /// Four vertices a patch.
+    pub patches: Vec<[u32; 4]>,
+    /// Shading normals: none, or one a vertex.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates: none, or one a vertex.
+    pub uvs: Vec<Vec2>,
+}
+
+/// A cubic Bézier curve with a width.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strand {
+    /// Control points.
+    pub points: [Vec3; 4],
+    /// At the beginning and at the end: > 0.
+    pub width: [f32; 2],
+    /// How it is drawn out sideways.
+    pub profile: Profile,
+}
+
+/// How a curve is drawn out sideways.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Profile {
+    /// A band that turns to whoever looks.
+    Flat,
+    /// The same, shaded as if it were round.
+    Cylinder,
+    /// A band that stands across these two unit normals, at its beginning and at its end.
+    Ribbon([Vec3; 2]),
 }
 
 /// A sphere.
@@ -87,6 +185,8 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Linear colours: none, or one a vertex.
     pub colors: Vec<[f32; 3]>,
+    /// Directions in which u grows, for relief and brushed metal: none, or one a vertex.
+    pub tangents: Vec<Vec3>,
 }
 
 /// One piece of a model file: what a reader makes of it before a scene gives it a place.
@@ -137,6 +237,27 @@ impl Geometry {
                 let extent = *radius * (DVec3::ONE - n * n).max(DVec3::ZERO).map(f64::sqrt);
                 Bounds { min: *center - extent, max: *center + extent }.transformed(matrix)
             }
+            Self::PartialSphere { radius, .. } => sphere(&Sphere { center: DVec3::ZERO, radius: *radius }),
+            Self::PartialDisk { height, radius, .. } => {
+                let corner = DVec3::new(*radius, *radius, 0.0);
+                let middle = DVec3::Z * *height;
+                Bounds { min: middle - corner, max: middle + corner }.transformed(matrix)
+            }
+            Self::Cylinder { radius, z: [low, high], .. } => {
+                let corner = |z: f64, sign: f64| DVec3::new(sign * *radius, sign * *radius, z);
+                Bounds { min: corner(*low, -1.0), max: corner(*high, 1.0) }.transformed(matrix)
+            }
+            Self::Bilinear(patches) => patches
+                .positions
+                .iter()
+                .fold(Bounds::EMPTY, |bounds, point| bounds.with(matrix.transform_point3(point.as_dvec3()))),
+            Self::Curves(strands) => strands.iter().fold(Bounds::EMPTY, |bounds, strand| {
+                let half_width = DVec3::splat(0.5 * f64::from(strand.width[0].max(strand.width[1])));
+                let hull =
+                    strand.points.iter().fold(Bounds::EMPTY, |hull, point| hull.with(point.as_dvec3()));
+                let hull = Bounds { min: hull.min - half_width, max: hull.max + half_width };
+                bounds.union(hull.transformed(matrix))
+            }),
             Self::Mesh(id) => {
                 let mesh = &meshes[id.index()];
                 mesh.triangles.iter().flatten().fold(Bounds::EMPTY, |bounds, &vertex| {

@@ -4,11 +4,11 @@
 //! model of any size makes the same picture. The arrangement is the photographer's: a three-quarter view from slightly
 //! above, a large soft key light from the upper left of the camera, and a fill from all around.
 
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 
 use crate::camera::{Camera, Projection, View};
 use crate::error::Location;
-use crate::light::{Falloff, Light, LightKind, Sky};
+use crate::light::{Amount, Falloff, Light, LightKind, Sky};
 use crate::material::{Color, Whitted};
 use crate::model::surface::push_material;
 use crate::scene::{Bounds, Scene};
@@ -68,7 +68,12 @@ pub fn framing(bounds: Bounds, aspect: f64, up: DVec3) -> Camera {
 }
 
 fn add(scene: &mut Scene, name: &str, kind: LightKind) {
-    scene.lights.push(Light { name: Some(name.to_owned()), at: Location::default(), kind });
+    scene.lights.push(Light {
+        name: Some(name.to_owned()),
+        at: Location::default(),
+        kind,
+        amount: Amount::AS_WRITTEN,
+    });
 }
 
 /// The bounds to show, and what is right, up and towards the viewer there: unit vectors.
@@ -139,7 +144,7 @@ impl Stage {
         }
         let fill = if scene.lights.is_empty() {
             let sky = Sky::Gradient { zenith: FILL_ZENITH, horizon: FILL_HORIZON, nadir: FILL_NADIR };
-            LightKind::Environment { sky, illuminates: true }
+            LightKind::Environment { sky, portal: None, illuminates: true }
         } else {
             LightKind::Ambient { color: FILL_HORIZON }
         };
@@ -147,7 +152,7 @@ impl Stage {
         match self.eye_inside(scene) {
             Some(eye) => {
                 add(scene, "room", LightKind::Ambient { color: [ROOM; 3] });
-                let intensity = [LAMP; 3];
+                let intensity = Color::gray(LAMP);
                 add(scene, "lamp", LightKind::Point { position: eye, intensity, falloff: Falloff::None });
             }
             None => {
@@ -191,13 +196,11 @@ impl Stage {
         let solid_angle = 4.0 * KEY_HALF_SIZE * KEY_HALF_SIZE;
         let radiance = (KEY * std::f64::consts::PI / solid_angle) as f32;
         let black = Whitted { diffuse: Color::BLACK, ..Whitted::default() };
+        let material = push_material(scene, "key light", &Location::default(), black);
         Shape {
             name: Some("key light".to_owned()),
-            at: Location::default(),
-            geometry: Geometry::Quad { corner, edge_u, edge_v },
-            material: push_material(scene, "key light", &Location::default(), black),
-            emission: Some(Emission { radiance: Color::gray(radiance), two_sided: false }),
-            world_from_object: DMat4::IDENTITY,
+            emission: Some(Emission::new(Color::gray(radiance), false)),
+            ..Shape::new(Location::default(), Geometry::Quad { corner, edge_u, edge_v }, material)
         }
     }
 
@@ -212,14 +215,10 @@ impl Stage {
         let center = self.bounds.center();
         let center = center + (lowest - gap - center.dot(up)) * up;
         let matte = Whitted { diffuse: Color::gray(FLOOR_REFLECTANCE), ..Whitted::default() };
-        let floor = Shape {
-            name: Some("floor".to_owned()),
-            at: Location::default(),
-            geometry: Geometry::Disk { center, normal: up, radius: FLOOR_RADIUS * radius },
-            material: push_material(scene, "floor", &Location::default(), matte),
-            emission: None,
-            world_from_object: DMat4::IDENTITY,
-        };
+        let material = push_material(scene, "floor", &Location::default(), matte);
+        let geometry = Geometry::Disk { center, normal: up, radius: FLOOR_RADIUS * radius };
+        let floor =
+            Shape { name: Some("floor".to_owned()), ..Shape::new(Location::default(), geometry, material) };
         scene.shapes.push(floor);
     }
 }
@@ -289,6 +288,7 @@ fn basis(up: DVec3) -> [DVec3; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DMat4;
     use proptest::prelude::*;
 
     /// Where a point falls in the picture: x and y in [−1, 1], and its depth.
@@ -349,13 +349,10 @@ mod tests {
         let triangles = vec![[0, 2, 4], [1, 3, 5]];
         let mut scene = Scene::default();
         scene.meshes.push(crate::shape::Mesh { positions, triangles, ..Default::default() });
+        let mesh = Geometry::Mesh(crate::scene::MeshId(0));
         scene.shapes.push(Shape {
-            name: None,
-            at: Location::default(),
-            geometry: Geometry::Mesh(crate::scene::MeshId(0)),
-            material: crate::scene::MaterialId(0),
-            emission: None,
             world_from_object: DMat4::from_scale(DVec3::splat(1e6)),
+            ..Shape::new(Location::default(), mesh, crate::scene::MaterialId(0))
         });
         Stage::of(&scene, None).add_camera(&mut scene);
         let camera = scene.camera.as_ref().unwrap();
@@ -370,7 +367,12 @@ mod tests {
     fn what_is_there_stays() {
         let mut scene = Scene::default();
         let light = LightKind::Ambient { color: [1.0; 3] };
-        scene.lights.push(Light { name: None, at: Location::default(), kind: light });
+        scene.lights.push(Light {
+            name: None,
+            at: Location::default(),
+            kind: light,
+            amount: Amount::AS_WRITTEN,
+        });
         let camera = Camera { distance: 7.0, ..Camera::default() };
         scene.camera = Some(camera);
         furnish(&mut scene, None);
@@ -412,14 +414,7 @@ mod tests {
             let geometry = Geometry::Sphere(crate::shape::Sphere { center: DVec3::ZERO, radius: 3.0 });
             let mut scene = Scene::default();
             let material = push_material(&mut scene, "walls", &Location::default(), Whitted::default());
-            scene.shapes.push(Shape {
-                name: None,
-                at: Location::default(),
-                geometry,
-                material,
-                emission: None,
-                world_from_object: DMat4::IDENTITY,
-            });
+            scene.shapes.push(Shape::new(Location::default(), geometry, material));
             scene
         };
         let lights_with_eye_at = |z: f64| {

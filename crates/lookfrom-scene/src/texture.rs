@@ -1,9 +1,9 @@
 //! Colour over surfaces: pictures and patterns.
 
-use glam::DMat4;
+use glam::{DMat4, Vec3};
 
 use crate::error::Location;
-use crate::material::Color;
+use crate::material::{Color, Scalar};
 use crate::scene::ImageId;
 
 /// A named texture.
@@ -20,19 +20,19 @@ pub struct Texture {
 /// The textures there are. A texture may use others, never (through any number of steps) itself: readers see to that.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TextureKind {
-    /// A picture over uv; v runs up, so v = 0 is the bottom row.
+    /// A picture; v runs up, so v = 0 is the bottom row.
     Image {
         /// The picture.
         image: ImageId,
-        /// uv is multiplied by this, then `offset` is added.
-        scale: [f32; 2],
-        /// Added to uv.
-        offset: [f32; 2],
+        /// Where it lives; its x and y are s and t of the picture.
+        mapping: Mapping,
         /// What lies beyond the edges.
         wrap: Wrap,
         /// Between the texels.
         filter: TexelFilter,
-        /// Whether 1 − value is meant.
+        /// Multiplies it.
+        scale: f32,
+        /// Whether 1 − value is meant (after `scale`).
         invert: bool,
     },
     /// Squares over uv, or cubes in space, of two colours.
@@ -68,6 +68,83 @@ pub enum TextureKind {
         /// Where the pattern lives.
         mapping: Mapping,
     },
+    /// A texture, more or less.
+    Scale {
+        /// What is scaled.
+        color: Color,
+        /// By how much.
+        by: Scalar,
+    },
+    /// Between two colours.
+    Mix {
+        /// At 0.
+        low: Color,
+        /// At 1.
+        high: Color,
+        /// Where between, not clamped.
+        amount: Scalar,
+    },
+    /// Between two colours, by how much the shading normal looks along a direction of the world.
+    DirectionMix {
+        /// Where the normal stands across.
+        low: Color,
+        /// Where it looks along the direction, or against it.
+        high: Color,
+        /// Of unit length.
+        direction: Vec3,
+    },
+    /// Linear in u and v between four corners.
+    Bilinear {
+        /// At (0,0), (0,1), (1,0), (1,1).
+        corners: [Color; 4],
+        /// Where the pattern lives.
+        mapping: Mapping,
+    },
+    /// Round dots in some cells of a grid over uv.
+    Dots {
+        /// In the dots.
+        inside: Color,
+        /// Around them.
+        outside: Color,
+        /// Where the pattern lives.
+        mapping: Mapping,
+    },
+    /// pbrt's `fbm`: Perlin noise of several octaves, as a number around 0.
+    Fbm {
+        /// Number of octaves: 1 to 16.
+        octaves: u32,
+        /// How much of the amplitude is left from octave to octave.
+        roughness: f32,
+        /// Where the pattern lives.
+        mapping: Mapping,
+    },
+    /// pbrt's `wrinkled`: the same of absolute values.
+    Wrinkled {
+        /// Number of octaves: 1 to 16.
+        octaves: u32,
+        /// How much of the amplitude is left from octave to octave.
+        roughness: f32,
+        /// Where the pattern lives.
+        mapping: Mapping,
+    },
+    /// pbrt's `windy`: waves on water, by two noises.
+    Windy {
+        /// Where the pattern lives.
+        mapping: Mapping,
+    },
+    /// pbrt's `marble`: its own palette of colours along noisy veins.
+    PbrtMarble {
+        /// Number of octaves: 1 to 16.
+        octaves: u32,
+        /// How much of the amplitude is left from octave to octave.
+        roughness: f32,
+        /// Multiplies places before the noise.
+        scale: f32,
+        /// How far the noise moves the veins.
+        variation: f32,
+        /// Where the pattern lives.
+        mapping: Mapping,
+    },
     /// The mesh's own colours, white where it has none.
     VertexColor {
         /// Multiplies them.
@@ -75,19 +152,71 @@ pub enum TextureKind {
     },
 }
 
+impl TextureKind {
+    /// What the texture is made of: its colours, and its numbers' textures as colours.
+    pub fn parts(&self) -> Vec<Color> {
+        let scalar = |scalar: &Scalar| match *scalar {
+            Scalar::Value(value) => Color::gray(value),
+            Scalar::Texture(id) => Color::Texture(id),
+        };
+        match self {
+            Self::Checker { even: a, odd: b, .. }
+            | Self::Noise { low: a, high: b, .. }
+            | Self::Marble { vein: a, base: b, .. }
+            | Self::DirectionMix { low: a, high: b, .. }
+            | Self::Dots { inside: a, outside: b, .. } => vec![*a, *b],
+            Self::Scale { color, by } => vec![*color, scalar(by)],
+            Self::Mix { low, high, amount } => vec![*low, *high, scalar(amount)],
+            Self::Bilinear { corners, .. } => corners.to_vec(),
+            Self::Image { .. }
+            | Self::Fbm { .. }
+            | Self::Wrinkled { .. }
+            | Self::Windy { .. }
+            | Self::PbrtMarble { .. }
+            | Self::VertexColor { .. } => Vec::new(),
+        }
+    }
+}
+
 /// Where a pattern lives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mapping {
-    /// On the surface: uv times `scale`.
+    /// On the surface: uv times `scale` plus `offset`.
     Uv {
         /// Repetitions in u and v.
         scale: [f32; 2],
+        /// Added afterwards.
+        offset: [f32; 2],
+    },
+    /// By the direction from the origin of the texture's space: (θ/π, φ/2π), θ from +z, φ from +x toward +y.
+    Spherical {
+        /// From the world.
+        texture_from_world: DMat4,
+    },
+    /// Around the z axis of the texture's space: (φ/2π, z).
+    Cylindrical {
+        /// From the world.
+        texture_from_world: DMat4,
+    },
+    /// Along two vectors of the texture's space.
+    Planar {
+        /// From the world.
+        texture_from_world: DMat4,
+        /// Dotted with the place, they give u and v …
+        axes: [Vec3; 2],
+        /// … after this is added.
+        offset: [f32; 2],
     },
     /// In space: the pattern's coordinates are `texture_from_world` times the point in the world.
     World {
         /// To the pattern's space.
         texture_from_world: DMat4,
     },
+}
+
+impl Mapping {
+    /// uv as they are.
+    pub const UV: Self = Self::Uv { scale: [1.0; 2], offset: [0.0; 2] };
 }
 
 /// What lies beyond the edges of a picture.

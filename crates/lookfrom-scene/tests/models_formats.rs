@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use glam::{Vec2, Vec3};
 use lookfrom_scene::material::{Color, MaterialKind, Whitted};
 use lookfrom_scene::shape::{Geometry, Mesh, Part};
-use lookfrom_scene::texture::{TextureKind, Wrap};
+use lookfrom_scene::texture::{Mapping, TextureKind, Wrap};
 use lookfrom_scene::{Memory, Scene, Sources, model, ply};
 use proptest::prelude::*;
 
@@ -34,7 +34,10 @@ impl Model {
 
     fn look(&self, part: usize) -> &Whitted {
         let MaterialKind::Whitted(whitted) =
-            &self.scene.materials[self.parts[part].material.unwrap().index()].kind;
+            &self.scene.materials[self.parts[part].material.unwrap().index()].kind
+        else {
+            panic!("not Whitted's")
+        };
         whitted
     }
 
@@ -42,7 +45,7 @@ impl Model {
     fn picture(&self, color: Color) -> (Vec<[f32; 3]>, [f32; 2], [f32; 2], Wrap) {
         let Color::Texture(texture) = color else { panic!("no texture: {color:?}") };
         match &self.scene.textures[texture.index()].kind {
-            TextureKind::Image { image, scale, offset, wrap, .. } => {
+            TextureKind::Image { image, mapping: Mapping::Uv { scale, offset }, wrap, .. } => {
                 (self.scene.images[image.index()].texels.clone(), *scale, *offset, *wrap)
             }
             other => panic!("no picture: {other:?}"),
@@ -325,12 +328,12 @@ proptest! {
         let triangles: Vec<_> = triangles.into_iter().filter(has_area).collect();
         prop_assume!(!triangles.is_empty());
         let mesh = Mesh {
-            name: String::new(),
             triangles,
             normals: if normals { positions.clone() } else { Vec::new() },
             uvs: if uvs { vertices.iter().map(|(_, uv)| Vec2::from_array(*uv)).collect() } else { Vec::new() },
             colors: if colors { positions.iter().map(|p| p.abs().to_array()).collect() } else { Vec::new() },
             positions,
+            ..Mesh::default()
         };
         let model = Model::of(&[("a.ply", &ply::write(&mesh))]);
         let back = model.mesh(0);

@@ -29,7 +29,7 @@ fn read(text: &str) -> Scene {
 }
 
 fn look(scene: &Scene, index: usize) -> &Whitted {
-    let MaterialKind::Whitted(whitted) = &scene.materials[index].kind;
+    let MaterialKind::Whitted(whitted) = &scene.materials[index].kind else { panic!("not Whitted's") };
     whitted
 }
 
@@ -118,12 +118,15 @@ intensity = 5
     else {
         panic!("a checker of noise")
     };
-    assert_eq!(mapping, Mapping::Uv { scale: [2.0, 3.0] });
+    assert_eq!(mapping, Mapping::Uv { scale: [2.0, 3.0], offset: [0.0; 2] });
     assert!(matches!(scene.textures[noise.index()].kind, TextureKind::Noise { octaves: 4, .. }));
     assert_eq!((scene.shapes[0].name.as_deref(), scene.shapes[0].at.line), (Some("ball"), 26));
     assert!(scene.shapes[0].emission.is_some() && scene.shapes[1].emission.is_none());
     assert_eq!(scene.materials[scene.shapes[1].material.index()].name, "default");
-    assert!(matches!(scene.lights[0].kind, LightKind::Point { intensity: [5.0, 5.0, 5.0], .. }));
+    assert!(matches!(
+        scene.lights[0].kind,
+        LightKind::Point { intensity: Color::Value([5.0, 5.0, 5.0]), .. }
+    ));
 }
 
 #[test]
@@ -243,13 +246,15 @@ rotate = 90
 illuminates = false
 "##,
     );
-    let LightKind::Environment { sky: Sky::Gradient { nadir, .. }, illuminates: true } = scene.lights[0].kind
+    let LightKind::Environment { sky: Sky::Gradient { nadir, .. }, illuminates: true, .. } =
+        scene.lights[0].kind
     else {
         panic!("a gradient")
     };
     assert_eq!(nadir, [1.0; 3]);
-    let LightKind::Environment { sky: Sky::Image { image, world_from_light, .. }, illuminates: false } =
-        scene.lights[1].kind
+    let LightKind::Environment {
+        sky: Sky::Image { image, world_from_light, .. }, illuminates: false, ..
+    } = scene.lights[1].kind
     else {
         panic!("a picture")
     };

@@ -17,7 +17,7 @@
 //! (see `world`). First station on the way of a pixel.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
-use lookfrom_scene::camera::{Camera as Written, Lens, Projection, View};
+use lookfrom_scene::camera::{Camera as Written, Lens, Projection, View, Window};
 use lookfrom_scene::{Error, Location, Result};
 
 use crate::warp;
@@ -25,7 +25,7 @@ use crate::warp;
 /// The eye as matrices.
 #[derive(Clone, Debug)]
 pub struct Camera {
-    /// Translates by `(−nx/2, −ny/2, d)`.
+    /// Translates by `(−nx/2, −ny/2, d)`, for a window that is not around the axis by the pixel that is on it.
     pub t1: DMat4,
     /// Scales by `(−w/nx, h/ny, 1)`.
     pub s2: DMat4,
@@ -89,6 +89,8 @@ impl Camera {
                 ));
             }
             Projection::Orthographic { height } => positive(at, "height", height)?,
+            // The image plane of the notes is only a name here: 2 × 2.
+            Projection::Equirectangular | Projection::Octahedral => 2.0,
         };
         if let Some(Lens { radius, focus_distance }) = written.lens {
             positive(at, "focus_distance", focus_distance)?;
@@ -112,9 +114,25 @@ impl Camera {
             }
         };
         let (nx, ny) = (f64::from(width), f64::from(height));
+        let window = written.window.unwrap_or(Window { x: [-nx / ny, nx / ny], y: [-1.0, 1.0] });
+        // the size of a pixel and the pixel on the axis
+        let across = |[low, high]: [f64; 2], pixels: f64| {
+            let size = 0.5 * h * (high - low) / pixels;
+            (size, -0.5 * h * low / size)
+        };
+        let ((pixel_x, axis_x), (pixel_y, axis_y)) = (across(window.x, nx), across(window.y, ny));
+        for (size, axis) in [(pixel_x, axis_x), (pixel_y, axis_y)] {
+            if !(size != 0.0 && size.is_finite() && axis.is_finite()) {
+                return Err(Error::invalid(
+                    at,
+                    format!("the window {window:?} of the image plane has no area"),
+                )
+                .hint("give it a left and a right, a bottom and a top that differ"));
+            }
+        }
         Ok(Self {
-            t1: DMat4::from_translation(DVec3::new(-nx / 2.0, -ny / 2.0, d)),
-            s2: DMat4::from_scale(DVec3::new(-h / ny, h / ny, 1.0)),
+            t1: DMat4::from_translation(DVec3::new(-axis_x, -axis_y, d)),
+            s2: DMat4::from_scale(DVec3::new(-pixel_x, pixel_y, 1.0)),
             r3: DMat4::from_mat3(r3),
             t4: DMat4::from_translation(lookfrom),
             projection: written.projection,
@@ -148,12 +166,20 @@ impl Camera {
         let p_world = (self.t4 * after_r3).truncate();
         // in view space: where the ray starts and where it crosses the image plane
         let image_point = after_s2.truncate();
-        let start = match self.projection {
-            Projection::Perspective { .. } => DVec3::ZERO,
-            Projection::Orthographic { .. } => image_point.with_z(0.0),
+        let (start, straight) = match self.projection {
+            Projection::Perspective { .. } => (DVec3::ZERO, image_point),
+            Projection::Orthographic { .. } => (image_point.with_z(0.0), DVec3::Z * image_point.z),
+            Projection::Equirectangular => {
+                (DVec3::ZERO, around(x_k / f64::from(self.size[0]), y_k / f64::from(self.size[1])))
+            }
+            Projection::Octahedral => {
+                let square = [x_k / f64::from(self.size[0]), 1.0 - y_k / f64::from(self.size[1])];
+                let direction = warp::octahedral_direction(square.map(|u| u as f32)).as_dvec3();
+                (DVec3::ZERO, DVec3::new(-direction.x, direction.z, direction.y))
+            }
         };
         let (a, direction) = match self.lens {
-            None => (start, image_point - start),
+            None => (start, straight),
             Some(Lens { radius, focus_distance }) => {
                 // every ray from the lens meets the pinhole's ray in the plane of focus
                 let pinhole = image_point - start;
@@ -173,6 +199,14 @@ impl Camera {
             direction: self.r3.transform_vector3(direction),
         }
     }
+}
+
+/// The direction at `(u, v)` of a picture of everything around, `v` up, in view space: θ = π (1 − v) from the up axis,
+/// φ = 2π u from the viewer's right toward the front.
+fn around(u: f64, v: f64) -> DVec3 {
+    let (theta, phi) = (std::f64::consts::PI * (1.0 - v), std::f64::consts::TAU * u);
+    let sin_theta = libm::sin(theta);
+    DVec3::new(-sin_theta * libm::cos(phi), libm::cos(theta), sin_theta * libm::sin(phi))
 }
 
 fn positive(at: &Location, name: &str, value: f64) -> Result<f64> {

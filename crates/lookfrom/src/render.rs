@@ -170,7 +170,13 @@ impl<'a> Frame<'a> {
         let RenderSettings { integrator, depth, min_contribution, .. } = self.render;
         match integrator {
             Kind::Raycast => self.trace_with(&Raycast, ids, probe),
-            Kind::Whitted => self.trace_with(&Whitted { depth, min_contribution }, ids, probe),
+            Kind::Whitted
+            | Kind::Path
+            | Kind::SimplePath
+            | Kind::RandomWalk
+            | Kind::AmbientOcclusion { .. } => {
+                self.trace_with(&Whitted { depth, min_contribution }, ids, probe)
+            }
             Kind::Normals => self.trace_with(&View::Normals, ids, probe),
             Kind::Depth => self.trace_with(&View::Depth, ids, probe),
             Kind::Uv => self.trace_with(&View::Uv, ids, probe),

@@ -4,7 +4,7 @@
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_scene::image::Image;
-use lookfrom_scene::material::Color;
+use lookfrom_scene::material::{Color, Scalar};
 use lookfrom_scene::texture::{Mapping, TexelFilter, TextureKind, Wrap};
 
 use crate::noise;
@@ -48,12 +48,14 @@ impl Textures {
         let id = match color {
             Color::Value(rgb) => return rgb,
             Color::Texture(id) => id,
+            Color::Curve(_) => return [1.0; 3],
         };
         match &self.kinds[id.index()] {
-            TextureKind::Image { image, scale, offset, wrap, filter, invert } => {
-                let uv = at.uv * Vec2::from_array(*scale) + Vec2::from_array(*offset);
+            TextureKind::Image { image, mapping, wrap, filter, scale, invert } => {
+                let uv = coordinates(mapping, at);
                 // v runs up, rows run down
-                let rgb = look_up(&self.images[image.index()], [uv.x, 1.0 - uv.y], [*wrap; 2], *filter);
+                let st = [uv.x as f32, 1.0 - uv.y as f32];
+                let rgb = look_up(&self.images[image.index()], st, [*wrap; 2], *filter).map(|c| scale * c);
                 if *invert { rgb.map(|c| 1.0 - c) } else { rgb }
             }
             TextureKind::Checker { even, odd, mapping } => {
@@ -72,7 +74,30 @@ impl Textures {
                 let wave = libm::sinf(std::f32::consts::PI * phase).abs();
                 self.blend(*vein, *base, wave.sqrt(), at)
             }
+            TextureKind::Scale { color, by } => {
+                let by = self.scalar(*by, at);
+                self.rgb(*color, at).map(|c| c * by)
+            }
+            TextureKind::Mix { low, high, amount } => self.blend(*low, *high, self.scalar(*amount, at), at),
+            TextureKind::DirectionMix { .. }
+            | TextureKind::Bilinear { .. }
+            | TextureKind::Dots { .. }
+            | TextureKind::Fbm { .. }
+            | TextureKind::Wrinkled { .. }
+            | TextureKind::Windy { .. }
+            | TextureKind::PbrtMarble { .. } => [0.5; 3],
             TextureKind::VertexColor { tint } => std::array::from_fn(|c| at.color[c] * tint[c]),
+        }
+    }
+
+    /// The number at a point: the mean of a texture's channels.
+    pub fn scalar(&self, scalar: Scalar, at: &TexturePoint) -> f32 {
+        match scalar {
+            Scalar::Value(value) => value,
+            Scalar::Texture(id) => {
+                let [r, g, b] = self.rgb(Color::Texture(id), at);
+                (r + g + b) / 3.0
+            }
         }
     }
 
@@ -87,8 +112,13 @@ impl Textures {
 /// exactly on a border of two cells (a floor at y = 0) do not flicker between them.
 fn coordinates(mapping: &Mapping, at: &TexturePoint) -> DVec3 {
     match mapping {
-        Mapping::Uv { scale } => (at.uv * Vec2::from_array(*scale)).extend(0.0).as_dvec3(),
-        Mapping::World { texture_from_world } => in_space(texture_from_world, at.world),
+        Mapping::Uv { scale, offset } => {
+            (at.uv * Vec2::from_array(*scale) + Vec2::from_array(*offset)).extend(0.0).as_dvec3()
+        }
+        Mapping::Spherical { texture_from_world }
+        | Mapping::Cylindrical { texture_from_world }
+        | Mapping::Planar { texture_from_world, .. }
+        | Mapping::World { texture_from_world } => in_space(texture_from_world, at.world),
     }
 }
 
@@ -169,10 +199,10 @@ mod tests {
         let textures = |filter| {
             let kind = TextureKind::Image {
                 image: ImageId(0),
-                scale: [1.0; 2],
-                offset: [0.0; 2],
+                mapping: Mapping::UV,
                 wrap: Wrap::Clamp,
                 filter,
+                scale: 1.0,
                 invert: false,
             };
             Textures::new(vec![kind], vec![two_by_two()])

@@ -8,7 +8,7 @@
 //! Shirley & Chiu 1997 (disk); Malley (hemisphere by the disk); Heitz 2019 (triangle); Duff et al. 2017 (basis).
 
 use glam::{Vec2, Vec3};
-use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI};
+use std::f32::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, PI};
 
 /// A uniform point of the unit disk, over area: the density is [`CONCENTRIC_DISK_PDF`]. The centre of the square is the
 /// centre of the disk, concentric squares become circles.
@@ -79,6 +79,44 @@ pub fn uniform_triangle([u, v]: [f32; 2]) -> [f32; 3] {
 /// Density of [`uniform_triangle`] over a triangle of that area.
 pub fn uniform_triangle_pdf(area: f32) -> f32 {
     1.0 / area
+}
+
+/// The direction at a point of the unit square that is folded to an octahedron and blown up to a sphere, of equal area
+/// everywhere (Clarberg 2008, as pbrt-v4 lays it out): +z is the middle, −z the corners. Points beyond the edges are
+/// taken to where the fold leads.
+pub fn octahedral_direction([mut u, mut v]: [f32; 2]) -> Vec3 {
+    // Beyond an edge the square goes on with itself turned half around.
+    if !(0.0..=1.0).contains(&u) {
+        (u, v) = (if u < 0.0 { -u } else { 2.0 - u }, 1.0 - v);
+    }
+    if !(0.0..=1.0).contains(&v) {
+        (u, v) = (1.0 - u, if v < 0.0 { -v } else { 2.0 - v });
+    }
+    let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
+    let signed_distance = 1.0 - (x.abs() + y.abs());
+    let r = 1.0 - signed_distance.abs();
+    let phi = if r == 0.0 { 1.0 } else { (y.abs() - x.abs()) / r + 1.0 } * FRAC_PI_4;
+    let (sin, cos) = libm::sincosf(phi);
+    let sin_theta = r * (2.0 - r * r).max(0.0).sqrt();
+    Vec3::new(
+        cos.copysign(x) * sin_theta,
+        sin.copysign(y) * sin_theta,
+        (1.0 - r * r).copysign(signed_distance),
+    )
+}
+
+/// The inverse of [`octahedral_direction`] for a unit direction.
+pub fn octahedral_square(direction: Vec3) -> [f32; 2] {
+    let Vec3 { x, y, z } = direction.abs();
+    let r = (1.0 - z).max(0.0).sqrt();
+    let (low, high) = (x.min(y), x.max(y));
+    let angle = if high == 0.0 { 0.0 } else { libm::atan2f(low, high) * FRAC_2_PI };
+    let share = if x < y { 1.0 - angle } else { angle };
+    let (mut u, mut v) = (r - share * r, share * r);
+    if direction.z < 0.0 {
+        (u, v) = (1.0 - v, 1.0 - u);
+    }
+    [u.copysign(direction.x), v.copysign(direction.y)].map(|c| 0.5 * (c + 1.0))
 }
 
 /// Two unit vectors that make a right-handed orthonormal basis (s, t, n) with the unit vector `n`, up to rounding.

@@ -7,7 +7,7 @@ use crate::files::Sources;
 use crate::image::{self, Image};
 use crate::material::{Color, Material, MaterialKind, Whitted};
 use crate::scene::{ImageId, MaterialId, Scene, TextureId};
-use crate::texture::{TexelFilter, Texture, TextureKind, Wrap};
+use crate::texture::{Mapping, TexelFilter, Texture, TextureKind, Wrap};
 
 /// The path of a file that is named, with `/` between folders, in the file at `path`.
 pub(crate) fn beside(path: &Path, name: &str) -> PathBuf {
@@ -31,7 +31,8 @@ pub(crate) fn read_image(path: &Path, name: &str, sources: &mut Sources<'_>) -> 
 
 /// A picture over uv, bilinear.
 pub(crate) fn picture(image: ImageId, scale: [f32; 2], offset: [f32; 2], wrap: Wrap) -> TextureKind {
-    TextureKind::Image { image, scale, offset, wrap, filter: TexelFilter::Bilinear, invert: false }
+    let mapping = Mapping::Uv { scale, offset };
+    TextureKind::Image { image, mapping, wrap, filter: TexelFilter::Bilinear, scale: 1.0, invert: false }
 }
 
 /// Adds a picture.
@@ -48,11 +49,7 @@ pub(crate) fn push_texture(scene: &mut Scene, name: &str, at: &Location, kind: T
 
 /// Adds a material.
 pub(crate) fn push_material(scene: &mut Scene, name: &str, at: &Location, whitted: Whitted) -> MaterialId {
-    scene.materials.push(Material {
-        name: name.to_owned(),
-        at: at.clone(),
-        kind: MaterialKind::Whitted(whitted),
-    });
+    scene.materials.push(Material::new(name, at.clone(), MaterialKind::Whitted(whitted)));
     MaterialId(scene.materials.len() as u32 - 1)
 }
 

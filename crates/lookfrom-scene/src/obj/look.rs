@@ -222,7 +222,7 @@ impl Looks {
         let shines = ke != BLACK || (written.emission_map.is_some() && written.emission.is_none());
         let emission = shines.then(|| {
             let radiance = color(ke, written.emission_map.as_ref(), 1.0, scene);
-            Emission { radiance, two_sided: true }
+            Emission::new(radiance, true)
         });
         let emission = emission.filter(|emission| emission.radiance != Color::BLACK);
         Look { material: Some(push_material(scene, &name, &written.at, whitted)), emission }

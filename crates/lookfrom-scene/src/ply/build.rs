@@ -107,7 +107,7 @@ fn mesh(content: Content, file: &Location, sources: &mut Sources<'_>) -> Mesh {
         for position in positions.iter_mut().filter(|position| !position.is_finite()) {
             *position = Vec3::ZERO;
         }
-        return Mesh { name: String::new(), positions, triangles, normals, uvs, colors };
+        return Mesh { positions, triangles, normals, uvs, colors, ..Mesh::default() };
     }
     // A vertex with different texture coordinates in different faces becomes several.
     let mut weld = Weld::new();
@@ -119,12 +119,12 @@ fn mesh(content: Content, file: &Location, sources: &mut Sources<'_>) -> Mesh {
     }
     let keys = weld.keys();
     Mesh {
-        name: String::new(),
         positions: keys.iter().map(|key| positions[key[0] as usize]).collect(),
         triangles,
         normals: select(&normals, keys),
         uvs: keys.iter().map(|key| Vec2::new(f32::from_bits(key[1]), f32::from_bits(key[2]))).collect(),
         colors: select(&colors, keys),
+        ..Mesh::default()
     }
 }
 

@@ -122,7 +122,7 @@ impl Reader<'_, '_> {
         }
         chain.push(index);
         let mut height = 1;
-        for color in parts(&texture.kind) {
+        for color in texture.kind.parts() {
             if let (Color::Texture(id), true) = (color, chain.len() <= DEEPEST) {
                 height = height.max(1 + self.height(id.index(), chain, heights)?);
             }
@@ -153,8 +153,10 @@ impl Reader<'_, '_> {
         Ok(match word {
             "image" => TextureKind::Image {
                 image: self.image(table.need("file", "\"picture.png\"")?)?,
-                scale: table.or("scale", [1.0; 2], pair)?,
-                offset: table.or("offset", [0.0; 2], |value| value.singles("two numbers, [u, v]"))?,
+                mapping: Mapping::Uv {
+                    scale: table.or("scale", [1.0; 2], pair)?,
+                    offset: table.or("offset", [0.0; 2], |value| value.singles("two numbers, [u, v]"))?,
+                },
                 wrap: table.or("wrap", Wrap::default(), |value| {
                     value.choice(&[
                         ("repeat", Wrap::Repeat),
@@ -166,6 +168,7 @@ impl Reader<'_, '_> {
                 filter: table.or("filter", TexelFilter::default(), |value| {
                     value.choice(&[("bilinear", TexelFilter::Bilinear), ("nearest", TexelFilter::Nearest)])
                 })?,
+                scale: 1.0,
                 invert: table.or("invert", false, Value::boolean)?,
             },
             "checker" => TextureKind::Checker {
@@ -198,16 +201,6 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The colours that a texture is made of.
-fn parts(kind: &TextureKind) -> Vec<Color> {
-    match *kind {
-        TextureKind::Checker { even: a, odd: b, .. }
-        | TextureKind::Noise { low: a, high: b, .. }
-        | TextureKind::Marble { vein: a, base: b, .. } => vec![a, b],
-        TextureKind::Image { .. } | TextureKind::VertexColor { .. } => Vec::new(),
-    }
-}
-
 /// One number for both directions, or one for each.
 fn pair(value: Value<'_>) -> Result<[f32; 2]> {
     if value.is_number() { value.single().map(|both| [both; 2]) } else { value.singles("a number or [u, v]") }
@@ -223,7 +216,7 @@ fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
                 .error(format!("`{}` needs space = \"world\"", key.key()))
                 .hint("in space = \"uv\" a pattern has only `scale`, its repetitions"));
         }
-        return Ok(Mapping::Uv { scale: table.or("scale", [1.0; 2], pair)? });
+        return Ok(Mapping::Uv { scale: table.or("scale", [1.0; 2], pair)?, offset: [0.0; 2] });
     }
     let size = table.or("size", 1.0, Value::positive)?;
     let world_from_texture = scale_rotate_translate(table)? * DMat4::from_scale(DVec3::splat(size));

@@ -1,6 +1,6 @@
 //! `[[light]]`: lights, and lamps that are shapes.
 
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 
 use super::Reader;
 use super::color::plain_color;
@@ -8,7 +8,8 @@ use super::form::tangents;
 use super::place::about;
 use super::value::{Table, Value};
 use crate::error::Result;
-use crate::light::{Falloff, Light, LightKind, Sky};
+use crate::light::{Amount, Falloff, Light, LightKind, Sky};
+use crate::material::Color;
 use crate::shape::{Emission, Geometry, Shape, Sphere};
 
 /// The keys of lights, by type, besides `type` and `name`.
@@ -48,12 +49,13 @@ impl Reader<'_, '_> {
             "spot" => spot(table)?,
             "environment" => LightKind::Environment {
                 sky: self.sky(table)?,
+                portal: None,
                 illuminates: table.or("illuminates", true, Value::boolean)?,
             },
             _ => return self.read_lamp(word, table),
         };
         let name = name(table)?;
-        self.scene.lights.push(Light { name, at: table.at(), kind });
+        self.scene.lights.push(Light { name, at: table.at(), kind, amount: Amount::AS_WRITTEN });
         Ok(())
     }
 
@@ -79,17 +81,12 @@ impl Reader<'_, '_> {
                 radius: table.need("radius", "1")?.positive()?,
             }),
         };
-        let emission = Emission {
-            radiance: self.color(table.need("radiance", "10")?)?,
-            two_sided: table.or("two_sided", false, Value::boolean)?,
-        };
+        let radiance = self.color(table.need("radiance", "10")?)?;
+        let two_sided = table.or("two_sided", false, Value::boolean)?;
         let shape = Shape {
             name: name(table)?,
-            at: table.at(),
-            geometry,
-            material: self.black_material(),
-            emission: Some(emission),
-            world_from_object: DMat4::IDENTITY,
+            emission: Some(Emission::new(radiance, two_sided)),
+            ..Shape::new(table.at(), geometry, self.black_material())
         };
         self.scene.shapes.push(shape);
         Ok(())
@@ -112,7 +109,7 @@ impl Reader<'_, '_> {
             }
         }
         Ok(match value.key() {
-            "color" => Sky::Constant(plain_color(value)?),
+            "color" => Sky::Constant(Color::Value(plain_color(value)?)),
             "zenith" => {
                 let horizon = plain_color(table.need("horizon", "[1, 1, 1]")?)?;
                 let nadir = table.or("nadir", horizon, plain_color)?;
@@ -131,8 +128,8 @@ pub(super) fn name(table: &Table<'_>) -> Result<Option<String>> {
     table.or("name", None, |value| Ok(Some(value.text("a name in quotes")?.to_owned())))
 }
 
-fn intensity(table: &Table<'_>) -> Result<[f32; 3]> {
-    plain_color(table.need("intensity", "1")?)
+fn intensity(table: &Table<'_>) -> Result<Color> {
+    plain_color(table.need("intensity", "1")?).map(Color::Value)
 }
 
 fn falloff(table: &Table<'_>) -> Result<Falloff> {

@@ -34,8 +34,7 @@ impl Reader<'_, '_> {
             let name = entry.key();
             let table = entry.table(format!("[materials.{name}]"))?;
             table.allow(&[KEYS])?;
-            let material =
-                Material { name: name.to_owned(), at: entry.at(), kind: self.material_kind(&table)? };
+            let material = Material::new(name, entry.at(), self.material_kind(&table)?);
             let glow = self.emission(&table)?;
             // The default may have been needed before it was written.
             let id = match self.materials.get(name) {
@@ -79,10 +78,9 @@ impl Reader<'_, '_> {
     pub(super) fn emission(&mut self, table: &Table<'_>) -> Result<Option<Emission>> {
         let two_sided = table.find("two_sided");
         match (table.find("emission"), two_sided) {
-            (Some(value), _) => Ok(Some(Emission {
-                radiance: self.color(value)?,
-                two_sided: two_sided.map_or(Ok(false), Value::boolean)?,
-            })),
+            (Some(value), _) => {
+                Ok(Some(Emission::new(self.color(value)?, two_sided.map_or(Ok(false), Value::boolean)?)))
+            }
             (None, Some(value)) => Err(value
                 .error("`two_sided` says which sides shine, but there is no `emission`")
                 .hint("surfaces are seen from both sides anyway: leave it out, or add `emission`")),
@@ -120,7 +118,7 @@ impl Reader<'_, '_> {
         }
         let kind = MaterialKind::Whitted(Whitted { diffuse: Color::BLACK, ..Whitted::default() });
         let id = MaterialId(self.scene.materials.len() as u32);
-        self.scene.materials.push(Material { name: "lamp".to_owned(), at: self.scene_file.clone(), kind });
+        self.scene.materials.push(Material::new("lamp", self.scene_file.clone(), kind));
         self.black = Some(id);
         id
     }
@@ -129,9 +127,5 @@ impl Reader<'_, '_> {
 /// Grey, with a slight highlight.
 pub(crate) fn default_material() -> Material {
     let whitted = Whitted { specular: Color::gray(0.1), ..Whitted::default() };
-    Material {
-        name: DEFAULT.to_owned(),
-        at: crate::Location::default(),
-        kind: MaterialKind::Whitted(whitted),
-    }
+    Material::new(DEFAULT, crate::Location::default(), MaterialKind::Whitted(whitted))
 }

@@ -63,11 +63,9 @@ impl Reader<'_, '_> {
             let name = name.clone().or(part.name);
             shapes.push(Shape {
                 name,
-                at: table.at(),
-                geometry: part.geometry,
-                material,
                 emission,
                 world_from_object,
+                ..Shape::new(table.at(), part.geometry, material)
             });
         }
         Ok(())

@@ -59,6 +59,7 @@ pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
         view: View::Look { lookfrom, lookat, up },
         projection: projection(table)?,
         lens: lens(table, w.dot(lookat - lookfrom), |focus| w.dot(focus - lookfrom))?,
+        window: None,
         distance: table.or("distance", 1.0, Value::positive)?,
     })
 }
@@ -142,6 +143,7 @@ pub(super) fn image(table: &Table<'_>) -> Result<ImageSettings> {
                 ("filmic", Tonemap::Filmic),
             ])
         })?,
+        ..default
     })
 }
 
@@ -225,5 +227,6 @@ pub(super) fn render(table: &Table<'_>) -> Result<RenderSettings> {
         })?,
         seed: table.or("seed", default.seed, |value| value.integer(0, u64::MAX))?,
         transparent_shadows: table.or("transparent_shadows", default.transparent_shadows, Value::boolean)?,
+        ..default
     })
 }

@@ -80,7 +80,10 @@ impl World {
         let mut names = Names { shapes, lights: lights.names, ..Names::default() };
         let mut materials = Vec::new();
         for material in scene.materials {
-            let MaterialKind::Whitted(whitted) = material.kind;
+            let whitted = match material.kind {
+                MaterialKind::Whitted(whitted) => whitted,
+                _ => lookfrom_scene::material::Whitted::default(),
+            };
             materials.push(whitted);
             names.materials.push(material.name);
         }

@@ -5,6 +5,7 @@ use std::f32::consts::PI;
 use glam::{DVec3, Mat3};
 use lookfrom_scene::image::Image;
 use lookfrom_scene::light::{Light as Written, LightKind, Sky as WrittenSky};
+use lookfrom_scene::material::Color;
 
 use crate::distribution::Piecewise2D;
 use crate::light::{Environment, Light, Sky, SkyImage};
@@ -29,7 +30,10 @@ impl Lights {
     /// Adds a light as it was written; `origin` is where render space begins in the world.
     pub(super) fn add(&mut self, written: &Written, origin: DVec3, images: &[Image]) {
         // Written intensities are those of Whitted's I_j: π times as much in radiometric units.
-        let power = |intensity: [f32; 3]| Spectrum::from_rgb(intensity) * PI;
+        let power = |intensity: Color| match intensity {
+            Color::Value(rgb) => Spectrum::from_rgb(rgb) * PI,
+            _ => Spectrum([PI; 4]),
+        };
         let (kind, light) = match &written.kind {
             LightKind::Ambient { color } => {
                 self.ambient += Spectrum::from_rgb(*color);
@@ -58,7 +62,8 @@ impl Lights {
                     falloff: *falloff,
                 },
             ),
-            LightKind::Environment { sky, illuminates } => (
+            LightKind::Projection { .. } | LightKind::Goniometric { .. } => return,
+            LightKind::Environment { sky, illuminates, .. } => (
                 "environment",
                 Light::Environment(Environment { sky: compile_sky(sky, images), illuminates: *illuminates }),
             ),
@@ -71,7 +76,8 @@ impl Lights {
 fn compile_sky(sky: &WrittenSky, images: &[Image]) -> Sky {
     let color = |rgb: &[f32; 3]| Spectrum::from_rgb(*rgb);
     match sky {
-        WrittenSky::Constant(rgb) => Sky::Constant(color(rgb)),
+        WrittenSky::Constant(Color::Value(rgb)) => Sky::Constant(color(rgb)),
+        WrittenSky::Constant(_) | WrittenSky::Octahedral { .. } => Sky::Constant(Spectrum::ONE),
         WrittenSky::Gradient { zenith, horizon, nadir } => {
             Sky::Gradient { zenith: color(zenith), horizon: color(horizon), nadir: color(nadir) }
         }

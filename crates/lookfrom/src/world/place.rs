@@ -106,6 +106,11 @@ impl Compiler<'_> {
                 let mesh = quad(*corner, *edge_u, *edge_v);
                 self.mesh(shape, &mesh, &matrix, look, group)?;
             }
+            Geometry::PartialSphere { .. }
+            | Geometry::PartialDisk { .. }
+            | Geometry::Cylinder { .. }
+            | Geometry::Bilinear(_)
+            | Geometry::Curves(_) => self.warn(&shape.at, "this shape is not rendered yet"),
             Geometry::Mesh(id) => self.mesh(shape, &self.scene.meshes[id.index()], &matrix, look, group)?,
         }
         Ok(())
@@ -117,6 +122,11 @@ impl Compiler<'_> {
             Geometry::Spheres(_) => "spheres",
             Geometry::Quad { .. } => "quad",
             Geometry::Disk { .. } => "disk",
+            Geometry::PartialSphere { .. } => "partial sphere",
+            Geometry::PartialDisk { .. } => "partial disk",
+            Geometry::Cylinder { .. } => "cylinder",
+            Geometry::Bilinear(_) => "bilinear patches",
+            Geometry::Curves(_) => "curves",
             Geometry::Mesh(id) => &self.scene.meshes[id.index()].name,
         };
         shape.name.clone().unwrap_or_else(|| format!("{kind} ({})", shape.at))
@@ -200,7 +210,7 @@ impl Compiler<'_> {
 
     /// The light of a shape that shines, made from its form.
     fn shine(&mut self, shape: &Shape, form: impl FnOnce() -> Option<LightForm>) -> Option<u32> {
-        let Emission { radiance, two_sided } = shape.emission?;
+        let Emission { radiance, two_sided, .. } = shape.emission?;
         if radiance == Color::BLACK {
             return None;
         }
