@@ -1,21 +1,30 @@
-//! Where light comes from: each light can be sampled from a point.
+//! Where light comes from: each light can be sampled from a point, and tells how probable a direction was.
 //!
 //! In radiometric units: a written intensity `I` of a point light is `π I` W/sr here, so that a white diffuse surface
 //! (`k_d / π`) that faces it from a distance of 1 is seen with radiance `I` (the convention of `lookfrom_scene::light`).
 
 mod area;
+mod choice;
+mod cone;
 mod environment;
+mod picture;
+mod tree;
 
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::Point;
 use lookfrom_scene::light::Falloff;
+use lookfrom_scene::material::Color;
 
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
-use crate::texture::Textures;
+use crate::texture::{Lanes, TexturePoint, Textures, Usage};
+use cone::Cone;
+use tree::Bundle;
 
 pub use area::{AreaLight, LightForm, LightTriangle};
-pub use environment::{Environment, Sky, SkyImage};
+pub use choice::LightChoice;
+pub use environment::{Environment, Layout, Sky, SkyImage};
+pub use picture::{Goniometric, Projection};
 
 /// A light, ready to be sampled. Positions are in render space.
 #[derive(Clone, Debug)]
@@ -25,7 +34,7 @@ pub enum Light {
         /// Where.
         position: DVec3,
         /// W/sr.
-        intensity: Spectrum,
+        intensity: Glow,
         /// How it fades.
         falloff: Falloff,
     },
@@ -34,7 +43,7 @@ pub enum Light {
         /// Toward the light, unit length.
         toward: Vec3,
         /// W/m² on a surface that faces it.
-        irradiance: Spectrum,
+        irradiance: Glow,
     },
     /// From a point into a cone.
     Spot {
@@ -43,7 +52,7 @@ pub enum Light {
         /// The axis, away from the light, unit length.
         axis: Vec3,
         /// W/sr on the axis.
-        intensity: Spectrum,
+        intensity: Glow,
         /// Cosine of the angle beyond which it is dark.
         cos_outer: f32,
         /// Cosine of the angle up to which it is full.
@@ -51,10 +60,45 @@ pub enum Light {
         /// How it fades.
         falloff: Falloff,
     },
+    /// From a point, a picture thrown into a rectangle.
+    Projection(Projection),
+    /// From a point, more or less by direction.
+    Goniometric(Goniometric),
     /// From a surface.
     Area(AreaLight),
     /// From all around.
     Environment(Environment),
+}
+
+/// The colour of a light and how much there is of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glow {
+    /// As it was written.
+    pub color: Color,
+    /// Multiplies it.
+    pub scale: f32,
+}
+
+impl Glow {
+    /// The light at a point, in radiometric units.
+    #[inline]
+    pub fn at(&self, textures: &Textures, point: &TexturePoint, lanes: &Lanes) -> Spectrum {
+        textures.spectrum(self.color, Usage::Illuminant, point, lanes) * self.scale
+    }
+
+    /// The light of a colour that is the same everywhere.
+    pub fn even(&self, textures: &Textures, lanes: &Lanes) -> Spectrum {
+        self.at(textures, &TexturePoint::NOWHERE, lanes)
+    }
+}
+
+/// Where light arrives.
+#[derive(Clone, Copy, Debug)]
+pub struct Reference {
+    /// In render space.
+    pub point: DVec3,
+    /// The unit normal that the light is weighed with.
+    pub n: Vec3,
 }
 
 /// One way that light reaches a point, if nothing stands in it.
@@ -81,44 +125,117 @@ pub enum Target {
     Infinity,
 }
 
+/// Whether lights are sampled alone or beside materials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coverage {
+    /// Every direction from which light comes may be chosen.
+    Complete,
+    /// Directions of even, dim light are left to the sampling of materials.
+    Incomplete,
+}
+
 impl Light {
     /// Whether its light comes from infinitely far.
     pub fn is_infinitely_far(&self) -> bool {
         matches!(self, Self::Distant { .. } | Self::Environment(_))
     }
 
-    /// One way from the light to `surface`, or `None` where there is none. `u ∈ [0, 1)²`; `n` is the unit normal that the
-    /// light is weighed with, so that light from all around can be sampled by the cosine to it.
+    /// Whether it has one direction only at any place: no direction chosen otherwise finds it.
+    pub fn is_delta(&self) -> bool {
+        !matches!(self, Self::Area(_) | Self::Environment(_))
+    }
+
+    /// Whether a sampler that samples materials as well needs to ask it.
+    fn is_asked(&self) -> bool {
+        match self {
+            Self::Environment(environment) => environment.illuminates && environment.is_picture(),
+            _ => true,
+        }
+    }
+
+    /// One way from the light to a place, or `None` where there is none. `u ∈ [0, 1)²`.
     pub fn sample(
         &self,
         textures: &Textures,
-        surface: &Surface,
-        n: Vec3,
+        at: &Reference,
         u: [f32; 2],
+        lanes: &Lanes,
+        coverage: Coverage,
     ) -> Option<LightSample> {
-        let from = DVec3::from_array(surface.point.position);
+        let from = at.point;
         match self {
             Self::Point { position, intensity, falloff } => {
                 let (wi, distance) = toward(from, *position)?;
-                Some(LightSample {
-                    wi,
-                    li: *intensity * fade(*falloff, distance),
-                    pdf: 1.0,
-                    target: Target::Point(*position),
-                })
+                let li = intensity.even(textures, lanes) * fade(*falloff, distance);
+                Some(LightSample { wi, li, pdf: 1.0, target: Target::Point(*position) })
             }
             Self::Distant { toward, irradiance } => {
-                Some(LightSample { wi: *toward, li: *irradiance, pdf: 1.0, target: Target::Infinity })
+                let li = irradiance.even(textures, lanes);
+                Some(LightSample { wi: *toward, li, pdf: 1.0, target: Target::Infinity })
             }
             Self::Spot { position, axis, intensity, cos_outer, cos_inner, falloff } => {
                 let (wi, distance) = toward(from, *position)?;
                 let cone = smooth_step(*cos_outer, *cos_inner, axis.dot(-wi));
-                let li = *intensity * (fade(*falloff, distance) * cone);
-                (cone > 0.0).then_some(LightSample { wi, li, pdf: 1.0, target: Target::Point(*position) })
+                if cone <= 0.0 {
+                    return None;
+                }
+                let li = intensity.even(textures, lanes) * (fade(*falloff, distance) * cone);
+                Some(LightSample { wi, li, pdf: 1.0, target: Target::Point(*position) })
             }
-            Self::Area(light) => light.sample(textures, from, u),
-            Self::Environment(environment) => environment.sample(textures, n, u),
+            Self::Projection(projection) => projection.sample(textures, from, lanes),
+            Self::Goniometric(goniometric) => goniometric.sample(textures, from, lanes),
+            Self::Area(light) => light.sample(textures, from, u, lanes),
+            Self::Environment(environment) => environment.sample(textures, at.n, u, lanes, coverage),
         }
+    }
+
+    /// The density over solid angle with which [`Light::sample`] chooses a unit direction at a place, in which a ray met
+    /// this light: at `surface`, or nowhere for an environment.
+    pub fn pdf(&self, at: &Reference, wi: Vec3, surface: Option<&Surface>, coverage: Coverage) -> f32 {
+        match (self, surface) {
+            (Self::Area(light), Some(surface)) => light.pdf(at.point, surface, wi),
+            (Self::Environment(environment), None) => environment.pdf(at.n, wi, coverage),
+            _ => 0.0,
+        }
+    }
+
+    /// Where it stands and how much it sends out, for a light whose radiance (or intensity) is `brightness`; `None` for
+    /// lights infinitely far.
+    fn bundle(&self, brightness: f32) -> Option<Bundle> {
+        let at_point = |position: &DVec3, normals: Cone, cos_emission: f32, solid_angle: f32| Bundle {
+            min: position.as_vec3(),
+            max: position.as_vec3(),
+            normals,
+            cos_emission,
+            two_sided: false,
+            power: solid_angle * brightness,
+        };
+        const ALL_AROUND: f32 = 4.0 * std::f32::consts::PI;
+        Some(match self {
+            Self::Point { position, .. } => at_point(position, Cone::ALL, 0.0, ALL_AROUND),
+            Self::Goniometric(light) => at_point(&light.position, Cone::ALL, 0.0, ALL_AROUND),
+            Self::Projection(light) => {
+                at_point(&light.position, Cone { axis: light.axis(), cos: 1.0 }, light.cos_corner(), 1.0)
+            }
+            Self::Spot { position, axis, cos_outer, cos_inner, .. } => {
+                // slightly wider than it is, so that rounding leaves no rim in the dark
+                let rim = cone::angle(*cos_outer) - cone::angle(*cos_inner) + 1e-3;
+                let normals = Cone { axis: *axis, cos: *cos_inner };
+                at_point(position, normals, libm::cosf(rim), ALL_AROUND)
+            }
+            Self::Area(light) => {
+                let extent = light.extent();
+                Bundle {
+                    min: extent.min.as_vec3(),
+                    max: extent.max.as_vec3(),
+                    normals: Cone { axis: extent.axis, cos: extent.cos_normals },
+                    cos_emission: 0.0,
+                    two_sided: extent.two_sided,
+                    power: std::f32::consts::PI * light.area() as f32 * brightness,
+                }
+            }
+            Self::Distant { .. } | Self::Environment(_) => return None,
+        })
     }
 }
 

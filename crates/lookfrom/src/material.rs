@@ -1,123 +1,220 @@
-//! How surfaces look: Whitted's model at a point, with all textures looked up.
+//! How surfaces look: from a written material to what it does with light at a point.
 //!
-//! Whitted 1980: `I = k_a I_a + k_d Σ (N·L_j) I_j + k_s Σ (N·H_j)ⁿ I_j + k_r S + k_t T`, with Blinn's `H` halfway between
-//! `L` and the eye.
-//!
-//! ```toml
-//! [materials.glass]
-//! diffuse = 0            # k_d
-//! specular = 0.8         # k_s
-//! shininess = 200        # n
-//! transmission = 1       # k_t
-//! ior = 1.5
-//! fresnel = true         # the angle decides between mirror and refraction
-//! absorption = [0.3, 0.05, 0.1]
-//! ```
+//! [`Shading`] is the scattering function of a material at a point, in the frame of the (perhaps bent) shading normal:
+//! what path tracing asks. [`Coefficients`] are those of Whitted's model, which the older integrators ask of every
+//! material.
 
-pub use lookfrom_scene::material::Whitted as Material;
+mod relief;
+mod whitted;
 
 use glam::Vec3;
+use lookfrom_scene::material::{Coat as WrittenCoat, Ior, MaterialKind, Metal, Relief, Roughness};
+use lookfrom_scene::material::{Scalar, Whitted};
 
-use crate::math;
+use crate::bsdf::{Bsdf, BsdfSample, Coat, Lobes, Mode, TrowbridgeReitz, Whitted as WhittedBsdf};
 use crate::spectrum::Spectrum;
-use crate::texture::{TexturePoint, Textures};
+use crate::surface::Surface;
+use crate::texture::{Lanes, TexturePoint, Textures, Usage};
 
-/// Whitted's coefficients at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coefficients {
-    /// `k_a`.
-    pub ambient: Spectrum,
-    /// `k_d`.
-    pub diffuse: Spectrum,
-    /// `k_s`.
-    pub specular: Spectrum,
-    /// `n`.
-    pub shininess: f32,
-    /// `k_r`.
-    pub mirror: Spectrum,
-    /// `k_t`.
-    pub transmission: Spectrum,
-    /// Index of refraction, inside over outside.
-    pub ior: f32,
-    /// Whether the angle decides between mirror and refraction.
-    pub fresnel: bool,
+pub use whitted::{Branches, Coefficients};
+
+/// A material of a world.
+#[derive(Clone, Debug)]
+pub struct Material {
+    /// As it was written.
+    pub kind: MaterialKind,
+    /// What bends the shading normal.
+    pub relief: Relief,
+    /// The nearest thing in Whitted's model, for integrators that know no other.
+    pub whitted: Whitted,
 }
 
-/// The two directions in which the tree of rays grows, each with its weight.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Branches {
-    /// Toward `S`, unit length, and its weight.
-    pub mirrored: (Vec3, Spectrum),
-    /// Toward `T`, unit length, and its weight; `None` where all is reflected or nothing passes.
-    pub refracted: Option<(Vec3, Spectrum)>,
-    /// The part that is mirrored after Fresnel; 1 for total internal reflection, `None` where the angle does not matter.
-    pub fresnel: Option<f32>,
-    /// Whether Snell's law has no answer here.
-    pub total_reflection: bool,
+/// What a surface does with light at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Shading {
+    /// In the local frame.
+    pub bsdf: Bsdf,
+    /// Whether the inside takes away from light on its way (Beer's law), so that paths remember that they are in it.
+    pub absorbs: bool,
+    frame: Frame,
 }
 
-impl Coefficients {
-    /// The material's coefficients at a point.
-    pub fn at(material: &Material, textures: &Textures, point: &TexturePoint) -> Self {
-        let color = |color| textures.color(color, point);
-        let diffuse = color(material.diffuse);
-        Self {
-            ambient: material.ambient.map_or(diffuse, color),
-            diffuse,
-            specular: color(material.specular),
-            shininess: material.shininess,
-            mirror: color(material.mirror),
-            transmission: color(material.transmission),
-            ior: material.ior,
-            fresnel: material.fresnel,
-        }
+/// An orthonormal frame of unit vectors in render space.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    s: Vec3,
+    t: Vec3,
+    n: Vec3,
+}
+
+impl Frame {
+    fn local(&self, v: Vec3) -> Vec3 {
+        Vec3::new(v.dot(self.s), v.dot(self.t), v.dot(self.n))
     }
 
-    /// Whether lights need to be asked.
-    pub fn is_lit(&self) -> bool {
-        !(self.diffuse.is_black() && self.specular.is_black())
+    fn render(&self, v: Vec3) -> Vec3 {
+        v.x * self.s + v.y * self.t + v.z * self.n
+    }
+}
+
+impl Shading {
+    /// The shading normal to the outside, unit length.
+    pub fn n(&self) -> Vec3 {
+        self.frame.n
     }
 
-    /// `k_d (N·L)` and `k_s (N·H)ⁿ`; `n`, `wo`, `wi` of unit length, `n` on the side of `wo`.
-    pub fn lit(&self, n: Vec3, wo: Vec3, wi: Vec3) -> (Spectrum, Spectrum) {
-        let n_dot_l = n.dot(wi);
-        if n_dot_l <= 0.0 {
-            return (Spectrum::BLACK, Spectrum::BLACK);
-        }
-        let specular = if self.specular.is_black() {
-            Spectrum::BLACK
-        } else {
-            let h = (wo + wi).normalize_or_zero();
-            self.specular * math::power(n.dot(h).max(0.0), self.shininess)
-        };
-        (self.diffuse * n_dot_l, specular)
+    /// The cosine of a unit direction to the shading normal.
+    pub fn cos(&self, w: Vec3) -> f32 {
+        w.dot(self.frame.n)
     }
 
-    /// Where the tree of rays grows. `n` and `wo` of unit length on one side; `front` when that is the outside.
-    ///
-    /// With `fresnel` the part `F` goes into the mirrored direction, of the greater of `k_r` and `k_t`, and `(1 − F) k_t`
-    /// is refracted. Total internal reflection sends all into the mirrored direction.
-    pub fn branches(&self, n: Vec3, wo: Vec3, front: bool) -> Option<Branches> {
-        if self.mirror.is_black() && self.transmission.is_black() {
-            return None;
-        }
-        let eta = if front { self.ior } else { 1.0 / self.ior };
-        let bent = math::refract(wo, n, eta);
-        let total_reflection = bent.is_none() && !self.transmission.is_black();
-        let fresnel = self.fresnel.then(|| math::fresnel_dielectric(n.dot(wo), eta));
-        let (mirror, transmission) = match fresnel {
-            Some(part) => {
-                (self.mirror.zip(self.transmission, f32::max) * part, self.transmission * (1.0 - part))
+    /// The scattering function between two unit directions of render space, without a cosine.
+    pub fn f(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        self.bsdf.f(self.frame.local(wo), self.frame.local(wi), Mode::Radiance)
+    }
+
+    /// The density over solid angle with which [`Shading::sample`] chooses `wi`.
+    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        self.bsdf.pdf(self.frame.local(wo), self.frame.local(wi), Mode::Radiance, Lobes::ALL)
+    }
+
+    /// A direction by importance; its `wi` is in render space and of unit length.
+    pub fn sample(&self, wo: Vec3, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
+        let sample = self.bsdf.sample(self.frame.local(wo), lobe, u, Mode::Radiance, Lobes::ALL)?;
+        Some(BsdfSample { wi: self.frame.render(sample.wi).normalize(), ..sample })
+    }
+}
+
+/// The scattering function of a material at a surface; `None` for one that is not there (an interface). A mixed material
+/// is one of its parts, chosen by `u ∈ [0, 1)`. Where wavelengths go different ways, `lanes` keeps only the first.
+pub fn shading(
+    materials: &[Material],
+    textures: &Textures,
+    surface: &Surface,
+    point: &TexturePoint,
+    lanes: &mut Lanes,
+    mut u: f32,
+) -> Option<Shading> {
+    let mut material = &materials[surface.material as usize];
+    while let MaterialKind::Mix { materials: [first, second], amount } = &material.kind {
+        let amount = textures.scalar(*amount, point).clamp(0.0, 1.0);
+        let chosen = if u < amount { second } else { first };
+        u = if u < amount { u / amount } else { (u - amount) / (1.0 - amount) };
+        material = &materials[chosen.index()];
+    }
+    let mut at = At { textures, point, lanes };
+    let bsdf = at.bsdf(material)?;
+    let absorbs = matches!(&material.kind, MaterialKind::Whitted(whitted) if whitted.absorption != [0.0; 3]);
+    Some(Shading { bsdf, absorbs, frame: relief::frame(&material.relief, textures, surface, point) })
+}
+
+/// Where a material is asked.
+struct At<'a> {
+    textures: &'a Textures,
+    point: &'a TexturePoint,
+    lanes: &'a mut Lanes,
+}
+
+impl At<'_> {
+    fn bsdf(&mut self, material: &Material) -> Option<Bsdf> {
+        Some(match &material.kind {
+            MaterialKind::Whitted(whitted) => {
+                let k = Coefficients::at(whitted, self.textures, self.point, self.lanes);
+                Bsdf::Whitted(WhittedBsdf {
+                    diffuse: k.diffuse,
+                    specular: k.specular,
+                    shininess: k.shininess,
+                    mirror: k.mirror,
+                    transmission: k.transmission,
+                    ior: k.ior,
+                    fresnel: k.fresnel,
+                })
             }
-            None if total_reflection => (self.mirror + self.transmission, Spectrum::BLACK),
-            None => (self.mirror, self.transmission),
-        };
-        let refracted = bent.filter(|_| !transmission.is_black()).map(|wi| (wi.normalize(), transmission));
-        Some(Branches {
-            mirrored: (math::reflect(wo, n).normalize(), mirror),
-            refracted,
-            fresnel,
-            total_reflection,
+            MaterialKind::Diffuse { reflectance } => Bsdf::diffuse(self.albedo(*reflectance)),
+            MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
+                let [reflected, transmitted] = [reflectance, transmittance].map(|color| {
+                    let color = self.textures.spectrum(*color, Usage::Albedo, self.point, self.lanes);
+                    (color * *scale).map(|lane| lane.clamp(0.0, 1.0))
+                });
+                Bsdf::diffuse_transmission(reflected, transmitted)
+            }
+            MaterialKind::Conductor { metal, roughness } => {
+                let roughness = self.roughness(roughness);
+                match self.metal(metal) {
+                    Constants::Indices(eta, k) => Bsdf::conductor(eta, k, roughness),
+                    Constants::Reflectance(color) => Bsdf::conductor_of_reflectance(color, roughness),
+                }
+            }
+            MaterialKind::Dielectric { eta, roughness } => {
+                Bsdf::dielectric(self.ior(eta), self.roughness(roughness))
+            }
+            MaterialKind::ThinDielectric { eta } => Bsdf::thin_dielectric(self.ior(eta)),
+            MaterialKind::CoatedDiffuse { reflectance, coat } => {
+                let coat = self.coat(coat);
+                Bsdf::coated_diffuse(self.albedo(*reflectance), &coat)
+            }
+            MaterialKind::CoatedConductor { metal, roughness, coat } => {
+                let (coat, roughness) = (self.coat(coat), self.roughness(roughness));
+                match self.metal(metal) {
+                    Constants::Indices(eta, k) => Bsdf::coated_conductor(eta, k, roughness, &coat),
+                    Constants::Reflectance(color) => {
+                        Bsdf::coated_conductor_of_reflectance(color, roughness, &coat)
+                    }
+                }
+            }
+            // A mixture has been decided by now.
+            MaterialKind::Mix { .. } | MaterialKind::Interface => return None,
         })
     }
+
+    fn albedo(&self, color: lookfrom_scene::material::Color) -> Spectrum {
+        let color = self.textures.spectrum(color, Usage::Albedo, self.point, self.lanes);
+        color.map(|lane| lane.clamp(0.0, 1.0))
+    }
+
+    fn scalar(&self, scalar: Scalar) -> f32 {
+        self.textures.scalar(scalar, self.point)
+    }
+
+    fn roughness(&self, roughness: &Roughness) -> TrowbridgeReitz {
+        let alpha = [roughness.u, roughness.v].map(|scalar| self.scalar(scalar));
+        TrowbridgeReitz::from_roughness(alpha, roughness.remap)
+    }
+
+    fn metal(&self, metal: &Metal) -> Constants {
+        let spectrum = |color, usage| self.textures.spectrum(color, usage, self.point, self.lanes);
+        match *metal {
+            Metal::Indices { eta, k } => {
+                Constants::Indices(spectrum(eta, Usage::Unbounded), spectrum(k, Usage::Unbounded))
+            }
+            Metal::Reflectance(color) => Constants::Reflectance(spectrum(color, Usage::Albedo)),
+        }
+    }
+
+    /// The index of refraction; one that differs by wavelength leaves only the first.
+    fn ior(&mut self, ior: &Ior) -> f32 {
+        match ior {
+            Ior::Value(eta) => *eta,
+            Ior::Curve(curve) => self.textures.ior(*curve, self.lanes),
+        }
+    }
+
+    fn coat(&mut self, coat: &WrittenCoat) -> Coat {
+        let eta = self.ior(&coat.eta);
+        Coat {
+            eta,
+            roughness: self.roughness(&coat.roughness),
+            thickness: self.scalar(coat.thickness),
+            albedo: self.albedo(coat.albedo),
+            g: self.scalar(coat.g).clamp(-1.0, 1.0),
+            max_depth: coat.max_depth.min(u16::MAX.into()) as u16,
+            samples: coat.samples.min(u16::MAX.into()) as u16,
+        }
+    }
+}
+
+/// Optical constants of a metal at a point.
+enum Constants {
+    Indices(Spectrum, Spectrum),
+    Reflectance(Spectrum),
 }

@@ -3,12 +3,13 @@
 use std::f32::consts::PI;
 
 use glam::{Mat3, Vec3};
+use lookfrom_scene::material::Color;
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
-use super::{LightSample, Target};
+use super::{Coverage, Glow, LightSample, Target};
 use crate::distribution::Piecewise2D;
 use crate::spectrum::Spectrum;
-use crate::texture::{self, Textures};
+use crate::texture::{self, Lanes, TexturePoint, Textures, Usage};
 use crate::warp;
 
 /// Light from infinitely far, all around.
@@ -24,17 +25,17 @@ pub struct Environment {
 #[derive(Clone, Debug)]
 pub enum Sky {
     /// The same everywhere.
-    Constant(Spectrum),
+    Constant(Glow),
     /// Linear in the height y of the unit direction.
     Gradient {
         /// At y = 1.
-        zenith: Spectrum,
+        zenith: Glow,
         /// At y = 0.
-        horizon: Spectrum,
+        horizon: Glow,
         /// At y = −1.
-        nadir: Spectrum,
+        nadir: Glow,
     },
-    /// A picture in latitude and longitude.
+    /// A picture.
     Image(Box<SkyImage>),
 }
 
@@ -43,71 +44,140 @@ pub enum Sky {
 pub struct SkyImage {
     /// Index of the picture in the world.
     pub image: usize,
-    /// Multiplies it.
-    pub scale: Spectrum,
-    /// Columns: the light's axes in the world; a rotation.
+    /// Multiplies it, by channel.
+    pub scale: [f32; 3],
+    /// How the sphere of directions is laid out in it.
+    pub layout: Layout,
+    /// Columns: the light's axes in the world; a rotation, perhaps mirrored.
     pub world_from_light: Mat3,
     /// By the light of each part of the picture.
-    pub choice: Piecewise2D,
+    pub complete: Piecewise2D,
+    /// By how much brighter than the mean each part is (Karlík et al. 2019): where materials are sampled too, dim
+    /// directions need no samples of their own.
+    pub compensated: Piecewise2D,
+}
+
+/// How the sphere of directions is laid out in a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// Row 0 is +y; the middle column looks along −z, columns to the right toward +x.
+    LatitudeLongitude,
+    /// `warp::octahedral_direction`.
+    Octahedral,
 }
 
 impl Environment {
     /// Radiance from a unit direction.
-    pub fn radiance(&self, textures: &Textures, direction: Vec3) -> Spectrum {
+    pub fn radiance(&self, textures: &Textures, direction: Vec3, lanes: &Lanes) -> Spectrum {
         match &self.sky {
-            Sky::Constant(color) => *color,
+            Sky::Constant(glow) => glow.even(textures, lanes),
             Sky::Gradient { zenith, horizon, nadir } => {
                 let y = direction.y.clamp(-1.0, 1.0);
-                let end = if y >= 0.0 { *zenith } else { *nadir };
-                *horizon * (1.0 - y.abs()) + end * y.abs()
+                let end = if y >= 0.0 { zenith } else { nadir };
+                horizon.even(textures, lanes) * (1.0 - y.abs()) + end.even(textures, lanes) * y.abs()
             }
-            Sky::Image(sky) => {
-                let uv = sky.uv(direction);
-                let wrap = [Wrap::Repeat, Wrap::Clamp];
-                let rgb = texture::look_up(textures.image(sky.image), uv, wrap, TexelFilter::Bilinear);
-                Spectrum::from_rgb(rgb) * sky.scale
-            }
+            Sky::Image(sky) => sky.radiance(textures, sky.uv(direction), lanes),
         }
     }
 
+    /// Whether its light is not nearly the same all around.
+    pub(super) fn is_picture(&self) -> bool {
+        matches!(self.sky, Sky::Image(_))
+    }
+
     /// One direction, by the cosine to `n` or by the picture's brightness.
-    pub(super) fn sample(&self, textures: &Textures, n: Vec3, u: [f32; 2]) -> Option<LightSample> {
+    pub(super) fn sample(
+        &self,
+        textures: &Textures,
+        n: Vec3,
+        u: [f32; 2],
+        lanes: &Lanes,
+        coverage: Coverage,
+    ) -> Option<LightSample> {
         if !self.illuminates {
             return None;
         }
-        let (wi, pdf) = match &self.sky {
-            Sky::Constant(_) | Sky::Gradient { .. } => {
-                let wi = warp::cosine_hemisphere(u, n);
-                (wi, warp::cosine_hemisphere_pdf(n.dot(wi)))
+        let (wi, pdf, li) = match (&self.sky, coverage) {
+            (Sky::Image(sky), _) => {
+                let (uv, pdf) = sky.choice(coverage).sample(u);
+                (sky.direction(uv), pdf * sky.per_solid_angle(uv), sky.radiance(textures, uv, lanes))
             }
-            Sky::Image(sky) => {
-                let ([s, t], pdf) = sky.choice.sample(u);
-                // the picture's area element is 2π² sin θ of the sphere's
-                let sin_theta = libm::sinf(t * PI);
-                (sky.direction([s, t]), pdf / (2.0 * PI * PI * sin_theta))
+            (_, Coverage::Incomplete) => return None,
+            (_, Coverage::Complete) => {
+                let wi = warp::cosine_hemisphere(u, n);
+                (wi, warp::cosine_hemisphere_pdf(n.dot(wi)), self.radiance(textures, wi, lanes))
             }
         };
-        if !(pdf > 0.0 && pdf.is_finite()) {
-            return None;
+        let usable = pdf > 0.0 && pdf.is_finite() && !li.is_black();
+        usable.then_some(LightSample { wi, li, pdf, target: Target::Infinity })
+    }
+
+    /// The density of [`Environment::sample`] over solid angle.
+    pub(super) fn pdf(&self, n: Vec3, wi: Vec3, coverage: Coverage) -> f32 {
+        match (&self.sky, coverage) {
+            _ if !self.illuminates => 0.0,
+            (Sky::Image(sky), _) => {
+                let uv = sky.uv(wi);
+                let pdf = sky.choice(coverage).pdf(uv) * sky.per_solid_angle(uv);
+                if pdf.is_finite() { pdf } else { 0.0 }
+            }
+            (_, Coverage::Incomplete) => 0.0,
+            (_, Coverage::Complete) => warp::cosine_hemisphere_pdf(n.dot(wi)),
         }
-        Some(LightSample { wi, li: self.radiance(textures, wi), pdf, target: Target::Infinity })
     }
 }
 
 impl SkyImage {
-    /// Where in the picture a unit direction lies; row 0 is +y of the light's space, u = ½ is −z, u grows toward +x.
+    fn choice(&self, coverage: Coverage) -> &Piecewise2D {
+        match coverage {
+            Coverage::Complete => &self.complete,
+            Coverage::Incomplete => &self.compensated,
+        }
+    }
+
+    fn radiance(&self, textures: &Textures, uv: [f32; 2], lanes: &Lanes) -> Spectrum {
+        let image = textures.image(self.image);
+        let rgb = match self.layout {
+            Layout::LatitudeLongitude => {
+                texture::look_up(image, uv, [Wrap::Repeat, Wrap::Clamp], TexelFilter::Bilinear)
+            }
+            Layout::Octahedral => texture::look_up(image, uv, [Wrap::Clamp; 2], TexelFilter::Nearest),
+        };
+        let rgb = std::array::from_fn(|c| (rgb[c] * self.scale[c]).max(0.0));
+        textures.spectrum(Color::Value(rgb), Usage::Illuminant, &TexturePoint::NOWHERE, lanes)
+    }
+
+    /// What turns a density over the picture into one over solid angle.
+    fn per_solid_angle(&self, [_, v]: [f32; 2]) -> f32 {
+        match self.layout {
+            // the picture's area element is 2π² sin θ of the sphere's
+            Layout::LatitudeLongitude => 1.0 / (2.0 * PI * PI * libm::sinf(v * PI)),
+            Layout::Octahedral => 0.25 / PI,
+        }
+    }
+
+    /// Where in the picture a unit direction lies.
     fn uv(&self, direction: Vec3) -> [f32; 2] {
         let d = self.world_from_light.transpose() * direction;
-        let u = 0.5 + libm::atan2f(d.x, -d.z) / (2.0 * PI);
-        let v = libm::acosf(d.y.clamp(-1.0, 1.0)) / PI;
-        [u, v]
+        match self.layout {
+            Layout::LatitudeLongitude => {
+                let u = 0.5 + libm::atan2f(d.x, -d.z) / (2.0 * PI);
+                [u, libm::acosf(d.y.clamp(-1.0, 1.0)) / PI]
+            }
+            Layout::Octahedral => warp::octahedral_square(d),
+        }
     }
 
     /// The inverse of [`SkyImage::uv`].
     fn direction(&self, [u, v]: [f32; 2]) -> Vec3 {
-        let (phi, theta) = ((u - 0.5) * 2.0 * PI, v * PI);
-        let sin_theta = libm::sinf(theta);
-        self.world_from_light
-            * Vec3::new(libm::sinf(phi) * sin_theta, libm::cosf(theta), -libm::cosf(phi) * sin_theta)
+        let of_light = match self.layout {
+            Layout::LatitudeLongitude => {
+                let (phi, theta) = ((u - 0.5) * 2.0 * PI, v * PI);
+                let sin_theta = libm::sinf(theta);
+                Vec3::new(libm::sinf(phi) * sin_theta, libm::cosf(theta), -libm::cosf(phi) * sin_theta)
+            }
+            Layout::Octahedral => warp::octahedral_direction([u, v]),
+        };
+        self.world_from_light * of_light
     }
 }

@@ -1,0 +1,285 @@
+//! Path tracing (Kajiya 1986): from each surface on in one direction, chosen by its material, and at each surface one
+//! light is asked. Both ways of finding light share it by multiple importance sampling (Veach & Guibas 1995, the power
+//! heuristic), and paths that carry little are ended by chance (Russian roulette, Arvo & Kirk 1990). The order of
+//! things is pbrt-v4's, so that the same scene converges to the same picture.
+
+use glam::{DVec3, Vec3};
+use lookfrom_bvh::{Hit, Ray};
+
+use crate::bsdf::{BsdfSample, Lobes, Mode};
+use crate::integrator::{Bounce, Event, Integrator, Next, Numbers, Path, Probe, Shadow, Term};
+use crate::light::{Coverage, Reference};
+use crate::material::Shading;
+use crate::spectrum::Spectrum;
+use crate::surface::Surface;
+use crate::world::World;
+
+/// Purposes of random numbers at a surface.
+mod purpose {
+    /// Whether the surface is there; which of two mixed materials is.
+    pub(super) const PRESENCE: u32 = 0;
+    /// Which light, which lobe.
+    pub(super) const CHOICE: u32 = 1;
+    /// Where on the light.
+    pub(super) const LIGHT: u32 = 2;
+    /// Which direction.
+    pub(super) const DIRECTION: u32 = 3;
+    /// Whether the path goes on.
+    pub(super) const ROULETTE: u32 = 4;
+}
+
+/// How much of what is known about light is used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wisdom {
+    /// Lights and materials are sampled together.
+    Combined,
+    /// Lights are asked, and found by chance only where nothing else can: pbrt's `simplepath`.
+    Separate,
+    /// Nothing is asked; directions are uniform all around: pbrt's `randomwalk`.
+    None,
+}
+
+/// Path tracing.
+#[derive(Clone, Copy, Debug)]
+pub struct PathTracer {
+    /// How many times a path may be scattered.
+    pub depth: u32,
+    /// Whether sharp lobes are blurred after the first bounce that is not sharp.
+    pub regularize: bool,
+    /// What is used of what is known.
+    pub wisdom: Wisdom,
+}
+
+/// What a path remembers of the surface that it left.
+#[derive(Clone, Copy, Debug)]
+pub struct Departure {
+    /// Density over solid angle of the direction that it took; infinite where that was the only one, or from the camera.
+    pub pdf: f32,
+    /// Shading normal there.
+    pub n: Vec3,
+    /// Product of η² of what it has entered: radiance is not lost where it is only squeezed.
+    pub eta_scale: f32,
+    /// Whether any bounce so far was not a mirror's.
+    pub blurred: bool,
+}
+
+impl Default for Departure {
+    fn default() -> Self {
+        Self { pdf: f32::INFINITY, n: Vec3::Z, eta_scale: 1.0, blurred: false }
+    }
+}
+
+impl Integrator for PathTracer {
+    fn step<P: Probe>(
+        &self,
+        world: &World,
+        numbers: &Numbers<'_>,
+        path: &Path,
+        hit: &Hit,
+        next: &mut Next<'_, P>,
+    ) {
+        // A path that leaves the scene sees the sky.
+        if !hit.is_hit() {
+            self.add_sky(world, path, next);
+            return;
+        }
+        let surface = world.surface(&path.ray, hit);
+
+        // Light passes where the surface is not there.
+        let [presence, mix] = numbers.two(purpose::PRESENCE);
+        if let Some(alpha) = surface.alpha
+            && world.textures.scalar(alpha, &world.texture_point(&surface)) <= presence
+        {
+            next.paths.push(path.passed(&surface));
+            return;
+        }
+
+        // Absorb on the way to the surface.
+        let length = Vec3::from_array(path.ray.direction).length() * hit.t;
+        let transmittance = path.media.transmittance(world, length, next.lanes(path));
+        let path = &Path { beta: path.beta * transmittance, ..*path };
+
+        // Add what the surface itself shines.
+        self.add_emission(world, path, &surface, next);
+
+        // What it does with light; dispersion leaves one wavelength.
+        let lanes = &mut next.lanes[path.slot as usize];
+        let Some(mut shading) = world.shading(&surface, lanes, mix) else {
+            next.paths.push(path.passed(&surface));
+            return;
+        };
+        if self.regularize && path.departure.blurred {
+            shading.bsdf.regularize();
+        }
+        next.note_features(path, || world.features(&surface, &shading));
+        next.probe.notice(|| Event::Shaded {
+            address: path.address,
+            surface: Box::new(surface),
+            shading: Box::new(shading),
+        });
+        if path.depth >= self.depth {
+            return;
+        }
+
+        // Ask one light.
+        let [which_light, which_lobe] = numbers.two(purpose::CHOICE);
+        if self.wisdom != Wisdom::None && shading.bsdf.lobes().has_unsharp() {
+            let u = numbers.two(purpose::LIGHT);
+            self.ask_light(world, path, &surface, &shading, which_light, u, next);
+        }
+
+        // Go on in one direction.
+        let u = numbers.two(purpose::DIRECTION);
+        let Some(sample) = self.direction(&shading, &surface, which_lobe, u) else { return };
+        let wi = sample.wi;
+        let cos = shading.cos(wi).abs();
+        let beta = path.beta * sample.f * (cos / sample.pdf);
+        let is_sharp = sample.lobe.is_specular();
+        let pdf = match (is_sharp, sample.pdf_is_proportional) {
+            (true, _) => f32::INFINITY,
+            (false, true) => shading.pdf(surface.wo, wi),
+            (false, false) => sample.pdf,
+        };
+        let transmitted = sample.lobe.is_transmission();
+        let eta_scale = path.departure.eta_scale * if transmitted { sample.eta * sample.eta } else { 1.0 };
+
+        // End paths that carry little, by chance.
+        let depth = path.depth + 1;
+        let (survival, survives) = self.roulette(numbers, beta, eta_scale, depth);
+        next.probe.notice(|| Event::Bounced {
+            address: path.address,
+            bounce: Box::new(Bounce { wi, cos, sample, beta, survival, survives }),
+        });
+        if !survives || beta.is_black() {
+            return;
+        }
+        let media = match transmitted {
+            true if shading.absorbs => path.media.crossed(surface.material, surface.front),
+            _ => path.media,
+        };
+        next.paths.push(Path {
+            ray: Ray::new(surface.origin(wi), wi.to_array()),
+            beta: beta / survival,
+            slot: path.slot,
+            depth,
+            address: path.address + 1,
+            media,
+            departure: Departure {
+                pdf,
+                n: shading.n(),
+                eta_scale,
+                blurred: path.departure.blurred || !is_sharp,
+            },
+        });
+    }
+}
+
+impl PathTracer {
+    fn add_sky<P: Probe>(&self, world: &World, path: &Path, next: &mut Next<'_, P>) {
+        let direction = Vec3::from_array(path.ray.direction).normalize();
+        for &index in &world.environments {
+            let lanes = next.lanes(path);
+            let radiance = world.sky_of(index, direction, lanes);
+            let pdf = || world.light_pdf(index, &path.reference(), direction, None);
+            let weight = self.weight_of_found(path, pdf);
+            next.add(path, Term::Found { light: index, weight }, path.beta * radiance * weight);
+        }
+    }
+
+    fn add_emission<P: Probe>(
+        &self,
+        world: &World,
+        path: &Path,
+        surface: &Surface,
+        next: &mut Next<'_, P>,
+    ) {
+        let Some(light) = surface.light else { return };
+        let radiance = world.emitted(surface, next.lanes(path));
+        if radiance.is_black() {
+            return;
+        }
+        let pdf = || world.light_pdf(light, &path.reference(), -surface.wo, Some(surface));
+        let weight = self.weight_of_found(path, pdf);
+        next.add(path, Term::Found { light, weight }, path.beta * radiance * weight);
+    }
+
+    /// The weight of light that the direction of a path found, which asking the lights finds with density `light_pdf`.
+    fn weight_of_found(&self, path: &Path, light_pdf: impl FnOnce() -> f32) -> f32 {
+        match self.wisdom {
+            _ if path.departure.pdf.is_infinite() => 1.0,
+            Wisdom::Combined => power_heuristic(path.departure.pdf, light_pdf()),
+            // What is asked is found already.
+            Wisdom::Separate if light_pdf() > 0.0 => 0.0,
+            Wisdom::Separate | Wisdom::None => 1.0,
+        }
+    }
+
+    fn ask_light<P: Probe>(
+        &self,
+        world: &World,
+        path: &Path,
+        surface: &Surface,
+        shading: &Shading,
+        which: f32,
+        u: [f32; 2],
+        next: &mut Next<'_, P>,
+    ) {
+        let at = Reference { point: DVec3::from_array(surface.point.position), n: shading.n() };
+        let Some((index, probability)) = world.light_choice.sample(&at, which) else { return };
+        let light = &world.lights[index as usize];
+        let lanes = next.lanes(path);
+        let sample = light.sample(&world.textures, &at, u, lanes, Coverage::Incomplete);
+        let Some(sample) = sample else { return };
+        let f = shading.f(surface.wo, sample.wi) * shading.cos(sample.wi).abs();
+        if f.is_black() {
+            return;
+        }
+        let light_pdf = probability * sample.pdf;
+        let (weight, bsdf_pdf) = match (self.wisdom, light.is_delta()) {
+            (Wisdom::Combined, false) => {
+                let bsdf_pdf = shading.pdf(surface.wo, sample.wi);
+                (power_heuristic(light_pdf, bsdf_pdf), bsdf_pdf)
+            }
+            _ => (1.0, 0.0),
+        };
+        let contribution = path.beta * f * sample.li * (weight / light_pdf);
+        next.probe.notice(|| Event::AskedOne {
+            address: path.address,
+            light: index,
+            sample,
+            probability,
+            bsdf_pdf,
+            weight,
+            f,
+        });
+        if !contribution.is_black() {
+            next.shadows.push(Shadow::new(path, surface, &sample, index, contribution));
+        }
+    }
+
+    fn direction(&self, shading: &Shading, surface: &Surface, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
+        if self.wisdom == Wisdom::None {
+            return shading.uniform(surface.wo, u);
+        }
+        let sample = shading.sample(surface.wo, lobe, u, Mode::Radiance, Lobes::ALL)?;
+        (sample.pdf > 0.0).then_some(sample)
+    }
+
+    /// The probability with which a path goes on after its `depth`-th bounce, and whether it does.
+    fn roulette(&self, numbers: &Numbers<'_>, beta: Spectrum, eta_scale: f32, depth: u32) -> (f32, bool) {
+        let share = beta.max_lane() * eta_scale;
+        if self.wisdom != Wisdom::Combined || depth <= 1 || share >= 1.0 {
+            return (1.0, true);
+        }
+        let [u, _] = numbers.two(purpose::ROULETTE);
+        (share, u < share)
+    }
+}
+
+/// The weight of a way that finds light with density `this`, where another one finds it with `other` (Veach & Guibas
+/// 1995, β = 2).
+fn power_heuristic(this: f32, other: f32) -> f32 {
+    // In this form nothing overflows.
+    let ratio = other / this;
+    1.0 / (1.0 + ratio * ratio)
+}

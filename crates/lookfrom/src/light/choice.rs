@@ -1,0 +1,85 @@
+//! Which one of a world's lights is asked at a place?
+//!
+//! Lights infinitely far take turns with the tree of those that have a place, each with the same probability, as in
+//! pbrt-v4. Lights that directions sampled from materials find as well (an even sky) need not be asked: they have
+//! probability 0.
+
+use lookfrom_scene::settings::LightSampler as Kind;
+
+use super::tree::{Bundle, Tree};
+use super::{Light, Reference};
+use crate::distribution::Discrete;
+use crate::sampler::ONE_MINUS_EPSILON;
+
+/// A way to choose one of many lights.
+#[derive(Clone, Debug)]
+pub struct LightChoice {
+    /// Lights without a place (or, if there is no tree, all lights) …
+    listed: Vec<u32>,
+    /// … by weight; all the same where there is none.
+    weights: Option<Discrete>,
+    /// For each light of the world, its place in `listed`.
+    places: Vec<Option<u32>>,
+    tree: Tree,
+}
+
+impl LightChoice {
+    /// A choice among the lights that need to be asked; `radius` is that of the scene, for the power of lights infinitely
+    /// far.
+    pub fn new(kind: Kind, lights: &[Light], brightness: &[f32], radius: f32) -> Self {
+        let mut listed = Vec::new();
+        let mut weights = Vec::new();
+        let mut with_place: Vec<(u32, Bundle)> = Vec::new();
+        for (index, light) in (0..).zip(lights).filter(|(_, light)| light.is_asked()) {
+            let brightness = brightness[index as usize];
+            match light.bundle(brightness) {
+                Some(bundle) if kind == Kind::Bvh => with_place.push((index, bundle)),
+                bundle => {
+                    listed.push(index);
+                    let of_far = || 4.0 * std::f32::consts::PI.powi(2) * radius * radius * brightness;
+                    weights.push(bundle.map_or_else(of_far, |bundle| bundle.power));
+                }
+            }
+        }
+        let mut places = vec![None; lights.len()];
+        for (place, light) in (0..).zip(&listed) {
+            places[*light as usize] = Some(place);
+        }
+        let weights = (kind == Kind::Power && !listed.is_empty()).then(|| Discrete::new(&weights));
+        Self { listed, weights, places, tree: Tree::new(&with_place, lights.len()) }
+    }
+
+    /// A light to ask at a place and the probability of it, for `u ∈ [0, 1)`.
+    pub fn sample(&self, at: &Reference, u: f32) -> Option<(u32, f32)> {
+        if let Some(weights) = &self.weights {
+            let (place, probability, _) = weights.sample(u);
+            return Some((self.listed[place], probability));
+        }
+        let in_list = self.share_of_list();
+        if u < in_list {
+            let count = self.listed.len();
+            let place = ((u / in_list * count as f32) as usize).min(count - 1);
+            return Some((self.listed[place], in_list / count as f32));
+        }
+        let u = ((u - in_list) / (1.0 - in_list)).min(ONE_MINUS_EPSILON);
+        let (light, probability) = self.tree.sample(at.point.as_vec3(), at.n, u)?;
+        Some((light, probability * (1.0 - in_list)))
+    }
+
+    /// The probability with which [`LightChoice::sample`] chooses a light at a place.
+    pub fn probability(&self, at: &Reference, light: u32) -> f32 {
+        match (self.places[light as usize], &self.weights) {
+            (Some(place), Some(weights)) => weights.pdf(place as usize),
+            (Some(_), None) => self.share_of_list() / self.listed.len() as f32,
+            (None, _) => {
+                (1.0 - self.share_of_list()) * self.tree.probability(at.point.as_vec3(), at.n, light)
+            }
+        }
+    }
+
+    /// The probability that the list is asked and not the tree, which counts as one more light.
+    fn share_of_list(&self) -> f32 {
+        let (list, tree) = (self.listed.len() as f32, if self.tree.is_empty() { 0.0 } else { 1.0 });
+        if list == 0.0 { 0.0 } else { list / (list + tree) }
+    }
+}

@@ -1,0 +1,82 @@
+//! Points that send out a picture: a slide projector, a lamp measured by direction.
+
+use glam::{DVec3, Mat3, Vec3};
+use lookfrom_scene::material::Color;
+use lookfrom_scene::texture::{TexelFilter, Wrap};
+
+use super::{Glow, LightSample, Target, toward};
+use crate::spectrum::Spectrum;
+use crate::texture::{self, Lanes, TexturePoint, Textures, Usage};
+use crate::warp;
+
+/// A picture thrown into a rectangle.
+#[derive(Clone, Debug)]
+pub struct Projection {
+    /// Where.
+    pub position: DVec3,
+    /// To the light's space: it looks along +z, y is up, x to the right of the picture.
+    pub light_from_render: Mat3,
+    /// Index of the picture in the world.
+    pub image: usize,
+    /// W/sr of a white texel.
+    pub scale: f32,
+    /// Half the size of the picture at a distance of 1.
+    pub half_size: [f32; 2],
+}
+
+impl Projection {
+    pub(super) fn sample(&self, textures: &Textures, from: DVec3, lanes: &Lanes) -> Option<LightSample> {
+        let (wi, distance) = toward(from, self.position)?;
+        let w = (self.light_from_render * -wi).normalize_or_zero();
+        if w.z <= 1e-3 {
+            return None;
+        }
+        let [s, t] = [w.x / (w.z * self.half_size[0]), w.y / (w.z * self.half_size[1])];
+        if !(s.abs() <= 1.0 && t.abs() <= 1.0) {
+            return None;
+        }
+        let st = [0.5 + 0.5 * s, 0.5 + 0.5 * t];
+        let rgb = texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Nearest);
+        let white = textures.spectrum(Color::Value(rgb), Usage::Illuminant, &TexturePoint::NOWHERE, lanes);
+        let li = white * (self.scale / (distance * distance) as f32);
+        (!li.is_black()).then_some(LightSample { wi, li, pdf: 1.0, target: Target::Point(self.position) })
+    }
+
+    /// Where it looks, unit length.
+    pub(super) fn axis(&self) -> Vec3 {
+        (self.light_from_render.inverse() * Vec3::Z).normalize()
+    }
+
+    /// Cosine of the angle from the axis to a corner.
+    pub(super) fn cos_corner(&self) -> f32 {
+        let [x, y] = self.half_size;
+        1.0 / (1.0 + x * x + y * y).sqrt()
+    }
+}
+
+/// A lamp that sends out more or less by direction.
+#[derive(Clone, Debug)]
+pub struct Goniometric {
+    /// Where.
+    pub position: DVec3,
+    /// To the light's space.
+    pub light_from_render: Mat3,
+    /// Index of the picture in the world: an octahedral square.
+    pub image: usize,
+    /// W/sr where the picture is 1.
+    pub intensity: Glow,
+}
+
+impl Goniometric {
+    pub(super) fn sample(&self, textures: &Textures, from: DVec3, lanes: &Lanes) -> Option<LightSample> {
+        let (wi, distance) = toward(from, self.position)?;
+        let w = (self.light_from_render * -wi).normalize_or_zero();
+        let st = warp::octahedral_square(w);
+        let [r, g, b] =
+            texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Bilinear);
+        let brightness = (r + g + b) / 3.0;
+        let li: Spectrum =
+            self.intensity.even(textures, lanes) * (brightness / (distance * distance) as f32);
+        (!li.is_black()).then_some(LightSample { wi, li, pdf: 1.0, target: Target::Point(self.position) })
+    }
+}
