@@ -1,20 +1,93 @@
-//! Values by wavelength: what a colour is before an eye or a sensor meets it.
+//! How much of something is there at each wavelength?
+//!
+//! A [`Curve`] is a spectrum as a file states it: a constant, a table, a black body. Measured ones have names
+//! ([`named`]), or are read from `.spd` files ([`read_spd`]). Beside them: the standard observer, which weighs
+//! wavelengths as the eye does, daylight of any temperature, and the RGB colour spaces. Sampling wavelengths and lifting
+//! RGB to a spectrum are left to the crate `lookfrom`.
 
-/// A value for each wavelength.
+pub mod daylight;
+mod named;
+pub mod observer;
+mod read;
+pub mod space;
+
+pub use named::{named, names};
+pub use read::read_spd;
+
+/// The shortest wavelength that is looked at, in nm.
+pub const SHORTEST: u32 = 360;
+/// The longest wavelength that is looked at, in nm.
+pub const LONGEST: u32 = 830;
+
+/// A function of the wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Curve {
-    /// The same for all.
+    /// The same everywhere.
     Constant(f32),
     /// Linear between entries, 0 outside.
     Tabulated {
-        /// In nm, rising.
+        /// In nm, strictly rising, as many as there are values.
         wavelengths: Vec<f32>,
-        /// One a wavelength.
+        /// The value at each wavelength.
         values: Vec<f32>,
     },
-    /// Planck's law, scaled so that its greatest value is 1.
+    /// The light of a black body (Planck 1900), scaled so that the greatest value over all wavelengths is 1.
     Blackbody {
-        /// In kelvin: > 0.
+        /// The temperature in kelvin; black where it is not above 0.
         kelvin: f32,
     },
 }
+
+impl Curve {
+    /// The value at a wavelength in nm.
+    pub fn at(&self, nm: f32) -> f32 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Tabulated { wavelengths, values } => tabulated(wavelengths, values, nm),
+            Self::Blackbody { kelvin } => blackbody(f64::from(nm), f64::from(*kelvin)) as f32,
+        }
+    }
+
+    /// The same curve times a factor; `None` for a black body, whose scale is fixed.
+    fn scaled(self, factor: f32) -> Option<Self> {
+        match self {
+            Self::Constant(value) => Some(Self::Constant(value * factor)),
+            Self::Tabulated { wavelengths, values } => {
+                let values = values.into_iter().map(|value| value * factor).collect();
+                Some(Self::Tabulated { wavelengths, values })
+            }
+            Self::Blackbody { .. } => None,
+        }
+    }
+}
+
+fn tabulated(wavelengths: &[f32], values: &[f32], nm: f32) -> f32 {
+    // The first entry beyond nm, so that nm lies between it and the one before.
+    let beyond = wavelengths.partition_point(|&wavelength| wavelength <= nm);
+    match (wavelengths.get(beyond.wrapping_sub(1)), wavelengths.get(beyond)) {
+        (Some(&below), Some(&above)) => {
+            let t = (nm - below) / (above - below);
+            values[beyond - 1] * (1.0 - t) + values[beyond] * t
+        }
+        (Some(&last), None) if last == nm => values[beyond - 1],
+        _ => 0.0,
+    }
+}
+
+/// Planck's law over its own maximum, which is at b / T (Wien's displacement law).
+fn blackbody(nm: f64, kelvin: f64) -> f64 {
+    const WIEN: f64 = 2.897_772_1e-3;
+    /// h c / k in m K.
+    const SECOND_RADIATION: f64 = 6.626_069_57e-34 * 299_792_458.0 / 1.380_648_8e-23;
+    if !(kelvin > 0.0 && nm > 0.0) {
+        return 0.0;
+    }
+    // With the peak as the unit of length, only the ratio of the wavelengths and a constant are left.
+    let ratio = nm * 1e-9 * kelvin / WIEN;
+    let peak = SECOND_RADIATION / WIEN;
+    let fifth = ratio * ratio * ratio * ratio * ratio;
+    (libm::expm1(peak) / (fifth * libm::expm1(peak / ratio))).min(1.0)
+}
+
+#[cfg(test)]
+mod tests;

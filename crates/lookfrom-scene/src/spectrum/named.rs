@@ -1,0 +1,84 @@
+//! Which measured curves have names?
+//!
+//! Those of pbrt-v4, so that its scenes can name them: indices of refraction and absorption of metals, glasses, and
+//! standard illuminants. Illuminants are scaled so that their luminance Y is 1. A table that ends within the visible
+//! wavelengths goes on with its last value. The numbers are in `named.txt`.
+
+use super::{Curve, LONGEST, SHORTEST, observer};
+
+const TABLES: &str = include_str!("named.txt");
+
+/// Other names that are understood: what the glasses are really called.
+const ALIASES: &[(&str, &str)] =
+    &[("glass-SF5", "glass-F5"), ("glass-SF10", "glass-F10"), ("glass-SF11", "glass-F11")];
+
+/// The curve of that name; see [`names`].
+pub fn named(name: &str) -> Option<Curve> {
+    let name = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, meant)| meant);
+    let mut wavelengths = "";
+    for (found, rest) in tables() {
+        // `same` refers to the curve before, so keep the last wavelengths that were written.
+        if !rest.trim_start().starts_with("same") {
+            wavelengths = rest;
+        }
+        if found == name {
+            let curve = extended(table(rest, wavelengths)?);
+            let is_illuminant = name.contains("illum-");
+            return if is_illuminant { curve_of_luminance_one(curve) } else { Some(curve) };
+        }
+    }
+    None
+}
+
+/// All names that [`named`] knows, for "did you mean".
+pub fn names() -> impl Iterator<Item = &'static str> {
+    tables().map(|(name, _)| name).chain(ALIASES.iter().map(|(alias, _)| *alias))
+}
+
+/// Each table's name and what follows it.
+fn tables() -> impl Iterator<Item = (&'static str, &'static str)> {
+    TABLES.split("\n\n").skip(1).filter_map(|table| table.split_once('\n'))
+}
+
+/// Reads a table, whose wavelengths may stand in the one before.
+fn table(own: &str, wavelengths_in: &str) -> Option<Curve> {
+    let numbers =
+        |text: &str| -> Vec<f32> { text.split_whitespace().filter_map(|word| word.parse().ok()).collect() };
+    let (head, body) = wavelengths_in.split_once('\n')?;
+    let wavelengths = match head.split_once(" + ") {
+        Some((first, step)) => {
+            let (first, step): (f32, f32) = (first.parse().ok()?, step.parse().ok()?);
+            (0..numbers(body).len()).map(|i| first + step * i as f32).collect()
+        }
+        // First all wavelengths, then as many values.
+        None => {
+            let mut both = numbers(wavelengths_in);
+            both.truncate(both.len() / 2);
+            both
+        }
+    };
+    let own =
+        numbers(own.split_once('\n').filter(|(head, _)| head.contains('+')).map_or(own, |(_, body)| body));
+    let values = own[own.len() - wavelengths.len()..].to_vec();
+    Some(Curve::Tabulated { wavelengths, values })
+}
+
+/// Goes on with the last values to both ends of the visible wavelengths.
+fn extended(curve: Curve) -> Curve {
+    let Curve::Tabulated { mut wavelengths, mut values } = curve else { return curve };
+    if wavelengths[0] > SHORTEST as f32 {
+        wavelengths.insert(0, SHORTEST as f32 - 1.0);
+        values.insert(0, values[0]);
+    }
+    let last = wavelengths.len() - 1;
+    if wavelengths[last] < LONGEST as f32 {
+        wavelengths.push(LONGEST as f32 + 1.0);
+        values.push(values[last]);
+    }
+    Curve::Tabulated { wavelengths, values }
+}
+
+fn curve_of_luminance_one(curve: Curve) -> Option<Curve> {
+    let luminance = observer::xyz(&curve)[1];
+    curve.scaled((1.0 / luminance) as f32)
+}

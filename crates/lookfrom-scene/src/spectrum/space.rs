@@ -1,0 +1,83 @@
+//! Which light do the three numbers of an RGB colour space stand for?
+//!
+//! A space is given by the chromaticities of its primaries and by its white, which is the colour of an illuminant's
+//! spectrum rather than a rounded chromaticity, as in pbrt-v4. Vectors are columns; matrices are lists of rows.
+
+use super::{named, observer};
+
+/// A linear map of three numbers: rows of coefficients.
+pub type Matrix = [[f64; 3]; 3];
+
+/// The RGB spaces that scenes may name, in lower case: primaries and white.
+const SPACES: &[(&str, [[f64; 2]; 3], &str)] = &[
+    ("srgb", [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06]], "stdillum-D65"),
+    ("dci-p3", [[0.68, 0.32], [0.265, 0.69], [0.15, 0.06]], "stdillum-D65"),
+    ("rec2020", [[0.708, 0.292], [0.17, 0.797], [0.131, 0.046]], "stdillum-D65"),
+    ("aces2065-1", [[0.7347, 0.2653], [0.0, 1.0], [0.0001, -0.077]], "illum-acesD60"),
+];
+
+/// The names that [`xyz_from`] and [`rec709_from`] know.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    SPACES.iter().map(|(name, ..)| *name)
+}
+
+/// The XYZ of a space's RGB, of which (1, 1, 1) is its white with Y = 1. Upper and lower case are the same.
+pub fn xyz_from(space: &str) -> Option<Matrix> {
+    let (_, primaries, white) = SPACES.iter().find(|(name, ..)| name.eq_ignore_ascii_case(space))?;
+    let white = observer::xyz(&named(white)?);
+    let columns = primaries.map(|[x, y]| [x / y, 1.0, (1.0 - x - y) / y]);
+    let primaries: Matrix = std::array::from_fn(|row| columns.map(|column| column[row]));
+    // Scale the primaries so that together they are the white.
+    let scale = apply(&inverse(&primaries), white);
+    Some(primaries.map(|row| std::array::from_fn(|i| row[i] * scale[i])))
+}
+
+/// What turns the RGB of light in a space into linear Rec. 709 of the same XYZ; `srgb` gives (nearly) the identity.
+///
+/// The white of `aces2065-1` is warmer than that of Rec. 709 and stays so. For reflectances, whose white reflects all
+/// light, see [`reflectance_rec709_from`].
+pub fn rec709_from(space: &str) -> Option<[[f32; 3]; 3]> {
+    let matrix = product(&inverse(&xyz_from("srgb")?), &xyz_from(space)?);
+    Some(matrix.map(|row| row.map(|value| value as f32)))
+}
+
+/// What turns the RGB of a surface in a space into linear Rec. 709, white into white (adapted as by [`adapted`]).
+pub fn reflectance_rec709_from(space: &str) -> Option<[[f32; 3]; 3]> {
+    let (from, to) = (xyz_from(space)?, xyz_from("srgb")?);
+    let white = |matrix: &Matrix| apply(matrix, [1.0; 3]);
+    let matrix = product(&inverse(&to), &product(&adapted(white(&from), white(&to)), &from));
+    Some(matrix.map(|row| row.map(|value| value as f32)))
+}
+
+/// What colours look under another white: von Kries's scaling of the eye's responses as Bradford sharpened them
+/// (Lam 1985). Maps the XYZ `from` to `to`, if both have the same Y.
+pub fn adapted(from: [f64; 3], to: [f64; 3]) -> Matrix {
+    const BRADFORD: Matrix =
+        [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
+    // Only the chromaticities count.
+    let response = |white: [f64; 3]| apply(&BRADFORD, white.map(|value| value / white[1]));
+    let (from, to) = (response(from), response(to));
+    let scaled: Matrix = std::array::from_fn(|row| BRADFORD[row].map(|value| value * to[row] / from[row]));
+    product(&inverse(&BRADFORD), &scaled)
+}
+
+/// The matrix applied to a column.
+pub fn apply(matrix: &Matrix, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    matrix.map(|[a, b, c]| a * x + b * y + c * z)
+}
+
+/// First the right matrix, then the left one.
+pub fn product(left: &Matrix, right: &Matrix) -> Matrix {
+    left.map(|row| std::array::from_fn(|column| (0..3).map(|i| row[i] * right[i][column]).sum()))
+}
+
+/// The inverse of a matrix that has one.
+pub fn inverse(matrix: &Matrix) -> Matrix {
+    let minor = |row: usize, column: usize| {
+        let (r, s) = ((row + 1) % 3, (row + 2) % 3);
+        let (c, d) = ((column + 1) % 3, (column + 2) % 3);
+        matrix[r][c] * matrix[s][d] - matrix[r][d] * matrix[s][c]
+    };
+    let determinant: f64 = (0..3).map(|column| matrix[0][column] * minor(0, column)).sum();
+    std::array::from_fn(|row| std::array::from_fn(|column| minor(column, row) / determinant))
+}

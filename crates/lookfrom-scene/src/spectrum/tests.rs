@@ -1,0 +1,218 @@
+use std::path::Path;
+
+use super::*;
+use crate::error::ErrorKind;
+use crate::files::{Memory, Sources};
+
+fn read(text: &str) -> crate::Result<Curve> {
+    let files = Memory([("a.spd".into(), text.as_bytes().to_vec())].into());
+    read_spd(Path::new("a.spd"), &mut Sources::new(&files))
+}
+
+#[test]
+fn tables_are_linear_between_entries_and_0_outside() {
+    let curve = Curve::Tabulated { wavelengths: vec![400.0, 500.0, 600.0], values: vec![1.0, 3.0, 2.0] };
+    for (nm, value) in
+        [(399.9, 0.0), (400.0, 1.0), (450.0, 2.0), (500.0, 3.0), (575.0, 2.25), (600.0, 2.0), (600.1, 0.0)]
+    {
+        assert!((curve.at(nm) - value).abs() < 1e-6, "{nm}: {} ≠ {value}", curve.at(nm));
+    }
+    assert_eq!(curve.at(f32::NAN), 0.0);
+    let one = Curve::Tabulated { wavelengths: vec![400.0], values: vec![7.0] };
+    assert_eq!((one.at(399.0), one.at(400.0), one.at(401.0)), (0.0, 7.0, 0.0));
+}
+
+#[test]
+fn a_black_body_follows_planck() {
+    for kelvin in [500.0_f32, 2856.0, 6500.0, 20_000.0] {
+        let curve = Curve::Blackbody { kelvin };
+        let peak = 2.897_772e6 / kelvin;
+        assert!((curve.at(peak) - 1.0).abs() < 1e-6);
+        assert!(curve.at(peak * 1.1) < 1.0 && curve.at(peak * 0.9) < 1.0);
+    }
+    // By hand: Planck at 500 nm over Planck at the peak (1014.6 nm) for 2856 K.
+    let planck = |nm: f64| 1.0 / (nm.powi(5) * ((1.438_776_9e7 / (nm * 2856.0)).exp() - 1.0));
+    let expected = planck(500.0) / planck(2.897_772_1e6 / 2856.0);
+    let curve = Curve::Blackbody { kelvin: 2856.0 };
+    assert!((f64::from(curve.at(500.0)) - expected).abs() < 1e-5);
+    for kelvin in [0.0, -5.0, f32::NAN] {
+        assert_eq!(Curve::Blackbody { kelvin }.at(500.0), 0.0);
+    }
+    for kelvin in [1e-30, 1.0, 1e30] {
+        assert!(Curve::Blackbody { kelvin }.at(500.0).is_finite());
+    }
+    assert_eq!(Curve::Blackbody { kelvin: 6500.0 }.at(0.0), 0.0);
+}
+
+/// The chromaticity of a light.
+fn xy(light: &Curve) -> [f64; 2] {
+    let [x, y, z] = observer::xyz(light);
+    [x / (x + y + z), y / (x + y + z)]
+}
+
+fn near(a: [f64; 2], b: [f64; 2], tolerance: f64) -> bool {
+    (a[0] - b[0]).abs() < tolerance && (a[1] - b[1]).abs() < tolerance
+}
+
+#[test]
+fn lights_have_their_published_chromaticities() {
+    // CIE 15, table T.3; black bodies from Wyszecki and Stiles
+    for (name, expected) in [
+        ("stdillum-A", [0.44758, 0.40745]),
+        // The D50 of pbrt-v4 is bluer than the CIE's, (0.34567, 0.35851).
+        ("stdillum-D50", [0.3368, 0.358]),
+        ("stdillum-D65", [0.31272, 0.32903]),
+        ("stdillum-F2", [0.3721, 0.3751]),
+        ("stdillum-F7", [0.3129, 0.3292]),
+        ("stdillum-F11", [0.3805, 0.3769]),
+        ("illum-acesD60", [0.32168, 0.33767]),
+    ] {
+        let found = xy(&named(name).unwrap());
+        assert!(near(found, expected, 5e-4), "{name}: {found:?} ≠ {expected:?}");
+    }
+    for (kelvin, expected) in
+        [(2856.0, [0.4475, 0.4075]), (6500.0, [0.3135, 0.3237]), (10_000.0, [0.2807, 0.2884])]
+    {
+        let found = xy(&Curve::Blackbody { kelvin });
+        assert!(near(found, expected, 4e-4), "{kelvin} K: {found:?} ≠ {expected:?}");
+    }
+}
+
+#[test]
+fn daylight_of_6500_is_d65() {
+    let (series, table) = (daylight::daylight(6500.0), named("stdillum-D65").unwrap());
+    let scale = table.at(560.0) / series.at(560.0);
+    for nm in (360..=830).step_by(5) {
+        let difference = series.at(nm as f32) * scale - table.at(nm as f32);
+        assert!(difference.abs() < 2e-3, "{nm}: {difference}");
+    }
+    assert!(near(xy(&daylight::daylight(10_000.0)), [0.2788, 0.2919], 1e-3));
+    assert_eq!(daylight::daylight(3000.0), Curve::Blackbody { kelvin: 3000.0 * (1.4388 / 1.4380) });
+    assert!(matches!(daylight::daylight(f32::NAN), Curve::Blackbody { .. }));
+}
+
+#[test]
+fn named_curves_are_whole() {
+    let mut count = 0;
+    for name in names() {
+        let curve = named(name).unwrap_or_else(|| panic!("{name} is in the list"));
+        let Curve::Tabulated { wavelengths, values } = &curve else { panic!("{name} is a table") };
+        assert_eq!(wavelengths.len(), values.len(), "{name}");
+        assert!(wavelengths.windows(2).all(|pair| pair[0] < pair[1]), "{name}: {wavelengths:?}");
+        assert!(values.iter().all(|&value| (0.0..30.0).contains(&value)), "{name}");
+        // Without a gap at the ends
+        assert!(wavelengths[0] <= 360.0 && wavelengths[wavelengths.len() - 1] >= 830.0, "{name}");
+        if name.contains("illum-") {
+            assert!((observer::xyz(&curve)[1] - 1.0).abs() < 1e-6, "{name}");
+        }
+        count += 1;
+    }
+    assert_eq!(count, 14 + 7 + 16 + 3);
+    assert_eq!(named("metal-Au"), None);
+    assert_eq!(named("glass-SF11"), named("glass-F11"));
+}
+
+#[test]
+fn named_curves_have_known_values() {
+    let at = |name: &str, nm: f32| named(name).unwrap().at(nm);
+    // Gold between its entries at 495.94 and 506.06 nm
+    let t = (500.0 - 495.936_7) / (506.057_86 - 495.936_7);
+    assert!((at("metal-Au-k", 500.0) - (1.84 + t * (1.9565 - 1.84))).abs() < 1e-5);
+    assert!((at("metal-Au-eta", 495.936_7) - 0.916).abs() < 1e-5);
+    assert!((at("metal-CuZn-k", 500.0) - 2.25).abs() < 1e-6);
+    assert!((at("metal-TiO2-eta", 559.982) - 2.94).abs() < 1e-4);
+    // n_d of the glasses at the sodium line, from their catalogues
+    for (name, index) in [
+        ("glass-BK7", 1.5168),
+        ("glass-BAF10", 1.67),
+        ("glass-FK51A", 1.48656),
+        ("glass-LASF9", 1.85025),
+        ("glass-SF5", 1.6727),
+        ("glass-SF10", 1.72825),
+        ("glass-SF11", 1.78472),
+    ] {
+        assert!((at(name, 587.56) - index).abs() < 5e-4, "{name}: {}", at(name, 587.56));
+    }
+}
+
+#[test]
+fn the_observer_weighs_green_most() {
+    let [x, y, z] = observer::matching();
+    let integral = |f: &[f32]| f.iter().map(|&v| f64::from(v)).sum::<f64>();
+    assert!((integral(y) / observer::Y_INTEGRAL - 1.0).abs() < 1e-6);
+    // All three have nearly the same integral: equal energy is grey.
+    assert!((integral(x) / integral(y) - 1.0).abs() < 1e-3 && (integral(z) / integral(y) - 1.0).abs() < 1e-3);
+    assert_eq!(y[(555 - 360) as usize], 1.0);
+}
+
+#[test]
+fn spaces_agree_with_their_standards() {
+    // IEC 61966-2-1 and BT.2087
+    let xyz = space::xyz_from("sRGB").unwrap();
+    let expected = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]];
+    for (found, expected) in xyz.iter().flatten().zip(expected.iter().flatten()) {
+        assert!((found - expected).abs() < 3e-4, "{xyz:?}");
+    }
+    let matrix = space::rec709_from("rec2020").unwrap();
+    let expected = [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]];
+    for (found, expected) in matrix.iter().flatten().zip(expected.iter().flatten()) {
+        assert!((found - expected).abs() < 2e-4, "{matrix:?}");
+    }
+    for name in space::names() {
+        let surface = space::reflectance_rec709_from(name).unwrap();
+        let light = space::rec709_from(name).unwrap();
+        for (surface, light) in surface.iter().zip(light) {
+            assert!((surface.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{name}: white stays white");
+            let is_d65 = name != "aces2065-1";
+            assert_eq!((light.iter().sum::<f32>() - 1.0).abs() < 1e-5, is_d65, "{name}");
+        }
+    }
+    assert_eq!(space::rec709_from("cmyk"), None);
+}
+
+#[test]
+fn spd_files_are_read() {
+    let curve = Curve::Tabulated { wavelengths: vec![400.0, 500.5], values: vec![0.5, -2e-3] };
+    for text in
+        ["400 .5\n500.5 -2e-3\n", "# gold\r\n400 0.5 # first\r\n\r\n500.5\t-0.002", "400 .5 500.5 -.002"]
+    {
+        assert_eq!(read(text).unwrap(), curve, "{text:?}");
+    }
+}
+
+#[test]
+fn spd_errors_say_where() {
+    for (text, kind, line, says) in [
+        ("400 1\n500 one", ErrorKind::Syntax, 2, "found `one`"),
+        ("400 1\n\n400 2", ErrorKind::Invalid, 3, "does not lie above"),
+        ("400 nan", ErrorKind::Invalid, 1, "not a finite"),
+        ("400 1\n500", ErrorKind::Syntax, 0, "has no value"),
+        ("# nothing\n", ErrorKind::Invalid, 0, "no wavelength"),
+        ("400,1\n", ErrorKind::Syntax, 1, "found `400,1`"),
+    ] {
+        let error = read(text).unwrap_err();
+        assert_eq!((error.kind, error.at.line), (kind, line), "{text:?}: {error}");
+        assert!(error.message.contains(says) && error.hint.is_some(), "{error}");
+    }
+    let files = Memory([("a.spd".into(), b"400 1 500 2 600 3".to_vec())].into());
+    let mut sources = Sources::new(&files);
+    sources.limits.elements = 2;
+    assert_eq!(read_spd(Path::new("a.spd"), &mut sources).unwrap_err().kind, ErrorKind::Limit);
+    assert_eq!(read_spd(Path::new("b.spd"), &mut sources).unwrap_err().kind, ErrorKind::Io);
+}
+
+#[test]
+fn the_shared_gold_is_ours() {
+    let folder = Path::new("/work/shared/scenes/killeroos/spds");
+    if !folder.exists() {
+        println!("skipped: {} is not here", folder.display());
+        return;
+    }
+    for (file, name) in [("Au.eta.spd", "metal-Au-eta"), ("Au.k.spd", "metal-Au-k")] {
+        let read = read_spd(&folder.join(file), &mut Sources::new(&crate::Disk)).unwrap();
+        let named = named(name).unwrap();
+        for nm in 360..=830 {
+            assert!((read.at(nm as f32) - named.at(nm as f32)).abs() < 1e-5, "{file} at {nm}");
+        }
+    }
+}
