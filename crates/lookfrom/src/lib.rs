@@ -4,6 +4,7 @@
 //! Start reading at [`render`].
 
 pub mod camera;
+pub mod color;
 pub mod develop;
 pub mod distribution;
 pub mod film;

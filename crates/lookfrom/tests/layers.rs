@@ -14,6 +14,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("statistics", &[]),
     ("surface", &["math"]),
     ("warp", &["math"]),
+    ("color", &["math", "spectrum"]),
     ("film", &["spectrum"]),
     ("develop", &["film"]),
     ("sampler", &["hash"]),
