@@ -3,6 +3,7 @@
 //! bytes —read→ [`lookfrom_scene::Scene`] —compile→ [`world::World`] —render→ [`film::Film`] —develop→ pixels.
 //! Start reading at [`render`].
 
+pub mod bsdf;
 pub mod camera;
 pub mod color;
 pub mod develop;

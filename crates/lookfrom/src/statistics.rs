@@ -28,6 +28,23 @@ pub(crate) fn chi_square_deviate(observed: &[u64], expected: &[f64]) -> f64 {
     ((statistic / freedom).cbrt() - (1.0 - spread)) / spread.sqrt()
 }
 
+/// The deviate that the greatest of so many independent normal ones exceeds with a probability of about 0.01.
+pub(crate) fn corrected_bound(tests: usize) -> f64 {
+    let tail = 0.01 / tests as f64;
+    let (mut low, mut high) = (0.0, 40.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if 0.5 * libm::erfc(middle / 2_f64.sqrt()) > tail { low = middle } else { high = middle }
+    }
+    high
+}
+
+#[test]
+fn bounds_of_known_tails() {
+    assert!((corrected_bound(1) - 2.3263).abs() < 1e-3);
+    assert!((corrected_bound(10) - 3.0902).abs() < 1e-3);
+}
+
 #[test]
 fn fair_dice_pass_and_loaded_dice_do_not() {
     let expected = [1000.0; 6];

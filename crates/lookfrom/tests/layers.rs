@@ -15,6 +15,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("surface", &["math"]),
     ("warp", &["math"]),
     ("color", &["math", "spectrum"]),
+    ("bsdf", &["hash", "math", "spectrum", "warp"]),
     ("film", &["spectrum"]),
     ("develop", &["film"]),
     ("sampler", &["hash"]),
