@@ -10,6 +10,7 @@ mod dense;
 mod sensor;
 mod sigmoid;
 mod solve;
+mod table;
 mod wavelengths;
 
 use std::sync::OnceLock;

@@ -3,7 +3,8 @@
 //! A sigmoid of a quadratic polynomial of the wavelength is smooth, stays within [0, 1], and can have almost every colour a
 //! surface can have (Jakob and Hanika 2019). Colours that are the same in red, green and blue are constants.
 
-use super::solve;
+use super::solve::{Measure, solve};
+use super::table::Table;
 use crate::spectrum::Spectrum;
 
 /// A smooth spectrum within [0, 1]: s(a t² + b t + c) with s(x) = ½ + x / (2 √(1 + x²)) and t = (λ − 595 nm) / 235 nm.
@@ -39,23 +40,35 @@ impl Sigmoid {
     /// The spectrum whose colour under D65 is nearly `rgb`, by a table, for textures. Components are clamped to [0, 1]; what
     /// is not a number counts as 0.
     pub fn from_rgb(rgb: [f32; 3]) -> Self {
-        Self::exact_from_rgb(rgb)
+        let rgb = clamped(rgb);
+        if let Some(grey) = grey(rgb) {
+            return Self::constant(grey);
+        }
+        Self(Table::shared().coefficients(rgb))
     }
 
     /// The spectrum whose colour under D65 is `rgb` up to rounding, for the constants of a scene; clamped like
     /// [`Sigmoid::from_rgb`].
     pub fn exact_from_rgb(rgb: [f32; 3]) -> Self {
-        let [r, g, b] = clamped(rgb);
-        if r == g && g == b {
-            return Self::constant(r);
+        let rgb = clamped(rgb);
+        if let Some(grey) = grey(rgb) {
+            return Self::constant(grey);
         }
-        Self(solve::solve([r, g, b].map(f64::from)).map(|coefficient| coefficient as f32))
+        Self(solve(Measure::exact(), rgb.map(f64::from)).map(|coefficient| coefficient as f32))
     }
 }
 
 /// Each component within [0, 1]; what is not a number counts as 0.
 fn clamped(rgb: [f32; 3]) -> [f32; 3] {
-    rgb.map(|component| component.max(0.0).min(1.0))
+    rgb.map(|component| if component > 0.0 { component.min(1.0) } else { 0.0 })
+}
+
+/// The value of a colour without hue. What is so dark that its spectrum would be rounded to 0 is black.
+fn grey([r, g, b]: [f32; 3]) -> Option<f32> {
+    if r.max(g).max(b) < 1e-9 {
+        return Some(0.0);
+    }
+    (r == g && g == b).then_some(r)
 }
 
 /// A spectrum that may exceed 1: a scale times a smooth spectrum of at most ½.
@@ -81,7 +94,7 @@ impl Unbounded {
     }
 
     fn with(rgb: [f32; 3], lift: fn([f32; 3]) -> Sigmoid) -> Self {
-        let rgb = rgb.map(|component| component.max(0.0).min(f32::MAX / 4.0));
+        let rgb = rgb.map(|component| if component > 0.0 { component.min(f32::MAX / 4.0) } else { 0.0 });
         let scale = 2.0 * rgb[0].max(rgb[1]).max(rgb[2]);
         let sigmoid = if scale > 0.0 { lift(rgb.map(|v| v / scale)) } else { Sigmoid::constant(0.0) };
         Self { scale, sigmoid }
