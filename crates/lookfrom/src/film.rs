@@ -1,17 +1,26 @@
 //! How does the light of many samples become one colour a pixel, whatever the order it came in?
 //!
 //! Step 7 on the way of a pixel. Sums of floating-point numbers depend on their order, sums of integers do not. So each
-//! pixel holds three fixed-point sums of 128 bits, 64 of them behind the binary point, and any division of the work
-//! among threads, tiles, passes or machines ends in the same bytes *by construction*. How a picture is shown is left to
-//! [`crate::develop`].
+//! pixel holds three fixed-point sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the
+//! variance; any division of the work among threads, tiles, passes or machines ends in the same bytes *by
+//! construction*. What a camera sees first, for layers, is in [`features`]; how much noise there is, in [`noise`]; what
+//! becomes of single samples that outshine a pixel, in [`fireflies`]. How a picture is shown is left to [`crate::develop`].
 //!
-//! A pixel takes 64 bytes.
+//! A pixel takes 112 bytes, and as much more as [`features`] says where layers are asked for.
 
-use lookfrom_scene::settings::Crop;
+pub mod features;
+mod fireflies;
+mod noise;
+
+use self::features::FeatureSums;
+pub use self::features::Features;
+pub use self::noise::luminance;
+
+use lookfrom_scene::settings::{Crop, Layers};
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 use std::ops::Range;
 
-/// Films have at most this many pixels: 2²⁸, which take 16 GiB.
+/// Films have at most this many pixels: 2²⁸, which take 28 GiB.
 pub const MOST_PIXELS: u64 = 1 << 28;
 
 /// Light is taken for at most this much: 2⁴⁰ in either direction. So the sums hold at least 2²³ samples of the very
@@ -31,6 +40,8 @@ pub struct Film {
 pub struct FilmTile {
     area: Crop,
     pixels: Vec<Pixel>,
+    /// As many as there are pixels, or none.
+    features: Vec<FeatureSums>,
     dropped: u64,
     first_dropped: Option<Address>,
 }
@@ -61,6 +72,8 @@ pub struct Picture {
 struct Pixel {
     /// Multiples of 2⁻⁶⁴. Additions wrap, which keeps them independent of their order even where they overflow.
     sums: [i128; 3],
+    /// Multiples of 2⁻⁴⁸. Additions stop at the end, which is independent of their order, too, where nothing is negative.
+    squares: [u128; 3],
     samples: u64,
 }
 
@@ -69,6 +82,11 @@ impl Film {
     ///
     /// An error if the picture has more than [`MOST_PIXELS`] or there is no memory for it.
     pub fn new(width: u32, height: u32, crop: Option<Crop>) -> Result<Self> {
+        Self::with_layers(width, height, crop, Layers::None)
+    }
+
+    /// As [`Film::new`], with room for what the layers need besides light.
+    pub fn with_layers(width: u32, height: u32, crop: Option<Crop>, layers: Layers) -> Result<Self> {
         let pixels = u64::from(width) * u64::from(height);
         if pixels > MOST_PIXELS {
             return Err(too_large(format!(
@@ -77,7 +95,7 @@ impl Film {
         }
         let whole = Crop { x0: 0, y0: 0, x1: width, y1: height };
         let area = common(whole, crop.unwrap_or(whole));
-        Ok(Self { width, height, tile: FilmTile::new(area)? })
+        Ok(Self { width, height, tile: FilmTile::with_layers(area, layers)? })
     }
 
     /// Columns of the picture.
@@ -131,6 +149,27 @@ impl Film {
         self.tile.pixel(x, y).map_or([0.0; 3], Pixel::mean)
     }
 
+    /// The variance of *one* sample of a pixel in each channel, estimated from its samples (without bias). Divided by
+    /// [`Film::samples`] it is that of the mean of independent samples; well-spread ones vary less. Infinite with fewer
+    /// than two samples, and outside of [`Film::area`]. Squares of more than 2⁸⁰ in all are not counted on.
+    pub fn variance(&self, x: u32, y: u32) -> [f32; 3] {
+        self.tile
+            .pixel(x, y)
+            .map_or([f32::INFINITY; 3], |pixel| pixel.variance().map(|variance| variance as f32))
+    }
+
+    /// What the camera sees first in a pixel, in the mean over its samples ([`Features`] says which); `None` where the
+    /// film has no room for it, where no sample met anything, and outside of [`Film::area`].
+    pub fn features(&self, x: u32, y: u32) -> Option<Features> {
+        let index = self.tile.index(x, y)?;
+        self.tile.features.get(index)?.mean(self.tile.pixels[index].samples)
+    }
+
+    /// Whether there is room for layers.
+    pub fn has_layers(&self) -> bool {
+        self.tile.has_layers()
+    }
+
     /// How many samples a pixel holds, without those that were dropped.
     pub fn samples(&self, x: u32, y: u32) -> u64 {
         self.tile.pixel(x, y).map_or(0, |pixel| pixel.samples)
@@ -166,13 +205,26 @@ impl FilmTile {
     ///
     /// An error if the area has more than [`MOST_PIXELS`] or there is no memory for it.
     pub fn new(area: Crop) -> Result<Self> {
+        Self::with_layers(area, Layers::None)
+    }
+
+    /// As [`FilmTile::new`], with room for what the layers need besides light.
+    pub fn with_layers(area: Crop, layers: Layers) -> Result<Self> {
         let count = u64::from(area.x1.saturating_sub(area.x0)) * u64::from(area.y1.saturating_sub(area.y0));
-        let mut pixels = Vec::new();
-        if count > MOST_PIXELS || pixels.try_reserve_exact(count as usize).is_err() {
-            return Err(too_large(format!("no memory for {count} pixels of 64 bytes")));
+        if count > MOST_PIXELS {
+            return Err(too_large(format!("{count} pixels; at most {MOST_PIXELS} are possible")));
         }
-        pixels.resize(count as usize, Pixel::default());
-        Ok(Self { area, pixels, dropped: 0, first_dropped: None })
+        let pixels = empty(count)?;
+        let features = match layers {
+            Layers::None => Vec::new(),
+            Layers::Geometry => empty(count)?,
+        };
+        Ok(Self { area, pixels, features, dropped: 0, first_dropped: None })
+    }
+
+    /// Whether there is room for layers: whether [`FilmTile::add_features`] does anything.
+    pub fn has_layers(&self) -> bool {
+        !self.features.is_empty()
     }
 
     /// The pixels it covers.
@@ -189,9 +241,7 @@ impl FilmTile {
     /// # Panics
     /// If the pixel is outside of the tile.
     pub fn add(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3]) {
-        let index = self.index(x, y);
-        let index =
-            index.unwrap_or_else(|| panic!("pixel ({x}, {y}) is outside of the tile {:?}", self.area));
+        let index = self.index_inside(x, y);
         if !rgb.iter().all(|light| light.is_finite()) {
             self.drop_samples(1, Some(Address { y, x, sample }));
             return;
@@ -200,7 +250,22 @@ impl FilmTile {
         for (sum, light) in pixel.sums.iter_mut().zip(rgb) {
             *sum = sum.wrapping_add(fixed_point(light));
         }
+        for (sum, light) in pixel.squares.iter_mut().zip(rgb) {
+            *sum = sum.saturating_add(fixed_point_square(light));
+        }
         pixel.samples = pixel.samples.saturating_add(1);
+    }
+
+    /// Adds what the camera's ray of one sample met; for a sample that met nothing, do not call it. Does nothing where
+    /// there is no room for layers, or where not all is finite.
+    ///
+    /// # Panics
+    /// If the pixel is outside of the tile.
+    pub fn add_features(&mut self, x: u32, y: u32, features: &Features) {
+        let index = self.index_inside(x, y);
+        if let Some(sums) = self.features.get_mut(index) {
+            sums.add(features);
+        }
     }
 
     /// Adds what another tile holds within the area of this one.
@@ -212,7 +277,14 @@ impl FilmTile {
                 for (sum, add) in pixel.sums.iter_mut().zip(add.sums) {
                     *sum = sum.wrapping_add(add);
                 }
+                for (sum, add) in pixel.squares.iter_mut().zip(add.squares) {
+                    *sum = sum.saturating_add(add);
+                }
                 pixel.samples = pixel.samples.saturating_add(add.samples);
+            }
+            let (mine, theirs) = (self.row(y, x0, x1), other.row(y, x0, x1));
+            if let (Some(mine), Some(theirs)) = (self.features.get_mut(mine), other.features.get(theirs)) {
+                mine.iter_mut().zip(theirs).for_each(|(sums, add)| sums.merge(add));
             }
         }
         self.drop_samples(other.dropped, other.first_dropped);
@@ -233,6 +305,11 @@ impl FilmTile {
         inside.then(|| (y - y0) as usize * (x1 - x0) as usize + (x - x0) as usize)
     }
 
+    fn index_inside(&self, x: u32, y: u32) -> usize {
+        let index = self.index(x, y);
+        index.unwrap_or_else(|| panic!("pixel ({x}, {y}) is outside of the tile {:?}", self.area))
+    }
+
     /// Where the pixels of columns `from` to before `to` of row `y` are. They must be inside.
     fn row(&self, y: u32, from: u32, to: u32) -> Range<usize> {
         let Crop { x0, y0, x1, .. } = self.area;
@@ -249,9 +326,41 @@ impl Pixel {
         let scale = self.samples as f64 * TWO_TO_64;
         self.sums.map(|sum| (sum as f64 / scale) as f32)
     }
+
+    /// Of one sample, by channel: the mean of the squares less the square of the mean, times n / (n − 1).
+    fn variance(&self) -> [f64; 3] {
+        if self.samples < 2 {
+            return [f64::INFINITY; 3];
+        }
+        let n = self.samples as f64;
+        std::array::from_fn(|channel| {
+            let mean = self.sums[channel] as f64 / (n * TWO_TO_64);
+            let mean_of_squares = self.squares[channel] as f64 / (n * TWO_TO_48);
+            // Rounding leaves a little of equal samples, on either side of zero.
+            (mean_of_squares - mean * mean).max(0.0) * (n / (n - 1.0))
+        })
+    }
 }
 
+const TWO_TO_48: f64 = 281_474_976_710_656.0;
 const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
+
+/// The square of a finite number as a multiple of 2⁻⁴⁸; at most the greatest there is.
+fn fixed_point_square(light: f32) -> u128 {
+    // The square of an f32 is exact in f64; the cast cuts at both ends.
+    let light = f64::from(light.clamp(-BRIGHTEST, BRIGHTEST));
+    (light * light * TWO_TO_48) as u128
+}
+
+/// As many zeros as there is memory for.
+fn empty<T: Clone + Default>(count: u64) -> Result<Vec<T>> {
+    let mut values = Vec::new();
+    if values.try_reserve_exact(count as usize).is_err() {
+        return Err(too_large(format!("no memory for {count} pixels of {} bytes", size_of::<T>())));
+    }
+    values.resize(count as usize, T::default());
+    Ok(values)
+}
 
 /// A finite number as a multiple of 2⁻⁶⁴.
 fn fixed_point(light: f32) -> i128 {

@@ -48,7 +48,52 @@ fn slow_fixed_point(light: f32) -> i128 {
     if light.is_sign_negative() { -magnitude } else { magnitude }
 }
 
+/// The square in multiples of 2⁻⁴⁸, from the bits of an f32.
+fn slow_square(light: f32) -> u128 {
+    let light = light.abs().min(BRIGHTEST);
+    let bits = light.to_bits();
+    let fraction = u128::from(bits & 0x7f_ffff);
+    let (mantissa, power) = match (bits >> 23) as i32 {
+        0 => (fraction, -149),
+        exponent => (fraction | 1 << 23, exponent - 150),
+    };
+    let (square, shift) = (mantissa * mantissa, 2 * power + 48);
+    match shift {
+        0.. if square.leading_zeros() as i32 >= shift => square << shift,
+        0.. => u128::MAX,
+        -127..0 => square >> -shift,
+        _ => 0,
+    }
+}
+
 proptest! {
+    #[test]
+    fn variance_is_the_textbook_one(
+        exponent in -20..20_i32,
+        samples in prop::collection::vec((-1.0..1.0_f64, 0.0..1.0_f64, -60..0_i32), 2..40),
+    ) {
+        // One scale a pixel, and numbers of any size below it.
+        let scale = 2_f64.powi(exponent);
+        let mut film = Film::new(1, 1, None).unwrap();
+        let lights: Vec<[f32; 3]> = samples
+            .iter()
+            .map(|&(a, b, small)| [a * scale, (1.0 + b) * scale, b * scale * 2_f64.powi(small)].map(|x| x as f32))
+            .collect();
+        for (i, &rgb) in lights.iter().enumerate() {
+            film.add(0, 0, i as u32, rgb);
+        }
+        let n = lights.len() as f64;
+        for channel in 0..3 {
+            let values = || lights.iter().map(|rgb| f64::from(rgb[channel]));
+            let mean = values().sum::<f64>() / n;
+            let expected = values().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+            let found = f64::from(film.variance(0, 0)[channel]);
+            // What the squares are cut at, and what the difference of two rounded numbers loses.
+            let allowed = 1e-6 * expected + 2_f64.powi(-46) + 1e-13 * scale * scale;
+            prop_assert!((found - expected).abs() <= allowed, "{channel}: {found} {expected}");
+        }
+    }
+
     #[test]
     fn the_order_does_not_matter(samples in prop::collection::vec(any_sample(), 0..60), seed: u64) {
         let mut other = samples.clone();
@@ -90,15 +135,17 @@ proptest! {
     #[test]
     fn sums_are_the_true_ones(lights in prop::collection::vec(any_light(), 1..60)) {
         let mut film = Film::new(1, 1, None).unwrap();
-        let (mut sum, mut count) = (0_i128, 0_u64);
+        let (mut sum, mut squares, mut count) = (0_i128, 0_u128, 0_u64);
         for (i, &light) in lights.iter().enumerate() {
             film.add(0, 0, i as u32, [light, 0.0, -light]);
             if light.is_finite() {
                 sum += slow_fixed_point(light);
+                squares = squares.saturating_add(slow_square(light));
                 count += 1;
             }
         }
-        prop_assert_eq!(film.tile.pixels[0], Pixel { sums: [sum, 0, -sum], samples: count });
+        let expected = Pixel { sums: [sum, 0, -sum], squares: [squares, 0, squares], samples: count };
+        prop_assert_eq!(film.tile.pixels[0], expected);
         prop_assert_eq!(film.dropped() + count, lights.len() as u64);
         if count > 0 {
             prop_assert_eq!(film.mean(0, 0)[0], (sum as f64 / 2_f64.powi(64) / count as f64) as f32);
@@ -193,8 +240,106 @@ fn a_pixel_outside_of_the_tile_is_a_mistake_of_the_caller() {
 }
 
 #[test]
-fn a_pixel_takes_64_bytes() {
-    assert_eq!(size_of::<Pixel>(), 64);
+fn a_pixel_takes_112_bytes_and_its_layers_176() {
+    assert_eq!((size_of::<Pixel>(), size_of::<FeatureSums>()), (112, 176));
+}
+
+#[test]
+fn the_variance_of_little_and_of_much() {
+    let mut film = Film::new(2, 1, None).unwrap();
+    assert_eq!(film.variance(0, 0), [f32::INFINITY; 3]);
+    film.add(0, 0, 0, [3.0; 3]);
+    assert_eq!(film.variance(0, 0), [f32::INFINITY; 3]);
+    assert_eq!(film.variance(9, 9), [f32::INFINITY; 3]);
+    for sample in 1..1000 {
+        film.add(0, 0, sample, [3.0; 3]);
+    }
+    assert!(film.variance(0, 0).iter().all(|&variance| variance < 1e-12), "{:?}", film.variance(0, 0));
+    // Beyond the end the squares stay there, whatever comes.
+    for sample in 0..100 {
+        film.add(1, 0, sample, [BRIGHTEST, -BRIGHTEST, 1.0]);
+    }
+    assert_eq!(film.tile.pixels[1].squares, [u128::MAX, u128::MAX, 100 << 48]);
+    assert!(film.variance(1, 0).iter().all(|variance| variance.is_finite()));
+}
+
+#[test]
+fn noise_is_relative_to_the_light_and_to_the_mean() {
+    let mut film = Film::new(2, 1, None).unwrap();
+    let area = film.area();
+    assert_eq!(film.relative_error(area, 1.0), f64::INFINITY);
+    // Grey light of 1 ± 1 in one pixel, nothing in the other: the mean of the picture is a half.
+    for sample in 0..64 {
+        film.add(0, 0, sample, if sample % 2 == 0 { [2.0; 3] } else { [0.0; 3] });
+        film.add(1, 0, sample, [0.0; 3]);
+    }
+    assert!((film.mean_luminance() - 0.5).abs() < 1e-6);
+    let error = (64.0_f64 / 63.0 / 64.0).sqrt() / 1.05;
+    assert!((film.relative_error(area, film.mean_luminance()) - error / 2.0).abs() < 1e-6);
+    let right = Crop { x0: 1, y0: 0, x1: 5, y1: 9 };
+    assert_eq!(film.relative_error(right, film.mean_luminance()), 0.0);
+}
+
+#[test]
+fn layers_are_means_whatever_the_order() {
+    let whole = Crop { x0: 0, y0: 0, x1: 2, y1: 1 };
+    let of = |k: f32| Features {
+        albedo: [0.5, k * 0.25, 0.0],
+        ng: [0.0, 0.0, -1.0],
+        ns: [0.6, 0.0, -0.8],
+        position: [k * 1e3, -k, 7.0],
+        depth: 7.0,
+        uv: [k * 1e-3, 0.5],
+    };
+    let mut films = [Film::with_layers(2, 1, None, Layers::Geometry).unwrap(), film_with_layers()];
+    for (film, order) in films.iter_mut().zip([[0, 1, 2], [2, 0, 1]]) {
+        for k in order {
+            let mut tile = FilmTile::with_layers(whole, Layers::Geometry).unwrap();
+            tile.add(0, 0, k, [1.0; 3]);
+            tile.add_features(0, 0, &of(k as f32));
+            film.add_tile(&tile);
+        }
+        // One sample more that meets nothing, and one whose features are no numbers.
+        film.add(0, 0, 3, [1.0; 3]);
+        film.tile.add_features(0, 0, &Features { depth: f32::NAN, ..of(1.0) });
+    }
+    assert!(films[0] == films[1]);
+    let mean = films[0].features(0, 0).unwrap();
+    assert_eq!((mean.albedo, mean.depth), ([0.375, 0.1875, 0.0], 7.0));
+    assert_eq!((mean.position, mean.ng, mean.uv), ([1e3, -1.0, 7.0], [0.0, 0.0, -1.0], [1e-3, 0.5]));
+    assert_eq!((films[0].features(1, 0), films[0].features(9, 9)), (None, None));
+    // Without room for them nothing happens.
+    let mut plain = FilmTile::new(whole).unwrap();
+    plain.add_features(0, 0, &of(1.0));
+    assert!(!plain.has_layers() && plain == FilmTile::new(whole).unwrap());
+}
+
+fn film_with_layers() -> Film {
+    Film::with_layers(2, 1, None, Layers::Geometry).unwrap()
+}
+
+#[test]
+fn fireflies_are_spread_and_the_sum_is_kept() {
+    let mut film = Film::new(9, 9, None).unwrap();
+    for (x, y) in (0..81).map(|i| (i % 9, i / 9)) {
+        for sample in 0..16 {
+            let grain = 1.0 + 0.1 * (mix(u64::from((y * 9 + x) * 16 + sample)) % 1000) as f32 * 1e-3;
+            // A lamp that is always seen, and one sample that found it by chance.
+            let lamp = if (x, y) == (7, 7) { 100.0 } else { 0.0 };
+            let chance = if (x, y, sample) == (2, 3, 5) { 4000.0 } else { 0.0 };
+            film.add(x, y, sample, [grain + lamp + chance, grain + lamp, grain + lamp + 0.5 * chance]);
+        }
+    }
+    let (before, after) = (film.picture(), film.picture_without_fireflies());
+    let at = |picture: &Picture, x: usize, y: usize| picture.pixels[y * 9 + x];
+    assert!(at(&before, 2, 3)[0] > 250.0 && at(&after, 2, 3)[0] < 16.0);
+    assert_eq!(at(&before, 7, 7), at(&after, 7, 7));
+    assert_eq!(at(&before, 2, 6), at(&after, 2, 6), "too far away");
+    assert!(at(&after, 0, 1)[0] > 10.0, "gets its share");
+    for channel in 0..3 {
+        let sum = |picture: &Picture| picture.pixels.iter().map(|rgb| f64::from(rgb[channel])).sum::<f64>();
+        assert!((sum(&before) - sum(&after)).abs() < 1e-4 * sum(&before));
+    }
 }
 
 /// Not a check but a measurement: `cargo test --release -p lookfrom film -- --ignored --nocapture`.

@@ -1,0 +1,53 @@
+//! How much noise is left in a part of a picture?
+//!
+//! A pixel's *relative error* is the standard error of its luminance over its luminance plus a tenth of the picture's mean:
+//! what is much darker than the rest need not be as clean for its own sake. An area's error is the mean over its pixels. The
+//! standard error is taken as if the channels' noise went together (true of grey light, else a little too much) and the
+//! samples were independent (well-spread ones have less noise than it says).
+
+use super::{Film, Pixel};
+use lookfrom_scene::settings::Crop;
+
+/// How much of the picture's mean is added to a pixel's luminance before its error is compared with it.
+const SHARE_OF_MEAN: f64 = 0.1;
+
+/// The luminance of linear Rec. 709.
+pub fn luminance(rgb: [f64; 3]) -> f64 {
+    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
+}
+
+impl Film {
+    /// The mean luminance over [`Film::area`]; 0 for an empty one.
+    pub fn mean_luminance(&self) -> f64 {
+        let pixels = &self.tile.pixels;
+        let sum: f64 = pixels.iter().map(|pixel| luminance(pixel.mean().map(f64::from))).sum();
+        if pixels.is_empty() { 0.0 } else { sum / pixels.len() as f64 }
+    }
+
+    /// The relative error of a part of the picture (what lies outside of [`Film::area`] is left out), where the mean
+    /// luminance of the whole is `mean`: see the file's head. Infinite where a pixel has fewer than two samples, 0 for
+    /// an empty area or a black picture.
+    pub fn relative_error(&self, area: Crop, mean: f64) -> f64 {
+        let Crop { x0, y0, x1, y1 } = super::common(self.tile.area, area);
+        let mut sum = 0.0;
+        for y in y0..y1 {
+            for pixel in &self.tile.pixels[self.tile.row(y, x0, x1)] {
+                let error = pixel.standard_error();
+                if error > 0.0 {
+                    sum +=
+                        error / (luminance(pixel.mean().map(f64::from)).abs() + SHARE_OF_MEAN * mean.abs());
+                }
+            }
+        }
+        let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
+        if pixels == 0 { 0.0 } else { sum / pixels as f64 }
+    }
+}
+
+impl Pixel {
+    /// Of the mean's luminance.
+    pub(super) fn standard_error(&self) -> f64 {
+        let n = self.samples.max(1) as f64;
+        luminance(self.variance().map(|variance| (variance / n).sqrt()))
+    }
+}
