@@ -2,6 +2,8 @@
 //!
 //! Fresnel 1823, for unpolarised light; the form for a complex index of refraction follows Born & Wolf 1959.
 
+use glam::Vec4;
+
 use crate::math;
 use crate::spectrum::Spectrum;
 
@@ -31,11 +33,11 @@ pub(super) fn relative_eta(cos_theta: f32, eta: f32) -> f32 {
 /// for the cosine of the angle to the normal; a negative cosine counts as 0.
 #[inline]
 pub fn conductor(cos_theta: f32, eta: Spectrum, k: Spectrum) -> Spectrum {
-    let cos_theta = cos_theta.clamp(0.0, 1.0);
-    eta.zip(k, |eta, k| conductor_lane(cos_theta, eta.clamp(0.0, GREATEST), k.clamp(0.0, GREATEST)))
-}
-
-fn conductor_lane(cos: f32, eta: f32, k: f32) -> f32 {
+    /// Far below anything real; keeps 0 / 0 away where a lane is unused.
+    const TINY: Vec4 = Vec4::splat(1e-30);
+    let valid = |lanes: Spectrum| Vec4::from_array(lanes.0).max(Vec4::ZERO).min(Vec4::splat(GREATEST));
+    let (eta, k) = (valid(eta), valid(k));
+    let cos = cos_theta.clamp(0.0, 1.0);
     let cos2 = cos * cos;
     let sin2 = 1.0 - cos2;
     // (a + ib)² = (η + ik)² − sin²θ, so a is the real part of the index times the refracted cosine.
@@ -44,14 +46,13 @@ fn conductor_lane(cos: f32, eta: f32, k: f32) -> f32 {
     let modulus = (difference * difference + 4.0 * product * product).sqrt();
     // Of a and b take the greater from the sum that does not cancel, the other from a b = η k.
     let greater = (0.5 * (modulus + difference.abs())).sqrt();
-    let a = if difference >= 0.0 || greater == 0.0 { greater } else { product / greater };
+    let lesser = product / (greater + TINY);
+    let a = Vec4::select(difference.cmpge(Vec4::ZERO), greater, lesser);
     let twice = 2.0 * a * cos;
     let perpendicular = (modulus + cos2 - twice) / (modulus + cos2 + twice);
-    let (even, odd) = (cos2 * modulus + sin2 * sin2, twice * sin2);
-    // Looking straight on there is one polarisation only.
-    let parallel =
-        if even + odd > 0.0 { perpendicular * ((even - odd) / (even + odd)) } else { perpendicular };
-    0.5 * (perpendicular + parallel)
+    // Looking straight on there is one polarisation only: the factor becomes one.
+    let (even, odd) = (cos2 * modulus + sin2 * sin2 + TINY, twice * sin2);
+    Spectrum((0.5 * perpendicular * (1.0 + (even - odd) / (even + odd))).to_array())
 }
 
 /// The index and extinction `(η, k)` of a metal that mirrors `reflectance` of light that falls straight on it, as pbrt

@@ -10,7 +10,8 @@
 //! (exp(−thickness / cos θ) a crossing), walks are cut off after `max_depth` steps, and both sides look the same. Where
 //! pbrt is not right on average, neither is this: under a rough coat `f` weighs two ways out by weights that do not add
 //! up to one (9 % too much for roughness 0.4 on white), and it misses what a particle sends through a smooth coat by way
-//! of a mirror. `sample` is right in both.
+//! of a mirror. `sample` is right in both. (pbrt's issue 187 shows the first.) So the share that light sampling and
+//! `sample` have of a picture must be pbrt's, too, for the pictures to be the same.
 //!
 //! Guo, Hašan & Zhao 2018 (position-free Monte Carlo).
 

@@ -59,14 +59,14 @@ fn whitted() -> Whitted {
     }
 }
 
-/// What has a density: a name for failures, and how finely its lobes must be looked at.
+/// What has a density, and a name for failures.
 fn with_density() -> Vec<(&'static str, Bsdf)> {
     let (eta, k) = gold();
     let of_gold = |x, y| Bsdf::conductor(eta, k, rough(x, y));
     vec![
         ("diffuse", Bsdf::diffuse(Spectrum([0.7, 0.5, 0.3, 0.0]))),
         ("leaf", Bsdf::diffuse_transmission(grey(0.3), grey(0.6))),
-        ("gold 0.5", of_gold(0.5, 0.5)),
+        ("white metal 0.5", Bsdf::conductor(grey(1.0), grey(1e8), rough(0.5, 0.5))),
         ("gold 0.1", of_gold(0.1, 0.1)),
         ("gold 0.4 × 0.1", of_gold(0.4, 0.1)),
         ("gold 1 × 0.3", of_gold(1.0, 0.3)),

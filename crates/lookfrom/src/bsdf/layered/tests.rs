@@ -246,6 +246,28 @@ fn light_goes_both_ways_on_average() {
 }
 
 #[test]
+fn radiance_and_importance_are_scattered_alike() {
+    // What 1/η² takes on the way in, η² gives on the way out; shallow, as chances to give up depend on what is carried.
+    let (wo, wi) = (direction(60.0, 30.0), direction(25.0, 170.0));
+    let close = |a: f32, b: f32| (a - b).abs() <= 1e-4 * a.max(b);
+    for roughness in [TrowbridgeReitz::SMOOTH, TrowbridgeReitz::new(0.3, 0.3)] {
+        let bsdf = Bsdf::coated_diffuse(grey(0.9), &Coat { roughness, max_depth: 4, ..Coat::default() });
+        let f = |mode| bsdf.f(wo, wi, mode).0[0];
+        assert!(close(f(Mode::Radiance), f(Mode::Importance)), "{roughness:?}");
+        let weight = |mode, index| {
+            let (uc, u) = numbers(70, index);
+            bsdf.sample(wo, uc, u, mode, Lobes::ALL).map(|s| s.f.0[0] * s.wi.z.abs() / s.pdf)
+        };
+        for index in 0..200 {
+            match (weight(Mode::Radiance, index), weight(Mode::Importance, index)) {
+                (Some(a), Some(b)) => assert!(close(a, b), "{roughness:?}: {a} {b}"),
+                (a, b) => assert_eq!(a, b),
+            }
+        }
+    }
+}
+
+#[test]
 fn values_are_functions_of_their_arguments() {
     let bsdf = deep()[4].1;
     let (wo, wi) = (direction(60.0, 30.0), direction(25.0, 170.0));
