@@ -84,7 +84,7 @@ pub enum TextureKind {
         /// Where between, not clamped.
         amount: Scalar,
     },
-    /// Between two colours, by how much the shading normal looks along a direction of the world.
+    /// Between two colours, by how much the geometric normal looks along a direction of the world.
     DirectionMix {
         /// Where the normal stands across.
         low: Color,
@@ -193,7 +193,7 @@ pub enum Mapping {
         /// From the world.
         texture_from_world: DMat4,
     },
-    /// Around the z axis of the texture's space: (φ/2π, z).
+    /// Around the z axis of the texture's space: (φ/2π, z), φ from −x by way of −y.
     Cylindrical {
         /// From the world.
         texture_from_world: DMat4,

@@ -4,7 +4,11 @@
 //! textures.
 //!
 //! Perlin 1985 (gradients on a lattice, turbulence) and 2002 (the quintic fade, gradients along the edges of a cube). A
-//! hash of the lattice point takes the place of Perlin's table, so that the pattern does not repeat every 256 units.
+//! hash of the lattice point takes the place of Perlin's table, so that the pattern does not repeat every 256 units; noise by
+//! the table itself is in [`perlin`].
+
+pub mod perlin;
+mod permutation;
 
 use crate::hash::mix;
 use glam::Vec3;

@@ -120,7 +120,7 @@ impl World {
     /// What a texture may depend on at a surface.
     pub fn texture_point(&self, surface: &Surface) -> TexturePoint {
         let world = self.origin + DVec3::from_array(surface.point.position);
-        TexturePoint { uv: surface.uv, world, color: surface.color }
+        TexturePoint { uv: surface.uv, world, color: surface.color, n: surface.ng.as_vec3() }
     }
 
     /// Radiance that a surface gives off toward `wo`.

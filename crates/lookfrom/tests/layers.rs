@@ -23,7 +23,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("filter", &["sampler"]),
     ("distribution", &["sampler"]),
     ("camera", &["math", "warp"]),
-    ("texture", &["noise", "spectrum", "surface"]),
+    ("texture", &["color", "noise", "spectrum"]),
     ("material", &["math", "spectrum", "surface", "texture"]),
     ("shape", &["math", "surface", "texture"]),
     ("light", &["distribution", "math", "shape", "spectrum", "surface", "texture", "warp"]),

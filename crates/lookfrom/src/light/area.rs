@@ -69,8 +69,8 @@ impl AreaLight {
         };
         let Chosen { point, normal, uv, wi, pdf } = chosen;
         let front = normal.dot(wi.as_dvec3()) < 0.0;
-        // The colour of a patterned light is looked up without its place in the world: only uv matters to it.
-        let at = TexturePoint { uv, world: DVec3::ZERO, color: [1.0; 3] };
+        // The colour of a patterned light is looked up without its place in the world: only uv and the normal matter to it.
+        let at = TexturePoint { uv, world: DVec3::ZERO, color: [1.0; 3], n: normal.as_vec3() };
         let li = self.emitted(textures, &at, front);
         (!li.is_black()).then_some(LightSample { wi, li, pdf, target: Target::Surface(point, normal) })
     }

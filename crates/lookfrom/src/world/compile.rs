@@ -98,7 +98,7 @@ impl World {
             instances,
             transmissive: materials.iter().any(|material| material.transmission != Color::BLACK),
             materials,
-            textures: Textures::new(textures, scene.images),
+            textures: Textures::new(textures, scene.images, scene.curves),
             environments: (0..lights.lights.len() as u32).filter(is_environment).collect(),
             lights: lights.lights,
             ambient: lights.ambient,

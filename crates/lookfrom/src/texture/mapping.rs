@@ -1,0 +1,58 @@
+//! Where does a point of a surface lie in a pattern?
+
+use std::f32::consts::PI;
+
+use glam::{DVec2, DVec3, Vec2, Vec3};
+use lookfrom_scene::texture::Mapping;
+
+use super::TexturePoint;
+
+/// Patterns are not followed beyond this; a single-precision number of this size has no fraction long since.
+const FARTHEST: f64 = 1_073_741_824.0;
+
+/// The coordinates in the pattern: (s, t, 0), or x, y and z for [`Mapping::World`]. Always finite.
+pub(super) fn coordinates(mapping: &Mapping, at: &TexturePoint) -> DVec3 {
+    let p = match mapping {
+        Mapping::Uv { scale, offset } => {
+            (at.uv * Vec2::from_array(*scale) + Vec2::from_array(*offset)).as_dvec2().extend(0.0)
+        }
+        Mapping::Spherical { texture_from_world } => {
+            spherical(texture_from_world.transform_point3(at.world)).as_dvec2().extend(0.0)
+        }
+        Mapping::Cylindrical { texture_from_world } => {
+            let p = texture_from_world.transform_point3(at.world);
+            let around = libm::atan2f(p.y as f32, p.x as f32);
+            DVec3::new(f64::from((PI + around) / (2.0 * PI)), p.z, 0.0)
+        }
+        Mapping::Planar { texture_from_world, axes, offset } => {
+            let p = texture_from_world.transform_point3(at.world);
+            let along = DVec2::from_array(axes.map(|axis| p.dot(axis.as_dvec3())));
+            (along + Vec2::from_array(*offset).as_dvec2()).extend(0.0)
+        }
+        Mapping::World { texture_from_world } => texture_from_world.transform_point3(at.world),
+    };
+    p.to_array().map(|x| if x.is_nan() { 0.0 } else { x.clamp(-FARTHEST, FARTHEST) }).into()
+}
+
+/// [`coordinates`], where patterns in space are shifted by an odd little amount, so that surfaces which lie exactly on a
+/// border of two cells (a floor at y = 0) do not flicker between them.
+pub(super) fn off_border(mapping: &Mapping, at: &TexturePoint) -> DVec3 {
+    let p = coordinates(mapping, at);
+    if matches!(mapping, Mapping::World { .. }) { p + DVec3::splat(1.0 / 8192.0) } else { p }
+}
+
+/// (θ/π, φ/2π), both 0 to 1.
+fn spherical(p: DVec3) -> Vec2 {
+    let p = p.normalize_or(DVec3::Z).as_vec3();
+    let theta = libm::atan2f((p.x * p.x + p.y * p.y).sqrt(), p.z);
+    let phi = libm::atan2f(p.y, p.x);
+    Vec2::new(theta / PI, (if phi < 0.0 { phi + 2.0 * PI } else { phi }) / (2.0 * PI))
+}
+
+/// The coordinates on a unit sphere whose poles lie on the y axis: u around from +x toward −z by `atan2(−z, x)`, v from the
+/// south pole.
+pub fn sphere_uv(n: Vec3) -> Vec2 {
+    let u = libm::atan2f(-n.z, n.x) / (2.0 * PI);
+    let v = libm::acosf((-n.y).clamp(-1.0, 1.0)) / PI;
+    Vec2::new(if u < 0.0 { u + 1.0 } else { u }, v)
+}

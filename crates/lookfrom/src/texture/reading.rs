@@ -1,0 +1,134 @@
+//! What do the values of a texture become: numbers, RGB, or values at four wavelengths?
+//!
+//! Leaves (constants, texels, curves) are read by one of these; what stands between them blends what was read. So in
+//! spectral mode it is spectra that are blended, as in pbrt-v4.
+
+use std::ops::{Add, Mul};
+
+use lookfrom_scene::texture::TexelFilter;
+
+use super::{Measured, Usage};
+use crate::color::{Sigmoid, Unbounded, standard_illuminant};
+use crate::spectrum::Spectrum;
+
+/// A way to read leaves.
+pub(super) trait Reading {
+    /// What they become.
+    type Value: Copy + Add<Output = Self::Value> + Mul<f32, Output = Self::Value>;
+
+    /// A colour in linear Rec. 709, or a number three times.
+    fn color(&self, rgb: [f32; 3]) -> Self::Value;
+
+    /// A colour that is a reflectance, whatever the texture is used for.
+    fn reflectance(&self, rgb: [f32; 3]) -> Self::Value;
+
+    /// A pattern's number, which may be negative.
+    fn number(&self, value: f32) -> Self::Value {
+        self.color([value; 3])
+    }
+
+    /// A place of a picture, already scaled; `invert` stands for 1 − value.
+    fn texel(&self, rgb: [f32; 3], invert: bool, _filter: TexelFilter) -> Self::Value {
+        self.color(if invert { rgb.map(|c| 1.0 - c) } else { rgb })
+    }
+
+    /// A curve.
+    fn curve(&self, curve: &Measured) -> Self::Value;
+}
+
+/// As one number.
+pub(super) struct Number;
+
+impl Reading for Number {
+    type Value = f32;
+
+    fn color(&self, rgb: [f32; 3]) -> f32 {
+        mean(rgb)
+    }
+
+    fn reflectance(&self, rgb: [f32; 3]) -> f32 {
+        mean(rgb)
+    }
+
+    fn number(&self, value: f32) -> f32 {
+        value
+    }
+
+    /// The mean of the channels; but pbrt's nearest texel is the first of them.
+    fn texel(&self, rgb: [f32; 3], invert: bool, filter: TexelFilter) -> f32 {
+        let value = match filter {
+            TexelFilter::Nearest => rgb[0],
+            TexelFilter::Bilinear => mean(rgb),
+        };
+        if invert { (1.0 - value).max(0.0) } else { value }
+    }
+
+    fn curve(&self, curve: &Measured) -> f32 {
+        mean(curve.reflectance)
+    }
+}
+
+/// The mean, and exactly the channel where all are the same.
+fn mean([r, g, b]: [f32; 3]) -> f32 {
+    if r == g && g == b { r } else { (r + g + b) / 3.0 }
+}
+
+/// As linear Rec. 709, for a usage.
+pub(super) struct Rgb(pub Usage);
+
+impl Reading for Rgb {
+    type Value = Spectrum;
+
+    fn color(&self, rgb: [f32; 3]) -> Spectrum {
+        Spectrum::from_rgb(within(self.0, rgb))
+    }
+
+    fn reflectance(&self, rgb: [f32; 3]) -> Spectrum {
+        Spectrum::from_rgb(rgb)
+    }
+
+    fn curve(&self, curve: &Measured) -> Spectrum {
+        let rgb = if self.0 == Usage::Illuminant { curve.emission } else { curve.reflectance };
+        Spectrum::from_rgb(within(self.0, rgb))
+    }
+}
+
+/// As values at four wavelengths in nm, for a usage.
+pub(super) struct Lifted<'a> {
+    pub(super) usage: Usage,
+    pub(super) lambda: &'a [f32; 4],
+}
+
+impl Reading for Lifted<'_> {
+    type Value = Spectrum;
+
+    fn color(&self, rgb: [f32; 3]) -> Spectrum {
+        let rgb = within(self.usage, rgb);
+        // A grey is the same at all wavelengths, which needs no table.
+        let is_gray = rgb[0] == rgb[1] && rgb[1] == rgb[2];
+        let values = match self.usage {
+            _ if is_gray => Spectrum([rgb[0]; 4]),
+            Usage::Albedo => Sigmoid::from_rgb(rgb).at(self.lambda),
+            Usage::Unbounded | Usage::Illuminant => Unbounded::from_rgb(rgb).at(self.lambda),
+        };
+        if self.usage == Usage::Illuminant && !values.is_black() {
+            values * standard_illuminant().at(self.lambda)
+        } else {
+            values
+        }
+    }
+
+    fn reflectance(&self, rgb: [f32; 3]) -> Spectrum {
+        Lifted { usage: Usage::Albedo, ..*self }.color(rgb)
+    }
+
+    fn curve(&self, curve: &Measured) -> Spectrum {
+        curve.dense.at(self.lambda)
+    }
+}
+
+/// Not negative, for an albedo at most 1; 0 for what is not a number.
+fn within(usage: Usage, rgb: [f32; 3]) -> [f32; 3] {
+    let rgb = rgb.map(|c| c.max(0.0));
+    if usage == Usage::Albedo { rgb.map(|c| c.min(1.0)) } else { rgb }
+}

@@ -1,0 +1,299 @@
+use super::*;
+use glam::DMat4;
+use lookfrom_scene::scene::ImageId;
+use lookfrom_scene::texture::{Mapping, TexelFilter, Wrap};
+
+const FIRST: TextureId = TextureId(0);
+
+fn at(u: f32, v: f32) -> TexturePoint {
+    TexturePoint { uv: Vec2::new(u, v), world: DVec3::ZERO, color: [1.0; 3], n: Vec3::Y }
+}
+
+fn in_world(x: f64, y: f64, z: f64) -> TexturePoint {
+    TexturePoint { world: DVec3::new(x, y, z), ..at(0.0, 0.0) }
+}
+
+const WORLD: Mapping = Mapping::World { texture_from_world: DMat4::IDENTITY };
+
+fn only(kind: TextureKind) -> Textures {
+    Textures::new(vec![kind], vec![], vec![])
+}
+
+fn number(textures: &Textures, at: &TexturePoint) -> f32 {
+    textures.scalar(Scalar::Texture(FIRST), at)
+}
+
+fn picture(filter: TexelFilter, scale: f32, invert: bool) -> TextureKind {
+    TextureKind::Image { image: ImageId(0), mapping: Mapping::UV, wrap: Wrap::Clamp, filter, scale, invert }
+}
+
+fn two_by_two() -> Image {
+    let texels = vec![[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]];
+    Image { name: String::new(), width: 2, height: 2, texels }
+}
+
+#[test]
+fn texels_sit_where_they_should() {
+    let color = Color::Texture(FIRST);
+    for filter in [TexelFilter::Nearest, TexelFilter::Bilinear] {
+        let textures = Textures::new(vec![picture(filter, 1.0, false)], vec![two_by_two()], vec![]);
+        let rgb = |u, v| textures.rgb(color, Usage::Unbounded, &at(u, v));
+        // v runs up: the top row of the picture is at v near 1
+        assert_eq!(rgb(0.25, 0.75), [0.0; 3]);
+        assert_eq!(rgb(0.75, 0.75), [1.0; 3]);
+        assert_eq!(rgb(0.25, 0.25), [2.0; 3]);
+        if filter == TexelFilter::Bilinear {
+            assert_eq!(rgb(0.5, 0.5), [1.5; 3]);
+            // a quarter of the way between centres, both ways
+            assert_eq!(rgb(0.375, 0.625), [0.75; 3]);
+        }
+        // An albedo is clamped, light is not.
+        assert_eq!(textures.rgb(color, Usage::Albedo, &at(0.25, 0.25)), [1.0; 3]);
+        assert_eq!(textures.rgb(color, Usage::Illuminant, &at(0.25, 0.25)), [2.0; 3]);
+    }
+}
+
+#[test]
+fn a_picture_as_a_number() {
+    let image = Image { name: String::new(), width: 1, height: 1, texels: vec![[0.1, 0.2, 0.6]] };
+    let value = |filter, scale, invert| {
+        number(
+            &Textures::new(vec![picture(filter, scale, invert)], vec![image.clone()], vec![]),
+            &at(0.5, 0.5),
+        )
+    };
+    assert!((value(TexelFilter::Bilinear, 1.0, false) - 0.3).abs() < 1e-6);
+    assert_eq!(value(TexelFilter::Nearest, 1.0, false), 0.1);
+    assert!((value(TexelFilter::Bilinear, 2.0, true) - 0.4).abs() < 1e-6);
+    assert_eq!(value(TexelFilter::Bilinear, 9.0, true), 0.0);
+    assert!((value(TexelFilter::Bilinear, -1.0, false) + 0.3).abs() < 1e-6);
+}
+
+#[test]
+fn a_scaled_picture_is_clamped_after_its_scale() {
+    let image = Image { name: String::new(), width: 1, height: 1, texels: vec![[0.75, 0.5, 0.25]] };
+    let scale =
+        |of: u32, by| TextureKind::Scale { color: Color::Texture(TextureId(of)), by: Scalar::Value(by) };
+    let kinds = vec![picture(TexelFilter::Bilinear, 1.0, true), scale(0, 4.0), scale(1, 0.5)];
+    let textures = Textures::new(kinds, vec![image], vec![]);
+    // 1 − 2 × texel, not 2 × (1 − texel)
+    let rgb = textures.rgb(Color::Texture(TextureId(2)), Usage::Albedo, &at(0.5, 0.5));
+    assert_eq!(rgb, [0.0, 0.0, 0.5]);
+}
+
+#[test]
+fn a_checker_alternates() {
+    let checker =
+        |mapping| only(TextureKind::Checker { even: Color::gray(1.0), odd: Color::gray(0.0), mapping });
+    let squares = checker(Mapping::UV);
+    let found = [(0.5, 0.5), (1.5, 0.5), (-0.5, 0.5), (-0.5, -0.5)].map(|(u, v)| number(&squares, &at(u, v)));
+    assert_eq!(found, [1.0, 0.0, 0.0, 1.0]);
+    let cubes = checker(WORLD);
+    let points = [(0.5, 0.0, 0.5), (1.5, 0.0, 0.5), (-0.5, 0.0, 0.5), (-0.5, 0.0, -0.5), (-0.5, -0.5, -0.5)];
+    let found = points.map(|(x, y, z)| number(&cubes, &in_world(x, y, z)));
+    assert_eq!(found, [1.0, 0.0, 0.0, 1.0, 0.0]);
+}
+
+#[test]
+fn blends() {
+    let (low, high) = (Color::gray(2.0), Color::gray(6.0));
+    let mix =
+        |amount| number(&only(TextureKind::Mix { low, high, amount: Scalar::Value(amount) }), &at(0.0, 0.0));
+    assert_eq!([0.0, 0.25, 1.0, 1.5].map(mix), [2.0, 3.0, 6.0, 8.0]);
+
+    let along = only(TextureKind::DirectionMix { low, high, direction: Vec3::Y });
+    let tilted = |n| number(&along, &TexturePoint { n, ..at(0.0, 0.0) });
+    assert_eq!([Vec3::Y, Vec3::NEG_Y, Vec3::X].map(tilted), [6.0, 6.0, 2.0]);
+    assert!((tilted(Vec3::new(0.8, -0.6, 0.0)) - 4.4).abs() < 1e-6);
+
+    let corners = [1.0, 2.0, 3.0, 5.0].map(Color::gray);
+    let bilinear = only(TextureKind::Bilinear { corners, mapping: Mapping::UV });
+    let found = [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.5, 0.25)]
+        .map(|(u, v)| number(&bilinear, &at(u, v)));
+    assert_eq!(found, [1.0, 2.0, 3.0, 5.0, 2.375]);
+
+    let scale = |by| TextureKind::Scale { color: Color::Value([0.5, 1.0, 2.0]), by };
+    let by_a_number = only(scale(Scalar::Value(2.0)));
+    assert_eq!(by_a_number.rgb(Color::Texture(FIRST), Usage::Unbounded, &at(0.0, 0.0)), [1.0, 2.0, 4.0]);
+    let kinds =
+        vec![scale(Scalar::Texture(TextureId(1))), TextureKind::Bilinear { corners, mapping: Mapping::UV }];
+    let by_a_texture = Textures::new(kinds, vec![], vec![]);
+    assert_eq!(by_a_texture.rgb(Color::Texture(FIRST), Usage::Unbounded, &at(1.0, 0.0)), [1.5, 3.0, 6.0]);
+}
+
+#[test]
+fn mappings() {
+    let place = |mapping: &Mapping, x, y, z| mapping::coordinates(mapping, &in_world(x, y, z)).to_array();
+    let near = |found: [f64; 3], expected: [f64; 3]| {
+        let error = (DVec3::from(found) - DVec3::from(expected)).length();
+        assert!(error < 1e-6, "{found:?}, not {expected:?}");
+    };
+    let texture_from_world = DMat4::from_translation(DVec3::new(0.0, 0.0, -1.0));
+    let spherical = Mapping::Spherical { texture_from_world };
+    near(place(&spherical, 0.0, 0.0, 3.0), [0.0, 0.0, 0.0]);
+    near(place(&spherical, 2.0, 0.0, 1.0), [0.5, 0.0, 0.0]);
+    near(place(&spherical, 0.0, 2.0, 1.0), [0.5, 0.25, 0.0]);
+    near(place(&spherical, 0.0, -1.0, 2.0), [0.25, 0.75, 0.0]);
+    near(place(&spherical, 0.0, 0.0, 1.0), [0.0, 0.0, 0.0]);
+    let cylindrical = Mapping::Cylindrical { texture_from_world };
+    near(place(&cylindrical, 3.0, 0.0, 5.0), [0.5, 4.0, 0.0]);
+    near(place(&cylindrical, 0.0, 1.0, 0.0), [0.75, -1.0, 0.0]);
+    near(place(&cylindrical, -1.0, -1e-12, 0.0), [0.0, -1.0, 0.0]);
+    let axes = [Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 1.0)];
+    let planar = Mapping::Planar { texture_from_world, axes, offset: [0.5, -0.5] };
+    near(place(&planar, 1.0, 2.0, 3.0), [2.5, 3.5, 0.0]);
+    near(place(&Mapping::World { texture_from_world }, 1.0, 2.0, 3.0), [1.0, 2.0, 2.0]);
+    let uv = Mapping::Uv { scale: [2.0, 3.0], offset: [0.25, 0.5] };
+    near(mapping::coordinates(&uv, &at(0.5, 1.0)).to_array(), [1.25, 3.5, 0.0]);
+}
+
+#[test]
+fn dots_are_round_and_stay_in_their_cells() {
+    let dots =
+        only(TextureKind::Dots { inside: Color::gray(1.0), outside: Color::gray(0.0), mapping: Mapping::UV });
+    let (mut with, mut steps) = (0, 0);
+    for cell in 0..400 {
+        let (i, j) = ((cell % 20) as f32, (cell / 20) as f32);
+        let mut area = 0;
+        for step in 0..400 {
+            let (x, y) = ((step % 20) as f32 / 20.0 - 0.475, (step / 20) as f32 / 20.0 - 0.475);
+            area += number(&dots, &at(i + x, j + y)) as u32;
+        }
+        // π 0.35² of a cell, or nothing
+        let part = area as f32 / 400.0;
+        assert!(part == 0.0 || (part - 0.385).abs() < 0.03, "{part}");
+        with += u32::from(area > 0);
+        steps += 1;
+    }
+    assert!((0.3..0.7).contains(&(with as f32 / steps as f32)), "{with} of {steps}");
+}
+
+#[test]
+fn patterns_of_noise() {
+    let p = Vec3::new(3.3, -0.4, 7.9);
+    let here = in_world(3.3, -0.4, 7.9);
+    let fbm = only(TextureKind::Fbm { octaves: 5, roughness: 0.7, mapping: WORLD });
+    assert_eq!(number(&fbm, &here), perlin::fbm(p, 0.7, 5));
+    let wrinkled = only(TextureKind::Wrinkled { octaves: 5, roughness: 0.7, mapping: WORLD });
+    assert_eq!(number(&wrinkled, &here), perlin::turbulence(p, 0.7, 5));
+    let windy = only(TextureKind::Windy { mapping: WORLD });
+    assert_eq!(number(&windy, &here), perlin::fbm(0.1 * p, 0.5, 3).abs() * perlin::fbm(p, 0.5, 6));
+
+    // Without variation the marble's colours are those of the palette's curve.
+    let kind =
+        TextureKind::PbrtMarble { octaves: 8, roughness: 0.5, scale: 2.0, variation: 0.0, mapping: WORLD };
+    let marble = only(kind);
+    let rgb = |y| marble.rgb(Color::Texture(FIRST), Usage::Albedo, &in_world(0.0, y, 0.0));
+    let near = |found: [f32; 3], expected: [f32; 3]| {
+        assert!((0..3).all(|c| (found[c] - expected[c]).abs() < 1e-5), "{found:?}, not {expected:?}");
+    };
+    let quarter = std::f64::consts::FRAC_PI_4;
+    near(rgb(-quarter), [0.87, 0.87, 0.9]);
+    near(rgb(quarter), [0.87, 0.87, 0.9]);
+    // sin 0 = 0: the middle of the six segments, where the fourth curve begins
+    near(rgb(0.0), [0.75, 0.75, 0.75]);
+}
+
+#[test]
+fn spectra_seen_in_daylight_have_their_colors() {
+    let lambda: Vec<f32> = (360..=830).map(|nm| nm as f32).collect();
+    let texels: Vec<[f32; 3]> =
+        (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|c| c as f32 * 0.45 + 0.05)).collect();
+    let image = Image { name: String::new(), width: 27, height: 1, texels: texels.clone() };
+    let textures = Textures::new(vec![picture(TexelFilter::Nearest, 1.0, false)], vec![image], vec![]);
+    let curve_of = |color, usage, at: &TexturePoint| -> Vec<f32> {
+        let spectral = |nm: &f32| {
+            let lanes = Lanes::Spectral(Wavelengths { lambda: [*nm; 4], pdf: [1.0; 4] });
+            textures.spectrum(color, usage, at, &lanes).0[2]
+        };
+        lambda.iter().map(spectral).collect()
+    };
+    for (i, texel) in texels.iter().enumerate() {
+        let here = at((i as f32 + 0.5) / 27.0, 0.5);
+        let dense = |usage| {
+            let values = curve_of(Color::Texture(FIRST), usage, &here);
+            Dense::from_samples(std::array::from_fn(|i| values[i]))
+        };
+        let found = [
+            dense(Usage::Albedo).to_rgb_reflectance(),
+            dense(Usage::Unbounded).to_rgb_reflectance(),
+            dense(Usage::Illuminant).to_rgb(),
+        ];
+        for (usage, found) in ["albedo", "unbounded", "illuminant"].iter().zip(found) {
+            assert!((0..3).all(|c| (found[c] - texel[c]).abs() < 1e-2), "{usage}: {found:?}, not {texel:?}");
+        }
+    }
+}
+
+#[test]
+fn spectra_are_blended_and_curves_read() {
+    let lanes = Lanes::Spectral(Wavelengths { lambda: [450.0, 500.0, 550.0, 600.0], pdf: [1.0; 4] });
+    let curves = vec![
+        Curve::Constant(0.5),
+        Curve::Tabulated { wavelengths: vec![400.0, 600.0], values: vec![0.0, 1.0] },
+    ];
+    let red = Color::Value([0.8, 0.1, 0.1]);
+    let ramp = Color::Curve(CurveId(1));
+    let kinds = vec![TextureKind::Mix { low: red, high: ramp, amount: Scalar::Value(0.25) }];
+    let textures = Textures::new(kinds, vec![], curves);
+    let spectrum = |color| textures.spectrum(color, Usage::Albedo, &at(0.0, 0.0), &lanes);
+    let expected = spectrum(red) * 0.75 + Spectrum([0.25, 0.5, 0.75, 1.0]) * 0.25;
+    assert_eq!(spectrum(Color::Texture(FIRST)), expected);
+    // A grey needs no table, and is what it is; a curve is what it is in RGB, too.
+    assert_eq!(spectrum(Color::gray(0.3)), Spectrum([0.3; 4]));
+    let rgb = textures.rgb(Color::Curve(CurveId(0)), Usage::Albedo, &at(0.0, 0.0));
+    assert!(rgb.iter().all(|c| (c - 0.5).abs() < 1e-5), "{rgb:?}");
+    assert_eq!(textures.curve(CurveId(0)).max(), 0.5);
+}
+
+#[test]
+fn nothing_is_nan_anywhere() {
+    let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1e20, 3e9, 1e-40, -0.0];
+    let (a, b, octaves, roughness) = (Color::gray(0.2), Color::Value([0.1, 0.5, 0.9]), 4, 0.5);
+    let identity = DMat4::IDENTITY;
+    let axes = [Vec3::X, Vec3::Y];
+    let mappings = [
+        Mapping::UV,
+        Mapping::Spherical { texture_from_world: identity },
+        Mapping::Cylindrical { texture_from_world: identity },
+        Mapping::Planar { texture_from_world: identity, axes, offset: [0.0; 2] },
+        WORLD,
+    ];
+    for mapping in mappings {
+        let mut kinds = vec![
+            TextureKind::Checker { even: a, odd: b, mapping },
+            TextureKind::Noise { low: a, high: b, octaves, mapping },
+            TextureKind::Marble { vein: a, base: b, octaves, turbulence: 3.0, mapping },
+            TextureKind::Bilinear { corners: [a, b, a, b], mapping },
+            TextureKind::Dots { inside: a, outside: b, mapping },
+            TextureKind::Fbm { octaves, roughness, mapping },
+            TextureKind::Wrinkled { octaves, roughness, mapping },
+            TextureKind::Windy { mapping },
+            TextureKind::PbrtMarble { octaves, roughness, scale: 1.0, variation: 0.2, mapping },
+        ];
+        for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black] {
+            for filter in [TexelFilter::Bilinear, TexelFilter::Nearest] {
+                kinds.push(TextureKind::Image {
+                    image: ImageId(0),
+                    mapping,
+                    wrap,
+                    filter,
+                    scale: 1.0,
+                    invert: false,
+                });
+            }
+        }
+        let textures = Textures::new(kinds.clone(), vec![two_by_two()], vec![]);
+        for (index, kind) in kinds.iter().enumerate() {
+            for u in wild {
+                for v in wild {
+                    let world = DVec3::new(u.into(), v.into(), u.into());
+                    let point = TexturePoint { world, ..at(u, v) };
+                    let color = Color::Texture(TextureId(index as u32));
+                    let rgb = textures.rgb(color, Usage::Unbounded, &point);
+                    assert!(rgb.iter().all(|c| c.is_finite()), "{kind:?} at {u}, {v}: {rgb:?}");
+                }
+            }
+        }
+    }
+}
