@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use lookfrom_scene::spectrum::observer::{self, SAMPLES};
-use lookfrom_scene::spectrum::{Curve, LONGEST, SHORTEST, named};
+use lookfrom_scene::spectrum::{Curve, SHORTEST, named};
 
 use super::rgb_from_xyz;
 use crate::spectrum::Spectrum;
@@ -31,7 +31,8 @@ impl Dense {
 
     /// The value at each wavelength in nm; 0 outside 360 … 830.
     pub fn at(&self, lambda: &[f32; 4]) -> Spectrum {
-        Spectrum(lambda.map(|nm| nearest(nm).map_or(0.0, |i| self.0[i])))
+        let at = |nm: f32| nearest(nm).map_or(0.0, |i| self.0[i]);
+        Spectrum([at(lambda[0]), at(lambda[1]), at(lambda[2]), at(lambda[3])])
     }
 
     /// The same curve times a factor.
@@ -77,9 +78,9 @@ impl Dense {
 
 /// The number of the sample that is nearest to a wavelength in nm, if it lies within.
 pub(super) fn nearest(nm: f32) -> Option<usize> {
-    let rounded = nm + 0.5;
-    (rounded >= SHORTEST as f32 && rounded < (LONGEST + 1) as f32)
-        .then(|| rounded as usize - SHORTEST as usize)
+    // What is below 0 or not a number becomes 0, which is outside, too.
+    let i = ((nm + 0.5) as u32).wrapping_sub(SHORTEST) as usize;
+    (i < SAMPLES).then_some(i)
 }
 
 /// D65 with Y = 1: the white of Rec. 709, whose RGB is (1, 1, 1).

@@ -2,8 +2,9 @@
 //!
 //! The table of pbrt-v4, coefficients over the lattice of the greatest component and the ratios of the other two to it, 3 × 64³
 //! (Jakob and Hanika 2019), with the same interpolation. Between its nodes colours are off by some 5 · 10⁻⁴, dark saturated
-//! ones by a few per cent: to agree with pbrt is to have the same errors. Nodes are solved when they are first asked for, so
-//! that nothing is computed at the start and nothing is stored on disk; a node's solution depends on nothing but its place.
+//! ones by a few per cent: to agree with pbrt is to have the same errors. (Not where all components are below 4 · 10⁻⁴: there
+//! its optimisation stops early.) Nodes are solved when they are first asked for, so that nothing is computed at the start and
+//! nothing is stored on disk; a node's solution depends on nothing but its place.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -65,39 +66,57 @@ impl Table {
         let k = self.levels.partition_point(|&level| level < z).saturating_sub(1).min(NODES - 2);
         let (x, y) = (x - i as f32, y - j as f32);
         let z = (z - self.levels[k]) / (self.levels[k + 1] - self.levels[k]);
-        // Interpolate along x, y, z
-        let between = |a: [f32; 3], b: [f32; 3], t: f32| std::array::from_fn(|c| a[c] * (1.0 - t) + b[c] * t);
-        let row =
-            |k: usize, j: usize| between(self.node(greatest, k, j, i), self.node(greatest, k, j, i + 1), x);
-        let plane = |k: usize| between(row(k, j), row(k, j + 1), y);
-        between(plane(k), plane(k + 1), z)
-    }
-
-    /// The coefficients of a node.
-    fn node(&self, greatest: usize, k: usize, j: usize, i: usize) -> [f32; 3] {
-        // The plane of black has no solution; what is darker than the next plane looks like it.
-        let k = k.max(1);
-        let [a, b, c] = &self.nodes[((greatest * NODES + k) * NODES + j) * NODES + i];
-        // Whoever finds c finds a and b, too: c is written last and read first.
-        let bits = c.load(Ordering::Acquire);
-        if bits != 0 {
-            return [a.load(Ordering::Relaxed), b.load(Ordering::Relaxed), bits].map(f32::from_bits);
+        // The mean of the cell's corners, each weighed by how near it is
+        let first = number(greatest, k, j, i);
+        let mut mean = [0.0; 3];
+        for (plane, z) in [1.0 - z, z].into_iter().enumerate() {
+            for (row, y) in [1.0 - y, y].into_iter().enumerate() {
+                for (column, x) in [1.0 - x, x].into_iter().enumerate() {
+                    let node = self.node(first + (plane * NODES + row) * NODES + column);
+                    let weight = x * y * z;
+                    mean =
+                        [mean[0] + weight * node[0], mean[1] + weight * node[1], mean[2] + weight * node[2]];
+                }
+            }
         }
-        let solved = self.solved(greatest, k, j, i);
-        a.store(solved[0].to_bits(), Ordering::Relaxed);
-        b.store(solved[1].to_bits(), Ordering::Relaxed);
-        // A c of +0 would be taken for a node that is not there; −0 means the same.
-        let bits = solved[2].to_bits();
-        c.store(if bits == 0 { (-0.0_f32).to_bits() } else { bits }, Ordering::Release);
-        solved
+        mean
     }
 
-    /// Solves a node, from its neighbour on a lattice eight times as coarse.
+    /// The coefficients of a node by its number.
+    #[inline(always)]
+    fn node(&self, at: usize) -> [f32; 3] {
+        let [a, b, c] = &self.nodes[at];
+        // Whoever finds c finds a and b, too: c is written last and read first.
+        match c.load(Ordering::Acquire) {
+            0 => self.solved(at),
+            bits => {
+                let [a, b] = [a.load(Ordering::Relaxed), b.load(Ordering::Relaxed)];
+                [f32::from_bits(a), f32::from_bits(b), f32::from_bits(bits)]
+            }
+        }
+    }
+
+    /// Solves a node and keeps the solution.
     #[cold]
-    fn solved(&self, greatest: usize, k: usize, j: usize, i: usize) -> [f32; 3] {
+    fn solved(&self, at: usize) -> [f32; 3] {
+        let [i, j, k] = [at, at / NODES, at / NODES / NODES].map(|quotient| quotient % NODES);
+        let solution = self.solution(at / NODES / NODES / NODES, k, j, i);
+        let [a, b, c] = &self.nodes[at];
+        a.store(solution[0].to_bits(), Ordering::Relaxed);
+        b.store(solution[1].to_bits(), Ordering::Relaxed);
+        // A c of +0 would be taken for a node that is not there; −0 means the same.
+        let bits = solution[2].to_bits();
+        c.store(if bits == 0 { (-0.0_f32).to_bits() } else { bits }, Ordering::Release);
+        solution
+    }
+
+    /// The coefficients at a place, from its neighbour on a lattice eight times as coarse.
+    fn solution(&self, greatest: usize, k: usize, j: usize, i: usize) -> [f32; 3] {
         if (j, i) == (NODES - 1, NODES - 1) && k >= WHITE_PLANE {
             return WHITE;
         }
+        // The plane of black has no solution; what is darker than the next plane looks like it.
+        let k = k.max(1);
         let z = f64::from(self.levels[k]);
         let mut rgb = [z; 3];
         rgb[(greatest + 1) % 3] *= i as f64 / (NODES - 1) as f64;
@@ -109,10 +128,16 @@ impl Table {
         } else {
             // Of dark spectra, those that are s times as dark have coefficients 1/√s times as great.
             let darker = (f64::from(self.levels[coarse.0]) / z).sqrt();
-            let guess =
-                self.node(greatest, coarse.0, coarse.1, coarse.2).map(|value| f64::from(value) * darker);
+            let guess = self
+                .node(number(greatest, coarse.0, coarse.1, coarse.2))
+                .map(|value| f64::from(value) * darker);
             newton(measure, rgb, guess).unwrap_or_else(|| solve(measure, rgb))
         };
         found.map(|coefficient| coefficient as f32)
     }
+}
+
+/// Where a node is kept.
+fn number(greatest: usize, k: usize, j: usize, i: usize) -> usize {
+    ((greatest * NODES + k) * NODES + j) * NODES + i
 }

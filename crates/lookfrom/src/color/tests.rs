@@ -1,5 +1,9 @@
+use std::path::Path;
+
+use lookfrom_scene::image::read_exr;
 use lookfrom_scene::spectrum::daylight::daylight;
 use lookfrom_scene::spectrum::{Curve, named};
+use lookfrom_scene::{Disk, Sources};
 use proptest::prelude::*;
 
 use super::table::Table;
@@ -79,6 +83,40 @@ fn the_table_agrees_with_the_published_one() {
 }
 
 #[test]
+fn the_walls_of_the_cornell_box_are_those_of_pbrt() {
+    let path = Path::new("/work/shared/reference/cornell-box.exr");
+    if !path.exists() {
+        println!("skipped: {} is not here", path.display());
+        return;
+    }
+    let picture = read_exr(path, &mut Sources::new(&Disk)).unwrap();
+    // The mean of all pixels that are nearly of a colour; pbrt's albedo is seen under D65.
+    let mean = |layer: &str, near: [f32; 3]| {
+        let channels = ["R", "G", "B"].map(|name| picture.channel(&format!("{layer}{name}")).unwrap());
+        let (mut sum, mut count) = ([0.0; 3], 0.0);
+        for i in 0..channels[0].len() {
+            let pixel = channels.map(|values| values[i]);
+            if pixel.iter().zip(near).all(|(value, near)| (value / near - 1.0).abs() < 0.05) {
+                sum = std::array::from_fn(|c| sum[c] + f64::from(pixel[c]));
+                count += 1.0;
+            }
+        }
+        assert!(count > 100.0, "{layer} {near:?}: {count} pixels");
+        sum.map(|sum| (sum / count) as f32)
+    };
+    for rgb in [[0.63, 0.065, 0.05], [0.14, 0.45, 0.091], [0.725, 0.71, 0.68]] {
+        let sigmoid = Sigmoid::from_rgb(rgb);
+        let (ours, theirs) = (color_of(|lambda| sigmoid.at(lambda)), mean("Albedo.", rgb));
+        for (ours, theirs) in ours.into_iter().zip(theirs) {
+            assert!((ours / theirs - 1.0).abs() < 6e-4, "{rgb:?}: {ours} ≠ {theirs}");
+        }
+    }
+    let light = Unbounded::from_rgb([17.0, 12.0, 4.0]);
+    let (ours, theirs) = (color_of(|lambda| light.at(lambda)), mean("", [17.0, 12.0, 4.0]));
+    assert!(far(ours, theirs) < 0.1, "{ours:?} ≠ {theirs:?}");
+}
+
+#[test]
 fn greys_are_constant() {
     let lambda = [360.0, 500.0, 641.7, 830.0];
     for (v, tolerance) in [(0.0, 0.0), (1e-30, 1e-7), (1e-3, 1e-7), (0.5, 0.0), (0.893289, 1e-7), (1.0, 0.0)]
@@ -125,6 +163,30 @@ fn the_order_of_questions_does_not_matter() {
     let ask = || colors.iter().map(|&rgb| third.coefficients(rgb)).collect::<Vec<_>>();
     let (a, b) = rayon::join(ask, ask);
     assert!(a == forwards && b == forwards && ask() == forwards);
+}
+
+#[test]
+fn colors_have_the_same_bits_everywhere() {
+    // FNV-1a over what reaches a pixel
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut feed = |values: &[f32]| {
+        for byte in values.iter().flat_map(|value| value.to_bits().to_le_bytes()) {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    };
+    let sensor = Sensor::new(1.0, Some(5000.0));
+    for (rgb, u) in cube(6).zip(even(216)) {
+        let wavelengths = Wavelengths::sample_visible(u);
+        feed(&wavelengths.lambda);
+        let light =
+            Unbounded::from_rgb(rgb).at(&wavelengths.lambda) * standard_illuminant().at(&wavelengths.lambda);
+        feed(&light.0);
+        feed(&Sigmoid::exact_from_rgb(rgb).at(&wavelengths.lambda).0);
+        feed(&sensor.rgb(light, &wavelengths));
+    }
+    let lamp = Dense::from(&Curve::Blackbody { kelvin: 3000.0 });
+    feed(lamp.samples());
+    assert_eq!(hash, 0xdbcb_e851_7a5f_f176, "{hash:#018x}");
 }
 
 #[test]
