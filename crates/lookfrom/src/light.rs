@@ -21,7 +21,7 @@ use crate::texture::{Lanes, TexturePoint, Textures, Usage};
 use cone::Cone;
 use tree::Bundle;
 
-pub use area::{AreaLight, LightForm, LightTriangle};
+pub use area::{AreaLight, Extent, LightForm, LightPoint, MeshLight, PatchLight, QuadricLight};
 pub use choice::LightChoice;
 pub use environment::{Environment, Layout, Sky, SkyImage};
 pub use picture::{Goniometric, Projection};

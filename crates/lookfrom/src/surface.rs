@@ -4,6 +4,7 @@
 
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
+use lookfrom_scene::material::Scalar;
 
 /// A point of a surface, seen from a direction.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +17,15 @@ pub struct Surface {
     pub ns: Vec3,
     /// Texture coordinates.
     pub uv: Vec2,
+    /// Derivative of the position by the first texture coordinate: for footprints of textures.
+    pub dpdu: Vec3,
+    /// By the second one.
+    pub dpdv: Vec3,
+    /// Those of the smoothed surface, for relief and brushed metal: where there is smoothing, across `ns` and with
+    /// the mesh's tangents in place of `dpdu` where it has some.
+    pub shading_dpdu: Vec3,
+    /// By the second one.
+    pub shading_dpdv: Vec3,
     /// The mesh's own linear colour here; white where it has none.
     pub color: [f32; 3],
     /// Back to where the ray came from, unit length.
@@ -26,8 +36,14 @@ pub struct Surface {
     pub material: u32,
     /// Index into the world's area lights, where the surface shines.
     pub light: Option<u32>,
+    /// The part of the surface that is there; `None` is all of it.
+    pub alpha: Option<Scalar>,
     /// Which shape of the scene, counted over the whole world.
     pub shape: u32,
+    /// Which primitive of its form: of a mesh, the triangle.
+    pub primitive: u32,
+    /// The kernel's u and v: where on the primitive.
+    pub on_primitive: Vec2,
 }
 
 impl Surface {

@@ -7,14 +7,15 @@ mod compile;
 mod lights;
 mod place;
 
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Bvh, Hit, NONE, Ray};
+use lookfrom_scene::material::Scalar;
 
 use crate::camera::{Camera, CameraRay};
 use crate::light::{Environment, Light};
 use crate::material::Material;
 use crate::math;
-use crate::shape::{Form, FormPoint, Look};
+use crate::shape::{Form, FormPoint};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::texture::{TexturePoint, Textures};
@@ -36,6 +37,8 @@ pub struct World {
     pub instances: Vec<Instance>,
     /// Looks of surfaces.
     pub materials: Vec<Material>,
+    /// Parts of surfaces that are there, see [`Look::alpha`](crate::shape::Look::alpha).
+    pub alphas: Vec<Scalar>,
     /// Colours over surfaces.
     pub textures: Textures,
     /// Lights to be sampled.
@@ -72,8 +75,6 @@ pub struct Instance {
     pub object_from_render: DMat4,
     /// Takes the place of the materials in the object.
     pub material: Option<u32>,
-    /// Takes the place of the whole look (of an object that only one shape repeats).
-    pub look: Option<Look>,
 }
 
 impl World {
@@ -95,7 +96,7 @@ impl World {
     /// The surface that `ray` met.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-        let FormPoint { point, ng, ns, uv, color, look } = match self.form(hit) {
+        let of_form = match self.form(hit) {
             (form, None) => form.point(hit, origin, direction),
             (form, Some(instance)) => {
                 let (origin, direction) = instance.in_object(origin, direction);
@@ -103,17 +104,25 @@ impl World {
             }
         };
         let wo = -direction.normalize();
+        let FormPoint { point, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, color, look } = of_form;
         Surface {
             point,
             ng,
             ns: ns.as_vec3(),
             uv,
+            dpdu: dpdu.as_vec3(),
+            dpdv: dpdv.as_vec3(),
+            shading_dpdu: shading_dpdu.as_vec3(),
+            shading_dpdv: shading_dpdv.as_vec3(),
             color,
             wo: wo.as_vec3(),
             front: ng.dot(wo) > 0.0,
             material: look.material,
             light: look.light,
+            alpha: look.alpha.map(|index| self.alphas[index as usize]),
             shape: look.shape,
+            primitive: hit.primitive,
+            on_primitive: Vec2::new(hit.u, hit.v),
         }
     }
 
@@ -157,15 +166,20 @@ impl Instance {
 
     /// A point of the object, in render space.
     fn place(&self, of_object: FormPoint) -> FormPoint {
-        let FormPoint { point, ng, ns, uv, color, mut look } = of_object;
+        let vector = |v: DVec3| self.render_from_object.transform_vector3(v);
+        let normal = |n: DVec3| math::transform_normal(&self.object_from_render, n).normalize();
+        let mut look = of_object.look;
         look.material = self.material.unwrap_or(look.material);
         FormPoint {
-            point: point.transformed(&math::affine(&self.render_from_object)),
-            ng: math::transform_normal(&self.object_from_render, ng).normalize(),
-            ns: math::transform_normal(&self.object_from_render, ns).normalize(),
-            uv,
-            color,
-            look: self.look.unwrap_or(look),
+            point: of_object.point.transformed(&math::affine(&self.render_from_object)),
+            ng: normal(of_object.ng),
+            ns: normal(of_object.ns),
+            dpdu: vector(of_object.dpdu),
+            dpdv: vector(of_object.dpdv),
+            shading_dpdu: vector(of_object.shading_dpdu),
+            shading_dpdv: vector(of_object.shading_dpdv),
+            look,
+            ..of_object
         }
     }
 }

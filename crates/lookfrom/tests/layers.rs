@@ -25,7 +25,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("camera", &["math", "warp"]),
     ("texture", &["color", "noise", "spectrum"]),
     ("material", &["math", "spectrum", "surface", "texture"]),
-    ("shape", &["math", "surface", "texture"]),
+    ("shape", &["math", "surface", "texture", "warp"]),
     ("light", &["distribution", "math", "shape", "spectrum", "surface", "texture", "warp"]),
     (
         "world",

@@ -114,18 +114,26 @@ fn candidate(
             ("triangle", mesh.look.shape, test, outcome)
         }
         Form::Spheres(spheres) => {
-            let shape = spheres.looks[spheres.look_of[index] as usize].0.shape;
+            let shape = spheres.looks[spheres.look_of[index] as usize].look.shape;
             let (test, outcome) = sphere_test(&spheres.spheres[index], &ray);
             ("sphere", shape, test, outcome)
         }
         Form::Disks(disks) => {
-            let hit = disks.intersect(primitive, &ray);
-            let outcome =
-                hit.map_or("rejected: outside of the disk or of the range of t".to_owned(), |_| "hit".into());
-            ("disk", disks.looks[index].shape, Test::Other, outcome)
+            ("disk", disks.looks[index].shape, Test::Other, procedural_test(disks, primitive, &ray))
+        }
+        Form::Quadrics(quadrics) => {
+            let outcome = procedural_test(&**quadrics, primitive, &ray);
+            ("quadric", quadrics.looks[index].shape, Test::Other, outcome)
+        }
+        Form::Patches(patches) => {
+            let outcome = procedural_test(&**patches, primitive, &ray);
+            ("patch", patches.look.shape, Test::Other, outcome)
+        }
+        Form::Curves(curves) => {
+            let outcome = procedural_test(&**curves, primitive, &ray);
+            ("curve segment", curves.look.shape, Test::Other, outcome)
         }
     };
-    let shape = placed.and_then(|placed| placed.look).map_or(shape, |look| look.shape);
     let within = if instance == NONE { String::new() } else { format!(" in instance {instance}") };
     let is_nearest =
         [nearest.instance, nearest.geometry, nearest.primitive] == [instance, geometry, primitive];
@@ -141,6 +149,11 @@ fn candidate(
         is_nearest,
         test,
     }
+}
+
+fn procedural_test(form: &impl Procedural, primitive: u32, ray: &Ray) -> String {
+    let hit = form.intersect(primitive, ray);
+    hit.map_or("rejected: outside of the form or of the range of t".to_owned(), |_| "hit".into())
 }
 
 fn triangle_test(mesh: &Mesh, index: usize, ray: &Ray) -> (Test, String) {

@@ -217,7 +217,7 @@ fn draw_scene(out: &mut String, world: &World, side: &SideView, place: &impl Fn(
                     let _ = writeln!(out, "<polygon points=\"{}\"/>", points.join(" "));
                 }
             }
-            Form::Spheres(_) | Form::Disks(_) => {}
+            Form::Spheres(_) | Form::Disks(_) | Form::Quadrics(_) | Form::Patches(_) | Form::Curves(_) => {}
         }
     }
     out.push_str("</g>\n");

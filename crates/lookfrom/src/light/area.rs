@@ -1,23 +1,35 @@
-//! Shapes that shine: a point of one is chosen by area, or by the cone in which a sphere is seen.
+//! Shapes that shine: how a point of one is chosen as seen from a place, and how dense the choice is.
+//!
+//! [`AreaLight::sample_point`] and [`AreaLight::pdf`] are of the same density over solid angle, so that light found by
+//! either of two ways can be weighed (multiple importance sampling). How each form is chosen from stands in its file.
 
-use std::f32::consts::PI;
+mod mesh;
+mod patch;
+mod quadric;
 
-use glam::{DVec3, Mat3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
+use lookfrom_scene::light::Amount;
 use lookfrom_scene::material::Color;
 
 use super::{LightSample, Target, toward};
-use crate::distribution::Discrete;
 use crate::shape::Disk;
 use crate::spectrum::Spectrum;
-use crate::texture::{self, TexturePoint, Textures};
+use crate::surface::Surface;
+use crate::texture::{TexturePoint, Textures};
 use crate::warp;
+
+pub use mesh::MeshLight;
+pub use patch::PatchLight;
+pub use quadric::QuadricLight;
 
 /// A shape that shines.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
     /// Emitted radiance.
     pub radiance: Color,
+    /// How much of it.
+    pub amount: Amount,
     /// Whether both sides shine.
     pub two_sided: bool,
     /// Where it shines from.
@@ -27,28 +39,45 @@ pub struct AreaLight {
 /// The form of a shape that shines.
 #[derive(Clone, Debug)]
 pub enum LightForm {
-    /// Seen as a cone from outside.
-    Sphere {
-        /// As the kernel has it.
-        sphere: lookfrom_bvh::Sphere,
-        /// To the sphere's own axes: a rotation.
-        object_from_render: Mat3,
-    },
+    /// A sphere or ellipsoid, a cylinder, a plate, or a part of one.
+    Quadric(Box<QuadricLight>),
     /// A round plate.
     Disk(Disk),
-    /// Triangles, chosen by area.
-    Triangles {
-        /// Corners with their texture coordinates, wound so that the shining side is counter-clockwise.
-        triangles: Vec<LightTriangle>,
-        /// By area.
-        choice: Discrete,
-        /// All areas together.
-        area: f64,
-    },
+    /// Triangles.
+    Mesh(MeshLight),
+    /// Bilinear patches.
+    Patches(PatchLight),
 }
 
-/// Three corners with their texture coordinates.
-pub type LightTriangle = [(Vec3, Vec2); 3];
+/// A point of a light, as seen from another point.
+#[derive(Clone, Copy, Debug)]
+pub struct LightPoint {
+    /// Where, in render space.
+    pub point: Point,
+    /// Geometric normal to the outside, unit length: the side that shines, where only one does.
+    pub normal: DVec3,
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Toward the light, unit length.
+    pub wi: Vec3,
+    /// Density over solid angle, finite and positive.
+    pub pdf: f32,
+}
+
+/// Where a light is and which way it shines.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// Box around it, in render space.
+    pub min: DVec3,
+    /// Box around it, in render space.
+    pub max: DVec3,
+    /// About the middle of its normals, unit length.
+    pub axis: Vec3,
+    /// Cosine of the greatest angle between a normal and the axis; −1 where they point to all sides.
+    pub cos_normals: f32,
+    /// Whether both sides shine.
+    pub two_sided: bool,
+}
 
 impl AreaLight {
     /// Radiance that leaves a point of the light on the side of its normal (`front`) or on the other.
@@ -58,16 +87,7 @@ impl AreaLight {
 
     /// One way from the light to a point.
     pub(super) fn sample(&self, textures: &Textures, from: DVec3, u: [f32; 2]) -> Option<LightSample> {
-        let chosen = match &self.form {
-            LightForm::Sphere { sphere, object_from_render } => {
-                self.choose_on_sphere(from, sphere, object_from_render, u)?
-            }
-            LightForm::Disk(disk) => choose_on_disk(disk, u).seen_from(from)?,
-            LightForm::Triangles { triangles, choice, area } => {
-                choose_on_triangles(triangles, choice, *area, u).seen_from(from)?
-            }
-        };
-        let Chosen { point, normal, uv, wi, pdf } = chosen;
+        let LightPoint { point, normal, uv, wi, pdf } = self.sample_point(from, u)?;
         let front = normal.dot(wi.as_dvec3()) < 0.0;
         // The colour of a patterned light is looked up without its place in the world: only uv and the normal matter to it.
         let at = TexturePoint { uv, world: DVec3::ZERO, color: [1.0; 3], n: normal.as_vec3() };
@@ -75,93 +95,98 @@ impl AreaLight {
         (!li.is_black()).then_some(LightSample { wi, li, pdf, target: Target::Surface(point, normal) })
     }
 
-    /// Uniformly over the cone in which the sphere is seen; from inside, over all directions.
-    fn choose_on_sphere(
-        &self,
-        from: DVec3,
-        sphere: &lookfrom_bvh::Sphere,
-        object_from_render: &Mat3,
-        u: [f32; 2],
-    ) -> Option<Chosen> {
-        let center = Vec3::from_array(sphere.center).as_dvec3();
-        let radius = f64::from(sphere.radius);
-        let to_center = center - from;
-        let distance2 = to_center.length_squared();
-        let inside = distance2 <= radius * radius;
-        if inside && !self.two_sided {
-            return None;
-        }
-        let (wi, pdf) = if inside {
-            (warp::uniform_sphere(u), 0.25 / PI)
-        } else {
-            let sin2_max = (radius * radius / distance2) as f32;
-            // 1 − cos without cancellation for far spheres
-            let one_minus_cos = sin2_max / (1.0 + (1.0 - sin2_max).max(0.0).sqrt());
-            let local = warp::uniform_cone(u, one_minus_cos);
-            let axis = (to_center / distance2.sqrt()).as_vec3();
-            let (s, t) = warp::orthonormal_basis(axis);
-            ((local.x * s + local.y * t + local.z * axis).normalize(), warp::uniform_cone_pdf(one_minus_cos))
+    /// A point of the light to be seen from another, in render space, for `u ∈ [0, 1)²`: with a density of
+    /// [`Self::pdf`] over solid angle. None where there is none to be seen, or no usable density. It may be hidden
+    /// behind other points of the light, or look away.
+    pub fn sample_point(&self, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
+        let point = match &self.form {
+            LightForm::Quadric(light) => light.sample(from, u, self.two_sided),
+            LightForm::Disk(disk) => sample_disk(disk, from, u),
+            LightForm::Mesh(light) => light.sample(from, u),
+            LightForm::Patches(light) => light.sample(from, u),
+        }?;
+        (point.pdf.is_finite() && point.pdf > 0.0).then_some(point)
+    }
+
+    /// The density over solid angle with which [`Self::sample_point`] would have chosen, seen from a point, the place
+    /// of this light that a ray from there into the unit direction `wi` has met. 0 where it has none.
+    pub fn pdf(&self, from: DVec3, surface: &Surface, wi: Vec3) -> f32 {
+        let by_area = |density: f64| {
+            let to = DVec3::from_array(surface.point.position) - from;
+            (density * to.length_squared() / surface.ng.dot(wi.as_dvec3()).abs()) as f32
         };
-        // Where the direction meets the sphere; a direction that rounding made miss touches it.
-        let d = wi.as_dvec3();
-        let along = to_center.dot(d);
-        let nearest2 = (to_center - along * d).length_squared();
-        let half_chord = (radius * radius - nearest2).max(0.0).sqrt();
-        let t = if inside { along + half_chord } else { along - half_chord };
-        let point = Point::on_sphere(sphere.center, sphere.radius, (from + t * d).to_array());
-        let normal = (DVec3::from_array(point.position) - center).normalize();
-        let uv = texture::sphere_uv(*object_from_render * normal.as_vec3());
-        // a sphere so small and far that its cone has no measure in f32
-        pdf.is_finite().then_some(Chosen { point, normal, uv, wi, pdf })
+        let place = (surface.primitive as usize, surface.on_primitive);
+        let pdf = match &self.form {
+            LightForm::Quadric(light) => match light.pdf_by_direction(from, wi, self.two_sided) {
+                Some(pdf) => pdf,
+                None => by_area(light.pdf_by_area(DVec3::from_array(surface.point.position))),
+            },
+            LightForm::Disk(disk) => by_area(1.0 / disk_area(disk)),
+            LightForm::Mesh(light) => match light.pdf_by_direction(from, place.0) {
+                Some(pdf) => pdf,
+                None => by_area(light.pdf_by_area(place.0)),
+            },
+            LightForm::Patches(light) => by_area(light.pdf_by_area(place)),
+        };
+        if pdf.is_finite() && pdf > 0.0 { pdf } else { 0.0 }
+    }
+
+    /// Area of (one side of) the light, in render space.
+    pub fn area(&self) -> f64 {
+        match &self.form {
+            LightForm::Quadric(light) => light.area(),
+            LightForm::Disk(disk) => disk_area(disk),
+            LightForm::Mesh(light) => light.area(),
+            LightForm::Patches(light) => light.area(),
+        }
+    }
+
+    /// Where it is and which way it shines.
+    pub fn extent(&self) -> Extent {
+        let (bounds, Cone { axis, cos }) = match &self.form {
+            LightForm::Quadric(light) => (light.bounds(), light.normals()),
+            LightForm::Disk(disk) => (disk.bounds(), Cone { axis: disk.normal().normalize(), cos: 1.0 }),
+            LightForm::Mesh(light) => (light.bounds(), light.normals()),
+            LightForm::Patches(light) => (light.bounds(), light.normals()),
+        };
+        let [min, max] = bounds;
+        // Rounding must not make the cone too narrow.
+        let cos_normals = (cos as f32 - 1e-6).max(-1.0);
+        Extent { min, max, axis: axis.as_vec3(), cos_normals, two_sided: self.two_sided }
     }
 }
 
-/// A point of a light, the direction toward it and the density over solid angle.
-struct Chosen {
-    point: Point,
-    normal: DVec3,
-    uv: Vec2,
-    wi: Vec3,
-    pdf: f32,
+/// Directions around an axis of unit length, up to an angle of this cosine.
+#[derive(Clone, Copy, Debug)]
+struct Cone {
+    axis: DVec3,
+    cos: f64,
 }
 
-/// A point of a flat light and the density over area.
-struct ChosenByArea {
-    point: Point,
-    normal: DVec3,
-    uv: Vec2,
-    pdf: f64,
-}
+impl Cone {
+    const ALL: Self = Self { axis: DVec3::Z, cos: -1.0 };
 
-impl ChosenByArea {
-    /// With the density over solid angle: `pdf · r² / cos θ`.
-    fn seen_from(self, from: DVec3) -> Option<Chosen> {
-        let Self { point, normal, uv, pdf } = self;
-        let (wi, distance) = toward(from, DVec3::from_array(point.position))?;
-        let cos_light = normal.dot(wi.as_dvec3()).abs();
-        let pdf = (pdf * distance * distance / cos_light) as f32;
-        pdf.is_finite().then_some(Chosen { point, normal, uv, wi, pdf })
+    /// Around all of some unit vectors.
+    fn around(directions: impl Iterator<Item = DVec3> + Clone) -> Self {
+        let sum: DVec3 = directions.clone().sum();
+        let Some(axis) = sum.try_normalize() else { return Self::ALL };
+        Self { axis, cos: directions.map(|n| n.dot(axis)).fold(1.0, f64::min) }
     }
 }
 
-fn choose_on_disk(disk: &Disk, u: [f32; 2]) -> ChosenByArea {
+/// A point of a light that was chosen with a density over area, as it is seen.
+fn seen(from: DVec3, point: Point, normal: DVec3, uv: Vec2, density: f64) -> Option<LightPoint> {
+    let (wi, distance) = toward(from, DVec3::from_array(point.position))?;
+    let pdf = (density * distance * distance / normal.dot(wi.as_dvec3()).abs()) as f32;
+    Some(LightPoint { point, normal, uv, wi, pdf })
+}
+
+/// By area.
+fn sample_disk(disk: &Disk, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
     let on_disk = warp::concentric_disk(u);
-    let normal = disk.normal();
-    let pdf = 1.0 / (std::f64::consts::PI * normal.length());
-    ChosenByArea { point: disk.at(on_disk), normal: normal.normalize(), uv: 0.5 + 0.5 * on_disk, pdf }
+    seen(from, disk.at(on_disk), disk.normal().normalize(), 0.5 + 0.5 * on_disk, 1.0 / disk_area(disk))
 }
 
-fn choose_on_triangles(
-    triangles: &[LightTriangle],
-    choice: &Discrete,
-    area: f64,
-    [u0, u1]: [f32; 2],
-) -> ChosenByArea {
-    let (index, _, u0) = choice.sample(u0);
-    let [(p0, uv0), (p1, uv1), (p2, uv2)] = triangles[index];
-    let [alpha, beta, gamma] = warp::uniform_triangle([u0, u1]);
-    let point = Point::on_triangle(p0.to_array(), p1.to_array(), p2.to_array(), beta, gamma);
-    let [p0, p1, p2] = [p0, p1, p2].map(Vec3::as_dvec3);
-    let normal = (p1 - p0).cross(p2 - p0).normalize();
-    ChosenByArea { point, normal, uv: alpha * uv0 + beta * uv1 + gamma * uv2, pdf: 1.0 / area }
+fn disk_area(disk: &Disk) -> f64 {
+    std::f64::consts::PI * disk.normal().length()
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, Mat3};
+use glam::DMat4;
 use lookfrom_bvh::{Builder, Bvh, Triangles};
 use lookfrom_scene::material::{Color, MaterialKind};
 use lookfrom_scene::scene::Scene;
@@ -14,7 +14,7 @@ use super::{Instance, Names, World};
 use crate::camera::Camera;
 use crate::light::Light;
 use crate::math;
-use crate::shape::{Form, Look, Spheres};
+use crate::shape::Form;
 use crate::texture::Textures;
 
 impl World {
@@ -28,8 +28,13 @@ impl World {
         let camera = Camera::new(&written, scene.image.width, scene.image.height)?;
         let origin = camera.lookfrom();
         let render_from_world = DMat4::from_translation(-origin);
-        let mut compiler =
-            Compiler { scene: &scene, warnings, lights: Lights::default(), shapes: Vec::new() };
+        let mut compiler = Compiler {
+            scene: &scene,
+            warnings,
+            lights: Lights::default(),
+            shapes: Vec::new(),
+            alphas: Vec::new(),
+        };
 
         // What stands in the world once.
         let mut in_world = Group::default();
@@ -49,13 +54,7 @@ impl World {
             let object = &scene.objects[written.object.index()];
             let material = written.material.map(|id| id.0);
             let matrix = render_from_world * written.world_from_object;
-            let instance = Instance::new(&written.at, written.object.0, matrix, material, None)?;
-            for inner in &in_objects[written.object.index()].ellipsoids {
-                let matrix = matrix * inner.render_from_object;
-                let look =
-                    inner.look.map(|look| Look { material: material.unwrap_or(look.material), ..look });
-                in_world.ellipsoids.push(Instance::new(&written.at, inner.object, matrix, None, look)?);
-            }
+            let instance = Instance::new(&written.at, written.object.0, matrix, material)?;
             // Each repetition of something that shines is a light of its own.
             for shape in object.shapes.iter().filter(|shape| shape.emission.is_some()) {
                 compiler.place(shape, &matrix, material, &mut in_world)?;
@@ -65,15 +64,13 @@ impl World {
         for light in &scene.lights {
             compiler.lights.add(light, origin, &scene.images);
         }
-        let Compiler { lights, shapes, .. } = compiler;
+        let Compiler { lights, shapes, alphas, .. } = compiler;
 
-        // Build the trees: of the objects, of the one sphere behind all ellipsoids, and of the world over them.
-        let mut objects: Vec<Vec<Form>> = in_objects.into_iter().map(Group::into_forms).collect();
-        objects.push(vec![unit_sphere()]);
+        // Build the trees: of the objects, and of the world over them.
+        let objects: Vec<Vec<Form>> = in_objects.into_iter().map(Group::into_forms).collect();
         let trees =
             objects.iter().map(|forms| tree(forms, &[], &[]).map(Arc::new)).collect::<Result<Vec<_>>>()?;
-        let mut instances = std::mem::take(&mut in_world.instances);
-        instances.append(&mut in_world.ellipsoids);
+        let instances = std::mem::take(&mut in_world.instances);
         let forms = in_world.into_forms();
         let bvh = tree(&forms, &instances, &trees)?;
 
@@ -98,6 +95,7 @@ impl World {
             instances,
             transmissive: materials.iter().any(|material| material.transmission != Color::BLACK),
             materials,
+            alphas,
             textures: Textures::new(textures, scene.images, scene.curves),
             environments: (0..lights.lights.len() as u32).filter(is_environment).collect(),
             lights: lights.lights,
@@ -121,6 +119,15 @@ fn tree(forms: &[Form], instances: &[Instance], objects: &[Arc<Bvh>]) -> Result<
             Form::Disks(disks) => {
                 builder.procedural(Arc::new(disks.clone()));
             }
+            Form::Quadrics(quadrics) => {
+                builder.procedural(quadrics.clone());
+            }
+            Form::Patches(patches) => {
+                builder.procedural(patches.clone());
+            }
+            Form::Curves(curves) => {
+                builder.procedural(curves.clone());
+            }
         }
     }
     for instance in instances {
@@ -128,13 +135,4 @@ fn tree(forms: &[Form], instances: &[Instance], objects: &[Arc<Bvh>]) -> Result<
             .instance(objects[instance.object as usize].clone(), math::affine(&instance.render_from_object));
     }
     builder.build().map_err(|error| Error::new(ErrorKind::Invalid, &Location::default(), error.to_string()))
-}
-
-fn unit_sphere() -> Form {
-    let look = Look { material: 0, light: None, shape: 0 };
-    Form::Spheres(Spheres {
-        spheres: vec![lookfrom_bvh::Sphere { center: [0.0; 3], radius: 1.0 }],
-        look_of: vec![0],
-        looks: vec![(look, Mat3::IDENTITY)],
-    })
 }

@@ -1,26 +1,34 @@
 //! From a written shape to the forms and lights of a world: its transform is applied, its place in the arrays chosen.
+//!
+//! What consists of vertices (meshes, patches, curves) becomes a form of its own and is in `place/vertices`; round things
+//! of all shapes are gathered in one form a kind.
 
-use glam::{DMat3, DMat4, DVec3, Vec3};
-use lookfrom_scene::material::Color;
+mod vertices;
+
+use std::sync::Arc;
+
+use glam::{DMat3, DMat4, DVec3};
+use lookfrom_scene::material::{Color, Scalar};
 use lookfrom_scene::scene::Scene;
-use lookfrom_scene::shape::{Emission, Geometry, Mesh as WrittenMesh, Shape, Sphere};
-use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
+use lookfrom_scene::shape::{Emission, Geometry, Shape, Sphere};
+use lookfrom_scene::{Error, Location, Result, Warning};
 
 use super::Instance;
 use super::lights::Lights;
-use crate::distribution::Discrete;
-use crate::light::{AreaLight, Light, LightForm};
-use crate::math;
-use crate::shape::{Disk, Disks, Form, Look, Mesh, Spheres};
+use crate::light::{AreaLight, Light, LightForm, QuadricLight};
+use crate::shape::{Disk, Disks, Form, Look, Quadric, QuadricKind, Quadrics, SphereLook, Spheres};
+
+/// From axes with the poles on z to axes with the poles on y: a rotation.
+const Y_FROM_Z: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);
 
 /// Forms that share a tree, while they are gathered.
 #[derive(Default)]
 pub(super) struct Group {
-    meshes: Vec<Form>,
+    /// Meshes, patches and curves: one form a shape.
+    own: Vec<Form>,
     spheres: Spheres,
     disks: Disks,
-    /// Unevenly scaled spheres: instances of the one unit sphere, which is the last object.
-    pub(super) ellipsoids: Vec<Instance>,
+    quadrics: Quadrics,
     /// Repetitions of the scene's objects.
     pub(super) instances: Vec<Instance>,
 }
@@ -28,12 +36,15 @@ pub(super) struct Group {
 impl Group {
     /// The forms in the order of their geometry ids.
     pub(super) fn into_forms(self) -> Vec<Form> {
-        let mut forms = self.meshes;
+        let mut forms = self.own;
         if !self.spheres.spheres.is_empty() {
             forms.push(Form::Spheres(self.spheres));
         }
         if !self.disks.disks.is_empty() {
             forms.push(Form::Disks(self.disks));
+        }
+        if !self.quadrics.quadrics.is_empty() {
+            forms.push(Form::Quadrics(Arc::new(self.quadrics)));
         }
         forms
     }
@@ -41,27 +52,21 @@ impl Group {
 
 impl Instance {
     /// A repetition of an object. A matrix that cannot be inverted is `Invalid`.
-    pub(super) fn new(
-        at: &Location,
-        object: u32,
-        matrix: DMat4,
-        material: Option<u32>,
-        look: Option<Look>,
-    ) -> Result<Self> {
+    pub(super) fn new(at: &Location, object: u32, matrix: DMat4, material: Option<u32>) -> Result<Self> {
         let object_from_render = inverse(at, &matrix)?;
-        Ok(Self { object, render_from_object: matrix, object_from_render, material, look })
+        Ok(Self { object, render_from_object: matrix, object_from_render, material })
     }
 }
 
 /// The inverse of an affine matrix.
 fn inverse(at: &Location, matrix: &DMat4) -> Result<DMat4> {
     let inverse = matrix.inverse();
-    if matrix.is_finite() && inverse.is_finite() {
-        Ok(inverse)
-    } else {
-        Err(Error::invalid(at, "the transform cannot be inverted")
-            .hint("no scale may be 0, no number infinite"))
-    }
+    let usable = matrix.is_finite() && inverse.is_finite();
+    if usable { Ok(inverse) } else { Err(not_invertible(at)) }
+}
+
+fn not_invertible(at: &Location) -> Error {
+    Error::invalid(at, "the transform cannot be inverted").hint("no scale may be 0, no number infinite")
 }
 
 /// Turns shapes into forms and lights, one after another.
@@ -71,6 +76,24 @@ pub(super) struct Compiler<'a> {
     pub(super) lights: Lights,
     /// Names by shape number.
     pub(super) shapes: Vec<String>,
+    /// Parts of surfaces that are there.
+    pub(super) alphas: Vec<Scalar>,
+}
+
+/// A shape on its way into a group.
+#[derive(Clone, Copy)]
+struct Placing<'a> {
+    shape: &'a Shape,
+    /// From the shape's space to the group's.
+    matrix: &'a DMat4,
+    look: Look,
+}
+
+impl Placing<'_> {
+    /// Whether the transform exchanges left and right.
+    fn mirrors(&self) -> bool {
+        self.matrix.determinant() < 0.0
+    }
 }
 
 impl Compiler<'_> {
@@ -86,34 +109,41 @@ impl Compiler<'_> {
         inverse(&shape.at, &matrix)?;
         let number = self.shapes.len() as u32;
         self.shapes.push(self.name_of(shape));
-        let look = Look { material: material.unwrap_or(shape.material.0), light: None, shape: number };
+        let alpha = shape.alpha.filter(|alpha| *alpha != Scalar::Value(1.0)).map(|alpha| {
+            self.alphas.push(alpha);
+            self.alphas.len() as u32 - 1
+        });
+        let look = Look { material: material.unwrap_or(shape.material.0), light: None, shape: number, alpha };
+        let placing = Placing { shape, matrix: &matrix, look };
         match &shape.geometry {
-            Geometry::Sphere(sphere) => self.spheres(shape, &[*sphere], &matrix, look, group)?,
-            Geometry::Spheres(spheres) => self.spheres(shape, spheres, &matrix, look, group)?,
+            Geometry::Sphere(sphere) => self.spheres(placing, &[*sphere], Y_FROM_Z, group),
+            Geometry::Spheres(spheres) => self.spheres(placing, spheres, Y_FROM_Z, group),
             Geometry::Disk { center, normal, radius } => {
-                let (axis_u, axis_v) = normal.normalize().any_orthonormal_pair();
-                let disk = Disk {
-                    center: matrix.transform_point3(*center),
-                    axis_u: matrix.transform_vector3(*radius * axis_u),
-                    // a mirror turns the normal over; the outside stays the outside
-                    axis_v: matrix.transform_vector3(*radius * axis_v) * matrix.determinant().signum(),
-                };
-                let light = self.shine(shape, || Some(LightForm::Disk(disk)));
-                group.disks.disks.push(disk);
-                group.disks.looks.push(Look { light, ..look });
+                self.disk(placing, [*center, *normal], *radius, group);
+                Ok(())
             }
             Geometry::Quad { corner, edge_u, edge_v } => {
-                let mesh = quad(*corner, *edge_u, *edge_v);
-                self.mesh(shape, &mesh, &matrix, look, group)?;
+                self.mesh(placing, &vertices::quad(*corner, *edge_u, *edge_v), group)
             }
-            Geometry::PartialSphere { .. }
-            | Geometry::PartialDisk { .. }
-            | Geometry::Cylinder { .. }
-            | Geometry::Bilinear(_)
-            | Geometry::Curves(_) => self.warn(&shape.at, "this shape is not rendered yet"),
-            Geometry::Mesh(id) => self.mesh(shape, &self.scene.meshes[id.index()], &matrix, look, group)?,
+            Geometry::PartialSphere { radius, z: [z0, z1], phi_max } => {
+                let whole = z0.min(*z1) <= -radius && z0.max(*z1) >= *radius && *phi_max >= 360.0;
+                if whole {
+                    let sphere = Sphere { center: DVec3::ZERO, radius: *radius };
+                    return self.spheres(placing, &[sphere], DMat3::IDENTITY, group);
+                }
+                let kind = QuadricKind::Sphere { radius: *radius, z: [*z0, *z1] };
+                self.quadric(placing, kind, *phi_max, group)
+            }
+            &Geometry::PartialDisk { height, radius, inner_radius, phi_max } => {
+                self.quadric(placing, QuadricKind::Disk { height, radius, inner_radius }, phi_max, group)
+            }
+            &Geometry::Cylinder { radius, z, phi_max } => {
+                self.quadric(placing, QuadricKind::Cylinder { radius, z }, phi_max, group)
+            }
+            Geometry::Bilinear(patches) => self.patches(placing, patches, group),
+            Geometry::Curves(strands) => self.curves(placing, strands, group),
+            Geometry::Mesh(id) => self.mesh(placing, &self.scene.meshes[id.index()], group),
         }
-        Ok(())
     }
 
     fn name_of(&self, shape: &Shape) -> String {
@@ -132,95 +162,103 @@ impl Compiler<'_> {
         shape.name.clone().unwrap_or_else(|| format!("{kind} ({})", shape.at))
     }
 
+    /// Spheres of one shape whose poles are on z after `pole`.
     fn spheres(
         &mut self,
-        shape: &Shape,
+        placing: Placing,
         spheres: &[Sphere],
-        matrix: &DMat4,
-        look: Look,
+        pole: DMat3,
         group: &mut Group,
     ) -> Result<()> {
+        let Placing { shape, matrix, look } = placing;
         let linear = DMat3::from_mat4(*matrix);
         let Some(scale) = even_scale(&linear) else {
-            if shape.emission.is_some() {
-                self.warn(&shape.at, "an unevenly scaled sphere cannot shine; its emission is left out");
-            }
-            let unit_sphere_object = self.scene.objects.len() as u32;
+            // Unevenly scaled, they are ellipsoids.
             for sphere in spheres {
-                let own =
-                    DMat4::from_translation(sphere.center) * DMat4::from_scale(DVec3::splat(sphere.radius));
-                let instance = Instance::new(&shape.at, unit_sphere_object, *matrix * own, None, Some(look))?;
-                group.ellipsoids.push(instance);
+                let own = *matrix * DMat4::from_translation(sphere.center) * DMat4::from_mat3(pole);
+                let own = Placing { matrix: &own, ..placing };
+                self.quadric(own, whole_sphere(sphere.radius), 360.0, group)?;
             }
             return Ok(());
         };
-        let object_from_render = (linear * (1.0 / scale)).transpose().as_mat3();
+        let render_from_z = orthonormal(&linear) * pole;
         let first_look = group.spheres.looks.len() as u32;
-        group.spheres.looks.push((look, object_from_render));
+        let flip = shape.reverse_orientation;
+        let sphere_look =
+            SphereLook { look, object_from_form: (Y_FROM_Z * render_from_z.transpose()).as_mat3(), flip };
+        group.spheres.looks.push(sphere_look);
         for sphere in spheres {
             let center = matrix.transform_point3(sphere.center).as_vec3();
             let radius = (sphere.radius * scale) as f32;
-            let placed = lookfrom_bvh::Sphere { center: center.to_array(), radius };
-            let light = self.shine(shape, || Some(LightForm::Sphere { sphere: placed, object_from_render }));
+            let light = self.shine(shape, || {
+                let kind = whole_sphere(f64::from(radius));
+                let own = DMat4::from_translation(center.as_dvec3()) * DMat4::from_mat3(render_from_z);
+                Some(LightForm::Quadric(Box::new(QuadricLight::new(Quadric::new(kind, 360.0, &own, flip)?)?)))
+            });
             let mut own_look = first_look;
             if light.is_some() {
                 own_look = group.spheres.looks.len() as u32;
-                group.spheres.looks.push((Look { light, ..look }, object_from_render));
+                group.spheres.looks.push(SphereLook { look: Look { light, ..look }, ..sphere_look });
             }
-            group.spheres.spheres.push(placed);
+            group.spheres.spheres.push(lookfrom_bvh::Sphere { center: center.to_array(), radius });
             group.spheres.look_of.push(own_look);
         }
         Ok(())
     }
 
-    fn mesh(
+    fn disk(&mut self, placing: Placing, [center, normal]: [DVec3; 2], radius: f64, group: &mut Group) {
+        let Placing { shape, matrix, look } = placing;
+        let (axis_u, axis_v) = normal.normalize().any_orthonormal_pair();
+        let disk = Disk {
+            center: matrix.transform_point3(center),
+            axis_u: matrix.transform_vector3(radius * axis_u),
+            axis_v: matrix.transform_vector3(radius * axis_v),
+            flip: placing.mirrors() != shape.reverse_orientation,
+        };
+        let light = self.shine(shape, || Some(LightForm::Disk(disk)));
+        group.disks.disks.push(disk);
+        group.disks.looks.push(Look { light, ..look });
+    }
+
+    fn quadric(
         &mut self,
-        shape: &Shape,
-        mesh: &WrittenMesh,
-        matrix: &DMat4,
-        look: Look,
+        placing: Placing,
+        kind: QuadricKind,
+        phi_max: f64,
         group: &mut Group,
     ) -> Result<()> {
-        if u32::try_from(mesh.positions.len().max(mesh.triangles.len())).is_err() {
-            return Err(Error::new(
-                ErrorKind::Limit,
-                &shape.at,
-                "more than 2³² vertices or triangles in one mesh",
-            ));
-        }
-        let inverse = inverse(&shape.at, matrix)?;
-        let normal = |n: &Vec3| math::transform_normal(&inverse, n.as_dvec3()).normalize_or_zero().as_vec3();
-        let mut placed = Mesh {
-            positions: mesh
-                .positions
-                .iter()
-                .map(|p| matrix.transform_point3(p.as_dvec3()).as_vec3().to_array())
-                .collect(),
-            triangles: mesh.triangles.clone(),
-            normals: mesh.normals.iter().map(normal).collect(),
-            uvs: mesh.uvs.clone(),
-            colors: mesh.colors.clone(),
-            flip: matrix.determinant() < 0.0,
-            look,
-        };
-        placed.look.light = self.shine(shape, || triangles_that_shine(&placed));
-        group.meshes.push(Form::Mesh(Box::new(placed)));
+        let Placing { shape, matrix, look } = placing;
+        let quadric = Quadric::new(kind, phi_max, matrix, shape.reverse_orientation)
+            .ok_or_else(|| not_invertible(&shape.at))?;
+        let light =
+            self.shine(shape, || QuadricLight::new(quadric).map(|light| LightForm::Quadric(Box::new(light))));
+        group.quadrics.quadrics.push(quadric);
+        group.quadrics.looks.push(Look { light, ..look });
         Ok(())
     }
 
     /// The light of a shape that shines, made from its form.
     fn shine(&mut self, shape: &Shape, form: impl FnOnce() -> Option<LightForm>) -> Option<u32> {
-        let Emission { radiance, two_sided, .. } = shape.emission?;
+        let Emission { radiance, amount, two_sided } = shape.emission?;
         if radiance == Color::BLACK {
             return None;
         }
-        let form = form()?;
-        Some(self.lights.push(Light::Area(AreaLight { radiance, two_sided, form }), self.name_of(shape)))
+        let light = AreaLight { radiance, amount, two_sided, form: form()? };
+        Some(self.lights.push(Light::Area(light), self.name_of(shape)))
+    }
+
+    /// The index that the next light will have.
+    fn next_light(&self) -> u32 {
+        self.lights.lights.len() as u32
     }
 
     fn warn(&mut self, at: &Location, message: &str) {
         self.warnings.push(Warning { at: at.clone(), message: message.to_owned() });
     }
+}
+
+fn whole_sphere(radius: f64) -> QuadricKind {
+    QuadricKind::Sphere { radius, z: [-radius, radius] }
 }
 
 /// The scale of a matrix that only turns, mirrors and scales evenly (to within rounding).
@@ -232,33 +270,10 @@ fn even_scale(linear: &DMat3) -> Option<f64> {
     (largest.into_iter().all(|e| e < 1e-9)).then_some(scale)
 }
 
-fn quad(corner: DVec3, edge_u: DVec3, edge_v: DVec3) -> WrittenMesh {
-    let corners = [corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v];
-    WrittenMesh {
-        name: "quad".into(),
-        positions: corners.map(DVec3::as_vec3).to_vec(),
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        uvs: [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Into::into).to_vec(),
-        ..WrittenMesh::default()
-    }
-}
-
-/// The triangles of a mesh by area, wound so that the outside is counter-clockwise; `None` for a mesh without area.
-fn triangles_that_shine(mesh: &Mesh) -> Option<LightForm> {
-    let corner =
-        |index: usize, k: usize| (Vec3::from_array(mesh.corners(index)[k]), mesh.corner_uvs(index)[k]);
-    let mut triangles = Vec::new();
-    let mut areas = Vec::new();
-    for index in 0..mesh.triangles.len() {
-        let order = if mesh.flip { [0, 2, 1] } else { [0, 1, 2] };
-        let triangle = order.map(|k| corner(index, k));
-        let [p0, p1, p2] = triangle.map(|(p, _)| p.as_dvec3());
-        let area = 0.5 * (p1 - p0).cross(p2 - p0).length();
-        if area > 0.0 && area.is_finite() {
-            triangles.push(triangle);
-            areas.push(area as f32);
-        }
-    }
-    let area = areas.iter().map(|&area| f64::from(area)).sum();
-    (area > 0.0).then(|| LightForm::Triangles { triangles, choice: Discrete::new(&areas), area })
+/// The rotation (or mirror) of a matrix with an even scale, free of its rounding.
+fn orthonormal(linear: &DMat3) -> DMat3 {
+    let x = linear.x_axis.normalize();
+    let y = (linear.y_axis - linear.y_axis.dot(x) * x).normalize();
+    let z = x.cross(y);
+    DMat3::from_cols(x, y, if linear.determinant() < 0.0 { -z } else { z })
 }

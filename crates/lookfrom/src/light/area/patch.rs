@@ -1,0 +1,97 @@
+//! Bilinear patches as lights: one is chosen by area, then a point nearly by area.
+//!
+//! A point's u and v have the density that blends the patch's stretch at its four corners (Pharr, Jakob, Humphreys,
+//! Physically Based Rendering); what it lacks of the true stretch stands in the density over area.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec2};
+
+use super::{Cone, LightPoint, seen};
+use crate::distribution::Discrete;
+use crate::shape::Patches;
+
+/// Cells along u and v by which the area of a patch is summed.
+const CELLS: u32 = 16;
+
+/// Bilinear patches that shine.
+#[derive(Clone, Debug)]
+pub struct PatchLight {
+    patches: Arc<Patches>,
+    /// Of a patch, by area.
+    choice: Discrete,
+    area: f64,
+}
+
+impl PatchLight {
+    /// None for patches without area.
+    pub fn new(patches: Arc<Patches>) -> Option<Self> {
+        let areas: Vec<f64> = (0..patches.patches.len()).map(|index| area(&patches, index)).collect();
+        let area: f64 = areas.iter().filter(|area| area.is_finite()).sum();
+        let weights: Vec<f32> = areas.iter().map(|own| (own / area) as f32).collect();
+        (area > 0.0 && area.is_finite()).then(|| Self { patches, choice: Discrete::new(&weights), area })
+    }
+
+    pub(super) fn area(&self) -> f64 {
+        self.area
+    }
+
+    pub(super) fn bounds(&self) -> [DVec3; 2] {
+        let corners = (0..self.patches.patches.len()).flat_map(|index| self.patches.corners(index));
+        corners.fold([DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY)], |[min, max], p| {
+            [min.min(p), max.max(p)]
+        })
+    }
+
+    /// The cone of the normals: each patch's are between those at its corners.
+    pub(super) fn normals(&self) -> Cone {
+        let patches = (0..self.patches.patches.len()).filter(|&index| self.choice.pdf(index) > 0.0);
+        Cone::around(patches.flat_map(|index| {
+            [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(u, v)| self.patches.normal(index, u, v))
+        }))
+    }
+
+    pub(super) fn sample(&self, from: DVec3, [u0, u1]: [f32; 2]) -> Option<LightPoint> {
+        let (index, _, u0) = self.choice.sample(u0);
+        let [w00, w10, w01, w11] = self.stretches(index);
+        let v = sample_linear(f64::from(u1), w00 + w10, w01 + w11);
+        let u = sample_linear(f64::from(u0), w00 + v * (w01 - w00), w10 + v * (w11 - w10));
+        let place = Vec2::new(u as f32, v as f32);
+        let at = self.patches.point(index, place.x, place.y);
+        seen(from, at.point, at.ng, at.uv, self.pdf_by_area((index, place)))
+    }
+
+    /// The density over area at (u, v) of a patch.
+    pub(super) fn pdf_by_area(&self, (index, place): (usize, Vec2)) -> f64 {
+        let (u, v) = (f64::from(place.x), f64::from(place.y));
+        let [w00, w10, w01, w11] = self.stretches(index);
+        let low = w00 + u * (w10 - w00);
+        let high = w01 + u * (w11 - w01);
+        let density = 4.0 * (low + v * (high - low)) / (w00 + w10 + w01 + w11);
+        f64::from(self.choice.pdf(index)) * density / self.patches.area_vector(index, u, v).length()
+    }
+
+    /// By how much area is larger than its square in u and v, at the corners.
+    fn stretches(&self, index: usize) -> [f64; 4] {
+        [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
+            .map(|(u, v)| self.patches.area_vector(index, u, v).length())
+    }
+}
+
+/// The area of a patch.
+fn area(patches: &Patches, index: usize) -> f64 {
+    let cell = |i: u32| (f64::from(i) + 0.5) / f64::from(CELLS);
+    let sum: f64 = (0..CELLS * CELLS)
+        .map(|k| patches.area_vector(index, cell(k % CELLS), cell(k / CELLS)).length())
+        .sum();
+    sum / f64::from(CELLS * CELLS)
+}
+
+/// A number in [0, 1] whose density runs straight from `a` at 0 to `b` at 1.
+fn sample_linear(u: f64, a: f64, b: f64) -> f64 {
+    if u == 0.0 && a == 0.0 {
+        return 0.0;
+    }
+    let x = u * (a + b) / (a + (a * a + u * (b * b - a * a)).max(0.0).sqrt());
+    if x.is_finite() { x.min(1.0) } else { u }
+}

@@ -1,0 +1,277 @@
+//! Curves of one shape: hairs and wires that turn to whoever looks, and ribbons.
+//!
+//! In a frame whose z axis is the ray, a curve is split until it is nearly straight; where the straight piece passes the
+//! origin closer than half its width, the ray meets it: Nakamaru & Ohno (2002), "Ray Tracing for Curves Primitive", with the
+//! conventions of Pharr, Jakob, Humphreys, Physically Based Rendering: u along, v across, the depth is that of the
+//! curve's middle, and a leaving ray starts a whole width away.
+
+use glam::{DVec2, DVec3, Vec2, Vec3};
+use lookfrom_bvh::{Aabb, Affine, Point, Procedural, ProceduralHit, Ray};
+use lookfrom_scene::shape::{Profile, Strand};
+
+use super::{FormPoint, Look};
+
+/// In how many pieces each strand comes to the kernel: tighter boxes.
+pub const SEGMENTS: u32 = 8;
+
+/// A piece is split until it is off a straight line by less than this part of its width.
+const FLATNESS: f64 = 0.05;
+
+/// Splits at most, each in two.
+const MOST_SPLITS: u32 = 10;
+
+/// Curves of one shape, with their map.
+#[derive(Clone, Debug)]
+pub struct Curves {
+    strands: Vec<Strand>,
+    render_from_object: Affine,
+    /// The linear part of the way back.
+    object_from_render: Affine,
+    reverse: bool,
+    /// Whose.
+    pub look: Look,
+}
+
+/// Four control points of a cubic Bézier curve.
+type Controls = [DVec3; 4];
+
+impl Curves {
+    /// Puts strands into their place. None where the map has no inverse.
+    pub fn new(strands: &[Strand], render_from_object: Affine, reverse: bool, look: Look) -> Option<Self> {
+        let inverse = render_from_object.inverse()?;
+        let object_from_render = Affine { translation: [0.0; 3], ..inverse };
+        Some(Self { strands: strands.to_vec(), render_from_object, object_from_render, reverse, look })
+    }
+
+    /// Of a primitive: its strand, and where on it it begins and ends.
+    fn segment(&self, primitive: u32) -> (&Strand, [f64; 2]) {
+        let number = f64::from(primitive % SEGMENTS);
+        let from = number / f64::from(SEGMENTS);
+        let to = (number + 1.0) / f64::from(SEGMENTS);
+        (&self.strands[(primitive / SEGMENTS) as usize], [from, to])
+    }
+
+    fn vector_in_object(&self, v: DVec3) -> DVec3 {
+        DVec3::from_array(self.object_from_render.vector(v.to_array()))
+    }
+
+    fn vector_in_render(&self, v: DVec3) -> DVec3 {
+        DVec3::from_array(self.render_from_object.vector(v.to_array()))
+    }
+
+    /// The point at u along and v across a strand that a ray met near a point.
+    pub(super) fn point(&self, index: usize, [u, v]: [f32; 2], near: DVec3, direction: DVec3) -> FormPoint {
+        let (strand, _) = self.segment(index as u32);
+        let along = f64::from(u);
+        let direction = self.vector_in_object(direction).normalize();
+        let (_, dpdu) = evaluate(&controls(strand), along);
+        let dpdu = if dpdu == DVec3::ZERO { direction.any_orthonormal_vector() } else { dpdu };
+        let width = visible_width(strand, along, direction);
+
+        // Across: in the ribbon, or across what the ray sees; a round one turns with v.
+        let across = match strand.profile {
+            Profile::Ribbon(normals) => ribbon_normal(normals, along).cross(dpdu),
+            Profile::Flat | Profile::Cylinder => direction.cross(dpdu),
+        };
+        let mut dpdv = across.normalize_or(dpdu.any_orthonormal_vector()) * width;
+        if strand.profile == Profile::Cylinder {
+            let turn = -(f64::from(v) - 0.5) * std::f64::consts::PI;
+            let (sin, cos) = libm::sincos(turn);
+            dpdv = cos * dpdv + sin * dpdu.normalize().cross(dpdv);
+        }
+        let normal = self.object_from_render.normal_back(dpdu.cross(dpdv).to_array());
+        let ng = DVec3::from_array(normal).normalize_or(DVec3::Z) * if self.reverse { -1.0 } else { 1.0 };
+
+        // A whole width, as wide as it is on the way to render space.
+        let rows = self.render_from_object.matrix.map(|row| DVec3::from_array(row).length());
+        let error = near.abs() * f64::from(f32::EPSILON) + width * DVec3::from_array(rows);
+        let point = Point { position: near.to_array(), error: error.to_array() };
+        let derivatives = [dpdu, dpdv].map(|d| self.vector_in_render(d));
+        FormPoint::plain(point, ng, Vec2::new(u, v), derivatives, self.look)
+    }
+}
+
+impl Procedural for Curves {
+    fn count(&self) -> u32 {
+        self.strands.len() as u32 * SEGMENTS
+    }
+
+    fn bounds(&self, primitive: u32) -> Aabb {
+        let (strand, [from, to]) = self.segment(primitive);
+        let piece = part(&controls(strand), from, to);
+        let half = 0.5 * width_at(strand, from).max(width_at(strand, to));
+        let rows = self.render_from_object.matrix.map(|row| half * DVec3::from_array(row).length());
+        let ends = piece.map(|p| DVec3::from_array(self.render_from_object.point(p.to_array())));
+        let min = ends.iter().fold(ends[0], |min, p| min.min(*p)) - DVec3::from_array(rows);
+        let max = ends.iter().fold(ends[0], |max, p| max.max(*p)) + DVec3::from_array(rows);
+        Aabb {
+            min: min.to_array().map(|x| (x as f32).next_down()),
+            max: max.to_array().map(|x| (x as f32).next_up()),
+        }
+    }
+
+    fn intersect(&self, primitive: u32, ray: &Ray) -> Option<ProceduralHit> {
+        let (strand, [from, to]) = self.segment(primitive);
+        let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
+        let translation = DVec3::from_array(self.render_from_object.translation);
+        let (origin, direction) =
+            (self.vector_in_object(origin - translation), self.vector_in_object(direction));
+        let length = direction.length();
+
+        // A frame along the ray: the curve is seen from the origin, depths are lengths of the direction times t.
+        let z = direction / length;
+        let (x, y) = z.any_orthonormal_pair();
+        let piece = part(&controls(strand), from, to)
+            .map(|p| p - origin)
+            .map(|p| DVec3::new(p.dot(x), p.dot(y), p.dot(z)));
+        let widest = width_at(strand, 0.0).max(width_at(strand, 1.0));
+        let mut search = Search {
+            strand,
+            direction: z,
+            nearest: [f64::from(ray.t_min) * length, f64::from(ray.t_max) * length],
+            found: None,
+        };
+        search.split(&piece, [from, to], splits(&piece, widest));
+        let (depth, u, v) = search.found?;
+        let t = (depth / length) as f32;
+        (t > ray.t_min && t < ray.t_max).then_some(ProceduralHit { t, u: u as f32, v: v as f32 })
+    }
+}
+
+/// The search for the nearest meeting of a ray and a strand.
+struct Search<'a> {
+    strand: &'a Strand,
+    /// Of unit length, in the strand's space.
+    direction: DVec3,
+    /// The range of depths that count.
+    nearest: [f64; 2],
+    /// Depth, u, v.
+    found: Option<(f64, f64, f64)>,
+}
+
+impl Search<'_> {
+    /// Looks into a piece, seen along the ray, that begins and ends at some u.
+    fn split(&mut self, piece: &Controls, [from, to]: [f64; 2], splits: u32) {
+        // Does the ray pass the piece's box?
+        let half = 0.5 * width_at(self.strand, from).max(width_at(self.strand, to));
+        let min = piece.iter().fold(piece[0], |min, p| min.min(*p)) - half;
+        let max = piece.iter().fold(piece[0], |max, p| max.max(*p)) + half;
+        let passes = min.x <= 0.0
+            && max.x >= 0.0
+            && min.y <= 0.0
+            && max.y >= 0.0
+            && min.z <= self.nearest[1]
+            && max.z >= self.nearest[0];
+        if !passes {
+            return;
+        }
+        if splits == 0 {
+            self.meet(piece, [from, to]);
+            return;
+        }
+        let middle = 0.5 * (from + to);
+        let [first, second] = halves(piece);
+        self.split(&first, [from, middle], splits - 1);
+        self.split(&second, [middle, to], splits - 1);
+    }
+
+    /// Tries a piece that is nearly straight.
+    fn meet(&mut self, piece: &Controls, [from, to]: [f64; 2]) {
+        // The ray must pass between the planes across the piece's ends.
+        let [p0, p1, p2, p3] = piece.map(DVec3::truncate);
+        if (p1 - p0).dot(-p0) < 0.0 || (p2 - p3).dot(-p3) < 0.0 {
+            return;
+        }
+        // The place on the straight line between the ends that the ray passes nearest.
+        let chord = p3 - p0;
+        let square = chord.length_squared();
+        if square == 0.0 {
+            return;
+        }
+        let share = (-p0.dot(chord) / square).clamp(0.0, 1.0);
+        let u = from + share * (to - from);
+        let width = visible_width(self.strand, u, self.direction);
+
+        // The curve itself there: is it close enough, at a depth that counts?
+        let (p, along) = evaluate(piece, share);
+        let distance = p.truncate().length();
+        if !(distance <= 0.5 * width && p.z > self.nearest[0] && p.z < self.nearest[1]) {
+            return;
+        }
+        let (p2, along): (DVec2, DVec2) = (p.truncate(), along.truncate());
+        let side = if p2.perp_dot(along) > 0.0 { 1.0 } else { -1.0 };
+        self.nearest[1] = p.z;
+        self.found = Some((p.z, u, (0.5 + side * distance / width).clamp(0.0, 1.0)));
+    }
+}
+
+fn controls(strand: &Strand) -> Controls {
+    strand.points.map(Vec3::as_dvec3)
+}
+
+fn width_at(strand: &Strand, u: f64) -> f64 {
+    let [first, last] = strand.width.map(f64::from);
+    (1.0 - u) * first + u * last
+}
+
+/// How wide a strand is seen along a unit direction: ribbons may stand edge on.
+fn visible_width(strand: &Strand, u: f64, direction: DVec3) -> f64 {
+    let width = width_at(strand, u);
+    match strand.profile {
+        Profile::Ribbon(normals) => width * ribbon_normal(normals, u).dot(direction).abs(),
+        Profile::Flat | Profile::Cylinder => width,
+    }
+}
+
+/// Between the normals at a ribbon's ends, along the arc between them.
+fn ribbon_normal([first, last]: [Vec3; 2], u: f64) -> DVec3 {
+    let [first, last] = [first, last].map(|n| n.as_dvec3().normalize_or(DVec3::Z));
+    let angle = 2.0 * libm::asin((0.5 * (last - first).length()).min(1.0));
+    let sin = libm::sin(angle);
+    if sin == 0.0 {
+        return first;
+    }
+    (libm::sin((1.0 - u) * angle) * first + libm::sin(u * angle) * last) / sin
+}
+
+/// How often a piece must be halved to be nearly straight.
+fn splits(piece: &Controls, width: f64) -> u32 {
+    let bend = |k: usize| (piece[k] - 2.0 * piece[k + 1] + piece[k + 2]).abs().max_element();
+    // Each halving divides the distance from the straight line, at most √2 · 6/8 · bend, by four.
+    let mut off = std::f64::consts::SQRT_2 * 0.75 * bend(0).max(bend(1));
+    let mut splits = 0;
+    while off > FLATNESS * width && splits < MOST_SPLITS {
+        off *= 0.25;
+        splits += 1;
+    }
+    splits
+}
+
+/// The point and its derivative.
+fn evaluate(c: &Controls, u: f64) -> (DVec3, DVec3) {
+    let a = [c[0].lerp(c[1], u), c[1].lerp(c[2], u), c[2].lerp(c[3], u)];
+    let b = [a[0].lerp(a[1], u), a[1].lerp(a[2], u)];
+    let derivative = 3.0 * (b[1] - b[0]);
+    // Where two control points are one, the chord still has a direction.
+    let derivative = if derivative == DVec3::ZERO { c[3] - c[0] } else { derivative };
+    (b[0].lerp(b[1], u), derivative)
+}
+
+/// Two curves that together are one.
+fn halves(c: &Controls) -> [Controls; 2] {
+    let middle = |a: DVec3, b: DVec3| 0.5 * (a + b);
+    let a = [middle(c[0], c[1]), middle(c[1], c[2]), middle(c[2], c[3])];
+    let b = [middle(a[0], a[1]), middle(a[1], a[2])];
+    let center = middle(b[0], b[1]);
+    [[c[0], a[0], b[0], center], [center, b[1], a[2], c[3]]]
+}
+
+/// The piece of a curve between two places, by its blossom.
+fn part(c: &Controls, from: f64, to: f64) -> Controls {
+    let blossom = |u: [f64; 3]| {
+        let a = [c[0].lerp(c[1], u[0]), c[1].lerp(c[2], u[0]), c[2].lerp(c[3], u[0])];
+        let b = [a[0].lerp(a[1], u[1]), a[1].lerp(a[2], u[1])];
+        b[0].lerp(b[1], u[2])
+    };
+    [blossom([from; 3]), blossom([from, from, to]), blossom([from, to, to]), blossom([to; 3])]
+}

@@ -1,0 +1,147 @@
+//! What consists of vertices: meshes, patches and curves are moved to their place, vertex by vertex.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3, Vec2, Vec3};
+use lookfrom_scene::shape::{Mesh as WrittenMesh, Patches as WrittenPatches, Strand};
+use lookfrom_scene::{Error, ErrorKind, Result};
+
+use super::{Compiler, Group, Placing, inverse, not_invertible};
+use crate::light::{LightForm, MeshLight, PatchLight};
+use crate::math;
+use crate::shape::{Curves, Form, Mesh, Patches, SEGMENTS};
+
+/// A patch is a parallelogram if its fourth corner is off it by less than this part of its distance from the origin (or of
+/// 1, for texture coordinates): the rounding of numbers in f32.
+const FLATNESS: f32 = 4.0 * f32::EPSILON;
+
+impl Compiler<'_> {
+    pub(super) fn mesh(&mut self, placing: Placing, mesh: &WrittenMesh, group: &mut Group) -> Result<()> {
+        let Placing { shape, matrix, look } = placing;
+        countable(placing, mesh.positions.len().max(mesh.triangles.len()))?;
+        let mut placed = Mesh {
+            positions: mesh.positions.iter().map(|p| moved(matrix, *p).to_array()).collect(),
+            triangles: mesh.triangles.clone(),
+            normals: normals(placing, &mesh.normals)?,
+            uvs: mesh.uvs.clone(),
+            colors: mesh.colors.clone(),
+            tangents: mesh
+                .tangents
+                .iter()
+                .map(|s| matrix.transform_vector3(s.as_dvec3()).as_vec3())
+                .collect(),
+            flip: placing.mirrors() != shape.reverse_orientation,
+            look,
+        };
+        placed.look.light = Some(self.next_light());
+        let mut placed = Arc::new(placed);
+        let light = self.shine(shape, || MeshLight::new(placed.clone()).map(LightForm::Mesh));
+        if light.is_none() {
+            Arc::make_mut(&mut placed).look.light = None;
+        }
+        group.own.push(Form::Mesh(placed));
+        Ok(())
+    }
+
+    pub(super) fn patches(
+        &mut self,
+        placing: Placing,
+        patches: &WrittenPatches,
+        group: &mut Group,
+    ) -> Result<()> {
+        let Placing { shape, matrix, look } = placing;
+        countable(placing, patches.positions.len().max(patches.patches.len()))?;
+        if let Some(mesh) = parallelograms(patches) {
+            return self.mesh(placing, &mesh, group);
+        }
+        let mut placed = Patches {
+            positions: patches.positions.iter().map(|p| moved(matrix, *p)).collect(),
+            patches: patches.patches.clone(),
+            normals: normals(placing, &patches.normals)?,
+            uvs: patches.uvs.clone(),
+            flip: placing.mirrors() != shape.reverse_orientation,
+            look,
+        };
+        placed.look.light = Some(self.next_light());
+        let mut placed = Arc::new(placed);
+        let light = self.shine(shape, || PatchLight::new(placed.clone()).map(LightForm::Patches));
+        if light.is_none() {
+            Arc::make_mut(&mut placed).look.light = None;
+        }
+        group.own.push(Form::Patches(placed));
+        Ok(())
+    }
+
+    pub(super) fn curves(&mut self, placing: Placing, strands: &[Strand], group: &mut Group) -> Result<()> {
+        let Placing { shape, matrix, look } = placing;
+        countable(placing, strands.len().saturating_mul(SEGMENTS as usize))?;
+        if shape.emission.is_some() {
+            self.warn(&shape.at, "curves cannot shine; their emission is left out");
+        }
+        let curves = Curves::new(strands, math::affine(matrix), shape.reverse_orientation, look)
+            .ok_or_else(|| not_invertible(&shape.at))?;
+        group.own.push(Form::Curves(Arc::new(curves)));
+        Ok(())
+    }
+}
+
+fn countable(placing: Placing, count: usize) -> Result<()> {
+    if u32::try_from(count).is_ok() {
+        return Ok(());
+    }
+    Err(Error::new(ErrorKind::Limit, &placing.shape.at, "more than 2³² vertices or primitives in one shape"))
+}
+
+fn moved(matrix: &DMat4, p: Vec3) -> Vec3 {
+    matrix.transform_point3(p.as_dvec3()).as_vec3()
+}
+
+/// Unit shading normals after the shape's transform, turned over where the shape is.
+fn normals(placing: Placing, written: &[Vec3]) -> Result<Vec<Vec3>> {
+    let inverse = inverse(&placing.shape.at, placing.matrix)?;
+    let side = if placing.shape.reverse_orientation { -1.0 } else { 1.0 };
+    let normal =
+        |n: &Vec3| (side * math::transform_normal(&inverse, n.as_dvec3()).normalize_or_zero()).as_vec3();
+    Ok(written.iter().map(normal).collect())
+}
+
+pub(super) fn quad(corner: DVec3, edge_u: DVec3, edge_v: DVec3) -> WrittenMesh {
+    let corners = [corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v];
+    WrittenMesh {
+        name: "quad".into(),
+        positions: corners.map(DVec3::as_vec3).to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        uvs: [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Into::into).to_vec(),
+        ..WrittenMesh::default()
+    }
+}
+
+/// Patches that are all parallelograms, with texture coordinates that run evenly over them, as what is met and sampled
+/// better: two triangles each.
+fn parallelograms(patches: &WrittenPatches) -> Option<WrittenMesh> {
+    if !patches.normals.is_empty() {
+        return None;
+    }
+    let mut mesh = WrittenMesh { name: "parallelograms".into(), ..WrittenMesh::default() };
+    for patch in &patches.patches {
+        let [p00, p10, p01, p11] = patch.map(|vertex| patches.positions[vertex as usize]);
+        let size = p00.abs().max(p10.abs()).max(p01.abs()).max(p11.abs()).max_element();
+        let uvs = if patches.uvs.is_empty() {
+            [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE]
+        } else {
+            patch.map(|vertex| patches.uvs[vertex as usize])
+        };
+        let [uv00, uv10, uv01, uv11] = uvs;
+        let even = |twist: f32, size: f32| twist <= FLATNESS * size;
+        if !(even((p00 - p10 - p01 + p11).abs().max_element(), size)
+            && even((uv00 - uv10 - uv01 + uv11).abs().max_element(), 1.0))
+        {
+            return None;
+        }
+        let first = u32::try_from(mesh.positions.len()).ok()?;
+        mesh.positions.extend([p00, p10, p01, p11]);
+        mesh.uvs.extend(uvs);
+        mesh.triangles.extend([[first, first + 1, first + 3], [first, first + 3, first + 2]]);
+    }
+    Some(mesh)
+}
