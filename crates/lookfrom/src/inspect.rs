@@ -82,11 +82,18 @@ pub fn inspect(frame: &Frame<'_>, id: SampleId) -> Inspection {
             }
             Event::Shadow { shadow, hit, passed } => {
                 if let Some(ray) = rays.get_mut(&shadow.path.address)
-                    && let Some(report) = ray.light_mut(shadow.light)
+                    && let Term::Light(light) = shadow.term
+                    && let Some(report) = ray.light_mut(light)
                 {
                     report.shadow(world, shadow, hit, *passed);
                 }
             }
+            Event::Shaded { address, surface, .. } => {
+                if let Some(ray) = rays.get_mut(address) {
+                    ray.met = Some(met_report(world, &ray.hit, surface, None));
+                }
+            }
+            Event::AskedOne { .. } | Event::Bounced { .. } => {}
             Event::Grew { address, branch, weight, fresnel, total_reflection, cut } => {
                 if let Some(ray) = rays.get_mut(address) {
                     let (kind, bit) = match branch {
@@ -109,7 +116,7 @@ pub fn inspect(frame: &Frame<'_>, id: SampleId) -> Inspection {
         }
     }
     sum_up_subtrees(&mut rays);
-    let film = (sum * traced.weight).rgb();
+    let film = frame.rgb(sum * traced.weight, &traced.lanes);
     Inspection {
         pixel: id.pixel,
         sample: id.sample,
@@ -212,6 +219,8 @@ fn term_name(world: &World, term: Term) -> String {
         Term::Emission => "emission".into(),
         Term::Ambient => "ambient".into(),
         Term::View => "view".into(),
+        Term::Found { light, .. } => world.names.lights[light as usize].clone(),
+        Term::Unoccluded => "open sky".into(),
         Term::Light(light) => world.names.lights[light as usize].clone(),
     }
 }

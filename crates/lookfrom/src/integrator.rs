@@ -6,21 +6,32 @@
 //! sample are added in one fixed order, whatever else is in the batch.
 
 mod direct;
+mod occlusion;
+mod path;
 mod raycast;
 mod shadow;
 mod view;
 mod whitted;
 
+use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
+use lookfrom_scene::material::Color;
 
+use crate::bsdf::BsdfSample;
 use crate::hash;
+use crate::light::Reference;
+use crate::material::Shading;
 use crate::sampler::Sampler;
 use crate::spectrum::Spectrum;
+use crate::surface::Surface;
+use crate::texture::{Lanes, TexturePoint, Usage};
 use crate::world::World;
 
+pub use occlusion::AmbientOcclusion;
+pub use path::{Departure, PathTracer, Wisdom};
 pub use raycast::Raycast;
 pub use shadow::Shadow;
-pub(crate) use shadow::resolve as resolve_shadows;
+pub(crate) use shadow::{Passing, resolve as resolve_shadows};
 pub use view::View;
 pub use whitted::Whitted;
 
@@ -46,17 +57,32 @@ pub struct Path {
     pub beta: Spectrum,
     /// Which sample of the batch.
     pub slot: u32,
-    /// How many mirrors and refractions lie behind.
+    /// How many mirrors, refractions and bounces lie behind.
     pub depth: u32,
-    /// Its place in the tree: 1 is the camera's ray, the mirrored child of n is 2n, the refracted one 2n + 1.
+    /// Its place among the rays of its sample: 1 is the camera's. In Whitted's tree the mirrored child of n is 2n, the
+    /// refracted one 2n + 1; along a path the next ray of n is n + 1.
     pub address: u64,
     /// What it travels in.
     pub media: Media,
+    /// What it remembers of the surface that it left.
+    pub departure: Departure,
 }
 
 impl Path {
     /// The address of the root of the tree.
     pub const ROOT: u64 = 1;
+
+    /// Where it left from, as lights are asked there.
+    fn reference(&self) -> Reference {
+        Reference { point: self.departure.point.as_dvec3(), n: self.departure.n }
+    }
+
+    /// The same path behind a surface that is not there.
+    fn passed(&self, surface: &Surface) -> Self {
+        let direction = Vec3::from_array(self.ray.direction);
+        let ray = Ray::new(surface.origin(direction), self.ray.direction);
+        Self { ray, address: self.address + 1, ..*self }
+    }
 }
 
 /// The materials that a ray is inside of, the innermost last: at most four, of the first 65,535.
@@ -79,15 +105,20 @@ impl Media {
         ((self.0 & 0xffff) as u32).checked_sub(1)
     }
 
+    /// After going through the surface of a material, met from outside or from inside.
+    pub fn crossed(self, material: u32, from_outside: bool) -> Self {
+        if from_outside { self.entered(material) } else { self.left() }
+    }
+
     /// What is left of light after `distance` (Beer's law).
-    pub fn transmittance(self, world: &World, distance: f32) -> Spectrum {
-        let absorption =
-            self.innermost().and_then(|index| world.materials.get(index as usize)).map(|m| m.absorption);
-        match absorption {
+    pub fn transmittance(self, world: &World, distance: f32, lanes: &Lanes) -> Spectrum {
+        let material = self.innermost().and_then(|index| world.materials.get(index as usize));
+        match material.map(|material| material.whitted.absorption) {
             Some(absorption) if absorption != [0.0; 3] => {
-                Spectrum::from_rgb(absorption.map(|sigma| libm::expf(-sigma * distance)))
+                let left = Color::Value(absorption.map(|sigma| libm::expf(-sigma * distance)));
+                world.textures.spectrum(left, Usage::Albedo, &TexturePoint::NOWHERE, lanes)
             }
-            _ => Spectrum::ONE,
+            _ => lanes.one(),
         }
     }
 }
@@ -117,6 +148,8 @@ impl Numbers<'_> {
 pub struct Next<'a, P: Probe> {
     /// Light gathered so far, by slot.
     pub radiance: Vec<Spectrum>,
+    /// What the lanes mean, by slot.
+    pub lanes: Vec<Lanes>,
     /// To be traced next.
     pub paths: Vec<Path>,
     /// To be traced before that.
@@ -126,6 +159,11 @@ pub struct Next<'a, P: Probe> {
 }
 
 impl<P: Probe> Next<'_, P> {
+    /// What the lanes of a path mean.
+    fn lanes(&self, path: &Path) -> Lanes {
+        self.lanes[path.slot as usize]
+    }
+
     /// Adds light to a path's sample.
     pub fn add(&mut self, path: &Path, term: Term, value: Spectrum) {
         if !value.is_black() {
@@ -136,7 +174,7 @@ impl<P: Probe> Next<'_, P> {
 }
 
 /// Why light is added.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Term {
     /// The ray left the scene.
     Sky,
@@ -146,6 +184,15 @@ pub enum Term {
     Ambient,
     /// A light, by its index, reached the surface.
     Light(u32),
+    /// A path found a light by itself.
+    Found {
+        /// Its index.
+        light: u32,
+        /// The share that this way of finding it has.
+        weight: f32,
+    },
+    /// Nothing is near.
+    Unoccluded,
     /// A view's false colour.
     View,
 }
@@ -183,7 +230,7 @@ pub enum Event {
         /// Of the path.
         address: u64,
         /// The place.
-        surface: Box<crate::surface::Surface>,
+        surface: Box<Surface>,
         /// The look, where the integrator asks for it.
         coefficients: Option<Box<crate::material::Coefficients>>,
     },
@@ -199,6 +246,39 @@ pub enum Event {
         diffuse: Spectrum,
         /// `k_s (N·H)ⁿ`.
         specular: Spectrum,
+    },
+    /// A path is shaded by a scattering function.
+    Shaded {
+        /// Of the path.
+        address: u64,
+        /// The place.
+        surface: Box<Surface>,
+        /// What it does with light.
+        shading: Box<Shading>,
+    },
+    /// One light of many was asked.
+    AskedOne {
+        /// Of the path.
+        address: u64,
+        /// Which.
+        light: u32,
+        /// The probability of having chosen it.
+        probability: f32,
+        /// What it said.
+        sample: crate::light::LightSample,
+        /// The scattering function times the cosine.
+        f: Spectrum,
+        /// The density with which the material would have chosen the direction.
+        bsdf_pdf: f32,
+        /// The share that this way of finding the light has.
+        weight: f32,
+    },
+    /// A path goes on, or would have.
+    Bounced {
+        /// Of the path that arrives.
+        address: u64,
+        /// How.
+        bounce: Box<Bounce>,
     },
     /// A shadow ray met something (or nothing).
     Shadow {
@@ -233,6 +313,23 @@ pub enum Event {
         /// How much.
         value: Spectrum,
     },
+}
+
+/// How a path goes on.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounce {
+    /// In render space.
+    pub wi: Vec3,
+    /// To the shading normal.
+    pub cos: f32,
+    /// What the scattering function chose.
+    pub sample: BsdfSample,
+    /// The share of the sample that light from there has, before the roulette.
+    pub beta: Spectrum,
+    /// The probability of going on.
+    pub survival: f32,
+    /// Whether it goes on.
+    pub survives: bool,
 }
 
 /// Who listens. `()` listens to nothing and compiles to nothing.

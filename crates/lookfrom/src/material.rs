@@ -4,18 +4,26 @@
 //! what path tracing asks. [`Coefficients`] are those of Whitted's model, which the older integrators ask of every
 //! material.
 
+mod approximate;
 mod relief;
 mod whitted;
 
 use glam::Vec3;
 use lookfrom_scene::material::{Coat as WrittenCoat, Ior, MaterialKind, Metal, Relief, Roughness};
 use lookfrom_scene::material::{Scalar, Whitted};
+use lookfrom_scene::scene::CurveId;
 
-use crate::bsdf::{Bsdf, BsdfSample, Coat, Lobes, Mode, TrowbridgeReitz, Whitted as WhittedBsdf};
+use crate::bsdf::layered::Coat;
+use crate::bsdf::lobes::Lobes;
+use crate::bsdf::microfacet::TrowbridgeReitz;
+use crate::bsdf::whitted::Whitted as WhittedBsdf;
+use crate::bsdf::{Bsdf, BsdfSample, Mode};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::texture::{Lanes, TexturePoint, Textures, Usage};
+use crate::warp;
 
+pub(crate) use approximate::in_whitteds_model;
 pub use whitted::{Branches, Coefficients};
 
 /// A material of a world.
@@ -82,6 +90,16 @@ impl Shading {
     pub fn sample(&self, wo: Vec3, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
         let sample = self.bsdf.sample(self.frame.local(wo), lobe, u, Mode::Radiance, Lobes::ALL)?;
         Some(BsdfSample { wi: self.frame.render(sample.wi).normalize(), ..sample })
+    }
+}
+
+impl Shading {
+    /// A direction all around, whatever the material: for checking what is chosen by importance.
+    pub fn uniform(&self, wo: Vec3, u: [f32; 2]) -> BsdfSample {
+        let wi = warp::uniform_sphere(u);
+        let lobe = Lobes::REFLECTION.union(Lobes::DIFFUSE);
+        let pdf = warp::UNIFORM_SPHERE_PDF;
+        BsdfSample { wi, f: self.f(wo, wi), pdf, lobe, eta: 1.0, pdf_is_proportional: false }
     }
 }
 
@@ -195,7 +213,7 @@ impl At<'_> {
     fn ior(&mut self, ior: &Ior) -> f32 {
         match ior {
             Ior::Value(eta) => *eta,
-            Ior::Curve(curve) => self.textures.ior(*curve, self.lanes),
+            Ior::Curve(curve) => ior_at(*curve, self.textures, self.lanes),
         }
     }
 
@@ -211,6 +229,20 @@ impl At<'_> {
             samples: coat.samples.min(u16::MAX.into()) as u16,
         }
     }
+}
+
+/// The index of refraction of a curve: of the first wavelength, the only one left afterwards; in RGB mode that of sodium's
+/// yellow line.
+fn ior_at(curve: CurveId, textures: &Textures, lanes: &mut Lanes) -> f32 {
+    let nm = match lanes {
+        Lanes::Rgb => [589.3; 4],
+        Lanes::Spectral(wavelengths) => {
+            wavelengths.terminate_secondary();
+            wavelengths.lambda
+        }
+    };
+    let [eta, ..] = textures.curve(curve).at(&nm).0;
+    if eta > 0.0 { eta } else { 1.0 }
 }
 
 /// Optical constants of a metal at a point.

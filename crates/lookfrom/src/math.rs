@@ -49,6 +49,11 @@ pub fn transform_normal(inverse: &DMat4, normal: DVec3) -> DVec3 {
     inverse.transpose().transform_vector3(normal)
 }
 
+/// Y of a linear Rec. 709 colour.
+pub fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    0.212_639 * r + 0.715_169 * g + 0.072_192 * b
+}
+
 /// x to the n, the same on every platform; 0⁰ = 1.
 pub fn power(x: f32, n: f32) -> f32 {
     libm::powf(x, n)

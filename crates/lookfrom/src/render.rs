@@ -5,28 +5,37 @@
 //! for what.
 
 mod driver;
+mod seen;
 
 use std::ops::Range;
 
 use lookfrom_bvh::{Hit, Ray};
-use lookfrom_scene::settings::{Crop, ImageSettings, Integrator as Kind, RenderSettings};
+use lookfrom_scene::settings::{
+    ColorMode, Crop, ImageSettings, Integrator as Kind, RenderSettings, Sensor as SensorSettings,
+};
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
 use crate::camera::CameraRay;
+use crate::color::{Sensor, Wavelengths};
 use crate::film::FilmTile;
 use crate::filter::Filter;
 use crate::integrator::{
-    Event, Integrator, Media, Next, Numbers, Path, Probe, Raycast, View, Whitted, resolve_shadows,
+    AmbientOcclusion, Departure, Event, Integrator, Media, Next, Numbers, Passing, Path, PathTracer, Probe,
+    Raycast, View, Whitted, Wisdom, resolve_shadows,
 };
 use crate::sampler::Sampler;
 use crate::spectrum::Spectrum;
+use crate::texture::Lanes;
 use crate::world::World;
+
+use seen::Seen;
 
 pub use driver::{Progress, Rendered};
 
 /// The dimensions of a sample's random numbers that the camera uses; rays use hashes of their place in the tree.
 const FILTER_DIMENSION: u32 = 0;
 const LENS_DIMENSION: u32 = 1;
+const WAVELENGTH_DIMENSION: u32 = 2;
 
 /// A world with everything that is asked of its picture.
 #[derive(Debug)]
@@ -34,6 +43,9 @@ pub struct Frame<'a> {
     world: &'a World,
     filter: Filter,
     sampler: Sampler,
+    sensor: Sensor,
+    /// For reflectances: no exposure, no white balance.
+    plain_sensor: Sensor,
     image: ImageSettings,
     render: RenderSettings,
 }
@@ -80,6 +92,8 @@ pub struct Traced {
     pub rgb: [f32; 3],
     /// The sum over the tree of rays.
     pub radiance: Spectrum,
+    /// What the lanes of `radiance` mean.
+    pub lanes: Lanes,
     /// The filter's weight: 1 for filters without negative lobes.
     pub weight: f32,
 }
@@ -109,6 +123,8 @@ impl<'a> Frame<'a> {
             world,
             filter: Filter::new(image.filter),
             sampler: Sampler::new(render.sampler, render.seed),
+            plain_sensor: Sensor::new(1.0, None),
+            sensor: Sensor::new(image.sensor.imaging_ratio, image.sensor.white_balance),
             image: image.clone(),
             render: render.clone(),
         })
@@ -135,15 +151,17 @@ impl<'a> Frame<'a> {
     /// Follows samples to their light, telling `probe` what happens. The result for a sample does not depend on the others.
     pub fn trace<P: Probe>(&self, ids: &[SampleId], probe: &mut P) -> (Vec<Traced>, Rays) {
         // One match a batch: an integrator is a type, and its step is compiled for it.
-        let RenderSettings { integrator, depth, min_contribution, .. } = self.render;
+        let RenderSettings { integrator, depth, min_contribution, regularize, occlusion_distance, .. } =
+            self.render;
+        let path = |wisdom| PathTracer { depth, regularize, wisdom };
         match integrator {
             Kind::Raycast => self.trace_with(&Raycast, ids, probe),
-            Kind::Whitted
-            | Kind::Path
-            | Kind::SimplePath
-            | Kind::RandomWalk
-            | Kind::AmbientOcclusion { .. } => {
-                self.trace_with(&Whitted { depth, min_contribution }, ids, probe)
+            Kind::Whitted => self.trace_with(&Whitted { depth, min_contribution }, ids, probe),
+            Kind::Path => self.trace_with(&path(Wisdom::Combined), ids, probe),
+            Kind::SimplePath => self.trace_with(&path(Wisdom::Separate), ids, probe),
+            Kind::RandomWalk => self.trace_with(&path(Wisdom::None), ids, probe),
+            Kind::AmbientOcclusion { cosine } => {
+                self.trace_with(&AmbientOcclusion { cosine, distance: occlusion_distance }, ids, probe)
             }
             Kind::Normals => self.trace_with(&View::Normals, ids, probe),
             Kind::Depth => self.trace_with(&View::Depth, ids, probe),
@@ -162,6 +180,7 @@ impl<'a> Frame<'a> {
         let mut weights = Vec::with_capacity(ids.len());
         let mut next = Next {
             radiance: vec![Spectrum::BLACK; ids.len()],
+            lanes: ids.iter().map(|id| self.lanes(*id)).collect(),
             paths: Vec::new(),
             shadows: Vec::new(),
             probe,
@@ -173,11 +192,12 @@ impl<'a> Frame<'a> {
             weights.push(weight);
             next.paths.push(Path {
                 ray: self.world.camera_ray(&ray),
-                beta: Spectrum::ONE,
+                beta: next.lanes[slot].one(),
                 slot: slot as u32,
                 depth: 0,
                 address: Path::ROOT,
                 media: Media::default(),
+                departure: Departure::default(),
             });
         }
 
@@ -203,16 +223,47 @@ impl<'a> Frame<'a> {
             }
 
             // Occluded: what arrives of the lights.
-            rays_traced.shadow += resolve_shadows(self.world, self.render.transparent_shadows, &mut next);
+            rays_traced.shadow += resolve_shadows(self.world, self.passing(), &mut next);
             rays_traced.secondary += next.paths.len() as u64;
         }
 
-        let traced = next.radiance.into_iter().zip(weights).map(|(radiance, weight)| Traced {
-            rgb: (radiance * weight).rgb(),
-            radiance,
-            weight,
-        });
+        let traced =
+            next.radiance.into_iter().zip(next.lanes).zip(weights).map(|((radiance, lanes), weight)| {
+                Traced { rgb: self.rgb(radiance * weight, &lanes), radiance, lanes, weight }
+            });
         (traced.collect(), rays_traced)
+    }
+
+    /// What the lanes of a sample mean.
+    fn lanes(&self, id: SampleId) -> Lanes {
+        use Kind::{Depth, Id, Normals, Uv};
+        match (self.render.color, self.render.integrator) {
+            (ColorMode::Rgb, _) | (_, Normals | Depth | Uv | Id) => Lanes::Rgb,
+            (ColorMode::Spectral, _) => {
+                let [u, _] = self.sampler.two(id.pixel, id.sample, WAVELENGTH_DIMENSION);
+                Lanes::Spectral(Wavelengths::sample_visible(u))
+            }
+        }
+    }
+
+    /// What lets shadow rays pass.
+    fn passing(&self) -> Passing {
+        match self.render.integrator {
+            Kind::Raycast | Kind::Whitted if self.render.transparent_shadows => Passing::Transparent,
+            _ => Passing::Gaps,
+        }
+    }
+
+    /// What the sensor makes of light: linear Rec. 709.
+    pub fn rgb(&self, light: Spectrum, lanes: &Lanes) -> [f32; 3] {
+        let rgb = match lanes {
+            Lanes::Rgb if self.image.sensor == SensorSettings::default() => return light.rgb(),
+            Lanes::Rgb => self.sensor.balanced(light.rgb()),
+            Lanes::Spectral(wavelengths) => self.sensor.rgb(light, wavelengths),
+        };
+        let brightest = rgb.into_iter().fold(f32::NEG_INFINITY, f32::max);
+        let most = self.image.sensor.max_component;
+        if brightest > most { rgb.map(|c| c * (most / brightest)) } else { rgb }
     }
 
     /// Adds the given samples of every pixel of a tile to its light.
@@ -222,7 +273,18 @@ impl<'a> Frame<'a> {
         for sample in samples {
             let ids: Vec<SampleId> =
                 (y0..y1).flat_map(|y| (x0..x1).map(move |x| SampleId { pixel: [x, y], sample })).collect();
-            let (traced, of_batch) = self.trace(&ids, &mut ());
+            let (traced, of_batch) = if tile.has_layers() {
+                let mut seen = Seen::new(self, ids.iter().map(|id| self.lanes(*id)).collect());
+                let traced = self.trace(&ids, &mut seen);
+                for (id, features) in ids.iter().zip(seen.into_features()) {
+                    if let Some(features) = features {
+                        tile.add_features(id.pixel[0], id.pixel[1], &features);
+                    }
+                }
+                traced
+            } else {
+                self.trace(&ids, &mut ())
+            };
             rays += of_batch;
             for (id, traced) in ids.iter().zip(traced) {
                 let [x, y] = id.pixel;

@@ -79,6 +79,22 @@ pub struct TexturePoint {
     pub n: Vec3,
 }
 
+impl Lanes {
+    /// The factor that changes nothing.
+    #[inline]
+    pub fn one(&self) -> Spectrum {
+        match self {
+            Self::Rgb => Spectrum::ONE,
+            Self::Spectral(_) => Spectrum([1.0; 4]),
+        }
+    }
+}
+
+impl TexturePoint {
+    /// For colours that are the same everywhere.
+    pub const NOWHERE: Self = Self { uv: Vec2::ZERO, world: DVec3::ZERO, color: [1.0; 3], n: Vec3::Z };
+}
+
 impl Textures {
     /// Takes over a scene's textures, pictures and curves, whose ids are then indices here.
     pub fn new(mut kinds: Vec<TextureKind>, images: Vec<Image>, curves: Vec<Curve>) -> Self {

@@ -9,16 +9,16 @@ mod place;
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Bvh, Hit, NONE, Ray};
-use lookfrom_scene::material::Scalar;
+use lookfrom_scene::material::{Color, MaterialKind, Scalar};
 
 use crate::camera::{Camera, CameraRay};
-use crate::light::{Environment, Light};
-use crate::material::Material;
+use crate::light::{Coverage, Light, LightChoice, Reference};
+use crate::material::{self, Material, Shading};
 use crate::math;
 use crate::shape::{Form, FormPoint};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
-use crate::texture::{TexturePoint, Textures};
+use crate::texture::{Lanes, TexturePoint, Textures, Usage};
 
 /// What light meets.
 #[derive(Debug)]
@@ -43,12 +43,18 @@ pub struct World {
     pub textures: Textures,
     /// Lights to be sampled.
     pub lights: Vec<Light>,
+    /// Which light is asked where only one is.
+    pub light_choice: LightChoice,
     /// Whitted's `I_a`.
-    pub ambient: Spectrum,
+    pub ambient: [f32; 3],
     /// Indices into `lights` of those that are seen where a ray meets nothing.
     pub environments: Vec<u32>,
     /// Whether any material lets light through.
     pub transmissive: bool,
+    /// Whether rays pass any surface without meeting it: alpha, interfaces.
+    pub has_gaps: bool,
+    /// Radius of the sphere around all that stands in the world.
+    pub radius: f32,
     /// Names of the scene's materials and shapes, for people.
     pub names: Names,
 }
@@ -132,28 +138,66 @@ impl World {
         TexturePoint { uv: surface.uv, world, color: surface.color, n: surface.ng.as_vec3() }
     }
 
+    /// Whether a surface is where a ray met it: by its alpha, where that is a matter of chance for `u ∈ [0, 1)`.
+    pub fn is_there(&self, surface: &Surface, u: f32) -> bool {
+        surface.alpha.is_none_or(|alpha| u < self.textures.scalar(alpha, &self.texture_point(surface)))
+    }
+
+    /// Whether a surface is only the border of a medium.
+    pub fn is_interface(&self, surface: &Surface) -> bool {
+        matches!(self.materials[surface.material as usize].kind, MaterialKind::Interface)
+    }
+
+    /// What a surface does with light: see [`material::shading`].
+    pub fn shading(&self, surface: &Surface, lanes: &mut Lanes, mix: f32) -> Option<Shading> {
+        let point = self.texture_point(surface);
+        material::shading(&self.materials, &self.textures, surface, &point, lanes, mix)
+    }
+
     /// Radiance that a surface gives off toward `wo`.
-    pub fn emitted(&self, surface: &Surface) -> Spectrum {
+    pub fn emitted(&self, surface: &Surface, lanes: &Lanes) -> Spectrum {
         match surface.light.map(|index| &self.lights[index as usize]) {
             Some(Light::Area(light)) => {
-                light.emitted(&self.textures, &self.texture_point(surface), surface.front)
+                light.emitted(&self.textures, &self.texture_point(surface), surface.front, lanes)
             }
             _ => Spectrum::BLACK,
         }
     }
 
     /// Radiance from a direction (of any length) in which nothing stands.
-    pub fn sky(&self, direction: [f32; 3]) -> Spectrum {
+    pub fn sky(&self, direction: [f32; 3], lanes: &Lanes) -> Spectrum {
         let direction = Vec3::from_array(direction).normalize();
-        self.environments()
-            .fold(Spectrum::BLACK, |sum, environment| sum + environment.radiance(&self.textures, direction))
+        self.environments
+            .iter()
+            .fold(Spectrum::BLACK, |sum, &index| sum + self.sky_of(index, direction, lanes))
     }
 
-    fn environments(&self) -> impl Iterator<Item = &Environment> {
-        self.environments.iter().filter_map(|&index| match &self.lights[index as usize] {
-            Light::Environment(environment) => Some(environment),
-            _ => None,
-        })
+    /// Radiance of one environment, by its light's index, from a unit direction.
+    pub fn sky_of(&self, index: u32, direction: Vec3, lanes: &Lanes) -> Spectrum {
+        match &self.lights[index as usize] {
+            Light::Environment(environment) => environment.radiance(&self.textures, direction, lanes),
+            _ => Spectrum::BLACK,
+        }
+    }
+
+    /// The density over solid angle with which asking one light from a place finds `light` in the unit direction `wi`, in
+    /// which a ray met it at `surface` (nowhere for an environment).
+    pub fn light_pdf(&self, light: u32, at: &Reference, wi: Vec3, surface: Option<&Surface>) -> f32 {
+        let probability = self.light_choice.probability(at, light);
+        if probability == 0.0 {
+            return 0.0;
+        }
+        probability * self.lights[light as usize].pdf(at, wi, surface, Coverage::Incomplete)
+    }
+
+    /// Whitted's `I_a`.
+    pub fn ambient(&self, lanes: &Lanes) -> Spectrum {
+        self.light_of(self.ambient, lanes)
+    }
+
+    /// Light of a colour.
+    pub fn light_of(&self, rgb: [f32; 3], lanes: &Lanes) -> Spectrum {
+        self.textures.spectrum(Color::Value(rgb), Usage::Illuminant, &TexturePoint::NOWHERE, lanes)
     }
 }
 

@@ -24,7 +24,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("distribution", &["sampler"]),
     ("camera", &["math", "warp"]),
     ("texture", &["color", "noise", "spectrum"]),
-    ("material", &["math", "spectrum", "surface", "texture"]),
+    ("material", &["bsdf", "math", "spectrum", "surface", "texture", "warp"]),
     ("shape", &["math", "surface", "texture", "warp"]),
     ("light", &["distribution", "math", "shape", "spectrum", "surface", "texture", "warp"]),
     (

@@ -1,6 +1,9 @@
 //! Light that arrives straight from the lights: one shadow ray to each.
 
+use glam::DVec3;
+
 use crate::integrator::{Event, Next, Numbers, Path, Probe, Shadow, Term};
+use crate::light::{Coverage, Reference};
 use crate::material::Coefficients;
 use crate::surface::Surface;
 use crate::world::World;
@@ -13,15 +16,16 @@ pub(super) fn local_light<P: Probe>(
     surface: &Surface,
     next: &mut Next<'_, P>,
 ) -> Coefficients {
-    let material = &world.materials[surface.material as usize];
-    let coefficients = Coefficients::at(material, &world.textures, &world.texture_point(surface));
+    let lanes = next.lanes(path);
+    let material = &world.materials[surface.material as usize].whitted;
+    let coefficients = Coefficients::at(material, &world.textures, &world.texture_point(surface), &lanes);
     next.probe.notice(|| Event::Surface {
         address: path.address,
         surface: Box::new(*surface),
         coefficients: Some(Box::new(coefficients)),
     });
-    next.add(path, Term::Emission, path.beta * world.emitted(surface));
-    next.add(path, Term::Ambient, path.beta * coefficients.ambient * world.ambient);
+    next.add(path, Term::Emission, path.beta * world.emitted(surface, &lanes));
+    next.add(path, Term::Ambient, path.beta * coefficients.ambient * world.ambient(&lanes));
     if !coefficients.is_lit() {
         return coefficients;
     }
@@ -29,7 +33,9 @@ pub(super) fn local_light<P: Probe>(
     let ng = surface.ng_facing();
     for (index, light) in world.lights.iter().enumerate() {
         let index = index as u32;
-        let sample = light.sample(&world.textures, surface, n, numbers.two(index));
+        let at = Reference { point: DVec3::from_array(surface.point.position), n };
+        let u = numbers.two(index);
+        let sample = light.sample(&world.textures, &at, u, &lanes, Coverage::Complete);
         // What shines from behind the surface does not light its front, whatever the smoothed normal says.
         let sample = sample.filter(|sample| ng.dot(sample.wi) > 0.0);
         let (diffuse, specular) =

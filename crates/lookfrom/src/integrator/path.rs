@@ -6,7 +6,7 @@
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::{Hit, Ray};
 
-use crate::bsdf::{BsdfSample, Lobes, Mode};
+use crate::bsdf::BsdfSample;
 use crate::integrator::{Bounce, Event, Integrator, Next, Numbers, Path, Probe, Shadow, Term};
 use crate::light::{Coverage, Reference};
 use crate::material::Shading;
@@ -55,6 +55,8 @@ pub struct PathTracer {
 pub struct Departure {
     /// Density over solid angle of the direction that it took; infinite where that was the only one, or from the camera.
     pub pdf: f32,
+    /// Where, in render space.
+    pub point: Vec3,
     /// Shading normal there.
     pub n: Vec3,
     /// Product of η² of what it has entered: radiance is not lost where it is only squeezed.
@@ -65,7 +67,7 @@ pub struct Departure {
 
 impl Default for Departure {
     fn default() -> Self {
-        Self { pdf: f32::INFINITY, n: Vec3::Z, eta_scale: 1.0, blurred: false }
+        Self { pdf: f32::INFINITY, point: Vec3::ZERO, n: Vec3::Z, eta_scale: 1.0, blurred: false }
     }
 }
 
@@ -87,16 +89,14 @@ impl Integrator for PathTracer {
 
         // Light passes where the surface is not there.
         let [presence, mix] = numbers.two(purpose::PRESENCE);
-        if let Some(alpha) = surface.alpha
-            && world.textures.scalar(alpha, &world.texture_point(&surface)) <= presence
-        {
+        if !world.is_there(&surface, presence) {
             next.paths.push(path.passed(&surface));
             return;
         }
 
         // Absorb on the way to the surface.
         let length = Vec3::from_array(path.ray.direction).length() * hit.t;
-        let transmittance = path.media.transmittance(world, length, next.lanes(path));
+        let transmittance = path.media.transmittance(world, length, &next.lanes(path));
         let path = &Path { beta: path.beta * transmittance, ..*path };
 
         // Add what the surface itself shines.
@@ -111,7 +111,6 @@ impl Integrator for PathTracer {
         if self.regularize && path.departure.blurred {
             shading.bsdf.regularize();
         }
-        next.note_features(path, || world.features(&surface, &shading));
         next.probe.notice(|| Event::Shaded {
             address: path.address,
             surface: Box::new(surface),
@@ -123,7 +122,7 @@ impl Integrator for PathTracer {
 
         // Ask one light.
         let [which_light, which_lobe] = numbers.two(purpose::CHOICE);
-        if self.wisdom != Wisdom::None && shading.bsdf.lobes().has_unsharp() {
+        if self.wisdom != Wisdom::None && shading.bsdf.lobes().is_non_specular() {
             let u = numbers.two(purpose::LIGHT);
             self.ask_light(world, path, &surface, &shading, which_light, u, next);
         }
@@ -166,6 +165,7 @@ impl Integrator for PathTracer {
             media,
             departure: Departure {
                 pdf,
+                point: DVec3::from_array(surface.point.position).as_vec3(),
                 n: shading.n(),
                 eta_scale,
                 blurred: path.departure.blurred || !is_sharp,
@@ -178,23 +178,16 @@ impl PathTracer {
     fn add_sky<P: Probe>(&self, world: &World, path: &Path, next: &mut Next<'_, P>) {
         let direction = Vec3::from_array(path.ray.direction).normalize();
         for &index in &world.environments {
-            let lanes = next.lanes(path);
-            let radiance = world.sky_of(index, direction, lanes);
+            let radiance = world.sky_of(index, direction, &next.lanes(path));
             let pdf = || world.light_pdf(index, &path.reference(), direction, None);
             let weight = self.weight_of_found(path, pdf);
             next.add(path, Term::Found { light: index, weight }, path.beta * radiance * weight);
         }
     }
 
-    fn add_emission<P: Probe>(
-        &self,
-        world: &World,
-        path: &Path,
-        surface: &Surface,
-        next: &mut Next<'_, P>,
-    ) {
+    fn add_emission<P: Probe>(&self, world: &World, path: &Path, surface: &Surface, next: &mut Next<'_, P>) {
         let Some(light) = surface.light else { return };
-        let radiance = world.emitted(surface, next.lanes(path));
+        let radiance = world.emitted(surface, &next.lanes(path));
         if radiance.is_black() {
             return;
         }
@@ -227,8 +220,7 @@ impl PathTracer {
         let at = Reference { point: DVec3::from_array(surface.point.position), n: shading.n() };
         let Some((index, probability)) = world.light_choice.sample(&at, which) else { return };
         let light = &world.lights[index as usize];
-        let lanes = next.lanes(path);
-        let sample = light.sample(&world.textures, &at, u, lanes, Coverage::Incomplete);
+        let sample = light.sample(&world.textures, &at, u, &next.lanes(path), Coverage::Incomplete);
         let Some(sample) = sample else { return };
         let f = shading.f(surface.wo, sample.wi) * shading.cos(sample.wi).abs();
         if f.is_black() {
@@ -259,9 +251,9 @@ impl PathTracer {
 
     fn direction(&self, shading: &Shading, surface: &Surface, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
         if self.wisdom == Wisdom::None {
-            return shading.uniform(surface.wo, u);
+            return Some(shading.uniform(surface.wo, u));
         }
-        let sample = shading.sample(surface.wo, lobe, u, Mode::Radiance, Lobes::ALL)?;
+        let sample = shading.sample(surface.wo, lobe, u)?;
         (sample.pdf > 0.0).then_some(sample)
     }
 

@@ -4,13 +4,16 @@
 //! straight on through what lets light pass, coloured by `k_t` and by absorption on the way; the bending is ignored, as in
 //! most renderers of this kind since Whitted's.
 
+use glam::Vec3;
 use lookfrom_bvh::{Hit, Point, Ray};
 
+use crate::hash;
 use crate::integrator::{Event, Media, Next, Path, Probe, Term};
 use crate::light::{LightSample, Target};
 use crate::material::Coefficients;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
+use crate::texture::Lanes;
 use crate::world::World;
 
 /// How many transparent surfaces a shadow ray may cross before it counts as blocked.
@@ -25,8 +28,8 @@ pub struct Shadow {
     pub contribution: Spectrum,
     /// The path whose hit asked for it.
     pub path: Path,
-    /// Which light.
-    pub light: u32,
+    /// Why it is added.
+    pub term: Term,
     /// What it travels in.
     pub media: Media,
 }
@@ -55,7 +58,7 @@ impl Shadow {
                 toward(origin, guarded.origin(normal.to_array(), back).map(f64::from))
             }
         };
-        Self { ray, contribution, path: *path, light, media: path.media }
+        Self { ray, contribution, path: *path, term: Term::Light(light), media: path.media }
     }
 }
 
@@ -65,16 +68,26 @@ fn toward(origin: [f32; 3], target: [f64; 3]) -> Ray {
     Ray { t_max: 1.0, ..Ray::new(origin, direction) }
 }
 
+/// What lets shadow rays pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Passing {
+    /// Only where there is no surface: by its alpha, or an interface of media.
+    Gaps,
+    /// Transparent materials as well, straight on.
+    Transparent,
+}
+
 /// Traces all shadow rays of a batch and adds what arrives, in their order. Gives the number of rays traced.
-pub(crate) fn resolve<P: Probe>(world: &World, transparent: bool, next: &mut Next<'_, P>) -> u64 {
+pub(crate) fn resolve<P: Probe>(world: &World, passing: Passing, next: &mut Next<'_, P>) -> u64 {
     let mut shadows = std::mem::take(&mut next.shadows);
-    let traced = if transparent && world.transmissive {
-        let_through(world, &mut shadows, next.probe)
+    let anything_passes = world.has_gaps || passing == Passing::Transparent && world.transmissive;
+    let traced = if anything_passes {
+        let_through(world, passing, &mut shadows, &next.lanes, next.probe)
     } else {
         block(world, &mut shadows, next.probe)
     };
     for shadow in shadows.drain(..) {
-        next.add(&shadow.path, Term::Light(shadow.light), shadow.contribution);
+        next.add(&shadow.path, shadow.term, shadow.contribution);
     }
     next.shadows = shadows;
     traced
@@ -86,7 +99,7 @@ fn block<P: Probe>(world: &World, shadows: &mut [Shadow], probe: &mut P) -> u64 
     let mut blocked = vec![false; rays.len()];
     world.bvh.occluded_many(&rays, &mut blocked);
     for (shadow, blocked) in shadows.iter_mut().zip(blocked) {
-        let passed = if blocked { Spectrum::BLACK } else { Spectrum::ONE };
+        let passed = if blocked { Spectrum::BLACK } else { Spectrum([1.0; 4]) };
         // That something is in the way is enough for the picture; who listens wants to know what.
         probe.notice(|| Event::Shadow { shadow: *shadow, hit: world.bvh.closest_hit(&shadow.ray), passed });
         shadow.contribution *= passed;
@@ -95,7 +108,13 @@ fn block<P: Probe>(world: &World, shadows: &mut [Shadow], probe: &mut P) -> u64 
 }
 
 /// What lets light through takes its part; the ray goes on behind it.
-fn let_through<P: Probe>(world: &World, shadows: &mut [Shadow], probe: &mut P) -> u64 {
+fn let_through<P: Probe>(
+    world: &World,
+    passing: Passing,
+    shadows: &mut [Shadow],
+    lanes: &[Lanes],
+    probe: &mut P,
+) -> u64 {
     let mut traced = 0;
     let mut active: Vec<usize> = (0..shadows.len()).collect();
     for crossings in 0.. {
@@ -108,12 +127,19 @@ fn let_through<P: Probe>(world: &World, shadows: &mut [Shadow], probe: &mut P) -
             let hit = hits.next().unwrap_or(Hit::MISS);
             let shadow = &mut shadows[index];
             let surface = hit.is_hit().then(|| world.surface(&shadow.ray, &hit));
-            let passed = shadow.passed(world, &hit, surface.as_ref(), crossings);
+            let lanes = &lanes[shadow.path.slot as usize];
+            let passed = match surface.as_ref() {
+                Some(surface) if crossings < MOST_CROSSINGS => {
+                    shadow.passed(world, passing, &hit, surface, lanes)
+                }
+                Some(_) => Spectrum::BLACK,
+                None => shadow.reached(world, lanes),
+            };
             probe.notice(|| Event::Shadow { shadow: *shadow, hit, passed });
             shadow.contribution *= passed;
             match surface {
                 Some(surface) if !shadow.contribution.is_black() => {
-                    shadow.go_on_behind(&hit, &surface);
+                    shadow.go_on_behind(world, &hit, &surface);
                     true
                 }
                 _ => false,
@@ -127,26 +153,50 @@ fn let_through<P: Probe>(world: &World, shadows: &mut [Shadow], probe: &mut P) -
 }
 
 impl Shadow {
+    /// The part of the light that comes through what fills the rest of the way.
+    fn reached(&self, world: &World, lanes: &Lanes) -> Spectrum {
+        let length = Vec3::from_array(self.ray.direction).length() * self.ray.t_max;
+        // A medium that fills infinite space lets all through.
+        if length.is_finite() { self.media.transmittance(world, length, lanes) } else { Spectrum([1.0; 4]) }
+    }
+
     /// The part of the light that comes through to where the ray met `surface` and through it.
-    fn passed(&self, world: &World, hit: &Hit, surface: Option<&Surface>, crossings: u32) -> Spectrum {
-        let length = glam::Vec3::from_array(self.ray.direction).length() * hit.t.min(self.ray.t_max);
-        let Some(surface) = surface else {
-            // Nothing but the medium; one that fills infinite space lets all through.
-            return if length.is_finite() { self.media.transmittance(world, length) } else { Spectrum::ONE };
-        };
-        if crossings == MOST_CROSSINGS {
+    fn passed(
+        &self,
+        world: &World,
+        passing: Passing,
+        hit: &Hit,
+        surface: &Surface,
+        lanes: &Lanes,
+    ) -> Spectrum {
+        let length = Vec3::from_array(self.ray.direction).length() * hit.t;
+        let through_medium = self.media.transmittance(world, length, lanes);
+        if !world.is_there(surface, self.number(hit)) || world.is_interface(surface) {
+            return through_medium;
+        }
+        if passing == Passing::Gaps {
             return Spectrum::BLACK;
         }
-        let material = &world.materials[surface.material as usize];
-        let coefficients = Coefficients::at(material, &world.textures, &world.texture_point(surface));
-        coefficients.transmission * self.media.transmittance(world, length)
+        let material = &world.materials[surface.material as usize].whitted;
+        let point = world.texture_point(surface);
+        Coefficients::at(material, &world.textures, &point, lanes).transmission * through_medium
+    }
+
+    /// A number in [0, 1) that depends on the ray and on what it met.
+    fn number(&self, hit: &Hit) -> f32 {
+        let [x, y, z] = self.ray.direction.map(f32::to_bits);
+        let of_ray = hash::pair(u64::from(x) << 32 | u64::from(y), u64::from(z));
+        let of_hit = u64::from(hit.primitive) << 32 | u64::from(hit.t.to_bits());
+        (hash::pair(of_ray, of_hit) >> 40) as f32 * (1.0 / 16_777_216.0)
     }
 
     /// Starts again behind a surface that lets light pass.
-    fn go_on_behind(&mut self, hit: &Hit, surface: &Surface) {
-        let direction = glam::Vec3::from_array(self.ray.direction);
+    fn go_on_behind(&mut self, world: &World, hit: &Hit, surface: &Surface) {
+        let direction = Vec3::from_array(self.ray.direction);
         self.ray.origin = surface.origin(direction);
         self.ray.t_max -= hit.t;
-        self.media = if surface.front { self.media.entered(surface.material) } else { self.media.left() };
+        if world.is_there(surface, self.number(hit)) && !world.is_interface(surface) {
+            self.media = self.media.crossed(surface.material, surface.front);
+        }
     }
 }

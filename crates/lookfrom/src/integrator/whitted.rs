@@ -35,14 +35,15 @@ impl Integrator for Whitted {
     ) {
         // A ray that leaves the scene sees the sky.
         if !hit.is_hit() {
-            next.add(path, Term::Sky, path.beta * world.sky(path.ray.direction));
+            next.add(path, Term::Sky, path.beta * world.sky(path.ray.direction, &next.lanes(path)));
             return;
         }
 
         // Absorb on the way to the surface.
         let surface = world.surface(&path.ray, hit);
         let length = Vec3::from_array(path.ray.direction).length() * hit.t;
-        let path = &Path { beta: path.beta * path.media.transmittance(world, length), ..*path };
+        let path =
+            &Path { beta: path.beta * path.media.transmittance(world, length, &next.lanes(path)), ..*path };
 
         // Shade what is seen: I_a and every light.
         let coefficients = local_light(world, numbers, path, &surface, next);
@@ -102,6 +103,7 @@ impl Whitted {
             depth: path.depth + 1,
             address: path.address << 1 | last_bit,
             media,
+            departure: path.departure,
         })
     }
 }

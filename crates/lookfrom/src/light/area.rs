@@ -9,14 +9,13 @@ mod quadric;
 
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
-use lookfrom_scene::light::Amount;
-use lookfrom_scene::material::Color;
+use lookfrom_scene::material::Scalar;
 
-use super::{LightSample, Target, toward};
+use super::{Glow, LightSample, Target, toward};
 use crate::shape::Disk;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
-use crate::texture::{TexturePoint, Textures};
+use crate::texture::{Lanes, TexturePoint, Textures};
 use crate::warp;
 
 pub use mesh::MeshLight;
@@ -27,9 +26,9 @@ pub use quadric::QuadricLight;
 #[derive(Clone, Debug)]
 pub struct AreaLight {
     /// Emitted radiance.
-    pub radiance: Color,
-    /// How much of it.
-    pub amount: Amount,
+    pub radiance: Glow,
+    /// The part of the shape that is there; `None` is all of it.
+    pub alpha: Option<Scalar>,
     /// Whether both sides shine.
     pub two_sided: bool,
     /// Where it shines from.
@@ -81,17 +80,24 @@ pub struct Extent {
 
 impl AreaLight {
     /// Radiance that leaves a point of the light on the side of its normal (`front`) or on the other.
-    pub fn emitted(&self, textures: &Textures, at: &TexturePoint, front: bool) -> Spectrum {
-        if front || self.two_sided { textures.color(self.radiance, at) } else { Spectrum::BLACK }
+    pub fn emitted(&self, textures: &Textures, at: &TexturePoint, front: bool, lanes: &Lanes) -> Spectrum {
+        if front || self.two_sided { self.radiance.at(textures, at, lanes) } else { Spectrum::BLACK }
     }
 
     /// One way from the light to a point.
-    pub(super) fn sample(&self, textures: &Textures, from: DVec3, u: [f32; 2]) -> Option<LightSample> {
+    pub(super) fn sample(
+        &self,
+        textures: &Textures,
+        from: DVec3,
+        u: [f32; 2],
+        lanes: &Lanes,
+    ) -> Option<LightSample> {
         let LightPoint { point, normal, uv, wi, pdf } = self.sample_point(from, u)?;
         let front = normal.dot(wi.as_dvec3()) < 0.0;
         // The colour of a patterned light is looked up without its place in the world: only uv and the normal matter to it.
         let at = TexturePoint { uv, world: DVec3::ZERO, color: [1.0; 3], n: normal.as_vec3() };
-        let li = self.emitted(textures, &at, front);
+        let there = self.alpha.map_or(1.0, |alpha| textures.scalar(alpha, &at).clamp(0.0, 1.0));
+        let li = self.emitted(textures, &at, front, lanes) * there;
         (!li.is_black()).then_some(LightSample { wi, li, pdf, target: Target::Surface(point, normal) })
     }
 

@@ -75,8 +75,7 @@ impl Goniometric {
         let [r, g, b] =
             texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Bilinear);
         let brightness = (r + g + b) / 3.0;
-        let li: Spectrum =
-            self.intensity.even(textures, lanes) * (brightness / (distance * distance) as f32);
+        let li: Spectrum = self.intensity.even(textures, lanes) * (brightness / (distance * distance) as f32);
         (!li.is_black()).then_some(LightSample { wi, li, pdf: 1.0, target: Target::Point(self.position) })
     }
 }

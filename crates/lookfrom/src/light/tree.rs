@@ -168,11 +168,8 @@ impl Bundle {
             cos_axis = cos_axis.abs();
         }
         let length2 = to_p.length_squared();
-        let cos_box = if length2 <= radius * radius {
-            -1.0
-        } else {
-            (1.0 - radius * radius / length2).max(0.0).sqrt()
-        };
+        let cos_box =
+            if length2 <= radius * radius { -1.0 } else { (1.0 - radius * radius / length2).max(0.0).sqrt() };
         let least = angle_less(angle_less((cos_axis, sin_of(cos_axis)), self.normals.cos), cos_box);
         if least.0 <= self.cos_emission {
             return 0.0;
@@ -192,7 +189,8 @@ impl Bundle {
         let spread = 2.0 * std::f32::consts::PI * (1.0 - cos_o)
             + 0.5
                 * std::f32::consts::PI
-                * (2.0 * theta_w * sin_o - libm::cosf(theta_o - 2.0 * theta_w) - 2.0 * theta_o * sin_o + cos_o);
+                * (2.0 * theta_w * sin_o - libm::cosf(theta_o - 2.0 * theta_w) - 2.0 * theta_o * sin_o
+                    + cos_o);
         let d = self.max - self.min;
         self.power * spread * 2.0 * (d.x * d.y + d.y * d.z + d.z * d.x)
     }

@@ -16,17 +16,13 @@ const STEP: f32 = 0.0005;
 
 /// The shading frame at a surface: its normal on the side of the geometric one, its first axis along ∂p/∂u.
 pub(super) fn frame(relief: &Relief, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Frame {
-    let plain = around(surface.ns, surface.dpdu);
+    let plain = around(surface.ns, surface.shading_dpdu);
     let bent = match relief {
         Relief::None => return plain,
         Relief::NormalMap(image) => {
             let st = [at.uv.x, 1.0 - at.uv.y];
-            let texel = texture::look_up(
-                textures.image(image.index()),
-                st,
-                [Wrap::Repeat; 2],
-                TexelFilter::Bilinear,
-            );
+            let texel =
+                texture::look_up(textures.image(image.index()), st, [Wrap::Repeat; 2], TexelFilter::Bilinear);
             let local = Vec3::from_array(texel.map(|c| 2.0 * c - 1.0)).normalize_or(Vec3::Z);
             plain.render(local)
         }
@@ -34,25 +30,26 @@ pub(super) fn frame(relief: &Relief, textures: &Textures, surface: &Surface, at:
     };
     let bent = bent.normalize_or(surface.ns);
     let side = if bent.dot(surface.ng.as_vec3()) < 0.0 { -bent } else { bent };
-    around(side, surface.dpdu)
+    around(side, surface.shading_dpdu)
 }
 
 /// The normal of the surface moved along its shading normal; not of unit length.
 fn bumped(height: Scalar, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Vec3 {
     let n = surface.ns;
     let here = textures.scalar(height, at);
-    let [dpdu, dpdv] = [(surface.dpdu, Vec3::X), (surface.dpdv, Vec3::Y)].map(|(along, uv)| {
-        let moved = TexturePoint {
-            uv: at.uv + STEP * uv.truncate(),
-            world: at.world + (STEP * along).as_dvec3(),
-            ..*at
-        };
-        // in the tangent plane of the shading normal
-        let tangent = along - n * n.dot(along);
-        tangent + n * ((textures.scalar(height, &moved) - here) / STEP)
-    });
+    let [dpdu, dpdv] =
+        [(surface.shading_dpdu, Vec3::X), (surface.shading_dpdv, Vec3::Y)].map(|(along, uv)| {
+            let moved = TexturePoint {
+                uv: at.uv + STEP * uv.truncate(),
+                world: at.world + (STEP * along).as_dvec3(),
+                ..*at
+            };
+            // in the tangent plane of the shading normal
+            let tangent = along - n * n.dot(along);
+            tangent + n * ((textures.scalar(height, &moved) - here) / STEP)
+        });
     let across = dpdu.cross(dpdv);
-    if surface.dpdu.cross(surface.dpdv).dot(n) < 0.0 { -across } else { across }
+    if surface.shading_dpdu.cross(surface.shading_dpdv).dot(n) < 0.0 { -across } else { across }
 }
 
 fn around(n: Vec3, dpdu: Vec3) -> Frame {

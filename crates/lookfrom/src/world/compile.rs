@@ -12,7 +12,8 @@ use super::lights::Lights;
 use super::place::{Compiler, Group};
 use super::{Instance, Names, World};
 use crate::camera::Camera;
-use crate::light::Light;
+use crate::light::{Light, LightChoice};
+use crate::material::{self, Material};
 use crate::math;
 use crate::shape::Form;
 use crate::texture::Textures;
@@ -23,15 +24,20 @@ impl World {
     /// # Errors
     /// `Invalid` for a camera that cannot see (see [`Camera::new`]) or a transform that cannot be inverted; `Limit` for
     /// more than 2³² vertices or triangles in one shape.
-    pub fn compile(scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
+    pub fn compile(mut scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
         let written = scene.camera.clone().unwrap_or_default();
         let camera = Camera::new(&written, scene.image.width, scene.image.height)?;
         let origin = camera.lookfrom();
         let render_from_world = DMat4::from_translation(-origin);
+        let textures = Textures::new(
+            std::mem::take(&mut scene.textures).into_iter().map(|texture| texture.kind).collect(),
+            std::mem::take(&mut scene.images),
+            std::mem::take(&mut scene.curves),
+        );
         let mut compiler = Compiler {
             scene: &scene,
             warnings,
-            lights: Lights::default(),
+            lights: Lights::new(&textures),
             shapes: Vec::new(),
             alphas: Vec::new(),
         };
@@ -62,9 +68,13 @@ impl World {
             in_world.instances.push(instance);
         }
         for light in &scene.lights {
-            compiler.lights.add(light, origin, &scene.images);
+            compiler.lights.add(light, origin);
         }
         let Compiler { lights, shapes, alphas, .. } = compiler;
+        let radius = scene.bounds().radius() as f32;
+        let light_choice =
+            LightChoice::new(scene.render.light_sampler, &lights.lights, &lights.brightness, radius);
+        let Lights { lights, names: light_names, ambient, .. } = lights;
 
         // Build the trees: of the objects, and of the world over them.
         let objects: Vec<Vec<Form>> = in_objects.into_iter().map(Group::into_forms).collect();
@@ -74,18 +84,15 @@ impl World {
         let forms = in_world.into_forms();
         let bvh = tree(&forms, &instances, &trees)?;
 
-        let mut names = Names { shapes, lights: lights.names, ..Names::default() };
-        let mut materials = Vec::new();
+        let mut names = Names { shapes, lights: light_names, ..Names::default() };
+        let mut materials: Vec<Material> = Vec::new();
         for material in scene.materials {
-            let whitted = match material.kind {
-                MaterialKind::Whitted(whitted) => whitted,
-                _ => lookfrom_scene::material::Whitted::default(),
-            };
-            materials.push(whitted);
+            let whitted = material::in_whitteds_model(&material.kind, &materials, &textures);
+            materials.push(Material { kind: material.kind, relief: material.relief, whitted });
             names.materials.push(material.name);
         }
-        let is_environment = |index: &u32| matches!(lights.lights[*index as usize], Light::Environment(_));
-        let textures = scene.textures.into_iter().map(|texture| texture.kind).collect();
+        let is_environment = |index: &u32| matches!(lights[*index as usize], Light::Environment(_));
+        let shapes = || scene.shapes.iter().chain(scene.objects.iter().flat_map(|object| &object.shapes));
         Ok(Self {
             origin,
             camera,
@@ -93,13 +100,17 @@ impl World {
             forms,
             objects,
             instances,
-            transmissive: materials.iter().any(|material| material.transmission != Color::BLACK),
+            transmissive: materials.iter().any(|material| material.whitted.transmission != Color::BLACK),
+            has_gaps: shapes().any(|shape| shape.alpha.is_some())
+                || materials.iter().any(|material| material.kind == MaterialKind::Interface),
+            radius,
             materials,
             alphas,
-            textures: Textures::new(textures, scene.images, scene.curves),
-            environments: (0..lights.lights.len() as u32).filter(is_environment).collect(),
-            lights: lights.lights,
-            ambient: lights.ambient,
+            textures,
+            environments: (0..lights.len() as u32).filter(is_environment).collect(),
+            lights,
+            light_choice,
+            ambient,
             names,
         })
     }

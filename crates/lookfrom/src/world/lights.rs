@@ -2,99 +2,257 @@
 
 use std::f32::consts::PI;
 
-use glam::{DVec3, Mat3};
+use glam::{DMat4, DVec3, Mat3, Vec3};
 use lookfrom_scene::image::Image;
-use lookfrom_scene::light::{Light as Written, LightKind, Sky as WrittenSky};
+use lookfrom_scene::light::{Amount, Light as Written, LightKind, Sky as WrittenSky};
 use lookfrom_scene::material::Color;
 
 use crate::distribution::Piecewise2D;
-use crate::light::{Environment, Light, Sky, SkyImage};
-use crate::spectrum::Spectrum;
+use crate::light::{Environment, Glow, Goniometric, Layout, Light, Projection, Sky, SkyImage};
+use crate::math;
+use crate::texture::{TexturePoint, Textures, Usage};
+use crate::warp;
 
 /// A world's lights, while they are gathered.
-#[derive(Default)]
-pub(super) struct Lights {
+pub(super) struct Lights<'a> {
     pub(super) lights: Vec<Light>,
     pub(super) names: Vec<String>,
-    pub(super) ambient: Spectrum,
+    /// By light: its greatest radiance (or intensity), roughly.
+    pub(super) brightness: Vec<f32>,
+    pub(super) ambient: [f32; 3],
+    textures: &'a Textures,
 }
 
-impl Lights {
-    /// Adds a light and gives its index.
-    pub(super) fn push(&mut self, light: Light, name: String) -> u32 {
+impl<'a> Lights<'a> {
+    pub(super) fn new(textures: &'a Textures) -> Self {
+        Self { lights: Vec::new(), names: Vec::new(), brightness: Vec::new(), ambient: [0.0; 3], textures }
+    }
+
+    /// Adds a light of a brightness and gives its index.
+    pub(super) fn push(&mut self, light: Light, brightness: f32, name: String) -> u32 {
         self.lights.push(light);
         self.names.push(name);
+        self.brightness.push(brightness);
         self.lights.len() as u32 - 1
     }
 
-    /// Adds a light as it was written; `origin` is where render space begins in the world.
-    pub(super) fn add(&mut self, written: &Written, origin: DVec3, images: &[Image]) {
-        // Written intensities are those of Whitted's I_j: π times as much in radiometric units.
-        let power = |intensity: Color| match intensity {
-            Color::Value(rgb) => Spectrum::from_rgb(rgb) * PI,
-            _ => Spectrum([PI; 4]),
+    /// The glow of a colour in some amount; `per_unit` is what the light comes to as a whole if its colour is white of
+    /// luminance 1.
+    pub(super) fn glow(&self, color: Color, amount: &Amount, per_unit: f32) -> Glow {
+        let mut scale = amount.scale;
+        // Other colours have luminance 1 where they are white; a curve is as bright as its numbers.
+        if let (Color::Curve(curve), false) = (color, amount.absolute) {
+            let luminance = self.textures.curve(curve).to_xyz()[1];
+            scale = if luminance > 0.0 { scale / luminance } else { 0.0 };
+        }
+        if let Some(total) = amount.total {
+            // By the luminance of the colour: of a curve it is 1 by now.
+            let luminance = match color {
+                Color::Curve(_) if !amount.absolute => 1.0,
+                _ => self.mean_over_places(color, math::luminance),
+            };
+            scale = if luminance > 0.0 { scale * total / (per_unit * luminance) } else { 0.0 };
+        }
+        Glow { color, scale }
+    }
+
+    /// The greatest of three primaries of a glow, in the mean over its texture.
+    pub(super) fn brightness_of(&self, glow: &Glow) -> f32 {
+        glow.scale * self.mean_over_places(glow.color, |rgb| rgb.into_iter().fold(0.0, f32::max))
+    }
+
+    /// The mean of a measure of a colour over a grid of texture coordinates.
+    fn mean_over_places(&self, color: Color, measure: impl Fn([f32; 3]) -> f32) -> f32 {
+        const SIDE: u32 = 16;
+        let at = |uv: [f32; 2]| {
+            let point = TexturePoint { uv: uv.into(), ..TexturePoint::NOWHERE };
+            measure(self.textures.rgb(color, Usage::Illuminant, &point))
         };
-        let (kind, light) = match &written.kind {
+        match color {
+            Color::Texture(_) => {
+                let places = (0..SIDE * SIDE).map(|k| [k % SIDE, k / SIDE]);
+                let sum: f32 = places.map(|place| at(place.map(|i| (i as f32 + 0.5) / SIDE as f32))).sum();
+                sum / (SIDE * SIDE) as f32
+            }
+            _ => at([0.5; 2]),
+        }
+    }
+
+    /// Adds a light as it was written; `origin` is where render space begins in the world.
+    pub(super) fn add(&mut self, written: &Written, origin: DVec3) {
+        let amount = &written.amount;
+        // Written intensities are those of Whitted's I_j: π times as much in radiometric units, but where the whole is
+        // given.
+        let whitted = |glow: Glow| Glow {
+            scale: if amount.total.is_some() { glow.scale } else { glow.scale * PI },
+            ..glow
+        };
+        let (kind, light, brightness) = match &written.kind {
             LightKind::Ambient { color } => {
-                self.ambient += Spectrum::from_rgb(*color);
+                self.ambient = std::array::from_fn(|c| self.ambient[c] + color[c]);
                 return;
             }
-            LightKind::Point { position, intensity, falloff } => (
-                "point light",
-                Light::Point {
-                    position: *position - origin,
-                    intensity: power(*intensity),
-                    falloff: *falloff,
-                },
-            ),
-            LightKind::Distant { direction, intensity } => (
-                "distant light",
-                Light::Distant { toward: -direction.normalize().as_vec3(), irradiance: power(*intensity) },
-            ),
-            LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, falloff } => (
-                "spot light",
-                Light::Spot {
+            LightKind::Point { position, intensity, falloff } => {
+                let intensity = whitted(self.glow(*intensity, amount, 4.0 * PI));
+                let position = *position - origin;
+                let brightness = self.brightness_of(&intensity);
+                ("point light", Light::Point { position, intensity, falloff: *falloff }, brightness)
+            }
+            LightKind::Distant { direction, intensity } => {
+                let irradiance = whitted(self.glow(*intensity, amount, 1.0));
+                let brightness = self.brightness_of(&irradiance);
+                let toward = -direction.normalize().as_vec3();
+                ("distant light", Light::Distant { toward, irradiance }, brightness)
+            }
+            LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, falloff } => {
+                let cos_outer = libm::cos(cone_angle.to_radians()) as f32;
+                let cos_inner = libm::cos(inner_angle.to_radians()) as f32;
+                let per_unit = 2.0 * PI * ((1.0 - cos_inner) + 0.5 * (cos_inner - cos_outer));
+                let intensity = whitted(self.glow(*intensity, amount, per_unit));
+                let brightness = self.brightness_of(&intensity);
+                let light = Light::Spot {
                     position: *position - origin,
                     axis: direction.normalize().as_vec3(),
-                    intensity: power(*intensity),
-                    cos_outer: libm::cos(cone_angle.to_radians()) as f32,
-                    cos_inner: libm::cos(inner_angle.to_radians()) as f32,
+                    intensity,
+                    cos_outer,
+                    cos_inner,
                     falloff: *falloff,
-                },
-            ),
-            LightKind::Projection { .. } | LightKind::Goniometric { .. } => return,
-            LightKind::Environment { sky, illuminates, .. } => (
-                "environment",
-                Light::Environment(Environment { sky: compile_sky(sky, images), illuminates: *illuminates }),
-            ),
+                };
+                ("spot light", light, brightness)
+            }
+            LightKind::Projection { image, intensity, fov, world_from_light } => {
+                let light = self.projection(image.index(), *fov, world_from_light, origin);
+                let white = self.glow(Color::gray(*intensity), amount, self.power_of(&light));
+                let scale = whitted(white).scale * intensity;
+                let light = Projection { scale, ..light };
+                let brightness = scale * mean(self.textures.image(image.index()));
+                ("projection light", Light::Projection(light), brightness)
+            }
+            LightKind::Goniometric { intensity, image, world_from_light } => {
+                let mean = mean(self.textures.image(image.index()));
+                let intensity = whitted(self.glow(*intensity, amount, 4.0 * PI * mean));
+                let brightness = self.brightness_of(&intensity) * mean;
+                let light = Goniometric {
+                    position: world_from_light.w_axis.truncate() - origin,
+                    light_from_render: Mat3::from_mat4(world_from_light.inverse().as_mat4()),
+                    image: image.index(),
+                    intensity,
+                };
+                ("goniometric light", Light::Goniometric(light), brightness)
+            }
+            LightKind::Environment { sky, illuminates, .. } => {
+                let (sky, brightness) = self.sky(sky, amount);
+                let light = Light::Environment(Environment { sky, illuminates: *illuminates });
+                ("environment", light, brightness)
+            }
         };
         let name = written.name.clone().unwrap_or_else(|| format!("{kind} ({})", written.at));
-        self.push(light, name);
+        self.push(light, brightness, name);
     }
-}
 
-fn compile_sky(sky: &WrittenSky, images: &[Image]) -> Sky {
-    let color = |rgb: &[f32; 3]| Spectrum::from_rgb(*rgb);
-    match sky {
-        WrittenSky::Constant(Color::Value(rgb)) => Sky::Constant(color(rgb)),
-        WrittenSky::Constant(_) | WrittenSky::Octahedral { .. } => Sky::Constant(Spectrum::ONE),
-        WrittenSky::Gradient { zenith, horizon, nadir } => {
-            Sky::Gradient { zenith: color(zenith), horizon: color(horizon), nadir: color(nadir) }
+    fn projection(&self, image: usize, fov: f32, world_from_light: &DMat4, origin: DVec3) -> Projection {
+        let picture = self.textures.image(image);
+        let aspect = picture.width as f32 / picture.height as f32;
+        let half = libm::tanf(0.5 * fov.to_radians());
+        Projection {
+            position: world_from_light.w_axis.truncate() - origin,
+            light_from_render: Mat3::from_mat4(world_from_light.inverse().as_mat4()),
+            image,
+            scale: 1.0,
+            half_size: if aspect > 1.0 { [half * aspect, half] } else { [half, half / aspect] },
         }
-        WrittenSky::Image { image, scale, world_from_light } => Sky::Image(Box::new(SkyImage {
-            image: image.index(),
-            scale: color(scale),
+    }
+
+    /// The power of a projection whose white texels send out 1 W/sr.
+    fn power_of(&self, light: &Projection) -> f32 {
+        let image = self.textures.image(light.image);
+        let [half_x, half_y] = light.half_size;
+        let place = |i: u32, size: u32, half: f32| half * (2.0 * (i as f32 + 0.5) / size as f32 - 1.0);
+        let mut sum = 0.0;
+        for (index, texel) in (0..).zip(&image.texels) {
+            let x = place(index % image.width, image.width, half_x);
+            let y = place(index / image.width, image.height, half_y);
+            let cos = 1.0 / (1.0 + x * x + y * y).sqrt();
+            sum += f64::from(math::luminance(*texel) * cos * cos * cos);
+        }
+        4.0 * half_x * half_y * (sum / image.texels.len() as f64) as f32
+    }
+
+    fn sky(&self, sky: &WrittenSky, amount: &Amount) -> (Sky, f32) {
+        let (image, scale, world_from_light, layout) = match sky {
+            WrittenSky::Constant(color) => {
+                let glow = self.glow(*color, amount, PI);
+                return (Sky::Constant(glow), self.brightness_of(&glow));
+            }
+            WrittenSky::Gradient { zenith, horizon, nadir } => {
+                let [zenith, horizon, nadir] =
+                    [zenith, horizon, nadir].map(|rgb| self.glow(Color::Value(*rgb), amount, PI));
+                return (Sky::Gradient { zenith, horizon, nadir }, self.brightness_of(&horizon));
+            }
+            WrittenSky::Image { image, scale, world_from_light } => {
+                (image.index(), scale, world_from_light, Layout::LatitudeLongitude)
+            }
+            WrittenSky::Octahedral { image, scale, world_from_light } => {
+                (image.index(), scale, world_from_light, Layout::Octahedral)
+            }
+        };
+        let picture = self.textures.image(image);
+        let factor = self.glow(Color::gray(1.0), amount, illuminance(picture, layout)).scale;
+        let weights = weights(picture, layout);
+        let solid_angles = weights.iter().map(|&(_, area)| f64::from(area)).sum::<f64>();
+        let average =
+            weights.iter().map(|&(light, area)| f64::from(light * area)).sum::<f64>() / solid_angles;
+        let choice = |light: &dyn Fn(f32) -> f32| {
+            let weights: Vec<f32> =
+                weights.iter().map(|&(brightness, area)| light(brightness) * area).collect();
+            let (width, height) = (picture.width as usize, picture.height as usize);
+            Piecewise2D::new(&weights, width, height)
+        };
+        let scale = scale.map(|c| c * factor);
+        let brightness = average as f32 * scale.into_iter().fold(0.0, f32::max);
+        let sky = SkyImage {
+            image,
+            scale,
+            layout,
             world_from_light: Mat3::from_mat4(world_from_light.as_mat4()),
-            choice: by_brightness(&images[image.index()]),
-        })),
+            complete: choice(&|brightness| brightness),
+            compensated: choice(&|brightness| (brightness - average as f32).max(0.0)),
+        };
+        (Sky::Image(Box::new(sky)), brightness)
     }
 }
 
-/// Chooses directions by the brightness of the picture there. A bilinear look-up reaches into the neighbours of a texel,
-/// so each part weighs as much as the brightest texel around it: nothing that is seen is never chosen.
-fn by_brightness(image: &Image) -> Piecewise2D {
+/// Mean of all channels of all texels.
+fn mean(image: &Image) -> f32 {
+    let sum: f64 = image.texels.iter().flatten().map(|&c| f64::from(c)).sum();
+    (sum / (3 * image.texels.len()) as f64) as f32
+}
+
+/// What a picture of the surroundings sends onto a surface that looks up in the light's space: along +y for latitude and
+/// longitude, along +z for the octahedral square.
+fn illuminance(image: &Image, layout: Layout) -> f32 {
+    let (width, height) = (image.width as f32, image.height as f32);
+    let mut sum = 0.0;
+    for (index, texel) in (0..).zip(&image.texels) {
+        let s = ((index % image.width) as f32 + 0.5) / width;
+        let t = ((index / image.width) as f32 + 0.5) / height;
+        let (cos, solid_angle) = match layout {
+            Layout::LatitudeLongitude => (libm::cosf(PI * t), 2.0 * PI * PI * libm::sinf(PI * t)),
+            Layout::Octahedral => (warp::octahedral_direction([s, t]).dot(Vec3::Z), 4.0 * PI),
+        };
+        sum += f64::from(math::luminance(*texel) * cos.max(0.0) * solid_angle);
+    }
+    (sum / f64::from(width * height)) as f32
+}
+
+/// How bright each part of a picture of the surroundings may be, and its relative solid angle. Where a look-up reaches
+/// into the neighbours of a texel, a part is as bright as the brightest around it: nothing that is seen is never chosen.
+fn weights(image: &Image, layout: Layout) -> Vec<(f32, f32)> {
     let (width, height) = (image.width as usize, image.height as usize);
     let brightness = |x: usize, y: usize| image.texels[y * width + x].into_iter().fold(0.0, f32::max);
+    if layout == Layout::Octahedral {
+        return (0..width * height).map(|index| (brightness(index % width, index / width), 1.0)).collect();
+    }
     let mut weights = Vec::with_capacity(width * height);
     for y in 0..height {
         let sin_theta = libm::sinf(PI * (y as f32 + 0.5) / height as f32);
@@ -102,8 +260,8 @@ fn by_brightness(image: &Image) -> Piecewise2D {
         for x in 0..width {
             let around = [x + width - 1, x, x + 1].map(|x| x % width);
             let brightest = rows.clone().flat_map(|y| around.map(|x| brightness(x, y))).fold(0.0, f32::max);
-            weights.push(brightest * sin_theta);
+            weights.push((brightest, sin_theta));
         }
     }
-    Piecewise2D::new(&weights, width, height)
+    weights
 }

@@ -5,6 +5,7 @@
 
 mod vertices;
 
+use std::f32::consts::PI;
 use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec3};
@@ -15,7 +16,7 @@ use lookfrom_scene::{Error, Location, Result, Warning};
 
 use super::Instance;
 use super::lights::Lights;
-use crate::light::{AreaLight, Light, LightForm, QuadricLight};
+use crate::light::{AreaLight, Glow, Light, LightForm, QuadricLight};
 use crate::shape::{Disk, Disks, Form, Look, Quadric, QuadricKind, Quadrics, SphereLook, Spheres};
 
 /// From axes with the poles on z to axes with the poles on y: a rotation.
@@ -73,7 +74,7 @@ fn not_invertible(at: &Location) -> Error {
 pub(super) struct Compiler<'a> {
     pub(super) scene: &'a Scene,
     pub(super) warnings: &'a mut Vec<Warning>,
-    pub(super) lights: Lights,
+    pub(super) lights: Lights<'a>,
     /// Names by shape number.
     pub(super) shapes: Vec<String>,
     /// Parts of surfaces that are there.
@@ -243,8 +244,14 @@ impl Compiler<'_> {
         if radiance == Color::BLACK {
             return None;
         }
-        let light = AreaLight { radiance, amount, two_sided, form: form()? };
-        Some(self.lights.push(Light::Area(light), self.name_of(shape)))
+        let form = form()?;
+        let mut light =
+            AreaLight { radiance: Glow { color: radiance, scale: 1.0 }, alpha: shape.alpha, two_sided, form };
+        // what white radiance of 1 sends out
+        let sides = if two_sided { 2.0 } else { 1.0 };
+        light.radiance = self.lights.glow(radiance, &amount, sides * PI * light.area() as f32);
+        let brightness = self.lights.brightness_of(&light.radiance);
+        Some(self.lights.push(Light::Area(light), brightness, self.name_of(shape)))
     }
 
     /// The index that the next light will have.

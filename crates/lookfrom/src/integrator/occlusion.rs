@@ -1,0 +1,59 @@
+//! Ambient occlusion (Zhukov, Iones & Kronin 1998): how much of the sky a white surface sees, as pbrt-v4 shows it.
+
+use glam::Vec3;
+use lookfrom_bvh::{Hit, Ray};
+
+use crate::integrator::{Integrator, Next, Numbers, Path, Probe, Shadow, Term};
+use crate::warp;
+use crate::world::World;
+
+/// Ambient occlusion.
+#[derive(Clone, Copy, Debug)]
+pub struct AmbientOcclusion {
+    /// Whether directions are chosen by the cosine, and not uniformly.
+    pub cosine: bool,
+    /// What is farther than this does not occlude, in the scene's unit.
+    pub distance: f32,
+}
+
+impl Integrator for AmbientOcclusion {
+    fn step<P: Probe>(
+        &self,
+        world: &World,
+        numbers: &Numbers<'_>,
+        path: &Path,
+        hit: &Hit,
+        next: &mut Next<'_, P>,
+    ) {
+        if !hit.is_hit() {
+            return;
+        }
+        let surface = world.surface(&path.ray, hit);
+        let [presence, _] = numbers.two(0);
+        if !world.is_there(&surface, presence) {
+            next.paths.push(path.passed(&surface));
+            return;
+        }
+        let n = surface.ng_facing();
+        let u = numbers.two(1);
+        // What of a uniform sky is seen: the mean of visibility, weighed by the cosine over π.
+        let (wi, weight) = if self.cosine {
+            (warp::cosine_hemisphere(u, n), 1.0)
+        } else {
+            let wi = warp::uniform_sphere(u);
+            let wi = if wi.dot(n) < 0.0 { -wi } else { wi };
+            (wi, 2.0 * n.dot(wi))
+        };
+        let wi = Vec3::normalize(wi);
+        let ray = Ray { t_max: self.distance, ..Ray::new(surface.origin(wi), wi.to_array()) };
+        let white = world.light_of([1.0; 3], &next.lanes(path));
+        let contribution = path.beta * white * weight;
+        next.shadows.push(Shadow {
+            ray,
+            contribution,
+            path: *path,
+            term: Term::Unoccluded,
+            media: path.media,
+        });
+    }
+}

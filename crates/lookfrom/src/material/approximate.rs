@@ -1,0 +1,75 @@
+//! What a physical material is in Whitted's model: for ray casting and Whitted's tree, which know no other. A likeness, not
+//! the same.
+
+use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Roughness, Scalar, Whitted};
+
+use super::Material;
+use crate::bsdf::fresnel;
+use crate::spectrum::Spectrum;
+use crate::texture::{Lanes, TexturePoint, Textures, Usage};
+
+/// What a dielectric coat reflects at most angles.
+const COAT: f32 = 0.04;
+
+/// The nearest thing in Whitted's model. `before` holds the materials so far: a mixture is its greater part, if that is
+/// known already.
+pub(crate) fn in_whitteds_model(kind: &MaterialKind, before: &[Material], textures: &Textures) -> Whitted {
+    let plain = Whitted { diffuse: Color::BLACK, ..Whitted::default() };
+    match kind {
+        MaterialKind::Whitted(whitted) => whitted.clone(),
+        MaterialKind::Diffuse { reflectance } => Whitted { diffuse: *reflectance, ..plain },
+        MaterialKind::DiffuseTransmission { reflectance, .. } => Whitted { diffuse: *reflectance, ..plain },
+        MaterialKind::Conductor { metal, roughness } => metallic(metal, roughness, textures),
+        MaterialKind::Dielectric { eta, .. } => {
+            Whitted { transmission: Color::gray(1.0), fresnel: true, ior: ior(eta, textures), ..plain }
+        }
+        MaterialKind::ThinDielectric { .. } => {
+            Whitted { transmission: Color::gray(1.0 - COAT), mirror: Color::gray(COAT), ior: 1.0, ..plain }
+        }
+        MaterialKind::CoatedDiffuse { reflectance, coat } => {
+            let shininess = shininess(&coat.roughness);
+            let mirror = if shininess > 1e4 { Color::gray(COAT) } else { Color::BLACK };
+            Whitted { diffuse: *reflectance, specular: Color::gray(0.2), shininess, mirror, ..plain }
+        }
+        MaterialKind::CoatedConductor { metal, roughness, .. } => metallic(metal, roughness, textures),
+        MaterialKind::Mix { materials: [first, second], amount } => {
+            let greater = match amount {
+                Scalar::Value(amount) if *amount > 0.5 => second,
+                _ => first,
+            };
+            before.get(greater.index()).map_or_else(Whitted::default, |material| material.whitted.clone())
+        }
+        MaterialKind::Interface => Whitted { transmission: Color::gray(1.0), ior: 1.0, ..plain },
+    }
+}
+
+fn metallic(metal: &Metal, roughness: &Roughness, textures: &Textures) -> Whitted {
+    let color = match metal {
+        Metal::Reflectance(color) => *color,
+        Metal::Indices { eta, k } => {
+            let of = |color| {
+                let rgb = textures.rgb(color, Usage::Unbounded, &TexturePoint::NOWHERE);
+                Spectrum::from_rgb(rgb)
+            };
+            Color::Value(fresnel::conductor(1.0, of(*eta), of(*k)).rgb())
+        }
+    };
+    let shininess = shininess(roughness);
+    // A rough metal shows its lights as highlights, a smooth one everything.
+    let (mirror, specular) = if shininess > 200.0 { (color, Color::BLACK) } else { (Color::BLACK, color) };
+    Whitted { diffuse: Color::BLACK, specular, shininess, mirror, ..Whitted::default() }
+}
+
+/// Blinn's exponent of a Trowbridge–Reitz surface: 2/α² − 2.
+fn shininess(roughness: &Roughness) -> f32 {
+    let Scalar::Value(value) = roughness.u else { return 50.0 };
+    let alpha = if roughness.remap { value.max(0.0).sqrt() } else { value }.max(1e-3);
+    (2.0 / (alpha * alpha) - 2.0).max(1.0)
+}
+
+fn ior(ior: &Ior, textures: &Textures) -> f32 {
+    match ior {
+        Ior::Value(eta) => *eta,
+        Ior::Curve(curve) => super::ior_at(*curve, textures, &mut Lanes::Rgb),
+    }
+}

@@ -1,0 +1,95 @@
+//! What the camera sees first: a watcher of the way of a batch that keeps the features of its camera rays.
+
+use glam::{DVec3, Vec3};
+use lookfrom_scene::material::Color;
+
+use super::Frame;
+use crate::film::Features;
+use crate::integrator::{Event, Probe};
+use crate::material::Shading;
+use crate::spectrum::Spectrum;
+use crate::surface::Surface;
+use crate::texture::{Lanes, TexturePoint, Usage};
+
+/// How many directions along each axis a material is asked in for its albedo.
+const ALBEDO_GRID: u32 = 4;
+
+/// Keeps the first surface of each sample.
+pub(super) struct Seen<'a> {
+    frame: &'a Frame<'a>,
+    /// By slot: what the lanes meant at the start.
+    lanes: Vec<Lanes>,
+    /// By slot.
+    features: Vec<Option<Features>>,
+    /// The slot of the path that is being followed, where it comes from the camera.
+    current: Option<usize>,
+}
+
+impl<'a> Seen<'a> {
+    pub(super) fn new(frame: &'a Frame<'a>, lanes: Vec<Lanes>) -> Self {
+        Self { frame, features: vec![None; lanes.len()], lanes, current: None }
+    }
+
+    /// By slot.
+    pub(super) fn into_features(self) -> Vec<Option<Features>> {
+        self.features
+    }
+
+    fn see(&mut self, surface: &Surface, albedo: Spectrum) {
+        let Some(slot) = self.current else { return };
+        let world = self.frame.world;
+        let lanes = &self.lanes[slot];
+        let white =
+            world.textures.spectrum(Color::gray(1.0), Usage::Illuminant, &TexturePoint::NOWHERE, lanes);
+        let albedo = match lanes {
+            Lanes::Rgb => albedo.rgb(),
+            Lanes::Spectral(wavelengths) => self.frame.plain_sensor.rgb(albedo * white, wavelengths),
+        };
+        // From render space to the camera's, where x is to the right.
+        let view_from_world = world.camera.world_from_view().inverse();
+        let mirrored = |v: DVec3| Vec3::new(-v.x as f32, v.y as f32, v.z as f32);
+        let point = world.origin + DVec3::from_array(surface.point.position);
+        let position = mirrored(view_from_world.transform_point3(point));
+        let normal = |n: DVec3| mirrored(view_from_world.transform_vector3(n)).normalize_or_zero().to_array();
+        self.features[slot] = Some(Features {
+            albedo,
+            ng: normal(surface.ng),
+            ns: normal(surface.ns.as_dvec3()),
+            position: position.to_array(),
+            depth: position.z,
+            uv: surface.uv.to_array(),
+        });
+    }
+}
+
+impl Probe for Seen<'_> {
+    fn notice(&mut self, event: impl FnOnce() -> Event) {
+        match event() {
+            Event::Met { path, .. } => self.current = (path.depth == 0).then_some(path.slot as usize),
+            Event::Shaded { surface, shading, .. } if self.current.is_some() => {
+                self.see(&surface, albedo(&shading, surface.wo));
+            }
+            Event::Surface { surface, coefficients, .. } => {
+                let albedo = coefficients.map_or(Spectrum::BLACK, |k| k.diffuse + k.mirror + k.transmission);
+                self.see(&surface, albedo);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The part of the light from all around that leaves along `wo`, by a few directions.
+fn albedo(shading: &Shading, wo: Vec3) -> Spectrum {
+    let mut sum = Spectrum::BLACK;
+    let place = |k: u32| (k as f32 + 0.5) / ALBEDO_GRID as f32;
+    for k in 0..ALBEDO_GRID * ALBEDO_GRID {
+        let u = [place(k % ALBEDO_GRID), place(k / ALBEDO_GRID)];
+        let lobe = place((5 * k + 2) % ALBEDO_GRID);
+        if let Some(sample) = shading.sample(wo, lobe, u)
+            && sample.pdf > 0.0
+        {
+            sum += sample.f * (shading.cos(sample.wi).abs() / sample.pdf);
+        }
+    }
+    sum / (ALBEDO_GRID * ALBEDO_GRID) as f32
+}
