@@ -26,7 +26,7 @@ impl Default for Limits {
 }
 
 /// Where bytes come from.
-pub trait Files {
+pub trait Files: Sync {
     /// The whole content of a file of at most `limit` bytes.
     ///
     /// # Errors

@@ -12,6 +12,7 @@ pub mod load;
 pub mod material;
 pub mod model;
 pub mod obj;
+pub mod pbrt;
 pub mod ply;
 pub mod scene;
 pub mod settings;
@@ -19,6 +20,7 @@ pub mod shape;
 pub mod spectrum;
 pub mod stl;
 pub mod studio;
+mod suggest;
 pub mod texture;
 pub mod toml;
 

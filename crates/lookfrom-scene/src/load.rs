@@ -6,16 +6,19 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Sources;
 use crate::scene::{MaterialId, Scene};
 use crate::shape::{Part, Shape};
-use crate::{model, toml};
+use crate::{model, pbrt, toml};
 
-/// Reads a scene in our own format (`.toml`), or a model file, whose parts stand in the scene where the file has them
-/// and wear a grey "default" where the file gives them no material.
+/// Reads a scene in our own format (`.toml`), one of pbrt-v4 (`.pbrt`), or a model file, whose parts stand in the scene
+/// where the file has them and wear a grey "default" where the file gives them no material.
 ///
 /// # Errors
 /// `Unsupported` where the format is not known, and what the reader of the format finds.
 pub fn scene(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
     if is_toml(path) {
         return toml::read(path, sources);
+    }
+    if is_pbrt(path, sources) {
+        return pbrt::read(path, sources);
     }
     let mut scene = Scene::default();
     let parts = parts(path, sources, &mut scene)?;
@@ -30,6 +33,19 @@ pub(crate) fn is_toml(path: &Path) -> bool {
     extension(path) == "toml"
 }
 
+/// Whether a file is a scene of pbrt, by its name (`.pbrt`, `.pbrt.gz`), or by its content where that says nothing.
+fn is_pbrt(path: &Path, sources: &Sources<'_>) -> bool {
+    let is_packed =
+        extension(path) == "gz" && path.file_stem().is_some_and(|stem| extension(stem.as_ref()) == "pbrt");
+    let is_other = model::is_model(path) || SCENES_OF_OTHERS.contains(&&*extension(path));
+    extension(path) == "pbrt"
+        || is_packed
+        || (!is_other && sources.read(path).is_ok_and(|bytes| pbrt::is_pbrt(&bytes)))
+}
+
+/// Formats of scenes that are not read yet.
+const SCENES_OF_OTHERS: &[&str] = &["gltf", "glb"];
+
 fn extension(path: &Path) -> String {
     path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
@@ -38,10 +54,13 @@ fn extension(path: &Path) -> String {
 pub(crate) fn parts(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
     let unsupported = |message: String| {
         Error::new(ErrorKind::Unsupported, &Location::file(path), message)
-            .hint("scenes are .toml files, models .obj, .ply or .stl")
+            .hint("scenes are .toml or .pbrt files, models .obj, .ply or .stl")
     };
     let extension = extension(path);
-    if ["pbrt", "gltf", "glb"].contains(&extension.as_str()) {
+    if extension == "pbrt" {
+        return Err(unsupported("a scene of pbrt cannot be a part of another scene".to_owned()));
+    }
+    if SCENES_OF_OTHERS.contains(&&*extension) {
         return Err(unsupported(format!("scenes in .{extension} are not read yet; they come later")));
     }
     model::read(path, sources, scene).map_err(|error| match error.kind {

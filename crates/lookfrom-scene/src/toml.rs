@@ -10,7 +10,7 @@ mod light;
 mod material;
 mod place;
 mod shape;
-mod suggest;
+
 mod value;
 mod view;
 
@@ -19,12 +19,12 @@ use std::path::{Component, Path, PathBuf};
 
 use ::toml::de::DeTable;
 
-use self::suggest::nearest;
 use self::value::{Document, Table, Value};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Sources;
 use crate::scene::{ImageId, MaterialId, ObjectId, Scene, TextureId};
 use crate::shape::{Emission, Part};
+use crate::suggest::nearest;
 use crate::{image, load};
 
 pub(crate) use self::material::default_material;

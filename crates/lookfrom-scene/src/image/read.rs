@@ -22,7 +22,7 @@ const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF";
 /// is not known; `Limit` where it has more texels than [`Limits::texels`], which its header is asked before anything is
 /// decoded.
 pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Image> {
-    read_as(path, sources, linear_from_srgb)
+    read_encoded(path, sources, &linear_from_srgb)
 }
 
 /// Reads a picture of numbers (bumps, weights): as [`read`], but 8- and 16-bit values are taken as they are, over 0…1.
@@ -30,11 +30,14 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Image> {
 /// # Errors
 /// As [`read`].
 pub fn read_data(path: &Path, sources: &mut Sources<'_>) -> Result<Image> {
-    read_as(path, sources, |value| value)
+    read_encoded(path, sources, &|value| value)
 }
 
-/// `curve` takes an integer format's 0…1 to what is kept.
-fn read_as(path: &Path, sources: &mut Sources<'_>, curve: fn(f32) -> f32) -> Result<Image> {
+/// Reads a picture of whatever: as [`read`], but `curve` takes the 0…1 of 8- and 16-bit values to what is kept.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_encoded(path: &Path, sources: &mut Sources<'_>, curve: &dyn Fn(f32) -> f32) -> Result<Image> {
     let at = Location::file(path);
     let bytes = sources.read(path)?;
     let (width, height, mut texels) = if bytes.starts_with(&openexr::MAGIC) {
@@ -80,7 +83,7 @@ fn decode(
     path: &Path,
     at: &Location,
     limits: &Limits,
-    curve: fn(f32) -> f32,
+    curve: &dyn Fn(f32) -> f32,
 ) -> Result<Texels> {
     let fault = |error: &ImageError| wrong(error, bytes, at, limits);
     let mut reader = ImageReader::new(Cursor::new(bytes));

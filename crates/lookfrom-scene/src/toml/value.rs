@@ -5,8 +5,8 @@ use ::toml::Spanned;
 use ::toml::de::{DeTable, DeValue};
 use glam::DVec3;
 
-use super::suggest::nearest;
 use crate::error::{Error, ErrorKind, Location, Result};
+use crate::suggest::nearest;
 
 /// A file's text, with what is needed to name places in it.
 pub(super) struct Document {

@@ -1,0 +1,218 @@
+//! Scenes of pbrt-v4 (Pharr, Jakob & Humphreys 2023): its file format becomes a [`Scene`], or an error that points at
+//! what is wrong.
+//!
+//! `text` and `lexer` know bytes and words, `params` the typed parameters, `directive` what each directive does to the
+//! `state`; beside them a file for each part of the vocabulary. What pbrt knows and this program does not render is
+//! read, warned of once, and replaced by what is nearest.
+
+mod camera;
+mod curve;
+mod directive;
+mod file;
+mod film;
+mod integrator;
+mod lexer;
+mod light;
+mod loop_subdivision;
+mod material;
+mod mesh;
+mod params;
+mod picture;
+mod shape;
+mod spectra;
+mod state;
+mod text;
+mod texture;
+mod transform;
+mod version3;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use glam::DMat4;
+
+use self::file::Model;
+use self::state::{Opened, Options, State};
+use self::text::Place;
+use crate::error::{Error, Location, Result};
+use crate::files::Sources;
+use crate::material::{Color, Material, MaterialKind};
+use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
+use crate::settings::ColorMode;
+
+/// Reads a scene of pbrt-v4 with all that it includes. Names of files are relative to the folder of `path`, or else to
+/// that of the file they stand in.
+///
+/// # Errors
+/// With line, column and the line that is wrong: `Syntax` where words are not those of the format, `Invalid` where they
+/// say what cannot be (a scene of pbrt-v3 among them), `Limit` where something is too large or nests too deep, and
+/// whatever goes wrong in the files that are named.
+pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
+    let mut scene = Scene::default();
+    scene.render.color = ColorMode::Spectral;
+    let gray = MaterialKind::Diffuse { reflectance: Color::gray(0.5) };
+    scene.materials.push(Material::new("default", Location::file(path), gray));
+    let mut reader = Reader {
+        sources,
+        scene,
+        folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+        open: Vec::new(),
+        included: 0,
+        state: State::default(),
+        stack: Vec::new(),
+        coordinate_systems: BTreeMap::new(),
+        in_world: false,
+        options: Options::default(),
+        materials: BTreeMap::new(),
+        textures: BTreeMap::new(),
+        only_earlier: false,
+        objects: BTreeMap::new(),
+        object: None,
+        instances: Vec::new(),
+        curves: BTreeMap::new(),
+        images: BTreeMap::new(),
+        models: BTreeMap::new(),
+        warned: BTreeSet::new(),
+        has_media: false,
+    };
+    reader.file(path)?;
+    reader.finish(path)?;
+    Ok(reader.scene)
+}
+
+/// Whether a text looks like a scene of pbrt: one of its first words is a directive that begins such files.
+pub(crate) fn is_pbrt(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(1 << 16)];
+    let lines = head.split(|&byte| byte == b'\n' || byte == b'\r');
+    lines.map(<[u8]>::trim_ascii).filter(|line| !line.is_empty() && line[0] != b'#').take(100).any(|line| {
+        let word = line.split(|byte| byte.is_ascii_whitespace() || *byte == b'"').next().unwrap_or_default();
+        matches!(word, b"WorldBegin" | b"LookAt" | b"Integrator" | b"PixelFilter" | b"AttributeBegin")
+    })
+}
+
+/// A scene on its way from files.
+struct Reader<'s, 'f> {
+    sources: &'s mut Sources<'f>,
+    scene: Scene,
+    /// Where the file that was asked for lies.
+    folder: PathBuf,
+    /// The files that are being read: each is included by the one before.
+    open: Vec<PathBuf>,
+    /// How many files were included.
+    included: u32,
+    /// What holds for the next shape.
+    state: State,
+    /// What was begun and has to be ended.
+    stack: Vec<Opened>,
+    coordinate_systems: BTreeMap<String, DMat4>,
+    /// Whether `WorldBegin` was there.
+    in_world: bool,
+    /// What was said before `WorldBegin`.
+    options: Options,
+    materials: BTreeMap<String, NamedMaterial>,
+    /// By name and whether they give numbers.
+    textures: BTreeMap<(bool, String), NamedTexture>,
+    /// Whether textures may only be used after they are written (as textures of textures are).
+    only_earlier: bool,
+    objects: BTreeMap<String, ObjectId>,
+    /// The object that shapes go to.
+    object: Option<ObjectId>,
+    /// Instances whose objects are looked up when all are there.
+    instances: Vec<(String, Place, DMat4)>,
+    curves: BTreeMap<String, CurveId>,
+    /// Pictures by path and by what was done to their values.
+    images: BTreeMap<(PathBuf, String), ImageId>,
+    models: BTreeMap<PathBuf, Model>,
+    /// What was warned of already.
+    warned: BTreeSet<String>,
+    has_media: bool,
+}
+
+/// A material that was made or mentioned.
+struct NamedMaterial {
+    id: MaterialId,
+    /// Where it was mentioned first.
+    first: Place,
+    is_made: bool,
+}
+
+/// A texture that was made or mentioned.
+struct NamedTexture {
+    /// A value where it is the same everywhere.
+    color: Color,
+    /// Where it was mentioned first.
+    first: Place,
+    is_made: bool,
+}
+
+impl Reader<'_, '_> {
+    /// Warns of something the first time only.
+    fn warn_once(&mut self, what: &str, place: &Place, message: impl std::fmt::Display) {
+        if self.warned.insert(what.to_owned()) {
+            self.sources.warn(&place.location(), message.to_string());
+        }
+    }
+
+    /// A message for a word that is not known, with what was probably meant.
+    fn unknown<'a>(
+        place: &Place,
+        what: &str,
+        word: &str,
+        known: impl IntoIterator<Item = &'a str> + Clone,
+    ) -> Error {
+        let error = place.invalid(format!("{word:?} is no {what} that is known"));
+        match crate::suggest::nearest(word, known.clone()) {
+            Some(meant) => error.hint(format!("did you mean {meant:?}?")),
+            None => {
+                let mut known: Vec<&str> = known.into_iter().take(20).collect();
+                if known.is_empty() {
+                    return error.hint("there is none at all before this");
+                }
+                known.sort_unstable();
+                error.hint(format!("there are: {}", known.join(", ")))
+            }
+        }
+    }
+
+    /// What can only be done when everything is known.
+    fn finish(&mut self, path: &Path) -> Result<()> {
+        if let Some(opened) = self.stack.last() {
+            let error = opened.place.syntax(format!("this {}Begin has no {}End", opened.word, opened.word));
+            return Err(error.hint("the file may be cut off"));
+        }
+        if !self.in_world {
+            let error = Error::syntax(&Location::file(path), "the scene ends before `WorldBegin`");
+            return Err(error.hint("a scene is its camera and film, `WorldBegin`, and its shapes and lights"));
+        }
+        let made: Vec<&str> =
+            self.materials.iter().filter(|(_, named)| named.is_made).map(|(name, _)| &**name).collect();
+        if let Some((name, named)) = self.materials.iter().find(|(_, named)| !named.is_made) {
+            return Err(Self::unknown(&named.first, "material", name, made));
+        }
+        if let Some(((is_float, name), named)) = self.textures.iter().find(|(_, named)| !named.is_made) {
+            let known = self.textures.iter().filter(|((float, _), named)| float == is_float && named.is_made);
+            let what = if *is_float { "float texture" } else { "spectrum texture" };
+            let error = Self::unknown(&named.first, what, name, known.map(|((_, name), _)| &**name));
+            let other = self.textures.get(&(!is_float, name.clone())).is_some_and(|named| named.is_made);
+            return Err(if other {
+                error.hint(match is_float {
+                    true => "there is a spectrum texture of that name, but numbers are needed here",
+                    false => "there is a float texture of that name, but colours are needed here",
+                })
+            } else {
+                error
+            });
+        }
+        self.place_instances()?;
+        self.read_models()
+    }
+}
+
+impl NamedTexture {
+    fn id(&self) -> Option<TextureId> {
+        match self.color {
+            Color::Texture(id) => Some(id),
+            Color::Value(_) | Color::Curve(_) => None,
+        }
+    }
+}

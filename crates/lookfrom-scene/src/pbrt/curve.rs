@@ -1,0 +1,145 @@
+//! Which cubic Bézier curves make a shape "curve"?
+
+use glam::Vec3;
+
+use super::Reader;
+use super::params::{Kind, Parameters};
+use crate::error::Result;
+use crate::shape::{Geometry, Profile, Strand};
+
+#[derive(Clone, Copy, PartialEq)]
+enum Basis {
+    Bezier,
+    BSpline,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Form {
+    Flat,
+    Cylinder,
+    Ribbon,
+}
+
+impl Reader<'_, '_> {
+    pub(super) fn curve_shape(&mut self, p: &Parameters) -> Result<Geometry> {
+        p.ignore(&["splitdepth"]);
+        let degree = p.integer("degree", 3, 2, 3)? as usize;
+        let basis =
+            p.choice("basis", Basis::Bezier, &[("bezier", Basis::Bezier), ("bspline", Basis::BSpline)])?;
+        let forms = [("flat", Form::Flat), ("cylinder", Form::Cylinder), ("ribbon", Form::Ribbon)];
+        let form = p.choice("type", Form::Flat, &forms)?;
+        let width = p.float("width", 1.0)?;
+        let widths = [p.float("width0", width)?, p.float("width1", width)?];
+        if !(widths[0].max(widths[1]) > 0.0) || widths[0].min(widths[1]) < 0.0 {
+            let name = if p.has("width0") { "width0" } else { "width" };
+            return Err(p.refuse(name, "widths of at least 0, one of them greater"));
+        }
+
+        let points = p.vectors("P", Kind::Point3)?;
+        let count = points.len();
+        let segments = match basis {
+            Basis::Bezier if count > degree && (count - 1).is_multiple_of(degree) => (count - 1) / degree,
+            Basis::BSpline if count > degree => count - degree,
+            Basis::Bezier => {
+                let expected = format!("{} control points and {degree} for each further segment", degree + 1);
+                return Err(p.refuse("P", &format!("{expected}, found {count}")));
+            }
+            Basis::BSpline => {
+                return Err(p.refuse("P", &format!("at least {} control points, found {count}", degree + 1)));
+            }
+        };
+        let normals = p.vectors("N", Kind::Normal)?;
+        if form == Form::Ribbon && normals.len() != segments + 1 {
+            let expected = format!("{} normals for {segments} segments of a ribbon", segments + 1);
+            return Err(p.refuse("N", &format!("{expected}, found {}", normals.len())));
+        }
+
+        let at = |end: usize| widths[0] + (widths[1] - widths[0]) * (end as f32 / segments as f32);
+        // A curve that ends in a point is as thin there as numbers allow in practice.
+        let thinnest = 1e-6 * widths[0].max(widths[1]);
+        let strands = (0..segments).map(|segment| {
+            let points = match (basis, degree) {
+                (Basis::Bezier, 2) => elevated(corners(&points[2 * segment..])),
+                (Basis::Bezier, _) => corners(&points[3 * segment..]),
+                (Basis::BSpline, 2) => elevated(quadratic_b_spline(corners(&points[segment..]))),
+                (Basis::BSpline, _) => cubic_b_spline(corners(&points[segment..])),
+            };
+            let profile = match form {
+                Form::Flat => Profile::Flat,
+                Form::Cylinder => Profile::Cylinder,
+                Form::Ribbon => Profile::Ribbon(
+                    [segment, segment + 1].map(|end| normals[end].try_normalize().unwrap_or(Vec3::Z)),
+                ),
+            };
+            Strand { points, width: [at(segment).max(thinnest), at(segment + 1).max(thinnest)], profile }
+        });
+        Ok(Geometry::Curves(strands.collect()))
+    }
+}
+
+fn corners<const N: usize>(points: &[Vec3]) -> [Vec3; N] {
+    std::array::from_fn(|i| points[i])
+}
+
+/// The cubic that is the same curve as a quadratic.
+fn elevated([a, b, c]: [Vec3; 3]) -> [Vec3; 4] {
+    [a, a + (b - a) * (2.0 / 3.0), c + (b - c) * (2.0 / 3.0), c]
+}
+
+/// The Bézier points of a segment of a uniform quadratic B-spline.
+fn quadratic_b_spline([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
+    [(a + b) * 0.5, b, (b + c) * 0.5]
+}
+
+/// The Bézier points of a segment of a uniform cubic B-spline.
+fn cubic_b_spline([a, b, c, d]: [Vec3; 4]) -> [Vec3; 4] {
+    let near = |p: Vec3, q: Vec3| p + (q - p) * (1.0 / 3.0);
+    let (bc, cb) = (near(b, c), near(c, b));
+    [(near(b, a) + bc) * 0.5, bc, cb, (cb + near(c, d)) * 0.5]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bezier(p: &[Vec3], t: f32) -> Vec3 {
+        match p {
+            [one] => *one,
+            _ => {
+                let next: Vec<Vec3> = p.windows(2).map(|pair| pair[0].lerp(pair[1], t)).collect();
+                bezier(&next, t)
+            }
+        }
+    }
+
+    /// By the blending polynomials, as textbooks have them.
+    fn b_spline(p: [Vec3; 4], t: f32) -> Vec3 {
+        let s = 1.0 - t;
+        (p[0] * s.powi(3)
+            + p[1] * (3.0 * t.powi(3) - 6.0 * t * t + 4.0)
+            + p[2] * (-3.0 * t.powi(3) + 3.0 * t * t + 3.0 * t + 1.0)
+            + p[3] * t.powi(3))
+            / 6.0
+    }
+
+    const POINTS: [Vec3; 4] = [
+        Vec3::new(0.0, 1.0, 2.0),
+        Vec3::new(-3.0, 0.5, 1.0),
+        Vec3::new(2.0, 2.0, -1.0),
+        Vec3::new(4.0, -5.0, 0.0),
+    ];
+
+    #[test]
+    fn conversions_keep_the_curve() {
+        let quadratic = [POINTS[0], POINTS[1], POINTS[2]];
+        for i in 0..=8 {
+            let t = i as f32 / 8.0;
+            assert!(bezier(&elevated(quadratic), t).abs_diff_eq(bezier(&quadratic, t), 1e-5));
+            assert!(bezier(&cubic_b_spline(POINTS), t).abs_diff_eq(b_spline(POINTS, t), 1e-5));
+            let s = 1.0 - t;
+            let blended =
+                (quadratic[0] * s * s + quadratic[1] * (1.0 + 2.0 * t * s) + quadratic[2] * t * t) * 0.5;
+            assert!(bezier(&quadratic_b_spline(quadratic), t).abs_diff_eq(blended, 1e-5));
+        }
+    }
+}

@@ -1,0 +1,461 @@
+//! What does each directive do?
+
+use std::rc::Rc;
+
+use glam::{DMat4, DVec3};
+
+use super::lexer::{Lexer, Token};
+use super::params::{self, Inherited, Parameters};
+use super::spectra::Space;
+use super::state::{Entity, Opened, TARGETS};
+use super::text::Place;
+use super::{Reader, transform, version3};
+use crate::error::{ErrorKind, Result};
+use crate::scene::{Instance, MaterialId, Object, ObjectId};
+use crate::spectrum::space;
+use crate::suggest::nearest;
+
+/// How deep attributes may nest.
+const DEEPEST: usize = 1 << 16;
+
+const DIRECTIVES: &[&str] = &[
+    "Accelerator",
+    "ActiveTransform",
+    "AreaLightSource",
+    "Attribute",
+    "AttributeBegin",
+    "AttributeEnd",
+    "Camera",
+    "ColorSpace",
+    "ConcatTransform",
+    "CoordSysTransform",
+    "CoordinateSystem",
+    "Film",
+    "Identity",
+    "Import",
+    "Include",
+    "Integrator",
+    "LightSource",
+    "LookAt",
+    "MakeNamedMaterial",
+    "MakeNamedMedium",
+    "Material",
+    "MediumInterface",
+    "NamedMaterial",
+    "ObjectBegin",
+    "ObjectEnd",
+    "ObjectInstance",
+    "Option",
+    "PixelFilter",
+    "ReverseOrientation",
+    "Rotate",
+    "Sampler",
+    "Scale",
+    "Shape",
+    "Texture",
+    "Transform",
+    "TransformBegin",
+    "TransformEnd",
+    "TransformTimes",
+    "Translate",
+    "WorldBegin",
+];
+
+impl Reader<'_, '_> {
+    /// Does what a directive says; the lexer stands behind its first word.
+    pub(super) fn directive(&mut self, word: &[u8], place: &Place, lexer: &mut Lexer<'_>) -> Result<()> {
+        match word {
+            b"Shape" => {
+                let (kind, parameters) = self.world_entity(word, place, lexer, 0)?;
+                self.shape(&kind, &parameters)?;
+                parameters.finish(self.sources);
+            }
+            b"AttributeBegin" => {
+                self.in_world_only(word, place)?;
+                self.begin("Attribute", place)?;
+            }
+            b"AttributeEnd" => self.end("Attribute", place)?,
+            b"TransformBegin" => self.begin("Transform", place)?,
+            b"TransformEnd" => self.end("Transform", place)?,
+            b"ReverseOrientation" => {
+                self.in_world_only(word, place)?;
+                self.state.reverse_orientation = !self.state.reverse_orientation;
+            }
+            b"Attribute" => self.attribute(place, lexer)?,
+
+            // Transforms.
+            b"Identity" => self.set_matrix(DMat4::IDENTITY, place),
+            b"Translate" => {
+                let offset = transform::numbers(lexer)?;
+                self.concatenate(DMat4::from_translation(DVec3::from_array(offset)), place);
+            }
+            b"Scale" => {
+                let factors = transform::numbers(lexer)?;
+                self.concatenate(DMat4::from_scale(DVec3::from_array(factors)), place);
+            }
+            b"Rotate" => {
+                let turn = transform::numbers(lexer)?;
+                self.concatenate(transform::rotate(turn, place)?, place);
+            }
+            b"LookAt" => {
+                let view = transform::numbers(lexer)?;
+                self.concatenate(transform::look_at(view, place)?, place);
+            }
+            b"Transform" => {
+                let matrix = transform::matrix(lexer, place)?;
+                self.set_matrix(matrix, place);
+            }
+            b"ConcatTransform" => {
+                let matrix = transform::matrix(lexer, place)?;
+                self.concatenate(matrix, place);
+            }
+            b"CoordinateSystem" => {
+                let name = lexer.string("a quoted name of a coordinate system")?;
+                self.coordinate_systems.insert(name, self.state.matrix);
+            }
+            b"CoordSysTransform" => {
+                let name = lexer.string("a quoted name of a coordinate system")?;
+                match self.coordinate_systems.get(&name) {
+                    Some(&matrix) => self.set_matrix(matrix, place),
+                    None => {
+                        let known = self.coordinate_systems.keys().map(String::as_str);
+                        let hint = nearest(&name, known).map(|meant| format!("; did you mean {meant:?}?"));
+                        let message = format!(
+                            "there is no coordinate system {name:?}: nothing is changed{}",
+                            hint.unwrap_or_default()
+                        );
+                        self.sources.warn(&place.location(), message);
+                    }
+                }
+            }
+            b"ActiveTransform" => self.active_transform(lexer)?,
+            b"TransformTimes" => {
+                self.before_world_only(word, place)?;
+                transform::numbers::<2>(lexer)?;
+            }
+
+            // Materials, textures and lights.
+            b"Material" => {
+                let (kind, parameters) = self.entity(word, place, lexer, Some(2))?;
+                self.state.material = self.material(&kind, &parameters)?;
+                parameters.finish(self.sources);
+            }
+            b"MakeNamedMaterial" => self.make_named_material(place, lexer)?,
+            b"NamedMaterial" => {
+                let start = lexer.here();
+                let name = lexer.string("a quoted name of a material")?;
+                self.state.material = self.material_named(&name, &lexer.place(start));
+            }
+            b"Texture" => self.texture_directive(place, lexer)?,
+            b"LightSource" => {
+                let (kind, parameters) = self.world_entity(word, place, lexer, 1)?;
+                self.light(&kind, &parameters)?;
+                parameters.finish(self.sources);
+            }
+            b"AreaLightSource" => {
+                let (kind, parameters) = self.world_entity(word, place, lexer, 1)?;
+                self.state.emission = Some(self.area_light(&kind, &parameters)?);
+                parameters.finish(self.sources);
+            }
+            b"MakeNamedMedium" => {
+                let (_, parameters) = self.entity(word, place, lexer, Some(3))?;
+                drop(parameters);
+            }
+            b"MediumInterface" => self.medium_interface(place, lexer)?,
+
+            // Objects.
+            b"ObjectBegin" => self.object_begin(place, lexer)?,
+            b"ObjectEnd" => self.end("Object", place)?,
+            b"ObjectInstance" => {
+                self.in_world_only(word, place)?;
+                let start = lexer.here();
+                let name = lexer.string("a quoted name of an object")?;
+                if self.object.is_some() {
+                    let error = place.invalid("an ObjectInstance cannot stand in an object");
+                    return Err(error.hint("end the object with ObjectEnd before it"));
+                }
+                self.instances.push((name, lexer.place(start), self.state.matrix));
+            }
+
+            // Before the world.
+            b"Camera" => {
+                let entity = self.option(word, place, lexer)?;
+                let matrix = self.state.matrix;
+                if !transform::is_invertible(&matrix) {
+                    return Err(place
+                        .invalid("the transform in force here flattens space: a camera cannot see by it"));
+                }
+                self.coordinate_systems.insert("camera".to_owned(), matrix.inverse());
+                self.options.camera = Some((entity, matrix));
+            }
+            b"Film" => self.options.film = Some(self.option(word, place, lexer)?),
+            b"PixelFilter" => self.options.filter = Some(self.option(word, place, lexer)?),
+            b"Sampler" => self.options.sampler = Some(self.option(word, place, lexer)?),
+            b"Integrator" => self.options.integrator = Some(self.option(word, place, lexer)?),
+            b"Accelerator" => drop(self.option(word, place, lexer)?),
+            b"Option" => self.program_option(place, lexer)?,
+            b"ColorSpace" => {
+                let start = lexer.here();
+                let name = lexer.string("a quoted name of a colour space")?;
+                self.state.space = color_space(&name, &lexer.place(start))?;
+            }
+            b"WorldBegin" => self.world_begin(place)?,
+
+            // Other files.
+            b"Include" => {
+                let start = lexer.here();
+                let name = lexer.string("a quoted name of a file")?;
+                self.include(&name, &lexer.place(start))?;
+            }
+            b"Import" => {
+                self.in_world_only(word, place)?;
+                let start = lexer.here();
+                let name = lexer.string("a quoted name of a file")?;
+                let state = self.state.clone();
+                self.include(&name, &lexer.place(start))?;
+                self.state = state;
+            }
+            _ => {
+                version3::check_directive(word, place)?;
+                let word = String::from_utf8_lossy(word);
+                let short: String = word.chars().take(40).collect();
+                let error = place.syntax(format!("expected a directive, found `{short}`"));
+                return Err(match nearest(&word, DIRECTIVES.iter().copied()) {
+                    Some(meant) => error.hint(format!("did you mean `{meant}`?")),
+                    None => error.hint("directives are Shape, Material, Translate, AttributeBegin, …"),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn in_world_only(&self, word: &[u8], place: &Place) -> Result<()> {
+        if self.in_world {
+            return Ok(());
+        }
+        let error =
+            place.invalid(format!("{} can only stand after WorldBegin", String::from_utf8_lossy(word)));
+        Err(error.hint("write `WorldBegin` between the camera and film and the first shape or light"))
+    }
+
+    fn before_world_only(&self, word: &[u8], place: &Place) -> Result<()> {
+        if !self.in_world {
+            return Ok(());
+        }
+        let error =
+            place.invalid(format!("{} can only stand before WorldBegin", String::from_utf8_lossy(word)));
+        Err(error.hint("move it to the beginning of the scene"))
+    }
+
+    /// A kind and its parameters.
+    pub(super) fn entity(
+        &self,
+        word: &[u8],
+        place: &Place,
+        lexer: &mut Lexer<'_>,
+        target: Option<usize>,
+    ) -> Result<(String, Parameters)> {
+        let start = lexer.here();
+        let kind = lexer.string("a quoted kind")?;
+        let directive = String::from_utf8_lossy(word);
+        version3::check_word(&directive, &kind, &lexer.place(start))?;
+        let own = params::read(lexer)?;
+        for parameter in &own {
+            version3::check_parameter(&directive, parameter.kind.word(), &parameter.name, &parameter.place)?;
+        }
+        let none = Inherited::default();
+        let inherited = target.map_or(&none, |target| &self.state.attributes[target]);
+        let title = format!("{directive} {kind:?}");
+        Ok((kind, Parameters::new(title, place.clone(), self.state.space, own, inherited)))
+    }
+
+    fn world_entity(
+        &self,
+        word: &[u8],
+        place: &Place,
+        lexer: &mut Lexer<'_>,
+        target: usize,
+    ) -> Result<(String, Parameters)> {
+        self.in_world_only(word, place)?;
+        self.entity(word, place, lexer, Some(target))
+    }
+
+    fn option(&self, word: &[u8], place: &Place, lexer: &mut Lexer<'_>) -> Result<Entity> {
+        self.before_world_only(word, place)?;
+        let (kind, parameters) = self.entity(word, place, lexer, None)?;
+        Ok(Entity { kind, parameters })
+    }
+
+    fn begin(&mut self, word: &'static str, place: &Place) -> Result<()> {
+        if self.stack.len() >= DEEPEST {
+            let message = format!("attributes nest deeper than the limit of {DEEPEST}");
+            return Err(place
+                .error(ErrorKind::Limit, message)
+                .hint("end each AttributeBegin with an AttributeEnd"));
+        }
+        self.stack.push(Opened { word, place: place.clone(), state: self.state.clone() });
+        Ok(())
+    }
+
+    fn end(&mut self, word: &'static str, place: &Place) -> Result<()> {
+        let Some(opened) = self.stack.pop() else {
+            let error = place.syntax(format!("this {word}End ends nothing"));
+            return Err(error.hint(format!("take it out, or begin with {word}Begin")));
+        };
+        if opened.word != word {
+            let (begun, at) = (opened.word, opened.place.location());
+            let error = place.syntax(format!("{word}End where {begun}Begin, at {at}, is still open"));
+            return Err(error.hint(format!("write {begun}End before it")));
+        }
+        match word {
+            "Transform" => self.state.matrix = opened.state.matrix,
+            _ => self.state = opened.state,
+        }
+        if word == "Object" {
+            self.object = None;
+        }
+        Ok(())
+    }
+
+    fn attribute(&mut self, place: &Place, lexer: &mut Lexer<'_>) -> Result<()> {
+        let start = lexer.here();
+        let name = lexer.string("what the parameters are for, such as \"shape\"")?;
+        let target = TARGETS.iter().position(|&target| target == name);
+        let target = target
+            .ok_or_else(|| Self::unknown(&lexer.place(start), "target of Attribute", &name, TARGETS))?;
+        let own = params::read(lexer)?;
+        // What rgb values mean is settled here, not where they are used.
+        let parameters =
+            Parameters::new(String::new(), place.clone(), self.state.space, own, &Inherited::default());
+        let attributes = Rc::make_mut(&mut self.state.attributes[target]);
+        for parameter in parameters.into_own() {
+            parameter.space.set(Some(self.state.space));
+            attributes.push(Rc::new(parameter));
+        }
+        Ok(())
+    }
+
+    fn concatenate(&mut self, matrix: DMat4, place: &Place) {
+        self.set_matrix(self.state.matrix * matrix, place);
+    }
+
+    fn set_matrix(&mut self, matrix: DMat4, place: &Place) {
+        if self.state.at_start {
+            self.state.matrix = matrix;
+        }
+        if self.state.at_start != self.state.at_end {
+            let message = "motion is not rendered yet: everything stands where it is at the start";
+            self.warn_once("motion", place, message);
+        }
+    }
+
+    fn active_transform(&mut self, lexer: &mut Lexer<'_>) -> Result<()> {
+        let start = lexer.here();
+        (self.state.at_start, self.state.at_end) = match lexer.token()? {
+            Some(Token::Word(b"StartTime")) => (true, false),
+            Some(Token::Word(b"EndTime")) => (false, true),
+            Some(Token::Word(b"All")) => (true, true),
+            _ => return Err(lexer.wrong(start, "StartTime, EndTime or All")),
+        };
+        Ok(())
+    }
+
+    fn medium_interface(&mut self, place: &Place, lexer: &mut Lexer<'_>) -> Result<()> {
+        let inside = lexer.string("a quoted name of a medium, or \"\"")?;
+        let mut outside = inside.clone();
+        if matches!(lexer.peek()?, Some(Token::Quoted(_))) {
+            outside = lexer.string("a quoted name of a medium")?;
+        }
+        if !inside.is_empty() || !outside.is_empty() {
+            self.has_media = true;
+            self.warn_once(
+                "media",
+                place,
+                "media are not rendered yet: light passes them as it passes a vacuum",
+            );
+        }
+        Ok(())
+    }
+
+    fn object_begin(&mut self, place: &Place, lexer: &mut Lexer<'_>) -> Result<()> {
+        self.in_world_only(b"ObjectBegin", place)?;
+        let start = lexer.here();
+        let name = lexer.string("a quoted name of an object")?;
+        if self.object.is_some() {
+            return Err(place
+                .invalid("an object cannot stand in an object")
+                .hint("write ObjectEnd before it"));
+        }
+        if let Some(id) = self.objects.get(&name) {
+            let before = &self.scene.objects[id.index()].at;
+            let error = lexer.place(start).invalid(format!("object {name:?} is already there, at {before}"));
+            return Err(error.hint("give one of them another name"));
+        }
+        self.begin("Object", place)?;
+        let id = ObjectId(self.scene.objects.len() as u32);
+        self.scene.objects.push(Object { name: name.clone(), at: place.location(), shapes: Vec::new() });
+        self.objects.insert(name, id);
+        self.object = Some(id);
+        Ok(())
+    }
+
+    pub(super) fn place_instances(&mut self) -> Result<()> {
+        for (name, place, matrix) in std::mem::take(&mut self.instances) {
+            let Some(&object) = self.objects.get(&name) else {
+                return Err(Self::unknown(&place, "object", &name, self.objects.keys().map(String::as_str)));
+            };
+            if !transform::is_invertible(&matrix) {
+                self.sources.warn(&place.location(), "left out: its transform flattens it to nothing");
+                continue;
+            }
+            let at = place.location();
+            self.scene.instances.push(Instance { at, object, world_from_object: matrix, material: None });
+        }
+        Ok(())
+    }
+
+    /// The material of a name, which may be made later.
+    pub(super) fn material_named(&mut self, name: &str, place: &Place) -> MaterialId {
+        if let Some(named) = self.materials.get(name) {
+            return named.id;
+        }
+        self.reserve_material(name, place)
+    }
+
+    fn world_begin(&mut self, place: &Place) -> Result<()> {
+        self.before_world_only(b"WorldBegin", place)?;
+        if let Some(opened) = self.stack.last() {
+            let error = place.syntax(format!("WorldBegin while {}Begin is still open", opened.word));
+            return Err(error.hint(format!("write {}End before it", opened.word)));
+        }
+        self.in_world = true;
+        (self.state.matrix, self.state.at_start, self.state.at_end) = (DMat4::IDENTITY, true, true);
+        self.coordinate_systems.insert("world".to_owned(), DMat4::IDENTITY);
+        self.settle_options()
+    }
+
+    /// The camera, the film and all that is said before the world, or their defaults.
+    fn settle_options(&mut self) -> Result<()> {
+        let options = std::mem::take(&mut self.options);
+        self.film(options.film.as_ref(), options.camera.as_ref().map(|(entity, _)| entity))?;
+        self.filter(options.filter.as_ref())?;
+        self.sampler(options.sampler.as_ref())?;
+        self.integrator(options.integrator.as_ref())?;
+        self.camera(options.camera.as_ref())?;
+        let entities = [options.film, options.filter, options.sampler, options.integrator];
+        let entities = entities.into_iter().chain([options.camera.map(|(entity, _)| entity)]).flatten();
+        entities.for_each(|entity| entity.parameters.finish(self.sources));
+        Ok(())
+    }
+}
+
+/// A colour space by name.
+pub(super) fn color_space(name: &str, place: &Place) -> Result<Space> {
+    let known = || space::names();
+    let found = known().find(|known| known.eq_ignore_ascii_case(name));
+    found.ok_or_else(|| {
+        let words: Vec<&str> = known().collect();
+        let error = place.invalid(format!("{name:?} is no colour space that is known"));
+        error.hint(format!("there are: {}", words.join(", ")))
+    })
+}

@@ -1,0 +1,168 @@
+//! How large is the picture, what is weighed into a pixel, and how does light become colour?
+
+use super::Reader;
+use super::params::{Kind, Parameters};
+use super::spectra::SRGB;
+use super::state::Entity;
+use crate::error::Result;
+use crate::settings::{Crop, Filter, Layers, Sensor};
+
+/// The largest width and height.
+const LARGEST: i32 = 1 << 16;
+
+/// pbrt's cameras whose response it knows; ours is that of the standard observer.
+const SENSORS: &[&str] = &[
+    "canon_eos_100d",
+    "canon_eos_1dx_mkii",
+    "canon_eos_200d",
+    "canon_eos_200d_mkii",
+    "canon_eos_5d",
+    "canon_eos_5d_mkii",
+    "canon_eos_5d_mkiii",
+    "canon_eos_5d_mkiv",
+    "canon_eos_5ds",
+    "canon_eos_m",
+    "hasselblad_l1d_20c",
+    "nikon_d810",
+    "nikon_d850",
+    "sony_ilce_6400",
+    "sony_ilce_7m3",
+    "sony_ilce_7rm3",
+    "sony_ilce_9",
+];
+
+impl Reader<'_, '_> {
+    /// The film, and of the camera the time that its shutter is open.
+    pub(super) fn film(&mut self, film: Option<&Entity>, camera: Option<&Entity>) -> Result<()> {
+        let image = &mut self.scene.image;
+        (image.width, image.height) = (1280, 720);
+        let shutter = match camera {
+            Some(camera) => {
+                let parameters = &camera.parameters;
+                let (open, close) =
+                    (parameters.float("shutteropen", 0.0)?, parameters.float("shutterclose", 1.0)?);
+                if !(close > open) {
+                    return Err(parameters.refuse("shutterclose", "a time after that of \"shutteropen\""));
+                }
+                close - open
+            }
+            None => 1.0,
+        };
+        image.sensor.imaging_ratio = shutter;
+        let Some(Entity { kind, parameters }) = film else { return Ok(()) };
+        match &**kind {
+            "rgb" => {}
+            "gbuffer" => image.layers = Layers::Geometry,
+            "spectral" => {
+                let message = "a film of many wavelengths is not written yet: it is taken as \"rgb\"";
+                self.sources.warn(&parameters.place.location(), message);
+                parameters.ignore(&["nbuckets", "lambdamin", "lambdamax"]);
+            }
+            _ => return Err(Self::unknown(&parameters.place, "film", kind, ["rgb", "gbuffer", "spectral"])),
+        }
+        parameters.ignore(&["filename", "savefp16", "diagonal", "coordinatesystem", "displayfile"]);
+        let sensor = self.sensor(parameters, shutter)?;
+        let image = &mut self.scene.image;
+        image.width = parameters.integer("xresolution", 1280, 1, LARGEST)? as u32;
+        image.height = parameters.integer("yresolution", 720, 1, LARGEST)? as u32;
+        image.crop = crop(parameters, image.width, image.height)?;
+        image.sensor = sensor;
+        if parameters.space != SRGB {
+            let message = format!(
+                "pictures are written in sRGB's primaries (Rec. 709), not in those of {}",
+                parameters.space
+            );
+            self.sources.warn(&parameters.place.location(), message);
+        }
+        Ok(())
+    }
+
+    fn sensor(&mut self, parameters: &Parameters, shutter: f32) -> Result<Sensor> {
+        let iso = parameters.positive("iso", 100.0)?;
+        let exposure_time = parameters.positive("exposuretime", 1.0)?;
+        let mut white =
+            parameters.float_where("whitebalance", 0.0, "a temperature in kelvin, or 0", |k| k >= 0.0)?;
+        if let Some(name) = parameters.string("sensor")?.filter(|&name| name != "cie1931") {
+            if !SENSORS.contains(&name) {
+                let known = [&["cie1931"], SENSORS].concat();
+                return Err(Self::unknown(&parameters.place, "sensor", name, known));
+            }
+            // A camera's own sensor is balanced for daylight where nothing is said.
+            white = if white == 0.0 { 6500.0 } else { white };
+            let message = format!("the sensor {name:?} is not known yet: \"cie1931\" takes its place");
+            self.sources.warn(&parameters.place.location(), message);
+        }
+        Ok(Sensor {
+            imaging_ratio: shutter * exposure_time * iso / 100.0,
+            white_balance: (white > 0.0).then_some(white),
+            max_component: parameters.positive("maxcomponentvalue", f32::INFINITY)?,
+        })
+    }
+
+    pub(super) fn filter(&mut self, filter: Option<&Entity>) -> Result<()> {
+        self.scene.image.filter = Filter::Gaussian { radius: 1.5, sigma: 0.5 };
+        let Some(Entity { kind, parameters }) = filter else { return Ok(()) };
+        let default = match &**kind {
+            "box" => 0.5,
+            "gaussian" => 1.5,
+            "triangle" | "mitchell" => 2.0,
+            "sinc" => 4.0,
+            _ => {
+                let known = ["box", "gaussian", "triangle", "mitchell", "sinc"];
+                return Err(Self::unknown(&parameters.place, "filter", kind, known));
+            }
+        };
+        let radius = parameters.positive("xradius", default)?;
+        let other = parameters.positive("yradius", default)?;
+        if radius != other {
+            let message =
+                format!("a filter of {radius} × {other} pixels is taken as one of {radius} × {radius}");
+            self.sources.warn(&parameters.place.location(), message);
+        }
+        self.scene.image.filter = match &**kind {
+            "box" => Filter::Box { radius },
+            "gaussian" => Filter::Gaussian { radius, sigma: parameters.positive("sigma", 0.5)? },
+            "triangle" => Filter::Triangle { radius },
+            "mitchell" => Filter::Mitchell {
+                radius,
+                b: parameters.float("B", 1.0 / 3.0)?,
+                c: parameters.float("C", 1.0 / 3.0)?,
+            },
+            _ => {
+                parameters.ignore(&["tau"]);
+                let message = "the filter \"sinc\" is not there yet: Mitchell's takes its place";
+                self.sources.warn(&parameters.place.location(), message);
+                Filter::Mitchell { radius: radius.min(2.0), b: 1.0 / 3.0, c: 1.0 / 3.0 }
+            }
+        };
+        Ok(())
+    }
+}
+
+/// The part that is computed, in pixels or in shares of the picture.
+fn crop(parameters: &Parameters, width: u32, height: u32) -> Result<Option<Crop>> {
+    let pixels = parameters.integers("pixelbounds")?;
+    let shares = parameters.floats("cropwindow", Kind::Float)?;
+    let crop = match (pixels, shares) {
+        (&[x0, x1, y0, y1], _) => {
+            let [x0, x1] = [x0, x1].map(|x| x.clamp(0, width as i32) as u32);
+            let [y0, y1] = [y0, y1].map(|y| y.clamp(0, height as i32) as u32);
+            Crop { x0, y0, x1, y1 }
+        }
+        ([], None) => return Ok(None),
+        ([], Some(&[x0, x1, y0, y1])) => {
+            // A pixel belongs to the part that its lower edge lies in.
+            let at = |share: f32, count: u32| (share.clamp(0.0, 1.0) * count as f32).ceil() as u32;
+            let (x0, x1) = (at(x0.min(x1), width), at(x0.max(x1), width));
+            let (y0, y1) = (at(y0.min(y1), height), at(y0.max(y1), height));
+            Crop { x0, y0, x1, y1 }
+        }
+        ([], Some(_)) => return Err(parameters.refuse("cropwindow", "4 numbers: x0 x1 y0 y1")),
+        _ => return Err(parameters.refuse("pixelbounds", "4 whole numbers: x0 x1 y0 y1")),
+    };
+    if crop.x0 >= crop.x1 || crop.y0 >= crop.y1 {
+        let name = if pixels.is_empty() { "cropwindow" } else { "pixelbounds" };
+        return Err(parameters.refuse(name, "x0 x1 y0 y1 around at least one pixel"));
+    }
+    Ok(Some(crop))
+}

@@ -1,0 +1,178 @@
+//! Which light shines, and how brightly?
+//!
+//! pbrt's point lights have intensities in W/sr and its distant lights irradiances, ours Whitted's `I_j`: π times less.
+//! A `power` or `illuminance` is in the same units on both sides, but pbrt multiplies it by the brightness of an rgb
+//! colour.
+
+use std::f32::consts::PI;
+
+use glam::{DMat4, DVec3, Vec3};
+
+use super::params::{Kind, Parameters};
+use super::spectra::brightness;
+use super::text::Place;
+use super::{Reader, transform};
+use crate::error::Result;
+use crate::light::{Amount, Falloff, Light, LightKind, Sky};
+use crate::material::Color;
+use crate::scene::ImageId;
+use crate::shape::Emission;
+
+const KINDS: &[&str] = &["distant", "goniometric", "infinite", "point", "projection", "spot"];
+
+/// The light where no colour is written: the scene's white.
+const WHITE: Color = Color::Value([1.0; 3]);
+
+impl Reader<'_, '_> {
+    pub(super) fn light(&mut self, kind: &str, p: &Parameters) -> Result<()> {
+        let matrix = self.state.matrix;
+        if !transform::is_invertible(&matrix) {
+            return Err(p
+                .place
+                .invalid("the transform in force here flattens space: a light cannot stand in it"));
+        }
+        let (kind, amount) = match kind {
+            "point" => {
+                let intensity = self.light_color(p, "I")?.unwrap_or(WHITE);
+                let position = matrix.transform_point3(p.vector("from", Kind::Point3, DVec3::ZERO)?);
+                let kind = LightKind::Point { position, intensity, falloff: Falloff::Quadratic };
+                (kind, amount(p, "power", intensity, PI)?)
+            }
+            "spot" => {
+                let intensity = self.light_color(p, "I")?.unwrap_or(WHITE);
+                let (position, direction) = from_to(p, &matrix)?;
+                let cone =
+                    p.float_where("coneangle", 30.0, "an angle in (0, 180]", |a| a > 0.0 && a <= 180.0)?;
+                let delta = p.float_where("conedeltaangle", 5.0, "an angle of at least 0", |a| a >= 0.0)?;
+                let kind = LightKind::Spot {
+                    position,
+                    direction,
+                    intensity,
+                    cone_angle: cone.into(),
+                    inner_angle: (cone - delta).max(0.0).into(),
+                    falloff: Falloff::Quadratic,
+                };
+                (kind, amount(p, "power", intensity, PI)?)
+            }
+            "distant" => {
+                let intensity = self.light_color(p, "L")?.unwrap_or(WHITE);
+                let (_, direction) = from_to(p, &matrix)?;
+                (LightKind::Distant { direction, intensity }, amount(p, "illuminance", intensity, PI)?)
+            }
+            "projection" => {
+                let image = self.light_picture(p, false)?;
+                let fov =
+                    p.float_where("fov", 90.0, "an angle between 0 and 180", |a| a > 0.0 && a < 180.0)?;
+                let kind = LightKind::Projection { image, intensity: 1.0, fov, world_from_light: matrix };
+                (kind, amount(p, "power", WHITE, PI)?)
+            }
+            "goniometric" => {
+                let intensity = self.light_color(p, "I")?.unwrap_or(WHITE);
+                let image = self.light_picture(p, true)?;
+                let kind = LightKind::Goniometric { intensity, image, world_from_light: matrix };
+                (kind, amount(p, "power", intensity, PI)?)
+            }
+            "infinite" => self.infinite(p, matrix)?,
+            _ => return Err(Self::unknown(&p.place, "light", kind, KINDS.iter().copied())),
+        };
+        self.scene.lights.push(Light { name: None, at: p.place.location(), kind, amount });
+        Ok(())
+    }
+
+    fn infinite(&mut self, p: &Parameters, world_from_light: DMat4) -> Result<(LightKind, Amount)> {
+        let written = self.light_color(p, "L")?;
+        // A portal stands in the world, whatever the transform.
+        let portal = p.vectors("portal", Kind::Point3)?;
+        let portal = match portal[..] {
+            [] => None,
+            [a, b, c, d] => Some([a, b, c, d].map(Vec3::as_dvec3)),
+            _ => return Err(p.refuse("portal", &format!("4 corners, found {}", portal.len()))),
+        };
+        let (sky, color) = match (p.string("filename")?, written) {
+            (Some(_), Some(_)) => {
+                let error = p.refuse("L", "it without \"filename\"");
+                return Err(error.hint("take one of the two out; \"float scale\" makes a picture brighter"));
+            }
+            (Some(_), None) => {
+                let image = self.light_picture(p, true)?;
+                (Sky::Octahedral { image, scale: [1.0; 3], world_from_light }, WHITE)
+            }
+            (None, color) => {
+                let color = color.unwrap_or(WHITE);
+                (Sky::Constant(color), color)
+            }
+        };
+        let amount = amount(p, "illuminance", color, 1.0)?;
+        Ok((LightKind::Environment { sky, portal, illuminates: true }, amount))
+    }
+
+    /// The picture of a light: one over all directions has to be square.
+    fn light_picture(&mut self, p: &Parameters, is_square: bool) -> Result<ImageId> {
+        let parameter = p.find("filename", &[Kind::String])?;
+        let Some(name) = p.string("filename")? else {
+            return Err(p
+                .place
+                .invalid(format!("{} has no \"string filename\"", p.title))
+                .hint("name a picture"));
+        };
+        let place: &Place = parameter.map_or(&p.place, |parameter| &parameter.place);
+        let id = self.picture(name, "sRGB", place)?;
+        let image = &self.scene.images[id.index()];
+        if is_square && image.width != image.height {
+            let message = format!(
+                "the picture is {} × {}, but one over all directions is square here (of equal area)",
+                image.width, image.height
+            );
+            return Err(place.invalid(message).hint(
+                "pbrt's own program makes it of one in latitude and longitude: \
+                 imgtool makeequiarea old.exr --outfile new.exr",
+            ));
+        }
+        Ok(id)
+    }
+
+    pub(super) fn area_light(&mut self, kind: &str, p: &Parameters) -> Result<Emission> {
+        if kind != "diffuse" {
+            return Err(Self::unknown(&p.place, "area light", kind, ["diffuse"]));
+        }
+        let color = self.light_color(p, "L")?;
+        let file = p.find("filename", &[Kind::String])?;
+        let radiance = match (p.string("filename")?, color) {
+            (Some(_), Some(_)) => {
+                let error = p.refuse("L", "it without \"filename\"");
+                return Err(error.hint("take one of the two out; \"float scale\" makes a picture brighter"));
+            }
+            (Some(name), None) => self.shown_picture(name, file.map_or(&p.place, |file| &file.place))?,
+            (None, color) => color.unwrap_or(WHITE),
+        };
+        Ok(Emission {
+            radiance,
+            amount: amount(p, "power", radiance, 1.0)?,
+            two_sided: p.boolean("twosided", false)?,
+        })
+    }
+}
+
+/// How much light there is; `unit` is how many of pbrt's units make one of ours where no total is written.
+fn amount(p: &Parameters, total: &'static str, color: Color, unit: f32) -> Result<Amount> {
+    let scale = p.float_where("scale", 1.0, "a number of at least 0", |scale| scale >= 0.0)?;
+    let total = p.float_or_none(total)?.filter(|&total| total > 0.0);
+    Ok(match total {
+        // A black light stays black.
+        Some(total) if brightness(color) > 0.0 => {
+            Amount { scale: scale * brightness(color), total: Some(total), absolute: false }
+        }
+        _ => Amount { scale: scale / unit, total: None, absolute: false },
+    })
+}
+
+/// Where a light stands and where it looks, in the world.
+fn from_to(p: &Parameters, matrix: &DMat4) -> Result<(DVec3, DVec3)> {
+    let from = p.vector("from", Kind::Point3, DVec3::ZERO)?;
+    let to = p.vector("to", Kind::Point3, DVec3::Z)?;
+    let direction = matrix.transform_vector3(to - from);
+    if direction.try_normalize().is_none() {
+        return Err(p.refuse("to", "another point than \"from\""));
+    }
+    Ok((matrix.transform_point3(from), direction))
+}

@@ -1,0 +1,264 @@
+//! How does a material look?
+
+use super::lexer::Lexer;
+use super::params::{Kind, Parameters};
+use super::spectra::Meaning::{Reflectance, Unbounded};
+use super::text::Place;
+use super::{NamedMaterial, Reader};
+use crate::error::Result;
+use crate::material::{Coat, Color, Ior, Material, MaterialKind, Metal, Relief, Roughness, Scalar};
+use crate::scene::{ImageId, MaterialId};
+
+const KINDS: &[&str] = &[
+    "coatedconductor",
+    "coateddiffuse",
+    "conductor",
+    "dielectric",
+    "diffuse",
+    "diffusetransmission",
+    "hair",
+    "interface",
+    "measured",
+    "mix",
+    "subsurface",
+    "thindielectric",
+];
+
+impl Reader<'_, '_> {
+    /// A material without a name.
+    pub(super) fn material(&mut self, kind: &str, parameters: &Parameters) -> Result<MaterialId> {
+        let material = self.look(kind, kind, parameters)?;
+        self.scene.materials.push(material);
+        Ok(MaterialId(self.scene.materials.len() as u32 - 1))
+    }
+
+    /// Keeps a place for a material that is mentioned before it is made.
+    pub(super) fn reserve_material(&mut self, name: &str, place: &Place) -> MaterialId {
+        let id = MaterialId(self.scene.materials.len() as u32);
+        self.scene.materials.push(Material::new(name, place.location(), MaterialKind::Interface));
+        let named = NamedMaterial { id, first: place.clone(), is_made: false };
+        self.materials.insert(name.to_owned(), named);
+        id
+    }
+
+    pub(super) fn make_named_material(&mut self, place: &Place, lexer: &mut Lexer<'_>) -> Result<()> {
+        let start = lexer.here();
+        let (name, mut parameters) = self.entity(b"MakeNamedMaterial", place, lexer, Some(2))?;
+        let kind = parameters.string("type")?.map(str::to_owned);
+        let kind = kind.ok_or_else(|| {
+            let error = place.invalid(format!("the material {name:?} has no type"));
+            error.hint("add \"string type\" \"diffuse\", or whichever kind it is")
+        })?;
+        let name_place = lexer.place(start);
+        super::version3::check_word("Material", &kind, &name_place)?;
+        if let Some(named) = self.materials.get(&name).filter(|named| named.is_made) {
+            let before = &self.scene.materials[named.id.index()].at;
+            let error = name_place.invalid(format!("material {name:?} is already there, at {before}"));
+            return Err(error.hint("give one of them another name"));
+        }
+        parameters.title = format!("Material {kind:?}");
+        // Looked at before the name is known, so that no mixture can hold itself.
+        let material = self.look(&name, &kind, &parameters)?;
+        let id = self.material_named(&name, &name_place);
+        self.scene.materials[id.index()] = material;
+        if let Some(named) = self.materials.get_mut(&name) {
+            named.is_made = true;
+        }
+        parameters.finish(self.sources);
+        Ok(())
+    }
+
+    fn look(&mut self, name: &str, kind: &str, parameters: &Parameters) -> Result<Material> {
+        let p = parameters;
+        let gray = Color::gray(0.5);
+        let kind = match kind {
+            "diffuse" => {
+                MaterialKind::Diffuse { reflectance: self.color(p, "reflectance", gray, Reflectance)? }
+            }
+            "diffusetransmission" => {
+                let quarter = Color::gray(0.25);
+                MaterialKind::DiffuseTransmission {
+                    reflectance: self.color(p, "reflectance", quarter, Reflectance)?,
+                    transmittance: self.color(p, "transmittance", quarter, Reflectance)?,
+                    scale: p.float("scale", 1.0)?,
+                }
+            }
+            "conductor" => MaterialKind::Conductor {
+                metal: self.metal(p, ["eta", "k", "reflectance"])?,
+                roughness: self.roughness(p, ["uroughness", "vroughness", "roughness"], 0.0)?,
+            },
+            "dielectric" => MaterialKind::Dielectric {
+                eta: self.index_of_refraction(p, "eta", 1.5)?,
+                roughness: self.roughness(p, ["uroughness", "vroughness", "roughness"], 0.0)?,
+            },
+            "thindielectric" => {
+                MaterialKind::ThinDielectric { eta: self.index_of_refraction(p, "eta", 1.5)? }
+            }
+            "coateddiffuse" => MaterialKind::CoatedDiffuse {
+                reflectance: self.color(p, "reflectance", gray, Reflectance)?,
+                coat: self.coat(p, "eta", ["uroughness", "vroughness", "roughness"])?,
+            },
+            "coatedconductor" => {
+                let conductor = ["conductor.uroughness", "conductor.vroughness", "conductor.roughness"];
+                let interface = ["interface.uroughness", "interface.vroughness", "interface.roughness"];
+                MaterialKind::CoatedConductor {
+                    metal: self.metal(p, ["conductor.eta", "conductor.k", "reflectance"])?,
+                    roughness: self.roughness(p, conductor, 0.0)?,
+                    coat: self.coat(p, "interface.eta", interface)?,
+                }
+            }
+            "mix" => self.mix(p)?,
+            "interface" => MaterialKind::Interface,
+            "" | "none" => {
+                self.sources.warn(&p.place.location(), "a material that is nothing is called \"interface\"");
+                MaterialKind::Interface
+            }
+            "subsurface" => self.subsurface(p)?,
+            "hair" => self.hair(p)?,
+            "measured" => {
+                let message =
+                    "measured materials are not rendered yet: gray \"diffuse\" takes the place of it";
+                self.warn_once("measured", &p.place, message);
+                p.ignore(&["filename"]);
+                MaterialKind::Diffuse { reflectance: gray }
+            }
+            _ => return Err(Self::unknown(&p.place, "material", kind, KINDS.iter().copied())),
+        };
+        let relief = match kind {
+            MaterialKind::Interface | MaterialKind::Mix { .. } => Relief::None,
+            _ => self.relief(p)?,
+        };
+        Ok(Material { name: name.to_owned(), at: p.place.location(), kind, relief })
+    }
+
+    fn relief(&mut self, p: &Parameters) -> Result<Relief> {
+        let bump = self.scalar_or_none(p, "displacement")?;
+        let Some(name) = p.string("normalmap")? else { return Ok(bump.map_or(Relief::None, Relief::Bump)) };
+        if bump.is_some() {
+            let message = "the material has a \"normalmap\" and a \"displacement\": only the first is used";
+            self.sources.warn(&p.place.location(), message);
+        }
+        let place = p.find("normalmap", &[Kind::String])?.map_or(&p.place, |parameter| &parameter.place);
+        let image: ImageId = self.picture(name, "linear", place)?;
+        Ok(Relief::NormalMap(image))
+    }
+
+    fn metal(&mut self, p: &Parameters, [eta, k, reflectance]: [&'static str; 3]) -> Result<Metal> {
+        if let Some(color) = self.color_or_none(p, reflectance, Reflectance)? {
+            if p.has(eta) || p.has(k) {
+                let error = p.refuse(reflectance, &format!("it without {eta:?} and {k:?}"));
+                return Err(error.hint("a metal is given by its reflectance or by its indices"));
+            }
+            p.ignore(&[eta, k]);
+            return Ok(Metal::Reflectance(color));
+        }
+        let eta = match self.color_or_none(p, eta, Unbounded)? {
+            Some(eta) => eta,
+            None => Color::Curve(self.named_curve("metal-Cu-eta", &p.place)?),
+        };
+        let k = match self.color_or_none(p, k, Unbounded)? {
+            Some(k) => k,
+            None => Color::Curve(self.named_curve("metal-Cu-k", &p.place)?),
+        };
+        Ok(Metal::Indices { eta, k })
+    }
+
+    fn roughness(
+        &mut self,
+        p: &Parameters,
+        [u, v, both]: [&'static str; 3],
+        default: f32,
+    ) -> Result<Roughness> {
+        let both = self.scalar(p, both, default)?;
+        Ok(Roughness {
+            u: self.scalar_or_none(p, u)?.unwrap_or(both),
+            v: self.scalar_or_none(p, v)?.unwrap_or(both),
+            remap: p.boolean("remaproughness", true)?,
+        })
+    }
+
+    fn index_of_refraction(&mut self, p: &Parameters, name: &'static str, default: f32) -> Result<Ior> {
+        // pbrt prefers the spectrum where both are written.
+        if p.of_kind(name, Kind::Spectrum)?.is_none() {
+            let value = p.float_or_none(name)?.unwrap_or(default);
+            if !(value > 0.0) {
+                return Err(p.refuse(name, &format!("an index of refraction greater than 0, found {value}")));
+            }
+            return Ok(Ior::Value(value));
+        }
+        p.ignore(&[name]);
+        match self.color(p, name, Color::gray(default), Unbounded)? {
+            Color::Curve(curve) => Ok(Ior::Curve(curve)),
+            Color::Value(_) | Color::Texture(_) => Ok(Ior::Value(default)),
+        }
+    }
+
+    fn coat(&mut self, p: &Parameters, eta: &'static str, names: [&'static str; 3]) -> Result<Coat> {
+        Ok(Coat {
+            eta: self.index_of_refraction(p, eta, 1.5)?,
+            roughness: self.roughness(p, names, 0.0)?,
+            thickness: self.scalar(p, "thickness", 0.01)?,
+            albedo: self.color(p, "albedo", Color::BLACK, Reflectance)?,
+            g: self.scalar(p, "g", 0.0)?,
+            max_depth: p.integer("maxdepth", 10, 1, 1 << 20)? as u32,
+            samples: p.integer("nsamples", 1, 1, 1 << 16)? as u32,
+        })
+    }
+
+    /// Of two materials that were made before.
+    fn mix(&mut self, p: &Parameters) -> Result<MaterialKind> {
+        let amount = self.scalar(p, "amount", 0.5)?;
+        let parameter = p.find("materials", &[Kind::String])?;
+        let Some(parameter) = parameter else {
+            let error = p.place.invalid(format!("{} has no \"string materials\"", p.title));
+            return Err(
+                error.hint("name two materials that were made before: \"string materials\" [ \"A\" \"B\" ]")
+            );
+        };
+        let [first, second] = parameter.strings() else {
+            return Err(parameter.wrong(format!("two names, found {}", parameter.strings().len())));
+        };
+        let made = |name: &str| match self.materials.get(name).filter(|named| named.is_made) {
+            Some(named) => Ok(named.id),
+            None => {
+                let made = self.materials.iter().filter(|(_, named)| named.is_made);
+                let known: Vec<&str> = made.map(|(name, _)| &**name).collect();
+                Err(Self::unknown(&parameter.place, "material made before this", name, known))
+            }
+        };
+        Ok(MaterialKind::Mix { materials: [made(first)?, made(second)?], amount })
+    }
+
+    /// A coat over the colour that so many walks under the surface would give.
+    fn subsurface(&mut self, p: &Parameters) -> Result<MaterialKind> {
+        let message =
+            "light under surfaces is not followed yet: \"coateddiffuse\" takes the place of \"subsurface\"";
+        self.warn_once("subsurface", &p.place, message);
+        p.ignore(&["name", "mfp", "scale", "sigma_a", "sigma_s", "g"]);
+        let reflectance = self.color(p, "reflectance", Color::Value([0.83, 0.79, 0.75]), Reflectance)?;
+        let roughness = self.roughness(p, ["uroughness", "vroughness", "roughness"], 0.0)?;
+        let coat = Coat {
+            eta: self.index_of_refraction(p, "eta", 1.33)?,
+            roughness,
+            thickness: Scalar::Value(0.01),
+            albedo: Color::BLACK,
+            g: Scalar::Value(0.0),
+            max_depth: 10,
+            samples: 1,
+        };
+        Ok(MaterialKind::CoatedDiffuse { reflectance, coat })
+    }
+
+    fn hair(&mut self, p: &Parameters) -> Result<MaterialKind> {
+        let message = "hair is not shaded as hair yet: \"diffuse\" takes the place of it";
+        self.warn_once("hair", &p.place, message);
+        p.ignore(&["sigma_a", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"]);
+        let color = self.color_or_none(p, "reflectance", Reflectance)?;
+        let brown = Color::Value([0.2, 0.12, 0.07]);
+        let color = match color {
+            Some(color) => color,
+            None => self.color(p, "color", brown, Reflectance)?,
+        };
+        Ok(MaterialKind::Diffuse { reflectance: color })
+    }
+}

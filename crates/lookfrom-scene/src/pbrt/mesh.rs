@@ -1,0 +1,141 @@
+//! Which triangles and patches does a mesh have?
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3};
+
+use super::Reader;
+use super::loop_subdivision::subdivide;
+use super::params::{Kind, Parameters};
+use crate::error::{Error, ErrorKind, Result};
+use crate::scene::MeshId;
+use crate::shape::{Geometry, Mesh, Patches};
+
+impl Reader<'_, '_> {
+    pub(super) fn triangle_mesh(&mut self, p: &Parameters) -> Result<Option<Geometry>> {
+        p.ignore(&["faceIndices"]);
+        let positions = points(p)?;
+        let triangles = faces::<3>(p, positions.len())?;
+        let mesh = Mesh {
+            name: String::new(),
+            normals: self.one_a_vertex(p, "N", p.vectors("N", Kind::Normal)?, positions.len()),
+            tangents: self.one_a_vertex(p, "S", p.vectors("S", Kind::Vector3)?, positions.len()),
+            uvs: self.uvs(p, positions.len())?,
+            positions,
+            triangles,
+            colors: Vec::new(),
+        };
+        Ok(self.push_mesh(mesh))
+    }
+
+    pub(super) fn ply_mesh(&mut self, p: &Parameters) -> Result<Geometry> {
+        let parameter = p.find("filename", &[Kind::String])?;
+        let Some(name) = p.string("filename")?.filter(|name| !name.is_empty()) else {
+            let error = p.place.invalid(format!("{} has no \"string filename\"", p.title));
+            return Err(error.hint("name a .ply or .ply.gz file"));
+        };
+        let place = parameter.map_or(&p.place, |parameter| &parameter.place);
+        if p.find("displacement", &[Kind::Texture, Kind::String])?.is_some() {
+            let message = "displacement is not rendered yet: the mesh keeps its form";
+            self.warn_once("displacement", &p.place, message);
+        }
+        p.ignore(&["edgelength", "displacement.uvscale"]);
+        let path = self.resolve(name);
+        Ok(Geometry::Mesh(self.model(path, place)))
+    }
+
+    pub(super) fn bilinear_mesh(&mut self, p: &Parameters) -> Result<Option<Geometry>> {
+        p.ignore(&["faceIndices"]);
+        if p.find("emissionfilename", &[Kind::String])?.is_some() {
+            let message = "\"emissionfilename\" is not there yet: the whole patch shines alike";
+            self.warn_once("emissionfilename", &p.place, message);
+        }
+        let positions = points(p)?;
+        let patches = faces::<4>(p, positions.len())?;
+        if patches.is_empty() {
+            return Ok(None);
+        }
+        Ok(Some(Geometry::Bilinear(Arc::new(Patches {
+            normals: self.one_a_vertex(p, "N", p.vectors("N", Kind::Normal)?, positions.len()),
+            uvs: self.uvs(p, positions.len())?,
+            positions,
+            patches,
+        }))))
+    }
+
+    pub(super) fn loop_subdivision(&mut self, p: &Parameters) -> Result<Option<Geometry>> {
+        p.ignore(&["scheme"]);
+        let levels = p.integer("levels", 3, 0, 15)? as u32;
+        let positions = points(p)?;
+        let triangles = faces::<3>(p, positions.len())?;
+        // Each level makes four of one.
+        let count = (triangles.len() as u64) << (2 * levels);
+        if count > self.sources.limits.elements {
+            let message = format!(
+                "{count} triangles after {levels} levels are more than the limit of {}",
+                self.sources.limits.elements
+            );
+            return Err(p.place.error(ErrorKind::Limit, message).hint("lower \"integer levels\""));
+        }
+        let mesh =
+            subdivide(&positions, &triangles, levels).map_err(|message| p.refuse("indices", &message))?;
+        Ok(self.push_mesh(mesh))
+    }
+
+    fn push_mesh(&mut self, mesh: Mesh) -> Option<Geometry> {
+        if mesh.triangles.is_empty() {
+            return None;
+        }
+        self.scene.meshes.push(mesh);
+        Some(Geometry::Mesh(MeshId(self.scene.meshes.len() as u32 - 1)))
+    }
+
+    fn uvs(&mut self, p: &Parameters, count: usize) -> Result<Vec<Vec2>> {
+        Ok(self.one_a_vertex(p, "uv", p.points2("uv")?, count))
+    }
+
+    /// Values at vertices, dropped with a warning where there are too many or too few.
+    fn one_a_vertex<T>(&mut self, p: &Parameters, name: &str, values: Vec<T>, count: usize) -> Vec<T> {
+        if values.is_empty() || values.len() == count {
+            return values;
+        }
+        let message =
+            format!("{:?} has {} values for {count} vertices: they are left out", name, values.len());
+        self.sources.warn(&p.place.location(), message);
+        Vec::new()
+    }
+}
+
+fn points(p: &Parameters) -> Result<Vec<Vec3>> {
+    let positions = p.vectors("P", Kind::Point3)?;
+    if positions.is_empty() {
+        let error = p.place.invalid(format!("{} has no \"point3 P\"", p.title));
+        return Err(error.hint("add its vertices: \"point3 P\" [ 0 0 0  1 0 0  0 1 0 ]"));
+    }
+    Ok(positions)
+}
+
+/// The corners of each face: `N` indices, or all vertices where there are just `N`.
+fn faces<const N: usize>(p: &Parameters, count: usize) -> Result<Vec<[u32; N]>> {
+    let indices = p.integers("indices")?;
+    if indices.is_empty() {
+        if count == N {
+            return Ok(vec![std::array::from_fn(|i| i as u32)]);
+        }
+        let error = p.place.invalid(format!("{} has no \"integer indices\"", p.title));
+        return Err(error.hint(format!("give {N} indices of vertices for each face")));
+    }
+    if !indices.len().is_multiple_of(N) {
+        return Err(p.refuse("indices", &format!("{N} indices for each face, found {}", indices.len())));
+    }
+    let out_of_range = |index: &i32| usize::try_from(*index).map_or(true, |index| index >= count);
+    if let Some(order) = indices.iter().position(out_of_range) {
+        return Err(index_error(p, order, indices[order], count));
+    }
+    Ok(indices.chunks_exact(N).map(|face| std::array::from_fn(|i| face[i] as u32)).collect())
+}
+
+fn index_error(p: &Parameters, order: usize, index: i32, count: usize) -> Error {
+    p.refuse("indices", &format!("indices from 0 to {}, found {index} as number {}", count - 1, order + 1))
+        .hint(format!("there are {count} vertices in \"point3 P\"; indices count from 0"))
+}

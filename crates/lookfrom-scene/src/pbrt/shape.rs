@@ -1,0 +1,95 @@
+//! Which form does a shape have?
+
+use super::params::Parameters;
+use super::{Reader, transform};
+use crate::error::Result;
+use crate::material::Scalar;
+use crate::shape::{Geometry, Shape};
+
+const KINDS: &[&str] =
+    &["bilinearmesh", "curve", "cylinder", "disk", "loopsubdiv", "plymesh", "sphere", "trianglemesh"];
+
+impl Reader<'_, '_> {
+    pub(super) fn shape(&mut self, kind: &str, p: &Parameters) -> Result<()> {
+        let geometry = match kind {
+            "trianglemesh" => self.triangle_mesh(p)?,
+            "plymesh" => Some(self.ply_mesh(p)?),
+            "sphere" => Some(sphere(p)?),
+            "disk" => Some(disk(p)?),
+            "cylinder" => Some(cylinder(p)?),
+            "bilinearmesh" => self.bilinear_mesh(p)?,
+            "loopsubdiv" => self.loop_subdivision(p)?,
+            "curve" => Some(self.curve_shape(p)?),
+            _ => return Err(Self::unknown(&p.place, "shape", kind, KINDS.iter().copied())),
+        };
+        let alpha = self.scalar_or_none(p, "alpha")?.filter(|&alpha| alpha != Scalar::Value(1.0));
+        let Some(geometry) = geometry else { return Ok(()) };
+        let matrix = self.state.matrix;
+        if !transform::is_invertible(&matrix) {
+            self.sources.warn(&p.place.location(), "left out: its transform flattens it to nothing");
+            return Ok(());
+        }
+        let mut emission = self.state.emission;
+        if emission.is_some() && self.object.is_some() {
+            let message = "shapes in an object do not shine: an object can be in many places";
+            self.warn_once("light in object", &p.place, message);
+            emission = None;
+        }
+        self.push_shape(Shape {
+            name: None,
+            at: p.place.location(),
+            geometry,
+            material: self.state.material,
+            emission,
+            alpha,
+            reverse_orientation: self.state.reverse_orientation,
+            world_from_object: matrix,
+        });
+        Ok(())
+    }
+
+    /// Adds a shape to the world, or to the object that is open.
+    fn push_shape(&mut self, shape: Shape) {
+        match self.object {
+            Some(object) => self.scene.objects[object.index()].shapes.push(shape),
+            None => self.scene.shapes.push(shape),
+        }
+    }
+}
+
+/// The swept angle in degrees.
+fn phi_max(p: &Parameters) -> Result<f64> {
+    p.float_where("phimax", 360.0, "an angle in (0, 360]", |phi| phi > 0.0 && phi <= 360.0).map(f64::from)
+}
+
+fn sphere(p: &Parameters) -> Result<Geometry> {
+    let radius = p.positive("radius", 1.0)?;
+    let (low, high) = (p.float("zmin", -radius)?, p.float("zmax", radius)?);
+    let z = [low.min(high), low.max(high)].map(|z| f64::from(z.clamp(-radius, radius)));
+    if z[0] >= z[1] {
+        return Err(p.refuse("zmin", "a part of the sphere between \"zmin\" and \"zmax\""));
+    }
+    Ok(Geometry::PartialSphere { radius: radius.into(), z, phi_max: phi_max(p)? })
+}
+
+fn disk(p: &Parameters) -> Result<Geometry> {
+    let radius = p.positive("radius", 1.0)?;
+    let inside = |inner: f32| inner >= 0.0 && inner < radius;
+    let inner_radius = p.float_where("innerradius", 0.0, "at least 0 and less than \"radius\"", inside)?;
+    Ok(Geometry::PartialDisk {
+        height: p.float("height", 0.0)?.into(),
+        radius: radius.into(),
+        inner_radius: inner_radius.into(),
+        phi_max: phi_max(p)?,
+    })
+}
+
+fn cylinder(p: &Parameters) -> Result<Geometry> {
+    let radius = p.positive("radius", 1.0)?;
+    let (low, high) = (p.float("zmin", -1.0)?, p.float("zmax", 1.0)?);
+    if low == high {
+        return Err(p.refuse("zmin", "another number than \"zmax\""));
+    }
+    let z = [low.min(high).into(), low.max(high).into()];
+    Ok(Geometry::Cylinder { radius: radius.into(), z, phi_max: phi_max(p)? })
+}

@@ -1,0 +1,195 @@
+//! Which colour does a parameter stand for?
+//!
+//! `rgb` values are brought from the scene's colour space to linear Rec. 709; `spectrum` values (inline, from a file, or
+//! measured ones with names) and `blackbody` values become curves by wavelength.
+
+use super::Reader;
+use super::params::{Kind, Parameter, Parameters, SPECTRA};
+use super::text::Place;
+use crate::error::{ErrorKind, Result};
+use crate::material::{Color, Scalar};
+use crate::scene::CurveId;
+use crate::spectrum::{self, Curve, space};
+use crate::suggest::nearest;
+
+/// The name of a colour space.
+pub(super) type Space = &'static str;
+
+/// The space of the scenes that name none.
+pub(super) const SRGB: Space = "srgb";
+
+/// What a colour is the colour of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Meaning {
+    /// A part of light, in [0, 1].
+    Reflectance,
+    /// A number at each wavelength.
+    Unbounded,
+    /// Light.
+    Light,
+}
+
+impl Reader<'_, '_> {
+    /// A colour that may vary over the surface.
+    pub(super) fn color_or_none(
+        &mut self,
+        parameters: &Parameters,
+        name: &'static str,
+        meaning: Meaning,
+    ) -> Result<Option<Color>> {
+        const KINDS: &[Kind] = &[Kind::Rgb, Kind::Spectrum, Kind::Blackbody, Kind::Texture];
+        let Some(parameter) = parameters.find(name, KINDS)? else { return Ok(None) };
+        if parameter.kind == Kind::Texture {
+            return self.spectrum_texture(parameter).map(Some);
+        }
+        self.uniform(parameter, parameters.space, meaning).map(Some)
+    }
+
+    /// The same with a default.
+    pub(super) fn color(
+        &mut self,
+        parameters: &Parameters,
+        name: &'static str,
+        default: Color,
+        meaning: Meaning,
+    ) -> Result<Color> {
+        Ok(self.color_or_none(parameters, name, meaning)?.unwrap_or(default))
+    }
+
+    /// The colour of a light, which is the same everywhere.
+    pub(super) fn light_color(
+        &mut self,
+        parameters: &Parameters,
+        name: &'static str,
+    ) -> Result<Option<Color>> {
+        let Some(parameter) = parameters.find(name, SPECTRA)? else { return Ok(None) };
+        self.uniform(parameter, parameters.space, Meaning::Light).map(Some)
+    }
+
+    /// A number that may vary over the surface.
+    pub(super) fn scalar_or_none(
+        &mut self,
+        parameters: &Parameters,
+        name: &'static str,
+    ) -> Result<Option<Scalar>> {
+        let Some(parameter) = parameters.find(name, &[Kind::Float, Kind::Texture])? else { return Ok(None) };
+        if parameter.kind == Kind::Texture {
+            return self.float_texture(parameter).map(Some);
+        }
+        parameters.float_or_none(name).map(|value| value.map(Scalar::Value))
+    }
+
+    /// The same with a default.
+    pub(super) fn scalar(
+        &mut self,
+        parameters: &Parameters,
+        name: &'static str,
+        default: f32,
+    ) -> Result<Scalar> {
+        Ok(self.scalar_or_none(parameters, name)?.unwrap_or(Scalar::Value(default)))
+    }
+
+    /// A spectrum by name, from a file or inline, or a black body's.
+    fn uniform(&mut self, parameter: &Parameter, scene_space: Space, meaning: Meaning) -> Result<Color> {
+        match parameter.kind {
+            Kind::Rgb => rgb(parameter, parameter.space.get().unwrap_or(scene_space), meaning),
+            Kind::Blackbody => match parameter.numbers() {
+                &[kelvin] if kelvin > 0.0 => Ok(self.curve(Curve::Blackbody { kelvin })),
+                _ => Err(parameter.wrong("one temperature in kelvin, greater than 0")),
+            },
+            _ => match parameter.strings() {
+                [] => inline(parameter).map(|curve| self.curve(curve)),
+                [name] => self.named_curve(name, &parameter.place).map(Color::Curve),
+                names => Err(parameter.wrong(format!("one name, found {}", names.len()))),
+            },
+        }
+    }
+
+    fn curve(&mut self, curve: Curve) -> Color {
+        Color::Curve(self.push_curve(curve))
+    }
+
+    fn push_curve(&mut self, curve: Curve) -> CurveId {
+        self.scene.curves.push(curve);
+        CurveId(self.scene.curves.len() as u32 - 1)
+    }
+
+    /// A measured curve that has a name, or one from a file.
+    pub(super) fn named_curve(&mut self, name: &str, place: &Place) -> Result<CurveId> {
+        if let Some(&id) = self.curves.get(name) {
+            return Ok(id);
+        }
+        let curve = match spectrum::named(name) {
+            Some(curve) => curve,
+            None => {
+                let path = self.resolve(name);
+                spectrum::read_spd(&path, self.sources).map_err(|error| match error.kind {
+                    ErrorKind::Io => {
+                        let path = path.display();
+                        let error = place.invalid(format!(
+                            "there is no spectrum of the name {name:?}, and no file {path}"
+                        ));
+                        match nearest(name, spectrum::names()) {
+                            Some(meant) => error.hint(format!("did you mean {meant:?}?")),
+                            None => {
+                                error.hint("names are those of pbrt-v4: \"metal-Cu-eta\", \"glass-BK7\", …")
+                            }
+                        }
+                    }
+                    _ => error,
+                })?
+            }
+        };
+        let id = self.push_curve(curve);
+        self.curves.insert(name.to_owned(), id);
+        Ok(id)
+    }
+}
+
+/// How bright a light's colour is, white of 1 being 1: pbrt divides spectra by their own brightness, but rgb colours by
+/// that of white.
+pub(super) fn brightness(color: Color) -> f32 {
+    match color {
+        Color::Value([red, green, blue]) => 0.2126 * red + 0.7152 * green + 0.0722 * blue,
+        Color::Texture(_) | Color::Curve(_) => 1.0,
+    }
+}
+
+fn rgb(parameter: &Parameter, space: Space, meaning: Meaning) -> Result<Color> {
+    let &[red, green, blue] = parameter.numbers() else {
+        return Err(parameter.wrong(format!("3 numbers, found {}", parameter.numbers().len())));
+    };
+    let found = format!("found [ {red} {green} {blue} ]");
+    if red < 0.0 || green < 0.0 || blue < 0.0 {
+        return Err(parameter.wrong(format!("no negative number, {found}")));
+    }
+    if meaning == Meaning::Reflectance && (red > 1.0 || green > 1.0 || blue > 1.0) {
+        let hint =
+            "a surface cannot reflect more light than it receives: divide by the greatest of the three";
+        return Err(parameter.wrong(format!("numbers from 0 to 1, {found}")).hint(hint));
+    }
+    if space == SRGB {
+        return Ok(Color::Value([red, green, blue]));
+    }
+    let matrix = match meaning {
+        Meaning::Light => space::rec709_from(space),
+        Meaning::Reflectance | Meaning::Unbounded => space::reflectance_rec709_from(space),
+    };
+    let rows = matrix.unwrap_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    Ok(Color::Value(rows.map(|row| row[0] * red + row[1] * green + row[2] * blue)))
+}
+
+/// Wavelengths and values in turns.
+fn inline(parameter: &Parameter) -> Result<Curve> {
+    let numbers = parameter.numbers();
+    if !numbers.len().is_multiple_of(2) {
+        return Err(
+            parameter.wrong(format!("pairs of a wavelength and a value, found {} numbers", numbers.len()))
+        );
+    }
+    let wavelengths: Vec<f32> = numbers.iter().copied().step_by(2).collect();
+    if let Some(pair) = wavelengths.windows(2).find(|pair| pair[1] <= pair[0]) {
+        return Err(parameter.wrong(format!("rising wavelengths, found {} after {}", pair[1], pair[0])));
+    }
+    Ok(Curve::Tabulated { wavelengths, values: numbers.iter().copied().skip(1).step_by(2).collect() })
+}

@@ -1,0 +1,73 @@
+//! What holds for the next shape, light or material, and what was said before the world began.
+
+use std::rc::Rc;
+
+use glam::DMat4;
+
+use super::params::{Inherited, Parameters};
+use super::spectra::{SRGB, Space};
+use super::text::Place;
+use crate::scene::MaterialId;
+use crate::shape::Emission;
+
+/// What `Attribute` sets parameters for, in the order of [`State::attributes`].
+pub(super) const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
+
+/// What holds for the next shape.
+#[derive(Clone)]
+pub(super) struct State {
+    /// From the space that directives speak in to the world (before `WorldBegin`: from the world to the camera's space).
+    pub(super) matrix: DMat4,
+    /// Whether transforms reach the start of the shutter's time, which is what is rendered.
+    pub(super) at_start: bool,
+    /// Whether they reach its end.
+    pub(super) at_end: bool,
+    pub(super) reverse_orientation: bool,
+    pub(super) material: MaterialId,
+    pub(super) emission: Option<Emission>,
+    pub(super) attributes: [Inherited; 5],
+    pub(super) space: Space,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self {
+            matrix: DMat4::IDENTITY,
+            at_start: true,
+            at_end: true,
+            reverse_orientation: false,
+            material: MaterialId(0),
+            emission: None,
+            attributes: std::array::from_fn(|_| Rc::default()),
+            space: SRGB,
+        }
+    }
+}
+
+/// What has to be ended.
+pub(super) struct Opened {
+    /// `Attribute`, `Transform` or `Object`.
+    pub(super) word: &'static str,
+    /// Where it was begun.
+    pub(super) place: Place,
+    /// What holds again at its end.
+    pub(super) state: State,
+}
+
+/// One of the directives before `WorldBegin`, as it was written.
+pub(super) struct Entity {
+    /// `perspective`, `rgb`, …
+    pub(super) kind: String,
+    pub(super) parameters: Parameters,
+}
+
+/// What was said before `WorldBegin`.
+#[derive(Default)]
+pub(super) struct Options {
+    /// With the matrix from the world to its space.
+    pub(super) camera: Option<(Entity, DMat4)>,
+    pub(super) film: Option<Entity>,
+    pub(super) filter: Option<Entity>,
+    pub(super) sampler: Option<Entity>,
+    pub(super) integrator: Option<Entity>,
+}

@@ -1,0 +1,148 @@
+//! Where is a byte of a scene file, and how is a person shown what is wrong there?
+//!
+//! Lines are counted only when somebody asks, and onwards from where they were last counted: a large file is not
+//! searched for line ends before it is read, nor again for every shape.
+
+use std::cell::Cell;
+use std::path::Path;
+use std::rc::Rc;
+
+use crate::error::{Error, ErrorKind, Location};
+
+/// The widest piece of a line that is shown, in characters.
+const EXCERPT: usize = 100;
+
+/// A file's content, with what is needed to name places in it.
+pub(super) struct Text {
+    whole: Location,
+    bytes: Vec<u8>,
+    /// An offset, its line (from 1) and where that line starts.
+    counted: Cell<(usize, u32, usize)>,
+}
+
+impl Text {
+    pub(super) fn new(path: &Path, bytes: Vec<u8>) -> Rc<Self> {
+        Rc::new(Self { whole: Location::file(path), bytes, counted: Cell::new((0, 1, 0)) })
+    }
+
+    pub(super) fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// The line of a byte and where that line starts.
+    fn line(&self, offset: usize) -> (u32, usize) {
+        let (mut from, mut line, mut start) = self.counted.get();
+        if offset < start {
+            (from, line, start) = (0, 1, 0);
+        }
+        let between = self.bytes.get(from..offset).unwrap_or_default();
+        line = line.saturating_add(between.iter().filter(|&&byte| byte == b'\n').count() as u32);
+        if let Some(last) = between.iter().rposition(|&byte| byte == b'\n') {
+            start = from + last + 1;
+        }
+        self.counted.set((offset.max(from), line, start));
+        (line, start)
+    }
+
+    fn location(&self, offset: usize) -> Location {
+        let (line, start) = self.line(offset);
+        let before = String::from_utf8_lossy(&self.bytes[start..offset]).chars().count();
+        self.whole.at(line, u32::try_from(before + 1).unwrap_or(0))
+    }
+
+    /// The line around a byte, and below it a mark under the byte.
+    fn excerpt(&self, offset: usize) -> String {
+        let (_, start) = self.line(offset);
+        let rest = &self.bytes[offset..];
+        let length =
+            rest.iter().take(4 * EXCERPT).take_while(|&&byte| byte != b'\n' && byte != b'\r').count();
+        let plain = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace(|c: char| c.is_control(), " ");
+        let (before, after) = (plain(&self.bytes[start..offset]), plain(&rest[..length]));
+        let skipped = before.chars().count().saturating_sub(EXCERPT / 2);
+        let mut line: String = before.chars().skip(skipped).collect();
+        if skipped > 0 {
+            line = line.chars().skip(1).fold("…".to_owned(), |line, c| line + c.encode_utf8(&mut [0; 4]));
+        } else {
+            line = line.trim_start().to_owned();
+        }
+        let column = line.chars().count();
+        let room = EXCERPT - column;
+        line.extend(after.chars().take(room));
+        if after.chars().count() > room {
+            line.push('…');
+        }
+        format!("\n  | {}\n  | {}^", line.trim_end(), " ".repeat(column))
+    }
+}
+
+/// A byte of a file.
+#[derive(Clone)]
+pub(super) struct Place {
+    text: Rc<Text>,
+    offset: usize,
+}
+
+impl Place {
+    pub(super) fn new(text: &Rc<Text>, offset: usize) -> Self {
+        Self { text: text.clone(), offset: offset.min(text.bytes.len()) }
+    }
+
+    pub(super) fn location(&self) -> Location {
+        self.text.location(self.offset)
+    }
+
+    /// An error here, with the line that is wrong.
+    pub(super) fn error(&self, kind: ErrorKind, message: impl std::fmt::Display) -> Error {
+        Error::new(kind, &self.location(), format!("{message}{}", self.text.excerpt(self.offset)))
+    }
+
+    /// The bytes here are not what the format allows.
+    pub(super) fn syntax(&self, message: impl std::fmt::Display) -> Error {
+        self.error(ErrorKind::Syntax, message)
+    }
+
+    /// What is said here cannot be.
+    pub(super) fn invalid(&self, message: impl std::fmt::Display) -> Error {
+        self.error(ErrorKind::Invalid, message)
+    }
+
+    /// A file that cannot be opened or is of no known kind is this place's fault; what is wrong inside a file is not.
+    pub(super) fn blame(&self, error: Error) -> Error {
+        if error.at.line > 0 || !matches!(error.kind, ErrorKind::Io | ErrorKind::Unsupported) {
+            return error;
+        }
+        let message = format!("{}: {}", error.at, error.message);
+        Error { hint: error.hint, ..self.error(error.kind, message) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_counted_forwards_and_backwards() {
+        let text = Text::new(Path::new("a"), "one\ntwö x\n\nfour".as_bytes().to_vec());
+        let at = |offset: usize| {
+            let location = Place::new(&text, offset).location();
+            (location.line, location.column)
+        };
+        assert_eq!(
+            [at(0), at(4), at(9), at(11), at(12), at(99)],
+            [(1, 1), (2, 1), (2, 5), (3, 1), (4, 1), (4, 5)]
+        );
+        assert_eq!([at(9), at(2), at(12)], [(2, 5), (1, 3), (4, 1)]);
+    }
+
+    #[test]
+    fn long_lines_are_cut_around_the_place() {
+        let mut line = vec![b'a'; 5000];
+        line[3000] = b'!';
+        let text = Text::new(Path::new("a"), line);
+        let shown = text.excerpt(3000);
+        let rows: Vec<Vec<char>> = shown.lines().skip(1).map(|row| row.chars().collect()).collect();
+        let mark = rows[1].iter().position(|&c| c == '^').expect("a mark");
+        assert_eq!(rows[0][mark], '!');
+        assert!(rows[0].len() <= EXCERPT + 6);
+    }
+}

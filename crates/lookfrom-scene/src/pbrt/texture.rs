@@ -1,0 +1,314 @@
+//! What does a texture show, and where does its pattern live?
+
+use glam::DVec3;
+
+use super::lexer::Lexer;
+use super::params::{Kind, Parameter, Parameters};
+use super::picture::encoding_of;
+use super::spectra::Meaning::Unbounded;
+use super::text::Place;
+use super::{NamedTexture, Reader, transform};
+use crate::error::Result;
+use crate::material::{Color, Scalar};
+use crate::scene::TextureId;
+use crate::texture::{Mapping, TexelFilter, Texture, TextureKind, Wrap};
+
+const KINDS: &[&str] = &[
+    "bilerp",
+    "checkerboard",
+    "constant",
+    "directionmix",
+    "dots",
+    "fbm",
+    "imagemap",
+    "marble",
+    "mix",
+    "ptex",
+    "scale",
+    "windy",
+    "wrinkled",
+];
+
+impl Reader<'_, '_> {
+    /// The colours that a texture parameter names.
+    pub(super) fn spectrum_texture(&mut self, parameter: &Parameter) -> Result<Color> {
+        self.texture_named(parameter, false)
+    }
+
+    /// The numbers that a texture parameter names.
+    pub(super) fn float_texture(&mut self, parameter: &Parameter) -> Result<Scalar> {
+        Ok(match self.texture_named(parameter, true)? {
+            Color::Value([value, ..]) => Scalar::Value(value),
+            Color::Texture(id) => Scalar::Texture(id),
+            Color::Curve(_) => Scalar::Value(0.0),
+        })
+    }
+
+    fn texture_named(&mut self, parameter: &Parameter, is_float: bool) -> Result<Color> {
+        let [name] = parameter.strings() else {
+            return Err(parameter.wrong(format!("one name, found {}", parameter.strings().len())));
+        };
+        let key = (is_float, name.clone());
+        match self.textures.get(&key) {
+            Some(named) if named.is_made || !self.only_earlier => return Ok(named.color),
+            None if !self.only_earlier => {}
+            _ => {
+                let known =
+                    self.textures.iter().filter(|((float, _), named)| *float == is_float && named.is_made);
+                let known: Vec<&str> = known.map(|((_, name), _)| &**name).collect();
+                let what = if is_float { "float texture" } else { "spectrum texture" };
+                let error = Self::unknown(&parameter.place, what, name, known);
+                return Err(match self.textures.contains_key(&(!is_float, name.clone())) {
+                    true if is_float => {
+                        error.hint("there is a spectrum texture of that name, but numbers are needed")
+                    }
+                    true => error.hint("there is a float texture of that name, but colours are needed"),
+                    false => error,
+                });
+            }
+        }
+        // It may come later: keep a place for it.
+        let color = self.push_texture(name, &parameter.place, TextureKind::VertexColor { tint: [1.0; 3] });
+        self.textures.insert(key, NamedTexture { color, first: parameter.place.clone(), is_made: false });
+        Ok(color)
+    }
+
+    fn push_texture(&mut self, name: &str, place: &Place, kind: TextureKind) -> Color {
+        self.scene.textures.push(Texture { name: name.to_owned(), at: place.location(), kind });
+        Color::Texture(TextureId(self.scene.textures.len() as u32 - 1))
+    }
+
+    /// `Texture "name" "float" "kind" …`
+    pub(super) fn texture_directive(&mut self, place: &Place, lexer: &mut Lexer<'_>) -> Result<()> {
+        let start = lexer.here();
+        let name = lexer.string("a quoted name of the texture")?;
+        let name_place = lexer.place(start);
+        let start = lexer.here();
+        let values = lexer.string("\"float\" or \"spectrum\"")?;
+        super::version3::check_kind(
+            if values == "color" { "color" } else { "" },
+            &name,
+            &lexer.place(start),
+        )?;
+        let is_float = match &*values {
+            "float" => true,
+            "spectrum" => false,
+            _ => return Err(lexer.wrong(start, "\"float\" or \"spectrum\"")),
+        };
+        let start = lexer.here();
+        let (kind, parameters) = self.entity(b"Texture", place, lexer, Some(4))?;
+        let key = (is_float, name.clone());
+        if let Some(before) = self.textures.get(&key).filter(|named| named.is_made) {
+            let at = before.first.location();
+            let error = name_place.invalid(format!("{values} texture {name:?} is already there, at {at}"));
+            return Err(error.hint("give one of them another name"));
+        }
+        // So that no texture can be part of itself.
+        self.only_earlier = true;
+        let made = self.pattern(&kind, &parameters, is_float, &lexer.place(start));
+        self.only_earlier = false;
+        let made = made?;
+        let reserved = self.textures.get(&key).and_then(NamedTexture::id);
+        let color = match (reserved, made) {
+            (
+                None,
+                TextureKind::Scale {
+                    color: color @ (Color::Value(_) | Color::Curve(_)),
+                    by: Scalar::Value(1.0),
+                },
+            ) => color,
+            (None, kind) => self.push_texture(&name, place, kind),
+            (Some(id), kind) => {
+                let texture = &mut self.scene.textures[id.index()];
+                (texture.kind, texture.at) = (kind, place.location());
+                Color::Texture(id)
+            }
+        };
+        self.textures.insert(key, NamedTexture { color, first: name_place, is_made: true });
+        parameters.finish(self.sources);
+        Ok(())
+    }
+
+    /// A colour or a number of the texture's parameters, as a colour.
+    fn part(&mut self, p: &Parameters, name: &'static str, default: f32, is_float: bool) -> Result<Color> {
+        if !is_float {
+            return self.color(p, name, Color::gray(default), Unbounded);
+        }
+        Ok(match self.scalar(p, name, default)? {
+            Scalar::Value(value) => Color::gray(value),
+            Scalar::Texture(id) => Color::Texture(id),
+        })
+    }
+
+    fn pattern(
+        &mut self,
+        kind: &str,
+        p: &Parameters,
+        is_float: bool,
+        kind_place: &Place,
+    ) -> Result<TextureKind> {
+        let octaves = |p: &Parameters| p.integer("octaves", 8, 1, 16).map(|octaves| octaves as u32);
+        Ok(match kind {
+            "constant" => uniform(self.part(p, "value", 1.0, is_float)?),
+            "scale" => TextureKind::Scale {
+                color: self.part(p, "tex", 1.0, is_float)?,
+                by: self.scalar(p, "scale", 1.0)?,
+            },
+            "mix" => TextureKind::Mix {
+                low: self.part(p, "tex1", 0.0, is_float)?,
+                high: self.part(p, "tex2", 1.0, is_float)?,
+                amount: self.scalar(p, "amount", 0.5)?,
+            },
+            "directionmix" => {
+                let direction = p.vector("dir", Kind::Vector3, DVec3::Y)?;
+                let direction = self.state.matrix.transform_vector3(direction).try_normalize();
+                let direction = direction.ok_or_else(|| p.refuse("dir", "a vector that has a direction"))?;
+                TextureKind::DirectionMix {
+                    low: self.part(p, "tex2", 1.0, is_float)?,
+                    high: self.part(p, "tex1", 0.0, is_float)?,
+                    direction: direction.as_vec3(),
+                }
+            }
+            "bilerp" => TextureKind::Bilinear {
+                corners: [
+                    self.part(p, "v00", 0.0, is_float)?,
+                    self.part(p, "v01", 1.0, is_float)?,
+                    self.part(p, "v10", 0.0, is_float)?,
+                    self.part(p, "v11", 1.0, is_float)?,
+                ],
+                mapping: self.mapping(p)?,
+            },
+            "checkerboard" => {
+                let dimension = p.integer("dimension", 2, 2, 3)?;
+                TextureKind::Checker {
+                    even: self.part(p, "tex1", 1.0, is_float)?,
+                    odd: self.part(p, "tex2", 0.0, is_float)?,
+                    mapping: if dimension == 2 { self.mapping(p)? } else { self.in_space(p)? },
+                }
+            }
+            "dots" => TextureKind::Dots {
+                inside: self.part(p, "inside", 1.0, is_float)?,
+                outside: self.part(p, "outside", 0.0, is_float)?,
+                mapping: self.mapping(p)?,
+            },
+            "imagemap" => self.imagemap(p)?,
+            "fbm" if is_float => TextureKind::Fbm {
+                octaves: octaves(p)?,
+                roughness: p.float("roughness", 0.5)?,
+                mapping: self.in_space(p)?,
+            },
+            "wrinkled" if is_float => TextureKind::Wrinkled {
+                octaves: octaves(p)?,
+                roughness: p.float("roughness", 0.5)?,
+                mapping: self.in_space(p)?,
+            },
+            "windy" if is_float => TextureKind::Windy { mapping: self.in_space(p)? },
+            "marble" if !is_float => TextureKind::PbrtMarble {
+                octaves: octaves(p)?,
+                roughness: p.float("roughness", 0.5)?,
+                scale: p.float("scale", 1.0)?,
+                variation: p.float("variation", 0.2)?,
+                mapping: self.in_space(p)?,
+            },
+            "fbm" | "wrinkled" | "windy" | "marble" => {
+                let (there, here) = if is_float { ("spectrum", "float") } else { ("float", "spectrum") };
+                let error =
+                    kind_place.invalid(format!("{kind:?} is a {there} texture, not a {here} texture"));
+                return Err(error.hint(format!("write {there:?} between the name and {kind:?}")));
+            }
+            "ptex" => {
+                let message = "Ptex is not read: gray takes the place of such textures";
+                self.warn_once("ptex", &p.place, message);
+                p.ignore(&["filename", "encoding", "scale"]);
+                uniform(Color::gray(0.5))
+            }
+            _ => return Err(Self::unknown(kind_place, "texture", kind, KINDS.iter().copied())),
+        })
+    }
+
+    fn imagemap(&mut self, p: &Parameters) -> Result<TextureKind> {
+        let parameter = p.find("filename", &[Kind::String])?;
+        let place = parameter.map_or(&p.place, |parameter| &parameter.place);
+        let Some(name) = p.string("filename")? else {
+            return Err(place
+                .invalid(format!("{} has no \"string filename\"", p.title))
+                .hint("name a picture"));
+        };
+        let encoding = encoding_of(name, p.string("encoding")?);
+        p.ignore(&["maxanisotropy"]);
+        let filters = [
+            ("bilinear", TexelFilter::Bilinear),
+            ("trilinear", TexelFilter::Bilinear),
+            ("ewa", TexelFilter::Bilinear),
+            ("EWA", TexelFilter::Bilinear),
+            ("point", TexelFilter::Nearest),
+        ];
+        let wraps = [
+            ("repeat", Wrap::Repeat),
+            ("clamp", Wrap::Clamp),
+            ("black", Wrap::Black),
+            ("octahedralsphere", Wrap::Clamp),
+        ];
+        Ok(TextureKind::Image {
+            image: self.picture(name, &encoding, place)?,
+            mapping: self.mapping(p)?,
+            wrap: p.choice("wrap", Wrap::Repeat, &wraps)?,
+            filter: p.choice("filter", TexelFilter::Bilinear, &filters)?,
+            scale: p.float("scale", 1.0)?,
+            invert: p.boolean("invert", false)?,
+        })
+    }
+
+    /// The place of a pattern in space: the space that is in force where the texture is written.
+    fn in_space(&self, p: &Parameters) -> Result<Mapping> {
+        Ok(Mapping::World { texture_from_world: self.texture_from_world(p)? })
+    }
+
+    fn texture_from_world(&self, p: &Parameters) -> Result<glam::DMat4> {
+        if !transform::is_invertible(&self.state.matrix) {
+            return Err(p
+                .place
+                .invalid("the transform in force here flattens space: a pattern cannot live in it"));
+        }
+        Ok(self.state.matrix.inverse())
+    }
+
+    fn mapping(&self, p: &Parameters) -> Result<Mapping> {
+        let kind =
+            p.choice("mapping", 0, &[("uv", 0), ("spherical", 1), ("cylindrical", 2), ("planar", 3)])?;
+        let offset = [p.float("udelta", 0.0)?, p.float("vdelta", 0.0)?];
+        let scale = [p.float("uscale", 1.0)?, p.float("vscale", 1.0)?];
+        Ok(match kind {
+            0 => Mapping::Uv { scale, offset },
+            1 => Mapping::Spherical { texture_from_world: self.texture_from_world(p)? },
+            2 => Mapping::Cylindrical { texture_from_world: self.texture_from_world(p)? },
+            _ => Mapping::Planar {
+                texture_from_world: self.texture_from_world(p)?,
+                axes: [
+                    p.vector("v1", Kind::Vector3, DVec3::X)?.as_vec3(),
+                    p.vector("v2", Kind::Vector3, DVec3::Y)?.as_vec3(),
+                ],
+                offset,
+            },
+        })
+    }
+
+    /// The picture that an area light shows, over the uv of its shape.
+    pub(super) fn shown_picture(&mut self, name: &str, place: &Place) -> Result<Color> {
+        let image = self.picture(name, "sRGB", place)?;
+        let kind = TextureKind::Image {
+            image,
+            mapping: Mapping::UV,
+            wrap: Wrap::Clamp,
+            filter: TexelFilter::Bilinear,
+            scale: 1.0,
+            invert: false,
+        };
+        Ok(self.push_texture(name, place, kind))
+    }
+}
+
+/// The same everywhere.
+fn uniform(color: Color) -> TextureKind {
+    TextureKind::Scale { color, by: Scalar::Value(1.0) }
+}

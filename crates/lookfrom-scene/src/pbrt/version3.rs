@@ -1,0 +1,102 @@
+//! Is this a scene of pbrt-v3, and what has to be changed?
+//!
+//! Version 4 renamed most of the language. One clear error at the first thing that only version 3 has is worth more
+//! than one for every line after it.
+
+use super::text::Place;
+use crate::error::{Error, Result};
+
+/// The error that something is of version 3.
+fn old(place: &Place, found: &str, now: &str) -> Error {
+    place.invalid(format!("this scene is written for pbrt-v3: {found}; pbrt-v4 {now}")).hint(
+        "convert the whole scene with pbrt-v4's own program: pbrt --upgrade old.pbrt > new.pbrt \
+         (and again for each file that it includes)",
+    )
+}
+
+/// Words that only version 3 has, by directive: what it is called, and what version 4 does.
+const WORDS: &[(&str, &str, &str)] = &[
+    ("Material", "matte", "calls it \"diffuse\""),
+    ("Material", "plastic", "calls it \"coateddiffuse\""),
+    ("Material", "metal", "calls it \"conductor\""),
+    ("Material", "glass", "calls it \"dielectric\""),
+    ("Material", "mirror", "has \"conductor\" for it"),
+    ("Material", "substrate", "calls it \"coateddiffuse\""),
+    ("Material", "translucent", "calls it \"diffusetransmission\""),
+    ("Material", "uber", "has \"coateddiffuse\" for it"),
+    ("Material", "disney", "does not have it"),
+    ("Material", "fourier", "has \"measured\" for it"),
+    ("Material", "kdsubsurface", "calls it \"subsurface\""),
+    ("Film", "image", "calls it \"rgb\""),
+    ("Camera", "environment", "calls it \"spherical\""),
+    ("Sampler", "lowdiscrepancy", "has \"zsobol\" for it"),
+    ("Sampler", "02sequence", "has \"pmj02bn\" for it"),
+    ("Sampler", "maxmindist", "has \"zsobol\" for it"),
+    ("Sampler", "random", "calls it \"independent\""),
+    ("Sampler", "bestcandidate", "has \"zsobol\" for it"),
+    ("Sampler", "adaptive", "has \"zsobol\" for it"),
+    ("Integrator", "directlighting", "has \"path\" for it"),
+    ("Integrator", "whitted", "has \"path\" for it"),
+    ("Accelerator", "grid", "does not have it"),
+    ("Shape", "cone", "does not have it"),
+    ("Shape", "paraboloid", "does not have it"),
+    ("Shape", "hyperboloid", "does not have it"),
+    ("Shape", "heightfield", "does not have it"),
+    ("Shape", "heightfield2", "does not have it"),
+    ("Shape", "nurbs", "does not have it"),
+    ("Texture", "uv", "does not have it"),
+    ("AreaLightSource", "area", "calls it \"diffuse\""),
+];
+
+/// The names of types that version 3 alone has.
+pub(super) fn check_kind(word: &str, name: &str, place: &Place) -> Result<()> {
+    let now = match word {
+        "point" if name == "uv" || name == "st" => "point2",
+        "point" => "point3",
+        "vector" => "vector3",
+        "color" => "rgb",
+        "xyz" => {
+            return Err(old(
+                place,
+                &format!("\"{word} {name}\" is a colour in XYZ"),
+                "has \"rgb\" or \"spectrum\"",
+            ));
+        }
+        _ => return Ok(()),
+    };
+    Err(old(place, &format!("\"{word} {name}\" has a type of version 3"), &format!("calls the type {now:?}")))
+}
+
+/// The kinds of materials, lights … that version 3 alone has.
+pub(super) fn check_word(directive: &str, word: &str, place: &Place) -> Result<()> {
+    match WORDS.iter().find(|entry| entry.0 == directive && entry.1 == word) {
+        Some(&(_, _, now)) => Err(old(place, &format!("{directive} {word:?}"), now)),
+        None => Ok(()),
+    }
+}
+
+/// The directives that version 3 (or an even older one) alone has.
+pub(super) fn check_directive(word: &[u8], place: &Place) -> Result<()> {
+    let now = match word {
+        b"WorldEnd" => "has none: the end of the file ends the world",
+        b"SurfaceIntegrator" => "calls it Integrator",
+        b"VolumeIntegrator" | b"Volume" | b"Renderer" => "has an Integrator for it",
+        _ => return Ok(()),
+    };
+    Err(old(place, &format!("there is a directive `{}`", String::from_utf8_lossy(word)), now))
+}
+
+/// The parameters whose names version 4 has changed, which would else make a silent difference.
+pub(super) fn check_parameter(directive: &str, kind: &str, name: &str, place: &Place) -> Result<()> {
+    let now = match (directive, kind, name) {
+        ("LightSource", _, "mapname") => "calls it \"filename\"",
+        ("Texture", "texture", "Kd") | ("Material", _, "Kd") => "calls it \"reflectance\"",
+        ("Material", _, "Ks" | "Kr" | "Kt") => "has none",
+        ("Material", _, "bumpmap") => "calls it \"displacement\"",
+        ("Material", "float", "sigma") => "has none",
+        ("Texture", "bool", "trilinear") => "has \"string filter\"",
+        ("Texture", "float", "gamma") | ("Texture", "bool", "gamma") => "has \"string encoding\"",
+        _ => return Ok(()),
+    };
+    Err(old(place, &format!("{directive} has \"{kind} {name}\""), now))
+}
