@@ -8,28 +8,18 @@ const FARTHEST: f32 = 1_073_741_824.0;
 
 /// The colour of a picture at `(s, t)`, with `t` *down* and both from 0 to 1 over the picture. Finite for a picture of finite
 /// texels, wherever: a place that is not a number is taken as 0.
-pub fn look_up(
-    image: &Image,
-    [s, t]: [f32; 2],
-    [wrap_s, wrap_t]: [Wrap; 2],
-    filter: TexelFilter,
-) -> [f32; 3] {
-    let column = |x: i32| wrapped(x, image.width, wrap_s);
-    let row = |y: i32| wrapped(y, image.height, wrap_t);
-    let texel = |x: Option<usize>, y: Option<usize>| match (x, y) {
-        (Some(x), Some(y)) => image.texels[y * image.width as usize + x],
-        _ => [0.0; 3],
-    };
+pub fn look_up(image: &Image, [s, t]: [f32; 2], wraps: [Wrap; 2], filter: TexelFilter) -> [f32; 3] {
     let (x, y) = (s * image.width as f32, t * image.height as f32);
     match filter {
-        TexelFilter::Nearest => texel(column(split(x).0), row(split(y).0)),
+        TexelFilter::Nearest => {
+            let column = wrapped(split(x).0, image.width, wraps[0]);
+            texel(image, (column, wrapped(split(y).0, image.height, wraps[1])))
+        }
         TexelFilter::Bilinear => {
             // texel centres are at halves
             let ((x, fx), (y, fy)) = (split(x - 0.5), split(y - 0.5));
-            let (left, right, top, bottom) = (column(x), column(x + 1), row(y), row(y + 1));
             let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
-            let [a, b, c, d] =
-                [texel(left, top), texel(right, top), texel(left, bottom), texel(right, bottom)];
+            let [a, b, c, d] = four_texels(image, [x, y], wraps);
             std::array::from_fn(|i| {
                 weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i] + weights[3] * d[i]
             })
@@ -37,16 +27,45 @@ pub fn look_up(
     }
 }
 
-/// The whole number below, and the fraction.
+/// The texels at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
+#[inline]
+fn four_texels(image: &Image, [x, y]: [i32; 2], wraps: [Wrap; 2]) -> [[f32; 3]; 4] {
+    let inside = |x: i32, size: u32| x >= 0 && (x as u32) < size - 1;
+    if inside(x, image.width) && inside(y, image.height) {
+        // nothing to wrap, as nearly always
+        let width = image.width as usize;
+        let top = y as usize * width + x as usize;
+        let (top, bottom) = (&image.texels[top..top + 2], &image.texels[top + width..top + width + 2]);
+        return [top[0], top[1], bottom[0], bottom[1]];
+    }
+    let [left, right] = [x, x + 1].map(|x| wrapped(x, image.width, wraps[0]));
+    let [top, bottom] = [y, y + 1].map(|y| wrapped(y, image.height, wraps[1]));
+    [(left, top), (right, top), (left, bottom), (right, bottom)].map(|place| texel(image, place))
+}
+
+/// The texel at a column and a row; black where there is none.
+#[inline]
+fn texel(image: &Image, place: (Option<usize>, Option<usize>)) -> [f32; 3] {
+    match place {
+        (Some(x), Some(y)) => image.texels[y * image.width as usize + x],
+        _ => [0.0; 3],
+    }
+}
+
+/// The whole number below, and the fraction: by truncation, because `floor` is a call of a function on most processors that
+/// programs are compiled for.
+#[inline]
 fn split(x: f32) -> (i32, f32) {
-    let x = if x.is_nan() { 0.0 } else { x.clamp(-FARTHEST, FARTHEST) };
-    let floor = x.floor();
-    (floor as i32, x - floor)
+    let x = x.clamp(-FARTHEST, FARTHEST);
+    let toward_zero = x as i32;
+    let below = toward_zero - i32::from(toward_zero as f32 > x);
+    // the fraction of what is not a number is not one, and `max` passes over it
+    (below, (x - below as f32).max(0.0))
 }
 
 /// The column (or row) that a whole number means, `None` for one outside that is black.
 fn wrapped(x: i32, size: u32, wrap: Wrap) -> Option<usize> {
-    // most places are inside, where all wraps agree
+    // without a division, where that is known
     if x >= 0 && (x as u32) < size {
         return Some(x as usize);
     }
@@ -79,6 +98,19 @@ mod tests {
                 for x in [i32::MIN, -1, 0, i32::MAX] {
                     assert!(wrapped(x, size, wrap).unwrap() < size as usize);
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn the_short_way_agrees_with_the_long_one() {
+        let texels = (0..12).map(|i| [i as f32, 0.5, -1.0]).collect();
+        let image = Image { name: String::new(), width: 4, height: 3, texels };
+        for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black] {
+            for (x, y) in (-9..9).flat_map(|x| (-9..9).map(move |y| (x, y))) {
+                let long = [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]];
+                let long = long.map(|[x, y]| texel(&image, (wrapped(x, 4, wrap), wrapped(y, 3, wrap))));
+                assert_eq!(four_texels(&image, [x, y], [wrap; 2]), long, "{wrap:?} at {x}, {y}");
             }
         }
     }

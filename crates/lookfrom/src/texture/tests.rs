@@ -297,3 +297,28 @@ fn nothing_is_nan_anywhere() {
         }
     }
 }
+
+#[test]
+#[ignore = "measures time"]
+fn time_of_look_ups() {
+    let texels = (0..1 << 12).map(|i| [0.1, 0.2 + i as f32 * 1e-9, 0.7]).collect();
+    let image = Image { name: String::new(), width: 64, height: 64, texels };
+    let lanes = Lanes::Spectral(Wavelengths::sample_visible(0.3));
+    for (wrap, reach) in [(Wrap::Repeat, 1.0), (Wrap::Repeat, 9.0), (Wrap::Mirror, 9.0), (Wrap::Black, 1.0)] {
+        let (mapping, filter) = (Mapping::UV, TexelFilter::Bilinear);
+        let kind = TextureKind::Image { image: ImageId(0), mapping, wrap, filter, scale: 1.0, invert: false };
+        let textures = Textures::new(vec![kind], vec![image.clone()], vec![]);
+        for (name, lanes) in [("rgb", &Lanes::Rgb), ("spectral", &lanes)] {
+            let start = std::time::Instant::now();
+            let mut sum = Spectrum::BLACK;
+            let count = 1 << 21;
+            for i in 0..count {
+                let [u, v] = [i % 512, i / 512 % 512].map(|k| k as f32 * reach / 512.0);
+                let point = at(u, v);
+                sum += textures.spectrum(Color::Texture(FIRST), Usage::Albedo, &point, lanes);
+            }
+            let ns = start.elapsed().as_nanos() as f64 / f64::from(count);
+            println!("{wrap:?} over {reach}, {name}: {ns:.1} ns ({:.3})", sum.max_lane() / count as f32);
+        }
+    }
+}
