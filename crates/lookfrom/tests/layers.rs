@@ -26,16 +26,34 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("texture", &["color", "noise", "spectrum"]),
     ("material", &["bsdf", "math", "spectrum", "surface", "texture", "warp"]),
     ("shape", &["math", "surface", "texture", "warp"]),
-    ("light", &["distribution", "math", "shape", "spectrum", "surface", "texture", "warp"]),
+    ("light", &["distribution", "math", "sampler", "shape", "spectrum", "surface", "texture", "warp"]),
     (
         "world",
         &["camera", "distribution", "light", "material", "math", "shape", "spectrum", "surface", "texture"],
     ),
     (
         "integrator",
-        &["hash", "light", "material", "math", "sampler", "spectrum", "surface", "texture", "warp", "world"],
+        &[
+            "bsdf", "hash", "light", "material", "math", "sampler", "spectrum", "surface", "texture", "warp",
+            "world",
+        ],
     ),
-    ("render", &["camera", "film", "filter", "integrator", "sampler", "spectrum", "world"]),
+    (
+        "render",
+        &[
+            "camera",
+            "color",
+            "film",
+            "filter",
+            "integrator",
+            "material",
+            "sampler",
+            "spectrum",
+            "surface",
+            "texture",
+            "world",
+        ],
+    ),
     (
         "inspect",
         &["camera", "integrator", "light", "material", "render", "shape", "spectrum", "surface", "world"],

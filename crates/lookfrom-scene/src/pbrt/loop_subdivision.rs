@@ -69,7 +69,11 @@ impl Surface {
     }
 
     /// Finds for each vertex the face that its fan begins with.
-    fn with_neighbours(positions: Vec<Vec3>, faces: Vec<[u32; 3]>, neighbours: Vec<[Option<u32>; 3]>) -> Self {
+    fn with_neighbours(
+        positions: Vec<Vec3>,
+        faces: Vec<[u32; 3]>,
+        neighbours: Vec<[Option<u32>; 3]>,
+    ) -> Self {
         let mut first_face = vec![None; positions.len()];
         let mut is_border = vec![false; positions.len()];
         for (index, face) in faces.iter().enumerate() {
@@ -168,7 +172,8 @@ impl Surface {
         for (index, (&[a, b, c], &[ab, bc, ca])) in self.faces.iter().zip(&middles).enumerate() {
             faces.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
             let across = |edge: usize, vertex: u32| {
-                self.neighbours[index][edge].map(|other| 4 * other + self.corner(other, vertex as usize) as u32)
+                self.neighbours[index][edge]
+                    .map(|other| 4 * other + self.corner(other, vertex as usize) as u32)
             };
             let inner = |part: u32| Some(4 * index as u32 + part);
             neighbours.extend([
@@ -268,7 +273,8 @@ mod tests {
     fn neighbours_are_those_of_a_search() {
         for (points, faces) in [tetrahedron(), grid(3)] {
             let fine = Surface::new(points, faces).expect("a good mesh").refined().refined();
-            let searched = Surface::new(fine.positions.clone(), fine.faces.clone()).expect("still a good mesh");
+            let searched =
+                Surface::new(fine.positions.clone(), fine.faces.clone()).expect("still a good mesh");
             assert_eq!(fine.neighbours, searched.neighbours);
             assert_eq!(fine.is_border, searched.is_border);
         }
