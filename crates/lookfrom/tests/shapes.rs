@@ -180,6 +180,38 @@ fn rays_that_leave_do_not_meet_what_they_left() {
 }
 
 #[test]
+fn rays_that_leave_an_ellipsoid_never_meet_it_however_thin_it_is() {
+    let mut random = Random(7);
+    let ball = Geometry::Sphere(Sphere { center: DVec3::new(0.5, -1.0, 2.0), radius: 0.3 });
+    let mut left = 0;
+    for far in [0.0, 1.0, 100.0].into_iter().cycle().take(60) {
+        let thin = [0; 3].map(|_| 2f64.powf(random.between(-10.0, 10.0)));
+        let map = random.map(far) * DMat4::from_scale(DVec3::from_array(thin));
+        let exact = world(shape(ball.clone(), map), vec![]);
+        for _ in 0..2000 {
+            let at = |d: DVec3| map.transform_point3(DVec3::new(0.5, -1.0, 2.0) + d).as_vec3();
+            let (from, to) = (at(3.0 * random.direction()), at(0.29 * random.direction()));
+            let ray = Ray::new(from.to_array(), (to - from).to_array());
+            let hit = exact.bvh.closest_hit(&ray);
+            if !hit.is_hit() {
+                continue;
+            }
+            let surface = exact.surface(&ray, &hit);
+            for _ in 0..2 {
+                let direction = random.direction().as_vec3();
+                if direction.as_dvec3().dot(surface.ng) > 0.0 {
+                    let next =
+                        exact.bvh.closest_hit(&Ray::new(surface.origin(direction), direction.to_array()));
+                    assert!(!next.is_hit(), "far {far}, thin {thin:?}: {surface:?}");
+                    left += 1;
+                }
+            }
+        }
+    }
+    assert!(left > 50_000, "{left}");
+}
+
+#[test]
 fn tangents_and_texture_coordinates_of_meshes_lead_the_derivatives() {
     let mut mesh = Mesh {
         positions: [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 4.0, 0.0]].map(Vec3::from_array).to_vec(),

@@ -78,7 +78,7 @@ impl Quadric {
         let ascending = |[a, b]: [f64; 2]| if a <= b { [a, b] } else { [b, a] };
         let kind = match kind {
             QuadricKind::Sphere { radius, z } => {
-                QuadricKind::Sphere { radius, z: ascending(z).map(|z| z.clamp(-radius, radius)) }
+                QuadricKind::Sphere { radius, z: ascending(z).map(|z| z.max(-radius).min(radius)) }
             }
             QuadricKind::Cylinder { radius, z } => QuadricKind::Cylinder { radius, z: ascending(z) },
             QuadricKind::Disk { .. } => kind,
@@ -125,6 +125,15 @@ impl Quadric {
     pub fn area_scale(&self, on_surface: DVec3) -> f64 {
         let normal = self.object_from_render.normal_back(self.outward(on_surface).to_array());
         self.volume_scale() * DVec3::from_array(normal).length()
+    }
+
+    /// [`Self::area_scale`] where it is the same everywhere.
+    pub fn even_area_scale(&self) -> Option<f64> {
+        let [x, y, z] = self.render_from_object.matrix.map(DVec3::from_array);
+        let square = x.length_squared();
+        let even = [y.length_squared() - square, z.length_squared() - square, x.dot(y), y.dot(z), z.dot(x)];
+        let is_flat = matches!(self.kind, QuadricKind::Disk { .. });
+        (is_flat || even.iter().all(|off| off.abs() <= 1e-9 * square)).then(|| self.area_scale(DVec3::X))
     }
 
     /// Area in the quadric's own space.

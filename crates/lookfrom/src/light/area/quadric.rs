@@ -19,8 +19,8 @@ const ON_SPHERE: f64 = 1e-6;
 /// Points nearer than this part of the radius to the point that they are to light are that point itself.
 const NEAREST: f64 = 1e-5;
 
-/// Cells along u and v by which the area of a quadric is summed.
-const CELLS: u32 = 128;
+/// Cells along u and v by which the area of an unevenly scaled quadric is summed.
+const CELLS: u32 = 64;
 
 /// Nobody's: a light's point needs none.
 const NO_LOOK: Look = Look { material: 0, light: None, shape: 0, alpha: None };
@@ -36,10 +36,12 @@ impl QuadricLight {
     /// None for a quadric without area.
     pub fn new(quadric: Quadric) -> Option<Self> {
         // The mean of the factor by which the map changes area, over points that are uniform in the own space.
-        let cell = |i: u32| (i as f32 + 0.5) / CELLS as f32;
-        let scales = (0..CELLS * CELLS)
-            .map(|k| quadric.area_scale(quadric.sample_in_object([cell(k % CELLS), cell(k / CELLS)])));
-        let area = quadric.object_area() * scales.sum::<f64>() / f64::from(CELLS * CELLS);
+        let mean = || {
+            let cell = |i: u32| (i as f32 + 0.5) / CELLS as f32;
+            let place = |k: u32| quadric.sample_in_object([cell(k % CELLS), cell(k / CELLS)]);
+            (0..CELLS * CELLS).map(|k| quadric.area_scale(place(k))).sum::<f64>() / f64::from(CELLS * CELLS)
+        };
+        let area = quadric.object_area() * quadric.even_area_scale().unwrap_or_else(mean);
         (area > 0.0 && area.is_finite()).then_some(Self { quadric, area })
     }
 
