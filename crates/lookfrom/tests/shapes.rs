@@ -9,7 +9,7 @@ use lookfrom::surface::Surface;
 use lookfrom_bvh::Ray;
 use lookfrom_scene::material::Scalar;
 use lookfrom_scene::scene::MeshId;
-use lookfrom_scene::shape::{Geometry, Mesh, Profile, Sphere, Strand};
+use lookfrom_scene::shape::{Geometry, Mesh, Patches, Profile, Sphere, Strand};
 use support::forms::{Random, forms, place, ray, shape, twin, world};
 
 #[test]
@@ -151,7 +151,7 @@ fn rays_that_leave_do_not_meet_what_they_left() {
     let mut random = Random(4);
     for form in forms() {
         let mut left = 0;
-        for far in [0.0, 1.0, 30.0, 1000.0].into_iter().cycle().take(40) {
+        for far in [0.0, 1.0, 30.0, 1000.0, 2e4].into_iter().cycle().take(50) {
             let map = random.map(far);
             let exact = world(shape(form.geometry.clone(), map), vec![]);
             let size = map.transform_vector3(DVec3::X).length();
@@ -209,6 +209,54 @@ fn rays_that_leave_an_ellipsoid_never_meet_it_however_thin_it_is() {
         }
     }
     assert!(left > 50_000, "{left}");
+}
+
+#[test]
+fn rays_that_leave_inward_from_near_a_pole_do_not_start_outside() {
+    // Where the normal is along an axis, rounding to f32 moves an origin mostly sideways, and the surface bends away.
+    let mut random = Random(9);
+    // The pole is a little beyond a number that f32 has, so that the origin hardly moves along the normal.
+    let center = DVec3::new(30_000.250_008, 23_331.1, -37_023.4);
+    let map = DMat4::from_translation(center) * DMat4::from_scale(DVec3::new(0.25, 0.25, 0.3));
+    let exact = world(shape(forms().swap_remove(0).geometry, map), vec![]);
+    for _ in 0..20_000 {
+        let mut near = || 4e-3 * (2.0 * random.unit() - 1.0);
+        let from = (center + DVec3::new(0.0, near(), near())).as_vec3().to_array();
+        let ray = Ray::new(from, [1.0, near() as f32, near() as f32]);
+        let surface = exact.surface(&ray, &exact.bvh.closest_hit(&ray));
+        let direction = Vec3::new(-1.0, 20.0 * near() as f32, 20.0 * near() as f32);
+        let next = exact.bvh.closest_hit(&Ray::new(surface.origin(direction), direction.to_array()));
+        assert!(next.t > 0.4, "again after {} from {surface:?}", next.t);
+    }
+}
+
+#[test]
+fn rays_that_leave_a_flat_patch_never_meet_it_however_flat_they_are() {
+    // Exactly in a plane, but no parallelogram.
+    let at = |x: f32, y: f32| Vec3::new(x, y, x + 2.0 * y);
+    let positions = vec![at(-900.0, -700.0), at(800.0, -1000.0), at(-300.0, 1100.0), at(500.0, 600.0)];
+    let patch = Patches { positions, patches: vec![[0, 1, 2, 3]], ..Patches::default() };
+    let exact = world(shape(Geometry::Bilinear(Arc::new(patch)), DMat4::IDENTITY), vec![]);
+    let mut random = Random(8);
+    let mut left = 0;
+    while left < 100_000 {
+        let (x, y) = (random.between(-900.0, 900.0) as f32, random.between(-900.0, 900.0) as f32);
+        let from = 2000.0 * random.direction().as_vec3();
+        let ray = Ray::new(from.to_array(), (at(x, y) - from).to_array());
+        let hit = exact.bvh.closest_hit(&ray);
+        if !hit.is_hit() {
+            continue;
+        }
+        let surface = exact.surface(&ray, &hit);
+        let flat = random.direction().reject_from_normalized(surface.ng).normalize();
+        let up = 2f64.powf(random.between(-22.0, 0.0));
+        let direction = (flat + up * surface.ng).as_vec3();
+        if direction.as_dvec3().dot(surface.ng) > 0.0 {
+            let next = exact.bvh.closest_hit(&Ray::new(surface.origin(direction), direction.to_array()));
+            assert!(!next.is_hit(), "{direction} from {surface:?}");
+            left += 1;
+        }
+    }
 }
 
 #[test]

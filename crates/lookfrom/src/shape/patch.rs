@@ -198,7 +198,7 @@ fn meetings(blend: &Blend, origin: DVec3, direction: DVec3) -> [[f64; 3]; 2] {
         let scale = 1.0 / across.length_squared();
         let v = across.cross(from).dot(direction) * scale;
         let t = across.cross(from).dot(line) * scale;
-        (0..2).fold([u, v, t], |guess, _| sharpened(blend, start, direction, guess))
+        sharpened(blend, start, direction, [u, v, t])
     })
 }
 
