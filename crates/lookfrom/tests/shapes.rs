@@ -10,7 +10,7 @@ use lookfrom_bvh::Ray;
 use lookfrom_scene::material::Scalar;
 use lookfrom_scene::scene::MeshId;
 use lookfrom_scene::shape::{Geometry, Mesh, Patches, Profile, Sphere, Strand};
-use support::forms::{Random, forms, place, ray, shape, twin, world};
+use support::forms::{Random, forms, place, ray, shape, shining, twin, world};
 
 #[test]
 fn rays_meet_what_they_meet_of_fine_triangles() {
@@ -376,5 +376,43 @@ fn curves_are_met_where_a_search_along_them_says() {
             }
         }
         assert!(hits > 300 && sure > 500, "{profile:?}: {hits} hits, {sure} sure");
+    }
+}
+
+#[test]
+fn poles_have_derivatives_and_nonsense_has_no_surface() {
+    let pole = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    let whole = Geometry::PartialSphere { radius: 1.0, z: [-1.0, 1.0], phi_max: 360.0 };
+    let stretched = DMat4::from_scale(DVec3::new(1.0, 2.0, 1.0));
+    for map in [DMat4::IDENTITY, stretched] {
+        let world = world(shape(whole.clone(), map), vec![]);
+        let surface = world.surface(&pole, &world.bvh.closest_hit(&pole));
+        assert!(surface.dpdu.cross(surface.dpdv).normalize().dot(surface.ns) > 0.999, "{surface:?}");
+    }
+
+    let strand = |width| Strand { points: [Vec3::ZERO; 4], width, profile: Profile::Cylinder };
+    let collapsed =
+        Patches { positions: vec![Vec3::ONE; 4], patches: vec![[0, 1, 2, 3]], ..Patches::default() };
+    let nonsense = [
+        Geometry::PartialSphere { radius: 0.0, z: [-1.0, 1.0], phi_max: 180.0 },
+        Geometry::PartialSphere { radius: -1.0, z: [0.5, 0.5], phi_max: 0.0 },
+        Geometry::PartialSphere { radius: f64::NAN, z: [f64::NAN; 2], phi_max: f64::NAN },
+        Geometry::PartialDisk { height: 0.0, radius: 1.0, inner_radius: 1.0, phi_max: -1.0 },
+        Geometry::PartialDisk { height: f64::INFINITY, radius: 1.0, inner_radius: 2.0, phi_max: 360.0 },
+        Geometry::Cylinder { radius: 0.0, z: [0.0, 0.0], phi_max: 1e300 },
+        Geometry::Cylinder { radius: f64::INFINITY, z: [f64::NEG_INFINITY, f64::NAN], phi_max: 360.0 },
+        Geometry::Bilinear(Arc::new(collapsed)),
+        Geometry::Bilinear(Arc::new(Patches::default())),
+        Geometry::Curves(Arc::new([strand([0.0, 0.0]), strand([f32::NAN, f32::INFINITY])])),
+        Geometry::Curves(Arc::new([])),
+    ];
+    let mut random = Random(10);
+    for geometry in nonsense {
+        let text = format!("{geometry:?}");
+        let world = world(shining(geometry, DMat4::IDENTITY, true, false), vec![]);
+        for _ in 0..200 {
+            let ray = ray(&mut random, &DMat4::IDENTITY);
+            assert!(!world.bvh.closest_hit(&ray).is_hit(), "{text}");
+        }
     }
 }
