@@ -3,11 +3,12 @@
 //! The doc comments here are the help texts.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use glam::DVec3;
-use lookfrom_scene::settings::{Crop, Filter, Integrator, Sampler, Tonemap};
+use lookfrom_scene::settings::{ColorMode, Crop, Filter, Integrator, Layers, LightSampler, Sampler, Tonemap};
 
 use crate::values;
 
@@ -16,6 +17,7 @@ Examples:
   lookfrom render scene.toml                     a picture, scene.png
   lookfrom render bunny.ply -o bunny.exr         a model as it is, lit and framed
   lookfrom inspect scene.toml 320 200            all that happens to a ray of that pixel
+  lookfrom render scene.pbrt -o p.exr --time 1m  as good as it gets in a minute
   lookfrom info scene.toml                       what is in it
 
 Exit codes:
@@ -34,6 +36,7 @@ Examples:
   lookfrom render a.toml b.toml -o pictures/             pictures/a.png, pictures/b.png
   lookfrom render *.toml -o 'out/{name}-small.png' --width 160
   lookfrom render scene.toml -o - | display
+  lookfrom render scene.pbrt --noise 0.02 --write-every 10s
 
 Ctrl-C stops after the tiles that are being worked on and writes the picture so far; a second one ends at once.
 Exit codes: 0 done, 1 scene, 2 usage, 3 output, 130 interrupted.";
@@ -85,7 +88,7 @@ pub(crate) enum Command {
 
 #[derive(Args, Debug)]
 pub(crate) struct RenderArguments {
-    /// Scenes (.toml) or models (.obj, .ply, .stl)
+    /// Scenes (.toml, .pbrt) or models (.obj, .ply, .stl)
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
@@ -95,6 +98,31 @@ pub(crate) struct RenderArguments {
     /// it: NAME.png in the current folder, by the name of the scene. For several scenes give a folder or a pattern.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
+
+    /// Stop after the pass over the picture that reaches this time: 60s, 500ms, 2m, 1h
+    ///
+    /// Without --samples, there is no other limit. The picture is that of the samples that were taken, bit for bit.
+    #[arg(long, value_name = "TIME", value_parser = values::duration)]
+    pub(crate) time: Option<Duration>,
+
+    /// Stop when every part of the picture is as clean as this: the standard error in shares of the light, as 0.02
+    ///
+    /// Tiles of 32 × 32 pixels get no more samples when they are (after 16 samples at least). Without --samples, there is no
+    /// other limit.
+    #[arg(long, value_name = "ERROR", value_parser = values::between(1e-6f64, 1e6))]
+    pub(crate) noise: Option<f64>,
+
+    /// Take no more samples than asked for, and fewer where the picture is clean: --noise 0.02 with a limit
+    #[arg(long)]
+    pub(crate) adaptive: bool,
+
+    /// Write the picture so far at this interval: 10s, 2m
+    #[arg(long, value_name = "TIME", value_parser = values::duration)]
+    pub(crate) write_every: Option<Duration>,
+
+    /// What becomes of pixels that single samples make far too bright: median spreads their excess over the pixels around
+    #[arg(long, value_name = "NAME", value_parser = values::word(values::FIREFLIES), default_value = "off")]
+    pub(crate) fireflies: Fireflies,
 
     /// Say nothing but errors
     #[arg(short, long)]
@@ -111,9 +139,18 @@ pub(crate) struct RenderArguments {
     pub(crate) overrides: Overrides,
 }
 
+/// What becomes of pixels that single samples make far too bright.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fireflies {
+    /// They stay.
+    Off,
+    /// Their excess is spread.
+    Median,
+}
+
 #[derive(Args, Debug)]
 pub(crate) struct InspectArguments {
-    /// A scene (.toml) or a model (.obj, .ply, .stl)
+    /// A scene (.toml, .pbrt) or a model (.obj, .ply, .stl)
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 
@@ -146,7 +183,7 @@ pub(crate) struct InspectArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct InfoArguments {
-    /// Scenes (.toml) or models (.obj, .ply, .stl)
+    /// Scenes (.toml, .pbrt) or models (.obj, .ply, .stl)
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
@@ -193,7 +230,19 @@ pub(crate) struct Overrides {
     #[arg(long, value_name = "NAME", value_parser = values::word(values::INTEGRATORS))]
     pub(crate) integrator: Option<Integrator>,
 
-    /// How many times a ray may be mirrored or refracted
+    /// Whether light is red, green and blue or four wavelengths
+    #[arg(long, value_name = "NAME", value_parser = values::word(values::COLORS))]
+    pub(crate) color: Option<ColorMode>,
+
+    /// How one of many lights is chosen
+    #[arg(long, value_name = "NAME", value_parser = values::word(values::LIGHT_SAMPLERS))]
+    pub(crate) light_sampler: Option<LightSampler>,
+
+    /// What an EXR holds besides the picture: geometry is albedo, normals, position, depth, uv and variance
+    #[arg(long, value_name = "NAME", value_parser = values::word(values::LAYERS))]
+    pub(crate) layers: Option<Layers>,
+
+    /// How many times a ray may be mirrored, refracted or scattered
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=256))]
     pub(crate) depth: Option<u32>,
 

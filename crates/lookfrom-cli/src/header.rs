@@ -8,18 +8,34 @@ use lookfrom_scene::camera::{Projection, View};
 use lookfrom_scene::settings::Crop;
 
 use crate::prepare::Prepared;
-use crate::values::{self, INTEGRATORS, SAMPLERS};
+use crate::values::{self, COLORS, LIGHT_SAMPLERS, SAMPLERS};
+
+/// How many samples a picture is made of.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Taken {
+    /// Of the pixels that have most.
+    pub(crate) samples: u32,
+    /// Of a pixel on average, rounded down, where not all pixels have the same or it was stopped.
+    pub(crate) mean: Option<u64>,
+    /// What is clean enough for a tile to get no more.
+    pub(crate) noise: Option<f64>,
+    /// Whether fireflies are spread.
+    pub(crate) fireflies_spread: bool,
+}
 
 /// The texts for the header, by name.
-pub(crate) fn attributes(scene: &Path, prepared: &Prepared, taken: Option<u64>) -> Vec<(String, String)> {
+pub(crate) fn attributes(scene: &Path, prepared: &Prepared, taken: &Taken) -> Vec<(String, String)> {
     let Prepared { image, render, camera, .. } = prepared;
     let mut texts = vec![
         ("software", format!("lookfrom {}", env!("CARGO_PKG_VERSION"))),
         ("scene", scene.display().to_string()),
         ("size", format!("{} {}", image.width, image.height)),
-        ("integrator", values::name(INTEGRATORS, &render.integrator).to_owned()),
-        ("samples", render.samples.to_string()),
+        ("integrator", values::integrator_name(&render.integrator).to_owned()),
+        ("samples", taken.samples.to_string()),
         ("depth", render.depth.to_string()),
+        ("color", values::name(COLORS, &render.color).to_owned()),
+        ("light_sampler", values::name(LIGHT_SAMPLERS, &render.light_sampler).to_owned()),
+        ("regularize", render.regularize.to_string()),
         ("min_contribution", render.min_contribution.to_string()),
         ("transparent_shadows", render.transparent_shadows.to_string()),
         ("seed", render.seed.to_string()),
@@ -30,8 +46,14 @@ pub(crate) fn attributes(scene: &Path, prepared: &Prepared, taken: Option<u64>) 
         ("tonemap", "none".to_owned()),
         ("camera.distance", camera.distance.to_string()),
     ];
-    if let Some(taken) = taken {
-        texts.push(("samples_taken", taken.to_string()));
+    if let Some(mean) = taken.mean {
+        texts.push(("samples_taken", mean.to_string()));
+    }
+    if let Some(noise) = taken.noise {
+        texts.push(("noise", noise.to_string()));
+    }
+    if taken.fireflies_spread {
+        texts.push(("fireflies", "median".to_owned()));
     }
     if let Some(Crop { x0, y0, x1, y1 }) = image.crop {
         texts.push(("crop", format!("{x0} {y0} {x1} {y1}")));

@@ -14,7 +14,7 @@ use crate::count::Counts;
 use crate::exit::{self, DONE, Failure, answer, say};
 use crate::prepare::{self, Prepared, prepare};
 use crate::report::{self, bytes, thousands};
-use crate::values::{self, INTEGRATORS, SAMPLERS, TONEMAPS};
+use crate::values::{self, SAMPLERS, TONEMAPS};
 
 /// Describes every scene; goes on after one that fails, with the code of the first failure.
 pub(crate) fn run(arguments: &InfoArguments) -> u8 {
@@ -85,7 +85,7 @@ fn as_json(path: &Path, prepared: &Prepared) -> Value {
             "tonemap": values::name(TONEMAPS, &image.tonemap),
         },
         "render": {
-            "integrator": values::name(INTEGRATORS, &render.integrator),
+            "integrator": values::integrator_name(&render.integrator),
             "samples": render.samples,
             "depth": render.depth,
             "min_contribution": render.min_contribution,
@@ -159,7 +159,7 @@ fn for_people(path: &Path, prepared: &Prepared) -> String {
         "render",
         format!(
             "{}, {} samples, depth {}, min contribution {}, sampler {}, seed {}",
-            values::name(INTEGRATORS, &render.integrator),
+            values::integrator_name(&render.integrator),
             render.samples,
             render.depth,
             render.min_contribution,

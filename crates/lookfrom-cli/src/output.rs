@@ -53,13 +53,19 @@ impl Target {
         }
     }
 
-    /// The bytes of a picture in the target's format; `attributes` are for a header that has room for them.
+    /// Whether a file there has room for layers.
+    pub(crate) fn has_layers(&self) -> bool {
+        matches!(self, Self::File(_, Format::Exr))
+    }
+
+    /// The bytes of a picture in the target's format; `layers` and `attributes` are for a format that has room for them.
     ///
     /// # Errors
     /// `Output` where the format cannot hold the picture.
     pub(crate) fn encode(
         &self,
         picture: &Picture,
+        layers: &[(String, Vec<f32>)],
         image: &ImageSettings,
         attributes: &[(String, String)],
     ) -> Result<Vec<u8>, Failure> {
@@ -79,6 +85,8 @@ impl Target {
                 let [r, g, b] = [channel(0), channel(1), channel(2)];
                 let channels = [("R", &r), ("G", &g), ("B", &b)];
                 let channels = channels.map(|(name, values)| (name.to_owned(), values.as_slice()));
+                let layers = layers.iter().map(|(name, values)| (name.clone(), values.as_slice()));
+                let channels: Vec<_> = channels.into_iter().chain(layers).collect();
                 encode_exr(width, height, &channels, attributes)
             }
         };

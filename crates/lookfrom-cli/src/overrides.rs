@@ -38,6 +38,9 @@ impl Overrides {
         replace(&mut image.tonemap, self.tonemap);
         replace(&mut render.samples, self.samples);
         replace(&mut render.integrator, self.integrator);
+        replace(&mut render.color, self.color);
+        replace(&mut render.light_sampler, self.light_sampler);
+        replace(&mut image.layers, self.layers);
         replace(&mut render.depth, self.depth);
         replace(&mut render.min_contribution, self.min_contribution);
         replace(&mut render.sampler, self.sampler);

@@ -1,30 +1,35 @@
 //! How far a render is: a bar on stderr where a person looks at it, and the word to the library that it shall stop.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lookfrom::film::Film;
 use lookfrom::render::Progress;
 
 use crate::exit::stderr_is_terminal;
 use crate::interrupt;
+use crate::preview::Preview;
 
 /// Shows and remembers how far a render is.
 pub(crate) struct Watcher {
     bar: Option<ProgressBar>,
     started: Instant,
     done: AtomicU64,
+    /// When the render will be ended by the clock.
+    time: Option<Duration>,
+    preview: Option<Preview>,
 }
 
 impl Watcher {
-    /// Starts the clock. A bar is shown unless `quiet`, or where stderr is no terminal.
-    pub(crate) fn start(quiet: bool) -> Self {
+    /// Starts the clock. A bar is shown unless `quiet`, or where stderr is no terminal; it ends at `time` if there is one.
+    pub(crate) fn start(quiet: bool, time: Option<Duration>, preview: Option<Preview>) -> Self {
         let bar = (!quiet && stderr_is_terminal()).then(|| {
             let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
             let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
             bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
-        Self { bar, started: Instant::now(), done: AtomicU64::new(0) }
+        Self { bar, started: Instant::now(), done: AtomicU64::new(0), time, preview }
     }
 
     /// Takes the bar away and says how many samples were taken.
@@ -41,10 +46,25 @@ impl Progress for Watcher {
         // Threads may come here out of order; the greatest number is the latest.
         self.done.fetch_max(done, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
-            let rate = rays as f64 * 1e-6 / self.started.elapsed().as_secs_f64();
-            bar.set_length(total);
-            bar.set_position(self.done.load(Ordering::Relaxed));
+            let elapsed = self.started.elapsed();
+            let rate = rays as f64 * 1e-6 / elapsed.as_secs_f64();
+            let done = self.done.load(Ordering::Relaxed);
+            let milliseconds = |time: Duration| time.as_millis() as u64;
+            let (position, length) = match self.time {
+                Some(time) if elapsed.as_secs_f64() * total as f64 > time.as_secs_f64() * done as f64 => {
+                    (milliseconds(elapsed).min(milliseconds(time)), milliseconds(time))
+                }
+                _ => (done, total),
+            };
+            bar.set_length(length);
+            bar.set_position(position);
             bar.set_message(format!("{rate:.2} Mrays/s"));
+        }
+    }
+
+    fn look(&self, film: &Film) {
+        if let Some(preview) = &self.preview {
+            preview.look(film);
         }
     }
 

@@ -1,23 +1,39 @@
 //! `lookfrom render`: pictures of scenes and models.
 
 use std::path::Path;
+use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
-use lookfrom::render::Frame;
+use lookfrom::film::Picture;
+use lookfrom::render::{End, Enough, Frame};
+use lookfrom_scene::settings::Layers;
 
-use crate::args::RenderArguments;
+use crate::args::{Fireflies, RenderArguments};
 use crate::exit::{self, DONE, Failure, INTERRUPTED, answer, say};
+use crate::header::{self, Taken};
 use crate::output::{self, Target};
 use crate::prepare::{self, Prepared, prepare};
+use crate::preview::Preview;
 use crate::progress::Watcher;
 use crate::report::{self, Dropped, Seconds, Summary};
-use crate::values::{self, INTEGRATORS};
-use crate::{header, interrupt};
+use crate::{interrupt, layers, values};
+
+/// The most samples that a pixel can be given.
+const MOST_SAMPLES: u32 = 1 << 24;
+
+/// What is clean enough where nobody said.
+const ADAPTIVE_NOISE: f64 = 0.02;
 
 /// Renders every scene; goes on after one that fails, with the code of the first failure.
 pub(crate) fn run(arguments: &RenderArguments) -> u8 {
     let ready = output::targets(&arguments.scenes, arguments.output.as_deref(), arguments.json)
         .and_then(|targets| prepare::use_threads(&arguments.common).map(|()| targets));
+    let ready = ready.and_then(|targets| match arguments.write_every {
+        Some(_) if targets.contains(&Target::Stdout) => Err(Failure::Usage(
+            "--write-every needs a file to write again and again; -o - is none".to_owned(),
+        )),
+        _ => Ok(targets),
+    });
     let targets = match ready {
         Ok(targets) => targets,
         Err(failure) => return failure.report(),
@@ -47,9 +63,16 @@ pub(crate) fn run(arguments: &RenderArguments) -> u8 {
 
 /// Renders one scene and says what was done; gives the exit code.
 fn render(path: &Path, target: &Target, arguments: &RenderArguments) -> Result<u8, Failure> {
-    let prepared = prepare(path, &arguments.common, &arguments.overrides)?;
+    let mut prepared = prepare(path, &arguments.common, &arguments.overrides)?;
     if !arguments.quiet {
         exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
+    }
+    // A limit of time or noise replaces the scene's number of samples, not that of the command line.
+    if arguments.overrides.samples.is_none() && (arguments.time.is_some() || arguments.noise.is_some()) {
+        prepared.render.samples = MOST_SAMPLES;
+    }
+    if !target.has_layers() {
+        prepared.image.layers = Layers::None;
     }
     let frame = Frame::new(&prepared.world, &prepared.image, &prepared.render);
     let frame = frame.map_err(exit::in_scene(path))?;
@@ -72,12 +95,21 @@ fn render_frame(
     frame: &Frame<'_>,
     arguments: &RenderArguments,
 ) -> Result<Summary, Failure> {
-    // Render.
-    let watcher = Watcher::start(arguments.quiet);
+    // Render, and write what there is in between.
+    let noise = arguments.noise.or(arguments.adaptive.then_some(ADAPTIVE_NOISE));
+    let enough = Enough { time: arguments.time, noise };
     let started = Instant::now();
-    let rendered = frame.render(arguments.common.threads.map(usize::from), &watcher);
+    let (rendered, samples_done) = std::thread::scope(|scope| {
+        let preview = arguments.write_every.map(|every| {
+            let (preview, pictures) = Preview::start(every);
+            scope.spawn(move || write_previews(path, target, prepared, &pictures));
+            preview
+        });
+        let watcher = Watcher::start(arguments.quiet, arguments.time, preview);
+        let rendered = frame.render_until(&enough, arguments.common.threads.map(usize::from), &watcher);
+        (rendered, watcher.finish())
+    });
     let render_time = report::seconds(started.elapsed());
-    let samples_done = watcher.finish();
     let rendered = rendered.map_err(exit::in_scene(path))?;
     let film = &rendered.film;
 
@@ -85,11 +117,20 @@ fn render_frame(
     let area = film.area();
     let pixels = u64::from(area.x1 - area.x0) * u64::from(area.y1 - area.y0);
     let samples_taken = samples_done / pixels;
+    let cancelled = rendered.end == End::Cancelled;
     let started = Instant::now();
     if samples_done > 0 {
-        let attributes = header::attributes(path, prepared, rendered.cancelled.then_some(samples_taken));
-        let bytes = target.encode(&film.picture(), &prepared.image, &attributes)?;
-        target.write(&bytes)?;
+        let spread = arguments.fireflies == Fireflies::Median;
+        let taken = Taken {
+            samples: if cancelled { prepared.render.samples } else { rendered.samples },
+            mean: (cancelled || noise.is_some()).then_some(samples_taken),
+            noise,
+            fireflies_spread: spread,
+        };
+        let attributes = header::attributes(path, prepared, &taken);
+        let picture = if spread { film.picture_without_fireflies() } else { film.picture() };
+        let layers = if film.has_layers() { layers::channels(film) } else { Vec::new() };
+        target.write(&target.encode(&picture, &layers, &prepared.image, &attributes)?)?;
     }
 
     let rays = rendered.rays;
@@ -98,9 +139,16 @@ fn render_frame(
         output: (samples_done > 0).then(|| target.name()),
         width: prepared.image.width,
         height: prepared.image.height,
-        samples: prepared.render.samples,
+        samples: if cancelled { prepared.render.samples } else { rendered.samples },
         samples_taken,
-        integrator: values::name(INTEGRATORS, &prepared.render.integrator),
+        ended_by: match rendered.end {
+            End::Samples => "samples",
+            End::Time => "time",
+            End::Noise => "noise",
+            End::Cancelled => "interrupt",
+        },
+        relative_error: rendered.error.is_finite().then_some(rendered.error),
+        integrator: values::integrator_name(&prepared.render.integrator),
         seconds: Seconds {
             read: report::seconds(prepared.read),
             build: report::seconds(prepared.build),
@@ -114,7 +162,23 @@ fn render_frame(
         spheres: prepared.counts.spheres,
         instances: prepared.counts.instances,
         warnings: prepared.warnings.iter().map(ToString::to_string).collect(),
-        cancelled: rendered.cancelled,
+        cancelled,
         dropped_samples: Dropped { count: film.dropped(), first: film.first_dropped().map(Into::into) },
     })
+}
+
+/// Writes pictures as they come. One that cannot be written is told of once; the last one, by others, is what counts.
+fn write_previews(path: &Path, target: &Target, prepared: &Prepared, pictures: &Receiver<Picture>) {
+    let mut told = false;
+    let taken = Taken { samples: prepared.render.samples, mean: Some(0), ..Taken::default() };
+    let attributes = header::attributes(path, prepared, &taken);
+    for picture in pictures {
+        let bytes = target.encode(&picture, &[], &prepared.image, &attributes);
+        if let Err(failure) = bytes.and_then(|bytes| target.write(&bytes))
+            && !told
+        {
+            say(&format!("warning: no preview: {failure}"));
+            told = true;
+        }
+    }
 }

@@ -20,6 +20,9 @@ pub(crate) struct Summary {
     pub(crate) height: u32,
     pub(crate) samples: u32,
     pub(crate) samples_taken: u64,
+    pub(crate) ended_by: &'static str,
+    /// `None` where there are too few samples to say.
+    pub(crate) relative_error: Option<f64>,
     pub(crate) integrator: &'static str,
     pub(crate) seconds: Seconds,
     pub(crate) rays: RayCounts,
@@ -117,7 +120,15 @@ impl Summary {
                 "\nstopped after {render:.1} s; {output} holds the picture so far: {} of {samples} samples",
                 self.samples_taken
             ),
-            Some(_) => Ok(()),
+            Some(_) if self.ended_by == "samples" => Ok(()),
+            Some(_) => {
+                let error = self.relative_error.map_or("unknown".to_owned(), |error| format!("{error:.4}"));
+                write!(
+                    text,
+                    "\n  enough  by {}: at most {samples} samples a pixel, {} on average; relative error {error}",
+                    self.ended_by, self.samples_taken
+                )
+            }
         };
         if let Dropped { count, first: Some(DroppedAddress { x, y, sample }) } = self.dropped_samples {
             let _ = write!(
@@ -182,6 +193,8 @@ mod tests {
             height: 3,
             samples: 64,
             samples_taken: 64,
+            ended_by: "samples",
+            relative_error: None,
             integrator: "whitted",
             seconds: Seconds { read: 0.0, build: 0.0, render: 2.5, write: 0.0 },
             rays: Rays { camera: 1000, secondary: 20, shadow: 3 }.into(),
@@ -209,6 +222,10 @@ mod tests {
         assert!(dropped.contains("5 samples") && dropped.contains("lookfrom inspect a.toml 3 1 --sample 7"));
         let stopped = Summary { cancelled: true, samples_taken: 12, ..summary() }.for_people();
         assert!(stopped.ends_with("stopped after 2.5 s; a.png holds the picture so far: 12 of 64 samples"));
+        let clean =
+            Summary { ended_by: "noise", relative_error: Some(0.0199), samples_taken: 40, ..summary() };
+        let words = "enough  by noise: at most 64 samples a pixel, 40 on average; relative error 0.0199";
+        assert!(clean.for_people().contains(words), "{}", clean.for_people());
         let nothing = Summary { cancelled: true, output: None, ..summary() }.for_people();
         assert!(nothing.contains("a.toml → nothing") && nothing.ends_with("nothing is written"), "{nothing}");
     }

@@ -2,15 +2,22 @@
 
 use std::fmt::Display;
 use std::str::FromStr;
+use std::time::Duration;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
-use lookfrom_scene::settings::{Crop, Filter, Integrator, Sampler, Tonemap};
+use lookfrom_scene::settings::{ColorMode, Crop, Filter, Integrator, Layers, LightSampler, Sampler, Tonemap};
+
+use crate::args::Fireflies;
 
 /// The computations.
 pub(crate) const INTEGRATORS: &[(&str, Integrator)] = &[
     ("raycast", Integrator::Raycast),
     ("whitted", Integrator::Whitted),
+    ("path", Integrator::Path),
+    ("simplepath", Integrator::SimplePath),
+    ("randomwalk", Integrator::RandomWalk),
+    ("ambientocclusion", Integrator::AmbientOcclusion { cosine: true }),
     ("normals", Integrator::Normals),
     ("depth", Integrator::Depth),
     ("uv", Integrator::Uv),
@@ -24,6 +31,22 @@ pub(crate) const SAMPLERS: &[(&str, Sampler)] =
 /// From linear light to 8 bits.
 pub(crate) const TONEMAPS: &[(&str, Tonemap)] =
     &[("clamp", Tonemap::Clamp), ("reinhard", Tonemap::Reinhard), ("filmic", Tonemap::Filmic)];
+
+/// What the lanes of light are.
+pub(crate) const COLORS: &[(&str, ColorMode)] = &[("rgb", ColorMode::Rgb), ("spectral", ColorMode::Spectral)];
+
+/// How one of many lights is chosen.
+pub(crate) const LIGHT_SAMPLERS: &[(&str, LightSampler)] =
+    &[("uniform", LightSampler::Uniform), ("power", LightSampler::Power), ("bvh", LightSampler::Bvh)];
+
+/// What an EXR holds besides the picture.
+pub(crate) const LAYERS: &[(&str, Layers)] = &[("none", Layers::None), ("geometry", Layers::Geometry)];
+
+/// What becomes of fireflies.
+pub(crate) const FIREFLIES: &[(&str, Fireflies)] = &[("off", Fireflies::Off), ("median", Fireflies::Median)];
+
+/// Units of time, in seconds; those whose names end like others' come first.
+const UNITS: [(&str, f64); 4] = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];
 
 /// Pixel filters with the radii and shapes that they have where nothing is said.
 const FILTERS: &[(&str, Filter)] = &[
@@ -40,6 +63,24 @@ const GREATEST_RADIUS: f32 = 16.0;
 /// The word for a value; every value has one.
 pub(crate) fn name<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'static str {
     words.iter().find(|(_, of_word)| of_word == value).map_or("?", |(word, _)| word)
+}
+
+/// The word for a computation. Ambient occlusion has one for both of its ways to choose directions.
+pub(crate) fn integrator_name(integrator: &Integrator) -> &'static str {
+    match integrator {
+        Integrator::AmbientOcclusion { .. } => "ambientocclusion",
+        other => name(INTEGRATORS, other),
+    }
+}
+
+/// `60s`, `500ms`, `2m`, `1.5h`: a time of more than 0 and at most a year.
+pub(crate) fn duration(typed: &str) -> Result<Duration, String> {
+    let unit = UNITS.iter().find_map(|(unit, seconds)| Some((typed.strip_suffix(unit)?, seconds)));
+    let seconds = unit.and_then(|(number, seconds)| Some(number.trim().parse::<f64>().ok()? * seconds));
+    match seconds {
+        Some(seconds) if seconds > 0.0 && seconds <= 366.0 * 86_400.0 => Ok(Duration::from_secs_f64(seconds)),
+        _ => Err("expected a time with its unit, ms, s, m or h: 500ms, 60s, 2m, 1.5h".to_owned()),
+    }
 }
 
 /// Accepts the words of a table, and shows them in the help and in completions.
@@ -145,6 +186,16 @@ mod tests {
         }
         for wrong in ["", "cone", "box:", "box:0", "box:-1", "box:17", "box:NaN", "box:inf", "box:1:2"] {
             assert!(filter(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn times_have_units() {
+        assert_eq!(duration("500ms"), Ok(Duration::from_millis(500)));
+        assert_eq!(duration("60s"), duration("1m"));
+        assert_eq!(duration("1.5h"), duration("90 m"));
+        for wrong in ["", "5", "s", "0s", "-1s", "NaNs", "infs", "1e99h", "5 days", "1m30s"] {
+            assert!(duration(wrong).is_err(), "{wrong}");
         }
     }
 

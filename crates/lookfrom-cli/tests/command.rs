@@ -1,12 +1,14 @@
 //! The command as a person runs it: files in, pictures, words and exit codes out.
 
 mod command {
+    mod enough;
     mod errors;
     mod guide;
     mod info;
     mod inspect;
     #[cfg(unix)]
     mod interrupt;
+    mod layers;
     mod render;
     mod stage;
 }

@@ -14,7 +14,6 @@ mod noise;
 
 use self::features::FeatureSums;
 pub use self::features::Features;
-pub use self::noise::luminance;
 
 use lookfrom_scene::settings::{Crop, Layers};
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
@@ -149,9 +148,10 @@ impl Film {
         self.tile.pixel(x, y).map_or([0.0; 3], Pixel::mean)
     }
 
-    /// The variance of *one* sample of a pixel in each channel, estimated from its samples (without bias). Divided by
-    /// [`Film::samples`] it is that of the mean of independent samples; well-spread ones vary less. Infinite with fewer
-    /// than two samples, and outside of [`Film::area`]. Squares of more than 2⁸⁰ in all are not counted on.
+    /// The variance of *one* sample of a pixel in X, Y and Z (CIE 1931, as [`xyz`] has them; so the second is that of the
+    /// luminance), estimated from its samples without bias. Divided by [`Film::samples`] it is that of the mean of
+    /// independent samples; well-spread ones vary less. Infinite with fewer than two samples, and outside of
+    /// [`Film::area`]. Squares of more than 2⁸⁰ in all are not counted on.
     pub fn variance(&self, x: u32, y: u32) -> [f32; 3] {
         self.tile
             .pixel(x, y)
@@ -250,8 +250,9 @@ impl FilmTile {
         for (sum, light) in pixel.sums.iter_mut().zip(rgb) {
             *sum = sum.wrapping_add(fixed_point(light));
         }
-        for (sum, light) in pixel.squares.iter_mut().zip(rgb) {
-            *sum = sum.saturating_add(fixed_point_square(light));
+        let cut = rgb.map(|light| f64::from(light.clamp(-BRIGHTEST, BRIGHTEST)));
+        for (sum, value) in pixel.squares.iter_mut().zip(xyz(cut)) {
+            *sum = sum.saturating_add(fixed_point_square(value));
         }
         pixel.samples = pixel.samples.saturating_add(1);
     }
@@ -327,29 +328,37 @@ impl Pixel {
         self.sums.map(|sum| (sum as f64 / scale) as f32)
     }
 
-    /// Of one sample, by channel: the mean of the squares less the square of the mean, times n / (n − 1).
+    /// Of one sample, in X, Y and Z: the mean of the squares less the square of the mean, times n / (n − 1).
     fn variance(&self) -> [f64; 3] {
         if self.samples < 2 {
             return [f64::INFINITY; 3];
         }
         let n = self.samples as f64;
+        let mean = xyz(self.sums.map(|sum| sum as f64 / (n * TWO_TO_64)));
         std::array::from_fn(|channel| {
-            let mean = self.sums[channel] as f64 / (n * TWO_TO_64);
             let mean_of_squares = self.squares[channel] as f64 / (n * TWO_TO_48);
             // Rounding leaves a little of equal samples, on either side of zero.
-            (mean_of_squares - mean * mean).max(0.0) * (n / (n - 1.0))
+            (mean_of_squares - mean[channel] * mean[channel]).max(0.0) * (n / (n - 1.0))
         })
     }
+}
+
+/// X, Y and Z of linear Rec. 709 (white, D65, has Y = 1). Y is the luminance.
+pub fn xyz([r, g, b]: [f64; 3]) -> [f64; 3] {
+    [
+        0.412_390_8 * r + 0.357_584_3 * g + 0.180_480_8 * b,
+        0.212_639 * r + 0.715_168_7 * g + 0.072_192_3 * b,
+        0.019_330_8 * r + 0.119_194_8 * g + 0.950_532_2 * b,
+    ]
 }
 
 const TWO_TO_48: f64 = 281_474_976_710_656.0;
 const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 
-/// The square of a finite number as a multiple of 2⁻⁴⁸; at most the greatest there is.
-fn fixed_point_square(light: f32) -> u128 {
-    // The square of an f32 is exact in f64; the cast cuts at both ends.
-    let light = f64::from(light.clamp(-BRIGHTEST, BRIGHTEST));
-    (light * light * TWO_TO_48) as u128
+/// The square of a finite number, rounded to f64, as a multiple of 2⁻⁴⁸; at most the greatest there is.
+fn fixed_point_square(value: f64) -> u128 {
+    // The cast cuts at both ends.
+    (value * value * TWO_TO_48) as u128
 }
 
 /// As many zeros as there is memory for.

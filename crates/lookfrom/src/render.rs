@@ -30,7 +30,7 @@ use crate::world::World;
 
 use seen::Seen;
 
-pub use driver::{Progress, Rendered};
+pub use driver::{End, Enough, FEWEST_SAMPLES, Progress, Rendered};
 
 /// The dimensions of a sample's random numbers that the camera uses; rays use hashes of their place in the tree.
 const FILTER_DIMENSION: u32 = 0;

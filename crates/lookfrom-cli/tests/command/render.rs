@@ -148,6 +148,7 @@ fn the_summary_has_its_keys() {
         [
             "cancelled",
             "dropped_samples",
+            "ended_by",
             "height",
             "instances",
             "integrator",
@@ -155,6 +156,7 @@ fn the_summary_has_its_keys() {
             "output",
             "peak_memory_bytes",
             "rays",
+            "relative_error",
             "samples",
             "samples_taken",
             "scene",

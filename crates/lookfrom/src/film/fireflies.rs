@@ -8,7 +8,7 @@
 //! (their median), and by less than three of its own. What is bright for good (a lamp, a highlight) is so by many of its own
 //! standard errors, and stays. The excess above the median goes in equal parts to the 5 × 5 pixels around.
 
-use super::{Film, Picture, luminance};
+use super::{Film, Picture};
 use lookfrom_scene::settings::Crop;
 
 /// How many standard errors are too many to be chance, and few enough to be.
@@ -58,7 +58,7 @@ impl Film {
     fn kept(&self, x: u32, y: u32) -> f64 {
         let at = |x, y| {
             let pixel = self.tile.pixel(x, y)?;
-            Some((luminance(pixel.mean().map(f64::from)), pixel.standard_error()))
+            Some((pixel.luminance(), pixel.standard_error()))
         };
         let Some((own, own_error)) = at(x, y) else { return 1.0 };
         let area = around(self.area(), x, y, 1);

@@ -2,25 +2,19 @@
 //!
 //! A pixel's *relative error* is the standard error of its luminance over its luminance plus a tenth of the picture's mean:
 //! what is much darker than the rest need not be as clean for its own sake. An area's error is the mean over its pixels. The
-//! standard error is taken as if the channels' noise went together (true of grey light, else a little too much) and the
-//! samples were independent (well-spread ones have less noise than it says).
+//! standard error is taken as if the samples were independent (well-spread ones have less noise than it says).
 
-use super::{Film, Pixel};
+use super::{Film, Pixel, xyz};
 use lookfrom_scene::settings::Crop;
 
 /// How much of the picture's mean is added to a pixel's luminance before its error is compared with it.
 const SHARE_OF_MEAN: f64 = 0.1;
 
-/// The luminance of linear Rec. 709.
-pub fn luminance(rgb: [f64; 3]) -> f64 {
-    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
-}
-
 impl Film {
     /// The mean luminance over [`Film::area`]; 0 for an empty one.
     pub fn mean_luminance(&self) -> f64 {
         let pixels = &self.tile.pixels;
-        let sum: f64 = pixels.iter().map(|pixel| luminance(pixel.mean().map(f64::from))).sum();
+        let sum: f64 = pixels.iter().map(Pixel::luminance).sum();
         if pixels.is_empty() { 0.0 } else { sum / pixels.len() as f64 }
     }
 
@@ -34,8 +28,7 @@ impl Film {
             for pixel in &self.tile.pixels[self.tile.row(y, x0, x1)] {
                 let error = pixel.standard_error();
                 if error > 0.0 {
-                    sum +=
-                        error / (luminance(pixel.mean().map(f64::from)).abs() + SHARE_OF_MEAN * mean.abs());
+                    sum += error / (pixel.luminance().abs() + SHARE_OF_MEAN * mean.abs());
                 }
             }
         }
@@ -45,9 +38,13 @@ impl Film {
 }
 
 impl Pixel {
+    /// Of the mean.
+    pub(super) fn luminance(&self) -> f64 {
+        xyz(self.mean().map(f64::from))[1]
+    }
+
     /// Of the mean's luminance.
     pub(super) fn standard_error(&self) -> f64 {
-        let n = self.samples.max(1) as f64;
-        luminance(self.variance().map(|variance| (variance / n).sqrt()))
+        (self.variance()[1] / self.samples.max(1) as f64).sqrt()
     }
 }

@@ -48,20 +48,14 @@ fn slow_fixed_point(light: f32) -> i128 {
     if light.is_sign_negative() { -magnitude } else { magnitude }
 }
 
-/// The square in multiples of 2⁻⁴⁸, from the bits of an f32.
-fn slow_square(light: f32) -> u128 {
-    let light = light.abs().min(BRIGHTEST);
-    let bits = light.to_bits();
-    let fraction = u128::from(bits & 0x7f_ffff);
-    let (mantissa, power) = match (bits >> 23) as i32 {
-        0 => (fraction, -149),
-        exponent => (fraction | 1 << 23, exponent - 150),
-    };
-    let (square, shift) = (mantissa * mantissa, 2 * power + 48);
-    match shift {
-        0.. if square.leading_zeros() as i32 >= shift => square << shift,
-        0.. => u128::MAX,
-        -127..0 => square >> -shift,
+/// The square, rounded to f64, in multiples of 2⁻⁴⁸, from its bits.
+fn slow_square(value: f64) -> u128 {
+    let bits = (value * value).to_bits();
+    let mantissa = u128::from(bits & ((1 << 52) - 1) | 1 << 52);
+    match (bits >> 52) as i32 - 1075 + 48 {
+        76.. => u128::MAX,
+        shift @ 0.. => mantissa << shift,
+        shift @ -127..0 => mantissa >> -shift,
         _ => 0,
     }
 }
@@ -84,7 +78,7 @@ proptest! {
         }
         let n = lights.len() as f64;
         for channel in 0..3 {
-            let values = || lights.iter().map(|rgb| f64::from(rgb[channel]));
+            let values = || lights.iter().map(|rgb| xyz(rgb.map(f64::from))[channel]);
             let mean = values().sum::<f64>() / n;
             let expected = values().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
             let found = f64::from(film.variance(0, 0)[channel]);
@@ -135,16 +129,19 @@ proptest! {
     #[test]
     fn sums_are_the_true_ones(lights in prop::collection::vec(any_light(), 1..60)) {
         let mut film = Film::new(1, 1, None).unwrap();
-        let (mut sum, mut squares, mut count) = (0_i128, 0_u128, 0_u64);
+        let (mut sum, mut squares, mut count) = (0_i128, [0_u128; 3], 0_u64);
         for (i, &light) in lights.iter().enumerate() {
             film.add(0, 0, i as u32, [light, 0.0, -light]);
             if light.is_finite() {
                 sum += slow_fixed_point(light);
-                squares = squares.saturating_add(slow_square(light));
+                let light = f64::from(light.clamp(-BRIGHTEST, BRIGHTEST));
+                squares = std::array::from_fn(|i| {
+                    squares[i].saturating_add(slow_square(xyz([light, 0.0, -light])[i]))
+                });
                 count += 1;
             }
         }
-        let expected = Pixel { sums: [sum, 0, -sum], squares: [squares, 0, squares], samples: count };
+        let expected = Pixel { sums: [sum, 0, -sum], squares, samples: count };
         prop_assert_eq!(film.tile.pixels[0], expected);
         prop_assert_eq!(film.dropped() + count, lights.len() as u64);
         if count > 0 {
@@ -257,9 +254,9 @@ fn the_variance_of_little_and_of_much() {
     assert!(film.variance(0, 0).iter().all(|&variance| variance < 1e-12), "{:?}", film.variance(0, 0));
     // Beyond the end the squares stay there, whatever comes.
     for sample in 0..100 {
-        film.add(1, 0, sample, [BRIGHTEST, -BRIGHTEST, 1.0]);
+        film.add(1, 0, sample, [BRIGHTEST, 1.0, -BRIGHTEST]);
     }
-    assert_eq!(film.tile.pixels[1].squares, [u128::MAX, u128::MAX, 100 << 48]);
+    assert_eq!(film.tile.pixels[1].squares, [u128::MAX; 3]);
     assert!(film.variance(1, 0).iter().all(|variance| variance.is_finite()));
 }
 

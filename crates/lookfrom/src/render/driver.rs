@@ -1,11 +1,16 @@
-//! Who renders which tile when: threads, passes over the picture, progress and stopping.
+//! Who renders which tile when: threads, passes over the picture, when there is enough, progress and stopping.
 //!
-//! Nothing here decides what a sample brings; that is [`Frame::render_tile`], and the film is the same for any division of
-//! the work.
+//! Nothing here decides what a sample brings; that is [`Frame::render_tile`], and the film of a number of samples is the same
+//! for any division of the work. What decides about *numbers* of samples, other than the clock, is only the film at the ends
+//! of *rounds* (after 1, 2, 4 … 64 samples of a pixel, then every 64): so adaptive pictures, too, are the same for any number
+//! of threads. Whether a tile has enough is decided from the samples that its picture is made of, which favours pictures
+//! that look clean by chance (a bias towards dark of the order of the noise that is left); at least [`FEWEST_SAMPLES`] keep
+//! it small, and that whole tiles are judged, not pixels.
 
 use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 use lookfrom_scene::settings::Crop;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
@@ -17,13 +22,43 @@ use crate::film::{Film, FilmTile};
 /// Pixels on the side of a tile. One sample of each pixel of a tile is a batch.
 const TILE: u32 = 32;
 
-/// The greatest number of samples of a pixel between two looks at the clock and the picture.
-const LONGEST_PASS: u32 = 64;
+/// The greatest number of samples of a pixel between two looks at the picture.
+const LONGEST_ROUND: u32 = 64;
+
+/// A tile or picture of fewer samples a pixel is not taken to be clean, whatever it looks like.
+pub const FEWEST_SAMPLES: u32 = 16;
+
+/// When a render has enough, besides its number of samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Enough {
+    /// Stop after the pass over the picture that reaches this time. At least one sample of each pixel is taken.
+    pub time: Option<Duration>,
+    /// Give no more samples to a tile whose [relative error](Film::relative_error) is at most this, and stop when
+    /// there is none left.
+    pub noise: Option<f64>,
+}
+
+/// Why a render ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Every pixel has all its samples.
+    Samples,
+    /// The time was over.
+    Time,
+    /// Every tile was clean enough.
+    Noise,
+    /// It was told to stop.
+    Cancelled,
+}
 
 /// Told how far a render is, and asked whether it shall stop. Called from many threads.
 pub trait Progress: Sync {
-    /// `done` of `total` samples are taken, with `rays` rays so far.
+    /// `done` of `total` samples are taken, with `rays` rays so far. `total` is an estimate where something else than
+    /// the number of samples ends the render.
     fn advance(&self, done: u64, total: u64, rays: u64);
+
+    /// The film so far, after each tile; others wait meanwhile.
+    fn look(&self, _film: &Film) {}
 
     /// Whether to stop before the next tile.
     fn cancelled(&self) -> bool {
@@ -43,12 +78,18 @@ pub struct Rendered {
     pub film: Film,
     /// How many rays it took.
     pub rays: Rays,
-    /// Whether it was stopped before the end.
-    pub cancelled: bool,
+    /// Why it ended.
+    pub end: End,
+    /// How many samples the pixels have that have most, not counting a pass that was broken off.
+    pub samples: u32,
+    /// Samples of all pixels together.
+    pub samples_taken: u64,
+    /// The [relative error](Film::relative_error) of the whole picture.
+    pub error: f64,
 }
 
 impl Frame<'_> {
-    /// Renders the whole picture on `threads` threads (all that there are for `None`).
+    /// Renders the whole picture with all its samples on `threads` threads (all that there are for `None`).
     ///
     /// The samples of a pixel are taken in passes of 1, 1, 2, 4 … over the whole picture, so that a render that is stopped
     /// leaves a whole picture behind. The film is the same for any number of threads.
@@ -56,44 +97,136 @@ impl Frame<'_> {
     /// # Errors
     /// `Limit` when there is no memory for the film or there are no threads to be had.
     pub fn render(&self, threads: Option<usize>, progress: &dyn Progress) -> Result<Rendered> {
-        let film = Film::new(self.image.width, self.image.height, self.image.crop)?;
+        self.render_until(&Enough::default(), threads, progress)
+    }
+
+    /// As [`Frame::render`], but ends when there is `enough`, if that comes before the number of samples.
+    ///
+    /// # Errors
+    /// As [`Frame::render`].
+    pub fn render_until(
+        &self,
+        enough: &Enough,
+        threads: Option<usize>,
+        progress: &dyn Progress,
+    ) -> Result<Rendered> {
+        let film =
+            Film::with_layers(self.image.width, self.image.height, self.image.crop, self.image.layers)?;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
         let pool =
             pool.map_err(|error| Error::new(ErrorKind::Limit, &Location::default(), error.to_string()))?;
-        let tiles = tiles(film.area());
-        let pixels: u64 = tiles.iter().map(area).sum();
-        let total = pixels * u64::from(self.render.samples);
-        let film = Mutex::new((film, Rays::default()));
-        let done = AtomicU64::new(0);
-
-        pool.install(|| {
-            for pass in passes(self.render.samples) {
-                tiles.par_iter().try_for_each(|tile_area| -> Result<()> {
-                    if progress.cancelled() {
-                        return Ok(());
-                    }
-                    let mut tile = FilmTile::new(*tile_area)?;
-                    let rays = self.render_tile(pass.clone(), &mut tile);
-                    let rays_so_far = {
-                        let mut guard = film.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                        guard.0.add_tile(&tile);
-                        guard.1 += rays;
-                        guard.1.total()
-                    };
-                    let of_tile = area(tile_area) * u64::from(pass.end - pass.start);
-                    progress.advance(
-                        done.fetch_add(of_tile, Ordering::Relaxed) + of_tile,
-                        total,
-                        rays_so_far,
-                    );
-                    Ok(())
-                })?;
-            }
-            Ok(())
-        })?;
-        let (film, rays) = film.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-        Ok(Rendered { film, rays, cancelled: done.into_inner() < total })
+        let mut tiles = tiles(film.area());
+        let all: u64 = tiles.iter().map(area).sum();
+        let work = Work {
+            frame: self,
+            progress,
+            film: Mutex::new((film, Rays::default())),
+            done: AtomicU64::new(0),
+            total: AtomicU64::new(all * u64::from(self.render.samples)),
+        };
+        let (samples, end) = pool.install(|| work.rounds(&mut tiles, enough))?;
+        let (film, rays) = work.film.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let error = film.relative_error(film.area(), film.mean_luminance());
+        Ok(Rendered { film, rays, end, samples, samples_taken: work.done.into_inner(), error })
     }
+}
+
+/// A render under way.
+struct Work<'a> {
+    frame: &'a Frame<'a>,
+    progress: &'a dyn Progress,
+    film: Mutex<(Film, Rays)>,
+    done: AtomicU64,
+    total: AtomicU64,
+}
+
+impl Work<'_> {
+    /// Takes samples until there are enough; tiles that have enough leave `tiles`. Returns the samples of the others' pixels
+    /// and why it ended.
+    fn rounds(&self, tiles: &mut Vec<Crop>, enough: &Enough) -> Result<(u32, End)> {
+        let started = Instant::now();
+        let mut samples = 0;
+        for round in rounds(self.frame.render.samples) {
+            while samples < round.end {
+                let length = match enough.time {
+                    Some(time) => affordable(samples, started.elapsed(), time),
+                    None => u32::MAX,
+                };
+                let pass = samples..round.end.min(samples.saturating_add(length));
+                if !self.pass(tiles, pass.clone())? {
+                    return Ok((samples, End::Cancelled));
+                }
+                samples = pass.end;
+                if enough.time.is_some_and(|time| started.elapsed() >= time)
+                    && samples < self.frame.render.samples
+                {
+                    return Ok((samples, End::Time));
+                }
+            }
+            if let Some(noise) = enough.noise {
+                self.leave_clean(tiles, samples, noise);
+                if tiles.is_empty() {
+                    return Ok((samples, End::Noise));
+                }
+            }
+        }
+        Ok((samples, End::Samples))
+    }
+
+    /// Adds samples to every pixel of the tiles; false if it was broken off.
+    fn pass(&self, tiles: &[Crop], samples: Range<u32>) -> Result<bool> {
+        let whole: Vec<bool> = tiles
+            .par_iter()
+            .map(|tile_area| -> Result<bool> {
+                if self.progress.cancelled() {
+                    return Ok(false);
+                }
+                let mut tile = FilmTile::with_layers(*tile_area, self.frame.image.layers)?;
+                let rays = self.frame.render_tile(samples.clone(), &mut tile);
+                let rays_so_far = {
+                    let mut guard = self.film.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                    guard.0.add_tile(&tile);
+                    guard.1 += rays;
+                    self.progress.look(&guard.0);
+                    guard.1.total()
+                };
+                let of_tile = area(tile_area) * u64::from(samples.end - samples.start);
+                let done = self.done.fetch_add(of_tile, Ordering::Relaxed) + of_tile;
+                self.progress.advance(done, self.total.load(Ordering::Relaxed), rays_so_far);
+                Ok(true)
+            })
+            .collect::<Result<_>>()?;
+        Ok(whole.into_iter().all(|whole| whole))
+    }
+
+    /// Leaves out the tiles that are clean enough, and estimates how many samples the others will take.
+    fn leave_clean(&self, tiles: &mut Vec<Crop>, samples: u32, noise: f64) {
+        if samples < FEWEST_SAMPLES {
+            return;
+        }
+        let guard = self.film.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mean = guard.0.mean_luminance();
+        let mut total = self.done.load(Ordering::Relaxed) as f64;
+        tiles.retain(|tile| {
+            let error = guard.0.relative_error(*tile, mean);
+            // Errors fall with the root of the samples.
+            let ratio = error / noise;
+            let needed = (f64::from(samples) * ratio * ratio).min(f64::from(self.frame.render.samples));
+            total += area(tile) as f64 * (needed - f64::from(samples)).max(0.0);
+            !(error <= noise)
+        });
+        self.total.store(total as u64, Ordering::Relaxed);
+    }
+}
+
+/// How many samples a pixel may be taken in the next pass, if as many as `samples` took `elapsed`: so many that the time
+/// is reached, not passed by much.
+fn affordable(samples: u32, elapsed: Duration, time: Duration) -> u32 {
+    if samples == 0 {
+        return 1;
+    }
+    let left = time.saturating_sub(elapsed).as_secs_f64();
+    ((left * f64::from(samples) / elapsed.as_secs_f64().max(1e-9)) as u32).max(1)
 }
 
 /// The parts of an area that threads work on.
@@ -111,12 +244,36 @@ fn area(tile: &Crop) -> u64 {
 }
 
 /// 0..1, 1..2, 2..4, 4..8 … up to `samples`.
-fn passes(samples: u32) -> impl Iterator<Item = Range<u32>> {
+fn rounds(samples: u32) -> impl Iterator<Item = Range<u32>> {
     let mut start = 0;
     std::iter::from_fn(move || {
-        let length = start.clamp(1, LONGEST_PASS).min(samples - start);
-        let pass = start..start + length;
-        start = pass.end;
-        (!pass.is_empty()).then_some(pass)
+        let length = start.clamp(1, LONGEST_ROUND).min(samples - start);
+        let round = start..start + length;
+        start = round.end;
+        (!round.is_empty()).then_some(round)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounds_are_aligned_and_whole() {
+        for samples in [1, 2, 3, 64, 65, 100, 1000] {
+            let rounds: Vec<_> = rounds(samples).collect();
+            assert_eq!((rounds[0].start, rounds[rounds.len() - 1].end), (0, samples));
+            assert!(rounds.windows(2).all(|pair| pair[0].end == pair[1].start));
+            assert!(rounds.iter().all(|round| round.len() <= 64));
+        }
+    }
+
+    #[test]
+    fn the_time_that_is_left_is_used() {
+        let ms = Duration::from_millis;
+        assert_eq!(affordable(0, ms(0), ms(100)), 1);
+        assert_eq!(affordable(4, ms(40), ms(100)), 6);
+        assert_eq!(affordable(4, ms(140), ms(100)), 1);
+        assert!(affordable(1, ms(0), ms(100)) > 1000);
+    }
 }
