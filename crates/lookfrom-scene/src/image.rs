@@ -1,5 +1,7 @@
-//! A decoded picture, how it is read from a file and how one is written.
+//! A decoded picture, how it is read from a file, how one is written, and how two differ.
 
+pub mod compare;
+pub mod flip;
 mod openexr;
 mod read;
 mod srgb;

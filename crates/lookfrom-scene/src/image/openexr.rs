@@ -34,7 +34,7 @@ pub struct Channels {
     pub height: u32,
     /// Names ("R", "albedo.R") and `width * height` values each, row 0 on top.
     pub channels: Vec<(String, Vec<f32>)>,
-    /// The text attributes of the header, by name.
+    /// The attributes of the header that are text or a whole number, by name.
     pub attributes: Vec<(String, String)>,
 }
 
@@ -144,6 +144,7 @@ fn decode_channels(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Chann
         let texts = picture.attributes.other.iter().chain(&layer.attributes.other);
         found.attributes.extend(texts.filter_map(|(name, value)| match value {
             AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
+            AttributeValue::I32(number) => Some((name.to_string(), number.to_string())),
             _ => None,
         }));
     }

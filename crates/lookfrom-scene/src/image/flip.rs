@@ -1,0 +1,285 @@
+//! How different do two pictures look to someone who flips between them? LDR-ꟻLIP.
+//!
+//! Colours are blurred as the eye blurs them at the distance of the screen, and compared in a space of about equal steps;
+//! edges and points are found in both pictures, and where one has what the other has not, the difference of colour is made
+//! more of. 0 is equal, 1 is as different as can be.
+//!
+//! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström & Fairchild 2020, "FLIP: A Difference Evaluator for Alternating
+//! Images"; the contrast sensitivities are those of Johnson & Fairchild 2003, the distance is HyAB (Abasi et al. 2020), the
+//! loss of colour in the dark Hunt's.
+
+/// Pixels a degree of sight: a screen of 3840 pixels over 0.7 m, seen from 0.7 m.
+pub const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0;
+
+/// Exponents of the two kinds of difference.
+const COLOR_EXPONENT: f64 = 0.7;
+const FEATURE_EXPONENT: f64 = 0.5;
+
+/// Differences of colour of up to this share of the greatest are spread over [0, `NEAR_ERROR`].
+const NEAR: f64 = 0.4;
+const NEAR_ERROR: f64 = 0.95;
+
+/// The width of an edge in degrees.
+const EDGE_WIDTH: f64 = 0.082;
+
+/// What the eye resolves of light, of red–green and of blue–yellow: sums of a·√(π/b)·exp(−π²x²/b), x in degrees.
+const SENSITIVITIES: [[(f64, f64); 2]; 3] =
+    [[(1.0, 0.0047), (0.0, 1e-5)], [(1.0, 0.0053), (0.0, 1e-5)], [(34.1, 0.04), (13.5, 0.025)]];
+
+/// The widest `b` of [`SENSITIVITIES`].
+const WIDEST: f64 = 0.04;
+
+type Color = [f64; 3];
+
+/// The error of each pixel, in 0 … 1, between two pictures of `width` columns of linear colours, of which what lies beyond
+/// 0 … 1 is cut. At a border the last pixels go on.
+///
+/// # Panics
+/// If the pictures are not whole rows or not of the same size.
+pub fn flip(picture: &[[f32; 3]], reference: &[[f32; 3]], width: usize, pixels_per_degree: f64) -> Vec<f32> {
+    assert!(width > 0 && picture.len() == reference.len() && picture.len().is_multiple_of(width));
+    let opponents = [picture, reference].map(|rgb| {
+        rgb.iter().map(|rgb| opponent(rgb.map(|c| f64::from(c).clamp(0.0, 1.0)))).collect::<Vec<Color>>()
+    });
+
+    // Colours as the eye blurs them, and how far they are from one another.
+    let [a, b] = opponents.each_ref().map(|colors| perceived(colors, width, pixels_per_degree));
+    let most = difference(perceive([0.0, 1.0, 0.0]), perceive([0.0, 0.0, 1.0]));
+
+    // Edges and points of what is there of light.
+    let [features_a, features_b] = opponents.each_ref().map(|colors| {
+        let light: Vec<f64> = colors.iter().map(|color| (color[0] + 16.0) / 116.0).collect();
+        features(&light, width, pixels_per_degree)
+    });
+
+    let of_pixel = |i: usize| {
+        let color = spread(difference(a[i], b[i]), most);
+        let [edge, point] = [0, 1].map(|kind| (features_a[i][kind] - features_b[i][kind]).abs());
+        let feature = libm::pow(edge.max(point) * std::f64::consts::FRAC_1_SQRT_2, FEATURE_EXPONENT);
+        libm::pow(color, 1.0 - feature.min(1.0)) as f32
+    };
+    (0..a.len()).map(of_pixel).collect()
+}
+
+/// The part of the greatest difference that counts: small differences take most of 0 … 1.
+fn spread(difference: f64, most: f64) -> f64 {
+    let near = NEAR * most;
+    if difference < near {
+        difference * NEAR_ERROR / near
+    } else {
+        NEAR_ERROR + (difference - near) / (most - near) * (1.0 - NEAR_ERROR)
+    }
+}
+
+/// HyAB between two colours of [`perceive`], bent.
+fn difference(a: Color, b: Color) -> f64 {
+    let [l, x, y] = [0, 1, 2].map(|i| a[i] - b[i]);
+    libm::pow(l.abs() + (x * x + y * y).sqrt(), COLOR_EXPONENT)
+}
+
+/// L*a*b* of a linear colour, with less of a* and b* where it is dark.
+fn perceive(rgb: Color) -> Color {
+    let bend = |t: f64| {
+        let delta = 6.0 / 29.0;
+        if t > delta * delta * delta { libm::cbrt(t) } else { t / (3.0 * delta * delta) + 4.0 / 29.0 }
+    };
+    let [x, y, z] = relative_xyz(rgb).map(bend);
+    let light = 116.0 * y - 16.0;
+    [light, 5.0 * (x - y) * light, 2.0 * (y - z) * light]
+}
+
+/// From linear Rec. 709 to X, Y, Z.
+const XYZ_FROM_RGB: [[f64; 3]; 3] = [
+    [0.412_390_799_265_959_5, 0.357_584_339_383_878, 0.180_480_788_401_834_3],
+    [0.212_639_005_871_510_36, 0.715_168_678_767_756, 0.072_192_315_360_733_71],
+    [0.019_330_818_715_591_85, 0.119_194_779_794_625_99, 0.950_532_152_249_661],
+];
+
+/// And back.
+const RGB_FROM_XYZ: [[f64; 3]; 3] = [
+    [3.240_969_941_904_522_6, -1.537_383_177_570_094, -0.498_610_760_293_003_4],
+    [-0.969_243_636_280_879_6, 1.875_967_501_507_720_2, 0.041_555_057_407_175_59],
+    [0.055_630_079_696_993_66, -0.203_976_958_888_976_52, 1.056_971_514_242_878_6],
+];
+
+fn multiply(matrix: &[[f64; 3]; 3], v: Color) -> Color {
+    matrix.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
+}
+
+/// X, Y, Z in shares of white's.
+fn relative_xyz(rgb: Color) -> Color {
+    let (xyz, white) = (multiply(&XYZ_FROM_RGB, rgb), multiply(&XYZ_FROM_RGB, [1.0; 3]));
+    [0, 1, 2].map(|i| xyz[i] / white[i])
+}
+
+/// Y, Cx, Cz: light, red–green and blue–yellow, linear.
+fn opponent(rgb: Color) -> Color {
+    let [x, y, z] = relative_xyz(rgb);
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+/// The linear colour of Y, Cx, Cz.
+fn rgb_from_opponent([y, cx, cz]: Color) -> Color {
+    let y = (y + 16.0) / 116.0;
+    let relative = [y + cx / 500.0, y, y - cz / 200.0];
+    let white = multiply(&XYZ_FROM_RGB, [1.0; 3]);
+    multiply(&RGB_FROM_XYZ, [0, 1, 2].map(|i| relative[i] * white[i]))
+}
+
+/// The colours after the blur of the eye, for [`difference`].
+fn perceived(colors: &[Color], width: usize, pixels_per_degree: f64) -> Vec<Color> {
+    let deviations = (WIDEST / (2.0 * std::f64::consts::PI * std::f64::consts::PI)).sqrt();
+    let radius = (3.0 * deviations * pixels_per_degree).ceil() as i32;
+    let channels: [Vec<f64>; 3] = std::array::from_fn(|channel| {
+        let values: Vec<f64> = colors.iter().map(|color| color[channel]).collect();
+        // A sum of Gaussians: each is a blur along rows and one along columns.
+        let mut total = 0.0;
+        let mut blurred = vec![0.0; values.len()];
+        for (a, b) in SENSITIVITIES[channel] {
+            if a == 0.0 {
+                continue;
+            }
+            let pi = std::f64::consts::PI;
+            let weight = |x: i32| {
+                let degrees = f64::from(x) / pixels_per_degree;
+                libm::exp(-pi * pi * degrees * degrees / b)
+            };
+            let line: Vec<f64> = (-radius..=radius).map(weight).collect();
+            let sum: f64 = line.iter().sum();
+            let scale = a * (pi / b).sqrt();
+            total += scale * sum * sum;
+            let once = along_columns(&along_rows(&values, width, &line), width, &line);
+            blurred.iter_mut().zip(once).for_each(|(sum, value)| *sum += scale * value);
+        }
+        blurred.iter_mut().for_each(|value| *value /= total);
+        blurred
+    });
+    (0..colors.len())
+        .map(|i| {
+            let rgb = rgb_from_opponent([channels[0][i], channels[1][i], channels[2][i]]);
+            perceive(rgb.map(|c| c.clamp(0.0, 1.0)))
+        })
+        .collect()
+}
+
+/// How much of an edge and of a point there is at each pixel.
+fn features(light: &[f64], width: usize, pixels_per_degree: f64) -> Vec<[f64; 2]> {
+    // A Gaussian as wide as an edge, its first derivative and its second, each with parts above and below 0 that weigh 1.
+    let deviation = 0.5 * EDGE_WIDTH * pixels_per_degree;
+    let radius = (3.0 * deviation).ceil() as i32;
+    let gauss = |x: i32| libm::exp(-f64::from(x * x) / (2.0 * deviation * deviation));
+    let bell: Vec<f64> = (-radius..=radius).map(gauss).collect();
+    let bell_sum: f64 = bell.iter().sum();
+    let bell: Vec<f64> = bell.into_iter().map(|weight| weight / bell_sum).collect();
+    let line = |shape: &dyn Fn(f64) -> f64| {
+        let weights: Vec<f64> = (-radius..=radius).map(|x| shape(f64::from(x)) * gauss(x)).collect();
+        let above: f64 = weights.iter().filter(|weight| **weight > 0.0).sum();
+        let below: f64 = -weights.iter().filter(|weight| **weight < 0.0).sum::<f64>();
+        weights.into_iter().map(|w| if w > 0.0 { w / above } else { w / below }).collect::<Vec<f64>>()
+    };
+    let kinds = [line(&|x| -x), line(&|x| x * x / (deviation * deviation) - 1.0)];
+    let [edges, points] = kinds.map(|line| {
+        let across = along_columns(&along_rows(light, width, &line), width, &bell);
+        let down = along_columns(&along_rows(light, width, &bell), width, &line);
+        across.iter().zip(down).map(|(x, y)| (x * x + y * y).sqrt()).collect::<Vec<f64>>()
+    });
+    edges.into_iter().zip(points).map(|(edge, point)| [edge, point]).collect()
+}
+
+/// Each pixel as the weighted sum of those beside it.
+fn along_rows(values: &[f64], width: usize, line: &[f64]) -> Vec<f64> {
+    let radius = line.len() / 2;
+    let mut sums = Vec::with_capacity(values.len());
+    for row in values.chunks_exact(width) {
+        sums.extend((0..width).map(|x| {
+            let at = |k: usize| row[(x + k).saturating_sub(radius).min(width - 1)];
+            line.iter().enumerate().map(|(k, weight)| weight * at(k)).sum::<f64>()
+        }));
+    }
+    sums
+}
+
+/// Each pixel as the weighted sum of those above and below.
+fn along_columns(values: &[f64], width: usize, line: &[f64]) -> Vec<f64> {
+    let (radius, height) = (line.len() / 2, values.len() / width);
+    let mut sums = vec![0.0; values.len()];
+    for (y, sums) in sums.chunks_exact_mut(width).enumerate() {
+        for (k, weight) in line.iter().enumerate() {
+            let row = (y + k).saturating_sub(radius).min(height - 1);
+            sums.iter_mut().zip(&values[row * width..]).for_each(|(sum, value)| *sum += weight * value);
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::linear_from_srgb;
+    use super::*;
+
+    const WIDTH: usize = 24;
+    const HEIGHT: usize = 16;
+
+    /// A pattern that a script made for the authors' own program (flip-evaluator 1.7), whose answers stand below.
+    fn pattern(seed: usize) -> Vec<[f32; 3]> {
+        let value = |x: usize, y: usize, c: usize| {
+            let number = (x * 7 + y * 13 + c * 29 + seed * ((x * 5 + y * 3 + c) % 11)) % 64;
+            linear_from_srgb(number as f32 / 63.0)
+        };
+        (0..WIDTH * HEIGHT).map(|i| [0, 1, 2].map(|c| value(i % WIDTH, i / WIDTH, c))).collect()
+    }
+
+    fn mean(map: &[f32]) -> f32 {
+        map.iter().sum::<f32>() / map.len() as f32
+    }
+
+    fn of(picture: &[[f32; 3]], reference: &[[f32; 3]]) -> Vec<f32> {
+        flip(picture, reference, WIDTH, PIXELS_PER_DEGREE)
+    }
+
+    fn flat(encoded: [f32; 3]) -> Vec<[f32; 3]> {
+        vec![encoded.map(linear_from_srgb); WIDTH * HEIGHT]
+    }
+
+    #[test]
+    fn what_the_authors_program_says_of_a_pattern() {
+        let (a, b) = (pattern(0), pattern(1));
+        let map = of(&b, &a);
+        assert!((mean(&map) - 0.351_717_56).abs() < 2e-4, "{}", mean(&map));
+        assert!((map[0] - 0.299_412_9).abs() < 1e-3 && (map[7 * WIDTH + 9] - 0.385_014_6).abs() < 1e-3);
+        let (least, most) = map.iter().fold((1.0_f32, 0.0_f32), |(a, b), &x| (a.min(x), b.max(x)));
+        assert!((least - 0.085_741_59).abs() < 1e-3 && (most - 0.969_730_14).abs() < 1e-3, "{least} {most}");
+        assert_eq!(of(&b, &a), of(&a, &b), "whichever is the reference");
+        assert!(of(&a, &a).iter().all(|&error| error == 0.0));
+    }
+
+    #[test]
+    fn what_the_authors_program_says_of_plain_pictures() {
+        for (a, b, error) in [
+            ([0.0; 3], [1.0; 3], 0.967_386_5),
+            ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0], 1.0),
+            ([0.5; 3], [0.6; 3], 0.285_063),
+        ] {
+            for found in of(&flat(a), &flat(b)) {
+                assert!((found - error).abs() < 2e-4, "{a:?} {b:?}: {found} {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_the_authors_program_says_of_a_dot() {
+        let gray = flat([0.5; 3]);
+        let mut dotted = gray.clone();
+        dotted[8 * WIDTH + 12] = [1.0; 3];
+        let map = of(&dotted, &gray);
+        assert!((mean(&map) - 0.011_255_37).abs() < 1e-4, "{}", mean(&map));
+        assert!((map[7 * WIDTH + 9] - 0.022_949_25).abs() < 1e-3);
+        assert!((map.iter().fold(0.0_f32, |a, &b| a.max(b)) - 0.380_197_73).abs() < 1e-3);
+        assert!(map[0] < 1e-6);
+    }
+
+    #[test]
+    fn what_is_beyond_the_screen_is_cut() {
+        assert!(of(&flat([1.0; 3]), &vec![[7.0; 3]; WIDTH * HEIGHT]).iter().all(|&error| error < 1e-6));
+    }
+}
