@@ -30,10 +30,10 @@ pub(super) fn subdivide(positions: &[Vec3], triangles: &[[u32; 3]], levels: u32)
     for _ in 0..levels {
         surface = surface.refined();
     }
-    let rings: Vec<Vec<u32>> = (0..surface.positions.len()).map(|vertex| surface.ring(vertex)).collect();
-    let limit: Vec<Vec3> = rings.iter().enumerate().map(|(v, ring)| surface.limit(v, ring)).collect();
+    let vertices = 0..surface.positions.len();
+    let limit = vertices.clone().map(|vertex| surface.limit(vertex, &surface.ring(vertex))).collect();
     let moved = Surface { positions: limit, ..surface };
-    let normals = rings.iter().enumerate().map(|(v, ring)| moved.normal(v, ring)).collect();
+    let normals = vertices.map(|vertex| moved.normal(vertex, &moved.ring(vertex))).collect();
     Ok(Mesh { positions: moved.positions, triangles: moved.faces, normals, ..Mesh::default() })
 }
 

@@ -11,6 +11,9 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::scene::MeshId;
 use crate::shape::{Geometry, Mesh, Patches};
 
+/// The most triangles that one subdivision may give: a few words of a file could else ask for all memory.
+const MOST_SUBDIVIDED: u64 = 1 << 24;
+
 impl Reader<'_, '_> {
     pub(super) fn triangle_mesh(&mut self, p: &Parameters) -> Result<Option<Geometry>> {
         p.ignore(&["faceIndices"]);
@@ -70,11 +73,10 @@ impl Reader<'_, '_> {
         let triangles = faces::<3>(p, positions.len())?;
         // Each level makes four of one.
         let count = (triangles.len() as u64) << (2 * levels);
-        if count > self.sources.limits.elements {
-            let message = format!(
-                "{count} triangles after {levels} levels are more than the limit of {}",
-                self.sources.limits.elements
-            );
+        let limit = self.sources.limits.elements.min(MOST_SUBDIVIDED);
+        if count > limit {
+            let message =
+                format!("{count} triangles after {levels} levels are more than the limit of {limit}");
             return Err(p.place.error(ErrorKind::Limit, message).hint("lower \"integer levels\""));
         }
         let mesh =

@@ -176,7 +176,10 @@ fn rgb(parameter: &Parameter, space: Space, meaning: Meaning) -> Result<Color> {
         Meaning::Reflectance | Meaning::Unbounded => space::reflectance_rec709_from(space),
     };
     let rows = matrix.unwrap_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
-    Ok(Color::Value(rows.map(|row| row[0] * red + row[1] * green + row[2] * blue)))
+    let most = if meaning == Meaning::Reflectance { 1.0 } else { f32::INFINITY };
+    // What is outside of Rec. 709 goes to its border.
+    let convert = |row: [f32; 3]| (row[0] * red + row[1] * green + row[2] * blue).clamp(0.0, most);
+    Ok(Color::Value(rows.map(convert)))
 }
 
 /// Wavelengths and values in turns.

@@ -1,0 +1,261 @@
+//! What scenes of pbrt mean.
+
+use std::path::{Path, PathBuf};
+
+use glam::{DMat4, DVec3, Vec3};
+use lookfrom_scene::camera::{Projection, View, Window};
+use lookfrom_scene::light::{Amount, LightKind, Sky};
+use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Scalar};
+use lookfrom_scene::scene::{MaterialId, MeshId};
+use lookfrom_scene::settings::{ColorMode, Crop, Filter, Integrator, Layers, Sampler};
+use lookfrom_scene::shape::{Geometry, Profile};
+use lookfrom_scene::spectrum::Curve;
+use lookfrom_scene::texture::{Mapping, TextureKind};
+use lookfrom_scene::{Memory, Scene, Sources, load};
+
+fn read_files(files: &[(&str, &str)]) -> (Scene, Vec<String>) {
+    let memory =
+        Memory(files.iter().map(|(name, text)| (PathBuf::from(name), text.as_bytes().to_vec())).collect());
+    let mut sources = Sources::new(&memory);
+    let scene = load::scene(Path::new(files[0].0), &mut sources).unwrap_or_else(|error| panic!("{error}"));
+    (scene, sources.warnings.iter().map(ToString::to_string).collect())
+}
+
+/// A scene without warnings.
+fn read(text: &str) -> Scene {
+    let (scene, warnings) = read_files(&[("dir/a.pbrt", text)]);
+    assert!(warnings.is_empty(), "{warnings:?}");
+    scene
+}
+
+#[test]
+fn what_is_not_written_is_pbrts_default() {
+    let scene = read("WorldBegin");
+    assert_eq!((scene.image.width, scene.image.height), (1280, 720));
+    assert_eq!(scene.image.filter, Filter::Gaussian { radius: 1.5, sigma: 0.5 });
+    let render = &scene.render;
+    assert_eq!((render.integrator, render.depth, render.samples), (Integrator::Path, 5, 16));
+    assert_eq!((render.sampler, render.color), (Sampler::Sobol, ColorMode::Spectral));
+    assert_eq!(scene.camera.expect("one").projection, Projection::Perspective { fov: 90.0 });
+}
+
+#[test]
+fn the_camera_sees_what_pbrts_sees() {
+    let scene = read(
+        "LookAt 3 0 0  3 0 5  0 1 0\n Camera \"perspective\" \"float fov\" 30 \"float lensradius\" .5 \"float focaldistance\" 7\n \
+         Film \"gbuffer\" \"integer xresolution\" 200 \"integer yresolution\" 400 \"float cropwindow\" [ 0 .5 .25 1 ] \"float iso\" 200\n\
+         WorldBegin",
+    );
+    let camera = scene.camera.expect("one");
+    let View::Matrix(world_from_camera) = camera.view else { panic!("{:?}", camera.view) };
+    // x to the left in our camera space is x to the right in pbrt's.
+    let point = world_from_camera.transform_point3(DVec3::new(-1.0, 2.0, 4.0));
+    assert!((point - DVec3::new(4.0, 2.0, 4.0)).length() < 1e-12, "{point}");
+    assert!(world_from_camera.determinant() < 0.0, "pbrt's world is left-handed");
+    // The field of view is that of the shorter side.
+    assert_eq!(camera.projection, Projection::Perspective { fov: 30.0 });
+    assert_eq!(camera.window, Some(Window { x: [-1.0, 1.0], y: [-2.0, 2.0] }));
+    let lens = camera.lens.expect("one");
+    assert_eq!((lens.radius, lens.focus_distance), (0.5, 7.0));
+    assert_eq!(scene.image.crop, Some(Crop { x0: 0, y0: 100, x1: 100, y1: 400 }));
+    assert_eq!((scene.image.layers, scene.image.sensor.imaging_ratio), (Layers::Geometry, 2.0));
+}
+
+#[test]
+fn transforms_multiply_from_the_right_and_attributes_end() {
+    let scene = read(
+        "WorldBegin Translate 1 2 3 AttributeBegin Scale 2 2 2 Shape \"sphere\" CoordinateSystem \"here\" AttributeEnd\n\
+         ReverseOrientation Shape \"disk\" \"float radius\" 3\n CoordSysTransform \"here\" Shape \"cylinder\"\n\
+         Transform [ 1 0 0 0  0 1 0 0  0 0 1 0  5 6 7 1 ] Shape \"sphere\" \"float zmin\" -.5",
+    );
+    let place = DMat4::from_translation(DVec3::new(1.0, 2.0, 3.0));
+    let large = place * DMat4::from_scale(DVec3::splat(2.0));
+    let found: Vec<DMat4> = scene.shapes.iter().map(|shape| shape.world_from_object).collect();
+    assert_eq!(found, [large, place, large, DMat4::from_translation(DVec3::new(5.0, 6.0, 7.0))]);
+    let reversed: Vec<bool> = scene.shapes.iter().map(|shape| shape.reverse_orientation).collect();
+    assert_eq!(reversed, [false, true, true, true]);
+    assert!(matches!(
+        scene.shapes[3].geometry,
+        Geometry::PartialSphere { z: [-0.5, 1.0], phi_max: 360.0, .. }
+    ));
+}
+
+#[test]
+fn materials_are_found_by_name_before_and_after() {
+    let scene = read(
+        "WorldBegin Shape \"sphere\" NamedMaterial \"late\" Shape \"sphere\"\n\
+         MakeNamedMaterial \"late\" \"string type\" \"dielectric\" \"spectrum eta\" \"glass-BK7\" \"float roughness\" .25\n\
+         Material \"conductor\" \"float uroughness\" .1 \"bool remaproughness\" false Shape \"sphere\"",
+    );
+    assert!(
+        matches!(scene.materials[0].kind, MaterialKind::Diffuse { reflectance } if reflectance == Color::gray(0.5))
+    );
+    let ids: Vec<MaterialId> = scene.shapes.iter().map(|shape| shape.material).collect();
+    assert_eq!(ids, [MaterialId(0), MaterialId(1), MaterialId(2)]);
+    let MaterialKind::Dielectric { eta: Ior::Curve(glass), roughness } = &scene.materials[1].kind else {
+        panic!("{:?}", scene.materials[1])
+    };
+    assert!(matches!(scene.curves[glass.index()], Curve::Tabulated { .. }));
+    assert_eq!((roughness.u, roughness.v, roughness.remap), (Scalar::Value(0.25), Scalar::Value(0.25), true));
+    let MaterialKind::Conductor { metal: Metal::Indices { eta, k }, roughness } = &scene.materials[2].kind
+    else {
+        panic!("{:?}", scene.materials[2])
+    };
+    assert!(matches!((eta, k), (Color::Curve(_), Color::Curve(_))), "copper");
+    assert_eq!((roughness.u, roughness.v, roughness.remap), (Scalar::Value(0.1), Scalar::Value(0.0), false));
+}
+
+#[test]
+fn textures_of_numbers_and_of_colours_have_names_of_their_own() {
+    let scene = read(
+        "WorldBegin Texture \"t\" \"float\" \"constant\" \"float value\" .3\n\
+         Texture \"t\" \"spectrum\" \"checkerboard\" \"float uscale\" 4 \"rgb tex1\" [ .1 .2 .3 ]\n\
+         Texture \"half\" \"spectrum\" \"scale\" \"texture tex\" \"t\" \"texture scale\" \"t\"\n\
+         Material \"coateddiffuse\" \"texture reflectance\" \"half\" \"texture roughness\" \"t\" \"texture displacement\" \"later\"\n\
+         Texture \"later\" \"float\" \"constant\" \"float value\" 2\n Shape \"sphere\" \"texture alpha\" \"t\"",
+    );
+    let MaterialKind::CoatedDiffuse { reflectance: Color::Texture(half), coat } = &scene.materials[1].kind
+    else {
+        panic!("{:?}", scene.materials[1])
+    };
+    assert_eq!(coat.roughness.u, Scalar::Value(0.3));
+    assert_eq!(scene.shapes[0].alpha, Some(Scalar::Value(0.3)));
+    let TextureKind::Scale { color: Color::Texture(checker), by } = scene.textures[half.index()].kind else {
+        panic!()
+    };
+    assert_eq!(by, Scalar::Value(0.3));
+    let TextureKind::Checker { even, odd, mapping } = scene.textures[checker.index()].kind else { panic!() };
+    assert_eq!((even, odd), (Color::Value([0.1, 0.2, 0.3]), Color::BLACK));
+    assert_eq!(mapping, Mapping::Uv { scale: [4.0, 1.0], offset: [0.0; 2] });
+}
+
+#[test]
+fn lights_are_as_bright_as_pbrts() {
+    let scene = read(
+        "WorldBegin LightSource \"point\" \"rgb I\" [ 3 3 3 ] \"point3 from\" [ 1 0 0 ]\n\
+         LightSource \"distant\" \"float illuminance\" 5 \"float scale\" 2 \"blackbody L\" 6500\n\
+         LightSource \"infinite\" \"rgb L\" [ .5 .5 .5 ] \"float illuminance\" 8\n\
+         AreaLightSource \"diffuse\" \"rgb L\" [ 7 7 7 ] \"bool twosided\" true Shape \"sphere\"",
+    );
+    let pi = std::f32::consts::PI;
+    let amounts: Vec<Amount> = scene.lights.iter().map(|light| light.amount).collect();
+    assert_eq!(amounts[0], Amount { scale: 1.0 / pi, total: None, absolute: false });
+    assert_eq!(amounts[1], Amount { scale: 2.0, total: Some(5.0), absolute: false });
+    assert_eq!(amounts[2].total, Some(8.0));
+    assert!((amounts[2].scale - 0.5).abs() < 1e-6);
+    assert!(matches!(scene.lights[1].kind, LightKind::Distant { direction: DVec3::Z, .. }));
+    assert!(matches!(&scene.lights[2].kind, LightKind::Environment { sky: Sky::Constant(_), .. }));
+    let emission = scene.shapes[0].emission.expect("it shines");
+    assert_eq!(
+        (emission.radiance, emission.two_sided, emission.amount),
+        (Color::Value([7.0; 3]), true, Amount::AS_WRITTEN)
+    );
+}
+
+#[test]
+fn attributes_give_defaults_and_keep_their_colour_space() {
+    let scene = read(
+        "WorldBegin Attribute \"shape\" \"float radius\" 4 ColorSpace \"rec2020\"\n\
+         Attribute \"material\" \"rgb reflectance\" [ .2 .5 .1 ] ColorSpace \"srgb\"\n\
+         Material \"diffuse\" Shape \"sphere\" Shape \"sphere\" \"float radius\" 1",
+    );
+    let radii: Vec<f64> = scene
+        .shapes
+        .iter()
+        .map(|shape| match shape.geometry {
+            Geometry::PartialSphere { radius, .. } => radius,
+            _ => 0.0,
+        })
+        .collect();
+    assert_eq!(radii, [4.0, 1.0]);
+    let MaterialKind::Diffuse { reflectance: Color::Value([red, green, _]) } = scene.materials[1].kind else {
+        panic!()
+    };
+    // A green of rec. 2020 is greener than all of Rec. 709: red comes out lower, green higher.
+    assert!(red < 0.1 && green > 0.5, "{red} {green}");
+}
+
+#[test]
+fn objects_are_placed_by_instances() {
+    let scene = read(
+        "WorldBegin Translate 1 0 0 ObjectInstance \"ball\" AttributeBegin Scale 2 2 2\n\
+         ObjectBegin \"ball\" Scale 3 3 3 Shape \"sphere\" ObjectEnd AttributeEnd ObjectInstance \"ball\"",
+    );
+    assert_eq!((scene.shapes.len(), scene.objects.len(), scene.instances.len()), (0, 1, 2));
+    let move_right = DMat4::from_translation(DVec3::X);
+    assert_eq!(
+        scene.objects[0].shapes[0].world_from_object,
+        move_right * DMat4::from_scale(DVec3::splat(6.0))
+    );
+    assert!(scene.instances.iter().all(|instance| instance.world_from_object == move_right));
+}
+
+#[test]
+fn files_lie_beside_the_scene_and_models_are_read_once() {
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+               element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    let (scene, warnings) = read_files(&[
+        (
+            "dir/a.pbrt",
+            "Include \"sub/b.pbrt\" WorldBegin Include \"sub/c.pbrt\" Shape \"plymesh\" \"string filename\" \"m.ply\"",
+        ),
+        ("dir/sub/b.pbrt", "Film \"rgb\" \"integer xresolution\" 7"),
+        (
+            "dir/sub/c.pbrt",
+            "Include \"d.pbrt\" Shape \"plymesh\" \"string filename\" \"m.ply\" Translate 1 1 1",
+        ),
+        ("dir/sub/d.pbrt", "# found beside the file that names it\n"),
+        ("dir/m.ply", ply),
+    ]);
+    assert!(warnings.is_empty(), "{warnings:?}");
+    assert_eq!((scene.image.width, scene.meshes.len(), scene.shapes.len()), (7, 1, 2));
+    assert!(scene.shapes.iter().all(|shape| matches!(shape.geometry, Geometry::Mesh(MeshId(0)))));
+    assert_eq!(
+        scene.shapes[1].world_from_object,
+        DMat4::from_translation(DVec3::ONE),
+        "an Include ends no attributes"
+    );
+}
+
+#[test]
+fn curves_taper_over_their_segments() {
+    let scene = read(
+        "WorldBegin Shape \"curve\" \"string basis\" \"bspline\" \"float width0\" 2 \"float width1\" 0\n\
+         \"point3 P\" [ 0 0 0  1 0 0  2 0 0  3 0 0  4 0 0 ] \"string type\" \"cylinder\"",
+    );
+    let Geometry::Curves(strands) = &scene.shapes[0].geometry else { panic!() };
+    assert_eq!(strands.len(), 2);
+    assert_eq!((strands[0].width, strands[1].width), ([2.0, 1.0], [1.0, 2e-6]));
+    assert!(
+        strands[0].points[0].abs_diff_eq(Vec3::X, 1e-6)
+            && strands[1].points[3].abs_diff_eq(3.0 * Vec3::X, 1e-6)
+    );
+    assert_eq!(strands[0].profile, Profile::Cylinder);
+}
+
+#[test]
+fn what_is_not_rendered_is_warned_of_once() {
+    let (scene, warnings) = read_files(&[(
+        "a.pbrt",
+        "Integrator \"bdpt\" Sampler \"stratified\" \"integer xsamples\" 3 WorldBegin\n\
+         MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" MediumInterface \"fog\" \"\" MediumInterface \"fog\"\n\
+         Material \"hair\" Material \"hair\" Material \"subsurface\" \"float mfp\" 2\n\
+         Shape \"sphere\" \"float raduis\" 2",
+    )]);
+    let expected = [
+        "a.pbrt:1:1: the integrator \"bdpt\" is not there: \"path\" computes the same light in its place",
+        "a.pbrt:2:51: media are not rendered yet: light passes them as it passes a vacuum",
+        "a.pbrt:3:1: hair is not shaded as hair yet: \"diffuse\" takes the place of it",
+        "a.pbrt:3:33: light under surfaces is not followed yet: \"coateddiffuse\" takes the place of \"subsurface\"",
+        "a.pbrt:4:16: Shape \"sphere\" has no parameter \"float raduis\"; did you mean \"radius\"?",
+    ];
+    assert_eq!(warnings, expected);
+    assert_eq!(scene.render.samples, 12);
+}
+
+#[test]
+fn a_scene_without_an_ending_is_known_by_its_words() {
+    let (scene, _) =
+        read_files(&[("scene", "# a comment\nLookAt 0 0 0 0 0 1 0 1 0\nWorldBegin\nShape \"sphere\"\n")]);
+    assert_eq!(scene.shapes.len(), 1);
+}

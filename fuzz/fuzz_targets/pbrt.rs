@@ -1,0 +1,12 @@
+#![no_main]
+
+use std::path::{Path, PathBuf};
+
+use lookfrom_scene::{Memory, Sources, pbrt};
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let files = Memory([(PathBuf::from("a.pbrt"), bytes.to_vec())].into());
+    let mut sources = Sources::new(&files);
+    sources.limits = lookfrom_fuzz::limits();
+    let _ = pbrt::read(Path::new("a.pbrt"), &mut sources);
+});
