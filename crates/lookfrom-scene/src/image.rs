@@ -8,7 +8,7 @@ mod srgb;
 mod write;
 
 pub use self::openexr::{Channels, encode_exr, read_exr};
-pub use self::read::{read, read_data, read_encoded};
+pub use self::read::{read, read_data, read_encoded, read_opacity};
 pub use self::srgb::{linear_from_srgb, srgb_from_linear};
 pub use self::write::{encode_hdr, encode_pfm, encode_png, encode_ppm};
 

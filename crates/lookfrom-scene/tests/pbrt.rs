@@ -259,3 +259,18 @@ fn a_scene_without_an_ending_is_known_by_its_words() {
         read_files(&[("scene", "# a comment\nLookAt 0 0 0 0 0 1 0 1 0\nWorldBegin\nShape \"sphere\"\n")]);
     assert_eq!(scene.shapes.len(), 1);
 }
+
+#[test]
+fn textures_of_numbers_prefer_the_opacity_of_a_picture() {
+    // 2 × 1 texels: white and opaque, black and clear.
+    let mut tga = vec![0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 32, 8 | 0x20];
+    tga.extend([255, 255, 255, 255, 0, 0, 0, 0]);
+    let text = "WorldBegin Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"a.tga\"\n\
+                Texture \"c\" \"spectrum\" \"imagemap\" \"string filename\" \"a.tga\" Shape \"disk\" \"texture alpha\" \"a\"";
+    let memory = Memory([(PathBuf::from("a.pbrt"), text.as_bytes().to_vec()), ("a.tga".into(), tga)].into());
+    let scene = load::scene(Path::new("a.pbrt"), &mut Sources::new(&memory))
+        .unwrap_or_else(|error| panic!("{error}"));
+    let alpha = [[1.0; 3], [0.0; 3]];
+    assert_eq!((scene.images.len(), &scene.images[0].texels[..]), (2, &alpha[..]));
+    assert!(matches!(scene.shapes[0].alpha, Some(Scalar::Texture(_))));
+}

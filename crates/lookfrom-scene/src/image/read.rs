@@ -45,7 +45,8 @@ pub fn read_encoded(path: &Path, sources: &mut Sources<'_>, curve: &dyn Fn(f32) 
     } else if bytes.starts_with(b"PF") || bytes.starts_with(b"Pf") {
         decode_pfm(&bytes, &at, &sources.limits)?
     } else {
-        decode(&bytes, path, &at, &sources.limits, curve)?
+        let picture = decode(&bytes, path, &at, &sources.limits)?;
+        (picture.width(), picture.height(), linear(picture, curve))
     };
     let mut bad = 0_usize;
     for value in texels.iter_mut().flatten() {
@@ -58,6 +59,34 @@ pub fn read_encoded(path: &Path, sources: &mut Sources<'_>, curve: &dyn Fn(f32) 
         sources.warn(&at, format!("{bad} values are not finite numbers; each is taken as 0"));
     }
     Ok(Image { name: path.display().to_string(), width, height, texels })
+}
+
+/// The opacity (alpha) of a picture, as greys, where it has one that is not 1 everywhere. `curve` is as in
+/// [`read_encoded`]; an EXR's opacity is not looked at.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_opacity(
+    path: &Path,
+    sources: &mut Sources<'_>,
+    curve: &dyn Fn(f32) -> f32,
+) -> Result<Option<Image>> {
+    let at = Location::file(path);
+    let bytes = sources.read(path)?;
+    if bytes.starts_with(&openexr::MAGIC) || bytes.starts_with(b"PF") || bytes.starts_with(b"Pf") {
+        return Ok(None);
+    }
+    let picture = decode(&bytes, path, &at, &sources.limits)?;
+    if !picture.color().has_alpha() {
+        return Ok(None);
+    }
+    let (width, height) = (picture.width(), picture.height());
+    let alphas: Vec<f32> = picture.into_rgba32f().pixels().map(|pixel| pixel.0[3]).collect();
+    if alphas.iter().all(|&alpha| alpha == 1.0) {
+        return Ok(None);
+    }
+    let texels = alphas.into_iter().map(|alpha| [curve(alpha); 3]).collect();
+    Ok(Some(Image { name: path.display().to_string(), width, height, texels }))
 }
 
 /// Checks a header's claim before memory is asked for.
@@ -78,13 +107,7 @@ pub(super) fn check_size(width: u64, height: u64, at: &Location, limits: &Limits
 
 type Texels = (u32, u32, Vec<[f32; 3]>);
 
-fn decode(
-    bytes: &[u8],
-    path: &Path,
-    at: &Location,
-    limits: &Limits,
-    curve: &dyn Fn(f32) -> f32,
-) -> Result<Texels> {
+fn decode(bytes: &[u8], path: &Path, at: &Location, limits: &Limits) -> Result<DynamicImage> {
     let fault = |error: &ImageError| wrong(error, bytes, at, limits);
     let mut reader = ImageReader::new(Cursor::new(bytes));
     if let Ok(format) = ImageFormat::from_path(path) {
@@ -100,9 +123,12 @@ fn decode(
     let decoder = reader.into_decoder().map_err(|error| fault(&error))?;
     let (width, height) = decoder.dimensions();
     check_size(width.into(), height.into(), at, limits)?;
-    let picture = DynamicImage::from_decoder(decoder).map_err(|error| fault(&error))?;
+    DynamicImage::from_decoder(decoder).map_err(|error| fault(&error))
+}
 
-    let texels = match picture {
+/// Linear colours; `curve` is for whole numbers.
+fn linear(picture: DynamicImage, curve: &dyn Fn(f32) -> f32) -> Vec<[f32; 3]> {
+    match picture {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
             picture.into_rgb32f().pixels().map(|pixel| pixel.0).collect()
         }
@@ -117,8 +143,7 @@ fn decode(
             let table: Vec<f32> = (0..=u8::MAX).map(|value| curve(f32::from(value) / 255.0)).collect();
             picture.into_rgb8().pixels().map(|pixel| pixel.0.map(|v| table[usize::from(v)])).collect()
         }
-    };
-    Ok((width, height, texels))
+    }
 }
 
 /// In our words what the decoder found.

@@ -193,7 +193,8 @@ impl Surface {
         self.blend(vertex, ring, 1.0 / 5.0, gamma)
     }
 
-    /// The normal of the limit surface, of any length, by two tangents; positions are those of the limit.
+    /// The normal of the limit surface, of any length, by two tangents; positions are those of the limit. As in pbrt it
+    /// looks to the side from which faces run clockwise.
     fn normal(&self, vertex: usize, ring: &[u32]) -> Vec3 {
         let p = self.positions[vertex];
         let at = |k: usize| self.positions[ring[k] as usize];
@@ -208,7 +209,7 @@ impl Surface {
                 s += libm::cos(angle) as f32 * at(k);
                 t += libm::sin(angle) as f32 * at(k);
             }
-            return s.cross(t);
+            return t.cross(s);
         }
         s = at(n - 1) - at(0);
         match n {
@@ -263,9 +264,9 @@ mod tests {
         assert_eq!(mesh.triangles.len(), 4 << 6);
         // Euler: as many vertices as a sphere has.
         assert_eq!(mesh.positions.len() + mesh.triangles.len() - mesh.triangles.len() * 3 / 2, 2);
-        // The limit normals lean outwards, and the way the faces are wound.
+        // Faces run counter-clockwise seen from outside: normals lean inwards.
         for (position, normal) in mesh.positions.iter().zip(&mesh.normals) {
-            assert!(normal.normalize().dot(position.normalize()) > 0.5, "{position} {normal}");
+            assert!(normal.normalize().dot(position.normalize()) < -0.5, "{position} {normal}");
         }
     }
 
@@ -298,7 +299,7 @@ mod tests {
         let mesh = subdivide(&points, &faces, 2).expect("a good mesh");
         for (position, normal) in mesh.positions.iter().zip(&mesh.normals) {
             assert!(position.z.abs() < 1e-6);
-            assert!(normal.normalize().dot(Vec3::Z) > 0.999, "{position} {normal}");
+            assert!(normal.normalize().dot(Vec3::Z) < -0.999, "{position} {normal}");
         }
         let low = mesh.positions.iter().fold(f32::INFINITY, |low, p| low.min(p.x));
         assert!((0.0..0.3).contains(&low), "{low}");

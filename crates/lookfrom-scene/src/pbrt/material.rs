@@ -223,7 +223,7 @@ impl Reader<'_, '_> {
             None => {
                 let made = self.materials.iter().filter(|(_, named)| named.is_made);
                 let known: Vec<&str> = made.map(|(name, _)| &**name).collect();
-                Err(Self::unknown(&parameter.place, "material made before this", name, known))
+                Err(Self::unknown(&parameter.place, "material", name, known))
             }
         };
         Ok(MaterialKind::Mix { materials: [made(first)?, made(second)?], amount })

@@ -1,14 +1,27 @@
 //! Which picture does a file hold, and how are its values to be taken?
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::Reader;
 use super::text::Place;
 use crate::error::Result;
-use crate::image::{self, linear_from_srgb};
+use crate::image::{self, Image, linear_from_srgb};
 use crate::scene::ImageId;
 
 impl Reader<'_, '_> {
+    /// The opacity of a picture that has one, else its values: what a texture of numbers takes from a file.
+    pub(super) fn number_picture(&mut self, name: &str, encoding: &str, place: &Place) -> Result<ImageId> {
+        let key = (self.resolve(name), format!("{encoding}, opacity"));
+        if let Some(&id) = self.images.get(&key) {
+            return Ok(id);
+        }
+        let curve = curve(encoding, place)?;
+        let opacity =
+            image::read_opacity(&key.0, self.sources, &*curve).map_err(|error| place.blame(error))?;
+        let Some(opacity) = opacity else { return self.picture(name, encoding, place) };
+        Ok(self.push_picture(key, opacity))
+    }
+
     /// A picture whose whole-number values are `sRGB`, `linear` or `gamma x`; each file is decoded once.
     pub(super) fn picture(&mut self, name: &str, encoding: &str, place: &Place) -> Result<ImageId> {
         if name.is_empty() {
@@ -21,28 +34,34 @@ impl Reader<'_, '_> {
         if let Some(&id) = self.images.get(&key) {
             return Ok(id);
         }
-        let curve: Box<dyn Fn(f32) -> f32> = match encoding.split_once(' ') {
-            None if encoding == "sRGB" => Box::new(linear_from_srgb),
-            None if encoding == "linear" => Box::new(|value| value),
-            Some(("gamma", exponent)) => match exponent.trim().parse::<f32>() {
-                Ok(gamma) if gamma > 0.0 && gamma.is_finite() => {
-                    Box::new(move |value| libm::powf(value, gamma))
-                }
-                _ => {
-                    return Err(place.invalid(format!("expected \"gamma\" and a number, found {encoding:?}")));
-                }
-            },
-            _ => {
-                let error = place.invalid(format!("{encoding:?} is no encoding that is known"));
-                return Err(error.hint("there are: \"sRGB\", \"linear\", \"gamma 2.2\""));
-            }
-        };
+        let curve = curve(encoding, place)?;
         let image = image::read_encoded(&path, self.sources, &*curve).map_err(|error| place.blame(error))?;
+        Ok(self.push_picture(key, image))
+    }
+
+    fn push_picture(&mut self, key: (PathBuf, String), image: Image) -> ImageId {
         let id = ImageId(self.scene.images.len() as u32);
         self.scene.images.push(image);
         self.images.insert(key, id);
-        Ok(id)
+        id
     }
+}
+
+/// What an encoding does to the 0…1 of whole numbers.
+fn curve(encoding: &str, place: &Place) -> Result<Box<dyn Fn(f32) -> f32>> {
+    match encoding.split_once(' ') {
+        None if encoding == "sRGB" => return Ok(Box::new(linear_from_srgb)),
+        None if encoding == "linear" => return Ok(Box::new(|value| value)),
+        Some(("gamma", exponent)) => match exponent.trim().parse::<f32>() {
+            Ok(gamma) if gamma > 0.0 && gamma.is_finite() => {
+                return Ok(Box::new(move |value| libm::powf(value, gamma)));
+            }
+            _ => {}
+        },
+        _ => {}
+    }
+    let error = place.invalid(format!("{encoding:?} is no encoding that is known"));
+    Err(error.hint("there are: \"sRGB\", \"linear\", \"gamma 2.2\""))
 }
 
 /// How the values of a file are encoded where the scene does not say. pbrt asks only for the encoding of PNG files: other

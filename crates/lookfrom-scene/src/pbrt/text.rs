@@ -58,7 +58,7 @@ impl Text {
             rest.iter().take(4 * EXCERPT).take_while(|&&byte| byte != b'\n' && byte != b'\r').count();
         let plain = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace(|c: char| c.is_control(), " ");
         let (before, after) = (plain(&self.bytes[start..offset]), plain(&rest[..length]));
-        let skipped = before.chars().count().saturating_sub(EXCERPT / 2);
+        let skipped = before.chars().count().saturating_sub(EXCERPT * 3 / 4);
         let mut line: String = before.chars().skip(skipped).collect();
         if skipped > 0 {
             line = line.chars().skip(1).fold("…".to_owned(), |line, c| line + c.encode_utf8(&mut [0; 4]));

@@ -85,11 +85,7 @@ impl Reader<'_, '_> {
         let name_place = lexer.place(start);
         let start = lexer.here();
         let values = lexer.string("\"float\" or \"spectrum\"")?;
-        super::version3::check_kind(
-            if values == "color" { "color" } else { "" },
-            &name,
-            &lexer.place(start),
-        )?;
+        super::version3::check_kind(&values, "", &lexer.place(start))?;
         let is_float = match &*values {
             "float" => true,
             "spectrum" => false,
@@ -191,7 +187,7 @@ impl Reader<'_, '_> {
                 outside: self.part(p, "outside", 0.0, is_float)?,
                 mapping: self.mapping(p)?,
             },
-            "imagemap" => self.imagemap(p)?,
+            "imagemap" => self.imagemap(p, is_float)?,
             "fbm" if is_float => TextureKind::Fbm {
                 octaves: octaves(p)?,
                 roughness: p.float("roughness", 0.5)?,
@@ -226,7 +222,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    fn imagemap(&mut self, p: &Parameters) -> Result<TextureKind> {
+    fn imagemap(&mut self, p: &Parameters, is_float: bool) -> Result<TextureKind> {
         let parameter = p.find("filename", &[Kind::String])?;
         let place = parameter.map_or(&p.place, |parameter| &parameter.place);
         let Some(name) = p.string("filename")? else {
@@ -250,7 +246,10 @@ impl Reader<'_, '_> {
             ("octahedralsphere", Wrap::Clamp),
         ];
         Ok(TextureKind::Image {
-            image: self.picture(name, &encoding, place)?,
+            image: match is_float {
+                true => self.number_picture(name, &encoding, place)?,
+                false => self.picture(name, &encoding, place)?,
+            },
             mapping: self.mapping(p)?,
             wrap: p.choice("wrap", Wrap::Repeat, &wraps)?,
             filter: p.choice("filter", TexelFilter::Bilinear, &filters)?,

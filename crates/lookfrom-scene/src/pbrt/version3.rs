@@ -54,6 +54,7 @@ pub(super) fn check_kind(word: &str, name: &str, place: &Place) -> Result<()> {
         "point" if name == "uv" || name == "st" => "point2",
         "point" => "point3",
         "vector" => "vector3",
+        "color" if name.is_empty() => "spectrum",
         "color" => "rgb",
         "xyz" => {
             return Err(old(
@@ -64,7 +65,8 @@ pub(super) fn check_kind(word: &str, name: &str, place: &Place) -> Result<()> {
         }
         _ => return Ok(()),
     };
-    Err(old(place, &format!("\"{word} {name}\" has a type of version 3"), &format!("calls the type {now:?}")))
+    let shown = if name.is_empty() { word.to_owned() } else { format!("{word} {name}") };
+    Err(old(place, &format!("{shown:?} has a type of version 3"), &format!("calls the type {now:?}")))
 }
 
 /// The kinds of materials, lights … that version 3 alone has.
