@@ -204,6 +204,8 @@ impl Reader<'_, '_> {
             });
         }
         self.place_instances()?;
+        curve::join(&mut self.scene.shapes);
+        self.scene.objects.iter_mut().for_each(|object| curve::join(&mut object.shapes));
         self.read_models()
     }
 }

@@ -274,3 +274,20 @@ fn textures_of_numbers_prefer_the_opacity_of_a_picture() {
     assert_eq!((scene.images.len(), &scene.images[0].texels[..]), (2, &alpha[..]));
     assert!(matches!(scene.shapes[0].alpha, Some(Scalar::Texture(_))));
 }
+
+#[test]
+fn curves_that_are_alike_are_one_shape() {
+    let curve = "Shape \"curve\" \"point3 P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]\n";
+    let scene = read(&format!(
+        "WorldBegin {curve}{curve}Shape \"sphere\" {curve}Translate 1 0 0 {curve}{curve}{curve}"
+    ));
+    let counts: Vec<usize> = scene
+        .shapes
+        .iter()
+        .map(|shape| match &shape.geometry {
+            Geometry::Curves(strands) => strands.len(),
+            _ => 0,
+        })
+        .collect();
+    assert_eq!(counts, [2, 0, 1, 3]);
+}

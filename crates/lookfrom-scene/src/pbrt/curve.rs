@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::Reader;
 use super::params::{Kind, Parameters};
 use crate::error::Result;
-use crate::shape::{Geometry, Profile, Strand};
+use crate::shape::{Geometry, Profile, Shape, Strand};
 
 #[derive(Clone, Copy, PartialEq)]
 enum Basis {
@@ -74,6 +74,42 @@ impl Reader<'_, '_> {
             Strand { points, width: [at(segment).max(thinnest), at(segment + 1).max(thinnest)], profile }
         });
         Ok(Geometry::Curves(strands.collect()))
+    }
+}
+
+/// Makes one shape of curves that follow one another and are alike but for their form: hair has one shape for each.
+pub(super) fn join(shapes: &mut Vec<Shape>) {
+    let mut joined: Vec<Shape> = Vec::new();
+    let mut strands: Vec<Strand> = Vec::new();
+    for shape in shapes.drain(..) {
+        let Geometry::Curves(own) = &shape.geometry else {
+            close(&mut joined, &mut strands);
+            joined.push(shape);
+            continue;
+        };
+        let is_like = |before: &Shape| {
+            before.material == shape.material
+                && before.emission == shape.emission
+                && before.alpha == shape.alpha
+                && before.reverse_orientation == shape.reverse_orientation
+                && before.world_from_object == shape.world_from_object
+        };
+        if strands.is_empty() || !joined.last().is_some_and(is_like) {
+            close(&mut joined, &mut strands);
+            strands.extend(own.iter());
+            joined.push(shape);
+        } else {
+            strands.extend(own.iter());
+        }
+    }
+    close(&mut joined, &mut strands);
+    *shapes = joined;
+}
+
+/// Gives the last shape the curves that were collected for it.
+fn close(joined: &mut [Shape], strands: &mut Vec<Strand>) {
+    if let (Some(last), false) = (joined.last_mut(), strands.is_empty()) {
+        last.geometry = Geometry::Curves(std::mem::take(strands).into());
     }
 }
 
