@@ -4,34 +4,50 @@
 //! This file reads files and joins what they import. Beside it: `value` (a TOML value and its place), and a decoder
 //! for each part of the vocabulary.
 
+mod camera;
+mod chain;
 mod color;
+mod curve;
+mod directed;
 mod form;
+mod import;
 mod light;
+mod mapping;
 mod material;
+mod mesh;
+mod object;
+mod physical;
 mod place;
+mod round;
+mod settings;
 mod shape;
-
+mod sky;
+mod strip;
+mod table;
+mod texture;
 mod value;
-mod view;
+mod vocabulary;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use ::toml::de::DeTable;
 
-use self::value::{Document, Table, Value};
-use crate::error::{Error, ErrorKind, Location, Result};
+use self::import::tidy;
+use self::table::Table;
+use self::value::{Document, Value};
+use self::vocabulary::TOP;
+use crate::error::{Error, Location, Result};
 use crate::files::Sources;
-use crate::scene::{ImageId, MaterialId, ObjectId, Scene, TextureId};
+use crate::material::MaterialKind;
+use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
+use crate::settings::Integrator;
 use crate::shape::{Emission, Part};
 use crate::suggest::nearest;
 use crate::{image, load};
 
 pub(crate) use self::material::default_material;
-
-/// The keys of a file besides the kinds of shapes.
-const TOP: &[&str] =
-    &["import", "camera", "image", "render", "materials", "textures", "objects", "instance", "light"];
+pub use self::vocabulary::vocabulary;
 
 /// Reads a scene in our own format, with all that it imports.
 ///
@@ -48,6 +64,7 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         textures: BTreeMap::new(),
         objects: BTreeMap::new(),
         images: BTreeMap::new(),
+        curves: BTreeMap::new(),
         models: BTreeMap::new(),
         glows: BTreeMap::new(),
         unwritten_default: None,
@@ -57,36 +74,16 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         flake_spheres: 0,
         has_image: false,
         has_render: false,
+        names_integrator: false,
     };
     reader.file(path)?;
-    Ok(reader.scene)
-}
-
-/// Every table of the format and the keys that it may have: for documentation, editors and tests.
-pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
-    let kinds: Vec<&'static str> = shape::KEYS.iter().map(|&(kind, _)| kind).collect();
-    let mut tables = vec![
-        ("a scene".to_owned(), [TOP, &kinds].concat()),
-        ("[camera]".to_owned(), view::CAMERA.to_vec()),
-        ("[image]".to_owned(), view::IMAGE.to_vec()),
-        ("filter".to_owned(), view::FILTER.to_vec()),
-        ("[render]".to_owned(), view::RENDER.to_vec()),
-        ("[materials.NAME]".to_owned(), material::KEYS.to_vec()),
-        ("[objects.NAME]".to_owned(), kinds),
-        ("[[instance]]".to_owned(), [shape::INSTANCE, place::KEYS].concat()),
-        ("transform".to_owned(), place::STEPS.to_vec()),
-        ("rotate".to_owned(), place::ROTATION.to_vec()),
-    ];
-    for &(kind, keys) in shape::KEYS {
-        tables.push((format!("[[{kind}]]"), [keys, shape::COMMON, place::KEYS].concat()));
+    // Only the path tracer knows what light does on physical materials.
+    let mut scene = reader.scene;
+    let is_physical = |kind: &MaterialKind| !matches!(kind, MaterialKind::Whitted(_));
+    if !reader.names_integrator && scene.materials.iter().any(|material| is_physical(&material.kind)) {
+        scene.render.integrator = Integrator::Path;
     }
-    for &(kind, keys) in color::KEYS {
-        tables.push((format!("[textures.NAME] {kind}"), [&["type"], keys, color::MAPPING].concat()));
-    }
-    for &(kind, keys) in light::KEYS {
-        tables.push((format!("[[light]] {kind}"), [light::COMMON, keys].concat()));
-    }
-    tables
+    Ok(scene)
 }
 
 /// A scene on its way from files, and the names that were given so far.
@@ -98,7 +95,10 @@ struct Reader<'s, 'f> {
     materials: BTreeMap<String, MaterialId>,
     textures: BTreeMap<String, TextureId>,
     objects: BTreeMap<String, ObjectId>,
-    images: BTreeMap<PathBuf, ImageId>,
+    /// By file, and whether it holds numbers rather than colours.
+    images: BTreeMap<(PathBuf, bool), ImageId>,
+    /// By what they are in words.
+    curves: BTreeMap<String, CurveId>,
     models: BTreeMap<PathBuf, Vec<Part>>,
     /// The light of the materials that shine.
     glows: BTreeMap<MaterialId, Emission>,
@@ -113,6 +113,8 @@ struct Reader<'s, 'f> {
     flake_spheres: u64,
     has_image: bool,
     has_render: bool,
+    /// Whether the `[render]` that counts says which integrator.
+    names_integrator: bool,
 }
 
 impl Reader<'_, '_> {
@@ -131,9 +133,8 @@ impl Reader<'_, '_> {
             Error::syntax(&at, error.message().replace('\n', "; "))
                 .hint("the text is no TOML here; docs/guide/scene-format.md shows how scenes are written")
         })?;
-        let top = Table::root(&document, root.get_ref());
-        let kinds: Vec<&'static str> = shape::KEYS.iter().map(|&(kind, _)| kind).collect();
-        top.allow(&[TOP, &kinds])?;
+        let top = Table::new(&document, 0, "a scene".to_owned(), root.get_ref());
+        top.allow(&[TOP, &shape::kinds()])?;
 
         self.open.push(path.to_owned());
         if let Some(value) = top.find("import") {
@@ -165,86 +166,37 @@ impl Reader<'_, '_> {
     /// The camera, picture and computation of this file, or else of the first import that has one.
     fn settings(&mut self, top: &Table<'_>) -> Result<()> {
         if let Some(value) = top.find("camera") {
-            self.scene.camera = Some(view::camera(&value.table("[camera]")?)?);
+            self.scene.camera = Some(camera::camera(&value.table("[camera]")?)?);
         }
         if let Some(value) = top.find("image") {
-            self.scene.image = view::image(&value.table("[image]")?)?;
+            self.scene.image = settings::image(&value.table("[image]")?)?;
             self.has_image = true;
         }
         if let Some(value) = top.find("render") {
-            self.scene.render = view::render(&value.table("[render]")?)?;
+            let table = value.table("[render]")?;
+            self.scene.render = settings::render(&table)?;
             self.has_render = true;
+            self.names_integrator = table.has("integrator");
         }
-        Ok(())
-    }
-
-    /// One file or a list of them.
-    fn imports(&mut self, value: Value<'_>) -> Result<()> {
-        if !value.is_list() {
-            return self.import(value);
-        }
-        value.list("the name of a file, or a list of names")?.try_for_each(|item| self.import(item))
-    }
-
-    fn import(&mut self, value: Value<'_>) -> Result<()> {
-        let path = self.resolve(value, "the name of a file, or a list of names")?;
-        let chain = |files: &[PathBuf]| {
-            files.iter().chain([&path]).map(|file| file.display().to_string()).collect::<Vec<_>>().join(" → ")
-        };
-        if let Some(start) = self.open.iter().position(|file| tidy(file) == tidy(&path)) {
-            return Err(value
-                .error(format!("this file imports itself: {}", chain(&self.open[start..])))
-                .hint("take one of these imports out"));
-        }
-        if self.open.len() as u64 > u64::from(self.sources.limits.import_depth) {
-            let message = format!(
-                "imports nest deeper than the limit of {}: {}",
-                self.sources.limits.import_depth,
-                chain(&self.open)
-            );
-            return Err(Error { kind: ErrorKind::Limit, ..value.error(message) }
-                .hint("import the files from fewer levels, or raise `Limits::import_depth`"));
-        }
-        // A file that several others import joins the scene once.
-        if self.done.contains(&tidy(&path)) {
-            return Ok(());
-        }
-        if load::is_toml(&path) {
-            return self.import_scene(&path).map_err(|error| value.blame(error));
-        }
-        let first = self.scene.materials.len();
-        let shapes = self.model(value)?;
-        for (index, material) in self.scene.materials.iter().enumerate().skip(first) {
-            self.materials.entry(material.name.clone()).or_insert(MaterialId(index as u32));
-        }
-        let material = self.default_material();
-        self.scene.shapes.extend(load::shapes(shapes, &value.at(), material));
-        self.done.insert(tidy(&path));
-        Ok(())
-    }
-
-    /// An imported scene's camera and settings count where none was there before.
-    fn import_scene(&mut self, path: &Path) -> Result<()> {
-        let camera = self.scene.camera.take();
-        let image = self.has_image.then(|| self.scene.image.clone());
-        let render = self.has_render.then(|| self.scene.render.clone());
-        self.file(path)?;
-        self.scene.camera = camera.or(self.scene.camera.take());
-        self.scene.image = image.unwrap_or_else(|| self.scene.image.clone());
-        self.scene.render = render.unwrap_or_else(|| self.scene.render.clone());
         Ok(())
     }
 
     /// A picture; each file is read once.
     fn image(&mut self, value: Value<'_>) -> Result<ImageId> {
-        let path = self.resolve(value, "the name of a picture")?;
-        if let Some(&id) = self.images.get(&path) {
+        self.image_as(value, false)
+    }
+
+    /// A picture of colours, or of numbers: then 8 and 16 bits are linear.
+    fn image_as(&mut self, value: Value<'_>, is_data: bool) -> Result<ImageId> {
+        let key = (self.resolve(value, "the name of a picture")?, is_data);
+        if let Some(&id) = self.images.get(&key) {
             return Ok(id);
         }
-        let image = image::read(&path, self.sources).map_err(|error| value.blame(error))?;
+        let read = if is_data { image::read_data } else { image::read };
+        let image = read(&key.0, self.sources).map_err(|error| value.blame(error))?;
         let id = ImageId(self.scene.images.len() as u32);
         self.scene.images.push(image);
-        self.images.insert(path, id);
+        self.images.insert(key, id);
         Ok(id)
     }
 
@@ -268,21 +220,6 @@ impl Reader<'_, '_> {
         let folder = self.open.last().and_then(|file| file.parent()).unwrap_or(Path::new(""));
         Ok(folder.join(name))
     }
-}
-
-/// A path without `.` and without `x/..`, so that the same file has one name (where no links are followed).
-fn tidy(path: &Path) -> PathBuf {
-    let mut tidied = PathBuf::new();
-    for component in path.components() {
-        match component {
-            Component::CurDir => {}
-            Component::ParentDir if matches!(tidied.components().next_back(), Some(Component::Normal(_))) => {
-                tidied.pop();
-            }
-            other => tidied.push(other),
-        }
-    }
-    tidied
 }
 
 /// What a name stands for, or the error that it stands for nothing.

@@ -15,6 +15,7 @@ fn files(texts: &[(&str, &str)]) -> Memory {
     for (name, text) in texts {
         files.0.insert(name.into(), text.as_bytes().to_vec());
     }
+    files.0.insert("wide.png".into(), image::encode_png(2, 1, &[128; 6]).expect("a picture"));
     files.0.insert("dot.png".into(), image::encode_png(1, 1, &[255, 0, 0]).expect("a picture"));
     files
 }

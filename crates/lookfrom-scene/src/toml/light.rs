@@ -1,30 +1,61 @@
 //! `[[light]]`: lights, and lamps that are shapes.
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 use super::Reader;
-use super::color::plain_color;
 use super::form::tangents;
-use super::place::about;
-use super::value::{Table, Value};
+use super::place::{about, rotate};
+use super::table::{Kinds, Table};
+use super::value::Value;
 use crate::error::Result;
-use crate::light::{Amount, Falloff, Light, LightKind, Sky};
+use crate::light::{Amount, Falloff, Light, LightKind};
 use crate::material::Color;
 use crate::shape::{Emission, Geometry, Shape, Sphere};
 
-/// The keys of lights, by type, besides `type` and `name`.
-pub(super) const KEYS: &[(&str, &[&str])] = &[
+/// The keys of lights, by type, besides [`COMMON`].
+pub(super) const KEYS: Kinds = &[
     ("ambient", &["color"]),
-    ("point", &["position", "intensity", "falloff"]),
-    ("distant", &["direction", "from", "to", "intensity"]),
-    ("spot", &["position", "target", "direction", "intensity", "cone_angle", "inner_angle", "falloff"]),
+    ("point", &["position", "intensity", "power", "falloff"]),
+    ("distant", &["direction", "from", "to", "intensity", "illuminance"]),
+    (
+        "spot",
+        &["position", "target", "direction", "intensity", "power", "cone_angle", "inner_angle", "falloff"],
+    ),
+    ("projection", &["position", "target", "direction", "up", "image", "intensity", "power", "fov"]),
+    ("goniometric", &["position", "image", "intensity", "power", "rotate"]),
     (
         "rectangle",
-        &["corner", "edge_u", "edge_v", "center", "target", "width", "height", "radiance", "two_sided"],
+        &[
+            "corner",
+            "edge_u",
+            "edge_v",
+            "center",
+            "target",
+            "width",
+            "height",
+            "radiance",
+            "power",
+            "two_sided",
+        ],
     ),
-    ("disk", &["center", "normal", "target", "radius", "radiance", "two_sided"]),
-    ("sphere", &["center", "radius", "radiance"]),
-    ("environment", &["color", "zenith", "horizon", "nadir", "image", "scale", "rotate", "illuminates"]),
+    ("disk", &["center", "normal", "target", "radius", "radiance", "power", "two_sided"]),
+    ("sphere", &["center", "radius", "radiance", "power"]),
+    (
+        "environment",
+        &[
+            "color",
+            "zenith",
+            "horizon",
+            "nadir",
+            "image",
+            "layout",
+            "scale",
+            "rotate",
+            "illuminance",
+            "portal",
+            "illuminates",
+        ],
+    ),
 ];
 /// What every light may have.
 pub(super) const COMMON: &[&str] = &["type", "name"];
@@ -32,30 +63,30 @@ pub(super) const COMMON: &[&str] = &["type", "name"];
 impl Reader<'_, '_> {
     /// One `[[light]]`.
     pub(super) fn read_light(&mut self, table: &Table<'_>) -> Result<()> {
-        let types: Vec<(&str, usize)> =
-            KEYS.iter().enumerate().map(|(index, &(word, _))| (word, index)).collect();
-        let (word, keys) = KEYS[table.need("type", "\"point\"")?.choice(&types)?];
-        table.allow(&[COMMON, keys])?;
-        let kind = match word {
-            "ambient" => LightKind::Ambient { color: plain_color(table.need("color", "0.1")?)? },
-            "point" => LightKind::Point {
-                position: table.need("position", "[0, 5, 0]")?.vector()?,
-                intensity: intensity(table)?,
-                falloff: falloff(table)?,
-            },
-            "distant" => {
-                LightKind::Distant { direction: distant_direction(table)?, intensity: intensity(table)? }
+        let word = table.kind(KEYS, None, |_| COMMON)?;
+        let (kind, amount) = match word {
+            "ambient" => {
+                let color = self.light_rgb(table.need("color", "0.1")?)?;
+                (LightKind::Ambient { color }, Amount::AS_WRITTEN)
             }
-            "spot" => spot(table)?,
-            "environment" => LightKind::Environment {
-                sky: self.sky(table)?,
-                portal: None,
-                illuminates: table.or("illuminates", true, Value::boolean)?,
-            },
+            "point" => {
+                let position = table.need("position", "[0, 5, 0]")?.vector()?;
+                let (intensity, amount) = self.intensity(table, "power")?;
+                (LightKind::Point { position, intensity, falloff: falloff(table)? }, amount)
+            }
+            "distant" => {
+                let direction = distant_direction(table)?;
+                let (intensity, amount) = self.intensity(table, "illuminance")?;
+                (LightKind::Distant { direction, intensity }, amount)
+            }
+            "spot" => self.spot(table)?,
+            "projection" => self.projection(table)?,
+            "goniometric" => self.goniometric(table)?,
+            "environment" => self.environment(table)?,
             _ => return self.read_lamp(word, table),
         };
         let name = name(table)?;
-        self.scene.lights.push(Light { name, at: table.at(), kind, amount: Amount::AS_WRITTEN });
+        self.scene.lights.push(Light { name, at: table.at(), kind, amount });
         Ok(())
     }
 
@@ -81,58 +112,53 @@ impl Reader<'_, '_> {
                 radius: table.need("radius", "1")?.positive()?,
             }),
         };
-        let radiance = self.color(table.need("radiance", "10")?)?;
+        let (radiance, scale) = match table.find("radiance") {
+            None if table.has("power") => (Color::gray(1.0), 1.0),
+            _ => self.light_color(table.need("radiance", "10")?, true)?,
+        };
+        let amount = amount(table, "power", scale)?;
         let two_sided = table.or("two_sided", false, Value::boolean)?;
         let shape = Shape {
             name: name(table)?,
-            emission: Some(Emission::new(radiance, two_sided)),
+            emission: Some(Emission { radiance, amount, two_sided }),
             ..Shape::new(table.at(), geometry, self.black_material())
         };
         self.scene.shapes.push(shape);
         Ok(())
     }
 
-    fn sky(&mut self, table: &Table<'_>) -> Result<Sky> {
-        let Some(value) = table.one_of(&["color", "zenith", "image"])? else {
-            return Err(table
-                .error("it has no colours")
-                .hint("give `color`, or `zenith` and `horizon`, or `image`"));
+    /// `intensity` and how much of it; `total` is the key that may say so instead.
+    pub(super) fn intensity(&mut self, table: &Table<'_>, total: &str) -> Result<(Color, Amount)> {
+        let (color, scale) = match table.find("intensity") {
+            None if table.has(total) => (Color::gray(1.0), 1.0),
+            _ => self.light_color(table.need("intensity", "1")?, false)?,
         };
-        let groups: [(&str, &[&str]); 3] = [
-            ("color", &["color"]),
-            ("zenith", &["zenith", "horizon", "nadir"]),
-            ("image", &["image", "scale", "rotate"]),
-        ];
-        for (word, keys) in groups {
-            if word == value.key() {
-                table.allow(&[COMMON, &["illuminates"], keys])?;
-            }
-        }
-        Ok(match value.key() {
-            "color" => Sky::Constant(Color::Value(plain_color(value)?)),
-            "zenith" => {
-                let horizon = plain_color(table.need("horizon", "[1, 1, 1]")?)?;
-                let nadir = table.or("nadir", horizon, plain_color)?;
-                Sky::Gradient { zenith: plain_color(value)?, horizon, nadir }
-            }
-            _ => Sky::Image {
-                image: self.image(value)?,
-                scale: table.or("scale", [1.0; 3], plain_color)?,
-                world_from_light: about(DVec3::Y, table.or("rotate", 0.0, Value::number)?),
-            },
-        })
+        Ok((color, amount(table, total, scale)?))
     }
+}
+
+/// How much light: as the key `total` says, or else as the colour, times `scale`, says.
+pub(super) fn amount(table: &Table<'_>, total: &str, scale: f32) -> Result<Amount> {
+    let total = table.or(total, None, |value| {
+        value.single_where("a number of at least 0", |total| total >= 0.0).map(Some)
+    })?;
+    // What it comes to is then known, whatever the colour's brightness.
+    let scale = if total.is_some() { 1.0 } else { scale };
+    Ok(Amount { scale, total, absolute: false })
+}
+
+/// `rotate`: degrees about y, or as for shapes.
+pub(super) fn turned(table: &Table<'_>) -> Result<DMat4> {
+    table.or("rotate", DMat4::IDENTITY, |value| {
+        if value.is_number() { Ok(about(DVec3::Y, value.number()?)) } else { rotate(value) }
+    })
 }
 
 pub(super) fn name(table: &Table<'_>) -> Result<Option<String>> {
     table.or("name", None, |value| Ok(Some(value.text("a name in quotes")?.to_owned())))
 }
 
-fn intensity(table: &Table<'_>) -> Result<Color> {
-    plain_color(table.need("intensity", "1")?).map(Color::Value)
-}
-
-fn falloff(table: &Table<'_>) -> Result<Falloff> {
+pub(super) fn falloff(table: &Table<'_>) -> Result<Falloff> {
     let words = [("none", Falloff::None), ("linear", Falloff::Linear), ("quadratic", Falloff::Quadratic)];
     table.or("falloff", Falloff::default(), |value| value.choice(&words))
 }
@@ -160,36 +186,19 @@ fn distant_direction(table: &Table<'_>) -> Result<DVec3> {
     }
 }
 
-fn spot(table: &Table<'_>) -> Result<LightKind> {
-    let position = table.need("position", "[0, 5, 0]")?.vector()?;
-    let direction = match table.one_of(&["target", "direction"])? {
-        Some(value) if value.key() == "target" => towards(value, position)?,
-        Some(value) => value.direction()?,
-        None => {
-            return Err(table.error("`target` or `direction` is missing").hint("add `target = [0, 0, 0]`"));
-        }
-    };
-    let expected = "degrees, more than 0 and at most 180";
-    let cone_angle = table.or("cone_angle", 30.0, |value| {
-        value.number_where(expected, |angle| angle > 0.0 && angle <= 180.0)
-    })?;
-    let inner_angle = table.or("inner_angle", 0.8 * cone_angle, |value| {
-        value.number_where("degrees from 0 to `cone_angle`", |angle| (0.0..=cone_angle).contains(&angle))
-    })?;
-    Ok(LightKind::Spot {
-        position,
-        direction,
-        intensity: intensity(table)?,
-        cone_angle,
-        inner_angle,
-        falloff: falloff(table)?,
-    })
+/// Where a light at `position` shines to.
+pub(super) fn aim(table: &Table<'_>, position: DVec3) -> Result<DVec3> {
+    match table.one_of(&["target", "direction"])? {
+        Some(value) if value.key() == "target" => towards(value, position),
+        Some(value) => value.direction(),
+        None => Err(table.error("`target` or `direction` is missing").hint("add `target = [0, 0, 0]`")),
+    }
 }
 
 /// By a corner and two edges, or by its middle, where it faces, and its sides.
 fn rectangle(table: &Table<'_>) -> Result<Geometry> {
     if let Some(value) = table.find("center") {
-        let keys: &[&str] = &["center", "target", "width", "height", "radiance", "two_sided"];
+        let keys: &[&str] = &["center", "target", "width", "height", "radiance", "power", "two_sided"];
         table.allow(&[COMMON, keys])?;
         let center = value.vector()?;
         let normal = towards(table.need("target", "[0, 0, 0]")?, center)?.normalize();
@@ -198,7 +207,7 @@ fn rectangle(table: &Table<'_>) -> Result<Geometry> {
         let edge_v = v * table.need("height", "1")?.positive()?;
         return Ok(Geometry::Quad { corner: center - 0.5 * (edge_u + edge_v), edge_u, edge_v });
     }
-    let keys: &[&str] = &["corner", "edge_u", "edge_v", "radiance", "two_sided"];
+    let keys: &[&str] = &["corner", "edge_u", "edge_v", "radiance", "power", "two_sided"];
     table.allow(&[COMMON, keys])?;
     super::shape::quad(table)
 }

@@ -1,43 +1,95 @@
 //! `[materials]`: how surfaces look, and the light they give off.
 
-use super::Reader;
 use super::color::plain_color;
-use super::value::{Table, Value};
-use crate::error::Result;
-use crate::material::{Color, Material, MaterialKind, Whitted};
+use super::light::amount;
+use super::table::{Kinds, Table};
+use super::value::Value;
+use super::{Reader, chain};
+use crate::error::{Error, Location, Result};
+use crate::material::{Color, Material, MaterialKind, Relief, Whitted};
 use crate::scene::MaterialId;
 use crate::shape::Emission;
 
-/// The keys of a material.
-pub(super) const KEYS: &[&str] = &[
-    "type",
-    "ambient",
-    "diffuse",
-    "specular",
-    "shininess",
-    "mirror",
-    "transmission",
-    "ior",
-    "fresnel",
-    "absorption",
-    "emission",
-    "two_sided",
+/// The keys of materials, by type, besides [`COMMON`].
+pub(super) const KEYS: Kinds = &[
+    (
+        "whitted",
+        &[
+            "ambient",
+            "diffuse",
+            "specular",
+            "shininess",
+            "mirror",
+            "transmission",
+            "ior",
+            "fresnel",
+            "absorption",
+            "normal_map",
+            "bump",
+        ],
+    ),
+    ("diffuse", &["reflectance", "normal_map", "bump"]),
+    ("diffuse_transmission", &["reflectance", "transmittance", "normal_map", "bump"]),
+    ("conductor", &["metal", "eta", "k", "reflectance", "roughness", "normal_map", "bump"]),
+    ("dielectric", &["ior", "roughness", "normal_map", "bump"]),
+    ("thin_dielectric", &["ior", "normal_map", "bump"]),
+    (
+        "coated_diffuse",
+        &["reflectance", "roughness", "ior", "thickness", "coat_albedo", "g", "normal_map", "bump"],
+    ),
+    (
+        "coated_conductor",
+        &[
+            "metal",
+            "eta",
+            "k",
+            "reflectance",
+            "base_roughness",
+            "roughness",
+            "ior",
+            "thickness",
+            "coat_albedo",
+            "g",
+            "normal_map",
+            "bump",
+        ],
+    ),
+    ("mix", &["materials", "amount"]),
+    ("interface", &[]),
 ];
+/// What every material may have.
+pub(super) const COMMON: &[&str] = &["type", "emission", "power", "two_sided"];
 
 /// What a shape without a material wears.
 const DEFAULT: &str = "default";
 
+impl chain::Made for Material {
+    const WHAT: &'static str = "material";
+    const REMEDY: &'static str = "let one of them be made of other materials";
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn at(&self) -> &Location {
+        &self.at
+    }
+    fn parts(&self) -> Vec<usize> {
+        match self.kind {
+            MaterialKind::Mix { materials, .. } => materials.map(MaterialId::index).to_vec(),
+            _ => Vec::new(),
+        }
+    }
+}
+
 impl Reader<'_, '_> {
-    /// `[materials]`.
+    /// `[materials]`: all names first, so that a mix may use the others, wherever they are written.
     pub(super) fn read_materials(&mut self, value: Value<'_>) -> Result<()> {
+        let mut ids = Vec::new();
         for entry in value.table("[materials]")?.entries() {
             let name = entry.key();
-            let table = entry.table(format!("[materials.{name}]"))?;
-            table.allow(&[KEYS])?;
-            let material = Material::new(name, entry.at(), self.material_kind(&table)?);
-            let glow = self.emission(&table)?;
+            let kind = MaterialKind::Whitted(Whitted::default());
+            let material = Material::new(name, entry.at(), kind);
             // The default may have been needed before it was written.
-            let id = match self.materials.get(name) {
+            ids.push(match self.materials.get(name) {
                 Some(&id) if Some(id) == self.unwritten_default => {
                     self.scene.materials[id.index()] = material;
                     self.unwritten_default = None;
@@ -47,18 +99,29 @@ impl Reader<'_, '_> {
                     return Err(super::twice(entry, "material", &self.scene.materials[id.index()].at));
                 }
                 None => self.add_material(material),
+            });
+        }
+        for (entry, &id) in value.table("[materials]")?.entries().zip(&ids) {
+            let table = entry.table(format!("[materials.{}]", entry.key()))?;
+            let word = table
+                .kind(KEYS, Some("whitted"), |_| COMMON)
+                .map_err(|error| if error.hint.is_none() { familiar(&table, error) } else { error })?;
+            let kind = match word {
+                "whitted" => MaterialKind::Whitted(self.whitted(&table)?),
+                _ => self.physical(word, &table)?,
             };
-            if let Some(glow) = glow {
+            self.scene.materials[id.index()].kind = kind;
+            self.scene.materials[id.index()].relief = self.relief(&table)?;
+            if let Some(glow) = self.emission(&table)? {
                 self.glows.insert(id, glow);
             }
         }
-        Ok(())
+        chain::check(&self.scene.materials, ids.iter().map(|id| id.index()))
     }
 
-    fn material_kind(&mut self, table: &Table<'_>) -> Result<MaterialKind> {
-        table.or("type", (), |value| value.choice(&[("whitted", ())]))?;
+    fn whitted(&mut self, table: &Table<'_>) -> Result<Whitted> {
         let default = Whitted::default();
-        Ok(MaterialKind::Whitted(Whitted {
+        Ok(Whitted {
             ambient: table.find("ambient").map(|value| self.color(value)).transpose()?,
             diffuse: self.color_or(table, "diffuse", 0.8)?,
             specular: self.color_or(table, "specular", 0.0)?,
@@ -71,21 +134,32 @@ impl Reader<'_, '_> {
                 .or("ior", default.ior, |value| value.single_where("a number greater than 0", |n| n > 0.0))?,
             fresnel: table.or("fresnel", default.fresnel, Value::boolean)?,
             absorption: table.or("absorption", default.absorption, plain_color)?,
-        }))
+        })
     }
 
-    /// `emission` and `two_sided` of a material, shape or light.
+    fn relief(&mut self, table: &Table<'_>) -> Result<Relief> {
+        Ok(match table.one_of(&["normal_map", "bump"])? {
+            Some(value) if value.key() == "normal_map" => Relief::NormalMap(self.image_as(value, true)?),
+            Some(value) => Relief::Bump(self.scalar_where(value, "a number", |_| true)?),
+            None => Relief::None,
+        })
+    }
+
+    /// `emission`, `power` and `two_sided` of a material or shape.
     pub(super) fn emission(&mut self, table: &Table<'_>) -> Result<Option<Emission>> {
-        let two_sided = table.find("two_sided");
-        match (table.find("emission"), two_sided) {
-            (Some(value), _) => {
-                Ok(Some(Emission::new(self.color(value)?, two_sided.map_or(Ok(false), Value::boolean)?)))
+        let radiance = match (table.find("emission"), table.find("power"), table.find("two_sided")) {
+            (Some(value), ..) => self.light_color(value, true)?,
+            (None, Some(_), _) => (Color::gray(1.0), 1.0),
+            (None, None, None) => return Ok(None),
+            (None, None, Some(value)) => {
+                return Err(value
+                    .error("`two_sided` says which sides shine, but there is no `emission`")
+                    .hint("surfaces are seen from both sides anyway: leave it out, or add `emission`"));
             }
-            (None, Some(value)) => Err(value
-                .error("`two_sided` says which sides shine, but there is no `emission`")
-                .hint("surfaces are seen from both sides anyway: leave it out, or add `emission`")),
-            (None, None) => Ok(None),
-        }
+        };
+        let amount = amount(table, "power", radiance.1)?;
+        let two_sided = table.or("two_sided", false, Value::boolean)?;
+        Ok(Some(Emission { radiance: radiance.0, amount, two_sided }))
     }
 
     pub(super) fn add_material(&mut self, material: Material) -> MaterialId {
@@ -124,8 +198,21 @@ impl Reader<'_, '_> {
     }
 }
 
+/// An error about a type with a hint where the type has a name elsewhere.
+fn familiar(table: &Table<'_>, error: Error) -> Error {
+    let meant = match table.find("type").and_then(Value::as_text).unwrap_or_default() {
+        "glass" | "water" => "it is a \"dielectric\" here",
+        "metal" | "mirror" => "it is a \"conductor\" here",
+        "plastic" => "it is \"coated_diffuse\" here",
+        "matte" | "lambert" => "it is \"diffuse\" here",
+        "emissive" | "light" => "every type may have an `emission`",
+        _ => return error,
+    };
+    error.hint(meant)
+}
+
 /// Grey, with a slight highlight.
 pub(crate) fn default_material() -> Material {
     let whitted = Whitted { specular: Color::gray(0.1), ..Whitted::default() };
-    Material::new(DEFAULT, crate::Location::default(), MaterialKind::Whitted(whitted))
+    Material::new(DEFAULT, Location::default(), MaterialKind::Whitted(whitted))
 }

@@ -2,7 +2,8 @@
 
 use glam::{DMat4, DVec3, DVec4};
 
-use super::value::{Table, Value};
+use super::table::Table;
+use super::value::Value;
 use crate::error::Result;
 
 /// The keys that place a thing.
@@ -66,7 +67,8 @@ fn scale(value: Value<'_>) -> Result<DMat4> {
     Ok(DMat4::from_scale(factors))
 }
 
-fn rotate(value: Value<'_>) -> Result<DMat4> {
+/// A turn: degrees about x, then y, then z, or about one axis.
+pub(super) fn rotate(value: Value<'_>) -> Result<DMat4> {
     if value.is_table() {
         let table = value.table("`rotate`")?;
         table.allow(&[ROTATION])?;

@@ -2,9 +2,10 @@
 //! is not. What the keys mean is left to the decoders beside.
 
 use ::toml::Spanned;
-use ::toml::de::{DeTable, DeValue};
+use ::toml::de::DeValue;
 use glam::DVec3;
 
+use super::table::Table;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::suggest::nearest;
 
@@ -38,9 +39,9 @@ impl Document {
 /// A value, and the key it was given for.
 #[derive(Clone, Copy)]
 pub(super) struct Value<'a> {
-    document: &'a Document,
-    key: &'a str,
-    item: &'a Spanned<DeValue<'a>>,
+    pub(super) document: &'a Document,
+    pub(super) key: &'a str,
+    pub(super) item: &'a Spanned<DeValue<'a>>,
 }
 
 impl<'a> Value<'a> {
@@ -239,7 +240,7 @@ impl<'a> Value<'a> {
     /// A table, as `title` in messages.
     pub(super) fn table(self, title: impl Into<String>) -> Result<Table<'a>> {
         let DeValue::Table(map) = self.item.get_ref() else { return Err(self.wrong("a table")) };
-        Ok(Table { document: self.document, offset: self.item.span().start, title: title.into(), map })
+        Ok(Table::new(self.document, self.item.span().start, title.into(), map))
     }
 
     /// The tables of an array `[[key]]`.
@@ -247,86 +248,5 @@ impl<'a> Value<'a> {
         let remedy = format!("write [[{}]], with two brackets, for each of them", self.key);
         let items = self.list("an array of tables").map_err(|error| error.hint(remedy))?;
         Ok(items.map(|item| item.table(format!("[[{}]]", item.key))))
-    }
-}
-
-/// A table whose keys are looked up by name.
-pub(super) struct Table<'a> {
-    document: &'a Document,
-    offset: usize,
-    title: String,
-    map: &'a DeTable<'a>,
-}
-
-impl<'a> Table<'a> {
-    /// The whole of a document.
-    pub(super) fn root(document: &'a Document, map: &'a DeTable<'a>) -> Self {
-        Self { document, offset: 0, title: "a scene".to_owned(), map }
-    }
-
-    pub(super) fn at(&self) -> Location {
-        self.document.location(self.offset)
-    }
-
-    /// An error about the table as a whole.
-    pub(super) fn error(&self, message: impl std::fmt::Display) -> Error {
-        Error::invalid(&self.at(), format!("{}: {message}", self.title))
-    }
-
-    /// Refuses every key that is in none of the groups: a slip of the hand must not pass in silence.
-    pub(super) fn allow(&self, groups: &[&[&'static str]]) -> Result<()> {
-        let known = || groups.iter().copied().flatten().copied();
-        let Some(key) = self.map.keys().find(|key| known().all(|word| word != key.get_ref().as_ref())) else {
-            return Ok(());
-        };
-        let at = self.document.location(key.span().start);
-        let error = Error::invalid(&at, format!("unknown key `{}` in {}", key.get_ref(), self.title));
-        Err(match nearest(key.get_ref(), known()) {
-            Some(meant) => error.hint(format!("did you mean `{meant}`?")),
-            None => error.hint(format!("it may have: {}", known().collect::<Vec<_>>().join(", "))),
-        })
-    }
-
-    pub(super) fn has(&self, key: &str) -> bool {
-        self.map.contains_key(key)
-    }
-
-    pub(super) fn find(&self, key: &str) -> Option<Value<'a>> {
-        let (key, item) = self.map.get_key_value(key)?;
-        Some(Value { document: self.document, key: key.get_ref(), item })
-    }
-
-    /// A value that has to be there; `example` shows how it could look.
-    pub(super) fn need(&self, key: &str, example: &str) -> Result<Value<'a>> {
-        self.find(key)
-            .ok_or_else(|| self.error(format!("`{key}` is missing")).hint(format!("add `{key} = {example}`")))
-    }
-
-    /// A value decoded, or a default where it is not given.
-    pub(super) fn or<T>(
-        &self,
-        key: &str,
-        default: T,
-        decode: impl FnOnce(Value<'a>) -> Result<T>,
-    ) -> Result<T> {
-        self.find(key).map_or(Ok(default), decode)
-    }
-
-    /// At most one of these keys may be given: which, if any.
-    pub(super) fn one_of(&self, keys: &[&str]) -> Result<Option<Value<'a>>> {
-        let mut given = keys.iter().filter_map(|key| self.find(key));
-        let first = given.next();
-        match (first, given.next()) {
-            (Some(one), Some(other)) => Err(other
-                .error(format!("{} has both `{}` and `{}`", self.title, one.key, other.key))
-                .hint(format!("give one of {}", keys.join(", ")))),
-            _ => Ok(first),
-        }
-    }
-
-    /// All that is in the table, in the order of the names.
-    pub(super) fn entries(&self) -> impl Iterator<Item = Value<'a>> {
-        let document = self.document;
-        self.map.iter().map(move |(key, item)| Value { document, key: key.get_ref(), item })
     }
 }

@@ -1,119 +1,45 @@
-//! `[camera]`, `[image]` and `[render]`.
+//! `[image]` and `[render]`: what is asked of the picture and of the computation.
 
-use glam::DVec3;
-
-use super::value::{Table, Value};
-use crate::camera::{Camera, Lens, Projection, View};
+use super::table::Table;
+use super::value::Value;
 use crate::error::{ErrorKind, Result};
-use crate::settings::{Crop, Filter, ImageSettings, Integrator, RenderSettings, Sampler, Tonemap};
+use crate::settings::{
+    ColorMode, Crop, Filter, ImageSettings, Integrator, Layers, LightSampler, RenderSettings, Sampler,
+    Sensor, Tonemap,
+};
 
-/// The keys of `[camera]`.
-pub(super) const CAMERA: &[&str] = &[
-    "lookfrom",
-    "lookat",
-    "up",
-    "projection",
-    "fov",
-    "height",
-    "aperture",
-    "focus_distance",
-    "focus",
-    "distance",
-];
 /// The keys of `[image]`.
-pub(super) const IMAGE: &[&str] = &["width", "height", "exposure", "tonemap", "crop", "filter"];
+pub(super) const IMAGE: &[&str] = &[
+    "width",
+    "height",
+    "exposure",
+    "tonemap",
+    "crop",
+    "filter",
+    "imaging_ratio",
+    "white_balance",
+    "max_component",
+    "layers",
+];
 /// The keys of `filter` as a table.
 pub(super) const FILTER: &[&str] = &["type", "radius", "sigma", "b", "c"];
 /// The keys of `[render]`.
-pub(super) const RENDER: &[&str] =
-    &["integrator", "samples", "depth", "min_contribution", "sampler", "seed", "transparent_shadows"];
+pub(super) const RENDER: &[&str] = &[
+    "integrator",
+    "samples",
+    "depth",
+    "min_contribution",
+    "sampler",
+    "seed",
+    "transparent_shadows",
+    "color",
+    "light_sampler",
+    "regularize",
+    "occlusion_distance",
+];
 
 /// The most pixels of a picture.
 const MOST_PIXELS: u64 = 1 << 28;
-
-/// The eye, if it can see.
-pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
-    table.allow(&[CAMERA])?;
-    let eye = table.need("lookfrom", "[0, 1, 5]")?;
-    let lookfrom = eye.vector()?;
-    let target = table.need("lookat", "[0, 0, 0]")?;
-    let lookat = target.vector()?;
-    let up = table.or("up", DVec3::Y, Value::direction)?;
-
-    // Neither the view axis nor the picture's horizontal may vanish.
-    let w = (lookat - lookfrom).normalize_or_zero();
-    if w == DVec3::ZERO || !w.is_finite() {
-        return Err(target
-            .error("`lookat` and `lookfrom` are the same point, or too near or too far apart for a direction")
-            .hint("look at a point that lies in front of the eye"));
-    }
-    if up.normalize().cross(w).length_squared() < 1e-20 {
-        let value = table.find("up").unwrap_or(target);
-        return Err(value
-            .error(format!("up {up} is parallel to the view from lookfrom to lookat"))
-            .hint("give another `up`, such as [0, 0, 1] for a view straight down"));
-    }
-
-    Ok(Camera {
-        at: table.at(),
-        view: View::Look { lookfrom, lookat, up },
-        projection: projection(table)?,
-        lens: lens(table, w.dot(lookat - lookfrom), |focus| w.dot(focus - lookfrom))?,
-        window: None,
-        distance: table.or("distance", 1.0, Value::positive)?,
-    })
-}
-
-fn projection(table: &Table<'_>) -> Result<Projection> {
-    let words = [("perspective", false), ("orthographic", true)];
-    let orthographic = table.or("projection", false, |value| value.choice(&words))?;
-    match (table.find("fov"), table.find("height")) {
-        (Some(value), _) if orthographic => Err(value
-            .error("`fov` has no meaning for parallel rays")
-            .hint("give `height`, the height of the picture in the world")),
-        (_, Some(value)) if !orthographic => Err(value
-            .error("`height` in [camera] needs projection = \"orthographic\"")
-            .hint("give `fov` here, or the picture's `height` in [image]")),
-        (_, None) if orthographic => {
-            Ok(Projection::Orthographic { height: table.need("height", "4")?.positive()? })
-        }
-        (_, Some(value)) => Ok(Projection::Orthographic { height: value.positive()? }),
-        (Some(value), None) => {
-            let expected = "degrees between 0 and 180, neither of them included";
-            let fov = value.number_where(expected, |degrees| degrees > 0.0 && degrees < 180.0)?;
-            Ok(Projection::Perspective { fov })
-        }
-        (None, None) => Ok(Projection::Perspective { fov: 45.0 }),
-    }
-}
-
-/// The lens; sharp at `lookat_distance` where no focus is given. `along` measures a point along the view axis.
-fn lens(table: &Table<'_>, lookat_distance: f64, along: impl Fn(DVec3) -> f64) -> Result<Option<Lens>> {
-    let focus = table.one_of(&["focus_distance", "focus"])?;
-    let Some(aperture) = table.find("aperture") else {
-        return match focus {
-            Some(value) => Err(value
-                .error(format!("`{}` needs an `aperture`: without one everything is sharp", value.key()))
-                .hint("add `aperture = 0.05`, the radius of the lens")),
-            None => Ok(None),
-        };
-    };
-    let radius = aperture.not_negative()?;
-    let focus_distance = match focus {
-        None => lookat_distance,
-        Some(value) if value.key() == "focus_distance" => value.positive()?,
-        Some(value) => {
-            let distance = along(value.vector()?);
-            if distance <= 0.0 || !distance.is_finite() {
-                return Err(value
-                    .error("`focus` lies behind the eye")
-                    .hint("give a point that the eye can see"));
-            }
-            distance
-        }
-    };
-    Ok((radius > 0.0).then_some(Lens { radius, focus_distance }))
-}
 
 /// Size, filter and development of the picture.
 pub(super) fn image(table: &Table<'_>) -> Result<ImageSettings> {
@@ -143,8 +69,24 @@ pub(super) fn image(table: &Table<'_>) -> Result<ImageSettings> {
                 ("filmic", Tonemap::Filmic),
             ])
         })?,
-        ..default
+        sensor: Sensor {
+            imaging_ratio: table.or("imaging_ratio", default.sensor.imaging_ratio, above_zero)?,
+            white_balance: table.or("white_balance", None, |value| kelvin(value).map(Some))?,
+            max_component: table.or("max_component", default.sensor.max_component, above_zero)?,
+        },
+        layers: table.or("layers", default.layers, |value| {
+            Ok(if value.boolean()? { Layers::Geometry } else { Layers::None })
+        })?,
     })
+}
+
+fn above_zero(value: Value<'_>) -> Result<f32> {
+    value.single_where("a number greater than 0", |number| number > 0.0)
+}
+
+/// A colour temperature that can be computed with.
+pub(super) fn kelvin(value: Value<'_>) -> Result<f32> {
+    value.single_where("kelvin from 500 to 100000", |kelvin| (500.0..=100_000.0).contains(&kelvin))
 }
 
 fn crop(value: Value<'_>, width: u32, height: u32) -> Result<Crop> {
@@ -209,8 +151,12 @@ pub(super) fn render(table: &Table<'_>) -> Result<RenderSettings> {
     Ok(RenderSettings {
         integrator: table.or("integrator", default.integrator, |value| {
             value.choice(&[
-                ("raycast", Integrator::Raycast),
+                ("path", Integrator::Path),
                 ("whitted", Integrator::Whitted),
+                ("raycast", Integrator::Raycast),
+                ("simple_path", Integrator::SimplePath),
+                ("random_walk", Integrator::RandomWalk),
+                ("ambient_occlusion", Integrator::AmbientOcclusion { cosine: true }),
                 ("normals", Integrator::Normals),
                 ("depth", Integrator::Depth),
                 ("uv", Integrator::Uv),
@@ -227,6 +173,17 @@ pub(super) fn render(table: &Table<'_>) -> Result<RenderSettings> {
         })?,
         seed: table.or("seed", default.seed, |value| value.integer(0, u64::MAX))?,
         transparent_shadows: table.or("transparent_shadows", default.transparent_shadows, Value::boolean)?,
-        ..default
+        color: table.or("color", default.color, |value| {
+            value.choice(&[("rgb", ColorMode::Rgb), ("spectral", ColorMode::Spectral)])
+        })?,
+        light_sampler: table.or("light_sampler", default.light_sampler, |value| {
+            value.choice(&[
+                ("uniform", LightSampler::Uniform),
+                ("power", LightSampler::Power),
+                ("bvh", LightSampler::Bvh),
+            ])
+        })?,
+        regularize: table.or("regularize", default.regularize, Value::boolean)?,
+        occlusion_distance: table.or("occlusion_distance", default.occlusion_distance, above_zero)?,
     })
 }

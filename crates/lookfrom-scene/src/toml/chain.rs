@@ -1,0 +1,68 @@
+//! Do things that are made of one another come to an end? A texture or a mix that uses itself, through any number of
+//! steps, is an error, and so is a chain of too many.
+
+use std::collections::BTreeMap;
+
+use crate::error::{Error, ErrorKind, Location, Result};
+
+/// How deep things may use one another.
+const DEEPEST: usize = 16;
+
+/// Things that may be made of others of their kind.
+pub(super) trait Made {
+    /// What one of them is called in messages.
+    const WHAT: &'static str;
+    /// What to do about one that uses itself.
+    const REMEDY: &'static str;
+    /// The name that it has.
+    fn name(&self) -> &str;
+    /// Where it was written.
+    fn at(&self) -> &Location;
+    /// The indices of those that it is made of.
+    fn parts(&self) -> Vec<usize>;
+}
+
+/// Checks these of the things, and what they are made of.
+pub(super) fn check<T: Made>(things: &[T], indices: impl IntoIterator<Item = usize>) -> Result<()> {
+    let mut search = Search { things, chain: Vec::new(), heights: BTreeMap::new() };
+    indices.into_iter().try_for_each(|index| search.height(index).map(|_| ()))
+}
+
+struct Search<'a, T> {
+    things: &'a [T],
+    /// From the one that the search began with to the one that is looked at.
+    chain: Vec<usize>,
+    heights: BTreeMap<usize, usize>,
+}
+
+impl<T: Made> Search<'_, T> {
+    /// How many things deep this one is.
+    fn height(&mut self, index: usize) -> Result<usize> {
+        if let Some(&height) = self.heights.get(&index) {
+            return Ok(height);
+        }
+        let thing = &self.things[index];
+        if let Some(start) = self.chain.iter().position(|&other| other == index) {
+            let names = self.chain[start..].iter().chain([&index]).map(|&i| self.things[i].name());
+            let chain = names.collect::<Vec<_>>().join(" → ");
+            let message = format!("{} {:?} uses itself: {chain}", T::WHAT, thing.name());
+            return Err(Error::invalid(thing.at(), message).hint(T::REMEDY));
+        }
+        self.chain.push(index);
+        let mut height = 1;
+        for part in thing.parts() {
+            if self.chain.len() <= DEEPEST {
+                height = height.max(1 + self.height(part)?);
+            }
+        }
+        if height > DEEPEST || self.chain.len() > DEEPEST {
+            let (what, name) = (T::WHAT, thing.name());
+            let message = format!("{what} {name:?} stands in a chain of more than {DEEPEST} {what}s");
+            return Err(Error::new(ErrorKind::Limit, thing.at(), message)
+                .hint(format!("use fewer {what}s in {what}s")));
+        }
+        self.chain.pop();
+        self.heights.insert(index, height);
+        Ok(height)
+    }
+}

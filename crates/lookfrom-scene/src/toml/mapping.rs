@@ -1,0 +1,72 @@
+//! Where patterns and pictures live: on the surface, in space, or thrown onto it.
+
+use glam::{DMat4, DVec3, DVec4};
+
+use super::place::scale_rotate_translate;
+use super::table::Table;
+use super::value::Value;
+use crate::error::Result;
+use crate::texture::Mapping;
+
+/// The keys that say where a texture lives.
+pub(super) const KEYS: &[&str] =
+    &["space", "scale", "offset", "size", "rotate", "translate", "axis_u", "axis_v"];
+
+/// Where it lives, in the default `space` unless another is named.
+pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
+    let words = ["uv", "world", "spherical", "cylindrical", "planar"].map(|word| (word, word));
+    let space = table.or("space", default, |value| value.choice(&words))?;
+    let for_others: &[(&str, &[&str])] = &[
+        ("uv", &["offset"]),
+        ("planar", &["offset", "axis_u", "axis_v", "size", "rotate", "translate"]),
+        ("world", &["size", "rotate", "translate"]),
+        ("spherical", &["size", "rotate", "translate"]),
+        ("cylindrical", &["size", "rotate", "translate"]),
+    ];
+    for key in KEYS[2..].iter().filter_map(|key| table.find(key)) {
+        let has = |word: &str| for_others.iter().any(|other| other.0 == word && other.1.contains(&key.key()));
+        if !has(space) {
+            let spaces = words.map(|word| word.0).into_iter().filter(|word| has(word));
+            let spaces = spaces.map(|word| format!("{word:?}")).collect::<Vec<_>>().join(" or ");
+            return Err(key
+                .error(format!("`{}` means nothing in space = {space:?}", key.key()))
+                .hint(format!("leave it out, or give space = {spaces}")));
+        }
+    }
+    if space == "uv" {
+        let scale = table.or("scale", [1.0; 2], pair)?;
+        return Ok(Mapping::Uv { scale, offset: offset(table)? });
+    }
+    let size = table.or("size", 1.0, Value::positive)?;
+    let world_from_texture = scale_rotate_translate(table)? * DMat4::from_scale(DVec3::splat(size));
+    let texture_from_world = world_from_texture.inverse();
+    if !texture_from_world.is_finite() {
+        return Err(table
+            .error("the pattern is too small or too large to compute with")
+            .hint("change `size` or `scale`"));
+    }
+    // Here up is y; the mappings have their poles on z.
+    let pole_on_z = DMat4::from_cols(DVec4::X, DVec4::Z, -DVec4::Y, DVec4::W) * texture_from_world;
+    Ok(match space {
+        "world" => Mapping::World { texture_from_world },
+        "spherical" => Mapping::Spherical { texture_from_world: pole_on_z },
+        "cylindrical" => Mapping::Cylindrical { texture_from_world: pole_on_z },
+        _ => Mapping::Planar {
+            texture_from_world,
+            axes: [
+                table.or("axis_u", DVec3::X, Value::direction)?.as_vec3(),
+                table.or("axis_v", DVec3::Y, Value::direction)?.as_vec3(),
+            ],
+            offset: offset(table)?,
+        },
+    })
+}
+
+fn offset(table: &Table<'_>) -> Result<[f32; 2]> {
+    table.or("offset", [0.0; 2], |value| value.singles("two numbers, [u, v]"))
+}
+
+/// One number for both directions, or one for each.
+fn pair(value: Value<'_>) -> Result<[f32; 2]> {
+    if value.is_number() { value.single().map(|both| [both; 2]) } else { value.singles("a number or [u, v]") }
+}

@@ -1,0 +1,106 @@
+//! `[[light]]` of type "environment": the sky all around.
+
+use glam::{DMat4, DVec3, DVec4};
+
+use super::Reader;
+use super::light::{COMMON, amount, turned};
+use super::table::Table;
+use super::value::Value;
+use crate::error::Result;
+use crate::light::{Amount, LightKind, Sky};
+use crate::scene::ImageId;
+
+/// Its keys, besides those of its colours.
+const ALWAYS: &[&str] = &["illuminance", "portal", "illuminates"];
+
+impl Reader<'_, '_> {
+    pub(super) fn environment(&mut self, table: &Table<'_>) -> Result<(LightKind, Amount)> {
+        let (sky, scale) = self.sky(table)?;
+        let kind = LightKind::Environment {
+            sky,
+            portal: table.or("portal", None, |value| portal(value).map(Some))?,
+            illuminates: table.or("illuminates", true, Value::boolean)?,
+        };
+        Ok((kind, amount(table, "illuminance", scale)?))
+    }
+
+    fn sky(&mut self, table: &Table<'_>) -> Result<(Sky, f32)> {
+        let Some(value) = table.one_of(&["color", "zenith", "image"])? else {
+            return Err(table
+                .error("it has no colours")
+                .hint("give `color`, or `zenith` and `horizon`, or `image`"));
+        };
+        let groups: [(&str, &[&str]); 3] = [
+            ("color", &["color"]),
+            ("zenith", &["zenith", "horizon", "nadir"]),
+            ("image", &["image", "layout", "scale", "rotate"]),
+        ];
+        for (word, keys) in groups {
+            if word == value.key() {
+                table.allow(&[COMMON, ALWAYS, keys])?;
+            }
+        }
+        Ok(match value.key() {
+            "color" => {
+                let (color, scale) = self.light_color(value, false)?;
+                (Sky::Constant(color), scale)
+            }
+            "zenith" => {
+                let horizon = self.light_rgb(table.need("horizon", "[1, 1, 1]")?)?;
+                let nadir = table.find("nadir").map_or(Ok(horizon), |value| self.light_rgb(value))?;
+                (Sky::Gradient { zenith: self.light_rgb(value)?, horizon, nadir }, 1.0)
+            }
+            _ => (self.sky_picture(table, value)?, 1.0),
+        })
+    }
+
+    fn sky_picture(&mut self, table: &Table<'_>, value: Value<'_>) -> Result<Sky> {
+        let is_octahedral = table.or("layout", false, |value| {
+            value.choice(&[("latitude_longitude", false), ("octahedral", true)])
+        })?;
+        let image = if is_octahedral { self.octahedral_image(value)? } else { self.image(value)? };
+        let scale = table.find("scale").map_or(Ok([1.0; 3]), |value| self.light_rgb(value))?;
+        let turn = turned(table)?;
+        if !is_octahedral {
+            return Ok(Sky::Image { image, scale, world_from_light: turn });
+        }
+        Ok(Sky::Octahedral { image, scale, world_from_light: turn * up_from_pole() })
+    }
+
+    /// A picture of all directions on a square.
+    pub(super) fn octahedral_image(&mut self, value: Value<'_>) -> Result<ImageId> {
+        let id = self.image(value)?;
+        let (width, height) = (self.scene.images[id.index()].width, self.scene.images[id.index()].height);
+        if width == height {
+            return Ok(id);
+        }
+        Err(value
+            .error(format!("an octahedral picture is square, and this one is {width}×{height}"))
+            .hint("one in latitude and longitude is for an environment without `layout`"))
+    }
+}
+
+/// Takes +z, the middle of an octahedral picture, to where up is here.
+pub(super) fn up_from_pole() -> DMat4 {
+    DMat4::from_cols(DVec4::X, -DVec4::Z, DVec4::Y, DVec4::W)
+}
+
+/// The corners of a rectangle, in order around it.
+fn portal(value: Value<'_>) -> Result<[DVec3; 4]> {
+    let mut corners = [DVec3::ZERO; 4];
+    for (corner, item) in
+        corners.iter_mut().zip(value.list_of::<4>("four points, the corners of an opening")?)
+    {
+        *corner = item.vector()?;
+    }
+    let [a, b, c, d] = corners;
+    let (u, v) = (b - a, d - a);
+    let is_parallelogram = (a - b + c - d).length() <= 1e-4 * (u.length() + v.length());
+    let is_right = u.dot(v).abs() <= 1e-4 * u.length() * v.length();
+    if is_parallelogram && is_right && u.cross(v).length_squared() > 0.0 && u.cross(v).is_finite() {
+        return Ok(corners);
+    }
+    Err(value
+        .error("the corners of `portal` make no rectangle")
+        .hint("give the four corners of the opening one after the other, as one goes around it"))
+}

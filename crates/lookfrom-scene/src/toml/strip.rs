@@ -1,0 +1,106 @@
+//! `[[patch]]` and `[[curve]]`: surfaces that are blended from their control points.
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3};
+
+use super::mesh::too_many;
+use super::shape::point;
+use super::table::Table;
+use super::value::Value;
+use crate::error::Result;
+use crate::shape::{Geometry, Patches, Profile, Strand};
+
+/// A bilinear patch between four corners.
+pub(super) fn patch(table: &Table<'_>) -> Result<Geometry> {
+    let value = table.need("corners", "[[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1]]")?;
+    let corners = four(value, "four points, at (u, v) = (0, 0), (1, 0), (0, 1), (1, 1)", point)?;
+    let [a, b, c, d] = corners;
+    let is_flat_at = |p: Vec3, q: Vec3, r: Vec3| (q - p).as_dvec3().cross((r - p).as_dvec3()).length() == 0.0;
+    if is_flat_at(a, b, c) && is_flat_at(d, b, c) {
+        return Err(value.error("the patch has no area: its corners lie on a line").hint("move one of them"));
+    }
+    let normals = table.find("normals").map(|value| four(value, "four normals, one for each corner", point));
+    let uvs = table.find("uvs").map(|value| {
+        let pair = |value: Value<'_>| value.singles("two numbers, [u, v]").map(Vec2::from_array);
+        four(value, "four pairs [u, v], one for each corner", pair)
+    });
+    Ok(Geometry::Bilinear(Arc::new(Patches {
+        positions: corners.to_vec(),
+        patches: vec![[0, 1, 2, 3]],
+        normals: normals.transpose()?.map_or(Vec::new(), |normals| normals.to_vec()),
+        uvs: uvs.transpose()?.map_or(Vec::new(), |uvs| uvs.to_vec()),
+    })))
+}
+
+fn four<T>(value: Value<'_>, expected: &str, decode: impl Fn(Value<'_>) -> Result<T>) -> Result<[T; 4]> {
+    let [a, b, c, d] = value.list_of(expected)?;
+    Ok([decode(a)?, decode(b)?, decode(c)?, decode(d)?])
+}
+
+/// Cubic Bézier curves, each beginning where the one before ends.
+pub(super) fn curve(table: &Table<'_>, limit: u64) -> Result<Geometry> {
+    let value = table.need("points", "[[0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 2, 0]]")?;
+    let expected = "4, 7, 10, … points: each curve has two between its ends";
+    let items = value.list(expected)?;
+    let count = items.len();
+    if count as u64 > limit {
+        return Err(too_many(table, count as u64, limit));
+    }
+    if count < 4 || count % 3 != 1 {
+        return Err(value.wrong(expected).hint("curves that follow one another share an end"));
+    }
+    let points = items.map(point).collect::<Result<Vec<Vec3>>>()?;
+    let joints = count / 3 + 1;
+    let widths = widths(table.need("width", "0.1")?, joints)?;
+    let normals = ribbon(table, joints)?;
+    let is_round = table.or("profile", false, |value| {
+        value.choice(&[("flat", false), ("cylinder", true), ("ribbon", false)])
+    })?;
+    let strands = (0..joints - 1).map(|i| Strand {
+        points: [0, 1, 2, 3].map(|j| points[3 * i + j]),
+        width: [widths[i], widths[i + 1]],
+        profile: match &normals {
+            Some(normals) => Profile::Ribbon([normals[i], normals[i + 1]]),
+            None if is_round => Profile::Cylinder,
+            None => Profile::Flat,
+        },
+    });
+    Ok(Geometry::Curves(strands.collect()))
+}
+
+/// One width for all, or one for each joint.
+fn widths(value: Value<'_>, joints: usize) -> Result<Vec<f32>> {
+    let width = |value: Value<'_>| value.single_where("a number greater than 0", |width| width > 0.0);
+    if value.is_number() {
+        return Ok(vec![width(value)?; joints]);
+    }
+    let expected = format!("a number, or a list of {joints}, one for each end of a curve");
+    let items = value.list(&expected)?;
+    if items.len() != joints {
+        return Err(value.wrong(&expected));
+    }
+    items.map(width).collect()
+}
+
+/// The unit normals of a ribbon at its joints; nothing for other profiles.
+fn ribbon(table: &Table<'_>, joints: usize) -> Result<Option<Vec<Vec3>>> {
+    let is_ribbon = table.find("profile").and_then(Value::as_text) == Some("ribbon");
+    let expected = format!("a list of {joints} vectors, one for each end of a curve");
+    match (table.find("normals"), is_ribbon) {
+        (None, false) => Ok(None),
+        (Some(value), false) => Err(value
+            .error("`normals` are for ribbons")
+            .hint("leave them out, or add `profile = \"ribbon\"`")),
+        (None, true) => Err(table
+            .error("`normals` are missing: they say how the ribbon stands")
+            .hint(format!("add `normals`, {expected}"))),
+        (Some(value), true) => {
+            let items = value.list(&expected)?;
+            if items.len() != joints {
+                return Err(value.wrong(&expected));
+            }
+            items.map(|item| Ok(item.direction()?.normalize().as_vec3())).collect::<Result<_>>().map(Some)
+        }
+    }
+}

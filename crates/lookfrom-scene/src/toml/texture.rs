@@ -1,0 +1,178 @@
+//! `[textures]`: pictures and patterns.
+
+use super::color::plain_color;
+use super::mapping::mapping;
+use super::table::{Kinds, Table};
+use super::value::Value;
+use super::{Reader, chain};
+use crate::error::{Location, Result};
+use crate::material::{Color, Scalar};
+use crate::scene::TextureId;
+use crate::texture::{TexelFilter, Texture, TextureKind, Wrap};
+
+/// The keys of textures, by type, besides `type` and those of `mapping`.
+pub(super) const KEYS: Kinds = &[
+    ("image", &["file", "encoding", "wrap", "filter", "multiply", "invert"]),
+    ("checker", &["even", "odd"]),
+    ("noise", &["low", "high", "octaves"]),
+    ("marble", &["vein", "base", "octaves", "turbulence"]),
+    ("dots", &["inside", "outside"]),
+    ("bilinear", &["corners"]),
+    ("fbm", &["octaves", "roughness"]),
+    ("wrinkled", &["octaves", "roughness"]),
+    ("windy", &[]),
+    ("scale", &["color", "by"]),
+    ("mix", &["low", "high", "amount"]),
+    ("direction_mix", &["low", "high", "direction"]),
+    ("vertex_color", &["tint"]),
+];
+
+/// Whether a type of textures lives somewhere, rather than being made of others.
+pub(super) fn is_mapped(kind: &str) -> bool {
+    !["scale", "mix", "direction_mix", "vertex_color"].contains(&kind)
+}
+
+impl chain::Made for Texture {
+    const WHAT: &'static str = "texture";
+    const REMEDY: &'static str = "give one of them a plain colour";
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn at(&self) -> &Location {
+        &self.at
+    }
+    fn parts(&self) -> Vec<usize> {
+        let index = |color: Color| if let Color::Texture(id) = color { Some(id.index()) } else { None };
+        self.kind.parts().into_iter().filter_map(index).collect()
+    }
+}
+
+impl Reader<'_, '_> {
+    /// `[textures]`: all names first, so that each may use the others, wherever they are written.
+    pub(super) fn read_textures(&mut self, value: Value<'_>) -> Result<()> {
+        let first = self.scene.textures.len();
+        for entry in value.table("[textures]")?.entries() {
+            let name = entry.key();
+            if name.starts_with('#') || name.is_empty() {
+                return Err(entry.error(format!("a texture cannot be named {name:?}")));
+            }
+            let id = TextureId(self.scene.textures.len() as u32);
+            let at = entry.at();
+            if let Some(before) = self.textures.insert(name.to_owned(), id) {
+                return Err(super::twice(entry, "texture", &self.scene.textures[before.index()].at));
+            }
+            // Its place is held until it can be read.
+            let kind = TextureKind::VertexColor { tint: [1.0; 3] };
+            self.scene.textures.push(Texture { name: name.to_owned(), at, kind });
+        }
+        for (index, entry) in value.table("[textures]")?.entries().enumerate() {
+            let table = entry.table(format!("[textures.{}]", entry.key()))?;
+            self.scene.textures[first + index].kind = self.texture_kind(&table)?;
+        }
+        chain::check(&self.scene.textures, first..self.scene.textures.len())
+    }
+
+    pub(super) fn texture_kind(&mut self, table: &Table<'_>) -> Result<TextureKind> {
+        let word = table.kind(KEYS, None, |kind| if is_mapped(kind) { super::mapping::KEYS } else { &[] })?;
+        let octaves =
+            |default| table.or("octaves", default, |value| value.integer(1, 16)).map(|count| count as u32);
+        let roughness = || {
+            table.or("roughness", 0.5, |value| {
+                value.single_where("a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
+            })
+        };
+        Ok(match word {
+            "image" => self.picture(table)?,
+            "checker" => TextureKind::Checker {
+                even: self.color_or(table, "even", 0.9)?,
+                odd: self.color_or(table, "odd", 0.1)?,
+                mapping: mapping(table, "uv")?,
+            },
+            "noise" => TextureKind::Noise {
+                low: self.color_or(table, "low", 0.0)?,
+                high: self.color_or(table, "high", 1.0)?,
+                octaves: octaves(4)?,
+                mapping: mapping(table, "world")?,
+            },
+            "marble" => TextureKind::Marble {
+                vein: self.color_or(table, "vein", 0.1)?,
+                base: self.color_or(table, "base", 0.9)?,
+                octaves: octaves(6)?,
+                turbulence: table.or("turbulence", 1.5, |value| {
+                    value.single_where("a number of at least 0", |number| number >= 0.0)
+                })?,
+                mapping: mapping(table, "world")?,
+            },
+            "dots" => TextureKind::Dots {
+                inside: self.color_or(table, "inside", 0.9)?,
+                outside: self.color_or(table, "outside", 0.1)?,
+                mapping: mapping(table, "uv")?,
+            },
+            "bilinear" => {
+                let value = table.need("corners", "[0, 1, 1, 0]")?;
+                let mut corners = [Color::BLACK; 4];
+                let items = value.list_of::<4>("four colours, at (0, 0), (0, 1), (1, 0) and (1, 1)")?;
+                for (corner, item) in corners.iter_mut().zip(items) {
+                    *corner = self.color(item)?;
+                }
+                TextureKind::Bilinear { corners, mapping: mapping(table, "uv")? }
+            }
+            "fbm" => TextureKind::Fbm {
+                octaves: octaves(8)?,
+                roughness: roughness()?,
+                mapping: mapping(table, "world")?,
+            },
+            "wrinkled" => TextureKind::Wrinkled {
+                octaves: octaves(8)?,
+                roughness: roughness()?,
+                mapping: mapping(table, "world")?,
+            },
+            "windy" => TextureKind::Windy { mapping: mapping(table, "world")? },
+            "scale" => TextureKind::Scale {
+                color: self.color(table.need("color", "\"the name of a texture\"")?)?,
+                by: self.scalar_where(table.need("by", "0.5")?, "a number of at least 0", |by| by >= 0.0)?,
+            },
+            "mix" => TextureKind::Mix {
+                low: self.color_or(table, "low", 0.0)?,
+                high: self.color_or(table, "high", 1.0)?,
+                amount: self.share_or(table, "amount", 0.5)?,
+            },
+            "direction_mix" => TextureKind::DirectionMix {
+                low: self.color_or(table, "low", 0.0)?,
+                high: self.color_or(table, "high", 1.0)?,
+                direction: table.need("direction", "[0, 1, 0]")?.direction()?.normalize().as_vec3(),
+            },
+            _ => TextureKind::VertexColor { tint: table.or("tint", [1.0; 3], plain_color)? },
+        })
+    }
+
+    fn picture(&mut self, table: &Table<'_>) -> Result<TextureKind> {
+        let is_data =
+            table.or("encoding", false, |value| value.choice(&[("srgb", false), ("linear", true)]))?;
+        Ok(TextureKind::Image {
+            image: self.image_as(table.need("file", "\"picture.png\"")?, is_data)?,
+            mapping: mapping(table, "uv")?,
+            wrap: table.or("wrap", Wrap::default(), |value| {
+                value.choice(&[
+                    ("repeat", Wrap::Repeat),
+                    ("mirror", Wrap::Mirror),
+                    ("clamp", Wrap::Clamp),
+                    ("black", Wrap::Black),
+                ])
+            })?,
+            filter: table.or("filter", TexelFilter::default(), |value| {
+                value.choice(&[("bilinear", TexelFilter::Bilinear), ("nearest", TexelFilter::Nearest)])
+            })?,
+            scale: table.or("multiply", 1.0, |value| {
+                value.single_where("a number of at least 0", |number| number >= 0.0)
+            })?,
+            invert: table.or("invert", false, Value::boolean)?,
+        })
+    }
+
+    /// A texture whose mean is the square of another's: both factors are its mean.
+    pub(super) fn squared(&mut self, value: Value<'_>, id: TextureId) -> Scalar {
+        let (color, by) = (Color::Texture(id), Scalar::Texture(id));
+        Scalar::Texture(self.add_texture(value, TextureKind::Scale { color, by }))
+    }
+}

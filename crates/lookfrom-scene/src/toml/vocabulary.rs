@@ -1,0 +1,38 @@
+//! Which tables and keys are there? Gathered from the decoders, for documentation, editors and tests.
+
+use super::{camera, curve, light, mapping, material, place, settings, shape, texture};
+
+/// The keys of a file besides the kinds of shapes.
+pub(super) const TOP: &[&str] =
+    &["import", "camera", "image", "render", "materials", "textures", "objects", "instance", "light"];
+
+/// Every table of the format and the keys that it may have: for documentation, editors and tests.
+pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
+    let mut tables = vec![
+        ("a scene".to_owned(), [TOP, &shape::kinds()].concat()),
+        ("[camera]".to_owned(), camera::KEYS.to_vec()),
+        ("window".to_owned(), camera::WINDOW.to_vec()),
+        ("[image]".to_owned(), settings::IMAGE.to_vec()),
+        ("filter".to_owned(), settings::FILTER.to_vec()),
+        ("[render]".to_owned(), settings::RENDER.to_vec()),
+        ("a colour by wavelength".to_owned(), [curve::KEYS, &["scale"]].concat()),
+        ("[objects.NAME]".to_owned(), shape::kinds()),
+        ("[[instance]]".to_owned(), [shape::INSTANCE, place::KEYS].concat()),
+        ("transform".to_owned(), place::STEPS.to_vec()),
+        ("rotate".to_owned(), place::ROTATION.to_vec()),
+    ];
+    for &(kind, keys) in shape::KEYS {
+        tables.push((format!("[[{kind}]]"), [keys, shape::COMMON, place::KEYS].concat()));
+    }
+    for &(kind, keys) in material::KEYS {
+        tables.push((format!("[materials.NAME] {kind}"), [material::COMMON, keys].concat()));
+    }
+    for &(kind, keys) in texture::KEYS {
+        let mapping = if texture::is_mapped(kind) { mapping::KEYS } else { &[] };
+        tables.push((format!("[textures.NAME] {kind}"), [&["type"], keys, mapping].concat()));
+    }
+    for &(kind, keys) in light::KEYS {
+        tables.push((format!("[[light]] {kind}"), [light::COMMON, keys].concat()));
+    }
+    tables
+}

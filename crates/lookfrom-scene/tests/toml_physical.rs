@@ -1,0 +1,423 @@
+//! Our own format says all that physically based scenes are made of: materials, curves, lights, textures, shapes.
+
+use std::path::Path;
+
+use glam::{DVec3, Vec3};
+use lookfrom_scene::camera::{Projection, Window};
+use lookfrom_scene::light::{LightKind, Sky};
+use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Relief, Roughness, Scalar};
+use lookfrom_scene::settings::{ColorMode, Integrator, Layers, LightSampler};
+use lookfrom_scene::shape::{Geometry, Profile};
+use lookfrom_scene::spectrum::{self, Curve};
+use lookfrom_scene::texture::{Mapping, TextureKind};
+use lookfrom_scene::{Memory, Scene, Sources, image, load};
+
+fn read_files(texts: &[(&str, &str)]) -> Scene {
+    let mut files = Memory::default();
+    for (name, text) in texts {
+        files.0.insert(name.into(), text.as_bytes().to_vec());
+    }
+    files.0.insert("half.png".into(), image::encode_png(1, 1, &[128; 3]).expect("a picture"));
+    let scene = load::scene(Path::new(texts[0].0), &mut Sources::new(&files));
+    scene.unwrap_or_else(|error| panic!("{error}\nin\n{}", texts[0].1))
+}
+
+fn read(text: &str) -> Scene {
+    read_files(&[("a.toml", text)])
+}
+
+fn kind<'a>(scene: &'a Scene, name: &str) -> &'a MaterialKind {
+    &scene.materials.iter().find(|material| material.name == name).expect("a material").kind
+}
+
+#[test]
+fn materials_are_what_they_say() {
+    let scene = read(
+        r##"
+[materials.gold]
+type = "conductor"
+metal = "gold"
+roughness = 0.5
+[materials.tin]
+type = "conductor"
+reflectance = "#808080"
+roughness = [0.1, "spots"]
+[materials.salt]
+type = "conductor"
+eta = { curve = [[500, 1.5], [600, 2]] }
+k = [3, 2, 1]
+[materials.prism]
+type = "dielectric"
+ior = "SF11"
+[materials.pane]
+type = "thin_dielectric"
+ior = 1.3
+[materials.plastic]
+type = "coated_diffuse"
+roughness = 0.3
+coat_albedo = 0.4
+g = 0.5
+bump = "spots"
+[materials.anodised]
+type = "coated_conductor"
+metal = "Al"
+base_roughness = 0.5
+[materials.a_mix]
+type = "mix"
+materials = ["gold", "plastic"]
+amount = "spots"
+[materials.paper]
+type = "diffuse_transmission"
+transmittance = 0.5
+normal_map = "half.png"
+[materials.nothing]
+type = "interface"
+[materials.red]
+type = "diffuse"
+reflectance = { type = "image", file = "half.png" }
+[textures.spots]
+type = "dots"
+"##,
+    );
+    let curve = |color: Color| match color {
+        Color::Curve(id) => &scene.curves[id.index()],
+        other => panic!("{other:?} is no curve"),
+    };
+    let MaterialKind::Conductor { metal: Metal::Indices { eta, k }, roughness } = *kind(&scene, "gold")
+    else {
+        panic!("a conductor")
+    };
+    assert_eq!(*curve(eta), spectrum::named("metal-Au-eta").expect("gold"));
+    assert_eq!(*curve(k), spectrum::named("metal-Au-k").expect("gold"));
+    // Perceptual 0.5 is α = 0.25.
+    let quarter = Scalar::Value(0.25);
+    assert_eq!(roughness, Roughness { u: quarter, v: quarter, remap: false });
+
+    // A texture is squared as a number is.
+    let MaterialKind::Conductor { metal: Metal::Reflectance(_), roughness } = *kind(&scene, "tin") else {
+        panic!("a conductor")
+    };
+    assert_eq!((roughness.u, roughness.remap), (Scalar::Value(0.1_f32 * 0.1), false));
+    let Scalar::Texture(squared) = roughness.v else { panic!("a texture") };
+    let TextureKind::Scale { color: Color::Texture(spots), by: Scalar::Texture(also) } =
+        scene.textures[squared.index()].kind
+    else {
+        panic!("a product")
+    };
+    assert_eq!((spots, scene.textures[spots.index()].name.as_str()), (also, "spots"));
+
+    // Optical constants go on beyond their table.
+    let MaterialKind::Conductor { metal: Metal::Indices { eta, .. }, .. } = *kind(&scene, "salt") else {
+        panic!("a conductor")
+    };
+    for (nm, expected) in [(360.0, 1.5), (550.0, 1.75), (830.0, 2.0)] {
+        assert!((curve(eta).at(nm) - expected).abs() < 1e-6);
+    }
+
+    let MaterialKind::Dielectric { eta: Ior::Curve(glass), roughness } = *kind(&scene, "prism") else {
+        panic!("a dielectric")
+    };
+    assert_eq!(scene.curves[glass.index()], spectrum::named("glass-SF11").expect("a glass"));
+    assert_eq!(roughness.u, Scalar::Value(0.0));
+    assert_eq!(*kind(&scene, "pane"), MaterialKind::ThinDielectric { eta: Ior::Value(1.3) });
+    let MaterialKind::CoatedDiffuse { coat, .. } = *kind(&scene, "plastic") else { panic!("coated") };
+    assert_eq!((coat.roughness.u, coat.albedo), (Scalar::Value(0.3 * 0.3), Color::gray(0.4)));
+    assert_eq!((coat.eta, coat.g), (Ior::Value(1.5), Scalar::Value(0.5)));
+    let MaterialKind::CoatedConductor { roughness, coat, .. } = *kind(&scene, "anodised") else {
+        panic!("coated")
+    };
+    assert_eq!((roughness.u, coat.roughness.u), (quarter, Scalar::Value(0.0)));
+    let MaterialKind::Mix { materials, amount } = *kind(&scene, "a_mix") else { panic!("a mix") };
+    assert_eq!(materials.map(|id| scene.materials[id.index()].name.as_str()), ["gold", "plastic"]);
+    assert_eq!(amount, Scalar::Texture(spots));
+    assert_eq!(*kind(&scene, "nothing"), MaterialKind::Interface);
+
+    // The same file is numbers for a normal map and a colour elsewhere.
+    let relief = |name: &str| scene.materials.iter().find(|m| m.name == name).expect("a material").relief;
+    assert_eq!(relief("plastic"), Relief::Bump(Scalar::Texture(spots)));
+    let Relief::NormalMap(normals) = relief("paper") else { panic!("a normal map") };
+    assert_eq!(scene.images[normals.index()].texels[0][0], 128.0 / 255.0);
+    let linear = image::linear_from_srgb(128.0 / 255.0);
+    assert!(scene.images.iter().any(|image| image.texels[0][0] == linear));
+}
+
+#[test]
+fn physical_materials_are_path_traced_unless_the_file_says_otherwise() {
+    let integrator = |texts: &[(&str, &str)]| read_files(texts).render.integrator;
+    let physical = "[materials.a]\ntype = \"diffuse\"\n";
+    assert_eq!(integrator(&[("a.toml", "[materials.a]\ndiffuse = 1")]), Integrator::Whitted);
+    assert_eq!(integrator(&[("a.toml", physical)]), Integrator::Path);
+    let silent = format!("{physical}[render]\nsamples = 3");
+    assert_eq!(integrator(&[("a.toml", &silent)]), Integrator::Path);
+    let named = format!("{physical}[render]\nintegrator = \"whitted\"");
+    assert_eq!(integrator(&[("a.toml", &named)]), Integrator::Whitted);
+    let importing = "import = \"b.toml\"\n[render]\nsamples = 3";
+    assert_eq!(integrator(&[("a.toml", importing), ("b.toml", &named)]), Integrator::Path);
+    assert_eq!(integrator(&[("a.toml", "import = \"b.toml\""), ("b.toml", &named)]), Integrator::Whitted);
+    let both = [
+        ("a.toml", "import = [\"b.toml\", \"c.toml\"]"),
+        ("b.toml", &silent),
+        ("c.toml", "[render]\nintegrator = \"id\""),
+    ];
+    assert_eq!(integrator(&both), Integrator::Path);
+}
+
+#[test]
+fn settings_and_cameras() {
+    let scene = read(
+        r#"
+[render]
+integrator = "ambient_occlusion"
+color = "spectral"
+light_sampler = "power"
+regularize = true
+occlusion_distance = 3
+[image]
+imaging_ratio = 2
+white_balance = 5000
+max_component = 10
+layers = true
+[camera]
+lookfrom = [0, 0, 5]
+lookat = [0, 0, 0]
+window = { x = [-1, 2], y = [0, 1] }
+"#,
+    );
+    let render = &scene.render;
+    assert_eq!(render.integrator, Integrator::AmbientOcclusion { cosine: true });
+    assert_eq!((render.color, render.light_sampler), (ColorMode::Spectral, LightSampler::Power));
+    assert_eq!((render.regularize, render.occlusion_distance), (true, 3.0));
+    let sensor = scene.image.sensor;
+    assert_eq!((sensor.imaging_ratio, sensor.white_balance, sensor.max_component), (2.0, Some(5000.0), 10.0));
+    assert_eq!(scene.image.layers, Layers::Geometry);
+    let camera = scene.camera.expect("a camera");
+    assert_eq!(camera.window, Some(Window { x: [-1.0, 2.0], y: [0.0, 1.0] }));
+    for (word, projection) in
+        [("equirectangular", Projection::Equirectangular), ("octahedral", Projection::Octahedral)]
+    {
+        let scene =
+            read(&format!("[camera]\nlookfrom = [0, 0, 1]\nlookat = [0, 0, 0]\nprojection = \"{word}\""));
+        assert_eq!(scene.camera.expect("a camera").projection, projection);
+    }
+}
+
+#[test]
+fn lights_have_curves_and_totals() {
+    let scene = read(
+        r#"
+[[light]]
+type = "point"
+position = [0, 1, 0]
+intensity = { kelvin = 3000, scale = 7 }
+[[light]]
+type = "distant"
+direction = [0, -1, 0]
+illuminance = 5
+[[light]]
+type = "environment"
+color = { illuminant = "D65" }
+portal = [[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0]]
+[[light]]
+type = "ambient"
+color = { illuminant = "D65", scale = 2 }
+[[light]]
+type = "sphere"
+center = [0, 2, 0]
+radius = 1
+radiance = { kelvin = 3000 }
+power = 100
+[[sphere]]
+emission = { kelvin = 3000, scale = 4 }
+"#,
+    );
+    let LightKind::Point { intensity: Color::Curve(warm), .. } = scene.lights[0].kind else {
+        panic!("a point")
+    };
+    assert_eq!(scene.curves[warm.index()], Curve::Blackbody { kelvin: 3000.0 });
+    assert_eq!((scene.lights[0].amount.scale, scene.lights[0].amount.total), (7.0, None));
+    assert!(!scene.lights[0].amount.absolute);
+    let LightKind::Distant { intensity, .. } = scene.lights[1].kind else { panic!("distant") };
+    assert_eq!((intensity, scene.lights[1].amount.total), (Color::gray(1.0), Some(5.0)));
+    let LightKind::Environment { sky: Sky::Constant(Color::Curve(_)), portal: Some(corners), .. } =
+        scene.lights[2].kind
+    else {
+        panic!("a window to the sky")
+    };
+    assert_eq!(corners[2], DVec3::new(2.0, 1.0, 0.0));
+    // D65 is white, as bright as it says.
+    let LightKind::Ambient { color } = scene.lights[3].kind else { panic!("ambient") };
+    assert!(color.iter().all(|c| (c - 2.0).abs() < 1e-3), "{color:?}");
+    // What it comes to as a whole outdoes the brightness; the curve is kept once.
+    let emissions: Vec<_> = scene.shapes.iter().map(|shape| shape.emission.expect("it shines")).collect();
+    assert!(emissions.iter().all(|emission| emission.radiance == Color::Curve(warm)));
+    let amounts: Vec<_> = emissions.iter().map(|e| (e.amount.scale, e.amount.total)).collect();
+    assert!(amounts.contains(&(1.0, Some(100.0))) && amounts.contains(&(4.0, None)));
+}
+
+#[test]
+fn lights_throw_pictures_the_right_way() {
+    let scene = read(
+        r#"
+[[light]]
+type = "projection"
+image = "half.png"
+position = [1, 2, 3]
+direction = [0, 0, -2]
+fov = 30
+[[light]]
+type = "goniometric"
+image = "half.png"
+position = [1, 2, 3]
+intensity = 2
+rotate = 90
+[[light]]
+type = "environment"
+image = "half.png"
+layout = "octahedral"
+"#,
+    );
+    let LightKind::Projection { world_from_light, fov: 30.0, .. } = scene.lights[0].kind else {
+        panic!("a projector")
+    };
+    let to = |v: DVec3| world_from_light.transform_vector3(v);
+    assert_eq!((to(DVec3::X), to(DVec3::Y), to(DVec3::Z)), (DVec3::X, DVec3::Y, -DVec3::Z));
+    assert_eq!(world_from_light.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
+    let LightKind::Goniometric { world_from_light, .. } = scene.lights[1].kind else { panic!("a lamp") };
+    assert_eq!(world_from_light.transform_vector3(DVec3::Z), DVec3::Y);
+    assert_eq!(world_from_light.transform_vector3(DVec3::X), -DVec3::Z);
+    let LightKind::Environment { sky: Sky::Octahedral { world_from_light, .. }, .. } = scene.lights[2].kind
+    else {
+        panic!("a sky")
+    };
+    assert_eq!(world_from_light.transform_vector3(DVec3::Z), DVec3::Y);
+    assert_eq!(world_from_light.transform_vector3(DVec3::X), DVec3::X);
+    assert!(world_from_light.determinant() > 0.0);
+}
+
+#[test]
+fn textures_live_where_they_say() {
+    let scene = read(
+        r#"
+[textures.a]
+type = "image"
+file = "half.png"
+encoding = "linear"
+multiply = 0.5
+space = "planar"
+axis_v = [0, 0, 3]
+offset = [1, 2]
+[textures.b]
+type = "dots"
+space = "spherical"
+translate = [0, 5, 0]
+[textures.c]
+type = "bilinear"
+corners = [0, "a", 1, { type = "windy" }]
+[textures.d]
+type = "direction_mix"
+direction = [0, 0, -4]
+[textures.e]
+type = "mix"
+amount = "f"
+[textures.f]
+type = "fbm"
+roughness = 0.25
+[textures.g]
+type = "wrinkled"
+"#,
+    );
+    let texture = |name: &str| &scene.textures.iter().find(|texture| texture.name == name).expect("it").kind;
+    let TextureKind::Image { image, mapping: Mapping::Planar { axes, offset, .. }, scale, .. } =
+        *texture("a")
+    else {
+        panic!("a picture on a plane")
+    };
+    assert_eq!(scene.images[image.index()].texels[0][0], 128.0 / 255.0);
+    assert_eq!((axes, offset, scale), ([Vec3::X, 3.0 * Vec3::Z], [1.0, 2.0], 0.5));
+    // The pole is above the middle.
+    let TextureKind::Dots { mapping: Mapping::Spherical { texture_from_world }, .. } = *texture("b") else {
+        panic!("dots on a sphere")
+    };
+    assert_eq!(texture_from_world.transform_point3(DVec3::new(0.0, 6.0, 0.0)), DVec3::Z);
+    assert_eq!(texture_from_world.transform_point3(DVec3::new(0.0, 5.0, -1.0)), DVec3::Y);
+    let TextureKind::Bilinear { corners, .. } = *texture("c") else { panic!("bilinear") };
+    assert_eq!((corners[0], corners[2]), (Color::BLACK, Color::gray(1.0)));
+    assert!(matches!(*texture("d"), TextureKind::DirectionMix { direction: Vec3::NEG_Z, .. }));
+    assert!(matches!(*texture("e"), TextureKind::Mix { amount: Scalar::Texture(_), .. }));
+    assert!(matches!(*texture("f"), TextureKind::Fbm { octaves: 8, roughness: 0.25, .. }));
+    assert!(matches!(*texture("g"), TextureKind::Wrinkled { roughness: 0.5, .. }));
+}
+
+#[test]
+fn shapes_stand_where_they_say() {
+    let scene = read(
+        r#"
+[[sphere]]
+center = [1, 0, 0]
+radius = 2
+z_max = 1
+translate = [0, 3, 0]
+[[disk]]
+center = [0, 4, 0]
+normal = [0, 2, 0]
+radius = 2
+inner_radius = 1
+alpha = 0.5
+reverse_orientation = true
+[[cylinder]]
+from = [1, 1, 1]
+to = [1, 1, -3]
+radius = 0.5
+phi_max = 90
+[[patch]]
+corners = [[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 1, 1]]
+uvs = [[0, 0], [2, 0], [0, 2], [2, 2]]
+[[curve]]
+points = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0], [5, 0, 0], [6, 0, 0]]
+width = [3, 2, 1]
+profile = "ribbon"
+normals = [[0, 2, 0], [0, 1, 0], [0, 0, 1]]
+"#,
+    );
+    let place = |index: usize, x: f64, y: f64, z: f64| {
+        scene.shapes[index].world_from_object.transform_point3(DVec3::new(x, y, z))
+    };
+    // Kinds are read in the order of the guide.
+    assert!(matches!(
+        scene.shapes[0].geometry,
+        Geometry::PartialSphere { radius: 2.0, z: [-2.0, 1.0], phi_max: 360.0 }
+    ));
+    assert_eq!(place(0, 0.0, 0.0, 0.0), DVec3::new(1.0, 3.0, 0.0));
+    assert!(matches!(
+        scene.shapes[1].geometry,
+        Geometry::PartialDisk { height: 0.0, radius: 2.0, inner_radius: 1.0, phi_max: 360.0 }
+    ));
+    assert_eq!(place(1, 0.0, 0.0, 1.0), DVec3::new(0.0, 5.0, 0.0));
+    assert_eq!(
+        (scene.shapes[1].alpha, scene.shapes[1].reverse_orientation),
+        (Some(Scalar::Value(0.5)), true)
+    );
+    assert!(scene.shapes[1].world_from_object.determinant() > 0.0);
+    assert!(matches!(scene.shapes[2].geometry, Geometry::Cylinder { z: [0.0, 4.0], phi_max: 90.0, .. }));
+    assert_eq!(place(2, 0.0, 0.0, 4.0), DVec3::new(1.0, 1.0, -3.0));
+    let Geometry::Bilinear(patches) = &scene.shapes[3].geometry else { panic!("a patch") };
+    assert_eq!((patches.positions[3], patches.patches.len(), patches.uvs.len()), (Vec3::ONE, 1, 4));
+    let Geometry::Curves(strands) = &scene.shapes[4].geometry else { panic!("curves") };
+    assert_eq!(
+        (strands.len(), strands[0].points[3], strands[1].width),
+        (2, strands[1].points[0], [2.0, 1.0])
+    );
+    assert_eq!(strands[0].profile, Profile::Ribbon([Vec3::Y, Vec3::Y]));
+}
+
+#[test]
+fn mixes_of_mixes_come_to_an_end() {
+    let chain: String = (0..100_000)
+        .map(|i| format!("[materials.m{i}]\ntype = \"mix\"\nmaterials = [\"m{}\", \"last\"]\n", i + 1))
+        .collect();
+    let text = format!("{chain}[materials.m100000]\n[materials.last]\n");
+    let mut files = Memory::default();
+    files.0.insert("a.toml".into(), text.into_bytes());
+    let error = load::scene(Path::new("a.toml"), &mut Sources::new(&files)).unwrap_err();
+    assert_eq!(error.kind, lookfrom_scene::ErrorKind::Limit, "{error}");
+}
