@@ -12,12 +12,13 @@ fn survive(bytes: &[u8]) {
     let mut sources = Sources::new(&files);
     sources.limits.elements = 10_000;
     sources.limits.texels = 10_000;
-    if let Err(error) = load::scene(Path::new("a.toml"), &mut sources) {
-        assert!(!error.message.is_empty() && !error.at.file.is_empty());
+    match load::scene(Path::new("a.toml"), &mut sources) {
+        Ok(scene) => scene.shapes.iter().for_each(|shape| assert!(shape.world_from_object.is_finite())),
+        Err(error) => assert!(!error.message.is_empty() && !error.at.file.is_empty()),
     }
 }
 
-/// Our own scenes, as they stand in the repository, and the scenes of the golden errors.
+/// Our own scenes, as they stand in the repository, the guide's snippets, and the scenes of the golden errors.
 fn corpus() -> Vec<Vec<u8>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut texts: Vec<Vec<u8>> = include_str!("toml/errors.txt")
@@ -25,6 +26,9 @@ fn corpus() -> Vec<Vec<u8>> {
         .filter_map(|case| case.split("\n-----\n").next())
         .map(|text| text.as_bytes().to_vec())
         .collect();
+    let guide = std::fs::read_to_string(root.join("docs/guide/scene-format.md")).expect("the guide is there");
+    let snippets = guide.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+    texts.extend(snippets.map(|snippet| snippet.as_bytes().to_vec()));
     for folder in ["scenes", "docs/guide/scenes"] {
         let mut paths: Vec<_> = std::fs::read_dir(root.join(folder))
             .expect("the folder is there")

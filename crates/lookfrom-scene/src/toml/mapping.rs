@@ -1,6 +1,6 @@
 //! Where patterns and pictures live: on the surface, in space, or thrown onto it.
 
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec3, DVec4, Vec3};
 
 use super::place::scale_rotate_translate;
 use super::table::Table;
@@ -53,13 +53,16 @@ pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
         "cylindrical" => Mapping::Cylindrical { texture_from_world: pole_on_z },
         _ => Mapping::Planar {
             texture_from_world,
-            axes: [
-                table.or("axis_u", DVec3::X, Value::direction)?.as_vec3(),
-                table.or("axis_v", DVec3::Y, Value::direction)?.as_vec3(),
-            ],
+            axes: [table.or("axis_u", Vec3::X, axis)?, table.or("axis_v", Vec3::Y, axis)?],
             offset: offset(table)?,
         },
     })
+}
+
+/// A vector that is not 0 and can be computed with.
+fn axis(value: Value<'_>) -> Result<Vec3> {
+    value.direction()?;
+    super::shape::point(value)
 }
 
 fn offset(table: &Table<'_>) -> Result<[f32; 2]> {

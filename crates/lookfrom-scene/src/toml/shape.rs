@@ -60,6 +60,11 @@ impl Reader<'_, '_> {
             _ => {
                 let (geometry, own) = self.geometry(kind, table)?;
                 world_from_object *= own;
+                if !world_from_object.is_finite() {
+                    return Err(table
+                        .error("it stands too far away to compute with")
+                        .hint("use smaller numbers"));
+                }
                 vec![Part { name: None, geometry, material: None, emission: None }]
             }
         };

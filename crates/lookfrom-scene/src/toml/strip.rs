@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::mesh::too_many;
 use super::shape::point;
@@ -15,8 +15,8 @@ use crate::shape::{Geometry, Patches, Profile, Strand};
 pub(super) fn patch(table: &Table<'_>) -> Result<Geometry> {
     let value = table.need("corners", "[[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1]]")?;
     let corners = four(value, "four points, at (u, v) = (0, 0), (1, 0), (0, 1), (1, 1)", point)?;
-    let [a, b, c, d] = corners;
-    let is_flat_at = |p: Vec3, q: Vec3, r: Vec3| (q - p).as_dvec3().cross((r - p).as_dvec3()).length() == 0.0;
+    let [a, b, c, d] = corners.map(Vec3::as_dvec3);
+    let is_flat_at = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p) == DVec3::ZERO;
     if is_flat_at(a, b, c) && is_flat_at(d, b, c) {
         return Err(value.error("the patch has no area: its corners lie on a line").hint("move one of them"));
     }
