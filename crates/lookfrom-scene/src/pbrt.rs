@@ -73,7 +73,6 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         images: BTreeMap::new(),
         models: BTreeMap::new(),
         warned: BTreeSet::new(),
-        has_media: false,
     };
     reader.file(path)?;
     reader.finish(path)?;
@@ -125,7 +124,6 @@ struct Reader<'s, 'f> {
     models: BTreeMap<PathBuf, Model>,
     /// What was warned of already.
     warned: BTreeSet<String>,
-    has_media: bool,
 }
 
 /// A material that was made or mentioned.

@@ -367,7 +367,6 @@ impl Reader<'_, '_> {
             outside = lexer.string("a quoted name of a medium")?;
         }
         if !inside.is_empty() || !outside.is_empty() {
-            self.has_media = true;
             self.warn_once(
                 "media",
                 place,
