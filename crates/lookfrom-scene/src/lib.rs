@@ -10,6 +10,7 @@ pub mod image;
 pub mod light;
 pub mod load;
 pub mod material;
+pub mod medium;
 pub mod model;
 pub mod obj;
 pub mod pbrt;

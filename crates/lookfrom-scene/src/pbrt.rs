@@ -15,6 +15,7 @@ mod lexer;
 mod light;
 mod loop_subdivision;
 mod material;
+mod medium;
 mod mesh;
 mod params;
 mod picture;
@@ -37,7 +38,7 @@ use self::text::Place;
 use crate::error::{Error, Location, Result};
 use crate::files::Sources;
 use crate::material::{Color, Material, MaterialKind};
-use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
+use crate::scene::{CurveId, ImageId, MaterialId, MediumId, ObjectId, Scene, TextureId};
 use crate::settings::ColorMode;
 
 /// Reads a scene of pbrt-v4 with all that it includes. Names of files are relative to the folder of `path`, or else to
@@ -73,6 +74,7 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         images: BTreeMap::new(),
         models: BTreeMap::new(),
         warned: BTreeSet::new(),
+        media: BTreeMap::new(),
     };
     reader.file(path)?;
     reader.finish(path)?;
@@ -124,6 +126,8 @@ struct Reader<'s, 'f> {
     models: BTreeMap<PathBuf, Model>,
     /// What was warned of already.
     warned: BTreeSet<String>,
+    /// Media by name; `None` for those that are not rendered.
+    media: BTreeMap<String, Option<MediumId>>,
 }
 
 /// A material that was made or mentioned.

@@ -10,6 +10,7 @@ use crate::error::Location;
 use crate::image::Image;
 use crate::light::Light;
 use crate::material::Material;
+use crate::medium::Medium;
 use crate::settings::{ImageSettings, RenderSettings};
 use crate::shape::{Mesh, Shape};
 use crate::spectrum::Curve;
@@ -36,6 +37,8 @@ ids! {
     ImageId
     /// Index into [`Scene::curves`].
     CurveId
+    /// Index into [`Scene::media`].
+    MediumId
     /// Index into [`Scene::meshes`].
     MeshId
     /// Index into [`Scene::objects`].
@@ -55,6 +58,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Colour over surfaces.
     pub textures: Vec<Texture>,
+    /// What fills space.
+    pub media: Vec<Medium>,
     /// Values by wavelength, shared by whatever has a colour.
     pub curves: Vec<Curve>,
     /// Decoded pictures, shared by textures and environment lights.

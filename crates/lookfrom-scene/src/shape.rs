@@ -7,6 +7,7 @@ use glam::{DMat4, DVec3, Vec2, Vec3};
 use crate::error::Location;
 use crate::light::Amount;
 use crate::material::{Color, Scalar};
+use crate::medium::Sides;
 use crate::scene::{Bounds, MaterialId, MeshId};
 
 /// One thing in the world (or in an object).
@@ -24,6 +25,8 @@ pub struct Shape {
     pub emission: Option<Emission>,
     /// The part of it that is there: light passes where chance says that it is not. `None` is all of it.
     pub alpha: Option<Scalar>,
+    /// What fills space on both sides, where the surface says so; otherwise what was there goes on.
+    pub sides: Option<Sides>,
     /// Whether outside and inside change places.
     pub reverse_orientation: bool,
     /// From the shape's space to the world: any invertible affine matrix.
@@ -40,6 +43,7 @@ impl Shape {
             material,
             emission: None,
             alpha: None,
+            sides: None,
             reverse_orientation: false,
             world_from_object: DMat4::IDENTITY,
         }

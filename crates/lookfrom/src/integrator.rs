@@ -15,12 +15,13 @@ mod whitted;
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
-use lookfrom_scene::material::Color;
+use lookfrom_scene::material::MaterialKind;
+use lookfrom_scene::medium::Sides;
 
 use crate::bsdf::BsdfSample;
 use crate::hash;
 use crate::light::Reference;
-use crate::material::Shading;
+use crate::material::{Material, Shading};
 use crate::sampler::Sampler;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
@@ -85,14 +86,18 @@ impl Path {
     }
 }
 
-/// The materials that a ray is inside of, the innermost last: at most four, of the first 65,535.
+/// What a ray is inside of, the innermost last: at most four bodies, whose media are among the first 65,534.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Media(u64);
 
+/// A body of which nothing is absorbed.
+const CLEAR: u64 = 0xffff;
+
 impl Media {
-    /// After entering a material.
-    pub fn entered(self, material: u32) -> Self {
-        Self(self.0 << 16 | u64::from(material + 1).min(0xffff))
+    /// After entering a body that is filled with a medium, or with none.
+    pub fn entered(self, medium: Option<u32>) -> Self {
+        let medium = medium.map_or(CLEAR, |medium| u64::from(medium) + 1);
+        Self(self.0 << 16 | medium.min(CLEAR))
     }
 
     /// After leaving the innermost.
@@ -100,26 +105,35 @@ impl Media {
         Self(self.0 >> 16)
     }
 
-    /// The innermost material.
+    /// The innermost medium.
     pub fn innermost(self) -> Option<u32> {
-        ((self.0 & 0xffff) as u32).checked_sub(1)
+        let innermost = self.0 & 0xffff;
+        (innermost != 0 && innermost != CLEAR).then(|| innermost as u32 - 1)
     }
 
-    /// After going through the surface of a material, met from outside or from inside.
-    pub fn crossed(self, material: u32, from_outside: bool) -> Self {
-        if from_outside { self.entered(material) } else { self.left() }
+    /// After going through a surface: to what it says is on its other side, or else in or out of the body that its
+    /// material is.
+    pub fn crossed(self, world: &World, surface: &Surface) -> Self {
+        if let Some(Sides { inside, outside }) = surface.sides {
+            let beyond = if surface.front { inside } else { outside };
+            return beyond.map_or(Self::default(), |medium| Self::default().entered(Some(medium.0)));
+        }
+        match (&world.materials[surface.material as usize], surface.front) {
+            (Material { kind: MaterialKind::Whitted(_), medium, .. }, true) => self.entered(*medium),
+            (Material { kind: MaterialKind::Whitted(_), .. }, false) => self.left(),
+            _ => self,
+        }
     }
 
     /// What is left of light after `distance` (Beer's law).
     pub fn transmittance(self, world: &World, distance: f32, lanes: &Lanes) -> Spectrum {
-        let material = self.innermost().and_then(|index| world.materials.get(index as usize));
-        match material.map(|material| material.whitted.absorption) {
-            Some(absorption) if absorption != [0.0; 3] => {
-                let left = Color::Value(absorption.map(|sigma| libm::expf(-sigma * distance)));
-                world.textures.spectrum(left, Usage::Albedo, &TexturePoint::NOWHERE, lanes)
-            }
-            _ => lanes.one(),
-        }
+        let Some(medium) = self.innermost().and_then(|index| world.media.get(index as usize)) else {
+            return lanes.one();
+        };
+        let sigma =
+            world.textures.spectrum(medium.absorption, Usage::Unbounded, &TexturePoint::NOWHERE, lanes);
+        let length = medium.scale * distance;
+        lanes.one() * sigma.map(|sigma| libm::expf(-sigma * length))
     }
 }
 

@@ -33,6 +33,8 @@ pub struct Material {
     pub kind: MaterialKind,
     /// What bends the shading normal.
     pub relief: Relief,
+    /// Index into the world's media: what fills a body of this material, where it says so itself.
+    pub medium: Option<u32>,
     /// The nearest thing in Whitted's model, for integrators that know no other.
     pub whitted: Whitted,
 }
@@ -42,8 +44,6 @@ pub struct Material {
 pub struct Shading {
     /// In the local frame.
     pub bsdf: Bsdf,
-    /// Whether the inside takes away from light on its way (Beer's law), so that paths remember that they are in it.
-    pub absorbs: bool,
     frame: Frame,
 }
 
@@ -122,8 +122,7 @@ pub fn shading(
     }
     let mut at = At { textures, point, lanes };
     let bsdf = at.bsdf(material)?;
-    let absorbs = matches!(&material.kind, MaterialKind::Whitted(whitted) if whitted.absorption != [0.0; 3]);
-    Some(Shading { bsdf, absorbs, frame: relief::frame(&material.relief, textures, surface, point) })
+    Some(Shading { bsdf, frame: relief::frame(&material.relief, textures, surface, point) })
 }
 
 /// Where a material is asked.

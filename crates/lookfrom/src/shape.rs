@@ -35,6 +35,8 @@ pub struct Look {
     pub shape: u32,
     /// Index into the world's alphas, where part of the surface may not be there.
     pub alpha: Option<u32>,
+    /// Index into the world's sides, where the surface says what fills space around it.
+    pub sides: Option<u32>,
 }
 
 /// The primitives that share a geometry id of the kernel.

@@ -5,6 +5,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
 use lookfrom_scene::material::Scalar;
+use lookfrom_scene::medium::Sides;
 
 /// A point of a surface, seen from a direction.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +39,8 @@ pub struct Surface {
     pub light: Option<u32>,
     /// The part of the surface that is there; `None` is all of it.
     pub alpha: Option<Scalar>,
+    /// What fills space on both sides, where the surface says so.
+    pub sides: Option<Sides>,
     /// Which shape of the scene, counted over the whole world.
     pub shape: u32,
     /// Which primitive of its form: of a mesh, the triangle.

@@ -10,6 +10,7 @@ mod place;
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Bvh, Hit, NONE, Ray};
 use lookfrom_scene::material::{Color, MaterialKind, Scalar};
+use lookfrom_scene::medium::{Medium, Sides};
 
 use crate::camera::{Camera, CameraRay};
 use crate::light::{Coverage, Light, LightChoice, Reference};
@@ -39,6 +40,10 @@ pub struct World {
     pub materials: Vec<Material>,
     /// Parts of surfaces that are there, see [`Look::alpha`](crate::shape::Look::alpha).
     pub alphas: Vec<Scalar>,
+    /// What fills bodies and space.
+    pub media: Vec<Medium>,
+    /// What surfaces say is on their sides, see [`Look::sides`](crate::shape::Look::sides).
+    pub sides: Vec<Sides>,
     /// Colours over surfaces.
     pub textures: Textures,
     /// Lights to be sampled.
@@ -126,6 +131,7 @@ impl World {
             material: look.material,
             light: look.light,
             alpha: look.alpha.map(|index| self.alphas[index as usize]),
+            sides: look.sides.map(|index| self.sides[index as usize]),
             shape: look.shape,
             primitive: hit.primitive,
             on_primitive: Vec2::new(hit.u, hit.v),

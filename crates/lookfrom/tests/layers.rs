@@ -29,7 +29,18 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("light", &["distribution", "math", "sampler", "shape", "spectrum", "surface", "texture", "warp"]),
     (
         "world",
-        &["camera", "distribution", "light", "material", "math", "shape", "spectrum", "surface", "texture"],
+        &[
+            "camera",
+            "distribution",
+            "light",
+            "material",
+            "math",
+            "shape",
+            "spectrum",
+            "surface",
+            "texture",
+            "warp",
+        ],
     ),
     (
         "integrator",

@@ -162,12 +162,12 @@ fn a_white_furnace_hides_what_keeps_all_light() {
     }
 }
 
-/// Nobody makes light.
+/// A smooth coat over a white base keeps all light, but for what is cut off after many bounces.
 #[test]
-fn coats_give_back_no_more_than_they_get() {
+fn a_smooth_coat_keeps_all_light() {
     let coat = Coat {
         eta: Ior::Value(1.5),
-        roughness: Roughness { u: Scalar::Value(0.1), v: Scalar::Value(0.2), remap: false },
+        roughness: Roughness::SMOOTH,
         thickness: Scalar::Value(0.01),
         albedo: Color::BLACK,
         g: Scalar::Value(0.0),
@@ -175,7 +175,7 @@ fn coats_give_back_no_more_than_they_get() {
         samples: 1,
     };
     let found = mean(furnace(MaterialKind::CoatedDiffuse { reflectance: Color::gray(1.0), coat }));
-    assert!(found[0] > 0.93 && found[0] < 1.005, "{found:?}");
+    assert!(found[0] > 0.985 && found[0] < 1.005, "{found:?}");
 }
 
 /// Lights of each kind, and many of them: asked by importance or evenly, the light is the same.

@@ -158,10 +158,11 @@ impl Reader<'_, '_> {
                 parameters.finish(self.sources);
             }
             b"MakeNamedMedium" => {
-                let (_, parameters) = self.entity(word, place, lexer, Some(3))?;
-                drop(parameters);
+                let (name, parameters) = self.entity(word, place, lexer, Some(3))?;
+                self.make_medium(name, &parameters)?;
+                parameters.finish(self.sources);
             }
-            b"MediumInterface" => self.medium_interface(place, lexer)?,
+            b"MediumInterface" => self.medium_interface(lexer)?,
 
             // Objects.
             b"ObjectBegin" => self.object_begin(place, lexer)?,
@@ -357,22 +358,6 @@ impl Reader<'_, '_> {
             Some(Token::Word(b"All")) => (true, true),
             _ => return Err(lexer.wrong(start, "StartTime, EndTime or All")),
         };
-        Ok(())
-    }
-
-    fn medium_interface(&mut self, place: &Place, lexer: &mut Lexer<'_>) -> Result<()> {
-        let inside = lexer.string("a quoted name of a medium, or \"\"")?;
-        let mut outside = inside.clone();
-        if matches!(lexer.peek()?, Some(Token::Quoted(_))) {
-            outside = lexer.string("a quoted name of a medium")?;
-        }
-        if !inside.is_empty() || !outside.is_empty() {
-            self.warn_once(
-                "media",
-                place,
-                "media are not rendered yet: light passes them as it passes a vacuum",
-            );
-        }
         Ok(())
     }
 

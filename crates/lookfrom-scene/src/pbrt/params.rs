@@ -323,6 +323,11 @@ impl Parameters {
         self.own.iter().filter(|parameter| names.contains(&&*parameter.name)).for_each(|p| p.used.set(true));
     }
 
+    /// Marks all of them so.
+    pub(super) fn ignore_all(&self) {
+        self.own.iter().for_each(|parameter| parameter.used.set(true));
+    }
+
     pub(super) fn float_or_none(&self, name: &'static str) -> Result<Option<f32>> {
         let Some(parameter) = self.find(name, &[Kind::Float])? else { return Ok(None) };
         Ok(parameter.single(parameter.numbers())?.first().copied())

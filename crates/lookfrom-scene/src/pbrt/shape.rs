@@ -35,6 +35,7 @@ impl Reader<'_, '_> {
             self.warn_once("light in object", &p.place, message);
             emission = None;
         }
+        let sides = self.sides(&p.place)?;
         self.push_shape(Shape {
             name: None,
             at: p.place.location(),
@@ -42,6 +43,7 @@ impl Reader<'_, '_> {
             material: self.state.material,
             emission,
             alpha,
+            sides,
             reverse_orientation: self.state.reverse_orientation,
             world_from_object: matrix,
         });

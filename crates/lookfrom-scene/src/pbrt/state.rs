@@ -25,6 +25,8 @@ pub(super) struct State {
     pub(super) reverse_orientation: bool,
     pub(super) material: MaterialId,
     pub(super) emission: Option<Emission>,
+    /// The names of the media inside and outside; empty is a vacuum.
+    pub(super) media: Option<Rc<[String; 2]>>,
     pub(super) attributes: [Inherited; 5],
     pub(super) space: Space,
 }
@@ -38,6 +40,7 @@ impl Default for State {
             reverse_orientation: false,
             material: MaterialId(0),
             emission: None,
+            media: None,
             attributes: std::array::from_fn(|_| Rc::default()),
             space: SRGB,
         }

@@ -105,7 +105,8 @@ impl Integrator for PathTracer {
         // What it does with light; dispersion leaves one wavelength.
         let lanes = &mut next.lanes[path.slot as usize];
         let Some(mut shading) = world.shading(&surface, lanes, mix) else {
-            next.paths.push(path.passed(&surface));
+            let media = path.media.crossed(world, &surface);
+            next.paths.push(Path { media, ..path.passed(&surface) });
             return;
         };
         if self.regularize && path.departure.blurred {
@@ -152,10 +153,7 @@ impl Integrator for PathTracer {
         if !survives || beta.is_black() {
             return;
         }
-        let media = match transmitted {
-            true if shading.absorbs => path.media.crossed(surface.material, surface.front),
-            _ => path.media,
-        };
+        let media = if transmitted { path.media.crossed(world, &surface) } else { path.media };
         next.paths.push(Path {
             ray: Ray::new(surface.origin(wi), wi.to_array()),
             beta: beta / survival,

@@ -84,7 +84,7 @@ pub(crate) fn resolve<P: Probe>(world: &World, passing: Passing, next: &mut Next
     let traced = if anything_passes {
         let_through(world, passing, &mut shadows, &next.lanes, next.probe)
     } else {
-        block(world, &mut shadows, next.probe)
+        block(world, &mut shadows, &next.lanes, next.probe)
     };
     for shadow in shadows.drain(..) {
         next.add(&shadow.path, shadow.term, shadow.contribution);
@@ -94,12 +94,13 @@ pub(crate) fn resolve<P: Probe>(world: &World, passing: Passing, next: &mut Next
 }
 
 /// Whatever stands in the way takes all.
-fn block<P: Probe>(world: &World, shadows: &mut [Shadow], probe: &mut P) -> u64 {
+fn block<P: Probe>(world: &World, shadows: &mut [Shadow], lanes: &[Lanes], probe: &mut P) -> u64 {
     let rays: Vec<Ray> = shadows.iter().map(|shadow| shadow.ray).collect();
     let mut blocked = vec![false; rays.len()];
     world.bvh.occluded_many(&rays, &mut blocked);
     for (shadow, blocked) in shadows.iter_mut().zip(blocked) {
-        let passed = if blocked { Spectrum::BLACK } else { Spectrum([1.0; 4]) };
+        let lanes = &lanes[shadow.path.slot as usize];
+        let passed = if blocked { Spectrum::BLACK } else { shadow.reached(world, lanes) };
         // That something is in the way is enough for the picture; who listens wants to know what.
         probe.notice(|| Event::Shadow { shadow: *shadow, hit: world.bvh.closest_hit(&shadow.ray), passed });
         shadow.contribution *= passed;
@@ -157,7 +158,7 @@ impl Shadow {
     fn reached(&self, world: &World, lanes: &Lanes) -> Spectrum {
         let length = Vec3::from_array(self.ray.direction).length() * self.ray.t_max;
         // A medium that fills infinite space lets all through.
-        if length.is_finite() { self.media.transmittance(world, length, lanes) } else { Spectrum([1.0; 4]) }
+        if length.is_finite() { self.media.transmittance(world, length, lanes) } else { lanes.one() }
     }
 
     /// The part of the light that comes through to where the ray met `surface` and through it.
@@ -195,8 +196,8 @@ impl Shadow {
         let direction = Vec3::from_array(self.ray.direction);
         self.ray.origin = surface.origin(direction);
         self.ray.t_max -= hit.t;
-        if world.is_there(surface, self.number(hit)) && !world.is_interface(surface) {
-            self.media = self.media.crossed(surface.material, surface.front);
+        if world.is_there(surface, self.number(hit)) {
+            self.media = self.media.crossed(world, surface);
         }
     }
 }

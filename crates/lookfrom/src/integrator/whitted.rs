@@ -54,7 +54,7 @@ impl Integrator for Whitted {
         let mirrored = (Branch::Mirrored, branches.mirrored);
         let refracted = branches.refracted.map(|refracted| (Branch::Refracted, refracted));
         for (branch, (direction, weight)) in [Some(mirrored), refracted].into_iter().flatten() {
-            let child = self.child(path, &surface, branch, direction, weight);
+            let child = self.child(world, path, &surface, branch, direction, weight);
             next.probe.notice(|| Event::Grew {
                 address: path.address,
                 branch,
@@ -74,6 +74,7 @@ impl Whitted {
     /// The path that goes on from a surface, or why there is none.
     fn child(
         &self,
+        world: &World,
         path: &Path,
         surface: &Surface,
         branch: Branch,
@@ -90,11 +91,7 @@ impl Whitted {
         let ng = surface.ng_facing();
         let (direction, media, last_bit) = match branch {
             Branch::Mirrored => (same_side(direction, ng, 1.0), path.media, 0),
-            Branch::Refracted => {
-                let media =
-                    if surface.front { path.media.entered(surface.material) } else { path.media.left() };
-                (same_side(direction, ng, -1.0), media, 1)
-            }
+            Branch::Refracted => (same_side(direction, ng, -1.0), path.media.crossed(world, surface), 1),
         };
         Ok(Path {
             ray: Ray::new(surface.origin(direction), direction.to_array()),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DMat4;
 use lookfrom_bvh::{Builder, Bvh, Triangles};
 use lookfrom_scene::material::{Color, MaterialKind};
+use lookfrom_scene::medium::Medium;
 use lookfrom_scene::scene::Scene;
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
@@ -40,6 +41,7 @@ impl World {
             lights: Lights::new(&textures),
             shapes: Vec::new(),
             alphas: Vec::new(),
+            sides: Vec::new(),
         };
 
         // What stands in the world once.
@@ -70,7 +72,7 @@ impl World {
         for light in &scene.lights {
             compiler.lights.add(light, origin);
         }
-        let Compiler { lights, shapes, alphas, .. } = compiler;
+        let Compiler { lights, shapes, alphas, sides, .. } = compiler;
         let radius = scene.bounds().radius() as f32;
         let light_choice =
             LightChoice::new(scene.render.light_sampler, &lights.lights, &lights.brightness, radius);
@@ -86,9 +88,16 @@ impl World {
 
         let mut names = Names { shapes, lights: light_names, ..Names::default() };
         let mut materials: Vec<Material> = Vec::new();
+        let mut media = scene.media;
         for material in scene.materials {
             let whitted = material::in_whitteds_model(&material.kind, &materials, &textures);
-            materials.push(Material { kind: material.kind, relief: material.relief, whitted });
+            // A body that absorbs is filled with a medium of its own.
+            let medium = (whitted.absorption != [0.0; 3]).then(|| {
+                let (name, absorption) = (material.name.clone(), Color::Value(whitted.absorption));
+                media.push(Medium { name, at: material.at, absorption, scale: 1.0 });
+                media.len() as u32 - 1
+            });
+            materials.push(Material { kind: material.kind, relief: material.relief, medium, whitted });
             names.materials.push(material.name);
         }
         let is_environment = |index: &u32| matches!(lights[*index as usize], Light::Environment(_));
@@ -106,6 +115,8 @@ impl World {
             radius,
             materials,
             alphas,
+            media,
+            sides,
             textures,
             environments: (0..lights.len() as u32).filter(is_environment).collect(),
             lights,

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec3};
 use lookfrom_scene::material::{Color, Scalar};
+use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::Scene;
 use lookfrom_scene::shape::{Emission, Geometry, Shape, Sphere};
 use lookfrom_scene::{Error, Location, Result, Warning};
@@ -79,6 +80,8 @@ pub(super) struct Compiler<'a> {
     pub(super) shapes: Vec<String>,
     /// Parts of surfaces that are there.
     pub(super) alphas: Vec<Scalar>,
+    /// What they say is on their sides.
+    pub(super) sides: Vec<Sides>,
 }
 
 /// A shape on its way into a group.
@@ -114,7 +117,12 @@ impl Compiler<'_> {
             self.alphas.push(alpha);
             self.alphas.len() as u32 - 1
         });
-        let look = Look { material: material.unwrap_or(shape.material.0), light: None, shape: number, alpha };
+        let sides = shape.sides.map(|sides| {
+            self.sides.push(sides);
+            self.sides.len() as u32 - 1
+        });
+        let material = material.unwrap_or(shape.material.0);
+        let look = Look { material, light: None, shape: number, alpha, sides };
         let placing = Placing { shape, matrix: &matrix, look };
         match &shape.geometry {
             Geometry::Sphere(sphere) => self.spheres(placing, &[*sphere], Y_FROM_Z, group),

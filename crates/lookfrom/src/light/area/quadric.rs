@@ -23,7 +23,7 @@ const NEAREST: f64 = 1e-5;
 const CELLS: u32 = 64;
 
 /// Nobody's: a light's point needs none.
-const NO_LOOK: Look = Look { material: 0, light: None, shape: 0, alpha: None };
+const NO_LOOK: Look = Look { material: 0, light: None, shape: 0, alpha: None, sides: None };
 
 /// A quadric that shines.
 #[derive(Clone, Debug)]
