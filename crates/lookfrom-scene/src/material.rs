@@ -129,6 +129,37 @@ pub enum MaterialKind {
     Interface,
 }
 
+impl MaterialKind {
+    /// Its colours.
+    pub fn colors(&self) -> Vec<Color> {
+        let of_metal = |metal: &Metal| match *metal {
+            Metal::Indices { eta, k } => vec![eta, k],
+            Metal::Reflectance(color) => vec![color],
+        };
+        match self {
+            Self::Whitted(k) => {
+                let mut colors = vec![k.diffuse, k.specular, k.mirror, k.transmission];
+                colors.extend(k.ambient);
+                colors
+            }
+            Self::Diffuse { reflectance } => vec![*reflectance],
+            Self::DiffuseTransmission { reflectance, transmittance, .. } => {
+                vec![*reflectance, *transmittance]
+            }
+            Self::Conductor { metal, .. } => of_metal(metal),
+            Self::CoatedDiffuse { reflectance, coat } => vec![*reflectance, coat.albedo],
+            Self::CoatedConductor { metal, coat, .. } => {
+                let mut colors = of_metal(metal);
+                colors.push(coat.albedo);
+                colors
+            }
+            Self::Dielectric { .. } | Self::ThinDielectric { .. } | Self::Mix { .. } | Self::Interface => {
+                Vec::new()
+            }
+        }
+    }
+}
+
 /// The optical constants of a metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Metal {

@@ -6,6 +6,7 @@
 //!
 //! [`mapping`]: where in a pattern; [`picture`], [`pattern`]: what is there; [`reading`]: what that becomes.
 
+mod constants;
 mod mapping;
 mod pattern;
 mod picture;
@@ -23,6 +24,7 @@ use lookfrom_scene::texture::TextureKind;
 pub use self::mapping::sphere_uv;
 pub use self::picture::look_up;
 
+use self::constants::Constants;
 use self::reading::{Lifted, Number, Reading, Rgb};
 use crate::color::{Dense, Wavelengths};
 use crate::noise::{self, perlin};
@@ -54,6 +56,7 @@ pub struct Textures {
     kinds: Vec<TextureKind>,
     images: Vec<Image>,
     curves: Vec<Measured>,
+    constants: Constants,
 }
 
 /// A curve, and what it is in RGB mode.
@@ -107,7 +110,13 @@ impl Textures {
             let dense = Dense::from(&curve);
             Measured { reflectance: dense.to_rgb_reflectance(), emission: dense.to_rgb(), dense }
         };
-        Self { kinds, images, curves: curves.into_iter().map(measured).collect() }
+        let curves = curves.into_iter().map(measured).collect();
+        Self { kinds, images, curves, constants: Constants::default() }
+    }
+
+    /// Makes ready for being asked for these colours often: the constants of a scene.
+    pub fn expect(&mut self, colors: &[[f32; 3]]) {
+        self.constants = Constants::new(colors);
     }
 
     /// A picture by its index.
@@ -126,7 +135,8 @@ impl Textures {
         match lanes {
             Lanes::Rgb => self.read(color, at, &Rgb(usage)),
             Lanes::Spectral(wavelengths) => {
-                self.read(color, at, &Lifted { usage, lambda: &wavelengths.lambda })
+                let lifted = Lifted { usage, lambda: &wavelengths.lambda, constants: &self.constants };
+                self.read(color, at, &lifted)
             }
         }
     }

@@ -23,7 +23,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("filter", &["sampler"]),
     ("distribution", &["sampler"]),
     ("camera", &["math", "warp"]),
-    ("texture", &["color", "noise", "spectrum"]),
+    ("texture", &["color", "hash", "noise", "spectrum"]),
     ("material", &["bsdf", "math", "spectrum", "surface", "texture", "warp"]),
     ("shape", &["math", "surface", "texture", "warp"]),
     ("light", &["distribution", "math", "sampler", "shape", "spectrum", "surface", "texture", "warp"]),

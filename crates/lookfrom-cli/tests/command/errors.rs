@@ -22,8 +22,8 @@ fn a_bad_scene_is_told_by_line_and_column() {
     stage.run("render syntax.toml").fails(1, &["error: syntax.toml:3:"]);
     stage.write("key.toml", &SCENE.replace("fov", "fow"));
     stage.run("render key.toml").fails(1, &["error: key.toml:5:1: ", "fov"]);
-    stage.write("scene.pbrt", "WorldBegin");
-    stage.run("render scene.pbrt").fails(1, &["scene.pbrt"]);
+    stage.write("scene.pbrt", "WorldBegin\nShape \"ball\"");
+    stage.run("render scene.pbrt").fails(1, &["error: scene.pbrt:2:", "ball"]);
     assert!(stage.names().iter().all(|name| !name.ends_with("png")));
 }
 
@@ -103,9 +103,9 @@ fn warnings_and_strict() {
 #[test]
 fn many_warnings_are_counted() {
     let stage = Stage::new("many");
-    let scaled = "[[sphere]]\nradius = 1\nscale = [1, 2, 1]\nmaterial = \"lamp\"\n".repeat(30);
-    stage.write("many.toml", &format!("{SCENE}\n[materials.lamp]\nemission = 1\n{scaled}"));
-    let run = stage.done("render many.toml --width 8 --samples 1");
+    let libraries: String = (0..30).map(|k| format!("mtllib none{k}.mtl\n")).collect();
+    stage.write("many.obj", &format!("{libraries}v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+    let run = stage.done("render many.obj --width 8 --samples 1");
     assert_eq!(run.stderr.matches("warning: ").count(), 21, "{}", run.stderr);
     assert!(run.stderr.contains("… and 10 more"), "{}", run.stderr);
 }

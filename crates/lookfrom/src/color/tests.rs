@@ -186,7 +186,7 @@ fn colors_have_the_same_bits_everywhere() {
     }
     let lamp = Dense::from(&Curve::Blackbody { kelvin: 3000.0 });
     feed(lamp.samples());
-    assert_eq!(hash, 0xdbcb_e851_7a5f_f176, "{hash:#018x}");
+    assert_eq!(hash, 0x450b_79b2_a96a_1483, "{hash:#018x}");
 }
 
 #[test]
@@ -213,7 +213,8 @@ fn wavelengths_have_their_densities() {
         let stretched = (lambda_of(u + step) - lambda_of(u - step)) / (2.0 * step);
         assert!((wavelengths.pdf[0] * stretched - 1.0).abs() < 5e-3, "{u}: {wavelengths:?}");
         let cosh = libm::cosh(0.0072 * (f64::from(wavelengths.lambda[0]) - 538.0));
-        assert!((f64::from(wavelengths.pdf[0]) * cosh * cosh / 0.003_939_804_2 - 1.0).abs() < 1e-4);
+        // It follows the curve up to the width of a cell.
+        assert!((f64::from(wavelengths.pdf[0]) * cosh * cosh / 0.003_939_804_2 - 1.0).abs() < 0.02);
         // The lanes lie a quarter apart.
         for (lane, shift) in [0.25, 0.5, 0.75].into_iter().enumerate() {
             let other = Wavelengths::sample_visible((u + shift).fract());

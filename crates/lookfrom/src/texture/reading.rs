@@ -7,6 +7,7 @@ use std::ops::{Add, Mul};
 
 use lookfrom_scene::texture::TexelFilter;
 
+use super::constants::Constants;
 use super::{Measured, Usage};
 use crate::color::{Sigmoid, Unbounded, standard_illuminant};
 use crate::spectrum::Spectrum;
@@ -97,6 +98,8 @@ impl Reading for Rgb {
 pub(super) struct Lifted<'a> {
     pub(super) usage: Usage,
     pub(super) lambda: &'a [f32; 4],
+    /// Colours that are lifted already.
+    pub(super) constants: &'a Constants,
 }
 
 impl Reading for Lifted<'_> {
@@ -106,10 +109,15 @@ impl Reading for Lifted<'_> {
         let rgb = within(self.usage, rgb);
         // A grey is the same at all wavelengths, which needs no table.
         let is_gray = rgb[0] == rgb[1] && rgb[1] == rgb[2];
+        let known = || self.constants.find(rgb);
         let values = match self.usage {
             _ if is_gray => Spectrum([rgb[0]; 4]),
-            Usage::Albedo => Sigmoid::from_rgb(rgb).at(self.lambda),
-            Usage::Unbounded | Usage::Illuminant => Unbounded::from_rgb(rgb).at(self.lambda),
+            Usage::Albedo => {
+                known().map_or_else(|| Sigmoid::from_rgb(rgb), |lifts| lifts.albedo).at(self.lambda)
+            }
+            Usage::Unbounded | Usage::Illuminant => {
+                known().map_or_else(|| Unbounded::from_rgb(rgb), |lifts| lifts.unbounded).at(self.lambda)
+            }
         };
         if self.usage == Usage::Illuminant && !values.is_black() {
             values * standard_illuminant().at(self.lambda)

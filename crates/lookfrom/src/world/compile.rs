@@ -4,9 +4,11 @@ use std::sync::Arc;
 
 use glam::DMat4;
 use lookfrom_bvh::{Builder, Bvh, Triangles};
+use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{Color, MaterialKind};
 use lookfrom_scene::medium::Medium;
 use lookfrom_scene::scene::Scene;
+use lookfrom_scene::settings::ColorMode;
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
 use super::lights::Lights;
@@ -30,11 +32,14 @@ impl World {
         let camera = Camera::new(&written, scene.image.width, scene.image.height)?;
         let origin = camera.lookfrom();
         let render_from_world = DMat4::from_translation(-origin);
-        let textures = Textures::new(
+        let mut textures = Textures::new(
             std::mem::take(&mut scene.textures).into_iter().map(|texture| texture.kind).collect(),
             std::mem::take(&mut scene.images),
             std::mem::take(&mut scene.curves),
         );
+        if scene.render.color == ColorMode::Spectral {
+            textures.expect(&constants(&scene));
+        }
         let mut compiler = Compiler {
             scene: &scene,
             warnings,
@@ -125,6 +130,33 @@ impl World {
             names,
         })
     }
+}
+
+/// The colours of a scene's materials, lights and media that are the same everywhere.
+fn constants(scene: &Scene) -> Vec<[f32; 3]> {
+    let in_objects = scene.objects.iter().flat_map(|object| &object.shapes);
+    let emissions = scene.shapes.iter().chain(in_objects).filter_map(|shape| shape.emission);
+    let of_lights = scene.lights.iter().filter_map(|light| match &light.kind {
+        LightKind::Point { intensity, .. }
+        | LightKind::Distant { intensity, .. }
+        | LightKind::Spot { intensity, .. }
+        | LightKind::Goniometric { intensity, .. }
+        | LightKind::Environment { sky: Sky::Constant(intensity), .. } => Some(*intensity),
+        _ => None,
+    });
+    let colors = scene.materials.iter().flat_map(|material| material.kind.colors());
+    let colors = colors
+        .chain(emissions.map(|emission| emission.radiance))
+        .chain(of_lights)
+        .chain(scene.media.iter().map(|medium| medium.absorption));
+    let values = colors.filter_map(|color| match color {
+        Color::Value(rgb) => Some(rgb),
+        _ => None,
+    });
+    let mut values: Vec<[f32; 3]> = values.collect();
+    values.sort_by_key(|rgb| rgb.map(f32::to_bits));
+    values.dedup();
+    values
 }
 
 /// The tree over forms in their order, then instances.
