@@ -18,11 +18,12 @@ Examples:
   lookfrom render bunny.ply -o bunny.exr         a model as it is, lit and framed
   lookfrom inspect scene.toml 320 200            all that happens to a ray of that pixel
   lookfrom render scene.pbrt -o p.exr --time 1m  as good as it gets in a minute
+  lookfrom compare p.exr reference.exr           how far one is from the other
   lookfrom info scene.toml                       what is in it
 
 Exit codes:
   0    done
-  1    a scene could not be read or is invalid
+  1    a scene could not be read or is invalid, or a picture is too far from its reference
   2    wrong usage
   3    the output could not be written
   130  interrupted; a picture that was begun is written as far as it is
@@ -54,6 +55,18 @@ Examples:
   lookfrom info scene.toml
   lookfrom info models/*.ply --json | jq .triangles";
 
+const COMPARE_EXAMPLES: &str = "\
+Examples:
+  lookfrom compare picture.exr reference.exr
+  lookfrom compare a.exr a-ref.exr b.exr b-ref.exr --html report.html --tolerance 0.005 --within 0.99
+
+Exit codes: 0 no pair is farther away than allowed, 1 one is, or cannot be read, 2 usage, 3 output.";
+
+const BENCH_EXAMPLES: &str = "\
+Examples:
+  lookfrom bench scenes/*.toml
+  lookfrom bench scene.pbrt --time 10s --reference reference.exr --json";
+
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
   lookfrom completions bash > ~/.local/share/bash-completion/completions/lookfrom
@@ -78,6 +91,12 @@ pub(crate) enum Command {
     /// Say what is in scenes and models
     #[command(after_help = INFO_EXAMPLES)]
     Info(InfoArguments),
+    /// Say how far pictures are from references
+    #[command(after_help = COMPARE_EXAMPLES)]
+    Compare(CompareArguments),
+    /// Measure how fast scenes are rendered and how much noise is left
+    #[command(after_help = BENCH_EXAMPLES)]
+    Bench(BenchArguments),
     /// Print a script that completes this command in a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
@@ -193,6 +212,66 @@ pub(crate) struct InfoArguments {
 
     #[command(flatten)]
     pub(crate) common: Common,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct CompareArguments {
+    /// Pictures and their references, in turn; those of .exr may know their noise
+    #[arg(required = true, num_args = 2.., value_name = "PICTURE REFERENCE")]
+    pub(crate) pictures: Vec<PathBuf>,
+
+    /// Write a report with the pictures, their differences and FLIP to this file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) html: Option<PathBuf>,
+
+    /// Samples a pixel of picture and reference, where the files do not say them
+    #[arg(long, value_name = "N,M", value_parser = crate::compare::samples)]
+    pub(crate) samples: Option<[u64; 2]>,
+
+    /// A channel's mean may be farther from the reference's than this share only if noise explains it
+    #[arg(long, value_name = "SHARE", value_parser = values::between(0.0f64, 1e6))]
+    pub(crate) tolerance: Option<f64>,
+
+    /// This share of the pixels must be within 3.5 standard errors
+    #[arg(long, value_name = "SHARE", value_parser = values::between(0.0f64, 1.0))]
+    pub(crate) within: Option<f64>,
+
+    /// Brighter (or darker) by this many stops, for FLIP and the report
+    #[arg(long, value_name = "STOPS", value_parser = values::between(-64.0f32, 64.0), allow_hyphen_values = true, default_value_t = 0.0)]
+    pub(crate) exposure: f32,
+
+    /// Answer with one JSON object a line for each pair
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct BenchArguments {
+    /// Scenes (.toml, .pbrt) or models (.obj, .ply, .stl)
+    #[arg(required = true, value_name = "SCENE")]
+    pub(crate) scenes: Vec<PathBuf>,
+
+    /// Render for this time instead of 16 samples a pixel (or --samples): 10s, 2m
+    #[arg(long, value_name = "TIME", value_parser = values::duration)]
+    pub(crate) time: Option<Duration>,
+
+    /// The picture without noise; without it one is rendered
+    #[arg(long, value_name = "FILE")]
+    pub(crate) reference: Option<PathBuf>,
+
+    /// Samples a pixel of a reference that is rendered
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    pub(crate) reference_samples: u32,
+
+    /// Answer with one JSON object a line for each scene
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    #[command(flatten)]
+    pub(crate) common: Common,
+
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
 }
 
 #[derive(Args, Debug)]

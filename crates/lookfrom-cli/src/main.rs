@@ -4,10 +4,13 @@
 //! ([`args`]) is kept apart from what it changes in a scene ([`overrides`]).
 
 mod args;
+mod bench;
+mod compare;
 mod completions;
 mod count;
 mod exit;
 mod header;
+mod html;
 mod info;
 mod inspect;
 mod interrupt;
@@ -32,6 +35,8 @@ fn main() -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::Completions { shell } => completions::run(shell),
     };
     ExitCode::from(code)

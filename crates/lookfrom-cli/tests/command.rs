@@ -1,6 +1,7 @@
 //! The command as a person runs it: files in, pictures, words and exit codes out.
 
 mod command {
+    mod compare;
     mod enough;
     mod errors;
     mod guide;

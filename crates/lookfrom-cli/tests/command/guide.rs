@@ -14,7 +14,7 @@ fn every_option_is_in_the_guide() {
     let stage = Stage::new("guide");
     let guide = guide();
     let mut options = 0;
-    for command in ["render", "inspect", "info", "completions"] {
+    for command in ["render", "inspect", "info", "compare", "bench", "completions"] {
         assert!(guide.contains(&format!("## lookfrom {command}")), "{command}");
         let help = String::from_utf8(stage.done(&format!("{command} --help")).stdout).unwrap();
         // An option's own line in the help begins with it; others only mention it.
@@ -30,7 +30,7 @@ fn every_option_is_in_the_guide() {
 #[test]
 fn every_option_of_the_guide_is_there() {
     let stage = Stage::new("guide-back");
-    let help: String = ["render", "inspect", "info", "completions"]
+    let help: String = ["render", "inspect", "info", "compare", "bench", "completions"]
         .map(|command| String::from_utf8(stage.done(&format!("{command} --help")).stdout).unwrap())
         .concat();
     for word in guide().split(|c: char| !(c.is_ascii_alphanumeric() || c == '-')) {
@@ -43,7 +43,13 @@ fn every_option_of_the_guide_is_there() {
 fn every_key_of_the_answers_is_in_the_guide() {
     let stage = Stage::new("guide-keys");
     let guide = guide();
-    let answers = [stage.json("render scene.toml --json"), stage.json("info scene.toml --json")].concat();
+    let answers = [
+        stage.json("render scene.toml --json"),
+        stage.json("info scene.toml --json"),
+        stage.json("compare scene.png scene.png --json"),
+        stage.json("bench scene.toml --json --samples 1 --reference-samples 1"),
+    ]
+    .concat();
     for answer in answers {
         for key in answer.as_object().unwrap().keys() {
             assert!(guide.contains(&format!("`{key}`")), "{key} is not in the guide");

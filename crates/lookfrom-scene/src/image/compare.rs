@@ -170,22 +170,21 @@ impl Cell {
 }
 
 fn cells(picture: &Sampled, a: &[[f64; 3]], reference: &Sampled, b: &[[f64; 3]]) -> Vec<Cell> {
-    let colors = picture.pixels.iter().zip(&reference.pixels);
-    let cell = |((p, r), (a, b)): ((&[f32; 3], &[f32; 3]), (&[f64; 3], &[f64; 3]))| {
-        let [picture, reference] = [p, r].map(|rgb| xyz(rgb.map(f64::from)));
-        // A side without variance saw the same all the time, or did not count what it saw: the other's noise is the guess.
-        let variance = |i: usize| match (a[i] > 0.0, b[i] > 0.0) {
-            (false, true) => 2.0 * b[i],
-            (true, false) => 2.0 * a[i],
-            _ => a[i] + b[i],
-        };
+    // A side without variance saw the same all the time, or did not count what it saw: the other's noise is the guess.
+    let variance = |a: f64, b: f64| match (a > 0.0, b > 0.0) {
+        (false, true) => 2.0 * b,
+        (true, false) => 2.0 * a,
+        _ => a + b,
+    };
+    let cell = |pixel: usize| {
+        let [picture, reference] = [picture, reference].map(|of| xyz(of.pixels[pixel].map(f64::from)));
         Cell {
             difference: [0, 1, 2].map(|i| picture[i] - reference[i]),
             reference,
-            variance: [0, 1, 2].map(variance),
+            variance: [0, 1, 2].map(|i| variance(a[pixel][i], b[pixel][i])),
         }
     };
-    colors.zip(a.iter().zip(b)).map(cell).collect()
+    (0..picture.pixels.len()).map(cell).collect()
 }
 
 /// The mean of cells whose noise is independent.

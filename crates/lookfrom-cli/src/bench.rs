@@ -1,0 +1,128 @@
+//! `lookfrom bench`: how fast scenes are rendered, and how much noise is left for the time.
+
+use std::path::Path;
+use std::time::Instant;
+
+use lookfrom::film::Film;
+use lookfrom::render::{Enough, Frame, Rendered};
+use lookfrom_scene::image::compare::{Sampled, compare};
+use serde::Serialize;
+
+use crate::args::BenchArguments;
+use crate::compare::read;
+use crate::exit::{self, DONE, Failure, answer, say};
+use crate::prepare::{self, prepare};
+use crate::report;
+
+/// Samples a pixel where nobody said.
+const SAMPLES: u32 = 16;
+
+/// The most samples that a pixel can be given.
+const MOST_SAMPLES: u32 = 1 << 24;
+
+/// What a scene took; the keys are explained in docs/guide/command.md.
+#[derive(Debug, Serialize)]
+pub(crate) struct Measured {
+    scene: String,
+    samples: u32,
+    read_seconds: f64,
+    build_seconds: f64,
+    render_seconds: f64,
+    samples_per_s: f64,
+    rays_per_s: f64,
+    relative_mse: f64,
+    error_time: f64,
+    bias: [f64; 3],
+}
+
+/// Measures every scene; goes on after one that fails, with the code of the first failure.
+pub(crate) fn run(arguments: &BenchArguments) -> u8 {
+    let usage = (arguments.reference.is_some() && arguments.scenes.len() > 1)
+        .then(|| Failure::Usage("--reference is for one scene".to_owned()));
+    if let Some(failure) = usage.or_else(|| prepare::use_threads(&arguments.common).err()) {
+        return failure.report();
+    }
+    let mut code = DONE;
+    let mut heading = !arguments.json;
+    for scene in &arguments.scenes {
+        let told = measure(scene, arguments).and_then(|measured| {
+            if std::mem::take(&mut heading) {
+                answer(HEADING)?;
+            }
+            // It has neither maps nor types that could fail.
+            let json = || serde_json::to_string(&measured).unwrap_or_default();
+            answer(&if arguments.json { json() } else { measured.row() })
+        });
+        if let Err(failure) = told {
+            let of_scene = failure.report();
+            if code == DONE {
+                code = of_scene;
+            }
+        }
+    }
+    code
+}
+
+const HEADING: &str =
+    "scene                     samples  seconds  Msamples/s   Mrays/s  relative MSE  error × s";
+
+fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure> {
+    let mut prepared = prepare(path, &arguments.common, &arguments.overrides)?;
+    exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
+    let most = if arguments.time.is_some() { MOST_SAMPLES } else { SAMPLES };
+    prepared.render.samples = arguments.overrides.samples.unwrap_or(most);
+    let threads = arguments.common.threads.map(usize::from);
+
+    // What is measured.
+    let frame = Frame::new(&prepared.world, &prepared.image, &prepared.render);
+    let frame = frame.map_err(exit::in_scene(path))?;
+    let started = Instant::now();
+    let rendered = frame.render_until(&Enough { time: arguments.time, noise: None }, threads, &());
+    let Rendered { film, rays, samples, samples_taken, .. } = rendered.map_err(exit::in_scene(path))?;
+    let seconds = report::seconds(started.elapsed()).max(1e-6);
+
+    // What it is measured by.
+    let reference = match &arguments.reference {
+        Some(file) => read(file, None)?,
+        None => {
+            let mut other = prepared.render.clone();
+            (other.samples, other.seed) = (arguments.reference_samples, other.seed.wrapping_add(1));
+            let frame = Frame::new(&prepared.world, &prepared.image, &other).map_err(exit::in_scene(path))?;
+            sampled(&frame.render(threads, &()).map_err(exit::in_scene(path))?.film)
+        }
+    };
+    let comparison = compare(&sampled(&film), &reference).map_err(exit::in_scene(path))?;
+    Ok(Measured {
+        scene: path.display().to_string(),
+        samples,
+        read_seconds: report::seconds(prepared.read),
+        build_seconds: report::seconds(prepared.build),
+        render_seconds: seconds,
+        samples_per_s: samples_taken as f64 / seconds,
+        rays_per_s: rays.total() as f64 / seconds,
+        relative_mse: comparison.relative_mse,
+        error_time: comparison.relative_mse * seconds,
+        bias: comparison.relative,
+    })
+}
+
+fn sampled(film: &Film) -> Sampled {
+    let picture = film.picture();
+    Sampled { width: picture.width as usize, pixels: picture.pixels, not_finite: 0, variances: None }
+}
+
+impl Measured {
+    fn row(&self) -> String {
+        let Self { samples, render_seconds, relative_mse, error_time, .. } = self;
+        let path = Path::new(&self.scene);
+        // Scenes of other programs often have one name in folders of different ones.
+        let parts: Vec<_> =
+            path.components().rev().take(2).map(|part| part.as_os_str().to_string_lossy()).collect();
+        let name = parts.into_iter().rev().collect::<Vec<_>>().join("/");
+        format!(
+            "{name:<25} {samples:>7}  {render_seconds:>7.2}  {:>10.3}  {:>8.2}  {relative_mse:>12.6}  {error_time:>9.5}",
+            self.samples_per_s * 1e-6,
+            self.rays_per_s * 1e-6,
+        )
+    }
+}

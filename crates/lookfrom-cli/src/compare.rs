@@ -1,0 +1,239 @@
+//! `lookfrom compare`: how far pictures are from references. The numbers are the library's; this is who asks and tells.
+
+use std::path::Path;
+
+use lookfrom_scene::image::compare::{Comparison, Sampled, compare};
+use lookfrom_scene::image::flip::{PIXELS_PER_DEGREE, flip};
+use lookfrom_scene::image::{self, Channels};
+use lookfrom_scene::{Disk, Sources};
+use serde::Serialize;
+
+use crate::args::CompareArguments;
+use crate::exit::{self, BAD_SCENE, DONE, Failure, answer, say};
+use crate::html::{self, Shown};
+use crate::output;
+
+/// Noise in a mean is no reason to call it wrong: up to this many standard errors.
+const MOST_STANDARD_ERRORS_OF_MEAN: f64 = 3.5;
+
+/// What is said of a pair; the keys are explained in docs/guide/command.md.
+#[derive(Debug, Serialize)]
+pub(crate) struct Verdict {
+    pub(crate) picture: String,
+    pub(crate) reference: String,
+    pub(crate) means: [[f64; 3]; 2],
+    pub(crate) relative: [f64; 3],
+    pub(crate) rmse: f64,
+    pub(crate) relative_mse: f64,
+    pub(crate) flip: f64,
+    pub(crate) noise: Option<Noise>,
+    pub(crate) not_finite: usize,
+    pub(crate) passed: bool,
+}
+
+/// What noise explains.
+#[derive(Debug, Serialize)]
+pub(crate) struct Noise {
+    pub(crate) pixels_within: f64,
+    pub(crate) blocks_within: f64,
+    pub(crate) mean: [f64; 3],
+    pub(crate) relative_error_of_mean: f64,
+}
+
+/// Compares every pair.
+pub(crate) fn run(arguments: &CompareArguments) -> u8 {
+    match compare_all(arguments) {
+        Ok(code) => code,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn compare_all(arguments: &CompareArguments) -> Result<u8, Failure> {
+    if !arguments.pictures.len().is_multiple_of(2) {
+        return Err(Failure::Usage(format!(
+            "{} pictures are not pairs; give PICTURE REFERENCE for each comparison",
+            arguments.pictures.len()
+        )));
+    }
+    let mut shown = Vec::new();
+    let mut code = DONE;
+    for pair in arguments.pictures.chunks_exact(2) {
+        let (verdict, pictures) = compare_pair(&pair[0], &pair[1], arguments)?;
+        if !verdict.passed {
+            code = BAD_SCENE;
+        }
+        if arguments.json {
+            // It has neither maps nor types that could fail.
+            answer(&serde_json::to_string(&verdict).unwrap_or_default())?;
+        } else {
+            answer(&verdict.for_people())?;
+        }
+        if arguments.html.is_some() {
+            shown.push(pictures.shown(verdict, arguments.exposure)?);
+        }
+    }
+    if let Some(path) = &arguments.html {
+        output::replace_file(path, html::report(&shown).as_bytes())
+            .map_err(|error| Failure::Output(format!("cannot write {}: {error}", path.display())))?;
+    }
+    Ok(code)
+}
+
+/// Both sides, and the map between them.
+struct Pictures {
+    picture: Sampled,
+    reference: Sampled,
+    flip: Vec<f32>,
+}
+
+fn compare_pair(
+    picture: &Path,
+    reference: &Path,
+    arguments: &CompareArguments,
+) -> Result<(Verdict, Pictures), Failure> {
+    let [of_picture, of_reference] = arguments.samples.map_or([None; 2], |samples| samples.map(Some));
+    let (a, b) = (read(picture, of_picture)?, read(reference, of_reference)?);
+    let Comparison { means, relative, rmse, relative_mse, noise } =
+        compare(&a, &b).map_err(exit::in_scene(picture))?;
+    let exposed = |of: &Sampled| exposed(of, arguments.exposure);
+    let map = flip(&exposed(&a), &exposed(&b), a.width, PIXELS_PER_DEGREE);
+    let mut verdict = Verdict {
+        picture: picture.display().to_string(),
+        reference: reference.display().to_string(),
+        means,
+        relative,
+        rmse,
+        relative_mse,
+        flip: map.iter().map(|&error| f64::from(error)).sum::<f64>() / map.len() as f64,
+        noise: noise.map(|noise| Noise {
+            pixels_within: noise.pixels_within,
+            blocks_within: noise.blocks_within,
+            mean: noise.mean,
+            relative_error_of_mean: noise.relative_error_of_mean,
+        }),
+        not_finite: a.not_finite,
+        passed: true,
+    };
+    verdict.passed = passes(&verdict, arguments);
+    Ok((verdict, Pictures { picture: a, reference: b, flip: map }))
+}
+
+fn passes(verdict: &Verdict, arguments: &CompareArguments) -> bool {
+    let explained = verdict
+        .noise
+        .as_ref()
+        .is_some_and(|noise| noise.mean.iter().all(|z| z.abs() <= MOST_STANDARD_ERRORS_OF_MEAN));
+    let means = arguments.tolerance.is_none_or(|tolerance| {
+        explained || verdict.relative.iter().all(|difference| difference.abs() <= tolerance)
+    });
+    let pixels = arguments
+        .within
+        .is_none_or(|least| verdict.noise.as_ref().is_some_and(|noise| noise.pixels_within >= least));
+    means && pixels && verdict.not_finite == 0
+}
+
+/// A picture of any format; only an EXR knows its noise.
+pub(crate) fn read(path: &Path, samples: Option<u64>) -> Result<Sampled, Failure> {
+    let mut sources = Sources::new(&Disk);
+    let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
+    let file = if is_exr {
+        image::read_exr(path, &mut sources)?
+    } else {
+        let picture = image::read(path, &mut sources)?;
+        let channel = |index: usize| picture.texels.iter().map(|texel| texel[index]).collect();
+        let channels = ["R", "G", "B"].map(str::to_owned).into_iter().zip([0, 1, 2].map(channel)).collect();
+        let (width, height) = (picture.width, picture.height);
+        Channels { width, height, channels, attributes: Vec::new() }
+    };
+    sources.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+    Sampled::new(&file, samples).map_err(exit::in_scene(path))
+}
+
+fn exposed(of: &Sampled, stops: f32) -> Vec<[f32; 3]> {
+    let scale = 2.0_f32.powf(stops);
+    of.pixels.iter().map(|rgb| rgb.map(|light| light * scale)).collect()
+}
+
+impl Pictures {
+    /// As PNGs, for the report.
+    fn shown(self, verdict: Verdict, exposure: f32) -> Result<Shown, Failure> {
+        let (width, height) = (self.picture.width, self.picture.pixels.len() / self.picture.width);
+        let png = |bytes: &[u8]| {
+            image::encode_png(width as u32, height as u32, bytes)
+                .map_err(|error| Failure::Output(error.message))
+        };
+        let developed = |of: &Sampled| {
+            let light = exposed(of, exposure);
+            let byte = |light: &f32| (image::srgb_from_linear(light.clamp(0.0, 1.0)) * 255.0 + 0.5) as u8;
+            light.as_flattened().iter().map(byte).collect::<Vec<u8>>()
+        };
+        let difference: Vec<u8> = self
+            .picture
+            .pixels
+            .iter()
+            .zip(&self.reference.pixels)
+            .flat_map(|(a, b)| html::signed_color(html::signed_difference(*a, *b, mean_light(&verdict))))
+            .collect();
+        let heat: Vec<u8> = self.flip.iter().flat_map(|&error| html::heat_color(error)).collect();
+        Ok(Shown {
+            pictures: [
+                ("picture", png(&developed(&self.picture))?),
+                ("reference", png(&developed(&self.reference))?),
+                ("difference", png(&difference)?),
+                ("FLIP", png(&heat)?),
+            ],
+            verdict,
+        })
+    }
+}
+
+fn mean_light(verdict: &Verdict) -> f32 {
+    (verdict.means[1].iter().sum::<f64>() / 3.0) as f32
+}
+
+impl Verdict {
+    /// For a person.
+    pub(crate) fn for_people(&self) -> String {
+        let percent = |share: f64| format!("{:+.3} %", share * 100.0);
+        let mean = |mean: [f64; 3]| mean.map(|channel| format!("{channel:.6}")).join(" ");
+        let noise = match &self.noise {
+            Some(noise) => format!(
+                "\n  noise       {:.2} % of the pixels and {:.2} % of the blocks within 3.5 standard errors; the means differ by \
+                 {} (X, Y, Z), one is {:.3} % of Y",
+                noise.pixels_within * 100.0,
+                noise.blocks_within * 100.0,
+                noise.mean.map(|z| format!("{z:+.2}")).join(" "),
+                noise.relative_error_of_mean * 100.0,
+            ),
+            None => String::new(),
+        };
+        let not_finite = match self.not_finite {
+            0 => String::new(),
+            count => format!("\n  not finite  {count} values"),
+        };
+        format!(
+            "{} against {}: {}\n  means       {} against {}\n  difference  {}\n  errors      RMSE {:.6}, relative MSE {:.6}, FLIP {:.4}{noise}{not_finite}",
+            self.picture,
+            self.reference,
+            if self.passed { "as it should be" } else { "too far away" },
+            mean(self.means[0]),
+            mean(self.means[1]),
+            self.relative.map(percent).join(" "),
+            self.rmse,
+            self.relative_mse,
+            self.flip,
+        )
+    }
+}
+
+/// The pair of numbers of samples, `N,M`.
+pub(crate) fn samples(typed: &str) -> Result<[u64; 2], String> {
+    let numbers: Option<Vec<u64>> = typed.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[picture, reference]) if picture > 0 && reference > 0 => Ok([picture, reference]),
+        _ => {
+            Err("expected two numbers of samples a pixel, those of the picture and of the reference: 64,1024"
+                .to_owned())
+        }
+    }
+}
