@@ -352,13 +352,16 @@ pub fn xyz([r, g, b]: [f64; 3]) -> [f64; 3] {
     ]
 }
 
+const TWO_TO_47: f64 = 140_737_488_355_328.0;
 const TWO_TO_48: f64 = 281_474_976_710_656.0;
+const TWO_TO_63: f64 = 9_223_372_036_854_775_808.0;
 const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 
 /// The square of a finite number, rounded to f64, as a multiple of 2⁻⁴⁸; at most the greatest there is.
 fn fixed_point_square(value: f64) -> u128 {
-    // The cast cuts at both ends.
-    (value * value * TWO_TO_48) as u128
+    let square = value * value * TWO_TO_48;
+    // The cast cuts at both ends; nearly always 64 bits do, and they take a fraction of the time.
+    if square < TWO_TO_63 { u128::from(square as u64) } else { square as u128 }
 }
 
 /// As many zeros as there is memory for.
@@ -371,10 +374,18 @@ fn empty<T: Clone + Default>(count: u64) -> Result<Vec<T>> {
     Ok(values)
 }
 
-/// A finite number as a multiple of 2⁻⁶⁴.
+/// A finite number as a multiple of 2⁻⁶⁴, cut towards zero.
 fn fixed_point(light: f32) -> i128 {
-    // An f32 in f64 can be multiplied by a power of two exactly; the cast cuts towards zero.
-    (f64::from(light.clamp(-BRIGHTEST, BRIGHTEST)) * TWO_TO_64) as i128
+    // An f32 in f64 can be multiplied by a power of two exactly. From 2⁻²⁴ on it is a whole multiple of 2⁻⁴⁷: then, which is
+    // nearly always, 64 bits do, and they take a fraction of the time.
+    let light = f64::from(light.clamp(-BRIGHTEST, BRIGHTEST));
+    let upper = light * TWO_TO_47;
+    let cut = upper as i64;
+    if upper.abs() < TWO_TO_63 && cut as f64 == upper {
+        i128::from(cut) << 17
+    } else {
+        (light * TWO_TO_64) as i128
+    }
 }
 
 /// What two rectangles share; where that is nothing, the empty rectangle at the origin.
