@@ -4,7 +4,6 @@ use std::path::Path;
 use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
-use lookfrom::film::Picture;
 use lookfrom::render::{End, Enough, Frame};
 use lookfrom_scene::settings::Layers;
 
@@ -13,7 +12,7 @@ use crate::exit::{self, DONE, Failure, INTERRUPTED, answer, say};
 use crate::header::{self, Taken};
 use crate::output::{self, Target};
 use crate::prepare::{self, Prepared, prepare};
-use crate::preview::Preview;
+use crate::preview::{Preview, SoFar};
 use crate::progress::Watcher;
 use crate::report::{self, Dropped, Seconds, Summary};
 use crate::{interrupt, layers, values};
@@ -168,11 +167,11 @@ fn render_frame(
 }
 
 /// Writes pictures as they come. One that cannot be written is told of once; the last one, by others, is what counts.
-fn write_previews(path: &Path, target: &Target, prepared: &Prepared, pictures: &Receiver<Picture>) {
+fn write_previews(path: &Path, target: &Target, prepared: &Prepared, pictures: &Receiver<SoFar>) {
     let mut told = false;
-    let taken = Taken { samples: prepared.render.samples, mean: Some(0), ..Taken::default() };
-    let attributes = header::attributes(path, prepared, &taken);
-    for picture in pictures {
+    for (picture, mean) in pictures {
+        let taken = Taken { samples: prepared.render.samples, mean: Some(mean), ..Taken::default() };
+        let attributes = header::attributes(path, prepared, &taken);
         let bytes = target.encode(&picture, &[], &prepared.image, &attributes);
         if let Err(failure) = bytes.and_then(|bytes| target.write(&bytes))
             && !told

@@ -131,10 +131,15 @@ impl Summary {
             }
         };
         if let Dropped { count, first: Some(DroppedAddress { x, y, sample }) } = self.dropped_samples {
+            // Who inspects knows the scene's number of samples, not what the clock made of it.
+            let of = match self.ended_by {
+                "time" | "noise" => format!(" --samples {samples}"),
+                _ => String::new(),
+            };
             let _ = write!(
                 text,
                 "\nwarning: {count} samples were not finite and were left out; the first is replayed, with the same options, by\n  \
-                 lookfrom inspect {scene} {x} {y} --sample {sample}"
+                 lookfrom inspect {scene} {x} {y} --sample {sample}{of}"
             );
         }
         text
@@ -220,6 +225,9 @@ mod tests {
         let first = Some(DroppedAddress { x: 3, y: 1, sample: 7 });
         let dropped = Summary { dropped_samples: Dropped { count: 5, first }, ..summary() }.for_people();
         assert!(dropped.contains("5 samples") && dropped.contains("lookfrom inspect a.toml 3 1 --sample 7"));
+        let late = Dropped { count: 1, first: Some(DroppedAddress { x: 3, y: 1, sample: 63 }) };
+        let late = Summary { dropped_samples: late, ended_by: "time", ..summary() }.for_people();
+        assert!(late.ends_with("lookfrom inspect a.toml 3 1 --sample 63 --samples 64"), "{late}");
         let stopped = Summary { cancelled: true, samples_taken: 12, ..summary() }.for_people();
         assert!(stopped.ends_with("stopped after 2.5 s; a.png holds the picture so far: 12 of 64 samples"));
         let clean =
