@@ -7,7 +7,7 @@ use lookfrom_scene::spectrum::{LONGEST, SHORTEST};
 use crate::spectrum::Spectrum;
 
 /// Cells of equal probability between the shortest and the longest wavelength; a multiple of four.
-const CELLS: usize = 512;
+const CELLS: usize = 2048;
 
 /// Where the cells begin, and the end of the last.
 fn ends() -> &'static [f32; CELLS + 1] {
@@ -33,7 +33,7 @@ pub struct Wavelengths {
 
 impl Wavelengths {
     /// Wavelengths by how well the eye sees them, with a density about ∝ 1 / cosh²(0.0072 (λ − 538)) on 360 … 830 nm
-    /// (Radziszewski, Boryczko, Alda 2009): constant in each of 512 cells of equal probability. `u` is in [0, 1); the lanes
+    /// (Radziszewski, Boryczko, Alda 2009): constant in each of 2048 cells of equal probability. `u` is in [0, 1); the lanes
     /// are at u, u + ¼, u + ½, u + ¾ modulo 1.
     pub fn sample_visible(u: f32) -> Self {
         let ends = ends();
