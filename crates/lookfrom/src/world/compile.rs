@@ -136,13 +136,16 @@ impl World {
 fn constants(scene: &Scene) -> Vec<[f32; 3]> {
     let in_objects = scene.objects.iter().flat_map(|object| &object.shapes);
     let emissions = scene.shapes.iter().chain(in_objects).filter_map(|shape| shape.emission);
-    let of_lights = scene.lights.iter().filter_map(|light| match &light.kind {
+    let of_lights = scene.lights.iter().flat_map(|light| match &light.kind {
         LightKind::Point { intensity, .. }
         | LightKind::Distant { intensity, .. }
         | LightKind::Spot { intensity, .. }
         | LightKind::Goniometric { intensity, .. }
-        | LightKind::Environment { sky: Sky::Constant(intensity), .. } => Some(*intensity),
-        _ => None,
+        | LightKind::Environment { sky: Sky::Constant(intensity), .. } => vec![*intensity],
+        LightKind::Environment { sky: Sky::Gradient { zenith, horizon, nadir }, .. } => {
+            [zenith, horizon, nadir].map(|rgb| Color::Value(*rgb)).to_vec()
+        }
+        _ => Vec::new(),
     });
     let colors = scene.materials.iter().flat_map(|material| material.kind.colors());
     let colors = colors
