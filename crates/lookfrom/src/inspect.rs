@@ -81,7 +81,7 @@ pub fn inspect(frame: &Frame<'_>, id: SampleId) -> Inspection {
                 }
             }
             Event::Shadow { shadow, hit, passed } => {
-                if let Some(ray) = rays.get_mut(&shadow.path.address)
+                if let Some(ray) = rays.get_mut(&shadow.address)
                     && let Term::Light(light) = shadow.term
                     && let Some(report) = ray.light_mut(light)
                 {

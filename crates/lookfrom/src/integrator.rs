@@ -157,9 +157,9 @@ impl Numbers<'_> {
     }
 }
 
-/// What a step leaves behind.
-#[derive(Debug)]
-pub struct Next<'a, P: Probe> {
+/// The samples of a batch under way.
+#[derive(Debug, Default)]
+pub struct Samples {
     /// Light gathered so far, by slot.
     pub radiance: Vec<Spectrum>,
     /// What the lanes mean, by slot.
@@ -168,6 +168,32 @@ pub struct Next<'a, P: Probe> {
     pub paths: Vec<Path>,
     /// To be traced before that.
     pub shadows: Vec<Shadow>,
+    /// The rays of `shadows`, and whether they are blocked: memory.
+    rays: Vec<Ray>,
+    blocked: Vec<bool>,
+}
+
+impl Samples {
+    /// Forgets all samples.
+    pub fn clear(&mut self) {
+        self.radiance.clear();
+        self.lanes.clear();
+        self.paths.clear();
+        self.shadows.clear();
+    }
+
+    /// One sample more, in the next slot.
+    pub fn start(&mut self, lanes: Lanes) {
+        self.radiance.push(Spectrum::BLACK);
+        self.lanes.push(lanes);
+    }
+}
+
+/// What a step leaves behind, and who listens.
+#[derive(Debug)]
+pub struct Next<'a, P: Probe> {
+    /// The samples that steps add to.
+    pub samples: Samples,
     /// Who listens.
     pub probe: &'a mut P,
 }
@@ -175,14 +201,18 @@ pub struct Next<'a, P: Probe> {
 impl<P: Probe> Next<'_, P> {
     /// What the lanes of a path mean.
     fn lanes(&self, path: &Path) -> Lanes {
-        self.lanes[path.slot as usize]
+        self.samples.lanes[path.slot as usize]
     }
 
     /// Adds light to a path's sample.
     pub fn add(&mut self, path: &Path, term: Term, value: Spectrum) {
+        self.add_to(path.slot, path.address, term, value);
+    }
+
+    fn add_to(&mut self, slot: u32, address: u64, term: Term, value: Spectrum) {
         if !value.is_black() {
-            self.radiance[path.slot as usize] += value;
-            self.probe.notice(|| Event::Add { address: path.address, term, value });
+            self.samples.radiance[slot as usize] += value;
+            self.probe.notice(|| Event::Add { address, term, value });
         }
     }
 }

@@ -21,7 +21,7 @@ use crate::film::FilmTile;
 use crate::filter::Filter;
 use crate::integrator::{
     AmbientOcclusion, Departure, Event, Integrator, Media, Next, Numbers, Passing, Path, PathTracer, Probe,
-    Raycast, View, Whitted, Wisdom, resolve_shadows,
+    Raycast, Samples, View, Whitted, Wisdom, resolve_shadows,
 };
 use crate::sampler::Sampler;
 use crate::spectrum::Spectrum;
@@ -98,6 +98,17 @@ pub struct Traced {
     pub weight: f32,
 }
 
+/// The memory of a batch, which the next one uses again.
+#[derive(Debug, Default)]
+struct Batch {
+    samples: Samples,
+    weights: Vec<f32>,
+    paths: Vec<Path>,
+    rays: Vec<Ray>,
+    hits: Vec<Hit>,
+    traced: Vec<Traced>,
+}
+
 impl<'a> Frame<'a> {
     /// A picture of `world`, whose camera was made for the same size.
     ///
@@ -150,23 +161,30 @@ impl<'a> Frame<'a> {
 
     /// Follows samples to their light, telling `probe` what happens. The result for a sample does not depend on the others.
     pub fn trace<P: Probe>(&self, ids: &[SampleId], probe: &mut P) -> (Vec<Traced>, Rays) {
+        let mut batch = Batch::default();
+        let rays = self.trace_batch(ids, probe, &mut batch);
+        (batch.traced, rays)
+    }
+
+    fn trace_batch<P: Probe>(&self, ids: &[SampleId], probe: &mut P, batch: &mut Batch) -> Rays {
         // One match a batch: an integrator is a type, and its step is compiled for it.
         let RenderSettings { integrator, depth, min_contribution, regularize, occlusion_distance, .. } =
             self.render;
         let path = |wisdom| PathTracer { depth, regularize, wisdom };
         match integrator {
-            Kind::Raycast => self.trace_with(&Raycast, ids, probe),
-            Kind::Whitted => self.trace_with(&Whitted { depth, min_contribution }, ids, probe),
-            Kind::Path => self.trace_with(&path(Wisdom::Combined), ids, probe),
-            Kind::SimplePath => self.trace_with(&path(Wisdom::Separate), ids, probe),
-            Kind::RandomWalk => self.trace_with(&path(Wisdom::None), ids, probe),
+            Kind::Raycast => self.trace_with(&Raycast, ids, probe, batch),
+            Kind::Whitted => self.trace_with(&Whitted { depth, min_contribution }, ids, probe, batch),
+            Kind::Path => self.trace_with(&path(Wisdom::Combined), ids, probe, batch),
+            Kind::SimplePath => self.trace_with(&path(Wisdom::Separate), ids, probe, batch),
+            Kind::RandomWalk => self.trace_with(&path(Wisdom::None), ids, probe, batch),
             Kind::AmbientOcclusion { cosine } => {
-                self.trace_with(&AmbientOcclusion { cosine, distance: occlusion_distance }, ids, probe)
+                let occlusion = AmbientOcclusion { cosine, distance: occlusion_distance };
+                self.trace_with(&occlusion, ids, probe, batch)
             }
-            Kind::Normals => self.trace_with(&View::Normals, ids, probe),
-            Kind::Depth => self.trace_with(&View::Depth, ids, probe),
-            Kind::Uv => self.trace_with(&View::Uv, ids, probe),
-            Kind::Id => self.trace_with(&View::Id, ids, probe),
+            Kind::Normals => self.trace_with(&View::Normals, ids, probe, batch),
+            Kind::Depth => self.trace_with(&View::Depth, ids, probe, batch),
+            Kind::Uv => self.trace_with(&View::Uv, ids, probe, batch),
+            Kind::Id => self.trace_with(&View::Id, ids, probe, batch),
         }
     }
 
@@ -175,24 +193,23 @@ impl<'a> Frame<'a> {
         integrator: &I,
         ids: &[SampleId],
         probe: &mut P,
-    ) -> (Vec<Traced>, Rays) {
+        batch: &mut Batch,
+    ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
-        let mut weights = Vec::with_capacity(ids.len());
-        let mut next = Next {
-            radiance: vec![Spectrum::BLACK; ids.len()],
-            lanes: ids.iter().map(|id| self.lanes(*id)).collect(),
-            paths: Vec::new(),
-            shadows: Vec::new(),
-            probe,
-        };
+        let Batch { samples, weights, paths, rays, hits, traced } = batch;
+        let mut next = Next { samples: std::mem::take(samples), probe };
+        next.samples.clear();
 
         // Start: a ray from the camera for each sample.
+        weights.clear();
         for (slot, id) in ids.iter().enumerate() {
             let (ray, weight) = self.camera_ray(*id);
             weights.push(weight);
-            next.paths.push(Path {
+            let lanes = self.lanes(*id);
+            next.samples.start(lanes);
+            next.samples.paths.push(Path {
                 ray: self.world.camera_ray(&ray),
-                beta: next.lanes[slot].one(),
+                beta: lanes.one(),
                 slot: slot as u32,
                 depth: 0,
                 address: Path::ROOT,
@@ -201,21 +218,18 @@ impl<'a> Frame<'a> {
             });
         }
 
-        let mut paths = Vec::new();
-        let mut rays: Vec<Ray> = Vec::new();
-        let mut hits: Vec<Hit> = Vec::new();
-        while !next.paths.is_empty() {
+        while !next.samples.paths.is_empty() {
             // Hit: the nearest surface for every ray of the batch.
-            std::mem::swap(&mut paths, &mut next.paths);
-            next.paths.clear();
+            std::mem::swap(paths, &mut next.samples.paths);
+            next.samples.paths.clear();
             rays.clear();
             rays.extend(paths.iter().map(|path| path.ray));
             hits.clear();
             hits.resize(rays.len(), Hit::MISS);
-            self.world.bvh.closest_hits(&rays, &mut hits);
+            self.world.bvh.closest_hits(rays, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.
-            for (path, hit) in paths.iter().zip(&hits) {
+            for (path, hit) in paths.iter().zip(&*hits) {
                 next.probe.notice(|| Event::Met { path: *path, hit: *hit });
                 let SampleId { pixel, sample } = ids[path.slot as usize];
                 let numbers = Numbers { sampler: &self.sampler, pixel, sample, address: path.address };
@@ -224,14 +238,20 @@ impl<'a> Frame<'a> {
 
             // Occluded: what arrives of the lights.
             rays_traced.shadow += resolve_shadows(self.world, self.passing(), &mut next);
-            rays_traced.secondary += next.paths.len() as u64;
+            rays_traced.secondary += next.samples.paths.len() as u64;
         }
 
-        let traced =
-            next.radiance.into_iter().zip(next.lanes).zip(weights).map(|((radiance, lanes), weight)| {
-                Traced { rgb: self.rgb(radiance * weight, &lanes), radiance, lanes, weight }
-            });
-        (traced.collect(), rays_traced)
+        *samples = next.samples;
+        traced.clear();
+        traced.extend(samples.radiance.iter().zip(&samples.lanes).zip(&*weights).map(
+            |((&radiance, &lanes), &weight)| Traced {
+                rgb: self.rgb(radiance * weight, &lanes),
+                radiance,
+                lanes,
+                weight,
+            },
+        ));
+        rays_traced
     }
 
     /// What the lanes of a sample mean.
@@ -270,23 +290,24 @@ impl<'a> Frame<'a> {
     pub fn render_tile(&self, samples: Range<u32>, tile: &mut FilmTile) -> Rays {
         let Crop { x0, y0, x1, y1 } = tile.area();
         let mut rays = Rays::default();
+        let mut batch = Batch::default();
+        let mut ids: Vec<SampleId> = Vec::new();
         for sample in samples {
-            let ids: Vec<SampleId> =
-                (y0..y1).flat_map(|y| (x0..x1).map(move |x| SampleId { pixel: [x, y], sample })).collect();
-            let (traced, of_batch) = if tile.has_layers() {
+            ids.clear();
+            ids.extend((y0..y1).flat_map(|y| (x0..x1).map(move |x| SampleId { pixel: [x, y], sample })));
+            rays += if tile.has_layers() {
                 let mut seen = Seen::new(self, ids.iter().map(|id| self.lanes(*id)).collect());
-                let traced = self.trace(&ids, &mut seen);
+                let rays = self.trace_batch(&ids, &mut seen, &mut batch);
                 for (id, features) in ids.iter().zip(seen.into_features()) {
                     if let Some(features) = features {
                         tile.add_features(id.pixel[0], id.pixel[1], &features);
                     }
                 }
-                traced
+                rays
             } else {
-                self.trace(&ids, &mut ())
+                self.trace_batch(&ids, &mut (), &mut batch)
             };
-            rays += of_batch;
-            for (id, traced) in ids.iter().zip(traced) {
+            for (id, traced) in ids.iter().zip(&batch.traced) {
                 let [x, y] = id.pixel;
                 tile.add(x, y, id.sample, traced.rgb);
             }

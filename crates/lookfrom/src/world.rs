@@ -149,6 +149,12 @@ impl World {
         surface.alpha.is_none_or(|alpha| u < self.textures.scalar(alpha, &self.texture_point(surface)))
     }
 
+    /// Whether chance has a say in what a surface is: by its alpha, or by a mixed material.
+    pub fn is_chancy(&self, surface: &Surface) -> bool {
+        let mixed = matches!(self.materials[surface.material as usize].kind, MaterialKind::Mix { .. });
+        mixed || surface.alpha.is_some()
+    }
+
     /// Whether a surface is only the border of a medium.
     pub fn is_interface(&self, surface: &Surface) -> bool {
         matches!(self.materials[surface.material as usize].kind, MaterialKind::Interface)

@@ -31,7 +31,7 @@ impl Integrator for AmbientOcclusion {
         let surface = world.surface(&path.ray, hit);
         let [presence, _] = numbers.two(0);
         if !world.is_there(&surface, presence) {
-            next.paths.push(path.passed(&surface));
+            next.samples.paths.push(path.passed(&surface));
             return;
         }
         let n = surface.ng_facing();
@@ -48,10 +48,11 @@ impl Integrator for AmbientOcclusion {
         let ray = Ray { t_max: self.distance, ..Ray::new(surface.origin(wi), wi.to_array()) };
         let white = world.light_of([1.0; 3], &next.lanes(path));
         let contribution = path.beta * white * weight;
-        next.shadows.push(Shadow {
+        next.samples.shadows.push(Shadow {
             ray,
             contribution,
-            path: *path,
+            slot: path.slot,
+            address: path.address,
             term: Term::Unoccluded,
             media: path.media,
         });

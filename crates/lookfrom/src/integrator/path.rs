@@ -88,9 +88,12 @@ impl Integrator for PathTracer {
         let surface = world.surface(&path.ray, hit);
 
         // Light passes where the surface is not there.
-        let [presence, mix] = numbers.two(purpose::PRESENCE);
+        let [presence, mix] = match world.is_chancy(&surface) {
+            true => numbers.two(purpose::PRESENCE),
+            false => [0.0; 2],
+        };
         if !world.is_there(&surface, presence) {
-            next.paths.push(path.passed(&surface));
+            next.samples.paths.push(path.passed(&surface));
             return;
         }
 
@@ -103,10 +106,10 @@ impl Integrator for PathTracer {
         self.add_emission(world, path, &surface, next);
 
         // What it does with light; dispersion leaves one wavelength.
-        let lanes = &mut next.lanes[path.slot as usize];
+        let lanes = &mut next.samples.lanes[path.slot as usize];
         let Some(mut shading) = world.shading(&surface, lanes, mix) else {
             let media = path.media.crossed(world, &surface);
-            next.paths.push(Path { media, ..path.passed(&surface) });
+            next.samples.paths.push(Path { media, ..path.passed(&surface) });
             return;
         };
         if self.regularize && path.departure.blurred {
@@ -154,7 +157,7 @@ impl Integrator for PathTracer {
             return;
         }
         let media = if transmitted { path.media.crossed(world, &surface) } else { path.media };
-        next.paths.push(Path {
+        next.samples.paths.push(Path {
             ray: Ray::new(surface.origin(wi), wi.to_array()),
             beta: beta / survival,
             slot: path.slot,
@@ -243,7 +246,7 @@ impl PathTracer {
             f,
         });
         if !contribution.is_black() {
-            next.shadows.push(Shadow::new(path, surface, &sample, index, contribution));
+            next.samples.shadows.push(Shadow::new(path, surface, &sample, index, contribution));
         }
     }
 

@@ -8,7 +8,7 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, Point, Ray};
 
 use crate::hash;
-use crate::integrator::{Event, Media, Next, Path, Probe, Term};
+use crate::integrator::{Event, Media, Next, Path, Probe, Samples, Term};
 use crate::light::{LightSample, Target};
 use crate::material::Coefficients;
 use crate::spectrum::Spectrum;
@@ -26,8 +26,10 @@ pub struct Shadow {
     pub ray: Ray,
     /// What is added to the sample if the light is reached.
     pub contribution: Spectrum,
-    /// The path whose hit asked for it.
-    pub path: Path,
+    /// Which sample of the batch.
+    pub slot: u32,
+    /// The address of the path whose hit asked for it.
+    pub address: u64,
     /// Why it is added.
     pub term: Term,
     /// What it travels in.
@@ -58,7 +60,8 @@ impl Shadow {
                 toward(origin, guarded.origin(normal.to_array(), back).map(f64::from))
             }
         };
-        Self { ray, contribution, path: *path, term: Term::Light(light), media: path.media }
+        let Path { slot, address, media, .. } = *path;
+        Self { ray, contribution, slot, address, term: Term::Light(light), media }
     }
 }
 
@@ -79,28 +82,33 @@ pub(crate) enum Passing {
 
 /// Traces all shadow rays of a batch and adds what arrives, in their order. Gives the number of rays traced.
 pub(crate) fn resolve<P: Probe>(world: &World, passing: Passing, next: &mut Next<'_, P>) -> u64 {
-    let mut shadows = std::mem::take(&mut next.shadows);
+    let mut samples = std::mem::take(&mut next.samples);
     let anything_passes = world.has_gaps || passing == Passing::Transparent && world.transmissive;
     let traced = if anything_passes {
-        let_through(world, passing, &mut shadows, &next.lanes, next.probe)
+        let_through(world, passing, &mut samples, next.probe)
     } else {
-        block(world, &mut shadows, &next.lanes, next.probe)
+        block(world, &mut samples, next.probe)
     };
+    next.samples = samples;
+    let mut shadows = std::mem::take(&mut next.samples.shadows);
     for shadow in shadows.drain(..) {
-        next.add(&shadow.path, shadow.term, shadow.contribution);
+        next.add_to(shadow.slot, shadow.address, shadow.term, shadow.contribution);
     }
-    next.shadows = shadows;
+    next.samples.shadows = shadows;
     traced
 }
 
 /// Whatever stands in the way takes all.
-fn block<P: Probe>(world: &World, shadows: &mut [Shadow], lanes: &[Lanes], probe: &mut P) -> u64 {
-    let rays: Vec<Ray> = shadows.iter().map(|shadow| shadow.ray).collect();
-    let mut blocked = vec![false; rays.len()];
-    world.bvh.occluded_many(&rays, &mut blocked);
-    for (shadow, blocked) in shadows.iter_mut().zip(blocked) {
-        let lanes = &lanes[shadow.path.slot as usize];
-        let passed = if blocked { Spectrum::BLACK } else { shadow.reached(world, lanes) };
+fn block<P: Probe>(world: &World, samples: &mut Samples, probe: &mut P) -> u64 {
+    let Samples { shadows, lanes, rays, blocked, .. } = samples;
+    rays.clear();
+    rays.extend(shadows.iter().map(|shadow| shadow.ray));
+    blocked.clear();
+    blocked.resize(rays.len(), false);
+    world.bvh.occluded_many(rays, blocked);
+    for (shadow, blocked) in shadows.iter_mut().zip(&*blocked) {
+        let lanes = &lanes[shadow.slot as usize];
+        let passed = if *blocked { Spectrum::BLACK } else { shadow.reached(world, lanes) };
         // That something is in the way is enough for the picture; who listens wants to know what.
         probe.notice(|| Event::Shadow { shadow: *shadow, hit: world.bvh.closest_hit(&shadow.ray), passed });
         shadow.contribution *= passed;
@@ -109,13 +117,8 @@ fn block<P: Probe>(world: &World, shadows: &mut [Shadow], lanes: &[Lanes], probe
 }
 
 /// What lets light through takes its part; the ray goes on behind it.
-fn let_through<P: Probe>(
-    world: &World,
-    passing: Passing,
-    shadows: &mut [Shadow],
-    lanes: &[Lanes],
-    probe: &mut P,
-) -> u64 {
+fn let_through<P: Probe>(world: &World, passing: Passing, samples: &mut Samples, probe: &mut P) -> u64 {
+    let Samples { shadows, lanes, .. } = samples;
     let mut traced = 0;
     let mut active: Vec<usize> = (0..shadows.len()).collect();
     for crossings in 0.. {
@@ -128,7 +131,7 @@ fn let_through<P: Probe>(
             let hit = hits.next().unwrap_or(Hit::MISS);
             let shadow = &mut shadows[index];
             let surface = hit.is_hit().then(|| world.surface(&shadow.ray, &hit));
-            let lanes = &lanes[shadow.path.slot as usize];
+            let lanes = &lanes[shadow.slot as usize];
             let passed = match surface.as_ref() {
                 Some(surface) if crossings < MOST_CROSSINGS => {
                     shadow.passed(world, passing, &hit, surface, lanes)

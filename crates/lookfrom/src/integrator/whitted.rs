@@ -64,7 +64,7 @@ impl Integrator for Whitted {
                 cut: child.err(),
             });
             if let Ok(child) = child {
-                next.paths.push(child);
+                next.samples.paths.push(child);
             }
         }
     }
