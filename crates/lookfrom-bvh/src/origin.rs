@@ -11,7 +11,7 @@
 //! instanced sphere this holds only as long as its radii of curvature are large against the spacing of f32.
 
 use crate::affine::{Affine, inverse_matrix};
-use crate::vector::{cross, cross_magnitude, dot, round_down, round_up, subtract, wide};
+use crate::vector::{cross, cross_magnitude, dot, round_toward, subtract, wide};
 
 /// Unit of rounding of f64, 2⁻⁵³.
 const UNIT: f64 = f64::EPSILON / 2.0;
@@ -47,6 +47,25 @@ impl Point {
     /// assert_eq!(point.position, [0.25, 0.5, 0.0]);
     /// ```
     pub fn on_triangle(p0: [f32; 3], p1: [f32; 3], p2: [f32; 3], u: f32, v: f32) -> Self {
+        Self::on_triangle_with_normal(p0, p1, p2, u, v).0
+    }
+
+    /// The same, and `(p1 − p0) × (p2 − p0)`, which it needs on the way: twice the area long.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Point;
+    /// let corners = ([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+    /// let (point, normal) = Point::on_triangle_with_normal(corners.0, corners.1, corners.2, 0.25, 0.5);
+    /// assert_eq!((point.position, normal), ([0.25, 0.5, 0.0], [0.0, 0.0, 1.0]));
+    /// ```
+    #[inline]
+    pub fn on_triangle_with_normal(
+        p0: [f32; 3],
+        p1: [f32; 3],
+        p2: [f32; 3],
+        u: f32,
+        v: f32,
+    ) -> (Self, [f64; 3]) {
         let [p0, p1, p2] = [p0, p1, p2].map(wide);
         let (u, v) = (f64::from(u), f64::from(v));
         let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
@@ -62,7 +81,7 @@ impl Point {
             let magnitude = p0[i].abs() + (u * e1[i]).abs() + (v * e2[i]).abs() + reach[i];
             8.0 * UNIT * magnitude + decision
         });
-        Self { position, error }
+        (Self { position, error }, n)
     }
 
     /// The point of a sphere that is nearest to `hit`, which should be a point on it but for its errors.
@@ -134,13 +153,25 @@ impl Point {
     /// assert_eq!(below, [0.25, 0.25, 1.0_f32.next_down()]);
     /// ```
     pub fn origin<D: Copy + Into<f64>>(&self, normal: [f64; 3], direction: [D; 3]) -> [f32; 3] {
-        let direction: [f64; 3] = direction.map(Into::into);
-        let side = if dot(normal, direction) < 0.0 { -1.0 } else { 1.0 };
         let length = dot(normal, normal).sqrt();
         if !(length > 0.0 && length.is_finite()) {
             return self.position.map(|x| x as f32);
         }
-        let normal = normal.map(|x| x * side / length);
+        self.leave(normal.map(|x| x / length), direction)
+    }
+
+    /// The same for a normal of unit length, up to rounding.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Point;
+    /// let point = Point { position: [0.25, 0.25, 1.0], error: [0.0; 3] };
+    /// assert_eq!(point.leave([0.0, 0.0, 1.0], [0.5_f32, 0.0, -1.0])[2], 1.0_f32.next_down());
+    /// ```
+    #[inline]
+    pub fn leave<D: Copy + Into<f64>>(&self, unit_normal: [f64; 3], direction: [D; 3]) -> [f32; 3] {
+        let direction: [f64; 3] = direction.map(Into::into);
+        let side = if dot(unit_normal, direction) < 0.0 { -1.0 } else { 1.0 };
+        let normal = unit_normal.map(|x| x * side);
 
         // The step along the normal that makes up for the error in its direction, and for its own rounding.
         let step = (0..3)
@@ -149,13 +180,8 @@ impl Point {
             * (1.0 + 1e-6);
         [0, 1, 2].map(|i| {
             let moved = self.position[i] + step * normal[i];
-            if normal[i] > 0.0 {
-                round_up(moved)
-            } else if normal[i] < 0.0 {
-                round_down(moved)
-            } else {
-                moved as f32
-            }
+            let rounded = round_toward(moved, normal[i] > 0.0);
+            if normal[i] == 0.0 { moved as f32 } else { rounded }
         })
     }
 }

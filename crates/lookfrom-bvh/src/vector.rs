@@ -26,14 +26,51 @@ pub(crate) fn cross_magnitude(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] + a[2] * b[1], a[2] * b[0] + a[0] * b[2], a[0] * b[1] + a[1] * b[0]]
 }
 
+/// `x` as the nearest f32 that is not on the wrong side of it: not below for `up`, not above otherwise. Without a branch
+/// that depends on where `x` lies, since nobody can guess that.
+#[inline]
+pub(crate) fn round_toward(x: f64, up: bool) -> f32 {
+    let nearest = x as f32;
+    let wide = f64::from(nearest);
+    let is_wrong = if up { wide < x } else { wide > x };
+    // One step in the order of the numbers is one step of the bits, forward or back by sign; from zero there is no such.
+    if nearest == 0.0 && is_wrong {
+        return if up { f32::from_bits(1) } else { -f32::from_bits(1) };
+    }
+    let bits = nearest.to_bits();
+    let step = if (bits >> 31 == 0) == up { 1 } else { u32::MAX };
+    f32::from_bits(bits.wrapping_add(if is_wrong { step } else { 0 }))
+}
+
 /// The smallest f32 that is not below `x`.
 pub(crate) fn round_up(x: f64) -> f32 {
-    let nearest = x as f32;
-    if f64::from(nearest) < x { nearest.next_up() } else { nearest }
+    round_toward(x, true)
 }
 
 /// The largest f32 that is not above `x`.
 pub(crate) fn round_down(x: f64) -> f32 {
-    let nearest = x as f32;
-    if f64::from(nearest) > x { nearest.next_down() } else { nearest }
+    round_toward(x, false)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_is_the_next_number_on_the_right_side() {
+        let up = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
+        let mut seed = 1_u64;
+        for _ in 0..100_000 {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            // random exponents of f32 and beyond
+            let bits = seed & !(0x7ff << 52) | (860 + (seed >> 20) % 300) << 52;
+            let x = f64::from_bits(bits);
+            assert_eq!(round_up(x).to_bits(), up(x).to_bits(), "{x:e}");
+            assert_eq!(round_down(x).to_bits(), (-up(-x)).to_bits(), "{x:e}");
+        }
+        for x in [0.0, -0.0, 1.0, f64::INFINITY, f64::MAX, -f64::MAX, 1e-300] {
+            assert_eq!((round_up(x), round_down(x)), (up(x), -up(-x)), "{x:e}");
+        }
+        assert!(round_up(f64::NAN).is_nan());
+    }
 }

@@ -50,6 +50,22 @@ impl Material {
     pub fn new(name: impl Into<String>, at: Location, kind: MaterialKind) -> Self {
         Self { name: name.into(), at, kind, relief: Relief::None }
     }
+
+    /// Whether it matters which way u runs over the surface.
+    pub fn has_grain(&self) -> bool {
+        let uneven = |roughness: &Roughness| roughness.u != roughness.v;
+        self.relief != Relief::None
+            || match &self.kind {
+                MaterialKind::Conductor { roughness, .. } | MaterialKind::Dielectric { roughness, .. } => {
+                    uneven(roughness)
+                }
+                MaterialKind::CoatedDiffuse { coat, .. } => uneven(&coat.roughness),
+                MaterialKind::CoatedConductor { roughness, coat, .. } => {
+                    uneven(roughness) || uneven(&coat.roughness)
+                }
+                _ => false,
+            }
+    }
 }
 
 /// What turns or bends the shading normal; the form stays as it is.

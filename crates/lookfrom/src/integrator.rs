@@ -22,7 +22,7 @@ use crate::bsdf::BsdfSample;
 use crate::hash;
 use crate::light::Reference;
 use crate::material::{Material, Shading};
-use crate::sampler::Sampler;
+use crate::sampler::PixelSampler;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::texture::{Lanes, TexturePoint, Usage};
@@ -42,7 +42,7 @@ pub trait Integrator: Sync {
     fn step<P: Probe>(
         &self,
         world: &World,
-        numbers: &Numbers<'_>,
+        numbers: &Numbers,
         path: &Path,
         hit: &Hit,
         next: &mut Next<'_, P>,
@@ -139,21 +139,19 @@ impl Media {
 
 /// Random numbers for one ray: a pure function of pixel, sample, seed and the ray's place in its tree.
 #[derive(Clone, Copy, Debug)]
-pub struct Numbers<'a> {
-    /// Where they come from.
-    pub sampler: &'a Sampler,
-    /// Column and row of the pixel.
-    pub pixel: [u32; 2],
+pub struct Numbers {
+    /// Where they come from: the pixel's.
+    pub sampler: PixelSampler,
     /// Which sample of the pixel.
     pub sample: u32,
     /// [`Path::address`].
     pub address: u64,
 }
 
-impl Numbers<'_> {
+impl Numbers {
     /// Two numbers in `[0, 1)` for one purpose at this ray.
     pub fn two(&self, purpose: u32) -> [f32; 2] {
-        self.sampler.two(self.pixel, self.sample, hash::pair(self.address, u64::from(purpose)) as u32)
+        self.sampler.two(self.sample, hash::pair(self.address, u64::from(purpose)) as u32)
     }
 }
 

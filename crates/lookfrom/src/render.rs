@@ -232,7 +232,8 @@ impl<'a> Frame<'a> {
             for (path, hit) in paths.iter().zip(&*hits) {
                 next.probe.notice(|| Event::Met { path: *path, hit: *hit });
                 let SampleId { pixel, sample } = ids[path.slot as usize];
-                let numbers = Numbers { sampler: &self.sampler, pixel, sample, address: path.address };
+                let sampler = self.sampler.of_pixel(pixel);
+                let numbers = Numbers { sampler, sample, address: path.address };
                 integrator.step(self.world, &numbers, path, hit, &mut next);
             }
 

@@ -27,6 +27,13 @@ pub struct Sampler {
     key: u64,
 }
 
+/// The numbers of one pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct PixelSampler {
+    kind: Kind,
+    key: u64,
+}
+
 impl Sampler {
     /// The sampler of one render. Another `seed` gives other noise. Sample 5 of 16 is sample 5 of 64, so that a render
     /// can be continued.
@@ -34,14 +41,17 @@ impl Sampler {
         Self { kind, key: mix(seed.wrapping_add(GOLDEN)) }
     }
 
+    /// The same for one pixel, to be asked often.
+    #[inline]
+    pub fn of_pixel(&self, [x, y]: [u32; 2]) -> PixelSampler {
+        let key = mix(self.key ^ (u64::from(x) | u64::from(y) << 32));
+        PixelSampler { kind: self.kind, key }
+    }
+
     /// A number in [0, 1): the first of [`Sampler::two`] at the same address.
     #[inline]
     pub fn one(&self, pixel: [u32; 2], sample: u32, dimension: u32) -> f32 {
-        let pattern = self.pattern(pixel, dimension);
-        match self.kind {
-            Kind::Sobol => unit(sobol_first(shuffled(sample, pattern), pattern).reverse_bits()),
-            Kind::Independent => unit((independent(sample, pattern) >> 32) as u32),
-        }
+        self.of_pixel(pixel).one(sample, dimension)
     }
 
     /// A point in [0, 1)². Coordinates are multiples of 2⁻²⁴.
@@ -51,7 +61,25 @@ impl Sampler {
     /// dimensions, pixels or seeds are independent.
     #[inline]
     pub fn two(&self, pixel: [u32; 2], sample: u32, dimension: u32) -> [f32; 2] {
-        let pattern = self.pattern(pixel, dimension);
+        self.of_pixel(pixel).two(sample, dimension)
+    }
+}
+
+impl PixelSampler {
+    /// As [`Sampler::one`].
+    #[inline]
+    pub fn one(&self, sample: u32, dimension: u32) -> f32 {
+        let pattern = self.pattern(dimension);
+        match self.kind {
+            Kind::Sobol => unit(sobol_first(shuffled(sample, pattern), pattern).reverse_bits()),
+            Kind::Independent => unit((independent(sample, pattern) >> 32) as u32),
+        }
+    }
+
+    /// As [`Sampler::two`].
+    #[inline]
+    pub fn two(&self, sample: u32, dimension: u32) -> [f32; 2] {
+        let pattern = self.pattern(dimension);
         match self.kind {
             Kind::Sobol => {
                 let index = shuffled(sample, pattern);
@@ -68,10 +96,10 @@ impl Sampler {
         }
     }
 
-    /// The 64 bits that name the pattern of a pixel in a dimension.
+    /// The 64 bits that name the pattern of the pixel in a dimension.
     #[inline]
-    fn pattern(&self, [x, y]: [u32; 2], dimension: u32) -> u64 {
-        mix(mix(self.key ^ (u64::from(x) | u64::from(y) << 32)) ^ u64::from(dimension))
+    fn pattern(&self, dimension: u32) -> u64 {
+        mix(self.key ^ u64::from(dimension))
     }
 }
 

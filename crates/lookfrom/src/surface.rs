@@ -64,6 +64,6 @@ impl Surface {
 
     /// Where a ray into `direction` starts: beyond the error bound, on the side that it leaves to.
     pub fn origin(&self, direction: Vec3) -> [f32; 3] {
-        self.point.origin(self.ng.to_array(), direction.to_array().map(f64::from))
+        self.point.leave(self.ng.to_array(), direction.to_array())
     }
 }

@@ -11,7 +11,7 @@ use crate::world::World;
 /// Adds what the surface shines and `k_a I_a`, and asks every light for `k_d (N·L) I_j + k_s (N·H)ⁿ I_j`.
 pub(super) fn local_light<P: Probe>(
     world: &World,
-    numbers: &Numbers<'_>,
+    numbers: &Numbers,
     path: &Path,
     surface: &Surface,
     next: &mut Next<'_, P>,

@@ -20,7 +20,7 @@ impl Integrator for AmbientOcclusion {
     fn step<P: Probe>(
         &self,
         world: &World,
-        numbers: &Numbers<'_>,
+        numbers: &Numbers,
         path: &Path,
         hit: &Hit,
         next: &mut Next<'_, P>,

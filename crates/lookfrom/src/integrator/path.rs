@@ -75,7 +75,7 @@ impl Integrator for PathTracer {
     fn step<P: Probe>(
         &self,
         world: &World,
-        numbers: &Numbers<'_>,
+        numbers: &Numbers,
         path: &Path,
         hit: &Hit,
         next: &mut Next<'_, P>,
@@ -259,7 +259,7 @@ impl PathTracer {
     }
 
     /// The probability with which a path goes on after its `depth`-th bounce, and whether it does.
-    fn roulette(&self, numbers: &Numbers<'_>, beta: Spectrum, eta_scale: f32, depth: u32) -> (f32, bool) {
+    fn roulette(&self, numbers: &Numbers, beta: Spectrum, eta_scale: f32, depth: u32) -> (f32, bool) {
         let share = beta.max_lane() * eta_scale;
         if self.wisdom != Wisdom::Combined || depth <= 1 || share >= 1.0 {
             return (1.0, true);

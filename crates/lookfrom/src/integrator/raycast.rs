@@ -14,7 +14,7 @@ impl Integrator for Raycast {
     fn step<P: Probe>(
         &self,
         world: &World,
-        numbers: &Numbers<'_>,
+        numbers: &Numbers,
         path: &Path,
         hit: &Hit,
         next: &mut Next<'_, P>,

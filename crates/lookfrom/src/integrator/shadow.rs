@@ -57,7 +57,7 @@ impl Shadow {
                 let guarded =
                     Point { position: point.position, error: point.error.map(|error| error + slack) };
                 let back = sample.wi.to_array().map(|x| -f64::from(x));
-                toward(origin, guarded.origin(normal.to_array(), back).map(f64::from))
+                toward(origin, guarded.leave(normal.to_array(), back).map(f64::from))
             }
         };
         let Path { slot, address, media, .. } = *path;

@@ -23,7 +23,7 @@ pub enum View {
 }
 
 impl Integrator for View {
-    fn step<P: Probe>(&self, world: &World, _: &Numbers<'_>, path: &Path, hit: &Hit, next: &mut Next<'_, P>) {
+    fn step<P: Probe>(&self, world: &World, _: &Numbers, path: &Path, hit: &Hit, next: &mut Next<'_, P>) {
         if !hit.is_hit() {
             return;
         }

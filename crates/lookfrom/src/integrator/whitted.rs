@@ -28,7 +28,7 @@ impl Integrator for Whitted {
     fn step<P: Probe>(
         &self,
         world: &World,
-        numbers: &Numbers<'_>,
+        numbers: &Numbers,
         path: &Path,
         hit: &Hit,
         next: &mut Next<'_, P>,

@@ -24,6 +24,8 @@ pub struct Mesh {
     pub colors: Vec<[f32; 3]>,
     /// Directions in which u grows, of any length, none or one a vertex.
     pub tangents: Vec<Vec3>,
+    /// Whether anybody asks for derivatives by texture coordinates; otherwise they are 0.
+    pub wants_derivatives: bool,
     /// Whether the outside is where the triangles run clockwise: after a mirror, or a reversal, but not both.
     pub flip: bool,
     /// Whose.
@@ -58,9 +60,8 @@ impl Mesh {
     pub fn point(&self, index: usize, u: f32, v: f32) -> FormPoint {
         let corners = self.corners(index);
         let [p0, p1, p2] = corners;
-        let point = Point::on_triangle(p0, p1, p2, u, v);
-        let [p0, p1, p2] = corners.map(|p| Vec3::from_array(p).as_dvec3());
-        let winding = (p1 - p0).cross(p2 - p0).normalize();
+        let (point, across) = Point::on_triangle_with_normal(p0, p1, p2, u, v);
+        let winding = DVec3::from_array(across).normalize();
         let mut ng = if self.flip { -winding } else { winding };
         let weights = [1.0 - u - v, u, v];
         let vertices = self.triangles[index].map(|vertex| vertex as usize);
@@ -79,7 +80,29 @@ impl Mesh {
         let ns = smooth.unwrap_or(ng);
         let uvs = self.corner_uvs(index);
         let uv = weights[0] * uvs[0] + weights[1] * uvs[1] + weights[2] * uvs[2];
-        let [dpdu, dpdv] = derivatives([p0, p1, p2], uvs, winding);
+        let color = if self.colors.is_empty() {
+            [1.0; 3]
+        } else {
+            std::array::from_fn(|c| (0..3).map(|k| weights[k] * self.colors[vertices[k]][c]).sum())
+        };
+        if !self.wants_derivatives {
+            let none = DVec3::ZERO;
+            let look = self.look;
+            return FormPoint {
+                point,
+                ng,
+                ns,
+                uv,
+                dpdu: none,
+                dpdv: none,
+                shading_dpdu: none,
+                shading_dpdv: none,
+                color,
+                look,
+            };
+        }
+        let corners = corners.map(|p| Vec3::from_array(p).as_dvec3());
+        let [dpdu, dpdv] = derivatives(corners, uvs, winding);
 
         // Smoothing turns the derivatives into the plane across the shading normal.
         let tangent = (!self.tangents.is_empty()).then(|| mix(&self.tangents)).filter(|s| *s != DVec3::ZERO);
@@ -94,11 +117,6 @@ impl Mesh {
                 (shading_dpdu, shading_dpdv) = (s.as_dvec3(), t.as_dvec3());
             }
         }
-        let color = if self.colors.is_empty() {
-            [1.0; 3]
-        } else {
-            std::array::from_fn(|c| (0..3).map(|k| weights[k] * self.colors[vertices[k]][c]).sum())
-        };
         FormPoint { point, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, color, look: self.look }
     }
 }

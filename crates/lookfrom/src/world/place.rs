@@ -78,6 +78,8 @@ pub(super) struct Compiler<'a> {
     pub(super) lights: Lights<'a>,
     /// Names by shape number.
     pub(super) shapes: Vec<String>,
+    /// Whether any material has a grain or a relief.
+    pub(super) wants_derivatives: bool,
     /// Parts of surfaces that are there.
     pub(super) alphas: Vec<Scalar>,
     /// What they say is on their sides.

@@ -5,7 +5,8 @@
 
 use std::sync::Arc;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
+use lookfrom_bvh::Point;
 
 use super::{Cone, LightPoint, seen};
 use crate::distribution::Discrete;
@@ -24,19 +25,34 @@ const WORTH_DIRECTION: f64 = 0.06;
 #[derive(Clone, Debug)]
 pub struct MeshLight {
     mesh: Arc<Mesh>,
+    /// By triangle: what choosing a point of it takes.
+    triangles: Vec<Triangle>,
     /// Of a triangle, by area.
     choice: Discrete,
+    area: f64,
+}
+
+/// A triangle, made ready for choosing points of it.
+#[derive(Clone, Copy, Debug)]
+struct Triangle {
+    p0: DVec3,
+    e1: DVec3,
+    e2: DVec3,
+    /// To the outside, of unit length; `None` where the mesh's normals make that differ over the triangle.
+    normal: Option<DVec3>,
     area: f64,
 }
 
 impl MeshLight {
     /// None for a mesh without area.
     pub fn new(mesh: Arc<Mesh>) -> Option<Self> {
-        let areas: Vec<f64> = (0..mesh.triangles.len()).map(|index| mesh.area(index)).collect();
-        let area: f64 = areas.iter().filter(|area| area.is_finite()).sum();
+        let triangles: Vec<Triangle> =
+            (0..mesh.triangles.len()).map(|index| Triangle::new(&mesh, index)).collect();
+        let area: f64 = triangles.iter().map(|triangle| triangle.area).filter(|area| area.is_finite()).sum();
         // In parts of the whole, which no unit of length makes vanish.
-        let weights: Vec<f32> = areas.iter().map(|own| (own / area) as f32).collect();
-        (area > 0.0 && area.is_finite()).then(|| Self { mesh, choice: Discrete::new(&weights), area })
+        let weights: Vec<f32> = triangles.iter().map(|triangle| (triangle.area / area) as f32).collect();
+        let choice = || Discrete::new(&weights);
+        (area > 0.0 && area.is_finite()).then(|| Self { choice: choice(), mesh, triangles, area })
     }
 
     pub(super) fn area(&self) -> f64 {
@@ -61,51 +77,75 @@ impl MeshLight {
 
     pub(super) fn sample(&self, from: DVec3, [u0, u1]: [f32; 2]) -> Option<LightPoint> {
         let (index, probability, u0) = self.choice.sample(u0);
-        let corners = self.corners_from(from, index);
-        if let Some(solid_angle) = worth_direction(corners) {
+        let triangle = &self.triangles[index];
+        if let Some(solid_angle) = triangle.worth_direction(from) {
+            let corners = triangle.corners_from(from);
             let direction = sample_spherical_triangle(corners, solid_angle, [u0, u1].map(f64::from));
             let [beta, gamma] = barycentric(corners, direction);
-            let at = self.mesh.point(index, beta as f32, gamma as f32);
-            let (wi, _) = toward(from, DVec3::from_array(at.point.position))?;
+            let (point, normal, uv) = self.point(index, beta as f32, gamma as f32);
+            let (wi, _) = toward(from, DVec3::from_array(point.position))?;
             let pdf = (f64::from(probability) / solid_angle) as f32;
-            return Some(LightPoint { point: at.point, normal: at.ng, uv: at.uv, wi, pdf });
+            return Some(LightPoint { point, normal, uv, wi, pdf });
         }
         let [_, beta, gamma] = warp::uniform_triangle([u0, u1]);
-        let at = self.mesh.point(index, beta, gamma);
-        seen(from, at.point, at.ng, at.uv, self.pdf_by_area(index))
+        let (point, normal, uv) = self.point(index, beta, gamma);
+        seen(from, point, normal, uv, f64::from(probability) / triangle.area)
+    }
+
+    /// A point of a triangle, the normal to the outside and the texture coordinates.
+    fn point(&self, index: usize, beta: f32, gamma: f32) -> (Point, DVec3, Vec2) {
+        let Some(normal) = self.triangles[index].normal else {
+            let at = self.mesh.point(index, beta, gamma);
+            return (at.point, at.ng, at.uv);
+        };
+        let [p0, p1, p2] = self.mesh.corners(index);
+        let uvs = self.mesh.corner_uvs(index);
+        let uv = (1.0 - beta - gamma) * uvs[0] + beta * uvs[1] + gamma * uvs[2];
+        (Point::on_triangle(p0, p1, p2, beta, gamma), normal, uv)
     }
 
     /// The density over solid angle where points of a triangle are chosen by direction.
     pub(super) fn pdf_by_direction(&self, from: DVec3, index: usize) -> Option<f32> {
-        let solid_angle = worth_direction(self.corners_from(from, index))?;
+        let solid_angle = self.triangles[index].worth_direction(from)?;
         Some((f64::from(self.choice.pdf(index)) / solid_angle) as f32)
     }
 
     /// The density over area where points of a triangle are chosen by area.
     pub(super) fn pdf_by_area(&self, index: usize) -> f64 {
-        f64::from(self.choice.pdf(index)) / self.mesh.area(index)
-    }
-
-    /// A triangle as it is seen from a point.
-    fn corners_from(&self, from: DVec3, index: usize) -> [DVec3; 3] {
-        self.mesh.corners(index).map(|p| Vec3::from_array(p).as_dvec3() - from)
+        f64::from(self.choice.pdf(index)) / self.triangles[index].area
     }
 }
 
-/// The solid angle in which a triangle is seen from the origin, if its points are chosen by direction from there.
-fn worth_direction(corners @ [p0, p1, p2]: [DVec3; 3]) -> Option<f64> {
-    // Roughly, by the middle: area · cos / distance²; far too small rather than too large for near triangles, so those
-    // are told by their size.
-    let area_vector = 0.5 * (p1 - p0).cross(p2 - p0);
-    let middle = (p0 + p1 + p2) * (1.0 / 3.0);
-    let distance2 = middle.length_squared();
-    let seems = area_vector.dot(middle).abs() / (distance2 * distance2.sqrt());
-    let is_near = distance2 * distance2 < area_vector.length_squared();
-    if !(seems > WORTH_DIRECTION || is_near) {
-        return None;
+impl Triangle {
+    fn new(mesh: &Mesh, index: usize) -> Self {
+        let [p0, p1, p2] = mesh.corners(index).map(|p| Vec3::from_array(p).as_dvec3());
+        let (e1, e2) = (p1 - p0, p2 - p0);
+        // The middle has the side of all three corners, where they agree.
+        let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(u, v)| mesh.point(index, u, v).ng);
+        let agree = corners[1..].iter().all(|ng| ng.dot(corners[0]) > 0.0);
+        Self { p0, e1, e2, normal: agree.then_some(corners[0]), area: 0.5 * e1.cross(e2).length() }
     }
-    let solid_angle = solid_angle(corners);
-    BY_DIRECTION.contains(&solid_angle).then_some(solid_angle)
+
+    /// As it is seen from a point.
+    fn corners_from(&self, from: DVec3) -> [DVec3; 3] {
+        let p0 = self.p0 - from;
+        [p0, p0 + self.e1, p0 + self.e2]
+    }
+
+    /// The solid angle in which it is seen from a point, if its points are chosen by direction from there.
+    fn worth_direction(&self, from: DVec3) -> Option<f64> {
+        // Roughly, by the middle: area · cos / distance²; near triangles are told by their size. A triangle whose normal
+        // is not known is seen as if it faced the point.
+        let middle = self.p0 - from + (self.e1 + self.e2) * (1.0 / 3.0);
+        let distance2 = middle.length_squared();
+        let facing = self.normal.map_or(distance2.sqrt(), |normal| normal.dot(middle).abs());
+        let seems = self.area * facing / (distance2 * distance2.sqrt());
+        if !(seems > WORTH_DIRECTION || distance2 < self.area) {
+            return None;
+        }
+        let solid_angle = solid_angle(self.corners_from(from));
+        BY_DIRECTION.contains(&solid_angle).then_some(solid_angle)
+    }
 }
 
 /// The solid angle in which a triangle is seen from the origin.

@@ -30,6 +30,7 @@ impl Compiler<'_> {
                 .iter()
                 .map(|s| matrix.transform_vector3(s.as_dvec3()).as_vec3())
                 .collect(),
+            wants_derivatives: self.wants_derivatives,
             flip: placing.mirrors() != shape.reverse_orientation,
             look,
         };
