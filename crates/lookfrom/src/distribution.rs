@@ -1,8 +1,13 @@
 //! How is one of many chosen, in proportion to weights?
 //!
 //! [`Discrete`] chooses an entry of a list, [`Piecewise2D`] a point of the unit square by the brightness of a picture
-//! there. Both search running sums (inversion), which keeps near numbers near: well-spread samples stay well spread.
+//! there, [`Windowed2D`] one of a part of it. All search running sums (inversion), which keeps near numbers near:
+//! well-spread samples stay well spread.
 //! What is chosen, and what it weighs, is left to lights.
+
+mod window;
+
+pub use window::{Window, Windowed2D};
 
 use crate::sampler::ONE_MINUS_EPSILON;
 

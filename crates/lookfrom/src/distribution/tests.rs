@@ -136,3 +136,104 @@ fn nothing_bright_is_uniform() {
     }
     assert_eq!(Discrete::new(&[0.0; 4]).sample(0.6), (2, 0.25, (0.6_f32 - 0.5) * 4.0));
 }
+
+/// A part of the square; some are nearly nothing.
+fn any_window() -> impl Strategy<Value = Window> {
+    let side = || (0.0_f64..1.0, -30.0_f64..0.0).prop_map(|(a, size)| (a, (a + size.exp2()).min(1.0)));
+    (side(), side()).prop_map(|(x, y)| Window { min: [x.0, y.0], max: [x.1, y.1] })
+}
+
+proptest! {
+    #[test]
+    fn points_of_windows_lie_where_they_have_density(
+        width in 1_usize..9, height in 1_usize..9,
+        weights in prop::collection::vec(prop_oneof![3 => 0.0_f32..10.0, 1 => Just(0.0)], 64),
+        window in any_window(),
+        u in prop::array::uniform2(0.0_f32..1.0),
+    ) {
+        let grid = Windowed2D::new(weights[..width * height].to_vec(), width, height);
+        for window in [window, Window::WHOLE] {
+            // Slow twin: cut every cell with the window.
+            let mut sum = 0.0;
+            for index in 0..width * height {
+                let overlap = |axis: usize, cell: usize, cells: usize| {
+                    let (low, high) = (cell as f64 / cells as f64, (cell + 1) as f64 / cells as f64);
+                    (high.min(window.max[axis]) - low.max(window.min[axis])).max(0.0)
+                };
+                let (column, row) = (index % width, index / width);
+                sum += f64::from(weights[index]) * overlap(0, column, width) * overlap(1, row, height);
+            }
+            let sure = sum > 1e-6 * window.min.iter().zip(window.max).map(|(a, b)| b - a).product::<f64>();
+            let sample = grid.sample(&window, u);
+            prop_assert!(sample.is_some() || !sure, "{:?} of {:?}", window, grid);
+            if let (Some((point, pdf)), true) = (sample, sure) {
+                let inside = (0..2).all(|i| {
+                    window.min[i] - 1e-15 <= point[i] && point[i] <= window.max[i] + 1e-15
+                });
+                prop_assert!(inside, "{:?} of {:?}", point, window);
+                if window.contains(point) {
+                    prop_assert_eq!(pdf, grid.pdf(&window, point));
+                }
+                let [x, y] = [cell(point[0] as f32, width), cell(point[1] as f32, height)];
+                let twin = f64::from(weights[y * width + x]) / sum;
+                let on_border = (0..2).any(|i| {
+                    let place = point[i] * [width, height][i] as f64;
+                    (place - place.round()).abs() < 1e-5
+                });
+                prop_assert!(on_border || (f64::from(pdf) / twin - 1.0).abs() < 1e-3, "{} {}", pdf, twin);
+            }
+        }
+    }
+}
+
+#[test]
+fn points_of_windows_are_as_dense_as_they_say() {
+    let (width, height) = (6, 5);
+    let weights: Vec<f32> =
+        (0..30).map(|i| if i == 19 { 40.0 } else { (i * 7 % 11) as f32 }).collect();
+    let grid = Windowed2D::new(weights, width, height);
+    let window = Window { min: [0.13, 0.27], max: [0.71, 0.98] };
+    const N: u32 = 200_000;
+    const SIDE: usize = 60; // cells of the grid and of the counts have common borders
+    let mut counts = vec![0; SIDE * SIDE];
+    let of = |x: f64, axis: usize| {
+        let share = (x - window.min[axis]) / (window.max[axis] - window.min[axis]);
+        ((share * SIDE as f64) as usize).min(SIDE - 1)
+    };
+    for i in 0..N {
+        let ([x, y], _) = grid.sample(&window, random(i)).expect("something is bright");
+        counts[of(y, 1) * SIDE + of(x, 0)] += 1;
+    }
+    let area = (window.max[0] - window.min[0]) * (window.max[1] - window.min[1]);
+    let expected: Vec<f64> = (0..SIDE * SIDE)
+        .map(|index| {
+            // the mean over a cell of the counts, by many places in it
+            let fine = 16;
+            let at = |cell: usize, k: usize, axis: usize| {
+                let share = (cell as f64 + (k as f64 + 0.5) / f64::from(fine)) / SIDE as f64;
+                window.min[axis] + share * (window.max[axis] - window.min[axis])
+            };
+            let sum: f64 = (0..(fine * fine) as usize)
+                .map(|k| {
+                    let place = [at(index % SIDE, k % fine as usize, 0), at(index / SIDE, k / fine as usize, 1)];
+                    f64::from(grid.pdf(&window, place))
+                })
+                .sum();
+            sum / f64::from(fine * fine) * area / (SIDE * SIDE) as f64 * f64::from(N)
+        })
+        .collect();
+    assert!((expected.iter().sum::<f64>() / f64::from(N) - 1.0).abs() < 1e-3);
+    assert!(chi_square_deviate(&counts, &expected) < 4.5);
+}
+
+#[test]
+fn nothing_is_chosen_in_dark_windows() {
+    let grid = Windowed2D::new(vec![1e6, 0.0, f32::NAN, -3.0], 2, 2);
+    let dark = Window { min: [0.5, 0.0], max: [1.0, 1.0] };
+    assert_eq!(grid.sample(&dark, [0.3, 0.6]), None);
+    assert_eq!(grid.pdf(&dark, [0.75, 0.25]), 0.0);
+    assert_eq!(grid.pdf(&Window::WHOLE, [0.25, 0.25]), 4.0);
+    let none = Window { min: [0.25; 2], max: [0.25; 2] };
+    assert_eq!(grid.sample(&none, [0.3, 0.6]), None);
+    assert_eq!(Windowed2D::new(vec![0.0], 1, 1).sample(&Window::WHOLE, [0.5; 2]), None);
+}
