@@ -111,11 +111,20 @@ pub enum LightKind {
     Environment {
         /// Its colours.
         sky: Sky,
-        /// The corners of the one opening through which it is seen (in the world), in order around it.
+        /// The corners of the one opening through which it is seen (in the world), in order around it: against the clock
+        /// for one who looks out. A rectangle (see [`is_rectangle`]).
         portal: Option<[DVec3; 4]>,
         /// Whether it lights surfaces; otherwise it is only seen, by camera, mirrored and refracted rays.
         illuminates: bool,
     },
+}
+
+/// Whether four points are the corners of a rectangle, one after the other.
+pub fn is_rectangle([a, b, c, d]: &[DVec3; 4]) -> bool {
+    let (u, v) = (b - a, d - a);
+    let is_parallelogram = (a - b + c - d).length() <= 1e-3 * (u.length() + v.length());
+    let is_right = u.dot(v).abs() <= 1e-3 * u.length() * v.length();
+    is_parallelogram && is_right && u.cross(v).length_squared() > 0.0 && u.cross(v).is_finite()
 }
 
 /// How light fades with the distance r from its source.

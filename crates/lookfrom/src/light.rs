@@ -8,6 +8,7 @@ mod choice;
 mod cone;
 mod environment;
 mod picture;
+mod portal;
 mod tree;
 
 use glam::{DVec3, Vec3};
@@ -25,6 +26,7 @@ pub use area::{AreaLight, Extent, LightForm, LightPoint, MeshLight, PatchLight, 
 pub use choice::LightChoice;
 pub use environment::{Environment, Layout, Sky, SkyImage};
 pub use picture::{Goniometric, Projection};
+pub use portal::{Opening, Portal};
 
 /// A light, ready to be sampled. Positions are in render space.
 #[derive(Clone, Debug)]
@@ -148,7 +150,7 @@ impl Light {
     /// Whether a sampler that samples materials as well needs to ask it.
     fn is_asked(&self) -> bool {
         match self {
-            Self::Environment(environment) => environment.illuminates && environment.is_picture(),
+            Self::Environment(environment) => environment.illuminates && environment.is_uneven(),
             _ => true,
         }
     }
@@ -185,7 +187,7 @@ impl Light {
             Self::Projection(projection) => projection.sample(textures, from, lanes),
             Self::Goniometric(goniometric) => goniometric.sample(textures, from, lanes),
             Self::Area(light) => light.sample(textures, from, u, lanes),
-            Self::Environment(environment) => environment.sample(textures, at.n, u, lanes, coverage),
+            Self::Environment(environment) => environment.sample(textures, at, u, lanes, coverage),
         }
     }
 
@@ -194,34 +196,51 @@ impl Light {
     pub fn pdf(&self, at: &Reference, wi: Vec3, surface: Option<&Surface>, coverage: Coverage) -> f32 {
         match (self, surface) {
             (Self::Area(light), Some(surface)) => light.pdf(at.point, surface, wi),
-            (Self::Environment(environment), None) => environment.pdf(at.n, wi, coverage),
+            (Self::Environment(environment), None) => environment.pdf(at, wi, coverage),
             _ => 0.0,
         }
     }
 
-    /// Where it stands and how much it sends out, for a light whose radiance (or intensity) is `brightness`; `None` for
-    /// lights infinitely far.
-    fn bundle(&self, brightness: f32) -> Option<Bundle> {
-        let at_point = |position: &DVec3, normals: Cone, cos_emission: f32, solid_angle: f32| Bundle {
+    /// How much it sends out where its radiance (or intensity) is 1, roughly; `radius` is that of the scene.
+    fn power_per_brightness(&self, radius: f32) -> f64 {
+        use std::f64::consts::PI;
+        match self {
+            Self::Point { .. } | Self::Goniometric(_) | Self::Spot { .. } => 4.0 * PI,
+            Self::Projection(_) => 1.0,
+            Self::Area(light) => PI * light.area(),
+            Self::Environment(Environment { portal: Some(portal), .. }) => PI * portal.area(),
+            Self::Distant { .. } => PI * f64::from(radius) * f64::from(radius),
+            Self::Environment(_) => 4.0 * PI * PI * f64::from(radius) * f64::from(radius),
+        }
+    }
+
+    /// Where it stands and how much it sends out: `power`, in any unit; `None` for lights infinitely far.
+    fn bundle(&self, power: f32) -> Option<Bundle> {
+        let at_point = |position: &DVec3, normals: Cone, rim: f32| Bundle {
             min: position.as_vec3(),
             max: position.as_vec3(),
             normals,
-            cos_emission,
+            cos_emission: libm::cosf(rim),
             two_sided: false,
-            power: solid_angle * brightness,
+            power,
         };
-        const ALL_AROUND: f32 = 4.0 * std::f32::consts::PI;
+        // Slightly wider than they are, so that rounding leaves no rim in the dark.
+        const SLACK: f32 = 1e-3;
+        const WIDEST_RIM: f32 = std::f32::consts::FRAC_PI_2;
         Some(match self {
-            Self::Point { position, .. } => at_point(position, Cone::ALL, 0.0, ALL_AROUND),
-            Self::Goniometric(light) => at_point(&light.position, Cone::ALL, 0.0, ALL_AROUND),
+            Self::Point { position, .. } | Self::Goniometric(Goniometric { position, .. }) => {
+                at_point(position, Cone::ALL, WIDEST_RIM)
+            }
             Self::Projection(light) => {
-                at_point(&light.position, Cone { axis: light.axis(), cos: 1.0 }, light.cos_corner(), 1.0)
+                let rim = cone::angle(light.cos_corner()) + SLACK;
+                at_point(&light.position, Cone { axis: light.axis(), cos: 1.0 }, rim.min(WIDEST_RIM))
             }
             Self::Spot { position, axis, cos_outer, cos_inner, .. } => {
-                // slightly wider than it is, so that rounding leaves no rim in the dark
-                let rim = cone::angle(*cos_outer) - cone::angle(*cos_inner) + 1e-3;
-                let normals = Cone { axis: *axis, cos: *cos_inner };
-                at_point(position, normals, libm::cosf(rim), ALL_AROUND)
+                let [outer, inner] = [cos_outer, cos_inner].map(|cos| cone::angle(*cos));
+                // The cosine to the cone stands for the fall-off, and must not get to 0 within it.
+                let rim = (outer - inner + SLACK).min(WIDEST_RIM - 0.25);
+                let cos = libm::cosf((outer + SLACK - rim).clamp(0.0, std::f32::consts::PI));
+                at_point(position, Cone { axis: *axis, cos }, rim)
             }
             Self::Area(light) => {
                 let extent = light.extent();
@@ -231,7 +250,7 @@ impl Light {
                     normals: Cone { axis: extent.axis, cos: extent.cos_normals },
                     cos_emission: 0.0,
                     two_sided: extent.two_sided,
-                    power: std::f32::consts::PI * light.area() as f32 * brightness,
+                    power,
                 }
             }
             Self::Distant { .. } | Self::Environment(_) => return None,

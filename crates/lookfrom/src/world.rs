@@ -176,18 +176,18 @@ impl World {
         }
     }
 
-    /// Radiance from a direction (of any length) in which nothing stands.
-    pub fn sky(&self, direction: [f32; 3], lanes: &Lanes) -> Spectrum {
-        let direction = Vec3::from_array(direction).normalize();
-        self.environments
-            .iter()
-            .fold(Spectrum::BLACK, |sum, &index| sum + self.sky_of(index, direction, lanes))
+    /// Radiance that arrives along a ray that meets nothing.
+    pub fn sky(&self, ray: &Ray, lanes: &Lanes) -> Spectrum {
+        self.environments.iter().fold(Spectrum::BLACK, |sum, &index| sum + self.sky_of(index, ray, lanes))
     }
 
-    /// Radiance of one environment, by its light's index, from a unit direction.
-    pub fn sky_of(&self, index: u32, direction: Vec3, lanes: &Lanes) -> Spectrum {
+    /// Radiance of one environment, by its light's index, along a ray that meets nothing.
+    pub fn sky_of(&self, index: u32, ray: &Ray, lanes: &Lanes) -> Spectrum {
+        let [origin, direction] = [ray.origin, ray.direction].map(Vec3::from_array);
         match &self.lights[index as usize] {
-            Light::Environment(environment) => environment.radiance(&self.textures, direction, lanes),
+            Light::Environment(environment) => {
+                environment.radiance(&self.textures, origin.as_dvec3(), direction.normalize(), lanes)
+            }
             _ => Spectrum::BLACK,
         }
     }

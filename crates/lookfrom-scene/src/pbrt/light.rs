@@ -6,14 +6,14 @@
 
 use std::f32::consts::PI;
 
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat4, DVec3, DVec4, Vec3};
 
 use super::params::{Kind, Parameters};
 use super::spectra::brightness;
 use super::text::Place;
 use super::{Reader, transform};
 use crate::error::Result;
-use crate::light::{Amount, Falloff, Light, LightKind, Sky};
+use crate::light::{Amount, Falloff, Light, LightKind, Sky, is_rectangle};
 use crate::material::Color;
 use crate::scene::ImageId;
 use crate::shape::Emission;
@@ -69,7 +69,9 @@ impl Reader<'_, '_> {
             "goniometric" => {
                 let intensity = self.light_color(p, "I")?.unwrap_or(WHITE);
                 let image = self.light_picture(p, true)?;
-                let kind = LightKind::Goniometric { intensity, image, world_from_light: matrix };
+                // The middle of the picture is the light's y axis, but z of an octahedral square.
+                let swapped = DMat4::from_cols(DVec4::X, DVec4::Z, DVec4::Y, DVec4::W);
+                let kind = LightKind::Goniometric { intensity, image, world_from_light: matrix * swapped };
                 (kind, amount(p, "power", intensity, PI)?)
             }
             "infinite" => self.infinite(p, matrix)?,
@@ -85,7 +87,10 @@ impl Reader<'_, '_> {
         let portal = p.vectors("portal", Kind::Point3)?;
         let portal = match portal[..] {
             [] => None,
-            [a, b, c, d] => Some([a, b, c, d].map(Vec3::as_dvec3)),
+            [a, b, c, d] => Some([a, b, c, d].map(Vec3::as_dvec3))
+                .filter(is_rectangle)
+                .ok_or_else(|| p.refuse("portal", "the corners of a rectangle, one after the other"))
+                .map(Some)?,
             _ => return Err(p.refuse("portal", &format!("4 corners, found {}", portal.len()))),
         };
         let (sky, color) = match (p.string("filename")?, written) {
@@ -102,7 +107,11 @@ impl Reader<'_, '_> {
                 (Sky::Constant(color), color)
             }
         };
-        let amount = amount(p, "illuminance", color, 1.0)?;
+        let mut amount = amount(p, "illuminance", color, 1.0)?;
+        if let (Some(total), Sky::Octahedral { .. }) = (&mut amount.total, &sky) {
+            // pbrt-v4 takes a texel's share of the hemisphere for that of the sphere: its pictures give twice as much.
+            *total *= 2.0;
+        }
         Ok((LightKind::Environment { sky, portal, illuminates: true }, amount))
     }
 

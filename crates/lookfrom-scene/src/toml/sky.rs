@@ -7,7 +7,7 @@ use super::light::{COMMON, amount, turned};
 use super::table::Table;
 use super::value::Value;
 use crate::error::Result;
-use crate::light::{Amount, LightKind, Sky};
+use crate::light::{Amount, LightKind, Sky, is_rectangle};
 use crate::scene::ImageId;
 
 /// Its keys, besides those of its colours.
@@ -93,11 +93,7 @@ fn portal(value: Value<'_>) -> Result<[DVec3; 4]> {
     {
         *corner = item.vector()?;
     }
-    let [a, b, c, d] = corners;
-    let (u, v) = (b - a, d - a);
-    let is_parallelogram = (a - b + c - d).length() <= 1e-4 * (u.length() + v.length());
-    let is_right = u.dot(v).abs() <= 1e-4 * u.length() * v.length();
-    if is_parallelogram && is_right && u.cross(v).length_squared() > 0.0 && u.cross(v).is_finite() {
+    if is_rectangle(&corners) {
         return Ok(corners);
     }
     Err(value

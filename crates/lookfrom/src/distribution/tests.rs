@@ -189,8 +189,7 @@ proptest! {
 #[test]
 fn points_of_windows_are_as_dense_as_they_say() {
     let (width, height) = (6, 5);
-    let weights: Vec<f32> =
-        (0..30).map(|i| if i == 19 { 40.0 } else { (i * 7 % 11) as f32 }).collect();
+    let weights: Vec<f32> = (0..30).map(|i| if i == 19 { 40.0 } else { (i * 7 % 11) as f32 }).collect();
     let grid = Windowed2D::new(weights, width, height);
     let window = Window { min: [0.13, 0.27], max: [0.71, 0.98] };
     const N: u32 = 200_000;
@@ -215,7 +214,8 @@ fn points_of_windows_are_as_dense_as_they_say() {
             };
             let sum: f64 = (0..(fine * fine) as usize)
                 .map(|k| {
-                    let place = [at(index % SIDE, k % fine as usize, 0), at(index / SIDE, k / fine as usize, 1)];
+                    let place =
+                        [at(index % SIDE, k % fine as usize, 0), at(index / SIDE, k / fine as usize, 1)];
                     f64::from(grid.pdf(&window, place))
                 })
                 .sum();

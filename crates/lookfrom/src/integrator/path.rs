@@ -179,7 +179,7 @@ impl PathTracer {
     fn add_sky<P: Probe>(&self, world: &World, path: &Path, next: &mut Next<'_, P>) {
         let direction = Vec3::from_array(path.ray.direction).normalize();
         for &index in &world.environments {
-            let radiance = world.sky_of(index, direction, &next.lanes(path));
+            let radiance = world.sky_of(index, &path.ray, &next.lanes(path));
             let pdf = || world.light_pdf(index, &path.reference(), direction, None);
             let weight = self.weight_of_found(path, pdf);
             next.add(path, Term::Found { light: index, weight }, path.beta * radiance * weight);

@@ -20,7 +20,7 @@ impl Integrator for Raycast {
         next: &mut Next<'_, P>,
     ) {
         if !hit.is_hit() {
-            next.add(path, Term::Sky, path.beta * world.sky(path.ray.direction, &next.lanes(path)));
+            next.add(path, Term::Sky, path.beta * world.sky(&path.ray, &next.lanes(path)));
             return;
         }
         let surface = world.surface(&path.ray, hit);

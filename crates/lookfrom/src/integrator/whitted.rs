@@ -35,7 +35,7 @@ impl Integrator for Whitted {
     ) {
         // A ray that leaves the scene sees the sky.
         if !hit.is_hit() {
-            next.add(path, Term::Sky, path.beta * world.sky(path.ray.direction, &next.lanes(path)));
+            next.add(path, Term::Sky, path.beta * world.sky(&path.ray, &next.lanes(path)));
             return;
         }
 

@@ -27,17 +27,23 @@ impl LightChoice {
     /// A choice among the lights that need to be asked; `radius` is that of the scene, for the power of lights infinitely
     /// far.
     pub fn new(kind: Kind, lights: &[Light], brightness: &[f32], radius: f32) -> Self {
-        let mut listed = Vec::new();
-        let mut weights = Vec::new();
+        let asked = || (0..).zip(lights).filter(|(_, light)| light.is_asked());
+        let power = |index: u32, light: &Light| {
+            f64::from(brightness[index as usize]) * light.power_per_brightness(radius)
+        };
+        // Relative to the greatest, any power is an f32; what is positive stays so.
+        let greatest = asked().map(|(index, light)| power(index, light)).fold(0.0, f64::max);
+        let relative = |power: f64| if power > 0.0 { ((power / greatest) as f32).max(1e-30) } else { 0.0 };
+        let mut listed: Vec<u32> = Vec::new();
+        let mut powers: Vec<f32> = Vec::new();
         let mut with_place: Vec<(u32, Bundle)> = Vec::new();
-        for (index, light) in (0..).zip(lights).filter(|(_, light)| light.is_asked()) {
-            let brightness = brightness[index as usize];
-            match light.bundle(brightness) {
+        for (index, light) in asked() {
+            let power = relative(power(index, light));
+            match light.bundle(power) {
                 Some(bundle) if kind == Kind::Bvh => with_place.push((index, bundle)),
-                bundle => {
+                _ => {
                     listed.push(index);
-                    let of_far = || 4.0 * std::f32::consts::PI.powi(2) * radius * radius * brightness;
-                    weights.push(bundle.map_or_else(of_far, |bundle| bundle.power));
+                    powers.push(power);
                 }
             }
         }
@@ -45,7 +51,7 @@ impl LightChoice {
         for (place, light) in (0..).zip(&listed) {
             places[*light as usize] = Some(place);
         }
-        let weights = (kind == Kind::Power && !listed.is_empty()).then(|| Discrete::new(&weights));
+        let weights = (kind == Kind::Power && !listed.is_empty()).then(|| Discrete::new(&powers));
         Self { listed, weights, places, tree: Tree::new(&with_place, lights.len()) }
     }
 

@@ -1,12 +1,13 @@
-//! Light from infinitely far: a colour, a gradient or a picture all around.
+//! Light from infinitely far: a colour, a gradient or a picture all around, perhaps seen through an opening only.
 
 use std::f32::consts::PI;
 
-use glam::{Mat3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
 use lookfrom_scene::material::Color;
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
-use super::{Coverage, Glow, LightSample, Target};
+use super::portal::Portal;
+use super::{Coverage, Glow, LightSample, Reference, Target};
 use crate::distribution::Piecewise2D;
 use crate::spectrum::Spectrum;
 use crate::texture::{self, Lanes, TexturePoint, Textures, Usage};
@@ -17,6 +18,8 @@ use crate::warp;
 pub struct Environment {
     /// Its colours.
     pub sky: Sky,
+    /// The only opening through which it is seen.
+    pub portal: Option<Box<Portal>>,
     /// Whether surfaces are lit by it; otherwise it is only seen.
     pub illuminates: bool,
 }
@@ -67,8 +70,16 @@ pub enum Layout {
 }
 
 impl Environment {
-    /// Radiance from a unit direction.
-    pub fn radiance(&self, textures: &Textures, direction: Vec3, lanes: &Lanes) -> Spectrum {
+    /// Radiance that arrives at a point from a unit direction.
+    pub fn radiance(&self, textures: &Textures, from: DVec3, direction: Vec3, lanes: &Lanes) -> Spectrum {
+        match &self.portal {
+            Some(portal) if !portal.is_seen(from, direction) => Spectrum::BLACK,
+            _ => self.color(textures, direction, lanes),
+        }
+    }
+
+    /// Radiance from a unit direction in which nothing stands, not even a wall with an opening.
+    fn color(&self, textures: &Textures, direction: Vec3, lanes: &Lanes) -> Spectrum {
         match &self.sky {
             Sky::Constant(glow) => glow.even(textures, lanes),
             Sky::Gradient { zenith, horizon, nadir } => {
@@ -76,20 +87,24 @@ impl Environment {
                 let end = if y >= 0.0 { zenith } else { nadir };
                 horizon.even(textures, lanes) * (1.0 - y.abs()) + end.even(textures, lanes) * y.abs()
             }
-            Sky::Image(sky) => sky.radiance(textures, sky.uv(direction), lanes),
+            Sky::Image(sky) => {
+                let through = self.portal.as_ref().and_then(|portal| portal.texel(direction));
+                let rgb = through.unwrap_or_else(|| sky.texel(textures, sky.uv(direction)));
+                sky.radiance(textures, rgb, lanes)
+            }
         }
     }
 
-    /// Whether its light is not nearly the same all around.
-    pub(super) fn is_picture(&self) -> bool {
-        matches!(self.sky, Sky::Image(_))
+    /// Whether asking it is worth while: its light is not nearly the same all around.
+    pub(super) fn is_uneven(&self) -> bool {
+        self.portal.is_some() || matches!(self.sky, Sky::Image(_))
     }
 
-    /// One direction, by the cosine to `n` or by the picture's brightness.
+    /// One direction: out through the opening, by the picture's brightness, or by the cosine to the normal.
     pub(super) fn sample(
         &self,
         textures: &Textures,
-        n: Vec3,
+        at: &Reference,
         u: [f32; 2],
         lanes: &Lanes,
         coverage: Coverage,
@@ -97,15 +112,20 @@ impl Environment {
         if !self.illuminates {
             return None;
         }
-        let (wi, pdf, li) = match (&self.sky, coverage) {
-            (Sky::Image(sky), _) => {
-                let (uv, pdf) = sky.choice(coverage).sample(u);
-                (sky.direction(uv), pdf * sky.per_solid_angle(uv), sky.radiance(textures, uv, lanes))
+        let (wi, pdf, li) = match (&self.portal, &self.sky, coverage) {
+            (Some(portal), ..) => {
+                let (wi, pdf) = portal.sample(at.point, u)?;
+                (wi, pdf, self.color(textures, wi, lanes))
             }
-            (_, Coverage::Incomplete) => return None,
-            (_, Coverage::Complete) => {
-                let wi = warp::cosine_hemisphere(u, n);
-                (wi, warp::cosine_hemisphere_pdf(n.dot(wi)), self.radiance(textures, wi, lanes))
+            (None, Sky::Image(sky), _) => {
+                let (uv, pdf) = sky.choice(coverage).sample(u);
+                let li = sky.radiance(textures, sky.texel(textures, uv), lanes);
+                (sky.direction(uv), pdf * sky.per_solid_angle(uv), li)
+            }
+            (None, _, Coverage::Incomplete) => return None,
+            (None, _, Coverage::Complete) => {
+                let wi = warp::cosine_hemisphere(u, at.n);
+                (wi, warp::cosine_hemisphere_pdf(at.n.dot(wi)), self.color(textures, wi, lanes))
             }
         };
         let usable = pdf > 0.0 && pdf.is_finite() && !li.is_black();
@@ -113,18 +133,22 @@ impl Environment {
     }
 
     /// The density of [`Environment::sample`] over solid angle.
-    pub(super) fn pdf(&self, n: Vec3, wi: Vec3, coverage: Coverage) -> f32 {
-        match (&self.sky, coverage) {
+    pub(super) fn pdf(&self, at: &Reference, wi: Vec3, coverage: Coverage) -> f32 {
+        match (&self.portal, &self.sky, coverage) {
             _ if !self.illuminates => 0.0,
-            (Sky::Image(sky), _) => {
+            (Some(portal), ..) => finite(portal.pdf(at.point, wi)),
+            (None, Sky::Image(sky), _) => {
                 let uv = sky.uv(wi);
-                let pdf = sky.choice(coverage).pdf(uv) * sky.per_solid_angle(uv);
-                if pdf.is_finite() { pdf } else { 0.0 }
+                finite(sky.choice(coverage).pdf(uv) * sky.per_solid_angle(uv))
             }
-            (_, Coverage::Incomplete) => 0.0,
-            (_, Coverage::Complete) => warp::cosine_hemisphere_pdf(n.dot(wi)),
+            (None, _, Coverage::Incomplete) => 0.0,
+            (None, _, Coverage::Complete) => warp::cosine_hemisphere_pdf(at.n.dot(wi)),
         }
     }
+}
+
+fn finite(pdf: f32) -> f32 {
+    if pdf.is_finite() { pdf } else { 0.0 }
 }
 
 impl SkyImage {
@@ -135,14 +159,43 @@ impl SkyImage {
         }
     }
 
-    fn radiance(&self, textures: &Textures, uv: [f32; 2], lanes: &Lanes) -> Spectrum {
+    /// The picture's colour at a place of it.
+    fn texel(&self, textures: &Textures, uv: [f32; 2]) -> [f32; 3] {
         let image = textures.image(self.image);
-        let rgb = match self.layout {
+        match self.layout {
             Layout::LatitudeLongitude => {
                 texture::look_up(image, uv, [Wrap::Repeat, Wrap::Clamp], TexelFilter::Bilinear)
             }
             Layout::Octahedral => texture::look_up(image, uv, [Wrap::Clamp; 2], TexelFilter::Nearest),
-        };
+        }
+    }
+
+    /// The picture's colour in a unit direction, blended between the middles of texels.
+    pub fn blended(&self, textures: &Textures, direction: Vec3) -> [f32; 3] {
+        let uv = self.uv(direction);
+        match self.layout {
+            Layout::LatitudeLongitude => self.texel(textures, uv),
+            Layout::Octahedral => {
+                // Look up four texels; beyond an edge the square goes on where the fold leads.
+                let image = textures.image(self.image);
+                let size = [image.width as f32, image.height as f32];
+                let place: [f32; 2] = std::array::from_fn(|i| uv[i] * size[i] - 0.5);
+                let mut sum = [0.0; 3];
+                for corner in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]] {
+                    let middle: [f32; 2] =
+                        std::array::from_fn(|i| (place[i].floor() + corner[i] + 0.5) / size[i]);
+                    let weight: f32 =
+                        (0..2).map(|i| 1.0 - (place[i] - place[i].floor() - corner[i]).abs()).product();
+                    let folded = warp::octahedral_square(warp::octahedral_direction(middle));
+                    let texel = self.texel(textures, folded);
+                    sum = std::array::from_fn(|c| sum[c] + weight * texel[c]);
+                }
+                sum
+            }
+        }
+    }
+
+    fn radiance(&self, textures: &Textures, rgb: [f32; 3], lanes: &Lanes) -> Spectrum {
         let rgb = std::array::from_fn(|c| (rgb[c] * self.scale[c]).max(0.0));
         textures.spectrum(Color::Value(rgb), Usage::Illuminant, &TexturePoint::NOWHERE, lanes)
     }

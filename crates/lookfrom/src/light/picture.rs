@@ -35,7 +35,8 @@ impl Projection {
         if !(s.abs() <= 1.0 && t.abs() <= 1.0) {
             return None;
         }
-        let st = [0.5 + 0.5 * s, 0.5 + 0.5 * t];
+        // rows run down
+        let st = [0.5 + 0.5 * s, 0.5 - 0.5 * t];
         let rgb = texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Nearest);
         let white = textures.spectrum(Color::Value(rgb), Usage::Illuminant, &TexturePoint::NOWHERE, lanes);
         let li = white * (self.scale / (distance * distance) as f32);
@@ -73,7 +74,7 @@ impl Goniometric {
         let w = (self.light_from_render * -wi).normalize_or_zero();
         let st = warp::octahedral_square(w);
         let [r, g, b] =
-            texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Bilinear);
+            texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Nearest);
         let brightness = (r + g + b) / 3.0;
         let li: Spectrum = self.intensity.even(textures, lanes) * (brightness / (distance * distance) as f32);
         (!li.is_black()).then_some(LightSample { wi, li, pdf: 1.0, target: Target::Point(self.position) })

@@ -39,7 +39,7 @@ pub(super) struct Tree {
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
-    bundle: Bundle,
+    sight: Sight,
     /// A light, or the index of the second child; the first one follows its parent.
     link: Link,
 }
@@ -50,12 +50,27 @@ enum Link {
     Second(u32),
 }
 
+/// Of a bundle, what its importance is computed from.
+#[derive(Clone, Copy, Debug)]
+struct Sight {
+    center: Vec3,
+    /// Of the sphere around the box.
+    radius: f32,
+    axis: Vec3,
+    cos_normals: f32,
+    sin_normals: f32,
+    cos_emission: f32,
+    power: f32,
+    two_sided: bool,
+}
+
 impl Tree {
     /// A tree over lights with their numbers, of `count` lights in the world. Lights without power are left out.
     pub(super) fn new(lights: &[(u32, Bundle)], count: usize) -> Self {
         let mut tree = Self { nodes: Vec::new(), ways: vec![None; count] };
         let mut lights: Vec<(u32, Bundle)> = lights.iter().copied().filter(|(_, b)| b.power > 0.0).collect();
         if !lights.is_empty() {
+            tree.nodes.reserve_exact(2 * lights.len() - 1);
             tree.build(&mut lights, 0, 0);
         }
         tree
@@ -69,34 +84,31 @@ impl Tree {
     fn build(&mut self, lights: &mut [(u32, Bundle)], way: u64, depth: u32) -> Bundle {
         let node = self.nodes.len();
         if let [(light, bundle)] = *lights {
-            self.nodes.push(Node { bundle, link: Link::Light(light) });
+            self.nodes.push(Node { sight: bundle.sight(), link: Link::Light(light) });
             self.ways[light as usize] = Some(way);
             return bundle;
         }
-        // Below 40 turns the tree is halved, so that 64 bits are always enough.
-        let middle = if depth < 40 { divide(lights) } else { lights.len() / 2 };
+        // Below 32 turns the tree is halved, so that 64 bits are enough for 2³² lights.
+        let middle = if depth < 32 { divide(lights) } else { lights.len() / 2 };
         let (left, right) = lights.split_at_mut(middle);
-        let placeholder = left[0].1;
-        self.nodes.push(Node { bundle: placeholder, link: Link::Second(0) });
+        let placeholder = left[0].1.sight();
+        self.nodes.push(Node { sight: placeholder, link: Link::Second(0) });
         let first = self.build(left, way, depth + 1);
         let second_index = self.nodes.len() as u32;
         let second = self.build(right, way | 1 << depth, depth + 1);
         let bundle = first.union(&second);
-        self.nodes[node] = Node { bundle, link: Link::Second(second_index) };
+        self.nodes[node] = Node { sight: bundle.sight(), link: Link::Second(second_index) };
         bundle
     }
 
-    /// A light for `u ∈ [0, 1)` and its probability; `None` where none can send anything to `p`.
+    /// A light for `u ∈ [0, 1)` and its probability at a place with the unit normal `n` (or zero, where nothing has one);
+    /// `None` where of many lights none can send anything to `p`.
     pub(super) fn sample(&self, p: Vec3, n: Vec3, mut u: f32) -> Option<(u32, f32)> {
         let mut probability = 1.0;
         let mut node = 0;
         loop {
             match self.nodes.get(node)?.link {
-                Link::Light(light) => {
-                    // a tree of one light is chosen without a look at it
-                    let possible = node > 0 || self.nodes[0].bundle.importance(p, n) > 0.0;
-                    return possible.then_some((light, probability));
-                }
+                Link::Light(light) => return Some((light, probability)),
                 Link::Second(second) => {
                     let share = self.first_share(node, second as usize, p, n)?;
                     let first = u < share;
@@ -116,12 +128,14 @@ impl Tree {
         let mut node = 0;
         loop {
             match self.nodes[node].link {
-                Link::Light(_) if node == 0 && self.nodes[0].bundle.importance(p, n) <= 0.0 => return 0.0,
                 Link::Light(_) => return probability,
                 Link::Second(second) => {
                     let Some(share) = self.first_share(node, second as usize, p, n) else { return 0.0 };
                     let first = way & 1 == 0;
                     probability *= if first { share } else { 1.0 - share };
+                    if probability == 0.0 {
+                        return 0.0;
+                    }
                     node = if first { node + 1 } else { second as usize };
                     way >>= 1;
                 }
@@ -130,10 +144,17 @@ impl Tree {
     }
 
     fn first_share(&self, node: usize, second: usize, p: Vec3, n: Vec3) -> Option<f32> {
-        let first = self.nodes[node + 1].bundle.importance(p, n);
-        let second = self.nodes[second].bundle.importance(p, n);
+        let first = self.nodes[node + 1].sight.importance(p, n);
+        let second = self.nodes[second].sight.importance(p, n);
+        /// What may send a little light is not forgotten beside what may send much and be hidden.
+        const LEAST: f32 = 1.0 / 65536.0;
         let sum = first + second;
-        (sum > 0.0).then(|| first / sum)
+        let share = first / sum;
+        if first > 0.0 && second > 0.0 {
+            Some(share.clamp(LEAST, 1.0 - LEAST))
+        } else {
+            (sum > 0.0).then_some(share)
+        }
     }
 }
 
@@ -153,31 +174,17 @@ impl Bundle {
         0.5 * (self.min + self.max)
     }
 
-    /// An upper bound, up to the variation of distance within the bundle, of what arrives at `p` with normal `n`.
-    fn importance(&self, p: Vec3, n: Vec3) -> f32 {
-        let center = self.center();
-        let radius = 0.5 * (self.max - self.min).length();
-        let to_p = p - center;
-        // Near and inside, distance says nothing.
-        let distance2 = to_p.length_squared().max(radius);
-        let Some(wi) = to_p.try_normalize() else { return self.power / distance2 };
-
-        // θ to the axis, less the spread of the normals, less what the box fills of the view.
-        let mut cos_axis = self.normals.axis.dot(wi);
-        if self.two_sided {
-            cos_axis = cos_axis.abs();
+    fn sight(&self) -> Sight {
+        Sight {
+            center: self.center(),
+            radius: 0.5 * (self.max - self.min).length(),
+            axis: self.normals.axis,
+            cos_normals: self.normals.cos,
+            sin_normals: sin_of(self.normals.cos),
+            cos_emission: self.cos_emission,
+            power: self.power,
+            two_sided: self.two_sided,
         }
-        let length2 = to_p.length_squared();
-        let cos_box =
-            if length2 <= radius * radius { -1.0 } else { (1.0 - radius * radius / length2).max(0.0).sqrt() };
-        let least = angle_less(angle_less((cos_axis, sin_of(cos_axis)), self.normals.cos), cos_box);
-        if least.0 <= self.cos_emission {
-            return 0.0;
-        }
-        // At the surface: the least angle between its normal and the box, on either side.
-        let cos_surface = wi.dot(n).abs();
-        let at_surface = angle_less((cos_surface, sin_of(cos_surface)), cos_box);
-        (self.power * least.0 / distance2 * at_surface.0).max(0.0)
     }
 
     /// Surface area × solid angle of the normals with their emission: how much is lost by asking for one of the bundle.
@@ -192,7 +199,50 @@ impl Bundle {
                 * (2.0 * theta_w * sin_o - libm::cosf(theta_o - 2.0 * theta_w) - 2.0 * theta_o * sin_o
                     + cos_o);
         let d = self.max - self.min;
-        self.power * spread * 2.0 * (d.x * d.y + d.y * d.z + d.z * d.x)
+        // A row of points has no area, and should be divided well too.
+        let extent = d.x * d.y + d.y * d.z + d.z * d.x + 1e-3 * d.length_squared();
+        self.power * spread * 2.0 * extent
+    }
+}
+
+impl Sight {
+    /// An upper bound, up to the variation of distance within the bundle, of what arrives at `p` with normal `n`. Finite,
+    /// and positive where anything may arrive.
+    #[inline]
+    fn importance(&self, p: Vec3, n: Vec3) -> f32 {
+        /// What neither a sum of two nor the ratio of two takes out of the range of f32.
+        const RANGE: [f32; 2] = [1e-30, 1e30];
+        let to_p = p - self.center;
+        let length2 = to_p.length_squared();
+        // Near and inside, distance says nothing.
+        let by_distance = self.power / length2.max(self.radius);
+        if !(1e-36..1e36).contains(&length2) {
+            return by_distance.clamp(RANGE[0], RANGE[1]);
+        }
+        let wi = to_p * (1.0 / length2.sqrt());
+
+        // θ to the axis, less the spread of the normals, less what the box fills of the view.
+        let mut cos_axis = self.axis.dot(wi);
+        if self.two_sided {
+            cos_axis = cos_axis.abs();
+        }
+        let radius2 = self.radius * self.radius;
+        let (cos_box, sin_box) = if length2 <= radius2 {
+            (-1.0, 0.0)
+        } else {
+            let sin2 = radius2 / length2;
+            ((1.0 - sin2).max(0.0).sqrt(), sin2.sqrt())
+        };
+        let to_normals = angle_less((cos_axis, sin_of(cos_axis)), (self.cos_normals, self.sin_normals));
+        let least = angle_less(to_normals, (cos_box, sin_box));
+        if least.0 <= self.cos_emission {
+            return 0.0;
+        }
+        // At the surface: the least angle between its normal and the box, on either side.
+        let cos_surface = wi.dot(n).abs();
+        let at_surface = angle_less((cos_surface, sin_of(cos_surface)), (cos_box, sin_box)).0;
+        let at_surface = if n == Vec3::ZERO { 1.0 } else { at_surface };
+        (by_distance * least.0 * at_surface).clamp(RANGE[0], RANGE[1])
     }
 }
 
@@ -200,12 +250,12 @@ fn sin_of(cos: f32) -> f32 {
     (1.0 - cos * cos).max(0.0).sqrt()
 }
 
-/// Cosine and sine of max(0, a − b), for angles by (cos, sin) and cosine.
-fn angle_less((cos_a, sin_a): (f32, f32), cos_b: f32) -> (f32, f32) {
+/// Cosine and sine of max(0, a − b), for angles by both.
+#[inline]
+fn angle_less((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
     if cos_a > cos_b {
         return (1.0, 0.0);
     }
-    let sin_b = sin_of(cos_b);
     (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b)
 }
 
@@ -239,8 +289,19 @@ fn divide(lights: &mut [(u32, Bundle)]) -> usize {
         }
     }
     let Some((_, axis, at)) = best else { return lights.len() / 2 };
-    lights.sort_by_key(|(light, bundle)| (bucket_of(bundle, axis) >= at, *light));
-    lights.partition_point(|(_, bundle)| bucket_of(bundle, axis) < at)
+    partition(lights, |bundle| bucket_of(bundle, axis) < at)
+}
+
+/// Puts those that are to come first there, and gives their number.
+fn partition(lights: &mut [(u32, Bundle)], comes_first: impl Fn(&Bundle) -> bool) -> usize {
+    let mut middle = 0;
+    for index in 0..lights.len() {
+        if comes_first(&lights[index].1) {
+            lights.swap(middle, index);
+            middle += 1;
+        }
+    }
+    middle
 }
 
 #[cfg(test)]
@@ -286,6 +347,28 @@ mod tests {
         }
     }
 
+    /// Prints nanoseconds a choice, and seconds a build.
+    #[test]
+    #[ignore = "a measurement: cargo test --release -p lookfrom light::tree -- --ignored --nocapture"]
+    fn speed() {
+        for count in [1, 2, 10, 1000, 100_000, 1_000_000] {
+            let lights = bundles(count);
+            let start = std::time::Instant::now();
+            let tree = Tree::new(&lights, count as usize);
+            let build = start.elapsed();
+            let start = std::time::Instant::now();
+            const TIMES: u32 = 200_000;
+            let mut sum = 0.0;
+            for k in 0..TIMES {
+                let u = (k as f32 + 0.5) / TIMES as f32;
+                let p = Vec3::new(10.0 * u, 10.0 * (1.0 - u), (k % 16) as f32);
+                sum += tree.sample(p, Vec3::Y, u).map_or(0.0, |(_, probability)| probability);
+            }
+            let each = start.elapsed() / TIMES;
+            println!("{count} lights: {each:?} a choice, built in {build:?}, sum {sum}");
+        }
+    }
+
     #[test]
     fn near_lights_are_chosen_more_often() {
         let at = |x: f32| Bundle {
@@ -307,5 +390,69 @@ mod tests {
         let tree = Tree::new(&lights, 1000);
         let p = one.center() + one.normals.axis * 3.0;
         assert!((tree.probability(p, Vec3::Y, 500) - 1e-3).abs() < 1e-4);
+    }
+
+    #[test]
+    fn at_lights_and_far_away_all_numbers_are_finite() {
+        let point = |x: f32, power: f32| Bundle {
+            min: Vec3::X * x,
+            max: Vec3::X * x,
+            normals: Cone::ALL,
+            cos_emission: 0.0,
+            two_sided: false,
+            power,
+        };
+        for (apart, powers) in [(1.0, [1.0, 1e-30]), (1e-25, [1.0, 1.0]), (1e25, [1e-20, 1.0])] {
+            let tree = Tree::new(&[(0, point(0.0, powers[0])), (1, point(apart, powers[1]))], 2);
+            for x in [0.0, apart, 0.5 * apart, 1e-30, 1e-10, 3.0, 1e10, 1e30] {
+                for n in [Vec3::X, Vec3::Y, Vec3::ZERO] {
+                    let [a, b] = [0, 1].map(|light| tree.probability(Vec3::X * x, n, light));
+                    assert!(a > 0.0 && b > 0.0 && (a + b - 1.0).abs() < 1e-5, "{x} {n}: {a} {b}");
+                }
+            }
+        }
+    }
+
+    /// Slow twin of an importance being positive: rays from points of the box along directions that a normal allows.
+    #[test]
+    fn whoever_may_shine_on_a_point_is_chosen_sometimes() {
+        let mut seed = 3_u32;
+        let mut next = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / 16_777_216.0
+        };
+        let lights = bundles(60);
+        let tree = Tree::new(&lights, 60);
+        for _ in 0..20_000 {
+            let (light, bundle) = lights[(next() * 60.0) as usize];
+            // a normal in the cone, and a direction that it shines in
+            let (s, t) = crate::warp::orthonormal_basis(bundle.normals.axis);
+            let local = crate::warp::uniform_cone([next(), next()], 1.0 - bundle.normals.cos);
+            let mut normal = s * local.x + t * local.y + bundle.normals.axis * local.z;
+            if bundle.two_sided && next() < 0.5 {
+                normal = -normal;
+            }
+            let direction = crate::warp::cosine_hemisphere([next(), next()], normal);
+            let from = bundle.min + (bundle.max - bundle.min) * Vec3::new(next(), next(), next());
+            let p = from + direction * libm::exp2f(20.0 * next() - 10.0);
+            if direction.dot(normal) > 1e-3 {
+                let probability = tree.probability(p, crate::warp::uniform_sphere([next(), next()]), light);
+                assert!(probability > 0.0, "{p} {bundle:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_row_of_lights_is_divided_well() {
+        let lights: Vec<(u32, Bundle)> = (0..1024)
+            .map(|light| {
+                let at = Vec3::X * light as f32;
+                let normals = Cone { axis: Vec3::Y, cos: 1.0 };
+                (light, Bundle { min: at, max: at, normals, cos_emission: 0.0, two_sided: false, power: 1.0 })
+            })
+            .collect();
+        let tree = Tree::new(&lights, 1024);
+        let deepest = tree.ways.iter().flatten().map(|way| 64 - way.leading_zeros()).max();
+        assert!(deepest <= Some(16), "{deepest:?}");
     }
 }

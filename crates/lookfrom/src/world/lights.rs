@@ -8,7 +8,9 @@ use lookfrom_scene::light::{Amount, Light as Written, LightKind, Sky as WrittenS
 use lookfrom_scene::material::Color;
 
 use crate::distribution::Piecewise2D;
-use crate::light::{Environment, Glow, Goniometric, Layout, Light, Projection, Sky, SkyImage};
+use crate::light::{
+    Environment, Glow, Goniometric, Layout, Light, Opening, Portal, Projection, Sky, SkyImage,
+};
 use crate::math;
 use crate::texture::{TexturePoint, Textures, Usage};
 use crate::warp;
@@ -51,7 +53,8 @@ impl<'a> Lights<'a> {
                 Color::Curve(_) if !amount.absolute => 1.0,
                 _ => self.mean_over_places(color, math::luminance),
             };
-            scale = if luminance > 0.0 { scale * total / (per_unit * luminance) } else { 0.0 };
+            let whole = per_unit * luminance;
+            scale = if whole > 0.0 { scale * total / whole } else { 0.0 };
         }
         Glow { color, scale }
     }
@@ -140,9 +143,13 @@ impl<'a> Lights<'a> {
                 };
                 ("goniometric light", Light::Goniometric(light), brightness)
             }
-            LightKind::Environment { sky, illuminates, .. } => {
-                let (sky, brightness) = self.sky(sky, amount);
-                let light = Light::Environment(Environment { sky, illuminates: *illuminates });
+            LightKind::Environment { sky, portal, illuminates } => {
+                let (sky, brightness) = self.sky(sky, amount, portal.is_some());
+                let portal = portal.map(|corners| {
+                    let opening = Opening::new(corners.map(|corner| corner - origin));
+                    Box::new(self.portal(opening, &sky))
+                });
+                let light = Light::Environment(Environment { sky, portal, illuminates: *illuminates });
                 ("environment", light, brightness)
             }
         };
@@ -178,7 +185,14 @@ impl<'a> Lights<'a> {
         4.0 * half_x * half_y * (sum / image.texels.len() as f64) as f32
     }
 
-    fn sky(&self, sky: &WrittenSky, amount: &Amount) -> (Sky, f32) {
+    fn portal(&self, opening: Opening, sky: &Sky) -> Portal {
+        let Sky::Image(sky) = sky else { return Portal::plain(opening) };
+        let picture = self.textures.image(sky.image);
+        let size = [picture.width, picture.height];
+        Portal::of_picture(opening, size, |direction| sky.blended(self.textures, direction))
+    }
+
+    fn sky(&self, sky: &WrittenSky, amount: &Amount, has_portal: bool) -> (Sky, f32) {
         let (image, scale, world_from_light, layout) = match sky {
             WrittenSky::Constant(color) => {
                 let glow = self.glow(*color, amount, PI);
@@ -203,6 +217,10 @@ impl<'a> Lights<'a> {
         let average =
             weights.iter().map(|&(light, area)| f64::from(light * area)).sum::<f64>() / solid_angles;
         let choice = |light: &dyn Fn(f32) -> f32| {
+            // A portal chooses within what is seen through it.
+            if has_portal {
+                return Piecewise2D::new(&[], 0, 0);
+            }
             let weights: Vec<f32> =
                 weights.iter().map(|&(brightness, area)| light(brightness) * area).collect();
             let (width, height) = (picture.width as usize, picture.height as usize);

@@ -1,0 +1,230 @@
+//! What of an environment is seen through an opening, and where is it looked for?
+//!
+//! Bitterli, Novák & Jarosz 2015: with two angles about the sides of a rectangle as coordinates (*rectified*), what is seen
+//! through it from any point is a rectangle too, a window of the square. Colours of pictures are taken over into that
+//! square once; from each point, directions are chosen within its window. As in pbrt-v4 light enters from one side, and who
+//! looks elsewhere than through the opening sees nothing of the environment.
+
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+use lookfrom_scene::image::Image;
+use rayon::prelude::*;
+
+use crate::distribution::{Window, Windowed2D};
+
+/// How many cells a side are told apart where the colours are no picture.
+const SIDE: usize = 64;
+
+/// A rectangle through which an environment is seen.
+#[derive(Clone, Debug)]
+pub struct Portal {
+    opening: Opening,
+    choice: Windowed2D,
+    /// In the opening's square: what a picture of the surroundings has there.
+    picture: Option<Image>,
+}
+
+/// The rectangle, and the square of the angles about its sides: 0 … 1 stands for −π/2 … π/2 of the hemisphere outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Opening {
+    /// In render space: the corner that comes first in both angles …
+    corner: DVec3,
+    /// … and the one across.
+    opposite: DVec3,
+    /// Of unit length: along both sides, and outside.
+    axes: [DVec3; 3],
+    area: f64,
+}
+
+impl Portal {
+    /// An opening to even colours, or ones that vary little.
+    pub fn plain(opening: Opening) -> Self {
+        let weights = solid_angles(SIDE, SIDE).map(|angle| angle as f32).collect();
+        Self { opening, choice: Windowed2D::new(weights, SIDE, SIDE), picture: None }
+    }
+
+    /// An opening to a picture of that size, whose colours are given by unit direction in render space.
+    ///
+    /// # Panics
+    /// If the picture has no texels.
+    pub fn of_picture(opening: Opening, size: [u32; 2], color: impl Fn(Vec3) -> [f32; 3] + Sync) -> Self {
+        let [width, height] = size.map(|size| size as usize);
+        let mut texels = vec![[0.0; 3]; width * height];
+        texels.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+            let v = (y as f64 + 0.5) / height as f64;
+            for (x, texel) in row.iter_mut().enumerate() {
+                *texel = color(opening.direction([(x as f64 + 0.5) / width as f64, v]));
+            }
+        });
+        let brightness = |rgb: &[f32; 3]| rgb.iter().fold(0.0, |most: f32, c| most.max(*c));
+        let weights = texels
+            .iter()
+            .zip(solid_angles(width, height))
+            .map(|(rgb, angle)| (f64::from(brightness(rgb)) * angle) as f32)
+            .collect();
+        let choice = Windowed2D::new(weights, width, height);
+        let [width, height] = size;
+        let picture = Image { name: String::from("what is seen through a portal"), width, height, texels };
+        Self { opening, choice, picture: Some(picture) }
+    }
+
+    /// Whether one looks out through it.
+    pub fn is_seen(&self, from: DVec3, direction: Vec3) -> bool {
+        self.place(from, direction).is_some()
+    }
+
+    /// Where in the square one looks who looks out through it from a point.
+    fn place(&self, from: DVec3, direction: Vec3) -> Option<[f64; 2]> {
+        let place = self.opening.place(direction.as_dvec3())?;
+        self.opening.window(from)?.contains(place).then_some(place)
+    }
+
+    /// The texel of the picture, where there is one, that one sees in a direction who looks out through it.
+    pub(super) fn texel(&self, direction: Vec3) -> Option<[f32; 3]> {
+        let picture = self.picture.as_ref()?;
+        let place = self.opening.place(direction.as_dvec3())?;
+        let [x, y] = [(place[0], picture.width), (place[1], picture.height)]
+            .map(|(place, size)| ((place * f64::from(size)) as usize).min(size as usize - 1));
+        Some(picture.texels[y * picture.width as usize + x])
+    }
+
+    /// A direction out through it and the density over solid angle, or `None` where nothing is to be seen.
+    pub(super) fn sample(&self, from: DVec3, u: [f32; 2]) -> Option<(Vec3, f32)> {
+        let (place, pdf) = self.choice.sample(&self.opening.window(from)?, u)?;
+        Some((self.opening.direction(place), pdf / self.opening.solid_angle(place)))
+    }
+
+    /// The density of [`Portal::sample`].
+    pub(super) fn pdf(&self, from: DVec3, direction: Vec3) -> f32 {
+        let (Some(window), Some(place)) =
+            (self.opening.window(from), self.opening.place(direction.as_dvec3()))
+        else {
+            return 0.0;
+        };
+        self.choice.pdf(&window, place) / self.opening.solid_angle(place)
+    }
+
+    /// Of the rectangle.
+    pub(super) fn area(&self) -> f64 {
+        self.opening.area
+    }
+}
+
+impl Opening {
+    /// The rectangle of four corners in render space, one after the other: as one who looks out goes around it against the
+    /// clock. If they make none, nothing is seen through it.
+    pub fn new([a, b, c, d]: [DVec3; 4]) -> Self {
+        let x = (d - a).normalize_or_zero();
+        let z = x.cross(b - a).normalize_or_zero();
+        Self { corner: a, opposite: c, axes: [x, z.cross(x), z], area: (d - a).cross(b - a).length() }
+    }
+
+    /// The part of the square that is seen through the opening from a point; `None` from outside and beside it.
+    fn window(&self, from: DVec3) -> Option<Window> {
+        let min = self.place(self.corner - from)?;
+        let max = self.place(self.opposite - from)?;
+        Some(Window { min, max })
+    }
+
+    /// Where in the square a direction of any length lies; `None` for those that do not lead outside.
+    fn place(&self, direction: DVec3) -> Option<[f64; 2]> {
+        let [x, y, z] = self.axes.map(|axis| axis.dot(direction));
+        (z > 0.0).then(|| [x, y].map(|side| (0.5 + libm::atan2(side, z) / PI).clamp(0.0, 1.0)))
+    }
+
+    /// The unit direction of a place in the square.
+    fn direction(&self, place: [f64; 2]) -> Vec3 {
+        let [x, y] = place.map(slope);
+        (self.axes[0] * x + self.axes[1] * y + self.axes[2]).normalize().as_vec3()
+    }
+
+    /// How much solid angle there is at a place, by area of the square.
+    fn solid_angle(&self, place: [f64; 2]) -> f32 {
+        let [x2, y2] = place.map(|place| slope(place) * slope(place));
+        let length2 = 1.0 + x2 + y2;
+        (PI * PI * (1.0 + x2) * (1.0 + y2) / (length2 * length2.sqrt())) as f32
+    }
+}
+
+/// The tangent of the angle from the normal of an opening; at a right angle very large.
+fn slope(place: f64) -> f64 {
+    libm::tan(PI * (place - 0.5).clamp(-0.4999999999, 0.4999999999))
+}
+
+/// The solid angle of each cell of the square, row by row.
+fn solid_angles(width: usize, height: usize) -> impl Iterator<Item = f64> {
+    let edges = move |cells: usize| (0..=cells).map(move |cell| slope(cell as f64 / cells as f64));
+    // Seen from a distance of 1: a rectangle with one corner in the middle of the view and the other one at (x, y).
+    let until = |x: f64, y: f64| libm::atan2(x * y, (1.0 + x * x + y * y).sqrt());
+    let columns: Vec<f64> = edges(width).collect();
+    let rows: Vec<f64> = edges(height).collect();
+    (0..width * height).map(move |index| {
+        let ([left, right], [top, bottom]) =
+            ([0, 1].map(|i| columns[index % width + i]), [0, 1].map(|i| rows[index / width + i]));
+        let angle = until(right, bottom) - until(left, bottom) - until(right, top) + until(left, top);
+        // rounding leaves no cell without any
+        angle.max(f64::MIN_POSITIVE)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit() -> Opening {
+        // against the clock for one who looks along −z: from below on the left
+        Opening::new(
+            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| DVec3::new(x, y, -1.0)),
+        )
+    }
+
+    #[test]
+    fn one_side_looks_out() {
+        let portal = Portal::plain(unit());
+        assert!(portal.is_seen(DVec3::ZERO, -Vec3::Z));
+        assert!(!portal.is_seen(DVec3::ZERO, Vec3::Z));
+        assert!(!portal.is_seen(DVec3::new(0.0, 0.0, -2.0), Vec3::Z));
+        assert!(portal.is_seen(DVec3::ZERO, Vec3::new(0.99, -0.99, -1.0).normalize()));
+        assert!(!portal.is_seen(DVec3::ZERO, Vec3::new(1.01, 0.0, -1.0).normalize()));
+        assert!(!portal.is_seen(DVec3::new(0.0, 0.0, -1.0), -Vec3::Z), "within the opening");
+    }
+
+    #[test]
+    fn cells_make_a_hemisphere() {
+        for (width, height) in [(1, 1), (64, 64), (7, 300)] {
+            let sum: f64 = solid_angles(width, height).sum();
+            assert!((sum / (2.0 * PI) - 1.0).abs() < 1e-8, "{sum}");
+        }
+    }
+
+    #[test]
+    fn places_and_directions_are_inverse() {
+        let opening = unit();
+        for k in 0..1000 {
+            let place = [f64::from(k % 33) / 33.0 + 0.01, f64::from(k % 29) / 29.0 + 0.01];
+            let back = opening.place(opening.direction(place).as_dvec3()).expect("outside");
+            assert!((0..2).all(|i| (back[i] - place[i]).abs() < 1e-6), "{place:?} {back:?}");
+        }
+    }
+
+    #[test]
+    fn solid_angles_of_places_are_those_of_their_cells() {
+        let (opening, size) = (unit(), 50);
+        for (index, angle) in solid_angles(size, size).enumerate() {
+            let place = [index % size, index / size].map(|i| (i as f64 + 0.5) / size as f64);
+            let near_corner = place.iter().all(|x| (x - 0.5).abs() > 0.4);
+            let ratio = f64::from(opening.solid_angle(place)) / (angle * (size * size) as f64);
+            assert!(near_corner || (ratio - 1.0).abs() < 0.03, "{place:?} {ratio}");
+        }
+    }
+
+    #[test]
+    fn no_rectangle_lets_nothing_through() {
+        for corners in [[DVec3::ZERO; 4], [DVec3::NAN; 4], [DVec3::INFINITY; 4]] {
+            let portal = Portal::plain(Opening::new(corners));
+            assert!(portal.sample(DVec3::ONE, [0.5; 2]).is_none());
+            assert_eq!(portal.pdf(DVec3::ONE, Vec3::Z), 0.0);
+        }
+    }
+}
