@@ -297,6 +297,32 @@ pub enum Event {
         surface: Box<Surface>,
         /// What it does with light.
         shading: Box<Shading>,
+        /// The path's share here, after what was absorbed on the way.
+        beta: Spectrum,
+    },
+    /// A path's own direction found a light.
+    Found {
+        /// Of the path.
+        address: u64,
+        /// Which.
+        light: u32,
+        /// What it sends this way.
+        radiance: Spectrum,
+        /// The density with which asking lights would have chosen the direction.
+        light_pdf: f32,
+        /// The share that this way of finding the light has.
+        weight: f32,
+    },
+    /// One light of many was asked in vain.
+    AskedInVain {
+        /// Of the path.
+        address: u64,
+        /// Which.
+        light: u32,
+        /// The probability of having chosen it.
+        probability: f32,
+        /// What it said, of which the material sends nothing on; `None` when no light can come from there.
+        sample: Option<crate::light::LightSample>,
     },
     /// One light of many was asked.
     AskedOne {

@@ -146,6 +146,11 @@ impl<'a> Frame<'a> {
         self.world
     }
 
+    /// How it is rendered.
+    pub fn settings(&self) -> &RenderSettings {
+        &self.render
+    }
+
     /// The camera's ray for a sample and the filter's weight.
     pub fn camera_ray(&self, id: SampleId) -> (CameraRay, f32) {
         let [column, row] = id.pixel.map(f64::from);

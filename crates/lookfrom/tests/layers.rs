@@ -67,7 +67,19 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     (
         "inspect",
-        &["camera", "integrator", "light", "material", "render", "shape", "spectrum", "surface", "world"],
+        &[
+            "bsdf",
+            "camera",
+            "integrator",
+            "light",
+            "material",
+            "render",
+            "shape",
+            "spectrum",
+            "surface",
+            "texture",
+            "world",
+        ],
     ),
 ];
 

@@ -79,11 +79,11 @@ fn what_the_inspector_shows_adds_up_to_what_the_film_received() {
                 // the additions that are shown, in their order …
                 let mut sum = [0.0f32; 3];
                 for addition in &inspection.additions {
-                    for (sum, value) in sum.iter_mut().zip(addition.value) {
+                    for (sum, value) in sum.iter_mut().zip(&addition.value.lanes) {
                         *sum += value;
                     }
                 }
-                assert_eq!(sum, inspection.radiance);
+                assert_eq!(sum.as_slice(), inspection.radiance.lanes);
                 assert!(inspection.adds_up, "{name} at {x} {y}");
                 // … are what a tile with all of its other pixels gave to the film
                 let area = Crop { x0: x / 32 * 32, y0: 0, x1: (x / 32 * 32 + 32).min(72), y1: 50 };

@@ -12,9 +12,12 @@ use crate::spectrum::Spectrum;
 /// A metal with index of refraction `eta` and extinction `k`, both divided by the index of what lies around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conductor {
-    eta: Spectrum,
-    k: Spectrum,
-    roughness: TrowbridgeReitz,
+    /// Index over that around it.
+    pub(crate) eta: Spectrum,
+    /// Extinction over the index around it.
+    pub(crate) k: Spectrum,
+    /// Of the surface.
+    pub(crate) roughness: TrowbridgeReitz,
 }
 
 impl Conductor {

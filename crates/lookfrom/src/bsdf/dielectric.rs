@@ -12,8 +12,10 @@ use crate::spectrum::Spectrum;
 /// The boundary of a dielectric whose index of refraction is `eta` times that outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dielectric {
-    eta: f32,
-    roughness: TrowbridgeReitz,
+    /// Inside over outside.
+    pub(crate) eta: f32,
+    /// Of the surface.
+    pub(crate) roughness: TrowbridgeReitz,
 }
 
 /// What a pair of directions means to a rough boundary.
@@ -194,7 +196,8 @@ fn radiance_scale(f: f32, eta: f32, mode: Mode) -> f32 {
 /// A pane so thin that light leaves where it came in: all reflections between its two sides are summed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinDielectric {
-    eta: f32,
+    /// The pane's over that around it.
+    pub(crate) eta: f32,
 }
 
 impl ThinDielectric {

@@ -12,7 +12,8 @@ use crate::warp;
 /// Reflects `reflectance` (0 … 1) of all light, evenly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diffuse {
-    reflectance: Spectrum,
+    /// 0 … 1.
+    pub(crate) reflectance: Spectrum,
 }
 
 impl Diffuse {
@@ -55,8 +56,10 @@ impl Base for Diffuse {
 /// Reflects the part `reflectance` of all light evenly and passes the part `transmittance` evenly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiffuseTransmission {
-    reflectance: Spectrum,
-    transmittance: Spectrum,
+    /// 0 … 1.
+    pub(crate) reflectance: Spectrum,
+    /// 0 … 1.
+    pub(crate) transmittance: Spectrum,
 }
 
 impl DiffuseTransmission {

@@ -76,10 +76,14 @@ impl Default for Coat {
 /// A base under a coat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layered<B> {
-    coat: Dielectric,
-    base: B,
-    albedo: Spectrum,
-    thickness: f32,
+    /// Its boundary.
+    pub(crate) coat: Dielectric,
+    /// What lies below.
+    pub(crate) base: B,
+    /// Of the particles in the slab.
+    pub(crate) albedo: Spectrum,
+    /// In mean free paths.
+    pub(crate) thickness: f32,
     phase: HenyeyGreenstein,
     max_depth: u16,
     samples: u16,

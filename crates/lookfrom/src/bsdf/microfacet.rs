@@ -15,8 +15,10 @@ use crate::warp;
 /// side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrowbridgeReitz {
-    alpha_x: f32,
-    alpha_y: f32,
+    /// Spread of the slopes along x.
+    pub(crate) alpha_x: f32,
+    /// Spread of the slopes along y.
+    pub(crate) alpha_y: f32,
 }
 
 impl TrowbridgeReitz {

@@ -1,9 +1,21 @@
 //! What an inspection says, as plain data: the JSON form is this, field by field.
 
-use lookfrom_bvh::Hit;
 use serde::Serialize;
 
 use super::candidate::Candidate;
+use super::scatter::{AskedReport, BounceReport, FoundReport, ScatteringReport};
+
+/// A factor that light is multiplied by, lane by lane: red, green and blue, or one for each of four wavelengths.
+pub type Factor = Vec<f32>;
+
+/// An amount of light.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Amount {
+    /// Lane by lane: these numbers are what the renderer adds.
+    pub lanes: Vec<f32>,
+    /// The colour that the camera's sensor makes of it, linear Rec. 709.
+    pub rgb: [f32; 3],
+}
 
 /// Everything that happened on the way of one sample.
 #[derive(Clone, Debug, Serialize)]
@@ -12,20 +24,35 @@ pub struct Inspection {
     pub pixel: [u32; 2],
     /// Number of the sample in its pixel.
     pub sample: u32,
+    /// How light was computed, as `--integrator` names it.
+    pub integrator: &'static str,
+    /// What the four lanes are; `None` where light is red, green and blue.
+    pub wavelengths: Option<WavelengthsReport>,
     /// From the pixel to the world.
     pub camera: CameraSteps,
-    /// The tree of rays, parents before children, by address.
+    /// All rays, parents before children, by address.
     pub rays: Vec<RayReport>,
-    /// The sum over the tree, added in the order of `additions`.
-    pub radiance: [f32; 3],
+    /// The sum over all rays, added in the order of `additions`.
+    pub radiance: Amount,
     /// Every addition to the sample, in the order in which they were made.
     pub additions: Vec<Addition>,
     /// The filter's weight.
     pub weight: f32,
-    /// What the film received: `radiance · weight`.
+    /// What the film received: `radiance · weight`, as the camera's sensor sees it.
     pub film: [f32; 3],
     /// Whether the additions shown give, bit for bit, what the film received.
     pub adds_up: bool,
+}
+
+/// The four wavelengths that a sample follows.
+#[derive(Clone, Debug, Serialize)]
+pub struct WavelengthsReport {
+    /// In nm.
+    pub lambda: [f32; 4],
+    /// With which density each counts, per nm; 0 for those that no longer do.
+    pub pdf: [f32; 4],
+    /// Whether dispersion left only the first.
+    pub dispersed: bool,
 }
 
 /// `P_world = T4 · R3 · S2 · T1 · P_k`, each factor and each product. Matrices are rows of columns.
@@ -70,35 +97,54 @@ pub struct MatrixStep {
     pub point: [f64; 4],
 }
 
-/// One ray of the tree.
+/// One ray.
 #[derive(Clone, Debug, Serialize)]
 pub struct RayReport {
-    /// 1 is the camera's ray; the mirrored child of n is 2n, the refracted one 2n + 1.
+    /// 1 is the camera's ray; in Whitted's tree the mirrored child of n is 2n, the refracted one 2n + 1; along a path the
+    /// next ray of n is n + 1.
     pub address: u64,
-    /// `camera`, `mirrored` or `refracted`.
+    /// Which ray it comes from.
+    pub parent: Option<u64>,
+    /// `camera`; in a tree `mirrored` or `refracted`; along a path `reflected`, `transmitted`, `scattered` (a random walk)
+    /// or `straight on` (through a surface that is not there).
     pub kind: &'static str,
-    /// How many mirrors and refractions lie behind.
+    /// How many times the path was mirrored, refracted or scattered before.
     pub depth: u32,
     /// Where it starts.
     pub a: [f64; 3],
     /// Its direction, not necessarily of unit length.
     pub direction: [f32; 3],
-    /// The share of the sample that light along it has.
-    pub share: [f32; 3],
+    /// β: the share of the sample that light along it has.
+    pub share: Factor,
+    /// The density over solid angle with which its direction was chosen, as it is weighed against asking lights; `None`
+    /// where it was the only one (from the camera and from mirrors) and in Whitted's tree.
+    pub pdf: Option<f32>,
     /// Every primitive that was tested, in the order of the tests.
     pub candidates: Vec<Candidate>,
     /// What it met; `None` for the sky.
     pub met: Option<MetReport>,
-    /// Each light that was asked.
+    /// The share at what it met, after absorption on the way; where a path is scattered.
+    pub share_there: Option<Factor>,
+    /// Lights that it found by itself, along a path.
+    pub found: Vec<FoundReport>,
+    /// What the surface does with light, along a path.
+    pub scattering: Option<ScatteringReport>,
+    /// Each light that was asked, in Whitted's model.
     pub lights: Vec<LightReport>,
+    /// The one light that was asked, along a path.
+    pub asked: Option<AskedReport>,
+    /// Whether anything is near, for ambient occlusion.
+    pub openness: Option<ShadowReport>,
+    /// How the path goes on, or would have.
+    pub bounce: Option<BounceReport>,
     /// Each way in which the tree grows here, or would have.
     pub branches: Vec<BranchReport>,
+    /// Why the path ends here, if it does.
+    pub ends: Option<&'static str>,
     /// What this ray's own hit added to the sample.
-    pub added: [f32; 3],
-    /// What it added with all of its descendants.
-    pub subtree: [f32; 3],
-    #[serde(skip)]
-    pub(super) hit: Hit,
+    pub added: Amount,
+    /// What it added with all rays that come from it.
+    pub subtree: Amount,
 }
 
 /// What a ray met.
@@ -134,17 +180,17 @@ pub struct MetReport {
 #[derive(Clone, Debug, Serialize)]
 pub struct CoefficientsReport {
     /// `k_a`.
-    pub ambient: [f32; 3],
+    pub ambient: Factor,
     /// `k_d`.
-    pub diffuse: [f32; 3],
+    pub diffuse: Factor,
     /// `k_s`.
-    pub specular: [f32; 3],
+    pub specular: Factor,
     /// `n`.
     pub shininess: f32,
     /// `k_r`.
-    pub mirror: [f32; 3],
+    pub mirror: Factor,
     /// `k_t`.
-    pub transmission: [f32; 3],
+    pub transmission: Factor,
     /// Inside over outside.
     pub ior: f32,
 }
@@ -159,17 +205,37 @@ pub struct LightReport {
     /// Toward it, unit length; `None` when no light can come from there.
     pub wi: Option<[f32; 3]>,
     /// `I_j`: what arrives, as Whitted's formula has it.
-    pub intensity: [f32; 3],
+    pub intensity: Amount,
     /// `k_d (N·L)`.
-    pub diffuse: [f32; 3],
+    pub diffuse: Factor,
     /// `k_s (N·H)ⁿ`.
-    pub specular: [f32; 3],
-    /// Where the shadow ray starts and aims at (for an infinitely far light: a direction's length away).
-    pub shadow_ray: Option<[[f64; 3]; 2]>,
-    /// What stood in the way, the first first, each with the part that it let through.
-    pub blockers: Vec<(String, [f32; 3])>,
+    pub specular: Factor,
+    /// The shadow ray; `None` where it would bring nothing.
+    pub shadow: Option<ShadowReport>,
     /// What was added to the sample.
-    pub added: [f32; 3],
+    pub added: Amount,
+}
+
+/// A shadow ray.
+#[derive(Clone, Debug, Serialize)]
+pub struct ShadowReport {
+    /// Where it starts.
+    pub from: [f64; 3],
+    /// What it aims at (where it has no end: a direction's length away).
+    pub to: [f64; 3],
+    /// Whether it has no end.
+    pub is_endless: bool,
+    /// What stood in the way, the first first.
+    pub blockers: Vec<Blocker>,
+}
+
+/// What a shadow ray met.
+#[derive(Clone, Debug, Serialize)]
+pub struct Blocker {
+    /// The shape's name.
+    pub shape: String,
+    /// The part that it let through; with what was absorbed before it.
+    pub passed: Factor,
 }
 
 /// One way in which the tree grows.
@@ -180,7 +246,7 @@ pub struct BranchReport {
     /// `mirrored` or `refracted`.
     pub kind: &'static str,
     /// The child's share of its parent.
-    pub weight: [f32; 3],
+    pub weight: Factor,
     /// The part that Fresnel's equations mirror.
     pub fresnel: Option<f32>,
     /// Whether all was reflected.
@@ -194,21 +260,22 @@ pub struct BranchReport {
 pub struct Addition {
     /// The ray whose hit made it.
     pub address: u64,
-    /// Why: `sky`, `emission`, `ambient`, `view`, or the light's name.
+    /// Why: `sky`, `emission`, `ambient`, `view`, `open sky`, or the light's name (`found` or `asked` along a path).
     pub term: String,
     /// How much.
-    pub value: [f32; 3],
+    pub value: Amount,
 }
 
-impl RayReport {
-    pub(super) fn light_mut(&mut self, index: u32) -> Option<&mut LightReport> {
-        self.lights.iter_mut().find(|report| report.index == index)
+impl Inspection {
+    /// Whether the rays are a path, and not a tree.
+    pub fn is_path(&self) -> bool {
+        matches!(self.integrator, "path" | "simplepath" | "randomwalk" | "ambientocclusion")
     }
 }
 
-impl LightReport {
+impl ShadowReport {
     /// Whether nothing of the light came through.
     pub fn is_blocked(&self) -> bool {
-        self.blockers.iter().any(|(_, passed)| *passed == [0.0; 3])
+        self.blockers.iter().any(|blocker| blocker.passed.iter().all(|lane| *lane == 0.0))
     }
 }

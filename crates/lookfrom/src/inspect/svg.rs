@@ -1,4 +1,4 @@
-//! The tree of rays as a drawing: a side view of the scene with the camera, one colour for each kind of ray, blocked
+//! The rays as a drawing: a side view of the scene with the camera, one colour for each kind of ray, blocked
 //! shadow rays black.
 
 use std::fmt::Write;
@@ -18,7 +18,7 @@ const MOST_TRIANGLES: usize = 600;
 /// Draws an inspection in a plane that holds the direction of view (to the right) and up.
 pub fn svg(world: &World, inspection: &Inspection) -> String {
     let side = SideView::new(world);
-    let segments = segments(world, &side, inspection);
+    let segments = segments(&side, inspection);
 
     // Frame the rays and the eye; what lies beyond is cut off.
     let mut low = side.project(DVec3::from_array(inspection.camera.lookfrom));
@@ -64,7 +64,7 @@ pub fn svg(world: &World, inspection: &Inspection) -> String {
     }
     let eye = place(side.project(DVec3::from_array(inspection.camera.lookfrom)));
     draw_camera(&mut out, eye, side.project(world.camera.w()));
-    draw_legend(&mut out, height, inspection);
+    draw_legend(&mut out, height, inspection, &segments);
     out.push_str("</svg>\n");
     out
 }
@@ -98,28 +98,43 @@ enum Kind {
     Camera,
     Mirrored,
     Refracted,
+    StraightOn,
     Shadow,
     Blocked,
 }
 
 impl Kind {
-    const ALL: [Self; 5] = [Self::Camera, Self::Mirrored, Self::Refracted, Self::Shadow, Self::Blocked];
+    const ALL: [Self; 6] =
+        [Self::Camera, Self::Mirrored, Self::Refracted, Self::StraightOn, Self::Shadow, Self::Blocked];
+
+    fn of(ray: &RayReport) -> Self {
+        match ray.kind {
+            "camera" => Self::Camera,
+            "mirrored" | "reflected" | "scattered" => Self::Mirrored,
+            "straight on" => Self::StraightOn,
+            _ => Self::Refracted,
+        }
+    }
 
     fn color(self) -> &'static str {
         match self {
             Self::Camera => "#2458c5",
             Self::Mirrored => "#1f9d55",
             Self::Refracted => "#d9480f",
+            Self::StraightOn => "#8a4fbf",
             Self::Shadow => "#e0a800",
             Self::Blocked => "#000000",
         }
     }
 
-    fn name(self) -> &'static str {
+    fn name(self, is_path: bool) -> &'static str {
         match self {
             Self::Camera => "camera ray",
+            Self::Mirrored if is_path => "ray that is reflected or scattered",
             Self::Mirrored => "mirrored ray",
+            Self::Refracted if is_path => "ray that is let through",
             Self::Refracted => "refracted ray",
+            Self::StraightOn => "ray through a surface that is not there",
             Self::Shadow => "shadow ray that reaches its light",
             Self::Blocked => "shadow ray that is blocked",
         }
@@ -142,7 +157,7 @@ struct Segment {
 }
 
 /// Every ray as a line; those that meet nothing, and shadow rays to infinitely far lights, end after a while.
-fn segments(world: &World, side: &SideView, inspection: &Inspection) -> Vec<Segment> {
+fn segments(side: &SideView, inspection: &Inspection) -> Vec<Segment> {
     let length = length_without_end(inspection);
     let mut segments = Vec::new();
     for ray in &inspection.rays {
@@ -152,32 +167,24 @@ fn segments(world: &World, side: &SideView, inspection: &Inspection) -> Vec<Segm
             Some(met) => DVec3::from_array(met.point),
             None => a + direction.normalize() * length,
         };
-        let kind = match ray.kind {
-            "camera" => Kind::Camera,
-            "mirrored" => Kind::Mirrored,
-            _ => Kind::Refracted,
-        };
-        let title = format!("{} ray {}, brings {:?}", ray.kind, ray.address, ray.subtree);
+        let kind = Kind::of(ray);
+        let title = format!("{} ray {}, brings {:?}", ray.kind, ray.address, ray.subtree.rgb);
         segments.push(Segment { kind, from: side.project(a), to: side.project(end), title });
-        shadow_segments(world, side, ray, length, &mut segments);
+        shadow_segments(side, ray, length, &mut segments);
     }
     segments
 }
 
-fn shadow_segments(
-    world: &World,
-    side: &SideView,
-    ray: &RayReport,
-    length: f64,
-    segments: &mut Vec<Segment>,
-) {
-    for light in &ray.lights {
-        let Some([start, end]) = light.shadow_ray.map(|ends| ends.map(DVec3::from_array)) else { continue };
-        let endless =
-            world.lights.get(light.index as usize).is_some_and(crate::light::Light::is_infinitely_far);
-        let end = if endless { start + (end - start).normalize() * length } else { end };
-        let kind = if light.is_blocked() { Kind::Blocked } else { Kind::Shadow };
-        let title = format!("shadow ray to {}, brings {:?}", light.light, light.added);
+fn shadow_segments(side: &SideView, ray: &RayReport, length: f64, segments: &mut Vec<Segment>) {
+    let of_lights = ray.lights.iter().map(|light| (&light.shadow, &*light.light, &light.added));
+    let of_one = ray.asked.iter().map(|light| (&light.shadow, &*light.light, &light.added));
+    let of_openness = [(&ray.openness, "the open sky", &ray.added)];
+    for (shadow, aim, added) in of_lights.chain(of_one).chain(of_openness) {
+        let Some(shadow) = shadow else { continue };
+        let [start, end] = [shadow.from, shadow.to].map(DVec3::from_array);
+        let end = if shadow.is_endless { start + (end - start).normalize() * length } else { end };
+        let kind = if shadow.is_blocked() { Kind::Blocked } else { Kind::Shadow };
+        let title = format!("shadow ray to {aim}, brings {:?}", added.rgb);
         segments.push(Segment { kind, from: side.project(start), to: side.project(end), title });
     }
 }
@@ -234,15 +241,16 @@ fn draw_camera(out: &mut String, eye: DVec2, forward: DVec2) {
     );
 }
 
-fn draw_legend(out: &mut String, height: f64, inspection: &Inspection) {
+fn draw_legend(out: &mut String, height: f64, inspection: &Inspection, segments: &[Segment]) {
     let [x, y] = inspection.pixel;
     let _ = writeln!(
         out,
         "<text x=\"12\" y=\"22\">pixel {x} {y}, sample {}: {:?}</text>",
         inspection.sample, inspection.film
     );
-    for (index, kind) in Kind::ALL.into_iter().enumerate() {
-        let line = height - 16.0 - 20.0 * (Kind::ALL.len() - 1 - index) as f64;
+    let is_drawn = |kind: &Kind| segments.iter().any(|segment| segment.kind == *kind);
+    for (index, kind) in Kind::ALL.into_iter().rev().filter(is_drawn).enumerate() {
+        let line = height - 16.0 - 20.0 * index as f64;
         let _ = writeln!(
             out,
             "<line x1=\"12\" y1=\"{0:.1}\" x2=\"52\" y2=\"{0:.1}\" stroke=\"{1}\" stroke-width=\"{2}\"{3}/><text x=\"60\" y=\"{4:.1}\">{5}</text>",
@@ -251,7 +259,7 @@ fn draw_legend(out: &mut String, height: f64, inspection: &Inspection) {
             kind.width(),
             kind.dashes(),
             line,
-            kind.name()
+            kind.name(inspection.is_path())
         );
     }
 }

@@ -1,12 +1,15 @@
-//! The inspection as a person reads it: from the pixel to the world, then the tree of rays, indented as the tree it is.
+//! The inspection as a person reads it: from the pixel to the world, then the tree of rays, indented as the tree it is,
+//! or the path, ray by ray.
+
+mod path;
 
 use std::fmt::{self, Display, Formatter, Write as _};
 
 use super::candidate::{Number, Test};
-use super::{Candidate, Inspection, LightReport, MetReport, RayReport};
+use super::{Amount, Candidate, Inspection, LightReport, MetReport, RayReport, ShadowReport};
 
-/// How many of a ray's candidates are shown; the JSON form has all.
-const MOST_CANDIDATES: usize = 6;
+/// How many candidates are shown beside what a ray of the tree met; the JSON form has all.
+const OTHERS_IN_TREE: usize = 5;
 
 impl Display for Inspection {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -15,9 +18,14 @@ impl Display for Inspection {
         writeln!(f)?;
         self.write_camera(f)?;
         writeln!(f)?;
-        writeln!(f, "The tree of rays")?;
-        if let Some(root) = self.rays.first() {
-            self.write_ray(f, root, 0)?;
+        self.write_wavelengths(f)?;
+        if self.is_path() {
+            self.write_path(f)?;
+        } else {
+            writeln!(f, "The tree of rays")?;
+            if let Some(root) = self.rays.first() {
+                self.write_ray(f, root, 0)?;
+            }
         }
         writeln!(f)?;
         self.write_sum(f)
@@ -66,9 +74,9 @@ impl Inspection {
 
     fn write_ray(&self, f: &mut Formatter<'_>, ray: &RayReport, indent: usize) -> fmt::Result {
         let pad = "  ".repeat(indent + 1);
-        writeln!(f, "{pad}{} ray {}: share {} of the pixel", ray.kind, ray.address, color(ray.share))?;
+        writeln!(f, "{pad}{} ray {}: share {} of the pixel", ray.kind, ray.address, lanes(&ray.share))?;
         writeln!(f, "{pad}  a = {}   direction = {}", vector(&ray.a), vector32(&ray.direction))?;
-        self.write_candidates(f, ray, &pad)?;
+        write_candidates(f, ray, OTHERS_IN_TREE, &pad)?;
         match &ray.met {
             None => writeln!(f, "{pad}  meets nothing: the sky")?,
             Some(met) => write_met(f, met, &pad)?,
@@ -77,7 +85,7 @@ impl Inspection {
             write_light(f, light, &pad)?;
         }
         for addition in self.additions.iter().filter(|addition| addition.address == ray.address) {
-            writeln!(f, "{pad}  + {}   {}", color(addition.value), addition.term)?;
+            writeln!(f, "{pad}  + {}   {}", amount(&addition.value), addition.term)?;
         }
         for branch in &ray.branches {
             let mut how = String::new();
@@ -90,47 +98,65 @@ impl Inspection {
             if let Some(cut) = branch.cut {
                 write!(how, "; not followed: {cut}")?;
             }
-            writeln!(f, "{pad}  {} branch, weight {}{how}", branch.kind, color(branch.weight))?;
+            writeln!(f, "{pad}  {} branch, weight {}{how}", branch.kind, lanes(&branch.weight))?;
             if let Some(child) = self.rays.iter().find(|child| child.address == branch.address) {
                 self.write_ray(f, child, indent + 2)?;
             }
         }
         if !ray.branches.is_empty() {
-            writeln!(f, "{pad}  all below ray {}: {}", ray.address, color(ray.subtree))?;
+            writeln!(f, "{pad}  all below ray {}: {}", ray.address, amount(&ray.subtree))?;
         }
         Ok(())
     }
 
-    fn write_candidates(&self, f: &mut Formatter<'_>, ray: &RayReport, pad: &str) -> fmt::Result {
-        let (shown, hidden) = chosen(&ray.candidates);
-        for candidate in shown {
-            writeln!(f, "{pad}  tested {}: {}", candidate.name, candidate.verdict)?;
-            write_test(f, &candidate.test, pad)?;
-        }
-        if hidden > 0 {
+    /// What the lanes are, where they are not red, green and blue.
+    fn write_wavelengths(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Some(wavelengths) = &self.wavelengths else { return Ok(()) };
+        writeln!(f, "Light is four wavelengths; numbers in [brackets] are one for each, in this order")?;
+        writeln!(f, "  λ   = {} nm", vector32(&wavelengths.lambda))?;
+        writeln!(
+            f,
+            "  pdf = {} per nm: with this density each was chosen; the sensor divides by it",
+            vector32(&wavelengths.pdf)
+        )?;
+        if wavelengths.dispersed {
             writeln!(
                 f,
-                "{pad}  … and {hidden} more candidates, all rejected or farther (--json shows them)"
+                "  Dispersion: where wavelengths go different ways the path follows the first alone; the others count\n  \
+                 nothing any more (pdf 0), and the first four times (its pdf is a quarter of what it was)."
             )?;
         }
-        Ok(())
+        writeln!(f)
     }
 
     fn write_sum(&self, f: &mut Formatter<'_>) -> fmt::Result {
         writeln!(f, "The sum, in the order in which the film's sample was added up")?;
         for addition in &self.additions {
-            writeln!(f, "  {}   ray {} {}", color(addition.value), addition.address, addition.term)?;
+            writeln!(f, "  {}   ray {} {}", amount(&addition.value), addition.address, addition.term)?;
         }
-        writeln!(f, "  = {}   times the filter's weight {}", color(self.radiance), self.weight)?;
+        writeln!(f, "  = {}   times the filter's weight {}", amount(&self.radiance), self.weight)?;
         let verdict = if self.adds_up { "the same, bit for bit" } else { "NOT the same: please report this" };
-        writeln!(f, "  = {}   what the film received: {verdict}", color(self.film))
+        let sensor = if self.wavelengths.is_some() { "seen by the camera's sensor, and " } else { "" };
+        writeln!(f, "  = {}   {sensor}what the film received: {verdict}", lanes(&self.film))
     }
 }
 
+fn write_candidates(f: &mut Formatter<'_>, ray: &RayReport, others: usize, pad: &str) -> fmt::Result {
+    let (shown, hidden) = chosen(&ray.candidates, others);
+    for candidate in shown {
+        writeln!(f, "{pad}  tested {}: {}", candidate.name, candidate.verdict)?;
+        write_test(f, &candidate.test, pad)?;
+    }
+    if hidden > 0 {
+        writeln!(f, "{pad}  … and {hidden} more candidates, all rejected or farther (--json shows them)")?;
+    }
+    Ok(())
+}
+
 /// The nearest hit and the first few others, and how many are left out.
-fn chosen(candidates: &[Candidate]) -> (Vec<&Candidate>, usize) {
+fn chosen(candidates: &[Candidate], others: usize) -> (Vec<&Candidate>, usize) {
     let mut shown: Vec<&Candidate> = candidates.iter().filter(|candidate| candidate.is_nearest).collect();
-    shown.extend(candidates.iter().filter(|candidate| !candidate.is_nearest).take(MOST_CANDIDATES - 1));
+    shown.extend(candidates.iter().filter(|candidate| !candidate.is_nearest).take(others));
     let hidden = candidates.len() - shown.len();
     (shown, hidden)
 }
@@ -158,12 +184,12 @@ fn write_met(f: &mut Formatter<'_>, met: &MetReport, pad: &str) -> fmt::Result {
         write!(
             f,
             ": k_a {} k_d {} k_s {} n {}",
-            color(k.ambient),
-            color(k.diffuse),
-            color(k.specular),
+            lanes(&k.ambient),
+            lanes(&k.diffuse),
+            lanes(&k.specular),
             k.shininess
         )?;
-        write!(f, " k_r {} k_t {} ior {}", color(k.mirror), color(k.transmission), k.ior)?;
+        write!(f, " k_r {} k_t {} ior {}", lanes(&k.mirror), lanes(&k.transmission), k.ior)?;
     }
     writeln!(f)
 }
@@ -172,19 +198,25 @@ fn write_light(f: &mut Formatter<'_>, light: &LightReport, pad: &str) -> fmt::Re
     let Some(wi) = light.wi else {
         return writeln!(f, "{pad}  light {}: none can come from there", light.light);
     };
-    writeln!(f, "{pad}  light {}: L = {}   I_j = {}", light.light, vector32(&wi), color(light.intensity))?;
-    writeln!(f, "{pad}    k_d (N·L) = {}   k_s (N·H)^n = {}", color(light.diffuse), color(light.specular))?;
-    for (name, passed) in &light.blockers {
-        match *passed == [0.0; 3] {
+    writeln!(f, "{pad}  light {}: L = {}   I_j = {}", light.light, vector32(&wi), amount(&light.intensity))?;
+    let (diffuse, specular) = (lanes(&light.diffuse), lanes(&light.specular));
+    writeln!(f, "{pad}    k_d (N·L) = {diffuse}   k_s (N·H)^n = {specular}")?;
+    write_shadow(f, light.shadow.as_ref(), "reaches the light", pad)
+}
+
+/// What became of a shadow ray; `end` says what it is if nothing is in the way.
+fn write_shadow(f: &mut Formatter<'_>, shadow: Option<&ShadowReport>, end: &str, pad: &str) -> fmt::Result {
+    let Some(shadow) = shadow else {
+        return writeln!(f, "{pad}    no shadow ray: it would bring nothing");
+    };
+    for blocker in &shadow.blockers {
+        let (name, passed) = (&blocker.shape, &blocker.passed);
+        match passed.iter().all(|lane| *lane == 0.0) {
             true => writeln!(f, "{pad}    shadow ray: blocked by {name}")?,
-            false => writeln!(f, "{pad}    shadow ray: through {name}, which lets {} pass", color(*passed))?,
+            false => writeln!(f, "{pad}    shadow ray: through {name}, which lets {} pass", lanes(passed))?,
         }
     }
-    match (light.shadow_ray, light.is_blocked()) {
-        (None, _) => writeln!(f, "{pad}    no shadow ray: it would bring nothing"),
-        (Some(_), true) => Ok(()),
-        (Some(_), false) => writeln!(f, "{pad}    shadow ray: reaches the light"),
-    }
+    if shadow.is_blocked() { Ok(()) } else { writeln!(f, "{pad}    shadow ray: {end}") }
 }
 
 fn vector(v: &[f64]) -> String {
@@ -195,9 +227,20 @@ fn vector32(v: &[f32]) -> String {
     format!("({})", v.iter().map(|x| short(f64::from(*x))).collect::<Vec<_>>().join(", "))
 }
 
-/// A colour in full: these numbers are to be added up.
-fn color(rgb: [f32; 3]) -> String {
-    format!("[{}]", rgb.map(full).join(" "))
+/// Light in full, since these numbers are to be added up; beside wavelengths the colour that they are.
+fn amount(amount: &Amount) -> String {
+    match amount.lanes == amount.rgb || amount.lanes.iter().all(|lane| *lane == 0.0) {
+        true => lanes(&amount.lanes),
+        false => {
+            let rgb = amount.rgb.map(|x| short(f64::from(x))).join(" ");
+            format!("{} (rgb {rgb})", lanes(&amount.lanes))
+        }
+    }
+}
+
+/// A factor or a colour in full.
+fn lanes(lanes: &[f32]) -> String {
+    format!("[{}]", lanes.iter().map(|x| full(*x)).collect::<Vec<_>>().join(" "))
 }
 
 /// As many digits as it takes to read the same number back.

@@ -119,6 +119,7 @@ impl Integrator for PathTracer {
             address: path.address,
             surface: Box::new(surface),
             shading: Box::new(shading),
+            beta: path.beta,
         });
         if path.depth >= self.depth {
             return;
@@ -181,8 +182,7 @@ impl PathTracer {
         for &index in &world.environments {
             let radiance = world.sky_of(index, &path.ray, &next.lanes(path));
             let pdf = || world.light_pdf(index, &path.reference(), direction, None);
-            let weight = self.weight_of_found(path, pdf);
-            next.add(path, Term::Found { light: index, weight }, path.beta * radiance * weight);
+            self.add_found(path, index, radiance, pdf, next);
         }
     }
 
@@ -193,7 +193,21 @@ impl PathTracer {
             return;
         }
         let pdf = || world.light_pdf(light, &path.reference(), -surface.wo, Some(surface));
-        let weight = self.weight_of_found(path, pdf);
+        self.add_found(path, light, radiance, pdf, next);
+    }
+
+    /// Adds light that the direction of a path found, which asking the lights finds with density `light_pdf`.
+    fn add_found<P: Probe>(
+        &self,
+        path: &Path,
+        light: u32,
+        radiance: Spectrum,
+        light_pdf: impl Fn() -> f32,
+        next: &mut Next<'_, P>,
+    ) {
+        let weight = self.weight_of_found(path, &light_pdf);
+        let address = path.address;
+        next.probe.notice(|| Event::Found { address, light, radiance, light_pdf: light_pdf(), weight });
         next.add(path, Term::Found { light, weight }, path.beta * radiance * weight);
     }
 
@@ -222,9 +236,15 @@ impl PathTracer {
         let Some((index, probability)) = world.light_choice.sample(&at, which) else { return };
         let light = &world.lights[index as usize];
         let sample = light.sample(&world.textures, &at, u, &next.lanes(path), Coverage::Incomplete);
-        let Some(sample) = sample else { return };
+        let in_vain =
+            |sample| Event::AskedInVain { address: path.address, light: index, probability, sample };
+        let Some(sample) = sample else {
+            next.probe.notice(|| in_vain(None));
+            return;
+        };
         let f = shading.f(surface.wo, sample.wi) * shading.cos(sample.wi).abs();
         if f.is_black() {
+            next.probe.notice(|| in_vain(Some(sample)));
             return;
         }
         let light_pdf = probability * sample.pdf;

@@ -168,7 +168,10 @@ impl Compiler<'_> {
             Geometry::Cylinder { .. } => "cylinder",
             Geometry::Bilinear(_) => "bilinear patches",
             Geometry::Curves(_) => "curves",
-            Geometry::Mesh(id) => &self.scene.meshes[id.index()].name,
+            Geometry::Mesh(id) => match self.scene.meshes[id.index()].name.as_str() {
+                "" => "mesh",
+                name => name,
+            },
         };
         shape.name.clone().unwrap_or_else(|| format!("{kind} ({})", shape.at))
     }

@@ -1,0 +1,441 @@
+//! What the watcher heard, arranged by rays.
+//!
+//! Rays form a tree (Whitted's, the child of n is 2n or 2n + 1) or a path (the next ray of n is n + 1): the integrator
+//! decides.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec3, Vec3};
+use lookfrom_bvh::{Hit, NONE};
+use lookfrom_scene::settings::Integrator;
+
+use super::candidate;
+use super::report::{
+    Addition, Amount, Blocker, BranchReport, CoefficientsReport, Factor, LightReport, MetReport, RayReport,
+    ShadowReport,
+};
+use super::scatter::{self, AnswerReport, AskedReport, BounceReport, FoundReport};
+use crate::integrator::{Bounce, Branch, Cut, Event, Path, Shadow, Term};
+use crate::light::LightSample;
+use crate::material::{Coefficients, Shading};
+use crate::render::Frame;
+use crate::spectrum::Spectrum;
+use crate::surface::Surface;
+use crate::texture::Lanes;
+use crate::world::World;
+
+/// What has been heard so far.
+pub(super) struct Story<'a> {
+    frame: &'a Frame<'a>,
+    world: &'a World,
+    /// What the lanes mean in the end.
+    lanes: Lanes,
+    rays: BTreeMap<u64, RayReport>,
+    /// What each ray's own hit added.
+    added: BTreeMap<u64, Spectrum>,
+    /// All of it, in the order in which it was added.
+    sum: Spectrum,
+    additions: Vec<Addition>,
+}
+
+/// What was heard in all.
+pub(super) struct Told {
+    pub(super) rays: Vec<RayReport>,
+    pub(super) additions: Vec<Addition>,
+    pub(super) sum: Spectrum,
+    pub(super) radiance: Amount,
+}
+
+/// The integrator as `--integrator` names it.
+pub(super) fn integrator_name(frame: &Frame<'_>) -> &'static str {
+    match frame.settings().integrator {
+        Integrator::Raycast => "raycast",
+        Integrator::Whitted => "whitted",
+        Integrator::Path => "path",
+        Integrator::SimplePath => "simplepath",
+        Integrator::RandomWalk => "randomwalk",
+        Integrator::AmbientOcclusion { .. } => "ambientocclusion",
+        Integrator::Normals => "normals",
+        Integrator::Depth => "depth",
+        Integrator::Uv => "uv",
+        Integrator::Id => "id",
+    }
+}
+
+/// Whether the next ray of n is n + 1.
+fn is_path(integrator: Integrator) -> bool {
+    use Integrator::{AmbientOcclusion, Path, RandomWalk, SimplePath};
+    matches!(integrator, Path | SimplePath | RandomWalk | AmbientOcclusion { .. })
+}
+
+impl<'a> Story<'a> {
+    /// Nothing yet.
+    pub(super) fn new(frame: &'a Frame<'a>, lanes: Lanes) -> Self {
+        Self {
+            frame,
+            world: frame.world(),
+            lanes,
+            rays: BTreeMap::new(),
+            added: BTreeMap::new(),
+            sum: Spectrum::BLACK,
+            additions: Vec::new(),
+        }
+    }
+
+    /// One thing more. What is said of a ray comes after the ray itself.
+    pub(super) fn hear(&mut self, event: &Event) {
+        match event {
+            Event::Met { path, hit } => {
+                let ray = self.ray(path, hit);
+                self.rays.insert(path.address, ray);
+            }
+            Event::Surface { address, coefficients, .. } => {
+                let report = coefficients.as_deref().map(|k| self.coefficients(k));
+                if let Some(met) = self.rays.get_mut(address).and_then(|ray| ray.met.as_mut()) {
+                    met.coefficients = report;
+                }
+            }
+            Event::Asked { address, light, sample, diffuse, specular } => {
+                let report = self.light(*light, sample.as_ref(), *diffuse, *specular);
+                self.at(*address, |ray| ray.lights.push(report));
+            }
+            Event::Shaded { address, shading, beta, .. } => self.shaded(*address, shading, *beta),
+            Event::Found { address, light, radiance, light_pdf, weight } => {
+                let report = FoundReport {
+                    index: *light,
+                    light: self.world.names.lights[*light as usize].clone(),
+                    radiance: self.amount(*radiance),
+                    light_pdf: *light_pdf,
+                    weight: *weight,
+                    added: self.amount(Spectrum::BLACK),
+                };
+                self.at(*address, |ray| ray.found.push(report));
+            }
+            Event::AskedInVain { address, light, probability, sample } => {
+                let answer = sample
+                    .as_ref()
+                    .map(|sample| self.answer(*probability, sample, Spectrum::BLACK, None, 1.0));
+                self.asked(*address, *light, *probability, answer);
+            }
+            Event::AskedOne { address, light, probability, sample, f, bsdf_pdf, weight } => {
+                let is_weighed = self.frame.settings().integrator == Integrator::Path
+                    && !self.world.lights[*light as usize].is_delta();
+                let answer = self.answer(*probability, sample, *f, is_weighed.then_some(*bsdf_pdf), *weight);
+                self.asked(*address, *light, *probability, Some(answer));
+            }
+            Event::Shadow { shadow, hit, passed } => self.shadow(shadow, hit, *passed),
+            Event::Bounced { address, bounce } => {
+                let report = self.bounce(*address, bounce);
+                self.at(*address, |ray| ray.bounce = Some(report));
+            }
+            Event::Grew { address, branch, weight, fresnel, total_reflection, cut } => {
+                let (kind, bit) = match branch {
+                    Branch::Mirrored => ("mirrored", 0),
+                    Branch::Refracted => ("refracted", 1),
+                };
+                let report = BranchReport {
+                    address: address << 1 | bit,
+                    kind,
+                    weight: self.factor(*weight),
+                    fresnel: *fresnel,
+                    total_reflection: *total_reflection,
+                    cut: cut.map(|cut| match cut {
+                        Cut::Contribution => "can no longer change the pixel",
+                        Cut::Depth => "the greatest depth is reached",
+                    }),
+                };
+                self.at(*address, |ray| ray.branches.push(report));
+            }
+            Event::Add { address, term, value } => self.add(*address, *term, *value),
+        }
+    }
+
+    /// All of it: the sums are drawn.
+    pub(super) fn end(mut self) -> Told {
+        let is_path = is_path(self.frame.settings().integrator);
+        if is_path {
+            self.end_paths();
+        }
+
+        // Children have greater addresses than their parents: from the last to the first, each adds itself to its parent.
+        let mut subtrees = self.added.clone();
+        let addresses: Vec<u64> = self.rays.keys().copied().collect();
+        for &address in addresses.iter().rev() {
+            let subtree = subtrees.get(&address).copied().unwrap_or_default();
+            let parent = if is_path { address - 1 } else { address >> 1 };
+            let has_parent = self.rays.contains_key(&parent);
+            if has_parent {
+                *subtrees.entry(parent).or_default() += subtree;
+            }
+            let own = self.amount(self.added.get(&address).copied().unwrap_or_default());
+            let subtree = self.amount(subtree);
+            self.at(address, |ray| {
+                ray.parent = has_parent.then_some(parent);
+                ray.added = own;
+                ray.subtree = subtree;
+            });
+        }
+        let radiance = self.amount(self.sum);
+        Told { rays: self.rays.into_values().collect(), additions: self.additions, sum: self.sum, radiance }
+    }
+
+    /// What is known of a path only when the next ray is, or when there is none.
+    fn end_paths(&mut self) {
+        let settings = self.frame.settings();
+        let addresses: Vec<u64> = self.rays.keys().copied().collect();
+        for address in addresses {
+            let next = self.rays.get(&(address + 1)).map(|next| next.share.clone());
+            let Some(ray) = self.rays.get_mut(&address) else { continue };
+            let kind_of_next = match &mut ray.bounce {
+                Some(bounce) => {
+                    bounce.next_share.clone_from(&next);
+                    match settings.integrator {
+                        Integrator::RandomWalk => "scattered",
+                        _ if bounce.lobe.ends_with("transmission") => "transmitted",
+                        _ => "reflected",
+                    }
+                }
+                None => "straight on",
+            };
+            if next.is_some() {
+                self.at(address + 1, |next| next.kind = kind_of_next);
+                continue;
+            }
+            ray.ends = Some(match (&ray.met, &ray.scattering, &ray.bounce) {
+                (None, ..) => "it leaves the scene",
+                (Some(_), None, _) => "only whether the surroundings are open is asked",
+                (_, Some(_), None) if ray.depth >= settings.depth => {
+                    "it may not be scattered more often (--depth)"
+                }
+                (_, Some(_), None) => "the surface offers no direction: its light is swallowed",
+                (.., Some(bounce)) if !bounce.survives => "Russian roulette ends it",
+                (.., Some(_)) => "no light from there would count: its share is 0",
+            });
+        }
+    }
+
+    fn at(&mut self, address: u64, change: impl FnOnce(&mut RayReport)) {
+        if let Some(ray) = self.rays.get_mut(&address) {
+            change(ray);
+        }
+    }
+
+    /// The lanes that mean something.
+    fn factor(&self, value: Spectrum) -> Factor {
+        match self.lanes {
+            Lanes::Rgb => value.rgb().to_vec(),
+            Lanes::Spectral(_) => value.0.to_vec(),
+        }
+    }
+
+    fn amount(&self, value: Spectrum) -> Amount {
+        Amount { lanes: self.factor(value), rgb: self.frame.rgb(value, &self.lanes) }
+    }
+
+    fn ray(&self, path: &Path, hit: &Hit) -> RayReport {
+        let kind = match (path.address, path.address & 1) {
+            (Path::ROOT, _) => "camera",
+            (_, 0) => "mirrored",
+            _ => "refracted",
+        };
+        let pdf = path.departure.pdf;
+        let surface = hit.is_hit().then(|| self.world.surface(&path.ray, hit));
+        RayReport {
+            address: path.address,
+            parent: None,
+            kind,
+            depth: path.depth,
+            a: in_world(self.world, path.ray.origin),
+            direction: path.ray.direction,
+            share: self.factor(path.beta),
+            pdf: pdf.is_finite().then_some(pdf),
+            candidates: candidate::candidates(self.world, &path.ray, hit),
+            met: surface.map(|surface| met_report(self.world, hit, &surface)),
+            share_there: None,
+            found: Vec::new(),
+            scattering: None,
+            lights: Vec::new(),
+            asked: None,
+            openness: None,
+            bounce: None,
+            branches: Vec::new(),
+            ends: None,
+            added: Amount::default(),
+            subtree: Amount::default(),
+        }
+    }
+
+    fn coefficients(&self, k: &Coefficients) -> CoefficientsReport {
+        CoefficientsReport {
+            ambient: self.factor(k.ambient),
+            diffuse: self.factor(k.diffuse),
+            specular: self.factor(k.specular),
+            shininess: k.shininess,
+            mirror: self.factor(k.mirror),
+            transmission: self.factor(k.transmission),
+            ior: k.ior,
+        }
+    }
+
+    fn light(
+        &self,
+        index: u32,
+        sample: Option<&LightSample>,
+        diffuse: Spectrum,
+        specular: Spectrum,
+    ) -> LightReport {
+        let intensity = sample.map(|sample| sample.li / (std::f32::consts::PI * sample.pdf));
+        LightReport {
+            index,
+            light: self.world.names.lights[index as usize].clone(),
+            wi: sample.map(|sample| sample.wi.to_array()),
+            intensity: self.amount(intensity.unwrap_or_default()),
+            diffuse: self.factor(diffuse),
+            specular: self.factor(specular),
+            shadow: None,
+            added: self.amount(Spectrum::BLACK),
+        }
+    }
+
+    fn shaded(&mut self, address: u64, shading: &Shading, beta: Spectrum) {
+        let report = scatter::scattering(shading, |value| self.factor(value));
+        let share = self.factor(beta);
+        self.at(address, |ray| {
+            ray.scattering = Some(report);
+            ray.share_there = Some(share);
+        });
+    }
+
+    fn answer(
+        &self,
+        probability: f32,
+        sample: &LightSample,
+        f_cos: Spectrum,
+        bsdf_pdf: Option<f32>,
+        weight: f32,
+    ) -> AnswerReport {
+        AnswerReport {
+            wi: sample.wi.to_array(),
+            light_pdf: sample.pdf,
+            pdf: probability * sample.pdf,
+            arrives: self.amount(sample.li),
+            f_cos: self.factor(f_cos),
+            bsdf_pdf,
+            weight,
+        }
+    }
+
+    fn asked(&mut self, address: u64, index: u32, probability: f32, answer: Option<AnswerReport>) {
+        let light = self.world.names.lights[index as usize].clone();
+        let added = self.amount(Spectrum::BLACK);
+        let report = AskedReport { index, light, probability, answer, shadow: None, added };
+        self.at(address, |ray| ray.asked = Some(report));
+    }
+
+    fn shadow(&mut self, shadow: &Shadow, hit: &Hit, passed: Spectrum) {
+        let world = self.world;
+        let blocker = hit.is_hit().then(|| {
+            let surface = world.surface(&shadow.ray, hit);
+            let shape = world.names.shapes[surface.shape as usize].clone();
+            Blocker { shape, passed: self.factor(passed) }
+        });
+        let Some(ray) = self.rays.get_mut(&shadow.address) else { return };
+        let report = match shadow.term {
+            Term::Light(light) => match ray.lights.iter_mut().find(|report| report.index == light) {
+                Some(report) => &mut report.shadow,
+                None => match &mut ray.asked {
+                    Some(report) => &mut report.shadow,
+                    None => return,
+                },
+            },
+            _ => &mut ray.openness,
+        };
+        let [origin, direction] =
+            [shadow.ray.origin, shadow.ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
+        // behind a transparent surface less is left of the way
+        let is_endless = shadow.ray.t_max.is_infinite();
+        let length = if is_endless { 1.0 } else { f64::from(shadow.ray.t_max) };
+        let [from, to] = [origin, origin + direction * length].map(|point| (world.origin + point).to_array());
+        let report = report.get_or_insert(ShadowReport { from, to, is_endless, blockers: Vec::new() });
+        report.to = to;
+        report.blockers.extend(blocker);
+    }
+
+    fn bounce(&self, address: u64, bounce: &Bounce) -> BounceReport {
+        let sample = &bounce.sample;
+        BounceReport {
+            lobe: scatter::words(sample.lobe),
+            wi: bounce.wi.to_array(),
+            f: self.factor(sample.f),
+            cos: bounce.cos,
+            pdf: sample.pdf,
+            pdf_is_proportional: sample.pdf_is_proportional,
+            eta: sample.eta,
+            share_before: self.rays.get(&address).and_then(|ray| ray.share_there.clone()).unwrap_or_default(),
+            share_after: self.factor(bounce.beta),
+            survival: bounce.survival,
+            survives: bounce.survives,
+            next_share: None,
+        }
+    }
+
+    fn add(&mut self, address: u64, term: Term, value: Spectrum) {
+        self.sum += value;
+        *self.added.entry(address).or_default() += value;
+        let amount = self.amount(value);
+        let term_name = self.term_name(term);
+        self.additions.push(Addition { address, term: term_name, value: amount.clone() });
+        self.at(address, |ray| match term {
+            Term::Light(light) => {
+                if let Some(report) = ray.lights.iter_mut().find(|report| report.index == light) {
+                    report.added = amount;
+                } else if let Some(report) = &mut ray.asked {
+                    report.added = amount;
+                }
+            }
+            Term::Found { light, .. } => {
+                if let Some(report) = ray.found.iter_mut().find(|report| report.index == light) {
+                    report.added = amount;
+                }
+            }
+            Term::Sky | Term::Emission | Term::Ambient | Term::View | Term::Unoccluded => {}
+        });
+    }
+
+    fn term_name(&self, term: Term) -> String {
+        let name = |light: u32| &self.world.names.lights[light as usize];
+        match term {
+            Term::Sky => "sky".into(),
+            Term::Emission => "emission".into(),
+            Term::Ambient => "ambient".into(),
+            Term::View => "view".into(),
+            Term::Unoccluded => "open sky".into(),
+            Term::Found { light, .. } => format!("found {}", name(light)),
+            Term::Light(light) if is_path(self.frame.settings().integrator) => {
+                format!("asked {}", name(light))
+            }
+            Term::Light(light) => name(light).clone(),
+        }
+    }
+}
+
+fn met_report(world: &World, hit: &Hit, surface: &Surface) -> MetReport {
+    MetReport {
+        shape: world.names.shapes[surface.shape as usize].clone(),
+        primitive: hit.primitive,
+        instance: (hit.instance != NONE).then_some(hit.instance),
+        t: hit.t,
+        point: (world.origin + DVec3::from_array(surface.point.position)).to_array(),
+        error: surface.point.error,
+        ng: surface.ng.to_array(),
+        n: surface.ns_facing().to_array(),
+        uv: surface.uv.to_array(),
+        front: surface.front,
+        material: world.names.materials[surface.material as usize].clone(),
+        coefficients: None,
+    }
+}
+
+fn in_world(world: &World, point: [f32; 3]) -> [f64; 3] {
+    (world.origin + Vec3::from_array(point).as_dvec3()).to_array()
+}

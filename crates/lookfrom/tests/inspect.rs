@@ -1,0 +1,325 @@
+//! The inspector of paths: does what it shows add up to what the film received, and do its numbers fit its formulas?
+
+mod support;
+
+use std::collections::BTreeSet;
+
+use lookfrom::film::{Film, FilmTile};
+use lookfrom::inspect::{Inspection, RayReport, inspect, svg};
+use lookfrom::render::SampleId;
+use lookfrom_scene::image::Image;
+use lookfrom_scene::light::{Amount, Light, LightKind, Sky};
+use lookfrom_scene::scene::ImageId;
+use lookfrom_scene::settings::{ColorMode, Crop, Integrator};
+use lookfrom_scene::{Location, Scene};
+use support::{Compiled, scene};
+
+/// Glass that disperses, rough metal, a coat, a pane with holes, a mirror, a swallowing body, two lamps.
+const ROOM: &str = r##"
+[camera]
+lookfrom = [0, 1.2, 5]
+lookat = [0, 0.7, 0]
+fov = 40
+
+[image]
+width = 48
+height = 32
+
+[render]
+samples = 4
+depth = 3
+
+[materials.floor]
+type = "diffuse"
+reflectance = [0.7, 0.6, 0.5]
+
+[materials.prism]
+type = "dielectric"
+ior = "SF11"
+
+[materials.metal]
+type = "conductor"
+metal = "gold"
+roughness = 0.5
+
+[materials.mirror]
+type = "conductor"
+metal = "silver"
+
+[materials.lacquer]
+type = "coated_diffuse"
+reflectance = [0.5, 0.1, 0.1]
+roughness = 0.3
+
+[materials.jelly]
+diffuse = 0
+mirror = 1
+transmission = 1
+fresnel = true
+absorption = [0.1, 0.9, 0.5]
+
+[materials.lamp]
+type = "diffuse"
+emission = [9, 8, 7]
+
+[[quad]]
+corner = [-4, 0, -3]
+edge_u = [0, 0, 8]
+edge_v = [8, 0, 0]
+material = "floor"
+
+[[sphere]]
+center = [-1.6, 0.5, 0.4]
+radius = 0.5
+material = "prism"
+
+[[sphere]]
+center = [-0.5, 0.5, -0.3]
+radius = 0.5
+material = "metal"
+
+[[sphere]]
+center = [0.6, 0.5, 0.1]
+radius = 0.5
+material = "lacquer"
+
+[[sphere]]
+center = [1.6, 0.5, 0.6]
+radius = 0.45
+material = "jelly"
+
+[[quad]]
+corner = [-2.5, 0, -2]
+edge_u = [5, 0, 0]
+edge_v = [0, 1.6, 0]
+material = "mirror"
+
+[[quad]]
+corner = [-1.2, 0, 1.2]
+edge_u = [2.4, 0, 0]
+edge_v = [0, 0.6, 0]
+material = "floor"
+alpha = 0.5
+
+[[sphere]]
+center = [0.3, 1.7, -0.5]
+radius = 0.25
+material = "lamp"
+
+[[light]]
+type = "rectangle"
+name = "window"
+center = [-3, 4, 2]
+target = [0, 0, 0]
+width = 1
+height = 1
+radiance = 20
+
+[[light]]
+type = "point"
+name = "bulb"
+position = [2, 3, 2]
+intensity = 4
+"##;
+
+/// The room under a picture of a sky with a sun.
+fn room(integrator: Integrator, color: ColorMode) -> Scene {
+    let mut scene = scene(ROOM);
+    let image = ImageId(scene.images.len() as u32);
+    scene.images.push(Image {
+        name: "sky".into(),
+        width: 16,
+        height: 8,
+        texels: (0..128).map(|k| if k == 37 { [60.0, 50.0, 30.0] } else { [0.3, 0.4, 0.5] }).collect(),
+    });
+    let sky = Sky::Image { image, scale: [1.0; 3], world_from_light: glam::DMat4::IDENTITY };
+    scene.lights.push(Light {
+        name: Some("sky".into()),
+        at: Location::default(),
+        kind: LightKind::Environment { sky, portal: None, illuminates: true },
+        amount: Amount::AS_WRITTEN,
+    });
+    scene.render.integrator = integrator;
+    scene.render.color = color;
+    scene
+}
+
+const INTEGRATORS: [Integrator; 5] = [
+    Integrator::Path,
+    Integrator::SimplePath,
+    Integrator::RandomWalk,
+    Integrator::AmbientOcclusion { cosine: true },
+    Integrator::AmbientOcclusion { cosine: false },
+];
+
+/// Some pixels of every kind of thing in the room.
+fn pixels() -> impl Iterator<Item = [u32; 2]> {
+    (0..32).step_by(3).flat_map(|y| (0..48).step_by(5).map(move |x| [x, y]))
+}
+
+#[test]
+fn what_is_shown_of_a_path_adds_up_to_what_the_film_received() {
+    for integrator in INTEGRATORS {
+        for color in [ColorMode::Rgb, ColorMode::Spectral] {
+            let compiled = Compiled::new(room(integrator, color));
+            let frame = compiled.frame();
+            let area = Crop { x0: 0, y0: 0, x1: 48, y1: 32 };
+            let mut tile = FilmTile::new(area).expect("a small tile");
+            frame.render_tile(2..3, &mut tile);
+            let mut film = Film::new(48, 32, None).expect("a small film");
+            film.add_tile(&tile);
+
+            let mut light_was_seen = false;
+            for [x, y] in pixels() {
+                let inspection = inspect(&frame, SampleId { pixel: [x, y], sample: 2 });
+                let at = format!("{integrator:?} {color:?} at {x} {y}");
+                let mut sum = vec![0.0; if color == ColorMode::Rgb { 3 } else { 4 }];
+                for addition in &inspection.additions {
+                    for (sum, value) in sum.iter_mut().zip(&addition.value.lanes) {
+                        *sum += value;
+                    }
+                }
+                assert_eq!(sum, inspection.radiance.lanes, "{at}");
+                assert!(inspection.adds_up, "{at}");
+                assert_eq!(film.mean(x, y), inspection.film, "{at}");
+                assert!(inspection.to_string().contains("the same, bit for bit"), "{at}");
+                assert!(svg(frame.world(), &inspection).ends_with("</svg>\n"), "{at}");
+                light_was_seen |= inspection.film != [0.0; 3];
+            }
+            assert!(light_was_seen, "{integrator:?} {color:?} is black");
+        }
+    }
+}
+
+fn close(a: f32, b: f32) -> bool {
+    (a - b).abs() <= 1e-5 * a.abs().max(b.abs()) + 1e-12
+}
+
+fn assert_close(found: &[f32], expected: impl Fn(usize) -> f32, what: &str) {
+    for (lane, found) in found.iter().enumerate() {
+        let expected = expected(lane);
+        assert!(close(*found, expected), "{what}, lane {lane}: {found}, expected {expected}");
+    }
+}
+
+fn heuristic(p: f32, q: f32) -> f32 {
+    let [p, q] = [p, q].map(f64::from);
+    (p * p / (p * p + q * q)) as f32
+}
+
+/// Each number of a ray by the formula that the report gives for it.
+fn check_ray(inspection: &Inspection, ray: &RayReport, what: &str) {
+    let share = ray.share_there.as_ref().unwrap_or(&ray.share);
+    let is_path = inspection.integrator == "path";
+    for found in &ray.found {
+        let (radiance, w) = (&found.radiance.lanes, found.weight);
+        // where an interface shines, absorption on the way is not told
+        assert_close(&found.added.lanes, |lane| share[lane] * radiance[lane] * w, &format!("{what}: found"));
+        match (ray.pdf, inspection.integrator) {
+            (Some(p), "path") => assert!(close(w, heuristic(p, found.light_pdf)), "{what}: {found:?}"),
+            (Some(_), "simplepath") => assert_eq!(w == 0.0, found.light_pdf > 0.0, "{what}: {found:?}"),
+            _ => assert_eq!(w, 1.0, "{what}: {found:?}"),
+        }
+    }
+    if let Some((asked, answer)) = ray.asked.as_ref().and_then(|asked| Some((asked, asked.answer.as_ref()?)))
+    {
+        assert!(close(answer.pdf, asked.probability * answer.light_pdf), "{what}: {asked:?}");
+        let expected = answer.bsdf_pdf.map_or(1.0, |q| heuristic(answer.pdf, q));
+        assert!(close(answer.weight, expected), "{what}: {asked:?}");
+        let through = |lane: usize| match &asked.shadow {
+            Some(shadow) => shadow.blockers.iter().map(|blocker| blocker.passed[lane]).product(),
+            None => 0.0,
+        };
+        let (arrives, f_cos) = (&answer.arrives.lanes, &answer.f_cos);
+        let added =
+            |lane| share[lane] * f_cos[lane] * arrives[lane] * through(lane) * answer.weight / answer.pdf;
+        let found = &asked.added.lanes;
+        // what is left of the way after the last crossing is absorbed as well, and not told
+        if asked.shadow.as_ref().is_none_or(|shadow| shadow.blockers.is_empty()) {
+            assert_close(found, added, &format!("{what}: asked"));
+        } else {
+            assert!(found.iter().enumerate().all(|(lane, found)| *found <= 1.00001 * added(lane)), "{what}");
+        }
+    }
+    let next = inspection.rays.iter().find(|next| next.parent == Some(ray.address));
+    if let Some(bounce) = &ray.bounce {
+        assert_eq!(&bounce.share_before, share, "{what}");
+        let expected = |lane| share[lane] * bounce.f[lane] * bounce.cos / bounce.pdf;
+        assert_close(&bounce.share_after, expected, &format!("{what}: β"));
+        assert!(is_path || bounce.survival == 1.0, "{what}");
+        if let Some(next) = next {
+            assert_eq!(Some(&next.share), bounce.next_share.as_ref(), "{what}");
+            assert_close(&next.share, |lane| bounce.share_after[lane] / bounce.survival, what);
+            assert_eq!(next.pdf.is_none(), bounce.lobe.starts_with("specular"), "{what}");
+        }
+    }
+    assert_eq!(ray.ends.is_none(), next.is_some(), "{what}: {:?}", ray.ends);
+    // along a path: what comes after is part of it
+    let none = vec![0.0; ray.added.lanes.len()];
+    let after = next.map_or(&none, |next| &next.subtree.lanes);
+    assert_close(&ray.subtree.lanes, |lane| ray.added.lanes[lane] + after[lane], &format!("{what}: subtree"));
+}
+
+#[test]
+fn the_numbers_fit_the_formulas_and_everything_is_told() {
+    let mut told: BTreeSet<String> = BTreeSet::new();
+    for integrator in INTEGRATORS {
+        for color in [ColorMode::Rgb, ColorMode::Spectral] {
+            let compiled = Compiled::new(room(integrator, color));
+            let frame = compiled.frame();
+            for (pixel, sample) in pixels().flat_map(|pixel| [0, 1, 3].map(|sample| (pixel, sample))) {
+                let inspection = inspect(&frame, SampleId { pixel, sample });
+                for ray in &inspection.rays {
+                    let name = inspection.integrator;
+                    check_ray(
+                        &inspection,
+                        ray,
+                        &format!("{name} {color:?} at {pixel:?}, ray {}", ray.address),
+                    );
+                    told.insert(ray.kind.into());
+                    told.extend(ray.ends.map(String::from));
+                    told.extend(ray.scattering.iter().map(|scattering| scattering.kind.into()));
+                    told.extend(ray.bounce.iter().map(|bounce| bounce.lobe.clone()));
+                    told.extend(ray.found.iter().map(|found| format!("{name} found {}", found.light)));
+                    told.extend(ray.asked.iter().map(|asked| format!("{name} asked {}", asked.light)));
+                    let absorbs = ray.share_there.as_ref().is_some_and(|share| *share != ray.share);
+                    told.extend(absorbs.then(|| "absorbs".into()));
+                }
+                let dispersed = inspection.wavelengths.is_some_and(|wavelengths| wavelengths.dispersed);
+                told.extend(dispersed.then(|| "disperses".into()));
+            }
+        }
+    }
+    for expected in [
+        "camera",
+        "reflected",
+        "transmitted",
+        "scattered",
+        "straight on",
+        "disperses",
+        "absorbs",
+        "diffuse",
+        "dielectric",
+        "conductor",
+        "coated diffuse",
+        "whitted",
+        "diffuse reflection",
+        "glossy reflection",
+        "specular reflection",
+        "specular transmission",
+        "path found sky",
+        "path asked sky",
+        "path asked window",
+        "path asked bulb",
+        "simplepath asked window",
+        "simplepath found sky",
+        "randomwalk found sky",
+        "it leaves the scene",
+        "it may not be scattered more often (--depth)",
+        "Russian roulette ends it",
+        "only whether the surroundings are open is asked",
+    ] {
+        assert!(told.contains(expected), "{expected:?} is not in {told:#?}");
+    }
+    assert!(!told.iter().any(|told| told.starts_with("randomwalk asked")), "{told:#?}");
+}
