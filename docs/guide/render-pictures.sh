@@ -34,3 +34,4 @@ for scene in docs/guide/scenes/*.toml; do
 done
 picture scenes/hero.toml -o docs/img/hero.png
 "$LOOKFROM" inspect scenes/hero.toml 330 300 --depth 2 --svg docs/guide/img/inspector-glass.svg > /dev/null
+"$LOOKFROM" inspect scenes/hero.toml 330 300 --integrator path --sample 4 --svg docs/guide/img/inspector-path.svg > /dev/null

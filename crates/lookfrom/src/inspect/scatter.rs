@@ -191,14 +191,14 @@ pub(super) fn scattering(shading: &Shading, factor: impl Fn(Spectrum) -> Factor)
 
 /// A set of kinds of scattering in words.
 pub(super) fn words(lobes: Lobes) -> String {
-    let named = |names: &[(Lobes, &'static str)]| {
+    let named = |names: &[(Lobes, &'static str)], and: &str| {
         let names: Vec<&str> =
             names.iter().filter(|(lobe, _)| lobes.intersects(*lobe)).map(|(_, name)| *name).collect();
-        names.join(" and ")
+        names.join(and)
     };
     let spread =
-        named(&[(Lobes::DIFFUSE, "diffuse"), (Lobes::GLOSSY, "glossy"), (Lobes::SPECULAR, "specular")]);
-    let side = named(&[(Lobes::REFLECTION, "reflection"), (Lobes::TRANSMISSION, "transmission")]);
+        named(&[(Lobes::DIFFUSE, "diffuse"), (Lobes::GLOSSY, "glossy"), (Lobes::SPECULAR, "specular")], ", ");
+    let side = named(&[(Lobes::REFLECTION, "reflection"), (Lobes::TRANSMISSION, "transmission")], " and ");
     match side.is_empty() {
         true => "nothing: it swallows all light".into(),
         false => format!("{spread} {side}"),

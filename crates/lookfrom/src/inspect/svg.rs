@@ -62,6 +62,9 @@ pub fn svg(world: &World, inspection: &Inspection) -> String {
             escape(&segment.title)
         );
     }
+    if inspection.is_path() {
+        draw_numbers(&mut out, &segments, &place);
+    }
     let eye = place(side.project(DVec3::from_array(inspection.camera.lookfrom)));
     draw_camera(&mut out, eye, side.project(world.camera.w()));
     draw_legend(&mut out, height, inspection, &segments);
@@ -150,6 +153,8 @@ impl Kind {
 }
 
 struct Segment {
+    /// The ray's address; a shadow ray has none.
+    address: Option<u64>,
     kind: Kind,
     from: DVec2,
     to: DVec2,
@@ -169,7 +174,8 @@ fn segments(side: &SideView, inspection: &Inspection) -> Vec<Segment> {
         };
         let kind = Kind::of(ray);
         let title = format!("{} ray {}, brings {:?}", ray.kind, ray.address, ray.subtree.rgb);
-        segments.push(Segment { kind, from: side.project(a), to: side.project(end), title });
+        let address = Some(ray.address);
+        segments.push(Segment { address, kind, from: side.project(a), to: side.project(end), title });
         shadow_segments(side, ray, length, &mut segments);
     }
     segments
@@ -185,7 +191,13 @@ fn shadow_segments(side: &SideView, ray: &RayReport, length: f64, segments: &mut
         let end = if shadow.is_endless { start + (end - start).normalize() * length } else { end };
         let kind = if shadow.is_blocked() { Kind::Blocked } else { Kind::Shadow };
         let title = format!("shadow ray to {aim}, brings {:?}", added.rgb);
-        segments.push(Segment { kind, from: side.project(start), to: side.project(end), title });
+        segments.push(Segment {
+            address: None,
+            kind,
+            from: side.project(start),
+            to: side.project(end),
+            title,
+        });
     }
 }
 
@@ -228,6 +240,21 @@ fn draw_scene(out: &mut String, world: &World, side: &SideView, place: &impl Fn(
         }
     }
     out.push_str("</g>\n");
+}
+
+/// The numbers of a path's rays, beside their middles.
+fn draw_numbers(out: &mut String, segments: &[Segment], place: &impl Fn(DVec2) -> DVec2) {
+    for segment in segments {
+        let Some(address) = segment.address else { continue };
+        let middle = 0.5 * (place(segment.from) + place(segment.to));
+        let _ = writeln!(
+            out,
+            "<text x=\"{:.1}\" y=\"{:.1}\" fill=\"{}\" font-weight=\"bold\">{address}</text>",
+            middle.x + 6.0,
+            middle.y - 6.0,
+            segment.kind.color()
+        );
+    }
 }
 
 fn draw_camera(out: &mut String, eye: DVec2, forward: DVec2) {
