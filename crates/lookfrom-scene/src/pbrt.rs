@@ -78,7 +78,12 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
     };
     reader.file(path)?;
     reader.finish(path)?;
-    Ok(reader.scene)
+    let mut scene = reader.scene;
+    scene.is_whole = true;
+    if scene.lights.is_empty() && !scene.shapes.iter().any(|shape| shape.emission.is_some()) {
+        sources.warn(&Location::file(path), "there is no light in this scene: the picture will be black");
+    }
+    Ok(scene)
 }
 
 /// Whether a text looks like a scene of pbrt: one of its first words is a directive that begins such files.

@@ -48,6 +48,9 @@ ids! {
 /// A scene as it was written.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
+    /// Whether the file says all that there is, so that no light is added to show it: a scene of pbrt without lights is
+    /// black.
+    pub is_whole: bool,
     /// The eye; `None` where the file names none: then the scene is framed by its bounds.
     pub camera: Option<Camera>,
     /// Size, filter and development of the picture.

@@ -139,7 +139,7 @@ impl Stage {
             |light: &Light| matches!(light.kind, LightKind::Environment { illuminates: false, .. });
         let in_objects = scene.objects.iter().flat_map(|object| &object.shapes);
         let shines = scene.shapes.iter().chain(in_objects).any(|shape| shape.emission.is_some());
-        if shines || !scene.lights.iter().all(is_backdrop) {
+        if scene.is_whole || shines || !scene.lights.iter().all(is_backdrop) {
             return;
         }
         let fill = if scene.lights.is_empty() {

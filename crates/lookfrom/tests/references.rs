@@ -1,0 +1,66 @@
+//! Scenes of other people against pictures by pbrt-v4, where the shared folder is there.
+//!
+//! At few samples the variance of a single pixel is badly known, so means over the picture and over blocks are compared;
+//! `lookfrom compare` does the test by pixels, at many samples.
+
+use std::path::Path;
+
+use lookfrom::render::Frame;
+use lookfrom::world::World;
+use lookfrom_scene::image::compare::{Sampled, compare};
+use lookfrom_scene::image::read_exr;
+use lookfrom_scene::{Disk, Sources, load};
+
+const SAMPLES: u32 = 16;
+
+/// Scene, picture, how many samples the picture has.
+const SCENES: &[(&str, &str, u64)] = &[
+    ("cornell-box/scene", "cornell-box", 1024),
+    ("veach-mis/scene", "veach-mis", 1024),
+    ("killeroos/killeroo-simple", "killeroo-simple", 1024),
+    ("killeroos/killeroo-gold", "killeroo-gold", 1024),
+    ("coffee/scene", "coffee", 1024),
+    ("staircase2/scene", "staircase2", 512),
+];
+
+/// Our picture of a scene with the variance of each pixel's samples.
+fn picture(scene: &Path) -> Sampled {
+    let mut sources = Sources::new(&Disk);
+    let mut scene = load::scene(scene, &mut sources).unwrap_or_else(|error| panic!("{error}"));
+    scene.render.samples = SAMPLES;
+    let (image, render) = (scene.image.clone(), scene.render.clone());
+    let world = World::compile(scene, &mut sources.warnings).unwrap_or_else(|error| panic!("{error}"));
+    let frame = Frame::new(&world, &image, &render).expect("a frame");
+    let film = frame.render(None, &()).expect("a picture").film;
+    assert_eq!(film.dropped(), 0, "samples that are not finite, the first at {:?}", film.first_dropped());
+    let places = || (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
+    let of_mean = |(x, y)| film.variance(x, y).map(|v| f64::from(v) / f64::from(SAMPLES));
+    Sampled {
+        width: film.width() as usize,
+        pixels: film.picture().pixels,
+        not_finite: 0,
+        variances: Some(places().map(of_mean).collect()),
+    }
+}
+
+#[test]
+fn pictures_are_pbrts() {
+    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
+    if !shared.join("reference").is_dir() {
+        println!("skipped: there is no {}", shared.display());
+        return;
+    }
+    for (scene, name, samples) in SCENES {
+        let ours = picture(&shared.join(format!("scenes/{scene}.pbrt")));
+        let file = read_exr(&shared.join(format!("reference/{name}.exr")), &mut Sources::new(&Disk));
+        let theirs = Sampled::new(&file.expect("a picture"), Some(*samples)).expect("a picture of RGB");
+        let found = compare(&ours, &theirs).expect("pictures of one size");
+        let noise = found.noise.as_ref().expect("variances on both sides");
+        println!("{name}: means differ by {:?}, {noise:?}", found.relative);
+        // Within half a per cent, or within the noise where that is larger.
+        for (difference, error) in found.relative.iter().zip(noise.mean) {
+            assert!(difference.abs() < 0.005 || error.abs() < 4.0, "{name}: {found:?}");
+        }
+        assert!(noise.blocks_within > 0.97, "{name}: {found:?}");
+    }
+}
