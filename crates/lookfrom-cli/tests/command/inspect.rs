@@ -8,15 +8,17 @@ use super::stage::Stage;
 #[test]
 fn what_is_inspected_is_what_is_rendered() {
     let stage = Stage::new("inspect");
-    let options = "--samples 1 --width 20 --seed 3 --lookfrom -1,1,5";
-    stage.done(&format!("render scene.toml -q -o p.exr {options}"));
-    let picture = image::read(&stage.path("p.exr"), &mut Sources::new(&Disk)).unwrap();
-    for [x, y] in [[0, 0], [11, 6], [3, 14], [19, 9]] {
-        let inspection = &stage.json_document(&format!("inspect scene.toml {x} {y} --json {options}"));
-        assert_eq!(inspection["pixel"], serde_json::json!([x, y]));
-        let film = inspection["film"].as_array().unwrap();
-        let film: Vec<f32> = film.iter().map(|value| value.as_f64().unwrap() as f32).collect();
-        assert_eq!(film, picture.texels[y * 20 + x], "pixel {x} {y}");
+    for light in ["", "--integrator path", "--integrator path --color spectral"] {
+        let options = format!("--samples 1 --width 20 --seed 3 --lookfrom -1,1,5 {light}");
+        stage.done(&format!("render scene.toml -q -o p.exr {options}"));
+        let picture = image::read(&stage.path("p.exr"), &mut Sources::new(&Disk)).unwrap();
+        for [x, y] in [[0, 0], [11, 6], [3, 14], [19, 9]] {
+            let inspection = &stage.json_document(&format!("inspect scene.toml {x} {y} --json {options}"));
+            assert_eq!(inspection["pixel"], serde_json::json!([x, y]));
+            let film = inspection["film"].as_array().unwrap();
+            let film: Vec<f32> = film.iter().map(|value| value.as_f64().unwrap() as f32).collect();
+            assert_eq!(film, picture.texels[y * 20 + x], "pixel {x} {y}, {light}");
+        }
     }
 }
 
