@@ -11,6 +11,9 @@ mod picture;
 mod portal;
 mod tree;
 
+#[cfg(test)]
+mod tests;
+
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::Point;
 use lookfrom_scene::light::Falloff;

@@ -18,6 +18,9 @@ impl Cone {
 
     /// A cone around both; the least one, up to rounding.
     pub(super) fn union(self, other: Self) -> Self {
+        if self == other || self.cos <= -1.0 {
+            return self;
+        }
         let (half_a, half_b) = (angle(self.cos), angle(other.cos));
         let between = angle(self.axis.dot(other.axis));
         if (between + half_b).min(PI) <= half_a {

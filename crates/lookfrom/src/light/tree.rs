@@ -67,11 +67,13 @@ struct Sight {
 impl Tree {
     /// A tree over lights with their numbers, of `count` lights in the world. Lights without power are left out.
     pub(super) fn new(lights: &[(u32, Bundle)], count: usize) -> Self {
-        let mut tree = Self { nodes: Vec::new(), ways: vec![None; count] };
         let mut lights: Vec<(u32, Bundle)> = lights.iter().copied().filter(|(_, b)| b.power > 0.0).collect();
-        if !lights.is_empty() {
-            tree.nodes.reserve_exact(2 * lights.len() - 1);
-            tree.build(&mut lights, 0, 0);
+        let mut tree = Self { nodes: Vec::new(), ways: vec![None; count] };
+        if let Some((light, bundle)) = lights.first() {
+            let placeholder = Node { sight: bundle.sight(), link: Link::Light(*light) };
+            tree.nodes = vec![placeholder; 2 * lights.len() - 1];
+            build(&mut tree.nodes, 0, &mut lights, 0);
+            tree.find_ways(0, 0, 0);
         }
         tree
     }
@@ -81,24 +83,14 @@ impl Tree {
         self.nodes.is_empty()
     }
 
-    fn build(&mut self, lights: &mut [(u32, Bundle)], way: u64, depth: u32) -> Bundle {
-        let node = self.nodes.len();
-        if let [(light, bundle)] = *lights {
-            self.nodes.push(Node { sight: bundle.sight(), link: Link::Light(light) });
-            self.ways[light as usize] = Some(way);
-            return bundle;
+    fn find_ways(&mut self, node: usize, way: u64, depth: u32) {
+        match self.nodes[node].link {
+            Link::Light(light) => self.ways[light as usize] = Some(way),
+            Link::Second(second) => {
+                self.find_ways(node + 1, way, depth + 1);
+                self.find_ways(second as usize, way | 1 << depth, depth + 1);
+            }
         }
-        // Below 32 turns the tree is halved, so that 64 bits are enough for 2³² lights.
-        let middle = if depth < 32 { divide(lights) } else { lights.len() / 2 };
-        let (left, right) = lights.split_at_mut(middle);
-        let placeholder = left[0].1.sight();
-        self.nodes.push(Node { sight: placeholder, link: Link::Second(0) });
-        let first = self.build(left, way, depth + 1);
-        let second_index = self.nodes.len() as u32;
-        let second = self.build(right, way | 1 << depth, depth + 1);
-        let bundle = first.union(&second);
-        self.nodes[node] = Node { sight: bundle.sight(), link: Link::Second(second_index) };
-        bundle
     }
 
     /// A light for `u ∈ [0, 1)` and its probability at a place with the unit normal `n` (or zero, where nothing has one);
@@ -156,6 +148,29 @@ impl Tree {
             (sum > 0.0).then_some(share)
         }
     }
+}
+
+/// Fills `nodes`, the first of which is number `first` of the tree, with one over the lights; gives their bundle.
+fn build(nodes: &mut [Node], first: u32, lights: &mut [(u32, Bundle)], depth: u32) -> Bundle {
+    /// So many lights are worth a task of their own.
+    const PARALLEL: usize = 2048;
+    if let [(light, bundle)] = *lights {
+        nodes[0] = Node { sight: bundle.sight(), link: Link::Light(light) };
+        return bundle;
+    }
+    // Below 32 turns the tree is halved, so that 64 bits are enough for 2³² lights.
+    let middle = if depth < 32 { divide(lights) } else { lights.len() / 2 };
+    let is_large = lights.len() > PARALLEL;
+    let (left, right) = lights.split_at_mut(middle);
+    let (root, below) = nodes.split_at_mut(1);
+    let (of_left, of_right) = below.split_at_mut(2 * middle - 1);
+    let second = first + 2 * middle as u32;
+    let mut build_left = || build(of_left, first + 1, left, depth + 1);
+    let mut build_right = || build(of_right, second, right, depth + 1);
+    let (a, b) = if is_large { rayon::join(build_left, build_right) } else { (build_left(), build_right()) };
+    let bundle = a.union(&b);
+    root[0] = Node { sight: bundle.sight(), link: Link::Second(second) };
+    bundle
 }
 
 impl Bundle {
@@ -259,8 +274,11 @@ fn angle_less((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f
     (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b)
 }
 
-/// Orders the lights so that they are best divided at the given place.
+/// Orders the lights so that they are best divided at the given place: neither 0 nor their number.
 fn divide(lights: &mut [(u32, Bundle)]) -> usize {
+    if lights.len() == 2 {
+        return 1;
+    }
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for (_, bundle) in lights.iter() {
         (low, high) = (low.min(bundle.center()), high.max(bundle.center()));
@@ -277,12 +295,26 @@ fn divide(lights: &mut [(u32, Bundle)]) -> usize {
             let bucket = &mut buckets[bucket_of(bundle, axis)];
             *bucket = Some(bucket.map_or(*bundle, |sum| sum.union(bundle)));
         }
-        let join = |part: &[Option<Bundle>]| part.iter().flatten().copied().reduce(|a, b| a.union(&b));
+        // Cost of what is below each place to divide at, and then of what is above.
+        let mut below = [None; BUCKETS];
+        let mut sum: Option<Bundle> = None;
+        for at in 1..BUCKETS {
+            if let Some(bucket) = &buckets[at - 1] {
+                let union = sum.map_or(*bucket, |sum| sum.union(bucket));
+                below[at] = Some(union.cost());
+                sum = Some(union);
+            }
+        }
         // Thin boxes are dear along their thin sides.
         let stretch = extent.max_element() / extent[axis];
-        for at in 1..BUCKETS {
-            let (Some(below), Some(above)) = (join(&buckets[..at]), join(&buckets[at..])) else { continue };
-            let cost = stretch * (below.cost() + above.cost());
+        let mut sum: Option<Bundle> = None;
+        for at in (1..BUCKETS).rev() {
+            if let Some(bucket) = &buckets[at] {
+                sum = Some(sum.map_or(*bucket, |sum| sum.union(bucket)));
+            }
+            // Where the bucket below is empty, the next place down divides alike.
+            let (Some(above), Some(below)) = (&sum, below[at]) else { continue };
+            let cost = stretch * (below + above.cost());
             if best.is_none_or(|(least, ..)| cost < least) {
                 best = Some((cost, axis, at));
             }

@@ -199,8 +199,11 @@ impl<'a> Lights<'a> {
                 return (Sky::Constant(glow), self.brightness_of(&glow));
             }
             WrittenSky::Gradient { zenith, horizon, nadir } => {
+                // Onto a surface that looks up: the integral of ((1 − y) horizon + y zenith) y.
+                let upward = std::array::from_fn(|c| (horizon[c] + 2.0 * zenith[c]) / 3.0);
+                let scale = self.glow(Color::Value(upward), amount, PI).scale;
                 let [zenith, horizon, nadir] =
-                    [zenith, horizon, nadir].map(|rgb| self.glow(Color::Value(*rgb), amount, PI));
+                    [zenith, horizon, nadir].map(|rgb| Glow { color: Color::Value(*rgb), scale });
                 return (Sky::Gradient { zenith, horizon, nadir }, self.brightness_of(&horizon));
             }
             WrittenSky::Image { image, scale, world_from_light } => {
@@ -211,7 +214,7 @@ impl<'a> Lights<'a> {
             }
         };
         let picture = self.textures.image(image);
-        let factor = self.glow(Color::gray(1.0), amount, illuminance(picture, layout)).scale;
+        let factor = self.glow(Color::gray(1.0), amount, illuminance(picture, *scale, layout)).scale;
         let weights = weights(picture, layout);
         let solid_angles = weights.iter().map(|&(_, area)| f64::from(area)).sum::<f64>();
         let average =
@@ -246,9 +249,9 @@ fn mean(image: &Image) -> f32 {
     (sum / (3 * image.texels.len()) as f64) as f32
 }
 
-/// What a picture of the surroundings sends onto a surface that looks up in the light's space: along +y for latitude and
+/// What a picture of the surroundings, multiplied by `scale`, sends onto a surface that looks up in the light's space: along +y for latitude and
 /// longitude, along +z for the octahedral square.
-fn illuminance(image: &Image, layout: Layout) -> f32 {
+fn illuminance(image: &Image, scale: [f32; 3], layout: Layout) -> f32 {
     let (width, height) = (image.width as f32, image.height as f32);
     let mut sum = 0.0;
     for (index, texel) in (0..).zip(&image.texels) {
@@ -258,7 +261,8 @@ fn illuminance(image: &Image, layout: Layout) -> f32 {
             Layout::LatitudeLongitude => (libm::cosf(PI * t), 2.0 * PI * PI * libm::sinf(PI * t)),
             Layout::Octahedral => (warp::octahedral_direction([s, t]).dot(Vec3::Z), 4.0 * PI),
         };
-        sum += f64::from(math::luminance(*texel) * cos.max(0.0) * solid_angle);
+        let color = std::array::from_fn(|c| (texel[c] * scale[c]).max(0.0));
+        sum += f64::from(math::luminance(color) * cos.max(0.0) * solid_angle);
     }
     (sum / f64::from(width * height)) as f32
 }
