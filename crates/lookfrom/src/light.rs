@@ -145,6 +145,11 @@ impl Light {
         matches!(self, Self::Distant { .. } | Self::Environment(_))
     }
 
+    /// Whether surfaces are lit by it; otherwise it is only seen.
+    pub fn illuminates(&self) -> bool {
+        !matches!(self, Self::Environment(environment) if !environment.illuminates)
+    }
+
     /// Whether it has one direction only at any place: no direction chosen otherwise finds it.
     pub fn is_delta(&self) -> bool {
         !matches!(self, Self::Area(_) | Self::Environment(_))

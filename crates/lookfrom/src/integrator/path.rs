@@ -87,6 +87,11 @@ impl Integrator for PathTracer {
         }
         let surface = world.surface(&path.ray, hit);
 
+        // Absorb on the way to the surface.
+        let length = Vec3::from_array(path.ray.direction).length() * hit.t;
+        let transmittance = path.media.transmittance(world, length, &next.lanes(path));
+        let path = &Path { beta: path.beta * transmittance, ..*path };
+
         // Light passes where the surface is not there.
         let [presence, mix] = match world.is_chancy(&surface) {
             true => numbers.two(purpose::PRESENCE),
@@ -96,11 +101,6 @@ impl Integrator for PathTracer {
             next.samples.paths.push(path.passed(&surface));
             return;
         }
-
-        // Absorb on the way to the surface.
-        let length = Vec3::from_array(path.ray.direction).length() * hit.t;
-        let transmittance = path.media.transmittance(world, length, &next.lanes(path));
-        let path = &Path { beta: path.beta * transmittance, ..*path };
 
         // Add what the surface itself shines.
         self.add_emission(world, path, &surface, next);
@@ -129,7 +129,7 @@ impl Integrator for PathTracer {
         let [which_light, which_lobe] = numbers.two(purpose::CHOICE);
         if self.wisdom != Wisdom::None && shading.bsdf.lobes().is_non_specular() {
             let u = numbers.two(purpose::LIGHT);
-            self.ask_light(world, path, &surface, &shading, which_light, u, next);
+            self.ask_light(world, path, (&surface, &shading), which_light, u, next);
         }
 
         // Go on in one direction.
@@ -180,6 +180,10 @@ impl PathTracer {
     fn add_sky<P: Probe>(&self, world: &World, path: &Path, next: &mut Next<'_, P>) {
         let direction = Vec3::from_array(path.ray.direction).normalize();
         for &index in &world.environments {
+            // Some skies are only seen: by the camera, in mirrors and through glass.
+            if path.departure.blurred && !world.lights[index as usize].illuminates() {
+                continue;
+            }
             let radiance = world.sky_of(index, &path.ray, &next.lanes(path));
             let pdf = || world.light_pdf(index, &path.reference(), direction, None);
             self.add_found(path, index, radiance, pdf, next);
@@ -226,8 +230,7 @@ impl PathTracer {
         &self,
         world: &World,
         path: &Path,
-        surface: &Surface,
-        shading: &Shading,
+        (surface, shading): (&Surface, &Shading),
         which: f32,
         u: [f32; 2],
         next: &mut Next<'_, P>,

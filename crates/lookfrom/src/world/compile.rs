@@ -45,7 +45,7 @@ impl World {
             warnings,
             lights: Lights::new(&textures),
             shapes: Vec::new(),
-            wants_derivatives: scene.materials.iter().any(|material| material.has_grain()),
+            wants_derivatives: scene.materials.iter().any(lookfrom_scene::material::Material::has_grain),
             alphas: Vec::new(),
             sides: Vec::new(),
         };
