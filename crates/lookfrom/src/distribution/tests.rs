@@ -155,13 +155,13 @@ proptest! {
         for window in [window, Window::WHOLE] {
             // Slow twin: cut every cell with the window.
             let mut sum = 0.0;
-            for index in 0..width * height {
+            for (index, weight) in weights[..width * height].iter().enumerate() {
                 let overlap = |axis: usize, cell: usize, cells: usize| {
                     let (low, high) = (cell as f64 / cells as f64, (cell + 1) as f64 / cells as f64);
                     (high.min(window.max[axis]) - low.max(window.min[axis])).max(0.0)
                 };
                 let (column, row) = (index % width, index / width);
-                sum += f64::from(weights[index]) * overlap(0, column, width) * overlap(1, row, height);
+                sum += f64::from(*weight) * overlap(0, column, width) * overlap(1, row, height);
             }
             let sure = sum > 1e-6 * window.min.iter().zip(window.max).map(|(a, b)| b - a).product::<f64>();
             let sample = grid.sample(&window, u);

@@ -424,7 +424,7 @@ fn nothing_black_has_any_power() {
     for (kind, _) in &mut lights {
         match kind {
             LightKind::Point { intensity, .. } | LightKind::Spot { intensity, .. } => {
-                *intensity = Color::BLACK
+                *intensity = Color::BLACK;
             }
             _ => {}
         }
