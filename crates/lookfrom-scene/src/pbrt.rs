@@ -80,9 +80,6 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
     reader.finish(path)?;
     let mut scene = reader.scene;
     scene.is_whole = true;
-    if scene.lights.is_empty() && !scene.shapes.iter().any(|shape| shape.emission.is_some()) {
-        sources.warn(&Location::file(path), "there is no light in this scene: the picture will be black");
-    }
     Ok(scene)
 }
 

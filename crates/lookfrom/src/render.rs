@@ -294,13 +294,12 @@ impl<'a> Frame<'a> {
 
     /// Adds the given samples of every pixel of a tile to its light.
     pub fn render_tile(&self, samples: Range<u32>, tile: &mut FilmTile) -> Rays {
-        let Crop { x0, y0, x1, y1 } = tile.area();
         let mut rays = Rays::default();
         let mut batch = Batch::default();
         let mut ids: Vec<SampleId> = Vec::new();
         for sample in samples {
             ids.clear();
-            ids.extend((y0..y1).flat_map(|y| (x0..x1).map(move |x| SampleId { pixel: [x, y], sample })));
+            ids.extend(blocks(tile.area()).map(|pixel| SampleId { pixel, sample }));
             rays += if tile.has_layers() {
                 let mut seen = Seen::new(self, ids.iter().map(|id| self.lanes(*id)).collect());
                 let rays = self.trace_batch(&ids, &mut seen, &mut batch);
@@ -320,4 +319,15 @@ impl<'a> Frame<'a> {
         }
         rays
     }
+}
+
+/// The pixels of an area by square blocks of 8 × 8, so that the rays of a packet of the kernel lie close together.
+fn blocks(area: Crop) -> impl Iterator<Item = [u32; 2]> {
+    const SIDE: usize = 8;
+    let Crop { x0, y0, x1, y1 } = area;
+    let corners = (y0..y1).step_by(SIDE).flat_map(move |y| (x0..x1).step_by(SIDE).map(move |x| [x, y]));
+    corners.flat_map(move |[x, y]| {
+        let end = |start: u32, end: u32| (start + SIDE as u32).min(end);
+        (y..end(y, y1)).flat_map(move |row| (x..end(x, x1)).map(move |column| [column, row]))
+    })
 }
