@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Renders the pictures of the guide: docs/guide/img/NAME.png from docs/guide/scenes/NAME.toml, and docs/img/hero.png.
+# Renders the pictures of the guide: docs/guide/img/NAME.png from docs/guide/scenes/NAME.toml, docs/guide/img/scene-NAME.png from
+# scenes/NAME.toml, and docs/img/hero.png.
 #
 #   docs/guide/render-pictures.sh              all of them
-#   docs/guide/render-pictures.sh light-spot   those that are named
+#   docs/guide/render-pictures.sh light-spot   those that are named, of the guide's own scenes
 #
 # Builds the command, unless LOOKFROM names a binary. The same scene gives the same bytes on any machine, so a picture that
 # changes here is one that the program changed.
@@ -20,6 +21,8 @@ of_guide() {
     local more=()
     # Light from the whole sky is noisy at the number of samples that suits the others, and noise makes a large PNG.
     [[ $1 == light-environment ]] && more=(--samples 512)
+    # So does a path.
+    grep -q -e lit-stage "docs/guide/scenes/$1.toml" && more=(--fireflies median)
     picture "docs/guide/scenes/$1.toml" -o "docs/guide/img/$1.png" ${more[@]+"${more[@]}"}
 }
 
@@ -33,5 +36,20 @@ for scene in docs/guide/scenes/*.toml; do
     of_guide "$(basename "$scene" .toml)"
 done
 picture scenes/hero.toml -o docs/img/hero.png
+
+# Larger scenes, small enough for a page.
+of_scene() {
+    local scene=$1
+    shift
+    picture "scenes/$scene" -o "docs/guide/img/scene-${scene%.*}.png" "$@"
+}
+picture scenes/images/cloister.toml -o scenes/images/cloister.hdr
+of_scene cornell.toml --width 400 --samples 256 --fireflies median
+of_scene materials.toml --width 528 --samples 192 --fireflies median
+of_scene picture-of-light.toml --width 480 --samples 128 --fireflies median
+of_scene many-lights.toml --width 480 --samples 160 --fireflies median
+of_scene cutouts.toml --width 480 --samples 96 --fireflies median
+of_scene dispersion.toml --width 480 --samples 256
+of_scene star.pbrt --width 320 --height 240 --samples 128 --fireflies median
 "$LOOKFROM" inspect scenes/hero.toml 330 300 --depth 2 --svg docs/guide/img/inspector-glass.svg > /dev/null
 "$LOOKFROM" inspect scenes/hero.toml 330 300 --integrator path --sample 4 --svg docs/guide/img/inspector-path.svg > /dev/null
