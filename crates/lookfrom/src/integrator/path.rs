@@ -28,6 +28,10 @@ mod purpose {
     pub(super) const ROULETTE: u32 = 4;
 }
 
+/// No path is ended by chance before it has bounced more often than this: what the first bounces find is most of the
+/// picture, and their noise most of the noise. (pbrt-v4 begins after the first; the light is the same.)
+const SAFE_BOUNCES: u32 = 4;
+
 /// How much of what is known about light is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wisdom {
@@ -284,7 +288,7 @@ impl PathTracer {
     /// The probability with which a path goes on after its `depth`-th bounce, and whether it does.
     fn roulette(&self, numbers: &Numbers, beta: Spectrum, eta_scale: f32, depth: u32) -> (f32, bool) {
         let share = beta.max_lane() * eta_scale;
-        if self.wisdom != Wisdom::Combined || depth <= 1 || share >= 1.0 {
+        if self.wisdom != Wisdom::Combined || depth <= SAFE_BOUNCES || share >= 1.0 {
             return (1.0, true);
         }
         let [u, _] = numbers.two(purpose::ROULETTE);
