@@ -48,7 +48,7 @@ of_scene cornell.toml --width 400 --samples 256 --fireflies median
 of_scene materials.toml --width 528 --samples 192 --fireflies median
 of_scene picture-of-light.toml --width 480 --samples 128 --fireflies median
 of_scene many-lights.toml --width 480 --samples 160 --fireflies median
-of_scene cutouts.toml --width 480 --samples 96 --fireflies median
+of_scene cutouts.toml --width 480 --samples 96
 of_scene dispersion.toml --width 480 --samples 256
 of_scene star.pbrt --width 320 --height 240 --samples 128 --fireflies median
 "$LOOKFROM" inspect scenes/hero.toml 330 300 --depth 2 --svg docs/guide/img/inspector-glass.svg > /dev/null
