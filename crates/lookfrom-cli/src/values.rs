@@ -15,9 +15,9 @@ pub(crate) const INTEGRATORS: &[(&str, Integrator)] = &[
     ("raycast", Integrator::Raycast),
     ("whitted", Integrator::Whitted),
     ("path", Integrator::Path),
-    ("simplepath", Integrator::SimplePath),
-    ("randomwalk", Integrator::RandomWalk),
-    ("ambientocclusion", Integrator::AmbientOcclusion { cosine: true }),
+    ("simple_path", Integrator::SimplePath),
+    ("random_walk", Integrator::RandomWalk),
+    ("ambient_occlusion", Integrator::AmbientOcclusion { cosine: true }),
     ("normals", Integrator::Normals),
     ("depth", Integrator::Depth),
     ("uv", Integrator::Uv),
@@ -68,7 +68,7 @@ pub(crate) fn name<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'st
 /// The word for a computation. Ambient occlusion has one for both of its ways to choose directions.
 pub(crate) fn integrator_name(integrator: &Integrator) -> &'static str {
     match integrator {
-        Integrator::AmbientOcclusion { .. } => "ambientocclusion",
+        Integrator::AmbientOcclusion { .. } => "ambient_occlusion",
         other => name(INTEGRATORS, other),
     }
 }

@@ -8,7 +8,7 @@ use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{Color, MaterialKind};
 use lookfrom_scene::medium::Medium;
 use lookfrom_scene::scene::Scene;
-use lookfrom_scene::settings::ColorMode;
+use lookfrom_scene::settings::{ColorMode, Integrator as Kind};
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
 use super::lights::Lights;
@@ -83,6 +83,12 @@ impl World {
         let light_choice =
             LightChoice::new(scene.render.light_sampler, &lights.lights, &lights.brightness, radius);
         let Lights { lights, names: light_names, ambient, .. } = lights;
+        if let Some(light) = scene.lights.iter().find(|light| matches!(light.kind, LightKind::Ambient { .. }))
+            && matches!(scene.render.integrator, Kind::Path | Kind::SimplePath | Kind::RandomWalk)
+        {
+            let message = "ambient light belongs to Whitted's model: path tracing leaves it out".to_owned();
+            warnings.push(Warning { at: light.at.clone(), message });
+        }
 
         // Build the trees: of the objects, and of the world over them.
         let objects: Vec<Vec<Form>> = in_objects.into_iter().map(Group::into_forms).collect();
