@@ -3,8 +3,8 @@
 //! Step 7 on the way of a pixel. Sums of floating-point numbers depend on their order, sums of integers do not. So each
 //! pixel holds three fixed-point sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the
 //! variance; any division of the work among threads, tiles, passes or machines ends in the same bytes *by
-//! construction*. What a camera sees first, for layers, is in [`features`]; how much noise there is, in [`noise`]; what
-//! becomes of single samples that outshine a pixel, in [`fireflies`]. How a picture is shown is left to [`crate::develop`].
+//! construction*. What a camera sees first, for layers, is in [`features`]; how much noise there is, in `noise`; what
+//! becomes of single samples that outshine a pixel, in `fireflies`. How a picture is shown is left to [`crate::develop`].
 //!
 //! A pixel takes 112 bytes, and as much more as [`features`] says where layers are asked for.
 

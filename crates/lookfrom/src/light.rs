@@ -140,11 +140,6 @@ pub enum Coverage {
 }
 
 impl Light {
-    /// Whether its light comes from infinitely far.
-    pub fn is_infinitely_far(&self) -> bool {
-        matches!(self, Self::Distant { .. } | Self::Environment(_))
-    }
-
     /// Whether surfaces are lit by it; otherwise it is only seen.
     pub fn illuminates(&self) -> bool {
         !matches!(self, Self::Environment(environment) if !environment.illuminates)

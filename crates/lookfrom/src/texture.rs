@@ -4,7 +4,7 @@
 //! (Pharr, Jakob, Humphreys 2023) means here what it means there, but for one thing: there are no ray differentials, so
 //! pictures are not filtered beyond bilinear, squares have sharp edges and noise has all its octaves.
 //!
-//! [`mapping`]: where in a pattern; [`picture`], [`pattern`]: what is there; [`reading`]: what that becomes.
+//! `mapping`: where in a pattern; `picture`, `pattern`: what is there; `reading`: what that becomes.
 
 mod constants;
 mod mapping;
@@ -144,11 +144,6 @@ impl Textures {
     /// The colour at a point, in linear Rec. 709.
     pub fn rgb(&self, color: Color, usage: Usage, at: &TexturePoint) -> [f32; 3] {
         self.read(color, at, &Rgb(usage)).rgb()
-    }
-
-    /// The colour at a point, in RGB and of any size.
-    pub fn color(&self, color: Color, at: &TexturePoint) -> Spectrum {
-        self.read(color, at, &Rgb(Usage::Unbounded))
     }
 
     /// The number at a point. A picture's is the mean of its channels; its first channel, where the nearest texel is asked

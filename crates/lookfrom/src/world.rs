@@ -58,8 +58,6 @@ pub struct World {
     pub transmissive: bool,
     /// Whether rays pass any surface without meeting it: alpha, interfaces.
     pub has_gaps: bool,
-    /// Radius of the sphere around all that stands in the world.
-    pub radius: f32,
     /// Names of the scene's materials and shapes, for people.
     pub names: Names,
 }

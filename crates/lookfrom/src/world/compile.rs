@@ -124,7 +124,6 @@ impl World {
             transmissive: materials.iter().any(|material| material.whitted.transmission != Color::BLACK),
             has_gaps: shapes().any(|shape| shape.alpha.is_some())
                 || materials.iter().any(|material| material.kind == MaterialKind::Interface),
-            radius,
             materials,
             alphas,
             media,
