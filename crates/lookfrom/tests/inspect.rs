@@ -27,7 +27,7 @@ height = 32
 
 [render]
 samples = 4
-depth = 3
+depth = 7
 
 [materials.floor]
 type = "diffuse"
@@ -217,7 +217,7 @@ fn check_ray(inspection: &Inspection, ray: &RayReport, what: &str) {
         assert_close(&found.added.lanes, |lane| share[lane] * radiance[lane] * w, &format!("{what}: found"));
         match (ray.pdf, inspection.integrator) {
             (Some(p), "path") => assert!(close(w, heuristic(p, found.light_pdf)), "{what}: {found:?}"),
-            (Some(_), "simplepath") => assert_eq!(w == 0.0, found.light_pdf > 0.0, "{what}: {found:?}"),
+            (Some(_), "simple_path") => assert_eq!(w == 0.0, found.light_pdf > 0.0, "{what}: {found:?}"),
             _ => assert_eq!(w, 1.0, "{what}: {found:?}"),
         }
     }
@@ -311,9 +311,9 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
         "path asked sky",
         "path asked window",
         "path asked bulb",
-        "simplepath asked window",
-        "simplepath found sky",
-        "randomwalk found sky",
+        "simple_path asked window",
+        "simple_path found sky",
+        "random_walk found sky",
         "it leaves the scene",
         "it may not be scattered more often (--depth)",
         "Russian roulette ends it",
@@ -321,5 +321,5 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
     ] {
         assert!(told.contains(expected), "{expected:?} is not in {told:#?}");
     }
-    assert!(!told.iter().any(|told| told.starts_with("randomwalk asked")), "{told:#?}");
+    assert!(!told.iter().any(|told| told.starts_with("random_walk asked")), "{told:#?}");
 }

@@ -269,7 +269,7 @@ pub struct Addition {
 impl Inspection {
     /// Whether the rays are a path, and not a tree.
     pub fn is_path(&self) -> bool {
-        matches!(self.integrator, "path" | "simplepath" | "randomwalk" | "ambientocclusion")
+        matches!(self.integrator, "path" | "simple_path" | "random_walk" | "ambient_occlusion")
     }
 }
 

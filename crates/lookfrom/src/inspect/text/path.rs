@@ -25,7 +25,7 @@ impl Inspection {
 
     /// What the letters mean, as far as this integrator has them.
     fn write_introduction(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        if self.integrator == "ambientocclusion" {
+        if self.integrator == "ambient_occlusion" {
             return writeln!(
                 f,
                 "  One shadow ray from the first surface: is anything near? Lines with + are added to the pixel."
@@ -54,7 +54,7 @@ impl Inspection {
                 )?;
                 writeln!(f, "         it, and q that the other way would have had (the power heuristic)")?;
             }
-            "simplepath" => {
+            "simple_path" => {
                 writeln!(
                     f,
                     "    w    light that can be asked for counts only where it is asked (w = 1), not where the path meets it"
@@ -128,10 +128,10 @@ impl Inspection {
                 writeln!(f, "      q = {q}: pdf with which asking a light there would have chosen it")?;
                 writeln!(f, "      w = p² / (p² + q²) = {w}")?;
             }
-            (Some(_), "simplepath") if found.light_pdf > 0.0 => {
+            (Some(_), "simple_path") if found.light_pdf > 0.0 => {
                 writeln!(f, "      asking lights finds it too (pdf {q}), and has counted it: w = {w}")?;
             }
-            (Some(_), "simplepath") => writeln!(f, "      asking lights cannot find it: w = {w}")?,
+            (Some(_), "simple_path") => writeln!(f, "      asking lights cannot find it: w = {w}")?,
             _ => writeln!(f, "      no lights are asked: w = {w}")?,
         }
         writeln!(f, "      + β L w = {}", amount(&found.added))
@@ -194,7 +194,7 @@ impl Inspection {
 
     fn write_bounce(&self, f: &mut Formatter<'_>, bounce: &BounceReport) -> fmt::Result {
         match self.integrator {
-            "randomwalk" => writeln!(
+            "random_walk" => writeln!(
                 f,
                 "    goes on in any direction, whatever the surface: wi = {}",
                 vector32(&bounce.wi)
