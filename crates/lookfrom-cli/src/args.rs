@@ -306,15 +306,15 @@ pub(crate) struct Overrides {
     pub(crate) samples: Option<u32>,
 
     /// How light is computed; the last four show what is there
-    #[arg(long, value_name = "NAME", value_parser = values::word(values::INTEGRATORS))]
+    #[arg(long, value_name = "NAME", value_parser = values::word(Integrator::WORDS))]
     pub(crate) integrator: Option<Integrator>,
 
     /// Whether light is red, green and blue or four wavelengths
-    #[arg(long, value_name = "NAME", value_parser = values::word(values::COLORS))]
+    #[arg(long, value_name = "NAME", value_parser = values::word(ColorMode::WORDS))]
     pub(crate) color: Option<ColorMode>,
 
     /// How one of many lights is chosen
-    #[arg(long, value_name = "NAME", value_parser = values::word(values::LIGHT_SAMPLERS))]
+    #[arg(long, value_name = "NAME", value_parser = values::word(LightSampler::WORDS))]
     pub(crate) light_sampler: Option<LightSampler>,
 
     /// What an EXR holds besides the picture: geometry is albedo, normals, position, depth, uv and variance
@@ -330,7 +330,7 @@ pub(crate) struct Overrides {
     pub(crate) min_contribution: Option<f32>,
 
     /// Where random numbers come from
-    #[arg(long, value_name = "NAME", value_parser = values::word(values::SAMPLERS))]
+    #[arg(long, value_name = "NAME", value_parser = values::word(Sampler::WORDS))]
     pub(crate) sampler: Option<Sampler>,
 
     /// Another seed, other noise
@@ -347,7 +347,7 @@ pub(crate) struct Overrides {
     pub(crate) exposure: Option<f32>,
 
     /// From linear light to 8 bits
-    #[arg(long, value_name = "NAME", value_parser = values::word(values::TONEMAPS))]
+    #[arg(long, value_name = "NAME", value_parser = values::word(Tonemap::WORDS))]
     pub(crate) tonemap: Option<Tonemap>,
 
     /// Where the eye is

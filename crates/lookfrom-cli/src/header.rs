@@ -5,10 +5,10 @@ use std::path::Path;
 
 use glam::DVec3;
 use lookfrom_scene::camera::{Projection, View};
-use lookfrom_scene::settings::Crop;
+use lookfrom_scene::settings::{ColorMode, Crop, LightSampler, Sampler};
 
 use crate::prepare::Prepared;
-use crate::values::{self, COLORS, LIGHT_SAMPLERS, SAMPLERS};
+use crate::values;
 
 /// How many samples a picture is made of.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,16 +30,16 @@ pub(crate) fn attributes(scene: &Path, prepared: &Prepared, taken: &Taken) -> Ve
         ("software", format!("lookfrom {}", env!("CARGO_PKG_VERSION"))),
         ("scene", scene.display().to_string()),
         ("size", format!("{} {}", image.width, image.height)),
-        ("integrator", values::integrator_name(&render.integrator).to_owned()),
+        ("integrator", render.integrator.word().to_owned()),
         ("samples", taken.samples.to_string()),
         ("depth", render.depth.to_string()),
-        ("color", values::name(COLORS, &render.color).to_owned()),
-        ("light_sampler", values::name(LIGHT_SAMPLERS, &render.light_sampler).to_owned()),
+        ("color", values::name(ColorMode::WORDS, &render.color).to_owned()),
+        ("light_sampler", values::name(LightSampler::WORDS, &render.light_sampler).to_owned()),
         ("regularize", render.regularize.to_string()),
         ("min_contribution", render.min_contribution.to_string()),
         ("transparent_shadows", render.transparent_shadows.to_string()),
         ("seed", render.seed.to_string()),
-        ("sampler", values::name(SAMPLERS, &render.sampler).to_owned()),
+        ("sampler", values::name(Sampler::WORDS, &render.sampler).to_owned()),
         ("filter", values::filter_name(&image.filter)),
         // What the scene asks of 8-bit pictures; the light in this file is as it was computed.
         ("exposure", image.exposure.to_string()),

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use lookfrom_scene::camera::{Camera, Projection, View};
-use lookfrom_scene::settings::Crop;
+use lookfrom_scene::settings::{Crop, Sampler, Tonemap};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -14,7 +14,7 @@ use crate::count::Counts;
 use crate::exit::{self, DONE, Failure, answer, say};
 use crate::prepare::{self, Prepared, prepare};
 use crate::report::{self, bytes, thousands};
-use crate::values::{self, SAMPLERS, TONEMAPS};
+use crate::values;
 
 /// Describes every scene; goes on after one that fails, with the code of the first failure.
 pub(crate) fn run(arguments: &InfoArguments) -> u8 {
@@ -82,14 +82,14 @@ fn as_json(path: &Path, prepared: &Prepared) -> Value {
             "crop": crop,
             "filter": values::filter_name(&image.filter),
             "exposure": image.exposure,
-            "tonemap": values::name(TONEMAPS, &image.tonemap),
+            "tonemap": values::name(Tonemap::WORDS, &image.tonemap),
         },
         "render": {
-            "integrator": values::integrator_name(&render.integrator),
+            "integrator": render.integrator.word(),
             "samples": render.samples,
             "depth": render.depth,
             "min_contribution": render.min_contribution,
-            "sampler": values::name(SAMPLERS, &render.sampler),
+            "sampler": values::name(Sampler::WORDS, &render.sampler),
             "seed": render.seed,
             "transparent_shadows": render.transparent_shadows,
         },
@@ -148,7 +148,7 @@ fn for_people(path: &Path, prepared: &Prepared) -> String {
         image.height,
         values::filter_name(&image.filter),
         image.exposure,
-        values::name(TONEMAPS, &image.tonemap)
+        values::name(Tonemap::WORDS, &image.tonemap)
     );
     if let Some(Crop { x0, y0, x1, y1 }) = image.crop {
         let _ = write!(picture, ", crop {x0},{y0},{x1},{y1}");
@@ -159,11 +159,11 @@ fn for_people(path: &Path, prepared: &Prepared) -> String {
         "render",
         format!(
             "{}, {} samples, depth {}, min contribution {}, sampler {}, seed {}",
-            values::integrator_name(&render.integrator),
+            render.integrator.word(),
             render.samples,
             render.depth,
             render.min_contribution,
-            values::name(SAMPLERS, &render.sampler),
+            values::name(Sampler::WORDS, &render.sampler),
             render.seed
         ),
     );

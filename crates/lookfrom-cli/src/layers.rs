@@ -1,11 +1,11 @@
 //! What the layers beside a picture are called in an EXR: as pbrt's `gbuffer` film calls them.
 
-use lookfrom::film::{Features, Film};
+use lookfrom::film::Film;
 
-/// The names that pbrt has too, then ours.
+/// In the order of [`to_array`](lookfrom::film::Features::to_array); `depth` is ours, the others are pbrt's.
 const FEATURES: [&str; 15] = [
     "Albedo.R", "Albedo.G", "Albedo.B", "N.X", "N.Y", "N.Z", "Ns.X", "Ns.Y", "Ns.Z", "P.X", "P.Y", "P.Z",
-    "u", "v", "depth",
+    "depth", "u", "v",
 ];
 
 /// The variances of one sample; in pbrt, and so here, those of X, Y and Z.
@@ -21,23 +21,10 @@ pub(crate) fn channels(film: &Film) -> Vec<(String, Vec<f32>)> {
         .collect();
     for (x, y) in pixels() {
         let variances = film.variance(x, y).map(|variance| if variance.is_finite() { variance } else { 0.0 });
-        let values = flatten(&film.features(x, y).unwrap_or_default()).into_iter().chain(variances);
+        let values = film.features(x, y).unwrap_or_default().to_array().into_iter().chain(variances);
         for ((_, channel), value) in channels.iter_mut().zip(values) {
             channel.push(value);
         }
     }
     channels
-}
-
-/// In the order of [`FEATURES`].
-fn flatten(features: &Features) -> [f32; 15] {
-    let Features {
-        albedo: [r, g, b],
-        ng: [gx, gy, gz],
-        ns: [sx, sy, sz],
-        position: [x, y, z],
-        depth,
-        uv: [u, v],
-    } = *features;
-    [r, g, b, gx, gy, gz, sx, sy, sz, x, y, z, u, v, depth]
 }

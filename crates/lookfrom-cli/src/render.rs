@@ -15,7 +15,7 @@ use crate::prepare::{self, Prepared, prepare};
 use crate::preview::{Preview, SoFar};
 use crate::progress::Watcher;
 use crate::report::{self, Dropped, Seconds, Summary};
-use crate::{interrupt, layers, values};
+use crate::{interrupt, layers};
 
 /// The most samples that a pixel can be given.
 const MOST_SAMPLES: u32 = 1 << 24;
@@ -147,7 +147,7 @@ fn render_frame(
             End::Cancelled => "interrupt",
         },
         relative_error: rendered.error.is_finite().then_some(rendered.error),
-        integrator: values::integrator_name(&prepared.render.integrator),
+        integrator: prepared.render.integrator.word(),
         seconds: Seconds {
             read: report::seconds(prepared.read),
             build: report::seconds(prepared.build),

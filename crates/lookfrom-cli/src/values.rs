@@ -6,38 +6,9 @@ use std::time::Duration;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
-use lookfrom_scene::settings::{ColorMode, Crop, Filter, Integrator, Layers, LightSampler, Sampler, Tonemap};
+use lookfrom_scene::settings::{Crop, Filter, Layers};
 
 use crate::args::Fireflies;
-
-/// The computations.
-pub(crate) const INTEGRATORS: &[(&str, Integrator)] = &[
-    ("raycast", Integrator::Raycast),
-    ("whitted", Integrator::Whitted),
-    ("path", Integrator::Path),
-    ("simple_path", Integrator::SimplePath),
-    ("random_walk", Integrator::RandomWalk),
-    ("ambient_occlusion", Integrator::AmbientOcclusion { cosine: true }),
-    ("normals", Integrator::Normals),
-    ("depth", Integrator::Depth),
-    ("uv", Integrator::Uv),
-    ("id", Integrator::Id),
-];
-
-/// Where random numbers come from.
-pub(crate) const SAMPLERS: &[(&str, Sampler)] =
-    &[("sobol", Sampler::Sobol), ("independent", Sampler::Independent)];
-
-/// From linear light to 8 bits.
-pub(crate) const TONEMAPS: &[(&str, Tonemap)] =
-    &[("clamp", Tonemap::Clamp), ("reinhard", Tonemap::Reinhard), ("filmic", Tonemap::Filmic)];
-
-/// What the lanes of light are.
-pub(crate) const COLORS: &[(&str, ColorMode)] = &[("rgb", ColorMode::Rgb), ("spectral", ColorMode::Spectral)];
-
-/// How one of many lights is chosen.
-pub(crate) const LIGHT_SAMPLERS: &[(&str, LightSampler)] =
-    &[("uniform", LightSampler::Uniform), ("power", LightSampler::Power), ("bvh", LightSampler::Bvh)];
 
 /// What an EXR holds besides the picture.
 pub(crate) const LAYERS: &[(&str, Layers)] = &[("none", Layers::None), ("geometry", Layers::Geometry)];
@@ -48,29 +19,12 @@ pub(crate) const FIREFLIES: &[(&str, Fireflies)] = &[("off", Fireflies::Off), ("
 /// Units of time, in seconds; those whose names end like others' come first.
 const UNITS: [(&str, f64); 4] = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];
 
-/// Pixel filters with the radii and shapes that they have where nothing is said.
-const FILTERS: &[(&str, Filter)] = &[
-    ("box", Filter::Box { radius: 0.5 }),
-    ("triangle", Filter::Triangle { radius: 1.0 }),
-    ("gaussian", Filter::Gaussian { radius: 1.5, sigma: 0.5 }),
-    ("mitchell", Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 }),
-    ("blackman_harris", Filter::BlackmanHarris { radius: 1.5 }),
-];
-
 /// The widest filter, in pixels: as in scene files.
 const GREATEST_RADIUS: f32 = 16.0;
 
 /// The word for a value; every value has one.
 pub(crate) fn name<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'static str {
     words.iter().find(|(_, of_word)| of_word == value).map_or("?", |(word, _)| word)
-}
-
-/// The word for a computation. Ambient occlusion has one for both of its ways to choose directions.
-pub(crate) fn integrator_name(integrator: &Integrator) -> &'static str {
-    match integrator {
-        Integrator::AmbientOcclusion { .. } => "ambient_occlusion",
-        other => name(INTEGRATORS, other),
-    }
 }
 
 /// `60s`, `500ms`, `2m`, `1.5h`: a time of more than 0 and at most a year.
@@ -140,8 +94,8 @@ pub(crate) fn field_of_view(typed: &str) -> Result<f64, String> {
 pub(crate) fn filter(typed: &str) -> Result<Filter, String> {
     let (name, radius_typed) =
         typed.split_once(':').map_or((typed, None), |(name, radius)| (name, Some(radius)));
-    let Some(&(_, mut filter)) = FILTERS.iter().find(|(word, _)| *word == name) else {
-        let known: Vec<&str> = FILTERS.iter().map(|&(word, _)| word).collect();
+    let Some(&(_, mut filter)) = Filter::WORDS.iter().find(|(word, _)| *word == name) else {
+        let known: Vec<&str> = Filter::WORDS.iter().map(|&(word, _)| word).collect();
         return Err(format!("expected NAME or NAME:RADIUS; the names are {}", known.join(", ")));
     };
     if let Some(typed) = radius_typed {
@@ -178,7 +132,7 @@ mod tests {
 
     #[test]
     fn every_filter_keeps_its_name_and_takes_a_radius() {
-        for (name, shape) in FILTERS {
+        for (name, shape) in Filter::WORDS {
             assert_eq!(filter(name).as_ref(), Ok(shape));
             assert!(
                 filter_name(&filter(&format!("{name}:3.5")).unwrap()).starts_with(&format!("{name}:3.5"))

@@ -112,6 +112,18 @@ pub enum Filter {
     },
 }
 
+impl Filter {
+    /// The words for them, in scene files and on the command line, with the radii and shapes that they have where nothing is
+    /// said.
+    pub const WORDS: &'static [(&'static str, Self)] = &[
+        ("box", Self::Box { radius: 0.5 }),
+        ("triangle", Self::Triangle { radius: 1.0 }),
+        ("gaussian", Self::Gaussian { radius: 1.5, sigma: 0.5 }),
+        ("mitchell", Self::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 }),
+        ("blackman_harris", Self::BlackmanHarris { radius: 1.5 }),
+    ];
+}
+
 impl Default for Filter {
     fn default() -> Self {
         Self::BlackmanHarris { radius: 1.5 }
@@ -128,6 +140,12 @@ pub enum Tonemap {
     Reinhard,
     /// A filmic curve (the fit of Narkowicz 2015 to ACES).
     Filmic,
+}
+
+impl Tonemap {
+    /// The words for them, in scene files and on the command line.
+    pub const WORDS: &'static [(&'static str, Self)] =
+        &[("clamp", Self::Clamp), ("reinhard", Self::Reinhard), ("filmic", Self::Filmic)];
 }
 
 /// How light is computed.
@@ -167,6 +185,11 @@ pub enum ColorMode {
     Spectral,
 }
 
+impl ColorMode {
+    /// The words for them, in scene files and on the command line.
+    pub const WORDS: &'static [(&'static str, Self)] = &[("rgb", Self::Rgb), ("spectral", Self::Spectral)];
+}
+
 /// How a light is chosen where one of many is asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightSampler {
@@ -177,6 +200,12 @@ pub enum LightSampler {
     /// By what they may send to where it is asked (Conty Estevez & Kulla 2018).
     #[default]
     Bvh,
+}
+
+impl LightSampler {
+    /// The words for them, in scene files and on the command line.
+    pub const WORDS: &'static [(&'static str, Self)] =
+        &[("uniform", Self::Uniform), ("power", Self::Power), ("bvh", Self::Bvh)];
 }
 
 impl Default for RenderSettings {
@@ -226,6 +255,31 @@ pub enum Integrator {
     Id,
 }
 
+impl Integrator {
+    /// The words for them, in scene files and on the command line.
+    pub const WORDS: &'static [(&'static str, Self)] = &[
+        ("path", Self::Path),
+        ("whitted", Self::Whitted),
+        ("raycast", Self::Raycast),
+        ("simple_path", Self::SimplePath),
+        ("random_walk", Self::RandomWalk),
+        ("ambient_occlusion", Self::AmbientOcclusion { cosine: true }),
+        ("normals", Self::Normals),
+        ("depth", Self::Depth),
+        ("uv", Self::Uv),
+        ("id", Self::Id),
+    ];
+
+    /// Its word. Ambient occlusion has one for both of its ways to choose directions.
+    pub fn word(self) -> &'static str {
+        let spoken = match self {
+            Self::AmbientOcclusion { .. } => Self::AmbientOcclusion { cosine: true },
+            other => other,
+        };
+        Self::WORDS.iter().find(|(_, integrator)| *integrator == spoken).map_or("?", |(word, _)| word)
+    }
+}
+
 /// Where random numbers come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampler {
@@ -234,4 +288,10 @@ pub enum Sampler {
     Sobol,
     /// Independent numbers.
     Independent,
+}
+
+impl Sampler {
+    /// The words for them, in scene files and on the command line.
+    pub const WORDS: &'static [(&'static str, Self)] =
+        &[("sobol", Self::Sobol), ("independent", Self::Independent)];
 }

@@ -48,6 +48,21 @@ impl Curve {
         }
     }
 
+    /// The same curve, which goes on with its first and last values to the ends of the visible wavelengths.
+    pub(crate) fn extended(self) -> Self {
+        let Self::Tabulated { mut wavelengths, mut values } = self else { return self };
+        if wavelengths[0] > SHORTEST as f32 {
+            wavelengths.insert(0, SHORTEST as f32 - 1.0);
+            values.insert(0, values[0]);
+        }
+        let last = wavelengths.len() - 1;
+        if wavelengths[last] < LONGEST as f32 {
+            wavelengths.push(LONGEST as f32 + 1.0);
+            values.push(values[last]);
+        }
+        Self::Tabulated { wavelengths, values }
+    }
+
     /// The same curve times a factor; `None` for a black body, whose scale is fixed.
     fn scaled(self, factor: f32) -> Option<Self> {
         match self {

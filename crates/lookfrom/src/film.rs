@@ -16,6 +16,7 @@ use self::features::FeatureSums;
 pub use self::features::Features;
 
 use lookfrom_scene::settings::{Crop, Layers};
+use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 use std::ops::Range;
 
@@ -341,15 +342,6 @@ impl Pixel {
             (mean_of_squares - mean[channel] * mean[channel]).max(0.0) * (n / (n - 1.0))
         })
     }
-}
-
-/// X, Y and Z of linear Rec. 709 (white, D65, has Y = 1). Y is the luminance.
-pub fn xyz([r, g, b]: [f64; 3]) -> [f64; 3] {
-    [
-        0.412_390_8 * r + 0.357_584_3 * g + 0.180_480_8 * b,
-        0.212_639 * r + 0.715_168_7 * g + 0.072_192_3 * b,
-        0.019_330_8 * r + 0.119_194_8 * g + 0.950_532_2 * b,
-    ]
 }
 
 const TWO_TO_47: f64 = 140_737_488_355_328.0;

@@ -47,7 +47,7 @@ pub fn inspect(frame: &Frame<'_>, id: SampleId) -> Inspection {
     Inspection {
         pixel: id.pixel,
         sample: id.sample,
-        integrator: story::integrator_name(frame),
+        integrator: frame.settings().integrator.word(),
         wavelengths,
         camera: camera::camera_steps(frame, id),
         rays: told.rays,

@@ -91,9 +91,7 @@ impl Shading {
         let sample = self.bsdf.sample(self.frame.local(wo), lobe, u, Mode::Radiance, Lobes::ALL)?;
         Some(BsdfSample { wi: self.frame.render(sample.wi).normalize(), ..sample })
     }
-}
 
-impl Shading {
     /// A direction all around, whatever the material: for checking what is chosen by importance.
     pub fn uniform(&self, wo: Vec3, u: [f32; 2]) -> BsdfSample {
         let wi = warp::uniform_sphere(u);

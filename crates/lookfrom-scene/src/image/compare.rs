@@ -6,6 +6,7 @@
 
 use super::openexr::Channels;
 use crate::error::{Error, Location, Result};
+use crate::spectrum::space::xyz_of_rec709 as xyz;
 
 /// A pixel farther away than this many standard errors is not explained by noise.
 pub const MOST_STANDARD_ERRORS: f64 = 3.5;
@@ -223,15 +224,6 @@ fn blocks(cells: &[Cell], width: usize) -> Vec<Cell> {
 
 fn within(cells: &[Cell]) -> f64 {
     cells.iter().filter(|cell| cell.is_within()).count() as f64 / cells.len().max(1) as f64
-}
-
-/// X, Y and Z of linear Rec. 709.
-fn xyz([r, g, b]: [f64; 3]) -> [f64; 3] {
-    [
-        0.412_390_8 * r + 0.357_584_3 * g + 0.180_480_8 * b,
-        0.212_639 * r + 0.715_168_7 * g + 0.072_192_3 * b,
-        0.019_330_8 * r + 0.119_194_8 * g + 0.950_532_2 * b,
-    ]
 }
 
 #[cfg(test)]

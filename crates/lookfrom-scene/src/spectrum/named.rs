@@ -4,7 +4,7 @@
 //! standard illuminants. Illuminants are scaled so that their luminance Y is 1. A table that ends within the visible
 //! wavelengths goes on with its last value. The numbers are in `named.txt`.
 
-use super::{Curve, LONGEST, SHORTEST, observer};
+use super::{Curve, observer};
 
 const TABLES: &str = include_str!("named.txt");
 
@@ -22,7 +22,7 @@ pub fn named(name: &str) -> Option<Curve> {
             wavelengths = rest;
         }
         if found == name {
-            let curve = extended(table(rest, wavelengths)?);
+            let curve = table(rest, wavelengths)?.extended();
             let is_illuminant = name.contains("illum-");
             return if is_illuminant { curve_of_luminance_one(curve) } else { Some(curve) };
         }
@@ -61,21 +61,6 @@ fn table(own: &str, wavelengths_in: &str) -> Option<Curve> {
         numbers(own.split_once('\n').filter(|(head, _)| head.contains('+')).map_or(own, |(_, body)| body));
     let values = own[own.len() - wavelengths.len()..].to_vec();
     Some(Curve::Tabulated { wavelengths, values })
-}
-
-/// Goes on with the last values to both ends of the visible wavelengths.
-fn extended(curve: Curve) -> Curve {
-    let Curve::Tabulated { mut wavelengths, mut values } = curve else { return curve };
-    if wavelengths[0] > SHORTEST as f32 {
-        wavelengths.insert(0, SHORTEST as f32 - 1.0);
-        values.insert(0, values[0]);
-    }
-    let last = wavelengths.len() - 1;
-    if wavelengths[last] < LONGEST as f32 {
-        wavelengths.push(LONGEST as f32 + 1.0);
-        values.push(values[last]);
-    }
-    Curve::Tabulated { wavelengths, values }
 }
 
 fn curve_of_luminance_one(curve: Curve) -> Option<Curve> {

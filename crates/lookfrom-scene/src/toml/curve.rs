@@ -6,7 +6,7 @@ use super::value::Value;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Color, Ior};
 use crate::scene::CurveId;
-use crate::spectrum::{self, Curve, LONGEST, SHORTEST};
+use crate::spectrum::{self, Curve};
 
 /// The keys of a colour by wavelength; lights also have `scale`.
 pub(super) const KEYS: &[&str] = &["kelvin", "curve", "spd", "illuminant"];
@@ -105,18 +105,13 @@ impl Reader<'_, '_> {
 
     /// The same curve with its first and last values up to the ends of what is seen.
     fn extended(&mut self, id: CurveId) -> CurveId {
-        let Curve::Tabulated { wavelengths, values } = &self.scene.curves[id.index()] else { return id };
-        let (mut wavelengths, mut values) = (wavelengths.clone(), values.clone());
-        if wavelengths[0] > SHORTEST as f32 {
-            wavelengths.insert(0, SHORTEST as f32 - 1.0);
-            values.insert(0, values[0]);
+        match &self.scene.curves[id.index()] {
+            curve @ Curve::Tabulated { .. } => {
+                let extended = curve.clone().extended();
+                self.keep_curve(format!("extended {}", id.0), extended)
+            }
+            _ => id,
         }
-        let last = wavelengths.len() - 1;
-        if wavelengths[last] < LONGEST as f32 {
-            wavelengths.push(LONGEST as f32 + 1.0);
-            values.push(values[last]);
-        }
-        self.keep_curve(format!("extended {}", id.0), Curve::Tabulated { wavelengths, values })
     }
 
     /// A file; each is read once.

@@ -62,13 +62,7 @@ pub(super) fn image(table: &Table<'_>) -> Result<ImageSettings> {
         exposure: table.or("exposure", default.exposure, |value| {
             value.single_where("stops from -64 to 64", |stops| (-64.0..=64.0).contains(&stops))
         })?,
-        tonemap: table.or("tonemap", default.tonemap, |value| {
-            value.choice(&[
-                ("clamp", Tonemap::Clamp),
-                ("reinhard", Tonemap::Reinhard),
-                ("filmic", Tonemap::Filmic),
-            ])
-        })?,
+        tonemap: table.or("tonemap", default.tonemap, |value| value.choice(Tonemap::WORDS))?,
         sensor: Sensor {
             imaging_ratio: table.or("imaging_ratio", default.sensor.imaging_ratio, above_zero)?,
             white_balance: table.or("white_balance", None, |value| kelvin(value).map(Some))?,
@@ -107,21 +101,14 @@ fn crop(value: Value<'_>, width: u32, height: u32) -> Result<Crop> {
 }
 
 fn filter(value: Value<'_>) -> Result<Filter> {
-    let kinds = [
-        ("box", Filter::Box { radius: 0.5 }),
-        ("triangle", Filter::Triangle { radius: 1.0 }),
-        ("gaussian", Filter::Gaussian { radius: 1.5, sigma: 0.5 }),
-        ("mitchell", Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 }),
-        ("blackman_harris", Filter::BlackmanHarris { radius: 1.5 }),
-    ];
     if !value.is_table() {
-        return value.choice(&kinds);
+        return value.choice(Filter::WORDS);
     }
     let table = value.table("`filter`")?;
     table.allow(&[FILTER])?;
     let width =
         |value: Value<'_>| value.single_where("pixels, more than 0 and at most 16", |r| r > 0.0 && r <= 16.0);
-    let mut chosen = table.need("type", "\"gaussian\"")?.choice(&kinds)?;
+    let mut chosen = table.need("type", "\"gaussian\"")?.choice(Filter::WORDS)?;
     match &mut chosen {
         Filter::Box { radius } | Filter::Triangle { radius } | Filter::BlackmanHarris { radius } => {
             table.allow(&[&["type", "radius"]])?;
@@ -149,40 +136,18 @@ pub(super) fn render(table: &Table<'_>) -> Result<RenderSettings> {
     table.allow(&[RENDER])?;
     let default = RenderSettings::default();
     Ok(RenderSettings {
-        integrator: table.or("integrator", default.integrator, |value| {
-            value.choice(&[
-                ("path", Integrator::Path),
-                ("whitted", Integrator::Whitted),
-                ("raycast", Integrator::Raycast),
-                ("simple_path", Integrator::SimplePath),
-                ("random_walk", Integrator::RandomWalk),
-                ("ambient_occlusion", Integrator::AmbientOcclusion { cosine: true }),
-                ("normals", Integrator::Normals),
-                ("depth", Integrator::Depth),
-                ("uv", Integrator::Uv),
-                ("id", Integrator::Id),
-            ])
-        })?,
+        integrator: table.or("integrator", default.integrator, |value| value.choice(Integrator::WORDS))?,
         samples: table.or("samples", default.samples.into(), |value| value.integer(1, 1 << 24))? as u32,
         depth: table.or("depth", default.depth.into(), |value| value.integer(0, 256))? as u32,
         min_contribution: table.or("min_contribution", default.min_contribution, |value| {
             value.single_where("a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
         })?,
-        sampler: table.or("sampler", default.sampler, |value| {
-            value.choice(&[("sobol", Sampler::Sobol), ("independent", Sampler::Independent)])
-        })?,
+        sampler: table.or("sampler", default.sampler, |value| value.choice(Sampler::WORDS))?,
         seed: table.or("seed", default.seed, |value| value.integer(0, u64::MAX))?,
         transparent_shadows: table.or("transparent_shadows", default.transparent_shadows, Value::boolean)?,
-        color: table.or("color", default.color, |value| {
-            value.choice(&[("rgb", ColorMode::Rgb), ("spectral", ColorMode::Spectral)])
-        })?,
-        light_sampler: table.or("light_sampler", default.light_sampler, |value| {
-            value.choice(&[
-                ("uniform", LightSampler::Uniform),
-                ("power", LightSampler::Power),
-                ("bvh", LightSampler::Bvh),
-            ])
-        })?,
+        color: table.or("color", default.color, |value| value.choice(ColorMode::WORDS))?,
+        light_sampler: table
+            .or("light_sampler", default.light_sampler, |value| value.choice(LightSampler::WORDS))?,
         regularize: table.or("regularize", default.regularize, Value::boolean)?,
         occlusion_distance: table.or("occlusion_distance", default.occlusion_distance, above_zero)?,
     })

@@ -127,6 +127,16 @@ fn power_heuristic(pdf: f32, other: f32) -> f32 {
     1.0 / (1.0 + ratio * ratio)
 }
 
+/// What a walk carries on at a step; `None` for one that carries little and was given up, at random.
+#[inline]
+fn surviving(beta: Spectrum, depth: u16, random: &mut Random) -> Option<Spectrum> {
+    let survival = beta.max_lane();
+    if depth <= 3 || survival >= 0.25 {
+        return Some(beta);
+    }
+    (random.one() < survival).then(|| beta / survival)
+}
+
 /// The part of light left after crossing `depth` mean free paths of slab along `w`.
 #[inline]
 fn transmittance(depth: f32, w: Vec3) -> f32 {
@@ -221,13 +231,9 @@ impl<B: Base> Layered<B> {
         let mut w = entry.wi;
         let mut z = self.thickness;
         for depth in 0..self.max_depth {
-            // Give up walks that carry little, at random.
-            if depth > 3 && beta.max_lane() < 0.25 {
-                let survival = beta.max_lane();
-                if !(random.one() < survival) {
-                    break;
-                }
-                beta = beta / survival;
+            match surviving(beta, depth, random) {
+                Some(survivor) => beta = survivor,
+                None => break,
             }
             if scatters {
                 // Go on to the next particle.
@@ -320,14 +326,7 @@ impl<B: Base> Layered<B> {
         let mut w = first.wi;
         let mut z = self.thickness;
         for depth in 0..self.max_depth {
-            // Give up walks that carry little, at random.
-            if depth > 3 && beta.max_lane() < 0.25 {
-                let survival = beta.max_lane();
-                if !(random.one() < survival) {
-                    return None;
-                }
-                beta = beta / survival;
-            }
+            beta = surviving(beta, depth, &mut random)?;
             if scatters {
                 let next = self.next_depth(z, w, &mut random);
                 if next == z {

@@ -43,12 +43,28 @@ pub(super) struct FeatureSums {
     samples: u64,
 }
 
+impl Features {
+    /// Albedo, geometric normal, shading normal, position, depth, surface coordinates.
+    pub fn to_array(&self) -> [f32; 15] {
+        let Self {
+            albedo: [r, g, b],
+            ng: [gx, gy, gz],
+            ns: [sx, sy, sz],
+            position: [x, y, z],
+            depth,
+            uv: [u, v],
+        } = *self;
+        [r, g, b, gx, gy, gz, sx, sy, sz, x, y, z, depth, u, v]
+    }
+}
+
 impl FeatureSums {
     pub(super) fn add(&mut self, features: &Features) {
-        let (narrow, wide) = flatten(features);
-        if !narrow.iter().chain(&wide).all(|value| value.is_finite()) {
+        let values = features.to_array();
+        if !values.iter().all(|value| value.is_finite()) {
             return;
         }
+        let (narrow, wide) = values.split_at(self.narrow.len());
         for (sum, value) in self.narrow.iter_mut().zip(narrow) {
             let value = f64::from(value.clamp(-MOST_OF_UNIT, MOST_OF_UNIT)) * TWO_TO_32;
             *sum = sum.wrapping_add(value as i64);
@@ -90,17 +106,4 @@ impl FeatureSums {
             uv: [u, v],
         })
     }
-}
-
-/// In the order of the sums.
-fn flatten(features: &Features) -> ([f32; 9], [f32; 6]) {
-    let Features {
-        albedo: [r, g, b],
-        ng: [gx, gy, gz],
-        ns: [sx, sy, sz],
-        position: [x, y, z],
-        depth,
-        uv: [u, v],
-    } = *features;
-    ([r, g, b, gx, gy, gz, sx, sy, sz], [x, y, z, depth, u, v])
 }

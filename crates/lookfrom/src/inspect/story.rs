@@ -46,22 +46,6 @@ pub(super) struct Told {
     pub(super) radiance: Amount,
 }
 
-/// The integrator as `--integrator` names it.
-pub(super) fn integrator_name(frame: &Frame<'_>) -> &'static str {
-    match frame.settings().integrator {
-        Integrator::Raycast => "raycast",
-        Integrator::Whitted => "whitted",
-        Integrator::Path => "path",
-        Integrator::SimplePath => "simple_path",
-        Integrator::RandomWalk => "random_walk",
-        Integrator::AmbientOcclusion { .. } => "ambient_occlusion",
-        Integrator::Normals => "normals",
-        Integrator::Depth => "depth",
-        Integrator::Uv => "uv",
-        Integrator::Id => "id",
-    }
-}
-
 /// Whether the next ray of n is n + 1.
 fn is_path(integrator: Integrator) -> bool {
     use Integrator::{AmbientOcclusion, Path, RandomWalk, SimplePath};

@@ -10,7 +10,7 @@
 use glam::Vec3;
 
 use super::permutation::PERMUTATION;
-use super::{fade, mix_linearly};
+use super::{EDGES, fade, mix_linearly};
 
 /// Each octave is finer than the one before by this: not quite two, so that their zeros do not meet.
 const LACUNARITY: f32 = 1.99;
@@ -18,25 +18,20 @@ const LACUNARITY: f32 = 1.99;
 /// What pbrt takes the magnitude of noise to be on the average.
 const MEAN_MAGNITUDE: f32 = 0.2;
 
-/// The directions in which the noise may grow at a lattice point.
-const GRADIENTS: [Vec3; 16] = [
-    Vec3::new(1.0, 1.0, 0.0),
-    Vec3::new(-1.0, 1.0, 0.0),
-    Vec3::new(1.0, -1.0, 0.0),
-    Vec3::new(-1.0, -1.0, 0.0),
-    Vec3::new(1.0, 0.0, 1.0),
-    Vec3::new(-1.0, 0.0, 1.0),
-    Vec3::new(1.0, 0.0, -1.0),
-    Vec3::new(-1.0, 0.0, -1.0),
-    Vec3::new(0.0, 1.0, 1.0),
-    Vec3::new(0.0, -1.0, 1.0),
-    Vec3::new(0.0, 1.0, -1.0),
-    Vec3::new(0.0, -1.0, -1.0),
-    Vec3::new(1.0, 1.0, 0.0),
-    Vec3::new(-1.0, 1.0, 0.0),
-    Vec3::new(0.0, 1.0, -1.0),
-    Vec3::new(0.0, -1.0, -1.0),
-];
+/// The directions in which the noise may grow at a lattice point: all edges, and four of them once more.
+const GRADIENTS: [Vec3; 16] = {
+    let mut gradients = [Vec3::ZERO; 16];
+    let mut index = 0;
+    while index < EDGES.len() {
+        gradients[index] = EDGES[index];
+        index += 1;
+    }
+    gradients[12] = EDGES[0];
+    gradients[13] = EDGES[1];
+    gradients[14] = EDGES[10];
+    gradients[15] = EDGES[11];
+    gradients
+};
 
 /// Gradient noise: about −1 … 1, 0 at points of whole coordinates. Finite for every `p`: 0 where a coordinate is not finite.
 pub fn noise(p: Vec3) -> f32 {

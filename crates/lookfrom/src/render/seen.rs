@@ -1,7 +1,6 @@
 //! What the camera sees first: a watcher of the way of a batch that keeps the features of its camera rays.
 
-use glam::{DVec3, Vec3};
-use lookfrom_scene::material::Color;
+use glam::{DMat4, DVec3, Vec3};
 
 use super::Frame;
 use crate::film::Features;
@@ -9,7 +8,7 @@ use crate::integrator::{Event, Probe};
 use crate::material::Shading;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
-use crate::texture::{Lanes, TexturePoint, Usage};
+use crate::texture::Lanes;
 
 /// How many directions along each axis a material is asked in for its albedo.
 const ALBEDO_GRID: u32 = 4;
@@ -19,6 +18,8 @@ pub(super) struct Seen<'a> {
     frame: &'a Frame<'a>,
     /// By slot: what the lanes meant at the start.
     lanes: Vec<Lanes>,
+    /// To the camera's space, where x is to the left.
+    view_from_world: DMat4,
     /// By slot.
     features: Vec<Option<Features>>,
     /// The slot of the path that is being followed, where it comes from the camera.
@@ -27,7 +28,8 @@ pub(super) struct Seen<'a> {
 
 impl<'a> Seen<'a> {
     pub(super) fn new(frame: &'a Frame<'a>, lanes: Vec<Lanes>) -> Self {
-        Self { frame, features: vec![None; lanes.len()], lanes, current: None }
+        let view_from_world = frame.world.camera.world_from_view().inverse();
+        Self { frame, view_from_world, features: vec![None; lanes.len()], lanes, current: None }
     }
 
     /// By slot.
@@ -39,18 +41,19 @@ impl<'a> Seen<'a> {
         let Some(slot) = self.current else { return };
         let world = self.frame.world;
         let lanes = &self.lanes[slot];
-        let white =
-            world.textures.spectrum(Color::gray(1.0), Usage::Illuminant, &TexturePoint::NOWHERE, lanes);
         let albedo = match lanes {
             Lanes::Rgb => albedo.rgb(),
-            Lanes::Spectral(wavelengths) => self.frame.plain_sensor.rgb(albedo * white, wavelengths),
+            Lanes::Spectral(wavelengths) => {
+                let white = world.light_of([1.0; 3], lanes);
+                self.frame.plain_sensor.rgb(albedo * white, wavelengths)
+            }
         };
-        // From render space to the camera's, where x is to the right.
-        let view_from_world = world.camera.world_from_view().inverse();
+        // From render space to the features', where x is to the right.
         let mirrored = |v: DVec3| Vec3::new(-v.x as f32, v.y as f32, v.z as f32);
         let point = world.origin + DVec3::from_array(surface.point.position);
-        let position = mirrored(view_from_world.transform_point3(point));
-        let normal = |n: DVec3| mirrored(view_from_world.transform_vector3(n)).normalize_or_zero().to_array();
+        let position = mirrored(self.view_from_world.transform_point3(point));
+        let normal =
+            |n: DVec3| mirrored(self.view_from_world.transform_vector3(n)).normalize_or_zero().to_array();
         self.features[slot] = Some(Features {
             albedo,
             ng: normal(surface.ng),
