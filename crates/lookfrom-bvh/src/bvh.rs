@@ -7,10 +7,10 @@ use crate::filter::TriangleBlock;
 use crate::instance::Instance;
 use crate::masks::Masks;
 use crate::node::Node;
-use crate::packet::TraceMany;
+use crate::packet::{OccludedMany, TraceMany};
 use crate::procedural::Procedural;
 use crate::query::{All, Any, Closest};
-use crate::ray::{Hit, Ray};
+use crate::ray::{Hit, Left, Ray};
 use crate::simd::{Level, at_level};
 use crate::sphere::Sphere;
 use crate::traverse::Trace;
@@ -257,8 +257,29 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
-        for_batches(rays, hits, |rays, hits| {
-            at_level(self.level, TraceMany { bvh: self, rays, hits });
+        self.closest_hits_leaving(rays, &[], hits);
+    }
+
+    /// [`Self::closest_hits`] of rays that leave triangles, which a third slice tells (rays beyond its end leave none). Where
+    /// that is true the answers are the same, sooner.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Hit, Left, Ray, Triangles};
+    /// # let mut builder = Builder::new();
+    /// # let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// # builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
+    /// # let bvh = builder.build()?;
+    /// let hit = bvh.closest_hit(&Ray::new([0.2, 0.2, 1.0], [0.0, 0.0, -1.0]));
+    /// let mirrored = Ray::new([0.2, 0.2, 0.0_f32.next_up()], [0.0, 0.0, 1.0]);
+    /// let mut hits = [hit];
+    /// bvh.closest_hits_leaving(&[mirrored], &[Left::of(&hit)], &mut hits);
+    /// assert_eq!(hits, [Hit::MISS]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn closest_hits_leaving(&self, rays: &[Ray], left: &[Left], hits: &mut [Hit]) {
+        for_batches(rays, hits, |first, rays, hits| {
+            let left = left.get(first..).unwrap_or_default();
+            at_level(self.level, TraceMany { bvh: self, rays, left, hits });
         });
     }
 
@@ -277,7 +298,29 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn occluded_many(&self, rays: &[Ray], occluded: &mut [bool]) {
-        for_each(rays, occluded, |ray, occluded| *occluded = self.occluded(ray));
+        self.occluded_many_leaving(rays, &[], occluded);
+    }
+
+    /// [`Self::occluded_many`] for rays that leave triangles, as [`Self::closest_hits_leaving`].
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Hit, Left, Ray, Triangles};
+    /// # let mut builder = Builder::new();
+    /// # let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// # builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
+    /// # let bvh = builder.build()?;
+    /// let left = Left { geometry: 0, primitive: 0 };
+    /// let mut occluded = [true];
+    /// let ray = Ray::new([0.2, 0.2, 0.0_f32.next_up()], [0.0, 0.0, 1.0]);
+    /// bvh.occluded_many_leaving(&[ray], &[left], &mut occluded);
+    /// assert_eq!(occluded, [false]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn occluded_many_leaving(&self, rays: &[Ray], left: &[Left], occluded: &mut [bool]) {
+        for_batches(rays, occluded, |first, rays, occluded| {
+            let left = left.get(first..).unwrap_or_default();
+            at_level(self.level, OccludedMany { bvh: self, rays, left, occluded });
+        });
     }
 }
 
@@ -293,21 +336,26 @@ pub(crate) fn for_each<Q: Sync, A: Send>(
     answers: &mut [A],
     answer: impl Fn(&Q, &mut A) + Sync,
 ) {
-    for_batches(questions, answers, |questions, answers| {
+    for_batches(questions, answers, |_, questions, answers| {
         questions.iter().zip(answers).for_each(|(question, place)| answer(question, place));
     });
 }
 
-/// The same, batch by batch.
-fn for_batches<Q: Sync, A: Send>(questions: &[Q], answers: &mut [A], answer: impl Fn(&[Q], &mut [A]) + Sync) {
+/// The same, batch by batch, with the number of its first question.
+fn for_batches<Q: Sync, A: Send>(
+    questions: &[Q],
+    answers: &mut [A],
+    answer: impl Fn(usize, &[Q], &mut [A]) + Sync,
+) {
     #[cfg(feature = "parallel")]
     if questions.len() > BATCH {
         use rayon::prelude::*;
         questions
             .par_chunks(BATCH)
             .zip(answers.par_chunks_mut(BATCH))
-            .for_each(|(questions, answers)| answer(questions, answers));
+            .enumerate()
+            .for_each(|(batch, (questions, answers))| answer(batch * BATCH, questions, answers));
         return;
     }
-    answer(questions, answers);
+    answer(0, questions, answers);
 }

@@ -25,7 +25,8 @@ mod ray;
 pub mod reference;
 mod refit;
 mod selection;
-mod simd;
+#[doc(hidden)]
+pub mod simd;
 mod sphere;
 #[cfg(test)]
 mod testing;
@@ -44,7 +45,7 @@ pub use closest_point::ClosestPoint;
 pub use double::{Hit64, Ray64};
 pub use origin::Point;
 pub use procedural::{Procedural, ProceduralHit};
-pub use ray::{Hit, NONE, Ray};
+pub use ray::{Hit, Left, NONE, Ray};
 pub use refit::{Moved, RefitError};
 pub use selection::{Faces, Selected, Selection};
 pub use sphere::Sphere;

@@ -11,8 +11,8 @@ use crate::exact::Exact;
 use crate::filter::{LARGEST_FILTERED, SeenBlock, Sifted, TriangleLanes};
 use crate::group::{GROUPS, Group, LANES, NO_BLOCK, RAYS, least};
 use crate::node::{Child, Content};
-use crate::query::Closest;
-use crate::ray::{Hit, NONE, Ray};
+use crate::query::{Any, Closest};
+use crate::ray::{Hit, Left, NONE, Ray};
 use crate::simd::{Chosen, Simd, Work, i32x8, prelude::*};
 use crate::traverse::{Answer, cross_surely, decide, trace};
 use crate::waiting::{Stack, Waiting, with_stack};
@@ -21,6 +21,8 @@ use crate::waiting::{Stack, Waiting, with_stack};
 pub(crate) struct TraceMany<'a> {
     pub(crate) bvh: &'a Bvh,
     pub(crate) rays: &'a [Ray],
+    /// What the first of them leave.
+    pub(crate) left: &'a [Left],
     pub(crate) hits: &'a mut [Hit],
 }
 
@@ -28,13 +30,48 @@ impl Work for TraceMany<'_> {
     type Output = ();
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { bvh, rays, hits } = self;
+        let Self { bvh, rays, left, hits } = self;
         with_stack(
             #[inline(always)]
             |stack| {
-                for (rays, hits) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)) {
+                for (first, (rays, hits)) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)).enumerate() {
                     if !trace_packet(simd, bvh, rays, hits, stack) {
-                        trace_singly(simd, bvh, rays, hits, stack);
+                        let left = left.get(first * RAYS..).unwrap_or_default();
+                        trace_singly(simd, bvh, (rays, left), hits, stack);
+                    }
+                }
+            },
+        );
+    }
+}
+
+/// Whether rays meet anything, in their order; as many as there are places for.
+pub(crate) struct OccludedMany<'a> {
+    pub(crate) bvh: &'a Bvh,
+    pub(crate) rays: &'a [Ray],
+    /// What the first of them leave.
+    pub(crate) left: &'a [Left],
+    pub(crate) occluded: &'a mut [bool],
+}
+
+impl Work for OccludedMany<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { bvh, rays, left, occluded } = self;
+        let mut hits = [Hit::MISS; RAYS];
+        with_stack(
+            #[inline(always)]
+            |stack| {
+                for (first, (rays, occluded)) in rays.chunks(RAYS).zip(occluded.chunks_mut(RAYS)).enumerate()
+                {
+                    if trace_packet(simd, bvh, rays, &mut hits[..rays.len()], stack) {
+                        for (hit, occluded) in hits.iter().zip(occluded) {
+                            *occluded = hit.is_hit();
+                        }
+                    } else {
+                        let left = left.get(first * RAYS..).unwrap_or_default();
+                        occlude_singly(simd, bvh, (rays, left), occluded, stack);
                     }
                 }
             },
@@ -43,12 +80,38 @@ impl Work for TraceMany<'_> {
 }
 
 #[inline(never)]
-fn trace_singly<S: Simd>(simd: S, bvh: &Bvh, rays: &[Ray], hits: &mut [Hit], stack: &mut Stack) {
+fn occlude_singly<S: Simd>(
+    simd: S,
+    bvh: &Bvh,
+    (rays, left): (&[Ray], &[Left]),
+    occluded: &mut [bool],
+    stack: &mut Stack,
+) {
     simd.vectorize(
         #[inline(always)]
         || {
-            for (ray, hit) in rays.iter().zip(hits) {
-                *hit = trace(simd, bvh, ray, Closest::new, (), stack).hit;
+            for (number, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
+                let left = left.get(number).copied().unwrap_or(Left::NOTHING);
+                *occluded = trace(simd, bvh, ray, |ray| Any::leaving(ray, left), (), stack).found;
+            }
+        },
+    );
+}
+
+#[inline(never)]
+fn trace_singly<S: Simd>(
+    simd: S,
+    bvh: &Bvh,
+    (rays, left): (&[Ray], &[Left]),
+    hits: &mut [Hit],
+    stack: &mut Stack,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for (number, (ray, hit)) in rays.iter().zip(hits).enumerate() {
+                let left = left.get(number).copied().unwrap_or(Left::NOTHING);
+                *hit = trace(simd, bvh, ray, |ray| Closest::leaving(ray, left), (), stack).hit;
             }
         },
     );

@@ -1,6 +1,6 @@
 //! What can be asked of a ray: the closest hit, whether there is any, all of them.
 
-use crate::ray::{Hit, Ray};
+use crate::ray::{Hit, Left, Ray};
 
 /// What is asked.
 pub(crate) trait Query {
@@ -18,6 +18,12 @@ pub(crate) trait Query {
 
     /// Hears of a hit beyond the ray's `t_min`. Returns true where no more are wanted.
     fn accept(&mut self, hit: Hit) -> bool;
+
+    /// Whether a triangle outside of instances is the one that the ray leaves, which it does not meet again.
+    fn leaves(&self, (geometry, primitive): (u32, u32)) -> bool {
+        let _ = (geometry, primitive);
+        false
+    }
 
     /// The ray is about to enter an instance, named by its place in the outer tree's list. False where it is not to.
     fn enter_instance(&mut self, place: usize) -> bool {
@@ -45,6 +51,7 @@ pub(crate) trait Query {
 pub(crate) struct Closest {
     t_max: f32,
     end: f32,
+    left: Left,
     pub(crate) hit: Hit,
 }
 
@@ -57,7 +64,14 @@ impl Closest {
     /// The query that has heard of a hit.
     #[inline(always)]
     pub(crate) fn after(ray: &Ray, hit: Hit) -> Self {
-        Self { t_max: ray.t_max, end: if hit.t < ray.t_max { hit.t } else { ray.t_max }, hit }
+        let end = if hit.t < ray.t_max { hit.t } else { ray.t_max };
+        Self { t_max: ray.t_max, end, left: Left::NOTHING, hit }
+    }
+
+    /// The query of a ray that leaves something.
+    #[inline(always)]
+    pub(crate) fn leaving(ray: &Ray, left: Left) -> Self {
+        Self { left, ..Self::new(ray) }
     }
 }
 
@@ -68,6 +82,11 @@ impl Query for Closest {
     #[inline(always)]
     fn end(&self) -> f32 {
         self.end
+    }
+
+    #[inline(always)]
+    fn leaves(&self, triangle: (u32, u32)) -> bool {
+        self.left.is(triangle)
     }
 
     #[inline(always)]
@@ -83,13 +102,20 @@ impl Query for Closest {
 /// Whether there is a hit.
 pub(crate) struct Any {
     t_max: f32,
+    left: Left,
     pub(crate) found: bool,
 }
 
 impl Any {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
-        Self { t_max: ray.t_max, found: false }
+        Self::leaving(ray, Left::NOTHING)
+    }
+
+    /// The query of a ray that leaves something.
+    #[inline(always)]
+    pub(crate) fn leaving(ray: &Ray, left: Left) -> Self {
+        Self { t_max: ray.t_max, left, found: false }
     }
 }
 
@@ -100,6 +126,11 @@ impl Query for Any {
     #[inline(always)]
     fn end(&self) -> f32 {
         self.t_max
+    }
+
+    #[inline(always)]
+    fn leaves(&self, triangle: (u32, u32)) -> bool {
+        self.left.is(triangle)
     }
 
     #[inline(always)]

@@ -55,6 +55,52 @@ impl Ray {
     }
 }
 
+/// The triangle that a ray leaves: one that starts at [`Point::leave`](crate::Point::leave) of a hit on it does not meet
+/// it again, and need not find that out.
+///
+/// ```
+/// use lookfrom_bvh::{Hit, Left};
+/// let hit = Hit { t: 1.0, geometry: 2, primitive: 7, ..Hit::MISS };
+/// assert_eq!(Left::of(&hit), Left { geometry: 2, primitive: 7 });
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Left {
+    /// Its geometry; [`NONE`] for rays that leave nothing.
+    pub geometry: u32,
+    /// Its number there.
+    pub primitive: u32,
+}
+
+impl Left {
+    /// The ray starts anywhere.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Left, NONE};
+    /// assert_eq!(Left::NOTHING.geometry, NONE);
+    /// ```
+    pub const NOTHING: Self = Self { geometry: NONE, primitive: NONE };
+
+    /// What a ray leaves that starts at this hit: nothing, for one in an instance.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Hit, Left};
+    /// let hit = Hit { t: 1.0, geometry: 2, primitive: 7, instance: 3, ..Hit::MISS };
+    /// assert_eq!(Left::of(&hit), Left::NOTHING);
+    /// ```
+    pub const fn of(hit: &Hit) -> Self {
+        if hit.instance == NONE {
+            Self { geometry: hit.geometry, primitive: hit.primitive }
+        } else {
+            Self::NOTHING
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn is(self, (geometry, primitive): (u32, u32)) -> bool {
+        self.primitive == primitive && self.geometry == geometry
+    }
+}
+
 /// Where a ray meets a primitive, or [`Hit::MISS`].
 ///
 /// ```

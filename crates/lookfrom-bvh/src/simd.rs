@@ -4,12 +4,16 @@
 //! chosen when a ray (or a batch) starts, by [`at_level`]. Everything between there and the vectors must be
 //! `#[inline(always)]`: a function that is called, not inlined, is compiled for the lowest level.
 //!
-//! Vectors only ever *exclude*, with room for errors, so hits have the same bits at every level.
+//! Vectors only ever *exclude*, with room for errors, so hits have the same bits at every level. This module is public for the
+//! crate `lookfrom`, whose lane-wise shading has the bits of its plain twin, and for nobody else.
 
-pub(crate) use fearless_simd::{Level, Simd, f32x4, f32x8, i32x8, mask32x8, prelude, u32x4};
+pub use fearless_simd::{
+    Level, Simd, f32x4, f32x8, f64x8, i32x8, mask32x8, mask64x8, prelude, u32x4, u32x8, u64x8,
+};
 
 /// What is to be done at a level that is known only when the program runs.
-pub(crate) trait Work {
+pub trait Work {
+    /// What comes of it.
     type Output;
 
     /// Does it. Implementations are `#[inline(always)]`.
@@ -21,7 +25,7 @@ pub(crate) trait Work {
 /// AVX-512 has twice the registers, which is what it is used for: vectors stay 256 bits long. SSE4.2 is left aside, since it lacks
 /// what matters as SSE2 does.
 #[inline(always)]
-pub(crate) fn at_level<W: Work>(level: Level, work: W) -> W::Output {
+pub fn at_level<W: Work>(level: Level, work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     {
         if let Some(simd) = level.as_avx512() {
@@ -50,7 +54,7 @@ pub(crate) fn at_level<W: Work>(level: Level, work: W) -> W::Output {
 
 /// The numbers of the lanes that were chosen, from the least; bit i stands for lane i.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Chosen(pub(crate) u32);
+pub struct Chosen(pub u32);
 
 impl Iterator for Chosen {
     type Item = usize;

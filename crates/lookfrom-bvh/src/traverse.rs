@@ -226,6 +226,8 @@ fn triangles<'a, S: Simd, Q: Query, W: Watch>(
             }
             *undecided = Some(Undecided { block, lane, first, last });
             *end = if last < *end { last } else { *end };
+        } else if answer.instance == NONE && answer.query.leaves(block.ids(lane)) {
+            // A ray that leaves a triangle is so near to it that the filter cannot tell; who asks can.
         } else if decide(block, lane, &exact(), answer) {
             return true;
         }

@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use lookfrom_bvh::{Affine, Builder, Bvh, Hit, Point, Ray, Sphere, Triangles};
+use lookfrom_bvh::{Affine, Builder, Bvh, Hit, Left, Point, Ray, Sphere, Triangles};
 
 #[path = "../src/testing.rs"]
 mod testing;
@@ -242,4 +242,46 @@ fn is_roundish(map: &Affine) -> bool {
     let back = map.inverse().unwrap();
     let norm = |m: &Affine| m.matrix.iter().map(|row| dot(*row, *row)).sum::<f64>().sqrt();
     norm(map) * norm(&back) < 30.0
+}
+
+#[test]
+fn saying_what_rays_leave_changes_no_answer() {
+    let mut random = Random::new(23);
+    let (mut found, mut blocked) = (0, 0);
+    for _ in 0..40 {
+        let (center, size) = (random.point_with_exponents(-6, 6), random.size(-6, 6));
+        let positions: Vec<[f32; 3]> = (0..300).map(|_| random.near(center, size)).collect();
+        // Neighbours share edges, so that rays leave one and meet the next close by.
+        let indices: Vec<[u32; 3]> = (0..298).map(|first| [first, first + 1, first + 2]).collect();
+        let mut builder = Builder::new();
+        builder.triangles(Triangles { positions: &positions, indices: &indices });
+        let bvh = builder.build().unwrap();
+        let (mut rays, mut left) = (Vec::new(), Vec::new());
+        for _ in 0..400 {
+            let from = random.near(center, 3.0 * size);
+            let to = random.near(center, size);
+            let hit = bvh.closest_hit(&Ray::new(from, [0, 1, 2].map(|i| to[i] - from[i])));
+            if hit.is_hit() {
+                let [p0, p1, p2] = indices[hit.primitive as usize].map(|vertex| positions[vertex as usize]);
+                let (point, normal) = Point::on_triangle_with_normal(p0, p1, p2, hit.u, hit.v);
+                let direction = leaving(&mut random, normal);
+                rays.push(Ray::new(point.origin(normal, direction), direction));
+                left.push(Left::of(&hit));
+            }
+        }
+        let (mut plain, mut told) = (vec![Hit::MISS; rays.len()], vec![Hit::MISS; rays.len()]);
+        bvh.closest_hits(&rays, &mut plain);
+        bvh.closest_hits_leaving(&rays, &left, &mut told);
+        assert_eq!(plain, told);
+        let (mut any, mut any_told) = (vec![false; rays.len()], vec![false; rays.len()]);
+        bvh.occluded_many(&rays, &mut any);
+        bvh.occluded_many_leaving(&rays, &left, &mut any_told);
+        assert_eq!(any, any_told);
+        for (ray, any) in rays.iter().zip(&any) {
+            assert_eq!(bvh.occluded(ray), *any);
+        }
+        found += plain.iter().filter(|hit| hit.is_hit()).count();
+        blocked += any.iter().filter(|any| **any).count();
+    }
+    assert!(found > 1000 && found == blocked, "{found} hits, {blocked} blocked");
 }
