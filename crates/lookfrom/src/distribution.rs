@@ -35,6 +35,7 @@ impl Discrete {
 
     /// The entry for `u` in [0, 1), its probability (the one of [`Discrete::pdf`]), and a new number in [0, 1): where
     /// `u` lies in the entry's share, for further use. An entry of no weight is never chosen.
+    #[inline]
     pub fn sample(&self, u: f32) -> (usize, f32, f32) {
         let (index, rest) = choose(&self.sums, u);
         (index, self.pdf(index), (rest as f32).min(ONE_MINUS_EPSILON))

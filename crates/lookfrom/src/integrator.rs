@@ -16,7 +16,7 @@ mod view;
 mod whitted;
 
 use glam::Vec3;
-use lookfrom_bvh::{Hit, Ray};
+use lookfrom_bvh::{Hit, Left, Ray};
 
 use crate::hash;
 use crate::light::Reference;
@@ -47,6 +47,22 @@ pub trait Integrator: Sync {
         hit: &Hit,
         next: &mut Next<'_, P>,
     );
+
+    /// [`Integrator::step`] for all paths of a batch and their hits. What is done for one path does not depend on others;
+    /// contributions to one sample come in the order of its paths.
+    fn step_all<P: Probe>(
+        &self,
+        world: &World,
+        numbers: impl Fn(&Path) -> Numbers,
+        paths: &[Path],
+        hits: &[Hit],
+        next: &mut Next<'_, P>,
+    ) {
+        for (path, hit) in paths.iter().zip(hits) {
+            next.probe.notice(|| Event::Met { path: *path, hit: *hit });
+            self.step(world, &numbers(path), path, hit, next);
+        }
+    }
 }
 
 /// A ray on its way, and all that is remembered of where it came from.
@@ -82,7 +98,8 @@ impl Path {
     fn passed(&self, surface: &Surface) -> Self {
         let direction = Vec3::from_array(self.ray.direction);
         let ray = Ray::new(surface.origin(direction), self.ray.direction);
-        Self { ray, address: self.address + 1, ..*self }
+        let departure = Departure { left: surface.left, ..self.departure };
+        Self { ray, address: self.address + 1, departure, ..*self }
     }
 }
 
@@ -115,8 +132,9 @@ pub struct Samples {
     pub paths: Vec<Path>,
     /// To be traced before that.
     pub shadows: Vec<Shadow>,
-    /// The rays of `shadows`, and whether they are blocked: memory.
+    /// The rays of `shadows`, what they leave, and whether they are blocked: memory.
     rays: Vec<Ray>,
+    left: Vec<Left>,
     blocked: Vec<bool>,
 }
 

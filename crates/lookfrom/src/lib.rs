@@ -8,6 +8,7 @@ pub mod camera;
 pub mod color;
 pub mod develop;
 pub mod distribution;
+mod eight;
 pub mod film;
 pub mod filter;
 mod hash;

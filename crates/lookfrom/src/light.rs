@@ -25,6 +25,7 @@ use crate::texture::{Lanes, TexturePoint, Textures, Usage};
 use cone::Cone;
 use tree::Bundle;
 
+pub(crate) use area::LightTriangle;
 pub use area::{AreaLight, Extent, LightForm, LightPoint, MeshLight, PatchLight, QuadricLight};
 pub use choice::LightChoice;
 pub use environment::{Environment, Layout, Sky, SkyImage};

@@ -9,7 +9,7 @@ mod seen;
 
 use std::ops::Range;
 
-use lookfrom_bvh::{Hit, Ray};
+use lookfrom_bvh::{Hit, Left, Ray};
 use lookfrom_scene::settings::{
     ColorMode, Crop, ImageSettings, Integrator as Kind, RenderSettings, Sensor as SensorSettings,
 };
@@ -20,8 +20,8 @@ use crate::color::{Sensor, Wavelengths};
 use crate::film::FilmTile;
 use crate::filter::Filter;
 use crate::integrator::{
-    AmbientOcclusion, Departure, Event, Integrator, Media, Next, Numbers, Passing, Path, PathTracer, Probe,
-    Raycast, Samples, View, Whitted, Wisdom, resolve_shadows,
+    AmbientOcclusion, Departure, Integrator, Media, Next, Numbers, Passing, Path, PathTracer, Probe, Raycast,
+    Samples, View, Whitted, Wisdom, resolve_shadows,
 };
 use crate::sampler::Sampler;
 use crate::spectrum::Spectrum;
@@ -105,6 +105,7 @@ struct Batch {
     weights: Vec<f32>,
     paths: Vec<Path>,
     rays: Vec<Ray>,
+    left: Vec<Left>,
     hits: Vec<Hit>,
     traced: Vec<Traced>,
 }
@@ -201,7 +202,7 @@ impl<'a> Frame<'a> {
         batch: &mut Batch,
     ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
-        let Batch { samples, weights, paths, rays, hits, traced } = batch;
+        let Batch { samples, weights, paths, rays, left, hits, traced } = batch;
         let mut next = Next { samples: std::mem::take(samples), probe };
         next.samples.clear();
 
@@ -231,16 +232,16 @@ impl<'a> Frame<'a> {
             rays.extend(paths.iter().map(|path| path.ray));
             hits.clear();
             hits.resize(rays.len(), Hit::MISS);
-            self.world.bvh.closest_hits(rays, hits);
+            left.clear();
+            left.extend(paths.iter().map(|path| path.departure.left));
+            self.world.bvh.closest_hits_leaving(rays, left, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.
-            for (path, hit) in paths.iter().zip(&*hits) {
-                next.probe.notice(|| Event::Met { path: *path, hit: *hit });
+            let numbers = |path: &Path| {
                 let SampleId { pixel, sample } = ids[path.slot as usize];
-                let sampler = self.sampler.of_pixel(pixel);
-                let numbers = Numbers { sampler, sample, address: path.address };
-                integrator.step(self.world, &numbers, path, hit, &mut next);
-            }
+                Numbers { sampler: self.sampler.of_pixel(pixel), sample, address: path.address }
+            };
+            integrator.step_all(self.world, numbers, paths, hits, &mut next);
 
             // Occluded: what arrives of the lights.
             rays_traced.shadow += resolve_shadows(self.world, self.passing(), &mut next);

@@ -14,6 +14,8 @@
 //!
 //! *Independent*: numbers without any pattern, one hash of the address each.
 
+pub(crate) mod eight;
+
 use crate::hash::{GOLDEN, mix};
 use lookfrom_scene::settings::Sampler as Kind;
 

@@ -131,7 +131,16 @@ impl Textures {
 
     /// The colour at a point, in the lanes of a sample. Never negative where no texture scales by less than 0 or mixes beyond
     /// its ends.
+    #[inline(always)]
     pub fn spectrum(&self, color: Color, usage: Usage, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
+        // What is asked most often needs no call.
+        if let (Color::Value(rgb), Lanes::Rgb) = (color, lanes) {
+            return Rgb(usage).color(rgb);
+        }
+        self.spectrum_of_any(color, usage, at, lanes)
+    }
+
+    fn spectrum_of_any(&self, color: Color, usage: Usage, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
         match lanes {
             Lanes::Rgb => self.read(color, at, &Rgb(usage)),
             Lanes::Spectral(wavelengths) => {

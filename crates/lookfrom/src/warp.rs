@@ -8,7 +8,8 @@
 //! Shirley & Chiu 1997 (disk); Malley (hemisphere by the disk); Heitz 2019 (triangle); Duff et al. 2017 (basis).
 
 use glam::{Vec2, Vec3};
-use std::f32::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, PI};
+use lookfrom_bvh::simd::{Simd, f32x8, prelude::*};
+use std::f32::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_4, PI};
 
 /// A uniform point of the unit disk, over area: the density is [`CONCENTRIC_DISK_PDF`]. The centre of the square is the
 /// centre of the disk, concentric squares become circles.
@@ -18,10 +19,63 @@ pub fn concentric_disk(u: [f32; 2]) -> Vec2 {
         return Vec2::ZERO;
     }
     // The radius is the side of the square through the point, the angle the place along that side.
-    let (radius, angle) =
-        if a * a > b * b { (a, FRAC_PI_4 * (b / a)) } else { (b, FRAC_PI_2 - FRAC_PI_4 * (a / b)) };
-    let (sin, cos) = libm::sincosf(angle);
-    Vec2::new(radius * cos, radius * sin)
+    let is_wide = a * a > b * b;
+    let (radius, along) = if is_wide { (a, b) } else { (b, a) };
+    let (sin, cos) = sin_cos_of_eighths(along / radius);
+    // Beyond the diagonal the angle is π/2 less what it is before.
+    if is_wide { Vec2::new(radius * cos, radius * sin) } else { Vec2::new(radius * sin, radius * cos) }
+}
+
+/// Sine and cosine of `t` eighths of a turn (π/4), for |t| ≤ 1, to 2⁻²²: their Taylor series. Short and without branches, so that
+/// eight may go side by side.
+fn sin_cos_of_eighths(t: f32) -> (f32, f32) {
+    let t2 = t * t;
+    let sin = t * (SIN[0] + t2 * (SIN[1] + t2 * (SIN[2] + t2 * (SIN[3] + t2 * SIN[4]))));
+    let cos = COS[0] + t2 * (COS[1] + t2 * (COS[2] + t2 * (COS[3] + t2 * (COS[4] + t2 * COS[5]))));
+    (sin, cos)
+}
+
+/// π/4, squared.
+const SQUARE: f64 = std::f64::consts::FRAC_PI_4 * std::f64::consts::FRAC_PI_4;
+
+/// (−1)ᵏ (π/4)²ᵏ⁺¹ / (2k + 1)!
+const SIN: [f32; 5] = {
+    let first = std::f64::consts::FRAC_PI_4;
+    let third = -first * SQUARE / 6.0;
+    let fifth = -third * SQUARE / 20.0;
+    let seventh = -fifth * SQUARE / 42.0;
+    let ninth = -seventh * SQUARE / 72.0;
+    [first as f32, third as f32, fifth as f32, seventh as f32, ninth as f32]
+};
+
+/// (−1)ᵏ (π/4)²ᵏ / (2k)!
+const COS: [f32; 6] = {
+    let second = -SQUARE / 2.0;
+    let fourth = -second * SQUARE / 12.0;
+    let sixth = -fourth * SQUARE / 30.0;
+    let eighth = -sixth * SQUARE / 56.0;
+    let tenth = -eighth * SQUARE / 90.0;
+    [1.0, second as f32, fourth as f32, sixth as f32, eighth as f32, tenth as f32]
+};
+
+/// [`concentric_disk`] for eight points side by side, bit for bit.
+#[inline(always)]
+pub(crate) fn concentric_disks<S: Simd>(simd: S, [u, v]: [f32x8<S>; 2]) -> [f32x8<S>; 2] {
+    let splat = |value: f32| f32x8::splat(simd, value);
+    let (zero, one, two) = (splat(0.0), splat(1.0), splat(2.0));
+    let (a, b) = (two * u - one, two * v - one);
+    let is_wide = (a * a).simd_gt(b * b);
+    let (radius, along) = (is_wide.select(a, b), is_wide.select(b, a));
+    let t = along / radius;
+    let t2 = t * t;
+    let [s0, s1, s2, s3, s4] = SIN;
+    let sin = t * (splat(s0) + t2 * (splat(s1) + t2 * (splat(s2) + t2 * (splat(s3) + t2 * splat(s4)))));
+    let [c0, c1, c2, c3, c4, c5] = COS;
+    let fourth = splat(c3) + t2 * (splat(c4) + t2 * splat(c5));
+    let cos = splat(c0) + t2 * (splat(c1) + t2 * (splat(c2) + t2 * fourth));
+    let (x, y) = (radius * is_wide.select(cos, sin), radius * is_wide.select(sin, cos));
+    let is_middle = radius.simd_eq(zero);
+    [is_middle.select(zero, x), is_middle.select(zero, y)]
 }
 
 /// Density of [`concentric_disk`] over area: 1/π.

@@ -8,7 +8,7 @@ mod lights;
 mod place;
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
-use lookfrom_bvh::{Bvh, Hit, NONE, Ray};
+use lookfrom_bvh::{Bvh, Hit, Left, NONE, Ray};
 use lookfrom_scene::material::{Color, MaterialKind, Scalar};
 use lookfrom_scene::medium::{Medium, Sides};
 
@@ -132,6 +132,7 @@ impl World {
             sides: look.sides.map(|index| self.sides[index as usize]),
             shape: look.shape,
             primitive: hit.primitive,
+            left: Left::of(hit),
             on_primitive: Vec2::new(hit.u, hit.v),
         }
     }

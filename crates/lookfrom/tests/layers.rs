@@ -12,13 +12,14 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("math", &[]),
     ("spectrum", &[]),
     ("statistics", &[]),
+    ("eight", &[]),
     ("surface", &["math"]),
-    ("warp", &["math"]),
+    ("warp", &["eight", "math"]),
     ("color", &["math", "spectrum"]),
     ("bsdf", &["hash", "math", "spectrum", "warp"]),
     ("film", &["spectrum"]),
     ("develop", &["film"]),
-    ("sampler", &["hash"]),
+    ("sampler", &["eight", "hash"]),
     ("noise", &["hash"]),
     ("filter", &["sampler"]),
     ("distribution", &["sampler"]),
@@ -45,8 +46,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "integrator",
         &[
-            "bsdf", "hash", "light", "material", "math", "sampler", "spectrum", "surface", "texture", "warp",
-            "world",
+            "bsdf", "eight", "hash", "light", "material", "math", "sampler", "shape", "spectrum", "surface",
+            "texture", "warp", "world",
         ],
     ),
     (

@@ -119,3 +119,83 @@ fn the_inspector_shows_every_number_of_the_notes() {
         assert!(all.contains(word), "{word} is missing");
     }
 }
+
+/// A room of flat, diffuse triangles; lights of every kind, one at a time or all together.
+fn room(lights: &[&str], settings: &str) -> Scene {
+    const WALLS: &str = r#"
+        [image]
+        width = 48
+        height = 40
+        [camera]
+        lookfrom = [0, 0, 3.5]
+        lookat = [0, 0, 0]
+        up = [0, 1, 0]
+        fov = 45
+        [materials]
+        white = { type = "diffuse", reflectance = [0.75, 0.75, 0.75] }
+        red = { type = "diffuse", reflectance = [0.6, 0.05, 0.1] }
+        black = { type = "diffuse", reflectance = [0, 0, 0] }
+        [[mesh]]
+        material = "white"
+        positions = [[-1, -1, 1], [1, -1, 1], [1, -1, -1], [-1, -1, -1], [1, 1, -1], [-1, 1, -1]]
+        triangles = [[0, 1, 2], [0, 2, 3], [3, 2, 4], [3, 4, 5]]
+        [[mesh]]
+        material = "red"
+        positions = [[-1, -1, 1], [-1, -1, -1], [-1, 1, -1], [-1, 1, 1]]
+        triangles = [[0, 1, 2], [0, 2, 3]]
+        [[mesh]]
+        material = "black"
+        positions = [[0.2, -0.9, 0], [0.8, -0.9, 0], [0.5, -0.3, 0.1]]
+        triangles = [[0, 1, 2]]
+    "#;
+    let mut scene = support::scene(&format!("{WALLS}{}", lights.join("\n")));
+    scene.render.integrator = Integrator::Path;
+    scene.render.samples = 2;
+    scene.render.depth = 7;
+    if settings == "independent" {
+        scene.render.sampler = lookfrom_scene::settings::Sampler::Independent;
+    }
+    if settings == "spectral" {
+        scene.render.color = lookfrom_scene::settings::ColorMode::Spectral;
+    }
+    scene
+}
+
+#[test]
+fn steps_eight_at_once_are_steps_one_by_one() {
+    const LAMP: &str = r#"
+        [materials.glow]
+        diffuse = 0
+        emission = [9, 8, 6]
+        [[mesh]]
+        material = "glow"
+        positions = [[-0.3, 0.98, -0.3], [0.3, 0.98, -0.3], [0.3, 0.98, 0.3], [-0.3, 0.98, 0.3]]
+        triangles = [[0, 1, 2], [0, 2, 3]]
+    "#;
+    const BULB: &str =
+        "[[light]]\ntype = \"sphere\"\ncenter = [0.6, 0.5, 0]\nradius = 0.1\nradiance = [5, 5, 9]";
+    const POINT: &str =
+        "[[light]]\ntype = \"point\"\nposition = [0.2, 0.5, 0.6]\nintensity = [0.5, 0.4, 0.3]";
+    const SUN: &str = "[[light]]\ntype = \"distant\"\nfrom = [-0.3, 1, 0.5]\nintensity = [0.5, 0.5, 0.4]";
+    const SKY: &str =
+        "[[light]]\ntype = \"environment\"\nzenith = [0.3, 0.4, 0.9]\nhorizon = 0.5\nnadir = 0.1";
+    for lights in [&[LAMP][..], &[POINT], &[SUN], &[SKY], &[BULB], &[LAMP, BULB, POINT, SUN, SKY]] {
+        for settings in ["", "independent", "spectral"] {
+            let compiled = Compiled::new(room(lights, settings));
+            let frame = compiled.frame();
+            let pixels = (0..40).flat_map(|y| (0..48).map(move |x| [x, y]));
+            let ids: Vec<SampleId> = pixels.map(|pixel| SampleId { pixel, sample: 1 }).collect();
+            let (in_lanes, rays) = frame.trace(&ids, &mut ());
+            // Who listens hears of every path, so that they go one by one.
+            let mut events = Vec::new();
+            let (one_by_one, same_rays) = frame.trace(&ids, &mut events);
+            assert_eq!(rays, same_rays);
+            let mut lit = 0;
+            for (a, b) in in_lanes.iter().zip(&one_by_one) {
+                assert_eq!(a.radiance, b.radiance, "{lights:?} {settings}");
+                lit += usize::from(!a.radiance.is_black());
+            }
+            assert!(lit > 600, "{lit} samples see light of {lights:?}");
+        }
+    }
+}

@@ -196,11 +196,16 @@ pub struct Bounce {
 
 /// Who listens. `()` listens to nothing and compiles to nothing.
 pub trait Probe {
+    /// Whether it wants to hear anything.
+    const LISTENS: bool = true;
+
     /// Something happened.
     fn notice(&mut self, event: impl FnOnce() -> Event);
 }
 
 impl Probe for () {
+    const LISTENS: bool = false;
+
     fn notice(&mut self, _: impl FnOnce() -> Event) {}
 }
 

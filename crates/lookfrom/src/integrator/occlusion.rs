@@ -50,6 +50,7 @@ impl Integrator for AmbientOcclusion {
         let contribution = path.beta * white * weight;
         next.samples.shadows.push(Shadow {
             ray,
+            left: surface.left,
             contribution,
             slot: path.slot,
             address: path.address,

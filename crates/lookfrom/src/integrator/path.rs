@@ -3,11 +3,17 @@
 //! heuristic), and paths that carry little are ended by chance (Russian roulette, Arvo & Kirk 1990). The order of
 //! things is pbrt-v4's, so that the same scene converges to the same picture.
 
+mod eight;
+
 use glam::{DVec3, Vec3};
-use lookfrom_bvh::{Hit, Ray};
+use lookfrom_bvh::simd::{Level, at_level};
+use lookfrom_bvh::{Hit, Left, Ray};
+
+use eight::{Plain, Steps};
 
 use crate::bsdf::BsdfSample;
-use crate::integrator::{Bounce, Event, Integrator, Next, Numbers, Path, Probe, Shadow, Term};
+use crate::eight::LANES;
+use crate::integrator::{Bounce, Event, Integrator, Next, Numbers, Path, Probe, Samples, Shadow, Term};
 use crate::light::{Coverage, Reference};
 use crate::material::Shading;
 use crate::spectrum::Spectrum;
@@ -59,6 +65,8 @@ pub struct PathTracer {
 pub struct Departure {
     /// Density over solid angle of the direction that it took; infinite where that was the only one, or from the camera.
     pub pdf: f32,
+    /// The triangle there.
+    pub left: Left,
     /// Where, in render space.
     pub point: Vec3,
     /// Shading normal there.
@@ -71,11 +79,46 @@ pub struct Departure {
 
 impl Default for Departure {
     fn default() -> Self {
-        Self { pdf: f32::INFINITY, point: Vec3::ZERO, n: Vec3::Z, eta_scale: 1.0, blurred: false }
+        Self {
+            pdf: f32::INFINITY,
+            left: Left::NOTHING,
+            point: Vec3::ZERO,
+            n: Vec3::Z,
+            eta_scale: 1.0,
+            blurred: false,
+        }
     }
 }
 
 impl Integrator for PathTracer {
+    fn step_all<P: Probe>(
+        &self,
+        world: &World,
+        numbers: impl Fn(&Path) -> Numbers,
+        paths: &[Path],
+        hits: &[Hit],
+        next: &mut Next<'_, P>,
+    ) {
+        let in_lanes = !P::LISTENS && self.wisdom == Wisdom::Combined;
+        let mut waiting: Vec<Plain<'_>> = Vec::with_capacity(LANES);
+        for (path, hit) in paths.iter().zip(hits) {
+            let lanes = next.lanes(path);
+            let plain =
+                if in_lanes { Plain::of(self, world, path, hit, &lanes, || numbers(path)) } else { None };
+            let Some(plain) = plain else {
+                next.probe.notice(|| Event::Met { path: *path, hit: *hit });
+                self.step(world, &numbers(path), path, hit, next);
+                continue;
+            };
+            waiting.push(plain);
+            if waiting.len() == LANES {
+                self.step_plain(world, &waiting, &mut next.samples);
+                waiting.clear();
+            }
+        }
+        self.step_plain(world, &waiting, &mut next.samples);
+    }
+
     fn step<P: Probe>(
         &self,
         world: &World,
@@ -171,6 +214,7 @@ impl Integrator for PathTracer {
             media,
             departure: Departure {
                 pdf,
+                left: surface.left,
                 point: DVec3::from_array(surface.point.position).as_vec3(),
                 n: shading.n(),
                 eta_scale,
@@ -181,6 +225,14 @@ impl Integrator for PathTracer {
 }
 
 impl PathTracer {
+    /// Steps of paths that met the commonest surfaces, eight at a time.
+    fn step_plain(&self, world: &World, plain: &[Plain<'_>], next: &mut Samples) {
+        let Some(last) = plain.last() else { return };
+        let eight: [Plain<'_>; LANES] = std::array::from_fn(|lane| *plain.get(lane).unwrap_or(last));
+        let steps = Steps { tracer: self, world, plain: &eight, count: plain.len(), samples: next };
+        at_level(Level::new(), steps);
+    }
+
     fn add_sky<P: Probe>(&self, world: &World, path: &Path, next: &mut Next<'_, P>) {
         let direction = Vec3::from_array(path.ray.direction).normalize();
         for &index in &world.environments {

@@ -5,7 +5,7 @@
 //! most renderers of this kind since Whitted's.
 
 use glam::Vec3;
-use lookfrom_bvh::{Hit, Point, Ray};
+use lookfrom_bvh::{Hit, Left, Point, Ray};
 
 use crate::hash;
 use crate::integrator::{Event, Media, Next, Path, Probe, Samples, Term};
@@ -24,6 +24,8 @@ const MOST_CROSSINGS: u32 = 32;
 pub struct Shadow {
     /// From the surface; `t = 1` is the light, unless that is infinitely far.
     pub ray: Ray,
+    /// The triangle that it leaves.
+    pub left: Left,
     /// What is added to the sample if the light is reached.
     pub contribution: Spectrum,
     /// Which sample of the batch.
@@ -61,12 +63,13 @@ impl Shadow {
             }
         };
         let Path { slot, address, media, .. } = *path;
-        Self { ray, contribution, slot, address, term: Term::Light(light), media }
+        let left = surface.left;
+        Self { ray, left, contribution, slot, address, term: Term::Light(light), media }
     }
 }
 
 /// From `origin` to `target` at t = 1.
-fn toward(origin: [f32; 3], target: [f64; 3]) -> Ray {
+pub(super) fn toward(origin: [f32; 3], target: [f64; 3]) -> Ray {
     let direction = std::array::from_fn(|k| (target[k] - f64::from(origin[k])) as f32);
     Ray { t_max: 1.0, ..Ray::new(origin, direction) }
 }
@@ -100,12 +103,14 @@ pub(crate) fn resolve<P: Probe>(world: &World, passing: Passing, next: &mut Next
 
 /// Whatever stands in the way takes all.
 fn block<P: Probe>(world: &World, samples: &mut Samples, probe: &mut P) -> u64 {
-    let Samples { shadows, lanes, rays, blocked, .. } = samples;
+    let Samples { shadows, lanes, rays, left, blocked, .. } = samples;
     rays.clear();
     rays.extend(shadows.iter().map(|shadow| shadow.ray));
+    left.clear();
+    left.extend(shadows.iter().map(|shadow| shadow.left));
     blocked.clear();
     blocked.resize(rays.len(), false);
-    world.bvh.occluded_many(rays, blocked);
+    world.bvh.occluded_many_leaving(rays, left, blocked);
     for (shadow, blocked) in shadows.iter_mut().zip(&*blocked) {
         let lanes = &lanes[shadow.slot as usize];
         let passed = if *blocked { Spectrum::BLACK } else { shadow.reached(world, lanes) };
@@ -198,6 +203,7 @@ impl Shadow {
     fn go_on_behind(&mut self, world: &World, hit: &Hit, surface: &Surface) {
         let direction = Vec3::from_array(self.ray.direction);
         self.ray.origin = surface.origin(direction);
+        self.left = surface.left;
         self.ray.t_max -= hit.t;
         if world.is_there(surface, self.number(hit)) {
             self.media = self.media.crossed(world, surface);

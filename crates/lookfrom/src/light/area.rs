@@ -9,7 +9,7 @@ mod quadric;
 
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
-use lookfrom_scene::material::Scalar;
+use lookfrom_scene::material::{Color, Scalar};
 
 use super::{Glow, LightSample, Target, toward};
 use crate::shape::Disk;
@@ -19,6 +19,7 @@ use crate::texture::{Lanes, TexturePoint, Textures};
 use crate::warp;
 
 pub use mesh::MeshLight;
+pub(crate) use mesh::Triangle as LightTriangle;
 pub use patch::PatchLight;
 pub use quadric::QuadricLight;
 
@@ -99,6 +100,16 @@ impl AreaLight {
         let there = self.alpha.map_or(1.0, |alpha| textures.scalar(alpha, &at).clamp(0.0, 1.0));
         let li = self.emitted(textures, &at, front, lanes) * there;
         (!li.is_black()).then_some(LightSample { wi, li, pdf, target: Target::Surface(point, normal) })
+    }
+
+    /// The triangle that a number chooses, of lights of triangles that shine all alike; its probability, and what is left of
+    /// the number.
+    #[inline]
+    pub(crate) fn triangle(&self, u0: f32) -> Option<(&LightTriangle, f32, f32)> {
+        match (&self.form, self.alpha, self.radiance.color) {
+            (LightForm::Mesh(light), None, Color::Value(_)) => light.triangle(u0),
+            _ => None,
+        }
     }
 
     /// A point of the light to be seen from another, in render space, for `u ∈ [0, 1)²`: with a density of

@@ -72,6 +72,12 @@ impl LightChoice {
         Some((light, probability * (1.0 - in_list)))
     }
 
+    /// The light that is asked everywhere, whatever the number, where there is one only.
+    #[inline]
+    pub(crate) fn only(&self) -> Option<u32> {
+        if self.weights.is_none() && self.listed.is_empty() { self.tree.only() } else { None }
+    }
+
     /// The probability with which [`LightChoice::sample`] chooses a light at a place.
     pub fn probability(&self, at: &Reference, light: u32) -> f32 {
         match (self.places[light as usize], &self.weights) {

@@ -83,6 +83,15 @@ impl Tree {
         self.nodes.is_empty()
     }
 
+    /// The only light in it.
+    #[inline]
+    pub(super) fn only(&self) -> Option<u32> {
+        match self.nodes[..] {
+            [Node { link: Link::Light(light), .. }] => Some(light),
+            _ => None,
+        }
+    }
+
     fn find_ways(&mut self, node: usize, way: u64, depth: u32) {
         match self.nodes[node].link {
             Link::Light(light) => self.ways[light as usize] = Some(way),

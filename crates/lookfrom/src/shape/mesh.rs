@@ -37,6 +37,7 @@ const LEAST_DETERMINANT: f64 = 1e-9;
 
 impl Mesh {
     /// The corners of a triangle.
+    #[inline]
     pub fn corners(&self, index: usize) -> [[f32; 3]; 3] {
         self.triangles[index].map(|vertex| self.positions[vertex as usize])
     }

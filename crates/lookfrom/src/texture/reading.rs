@@ -80,6 +80,7 @@ pub(super) struct Rgb(pub Usage);
 impl Reading for Rgb {
     type Value = Spectrum;
 
+    #[inline]
     fn color(&self, rgb: [f32; 3]) -> Spectrum {
         Spectrum::from_rgb(within(self.0, rgb))
     }
@@ -136,6 +137,7 @@ impl Reading for Lifted<'_> {
 }
 
 /// Not negative, for an albedo at most 1; 0 for what is not a number.
+#[inline]
 fn within(usage: Usage, rgb: [f32; 3]) -> [f32; 3] {
     let rgb = rgb.map(|c| c.max(0.0));
     if usage == Usage::Albedo { rgb.map(|c| c.min(1.0)) } else { rgb }

@@ -34,16 +34,26 @@ pub struct MeshLight {
 
 /// A triangle, made ready for choosing points of it.
 #[derive(Clone, Copy, Debug)]
-struct Triangle {
-    p0: DVec3,
-    e1: DVec3,
-    e2: DVec3,
+pub(crate) struct Triangle {
+    /// In render space.
+    pub(crate) corners: [[f32; 3]; 3],
+    pub(crate) p0: DVec3,
+    pub(crate) e1: DVec3,
+    pub(crate) e2: DVec3,
     /// To the outside, of unit length; `None` where the mesh's normals make that differ over the triangle.
-    normal: Option<DVec3>,
-    area: f64,
+    pub(crate) normal: Option<DVec3>,
+    pub(crate) area: f64,
 }
 
 impl MeshLight {
+    /// The triangle that a number chooses, if it has one normal, its probability, and what is left of the number.
+    #[inline]
+    pub(super) fn triangle(&self, u0: f32) -> Option<(&Triangle, f32, f32)> {
+        let (index, probability, u0) = self.choice.sample(u0);
+        let triangle = &self.triangles[index];
+        triangle.normal.is_some().then_some((triangle, probability, u0))
+    }
+
     /// None for a mesh without area.
     pub fn new(mesh: Arc<Mesh>) -> Option<Self> {
         let triangles: Vec<Triangle> =
@@ -117,13 +127,27 @@ impl MeshLight {
 }
 
 impl Triangle {
+    /// In place of one.
+    pub(crate) const NONE: Self = Self {
+        corners: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        p0: DVec3::ZERO,
+        e1: DVec3::X,
+        e2: DVec3::Y,
+        normal: Some(DVec3::Z),
+        area: 0.5,
+    };
+
+    /// Triangles that seem smaller are surely chosen from by area.
+    pub(crate) const WORTH_DIRECTION: f64 = WORTH_DIRECTION;
+
     fn new(mesh: &Mesh, index: usize) -> Self {
-        let [p0, p1, p2] = mesh.corners(index).map(|p| Vec3::from_array(p).as_dvec3());
+        let corners = mesh.corners(index);
+        let [p0, p1, p2] = corners.map(|p| Vec3::from_array(p).as_dvec3());
         let (e1, e2) = (p1 - p0, p2 - p0);
         // The middle has the side of all three corners, where they agree.
-        let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(u, v)| mesh.point(index, u, v).ng);
-        let agree = corners[1..].iter().all(|ng| ng.dot(corners[0]) > 0.0);
-        Self { p0, e1, e2, normal: agree.then_some(corners[0]), area: 0.5 * e1.cross(e2).length() }
+        let normals = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(u, v)| mesh.point(index, u, v).ng);
+        let agree = normals[1..].iter().all(|ng| ng.dot(normals[0]) > 0.0);
+        Self { corners, p0, e1, e2, normal: agree.then_some(normals[0]), area: 0.5 * e1.cross(e2).length() }
     }
 
     /// As it is seen from a point.

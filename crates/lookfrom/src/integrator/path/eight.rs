@@ -1,0 +1,261 @@
+//! Eight steps at once, where surfaces are of the commonest kind: flat triangles of a diffuse material of one colour. The twin
+//! of [`PathTracer::step`](crate::integrator::Integrator::step) for them, bit for bit: each operation is its, in its order, eight
+//! times side by side. Which light is asked, and what cannot go side by side, is in `asked`.
+
+mod asked;
+
+use std::f32::consts::FRAC_1_PI;
+
+use lookfrom_bvh::simd::{Simd, Work, f32x8, f64x8, prelude::*, u32x8, u64x8};
+use lookfrom_bvh::{Hit, Left, NONE, Ray};
+use lookfrom_scene::material::{Color, MaterialKind, Relief};
+
+use super::{Departure, PathTracer, power_heuristic, purpose};
+use crate::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, orthonormal_bases};
+use crate::hash::GOLDEN;
+use crate::integrator::shadow;
+use crate::integrator::{Media, Numbers, Path, Samples, Shadow, Term};
+use crate::light::Target;
+use crate::sampler::eight::{PixelSamplers, mix};
+use crate::shape::{Form, Mesh};
+use crate::spectrum::Spectrum;
+use crate::texture::{Lanes, TexturePoint, Usage};
+use crate::warp;
+use crate::world::World;
+use asked::Asked;
+
+/// A path that met a surface of the commonest kind.
+#[derive(Clone, Copy)]
+pub(super) struct Plain<'a> {
+    path: &'a Path,
+    hit: &'a Hit,
+    mesh: &'a Mesh,
+    reflectance: Spectrum,
+    numbers: Numbers,
+}
+
+impl<'a> Plain<'a> {
+    /// The path, if it met such a surface and is to go on from there.
+    #[inline]
+    pub(super) fn of(
+        tracer: &PathTracer,
+        world: &'a World,
+        path: &'a Path,
+        hit: &'a Hit,
+        lanes: &Lanes,
+        numbers: impl FnOnce() -> Numbers,
+    ) -> Option<Self> {
+        if !hit.is_hit()
+            || hit.instance != NONE
+            || path.depth >= tracer.depth
+            || path.media != Media::default()
+        {
+            return None;
+        }
+        let Form::Mesh(mesh) = &world.forms[hit.geometry as usize] else { return None };
+        let look = &mesh.look;
+        let is_flat = mesh.normals.is_empty() && !mesh.wants_derivatives;
+        if !is_flat || look.light.is_some() || look.alpha.is_some() || look.sides.is_some() {
+            return None;
+        }
+        let material = &world.materials[look.material as usize];
+        let (MaterialKind::Diffuse { reflectance: color @ Color::Value(_) }, Relief::None) =
+            (&material.kind, &material.relief)
+        else {
+            return None;
+        };
+        let reflectance = world
+            .textures
+            .spectrum(*color, Usage::Albedo, &TexturePoint::NOWHERE, lanes)
+            .map(|lane| lane.clamp(0.0, 1.0));
+        (!reflectance.is_black()).then(|| Self { path, hit, mesh, reflectance, numbers: numbers() })
+    }
+}
+
+/// The steps of paths.
+pub(super) struct Steps<'a, 'b> {
+    pub(super) tracer: &'a PathTracer,
+    pub(super) world: &'a World,
+    /// As many as are to be stepped; the others repeat one of them.
+    pub(super) plain: &'a [Plain<'a>; LANES],
+    pub(super) count: usize,
+    pub(super) samples: &'b mut Samples,
+}
+
+impl Work for Steps<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { tracer, world, plain, count, samples } = self;
+        let surfaces = Surfaces::new(simd, plain);
+        let numbers = RandomNumbers::new(simd, plain);
+
+        // Ask one light.
+        let asked = Asked::new(simd, world, plain, &surfaces, &numbers, &samples.lanes);
+        let cos = asked.wi.dot(surfaces.n);
+        let same_side = surfaces.same_side(simd, cos);
+        let facing: [f32; LANES] = same_side.select(cos.abs(), f32x8::splat(simd, 0.0)).into();
+        let origins = surfaces.points.leave(simd, surfaces.ng, asked.wi.widen());
+        let ends = asked.ends(simd, &origins);
+        for lane in 0..count {
+            let (Some(sample), Plain { path, reflectance, .. }) = (&asked.samples[lane], &plain[lane]) else {
+                continue;
+            };
+            let cos = facing[lane];
+            if cos == 0.0 {
+                continue;
+            }
+            let f = *reflectance * FRAC_1_PI * cos;
+            let light_pdf = sample.probability * sample.pdf;
+            let bsdf_pdf = warp::cosine_hemisphere_pdf(cos);
+            let weight = if sample.is_delta { 1.0 } else { power_heuristic(light_pdf, bsdf_pdf) };
+            let contribution = path.beta * f * sample.li * (weight / light_pdf);
+            if f.is_black() || contribution.is_black() {
+                continue;
+            }
+            let origin = origins.lane(lane);
+            let ray = match sample.target {
+                Target::Infinity => Ray::new(origin, asked.wi.lane(lane)),
+                Target::Point(position) => shadow::toward(origin, position.to_array()),
+                Target::Surface(..) => Ray { t_max: 1.0, ..Ray::new(origin, ends.lane(lane)) },
+            };
+            let Path { slot, address, media, .. } = **path;
+            samples.shadows.push(Shadow {
+                ray,
+                left: Left::of(plain[lane].hit),
+                contribution,
+                slot,
+                address,
+                term: Term::Light(sample.light),
+                media,
+            });
+        }
+
+        // Go on in one direction.
+        let local = surfaces.cosine_directions(simd, numbers.two(simd, purpose::DIRECTION));
+        let pdf = local.0[2].abs().max(0.0) * FRAC_1_PI;
+        let wi = surfaces.to_render(simd, local);
+        let cos = wi.dot(surfaces.n).abs();
+        let factor = cos / pdf;
+        let origins = surfaces.points.leave(simd, surfaces.ng, wi.widen());
+        let (pdf, factor): ([f32; LANES], [f32; LANES]) = (pdf.into(), factor.into());
+        let (side, height): ([f32; LANES], [f32; LANES]) = (surfaces.wo_z.into(), local.0[2].into());
+        let points = surfaces.points.position.narrow();
+        for lane in 0..count {
+            let Plain { path, reflectance, numbers, .. } = &plain[lane];
+            let f = *reflectance * FRAC_1_PI;
+            let is_grazing = |z: f32| !(z.abs() > 1e-12);
+            let is_useful = pdf[lane] > 0.0 && f.0.into_iter().all(f32::is_finite);
+            if is_grazing(side[lane]) || is_grazing(height[lane]) || !is_useful {
+                continue;
+            }
+            let beta = path.beta * f * factor[lane];
+            let eta_scale = path.departure.eta_scale;
+            let depth = path.depth + 1;
+            let (survival, survives) = tracer.roulette(numbers, beta, eta_scale, depth);
+            if !survives || beta.is_black() {
+                continue;
+            }
+            samples.paths.push(Path {
+                ray: Ray::new(origins.lane(lane), wi.lane(lane)),
+                beta: beta / survival,
+                slot: path.slot,
+                depth,
+                address: path.address + 1,
+                media: path.media,
+                departure: Departure {
+                    pdf: pdf[lane],
+                    left: Left::of(plain[lane].hit),
+                    point: points.lane(lane).into(),
+                    n: surfaces.n.lane(lane).into(),
+                    eta_scale,
+                    blurred: true,
+                },
+            });
+        }
+    }
+}
+
+/// The twin of [`World::surface`] and of the frame that a material is shaded in.
+struct Surfaces<S: Simd> {
+    points: Points<S>,
+    ng: Vectors<Wide<S>>,
+    /// In single precision.
+    n: Vectors<Narrow<S>>,
+    s: Vectors<Narrow<S>>,
+    t: Vectors<Narrow<S>>,
+    /// The cosine of the direction back to where the ray came from.
+    wo_z: Narrow<S>,
+}
+
+impl<S: Simd> Surfaces<S> {
+    #[inline(always)]
+    fn new(simd: S, plain: &[Plain<'_>; LANES]) -> Self {
+        let corners = by_lane!(lane => plain[lane].mesh.corners(plain[lane].hit.primitive as usize));
+        let corners = by_axis!(k => Vectors::<Narrow<S>>::of_rows(simd, &by_lane!(lane => corners[lane][k])));
+        let u = f32x8::load_array(simd, by_lane!(lane => plain[lane].hit.u));
+        let v = f32x8::load_array(simd, by_lane!(lane => plain[lane].hit.v));
+        let (points, across) = Points::on_triangles(simd, corners, u, v);
+        let flip = f64x8::load_array(simd, by_lane!(lane => if plain[lane].mesh.flip { -1.0 } else { 1.0 }));
+        let ng = across.normalize(simd).scale(flip);
+        let n = ng.narrow();
+        let direction =
+            Vectors::<Narrow<S>>::of_rows(simd, &by_lane!(lane => plain[lane].path.ray.direction));
+        let minus = f64x8::splat(simd, -1.0);
+        let wo = direction.widen().normalize(simd).scale(minus).narrow();
+        let [s, t] = orthonormal_bases(simd, n);
+        Self { points, ng, n, s, t, wo_z: wo.dot(n) }
+    }
+
+    /// Whether directions of these cosines are on the side that is looked at, and neither is grazing.
+    #[inline(always)]
+    fn same_side(&self, simd: S, wi_z: Narrow<S>) -> lookfrom_bvh::simd::mask32x8<S> {
+        let least = f32x8::splat(simd, 1e-12);
+        let product = self.wo_z * wi_z;
+        product.simd_gt(f32x8::splat(simd, 0.0)) & self.wo_z.abs().simd_gt(least) & wi_z.abs().simd_gt(least)
+    }
+
+    /// The twin of `bsdf::diffuse::cosine_direction`.
+    #[inline(always)]
+    fn cosine_directions(&self, simd: S, u: [Narrow<S>; 2]) -> Vectors<Narrow<S>> {
+        let [x, y] = warp::concentric_disks(simd, u);
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+        let least = f32x8::splat(simd, 1.0 / 16_777_216.0);
+        let height = (one - (x * x + y * y)).max(least).sqrt();
+        Vectors([x + zero, y + zero, height.copysign(self.wo_z)])
+    }
+
+    /// From the frame to render space, of unit length.
+    #[inline(always)]
+    fn to_render(&self, simd: S, v: Vectors<Narrow<S>>) -> Vectors<Narrow<S>> {
+        let [x, y, z] = v.0;
+        self.s.scale(x).add(self.t.scale(y)).add(self.n.scale(z)).normalize(simd)
+    }
+}
+
+/// The twin of [`Numbers`].
+struct RandomNumbers<S: Simd> {
+    samplers: PixelSamplers<S>,
+    sample: u32x8<S>,
+    /// Of the address, before the purpose.
+    mixed: u64x8<S>,
+}
+
+impl<S: Simd> RandomNumbers<S> {
+    #[inline(always)]
+    fn new(simd: S, plain: &[Plain<'_>; LANES]) -> Self {
+        let address = u64x8::load_array(simd, by_lane!(lane => plain[lane].numbers.address));
+        Self {
+            samplers: PixelSamplers::new(simd, &by_lane!(lane => plain[lane].numbers.sampler)),
+            sample: u32x8::load_array(simd, by_lane!(lane => plain[lane].numbers.sample)),
+            mixed: mix(address + GOLDEN),
+        }
+    }
+
+    #[inline(always)]
+    fn two(&self, simd: S, purpose: u32) -> [Narrow<S>; 2] {
+        let dimension = mix(self.mixed ^ u64::from(purpose)) & u64::from(u32::MAX);
+        self.samplers.two(simd, self.sample, dimension)
+    }
+}

@@ -1,0 +1,187 @@
+//! Eight lights asked at once: the twin of `PathTracer::ask_light` up to the shadow ray.
+//!
+//! Points of triangles of one colour, chosen by area, go side by side; all else is asked one by one and takes its lane.
+
+use glam::DVec3;
+use lookfrom_bvh::Point;
+use lookfrom_bvh::simd::{Simd, f32x8, f64x8, prelude::*};
+
+use super::{Plain, RandomNumbers, Surfaces, purpose};
+use crate::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, narrow};
+use crate::light::{Coverage, Light, LightSample, LightTriangle, Reference, Target};
+use crate::spectrum::Spectrum;
+use crate::texture::Lanes;
+use crate::world::World;
+
+/// What a light answered, in one lane.
+#[derive(Clone, Copy)]
+pub(super) struct Answer {
+    pub(super) light: u32,
+    pub(super) probability: f32,
+    pub(super) pdf: f32,
+    pub(super) li: Spectrum,
+    pub(super) is_delta: bool,
+    pub(super) target: Target,
+}
+
+/// What lights answered.
+pub(super) struct Asked<S: Simd> {
+    pub(super) samples: [Option<Answer>; LANES],
+    pub(super) wi: Vectors<Narrow<S>>,
+    /// Where on the lights, of those that are surfaces, and their normals.
+    points: Points<S>,
+    normal: Vectors<Wide<S>>,
+}
+
+impl<S: Simd> Asked<S> {
+    #[inline(always)]
+    pub(super) fn new(
+        simd: S,
+        world: &World,
+        plain: &[Plain<'_>; LANES],
+        surfaces: &Surfaces<S>,
+        numbers: &RandomNumbers<S>,
+        lanes: &[Lanes],
+    ) -> Self {
+        let [u0, u1] = numbers.two(simd, purpose::LIGHT);
+        let from: [[f64; LANES]; 3] = by_axis!(i => surfaces.points.position.0[i].into());
+        let at = by_lane!(lane => Reference {
+            point: DVec3::from_array(by_axis!(i => from[i][lane])),
+            n: surfaces.n.lane(lane).into(),
+        });
+        let choice = match world.light_choice.only() {
+            Some(light) => [Some((light, 1.0)); LANES],
+            None => {
+                let [which, _] = numbers.two(simd, purpose::CHOICE);
+                by_lane!(lane => world.light_choice.sample(&at[lane], which[lane]))
+            }
+        };
+        let triangle = by_lane!(lane => {
+            match choice[lane].map(|(index, _)| &world.lights[index as usize]) {
+                Some(Light::Area(light)) => light.triangle(u0[lane]),
+                _ => None,
+            }
+        });
+
+        // Points of triangles, chosen by area.
+        let of = by_lane!(lane => triangle[lane].map_or(&LightTriangle::NONE, |(triangle, ..)| triangle));
+        let corners =
+            by_axis!(k => Vectors::<Narrow<S>>::of_rows(simd, &by_lane!(lane => of[lane].corners[k])));
+        let normal = Vectors::<Wide<S>>::of_rows(
+            simd,
+            &by_lane!(lane => of[lane].normal.unwrap_or(DVec3::Z).to_array()),
+        );
+        let area = f64x8::load_array(simd, by_lane!(lane => of[lane].area));
+        let share = by_lane!(lane => triangle[lane].map_or(1.0, |(_, share, _)| share));
+        let probability = f64x8::load_array(simd, by_lane!(lane => f64::from(share[lane])));
+        let rest = f32x8::load_array(simd, by_lane!(lane => triangle[lane].map_or(0.0, |(_, _, rest)| rest)));
+        let [beta, gamma] = uniform_triangles(simd, rest, u1);
+        let (points, _) = Points::on_triangles(simd, corners, beta, gamma);
+        let to = points.position.sub(surfaces.points.position);
+        let distance = to.length();
+        let wi = Vectors(by_axis!(i => narrow(to.0[i] / distance)));
+        let cos = normal.dot(wi.widen());
+        let pdf = probability / area * distance * distance / cos.abs();
+        let pdf: [f32; LANES] = narrow(pdf).into();
+        let cos: [f64; LANES] = cos.into();
+        let near: [f64; LANES] = distance.into();
+        let by_direction = worth_direction(simd, &of, normal, area, surfaces.points.position);
+
+        let mut wi = by_lane!(lane => wi.lane(lane));
+        let mut place: [Option<(Point, DVec3)>; LANES] = [None; LANES];
+        let mut samples = [None; LANES];
+        for lane in 0..LANES {
+            let Some((index, probability)) = choice[lane] else { continue };
+            let light = &world.lights[index as usize];
+            let lanes = &lanes[plain[lane].path.slot as usize];
+            if let (Some(_), Light::Area(area_light)) = (&triangle[lane], light)
+                && by_direction & 1 << lane == 0
+            {
+                let shines = cos[lane] < 0.0 || area_light.two_sided;
+                let usable = near[lane] > 0.0 && pdf[lane].is_finite() && pdf[lane] > 0.0;
+                if shines && usable {
+                    let li = area_light.radiance.even(&world.textures, lanes);
+                    let target = Target::Surface(Point { position: [0.0; 3], error: [0.0; 3] }, DVec3::ZERO);
+                    samples[lane] = Some(Answer {
+                        light: index,
+                        probability,
+                        pdf: pdf[lane],
+                        li,
+                        is_delta: false,
+                        target,
+                    });
+                }
+                continue;
+            }
+            let Some(sample) =
+                light.sample(&world.textures, &at[lane], [u0[lane], u1[lane]], lanes, Coverage::Incomplete)
+            else {
+                continue;
+            };
+            wi[lane] = sample.wi.to_array();
+            if let Target::Surface(point, normal) = sample.target {
+                place[lane] = Some((point, normal));
+            }
+            let LightSample { pdf, li, target, .. } = sample;
+            samples[lane] =
+                Some(Answer { light: index, probability, pdf, li, is_delta: light.is_delta(), target });
+        }
+
+        // Those that were asked one by one take their lanes.
+        let (mut points, mut normal) = (points, normal);
+        for (lane, place) in place.iter().enumerate() {
+            if let Some((point, of_light)) = place {
+                for axis in 0..3 {
+                    points.position.0[axis][lane] = point.position[axis];
+                    points.error.0[axis][lane] = point.error[axis];
+                    normal.0[axis][lane] = of_light[axis];
+                }
+            }
+        }
+        Self { samples, wi: Vectors::<Narrow<S>>::of_rows(simd, &wi), points, normal }
+    }
+
+    /// The directions of shadow rays, from their origins to just before the lights' surfaces: the twin of [`Shadow::new`].
+    #[inline(always)]
+    pub(super) fn ends(&self, simd: S, origins: &Vectors<Narrow<S>>) -> Vectors<Narrow<S>> {
+        let origins = origins.widen();
+        let Vectors([x, y, z]) = self.points.position.sub(origins).abs();
+        let length = f64x8::splat(simd, 0.0).max(x).max(y).max(z);
+        let slack = length * f64::from(f32::EPSILON);
+        let error = Vectors(by_axis!(i => self.points.error.0[i] + slack));
+        let guarded = Points { position: self.points.position, error };
+        let back = self.wi.widen().scale(f64x8::splat(simd, -1.0));
+        guarded.leave(simd, self.normal, back).widen().sub(origins).narrow()
+    }
+}
+
+/// The twin of [`warp::uniform_triangle`]: β and γ.
+#[inline(always)]
+fn uniform_triangles<S: Simd>(simd: S, u: Narrow<S>, v: Narrow<S>) -> [Narrow<S>; 2] {
+    let (half, one) = (f32x8::splat(simd, 0.5), f32x8::splat(simd, 1.0));
+    let above = v.simd_gt(u);
+    let (half_u, half_v) = (half * u, half * v);
+    let alpha = above.select(half_u, u - half_v);
+    let beta = above.select(v - half_u, half_v);
+    [beta, one - (alpha + beta)]
+}
+
+/// Which lanes may be chosen from by direction, where they are not left out: the twin of the first half of the lights' own
+/// question.
+#[inline(always)]
+fn worth_direction<S: Simd>(
+    simd: S,
+    of: &[&LightTriangle; LANES],
+    normal: Vectors<Wide<S>>,
+    area: Wide<S>,
+    from: Vectors<Wide<S>>,
+) -> u32 {
+    let p0 = Vectors::<Wide<S>>::of_rows(simd, &by_lane!(lane => of[lane].p0.to_array()));
+    let e1 = Vectors::<Wide<S>>::of_rows(simd, &by_lane!(lane => of[lane].e1.to_array()));
+    let e2 = Vectors::<Wide<S>>::of_rows(simd, &by_lane!(lane => of[lane].e2.to_array()));
+    let middle = p0.sub(from).add(e1.add(e2).scale(f64x8::splat(simd, 1.0 / 3.0)));
+    let distance2 = middle.dot(middle);
+    let seems = area * normal.dot(middle).abs() / (distance2 * distance2.sqrt());
+    let large = seems.simd_gt(f64x8::splat(simd, LightTriangle::WORTH_DIRECTION)) | distance2.simd_lt(area);
+    large.to_bitmask() as u32
+}
