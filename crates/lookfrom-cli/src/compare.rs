@@ -140,7 +140,7 @@ pub(crate) fn read(path: &Path, samples: Option<u64>) -> Result<Sampled, Failure
         image::read_exr(path, &mut sources)?
     } else {
         let picture = image::read(path, &mut sources)?;
-        let channel = |index: usize| picture.texels.iter().map(|texel| texel[index]).collect();
+        let channel = |index: usize| picture.texels().map(|texel| texel[index]).collect();
         let channels = ["R", "G", "B"].map(str::to_owned).into_iter().zip([0, 1, 2].map(channel)).collect();
         let (width, height) = (picture.width, picture.height);
         Channels { width, height, channels, attributes: Vec::new() }

@@ -97,12 +97,30 @@ pub struct Sources<'a> {
     pub limits: Limits,
     /// What could be survived so far.
     pub warnings: Vec<Warning>,
+    /// What is asked of files that hold several things.
+    pub choice: Choice,
+}
+
+/// What is asked of a file that holds several things.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Choice {
+    /// The animation, by name or number from 0, in whose pose the model stands; `None` is the pose of rest, or, where
+    /// `at` is not 0, the first animation.
+    pub animation: Option<String>,
+    /// When, in seconds from its beginning.
+    pub at: f64,
+    /// The variant of its materials, by name or number from 0.
+    pub variant: Option<String>,
+    /// The scene, by name or number from 0.
+    pub scene: Option<String>,
+    /// The camera, by name or number from 0; `None` is the first.
+    pub camera: Option<String>,
 }
 
 impl<'a> Sources<'a> {
     /// Sources over `files` with the default limits.
     pub fn new(files: &'a dyn Files) -> Self {
-        Self { files, limits: Limits::default(), warnings: Vec::new() }
+        Self { files, limits: Limits::default(), warnings: Vec::new(), choice: Choice::default() }
     }
 
     /// The whole content of a file within the limits.

@@ -63,6 +63,9 @@ impl Material {
                 MaterialKind::CoatedConductor { roughness, coat, .. } => {
                     uneven(roughness) || uneven(&coat.roughness)
                 }
+                MaterialKind::Principled(look) => {
+                    look.clearcoat_normal.is_some() || look.anisotropy.is_some()
+                }
                 _ => false,
             }
     }
@@ -78,6 +81,18 @@ pub enum Relief {
     Bump(Scalar),
     /// A picture of normals in the tangent frame (u, v, outward): x, y, z are 2·texel − 1. Row 0 is v = 1.
     NormalMap(ImageId),
+    /// The same from a texture, as glTF means it.
+    NormalTexture(NormalTexture),
+}
+
+/// Normals from a texture in the tangent frame (u, v, outward): `(scale, scale, 1) · (2·texel − 1)`, made of unit length.
+/// v is to the left of u where the mesh's tangents say so (their w), else where texture coordinates do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NormalTexture {
+    /// Read as linear RGB.
+    pub texture: TextureId,
+    /// Multiplies x and y.
+    pub scale: f32,
 }
 
 /// The looks there are.
@@ -141,6 +156,13 @@ pub enum MaterialKind {
         /// The probability of the second.
         amount: Scalar,
     },
+    /// glTF's metallic-roughness material and its extensions.
+    Principled(Box<Principled>),
+    /// Seen in its colour whatever the light, which it neither reflects nor lets through (`KHR_materials_unlit`).
+    Unlit {
+        /// Radiance that it is seen with.
+        color: Color,
+    },
     /// No surface at all: the border of a medium.
     Interface,
 }
@@ -169,11 +191,104 @@ impl MaterialKind {
                 colors.push(coat.albedo);
                 colors
             }
+            Self::Principled(look) => {
+                vec![look.base_color, look.specular_color, look.sheen_color, look.diffuse_transmission_color]
+            }
+            Self::Unlit { color } => vec![*color],
             Self::Dielectric { .. } | Self::ThinDielectric { .. } | Self::Mix { .. } | Self::Interface => {
                 Vec::new()
             }
         }
     }
+}
+
+/// glTF 2.0's metallic-roughness material with its extensions: a metal, glass or diffuse body, by parts, under sheen and
+/// a clear coat. All numbers are those of the extensions, with textures and factors multiplied.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Principled {
+    /// The metal's reflectance straight on; the albedo or tint of what is not metal.
+    pub base_color: Color,
+    /// 0 is a dielectric, 1 a metal.
+    pub metallic: Scalar,
+    /// Its square is the model's α.
+    pub roughness: Scalar,
+    /// How the highlight is drawn out (`KHR_materials_anisotropy`).
+    pub anisotropy: Option<Anisotropy>,
+    /// Index of refraction (`KHR_materials_ior`); 0 means infinite: Fresnel's reflectance is 1 times the specular colour.
+    pub ior: f32,
+    /// 20 over Abbe's number (`KHR_materials_dispersion`): 0 is none.
+    pub dispersion: f32,
+    /// How much a dielectric mirrors (`KHR_materials_specular`).
+    pub specular: Scalar,
+    /// The colour of what a dielectric mirrors straight on.
+    pub specular_color: Color,
+    /// How much of what is not mirrored passes through instead of being scattered (`KHR_materials_transmission`).
+    pub transmission: Scalar,
+    /// Whether the surface bounds a body that bends light (`KHR_materials_volume` with a thickness); otherwise it is a thin
+    /// sheet.
+    pub is_solid: bool,
+    /// Absorption in the body per unit of length of the world, for each primary: ≥ 0.
+    pub absorption: [f32; 3],
+    /// How much of the diffuse light is let through instead of reflected (`KHR_materials_diffuse_transmission`).
+    pub diffuse_transmission: Scalar,
+    /// Its colour.
+    pub diffuse_transmission_color: Color,
+    /// The strength of a clear coat over all (`KHR_materials_clearcoat`); its index of refraction is 1.5.
+    pub clearcoat: Scalar,
+    /// Its roughness, whose square is α.
+    pub clearcoat_roughness: Scalar,
+    /// Its own normals; without, those of the mesh, not those of [`Material::relief`].
+    pub clearcoat_normal: Option<NormalTexture>,
+    /// The colour of fibres over all (`KHR_materials_sheen`); black is none.
+    pub sheen_color: Color,
+    /// Their roughness, whose square is the α of Charlie's distribution (Estevez & Kulla 2017).
+    pub sheen_roughness: Scalar,
+    /// How much of a thin film there is (`KHR_materials_iridescence`, Belcour & Barla 2017).
+    pub iridescence: Scalar,
+    /// The film's index of refraction.
+    pub iridescence_ior: f32,
+    /// The film's thickness in nm.
+    pub iridescence_thickness: Scalar,
+}
+
+impl Default for Principled {
+    /// glTF's default material.
+    fn default() -> Self {
+        Self {
+            base_color: Color::gray(1.0),
+            metallic: Scalar::Value(1.0),
+            roughness: Scalar::Value(1.0),
+            anisotropy: None,
+            ior: 1.5,
+            dispersion: 0.0,
+            specular: Scalar::Value(1.0),
+            specular_color: Color::gray(1.0),
+            transmission: Scalar::Value(0.0),
+            is_solid: false,
+            absorption: [0.0; 3],
+            diffuse_transmission: Scalar::Value(0.0),
+            diffuse_transmission_color: Color::gray(1.0),
+            clearcoat: Scalar::Value(0.0),
+            clearcoat_roughness: Scalar::Value(0.0),
+            clearcoat_normal: None,
+            sheen_color: Color::BLACK,
+            sheen_roughness: Scalar::Value(0.0),
+            iridescence: Scalar::Value(0.0),
+            iridescence_ior: 1.3,
+            iridescence_thickness: Scalar::Value(400.0),
+        }
+    }
+}
+
+/// How a highlight is drawn out along a direction of the surface (`KHR_materials_anisotropy`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anisotropy {
+    /// 0 is none, 1 as far as it goes.
+    pub strength: f32,
+    /// From the tangent (u) toward the bitangent (v), in radians.
+    pub rotation: f32,
+    /// Red and green, 2·texel − 1, are a direction in the tangent frame, which is then turned; blue multiplies the strength.
+    pub texture: Option<TextureId>,
 }
 
 /// The optical constants of a metal.

@@ -140,12 +140,24 @@ pub enum Tonemap {
     Reinhard,
     /// A filmic curve (the fit of Narkowicz 2015 to ACES).
     Filmic,
+    /// Khronos' PBR Neutral (2024): colours as they are, highlights compressed; the default of glTF.
+    PbrNeutral,
+    /// The reference and output transforms of ACES 1.0 (the fit of Stephen Hill).
+    Aces,
+    /// AgX (Troy Sobotka 2022), as Blender's default look.
+    Agx,
 }
 
 impl Tonemap {
     /// The words for them, in scene files and on the command line.
-    pub const WORDS: &'static [(&'static str, Self)] =
-        &[("clamp", Self::Clamp), ("reinhard", Self::Reinhard), ("filmic", Self::Filmic)];
+    pub const WORDS: &'static [(&'static str, Self)] = &[
+        ("clamp", Self::Clamp),
+        ("reinhard", Self::Reinhard),
+        ("filmic", Self::Filmic),
+        ("pbr_neutral", Self::PbrNeutral),
+        ("aces", Self::Aces),
+        ("agx", Self::Agx),
+    ];
 }
 
 /// How light is computed.

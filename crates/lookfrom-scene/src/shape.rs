@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 
 use crate::error::Location;
 use crate::light::Amount;
@@ -29,6 +29,8 @@ pub struct Shape {
     pub sides: Option<Sides>,
     /// Whether outside and inside change places.
     pub reverse_orientation: bool,
+    /// Whether rays from the camera pass its back faces, as if they were not there.
+    pub single_sided: bool,
     /// From the shape's space to the world: any invertible affine matrix.
     pub world_from_object: DMat4,
 }
@@ -45,6 +47,7 @@ impl Shape {
             alpha: None,
             sides: None,
             reverse_orientation: false,
+            single_sided: false,
             world_from_object: DMat4::IDENTITY,
         }
     }
@@ -187,10 +190,20 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates: none, or one a vertex.
     pub uvs: Vec<Vec2>,
+    /// Further sets of texture coordinates: each with one a vertex; what is beyond [`Mesh::MOST_UV_SETS`] is not used.
+    pub more_uvs: Vec<Vec<Vec2>>,
     /// Linear colours: none, or one a vertex.
     pub colors: Vec<[f32; 3]>,
-    /// Directions in which u grows, for relief and brushed metal: none, or one a vertex.
-    pub tangents: Vec<Vec3>,
+    /// Opacities: none, or one a vertex.
+    pub opacities: Vec<f32>,
+    /// Directions in which u grows, for relief and brushed metal, and in w whether v grows along normal × tangent (1) or
+    /// against it (−1): none, or one a vertex.
+    pub tangents: Vec<Vec4>,
+}
+
+impl Mesh {
+    /// How many sets of texture coordinates materials can use.
+    pub const MOST_UV_SETS: usize = 4;
 }
 
 /// One piece of a model file: what a reader makes of it before a scene gives it a place.

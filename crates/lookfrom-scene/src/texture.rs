@@ -26,10 +26,12 @@ pub enum TextureKind {
         image: ImageId,
         /// Where it lives; its x and y are s and t of the picture.
         mapping: Mapping,
-        /// What lies beyond the edges.
-        wrap: Wrap,
+        /// What lies beyond the left and right, and beyond the upper and lower edges.
+        wrap: [Wrap; 2],
         /// Between the texels.
         filter: TexelFilter,
+        /// Which channels are meant.
+        channel: Channel,
         /// Multiplies it.
         scale: f32,
         /// Whether 1 − value is meant (after `scale`).
@@ -150,6 +152,38 @@ pub enum TextureKind {
         /// Multiplies them.
         tint: [f32; 3],
     },
+    /// The mesh's own opacity, 1 where it has none.
+    VertexAlpha,
+    /// One times the other, channel by channel.
+    Product {
+        /// One.
+        a: Color,
+        /// The other.
+        b: Color,
+    },
+    /// 1 where a number reaches an edge, else 0.
+    Threshold {
+        /// The number.
+        value: Scalar,
+        /// The edge.
+        edge: f32,
+    },
+}
+
+/// Which channels of a picture are meant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Channel {
+    /// The colour.
+    #[default]
+    Rgb,
+    /// Its red, as a grey.
+    Red,
+    /// Its green.
+    Green,
+    /// Its blue.
+    Blue,
+    /// Its opacity, 1 where the picture has none.
+    Alpha,
 }
 
 impl TextureKind {
@@ -164,6 +198,7 @@ impl TextureKind {
             | Self::Noise { low: a, high: b, .. }
             | Self::Marble { vein: a, base: b, .. }
             | Self::DirectionMix { low: a, high: b, .. }
+            | Self::Product { a, b }
             | Self::Dots { inside: a, outside: b, .. } => vec![*a, *b],
             Self::Scale { color, by } => vec![*color, scalar(by)],
             Self::Mix { low, high, amount } => vec![*low, *high, scalar(amount)],
@@ -173,7 +208,9 @@ impl TextureKind {
             | Self::Wrinkled { .. }
             | Self::Windy { .. }
             | Self::PbrtMarble { .. }
+            | Self::VertexAlpha
             | Self::VertexColor { .. } => Vec::new(),
+            Self::Threshold { value, .. } => vec![scalar(value)],
         }
     }
 }
@@ -187,6 +224,13 @@ pub enum Mapping {
         scale: [f32; 2],
         /// Added afterwards.
         offset: [f32; 2],
+    },
+    /// On the surface: a set of texture coordinates (0 is the first), turned, scaled and moved.
+    Affine {
+        /// Which set; one that the mesh does not have is (0, 0) everywhere.
+        set: u32,
+        /// Rows: s and t are these, dotted with (u, v, 1).
+        matrix: [[f32; 3]; 2],
     },
     /// By the direction from the origin of the texture's space: (θ/π, φ/2π), θ from +z, φ from +x toward +y.
     Spherical {

@@ -16,6 +16,10 @@ fn read_as(name: &str, bytes: &[u8], texels: Option<u64>) -> lookfrom_scene::Res
     image::read(Path::new(name), &mut sources).map(|image| (image, sources.warnings.len()))
 }
 
+fn texels_of(image: &Image) -> Vec<[f32; 3]> {
+    image.texels().collect()
+}
+
 fn gradient() -> RgbImage {
     RgbImage::from_fn(7, 5, |x, y| ::image::Rgb([(x * 40) as u8, (y * 60) as u8, 128]))
 }
@@ -43,17 +47,22 @@ fn every_lossless_format_gives_the_same_linear_colors() {
     ] {
         let bytes = encode(&picture, format);
         let (read, _) = read_as(name, &bytes, None).expect(name);
-        assert_eq!((read.width, read.height, &read.texels), (7, 5, &expected), "{name}");
+        assert_eq!((read.width, read.height, texels_of(&read)), (7, 5, expected.clone()), "{name}");
         // The content tells, not the extension; only TGA has no mark.
         if format != ImageFormat::Tga {
-            assert_eq!(read_as("a.jpg", &bytes, None).expect(name).0.texels, expected, "{name} named .jpg");
+            assert_eq!(
+                texels_of(&read_as("a.jpg", &bytes, None).expect(name).0),
+                expected,
+                "{name} named .jpg"
+            );
         }
     }
     for format in [ImageFormat::Jpeg, ImageFormat::Gif] {
         let (read, _) = read_as("a", &encode(&picture, format), None).expect("lossy formats are read");
         assert_eq!((read.width, read.height), (7, 5));
+        let found = texels_of(&read);
         let differences =
-            read.texels.as_flattened().iter().zip(expected.as_flattened()).map(|(a, b)| (a - b).abs());
+            found.as_flattened().iter().zip(expected.as_flattened()).map(|(a, b)| (a - b).abs());
         assert!(differences.sum::<f32>() / (7.0 * 5.0 * 3.0) < 0.03, "{format:?}");
     }
 }
@@ -62,17 +71,35 @@ fn every_lossless_format_gives_the_same_linear_colors() {
 fn sixteen_bits_and_data_and_alpha() {
     let deep = DynamicImage::from(DynamicImage::from(gradient()).into_rgb16());
     let (read, _) = read_as("a.png", &encode(&deep, ImageFormat::Png), None).expect("16-bit PNG");
-    assert!((read.texels[0][2] - image::linear_from_srgb(128.0 / 255.0)).abs() < 1e-6);
+    assert!((read.texel(0)[2] - image::linear_from_srgb(128.0 / 255.0)).abs() < 1e-6);
 
     let clear = DynamicImage::from(RgbaImage::from_pixel(2, 2, ::image::Rgba([255, 0, 128, 0])));
     let bytes = encode(&clear, ImageFormat::Png);
     let (read, _) = read_as("a.png", &bytes, None).expect("alpha is dropped");
-    assert_eq!(read.texels[0][0], 1.0);
+    assert_eq!(read.texel(0)[0], 1.0);
 
     let mut files = Memory::default();
-    files.0.insert("a.png".into(), bytes);
+    files.0.insert("a.png".into(), bytes.clone());
     let data = image::read_data(Path::new("a.png"), &mut Sources::new(&files)).expect("data");
-    assert_eq!(data.texels[3], [1.0, 0.0, 128.0 / 255.0]);
+    assert_eq!(data.texel(3), [1.0, 0.0, 128.0 / 255.0]);
+
+    // From memory, alpha with it: as it is, whatever the curve.
+    let mut sources = Sources::new(&files);
+    let mut decoded = |picture: &DynamicImage, format| {
+        image::decode(&encode(picture, format), "embedded", image::Encoding::Srgb, &mut sources)
+            .expect("whole")
+    };
+    let half = DynamicImage::from(RgbaImage::from_pixel(2, 2, ::image::Rgba([188, 0, 0, 51])));
+    for picture in [&half, &DynamicImage::from(half.clone().into_rgba16())] {
+        for format in [ImageFormat::Png, ImageFormat::Tiff] {
+            let read = decoded(picture, format);
+            assert!(read.has_alpha() && (read.alpha(3) - 0.2).abs() < 1e-6, "{format:?}");
+            assert!((read.texel(3)[0] - image::linear_from_srgb(188.0 / 255.0)).abs() < 1e-6);
+        }
+    }
+    assert!(!decoded(&DynamicImage::from(gradient()), ImageFormat::Png).has_alpha());
+    let error = image::decode(b"nothing", "/images/3", image::Encoding::Linear, &mut sources).unwrap_err();
+    assert!(error.to_string().starts_with("/images/3: "), "{error}");
 }
 
 #[test]
@@ -81,7 +108,7 @@ fn light_is_kept_as_it_is() {
         .map(|i| [i as f32 * 0.25, libm::exp2f((i % 60) as f32 - 30.0), 1.0 / (1.0 + i as f32)])
         .collect();
     let pfm = image::encode_pfm(40, 33, &texels).expect("PFM");
-    assert_eq!(read_as("a.pfm", &pfm, None).expect("PFM").0.texels, texels);
+    assert_eq!(texels_of(&read_as("a.pfm", &pfm, None).expect("PFM").0), texels);
 
     let planes = [0, 1, 2].map(|c| texels.iter().map(|texel| texel[c]).collect::<Vec<f32>>());
     let depth: Vec<f32> = (0..40 * 33).map(|i| i as f32).collect();
@@ -94,7 +121,7 @@ fn light_is_kept_as_it_is() {
     let notes =
         [("scene".to_owned(), "hero.toml".to_owned()), ("comments".to_owned(), "für später".to_owned())];
     let exr = image::encode_exr(40, 33, &channels, &notes).expect("EXR");
-    assert_eq!(read_as("a.exr", &exr, None).expect("EXR").0.texels, texels);
+    assert_eq!(texels_of(&read_as("a.exr", &exr, None).expect("EXR").0), texels);
 
     let mut files = Memory::default();
     files.0.insert("a.exr".into(), exr.clone());
@@ -109,7 +136,7 @@ fn light_is_kept_as_it_is() {
     // Shared exponents keep 8 bits of the largest primary.
     let hdr = image::encode_hdr(40, 33, &texels).expect("HDR");
     let (read, _) = read_as("a.hdr", &hdr, None).expect("HDR");
-    for (a, b) in read.texels.iter().zip(&texels) {
+    for (a, b) in texels_of(&read).iter().zip(&texels) {
         let largest = b.iter().fold(0.0_f32, |most, &value| most.max(value));
         assert!((0..3).all(|c| (a[c] - b[c]).abs() <= largest / 100.0), "{a:?} {b:?}");
     }
@@ -185,7 +212,7 @@ fn errors_say_what_to_do() {
     );
     let nan = image::encode_pfm(2, 1, &[[f32::NAN, 1.0, f32::INFINITY], [0.5; 3]]).expect("PFM");
     let (read, warnings) = read_as("a.pfm", &nan, None).expect("bad values are survived");
-    assert_eq!((read.texels[0], warnings), ([0.0, 1.0, 0.0], 1));
+    assert_eq!((read.texel(0), warnings), ([0.0, 1.0, 0.0], 1));
 }
 
 fn samples() -> Vec<Vec<u8>> {

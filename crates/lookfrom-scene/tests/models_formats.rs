@@ -46,7 +46,7 @@ impl Model {
         let Color::Texture(texture) = color else { panic!("no texture: {color:?}") };
         match &self.scene.textures[texture.index()].kind {
             TextureKind::Image { image, mapping: Mapping::Uv { scale, offset }, wrap, .. } => {
-                (self.scene.images[image.index()].texels.clone(), *scale, *offset, *wrap)
+                (self.scene.images[image.index()].texels().collect(), *scale, *offset, wrap[0])
             }
             other => panic!("no picture: {other:?}"),
         }

@@ -271,7 +271,7 @@ fn textures_of_numbers_prefer_the_opacity_of_a_picture() {
     let scene = load::scene(Path::new("a.pbrt"), &mut Sources::new(&memory))
         .unwrap_or_else(|error| panic!("{error}"));
     let alpha = [[1.0; 3], [0.0; 3]];
-    assert_eq!((scene.images.len(), &scene.images[0].texels[..]), (2, &alpha[..]));
+    assert_eq!((scene.images.len(), scene.images[0].texels().collect::<Vec<_>>()), (2, alpha.to_vec()));
     assert!(matches!(scene.shapes[0].alpha, Some(Scalar::Texture(_))));
 }
 

@@ -259,7 +259,7 @@ illuminates = false
     else {
         panic!("a picture")
     };
-    assert_eq!(scene.images[image.index()].texels, [[1.0, 0.0, 0.0]]);
+    assert_eq!(scene.images[image.index()].texels().collect::<Vec<_>>(), [[1.0, 0.0, 0.0]]);
     assert_eq!(world_from_light.transform_vector3(DVec3::Z), DVec3::X);
 }
 

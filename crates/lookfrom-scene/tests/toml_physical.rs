@@ -136,9 +136,9 @@ type = "dots"
     let relief = |name: &str| scene.materials.iter().find(|m| m.name == name).expect("a material").relief;
     assert_eq!(relief("plastic"), Relief::Bump(Scalar::Texture(spots)));
     let Relief::NormalMap(normals) = relief("paper") else { panic!("a normal map") };
-    assert_eq!(scene.images[normals.index()].texels[0][0], 128.0 / 255.0);
+    assert_eq!(scene.images[normals.index()].texel(0)[0], 128.0 / 255.0);
     let linear = image::linear_from_srgb(128.0 / 255.0);
-    assert!(scene.images.iter().any(|image| image.texels[0][0] == linear));
+    assert!(scene.images.iter().any(|image| image.texel(0)[0] == linear));
 }
 
 #[test]
@@ -332,7 +332,7 @@ type = "wrinkled"
     else {
         panic!("a picture on a plane")
     };
-    assert_eq!(scene.images[image.index()].texels[0][0], 128.0 / 255.0);
+    assert_eq!(scene.images[image.index()].texel(0)[0], 128.0 / 255.0);
     assert_eq!((axes, offset, scale), ([Vec3::X, 3.0 * Vec3::Z], [1.0, 2.0], 0.5));
     // The pole is above the middle.
     let TextureKind::Dots { mapping: Mapping::Spherical { texture_from_world }, .. } = *texture("b") else {

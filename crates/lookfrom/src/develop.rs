@@ -37,7 +37,7 @@ fn display(rgb: [f32; 3], scale: f64, tonemap: Tonemap) -> [f32; 3] {
     // A NaN is not greater than 0; the bound keeps infinities out of the quotients.
     let [r, g, b] = rgb.map(|light| if light > 0.0 { (f64::from(light) * scale).min(1e100) } else { 0.0 });
     let mapped = match tonemap {
-        Tonemap::Clamp => [r, g, b],
+        Tonemap::Clamp | Tonemap::PbrNeutral | Tonemap::Aces | Tonemap::Agx => [r, g, b],
         Tonemap::Reinhard => {
             let luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
             [r, g, b].map(|x| x / (1.0 + luminance))

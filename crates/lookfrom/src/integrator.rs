@@ -94,6 +94,13 @@ impl Path {
         Reference { point: self.departure.point.as_dvec3(), n: self.departure.n }
     }
 
+    /// Whether it goes through a surface as if that were not there: by its alpha, where that is a matter of chance for
+    /// `u ∈ [0, 1)`, or on its way from the camera because it met the back of what has only a front.
+    fn goes_through(&self, world: &World, surface: &Surface, u: f32) -> bool {
+        let is_back = surface.single_sided && !surface.front && !self.departure.blurred;
+        is_back || !world.is_there(surface, u)
+    }
+
     /// The same path behind a surface that is not there.
     fn passed(&self, surface: &Surface) -> Self {
         let direction = Vec3::from_array(self.ray.direction);
@@ -115,6 +122,11 @@ pub struct Numbers {
 }
 
 impl Numbers {
+    /// A number in `[0, 1)` for whether a surface is there, for those who have no purposes of their own.
+    fn presence(&self, world: &World, surface: &Surface) -> f32 {
+        if world.is_chancy(surface) { self.two(u32::MAX)[0] } else { 0.0 }
+    }
+
     /// Two numbers in `[0, 1)` for one purpose at this ray.
     pub fn two(&self, purpose: u32) -> [f32; 2] {
         self.sampler.two(self.sample, hash::pair(self.address, u64::from(purpose)) as u32)

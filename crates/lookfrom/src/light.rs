@@ -155,6 +155,7 @@ impl Light {
     fn is_asked(&self) -> bool {
         match self {
             Self::Environment(environment) => environment.illuminates && environment.is_uneven(),
+            Self::Area(light) => light.is_asked(),
             _ => true,
         }
     }

@@ -177,6 +177,8 @@ impl At<'_> {
                     }
                 }
             }
+            MaterialKind::Principled(look) => Bsdf::diffuse(self.albedo(look.base_color)),
+            MaterialKind::Unlit { color } => Bsdf::diffuse(self.albedo(*color)),
             // A mixture has been decided by now.
             MaterialKind::Mix { .. } | MaterialKind::Interface => return None,
         })

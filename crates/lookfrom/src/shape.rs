@@ -19,7 +19,7 @@ use lookfrom_bvh::{Hit, Point};
 
 pub use curve::{Curves, SEGMENTS};
 pub use disk::{Disk, Disks};
-pub use mesh::Mesh;
+pub use mesh::{Mesh, VertexData};
 pub use patch::Patches;
 pub use quadric::{Quadric, QuadricKind, Quadrics};
 pub use sphere::{SphereLook, Spheres};
@@ -37,6 +37,10 @@ pub struct Look {
     pub alpha: Option<u32>,
     /// Index into the world's sides, where the surface says what fills space around it.
     pub sides: Option<u32>,
+    /// Index into the world's meshes with further texture coordinates or opacities.
+    pub vertex_data: Option<u32>,
+    /// Whether rays from the camera pass its back faces.
+    pub single_sided: bool,
 }
 
 /// The primitives that share a geometry id of the kernel.
@@ -74,7 +78,8 @@ pub struct FormPoint {
     /// Those of the smoothed surface: what relief is raised on, and what brushed metal is brushed along. Across `ns`
     /// where there is smoothing, otherwise the same as `dpdu`.
     pub shading_dpdu: DVec3,
-    /// By the second one.
+    /// By the second one. Where the mesh has tangents or normals it is across both: along `ns × shading_dpdu`, or against
+    /// it where the mesh's tangents say so (mirrored texture coordinates).
     pub shading_dpdv: DVec3,
     /// The mesh's own linear colour; white where it has none.
     pub color: [f32; 3],

@@ -25,7 +25,8 @@ pub struct Surface {
     /// Those of the smoothed surface, for relief and brushed metal: where there is smoothing, across `ns` and with
     /// the mesh's tangents in place of `dpdu` where it has some.
     pub shading_dpdu: Vec3,
-    /// By the second one.
+    /// By the second one. Where the mesh has tangents, with it and `ns` this is the tangent frame that normal maps mean:
+    /// along `ns × shading_dpdu`, or against it where the tangents say that texture coordinates are mirrored.
     pub shading_dpdv: Vec3,
     /// The mesh's own linear colour here; white where it has none.
     pub color: [f32; 3],
@@ -37,6 +38,10 @@ pub struct Surface {
     pub material: u32,
     /// Index into the world's area lights, where the surface shines.
     pub light: Option<u32>,
+    /// Whether rays from the camera pass its back faces.
+    pub single_sided: bool,
+    /// Index into the world's meshes with further texture coordinates or opacities, where this is one.
+    pub vertex_data: Option<u32>,
     /// The part of the surface that is there; `None` is all of it.
     pub alpha: Option<Scalar>,
     /// What fills space on both sides, where the surface says so.

@@ -18,13 +18,15 @@ use glam::{DVec3, Vec2, Vec3};
 use lookfrom_scene::image::Image;
 use lookfrom_scene::material::{Color, Scalar};
 use lookfrom_scene::scene::{CurveId, TextureId};
+use lookfrom_scene::shape::Mesh;
 use lookfrom_scene::spectrum::Curve;
-use lookfrom_scene::texture::TextureKind;
+use lookfrom_scene::texture::{Channel, TextureKind, Wrap};
 
 pub use self::mapping::sphere_uv;
 pub use self::picture::look_up;
 
 use self::constants::Constants;
+use self::picture::look_up_channel;
 use self::reading::{Lifted, Number, Reading, Rgb};
 use crate::color::{Dense, Wavelengths};
 use crate::noise::{self, perlin};
@@ -69,15 +71,22 @@ struct Measured {
     emission: [f32; 3],
 }
 
+/// How many sets of texture coordinates there are besides the first.
+pub const MORE_UV_SETS: usize = Mesh::MOST_UV_SETS - 1;
+
 /// What a texture may depend on.
 #[derive(Clone, Copy, Debug)]
 pub struct TexturePoint {
     /// Texture coordinates.
     pub uv: Vec2,
+    /// Those of further sets.
+    pub more_uvs: [Vec2; MORE_UV_SETS],
     /// In the world (not render space).
     pub world: DVec3,
     /// The mesh's own linear colour.
     pub color: [f32; 3],
+    /// The mesh's own opacity.
+    pub opacity: f32,
     /// Normal in the world, of unit length; on which side does not matter. pbrt-v4 takes the geometric one.
     pub n: Vec3,
 }
@@ -95,7 +104,14 @@ impl Lanes {
 
 impl TexturePoint {
     /// For colours that are the same everywhere.
-    pub const NOWHERE: Self = Self { uv: Vec2::ZERO, world: DVec3::ZERO, color: [1.0; 3], n: Vec3::Z };
+    pub const NOWHERE: Self = Self {
+        uv: Vec2::ZERO,
+        more_uvs: [Vec2::ZERO; MORE_UV_SETS],
+        world: DVec3::ZERO,
+        color: [1.0; 3],
+        opacity: 1.0,
+        n: Vec3::Z,
+    };
 }
 
 impl Textures {
@@ -161,6 +177,27 @@ impl Textures {
         self.number(scalar, at)
     }
 
+    /// Whether a number is 1 everywhere on a mesh with or without opacities: as far as that can be told without looking at
+    /// texels.
+    pub fn is_one(&self, scalar: Scalar, has_opacities: bool) -> bool {
+        let Scalar::Texture(id) = scalar else { return scalar == Scalar::Value(1.0) };
+        let is_one = |color: Color| match color {
+            Color::Value(rgb) => rgb == [1.0; 3],
+            Color::Curve(_) => false,
+            Color::Texture(id) => self.is_one(Scalar::Texture(id), has_opacities),
+        };
+        match &self.kinds[id.index()] {
+            TextureKind::Image { image, wrap, channel: Channel::Alpha, scale, invert: false, .. } => {
+                *scale == 1.0 && !wrap.contains(&Wrap::Black) && !self.images[image.index()].has_alpha()
+            }
+            TextureKind::VertexAlpha => !has_opacities,
+            TextureKind::Product { a, b } => is_one(*a) && is_one(*b),
+            TextureKind::Scale { color, by } => is_one(*color) && self.is_one(*by, has_opacities),
+            TextureKind::Threshold { value, edge } => *edge <= 1.0 && self.is_one(*value, has_opacities),
+            _ => false,
+        }
+    }
+
     fn number(&self, scalar: Scalar, at: &TexturePoint) -> f32 {
         match scalar {
             Scalar::Value(value) => value,
@@ -179,11 +216,15 @@ impl Textures {
     fn texture<R: Reading>(&self, id: TextureId, at: &TexturePoint, reading: &R) -> R::Value {
         let space = |mapping| mapping::coordinates(mapping, at).as_vec3();
         match &self.kinds[id.index()] {
-            TextureKind::Image { image, mapping, wrap, filter, scale, invert } => {
+            TextureKind::Image { image, mapping, wrap, filter, channel, scale, invert } => {
                 let place = space(mapping);
                 // v runs up, rows run down
                 let st = [place.x, 1.0 - place.y];
-                let rgb = look_up(&self.images[image.index()], st, [*wrap; 2], *filter);
+                let image = &self.images[image.index()];
+                let rgb = match channel {
+                    Channel::Rgb => look_up(image, st, *wrap, *filter),
+                    channel => [look_up_channel(image, *channel, st, *wrap, *filter); 3],
+                };
                 reading.texel(rgb.map(|c| scale * c), *invert, *filter)
             }
             TextureKind::Checker { even, odd, mapping } => {
@@ -231,6 +272,13 @@ impl Textures {
             }
             TextureKind::VertexColor { tint } => {
                 reading.color(std::array::from_fn(|c| at.color[c] * tint[c]))
+            }
+            TextureKind::VertexAlpha => reading.number(at.opacity),
+            TextureKind::Product { a, b } => {
+                self.read(*a, at, reading) * self.read(*b, at, &reading.of_factor())
+            }
+            TextureKind::Threshold { value, edge } => {
+                reading.number(if self.number(*value, at) >= *edge { 1.0 } else { 0.0 })
             }
         }
     }

@@ -7,6 +7,8 @@ mod compile;
 mod lights;
 mod place;
 
+use std::sync::Arc;
+
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Bvh, Hit, Left, NONE, Ray};
 use lookfrom_scene::material::{Color, MaterialKind, Scalar};
@@ -16,7 +18,7 @@ use crate::camera::{Camera, CameraRay};
 use crate::light::{Coverage, Light, LightChoice, Reference};
 use crate::material::{self, Material, Shading};
 use crate::math;
-use crate::shape::{Form, FormPoint};
+use crate::shape::{Form, FormPoint, Mesh, VertexData};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::texture::{Lanes, TexturePoint, Textures, Usage};
@@ -44,6 +46,8 @@ pub struct World {
     pub media: Vec<Medium>,
     /// What surfaces say is on their sides, see [`Look::sides`](crate::shape::Look::sides).
     pub sides: Vec<Sides>,
+    /// Meshes with further texture coordinates or opacities, see [`Look::vertex_data`](crate::shape::Look::vertex_data).
+    pub vertex_data: Vec<Arc<Mesh>>,
     /// Colours over surfaces.
     pub textures: Textures,
     /// Lights to be sampled.
@@ -128,6 +132,8 @@ impl World {
             front: ng.dot(wo) > 0.0,
             material: look.material,
             light: look.light,
+            single_sided: look.single_sided,
+            vertex_data: look.vertex_data,
             alpha: look.alpha.map(|index| self.alphas[index as usize]),
             sides: look.sides.map(|index| self.sides[index as usize]),
             shape: look.shape,
@@ -140,7 +146,18 @@ impl World {
     /// What a texture may depend on at a surface.
     pub fn texture_point(&self, surface: &Surface) -> TexturePoint {
         let world = self.origin + DVec3::from_array(surface.point.position);
-        TexturePoint { uv: surface.uv, world, color: surface.color, n: surface.ng.as_vec3() }
+        let point = TexturePoint {
+            uv: surface.uv,
+            world,
+            color: surface.color,
+            n: surface.ng.as_vec3(),
+            ..TexturePoint::NOWHERE
+        };
+        let Some(index) = surface.vertex_data else { return point };
+        let Vec2 { x: u, y: v } = surface.on_primitive;
+        let mesh = &self.vertex_data[index as usize];
+        let VertexData { more_uvs, opacity } = mesh.vertex_data(surface.primitive as usize, u, v);
+        TexturePoint { more_uvs, opacity, ..point }
     }
 
     /// Whether a surface is where a ray met it: by its alpha, where that is a matter of chance for `u ∈ [0, 1)`.

@@ -126,12 +126,8 @@ intensity = 4
 fn room(integrator: Integrator, color: ColorMode) -> Scene {
     let mut scene = scene(ROOM);
     let image = ImageId(scene.images.len() as u32);
-    scene.images.push(Image {
-        name: "sky".into(),
-        width: 16,
-        height: 8,
-        texels: (0..128).map(|k| if k == 37 { [60.0, 50.0, 30.0] } else { [0.3, 0.4, 0.5] }).collect(),
-    });
+    let texels = (0..128).map(|k| if k == 37 { [60.0, 50.0, 30.0] } else { [0.3, 0.4, 0.5] }).collect();
+    scene.images.push(Image::from_linear("sky", 16, 8, texels));
     let sky = Sky::Image { image, scale: [1.0; 3], world_from_light: glam::DMat4::IDENTITY };
     scene.lights.push(Light {
         name: Some("sky".into()),

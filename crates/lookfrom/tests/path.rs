@@ -229,12 +229,8 @@ fn the_way_of_choosing_lights_does_not_matter() {
 /// A picture of the surroundings with one bright spot: found by asking it and by chance alike.
 #[test]
 fn a_picture_all_around_lights_as_it_is_seen() {
-    let image = lookfrom_scene::image::Image {
-        name: String::new(),
-        width: 16,
-        height: 16,
-        texels: (0..256).map(|k| if k == 133 { [50.0, 20.0, 10.0] } else { [0.2; 3] }).collect(),
-    };
+    let texels = (0..256).map(|k| if k == 133 { [50.0, 20.0, 10.0] } else { [0.2; 3] }).collect();
+    let image = lookfrom_scene::image::Image::from_linear("", 16, 16, texels);
     let lit = |octahedral: bool, integrator| {
         let mut scene = furnace(MaterialKind::Diffuse { reflectance: Color::gray(0.7) });
         scene.lights.clear();

@@ -189,7 +189,7 @@ fn a_picture_of_the_surroundings_lights_like_its_integral() {
     ";
     let seen = under_sky(&texels, rest).mean(4, 4);
     // the slow way: midpoints of a fine grid through the same bilinear look-up, by hand
-    let picture = image::Image { name: String::new(), width: 16, height: 8, texels };
+    let picture = image::Image::from_linear("", 16, 8, texels);
     let (columns, rows) = (512, 256);
     let mut expected = [0.0f64; 3];
     for row in 0..rows / 2 {

@@ -282,7 +282,7 @@ fn tangents_and_texture_coordinates_of_meshes_lead_the_derivatives() {
     assert!(smooth.shading_dpdu.dot(smooth.ns).abs() < 1e-6 && smooth.shading_dpdu.x > 0.0);
     assert!(smooth.shading_dpdv.dot(smooth.ns).abs() < 1e-6 && smooth.shading_dpdv.y > 0.0);
 
-    mesh.tangents = vec![Vec3::Y; 3];
+    mesh.tangents = vec![Vec3::Y.extend(1.0); 3];
     let brushed = surface(&mesh);
     assert!(brushed.shading_dpdu.normalize().distance(Vec3::Y) < 1e-6);
 

@@ -81,7 +81,7 @@ fn fireflies_are_spread_only_on_demand() {
     assert!(stage.bytes("off.pfm") == stage.bytes("off2.pfm"));
     let [off, median] = ["off.pfm", "median.pfm"].map(|file| {
         let picture = image::read(&stage.path(file), &mut Sources::new(&Disk)).unwrap();
-        picture.texels.iter().flatten().map(|&light| f64::from(light)).sum::<f64>()
+        picture.texels().flatten().map(f64::from).sum::<f64>()
     });
     assert!((off - median).abs() < 1e-4 * off, "{off} {median}");
 }

@@ -17,7 +17,7 @@ fn what_is_inspected_is_what_is_rendered() {
             assert_eq!(inspection["pixel"], serde_json::json!([x, y]));
             let film = inspection["film"].as_array().unwrap();
             let film: Vec<f32> = film.iter().map(|value| value.as_f64().unwrap() as f32).collect();
-            assert_eq!(film, picture.texels[y * 20 + x], "pixel {x} {y}, {light}");
+            assert_eq!(film, picture.texel(y * 20 + x), "pixel {x} {y}, {light}");
         }
     }
 }

@@ -11,7 +11,7 @@ use ::exr::meta::MetaData;
 use ::exr::meta::attribute::AttributeValue;
 use ::exr::prelude::{ReadChannels, ReadLayers, read as exr_read};
 
-use super::read::check_size;
+use super::read::{Floats, check_size};
 use super::write::check;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, Sources};
@@ -56,7 +56,7 @@ pub fn read_exr(path: &Path, sources: &mut Sources<'_>) -> Result<Channels> {
 }
 
 /// The colours of an OpenEXR file: R, G, B where they are, else Y.
-pub(super) fn decode_rgb(bytes: &[u8], at: &Location, limits: &Limits) -> Result<(u32, u32, Vec<[f32; 3]>)> {
+pub(super) fn decode_rgb(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Floats> {
     let found = decode_channels(bytes, at, limits)?;
     let rgb = ["R", "G", "B"].map(|name| found.channel(name).or_else(|| found.channel("Y")));
     let [Some(r), Some(g), Some(b)] = rgb else {
@@ -68,7 +68,7 @@ pub(super) fn decode_rgb(bytes: &[u8], at: &Location, limits: &Limits) -> Result
         .hint("write the picture again with channels of these names"));
     };
     let texels = r.iter().zip(g).zip(b).map(|((&r, &g), &b)| [r, g, b]).collect();
-    Ok((found.width, found.height, texels))
+    Ok(Floats { width: found.width, height: found.height, texels, alpha: Vec::new() })
 }
 
 fn decode_channels(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Channels> {

@@ -1,5 +1,5 @@
 //! How the bytes of a picture become linear colours. What a file is, its content says; its extension is asked only
-//! where the content has no mark (TGA). Of an animation the first picture is read; alpha is dropped.
+//! where the content has no mark (TGA). Of an animation the first picture is read.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::path::Path;
 use ::image::error::{ImageError, LimitErrorKind};
 use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
-use super::{Image, linear_from_srgb, openexr};
+use super::{Encoding, Image, openexr};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, Sources};
 
@@ -15,14 +15,14 @@ use crate::files::{Limits, Sources};
 const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF";
 
 /// Reads a picture of colours: 8- and 16-bit formats are taken to be sRGB and become linear, formats of floating-point
-/// numbers are linear already. Alpha is dropped. Values that are not finite become 0, with a warning.
+/// numbers are linear already. Values that are not finite become 0, with a warning.
 ///
 /// # Errors
 /// `Io` where the file cannot be read; `Syntax` where its bytes are no whole picture; `Unsupported` where its format
 /// is not known; `Limit` where it has more texels than [`Limits::texels`], which its header is asked before anything is
 /// decoded.
 pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Image> {
-    read_encoded(path, sources, &linear_from_srgb)
+    read_encoded(path, sources, Encoding::Srgb)
 }
 
 /// Reads a picture of numbers (bumps, weights): as [`read`], but 8- and 16-bit values are taken as they are, over 0…1.
@@ -30,26 +30,43 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Image> {
 /// # Errors
 /// As [`read`].
 pub fn read_data(path: &Path, sources: &mut Sources<'_>) -> Result<Image> {
-    read_encoded(path, sources, &|value| value)
+    read_encoded(path, sources, Encoding::Linear)
 }
 
-/// Reads a picture of whatever: as [`read`], but `curve` takes the 0…1 of 8- and 16-bit values to what is kept.
+/// Reads a picture of whatever: as [`read`], but `encoding` takes the 0…1 of 8- and 16-bit values to what is meant.
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_encoded(path: &Path, sources: &mut Sources<'_>, curve: &dyn Fn(f32) -> f32) -> Result<Image> {
-    let at = Location::file(path);
+pub fn read_encoded(path: &Path, sources: &mut Sources<'_>, encoding: Encoding<'_>) -> Result<Image> {
     let bytes = sources.read(path)?;
-    let (width, height, mut texels) = if bytes.starts_with(&openexr::MAGIC) {
-        openexr::decode_rgb(&bytes, &at, &sources.limits)?
-    } else if bytes.starts_with(b"PF") || bytes.starts_with(b"Pf") {
-        decode_pfm(&bytes, &at, &sources.limits)?
+    decode(&bytes, &path.display().to_string(), encoding, sources)
+}
+
+/// The picture that bytes hold, as [`read_encoded`] has it from a file. `name` becomes its own, and stands in messages.
+///
+/// # Errors
+/// As [`read`], without `Io`.
+pub fn decode(bytes: &[u8], name: &str, encoding: Encoding<'_>, sources: &mut Sources<'_>) -> Result<Image> {
+    let at = Location::file(Path::new(name));
+    let limits = sources.limits;
+    // Formats that the crate `image` does not read are told by their first bytes.
+    let floats = if bytes.starts_with(&openexr::MAGIC) {
+        openexr::decode_rgb(bytes, &at, &limits)?
+    } else if is_pfm(bytes) {
+        decode_pfm(bytes, &at, &limits)?
     } else {
-        let picture = decode(&bytes, path, &at, &sources.limits)?;
-        (picture.width(), picture.height(), linear(picture, curve))
+        match decode_common(bytes, Path::new(name), &at, &limits)? {
+            picture if is_deep(&picture) => floats_of(picture, encoding),
+            picture => {
+                let (width, height) = (picture.width(), picture.height());
+                let texels = picture.into_rgba8().pixels().map(|pixel| pixel.0).collect();
+                return Ok(Image::from_bytes(name, width, height, texels, encoding));
+            }
+        }
     };
+    let Floats { width, height, mut texels, mut alpha } = floats;
     let mut bad = 0_usize;
-    for value in texels.iter_mut().flatten() {
+    for value in texels.iter_mut().flatten().chain(&mut alpha) {
         if !value.is_finite() {
             *value = 0.0;
             bad += 1;
@@ -58,35 +75,39 @@ pub fn read_encoded(path: &Path, sources: &mut Sources<'_>, curve: &dyn Fn(f32) 
     if bad > 0 {
         sources.warn(&at, format!("{bad} values are not finite numbers; each is taken as 0"));
     }
-    Ok(Image { name: path.display().to_string(), width, height, texels })
+    Ok(Image::from_linear_and_alpha(name, width, height, texels, alpha))
 }
 
-/// The opacity (alpha) of a picture, as greys, where it has one that is not 1 everywhere. `curve` is as in
+/// The opacity (alpha) of a picture, as greys, where it has one that is not 1 everywhere. `encoding` is as in
 /// [`read_encoded`]; an EXR's opacity is not looked at.
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_opacity(
-    path: &Path,
-    sources: &mut Sources<'_>,
-    curve: &dyn Fn(f32) -> f32,
-) -> Result<Option<Image>> {
+pub fn read_opacity(path: &Path, sources: &mut Sources<'_>, encoding: Encoding<'_>) -> Result<Option<Image>> {
     let at = Location::file(path);
     let bytes = sources.read(path)?;
-    if bytes.starts_with(&openexr::MAGIC) || bytes.starts_with(b"PF") || bytes.starts_with(b"Pf") {
+    if bytes.starts_with(&openexr::MAGIC) || is_pfm(&bytes) {
         return Ok(None);
     }
-    let picture = decode(&bytes, path, &at, &sources.limits)?;
+    let picture = decode_common(&bytes, path, &at, &sources.limits)?;
     if !picture.color().has_alpha() {
         return Ok(None);
     }
-    let (width, height) = (picture.width(), picture.height());
-    let alphas: Vec<f32> = picture.into_rgba32f().pixels().map(|pixel| pixel.0[3]).collect();
-    if alphas.iter().all(|&alpha| alpha == 1.0) {
+    let (name, width, height) = (path.display().to_string(), picture.width(), picture.height());
+    if is_deep(&picture) {
+        let alphas: Vec<f32> = picture.into_rgba32f().pixels().map(|pixel| pixel.0[3]).collect();
+        if alphas.iter().all(|&alpha| alpha == 1.0) {
+            return Ok(None);
+        }
+        let texels = alphas.into_iter().map(|alpha| [encoding.decode(alpha); 3]).collect();
+        return Ok(Some(Image::from_linear(name, width, height, texels)));
+    }
+    let texels = picture.into_rgba8();
+    if texels.pixels().all(|pixel| pixel.0[3] == 255) {
         return Ok(None);
     }
-    let texels = alphas.into_iter().map(|alpha| [curve(alpha); 3]).collect();
-    Ok(Some(Image { name: path.display().to_string(), width, height, texels }))
+    let texels = texels.pixels().map(|pixel| pixel.0[3]).map(|a| [a, a, a, 255]).collect();
+    Ok(Some(Image::from_bytes(name, width, height, texels, encoding)))
 }
 
 /// Checks a header's claim before memory is asked for.
@@ -105,9 +126,19 @@ pub(super) fn check_size(width: u64, height: u64, at: &Location, limits: &Limits
     Ok(())
 }
 
-type Texels = (u32, u32, Vec<[f32; 3]>);
+/// A picture of 32-bit numbers; no alpha where it is opaque.
+pub(super) struct Floats {
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) texels: Vec<[f32; 3]>,
+    pub(super) alpha: Vec<f32>,
+}
 
-fn decode(bytes: &[u8], path: &Path, at: &Location, limits: &Limits) -> Result<DynamicImage> {
+fn is_pfm(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"PF") || bytes.starts_with(b"Pf")
+}
+
+fn decode_common(bytes: &[u8], path: &Path, at: &Location, limits: &Limits) -> Result<DynamicImage> {
     let fault = |error: &ImageError| wrong(error, bytes, at, limits);
     let mut reader = ImageReader::new(Cursor::new(bytes));
     if let Ok(format) = ImageFormat::from_path(path) {
@@ -126,24 +157,40 @@ fn decode(bytes: &[u8], path: &Path, at: &Location, limits: &Limits) -> Result<D
     DynamicImage::from_decoder(decoder).map_err(|error| fault(&error))
 }
 
-/// Linear colours; `curve` is for whole numbers.
-fn linear(picture: DynamicImage, curve: &dyn Fn(f32) -> f32) -> Vec<[f32; 3]> {
-    match picture {
-        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
-            picture.into_rgb32f().pixels().map(|pixel| pixel.0).collect()
+/// Whether a picture is finer than 8 bits.
+fn is_deep(picture: &DynamicImage) -> bool {
+    !matches!(
+        picture,
+        DynamicImage::ImageLuma8(_)
+            | DynamicImage::ImageLumaA8(_)
+            | DynamicImage::ImageRgb8(_)
+            | DynamicImage::ImageRgba8(_)
+    )
+}
+
+/// Linear colours; `encoding` is for whole numbers.
+fn floats_of(picture: DynamicImage, encoding: Encoding<'_>) -> Floats {
+    let (width, height) = (picture.width(), picture.height());
+    let has_alpha = picture.color().has_alpha();
+    let (mut texels, mut alpha) = (Vec::new(), Vec::new());
+    if matches!(picture, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_)) {
+        if has_alpha {
+            let pixels = picture.into_rgba32f();
+            texels.extend(pixels.pixels().map(|pixel| [pixel.0[0], pixel.0[1], pixel.0[2]]));
+            alpha.extend(pixels.pixels().map(|pixel| pixel.0[3]));
+        } else {
+            texels.extend(picture.into_rgb32f().pixels().map(|pixel| pixel.0));
         }
-        DynamicImage::ImageLuma16(_)
-        | DynamicImage::ImageLumaA16(_)
-        | DynamicImage::ImageRgb16(_)
-        | DynamicImage::ImageRgba16(_) => {
-            let table: Vec<f32> = (0..=u16::MAX).map(|value| curve(f32::from(value) / 65535.0)).collect();
-            picture.into_rgb16().pixels().map(|pixel| pixel.0.map(|v| table[usize::from(v)])).collect()
-        }
-        _ => {
-            let table: Vec<f32> = (0..=u8::MAX).map(|value| curve(f32::from(value) / 255.0)).collect();
-            picture.into_rgb8().pixels().map(|pixel| pixel.0.map(|v| table[usize::from(v)])).collect()
-        }
+        return Floats { width, height, texels, alpha };
     }
+    let table: Vec<f32> = (0..=u16::MAX).map(|value| encoding.decode(f32::from(value) / 65535.0)).collect();
+    let pixels = picture.into_rgba16();
+    let color = |[r, g, b, _]: [u16; 4]| [r, g, b].map(|value| table[usize::from(value)]);
+    texels.extend(pixels.pixels().map(|pixel| color(pixel.0)));
+    if has_alpha {
+        alpha.extend(pixels.pixels().map(|pixel| f32::from(pixel.0[3]) / 65535.0));
+    }
+    Floats { width, height, texels, alpha }
 }
 
 /// In our words what the decoder found.
@@ -172,7 +219,7 @@ fn wrong(error: &ImageError, bytes: &[u8], at: &Location, limits: &Limits) -> Er
 
 /// Portable float map: `PF` (colour) or `Pf` (grey), width, height, a scale whose sign gives the byte order, then
 /// 32-bit numbers, bottom row first.
-fn decode_pfm(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Texels> {
+fn decode_pfm(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Floats> {
     let bad = |message: String| {
         Error::syntax(at, message)
             .hint("a PFM file starts with `PF`, width, height and scale, each before one space")
@@ -211,5 +258,5 @@ fn decode_pfm(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Texels> {
             [value(0), value(1), value(2)]
         })
         .collect();
-    Ok((width, height, texels))
+    Ok(Floats { width, height, texels, alpha: Vec::new() })
 }

@@ -7,7 +7,7 @@ use crate::files::Sources;
 use crate::image::{self, Image};
 use crate::material::{Color, Material, MaterialKind, Whitted};
 use crate::scene::{ImageId, MaterialId, Scene, TextureId};
-use crate::texture::{Mapping, TexelFilter, Texture, TextureKind, Wrap};
+use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
 
 /// The path of a file that is named, with `/` between folders, in the file at `path`.
 pub(crate) fn beside(path: &Path, name: &str) -> PathBuf {
@@ -32,7 +32,15 @@ pub(crate) fn read_image(path: &Path, name: &str, sources: &mut Sources<'_>) -> 
 /// A picture over uv, bilinear.
 pub(crate) fn picture(image: ImageId, scale: [f32; 2], offset: [f32; 2], wrap: Wrap) -> TextureKind {
     let mapping = Mapping::Uv { scale, offset };
-    TextureKind::Image { image, mapping, wrap, filter: TexelFilter::Bilinear, scale: 1.0, invert: false }
+    TextureKind::Image {
+        image,
+        mapping,
+        wrap: [wrap; 2],
+        filter: TexelFilter::Bilinear,
+        channel: Channel::Rgb,
+        scale: 1.0,
+        invert: false,
+    }
 }
 
 /// Adds a picture.

@@ -273,16 +273,11 @@ impl Looks {
         if left == 0 {
             return Err(too_many());
         }
-        let mut image = read_image(library, name, sources).map_err(|error| error.message)?;
-        if image.texels.len() as u64 > left {
+        let image = read_image(library, name, sources).map_err(|error| error.message)?;
+        if image.len() as u64 > left {
             return Err(too_many());
         }
-        self.texels += image.texels.len() as u64;
-        if tint != WHITE {
-            for texel in &mut image.texels {
-                *texel = [texel[0] * tint[0], texel[1] * tint[1], texel[2] * tint[2]];
-            }
-        }
-        Ok(image)
+        self.texels += image.len() as u64;
+        Ok(if tint == WHITE { image } else { image.tinted(tint) })
     }
 }

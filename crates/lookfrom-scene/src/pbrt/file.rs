@@ -111,7 +111,7 @@ impl Reader<'_, '_> {
         let (files, limits) = (self.sources.files, self.sources.limits);
         let paths: Vec<&PathBuf> = models.iter().map(|(path, _)| path).collect();
         let read = |path: &&PathBuf| {
-            let mut sources = Sources { files, limits, warnings: Vec::new() };
+            let mut sources = Sources { limits, ..Sources::new(files) };
             let mesh = mesh(path, &mut sources);
             (mesh, sources.warnings)
         };

@@ -19,14 +19,21 @@ impl Reader<'_, '_> {
         p.ignore(&["faceIndices"]);
         let positions = points(p)?;
         let triangles = faces::<3>(p, positions.len())?;
+        // pbrt's v is along normal × tangent in the world, whatever the transform mirrors.
+        let mirrors = self.state.matrix.determinant() < 0.0;
+        let handedness = if mirrors == self.state.reverse_orientation { 1.0 } else { -1.0 };
         let mesh = Mesh {
             name: String::new(),
             normals: self.one_a_vertex(p, "N", p.vectors("N", Kind::Normal)?, positions.len()),
-            tangents: self.one_a_vertex(p, "S", p.vectors("S", Kind::Vector3)?, positions.len()),
+            tangents: self
+                .one_a_vertex(p, "S", p.vectors("S", Kind::Vector3)?, positions.len())
+                .into_iter()
+                .map(|tangent| tangent.extend(handedness))
+                .collect(),
             uvs: self.uvs(p, positions.len())?,
             positions,
             triangles,
-            colors: Vec::new(),
+            ..Mesh::default()
         };
         Ok(self.push_mesh(mesh))
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::Reader;
 use super::text::Place;
 use crate::error::Result;
-use crate::image::{self, Image, linear_from_srgb};
+use crate::image::{self, Encoding, Image};
 use crate::scene::ImageId;
 
 impl Reader<'_, '_> {
@@ -15,9 +15,9 @@ impl Reader<'_, '_> {
         if let Some(&id) = self.images.get(&key) {
             return Ok(id);
         }
-        let curve = curve(encoding, place)?;
-        let opacity =
-            image::read_opacity(&key.0, self.sources, &*curve).map_err(|error| place.blame(error))?;
+        let opacity = with_encoding(encoding, place, |encoding| {
+            image::read_opacity(&key.0, self.sources, encoding).map_err(|error| place.blame(error))
+        })?;
         let Some(opacity) = opacity else { return self.picture(name, encoding, place) };
         Ok(self.push_picture(key, opacity))
     }
@@ -34,8 +34,9 @@ impl Reader<'_, '_> {
         if let Some(&id) = self.images.get(&key) {
             return Ok(id);
         }
-        let curve = curve(encoding, place)?;
-        let image = image::read_encoded(&path, self.sources, &*curve).map_err(|error| place.blame(error))?;
+        let image = with_encoding(encoding, place, |encoding| {
+            image::read_encoded(&path, self.sources, encoding).map_err(|error| place.blame(error))
+        })?;
         Ok(self.push_picture(key, image))
     }
 
@@ -47,14 +48,18 @@ impl Reader<'_, '_> {
     }
 }
 
-/// What an encoding does to the 0…1 of whole numbers.
-fn curve(encoding: &str, place: &Place) -> Result<Box<dyn Fn(f32) -> f32>> {
+/// What `read` makes of the encoding of that name.
+fn with_encoding<T>(
+    encoding: &str,
+    place: &Place,
+    read: impl FnOnce(Encoding<'_>) -> Result<T>,
+) -> Result<T> {
     match encoding.split_once(' ') {
-        None if encoding == "sRGB" => return Ok(Box::new(linear_from_srgb)),
-        None if encoding == "linear" => return Ok(Box::new(|value| value)),
+        None if encoding == "sRGB" => return read(Encoding::Srgb),
+        None if encoding == "linear" => return read(Encoding::Linear),
         Some(("gamma", exponent)) => match exponent.trim().parse::<f32>() {
             Ok(gamma) if gamma > 0.0 && gamma.is_finite() => {
-                return Ok(Box::new(move |value| libm::powf(value, gamma)));
+                return read(Encoding::Curve(&|value| libm::powf(value, gamma)));
             }
             _ => {}
         },

@@ -45,6 +45,7 @@ impl Reader<'_, '_> {
             alpha,
             sides,
             reverse_orientation: self.state.reverse_orientation,
+            single_sided: false,
             world_from_object: matrix,
         });
         Ok(())

@@ -11,7 +11,7 @@ use super::{NamedTexture, Reader, transform};
 use crate::error::Result;
 use crate::material::{Color, Scalar};
 use crate::scene::TextureId;
-use crate::texture::{Mapping, TexelFilter, Texture, TextureKind, Wrap};
+use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
 
 const KINDS: &[&str] = &[
     "bilerp",
@@ -251,8 +251,9 @@ impl Reader<'_, '_> {
                 false => self.picture(name, &encoding, place)?,
             },
             mapping: self.mapping(p)?,
-            wrap: p.choice("wrap", Wrap::Repeat, &wraps)?,
+            wrap: [p.choice("wrap", Wrap::Repeat, &wraps)?; 2],
             filter: p.choice("filter", TexelFilter::Bilinear, &filters)?,
+            channel: Channel::Rgb,
             scale: p.float("scale", 1.0)?,
             invert: p.boolean("invert", false)?,
         })
@@ -298,8 +299,9 @@ impl Reader<'_, '_> {
         let kind = TextureKind::Image {
             image,
             mapping: Mapping::UV,
-            wrap: Wrap::Clamp,
+            wrap: [Wrap::Clamp; 2],
             filter: TexelFilter::Bilinear,
+            channel: Channel::Rgb,
             scale: 1.0,
             invert: false,
         };

@@ -8,7 +8,7 @@ use super::{Reader, chain};
 use crate::error::{Location, Result};
 use crate::material::{Color, Scalar};
 use crate::scene::TextureId;
-use crate::texture::{TexelFilter, Texture, TextureKind, Wrap};
+use crate::texture::{Channel, TexelFilter, Texture, TextureKind, Wrap};
 
 /// The keys of textures, by type, besides `type` and those of `mapping`.
 pub(super) const KEYS: Kinds = &[
@@ -152,17 +152,18 @@ impl Reader<'_, '_> {
         Ok(TextureKind::Image {
             image: self.image_as(table.need("file", "\"picture.png\"")?, is_data)?,
             mapping: mapping(table, "uv")?,
-            wrap: table.or("wrap", Wrap::default(), |value| {
+            wrap: [table.or("wrap", Wrap::default(), |value| {
                 value.choice(&[
                     ("repeat", Wrap::Repeat),
                     ("mirror", Wrap::Mirror),
                     ("clamp", Wrap::Clamp),
                     ("black", Wrap::Black),
                 ])
-            })?,
+            })?; 2],
             filter: table.or("filter", TexelFilter::default(), |value| {
                 value.choice(&[("bilinear", TexelFilter::Bilinear), ("nearest", TexelFilter::Nearest)])
             })?,
+            channel: Channel::Rgb,
             scale: table.or("multiply", 1.0, |value| {
                 value.single_where("a number of at least 0", |number| number >= 0.0)
             })?,

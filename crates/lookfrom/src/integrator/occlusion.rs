@@ -30,7 +30,7 @@ impl Integrator for AmbientOcclusion {
         }
         let surface = world.surface(&path.ray, hit);
         let [presence, _] = numbers.two(0);
-        if !world.is_there(&surface, presence) {
+        if path.goes_through(world, &surface, presence) {
             next.samples.paths.push(path.passed(&surface));
             return;
         }

@@ -144,7 +144,7 @@ impl Integrator for PathTracer {
             true => numbers.two(purpose::PRESENCE),
             false => [0.0; 2],
         };
-        if !world.is_there(&surface, presence) {
+        if path.goes_through(world, &surface, presence) {
             next.samples.paths.push(path.passed(&surface));
             return;
         }

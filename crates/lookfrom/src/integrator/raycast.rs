@@ -24,6 +24,10 @@ impl Integrator for Raycast {
             return;
         }
         let surface = world.surface(&path.ray, hit);
+        if path.goes_through(world, &surface, numbers.presence(world, &surface)) {
+            next.samples.paths.push(path.passed(&surface));
+            return;
+        }
         local_light(world, numbers, path, &surface, next);
     }
 }

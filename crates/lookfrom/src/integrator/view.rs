@@ -28,6 +28,11 @@ impl Integrator for View {
             return;
         }
         let surface = world.surface(&path.ray, hit);
+        // What is more clear than not is not shown.
+        if path.goes_through(world, &surface, 0.5) {
+            next.samples.paths.push(path.passed(&surface));
+            return;
+        }
         next.probe.notice(|| Event::Surface {
             address: path.address,
             surface: Box::new(surface),

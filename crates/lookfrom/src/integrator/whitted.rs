@@ -18,7 +18,7 @@ const DEEPEST: u32 = 62;
 /// Recursive ray tracing.
 #[derive(Clone, Copy, Debug)]
 pub struct Whitted {
-    /// How many times a ray may be mirrored or refracted; at most 62 counts.
+    /// How many times a ray may be mirrored or refracted; no ray goes on after 62 surfaces.
     pub depth: u32,
     /// Branches with a smaller share of the pixel are not followed.
     pub min_contribution: f32,
@@ -44,6 +44,14 @@ impl Integrator for Whitted {
         let length = Vec3::from_array(path.ray.direction).length() * hit.t;
         let path =
             &Path { beta: path.beta * path.media.transmittance(world, length, &next.lanes(path)), ..*path };
+
+        // Light passes where the surface is not there: an only child, straight on.
+        if path.goes_through(world, &surface, numbers.presence(world, &surface)) {
+            if path.address < 1 << DEEPEST {
+                next.samples.paths.push(Path { address: path.address << 1 | 1, ..path.passed(&surface) });
+            }
+            return;
+        }
 
         // Shade what is seen: I_a and every light.
         let coefficients = local_light(world, numbers, path, &surface, next);
@@ -85,7 +93,7 @@ impl Whitted {
         if beta.max_lane() < self.min_contribution || beta.is_black() {
             return Err(Cut::Contribution);
         }
-        if path.depth >= self.depth.min(DEEPEST) {
+        if path.depth >= self.depth || path.address >= 1 << DEEPEST {
             return Err(Cut::Depth);
         }
         let ng = surface.ng_facing();

@@ -58,6 +58,8 @@ pub struct LightPoint {
     pub normal: DVec3,
     /// Texture coordinates.
     pub uv: Vec2,
+    /// Of a mesh: which triangle, and the weights of its second and third corner.
+    pub on_triangle: Option<(usize, Vec2)>,
     /// Toward the light, unit length.
     pub wi: Vec3,
     /// Density over solid angle, finite and positive.
@@ -80,6 +82,19 @@ pub struct Extent {
 }
 
 impl AreaLight {
+    /// Whether anything of it was found to shine; otherwise only who meets it finds what there is.
+    pub fn is_asked(&self) -> bool {
+        !matches!(&self.form, LightForm::Mesh(light) if !light.is_asked())
+    }
+
+    /// The mean over the light of the pattern that its form was made for, if it was.
+    pub fn mean_of_pattern(&self) -> Option<f32> {
+        match &self.form {
+            LightForm::Mesh(light) => light.brightness(),
+            _ => None,
+        }
+    }
+
     /// Radiance that leaves a point of the light on the side of its normal (`front`) or on the other.
     pub fn emitted(&self, textures: &Textures, at: &TexturePoint, front: bool, lanes: &Lanes) -> Spectrum {
         if front || self.two_sided { self.radiance.at(textures, at, lanes) } else { Spectrum::BLACK }
@@ -93,10 +108,10 @@ impl AreaLight {
         u: [f32; 2],
         lanes: &Lanes,
     ) -> Option<LightSample> {
-        let LightPoint { point, normal, uv, wi, pdf } = self.sample_point(from, u)?;
+        let light_point = self.sample_point(from, u)?;
+        let LightPoint { point, normal, wi, pdf, .. } = light_point;
         let front = normal.dot(wi.as_dvec3()) < 0.0;
-        // The colour of a patterned light is looked up without its place in the world: only uv and the normal matter to it.
-        let at = TexturePoint { uv, world: DVec3::ZERO, color: [1.0; 3], n: normal.as_vec3() };
+        let at = self.texture_point(&light_point);
         let there = self.alpha.map_or(1.0, |alpha| textures.scalar(alpha, &at).clamp(0.0, 1.0));
         let li = self.emitted(textures, &at, front, lanes) * there;
         (!li.is_black()).then_some(LightSample { wi, li, pdf, target: Target::Surface(point, normal) })
@@ -109,6 +124,18 @@ impl AreaLight {
         match (&self.form, self.alpha, self.radiance.color) {
             (LightForm::Mesh(light), None, Color::Value(_)) => light.triangle(u0),
             _ => None,
+        }
+    }
+
+    /// What the colour of a patterned light depends on: not its place in the world.
+    fn texture_point(&self, point: &LightPoint) -> TexturePoint {
+        let at = TexturePoint { uv: point.uv, n: point.normal.as_vec3(), ..TexturePoint::NOWHERE };
+        let is_even = self.alpha.is_none() && !matches!(self.radiance.color, Color::Texture(_));
+        match (&self.form, point.on_triangle) {
+            (LightForm::Mesh(light), Some((index, place))) if !is_even => {
+                light.with_vertices(at, index, place)
+            }
+            _ => at,
         }
     }
 
@@ -195,7 +222,7 @@ impl Cone {
 fn seen(from: DVec3, point: Point, normal: DVec3, uv: Vec2, density: f64) -> Option<LightPoint> {
     let (wi, distance) = toward(from, DVec3::from_array(point.position))?;
     let pdf = (density * distance * distance / normal.dot(wi.as_dvec3()).abs()) as f32;
-    Some(LightPoint { point, normal, uv, wi, pdf })
+    Some(LightPoint { point, normal, uv, on_triangle: None, wi, pdf })
 }
 
 /// By area.

@@ -65,7 +65,7 @@ impl Portal {
             .collect();
         let choice = Windowed2D::new(weights, width, height);
         let [width, height] = size;
-        let picture = Image { name: String::from("what is seen through a portal"), width, height, texels };
+        let picture = Image::from_linear("what is seen through a portal", width, height, texels);
         Self { opening, choice, picture: Some(picture) }
     }
 
@@ -86,7 +86,7 @@ impl Portal {
         let place = self.opening.place(direction.as_dvec3())?;
         let [x, y] = [(place[0], picture.width), (place[1], picture.height)]
             .map(|(place, size)| ((place * f64::from(size)) as usize).min(size as usize - 1));
-        Some(picture.texels[y * picture.width as usize + x])
+        Some(picture.texel(y * picture.width as usize + x))
     }
 
     /// A direction out through it and the density over solid angle, or `None` where nothing is to be seen.

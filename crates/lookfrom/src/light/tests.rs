@@ -55,7 +55,7 @@ fn picture(width: u32, height: u32, seed: u32) -> Image {
             [bright, 0.5 * bright, 0.25 * bright * (1.0 + a)]
         })
         .collect();
-    Image { name: String::new(), width, height, texels }
+    Image::from_linear("", width, height, texels)
 }
 
 fn turn() -> DMat4 {
@@ -354,7 +354,7 @@ fn corners(width: u32, height: u32) -> Image {
     texels[width as usize - 1] = [2.0; 3];
     texels[(width * (height - 1)) as usize] = [3.0; 3];
     texels[(width * height - 1) as usize] = [4.0; 3];
-    Image { name: String::new(), width, height, texels }
+    Image::from_linear("", width, height, texels)
 }
 
 #[test]
@@ -385,7 +385,7 @@ fn goniometric_lights_are_as_bright_by_direction_as_their_picture() {
     let image = picture(5, 5, 4);
     let kind = LightKind::Goniometric { intensity: Color::gray(2.0), image: ImageId(0), world_from_light };
     let world = world_of(vec![(kind, Amount::AS_WRITTEN)], vec![image.clone()], vec![]);
-    for (index, texel) in image.texels.iter().enumerate() {
+    for (index, texel) in image.texels().enumerate() {
         let place = [index % 5, index / 5].map(|i| (i as f32 + 0.4) / 5.0);
         let direction = turn().transform_vector3(warp::octahedral_direction(place).as_dvec3());
         let found = intensity(&world, 0, direction.as_vec3()) / (2.0 * PI64);
@@ -419,7 +419,7 @@ fn curves_have_luminance_1_unless_they_are_absolute() {
 
 #[test]
 fn nothing_black_has_any_power() {
-    let black = || Image { name: String::new(), width: 2, height: 2, texels: vec![[0.0; 3]; 4] };
+    let black = || Image::from_linear("", 2, 2, vec![[0.0; 3]; 4]);
     let mut lights = placed(total(10.0));
     for (kind, _) in &mut lights {
         match kind {

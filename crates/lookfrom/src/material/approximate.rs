@@ -39,6 +39,8 @@ pub(crate) fn in_whitteds_model(kind: &MaterialKind, before: &[Material], textur
             };
             before.get(greater.index()).map_or_else(Whitted::default, |material| material.whitted.clone())
         }
+        MaterialKind::Principled(look) => Whitted { diffuse: look.base_color, ..plain },
+        MaterialKind::Unlit { color } => Whitted { diffuse: *color, ..plain },
         MaterialKind::Interface => Whitted { transmission: Color::gray(1.0), ior: 1.0, ..plain },
     }
 }

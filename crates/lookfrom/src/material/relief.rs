@@ -26,6 +26,7 @@ pub(super) fn frame(relief: &Relief, textures: &Textures, surface: &Surface, at:
             let local = Vec3::from_array(texel.map(|c| 2.0 * c - 1.0)).normalize_or(Vec3::Z);
             plain.render(local)
         }
+        Relief::NormalTexture(_) => plain.n,
         Relief::Bump(height) => bumped(*height, textures, surface, at),
     };
     let bent = bent.normalize_or(surface.ns);

@@ -3,10 +3,11 @@
 //! Derivatives by texture coordinates are those of the plane through the triangle, as in Pharr, Jakob, Humphreys,
 //! Physically Based Rendering; a mesh's tangents take the place of `∂p/∂u` in shading.
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 use lookfrom_bvh::Point;
 
 use super::{FormPoint, Look};
+use crate::texture::MORE_UV_SETS;
 use crate::warp;
 
 /// Triangles of one shape.
@@ -22,14 +23,28 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Linear colours, none or one a vertex.
     pub colors: Vec<[f32; 3]>,
-    /// Directions in which u grows, of any length, none or one a vertex.
-    pub tangents: Vec<Vec3>,
+    /// Directions in which u grows, of any length, and in w on which side v does (in this space, beside the normals of
+    /// this mesh): > 0 is along normal × tangent. None or one a vertex.
+    pub tangents: Vec<Vec4>,
+    /// Texture coordinates of further sets, none or one a vertex in each.
+    pub more_uvs: Vec<Vec<Vec2>>,
+    /// Opacities, none or one a vertex.
+    pub opacities: Vec<f32>,
     /// Whether anybody asks for derivatives by texture coordinates; otherwise they are 0.
     pub wants_derivatives: bool,
     /// Whether the outside is where the triangles run clockwise: after a mirror, or a reversal, but not both.
     pub flip: bool,
     /// Whose.
     pub look: Look,
+}
+
+/// What few meshes say of their points: apart from [`FormPoint`], which is computed for every hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VertexData {
+    /// Texture coordinates of further sets; (0, 0) where there is none.
+    pub more_uvs: [Vec2; MORE_UV_SETS],
+    /// Opacity; 1 where there is none.
+    pub opacity: f32,
 }
 
 /// Determinants of texture coordinates below this are taken for none.
@@ -49,6 +64,36 @@ impl Mesh {
         } else {
             self.triangles[index].map(|vertex| self.uvs[vertex as usize])
         }
+    }
+
+    /// Whether there is any [`VertexData`] worth asking for.
+    pub fn has_vertex_data(&self) -> bool {
+        !self.more_uvs.is_empty() || !self.opacities.is_empty()
+    }
+
+    /// What the vertices say besides, at the point with weight `u` of a triangle's second corner and `v` of its third.
+    pub fn vertex_data(&self, index: usize, u: f32, v: f32) -> VertexData {
+        let weights = [1.0 - u - v, u, v];
+        let vertices = self.triangles[index].map(|vertex| vertex as usize);
+        let more_uvs = std::array::from_fn(|set| {
+            let of_set = |uvs: &Vec<Vec2>| (0..3).map(|k| weights[k] * uvs[vertices[k]]).sum();
+            self.more_uvs.get(set).filter(|uvs| !uvs.is_empty()).map_or(Vec2::ZERO, of_set)
+        });
+        let opacity = match self.opacities.as_slice() {
+            [] => 1.0,
+            opacities => (0..3).map(|k| weights[k] * opacities[vertices[k]]).sum(),
+        };
+        VertexData { more_uvs, opacity }
+    }
+
+    /// The mesh's own colour at such a point; white where it has none.
+    pub fn color(&self, index: usize, u: f32, v: f32) -> [f32; 3] {
+        if self.colors.is_empty() {
+            return [1.0; 3];
+        }
+        let weights = [1.0 - u - v, u, v];
+        let vertices = self.triangles[index].map(|vertex| vertex as usize);
+        std::array::from_fn(|c| (0..3).map(|k| weights[k] * self.colors[vertices[k]][c]).sum())
     }
 
     /// The area of a triangle.
@@ -81,11 +126,7 @@ impl Mesh {
         let ns = smooth.unwrap_or(ng);
         let uvs = self.corner_uvs(index);
         let uv = weights[0] * uvs[0] + weights[1] * uvs[1] + weights[2] * uvs[2];
-        let color = if self.colors.is_empty() {
-            [1.0; 3]
-        } else {
-            std::array::from_fn(|c| (0..3).map(|k| weights[k] * self.colors[vertices[k]][c]).sum())
-        };
+        let color = self.color(index, u, v);
         if !self.wants_derivatives {
             let none = DVec3::ZERO;
             let look = self.look;
@@ -106,19 +147,31 @@ impl Mesh {
         let [dpdu, dpdv] = derivatives(corners, uvs, winding);
 
         // Smoothing turns the derivatives into the plane across the shading normal.
-        let tangent = (!self.tangents.is_empty()).then(|| mix(&self.tangents)).filter(|s| *s != DVec3::ZERO);
+        let tangent = self.tangent(weights, vertices).filter(|(s, _)| *s != DVec3::ZERO);
         let (mut shading_dpdu, mut shading_dpdv) = (dpdu, dpdv);
         if smooth.is_some() || tangent.is_some() {
-            let along = tangent.unwrap_or(dpdu);
+            let (along, is_left) = tangent.unwrap_or((dpdu, true));
             let across = ns.cross(along);
             if across.length_squared() > 0.0 {
-                (shading_dpdu, shading_dpdv) = (across.cross(ns), across);
+                (shading_dpdu, shading_dpdv) = (across.cross(ns), if is_left { across } else { -across });
             } else {
                 let (s, t) = warp::orthonormal_basis(ns.as_vec3());
                 (shading_dpdu, shading_dpdv) = (s.as_dvec3(), t.as_dvec3());
             }
         }
         FormPoint { point, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, color, look: self.look }
+    }
+}
+
+impl Mesh {
+    /// The tangent between the corners, and whether v grows to the left of it, seen from outside.
+    fn tangent(&self, weights: [f32; 3], vertices: [usize; 3]) -> Option<(DVec3, bool)> {
+        if self.tangents.is_empty() {
+            return None;
+        }
+        let [a, b, c] = vertices.map(|vertex| self.tangents[vertex]);
+        let mixed = weights[0] * a + weights[1] * b + weights[2] * c;
+        Some((mixed.truncate().as_dvec3(), mixed.w >= 0.0))
     }
 }
 

@@ -16,6 +16,14 @@ pub(super) fn coordinates(mapping: &Mapping, at: &TexturePoint) -> DVec3 {
         Mapping::Uv { scale, offset } => {
             (at.uv * Vec2::from_array(*scale) + Vec2::from_array(*offset)).as_dvec2().extend(0.0)
         }
+        Mapping::Affine { set, matrix } => {
+            let uv = match *set {
+                0 => at.uv,
+                set => at.more_uvs.get(set as usize - 1).copied().unwrap_or_default(),
+            };
+            let [s, t] = matrix.map(|[of_u, of_v, offset]| of_u * uv.x + of_v * uv.y + offset);
+            DVec3::new(s.into(), t.into(), 0.0)
+        }
         Mapping::Spherical { texture_from_world } => {
             spherical(texture_from_world.transform_point3(at.world)).as_dvec2().extend(0.0)
         }

@@ -1,54 +1,115 @@
 //! What is the colour of a picture between its texels and beyond its edges?
 
 use lookfrom_scene::image::Image;
-use lookfrom_scene::texture::{TexelFilter, Wrap};
+use lookfrom_scene::texture::{Channel, TexelFilter, Wrap};
 
 /// Places beyond this many texels are taken to be here; they have long had no fraction.
 const FARTHEST: f32 = 1_073_741_824.0;
 
 /// The colour of a picture at `(s, t)`, with `t` *down* and both from 0 to 1 over the picture. Finite for a picture of finite
 /// texels, wherever: a place that is not a number is taken as 0.
-pub fn look_up(image: &Image, [s, t]: [f32; 2], wraps: [Wrap; 2], filter: TexelFilter) -> [f32; 3] {
+pub fn look_up(image: &Image, st: [f32; 2], wraps: [Wrap; 2], filter: TexelFilter) -> [f32; 3] {
+    blended(image, &Colors, st, wraps, filter)
+}
+
+/// One channel of a picture, the same way. Beyond the edges of [`Wrap::Black`] it is 0.
+pub(super) fn look_up_channel(
+    image: &Image,
+    channel: Channel,
+    st: [f32; 2],
+    wraps: [Wrap; 2],
+    filter: TexelFilter,
+) -> f32 {
+    blended(image, &channel, st, wraps, filter)
+}
+
+/// What is read of texels.
+trait Read {
+    type Value: Copy + Default;
+
+    fn texels<const N: usize>(&self, image: &Image, places: [usize; N]) -> [Self::Value; N];
+
+    fn sum(weights: [f32; 4], values: [Self::Value; 4]) -> Self::Value;
+}
+
+/// Red, green and blue.
+struct Colors;
+
+impl Read for Colors {
+    type Value = [f32; 3];
+
+    #[inline]
+    fn texels<const N: usize>(&self, image: &Image, places: [usize; N]) -> [[f32; 3]; N] {
+        image.texels_at(places)
+    }
+
+    #[inline]
+    fn sum(weights: [f32; 4], [a, b, c, d]: [[f32; 3]; 4]) -> [f32; 3] {
+        std::array::from_fn(|i| weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i] + weights[3] * d[i])
+    }
+}
+
+impl Read for Channel {
+    type Value = f32;
+
+    #[inline]
+    fn texels<const N: usize>(&self, image: &Image, places: [usize; N]) -> [f32; N] {
+        image.channel_at(places, *self)
+    }
+
+    #[inline]
+    fn sum(weights: [f32; 4], [a, b, c, d]: [f32; 4]) -> f32 {
+        weights[0] * a + weights[1] * b + weights[2] * c + weights[3] * d
+    }
+}
+
+#[inline]
+fn blended<R: Read>(
+    image: &Image,
+    read: &R,
+    [s, t]: [f32; 2],
+    wraps: [Wrap; 2],
+    filter: TexelFilter,
+) -> R::Value {
     let (x, y) = (s * image.width as f32, t * image.height as f32);
     match filter {
         TexelFilter::Nearest => {
             let column = wrapped(split(x).0, image.width, wraps[0]);
-            texel(image, (column, wrapped(split(y).0, image.height, wraps[1])))
+            texel(image, read, (column, wrapped(split(y).0, image.height, wraps[1])))
         }
         TexelFilter::Bilinear => {
             // texel centres are at halves
             let ((x, fx), (y, fy)) = (split(x - 0.5), split(y - 0.5));
             let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
-            let [a, b, c, d] = four_texels(image, [x, y], wraps);
-            std::array::from_fn(|i| {
-                weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i] + weights[3] * d[i]
-            })
+            R::sum(weights, four_texels(image, read, [x, y], wraps))
         }
     }
 }
 
 /// The texels at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
 #[inline]
-fn four_texels(image: &Image, [x, y]: [i32; 2], wraps: [Wrap; 2]) -> [[f32; 3]; 4] {
+fn four_texels<R: Read>(image: &Image, read: &R, [x, y]: [i32; 2], wraps: [Wrap; 2]) -> [R::Value; 4] {
     let inside = |x: i32, size: u32| x >= 0 && (x as u32) < size - 1;
     if inside(x, image.width) && inside(y, image.height) {
         // nothing to wrap, as nearly always
         let width = image.width as usize;
         let top = y as usize * width + x as usize;
-        let (top, bottom) = (&image.texels[top..top + 2], &image.texels[top + width..top + width + 2]);
-        return [top[0], top[1], bottom[0], bottom[1]];
+        return read.texels(image, [top, top + 1, top + width, top + width + 1]);
     }
     let [left, right] = [x, x + 1].map(|x| wrapped(x, image.width, wraps[0]));
     let [top, bottom] = [y, y + 1].map(|y| wrapped(y, image.height, wraps[1]));
-    [(left, top), (right, top), (left, bottom), (right, bottom)].map(|place| texel(image, place))
+    [(left, top), (right, top), (left, bottom), (right, bottom)].map(|place| texel(image, read, place))
 }
 
 /// The texel at a column and a row; black where there is none.
 #[inline]
-fn texel(image: &Image, place: (Option<usize>, Option<usize>)) -> [f32; 3] {
+fn texel<R: Read>(image: &Image, read: &R, place: (Option<usize>, Option<usize>)) -> R::Value {
     match place {
-        (Some(x), Some(y)) => image.texels[y * image.width as usize + x],
-        _ => [0.0; 3],
+        (Some(x), Some(y)) => {
+            let [texel] = read.texels(image, [y * image.width as usize + x]);
+            texel
+        }
+        _ => R::Value::default(),
     }
 }
 
@@ -105,12 +166,13 @@ mod tests {
     #[test]
     fn the_short_way_agrees_with_the_long_one() {
         let texels = (0..12).map(|i| [i as f32, 0.5, -1.0]).collect();
-        let image = Image { name: String::new(), width: 4, height: 3, texels };
+        let image = Image::from_linear("", 4, 3, texels);
         for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black] {
             for (x, y) in (-9..9).flat_map(|x| (-9..9).map(move |y| (x, y))) {
                 let long = [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]];
-                let long = long.map(|[x, y]| texel(&image, (wrapped(x, 4, wrap), wrapped(y, 3, wrap))));
-                assert_eq!(four_texels(&image, [x, y], [wrap; 2]), long, "{wrap:?} at {x}, {y}");
+                let long =
+                    long.map(|[x, y]| texel(&image, &Colors, (wrapped(x, 4, wrap), wrapped(y, 3, wrap))));
+                assert_eq!(four_texels(&image, &Colors, [x, y], [wrap; 2]), long, "{wrap:?} at {x}, {y}");
             }
         }
     }

@@ -15,7 +15,10 @@ use crate::spectrum::Spectrum;
 /// A way to read leaves.
 pub(super) trait Reading {
     /// What they become.
-    type Value: Copy + Add<Output = Self::Value> + Mul<f32, Output = Self::Value>;
+    type Value: Copy + Add<Output = Self::Value> + Mul<Output = Self::Value> + Mul<f32, Output = Self::Value>;
+
+    /// The way to read what something read this way is multiplied by: of light, only one of two factors is light.
+    fn of_factor(&self) -> Self;
 
     /// A colour in linear Rec. 709, or a number three times.
     fn color(&self, rgb: [f32; 3]) -> Self::Value;
@@ -42,6 +45,10 @@ pub(super) struct Number;
 
 impl Reading for Number {
     type Value = f32;
+
+    fn of_factor(&self) -> Self {
+        Self
+    }
 
     fn color(&self, rgb: [f32; 3]) -> f32 {
         mean(rgb)
@@ -80,6 +87,10 @@ pub(super) struct Rgb(pub Usage);
 impl Reading for Rgb {
     type Value = Spectrum;
 
+    fn of_factor(&self) -> Self {
+        Self(of_factor(self.0))
+    }
+
     #[inline]
     fn color(&self, rgb: [f32; 3]) -> Spectrum {
         Spectrum::from_rgb(within(self.0, rgb))
@@ -105,6 +116,10 @@ pub(super) struct Lifted<'a> {
 
 impl Reading for Lifted<'_> {
     type Value = Spectrum;
+
+    fn of_factor(&self) -> Self {
+        Lifted { usage: of_factor(self.usage), ..*self }
+    }
 
     fn color(&self, rgb: [f32; 3]) -> Spectrum {
         let rgb = within(self.usage, rgb);
@@ -134,6 +149,10 @@ impl Reading for Lifted<'_> {
     fn curve(&self, curve: &Measured) -> Spectrum {
         curve.dense.at(self.lambda)
     }
+}
+
+fn of_factor(usage: Usage) -> Usage {
+    if usage == Usage::Illuminant { Usage::Unbounded } else { usage }
 }
 
 /// Not negative, for an albedo at most 1; 0 for what is not a number.

@@ -1,12 +1,13 @@
 use super::*;
 use glam::DMat4;
+use lookfrom_scene::image::Encoding;
 use lookfrom_scene::scene::ImageId;
 use lookfrom_scene::texture::{Mapping, TexelFilter, Wrap};
 
 const FIRST: TextureId = TextureId(0);
 
 fn at(u: f32, v: f32) -> TexturePoint {
-    TexturePoint { uv: Vec2::new(u, v), world: DVec3::ZERO, color: [1.0; 3], n: Vec3::Y }
+    TexturePoint { uv: Vec2::new(u, v), n: Vec3::Y, ..TexturePoint::NOWHERE }
 }
 
 fn in_world(x: f64, y: f64, z: f64) -> TexturePoint {
@@ -24,12 +25,20 @@ fn number(textures: &Textures, at: &TexturePoint) -> f32 {
 }
 
 fn picture(filter: TexelFilter, scale: f32, invert: bool) -> TextureKind {
-    TextureKind::Image { image: ImageId(0), mapping: Mapping::UV, wrap: Wrap::Clamp, filter, scale, invert }
+    TextureKind::Image {
+        image: ImageId(0),
+        mapping: Mapping::UV,
+        wrap: [Wrap::Clamp; 2],
+        filter,
+        channel: Channel::Rgb,
+        scale,
+        invert,
+    }
 }
 
 fn two_by_two() -> Image {
     let texels = vec![[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]];
-    Image { name: String::new(), width: 2, height: 2, texels }
+    Image::from_linear("", 2, 2, texels)
 }
 
 #[test]
@@ -55,7 +64,7 @@ fn texels_sit_where_they_should() {
 
 #[test]
 fn a_picture_as_a_number() {
-    let image = Image { name: String::new(), width: 1, height: 1, texels: vec![[0.1, 0.2, 0.6]] };
+    let image = Image::from_linear("", 1, 1, vec![[0.1, 0.2, 0.6]]);
     let value = |filter, scale, invert| {
         number(
             &Textures::new(vec![picture(filter, scale, invert)], vec![image.clone()], vec![]),
@@ -71,7 +80,7 @@ fn a_picture_as_a_number() {
 
 #[test]
 fn a_scaled_picture_is_clamped_after_its_scale() {
-    let image = Image { name: String::new(), width: 1, height: 1, texels: vec![[0.75, 0.5, 0.25]] };
+    let image = Image::from_linear("", 1, 1, vec![[0.75, 0.5, 0.25]]);
     let scale =
         |of: u32, by| TextureKind::Scale { color: Color::Texture(TextureId(of)), by: Scalar::Value(by) };
     let kinds = vec![picture(TexelFilter::Bilinear, 1.0, true), scale(0, 4.0), scale(1, 0.5)];
@@ -199,7 +208,7 @@ fn spectra_seen_in_daylight_have_their_colors() {
     let lambda: Vec<f32> = (360..=830).map(|nm| nm as f32).collect();
     let texels: Vec<[f32; 3]> =
         (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|c| c as f32 * 0.45 + 0.05)).collect();
-    let image = Image { name: String::new(), width: 27, height: 1, texels: texels.clone() };
+    let image = Image::from_linear("", 27, 1, texels.clone());
     let textures = Textures::new(vec![picture(TexelFilter::Nearest, 1.0, false)], vec![image], vec![]);
     let curve_of = |color, usage, at: &TexturePoint| -> Vec<f32> {
         let spectral = |nm: &f32| {
@@ -276,8 +285,9 @@ fn nothing_is_nan_anywhere() {
                 kinds.push(TextureKind::Image {
                     image: ImageId(0),
                     mapping,
-                    wrap,
+                    wrap: [wrap, Wrap::Repeat],
                     filter,
+                    channel: Channel::Rgb,
                     scale: 1.0,
                     invert: false,
                 });
@@ -302,13 +312,27 @@ fn nothing_is_nan_anywhere() {
 #[ignore = "measures time"]
 fn time_of_look_ups() {
     let texels = (0..1 << 12).map(|i| [0.1, 0.2 + i as f32 * 1e-9, 0.7]).collect();
-    let image = Image { name: String::new(), width: 64, height: 64, texels };
+    let bytes = (0..1 << 12).map(|i| [90, 120, (i % 256) as u8, 255]).collect();
+    let images =
+        [Image::from_linear("", 64, 64, texels), Image::from_bytes("", 64, 64, bytes, Encoding::Srgb)];
     let lanes = Lanes::Spectral(Wavelengths::sample_visible(0.3));
     for (wrap, reach) in [(Wrap::Repeat, 1.0), (Wrap::Repeat, 9.0), (Wrap::Mirror, 9.0), (Wrap::Black, 1.0)] {
-        let (mapping, filter) = (Mapping::UV, TexelFilter::Bilinear);
-        let kind = TextureKind::Image { image: ImageId(0), mapping, wrap, filter, scale: 1.0, invert: false };
-        let textures = Textures::new(vec![kind], vec![image.clone()], vec![]);
-        for (name, lanes) in [("rgb", &Lanes::Rgb), ("spectral", &lanes)] {
+        for (channel, name, image, lanes) in [
+            (Channel::Rgb, "rgb", 0, &Lanes::Rgb),
+            (Channel::Rgb, "rgb of bytes", 1, &Lanes::Rgb),
+            (Channel::Green, "green of bytes", 1, &Lanes::Rgb),
+            (Channel::Rgb, "spectral", 0, &lanes),
+        ] {
+            let kind = TextureKind::Image {
+                image: ImageId(image),
+                mapping: Mapping::UV,
+                wrap: [wrap; 2],
+                filter: TexelFilter::Bilinear,
+                channel,
+                scale: 1.0,
+                invert: false,
+            };
+            let textures = Textures::new(vec![kind], images.to_vec(), vec![]);
             let start = std::time::Instant::now();
             let mut sum = Spectrum::BLACK;
             let count = 1 << 21;

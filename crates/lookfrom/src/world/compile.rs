@@ -48,6 +48,7 @@ impl World {
             wants_derivatives: scene.materials.iter().any(lookfrom_scene::material::Material::has_grain),
             alphas: Vec::new(),
             sides: Vec::new(),
+            vertex_data: Vec::new(),
         };
 
         // What stands in the world once.
@@ -78,7 +79,7 @@ impl World {
         for light in &scene.lights {
             compiler.lights.add(light, origin);
         }
-        let Compiler { lights, shapes, alphas, sides, .. } = compiler;
+        let Compiler { lights, shapes, alphas, sides, vertex_data, .. } = compiler;
         let radius = scene.bounds().radius() as f32;
         let light_choice =
             LightChoice::new(scene.render.light_sampler, &lights.lights, &lights.brightness, radius);
@@ -113,7 +114,6 @@ impl World {
             names.materials.push(material.name);
         }
         let is_environment = |index: &u32| matches!(lights[*index as usize], Light::Environment(_));
-        let shapes = || scene.shapes.iter().chain(scene.objects.iter().flat_map(|object| &object.shapes));
         Ok(Self {
             origin,
             camera,
@@ -122,12 +122,13 @@ impl World {
             objects,
             instances,
             transmissive: materials.iter().any(|material| material.whitted.transmission != Color::BLACK),
-            has_gaps: shapes().any(|shape| shape.alpha.is_some())
+            has_gaps: !alphas.is_empty()
                 || materials.iter().any(|material| material.kind == MaterialKind::Interface),
             materials,
             alphas,
             media,
             sides,
+            vertex_data,
             textures,
             environments: (0..lights.len() as u32).filter(is_environment).collect(),
             lights,

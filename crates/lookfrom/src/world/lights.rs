@@ -22,7 +22,7 @@ pub(super) struct Lights<'a> {
     /// By light: its greatest radiance (or intensity), roughly.
     pub(super) brightness: Vec<f32>,
     pub(super) ambient: [f32; 3],
-    textures: &'a Textures,
+    pub(super) textures: &'a Textures,
 }
 
 impl<'a> Lights<'a> {
@@ -176,13 +176,13 @@ impl<'a> Lights<'a> {
         let [half_x, half_y] = light.half_size;
         let place = |i: u32, size: u32, half: f32| half * (2.0 * (i as f32 + 0.5) / size as f32 - 1.0);
         let mut sum = 0.0;
-        for (index, texel) in (0..).zip(&image.texels) {
+        for (index, texel) in (0..).zip(image.texels()) {
             let x = place(index % image.width, image.width, half_x);
             let y = place(index / image.width, image.height, half_y);
             let cos = 1.0 / (1.0 + x * x + y * y).sqrt();
-            sum += f64::from(math::luminance(*texel) * cos * cos * cos);
+            sum += f64::from(math::luminance(texel) * cos * cos * cos);
         }
-        4.0 * half_x * half_y * (sum / image.texels.len() as f64) as f32
+        4.0 * half_x * half_y * (sum / image.len() as f64) as f32
     }
 
     fn portal(&self, opening: Opening, sky: &Sky) -> Portal {
@@ -245,8 +245,8 @@ impl<'a> Lights<'a> {
 
 /// Mean of all channels of all texels.
 fn mean(image: &Image) -> f32 {
-    let sum: f64 = image.texels.iter().flatten().map(|&c| f64::from(c)).sum();
-    (sum / (3 * image.texels.len()) as f64) as f32
+    let sum: f64 = image.texels().flatten().map(f64::from).sum();
+    (sum / (3 * image.len()) as f64) as f32
 }
 
 /// What a picture of the surroundings, multiplied by `scale`, sends onto a surface that looks up in the light's space: along +y for latitude and
@@ -254,7 +254,7 @@ fn mean(image: &Image) -> f32 {
 fn illuminance(image: &Image, scale: [f32; 3], layout: Layout) -> f32 {
     let (width, height) = (image.width as f32, image.height as f32);
     let mut sum = 0.0;
-    for (index, texel) in (0..).zip(&image.texels) {
+    for (index, texel) in (0..).zip(image.texels()) {
         let s = ((index % image.width) as f32 + 0.5) / width;
         let t = ((index / image.width) as f32 + 0.5) / height;
         let (cos, solid_angle) = match layout {
@@ -271,7 +271,7 @@ fn illuminance(image: &Image, scale: [f32; 3], layout: Layout) -> f32 {
 /// into the neighbours of a texel, a part is as bright as the brightest around it: nothing that is seen is never chosen.
 fn weights(image: &Image, layout: Layout) -> Vec<(f32, f32)> {
     let (width, height) = (image.width as usize, image.height as usize);
-    let brightness = |x: usize, y: usize| image.texels[y * width + x].into_iter().fold(0.0, f32::max);
+    let brightness = |x: usize, y: usize| image.texel(y * width + x).into_iter().fold(0.0, f32::max);
     if layout == Layout::Octahedral {
         return (0..width * height).map(|index| (brightness(index % width, index / width), 1.0)).collect();
     }

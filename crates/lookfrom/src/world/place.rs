@@ -9,7 +9,7 @@ use std::f32::consts::PI;
 use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec3};
-use lookfrom_scene::material::{Color, Scalar};
+use lookfrom_scene::material::{Color, MaterialKind, Scalar};
 use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::Scene;
 use lookfrom_scene::shape::{Emission, Geometry, Shape, Sphere};
@@ -18,7 +18,7 @@ use lookfrom_scene::{Error, Location, Result, Warning};
 use super::Instance;
 use super::lights::Lights;
 use crate::light::{AreaLight, Glow, Light, LightForm, QuadricLight};
-use crate::shape::{Disk, Disks, Form, Look, Quadric, QuadricKind, Quadrics, SphereLook, Spheres};
+use crate::shape::{Disk, Disks, Form, Look, Mesh, Quadric, QuadricKind, Quadrics, SphereLook, Spheres};
 
 /// From axes with the poles on z to axes with the poles on y: a rotation.
 const Y_FROM_Z: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);
@@ -84,6 +84,8 @@ pub(super) struct Compiler<'a> {
     pub(super) alphas: Vec<Scalar>,
     /// What they say is on their sides.
     pub(super) sides: Vec<Sides>,
+    /// Meshes with further texture coordinates or opacities.
+    pub(super) vertex_data: Vec<Arc<Mesh>>,
 }
 
 /// A shape on its way into a group.
@@ -115,16 +117,28 @@ impl Compiler<'_> {
         inverse(&shape.at, &matrix)?;
         let number = self.shapes.len() as u32;
         self.shapes.push(self.name_of(shape));
-        let alpha = shape.alpha.filter(|alpha| *alpha != Scalar::Value(1.0)).map(|alpha| {
-            self.alphas.push(alpha);
-            self.alphas.len() as u32 - 1
-        });
+        let has_opacities = match &shape.geometry {
+            Geometry::Mesh(id) => !self.scene.meshes[id.index()].opacities.is_empty(),
+            _ => false,
+        };
+        let alpha =
+            shape.alpha.filter(|alpha| !self.lights.textures.is_one(*alpha, has_opacities)).map(|alpha| {
+                self.alphas.push(alpha);
+                self.alphas.len() as u32 - 1
+            });
         let sides = shape.sides.map(|sides| {
             self.sides.push(sides);
             self.sides.len() as u32 - 1
         });
         let material = material.unwrap_or(shape.material.0);
-        let look = Look { material, light: None, shape: number, alpha, sides };
+        // Of a body that light goes through, the back is seen from within.
+        let is_body = matches!(
+            self.scene.materials.get(material as usize).map(|material| &material.kind),
+            Some(MaterialKind::Principled(look)) if look.is_solid
+        );
+        let single_sided = shape.single_sided && !is_body;
+        let look =
+            Look { material, light: None, shape: number, alpha, sides, vertex_data: None, single_sided };
         let placing = Placing { shape, matrix: &matrix, look };
         match &shape.geometry {
             Geometry::Sphere(sphere) => self.spheres(placing, &[*sphere], Y_FROM_Z, group),
@@ -263,7 +277,10 @@ impl Compiler<'_> {
         // what white radiance of 1 sends out
         let sides = if two_sided { 2.0 } else { 1.0 };
         light.radiance = self.lights.glow(radiance, &amount, sides * PI * light.area() as f32);
-        let brightness = self.lights.brightness_of(&light.radiance);
+        let brightness = match light.mean_of_pattern() {
+            Some(mean) => light.radiance.scale * mean,
+            None => self.lights.brightness_of(&light.radiance),
+        };
         Some(self.lights.push(Light::Area(light), brightness, self.name_of(shape)))
     }
 

@@ -1,4 +1,6 @@
-//! Triangles as lights: one is chosen by area, then a direction uniformly over the solid angle in which it is seen.
+//! Triangles as lights: one is chosen by area (and by how much of a pattern shines on it), then a direction uniformly over
+//! the solid angle in which it is seen. Triangles on which no light was found are not asked: a path that meets one finds
+//! what there is.
 //!
 //! Arvo (1995), "Stratified Sampling of Spherical Triangles"; the solid angle by Van Oosterom & Strackee (1983). Where that
 //! is very small or nearly a hemisphere, the point is chosen by area, which is as good there.
@@ -7,11 +9,13 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
+use rayon::prelude::*;
 
 use super::{Cone, LightPoint, seen};
 use crate::distribution::Discrete;
 use crate::light::toward;
-use crate::shape::Mesh;
+use crate::shape::{Mesh, VertexData};
+use crate::texture::TexturePoint;
 use crate::warp;
 
 /// Solid angles in which triangles are chosen from by direction.
@@ -21,15 +25,24 @@ const BY_DIRECTION: std::ops::RangeInclusive<f64> = 3e-4..=6.22;
 /// its time from here on (distances and angles over the triangle differ little).
 const WORTH_DIRECTION: f64 = 0.06;
 
+/// About so many places of a mesh are looked at for how bright a pattern is there, but on each triangle at least and at
+/// most so many.
+const PLACES: usize = 1 << 20;
+const PLACES_OF_TRIANGLE: std::ops::RangeInclusive<usize> = 8..=4096;
+
 /// A mesh that shines.
 #[derive(Clone, Debug)]
 pub struct MeshLight {
     mesh: Arc<Mesh>,
-    /// By triangle: what choosing a point of it takes.
+    /// The triangles that are asked, in their order; `None` is all.
+    asked: Option<Vec<u32>>,
+    /// Of those: what choosing a point takes.
     triangles: Vec<Triangle>,
-    /// Of a triangle, by area.
+    /// Of those, by area and brightness.
     choice: Discrete,
     area: f64,
+    /// Where it shines by a pattern: the mean of its brightness over the area.
+    brightness: Option<f32>,
 }
 
 /// A triangle, made ready for choosing points of it.
@@ -54,23 +67,54 @@ impl MeshLight {
         triangle.normal.is_some().then_some((triangle, probability, u0))
     }
 
-    /// None for a mesh without area.
+    /// A mesh that shines alike everywhere. None for one without area.
     pub fn new(mesh: Arc<Mesh>) -> Option<Self> {
-        let triangles: Vec<Triangle> =
-            (0..mesh.triangles.len()).map(|index| Triangle::new(&mesh, index)).collect();
-        let area: f64 = triangles.iter().map(|triangle| triangle.area).filter(|area| area.is_finite()).sum();
+        let area = area(&mesh)?;
+        let triangles = triangles(&mesh, (0..mesh.triangles.len()).into_par_iter());
         // In parts of the whole, which no unit of length makes vanish.
         let weights: Vec<f32> = triangles.iter().map(|triangle| (triangle.area / area) as f32).collect();
-        let choice = || Discrete::new(&weights);
-        (area > 0.0 && area.is_finite()).then(|| Self { choice: choice(), mesh, triangles, area })
+        Some(Self { choice: Discrete::new(&weights), asked: None, mesh, triangles, area, brightness: None })
+    }
+
+    /// A mesh that shines by a pattern whose brightness at a point is `glow`. None for one without area.
+    pub fn patterned(mesh: Arc<Mesh>, glow: &(dyn Fn(&TexturePoint) -> f32 + Sync)) -> Option<Self> {
+        let area = area(&mesh)?;
+        let count = mesh.triangles.len();
+        let places = (PLACES / count).clamp(*PLACES_OF_TRIANGLE.start(), *PLACES_OF_TRIANGLE.end());
+        let places: Vec<Vec2> = (0..places).map(|k| spread(k, places)).collect();
+        let power = |index: usize| {
+            let own = mesh.area(index);
+            let sum: f64 = places.iter().map(|place| brightness(&mesh, index, *place, glow)).sum();
+            if own.is_finite() { own / area * sum / places.len() as f64 } else { 0.0 }
+        };
+        let powers: Vec<f64> = (0..count).into_par_iter().map(power).collect();
+        let mean: f64 = powers.iter().sum();
+        let asked: Vec<u32> = (0..count as u32).filter(|&index| powers[index as usize] > 0.0).collect();
+        let weights: Vec<f32> = asked.iter().map(|&index| (powers[index as usize] / mean) as f32).collect();
+        let triangles = triangles(&mesh, asked.par_iter().map(|&index| index as usize));
+        // Of nothing there is no choice: `sample` does not come to it.
+        let choice = Discrete::new(if weights.is_empty() { &[1.0] } else { &weights });
+        let asked = (asked.len() < count).then_some(asked);
+        Some(Self { choice, asked, mesh, triangles, area, brightness: Some(mean as f32) })
+    }
+
+    /// Whether any place was found that shines.
+    pub(super) fn is_asked(&self) -> bool {
+        !self.triangles.is_empty()
+    }
+
+    /// Where it shines by a pattern: the mean of its brightness over the area.
+    pub(super) fn brightness(&self) -> Option<f32> {
+        self.brightness
     }
 
     pub(super) fn area(&self) -> f64 {
         self.area
     }
 
+    /// Around what is asked.
     pub(super) fn bounds(&self) -> [DVec3; 2] {
-        let vertices = (0..self.mesh.triangles.len()).flat_map(|index| self.mesh.corners(index));
+        let vertices = (0..self.triangles.len()).flat_map(|rank| self.mesh.corners(self.index(rank)));
         vertices
             .map(|p| Vec3::from_array(p).as_dvec3())
             .fold([DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY)], |[min, max], p| {
@@ -81,30 +125,56 @@ impl MeshLight {
     /// The cone of the normals, at all corners of all triangles that have an area.
     pub(super) fn normals(&self) -> Cone {
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)];
-        let triangles = (0..self.mesh.triangles.len()).filter(|&index| self.choice.pdf(index) > 0.0);
+        let triangles = (0..self.triangles.len()).filter(|&rank| self.choice.pdf(rank) > 0.0);
+        let triangles = triangles.map(|rank| self.index(rank));
         Cone::around(triangles.flat_map(|index| corners.map(|(u, v)| self.mesh.point(index, u, v).ng)))
     }
 
+    /// Which triangle of the mesh one of those that are asked is.
+    fn index(&self, rank: usize) -> usize {
+        self.asked.as_ref().map_or(rank, |asked| asked[rank] as usize)
+    }
+
+    /// Which of those that are asked a triangle of the mesh is.
+    fn rank(&self, index: usize) -> Option<usize> {
+        match &self.asked {
+            None => Some(index),
+            Some(asked) => asked.binary_search(&(index as u32)).ok(),
+        }
+    }
+
+    /// What textures depend on at a point of a triangle, with what its vertices say.
+    pub(super) fn with_vertices(&self, at: TexturePoint, index: usize, place: Vec2) -> TexturePoint {
+        with_vertices(&self.mesh, at, index, place)
+    }
+
     pub(super) fn sample(&self, from: DVec3, [u0, u1]: [f32; 2]) -> Option<LightPoint> {
-        let (index, probability, u0) = self.choice.sample(u0);
-        let triangle = &self.triangles[index];
+        if !self.is_asked() {
+            return None;
+        }
+        let (rank, probability, u0) = self.choice.sample(u0);
+        let (index, triangle) = (self.index(rank), &self.triangles[rank]);
         if let Some(solid_angle) = triangle.worth_direction(from) {
             let corners = triangle.corners_from(from);
             let direction = sample_spherical_triangle(corners, solid_angle, [u0, u1].map(f64::from));
             let [beta, gamma] = barycentric(corners, direction);
-            let (point, normal, uv) = self.point(index, beta as f32, gamma as f32);
+            let place = Vec2::new(beta as f32, gamma as f32);
+            let (point, normal, uv) = self.point(rank, place);
             let (wi, _) = toward(from, DVec3::from_array(point.position))?;
             let pdf = (f64::from(probability) / solid_angle) as f32;
-            return Some(LightPoint { point, normal, uv, wi, pdf });
+            return Some(LightPoint { point, normal, uv, on_triangle: Some((index, place)), wi, pdf });
         }
         let [_, beta, gamma] = warp::uniform_triangle([u0, u1]);
-        let (point, normal, uv) = self.point(index, beta, gamma);
-        seen(from, point, normal, uv, f64::from(probability) / triangle.area)
+        let place = Vec2::new(beta, gamma);
+        let (point, normal, uv) = self.point(rank, place);
+        let seen = seen(from, point, normal, uv, f64::from(probability) / triangle.area)?;
+        Some(LightPoint { on_triangle: Some((index, place)), ..seen })
     }
 
-    /// A point of a triangle, the normal to the outside and the texture coordinates.
-    fn point(&self, index: usize, beta: f32, gamma: f32) -> (Point, DVec3, Vec2) {
-        let Some(normal) = self.triangles[index].normal else {
+    /// A point of a triangle of those that are asked, the normal to the outside and the texture coordinates.
+    fn point(&self, rank: usize, Vec2 { x: beta, y: gamma }: Vec2) -> (Point, DVec3, Vec2) {
+        let index = self.index(rank);
+        let Some(normal) = self.triangles[rank].normal else {
             let at = self.mesh.point(index, beta, gamma);
             return (at.point, at.ng, at.uv);
         };
@@ -116,14 +186,48 @@ impl MeshLight {
 
     /// The density over solid angle where points of a triangle are chosen by direction.
     pub(super) fn pdf_by_direction(&self, from: DVec3, index: usize) -> Option<f32> {
-        let solid_angle = self.triangles[index].worth_direction(from)?;
-        Some((f64::from(self.choice.pdf(index)) / solid_angle) as f32)
+        let rank = self.rank(index)?;
+        let solid_angle = self.triangles[rank].worth_direction(from)?;
+        Some((f64::from(self.choice.pdf(rank)) / solid_angle) as f32)
     }
 
-    /// The density over area where points of a triangle are chosen by area.
+    /// The density over area where points of a triangle are chosen by area; 0 where it is not asked.
     pub(super) fn pdf_by_area(&self, index: usize) -> f64 {
-        f64::from(self.choice.pdf(index)) / self.triangles[index].area
+        self.rank(index).map_or(0.0, |rank| f64::from(self.choice.pdf(rank)) / self.triangles[rank].area)
     }
+}
+
+/// The area of a mesh; `None` where there is none.
+fn area(mesh: &Mesh) -> Option<f64> {
+    let areas = (0..mesh.triangles.len()).map(|index| mesh.area(index));
+    let area: f64 = areas.filter(|area| area.is_finite()).sum();
+    (area > 0.0 && area.is_finite()).then_some(area)
+}
+
+fn triangles(mesh: &Mesh, indices: impl IndexedParallelIterator<Item = usize>) -> Vec<Triangle> {
+    indices.map(|index| Triangle::new(mesh, index)).collect()
+}
+
+/// Place number `k` of `count` that are spread evenly over a triangle (Hammersley's points).
+fn spread(k: usize, count: usize) -> Vec2 {
+    let u = (k as f32 + 0.5) / count as f32;
+    let v = ((k as u32).reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0) + 0.5 / count as f32;
+    let [_, beta, gamma] = warp::uniform_triangle([u, v]);
+    Vec2::new(beta, gamma)
+}
+
+/// How bright a pattern is at a point of a triangle.
+fn brightness(mesh: &Mesh, index: usize, place: Vec2, glow: &(dyn Fn(&TexturePoint) -> f32 + Sync)) -> f64 {
+    let uvs = mesh.corner_uvs(index);
+    let uv = (1.0 - place.x - place.y) * uvs[0] + place.x * uvs[1] + place.y * uvs[2];
+    let at = with_vertices(mesh, TexturePoint { uv, ..TexturePoint::NOWHERE }, index, place);
+    f64::from(glow(&at).max(0.0))
+}
+
+fn with_vertices(mesh: &Mesh, at: TexturePoint, index: usize, place: Vec2) -> TexturePoint {
+    let color = mesh.color(index, place.x, place.y);
+    let VertexData { more_uvs, opacity } = mesh.vertex_data(index, place.x, place.y);
+    TexturePoint { color, more_uvs, opacity, ..at }
 }
 
 impl Triangle {
@@ -147,7 +251,7 @@ impl Triangle {
         // The middle has the side of all three corners, where they agree.
         let normals = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(u, v)| mesh.point(index, u, v).ng);
         let agree = normals[1..].iter().all(|ng| ng.dot(normals[0]) > 0.0);
-        Self { corners, p0, e1, e2, normal: agree.then_some(normals[0]), area: 0.5 * e1.cross(e2).length() }
+        Self { corners, p0, e1, e2, normal: agree.then_some(normals[0]), area: mesh.area(index) }
     }
 
     /// As it is seen from a point.

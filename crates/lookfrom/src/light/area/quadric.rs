@@ -23,7 +23,15 @@ const NEAREST: f64 = 1e-5;
 const CELLS: u32 = 64;
 
 /// Nobody's: a light's point needs none.
-const NO_LOOK: Look = Look { material: 0, light: None, shape: 0, alpha: None, sides: None };
+const NO_LOOK: Look = Look {
+    material: 0,
+    light: None,
+    shape: 0,
+    alpha: None,
+    sides: None,
+    vertex_data: None,
+    single_sided: false,
+};
 
 /// A quadric that shines.
 #[derive(Clone, Debug)]
@@ -90,7 +98,7 @@ impl QuadricLight {
         let at = self.quadric.point(eye + depth * direction, NO_LOOK);
         let (wi, _) = toward(from, DVec3::from_array(at.point.position))?;
         let pdf = self.density(&view, wi);
-        Some(LightPoint { point: at.point, normal: at.ng, uv: at.uv, wi, pdf })
+        Some(LightPoint { point: at.point, normal: at.ng, uv: at.uv, on_triangle: None, wi, pdf })
     }
 
     /// The density over solid angle where points are chosen by direction.

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
+use lookfrom_scene::material::Color;
 use lookfrom_scene::shape::{Mesh as WrittenMesh, Patches as WrittenPatches, Strand};
 use lookfrom_scene::{Error, ErrorKind, Result};
 
@@ -10,6 +11,7 @@ use super::{Compiler, Group, Placing, inverse, not_invertible};
 use crate::light::{LightForm, MeshLight, PatchLight};
 use crate::math;
 use crate::shape::{Curves, Form, Mesh, Patches, SEGMENTS};
+use crate::texture::{MORE_UV_SETS, Usage};
 
 /// A patch is a parallelogram if its fourth corner is off it by less than this part of its distance from the origin (or of
 /// 1, for texture coordinates): the rounding of numbers in f32.
@@ -19,26 +21,47 @@ impl Compiler<'_> {
     pub(super) fn mesh(&mut self, placing: Placing, mesh: &WrittenMesh, group: &mut Group) -> Result<()> {
         let Placing { shape, matrix, look } = placing;
         countable(placing, mesh.positions.len().max(mesh.triangles.len()))?;
+        // What was outside before a mirror is outside after it: there the frame of tangent, normal and v is another.
+        let flip = placing.mirrors() != shape.reverse_orientation;
+        let side = if flip { -1.0 } else { 1.0 };
+        let tangent = |s: &Vec4| {
+            let along = matrix.transform_vector3(s.truncate().as_dvec3()).as_vec3();
+            along.extend(side * s.w)
+        };
+        let more_uvs = mesh.more_uvs.iter().take(MORE_UV_SETS).cloned().collect();
         let mut placed = Mesh {
             positions: mesh.positions.iter().map(|p| moved(matrix, *p).to_array()).collect(),
             triangles: mesh.triangles.clone(),
             normals: normals(placing, &mesh.normals)?,
             uvs: mesh.uvs.clone(),
             colors: mesh.colors.clone(),
-            tangents: mesh
-                .tangents
-                .iter()
-                .map(|s| matrix.transform_vector3(s.as_dvec3()).as_vec3())
-                .collect(),
+            tangents: mesh.tangents.iter().map(tangent).collect(),
+            more_uvs,
+            opacities: mesh.opacities.clone(),
             wants_derivatives: self.wants_derivatives,
-            flip: placing.mirrors() != shape.reverse_orientation,
+            flip,
             look,
         };
+        placed.look.vertex_data = placed.has_vertex_data().then_some(self.vertex_data.len() as u32);
         placed.look.light = Some(self.next_light());
         let mut placed = Arc::new(placed);
-        let light = self.shine(shape, || MeshLight::new(placed.clone()).map(LightForm::Mesh));
+        let textures = self.lights.textures;
+        let light = self.shine(shape, || {
+            let light = match shape.emission.map(|emission| emission.radiance) {
+                Some(pattern @ Color::Texture(_)) => MeshLight::patterned(placed.clone(), &|at| {
+                    let brightest =
+                        textures.rgb(pattern, Usage::Illuminant, at).into_iter().fold(0.0, f32::max);
+                    brightest * shape.alpha.map_or(1.0, |alpha| textures.scalar(alpha, at))
+                }),
+                _ => MeshLight::new(placed.clone()),
+            };
+            light.map(LightForm::Mesh)
+        });
         if light.is_none() {
             Arc::make_mut(&mut placed).look.light = None;
+        }
+        if placed.has_vertex_data() {
+            self.vertex_data.push(placed.clone());
         }
         group.own.push(Form::Mesh(placed));
         Ok(())

@@ -1,0 +1,59 @@
+//! How do the whole numbers of a picture stand for light or for other numbers?
+
+use std::fmt;
+use std::sync::{Arc, LazyLock};
+
+use super::linear_from_srgb;
+
+/// What each byte of a picture stands for.
+pub(super) type Table = Arc<[f32; 256]>;
+
+/// How whole numbers, over 0…1, become what is meant.
+#[derive(Clone, Copy)]
+pub enum Encoding<'a> {
+    /// By the sRGB curve: colours.
+    Srgb,
+    /// As they are: bumps, weights, normals.
+    Linear,
+    /// By any other curve.
+    Curve(&'a dyn Fn(f32) -> f32),
+}
+
+impl Encoding<'_> {
+    /// The number that is meant.
+    pub fn decode(self, encoded: f32) -> f32 {
+        match self {
+            Self::Srgb => linear_from_srgb(encoded),
+            Self::Linear => encoded,
+            Self::Curve(curve) => curve(encoded),
+        }
+    }
+
+    /// [`Self::decode`] of every byte; one table for all pictures in the usual encodings. What is not finite is 0.
+    pub(super) fn table(self) -> Table {
+        static SRGB: LazyLock<Table> = LazyLock::new(|| tabulated(Encoding::Srgb));
+        static LINEAR: LazyLock<Table> = LazyLock::new(|| tabulated(Encoding::Linear));
+        match self {
+            Self::Srgb => SRGB.clone(),
+            Self::Linear => LINEAR.clone(),
+            Self::Curve(_) => tabulated(self),
+        }
+    }
+}
+
+fn tabulated(encoding: Encoding<'_>) -> Table {
+    Arc::new(std::array::from_fn(|byte| {
+        let value = encoding.decode(byte as f32 / 255.0);
+        if value.is_finite() { value } else { 0.0 }
+    }))
+}
+
+impl fmt::Debug for Encoding<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Srgb => "Srgb",
+            Self::Linear => "Linear",
+            Self::Curve(_) => "Curve",
+        })
+    }
+}

@@ -1,0 +1,213 @@
+//! A picture in memory: what is written in bytes stays bytes, four to a texel; what is finer is 32-bit numbers.
+//!
+//! A table of 256 numbers says what bytes stand for, so that a byte gives exactly the number that decoding the whole
+//! picture beforehand would.
+
+use super::encoding::{Encoding, Table};
+use crate::texture::Channel;
+
+/// A picture of linear colours and perhaps opacity, row 0 on top.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Image {
+    /// The file it came from.
+    pub name: String,
+    /// Columns: > 0.
+    pub width: u32,
+    /// Rows: > 0.
+    pub height: u32,
+    texels: Texels,
+    has_alpha: bool,
+}
+
+/// `width * height` texels, row by row.
+#[derive(Clone, Debug, PartialEq)]
+enum Texels {
+    /// Red, green and blue by the table; opacity over 255.
+    Bytes { texels: Vec<[u8; 4]>, table: Table },
+    /// Linear Rec. 709; `alpha` is empty where all is opaque.
+    Floats { texels: Vec<[f32; 3]>, alpha: Vec<f32> },
+}
+
+impl Default for Texels {
+    fn default() -> Self {
+        Self::Floats { texels: Vec::new(), alpha: Vec::new() }
+    }
+}
+
+impl Image {
+    /// A picture of `width * height` linear Rec. 709 colours, row by row from the top.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    pub fn from_linear(name: impl Into<String>, width: u32, height: u32, texels: Vec<[f32; 3]>) -> Self {
+        Self::from_linear_and_alpha(name, width, height, texels, Vec::new())
+    }
+
+    /// The same with opacities: as many, or none.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    pub fn from_linear_and_alpha(
+        name: impl Into<String>,
+        width: u32,
+        height: u32,
+        texels: Vec<[f32; 3]>,
+        mut alpha: Vec<f32>,
+    ) -> Self {
+        check(width, height, texels.len());
+        let has_alpha = alpha.iter().any(|&alpha| alpha != 1.0);
+        if has_alpha {
+            check(width, height, alpha.len());
+        } else {
+            alpha = Vec::new();
+        }
+        Self { name: name.into(), width, height, texels: Texels::Floats { texels, alpha }, has_alpha }
+    }
+
+    /// A picture of `width * height` times red, green, blue and opacity in bytes, row by row from the top.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    pub fn from_bytes(
+        name: impl Into<String>,
+        width: u32,
+        height: u32,
+        texels: Vec<[u8; 4]>,
+        encoding: Encoding<'_>,
+    ) -> Self {
+        check(width, height, texels.len());
+        let has_alpha = texels.iter().any(|texel| texel[3] != 255);
+        let texels = Texels::Bytes { texels, table: encoding.table() };
+        Self { name: name.into(), width, height, texels, has_alpha }
+    }
+
+    /// How many texels there are.
+    pub fn len(&self) -> usize {
+        match &self.texels {
+            Texels::Bytes { texels, .. } => texels.len(),
+            Texels::Floats { texels, .. } => texels.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether it is not opaque everywhere.
+    pub fn has_alpha(&self) -> bool {
+        self.has_alpha
+    }
+
+    /// The linear Rec. 709 colour of a texel, counted row by row.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[inline]
+    pub fn texel(&self, index: usize) -> [f32; 3] {
+        let [texel] = self.texels_at([index]);
+        texel
+    }
+
+    /// The colours of several.
+    ///
+    /// # Panics
+    /// If there are none.
+    #[inline]
+    pub fn texels_at<const N: usize>(&self, indices: [usize; N]) -> [[f32; 3]; N] {
+        match &self.texels {
+            Texels::Bytes { texels, table } => indices.map(|index| {
+                let [r, g, b, _] = texels[index];
+                [r, g, b].map(|byte| table[usize::from(byte)])
+            }),
+            Texels::Floats { texels, .. } => indices.map(|index| texels[index]),
+        }
+    }
+
+    /// One channel of several texels; of [`Channel::Rgb`] the red.
+    ///
+    /// # Panics
+    /// If there are none.
+    #[inline]
+    pub fn channel_at<const N: usize>(&self, indices: [usize; N], channel: Channel) -> [f32; N] {
+        let place = match channel {
+            Channel::Alpha => return indices.map(|index| self.alpha(index)),
+            Channel::Rgb | Channel::Red => 0,
+            Channel::Green => 1,
+            Channel::Blue => 2,
+        };
+        match &self.texels {
+            Texels::Bytes { texels, table } => indices.map(|index| table[usize::from(texels[index][place])]),
+            Texels::Floats { texels, .. } => indices.map(|index| texels[index][place]),
+        }
+    }
+
+    /// The opacity of a texel, counted row by row: 1 where the picture has none.
+    ///
+    /// # Panics
+    /// If there is no such texel in a picture that is not opaque.
+    #[inline]
+    pub fn alpha(&self, index: usize) -> f32 {
+        if !self.has_alpha {
+            return 1.0;
+        }
+        match &self.texels {
+            Texels::Bytes { texels, .. } => f32::from(texels[index][3]) / 255.0,
+            Texels::Floats { alpha, .. } => alpha[index],
+        }
+    }
+
+    /// All colours, row by row.
+    pub fn texels(&self) -> impl ExactSizeIterator<Item = [f32; 3]> + '_ {
+        (0..self.len()).map(|index| self.texel(index))
+    }
+
+    /// The same picture with each of its colours multiplied.
+    pub fn tinted(&self, tint: [f32; 3]) -> Self {
+        let texels = self.texels().map(|texel| std::array::from_fn(|c| texel[c] * tint[c])).collect();
+        let alpha =
+            if self.has_alpha { (0..self.len()).map(|k| self.alpha(k)).collect() } else { Vec::new() };
+        Self::from_linear_and_alpha(self.name.clone(), self.width, self.height, texels, alpha)
+    }
+}
+
+fn check(width: u32, height: u32, count: usize) {
+    assert_eq!(width as usize * height as usize, count, "texels of a picture of {width}×{height}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::linear_from_srgb;
+
+    #[test]
+    fn a_byte_stands_for_exactly_the_number_that_it_encodes() {
+        let bytes: Vec<[u8; 4]> = (0..=255).map(|k| [k, 255 - k, k ^ 0x55, k]).collect();
+        let square = |x: f32| x * x;
+        for encoding in [Encoding::Srgb, Encoding::Linear, Encoding::Curve(&square)] {
+            let image = Image::from_bytes("", 16, 16, bytes.clone(), encoding);
+            for (index, &[r, g, b, a]) in bytes.iter().enumerate() {
+                let [r, g, b, a] = [r, g, b, a].map(|byte| f32::from(byte) / 255.0);
+                let expected = match encoding {
+                    Encoding::Srgb => [r, g, b].map(linear_from_srgb),
+                    Encoding::Linear => [r, g, b],
+                    Encoding::Curve(_) => [r, g, b].map(square),
+                };
+                assert_eq!((image.texel(index), image.alpha(index)), (expected, a), "{encoding:?}");
+                let channels = [Channel::Red, Channel::Green, Channel::Blue, Channel::Alpha];
+                let read = channels.map(|channel| image.channel_at([index], channel)[0]);
+                assert_eq!(read, [expected[0], expected[1], expected[2], a]);
+            }
+        }
+    }
+
+    #[test]
+    fn opaque_pictures_have_no_alpha() {
+        let opaque = Image::from_bytes("", 2, 1, vec![[1, 2, 3, 255]; 2], Encoding::Srgb);
+        assert!(!opaque.has_alpha() && opaque.alpha(1) == 1.0);
+        let clear = Image::from_linear_and_alpha("", 1, 2, vec![[0.5; 3]; 2], vec![1.0, 0.25]);
+        assert!(clear.has_alpha());
+        let tinted = clear.tinted([2.0, 1.0, 0.0]);
+        assert_eq!((tinted.texel(1), tinted.alpha(1), tinted.len()), ([1.0, 0.5, 0.0], 0.25, 2));
+    }
+}
