@@ -213,6 +213,8 @@ impl Textures {
         }
     }
 
+    // Most colours are the same everywhere: what asks for them stays short.
+    #[inline(never)]
     fn texture<R: Reading>(&self, id: TextureId, at: &TexturePoint, reading: &R) -> R::Value {
         let space = |mapping| mapping::coordinates(mapping, at).as_vec3();
         match &self.kinds[id.index()] {

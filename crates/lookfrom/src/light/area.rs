@@ -58,8 +58,10 @@ pub struct LightPoint {
     pub normal: DVec3,
     /// Texture coordinates.
     pub uv: Vec2,
-    /// Of a mesh: which triangle, and the weights of its second and third corner.
-    pub on_triangle: Option<(usize, Vec2)>,
+    /// Of a mesh, the triangle; else 0.
+    pub primitive: u32,
+    /// The weights of the triangle's second and third corner.
+    pub on_primitive: Vec2,
     /// Toward the light, unit length.
     pub wi: Vec3,
     /// Density over solid angle, finite and positive.
@@ -131,9 +133,9 @@ impl AreaLight {
     fn texture_point(&self, point: &LightPoint) -> TexturePoint {
         let at = TexturePoint { uv: point.uv, n: point.normal.as_vec3(), ..TexturePoint::NOWHERE };
         let is_even = self.alpha.is_none() && !matches!(self.radiance.color, Color::Texture(_));
-        match (&self.form, point.on_triangle) {
-            (LightForm::Mesh(light), Some((index, place))) if !is_even => {
-                light.with_vertices(at, index, place)
+        match &self.form {
+            LightForm::Mesh(light) if !is_even => {
+                light.with_vertices(at, point.primitive, point.on_primitive)
             }
             _ => at,
         }
@@ -222,7 +224,7 @@ impl Cone {
 fn seen(from: DVec3, point: Point, normal: DVec3, uv: Vec2, density: f64) -> Option<LightPoint> {
     let (wi, distance) = toward(from, DVec3::from_array(point.position))?;
     let pdf = (density * distance * distance / normal.dot(wi.as_dvec3()).abs()) as f32;
-    Some(LightPoint { point, normal, uv, on_triangle: None, wi, pdf })
+    Some(LightPoint { point, normal, uv, primitive: 0, on_primitive: Vec2::ZERO, wi, pdf })
 }
 
 /// By area.

@@ -36,7 +36,7 @@ pub struct MeshLight {
     mesh: Arc<Mesh>,
     /// The triangles that are asked, in their order; `None` is all.
     asked: Option<Vec<u32>>,
-    /// Of those: what choosing a point takes.
+    /// Those: what choosing a point takes.
     triangles: Vec<Triangle>,
     /// Of those, by area and brightness.
     choice: Discrete,
@@ -53,6 +53,8 @@ pub(crate) struct Triangle {
     pub(crate) p0: DVec3,
     pub(crate) e1: DVec3,
     pub(crate) e2: DVec3,
+    /// Which of the mesh.
+    pub(crate) index: u32,
     /// To the outside, of unit length; `None` where the mesh's normals make that differ over the triangle.
     pub(crate) normal: Option<DVec3>,
     pub(crate) area: f64,
@@ -114,7 +116,7 @@ impl MeshLight {
 
     /// Around what is asked.
     pub(super) fn bounds(&self) -> [DVec3; 2] {
-        let vertices = (0..self.triangles.len()).flat_map(|rank| self.mesh.corners(self.index(rank)));
+        let vertices = self.triangles.iter().flat_map(|triangle| self.mesh.corners(triangle.index as usize));
         vertices
             .map(|p| Vec3::from_array(p).as_dvec3())
             .fold([DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY)], |[min, max], p| {
@@ -126,13 +128,8 @@ impl MeshLight {
     pub(super) fn normals(&self) -> Cone {
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)];
         let triangles = (0..self.triangles.len()).filter(|&rank| self.choice.pdf(rank) > 0.0);
-        let triangles = triangles.map(|rank| self.index(rank));
+        let triangles = triangles.map(|rank| self.triangles[rank].index as usize);
         Cone::around(triangles.flat_map(|index| corners.map(|(u, v)| self.mesh.point(index, u, v).ng)))
-    }
-
-    /// Which triangle of the mesh one of those that are asked is.
-    fn index(&self, rank: usize) -> usize {
-        self.asked.as_ref().map_or(rank, |asked| asked[rank] as usize)
     }
 
     /// Which of those that are asked a triangle of the mesh is.
@@ -144,37 +141,42 @@ impl MeshLight {
     }
 
     /// What textures depend on at a point of a triangle, with what its vertices say.
-    pub(super) fn with_vertices(&self, at: TexturePoint, index: usize, place: Vec2) -> TexturePoint {
-        with_vertices(&self.mesh, at, index, place)
+    pub(super) fn with_vertices(&self, at: TexturePoint, index: u32, place: Vec2) -> TexturePoint {
+        with_vertices(&self.mesh, at, index as usize, place)
     }
 
     pub(super) fn sample(&self, from: DVec3, [u0, u1]: [f32; 2]) -> Option<LightPoint> {
-        if !self.is_asked() {
-            return None;
-        }
         let (rank, probability, u0) = self.choice.sample(u0);
-        let (index, triangle) = (self.index(rank), &self.triangles[rank]);
+        let triangle = self.triangles.get(rank)?;
         if let Some(solid_angle) = triangle.worth_direction(from) {
             let corners = triangle.corners_from(from);
             let direction = sample_spherical_triangle(corners, solid_angle, [u0, u1].map(f64::from));
             let [beta, gamma] = barycentric(corners, direction);
             let place = Vec2::new(beta as f32, gamma as f32);
-            let (point, normal, uv) = self.point(rank, place);
+            let (point, normal, uv) = self.point(triangle, place);
             let (wi, _) = toward(from, DVec3::from_array(point.position))?;
             let pdf = (f64::from(probability) / solid_angle) as f32;
-            return Some(LightPoint { point, normal, uv, on_triangle: Some((index, place)), wi, pdf });
+            return Some(LightPoint {
+                point,
+                normal,
+                uv,
+                primitive: triangle.index,
+                on_primitive: place,
+                wi,
+                pdf,
+            });
         }
         let [_, beta, gamma] = warp::uniform_triangle([u0, u1]);
         let place = Vec2::new(beta, gamma);
-        let (point, normal, uv) = self.point(rank, place);
+        let (point, normal, uv) = self.point(triangle, place);
         let seen = seen(from, point, normal, uv, f64::from(probability) / triangle.area)?;
-        Some(LightPoint { on_triangle: Some((index, place)), ..seen })
+        Some(LightPoint { primitive: triangle.index, on_primitive: place, ..seen })
     }
 
-    /// A point of a triangle of those that are asked, the normal to the outside and the texture coordinates.
-    fn point(&self, rank: usize, Vec2 { x: beta, y: gamma }: Vec2) -> (Point, DVec3, Vec2) {
-        let index = self.index(rank);
-        let Some(normal) = self.triangles[rank].normal else {
+    /// A point of a triangle, the normal to the outside and the texture coordinates.
+    fn point(&self, triangle: &Triangle, Vec2 { x: beta, y: gamma }: Vec2) -> (Point, DVec3, Vec2) {
+        let index = triangle.index as usize;
+        let Some(normal) = triangle.normal else {
             let at = self.mesh.point(index, beta, gamma);
             return (at.point, at.ng, at.uv);
         };
@@ -237,6 +239,7 @@ impl Triangle {
         p0: DVec3::ZERO,
         e1: DVec3::X,
         e2: DVec3::Y,
+        index: 0,
         normal: Some(DVec3::Z),
         area: 0.5,
     };
@@ -251,7 +254,8 @@ impl Triangle {
         // The middle has the side of all three corners, where they agree.
         let normals = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(u, v)| mesh.point(index, u, v).ng);
         let agree = normals[1..].iter().all(|ng| ng.dot(normals[0]) > 0.0);
-        Self { corners, p0, e1, e2, normal: agree.then_some(normals[0]), area: mesh.area(index) }
+        let normal = agree.then_some(normals[0]);
+        Self { corners, p0, e1, e2, index: index as u32, normal, area: mesh.area(index) }
     }
 
     /// As it is seen from a point.

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::{Cone, LightPoint, seen};
 use crate::light::toward;
@@ -98,7 +98,15 @@ impl QuadricLight {
         let at = self.quadric.point(eye + depth * direction, NO_LOOK);
         let (wi, _) = toward(from, DVec3::from_array(at.point.position))?;
         let pdf = self.density(&view, wi);
-        Some(LightPoint { point: at.point, normal: at.ng, uv: at.uv, on_triangle: None, wi, pdf })
+        Some(LightPoint {
+            point: at.point,
+            normal: at.ng,
+            uv: at.uv,
+            primitive: 0,
+            on_primitive: Vec2::ZERO,
+            wi,
+            pdf,
+        })
     }
 
     /// The density over solid angle where points are chosen by direction.
