@@ -346,3 +346,128 @@ fn time_of_look_ups() {
         }
     }
 }
+
+fn affine(set: u32, matrix: [[f32; 3]; 2]) -> Mapping {
+    Mapping::Affine { set, matrix }
+}
+
+#[test]
+fn channels_are_greys_and_alpha_is_no_color() {
+    let image = Image::from_bytes("", 2, 1, vec![[255, 51, 0, 102], [255, 51, 0, 204]], Encoding::Srgb);
+    let channels = [Channel::Red, Channel::Green, Channel::Blue, Channel::Alpha, Channel::Rgb];
+    let kinds = channels.map(|channel| TextureKind::Image {
+        image: ImageId(0),
+        mapping: Mapping::UV,
+        wrap: [Wrap::Clamp, Wrap::Black],
+        filter: TexelFilter::Bilinear,
+        channel,
+        scale: 2.0,
+        invert: false,
+    });
+    let textures = Textures::new(kinds.to_vec(), vec![image], vec![]);
+    let number = |index, at: &TexturePoint| textures.scalar(Scalar::Texture(TextureId(index)), at);
+    let green = lookfrom_scene::image::linear_from_srgb(0.2);
+    // In the middle between both texels; nothing of the black above and below shines in at v = 0.5.
+    let found: Vec<f32> = (0..4).map(|index| number(index, &at(0.5, 0.5))).collect();
+    assert_eq!(found, [2.0, 2.0 * green, 0.0, 2.0 * (0.5 * 0.4 + 0.5 * 0.8)]);
+    let gray = textures.rgb(Color::Texture(TextureId(3)), Usage::Unbounded, &at(0.0, 0.5));
+    assert_eq!(gray, [0.8; 3]);
+    // Each axis wraps by itself.
+    assert_eq!((number(3, &at(-3.0, 0.5)), number(3, &at(0.5, 3.0))), (0.8, 0.0));
+    assert_eq!(
+        textures.rgb(Color::Texture(TextureId(4)), Usage::Albedo, &at(0.5, 0.5)),
+        [1.0, 2.0 * green, 0.0]
+    );
+}
+
+#[test]
+fn products_multiply_channels_and_only_one_factor_is_light() {
+    let curves = vec![Curve::Constant(0.5)];
+    let (a, b) = (Color::Value([0.5, 0.25, 1.0]), Color::Value([0.5, 3.0, 0.0]));
+    let kinds = vec![
+        TextureKind::Product { a, b },
+        TextureKind::Product { a: Color::gray(2.0), b: Color::gray(3.0) },
+        TextureKind::Product { a: Color::gray(0.5), b: Color::Texture(TextureId(1)) },
+        TextureKind::Product { a: Color::gray(2.0), b: Color::Curve(CurveId(0)) },
+    ];
+    let textures = Textures::new(kinds, vec![], curves);
+    let [of_colors, of_grays, nested, with_curve] = [0, 1, 2, 3].map(|id| Color::Texture(TextureId(id)));
+    let here = TexturePoint::NOWHERE;
+    assert_eq!(textures.rgb(of_colors, Usage::Unbounded, &here), [0.25, 0.75, 0.0]);
+    assert_eq!(textures.rgb(of_colors, Usage::Albedo, &here), [0.25, 0.25, 0.0]);
+    assert_eq!(textures.scalar(Scalar::Texture(TextureId(2)), &here), 3.0);
+
+    let lanes = Lanes::Spectral(Wavelengths { lambda: [450.0, 500.0, 550.0, 600.0], pdf: [1.0; 4] });
+    let spectrum = |color, usage| textures.spectrum(color, usage, &here, &lanes);
+    for usage in [Usage::Unbounded, Usage::Illuminant] {
+        let six = spectrum(Color::gray(6.0), usage);
+        assert_eq!(spectrum(of_grays, usage), six, "{usage:?}");
+        let three = spectrum(Color::gray(3.0), usage);
+        assert_eq!(spectrum(nested, usage), three, "{usage:?}");
+    }
+    let colored = spectrum(a, Usage::Unbounded) * spectrum(b, Usage::Unbounded);
+    assert_eq!(spectrum(of_colors, Usage::Unbounded), colored);
+    assert_eq!(spectrum(with_curve, Usage::Unbounded), Spectrum([1.0; 4]));
+}
+
+#[test]
+fn mappings_choose_a_set_of_coordinates_and_turn_it() {
+    let image = Image::from_linear("", 2, 2, vec![[1.0; 3], [2.0; 3], [3.0; 3], [4.0; 3]]);
+    let quarter_turn = [[0.0, 1.0, 0.25], [-1.0, 0.0, 1.0]];
+    let kinds = [(0, quarter_turn), (2, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), (9, quarter_turn)].map(
+        |(set, matrix)| TextureKind::Image {
+            image: ImageId(0),
+            mapping: affine(set, matrix),
+            wrap: [Wrap::Repeat; 2],
+            filter: TexelFilter::Nearest,
+            channel: Channel::Rgb,
+            scale: 1.0,
+            invert: false,
+        },
+    );
+    let textures = Textures::new(kinds.to_vec(), vec![image], vec![]);
+    let mut here = at(0.4, 0.1);
+    here.more_uvs[1] = Vec2::new(0.9, 0.9);
+    let number = |id| textures.scalar(Scalar::Texture(TextureId(id)), &here);
+    // (0.35, 0.6): upper left. (0.9, 0.9): upper right. Of no such set (0, 0), turned to (0.25, 1): upper left.
+    assert_eq!([number(0), number(1), number(2)], [1.0, 2.0, 1.0]);
+}
+
+#[test]
+fn vertices_have_opacities_and_what_is_opaque_is_known() {
+    let clear = Image::from_bytes("", 1, 1, vec![[0, 0, 0, 0]], Encoding::Linear);
+    let opaque = Image::from_bytes("", 1, 1, vec![[0, 0, 0, 255]], Encoding::Linear);
+    let alpha = |image, wrap| TextureKind::Image {
+        image: ImageId(image),
+        mapping: Mapping::UV,
+        wrap: [wrap; 2],
+        filter: TexelFilter::Bilinear,
+        channel: Channel::Alpha,
+        scale: 1.0,
+        invert: false,
+    };
+    let of = |id| Color::Texture(TextureId(id));
+    let kinds = vec![
+        TextureKind::VertexAlpha,
+        alpha(0, Wrap::Repeat),
+        alpha(1, Wrap::Repeat),
+        alpha(1, Wrap::Black),
+        TextureKind::Product { a: of(0), b: of(2) },
+        TextureKind::Product { a: of(2), b: Color::gray(0.5) },
+        TextureKind::Threshold { value: Scalar::Texture(TextureId(4)), edge: 0.5 },
+    ];
+    let textures = Textures::new(kinds, vec![clear, opaque], vec![]);
+    let is_one = |id, has| textures.is_one(Scalar::Texture(TextureId(id)), has);
+    assert_eq!(
+        [0, 1, 2, 3, 4, 5, 6].map(|id| is_one(id, false)),
+        [true, false, true, false, true, false, true]
+    );
+    assert!(![0, 4, 6].iter().any(|&id| is_one(id, true)));
+    assert!(textures.is_one(Scalar::Value(1.0), true) && !textures.is_one(Scalar::Value(0.0), false));
+    for opacity in [0.25, 0.75] {
+        let here = TexturePoint { opacity, ..at(0.5, 0.5) };
+        assert_eq!(textures.scalar(Scalar::Texture(TextureId(4)), &here), opacity);
+        let cut = textures.scalar(Scalar::Texture(TextureId(6)), &here);
+        assert_eq!(cut, if opacity < 0.5 { 0.0 } else { 1.0 });
+    }
+}
