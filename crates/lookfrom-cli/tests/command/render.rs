@@ -7,7 +7,7 @@ use lookfrom_scene::{Disk, Sources};
 
 use super::stage::Stage;
 
-fn texels(path: &Path) -> Vec<[f32; 3]> {
+fn colors(path: &Path) -> Vec<[f32; 3]> {
     picture(path).texels().collect()
 }
 
@@ -43,10 +43,10 @@ fn every_format_holds_the_same_light() {
     for extension in ["exr", "pfm", "hdr", "png", "ppm"] {
         stage.done(&format!("render scene.toml -q -o p.{extension}"));
     }
-    let exact = texels(&stage.path("p.exr"));
+    let exact = colors(&stage.path("p.exr"));
     assert!(exact.iter().flatten().any(|&value| value > 0.1), "the picture is black");
     for (extension, step) in [("pfm", 0.0), ("hdr", 0.01), ("png", 0.01), ("ppm", 0.01)] {
-        let other = texels(&stage.path(&format!("p.{extension}")));
+        let other = colors(&stage.path(&format!("p.{extension}")));
         for (a, b) in exact.iter().flatten().zip(other.iter().flatten()) {
             // 8-bit pictures are cut at 1.
             let a = if ["png", "ppm"].contains(&extension) { a.clamp(0.0, 1.0) } else { *a };
@@ -206,11 +206,11 @@ fn several_scenes_go_into_a_folder_or_a_pattern() {
 fn a_model_is_framed_and_lit() {
     let stage = Stage::new("model");
     stage.done("render model.obj -q --width 64 --samples 4 -o p.exr");
-    let texels = texels(&stage.path("p.exr"));
+    let texels = colors(&stage.path("p.exr"));
     let mean = texels.iter().flatten().sum::<f32>() / (texels.len() * 3) as f32;
     assert!((0.1..1.0).contains(&mean), "the mean is {mean}");
     stage.done("render model.obj -q --width 64 --samples 4 -o normals.exr --integrator normals");
-    let texels = texels(&stage.path("normals.exr"));
+    let texels = colors(&stage.path("normals.exr"));
     let facing = texels.iter().filter(|texel| texel[2] > 0.9).count();
     assert!(facing > texels.len() / 20, "{facing} pixels show the triangle");
 }
