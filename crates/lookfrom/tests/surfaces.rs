@@ -113,22 +113,38 @@ fn under_lamp(cells: u32, glow: impl FnOnce(&mut Scene) -> Color) -> Scene {
 #[test]
 fn patterns_shine_as_bright_as_they_are_found_by_chance() {
     for color in [ColorMode::Rgb, ColorMode::Spectral] {
+        let lit = |cells, integrator, samples| {
+            let mut scene = under_lamp(cells, |scene| {
+                let spot = picture_of(scene, spot(4), Channel::Rgb, Mapping::UV);
+                let (a, b) = (Color::Texture(spot), Color::gray(100.0));
+                Color::Texture(push_texture(scene, TextureKind::Product { a, b }))
+            });
+            (scene.render.integrator, scene.render.samples, scene.render.color) =
+                (integrator, samples, color);
+            scene.render.depth = 1;
+            mean(scene)
+        };
+        let by_chance = lit(1, Integrator::RandomWalk, 1 << 16);
         for cells in [1, 40] {
-            let lit = |integrator, samples| {
-                let mut scene = under_lamp(cells, |scene| {
-                    let spot = picture_of(scene, spot(4), Channel::Rgb, Mapping::UV);
-                    let (a, b) = (Color::Texture(spot), Color::gray(100.0));
-                    Color::Texture(push_texture(scene, TextureKind::Product { a, b }))
-                });
-                (scene.render.integrator, scene.render.samples, scene.render.color) =
-                    (integrator, samples, color);
-                scene.render.depth = 1;
-                mean(scene)
-            };
-            let (asked, by_chance) = (lit(Integrator::Path, 4096), lit(Integrator::RandomWalk, 1 << 16));
+            let asked = lit(cells, Integrator::Path, 4096);
             assert!(asked > 1e-3 && (asked / by_chance - 1.0).abs() < 0.05, "{cells}: {asked} {by_chance}");
         }
     }
+}
+
+#[test]
+#[ignore = "measures time"]
+fn time_of_a_million_triangles_that_shine() {
+    for (name, side) in [("one texel of 16²", 16), ("one of 1", 1)] {
+        let scene =
+            under_lamp(708, |scene| Color::Texture(picture_of(scene, spot(side), Channel::Rgb, Mapping::UV)));
+        let start = std::time::Instant::now();
+        let world = compiled(scene);
+        println!("{name}: {:?} for {} lights", start.elapsed(), world.lights.len());
+    }
+    let start = std::time::Instant::now();
+    compiled(under_lamp(708, |_| Color::BLACK));
+    println!("dark: {:?}", start.elapsed());
 }
 
 #[test]
