@@ -15,17 +15,24 @@ pub struct Location {
     pub line: u32,
     /// Column in characters, from 1.
     pub column: u32,
+    /// Where in a JSON document, as a pointer (RFC 6901) such as `/meshes/3/name`; empty is the whole of it.
+    pub pointer: Arc<str>,
 }
 
 impl Location {
     /// The whole of a file.
     pub fn file(path: &Path) -> Self {
-        Self { file: path.display().to_string().into(), line: 0, column: 0 }
+        Self { file: path.display().to_string().into(), ..Self::default() }
     }
 
     /// Another place in the same file.
     pub fn at(&self, line: u32, column: u32) -> Self {
-        Self { file: self.file.clone(), line, column }
+        Self { file: self.file.clone(), line, column, ..Self::default() }
+    }
+
+    /// A place in the same file that is a JSON document, by its pointer.
+    pub fn pointer(&self, pointer: &str) -> Self {
+        Self { file: self.file.clone(), pointer: pointer.into(), ..Self::default() }
     }
 }
 
@@ -33,6 +40,7 @@ impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name: &str = if self.file.is_empty() { "<scene>" } else { &self.file };
         match (self.line, self.column) {
+            (0, _) if !self.pointer.is_empty() => write!(f, "{name}#{}", self.pointer),
             (0, _) => write!(f, "{name}"),
             (line, 0) => write!(f, "{name}:{line}"),
             (line, column) => write!(f, "{name}:{line}:{column}"),

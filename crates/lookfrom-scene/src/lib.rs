@@ -6,6 +6,7 @@
 pub mod camera;
 pub mod error;
 pub mod files;
+pub mod gltf;
 pub mod image;
 pub mod light;
 pub mod load;

@@ -1,0 +1,317 @@
+//! How do bytes become vectors of numbers: component types, normalisation, strides, sparse values (specification, §3.6.2)?
+//!
+//! Everything is checked against the buffers and the limits before memory is asked for.
+
+use super::file::Document;
+use super::json::{self, Whole};
+use crate::error::{Error, Result};
+
+/// The numbers that vectors are made of, by the names of their constants in OpenGL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ComponentType {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl ComponentType {
+    fn of(number: Whole) -> Option<Self> {
+        Some(match number.0 {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            _ => return None,
+        })
+    }
+
+    fn is_unsigned(self) -> bool {
+        matches!(self, Self::U8 | Self::U16 | Self::U32)
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+}
+
+/// A number as it stands in a buffer.
+trait Component: Copy {
+    /// From its first bytes, of which there are enough.
+    fn read(bytes: &[u8]) -> Self;
+    /// As it is.
+    fn number(self) -> f32;
+    /// What it means where it is normalised: 0 … 1 or −1 … 1.
+    fn fraction(self) -> f32;
+    /// As an index.
+    fn whole(self) -> u32;
+}
+
+macro_rules! components {
+    ($($type:ty: $size:literal, $fraction:expr;)*) => {$(
+        impl Component for $type {
+            fn read(bytes: &[u8]) -> Self {
+                let mut own = [0; $size];
+                own.copy_from_slice(&bytes[..$size]);
+                Self::from_le_bytes(own)
+            }
+            fn number(self) -> f32 {
+                self as f32
+            }
+            fn fraction(self) -> f32 {
+                let fraction: fn(f32) -> f32 = $fraction;
+                fraction(self as f32)
+            }
+            fn whole(self) -> u32 {
+                self as u32
+            }
+        }
+    )*};
+}
+
+components! {
+    i8: 1, |number| (number / 127.0).max(-1.0);
+    u8: 1, |number| number / 255.0;
+    i16: 2, |number| (number / 32767.0).max(-1.0);
+    u16: 2, |number| number / 65535.0;
+    u32: 4, |number| number;
+    f32: 4, |number| number;
+}
+
+/// What a component is read as.
+trait Value: Copy + Default {
+    fn of<C: Component>(component: C, normalized: bool) -> Self;
+}
+
+impl Value for f32 {
+    fn of<C: Component>(component: C, normalized: bool) -> Self {
+        if normalized { component.fraction() } else { component.number() }
+    }
+}
+
+impl Value for u32 {
+    fn of<C: Component>(component: C, _: bool) -> Self {
+        component.whole()
+    }
+}
+
+/// How many numbers an element has, and how many of them a column.
+fn shape_of(kind: &str) -> Option<(usize, usize)> {
+    Some(match kind {
+        "SCALAR" => (1, 1),
+        "VEC2" => (2, 2),
+        "VEC3" => (3, 3),
+        "VEC4" => (4, 4),
+        "MAT2" => (4, 2),
+        "MAT3" => (9, 3),
+        "MAT4" => (16, 4),
+        _ => return None,
+    })
+}
+
+/// How the numbers of an element lie in its bytes.
+#[derive(Clone, Copy)]
+struct Layout {
+    component: ComponentType,
+    normalized: bool,
+    /// Numbers a column.
+    rows: usize,
+    /// From column to column in bytes: those of matrices start at multiples of four.
+    column: usize,
+    /// Bytes of an element.
+    size: usize,
+}
+
+impl Layout {
+    fn new(component: ComponentType, normalized: bool, numbers: usize, rows: usize) -> Self {
+        let column = match numbers / rows {
+            1 => rows * component.size(),
+            _ => (rows * component.size()).next_multiple_of(4),
+        };
+        Self { component, normalized, rows, column, size: column * (numbers / rows) }
+    }
+
+    /// The vectors in bytes that hold `count` of them.
+    fn read<V: Value, const N: usize>(&self, bytes: &[u8], stride: usize, count: usize) -> Vec<[V; N]> {
+        match self.component {
+            ComponentType::I8 => self.gather::<i8, V, N>(bytes, stride, count),
+            ComponentType::U8 => self.gather::<u8, V, N>(bytes, stride, count),
+            ComponentType::I16 => self.gather::<i16, V, N>(bytes, stride, count),
+            ComponentType::U16 => self.gather::<u16, V, N>(bytes, stride, count),
+            ComponentType::U32 => self.gather::<u32, V, N>(bytes, stride, count),
+            ComponentType::F32 => self.gather::<f32, V, N>(bytes, stride, count),
+        }
+    }
+
+    fn gather<C: Component, V: Value, const N: usize>(
+        &self,
+        bytes: &[u8],
+        stride: usize,
+        count: usize,
+    ) -> Vec<[V; N]> {
+        let places: [usize; N] =
+            std::array::from_fn(|i| i / self.rows * self.column + i % self.rows * self.component.size());
+        let element = |element: &[u8]| places.map(|place| V::of(C::read(&element[place..]), self.normalized));
+        bytes.chunks(stride).take(count).map(element).collect()
+    }
+}
+
+impl Document {
+    /// How many numbers each element of an accessor has, and how many elements there are.
+    ///
+    /// # Errors
+    /// Where there is no such accessor, or it has no known type.
+    pub(crate) fn shape(&self, index: Whole, asked: &str) -> Result<(usize, usize)> {
+        let accessor = self.one_of(&self.root.accessors, index, "accessor", asked)?;
+        let (numbers, _) = shape_of(&accessor.kind)
+            .ok_or_else(|| self.wrong(index, asked, format!("has the unknown type {:?}", accessor.kind)))?;
+        Ok((numbers, accessor.count.index()))
+    }
+
+    /// The vectors, or matrices column by column, of an accessor, with whole numbers as fractions where that is said.
+    /// They may be infinite or not a number. `asked` is the pointer of what uses them.
+    ///
+    /// # Errors
+    /// Where the accessor has vectors of another size, where it, its view or its buffer is not there or too short, or
+    /// where there are too many.
+    pub(crate) fn vectors<const N: usize>(&self, index: Whole, asked: &str) -> Result<Vec<[f32; N]>> {
+        self.elements(index, asked)
+    }
+
+    /// The same for unsigned whole numbers that stand for something: vertices, joints.
+    ///
+    /// # Errors
+    /// As [`Document::vectors`], and where the numbers are not whole or may be negative.
+    pub(crate) fn whole_vectors<const N: usize>(&self, index: Whole, asked: &str) -> Result<Vec<[u32; N]>> {
+        let accessor = self.one_of(&self.root.accessors, index, "accessor", asked)?;
+        match ComponentType::of(accessor.component_type) {
+            Some(component) if component.is_unsigned() => self.elements(index, asked),
+            _ => {
+                let found = accessor.component_type.0;
+                Err(self.wrong(
+                    index,
+                    asked,
+                    format!("has the component type {found}; expected 5121, 5123 or 5125"),
+                ))
+            }
+        }
+    }
+
+    /// The numbers of an accessor of scalars.
+    ///
+    /// # Errors
+    /// As [`Document::vectors`].
+    pub(crate) fn scalars(&self, index: Whole, asked: &str) -> Result<Vec<f32>> {
+        Ok(self.vectors::<1>(index, asked)?.into_flattened())
+    }
+
+    fn wrong(&self, index: Whole, asked: &str, what: String) -> Error {
+        self.invalid(asked, format!("accessor {} {what}", index.0))
+            .hint("Khronos' glTF validator shows everything that is wrong with the file")
+    }
+
+    fn elements<V: Value, const N: usize>(&self, index: Whole, asked: &str) -> Result<Vec<[V; N]>> {
+        let accessor = self.one_of(&self.root.accessors, index, "accessor", asked)?;
+        let wrong = |what: String| self.wrong(index, asked, what);
+
+        // What is said.
+        let component = ComponentType::of(accessor.component_type)
+            .ok_or_else(|| wrong(format!("has the unknown component type {}", accessor.component_type.0)))?;
+        let (numbers, rows) = shape_of(&accessor.kind)
+            .ok_or_else(|| wrong(format!("has the unknown type {:?}", accessor.kind)))?;
+        if numbers != N {
+            return Err(wrong(format!("is {}: {numbers} numbers an element; expected {N}", accessor.kind)));
+        }
+        let layout = Layout::new(component, accessor.normalized.unwrap_or(false), numbers, rows);
+        let count = accessor.count.index();
+        self.count(count as u64, asked)?;
+
+        // What is there: zeros where no view is named.
+        let mut elements = match accessor.buffer_view {
+            Some(view) => self.gather(layout, view, accessor.byte_offset, count, asked)?,
+            None => vec![[V::default(); N]; count],
+        };
+        if let Some(sparse) = &accessor.sparse {
+            let replaced = self.sparse_indices(sparse, count, asked)?;
+            let values = &sparse.values;
+            let values: Vec<[V; N]> =
+                self.gather(layout, values.buffer_view, values.byte_offset, replaced.len(), asked)?;
+            for (place, value) in replaced.into_iter().zip(values) {
+                elements[place as usize] = value;
+            }
+        }
+        Ok(elements)
+    }
+
+    /// `count` elements of a view, from `offset` on.
+    fn gather<V: Value, const N: usize>(
+        &self,
+        layout: Layout,
+        view: Whole,
+        offset: Option<Whole>,
+        count: usize,
+        asked: &str,
+    ) -> Result<Vec<[V; N]>> {
+        let found = self.view(view, asked)?;
+        let size = layout.size;
+        let stride = found.stride.unwrap_or(size);
+        if stride < size {
+            let message = format!(
+                "buffer view {} has an element every {stride} bytes, but elements have {size} bytes",
+                view.0
+            );
+            return Err(self.invalid(asked, message));
+        }
+        let start = offset.unwrap_or_default().index();
+        let length = match count {
+            0 => Some(0),
+            _ => stride.checked_mul(count - 1).and_then(|length| length.checked_add(size)),
+        };
+        let end = length.and_then(|length| start.checked_add(length));
+        let bytes = end.and_then(|end| found.bytes.get(start..end)).ok_or_else(|| {
+            let message = format!(
+                "{count} elements of {size} bytes, one every {stride}, from byte {start} on are beyond the end of buffer \
+                 view {}, which has {} bytes",
+                view.0,
+                found.bytes.len()
+            );
+            self.invalid(asked, message).hint("the file is cut off or was written wrongly: export it again")
+        })?;
+        Ok(layout.read(bytes, stride, count))
+    }
+
+    /// Which elements a sparse accessor replaces: all below `count`.
+    fn sparse_indices(&self, sparse: &json::Sparse, count: usize, asked: &str) -> Result<Vec<u32>> {
+        let component = match ComponentType::of(sparse.indices.component_type) {
+            Some(component) if component.is_unsigned() => component,
+            _ => {
+                let found = sparse.indices.component_type.0;
+                let message = format!("the indices of sparse values have the component type {found}");
+                return Err(self.invalid(asked, message).hint("5121, 5123 and 5125 are possible"));
+            }
+        };
+        let replaced = sparse.count.index();
+        if replaced > count {
+            return Err(self.invalid(asked, format!("{replaced} sparse values for only {count} elements")));
+        }
+        let layout = Layout::new(component, false, 1, 1);
+        let indices: Vec<[u32; 1]> =
+            self.gather(layout, sparse.indices.buffer_view, sparse.indices.byte_offset, replaced, asked)?;
+        let indices = indices.into_flattened();
+        match indices.iter().find(|&&index| index as usize >= count) {
+            Some(index) => {
+                Err(self
+                    .invalid(asked, format!("a sparse value replaces element {index}; there are {count}")))
+            }
+            None => Ok(indices),
+        }
+    }
+}

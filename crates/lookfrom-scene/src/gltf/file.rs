@@ -1,0 +1,364 @@
+//! Which bytes belong to a glTF file: the JSON, by itself or in a GLB container, and the buffers, in the container, in
+//! other files or in the JSON (specification, §2.7, §3.6.1, §4).
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
+
+use super::json::{self, Root, Whole};
+use super::uri::{self, Uri};
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::files::{Limits, Sources};
+use crate::model::surface::beside;
+
+/// The first bytes of a GLB container.
+pub(super) const MAGIC: &[u8] = b"glTF";
+const JSON_CHUNK: u32 = 0x4E4F_534A;
+const BINARY_CHUNK: u32 = 0x004E_4942;
+
+/// How many values of attributes and indices one element of [`Limits::elements`] may have: a vertex has several.
+const VALUES_AN_ELEMENT: u64 = 8;
+
+/// A file with its buffers.
+pub(crate) struct Document {
+    /// What the JSON says.
+    pub(crate) root: Root,
+    /// Where it came from.
+    pub(crate) path: PathBuf,
+    /// How much may be asked for.
+    pub(crate) limits: Limits,
+    at: Location,
+    content: Vec<u8>,
+    buffers: Vec<Bytes>,
+    /// What compressed views become, once one of them has been asked for.
+    decoded: Vec<OnceLock<Result<Vec<u8>>>>,
+    /// How many values of accessors were read so far.
+    values: AtomicU64,
+}
+
+/// Where a buffer's bytes are.
+enum Bytes {
+    /// A part of the container.
+    Chunk(Range<usize>),
+    Own(Arc<Vec<u8>>),
+    /// Nowhere. That matters only where it is used.
+    Missing(Error),
+}
+
+/// A part of a buffer.
+#[derive(Clone, Copy)]
+pub(crate) struct View<'a> {
+    /// Its bytes.
+    pub(crate) bytes: &'a [u8],
+    /// From element to element, where that is said.
+    pub(crate) stride: Option<usize>,
+}
+
+impl Document {
+    /// Takes a file's content apart and reads the buffers that it names.
+    ///
+    /// # Errors
+    /// `Syntax` where it is no glTF, `Unsupported` where it is of another version.
+    pub(crate) fn open(content: Vec<u8>, path: &Path, sources: &mut Sources<'_>) -> Result<Self> {
+        let at = Location::file(path);
+        let (json, binary) = match content.starts_with(MAGIC) {
+            true => chunks(&content, &at, sources)?,
+            false => (0..content.len(), None),
+        };
+        let root = parse(&content[json], &at, sources)?;
+        check_version(&root, &at)?;
+        let decoded = root.buffer_views.iter().map(|_| OnceLock::new()).collect();
+        let limits = sources.limits;
+        let mut document = Self {
+            root,
+            path: path.to_owned(),
+            limits,
+            at,
+            content,
+            buffers: Vec::new(),
+            decoded,
+            values: AtomicU64::new(0),
+        };
+        document.read_buffers(binary, sources);
+        Ok(document)
+    }
+
+    /// A place in the JSON.
+    pub(crate) fn at(&self, pointer: &str) -> Location {
+        self.at.pointer(pointer)
+    }
+
+    /// What is said at a place in the JSON cannot be.
+    pub(crate) fn invalid(&self, pointer: &str, message: impl Into<String>) -> Error {
+        Error::invalid(&self.at(pointer), message)
+    }
+
+    /// One of a list, or the error that there is no such one.
+    pub(crate) fn one_of<'a, T>(
+        &self,
+        list: &'a [T],
+        index: Whole,
+        what: &str,
+        asked: &str,
+    ) -> Result<&'a T> {
+        list.get(index.index()).ok_or_else(|| {
+            let message = match list.len() {
+                0 => format!("{what} {} is used, but the file has none", index.0),
+                count => {
+                    format!("{what} {} is used, but the file has {count}, from 0 to {}", index.0, count - 1)
+                }
+            };
+            self.invalid(asked, message).hint("the file is damaged or was written wrongly: export it again")
+        })
+    }
+
+    /// Notes that so many values are about to be read.
+    ///
+    /// # Errors
+    /// `Limit` where all of them together are more than the limits allow.
+    pub(crate) fn count(&self, values: u64, asked: &str) -> Result<()> {
+        let before = self.values.fetch_add(values, Ordering::Relaxed);
+        let most = self.limits.elements.saturating_mul(VALUES_AN_ELEMENT);
+        if values > self.limits.elements || before.saturating_add(values) > most {
+            let message = format!(
+                "{values} values, after {before} others, are more than the limits of {} and {most} in all",
+                self.limits.elements
+            );
+            return Err(Error::new(ErrorKind::Limit, &self.at(asked), message)
+                .hint("divide the model, or raise `Limits::elements`"));
+        }
+        Ok(())
+    }
+
+    /// The bytes of a view; `asked` is the pointer of what uses it.
+    ///
+    /// # Errors
+    /// Where the view, or its buffer, is not there or too short, or where it cannot be unpacked.
+    pub(crate) fn view(&self, index: Whole, asked: &str) -> Result<View<'_>> {
+        let view = self.one_of(&self.root.buffer_views, index, "buffer view", asked)?;
+        let stride = view.byte_stride.map(Whole::index);
+        if let Some(packed) = &view.extensions.meshopt {
+            let place = format!("/bufferViews/{}/extensions/EXT_meshopt_compression", index.0);
+            let unpack = || {
+                let bytes = self.part(packed.buffer, packed.byte_offset, packed.byte_length, &place)?;
+                self.unpack(bytes, packed, &place)
+            };
+            return match self.decoded[index.index()].get_or_init(unpack) {
+                Ok(bytes) => Ok(View { bytes, stride: stride.or(Some(packed.byte_stride.index())) }),
+                Err(error) => Err(error.clone()),
+            };
+        }
+        let place = format!("/bufferViews/{}", index.0);
+        Ok(View { bytes: self.part(view.buffer, view.byte_offset, view.byte_length, &place)?, stride })
+    }
+
+    fn unpack(&self, _bytes: &[u8], _packed: &json::Meshopt, place: &str) -> Result<Vec<u8>> {
+        Err(Error::new(
+            ErrorKind::Unsupported,
+            &self.at(place),
+            "compressed by meshopt, which is not read yet",
+        ))
+    }
+
+    /// A part of a buffer.
+    fn part(&self, buffer: Whole, offset: Option<Whole>, length: Whole, asked: &str) -> Result<&[u8]> {
+        self.one_of(&self.root.buffers, buffer, "buffer", asked)?;
+        let bytes = match &self.buffers[buffer.index()] {
+            Bytes::Chunk(range) => &self.content[range.clone()],
+            Bytes::Own(bytes) => bytes,
+            Bytes::Missing(error) => return Err(error.clone()),
+        };
+        let (start, length) = (offset.unwrap_or_default().index(), length.index());
+        let end = start.checked_add(length);
+        end.and_then(|end| bytes.get(start..end)).ok_or_else(|| {
+            let message = format!(
+                "{length} bytes from byte {start} on are beyond the end of buffer {}, which has {}",
+                buffer.0,
+                bytes.len()
+            );
+            self.invalid(asked, message).hint("the file is cut off or was written wrongly: export it again")
+        })
+    }
+
+    fn read_buffers(&mut self, binary: Option<Range<usize>>, sources: &mut Sources<'_>) {
+        let mut files: BTreeMap<PathBuf, Arc<Vec<u8>>> = BTreeMap::new();
+        let mut buffers = Vec::with_capacity(self.root.buffers.len());
+        for (index, buffer) in self.root.buffers.iter().enumerate() {
+            let place = format!("/buffers/{index}");
+            let bytes = match (&buffer.uri, &binary) {
+                (None, Some(range)) if index == 0 => Bytes::Chunk(range.clone()),
+                (None, _) => Bytes::Missing(
+                    self.invalid(&place, "the buffer has no `uri`, and there is no binary chunk for it")
+                        .hint("the file is cut off or was written wrongly: export it again"),
+                ),
+                (Some(uri), _) => match self.fetch(uri, &place, &mut files, sources) {
+                    Ok(bytes) => Bytes::Own(bytes),
+                    Err(error) => Bytes::Missing(error),
+                },
+            };
+            let length = match &bytes {
+                Bytes::Chunk(range) => range.len(),
+                Bytes::Own(bytes) => bytes.len(),
+                Bytes::Missing(_) => buffer.byte_length.index(),
+            };
+            if (length as u64) < buffer.byte_length.0 {
+                let expected = buffer.byte_length.0;
+                sources.warn(&self.at(&place), format!("{expected} bytes are announced, {length} are there"));
+            }
+            buffers.push(bytes);
+        }
+        self.buffers = buffers;
+    }
+
+    fn fetch(
+        &self,
+        uri: &str,
+        place: &str,
+        files: &mut BTreeMap<PathBuf, Arc<Vec<u8>>>,
+        sources: &Sources<'_>,
+    ) -> Result<Arc<Vec<u8>>> {
+        match self.uri(uri, &format!("{place}/uri"))? {
+            Uri::Data(bytes) => Ok(Arc::new(bytes)),
+            Uri::Names(names) => {
+                let (path, bytes) = self.first_of(&names, place, |path| match files.get(path) {
+                    Some(bytes) => Ok(bytes.clone()),
+                    None => sources.read(path).map(Arc::new),
+                })?;
+                files.insert(path, bytes.clone());
+                Ok(bytes)
+            }
+        }
+    }
+
+    /// What a `uri` stands for.
+    ///
+    /// # Errors
+    /// `Syntax` where its data is broken, `Unsupported` where it is an address in the net.
+    pub(crate) fn uri(&self, uri: &str, asked: &str) -> Result<Uri> {
+        uri::read(uri, &self.at(asked))
+    }
+
+    /// What comes of the first of these names, relative to this file, that can be read.
+    ///
+    /// # Errors
+    /// That of the first one, which says in addition where it was asked for.
+    pub(crate) fn first_of<T>(
+        &self,
+        names: &[String],
+        asked: &str,
+        mut read: impl FnMut(&Path) -> Result<T>,
+    ) -> Result<(PathBuf, T)> {
+        let mut first = None;
+        for name in names {
+            let path = beside(&self.path, name);
+            match read(&path) {
+                Ok(found) => return Ok((path, found)),
+                Err(error) => {
+                    first.get_or_insert(error);
+                }
+            }
+        }
+        let error = first.unwrap_or_else(|| self.invalid(asked, "names nothing"));
+        Err(Error { message: format!("{}: {}", error.at, error.message), at: self.at(asked), ..error })
+    }
+}
+
+/// The JSON and the binary chunk of a GLB container.
+fn chunks(
+    content: &[u8],
+    at: &Location,
+    sources: &mut Sources<'_>,
+) -> Result<(Range<usize>, Option<Range<usize>>)> {
+    let bad = |message: String| {
+        Error::syntax(at, message)
+            .hint("the file is cut off or was written wrongly: export or download it again")
+    };
+    let number =
+        |offset: usize| content.get(offset..offset + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    let (Some(version), Some(length)) = (number(4), number(8)) else {
+        return Err(bad(format!("a GLB header has 12 bytes, the file only {}", content.len())));
+    };
+    if version != 2 {
+        return Err(unsupported(at, &format!("version {version} of the GLB container")));
+    }
+    if length as usize != content.len() {
+        sources.warn(at, format!("the GLB header announces {length} bytes; the file has {}", content.len()));
+    }
+
+    let mut json = None;
+    let mut binary = None;
+    let mut start = 12;
+    while let (Some(length), Some(kind)) = (number(start), number(start + 4)) {
+        let first = start + 8;
+        let end = first.checked_add(length as usize).filter(|&end| end <= content.len());
+        let Some(end) = end else {
+            let left = content.len() - first;
+            return Err(bad(format!(
+                "a chunk of {length} bytes starts at byte {start}, but only {left} follow"
+            )));
+        };
+        match kind {
+            JSON_CHUNK if json.is_none() => json = Some(first..end),
+            _ if json.is_none() => {
+                return Err(bad("the first chunk of the GLB container is not its JSON".to_owned()));
+            }
+            BINARY_CHUNK if binary.is_none() => binary = Some(first..end),
+            JSON_CHUNK | BINARY_CHUNK => {
+                sources.warn(at, "the GLB container has a chunk twice: the first one counts")
+            }
+            // Chunks of other kinds are for others.
+            _ => {}
+        }
+        start = end;
+    }
+    match json {
+        Some(json) => Ok((json, binary)),
+        None => Err(bad("the GLB container has no JSON".to_owned())),
+    }
+}
+
+fn parse(bytes: &[u8], at: &Location, sources: &mut Sources<'_>) -> Result<Root> {
+    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
+    let text = String::from_utf8_lossy(bytes);
+    if matches!(text, std::borrow::Cow::Owned(_)) {
+        sources.warn(at, "the JSON is not UTF-8; what is not is taken as �");
+    }
+    let text = text.trim_end_matches(['\0', ' ', '\n', '\r', '\t']);
+    if text.is_empty() {
+        return Err(Error::syntax(at, "the file is empty; expected the JSON of a glTF 2.0 model"));
+    }
+    json::parse(text).map_err(|(error, pointer)| {
+        if error.is_data() {
+            // The message ends with line and column, which say little where the pointer says all.
+            let message = error.to_string();
+            let what = message.split(" at line ").next().unwrap_or_default();
+            Error::invalid(&at.pointer(&pointer), what)
+                .hint("Khronos' glTF validator shows everything that is wrong with the file")
+        } else {
+            let place = at.at(error.line() as u32, error.column() as u32);
+            let message = error.to_string();
+            let what = message.split(" at line ").next().unwrap_or_default();
+            Error::syntax(&place, format!("this is no JSON: {what}")).hint("check that the file is whole")
+        }
+    })
+}
+
+fn check_version(root: &Root, at: &Location) -> Result<()> {
+    let (asked, pointer) = match &root.asset.min_version {
+        Some(version) => (version, "/asset/minVersion"),
+        None => (&root.asset.version, "/asset/version"),
+    };
+    let mut numbers = asked.split('.').map(|number| number.parse::<u32>().ok());
+    match (numbers.next().flatten(), numbers.next().flatten()) {
+        (Some(2), Some(minor)) if minor == 0 || pointer == "/asset/version" => Ok(()),
+        (Some(_), Some(_)) => Err(unsupported(&at.pointer(pointer), &format!("glTF {asked}"))),
+        _ => Err(Error::invalid(&at.pointer(pointer), format!("the version {asked:?} is not like \"2.0\""))),
+    }
+}
+
+fn unsupported(at: &Location, what: &str) -> Error {
+    Error::new(ErrorKind::Unsupported, at, format!("{what} is not read, only glTF 2.0"))
+        .hint("most programs can load it and write it as glTF 2.0")
+}

@@ -1,0 +1,646 @@
+//! What a glTF file's JSON says, word for word: one structure for each object of the specification (Khronos 2021, §5) and
+//! of its extensions. What is not read here is not looked at. Meaning, defaults that depend on others and checks are left
+//! to the files beside this one.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde::Deserialize;
+use serde::Deserializer;
+use serde::de::Visitor;
+
+/// A whole number of at least 0: an index or a count. `3.0` is one too.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) struct Whole(pub(crate) u64);
+
+impl Whole {
+    /// As an index: one that no array has where it is too large for this machine.
+    pub(crate) fn index(self) -> usize {
+        usize::try_from(self.0).unwrap_or(usize::MAX)
+    }
+}
+
+impl<'de> Deserialize<'de> for Whole {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Number;
+        impl Visitor<'_> for Number {
+            type Value = Whole;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a whole number of at least 0")
+            }
+            fn visit_u64<E>(self, value: u64) -> Result<Whole, E> {
+                Ok(Whole(value))
+            }
+            fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Whole, E> {
+                u64::try_from(value)
+                    .map(Whole)
+                    .map_err(|_| E::invalid_value(serde::de::Unexpected::Signed(value), &self))
+            }
+            fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Whole, E> {
+                if value >= 0.0 && value < 9e15 && value.trunc() == value {
+                    Ok(Whole(value as u64))
+                } else {
+                    Err(E::invalid_value(serde::de::Unexpected::Float(value), &self))
+                }
+            }
+        }
+        deserializer.deserialize_any(Number)
+    }
+}
+
+/// A list that may be `null`, as some programs write it.
+fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+    Option::<Vec<T>>::deserialize(deserializer).map(Option::unwrap_or_default)
+}
+
+/// Something with a default, that may be `null`.
+fn or_default<'de, D: Deserializer<'de>, T: Deserialize<'de> + Default>(
+    deserializer: D,
+) -> Result<T, D::Error> {
+    Option::<T>::deserialize(deserializer).map(Option::unwrap_or_default)
+}
+
+/// The whole file.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Root {
+    pub(crate) asset: Asset,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) extensions_used: Vec<String>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) extensions_required: Vec<String>,
+    pub(crate) scene: Option<Whole>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) scenes: Vec<Scene>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) nodes: Vec<Node>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) meshes: Vec<Mesh>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) cameras: Vec<Camera>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) materials: Vec<Material>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) textures: Vec<Texture>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) images: Vec<Image>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) samplers: Vec<Sampler>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) accessors: Vec<Accessor>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) buffer_views: Vec<BufferView>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) buffers: Vec<Buffer>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) skins: Vec<Skin>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) animations: Vec<Animation>,
+    #[serde(default, deserialize_with = "or_default")]
+    pub(crate) extensions: RootExtensions,
+}
+
+/// Which version it is written for.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Asset {
+    pub(crate) version: String,
+    pub(crate) min_version: Option<String>,
+}
+
+/// Extensions of the whole file.
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct RootExtensions {
+    #[serde(rename = "KHR_lights_punctual")]
+    pub(crate) lights: Option<Lights>,
+    #[serde(rename = "KHR_materials_variants")]
+    pub(crate) variants: Option<Variants>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Lights {
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) lights: Vec<Light>,
+}
+
+/// `KHR_lights_punctual`.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Light {
+    pub(crate) name: Option<String>,
+    #[serde(rename = "type")]
+    pub(crate) kind: String,
+    pub(crate) color: Option<[f64; 3]>,
+    pub(crate) intensity: Option<f64>,
+    pub(crate) spot: Option<Spot>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Spot {
+    pub(crate) inner_cone_angle: Option<f64>,
+    pub(crate) outer_cone_angle: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Variants {
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) variants: Vec<Named>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Named {
+    pub(crate) name: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Scene {
+    pub(crate) name: Option<String>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) nodes: Vec<Whole>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Node {
+    pub(crate) name: Option<String>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) children: Vec<Whole>,
+    /// Column by column.
+    pub(crate) matrix: Option<[f64; 16]>,
+    pub(crate) translation: Option<[f64; 3]>,
+    /// x, y, z, w.
+    pub(crate) rotation: Option<[f64; 4]>,
+    pub(crate) scale: Option<[f64; 3]>,
+    pub(crate) mesh: Option<Whole>,
+    pub(crate) camera: Option<Whole>,
+    pub(crate) skin: Option<Whole>,
+    pub(crate) weights: Option<Vec<f64>>,
+    #[serde(default, deserialize_with = "or_default")]
+    pub(crate) extensions: NodeExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct NodeExtensions {
+    #[serde(rename = "KHR_lights_punctual")]
+    pub(crate) light: Option<LightIndex>,
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub(crate) instancing: Option<Instancing>,
+    #[serde(rename = "KHR_node_visibility")]
+    pub(crate) visibility: Option<Visibility>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct LightIndex {
+    pub(crate) light: Whole,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Visibility {
+    pub(crate) visible: Option<bool>,
+}
+
+/// `EXT_mesh_gpu_instancing`: accessors by `TRANSLATION`, `ROTATION`, `SCALE` and others.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Instancing {
+    #[serde(default, deserialize_with = "or_default")]
+    pub(crate) attributes: BTreeMap<String, Whole>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Camera {
+    pub(crate) name: Option<String>,
+    pub(crate) perspective: Option<Perspective>,
+    pub(crate) orthographic: Option<Orthographic>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Perspective {
+    pub(crate) aspect_ratio: Option<f64>,
+    pub(crate) yfov: f64,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Orthographic {
+    pub(crate) xmag: f64,
+    pub(crate) ymag: f64,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Mesh {
+    pub(crate) name: Option<String>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) primitives: Vec<Primitive>,
+    /// Those of morph targets, where a node has none.
+    pub(crate) weights: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Primitive {
+    #[serde(default, deserialize_with = "or_default")]
+    pub(crate) attributes: BTreeMap<String, Whole>,
+    pub(crate) indices: Option<Whole>,
+    pub(crate) material: Option<Whole>,
+    pub(crate) mode: Option<Whole>,
+    /// Morph targets: accessors of displacements by `POSITION`, `NORMAL`, `TANGENT` and others.
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) targets: Vec<BTreeMap<String, Whole>>,
+    #[serde(default, deserialize_with = "or_default")]
+    pub(crate) extensions: PrimitiveExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct PrimitiveExtensions {
+    #[serde(rename = "KHR_draco_mesh_compression")]
+    pub(crate) draco: Option<Draco>,
+    #[serde(rename = "KHR_materials_variants")]
+    pub(crate) variants: Option<VariantMappings>,
+}
+
+/// `KHR_draco_mesh_compression`: attributes by their ids in the compressed data.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Draco {
+    pub(crate) buffer_view: Whole,
+    #[serde(default, deserialize_with = "or_default")]
+    pub(crate) attributes: BTreeMap<String, Whole>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct VariantMappings {
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) mappings: Vec<VariantMapping>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct VariantMapping {
+    pub(crate) material: Whole,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) variants: Vec<Whole>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Material {
+    pub(crate) name: Option<String>,
+    pub(crate) pbr_metallic_roughness: Option<MetallicRoughness>,
+    pub(crate) normal_texture: Option<TextureInfo>,
+    pub(crate) emissive_texture: Option<TextureInfo>,
+    pub(crate) emissive_factor: Option<[f64; 3]>,
+    pub(crate) alpha_mode: Option<String>,
+    pub(crate) alpha_cutoff: Option<f64>,
+    pub(crate) double_sided: Option<bool>,
+    #[serde(default, deserialize_with = "or_default")]
+    pub(crate) extensions: MaterialExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct MetallicRoughness {
+    pub(crate) base_color_factor: Option<[f64; 4]>,
+    pub(crate) base_color_texture: Option<TextureInfo>,
+    pub(crate) metallic_factor: Option<f64>,
+    pub(crate) roughness_factor: Option<f64>,
+    pub(crate) metallic_roughness_texture: Option<TextureInfo>,
+}
+
+/// The extensions of materials that are read.
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct MaterialExtensions {
+    #[serde(rename = "KHR_materials_anisotropy")]
+    pub(crate) anisotropy: Option<Anisotropy>,
+    #[serde(rename = "KHR_materials_clearcoat")]
+    pub(crate) clearcoat: Option<Clearcoat>,
+    #[serde(rename = "KHR_materials_diffuse_transmission")]
+    pub(crate) diffuse_transmission: Option<DiffuseTransmission>,
+    #[serde(rename = "KHR_materials_dispersion")]
+    pub(crate) dispersion: Option<Dispersion>,
+    #[serde(rename = "KHR_materials_emissive_strength")]
+    pub(crate) emissive_strength: Option<EmissiveStrength>,
+    #[serde(rename = "KHR_materials_ior")]
+    pub(crate) ior: Option<Ior>,
+    #[serde(rename = "KHR_materials_iridescence")]
+    pub(crate) iridescence: Option<Iridescence>,
+    #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
+    pub(crate) specular_glossiness: Option<SpecularGlossiness>,
+    #[serde(rename = "KHR_materials_sheen")]
+    pub(crate) sheen: Option<Sheen>,
+    #[serde(rename = "KHR_materials_specular")]
+    pub(crate) specular: Option<Specular>,
+    #[serde(rename = "KHR_materials_transmission")]
+    pub(crate) transmission: Option<Transmission>,
+    #[serde(rename = "KHR_materials_unlit")]
+    pub(crate) unlit: Option<Unlit>,
+    #[serde(rename = "KHR_materials_volume")]
+    pub(crate) volume: Option<Volume>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Anisotropy {
+    pub(crate) anisotropy_strength: Option<f64>,
+    pub(crate) anisotropy_rotation: Option<f64>,
+    pub(crate) anisotropy_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Clearcoat {
+    pub(crate) clearcoat_factor: Option<f64>,
+    pub(crate) clearcoat_texture: Option<TextureInfo>,
+    pub(crate) clearcoat_roughness_factor: Option<f64>,
+    pub(crate) clearcoat_roughness_texture: Option<TextureInfo>,
+    pub(crate) clearcoat_normal_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct DiffuseTransmission {
+    pub(crate) diffuse_transmission_factor: Option<f64>,
+    pub(crate) diffuse_transmission_texture: Option<TextureInfo>,
+    pub(crate) diffuse_transmission_color_factor: Option<[f64; 3]>,
+    pub(crate) diffuse_transmission_color_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct Dispersion {
+    pub(crate) dispersion: Option<f64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct EmissiveStrength {
+    pub(crate) emissive_strength: Option<f64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct Ior {
+    pub(crate) ior: Option<f64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Iridescence {
+    pub(crate) iridescence_factor: Option<f64>,
+    pub(crate) iridescence_texture: Option<TextureInfo>,
+    pub(crate) iridescence_ior: Option<f64>,
+    pub(crate) iridescence_thickness_minimum: Option<f64>,
+    pub(crate) iridescence_thickness_maximum: Option<f64>,
+    pub(crate) iridescence_thickness_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct SpecularGlossiness {
+    pub(crate) diffuse_factor: Option<[f64; 4]>,
+    pub(crate) diffuse_texture: Option<TextureInfo>,
+    pub(crate) specular_factor: Option<[f64; 3]>,
+    pub(crate) glossiness_factor: Option<f64>,
+    pub(crate) specular_glossiness_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Sheen {
+    pub(crate) sheen_color_factor: Option<[f64; 3]>,
+    pub(crate) sheen_color_texture: Option<TextureInfo>,
+    pub(crate) sheen_roughness_factor: Option<f64>,
+    pub(crate) sheen_roughness_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Specular {
+    pub(crate) specular_factor: Option<f64>,
+    pub(crate) specular_texture: Option<TextureInfo>,
+    pub(crate) specular_color_factor: Option<[f64; 3]>,
+    pub(crate) specular_color_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Transmission {
+    pub(crate) transmission_factor: Option<f64>,
+    pub(crate) transmission_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct Unlit {}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Volume {
+    pub(crate) thickness_factor: Option<f64>,
+    pub(crate) attenuation_distance: Option<f64>,
+    pub(crate) attenuation_color: Option<[f64; 3]>,
+}
+
+/// How a material uses a texture.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct TextureInfo {
+    pub(crate) index: Whole,
+    pub(crate) tex_coord: Option<Whole>,
+    /// Of normal textures.
+    pub(crate) scale: Option<f64>,
+    #[serde(default, deserialize_with = "or_default")]
+    pub(crate) extensions: TextureInfoExtensions,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+pub(crate) struct TextureInfoExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    pub(crate) transform: Option<TextureTransform>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct TextureTransform {
+    pub(crate) offset: Option<[f64; 2]>,
+    pub(crate) rotation: Option<f64>,
+    pub(crate) scale: Option<[f64; 2]>,
+    pub(crate) tex_coord: Option<Whole>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Texture {
+    pub(crate) sampler: Option<Whole>,
+    pub(crate) source: Option<Whole>,
+    #[serde(default, deserialize_with = "or_default")]
+    pub(crate) extensions: TextureExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct TextureExtensions {
+    #[serde(rename = "EXT_texture_webp")]
+    pub(crate) webp: Option<OtherSource>,
+    #[serde(rename = "KHR_texture_basisu")]
+    pub(crate) basisu: Option<OtherSource>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct OtherSource {
+    pub(crate) source: Option<Whole>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Image {
+    pub(crate) name: Option<String>,
+    pub(crate) uri: Option<String>,
+    pub(crate) buffer_view: Option<Whole>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Sampler {
+    pub(crate) mag_filter: Option<Whole>,
+    pub(crate) wrap_s: Option<Whole>,
+    pub(crate) wrap_t: Option<Whole>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Accessor {
+    pub(crate) buffer_view: Option<Whole>,
+    pub(crate) byte_offset: Option<Whole>,
+    pub(crate) component_type: Whole,
+    pub(crate) normalized: Option<bool>,
+    pub(crate) count: Whole,
+    #[serde(rename = "type")]
+    pub(crate) kind: String,
+    pub(crate) sparse: Option<Sparse>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Sparse {
+    pub(crate) count: Whole,
+    pub(crate) indices: SparseIndices,
+    pub(crate) values: SparseValues,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct SparseIndices {
+    pub(crate) buffer_view: Whole,
+    pub(crate) byte_offset: Option<Whole>,
+    pub(crate) component_type: Whole,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct SparseValues {
+    pub(crate) buffer_view: Whole,
+    pub(crate) byte_offset: Option<Whole>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct BufferView {
+    pub(crate) buffer: Whole,
+    pub(crate) byte_offset: Option<Whole>,
+    pub(crate) byte_length: Whole,
+    pub(crate) byte_stride: Option<Whole>,
+    #[serde(default, deserialize_with = "or_default")]
+    pub(crate) extensions: BufferViewExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct BufferViewExtensions {
+    #[serde(rename = "EXT_meshopt_compression", alias = "KHR_meshopt_compression")]
+    pub(crate) meshopt: Option<Meshopt>,
+}
+
+/// `EXT_meshopt_compression`.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Meshopt {
+    pub(crate) buffer: Whole,
+    pub(crate) byte_offset: Option<Whole>,
+    pub(crate) byte_length: Whole,
+    pub(crate) byte_stride: Whole,
+    pub(crate) count: Whole,
+    /// `ATTRIBUTES`, `TRIANGLES` or `INDICES`.
+    pub(crate) mode: String,
+    /// `NONE`, `OCTAHEDRAL`, `QUATERNION`, `EXPONENTIAL` …
+    pub(crate) filter: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Buffer {
+    pub(crate) uri: Option<String>,
+    pub(crate) byte_length: Whole,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Skin {
+    pub(crate) inverse_bind_matrices: Option<Whole>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) joints: Vec<Whole>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct Animation {
+    pub(crate) name: Option<String>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) channels: Vec<AnimationChannel>,
+    #[serde(default, deserialize_with = "list")]
+    pub(crate) samplers: Vec<AnimationSampler>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct AnimationChannel {
+    pub(crate) sampler: Whole,
+    pub(crate) target: AnimationTarget,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct AnimationTarget {
+    pub(crate) node: Option<Whole>,
+    /// `translation`, `rotation`, `scale`, `weights`, or what an extension says.
+    pub(crate) path: String,
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) struct AnimationSampler {
+    /// Accessor of times in seconds.
+    pub(crate) input: Whole,
+    /// `LINEAR` (where none is given), `STEP` or `CUBICSPLINE`.
+    pub(crate) interpolation: Option<String>,
+    /// Accessor of values.
+    pub(crate) output: Whole,
+}
+
+/// Reads the text. The second is the path to what is wrong, as a JSON pointer, where that is known.
+pub(crate) fn parse(text: &str) -> Result<Root, (serde_json::Error, String)> {
+    // The quick way first: the path costs time and is only needed for a message.
+    match serde_json::from_str(text) {
+        Ok(root) => Ok(root),
+        Err(error) => {
+            let mut deserializer = serde_json::Deserializer::from_str(text);
+            match serde_path_to_error::deserialize::<_, Root>(&mut deserializer) {
+                Ok(_) => Err((error, String::new())),
+                Err(error) => {
+                    let pointer = pointer(error.path());
+                    Err((error.into_inner(), pointer))
+                }
+            }
+        }
+    }
+}
+
+fn pointer(path: &serde_path_to_error::Path) -> String {
+    use serde_path_to_error::Segment;
+    let mut pointer = String::new();
+    for segment in path {
+        match segment {
+            Segment::Seq { index } => pointer.push_str(&format!("/{index}")),
+            Segment::Map { key } => {
+                pointer.push_str(&format!("/{}", key.replace('~', "~0").replace('/', "~1")))
+            }
+            Segment::Enum { .. } | Segment::Unknown => {}
+        }
+    }
+    pointer
+}
