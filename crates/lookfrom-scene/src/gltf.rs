@@ -1,6 +1,70 @@
 //! How does a glTF 2.0 file become a scene? (Khronos, "glTF 2.0 Specification", 2021; ISO/IEC 12113:2022.)
+//!
+//! `json` says what stands in the file, `file` and `uri` which bytes belong to it, `accessor` how bytes become vectors.
+//! `node` places things, `mesh` gives them form, `material` and `texture` a look; `camera` and `light` do what their
+//! names say, and `build` joins everything. Errors name the file and the place in its JSON as a pointer (RFC 6901).
 
 mod accessor;
+mod build;
+mod camera;
+mod choose;
+mod extension;
 mod file;
 mod json;
+mod light;
+mod material;
+mod mesh;
+mod node;
+mod texture;
 mod uri;
+
+use std::path::Path;
+
+use self::build::Model;
+use self::file::Document;
+use crate::error::Result;
+use crate::files::Sources;
+use crate::scene::Scene;
+use crate::settings::{Integrator, Tonemap};
+use crate::shape::Part;
+
+/// Reads a glTF file (`.gltf` or `.glb`) as a scene: path traced, developed by Khronos' tone map, seen by the file's
+/// camera where it has one. [`Sources::choice`] says which scene, camera, animation and variant are meant.
+///
+/// # Errors
+/// `Io` and `Limit` where it cannot be read, `Syntax` where it is no glTF, `Unsupported` where it is not of version 2,
+/// `Invalid` where what it says cannot be.
+pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
+    let content = sources.read(path)?;
+    let mut scene = Scene::default();
+    scene.render.integrator = Integrator::Path;
+    scene.image.tonemap = Tonemap::PbrNeutral;
+    let model = model(content, path, sources, &mut scene)?;
+    model.into_scene(&mut scene);
+    Ok(scene)
+}
+
+/// Reads a glTF file as a part of another scene: its meshes, materials and pictures join the scene, its parts are given
+/// back and stand where the file has them. Its cameras and lights are left out.
+///
+/// # Errors
+/// As [`read`].
+pub fn parts(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
+    let content = sources.read(path)?;
+    Ok(model(content, path, sources, scene)?.into_parts())
+}
+
+/// Whether a file's content is that of a glTF file: the mark of a GLB container, or JSON that speaks of an asset.
+pub fn is_gltf(content: &[u8]) -> bool {
+    let text = content.strip_prefix("\u{feff}".as_bytes()).unwrap_or(content).trim_ascii_start();
+    // The asset may stand behind much else: then the name of the file has to say what it is.
+    let beginning = &text[..text.len().min(1 << 16)];
+    content.starts_with(file::MAGIC)
+        || (text.starts_with(b"{") && beginning.windows(7).any(|word| word == b"\"asset\""))
+}
+
+fn model(content: Vec<u8>, path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Model> {
+    let document = Document::open(content, path, sources)?;
+    extension::warn(&document, sources);
+    build::model(&document, sources, scene)
+}

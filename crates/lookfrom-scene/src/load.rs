@@ -6,9 +6,9 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Sources;
 use crate::scene::{MaterialId, Scene};
 use crate::shape::{Part, Shape};
-use crate::{model, pbrt, toml};
+use crate::{gltf, model, pbrt, toml};
 
-/// Reads a scene in our own format (`.toml`), one of pbrt-v4 (`.pbrt`), or a model file, whose parts stand in the scene
+/// Reads a scene in our own format (`.toml`), one of pbrt-v4 (`.pbrt`), a glTF file (`.gltf`, `.glb`), or a model file, whose parts stand in the scene
 /// where the file has them and wear a grey "default" where the file gives them no material.
 ///
 /// # Errors
@@ -19,6 +19,9 @@ pub fn scene(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
     }
     if is_pbrt(path, sources) {
         return pbrt::read(path, sources);
+    }
+    if is_gltf(path, sources) {
+        return gltf::read(path, sources);
     }
     let mut scene = Scene::default();
     let parts = parts(path, sources, &mut scene)?;
@@ -37,14 +40,20 @@ pub(crate) fn is_toml(path: &Path) -> bool {
 fn is_pbrt(path: &Path, sources: &Sources<'_>) -> bool {
     let is_packed =
         extension(path) == "gz" && path.file_stem().is_some_and(|stem| extension(stem.as_ref()) == "pbrt");
-    let is_other = model::is_model(path) || SCENES_OF_OTHERS.contains(&&*extension(path));
+    let is_other = model::is_model(path) || GLTF.contains(&&*extension(path));
     extension(path) == "pbrt"
         || is_packed
         || (!is_other && sources.read(path).is_ok_and(|bytes| pbrt::is_pbrt(&bytes)))
 }
 
-/// Formats of scenes that are not read yet.
-const SCENES_OF_OTHERS: &[&str] = &["gltf", "glb"];
+/// The endings of names of glTF files.
+const GLTF: &[&str] = &["gltf", "glb"];
+
+/// Whether a file is a glTF file, by its name, or by its content where that says nothing.
+fn is_gltf(path: &Path, sources: &Sources<'_>) -> bool {
+    GLTF.contains(&&*extension(path))
+        || (!model::is_model(path) && sources.read(path).is_ok_and(|bytes| gltf::is_gltf(&bytes)))
+}
 
 fn extension(path: &Path) -> String {
     path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
@@ -54,14 +63,14 @@ fn extension(path: &Path) -> String {
 pub(crate) fn parts(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
     let unsupported = |message: String| {
         Error::new(ErrorKind::Unsupported, &Location::file(path), message)
-            .hint("scenes are .toml or .pbrt files, models .obj, .ply or .stl")
+            .hint("scenes are .toml or .pbrt files, models .gltf, .glb, .obj, .ply or .stl")
     };
     let extension = extension(path);
     if extension == "pbrt" {
         return Err(unsupported("a scene of pbrt cannot be a part of another scene".to_owned()));
     }
-    if SCENES_OF_OTHERS.contains(&&*extension) {
-        return Err(unsupported(format!("scenes in .{extension} are not read yet; they come later")));
+    if is_gltf(path, sources) {
+        return gltf::parts(path, sources, scene);
     }
     model::read(path, sources, scene).map_err(|error| match error.kind {
         ErrorKind::Unsupported if !model::is_model(path) => {
@@ -78,6 +87,9 @@ pub(crate) fn shapes(parts: Vec<Part>, at: &Location, default: MaterialId) -> Ve
         .map(|part| Shape {
             name: part.name,
             emission: part.emission,
+            alpha: part.alpha,
+            single_sided: part.single_sided,
+            world_from_object: part.world_from_object,
             ..Shape::new(at.clone(), part.geometry, part.material.unwrap_or(default))
         })
         .collect()

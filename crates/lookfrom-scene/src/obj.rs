@@ -57,10 +57,9 @@ pub fn from_bytes(
         let mesh = MeshId(scene.meshes.len() as u32);
         let name = piece.material.map(|name| String::from_utf8_lossy(&name).into_owned());
         parts.push(Part {
-            name: name.or(piece.object),
-            geometry: Geometry::Mesh(mesh),
             material: look.material,
             emission: look.emission,
+            ..Part::new(name.or(piece.object), Geometry::Mesh(mesh))
         });
         scene.meshes.push(piece.mesh);
     }

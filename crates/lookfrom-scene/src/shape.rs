@@ -217,6 +217,27 @@ pub struct Part {
     pub material: Option<MaterialId>,
     /// Its light, where the file gives one.
     pub emission: Option<Emission>,
+    /// The part of it that is there, where the file says so.
+    pub alpha: Option<Scalar>,
+    /// Whether rays from the camera pass its back faces.
+    pub single_sided: bool,
+    /// Where the file places it: any invertible affine matrix.
+    pub world_from_object: DMat4,
+}
+
+impl Part {
+    /// A form where it is, without a look.
+    pub fn new(name: Option<String>, geometry: Geometry) -> Self {
+        Self {
+            name,
+            geometry,
+            material: None,
+            emission: None,
+            alpha: None,
+            single_sided: false,
+            world_from_object: DMat4::IDENTITY,
+        }
+    }
 }
 
 impl Shape {

@@ -69,7 +69,7 @@ pub fn from_bytes(
         mesh.name = file.file.to_string();
         let material = (!mesh.colors.is_empty()).then(|| push_vertex_colors(scene, &file));
         let geometry = Geometry::Mesh(MeshId(scene.meshes.len() as u32));
-        parts.push(Part { name, geometry, material, emission: None });
+        parts.push(Part { material, ..Part::new(name, geometry) });
         scene.meshes.push(mesh);
     }
     if parts.is_empty() {

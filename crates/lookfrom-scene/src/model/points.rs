@@ -42,10 +42,8 @@ pub(crate) fn cloud(
     }
     let radius = radius(finite.iter().map(|&(point, _)| point).collect());
     let part = |points: &mut dyn Iterator<Item = DVec3>, material| Part {
-        name: None,
-        geometry: Geometry::Spheres(points.map(|center| Sphere { center, radius }).collect()),
         material,
-        emission: None,
+        ..Part::new(None, Geometry::Spheres(points.map(|center| Sphere { center, radius }).collect()))
     };
     if colors.is_empty() {
         return vec![part(&mut finite.iter().map(|&(point, _)| point), None)];

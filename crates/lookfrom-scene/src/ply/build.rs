@@ -48,7 +48,7 @@ pub(super) fn parts(
     let material = material(&mesh, header, path, sources, scene);
     let geometry = Geometry::Mesh(MeshId(scene.meshes.len() as u32));
     scene.meshes.push(mesh);
-    Ok(vec![Part { name: None, geometry, material, emission: None }])
+    Ok(vec![Part { material, ..Part::new(None, geometry) }])
 }
 
 fn make_values_finite(content: &mut Content, file: &Location, sources: &mut Sources<'_>) {

@@ -65,7 +65,7 @@ impl Reader<'_, '_> {
                         .error("it stands too far away to compute with")
                         .hint("use smaller numbers"));
                 }
-                vec![Part { name: None, geometry, material: None, emission: None }]
+                vec![Part::new(None, geometry)]
             }
         };
         for part in parts {
@@ -76,9 +76,10 @@ impl Reader<'_, '_> {
             shapes.push(Shape {
                 name,
                 emission,
-                alpha,
+                alpha: alpha.or(part.alpha),
                 reverse_orientation,
-                world_from_object,
+                single_sided: part.single_sided,
+                world_from_object: world_from_object * part.world_from_object,
                 ..Shape::new(table.at(), part.geometry, material)
             });
         }

@@ -1,0 +1,304 @@
+//! How do a file's nodes, meshes, looks, camera and lights become one model?
+
+use std::collections::BTreeMap;
+
+use glam::{DMat4, DVec3, DVec4};
+
+use super::camera::{self, Eye};
+use super::choose::choose;
+use super::file::Document;
+use super::json::{Instancing, Node, Primitive, Whole};
+use super::light;
+use super::material::{Look, Looks};
+use super::mesh;
+use super::node::{Tree, placed};
+use crate::error::{Location, Result};
+use crate::files::Sources;
+use crate::light::Light;
+use crate::scene::{Instance, MeshId, Object, ObjectId, Scene};
+use crate::shape::{Geometry, Part, Shape};
+
+/// Triangles that repetitions of one mesh may have together before they become instances of it, which are smaller but
+/// slower.
+const MOST_REPEATED_TRIANGLES: usize = 1 << 18;
+
+/// What a file says, on its way into a scene that has its meshes, looks and pictures already.
+pub(super) struct Model {
+    shapes: Vec<Shape>,
+    objects: Vec<Object>,
+    /// Of `objects`.
+    instances: Vec<Instance>,
+    eye: Option<Eye>,
+    lights: Vec<Light>,
+}
+
+impl Model {
+    /// Puts everything into a scene that has no objects yet.
+    pub(super) fn into_scene(self, scene: &mut Scene) {
+        if let Some(Eye { camera, aspect }) = self.eye {
+            scene.camera = Some(camera);
+            if let Some(aspect) = aspect {
+                (scene.image.width, scene.image.height) = size(aspect, scene.image.width);
+            }
+        }
+        scene.shapes = self.shapes;
+        scene.objects = self.objects;
+        scene.instances = self.instances;
+        scene.lights = self.lights;
+    }
+
+    /// Everything with a form, instances one by one.
+    pub(super) fn into_parts(self) -> Vec<Part> {
+        let repeated = self.instances.iter().flat_map(|instance| {
+            let shapes = &self.objects[instance.object.index()].shapes;
+            shapes.iter().map(|shape| part(shape, &instance.world_from_object))
+        });
+        self.shapes.iter().map(|shape| part(shape, &DMat4::IDENTITY)).chain(repeated).collect()
+    }
+}
+
+fn part(shape: &Shape, world_from_object: &DMat4) -> Part {
+    Part {
+        material: Some(shape.material),
+        emission: shape.emission,
+        alpha: shape.alpha,
+        single_sided: shape.single_sided,
+        world_from_object: *world_from_object * shape.world_from_object,
+        ..Part::new(shape.name.clone(), shape.geometry.clone())
+    }
+}
+
+/// Columns and rows of a picture of this aspect, the greater of them `most`.
+fn size(aspect: f64, most: u32) -> (u32, u32) {
+    let smaller = |aspect: f64| ((f64::from(most) / aspect).round() as u32).max(1);
+    if aspect >= 1.0 { (most, smaller(aspect)) } else { (smaller(1.0 / aspect), most) }
+}
+
+/// Reads everything; pictures are decoded last, side by side.
+pub(super) fn model(document: &Document, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Model> {
+    let local: Vec<DMat4> = document.root.nodes.iter().map(Node::at_rest).collect();
+    let tree = Tree::new(document, &local, sources)?;
+    let variant = match (&sources.choice.variant, &document.root.extensions.variants) {
+        (None, _) => None,
+        (Some(name), variants) => {
+            let variants = variants.as_ref().map_or(&[][..], |variants| &variants.variants);
+            let names = variants.iter().map(|variant| variant.name.as_deref());
+            Some(choose(document, "variant", "/extensions/KHR_materials_variants/variants", name, names)?)
+        }
+    };
+    let mut builder = Builder {
+        document,
+        looks: Looks::new(document),
+        pieces: BTreeMap::new(),
+        variant,
+        model: Model {
+            shapes: Vec::new(),
+            objects: Vec::new(),
+            instances: Vec::new(),
+            eye: camera::eye(document, &tree, sources)?,
+            lights: light::lights(document, &tree, sources)?,
+        },
+        sources,
+        scene,
+    };
+    builder.nodes(&tree)?;
+    let Builder { looks, model, .. } = builder;
+    looks.decode(sources, scene);
+    if model.shapes.is_empty() && model.instances.is_empty() {
+        sources
+            .warn(&document.at(""), "there is nothing to see: the scene has no triangles, lines or points");
+    }
+    Ok(model)
+}
+
+/// A primitive of a mesh, with its look.
+#[derive(Clone)]
+struct Piece {
+    pointer: Location,
+    geometry: Geometry,
+    look: Look,
+}
+
+struct Builder<'b, 'd, 'f> {
+    document: &'d Document,
+    sources: &'b mut Sources<'f>,
+    scene: &'b mut Scene,
+    looks: Looks<'d>,
+    /// Of each mesh that was needed.
+    pieces: BTreeMap<usize, Vec<Piece>>,
+    variant: Option<usize>,
+    model: Model,
+}
+
+impl Builder<'_, '_, '_> {
+    fn nodes(&mut self, tree: &Tree) -> Result<()> {
+        let nodes = &self.document.root.nodes;
+        let mut uses: BTreeMap<usize, usize> = BTreeMap::new();
+        for &node in &tree.shown {
+            if let Some(mesh) = nodes[node].mesh {
+                *uses.entry(mesh.index()).or_default() += 1;
+            }
+        }
+        let mut objects: BTreeMap<usize, ObjectId> = BTreeMap::new();
+        for &node in &tree.shown {
+            let Some(index) = nodes[node].mesh else { continue };
+            let pieces = self.mesh(index, &format!("/nodes/{node}/mesh"))?;
+            let world_from_node = tree.world_from_node[node];
+            let name =
+                nodes[node].name.clone().or_else(|| self.document.root.meshes[index.index()].name.clone());
+            if let Some(instancing) = &nodes[node].extensions.instancing {
+                let places = self.places(instancing, node)?;
+                let object = *objects.entry(index.index()).or_insert_with(|| self.object(&name, &pieces));
+                for place in places {
+                    self.instance(node, object, world_from_node * place);
+                }
+                continue;
+            }
+            let repeated = triangles(&pieces, self.scene).saturating_mul(uses[&index.index()] - 1);
+            // Instances do not shine.
+            let shines = pieces.iter().any(|piece| piece.look.emission.is_some());
+            if repeated > MOST_REPEATED_TRIANGLES && !shines {
+                let object = *objects.entry(index.index()).or_insert_with(|| self.object(&name, &pieces));
+                self.instance(node, object, world_from_node);
+                continue;
+            }
+            for piece in &pieces {
+                self.shape(piece, &name, world_from_node);
+            }
+        }
+        Ok(())
+    }
+
+    /// What a mesh is made of; each is read once.
+    fn mesh(&mut self, index: Whole, asked: &str) -> Result<Vec<Piece>> {
+        let mesh = self.document.one_of(&self.document.root.meshes, index, "mesh", asked)?;
+        if let Some(pieces) = self.pieces.get(&index.index()) {
+            return Ok(pieces.clone());
+        }
+        let name = mesh.name.clone().unwrap_or_else(|| format!("mesh {}", index.0));
+        let mut pieces = Vec::new();
+        for (place, primitive) in mesh.primitives.iter().enumerate() {
+            let pointer = format!("/meshes/{}/primitives/{place}", index.0);
+            pieces.extend(self.piece(primitive, &name, &pointer)?);
+        }
+        self.pieces.insert(index.index(), pieces.clone());
+        Ok(pieces)
+    }
+
+    fn piece(&mut self, primitive: &Primitive, name: &str, pointer: &str) -> Result<Option<Piece>> {
+        let Some(vertices) = mesh::vertices(self.document, primitive, pointer, self.sources)? else {
+            return Ok(None);
+        };
+        let brought = vertices.brought();
+        let (material, asked) = self.material(primitive, pointer);
+        let look = self.looks.look(material, &asked, brought, self.sources, self.scene)?;
+        let geometry =
+            mesh::geometry(self.document, primitive, vertices, name, pointer, self.sources, self.scene)?;
+        Ok(geometry.map(|geometry| Piece { pointer: self.document.at(pointer), geometry, look }))
+    }
+
+    /// The material of a primitive in the variant that is meant, and the pointer that says so.
+    fn material(&self, primitive: &Primitive, pointer: &str) -> (Option<Whole>, String) {
+        if let (Some(variant), Some(own)) = (self.variant, &primitive.extensions.variants) {
+            let is_meant = |variants: &[Whole]| variants.iter().any(|one| one.index() == variant);
+            if let Some(place) = own.mappings.iter().position(|mapping| is_meant(&mapping.variants)) {
+                let asked = format!("{pointer}/extensions/KHR_materials_variants/mappings/{place}/material");
+                return (Some(own.mappings[place].material), asked);
+            }
+        }
+        (primitive.material, format!("{pointer}/material"))
+    }
+
+    fn shape(&mut self, piece: &Piece, name: &Option<String>, world_from_object: DMat4) {
+        let mut shape = shape(piece, name);
+        if is_invertible(&world_from_object) {
+            shape.world_from_object = world_from_object;
+        } else {
+            // Scaled by 0 along one axis it is flat, and still to be seen.
+            let Geometry::Mesh(id) = piece.geometry else { return };
+            let flat = mesh::flattened(&self.scene.meshes[id.index()], &world_from_object);
+            if flat.triangles.is_empty() {
+                return;
+            }
+            shape.geometry = Geometry::Mesh(MeshId(self.scene.meshes.len() as u32));
+            self.scene.meshes.push(flat);
+        }
+        self.model.shapes.push(shape);
+    }
+
+    fn object(&mut self, name: &Option<String>, pieces: &[Piece]) -> ObjectId {
+        let id = ObjectId(self.model.objects.len() as u32);
+        let at = pieces.first().map_or_else(|| self.document.at(""), |piece| piece.pointer.clone());
+        let shapes = pieces.iter().map(|piece| shape(piece, name)).collect();
+        self.model.objects.push(Object { name: name.clone().unwrap_or_default(), at, shapes });
+        id
+    }
+
+    fn instance(&mut self, node: usize, object: ObjectId, world_from_object: DMat4) {
+        let is_empty = self.model.objects[object.index()].shapes.is_empty();
+        if !is_empty && is_invertible(&world_from_object) {
+            let at = self.document.at(&format!("/nodes/{node}"));
+            self.model.instances.push(Instance { at, object, world_from_object, material: None });
+        }
+    }
+
+    /// The transforms of `EXT_mesh_gpu_instancing`, before that of the node.
+    fn places(&self, instancing: &Instancing, node: usize) -> Result<Vec<DMat4>> {
+        let pointer =
+            |name: &str| format!("/nodes/{node}/extensions/EXT_mesh_gpu_instancing/attributes/{name}");
+        let find = |name: &str| instancing.attributes.get(name).copied();
+        let vectors = |name: &str| {
+            find(name).map(|index| self.document.vectors::<3>(index, &pointer(name))).transpose()
+        };
+        let (translations, scales) = (vectors("TRANSLATION")?, vectors("SCALE")?);
+        let rotations = find("ROTATION")
+            .map(|index| self.document.vectors::<4>(index, &pointer("ROTATION")))
+            .transpose()?;
+        let counts = [
+            translations.as_ref().map(Vec::len),
+            scales.as_ref().map(Vec::len),
+            rotations.as_ref().map(Vec::len),
+        ];
+        let count = counts.into_iter().flatten().min().unwrap_or(1);
+        if counts.into_iter().flatten().any(|other| other != count) {
+            return Err(self.document.invalid(
+                pointer("").trim_end_matches('/'),
+                "TRANSLATION, ROTATION and SCALE have different numbers of values",
+            ));
+        }
+        let vector = |vectors: &Option<Vec<[f32; 3]>>, i: usize, otherwise: DVec3| {
+            vectors.as_ref().map_or(otherwise, |all| DVec3::from_array(all[i].map(f64::from)))
+        };
+        let place = |i: usize| {
+            let rotation =
+                rotations.as_ref().map_or(DVec4::W, |all| DVec4::from_array(all[i].map(f64::from)));
+            placed(vector(&translations, i, DVec3::ZERO), rotation, vector(&scales, i, DVec3::ONE))
+        };
+        Ok((0..count).map(place).collect())
+    }
+}
+
+fn shape(piece: &Piece, name: &Option<String>) -> Shape {
+    Shape {
+        name: name.clone(),
+        emission: piece.look.emission,
+        alpha: piece.look.alpha,
+        single_sided: piece.look.single_sided,
+        ..Shape::new(piece.pointer.clone(), piece.geometry.clone(), piece.look.material)
+    }
+}
+
+fn triangles(pieces: &[Piece], scene: &Scene) -> usize {
+    let of = |piece: &Piece| match &piece.geometry {
+        Geometry::Mesh(id) => scene.meshes[id.index()].triangles.len(),
+        Geometry::Spheres(spheres) => spheres.len(),
+        Geometry::Curves(strands) => strands.len(),
+        _ => 0,
+    };
+    pieces.iter().map(of).sum()
+}
+
+/// Whether a matrix can be computed with in both directions.
+fn is_invertible(matrix: &DMat4) -> bool {
+    matrix.is_finite() && matrix.determinant().is_normal() && matrix.inverse().is_finite()
+}

@@ -1,0 +1,79 @@
+//! Which camera looks at the scene, and how (specification, §3.10)?
+//!
+//! Near and far planes cut nothing off: rays need none.
+
+use glam::{DMat4, DVec3, DVec4};
+
+use super::choose::choose;
+use super::file::Document;
+use super::json;
+use super::node::Tree;
+use crate::camera::{Camera, Projection, View};
+use crate::error::Result;
+use crate::files::Sources;
+
+/// A camera of the file, and width over height of the picture that it is meant for, where it says so.
+pub(super) struct Eye {
+    pub(super) camera: Camera,
+    pub(super) aspect: Option<f64>,
+}
+
+/// The camera that is asked for, or else the first of the scene.
+///
+/// # Errors
+/// Where the one that is asked for is not there, or none of its numbers can be.
+pub(super) fn eye(document: &Document, tree: &Tree, sources: &mut Sources<'_>) -> Result<Option<Eye>> {
+    let cameras = &document.root.cameras;
+    let mut placed = Vec::new();
+    for &node in &tree.shown {
+        if let Some(index) = document.root.nodes[node].camera {
+            document.one_of(cameras, index, "camera", &format!("/nodes/{node}/camera"))?;
+            placed.push((node, index.index()));
+        }
+    }
+    let chosen = match &sources.choice.camera {
+        Some(name) => {
+            let names = placed.iter().map(|&(node, index)| {
+                let own = cameras[index].name.as_deref();
+                own.filter(|own| own == name).or(document.root.nodes[node].name.as_deref()).or(own)
+            });
+            Some(placed[choose(document, "camera in the scene", "/cameras", name, names)?])
+        }
+        None => placed.first().copied(),
+    };
+    let Some((node, index)) = chosen else { return Ok(None) };
+    let pointer = format!("/cameras/{index}");
+    let at = document.at(&pointer);
+    let Some((projection, aspect)) = projection(&cameras[index]) else {
+        sources.warn(&at, "the camera's numbers cannot be; the scene is framed without it");
+        return Ok(None);
+    };
+    let Some(matrix) = world_from_camera(&tree.world_from_node[node]) else {
+        sources.warn(&at, "the camera's node has no size; the scene is framed without it");
+        return Ok(None);
+    };
+    let camera = Camera { at, view: View::Matrix(matrix), projection, ..Camera::default() };
+    Ok(Some(Eye { camera, aspect }))
+}
+
+fn projection(camera: &json::Camera) -> Option<(Projection, Option<f64>)> {
+    if let Some(perspective) = &camera.perspective {
+        let fov = perspective.yfov.to_degrees();
+        let aspect = perspective.aspect_ratio.filter(|&aspect| aspect > 0.0);
+        return (fov > 0.0 && fov < 180.0).then_some((Projection::Perspective { fov }, aspect));
+    }
+    let orthographic = camera.orthographic.as_ref()?;
+    let (x, y) = (orthographic.xmag.abs(), orthographic.ymag.abs());
+    (x > 0.0 && y > 0.0).then_some((Projection::Orthographic { height: 2.0 * y }, Some(x / y)))
+}
+
+/// A glTF camera has x to the right and looks along −z, ours has x to the left and looks along z. Scales of nodes do not
+/// count for cameras.
+fn world_from_camera(world_from_node: &DMat4) -> Option<DMat4> {
+    let axis = |column: DVec4| column.truncate().try_normalize();
+    let (x, y, z) =
+        (axis(world_from_node.x_axis)?, axis(world_from_node.y_axis)?, axis(world_from_node.z_axis)?);
+    let position: DVec3 = world_from_node.w_axis.truncate();
+    let matrix = DMat4::from_cols((-x).extend(0.0), y.extend(0.0), (-z).extend(0.0), position.extend(1.0));
+    (matrix.is_finite() && matrix.determinant().abs() > 1e-9).then_some(matrix)
+}

@@ -1,0 +1,38 @@
+//! Which of several things does a person mean by a name or a number?
+
+use super::file::Document;
+use crate::error::Result;
+
+/// The index of what is meant: what has this name, else, where it is a number, what has this number from 0.
+///
+/// # Errors
+/// Where nothing is meant; it says what there is.
+pub(crate) fn choose<'a>(
+    document: &Document,
+    what: &str,
+    list: &str,
+    asked: &str,
+    names: impl Iterator<Item = Option<&'a str>>,
+) -> Result<usize> {
+    let names: Vec<Option<&str>> = names.collect();
+    if let Some(index) = names.iter().position(|name| *name == Some(asked)) {
+        return Ok(index);
+    }
+    if let Some(index) = asked.parse().ok().filter(|&index: &usize| index < names.len()) {
+        return Ok(index);
+    }
+    let error = document.invalid(list, format!("there is no {what} {asked:?}"));
+    let mut known: Vec<String> = names
+        .iter()
+        .enumerate()
+        .take(12)
+        .map(|(index, name)| name.map_or_else(|| index.to_string(), |name| format!("{name:?}")))
+        .collect();
+    if known.len() < names.len() {
+        known.push("…".to_owned());
+    }
+    Err(match known.len() {
+        0 => error.hint("the file has none at all"),
+        _ => error.hint(format!("there are: {}; numbers count from 0", known.join(", "))),
+    })
+}

@@ -1,0 +1,66 @@
+//! Which extensions are known, and what is said of the others?
+
+use super::file::Document;
+use crate::files::Sources;
+
+/// Extensions that are read.
+const READ: &[&str] = &[
+    "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
+    "KHR_node_visibility",
+    "KHR_texture_basisu",
+    "KHR_texture_transform",
+];
+
+/// Extensions that say nothing of how a model looks.
+const WITHOUT_A_LOOK: &[&str] = &[
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "KHR_node_selectability",
+    "KHR_node_hoverability",
+    "EXT_mesh_features",
+    "EXT_structural_metadata",
+];
+
+/// Whether an extension needs no warning.
+fn is_known(name: &str) -> bool {
+    READ.contains(&name) || WITHOUT_A_LOOK.contains(&name)
+}
+
+/// Warns of extensions that are not known.
+pub(super) fn warn(document: &Document, sources: &mut Sources<'_>) {
+    let root = &document.root;
+    for (index, name) in root.extensions_required.iter().enumerate().filter(|(_, name)| !is_known(name)) {
+        let at = document.at(&format!("/extensionsRequired/{index}"));
+        let message = format!(
+            "the file requires the extension {name}, which is not known: it is read as well as can be, and may look \
+             wrong"
+        );
+        sources.warn(&at, message);
+    }
+    for (index, name) in root.extensions_used.iter().enumerate() {
+        if !is_known(name) && !root.extensions_required.contains(name) {
+            let at = document.at(&format!("/extensionsUsed/{index}"));
+            sources.warn(&at, format!("the extension {name} is not known and is passed over"));
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! What do the lamps of `KHR_lights_punctual` come to here?
+//!
+//! Their units are photometric: candela, and lux of the sun. A radiance of 1 is a luminance of 1 cd/m², so no efficacy
+//! of 683 lm/W appears. Under an illuminance E a white diffuse surface has the radiance E/π, which is what our
+//! intensities say. `range`, a help for rasterisers, is passed over: light fades with the square of the distance.
+
+use glam::{DMat4, DVec3};
+
+use super::file::Document;
+use super::json;
+use super::node::Tree;
+use crate::error::Result;
+use crate::files::Sources;
+use crate::light::{Amount, Falloff, Light, LightKind};
+use crate::material::Color;
+
+/// The lamps of the scene.
+///
+/// # Errors
+/// Where a node has a light that is not there.
+pub(super) fn lights(document: &Document, tree: &Tree, sources: &mut Sources<'_>) -> Result<Vec<Light>> {
+    let known = document.root.extensions.lights.as_ref().map_or(&[][..], |lights| &lights.lights);
+    let mut lights = Vec::new();
+    for &node in &tree.shown {
+        let Some(used) = &document.root.nodes[node].extensions.light else { continue };
+        let pointer = format!("/nodes/{node}/extensions/KHR_lights_punctual/light");
+        let light = document.one_of(known, used.light, "light", &pointer)?;
+        let at = document.at(&format!("/extensions/KHR_lights_punctual/lights/{}", used.light.0));
+        match kind(light, &tree.world_from_node[node]) {
+            Some(kind) => {
+                let name = light.name.clone().or_else(|| document.root.nodes[node].name.clone());
+                lights.push(Light { name, at, kind, amount: Amount::AS_WRITTEN });
+            }
+            None => {
+                sources.warn(&at, format!("a light {:?} whose numbers cannot be is left out", light.kind))
+            }
+        }
+    }
+    Ok(lights)
+}
+
+fn kind(light: &json::Light, world_from_node: &DMat4) -> Option<LightKind> {
+    let strength = light.intensity.unwrap_or(1.0);
+    let color = light.color.unwrap_or([1.0; 3]).map(|c| (c * strength / std::f64::consts::PI) as f32);
+    if !color.iter().all(|&c| c >= 0.0 && c.is_finite()) {
+        return None;
+    }
+    let intensity = Color::Value(color);
+    let position = world_from_node.transform_point3(DVec3::ZERO);
+    let direction = world_from_node.transform_vector3(DVec3::NEG_Z).try_normalize();
+    let falloff = Falloff::Quadratic;
+    if !position.is_finite() {
+        return None;
+    }
+    match light.kind.as_str() {
+        "directional" => Some(LightKind::Distant { direction: direction?, intensity }),
+        "point" => Some(LightKind::Point { position, intensity, falloff }),
+        "spot" => {
+            let spot = light.spot.as_ref();
+            let outer = spot.and_then(|spot| spot.outer_cone_angle).unwrap_or(std::f64::consts::FRAC_PI_4);
+            let inner = spot.and_then(|spot| spot.inner_cone_angle).unwrap_or(0.0);
+            let cone_angle = outer.to_degrees().clamp(0.0, 180.0);
+            let inner_angle = inner.to_degrees().clamp(0.0, cone_angle);
+            let direction = direction?;
+            (cone_angle > 0.0).then_some(LightKind::Spot {
+                position,
+                direction,
+                intensity,
+                cone_angle,
+                inner_angle,
+                falloff,
+            })
+        }
+        _ => None,
+    }
+}

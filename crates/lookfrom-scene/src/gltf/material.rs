@@ -1,0 +1,386 @@
+//! What do glTF's materials come to in our vocabulary (specification, §3.9, and the extensions `KHR_materials_…`)?
+//!
+//! Each becomes a [`Principled`] look, or an unlit one, and besides: the light that the surface gives off, the part of it
+//! that is there, and whether its back is seen. Numbers outside what their extension allows are clamped. Occlusion
+//! textures are for those who cannot trace rays.
+
+mod glossiness;
+
+use std::collections::BTreeMap;
+
+use super::file::Document;
+use super::json::{self, TextureInfo, Whole};
+use super::texture::{Meaning, Textures, Use};
+use crate::error::Result;
+use crate::files::Sources;
+use crate::material::{Anisotropy, Color, Material, MaterialKind, NormalTexture, Principled, Relief, Scalar};
+use crate::scene::{MaterialId, Scene};
+use crate::shape::Emission;
+use crate::texture::{Channel, TextureKind};
+
+/// How a primitive looks.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Look {
+    pub(super) material: MaterialId,
+    pub(super) emission: Option<Emission>,
+    pub(super) alpha: Option<Scalar>,
+    pub(super) single_sided: bool,
+    /// Whether it matters which way u runs over the surface: then the mesh needs tangents for this set of texture
+    /// coordinates.
+    pub(super) grain: Option<u32>,
+}
+
+/// What a primitive brings to its look.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Brought {
+    pub(super) colors: bool,
+    pub(super) opacities: bool,
+}
+
+/// The looks that were needed so far.
+pub(super) struct Looks<'d> {
+    document: &'d Document,
+    textures: Textures<'d>,
+    known: BTreeMap<(Option<usize>, Brought), Look>,
+}
+
+impl<'d> Looks<'d> {
+    pub(super) fn new(document: &'d Document) -> Self {
+        Self { document, textures: Textures::new(document), known: BTreeMap::new() }
+    }
+
+    /// Decodes the pictures of all looks.
+    pub(super) fn decode(self, sources: &mut Sources<'_>, scene: &mut Scene) {
+        self.textures.decode(sources, scene);
+    }
+
+    /// The look of a primitive with this material; without one, glTF's default.
+    ///
+    /// # Errors
+    /// Where the material, or a texture of it, is not there.
+    pub(super) fn look(
+        &mut self,
+        material: Option<Whole>,
+        asked: &str,
+        brought: Brought,
+        sources: &mut Sources<'_>,
+        scene: &mut Scene,
+    ) -> Result<Look> {
+        let key = (material.map(Whole::index), brought);
+        if let Some(look) = self.known.get(&key) {
+            return Ok(*look);
+        }
+        let default = json::Material::default();
+        let (entry, pointer) = match material {
+            Some(index) => {
+                let entry = self.document.one_of(&self.document.root.materials, index, "material", asked)?;
+                (entry, format!("/materials/{}", index.0))
+            }
+            None => (&default, "/materials".to_owned()),
+        };
+        let mut reader =
+            Reader { document: self.document, textures: &mut self.textures, sources, scene, pointer };
+        let look = reader.look(entry, brought)?;
+        self.known.insert(key, look);
+        Ok(look)
+    }
+}
+
+/// One material on its way.
+struct Reader<'r, 'd, 'f> {
+    document: &'d Document,
+    textures: &'r mut Textures<'d>,
+    sources: &'r mut Sources<'f>,
+    scene: &'r mut Scene,
+    /// The material's.
+    pointer: String,
+}
+
+impl Reader<'_, '_, '_> {
+    fn look(&mut self, entry: &json::Material, brought: Brought) -> Result<Look> {
+        let (base_color, base_alpha) = self.base(entry)?;
+        let base_color = match brought.colors {
+            true => {
+                let own = TextureKind::VertexColor { tint: [1.0; 3] };
+                let own = Color::Texture(self.textures.push(own, &self.pointer, self.scene));
+                self.textures.product(base_color, own, &self.pointer, self.scene)
+            }
+            false => base_color,
+        };
+        let kind = match (&entry.extensions.unlit, &entry.extensions.specular_glossiness) {
+            (Some(_), _) => MaterialKind::Unlit { color: base_color },
+            (None, Some(own)) => MaterialKind::Principled(Box::new(self.glossy(own, base_color)?)),
+            (None, None) => MaterialKind::Principled(Box::new(self.principled(entry, base_color)?)),
+        };
+        let relief = self.normals(entry.normal_texture.as_ref(), "/normalTexture")?;
+        let grain = self.grain(entry, &kind, relief.is_some());
+        let name = match &entry.name {
+            Some(name) => name.clone(),
+            None => self.pointer.trim_start_matches('/').replace('/', " "),
+        };
+        let mut material = Material::new(name, self.document.at(&self.pointer), kind);
+        material.relief = relief.map_or(Relief::None, Relief::NormalTexture);
+        self.scene.materials.push(material);
+        let is_double_sided = entry.double_sided.unwrap_or(false);
+        Ok(Look {
+            material: MaterialId(self.scene.materials.len() as u32 - 1),
+            emission: self.emission(entry, is_double_sided)?,
+            alpha: self.alpha(entry, base_alpha, brought)?,
+            single_sided: !is_double_sided,
+            grain,
+        })
+    }
+
+    /// The colour and the opacity that the material begins with.
+    fn base(&mut self, entry: &json::Material) -> Result<(Color, Scalar)> {
+        let (factor, info, place) =
+            match (&entry.extensions.specular_glossiness, &entry.pbr_metallic_roughness) {
+                (Some(own), _) => {
+                    let place = "/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture";
+                    (own.diffuse_factor, own.diffuse_texture.as_ref(), place)
+                }
+                (None, Some(own)) => (
+                    own.base_color_factor,
+                    own.base_color_texture.as_ref(),
+                    "/pbrMetallicRoughness/baseColorTexture",
+                ),
+                (None, None) => (None, None, ""),
+            };
+        let [r, g, b, a] = factor.unwrap_or([1.0; 4]).map(|factor| unit(Some(factor), 1.0));
+        let color = self.color([r, g, b], info, place)?;
+        let alpha = self.number(a, info, place, Channel::Alpha)?;
+        Ok((color, alpha))
+    }
+
+    fn principled(&mut self, entry: &json::Material, base_color: Color) -> Result<Principled> {
+        let mut look = Principled { base_color, ..Principled::default() };
+        if let Some(own) = &entry.pbr_metallic_roughness {
+            let (info, place) =
+                (own.metallic_roughness_texture.as_ref(), "/pbrMetallicRoughness/metallicRoughnessTexture");
+            look.metallic = self.number(unit(own.metallic_factor, 1.0), info, place, Channel::Blue)?;
+            look.roughness = self.number(unit(own.roughness_factor, 1.0), info, place, Channel::Green)?;
+        }
+        let extensions = &entry.extensions;
+        if let Some(own) = &extensions.ior {
+            look.ior = self.ior(own.ior);
+        }
+        if let Some(own) = &extensions.dispersion {
+            look.dispersion = own.dispersion.map_or(0.0, |d| d.clamp(0.0, 100.0) as f32);
+        }
+        if let Some(own) = &extensions.specular {
+            let place = "/extensions/KHR_materials_specular/specularTexture";
+            let (info, factor) = (own.specular_texture.as_ref(), unit(own.specular_factor, 1.0));
+            look.specular = self.number(factor, info, place, Channel::Alpha)?;
+            let place = "/extensions/KHR_materials_specular/specularColorTexture";
+            let factor = own.specular_color_factor.unwrap_or([1.0; 3]).map(positive);
+            look.specular_color = self.color(factor, own.specular_color_texture.as_ref(), place)?;
+        }
+        if let Some(own) = &extensions.transmission {
+            let place = "/extensions/KHR_materials_transmission/transmissionTexture";
+            let (info, factor) = (own.transmission_texture.as_ref(), unit(own.transmission_factor, 0.0));
+            look.transmission = self.number(factor, info, place, Channel::Red)?;
+        }
+        if let Some(own) = &extensions.volume {
+            look.is_solid = own.thickness_factor.is_some_and(|thickness| thickness > 0.0);
+            look.absorption = absorption(own);
+        }
+        if let Some(own) = &extensions.diffuse_transmission {
+            let place = "/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionTexture";
+            let info = own.diffuse_transmission_texture.as_ref();
+            let factor = unit(own.diffuse_transmission_factor, 0.0);
+            look.diffuse_transmission = self.number(factor, info, place, Channel::Alpha)?;
+            let place = "/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture";
+            let factor = own.diffuse_transmission_color_factor.unwrap_or([1.0; 3]);
+            let factor = factor.map(|factor| unit(Some(factor), 1.0));
+            let info = own.diffuse_transmission_color_texture.as_ref();
+            look.diffuse_transmission_color = self.color(factor, info, place)?;
+        }
+        self.layers(extensions, &mut look)?;
+        Ok(look)
+    }
+
+    /// What lies over the body, and what a highlight is drawn out by.
+    fn layers(&mut self, extensions: &json::MaterialExtensions, look: &mut Principled) -> Result<()> {
+        if let Some(own) = &extensions.clearcoat {
+            let place = "/extensions/KHR_materials_clearcoat/clearcoatTexture";
+            let (info, factor) = (own.clearcoat_texture.as_ref(), unit(own.clearcoat_factor, 0.0));
+            look.clearcoat = self.number(factor, info, place, Channel::Red)?;
+            let place = "/extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture";
+            let info = own.clearcoat_roughness_texture.as_ref();
+            let factor = unit(own.clearcoat_roughness_factor, 0.0);
+            look.clearcoat_roughness = self.number(factor, info, place, Channel::Green)?;
+            let place = "/extensions/KHR_materials_clearcoat/clearcoatNormalTexture";
+            look.clearcoat_normal = self.normals(own.clearcoat_normal_texture.as_ref(), place)?;
+        }
+        if let Some(own) = &extensions.sheen {
+            let place = "/extensions/KHR_materials_sheen/sheenColorTexture";
+            let factor = own.sheen_color_factor.unwrap_or([0.0; 3]).map(|factor| unit(Some(factor), 0.0));
+            look.sheen_color = match factor {
+                [0.0, 0.0, 0.0] => Color::BLACK,
+                _ => self.color(factor, own.sheen_color_texture.as_ref(), place)?,
+            };
+            let place = "/extensions/KHR_materials_sheen/sheenRoughnessTexture";
+            let (info, factor) =
+                (own.sheen_roughness_texture.as_ref(), unit(own.sheen_roughness_factor, 0.0));
+            look.sheen_roughness = self.number(factor, info, place, Channel::Alpha)?;
+        }
+        if let Some(own) = &extensions.iridescence {
+            let place = "/extensions/KHR_materials_iridescence/iridescenceTexture";
+            let (info, factor) = (own.iridescence_texture.as_ref(), unit(own.iridescence_factor, 0.0));
+            look.iridescence = self.number(factor, info, place, Channel::Red)?;
+            look.iridescence_ior = own.iridescence_ior.map_or(1.3, |ior| ior.clamp(1.0, 10.0) as f32);
+            look.iridescence_thickness = self.film_thickness(own)?;
+        }
+        if let Some(own) = &extensions.anisotropy {
+            let place = format!("{}/extensions/KHR_materials_anisotropy/anisotropyTexture", self.pointer);
+            let strength = unit(own.anisotropy_strength, 0.0);
+            let used = Use { info: own.anisotropy_texture.as_ref(), pointer: &place };
+            let texture = self.textures.image(used, Channel::Rgb, Meaning::Number, 1.0, false, self.scene)?;
+            let rotation = own.anisotropy_rotation.unwrap_or(0.0) as f32;
+            let rotation = if rotation.is_finite() { rotation } else { 0.0 };
+            look.anisotropy = (strength > 0.0).then_some(Anisotropy { strength, rotation, texture });
+        }
+        Ok(())
+    }
+
+    /// Between the least and the greatest thickness by the green of a texture; without one, the greatest.
+    fn film_thickness(&mut self, own: &json::Iridescence) -> Result<Scalar> {
+        let most = positive(own.iridescence_thickness_maximum.unwrap_or(400.0));
+        let least = positive(own.iridescence_thickness_minimum.unwrap_or(100.0));
+        let place = "/extensions/KHR_materials_iridescence/iridescenceThicknessTexture";
+        match self.number(1.0, own.iridescence_thickness_texture.as_ref(), place, Channel::Green)? {
+            Scalar::Value(_) => Ok(Scalar::Value(most)),
+            amount => {
+                let (low, high) = (Color::gray(least), Color::gray(most));
+                let kind = TextureKind::Mix { low, high, amount };
+                Ok(Scalar::Texture(self.textures.push(kind, &self.pointer, self.scene)))
+            }
+        }
+    }
+
+    fn ior(&mut self, ior: Option<f64>) -> f32 {
+        match ior.unwrap_or(1.5) {
+            0.0 => 0.0,
+            ior if ior >= 1.0 => ior.min(1e6) as f32,
+            ior => {
+                let at = self.document.at(&format!("{}/extensions/KHR_materials_ior/ior", self.pointer));
+                self.sources.warn(&at, format!("the index of refraction {ior} cannot be; 1.5 is taken"));
+                1.5
+            }
+        }
+    }
+
+    fn normals(&mut self, info: Option<&TextureInfo>, place: &str) -> Result<Option<NormalTexture>> {
+        let pointer = format!("{}{place}", self.pointer);
+        let used = Use { info, pointer: &pointer };
+        let texture = self.textures.image(used, Channel::Rgb, Meaning::Normal, 1.0, false, self.scene)?;
+        let scale = info.and_then(|info| info.scale).unwrap_or(1.0) as f32;
+        let scale = if scale.is_finite() { scale } else { 1.0 };
+        Ok(texture.map(|texture| NormalTexture { texture, scale }))
+    }
+
+    /// The set of texture coordinates that directions on the surface go by.
+    fn grain(&self, entry: &json::Material, kind: &MaterialKind, has_normals: bool) -> Option<u32> {
+        let MaterialKind::Principled(look) = kind else { return None };
+        let extensions = &entry.extensions;
+        let coat = extensions.clearcoat.as_ref().and_then(|coat| coat.clearcoat_normal_texture.as_ref());
+        let brushed = extensions.anisotropy.as_ref().and_then(|own| own.anisotropy_texture.as_ref());
+        if !(has_normals || look.clearcoat_normal.is_some() || look.anisotropy.is_some()) {
+            return None;
+        }
+        let info = entry.normal_texture.as_ref().or(coat).or(brushed);
+        let set = info.map(|info| {
+            let transformed = info.extensions.transform.as_ref().and_then(|transform| transform.tex_coord);
+            transformed.or(info.tex_coord).unwrap_or_default()
+        });
+        Some(set.map_or(0, |set| u32::try_from(set.0).unwrap_or(u32::MAX)))
+    }
+
+    fn emission(&mut self, entry: &json::Material, two_sided: bool) -> Result<Option<Emission>> {
+        if entry.extensions.unlit.is_some() {
+            return Ok(None);
+        }
+        let strength = entry.extensions.emissive_strength.as_ref().and_then(|own| own.emissive_strength);
+        let strength = f64::from(positive(strength.unwrap_or(1.0)));
+        let factor = entry.emissive_factor.unwrap_or([0.0; 3]).map(|factor| positive(factor * strength));
+        if factor == [0.0; 3] {
+            return Ok(None);
+        }
+        let radiance = self.color(factor, entry.emissive_texture.as_ref(), "/emissiveTexture")?;
+        Ok(Some(Emission::new(radiance, two_sided)))
+    }
+
+    /// How much of the surface is there.
+    fn alpha(&mut self, entry: &json::Material, base: Scalar, brought: Brought) -> Result<Option<Scalar>> {
+        let mode = entry.alpha_mode.as_deref().unwrap_or("OPAQUE");
+        if mode != "MASK" && mode != "BLEND" {
+            if mode != "OPAQUE" {
+                let at = self.document.at(&format!("{}/alphaMode", self.pointer));
+                self.sources.warn(&at, format!("the mode {mode:?} is not known; the material is opaque"));
+            }
+            return Ok(None);
+        }
+        let value = match (brought.opacities, base) {
+            (true, base) => {
+                let own = self.textures.push(TextureKind::VertexAlpha, &self.pointer, self.scene);
+                let scaled = match base {
+                    Scalar::Value(1.0) => None,
+                    Scalar::Value(value) => Some(Color::gray(value)),
+                    Scalar::Texture(id) => Some(Color::Texture(id)),
+                };
+                let product = scaled.map(|a| TextureKind::Product { a, b: Color::Texture(own) });
+                Scalar::Texture(
+                    product.map_or(own, |kind| self.textures.push(kind, &self.pointer, self.scene)),
+                )
+            }
+            (false, base) => base,
+        };
+        let edge = positive(entry.alpha_cutoff.unwrap_or(0.5));
+        Ok(match (mode, value) {
+            ("MASK", Scalar::Value(value)) => (value < edge).then_some(Scalar::Value(0.0)),
+            ("MASK", value) => {
+                let kind = TextureKind::Threshold { value, edge };
+                Some(Scalar::Texture(self.textures.push(kind, &self.pointer, self.scene)))
+            }
+            (_, Scalar::Value(value)) => (value < 1.0).then_some(Scalar::Value(value)),
+            (_, value) => Some(value),
+        })
+    }
+
+    fn color(&mut self, factor: [f32; 3], info: Option<&TextureInfo>, place: &str) -> Result<Color> {
+        let pointer = format!("{}{place}", self.pointer);
+        self.textures.color(factor, Use { info, pointer: &pointer }, self.scene)
+    }
+
+    fn number(
+        &mut self,
+        factor: f32,
+        info: Option<&TextureInfo>,
+        place: &str,
+        channel: Channel,
+    ) -> Result<Scalar> {
+        let pointer = format!("{}{place}", self.pointer);
+        self.textures.number(factor, Use { info, pointer: &pointer }, channel, self.scene)
+    }
+}
+
+/// A number from 0 to 1.
+fn unit(number: Option<f64>, otherwise: f32) -> f32 {
+    number.map_or(otherwise, |number| number.clamp(0.0, 1.0) as f32)
+}
+
+/// A number of at least 0 that can be computed with.
+fn positive(number: f64) -> f32 {
+    number.clamp(0.0, 1e30) as f32
+}
+
+/// Of light that goes the distance, the colour is left: absorption = −ln(colour) / distance.
+fn absorption(volume: &json::Volume) -> [f32; 3] {
+    let distance = volume.attenuation_distance.unwrap_or(f64::INFINITY);
+    if !(distance > 0.0 && distance.is_finite()) {
+        return [0.0; 3];
+    }
+    // Nothing at all cannot be left after any distance.
+    let color = volume.attenuation_color.unwrap_or([1.0; 3]);
+    color.map(|c| positive(-libm::log(c.clamp(1e-6, 1.0)) / distance))
+}

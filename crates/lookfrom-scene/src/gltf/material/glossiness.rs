@@ -1,0 +1,34 @@
+//! What do the materials of `KHR_materials_pbrSpecularGlossiness` come to?
+//!
+//! A dielectric whose index of refraction is 0, which stands for infinite, mirrors by Schlick's formula exactly its
+//! specular colour: that is how `KHR_materials_specular` converts them. Roughness is 1 − glossiness.
+
+use super::{Reader, unit};
+use crate::error::Result;
+use crate::gltf::json;
+use crate::gltf::texture::{Meaning, Use};
+use crate::material::{Color, Principled, Scalar};
+use crate::texture::Channel;
+
+impl Reader<'_, '_, '_> {
+    /// `base_color` is the diffuse one.
+    pub(super) fn glossy(&mut self, own: &json::SpecularGlossiness, base_color: Color) -> Result<Principled> {
+        let place = "/extensions/KHR_materials_pbrSpecularGlossiness/specularGlossinessTexture";
+        let info = own.specular_glossiness_texture.as_ref();
+        let factor = own.specular_factor.unwrap_or([1.0; 3]).map(|factor| unit(Some(factor), 1.0));
+        let specular_color = self.color(factor, info, place)?;
+        let glossiness = unit(own.glossiness_factor, 1.0);
+        let pointer = format!("{}{place}", self.pointer);
+        let used = Use { info, pointer: &pointer };
+        let texture =
+            self.textures.image(used, Channel::Alpha, Meaning::Color, glossiness, true, self.scene)?;
+        Ok(Principled {
+            base_color,
+            metallic: Scalar::Value(0.0),
+            roughness: texture.map_or(Scalar::Value(1.0 - glossiness), Scalar::Texture),
+            ior: 0.0,
+            specular_color,
+            ..Principled::default()
+        })
+    }
+}

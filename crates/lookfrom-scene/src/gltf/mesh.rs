@@ -1,0 +1,279 @@
+//! What form does a primitive have: triangles, or thin spheres and wires for points and lines (specification, §3.7)?
+
+mod topology;
+
+use glam::{DVec3, Vec2, Vec3, Vec4};
+
+use super::file::Document;
+use super::json::{Primitive, Whole};
+use super::material::Brought;
+use crate::error::Result;
+use crate::files::Sources;
+use crate::model::polygon::has_area;
+use crate::scene::{Bounds, MeshId, Scene};
+use crate::shape::{Geometry, Mesh, Profile, Sphere, Strand};
+
+use self::topology::Topology;
+
+/// The radius of points and lines, in radii of the sphere around the primitive.
+const THINNESS: f64 = 0.004;
+
+/// The attributes of a primitive's vertices, as the file has them but for v, which runs up.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Vertices {
+    pub(crate) positions: Vec<Vec3>,
+    /// None, or one a vertex.
+    pub(crate) normals: Vec<Vec3>,
+    /// None, or one a vertex; w says whether v grows along normal × tangent.
+    pub(crate) tangents: Vec<Vec4>,
+    /// Sets, each empty or with one a vertex.
+    pub(crate) uvs: Vec<Vec<Vec2>>,
+    /// None, or one a vertex.
+    pub(crate) colors: Vec<[f32; 3]>,
+    /// None, or one a vertex.
+    pub(crate) opacities: Vec<f32>,
+    /// Which vertices are used, in which order; `None` is all of them as they stand.
+    pub(crate) indices: Option<Vec<u32>>,
+}
+
+impl Vertices {
+    /// What it brings to its look.
+    pub(super) fn brought(&self) -> Brought {
+        Brought {
+            colors: !self.colors.is_empty(),
+            opacities: self.opacities.iter().any(|&opacity| opacity != 1.0),
+        }
+    }
+}
+
+/// Reads the attributes and indices of a primitive at `pointer`. `None`, with a warning, where it has no positions.
+///
+/// # Errors
+/// Where an accessor cannot be read, or is no such attribute.
+pub(crate) fn vertices(
+    document: &Document,
+    primitive: &Primitive,
+    pointer: &str,
+    sources: &mut Sources<'_>,
+) -> Result<Option<Vertices>> {
+    let place = |name: &str| format!("{pointer}/attributes/{name}");
+    let find = |name: &str| primitive.attributes.get(name).copied();
+    let Some(positions) = find("POSITION") else {
+        let at = document.at(&format!("{pointer}/attributes"));
+        sources.warn(&at, "the primitive has no POSITION and is left out");
+        return Ok(None);
+    };
+    let positions: Vec<Vec3> = points(document.vectors(positions, &place("POSITION"))?);
+    let count = positions.len();
+    let mut vertices = Vertices { positions, ..Vertices::default() };
+    if let Some(index) = find("NORMAL") {
+        vertices.normals = points(document.vectors(index, &place("NORMAL"))?);
+        check_count(document, vertices.normals.len(), count, &place("NORMAL"))?;
+        vertices
+            .normals
+            .iter_mut()
+            .filter(|normal| !normal.is_finite())
+            .for_each(|normal| *normal = Vec3::ZERO);
+        if let Some(index) = find("TANGENT") {
+            let tangents = document.vectors(index, &place("TANGENT"))?;
+            vertices.tangents = tangents.into_iter().map(Vec4::from_array).collect();
+            check_count(document, vertices.tangents.len(), count, &place("TANGENT"))?;
+            vertices
+                .tangents
+                .iter_mut()
+                .filter(|t| !t.is_finite())
+                .for_each(|t| *t = Vec4::new(0.0, 0.0, 0.0, 1.0));
+        }
+    }
+    for set in 0..Mesh::MOST_UV_SETS {
+        let name = format!("TEXCOORD_{set}");
+        let uvs = find(&name).map(|index| coordinates(document, index, count, &place(&name))).transpose()?;
+        vertices.uvs.push(uvs.unwrap_or_default());
+    }
+    while vertices.uvs.last().is_some_and(Vec::is_empty) {
+        vertices.uvs.pop();
+    }
+    if let Some(index) = find("COLOR_0") {
+        colors(document, index, count, &place("COLOR_0"), &mut vertices)?;
+    }
+    if let Some(index) = primitive.indices {
+        let indices = document.whole_vectors::<1>(index, &format!("{pointer}/indices"))?;
+        vertices.indices = Some(indices.into_flattened());
+    }
+    Ok(Some(vertices))
+}
+
+fn points(vectors: Vec<[f32; 3]>) -> Vec<Vec3> {
+    vectors.into_iter().map(Vec3::from_array).collect()
+}
+
+fn check_count(document: &Document, found: usize, expected: usize, pointer: &str) -> Result<()> {
+    if found == expected {
+        return Ok(());
+    }
+    let message = format!("{found} values for {expected} vertices: there must be one for each");
+    Err(document.invalid(pointer, message).hint("the file was written wrongly: export it again"))
+}
+
+fn coordinates(document: &Document, index: Whole, count: usize, pointer: &str) -> Result<Vec<Vec2>> {
+    let uvs = document.vectors::<2>(index, pointer)?;
+    check_count(document, uvs.len(), count, pointer)?;
+    // v runs down in glTF and up here.
+    let flipped =
+        |[u, v]: [f32; 2]| if u.is_finite() && v.is_finite() { Vec2::new(u, 1.0 - v) } else { Vec2::ZERO };
+    Ok(uvs.into_iter().map(flipped).collect())
+}
+
+fn colors(
+    document: &Document,
+    index: Whole,
+    count: usize,
+    pointer: &str,
+    vertices: &mut Vertices,
+) -> Result<()> {
+    let fit = |value: f32| if value >= 0.0 { value.min(1e30) } else { 0.0 };
+    if document.shape(index, pointer)?.0 == 4 {
+        let colors = document.vectors::<4>(index, pointer)?;
+        vertices.colors = colors.iter().map(|&[r, g, b, _]| [r, g, b].map(fit)).collect();
+        vertices.opacities = colors.iter().map(|&[_, _, _, a]| fit(a).min(1.0)).collect();
+    } else {
+        vertices.colors = document.vectors::<3>(index, pointer)?;
+        vertices.colors.iter_mut().for_each(|color| *color = color.map(fit));
+    }
+    check_count(document, vertices.colors.len(), count, pointer)
+}
+
+/// What a primitive becomes: triangles as a mesh of the scene, points and lines as what they are. `None`, with a warning
+/// where something is odd, if nothing is left.
+///
+/// # Errors
+/// Where an index is beyond the vertices, or the mode is not known.
+pub(crate) fn geometry(
+    document: &Document,
+    primitive: &Primitive,
+    vertices: Vertices,
+    name: &str,
+    pointer: &str,
+    sources: &mut Sources<'_>,
+    scene: &mut Scene,
+) -> Result<Option<Geometry>> {
+    let mode = primitive.mode.unwrap_or(Whole(4));
+    let Some(topology) = Topology::of(mode) else {
+        return Err(document
+            .invalid(&format!("{pointer}/mode"), format!("the mode {} is not known", mode.0))
+            .hint("modes are 0 (points) to 6 (fans)"));
+    };
+    let count = vertices.positions.len();
+    if let Some(&beyond) = vertices.indices.iter().flatten().find(|&&index| index as usize >= count) {
+        let message = format!("vertex {beyond} is used, but there are only {count}");
+        return Err(document
+            .invalid(&format!("{pointer}/indices"), message)
+            .hint("the file was written wrongly: export it again"));
+    }
+    let is_usable =
+        |corners: &[u32]| corners.iter().all(|&corner| vertices.positions[corner as usize].is_finite());
+    let order = Order { indices: vertices.indices.as_deref(), count };
+    let at = document.at(pointer);
+
+    let mut left_out = 0_usize;
+    let mut usable = |corners: &[u32]| {
+        let is_usable = is_usable(corners);
+        left_out += usize::from(!is_usable);
+        is_usable
+    };
+    let geometry = match topology {
+        Topology::Points => {
+            let mut used: Vec<u32> = (0..order.len()).map(|i| order.vertex(i)).collect();
+            used.retain(|&vertex| usable(&[vertex]));
+            let centers = used.iter().map(|&vertex| vertices.positions[vertex as usize].as_dvec3());
+            let radius = radius(centers.clone());
+            let spheres: Vec<Sphere> = centers.map(|center| Sphere { center, radius }).collect();
+            (!spheres.is_empty()).then(|| Geometry::Spheres(spheres.into()))
+        }
+        Topology::Lines | Topology::LineLoop | Topology::LineStrip => {
+            let mut lines = topology::lines(topology, &order);
+            lines.retain(|line| usable(line));
+            let ends = lines.iter().flatten().map(|&vertex| vertices.positions[vertex as usize].as_dvec3());
+            let width = (2.0 * radius(ends)) as f32;
+            let lines = lines.iter().map(|line| line.map(|vertex| vertices.positions[vertex as usize]));
+            let strands: Vec<Strand> =
+                lines.filter(|[a, b]| a != b).map(|line| strand(line, width)).collect();
+            (!strands.is_empty()).then(|| Geometry::Curves(strands.into()))
+        }
+        Topology::Triangles | Topology::TriangleStrip | Topology::TriangleFan => {
+            let mut triangles = topology::triangles(topology, &order);
+            let corners = |triangle: &[u32; 3]| triangle.map(|vertex| vertices.positions[vertex as usize]);
+            // Triangles without area hold strips together, and no ray meets one.
+            triangles.retain(|triangle| usable(triangle) && has_area(corners(triangle)));
+            (!triangles.is_empty()).then(|| Geometry::Mesh(push_mesh(scene, name, vertices, triangles)))
+        }
+    };
+    if left_out > 0 {
+        sources.warn(&at, format!("{left_out} primitives left out: a position is infinite or not a number"));
+    }
+    Ok(geometry)
+}
+
+/// The order in which vertices are used.
+pub(super) struct Order<'a> {
+    indices: Option<&'a [u32]>,
+    count: usize,
+}
+
+impl Order<'_> {
+    fn len(&self) -> usize {
+        self.indices.map_or(self.count, <[u32]>::len)
+    }
+
+    fn vertex(&self, place: usize) -> u32 {
+        self.indices.map_or(place as u32, |indices| indices[place])
+    }
+}
+
+fn push_mesh(scene: &mut Scene, name: &str, vertices: Vertices, triangles: Vec<[u32; 3]>) -> MeshId {
+    let Vertices { mut positions, normals, tangents, uvs, colors, opacities, .. } = vertices;
+    // No triangle uses these.
+    positions.iter_mut().filter(|position| !position.is_finite()).for_each(|position| *position = Vec3::ZERO);
+    let mut sets = uvs.into_iter();
+    scene.meshes.push(Mesh {
+        name: name.to_owned(),
+        positions,
+        triangles,
+        normals,
+        uvs: sets.next().unwrap_or_default(),
+        more_uvs: sets.collect(),
+        colors,
+        opacities,
+        tangents,
+    });
+    MeshId(scene.meshes.len() as u32 - 1)
+}
+
+/// The radius of points and lines around these places.
+fn radius(places: impl Iterator<Item = DVec3>) -> f64 {
+    let bounds = places.fold(Bounds::EMPTY, Bounds::with);
+    let size = if bounds.radius() > 0.0 { bounds.radius() } else { bounds.center().abs().max_element() };
+    let radius = THINNESS * size;
+    if radius.is_normal() && (radius as f32).is_normal() { radius } else { THINNESS }
+}
+
+/// A straight wire.
+fn strand([a, b]: [Vec3; 2], width: f32) -> Strand {
+    Strand {
+        points: [a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b],
+        width: [width; 2],
+        profile: Profile::Cylinder,
+    }
+}
+
+/// A mesh with its places taken through a matrix that cannot be undone, such as one that makes it flat; without normals
+/// and tangents, which such a matrix does not carry over.
+pub(super) fn flattened(mesh: &Mesh, matrix: &glam::DMat4) -> Mesh {
+    let positions: Vec<Vec3> =
+        mesh.positions.iter().map(|p| matrix.transform_point3(p.as_dvec3()).as_vec3()).collect();
+    let corners = |triangle: &[u32; 3]| triangle.map(|vertex| positions[vertex as usize]);
+    let triangles =
+        mesh.triangles.iter().filter(|t| corners(t).iter().all(|p| p.is_finite()) && has_area(corners(t)));
+    let triangles = triangles.copied().collect();
+    Mesh { triangles, positions, normals: Vec::new(), tangents: Vec::new(), ..mesh.clone() }
+}

@@ -1,0 +1,127 @@
+//! Where do the nodes of the scene stand (specification, §3.5)?
+
+use glam::{DMat4, DQuat, DVec3, DVec4};
+
+use super::choose::choose;
+use super::file::Document;
+use super::json::Node;
+use crate::error::Result;
+use crate::files::Sources;
+
+/// The hierarchy of a file's nodes.
+pub(crate) struct Tree {
+    /// Where each node stands; those that cannot be reached too.
+    pub(crate) world_from_node: Vec<DMat4>,
+    /// The nodes of the scene, parents before their children.
+    pub(crate) shown: Vec<usize>,
+}
+
+impl Node {
+    /// Its own transform at rest.
+    pub(crate) fn at_rest(&self) -> DMat4 {
+        if let Some(matrix) = self.matrix {
+            let mut matrix = DMat4::from_cols_array(&matrix);
+            // What a projection would need is not for nodes.
+            for (axis, w) in [(0, 0.0), (1, 0.0), (2, 0.0), (3, 1.0)] {
+                matrix.col_mut(axis).w = w;
+            }
+            return matrix;
+        }
+        let translation = self.translation.map_or(DVec3::ZERO, DVec3::from_array);
+        let scale = self.scale.map_or(DVec3::ONE, DVec3::from_array);
+        placed(translation, self.rotation.map_or(DVec4::W, DVec4::from_array), scale)
+    }
+}
+
+/// Scaled, then turned by a quaternion of any length but zero, then moved.
+pub(crate) fn placed(translation: DVec3, rotation: DVec4, scale: DVec3) -> DMat4 {
+    let rotation = DQuat::from_vec4(rotation.normalize_or(DVec4::W));
+    DMat4::from_scale_rotation_translation(scale, rotation, translation)
+}
+
+impl Tree {
+    /// The tree that the nodes make with these transforms, one for each.
+    ///
+    /// # Errors
+    /// Where a node is its own ancestor, where a child or a node of the scene is not there, or the scene that is asked for.
+    pub(crate) fn new(document: &Document, local: &[DMat4], sources: &mut Sources<'_>) -> Result<Self> {
+        let nodes = &document.root.nodes;
+        let mut parents: Vec<Option<usize>> = vec![None; nodes.len()];
+        for (index, node) in nodes.iter().enumerate() {
+            for (place, &child) in node.children.iter().enumerate() {
+                let pointer = || format!("/nodes/{index}/children/{place}");
+                let slot = parents.get_mut(child.index());
+                match slot {
+                    Some(parent @ None) => *parent = Some(index),
+                    Some(Some(first)) => {
+                        let message =
+                            format!("node {} is already a child of node {first}, and stays there", child.0);
+                        sources.warn(&document.at(&pointer()), message);
+                    }
+                    None => {
+                        document.one_of(nodes, child, "node", &pointer())?;
+                    }
+                }
+            }
+        }
+
+        // Downwards from those without parents; who is not met then is in a circle.
+        let is_child = |parent: usize, child: usize| parents.get(child).is_some_and(|&p| p == Some(parent));
+        let mut world_from_node = vec![DMat4::IDENTITY; nodes.len()];
+        let mut is_met = vec![false; nodes.len()];
+        let mut waiting: Vec<usize> = (0..nodes.len()).filter(|&node| parents[node].is_none()).collect();
+        while let Some(node) = waiting.pop() {
+            is_met[node] = true;
+            let parent = parents[node].map_or(DMat4::IDENTITY, |parent| world_from_node[parent]);
+            world_from_node[node] = parent * local[node];
+            let children = nodes[node].children.iter().map(|child| child.index());
+            waiting.extend(children.filter(|&child| is_child(node, child) && !is_met[child]));
+        }
+        if let Some(node) = is_met.iter().position(|is_met| !is_met) {
+            return Err(document
+                .invalid(&format!("/nodes/{node}"), "this node is its own ancestor")
+                .hint("take it out of the children of one of its descendants"));
+        }
+
+        // Those of the scene.
+        let mut waiting: Vec<usize> = Self::roots(document, &parents, sources)?;
+        waiting.reverse();
+        let mut shown = Vec::new();
+        let mut is_shown = vec![false; nodes.len()];
+        while let Some(node) = waiting.pop() {
+            let is_visible =
+                nodes[node].extensions.visibility.as_ref().and_then(|v| v.visible).unwrap_or(true);
+            if is_visible && !std::mem::replace(&mut is_shown[node], true) {
+                shown.push(node);
+                let children = nodes[node].children.iter().rev().map(|child| child.index());
+                waiting.extend(children.filter(|&child| is_child(node, child)));
+            }
+        }
+        Ok(Self { world_from_node, shown })
+    }
+
+    /// The nodes that the scene names; without any scene, all that have no parent.
+    fn roots(document: &Document, parents: &[Option<usize>], sources: &Sources<'_>) -> Result<Vec<usize>> {
+        let root = &document.root;
+        let scene = match (&sources.choice.scene, root.scene) {
+            (Some(name), _) => {
+                let names = root.scenes.iter().map(|scene| scene.name.as_deref());
+                choose(document, "scene", "/scenes", name, names)?
+            }
+            (None, Some(index)) => {
+                document.one_of(&root.scenes, index, "scene", "/scene")?;
+                index.index()
+            }
+            (None, None) if root.scenes.is_empty() => {
+                return Ok((0..parents.len()).filter(|&node| parents[node].is_none()).collect());
+            }
+            (None, None) => 0,
+        };
+        let mut roots = Vec::new();
+        for (place, &node) in root.scenes[scene].nodes.iter().enumerate() {
+            document.one_of(&root.nodes, node, "node", &format!("/scenes/{scene}/nodes/{place}"))?;
+            roots.push(node.index());
+        }
+        Ok(roots)
+    }
+}

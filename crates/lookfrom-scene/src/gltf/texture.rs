@@ -1,0 +1,270 @@
+//! Which picture, which part of it and which numbers of it does a material mean by a texture (specification, §3.8;
+//! `KHR_texture_transform`, `EXT_texture_webp`, `KHR_texture_basisu`)?
+//!
+//! In glTF v runs down from the picture's upper edge, here it runs up: meshes have 1 − v, and [`mapping`] says of that
+//! what the file says of v. Only pictures that are used are decoded, once for colours and once for numbers, side by side.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use super::file::Document;
+use super::json::{Sampler, Texture as TextureEntry, TextureInfo, Whole};
+use super::uri::Uri;
+use crate::error::{Error, ErrorKind, Result, Warning};
+use crate::files::Sources;
+use crate::image::{self, Image};
+use crate::material::{Color, Scalar};
+use crate::scene::{ImageId, Scene, TextureId};
+use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
+
+/// How many pictures' worth of [`crate::Limits::texels`] one file may have in all.
+const PICTURES_OF_MOST_TEXELS: u64 = 4;
+
+/// What the numbers of a picture stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Meaning {
+    /// Colours by the sRGB curve; opacity is linear.
+    Color,
+    /// Numbers as they are.
+    Number,
+    /// The same, as normals.
+    Normal,
+}
+
+/// A texture with all that it needs, and where it is used.
+#[derive(Clone, Copy)]
+pub(super) struct Use<'a> {
+    /// What the file says.
+    pub(super) info: Option<&'a TextureInfo>,
+    /// The pointer of that.
+    pub(super) pointer: &'a str,
+}
+
+/// The textures and pictures that materials asked for so far.
+pub(super) struct Textures<'d> {
+    document: &'d Document,
+    /// By the first image of the file that has the same content.
+    pictures: BTreeMap<(usize, Meaning), ImageId>,
+    /// The first image with the same content as this one.
+    firsts: Vec<usize>,
+}
+
+impl<'d> Textures<'d> {
+    pub(super) fn new(document: &'d Document) -> Self {
+        let mut known = BTreeMap::new();
+        let images = document.root.images.iter().enumerate();
+        let firsts = images
+            .map(|(index, image)| *known.entry((&image.uri, image.buffer_view)).or_insert(index))
+            .collect();
+        Self { document, pictures: BTreeMap::new(), firsts }
+    }
+
+    /// A colour: a factor, times a texture where there is one.
+    ///
+    /// # Errors
+    /// Where the texture, its sampler or its image is not in the file.
+    pub(super) fn color(&mut self, factor: [f32; 3], texture: Use<'_>, scene: &mut Scene) -> Result<Color> {
+        let [r, g, b] = factor;
+        let is_gray = r == g && g == b;
+        let scale = if is_gray { r } else { 1.0 };
+        match self.image(texture, Channel::Rgb, Meaning::Color, scale, false, scene)? {
+            None => Ok(Color::Value(factor)),
+            Some(id) if is_gray => Ok(Color::Texture(id)),
+            Some(id) => Ok(self.product(Color::Value(factor), Color::Texture(id), texture.pointer, scene)),
+        }
+    }
+
+    /// A number: a factor, times one channel of a texture where there is one.
+    ///
+    /// # Errors
+    /// As [`Textures::color`].
+    pub(super) fn number(
+        &mut self,
+        factor: f32,
+        texture: Use<'_>,
+        channel: Channel,
+        scene: &mut Scene,
+    ) -> Result<Scalar> {
+        // Opacity is linear in pictures of colours, too: so a picture that has both is decoded once.
+        let meaning = if channel == Channel::Alpha { Meaning::Color } else { Meaning::Number };
+        let found = self.image(texture, channel, meaning, factor, false, scene)?;
+        Ok(found.map_or(Scalar::Value(factor), Scalar::Texture))
+    }
+
+    /// A texture of a picture; `None` where none is named.
+    ///
+    /// # Errors
+    /// As [`Textures::color`].
+    pub(super) fn image(
+        &mut self,
+        texture: Use<'_>,
+        channel: Channel,
+        meaning: Meaning,
+        scale: f32,
+        invert: bool,
+        scene: &mut Scene,
+    ) -> Result<Option<TextureId>> {
+        let Some(info) = texture.info else { return Ok(None) };
+        let root = &self.document.root;
+        let pointer = format!("{}/index", texture.pointer);
+        let entry = self.document.one_of(&root.textures, info.index, "texture", &pointer)?;
+        let place = format!("/textures/{}", info.index.0);
+        let sampler = match entry.sampler {
+            Some(index) => {
+                Some(self.document.one_of(&root.samplers, index, "sampler", &format!("{place}/sampler"))?)
+            }
+            None => None,
+        };
+        let Some(source) = source(entry) else { return Ok(None) };
+        self.document.one_of(&root.images, source, "image", &format!("{place}/source"))?;
+        let key = (self.firsts[source.index()], meaning);
+        let image = *self.pictures.entry(key).or_insert_with(|| {
+            scene.images.push(Image::default());
+            ImageId(scene.images.len() as u32 - 1)
+        });
+        let (wrap, filter) = sampling(sampler);
+        let mapping = mapping(info);
+        let kind = TextureKind::Image { image, mapping, wrap, filter, channel, scale, invert };
+        Ok(Some(self.push(kind, texture.pointer, scene)))
+    }
+
+    /// One times the other.
+    pub(super) fn product(&self, a: Color, b: Color, pointer: &str, scene: &mut Scene) -> Color {
+        if a == Color::gray(1.0) {
+            return b;
+        }
+        if b == Color::gray(1.0) {
+            return a;
+        }
+        Color::Texture(self.push(TextureKind::Product { a, b }, pointer, scene))
+    }
+
+    /// Adds a texture.
+    pub(super) fn push(&self, kind: TextureKind, pointer: &str, scene: &mut Scene) -> TextureId {
+        let at = self.document.at(pointer);
+        scene.textures.push(Texture { name: pointer.to_owned(), at, kind });
+        TextureId(scene.textures.len() as u32 - 1)
+    }
+
+    /// Decodes the pictures that were asked for. One that cannot be is white, with a warning.
+    pub(super) fn decode(self, sources: &mut Sources<'_>, scene: &mut Scene) {
+        let Self { document, pictures, .. } = self;
+        let (files, limits) = (sources.files, sources.limits);
+        let texels = AtomicU64::new(0);
+        let read = |((index, meaning), id): ((usize, Meaning), ImageId)| {
+            let mut sources = Sources { limits, ..Sources::new(files) };
+            let image = picture(document, index, meaning, &texels, &mut sources);
+            let image = image.unwrap_or_else(|error| {
+                let message =
+                    format!("the picture cannot be used, and white is in its place: {}", error.message);
+                sources.warnings.push(Warning { at: error.at, message });
+                blank(document, index, meaning)
+            });
+            (id, image, sources.warnings)
+        };
+        let decoded: Vec<_> = pictures.into_iter().collect::<Vec<_>>().into_par_iter().map(read).collect();
+        for (id, image, warnings) in decoded {
+            scene.images[id.index()] = image;
+            sources.warnings.extend(warnings);
+        }
+    }
+}
+
+/// The image of a texture: extensions name better ones than those for whom they are not there.
+fn source(entry: &TextureEntry) -> Option<Whole> {
+    let others = [&entry.extensions.basisu, &entry.extensions.webp];
+    others.into_iter().flatten().find_map(|other| other.source).or(entry.source)
+}
+
+fn sampling(sampler: Option<&Sampler>) -> ([Wrap; 2], TexelFilter) {
+    let Some(sampler) = sampler else { return ([Wrap::Repeat; 2], TexelFilter::Bilinear) };
+    let wrap = |wrap: Option<Whole>| match wrap.map(|wrap| wrap.0) {
+        Some(33071) => Wrap::Clamp,
+        Some(33648) => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    };
+    let filter = match sampler.mag_filter.map(|filter| filter.0) {
+        Some(9728) => TexelFilter::Nearest,
+        _ => TexelFilter::Bilinear,
+    };
+    ([wrap(sampler.wrap_s), wrap(sampler.wrap_t)], filter)
+}
+
+/// From the coordinates (u, w = 1 − v) of our meshes to (s, 1 − t), where s and t are glTF's: scaled, turned, moved.
+fn mapping(info: &TextureInfo) -> Mapping {
+    let transform = info.extensions.transform.as_ref();
+    let set = transform.and_then(|transform| transform.tex_coord).or(info.tex_coord).unwrap_or_default();
+    let set = u32::try_from(set.0).unwrap_or(u32::MAX);
+    let offset = transform.and_then(|transform| transform.offset).unwrap_or([0.0; 2]);
+    let scale = transform.and_then(|transform| transform.scale).unwrap_or([1.0; 2]);
+    let rotation = transform.and_then(|transform| transform.rotation).unwrap_or(0.0);
+    if set == 0 && offset == [0.0; 2] && scale == [1.0; 2] && rotation == 0.0 {
+        return Mapping::UV;
+    }
+    let (sin, cos) = libm::sincos(rotation);
+    // s = cos·a·u + sin·b·v + x and t = −sin·a·u + cos·b·v + y, with v = 1 − w.
+    let ([a, b], [x, y]) = (scale, offset);
+    let rows = [[cos * a, -sin * b, x + sin * b], [sin * a, cos * b, 1.0 - cos * b - y]];
+    let finite = |number: f64| if (number as f32).is_finite() { number as f32 } else { 0.0 };
+    Mapping::Affine { set, matrix: rows.map(|row| row.map(finite)) }
+}
+
+/// Decodes one picture.
+fn picture(
+    document: &Document,
+    index: usize,
+    meaning: Meaning,
+    texels: &AtomicU64,
+    sources: &mut Sources<'_>,
+) -> Result<Image> {
+    let entry = &document.root.images[index];
+    let pointer = format!("/images/{index}");
+    let most = sources.limits.texels.saturating_mul(PICTURES_OF_MOST_TEXELS);
+    if texels.load(Ordering::Relaxed) > most {
+        let message = format!("the pictures of this file have more than {most} texels together");
+        return Err(Error::new(ErrorKind::Limit, &document.at(&pointer), message));
+    }
+    let image = match (&entry.uri, entry.buffer_view) {
+        (None, Some(view)) => {
+            let view = document.view(view, &format!("{pointer}/bufferView"))?;
+            decoded(view.bytes, &pointer, meaning, document, sources)?
+        }
+        (Some(uri), _) => match document.uri(uri, &format!("{pointer}/uri"))? {
+            Uri::Data(bytes) => decoded(&bytes, &pointer, meaning, document, sources)?,
+            Uri::Names(names) => {
+                let (_, bytes) = document.first_of(&names, &pointer, |path| sources.read(path))?;
+                decoded(&bytes, &pointer, meaning, document, sources)?
+            }
+        },
+        (None, None) => {
+            return Err(document.invalid(&pointer, "the image has neither `uri` nor `bufferView`"));
+        }
+    };
+    texels.fetch_add(u64::from(image.width) * u64::from(image.height), Ordering::Relaxed);
+    Ok(image)
+}
+
+fn decoded(
+    bytes: &[u8],
+    pointer: &str,
+    meaning: Meaning,
+    document: &Document,
+    sources: &mut Sources<'_>,
+) -> Result<Image> {
+    let name = document.at(pointer).to_string();
+    let files = crate::files::Memory([(name.clone().into(), bytes.to_vec())].into());
+    let mut own = Sources { limits: sources.limits, ..Sources::new(&files) };
+    let read = if meaning == Meaning::Color { image::read } else { image::read_data };
+    let image = read(name.as_ref(), &mut own);
+    sources.warnings.append(&mut own.warnings);
+    image
+}
+
+/// What is in the place of a picture that cannot be used.
+fn blank(document: &Document, index: usize, meaning: Meaning) -> Image {
+    let name = document.at(&format!("/images/{index}")).to_string();
+    let texel = if meaning == Meaning::Normal { [0.5, 0.5, 1.0] } else { [1.0; 3] };
+    Image { name, width: 1, height: 1, texels: vec![texel] }
+}
