@@ -14,7 +14,7 @@ use super::json::{Sampler, Texture as TextureEntry, TextureInfo, Whole};
 use super::uri::Uri;
 use crate::error::{Error, ErrorKind, Result, Warning};
 use crate::files::Sources;
-use crate::image::{self, Image};
+use crate::image::{self, Encoding, Image};
 use crate::material::{Color, Scalar};
 use crate::scene::{ImageId, Scene, TextureId};
 use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
@@ -121,7 +121,7 @@ impl<'d> Textures<'d> {
         self.document.one_of(&root.images, source, "image", &format!("{place}/source"))?;
         let key = (self.firsts[source.index()], meaning);
         let image = *self.pictures.entry(key).or_insert_with(|| {
-            scene.images.push(Image::default());
+            scene.images.push(Image::from_linear("", 1, 1, vec![[1.0; 3]]));
             ImageId(scene.images.len() as u32 - 1)
         });
         let (wrap, filter) = sampling(sampler);
@@ -253,18 +253,13 @@ fn decoded(
     document: &Document,
     sources: &mut Sources<'_>,
 ) -> Result<Image> {
-    let name = document.at(pointer).to_string();
-    let files = crate::files::Memory([(name.clone().into(), bytes.to_vec())].into());
-    let mut own = Sources { limits: sources.limits, ..Sources::new(&files) };
-    let read = if meaning == Meaning::Color { image::read } else { image::read_data };
-    let image = read(name.as_ref(), &mut own);
-    sources.warnings.append(&mut own.warnings);
-    image
+    let encoding = if meaning == Meaning::Color { Encoding::Srgb } else { Encoding::Linear };
+    image::decode(bytes, &document.at(pointer).to_string(), encoding, sources)
 }
 
 /// What is in the place of a picture that cannot be used.
 fn blank(document: &Document, index: usize, meaning: Meaning) -> Image {
     let name = document.at(&format!("/images/{index}")).to_string();
     let texel = if meaning == Meaning::Normal { [0.5, 0.5, 1.0] } else { [1.0; 3] };
-    Image { name, width: 1, height: 1, texels: vec![texel] }
+    Image::from_linear(name, 1, 1, vec![texel])
 }

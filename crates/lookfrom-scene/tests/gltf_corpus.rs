@@ -1,0 +1,96 @@
+//! Do all glTF files of the corpora read, where they are valid, and give clear errors where they are not?
+//!
+//! Khronos' validator has a report beside each of its files. Files that it finds no error in must read; of the others,
+//! each reads or gives an error. The corpora are not part of the repository: where they are not, nothing is tested.
+
+use std::path::{Path, PathBuf};
+
+use lookfrom_scene::{Disk, Sources, load};
+
+fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            files(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "gltf" || extension == "glb") {
+            found.push(path);
+        }
+    }
+}
+
+fn corpus(name: &str) -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus");
+    let root = if root.exists() { root } else { PathBuf::from("/work/shared/corpus") };
+    let mut found = Vec::new();
+    files(&root.join(name), &mut found);
+    found.sort();
+    if found.is_empty() {
+        eprintln!("skipped: {} has no glTF files", root.join(name).display());
+    }
+    found
+}
+
+fn read(path: &Path) -> Result<(), String> {
+    let mut sources = Sources::new(&Disk);
+    let scene = load::scene(path, &mut sources);
+    if std::env::var_os("SHOW").is_some() {
+        match &scene {
+            Ok(scene) => eprintln!("{}: {} shapes, {} lights", path.display(), scene.shapes.len(), scene.lights.len()),
+            Err(error) => eprintln!("ERROR {error}"),
+        }
+        sources.warnings.iter().for_each(|warning| eprintln!("  warning {warning}"));
+    }
+    let scene = scene.map_err(|error| error.to_string())?;
+    for mesh in &scene.meshes {
+        let count = mesh.positions.len();
+        assert!(mesh.positions.iter().all(|position| position.is_finite()), "{}", path.display());
+        assert!(mesh.triangles.iter().flatten().all(|&vertex| (vertex as usize) < count), "{}", path.display());
+        for length in [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len(), mesh.tangents.len()] {
+            assert!(length == 0 || length == count, "{}", path.display());
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn models_read() {
+    for path in corpus("gltf") {
+        if let Err(error) = read(&path) {
+            panic!("{error}");
+        }
+    }
+}
+
+#[test]
+fn assimps_files_read_where_they_are_valid() {
+    let mut failed = Vec::new();
+    for path in corpus("assimp/glTF2") {
+        if let Err(error) = read(&path) {
+            failed.push(error);
+        }
+    }
+    panic!("{}", failed.join("\n"));
+}
+
+#[test]
+fn files_of_the_validator_agree_with_their_reports() {
+    let (mut read_well, mut refused, mut tolerated) = (0, 0, 0);
+    let mut failed = Vec::new();
+    for path in corpus("gltf-validator") {
+        let report = std::fs::read_to_string(format!("{}.report.json", path.display()));
+        let report: serde_json::Value = match report.map(|text| serde_json::from_str(&text)) {
+            Ok(Ok(report)) => report,
+            _ => continue,
+        };
+        let errors = report["issues"]["numErrors"].as_u64().unwrap_or(0);
+        match (read(&path), errors) {
+            (Ok(()), 0) => read_well += 1,
+            (Ok(()), _) => tolerated += 1,
+            (Err(error), 0) => failed.push(error),
+            (Err(_), _) => refused += 1,
+        }
+    }
+    eprintln!("{read_well} valid files read; of those with errors {refused} are refused, {tolerated} read all the same");
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
