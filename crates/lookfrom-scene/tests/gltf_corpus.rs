@@ -36,7 +36,9 @@ fn read(path: &Path) -> Result<(), String> {
     let scene = load::scene(path, &mut sources);
     if std::env::var_os("SHOW").is_some() {
         match &scene {
-            Ok(scene) => eprintln!("{}: {} shapes, {} lights", path.display(), scene.shapes.len(), scene.lights.len()),
+            Ok(scene) => {
+                eprintln!("{}: {} shapes, {} lights", path.display(), scene.shapes.len(), scene.lights.len())
+            }
             Err(error) => eprintln!("ERROR {error}"),
         }
         sources.warnings.iter().for_each(|warning| eprintln!("  warning {warning}"));
@@ -45,7 +47,11 @@ fn read(path: &Path) -> Result<(), String> {
     for mesh in &scene.meshes {
         let count = mesh.positions.len();
         assert!(mesh.positions.iter().all(|position| position.is_finite()), "{}", path.display());
-        assert!(mesh.triangles.iter().flatten().all(|&vertex| (vertex as usize) < count), "{}", path.display());
+        assert!(
+            mesh.triangles.iter().flatten().all(|&vertex| (vertex as usize) < count),
+            "{}",
+            path.display()
+        );
         for length in [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len(), mesh.tangents.len()] {
             assert!(length == 0 || length == count, "{}", path.display());
         }
@@ -64,13 +70,18 @@ fn models_read() {
 
 #[test]
 fn assimps_files_read_where_they_are_valid() {
-    let mut failed = Vec::new();
+    // What the names of these folders say is wrong with them.
+    let broken =
+        ["IndexOutOfRange", "MissingBin", "RecursiveNodes", "SchemaFailures", "TestNoRootNode", "wrongTypes"];
+    let mut count = 0;
     for path in corpus("assimp/glTF2") {
-        if let Err(error) = read(&path) {
-            failed.push(error);
+        let is_broken = path.components().any(|folder| broken.iter().any(|name| folder.as_os_str() == *name));
+        match read(&path) {
+            Ok(()) => count += 1,
+            Err(error) => assert!(is_broken, "{error}"),
         }
     }
-    panic!("{}", failed.join("\n"));
+    eprintln!("{count} files of assimp read");
 }
 
 #[test]
@@ -91,6 +102,8 @@ fn files_of_the_validator_agree_with_their_reports() {
             (Err(_), _) => refused += 1,
         }
     }
-    eprintln!("{read_well} valid files read; of those with errors {refused} are refused, {tolerated} read all the same");
+    eprintln!(
+        "{read_well} valid files read; of those with errors {refused} are refused, {tolerated} read all the same"
+    );
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }

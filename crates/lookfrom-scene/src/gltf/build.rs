@@ -140,6 +140,14 @@ impl Builder<'_, '_, '_> {
             }
         }
         let mut objects: BTreeMap<usize, ObjectId> = BTreeMap::new();
+        if nodes.is_empty() && self.document.root.scenes.is_empty() {
+            // A library of meshes: they all stand at the origin.
+            for index in 0..self.document.root.meshes.len() {
+                let pieces = self.mesh(Whole(index as u64), "/meshes")?;
+                let name = self.document.root.meshes[index].name.clone();
+                pieces.iter().for_each(|piece| self.shape(piece, &name, DMat4::IDENTITY));
+            }
+        }
         for &node in &tree.shown {
             let Some(index) = nodes[node].mesh else { continue };
             let pieces = self.mesh(index, &format!("/nodes/{node}/mesh"))?;

@@ -68,7 +68,7 @@ impl Document {
             false => (0..content.len(), None),
         };
         let root = parse(&content[json], &at, sources)?;
-        check_version(&root, &at)?;
+        check_version(&root, &at, sources)?;
         let decoded = root.buffer_views.iter().map(|_| OnceLock::new()).collect();
         let limits = sources.limits;
         let mut document = Self {
@@ -329,30 +329,29 @@ fn parse(bytes: &[u8], at: &Location, sources: &mut Sources<'_>) -> Result<Root>
     if text.is_empty() {
         return Err(Error::syntax(at, "the file is empty; expected the JSON of a glTF 2.0 model"));
     }
-    json::parse(text).map_err(|(error, pointer)| {
-        if error.is_data() {
-            // The message ends with line and column, which say little where the pointer says all.
-            let message = error.to_string();
-            let what = message.split(" at line ").next().unwrap_or_default();
-            Error::invalid(&at.pointer(&pointer), what)
-                .hint("Khronos' glTF validator shows everything that is wrong with the file")
-        } else {
-            let place = at.at(error.line() as u32, error.column() as u32);
-            let message = error.to_string();
-            let what = message.split(" at line ").next().unwrap_or_default();
-            Error::syntax(&place, format!("this is no JSON: {what}")).hint("check that the file is whole")
+    json::parse(text).map_err(|wrong| match wrong.pointer {
+        Some(pointer) => Error::invalid(&at.pointer(&pointer), wrong.message)
+            .hint("Khronos' glTF validator shows everything that is wrong with the file"),
+        None => {
+            Error::syntax(&at.at(wrong.line, wrong.column), format!("this is no JSON: {}", wrong.message))
+                .hint("check that the file is whole")
         }
     })
 }
 
-fn check_version(root: &Root, at: &Location) -> Result<()> {
+fn check_version(root: &Root, at: &Location, sources: &mut Sources<'_>) -> Result<()> {
     let (asked, pointer) = match &root.asset.min_version {
         Some(version) => (version, "/asset/minVersion"),
         None => (&root.asset.version, "/asset/version"),
     };
     let mut numbers = asked.split('.').map(|number| number.parse::<u32>().ok());
     match (numbers.next().flatten(), numbers.next().flatten()) {
-        (Some(2), Some(minor)) if minor == 0 || pointer == "/asset/version" => Ok(()),
+        (Some(2), Some(minor)) => {
+            if minor > 0 && root.asset.min_version.is_some() {
+                sources.warn(&at.pointer(pointer), format!("glTF {asked} is read as if it were glTF 2.0"));
+            }
+            Ok(())
+        }
         (Some(_), Some(_)) => Err(unsupported(&at.pointer(pointer), &format!("glTF {asked}"))),
         _ => Err(Error::invalid(&at.pointer(pointer), format!("the version {asked:?} is not like \"2.0\""))),
     }

@@ -612,22 +612,51 @@ pub(crate) struct AnimationSampler {
     pub(crate) output: Whole,
 }
 
-/// Reads the text. The second is the path to what is wrong, as a JSON pointer, where that is known.
-pub(crate) fn parse(text: &str) -> Result<Root, (serde_json::Error, String)> {
-    // The quick way first: the path costs time and is only needed for a message.
-    match serde_json::from_str(text) {
-        Ok(root) => Ok(root),
-        Err(error) => {
-            let mut deserializer = serde_json::Deserializer::from_str(text);
-            match serde_path_to_error::deserialize::<_, Root>(&mut deserializer) {
-                Ok(_) => Err((error, String::new())),
-                Err(error) => {
-                    let pointer = pointer(error.path());
-                    Err((error.into_inner(), pointer))
-                }
-            }
+/// Why a text is no glTF.
+pub(super) struct Wrong {
+    /// What was found and expected.
+    pub(super) message: String,
+    /// Where, as a JSON pointer, if the text is JSON.
+    pub(super) pointer: Option<String>,
+    /// Where in the text, from 1.
+    pub(super) line: u32,
+    /// Where in the line, from 1.
+    pub(super) column: u32,
+}
+
+/// Reads the text.
+pub(super) fn parse(text: &str) -> Result<Root, Wrong> {
+    // The quick way first: keeping the path costs time and is only needed for a message.
+    serde_json::from_str(text).map_err(|error| {
+        let mut deserializer = serde_json::Deserializer::from_str(text);
+        let path = serde_path_to_error::deserialize::<_, Root>(&mut deserializer).err();
+        let pointer = path.filter(|_| error.is_data()).map(|error| pointer(error.path()));
+        let message = error.to_string();
+        // Line and column, which the message ends with, are told elsewhere.
+        let message = message.split(" at line ").next().unwrap_or_default();
+        Wrong {
+            message: in_words_of_json(message),
+            pointer,
+            line: u32::try_from(error.line()).unwrap_or(0),
+            column: u32::try_from(error.column()).unwrap_or(0),
         }
-    }
+    })
+}
+
+/// Without the names of our types.
+fn in_words_of_json(message: &str) -> String {
+    let words = [
+        ("f64", "a number"),
+        ("a map", "an object"),
+        ("a sequence", "an array"),
+        ("map", "object"),
+        ("sequence", "array"),
+    ];
+    let message = match message.split_once("expected struct ") {
+        Some((found, _)) => format!("{found}expected an object"),
+        None => message.to_owned(),
+    };
+    words.into_iter().fold(message, |message, (word, meant)| message.replace(word, meant))
 }
 
 fn pointer(path: &serde_path_to_error::Path) -> String {

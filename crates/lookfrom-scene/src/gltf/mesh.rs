@@ -209,7 +209,12 @@ pub(crate) fn geometry(
         }
     };
     if left_out > 0 {
-        sources.warn(&at, format!("{left_out} primitives left out: a position is infinite or not a number"));
+        sources.warn(
+            &at,
+            format!(
+                "{left_out} points, lines or triangles are left out: a position is infinite or not a number"
+            ),
+        );
     }
     Ok(geometry)
 }
