@@ -47,7 +47,8 @@ fn check(part: &Part, scene: &Scene) {
     }
 }
 
-fn check_mesh(mesh: &Mesh) {
+/// What every mesh promises.
+pub fn check_mesh(mesh: &Mesh) {
     let count = mesh.positions.len();
     assert!(mesh.positions.iter().all(|position| position.is_finite()));
     assert!(mesh.triangles.iter().flatten().all(|&vertex| (vertex as usize) < count));

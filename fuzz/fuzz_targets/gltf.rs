@@ -1,0 +1,14 @@
+#![no_main]
+
+use std::path::{Path, PathBuf};
+
+use lookfrom_scene::{Memory, Sources, gltf};
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let files = Memory([(PathBuf::from("a.glb"), bytes.to_vec())].into());
+    let mut sources = Sources::new(&files);
+    sources.limits = lookfrom_fuzz::limits();
+    if let Ok(scene) = gltf::read(Path::new("a.glb"), &mut sources) {
+        scene.meshes.iter().for_each(lookfrom_fuzz::check_mesh);
+    }
+});
