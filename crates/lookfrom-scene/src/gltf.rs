@@ -24,9 +24,9 @@ use self::build::Model;
 use self::file::Document;
 use crate::error::Result;
 use crate::files::Sources;
+use crate::load;
 use crate::scene::Scene;
 use crate::settings::{Integrator, Tonemap};
-use crate::shape::Part;
 
 /// Reads a glTF file (`.gltf` or `.glb`) as a scene: path traced, developed by Khronos' tone map, seen by the file's
 /// camera where it has one. [`Sources::choice`] says which scene, camera, animation and variant are meant.
@@ -39,19 +39,19 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
     let mut scene = Scene::default();
     scene.render.integrator = Integrator::Path;
     scene.image.tonemap = Tonemap::PbrNeutral;
-    let model = model(content, path, sources, &mut scene)?;
+    let model = document_model(content, path, sources, &mut scene)?;
     model.into_scene(&mut scene);
     Ok(scene)
 }
 
-/// Reads a glTF file as a part of another scene: its meshes, materials and pictures join the scene, its parts are given
-/// back and stand where the file has them. Its cameras and lights are left out.
+/// Reads a glTF file as a part of another scene: its meshes, materials and pictures join the scene, the rest is given
+/// back and stands where the file has it.
 ///
 /// # Errors
 /// As [`read`].
-pub fn parts(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
+pub(crate) fn model(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<load::Model> {
     let content = sources.read(path)?;
-    Ok(model(content, path, sources, scene)?.into_parts())
+    Ok(document_model(content, path, sources, scene)?.into_parts())
 }
 
 /// Whether a file's content is that of a glTF file: the mark of a GLB container, or JSON that speaks of an asset.
@@ -63,7 +63,12 @@ pub fn is_gltf(content: &[u8]) -> bool {
         || (text.starts_with(b"{") && beginning.windows(7).any(|word| word == b"\"asset\""))
 }
 
-fn model(content: Vec<u8>, path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Model> {
+fn document_model(
+    content: Vec<u8>,
+    path: &Path,
+    sources: &mut Sources<'_>,
+    scene: &mut Scene,
+) -> Result<Model> {
     let document = Document::open(content, path, sources)?;
     extension::warn(&document, sources);
     build::model(&document, sources, scene)

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use crate::camera::Camera;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Sources;
+use crate::light::Light;
 use crate::scene::{MaterialId, Scene};
 use crate::shape::{Part, Shape};
 use crate::{gltf, model, pbrt, toml};
@@ -24,7 +26,7 @@ pub fn scene(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         return gltf::read(path, sources);
     }
     let mut scene = Scene::default();
-    let parts = parts(path, sources, &mut scene)?;
+    let parts = model(path, sources, &mut scene)?.parts;
     let default = MaterialId(scene.materials.len() as u32);
     scene.materials.push(toml::default_material());
     scene.shapes = shapes(parts, &Location::file(path), default);
@@ -50,7 +52,7 @@ fn is_pbrt(path: &Path, sources: &Sources<'_>) -> bool {
 const GLTF: &[&str] = &["gltf", "glb"];
 
 /// Whether a file is a glTF file, by its name, or by its content where that says nothing.
-fn is_gltf(path: &Path, sources: &Sources<'_>) -> bool {
+pub(crate) fn is_gltf(path: &Path, sources: &Sources<'_>) -> bool {
     GLTF.contains(&&*extension(path))
         || (!model::is_model(path) && sources.read(path).is_ok_and(|bytes| gltf::is_gltf(&bytes)))
 }
@@ -59,8 +61,17 @@ fn extension(path: &Path) -> String {
     path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
+/// What a file brings to another scene, besides what it put into the scene already.
+#[derive(Clone, Default)]
+pub(crate) struct Model {
+    pub(crate) parts: Vec<Part>,
+    /// Of the file's, the one that is meant.
+    pub(crate) camera: Option<Camera>,
+    pub(crate) lights: Vec<Light>,
+}
+
 /// What stands in a model file; its materials join the scene.
-pub(crate) fn parts(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
+pub(crate) fn model(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Model> {
     let unsupported = |message: String| {
         Error::new(ErrorKind::Unsupported, &Location::file(path), message)
             .hint("scenes are .toml or .pbrt files, models .gltf, .glb, .obj, .ply or .stl")
@@ -70,14 +81,15 @@ pub(crate) fn parts(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -
         return Err(unsupported("a scene of pbrt cannot be a part of another scene".to_owned()));
     }
     if is_gltf(path, sources) {
-        return gltf::parts(path, sources, scene);
+        return gltf::model(path, sources, scene);
     }
-    model::read(path, sources, scene).map_err(|error| match error.kind {
+    let parts = model::read(path, sources, scene).map_err(|error| match error.kind {
         ErrorKind::Unsupported if !model::is_model(path) => {
             unsupported("a file of a kind that is not known, by its name and by its content".to_owned())
         }
         _ => error,
-    })
+    })?;
+    Ok(Model { parts, ..Model::default() })
 }
 
 /// Parts as shapes that stand where the file has them.

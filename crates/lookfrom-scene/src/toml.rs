@@ -15,6 +15,7 @@ mod light;
 mod mapping;
 mod material;
 mod mesh;
+mod model;
 mod object;
 mod physical;
 mod place;
@@ -38,11 +39,12 @@ use self::table::Table;
 use self::value::{Document, Value};
 use self::vocabulary::TOP;
 use crate::error::{Error, Location, Result};
-use crate::files::Sources;
+use crate::files::{Choice, Sources};
+use crate::load::Model;
 use crate::material::MaterialKind;
 use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
 use crate::settings::Integrator;
-use crate::shape::{Emission, Part};
+use crate::shape::Emission;
 use crate::suggest::nearest;
 use crate::{image, load};
 
@@ -65,7 +67,8 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         objects: BTreeMap::new(),
         images: BTreeMap::new(),
         curves: BTreeMap::new(),
-        models: BTreeMap::new(),
+        models: Vec::new(),
+        in_object: false,
         glows: BTreeMap::new(),
         unwritten_default: None,
         black: None,
@@ -99,7 +102,8 @@ struct Reader<'s, 'f> {
     images: BTreeMap<(PathBuf, bool), ImageId>,
     /// By what they are in words.
     curves: BTreeMap<String, CurveId>,
-    models: BTreeMap<PathBuf, Vec<Part>>,
+    /// By file, and what is asked of it.
+    models: Vec<((PathBuf, Choice), Model)>,
     /// The light of the materials that shine.
     glows: BTreeMap<MaterialId, Emission>,
     /// The material "default", where it was needed but no file has written it (yet).
@@ -109,6 +113,8 @@ struct Reader<'s, 'f> {
     open: Vec<PathBuf>,
     /// The files that have been read.
     done: BTreeSet<PathBuf>,
+    /// Whether the shapes that are being read belong to an object.
+    in_object: bool,
     /// Spheres of all sphereflakes so far.
     flake_spheres: u64,
     has_image: bool,
@@ -200,15 +206,18 @@ impl Reader<'_, '_> {
         Ok(id)
     }
 
-    /// What stands in a model file; each file is read once.
-    fn model(&mut self, value: Value<'_>) -> Result<Vec<Part>> {
+    /// What stands in a model file; each file is read once for each choice of what is in it.
+    fn model(&mut self, value: Value<'_>, choice: &Choice) -> Result<Model> {
         let path = self.resolve(value, "the name of a model file")?;
-        if let Some(parts) = self.models.get(&path) {
-            return Ok(parts.clone());
+        if let Some((_, model)) = self.models.iter().find(|(key, _)| (&key.0, &key.1) == (&path, choice)) {
+            return Ok(model.clone());
         }
-        let parts = load::parts(&path, self.sources, &mut self.scene).map_err(|error| value.blame(error))?;
-        self.models.insert(path, parts.clone());
-        Ok(parts)
+        let before = std::mem::replace(&mut self.sources.choice, choice.clone());
+        let model = load::model(&path, self.sources, &mut self.scene);
+        self.sources.choice = before;
+        let model = model.map_err(|error| value.blame(error))?;
+        self.models.push(((path, choice.clone()), model.clone()));
+        Ok(model)
     }
 
     /// The path of a file that is named relative to the one being read.

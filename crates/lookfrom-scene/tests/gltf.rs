@@ -691,3 +691,52 @@ fn unknown_extensions_are_warned_of() {
     assert!(warnings[0].starts_with("m/a.gltf#/extensionsRequired/0: the file requires the extension C_d"));
     assert!(warnings[1].starts_with("m/a.gltf#/extensionsUsed/1: the extension A_b"));
 }
+
+#[test]
+fn a_scene_of_ours_takes_what_it_asks_for() {
+    let mut model = Model::default();
+    let positions = model.square();
+    let root = one(
+        json!({"attributes": {"POSITION": positions}, "mode": 5, "material": 0,
+            "extensions": {"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [0]}]}}}),
+        json!({
+            "materials": [{"name": "plain"}, {"name": "fancy"}],
+            "extensions": {
+                "KHR_materials_variants": {"variants": [{"name": "b"}]},
+                "KHR_lights_punctual": {"lights": [{"type": "point"}]},
+            },
+            "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 7], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+            "scenes": [{"nodes": [0, 1]}],
+            "cameras": [{"orthographic": {"xmag": 1, "ymag": 1}}],
+        }),
+    );
+    let read = |toml: &str| {
+        let mut memory = model.memory(root.clone());
+        memory.0.insert(PathBuf::from("a.toml"), toml.as_bytes().to_vec());
+        load::scene(Path::new("a.toml"), &mut Sources::new(&memory))
+    };
+    let worn =
+        |scene: &Scene, shape: usize| scene.materials[scene.shapes[shape].material.index()].name.clone();
+    let plain = read("[[mesh]]\nfile = \"m/a.gltf\"\n").expect("it is valid");
+    assert!(plain.camera.is_none() && plain.lights.is_empty() && worn(&plain, 0) == "plain");
+
+    let all = read(
+        "[[mesh]]\nfile = \"m/a.gltf\"\nscale = 2\ncamera = true\nlights = true\n[[mesh]]\nfile = \"m/a.gltf\"\nvariant = \"b\"\n",
+    )
+    .expect("it is valid");
+    assert_eq!((worn(&all, 0), worn(&all, 1)), ("plain".to_owned(), "fancy".to_owned()));
+    let camera = all.camera.expect("the file's");
+    assert_eq!(camera.projection, Projection::Orthographic { height: 4.0 });
+    assert!(
+        matches!(camera.view, View::Matrix(matrix) if matrix.w_axis.z == 14.0 && matrix.z_axis.z == -1.0)
+    );
+    assert!(
+        matches!(all.lights[0].kind, LightKind::Point { position, .. } if position == DVec3::new(0.0, 0.0, 14.0))
+    );
+
+    let imported = read("import = \"m/a.gltf\"\n").expect("it is valid");
+    assert!(imported.camera.is_some() && imported.lights.len() == 1 && imported.shapes.len() == 1);
+    let error =
+        read("[[objects.a.mesh]]\nfile = \"m/a.gltf\"\nlights = true\n").expect_err("objects have no lights");
+    assert!(error.to_string().starts_with("a.toml:3:10: an object has no `lights`"), "{error}");
+}

@@ -79,6 +79,8 @@ fn the_snippets_of_the_guide_are_read() {
         for file in ["images/tiles.png", "models/knot.obj", "models/star.ply", "textures.toml"] {
             files.0.insert(file.into(), std::fs::read(root.join("scenes").join(file)).expect("our own file"));
         }
+        let fox = r#"{"asset": {"version": "2.0"}, "animations": [{"name": "Run", "channels": [], "samplers": []}]}"#;
+        files.0.insert("fox.glb".into(), fox.into());
         // Names that other snippets give.
         let names = "[materials.red]\n[materials.glass]\n[textures.wood]\ntype = \"noise\"\n[[objects.tree.sphere]]\n";
         files.0.insert("names.toml".into(), names.as_bytes().to_vec());

@@ -15,6 +15,7 @@ use super::node::{Tree, placed};
 use crate::error::{Location, Result};
 use crate::files::Sources;
 use crate::light::Light;
+use crate::load;
 use crate::scene::{Instance, MeshId, Object, ObjectId, Scene};
 use crate::shape::{Geometry, Part, Shape};
 
@@ -47,13 +48,14 @@ impl Model {
         scene.lights = self.lights;
     }
 
-    /// Everything with a form, instances one by one.
-    pub(super) fn into_parts(self) -> Vec<Part> {
+    /// Everything for another scene, instances one by one.
+    pub(super) fn into_parts(self) -> load::Model {
         let repeated = self.instances.iter().flat_map(|instance| {
             let shapes = &self.objects[instance.object.index()].shapes;
             shapes.iter().map(|shape| part(shape, &instance.world_from_object))
         });
-        self.shapes.iter().map(|shape| part(shape, &DMat4::IDENTITY)).chain(repeated).collect()
+        let parts = self.shapes.iter().map(|shape| part(shape, &DMat4::IDENTITY)).chain(repeated).collect();
+        load::Model { parts, camera: self.eye.map(|eye| eye.camera), lights: self.lights }
     }
 }
 

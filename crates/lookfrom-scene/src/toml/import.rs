@@ -44,12 +44,15 @@ impl Reader<'_, '_> {
             return self.import_scene(&path).map_err(|error| value.blame(error));
         }
         let first = self.scene.materials.len();
-        let shapes = self.model(value)?;
+        let choice = self.sources.choice.clone();
+        let model = self.model(value, &choice)?;
         for (index, material) in self.scene.materials.iter().enumerate().skip(first) {
             self.materials.entry(material.name.clone()).or_insert(MaterialId(index as u32));
         }
         let material = self.default_material();
-        self.scene.shapes.extend(load::shapes(shapes, &value.at(), material));
+        self.scene.shapes.extend(load::shapes(model.parts, &value.at(), material));
+        self.scene.lights.extend(model.lights);
+        self.scene.camera = self.scene.camera.take().or(model.camera);
         self.done.insert(tidy(&path));
         Ok(())
     }

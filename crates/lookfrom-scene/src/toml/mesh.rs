@@ -1,25 +1,17 @@
-//! `[[mesh]]`: a model file, or vertices and triangles in the scene itself; and the meshes of other shapes.
+//! `[[mesh]]`: vertices and triangles in the scene itself; and the meshes of other shapes.
 
 use glam::Vec2;
 
-use super::shape::{COMMON, point};
+use super::model::CHOICE;
+use super::shape::point;
 use super::table::Table;
 use super::value::Value;
-use super::{Reader, color, place};
+use super::{Reader, color};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::MeshId;
-use crate::shape::{Geometry, Mesh, Part};
+use crate::shape::{Geometry, Mesh};
 
 impl Reader<'_, '_> {
-    /// What stands in the model file of a `[[mesh]]`.
-    pub(super) fn model_parts(&mut self, table: &Table<'_>, file: Value<'_>) -> Result<Vec<Part>> {
-        if let Some(both) = table.one_of(&["file", "positions"])?.and(table.find("triangles")) {
-            return Err(both.error("`triangles` needs `positions`, not `file`"));
-        }
-        table.allow(&[&["file"], COMMON, place::KEYS])?;
-        self.model(file)
-    }
-
     /// Keeps a mesh whose coordinates can be computed with.
     pub(super) fn mesh(&mut self, table: &Table<'_>, mesh: Mesh) -> Result<Geometry> {
         if !mesh.positions.iter().all(|position| position.is_finite()) {
@@ -36,6 +28,9 @@ impl Reader<'_, '_> {
             return Err(table
                 .error("`file` or `positions` is missing")
                 .hint("name a model file, or give `positions` and `triangles`"));
+        }
+        if let Some(key) = CHOICE.iter().find_map(|key| table.find(key)) {
+            return Err(key.error(format!("`{}` is for a `file`, not for `positions`", key.key())));
         }
         let positions = table.need("positions", "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]")?;
         let triangles = table.need("triangles", "[[0, 1, 2]]")?;

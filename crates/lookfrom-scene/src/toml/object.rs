@@ -16,7 +16,10 @@ impl Reader<'_, '_> {
             if let Some(before) = self.objects.get(entry.key()) {
                 return Err(super::twice(entry, "object", &self.scene.objects[before.index()].at));
             }
-            let shapes = self.shapes(&table)?;
+            self.in_object = true;
+            let shapes = self.shapes(&table);
+            self.in_object = false;
+            let shapes = shapes?;
             if shapes.is_empty() {
                 return Err(table
                     .error("it has no shapes")

@@ -17,7 +17,23 @@ pub(super) const KEYS: Kinds = &[
     ("disk", &["center", "normal", "radius", "inner_radius", "phi_max"]),
     ("cylinder", &["from", "to", "radius", "phi_max"]),
     ("box", &["min", "max"]),
-    ("mesh", &["file", "positions", "triangles", "normals", "uvs", "colors"]),
+    (
+        "mesh",
+        &[
+            "file",
+            "scene",
+            "animation",
+            "at",
+            "variant",
+            "camera",
+            "lights",
+            "positions",
+            "triangles",
+            "normals",
+            "uvs",
+            "colors",
+        ],
+    ),
     ("patch", &["corners", "normals", "uvs"]),
     ("curve", &["points", "width", "profile", "normals"]),
     ("sphereflake", &["center", "radius", "depth"]),
@@ -56,7 +72,7 @@ impl Reader<'_, '_> {
         let name = light::name(table)?;
         let mut world_from_object = place::place(table)?;
         let parts = match (kind, table.find("file")) {
-            ("mesh", Some(file)) => self.model_parts(table, file)?,
+            ("mesh", Some(file)) => self.model_parts(table, file, &world_from_object)?,
             _ => {
                 let (geometry, own) = self.geometry(kind, table)?;
                 world_from_object *= own;

@@ -1,0 +1,113 @@
+//! `[[mesh]]` with a `file`: which of the things in a model file are meant, and where they stand.
+
+use glam::{DMat4, DVec4};
+
+use super::shape::COMMON;
+use super::table::Table;
+use super::value::Value;
+use super::{Reader, place};
+use crate::camera::{Camera, Projection, View};
+use crate::error::Result;
+use crate::files::Choice;
+use crate::light::{Light, LightKind};
+use crate::load;
+use crate::shape::Part;
+
+/// The keys of a mesh from a glTF file, which may hold several things.
+pub(super) const CHOICE: &[&str] = &["scene", "animation", "at", "variant", "camera", "lights"];
+
+impl Reader<'_, '_> {
+    /// The parts of the model file of a `[[mesh]]` that stands at `world_from_model`. Its camera and lights join the scene
+    /// where they are asked for.
+    pub(super) fn model_parts(
+        &mut self,
+        table: &Table<'_>,
+        file: Value<'_>,
+        world_from_model: &DMat4,
+    ) -> Result<Vec<Part>> {
+        if let Some(both) = table.one_of(&["file", "positions"])?.and(table.find("triangles")) {
+            return Err(both.error("`triangles` needs `positions`, not `file`"));
+        }
+        table.allow(&[&["file"], CHOICE, COMMON, place::KEYS])?;
+        let path = self.resolve(file, "the name of a model file")?;
+        if let Some(key) = CHOICE.iter().find_map(|key| table.find(key))
+            && !load::is_gltf(&path, self.sources)
+        {
+            return Err(key.error(format!("`{}` is for glTF files, which hold several things", key.key())));
+        }
+        let (choice, has_camera) = self.choice(table)?;
+        let stray = ["lights", "camera"].into_iter().find_map(|key| table.find(key));
+        if let Some(key) = stray.filter(|_| self.in_object) {
+            return Err(key
+                .error(format!("an object has no `{}`", key.key()))
+                .hint("give it to a [[mesh]] that stands in the scene itself"));
+        }
+        let model = self.model(file, &choice)?;
+        if table.or("lights", false, Value::boolean)? {
+            self.scene
+                .lights
+                .extend(model.lights.into_iter().map(|light| moved_light(light, world_from_model)));
+        }
+        if has_camera && self.scene.camera.is_none() {
+            self.scene.camera = model.camera.and_then(|camera| moved_camera(camera, world_from_model));
+        }
+        Ok(model.parts)
+    }
+
+    /// What is asked of the file, and whether its camera is.
+    fn choice(&self, table: &Table<'_>) -> Result<(Choice, bool)> {
+        let name = |key: &str, otherwise: &Option<String>| match table.find(key) {
+            Some(value) => Ok(Some(value.text("a name")?.to_owned())),
+            None => Ok(otherwise.clone()),
+        };
+        let asked = &self.sources.choice;
+        let mut choice = Choice {
+            animation: name("animation", &asked.animation)?,
+            at: table.or("at", asked.at, Value::number)?,
+            variant: name("variant", &asked.variant)?,
+            scene: name("scene", &asked.scene)?,
+            camera: None,
+        };
+        let has_camera = match table.find("camera") {
+            Some(value) => match value.as_text() {
+                Some(name) => {
+                    choice.camera = Some(name.to_owned());
+                    true
+                }
+                None => value.boolean().map_err(|_| value.wrong("true, false or the name of a camera"))?,
+            },
+            None => false,
+        };
+        Ok((choice, has_camera))
+    }
+}
+
+/// A light of a model that is moved with it; how much it gives stays.
+fn moved_light(light: Light, matrix: &DMat4) -> Light {
+    let mut moved = light;
+    match &mut moved.kind {
+        LightKind::Point { position, .. } => *position = matrix.transform_point3(*position),
+        LightKind::Distant { direction, .. } => *direction = matrix.transform_vector3(*direction),
+        LightKind::Spot { position, direction, .. } => {
+            *position = matrix.transform_point3(*position);
+            *direction = matrix.transform_vector3(*direction);
+        }
+        _ => {}
+    }
+    moved
+}
+
+/// A camera of a model that is moved with it: what it sees grows with the model. `None` where the model is too small or
+/// large to stand in.
+fn moved_camera(camera: Camera, matrix: &DMat4) -> Option<Camera> {
+    let View::Matrix(world_from_camera) = camera.view else { return Some(camera) };
+    let moved = *matrix * world_from_camera;
+    let axis = |column: DVec4| column.truncate().try_normalize().map(|axis| axis.extend(0.0));
+    let view = DMat4::from_cols(axis(moved.x_axis)?, axis(moved.y_axis)?, axis(moved.z_axis)?, moved.w_axis);
+    let growth = moved.y_axis.truncate().length();
+    let projection = match camera.projection {
+        Projection::Orthographic { height } => Projection::Orthographic { height: height * growth },
+        other => other,
+    };
+    Some(Camera { view: View::Matrix(view), projection, ..camera })
+}
