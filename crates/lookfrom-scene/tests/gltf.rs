@@ -740,3 +740,27 @@ fn a_scene_of_ours_takes_what_it_asks_for() {
         read("[[objects.a.mesh]]\nfile = \"m/a.gltf\"\nlights = true\n").expect_err("objects have no lights");
     assert!(error.to_string().starts_with("a.toml:3:10: an object has no `lights`"), "{error}");
 }
+
+#[test]
+fn many_triangles_are_read_at_once() {
+    let side = 224_u16;
+    let mut model = Model::default();
+    let grid = || (0..side).flat_map(|row| (0..side).map(move |column| [f32::from(row), f32::from(column)]));
+    let positions: Vec<f32> = grid().flat_map(|[x, z]| [x, (x * z).sin(), z]).collect();
+    let normals: Vec<f32> = grid().flat_map(|_| [0.0, 1.0, 0.0]).collect();
+    let uvs: Vec<f32> = grid().flatten().collect();
+    let squares = (0..side - 1).flat_map(|row| (0..side - 1).map(move |column| row * side + column));
+    let indices: Vec<u16> =
+        squares.flat_map(|a| [a, a + 1, a + side, a + 1, a + side + 1, a + side]).collect();
+    let (positions, normals) = (model.floats("VEC3", &positions), model.floats("VEC3", &normals));
+    let (uvs, indices) = (model.floats("VEC2", &uvs), model.indices(&indices));
+    let attributes = json!({"POSITION": positions, "NORMAL": normals, "TEXCOORD_0": uvs});
+    let root = one(json!({"attributes": attributes, "indices": indices}), json!({}));
+    let memory = model.memory(root);
+    let start = std::time::Instant::now();
+    let scene = load::scene(Path::new("m/a.gltf"), &mut Sources::new(&memory)).expect("it is valid");
+    let elapsed = start.elapsed();
+    assert_eq!(mesh(&scene, &scene.shapes[0]).triangles.len(), 99_458);
+    println!("99458 triangles in {:.1} ms", elapsed.as_secs_f64() * 1e3);
+    assert!(elapsed.as_secs_f64() < 1.0, "{elapsed:?}");
+}
