@@ -439,6 +439,15 @@ fn a_missing_picture_is_a_warning() {
 }
 
 #[test]
+fn the_plain_picture_stands_in_for_one_that_is_not_read() {
+    let mut files = pictures();
+    files["images"].as_array_mut().expect("a list").push(json!({"uri": "data:image/ktx2;base64,AAAA"}));
+    files["textures"][0]["extensions"] = json!({"KHR_texture_basisu": {"source": 1}});
+    let scene = looking(json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}), files);
+    assert_eq!((scene.images[0].width, scene.images[0].height), (1, 2));
+}
+
+#[test]
 fn extensions_of_materials_are_read() {
     let scene = looking(
         json!({

@@ -172,7 +172,7 @@ impl Document {
     pub(crate) fn shape(&self, index: Whole, asked: &str) -> Result<(usize, usize)> {
         let accessor = self.one_of(&self.root.accessors, index, "accessor", asked)?;
         let (numbers, _) = shape_of(&accessor.kind)
-            .ok_or_else(|| self.wrong(index, asked, format!("has the unknown type {:?}", accessor.kind)))?;
+            .ok_or_else(|| self.wrong(index, asked, &format!("has the unknown type {:?}", accessor.kind)))?;
         Ok((numbers, accessor.count.index()))
     }
 
@@ -199,7 +199,7 @@ impl Document {
                 Err(self.wrong(
                     index,
                     asked,
-                    format!("has the component type {found}; expected 5121, 5123 or 5125"),
+                    &format!("has the component type {found}; expected 5121, 5123 or 5125"),
                 ))
             }
         }
@@ -213,14 +213,14 @@ impl Document {
         Ok(self.vectors::<1>(index, asked)?.into_flattened())
     }
 
-    fn wrong(&self, index: Whole, asked: &str, what: String) -> Error {
+    fn wrong(&self, index: Whole, asked: &str, what: &str) -> Error {
         self.invalid(asked, format!("accessor {} {what}", index.0))
             .hint("Khronos' glTF validator shows everything that is wrong with the file")
     }
 
     fn elements<V: Value, const N: usize>(&self, index: Whole, asked: &str) -> Result<Vec<[V; N]>> {
         let accessor = self.one_of(&self.root.accessors, index, "accessor", asked)?;
-        let wrong = |what: String| self.wrong(index, asked, what);
+        let wrong = |what: String| self.wrong(index, asked, &what);
 
         // What is said.
         let component = ComponentType::of(accessor.component_type)

@@ -485,7 +485,6 @@ pub(crate) struct OtherSource {
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(crate) struct Image {
-    pub(crate) name: Option<String>,
     pub(crate) uri: Option<String>,
     pub(crate) buffer_view: Option<Whole>,
 }

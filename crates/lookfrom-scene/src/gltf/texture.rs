@@ -49,6 +49,8 @@ pub(super) struct Textures<'d> {
     pictures: BTreeMap<(usize, Meaning), ImageId>,
     /// The first image with the same content as this one.
     firsts: Vec<usize>,
+    /// For those who cannot read an image that an extension names: the one to take instead.
+    instead: BTreeMap<usize, usize>,
 }
 
 impl<'d> Textures<'d> {
@@ -58,7 +60,7 @@ impl<'d> Textures<'d> {
         let firsts = images
             .map(|(index, image)| *known.entry((&image.uri, image.buffer_view)).or_insert(index))
             .collect();
-        Self { document, pictures: BTreeMap::new(), firsts }
+        Self { document, pictures: BTreeMap::new(), firsts, instead: BTreeMap::new() }
     }
 
     /// A colour: a factor, times a texture where there is one.
@@ -119,6 +121,10 @@ impl<'d> Textures<'d> {
         };
         let Some(source) = source(entry) else { return Ok(None) };
         self.document.one_of(&root.images, source, "image", &format!("{place}/source"))?;
+        if let Some(plain) = entry.source.filter(|&plain| plain != source) {
+            self.document.one_of(&root.images, plain, "image", &format!("{place}/source"))?;
+            self.instead.insert(self.firsts[source.index()], self.firsts[plain.index()]);
+        }
         let key = (self.firsts[source.index()], meaning);
         let image = *self.pictures.entry(key).or_insert_with(|| {
             scene.images.push(Image::from_linear("", 1, 1, vec![[1.0; 3]]));
@@ -150,12 +156,20 @@ impl<'d> Textures<'d> {
 
     /// Decodes the pictures that were asked for. One that cannot be is white, with a warning.
     pub(super) fn decode(self, sources: &mut Sources<'_>, scene: &mut Scene) {
-        let Self { document, pictures, .. } = self;
+        let Self { document, pictures, instead, .. } = self;
         let (files, limits) = (sources.files, sources.limits);
         let texels = AtomicU64::new(0);
         let read = |((index, meaning), id): ((usize, Meaning), ImageId)| {
             let mut sources = Sources { limits, ..Sources::new(files) };
-            let image = picture(document, index, meaning, &texels, &mut sources);
+            let image =
+                picture(document, index, meaning, &texels, &mut sources).or_else(|error| {
+                    match instead.get(&index) {
+                        Some(&plain) => {
+                            picture(document, plain, meaning, &texels, &mut sources).map_err(|_| error)
+                        }
+                        None => Err(error),
+                    }
+                });
             let image = image.unwrap_or_else(|error| {
                 let message =
                     format!("the picture cannot be used, and white is in its place: {}", error.message);

@@ -5,7 +5,6 @@ use glam::Vec2;
 use super::model::CHOICE;
 use super::shape::point;
 use super::table::Table;
-use super::value::Value;
 use super::{Reader, color};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::MeshId;
