@@ -81,7 +81,7 @@ impl Document {
             decoded,
             values: AtomicU64::new(0),
         };
-        document.read_buffers(binary, sources);
+        document.read_buffers(binary.as_ref(), sources);
         Ok(document)
     }
 
@@ -182,12 +182,12 @@ impl Document {
         })
     }
 
-    fn read_buffers(&mut self, binary: Option<Range<usize>>, sources: &mut Sources<'_>) {
+    fn read_buffers(&mut self, binary: Option<&Range<usize>>, sources: &mut Sources<'_>) {
         let mut files: BTreeMap<PathBuf, Arc<Vec<u8>>> = BTreeMap::new();
         let mut buffers = Vec::with_capacity(self.root.buffers.len());
         for (index, buffer) in self.root.buffers.iter().enumerate() {
             let place = format!("/buffers/{index}");
-            let bytes = match (&buffer.uri, &binary) {
+            let bytes = match (&buffer.uri, binary) {
                 (None, Some(range)) if index == 0 => Bytes::Chunk(range.clone()),
                 (None, _) => Bytes::Missing(
                     self.invalid(&place, "the buffer has no `uri`, and there is no binary chunk for it")
@@ -306,7 +306,7 @@ fn chunks(
             }
             BINARY_CHUNK if binary.is_none() => binary = Some(first..end),
             JSON_CHUNK | BINARY_CHUNK => {
-                sources.warn(at, "the GLB container has a chunk twice: the first one counts")
+                sources.warn(at, "the GLB container has a chunk twice: the first one counts");
             }
             // Chunks of other kinds are for others.
             _ => {}

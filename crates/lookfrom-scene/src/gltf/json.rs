@@ -37,7 +37,7 @@ impl<'de> Deserialize<'de> for Whole {
                     .map_err(|_| E::invalid_value(serde::de::Unexpected::Signed(value), &self))
             }
             fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Whole, E> {
-                if value >= 0.0 && value < 9e15 && value.trunc() == value {
+                if (0.0..9e15).contains(&value) && value.trunc() == value {
                     Ok(Whole(value as u64))
                 } else {
                     Err(E::invalid_value(serde::de::Unexpected::Float(value), &self))
@@ -665,7 +665,7 @@ fn pointer(path: &serde_path_to_error::Path) -> String {
         match segment {
             Segment::Seq { index } => pointer.push_str(&format!("/{index}")),
             Segment::Map { key } => {
-                pointer.push_str(&format!("/{}", key.replace('~', "~0").replace('/', "~1")))
+                pointer.push_str(&format!("/{}", key.replace('~', "~0").replace('/', "~1")));
             }
             Segment::Enum { .. } | Segment::Unknown => {}
         }

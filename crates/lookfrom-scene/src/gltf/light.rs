@@ -32,7 +32,7 @@ pub(super) fn lights(document: &Document, tree: &Tree, sources: &mut Sources<'_>
                 lights.push(Light { name, at, kind, amount: Amount::AS_WRITTEN });
             }
             None => {
-                sources.warn(&at, format!("a light {:?} whose numbers cannot be is left out", light.kind))
+                sources.warn(&at, format!("a light {:?} whose numbers cannot be is left out", light.kind));
             }
         }
     }
