@@ -1,5 +1,8 @@
 //! glTF files made here: what they say comes to what is meant.
 
+// JSON is written where it is passed.
+#![allow(clippy::needless_pass_by_value)]
+
 use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3, Vec2, Vec3};

@@ -21,7 +21,6 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 
 fn corpus(name: &str) -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus");
-    let root = if root.exists() { root } else { PathBuf::from("/work/shared/corpus") };
     let mut found = Vec::new();
     files(&root.join(name), &mut found);
     found.sort();
@@ -34,15 +33,6 @@ fn corpus(name: &str) -> Vec<PathBuf> {
 fn read(path: &Path) -> Result<(), String> {
     let mut sources = Sources::new(&Disk);
     let scene = load::scene(path, &mut sources);
-    if std::env::var_os("SHOW").is_some() {
-        match &scene {
-            Ok(scene) => {
-                eprintln!("{}: {} shapes, {} lights", path.display(), scene.shapes.len(), scene.lights.len())
-            }
-            Err(error) => eprintln!("ERROR {error}"),
-        }
-        sources.warnings.iter().for_each(|warning| eprintln!("  warning {warning}"));
-    }
     let scene = scene.map_err(|error| error.to_string())?;
     for mesh in &scene.meshes {
         let count = mesh.positions.len();
