@@ -3,7 +3,9 @@
 //! Step 8 on the way of a pixel, the last: exposure, tone map, the curve of sRGB, eight bits. No dithering, so that
 //! equal light gives equal bytes. How bytes become a file is left to `lookfrom_scene::image`.
 //!
-//! IEC 61966-2-1 (sRGB); Reinhard, Stark, Shirley & Ferwerda 2002; Narkowicz 2015 (a fit to the filmic curve of ACES).
+//! The tone maps are in `tonemap`. IEC 61966-2-1 (sRGB).
+
+mod tonemap;
 
 use crate::film::Picture;
 use lookfrom_scene::settings::Tonemap;
@@ -36,15 +38,7 @@ fn scale(exposure: f32) -> f64 {
 fn display(rgb: [f32; 3], scale: f64, tonemap: Tonemap) -> [f32; 3] {
     // A NaN is not greater than 0; the bound keeps infinities out of the quotients.
     let [r, g, b] = rgb.map(|light| if light > 0.0 { (f64::from(light) * scale).min(1e100) } else { 0.0 });
-    let mapped = match tonemap {
-        Tonemap::Clamp | Tonemap::PbrNeutral | Tonemap::Aces | Tonemap::Agx => [r, g, b],
-        Tonemap::Reinhard => {
-            let luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
-            [r, g, b].map(|x| x / (1.0 + luminance))
-        }
-        Tonemap::Filmic => [r, g, b].map(|x| (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)),
-    };
-    mapped.map(|x| x.min(1.0) as f32)
+    tonemap::mapped([r, g, b], tonemap).map(|x| x.clamp(0.0, 1.0) as f32)
 }
 
 /// The byte of a linear value in 0 … 1, by the exact curve.

@@ -3,7 +3,8 @@
 use super::*;
 use crate::hash::mix;
 
-const ALL: [Tonemap; 3] = [Tonemap::Clamp, Tonemap::Reinhard, Tonemap::Filmic];
+const ALL: [Tonemap; 6] =
+    [Tonemap::Clamp, Tonemap::Reinhard, Tonemap::Filmic, Tonemap::PbrNeutral, Tonemap::Aces, Tonemap::Agx];
 
 fn develop(rgb: [f32; 3], exposure: f32, tonemap: Tonemap) -> [u8; 3] {
     let bytes = srgb8(&Picture { width: 1, height: 1, pixels: vec![rgb] }, exposure, tonemap);
@@ -63,7 +64,10 @@ fn more_light_is_never_darker() {
         let picture = Picture { width: light.len() as u32, height: 1, pixels: light };
         for exposure in [-20.0, 0.0, 3.5, 200.0] {
             let bytes = srgb8(&picture, exposure, tonemap);
-            assert!(bytes.is_sorted(), "{tonemap:?} {exposure}");
+            for channel in 0..3 {
+                let of_channel = bytes.iter().skip(channel).step_by(3);
+                assert!(of_channel.is_sorted(), "{tonemap:?} {exposure} {channel}");
+            }
         }
     }
 }
@@ -78,5 +82,46 @@ fn nonsense_is_black_or_white() {
         assert_eq!(develop([f32::INFINITY; 3], 0.0, tonemap), [255; 3]);
         assert_eq!(develop([f32::MAX; 3], f32::INFINITY, tonemap), [255; 3]);
         assert_eq!(develop([0.0; 3], f32::INFINITY, tonemap), [0; 3]);
+    }
+}
+
+#[test]
+fn pbr_neutral_takes_the_offset_away_and_leaves_the_rest_to_the_start_of_compression() {
+    let map = |rgb| tonemap::mapped(rgb, Tonemap::PbrNeutral);
+    let near = |a: [f64; 3], b: [f64; 3]| a.into_iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+    // Beyond 0.08 the offset is F90, and 0.8 − F90 is where compression starts.
+    for rgb in [[0.5, 0.2, 0.1], [0.09; 3], [0.8, 0.79, 0.081]] {
+        assert!(near(map(rgb), rgb.map(|x| x - 0.04)), "{rgb:?}");
+    }
+    // Darker than that it is x − x² / (4 F90): a colour without one of the primaries stays as it is.
+    assert!(near(map([0.7, 0.3, 0.0]), [0.7, 0.3, 0.0]));
+    assert!(near(map([0.04; 3]), [0.01; 3]) && near(map([0.08; 3]), [0.04; 3]));
+    // A white of 1 by hand: p = 0.96, pₙ = 1 − 0.24² / 0.44 = 0.869091, and grey has no colour to lose.
+    assert!(near(map([1.0; 3]), [1.0 - 0.0576 / 0.44; 3]));
+    // A red of 4: pₙ = 1 − 0.0576 / 3.48, g = 1 / (0.15 (4 − pₙ) + 1).
+    let peak = 1.0 - 0.0576 / 3.48;
+    let kept = 1.0 / (0.15 * (4.0 - peak) + 1.0);
+    assert!(near(map([4.0, 0.0, 0.0]), [peak, peak * (1.0 - kept), peak * (1.0 - kept)]));
+    // Without a jump where compression starts.
+    let [below, above] = [0.8 - 1e-9, 0.8 + 1e-9].map(|x| map([x, 0.3, 0.2]));
+    assert!(below.into_iter().zip(above).all(|(a, b)| (a - b).abs() < 1e-8));
+}
+
+#[test]
+fn aces_and_agx_at_points_of_their_curves() {
+    let grey = |x: f64, tonemap| tonemap::mapped([x; 3], tonemap);
+    // Hill's curve of 1 is (1.0245786 − 0.000090537) / 1.654761 = 0.619115, his matrices leave grey as it is.
+    let near =
+        |rgb: [f64; 3], expected: f64, slack: f64| rgb.into_iter().all(|x| (x - expected).abs() < slack);
+    assert!(near(grey(1.0, Tonemap::Aces), 0.619115, 2e-4), "{:?}", grey(1.0, Tonemap::Aces));
+    assert!(near(grey(1e9, Tonemap::Aces), 1.0 / 0.983729, 2e-3), "{:?}", grey(1e9, Tonemap::Aces));
+    // The pivot of AgX's curve is middle grey, which it shows as half of what its 2.2 decodes; 16.29 is the end.
+    assert!(near(grey(0.18, Tonemap::Agx), 0.217_638, 0.005), "{:?}", grey(0.18, Tonemap::Agx));
+    assert!(near(grey(16.29, Tonemap::Agx), 1.0, 0.01), "{:?}", grey(16.29, Tonemap::Agx));
+    assert!(near(grey(0.0001, Tonemap::Agx), 0.0, 1e-3));
+    // Bright saturated light goes to white in both; cut, it would stay pure.
+    for tonemap in [Tonemap::Aces, Tonemap::Agx] {
+        let [r, g, b] = tonemap::mapped([0.02, 0.02, 50.0], tonemap);
+        assert!(r > 0.2 && g > 0.2 && b > g, "{tonemap:?} {r} {g} {b}");
     }
 }
