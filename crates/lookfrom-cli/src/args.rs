@@ -2,6 +2,8 @@
 //!
 //! The doc comments here are the help texts.
 
+mod model;
+
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -11,6 +13,8 @@ use glam::DVec3;
 use lookfrom_scene::settings::{ColorMode, Crop, Filter, Integrator, Layers, LightSampler, Sampler, Tonemap};
 
 use crate::values;
+
+pub(crate) use model::ModelArguments;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -34,6 +38,8 @@ const RENDER_EXAMPLES: &str = "\
 Examples:
   lookfrom render scene.toml -o picture.exr --samples 64
   lookfrom render model.obj --lookfrom -3,2,5 --up 0,0,1
+  lookfrom render model.ply --size 512 --floor --background transparent
+  lookfrom render model.stl --up 0,0,1 --turntable 36 -o 'around/{name}.png'
   lookfrom render a.toml b.toml -o pictures/             pictures/a.png, pictures/b.png
   lookfrom render *.toml -o 'out/{name}-small.png' --width 160
   lookfrom render scene.toml -o - | display
@@ -142,6 +148,13 @@ pub(crate) struct RenderArguments {
     /// What becomes of pixels that single samples make far too bright: median spreads their excess over the pixels around
     #[arg(long, value_name = "NAME", value_parser = values::word(values::FIREFLIES), default_value = "off")]
     pub(crate) fireflies: Fireflies,
+
+    /// Make this many pictures of each scene, evenly around it, as if it stood on a turntable: NAME-000.png, NAME-001.png …
+    ///
+    /// The camera goes around what is up, against the clock as seen from above; light from all around goes with it, and lamps
+    /// stay with the scene.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) turntable: Option<u32>,
 
     /// Say nothing but errors
     #[arg(short, long)]
@@ -365,4 +378,7 @@ pub(crate) struct Overrides {
     /// Vertical field of view in degrees
     #[arg(long, value_name = "DEGREES", value_parser = values::field_of_view, allow_hyphen_values = true)]
     pub(crate) fov: Option<f64>,
+
+    #[command(flatten)]
+    pub(crate) model: ModelArguments,
 }

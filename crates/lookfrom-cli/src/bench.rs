@@ -67,7 +67,8 @@ const HEADING: &str =
     "scene                     samples  seconds  Msamples/s   Mrays/s  relative MSE  error × s";
 
 fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure> {
-    let mut prepared = prepare(path, &arguments.common, &arguments.overrides)?;
+    let environment = prepare::environment(&arguments.overrides)?;
+    let mut prepared = prepare(path, &arguments.common, &arguments.overrides, environment.as_ref())?;
     exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
     let most = if arguments.time.is_some() { MOST_SAMPLES } else { SAMPLES };
     prepared.render.samples = arguments.overrides.samples.unwrap_or(most);

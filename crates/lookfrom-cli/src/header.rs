@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use lookfrom_scene::camera::{Projection, View};
-use lookfrom_scene::settings::{ColorMode, Crop, LightSampler, Sampler};
+use lookfrom_scene::settings::{Background, ColorMode, Crop, LightSampler, Sampler};
 
 use crate::prepare::Prepared;
 use crate::values;
@@ -46,6 +46,9 @@ pub(crate) fn attributes(scene: &Path, prepared: &Prepared, taken: &Taken) -> Ve
         ("tonemap", "none".to_owned()),
         ("camera.distance", camera.distance.to_string()),
     ];
+    if image.background != Background::Environment {
+        texts.push(("background", values::background_name(image.background)));
+    }
     if let Some(mean) = taken.mean {
         texts.push(("samples_taken", mean.to_string()));
     }

@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &InfoArguments) -> u8 {
 }
 
 fn info(path: &Path, arguments: &InfoArguments) -> Result<(), Failure> {
-    let prepared = prepare(path, &arguments.common, &Overrides::default())?;
+    let prepared = prepare(path, &arguments.common, &Overrides::default(), None)?;
     if arguments.json {
         return answer(&as_json(path, &prepared).to_string());
     }

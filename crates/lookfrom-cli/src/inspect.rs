@@ -18,7 +18,8 @@ pub(crate) fn run(arguments: &InspectArguments) -> u8 {
 
 fn follow(arguments: &InspectArguments) -> Result<(), Failure> {
     prepare::use_threads(&arguments.common)?;
-    let prepared = prepare(&arguments.scene, &arguments.common, &arguments.overrides)?;
+    let environment = prepare::environment(&arguments.overrides)?;
+    let prepared = prepare(&arguments.scene, &arguments.common, &arguments.overrides, environment.as_ref())?;
     exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
     let &InspectArguments { x, y, sample, .. } = arguments;
     let (width, height) = (prepared.image.width, prepared.image.height);

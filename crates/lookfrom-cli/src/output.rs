@@ -6,10 +6,12 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-use lookfrom::develop::srgb8;
+use lookfrom::develop::{srgb8_before, srgba8};
 use lookfrom::film::Picture;
-use lookfrom_scene::image::{encode_exr, encode_hdr, encode_pfm, encode_png, encode_ppm};
-use lookfrom_scene::settings::ImageSettings;
+use lookfrom_scene::image::{
+    encode_exr, encode_hdr, encode_pfm, encode_png, encode_png_with_alpha, encode_ppm,
+};
+use lookfrom_scene::settings::{Background, ImageSettings};
 
 use crate::exit::Failure;
 
@@ -53,6 +55,16 @@ impl Target {
         }
     }
 
+    /// Where the picture of this number goes, of `count` of the same scene: NAME-000.png for NAME.png.
+    pub(crate) fn numbered(&self, number: u32, count: u32) -> Self {
+        let Self::File(path, format) = self else { return self.clone() };
+        let digits = (count - 1).to_string().len().max(3);
+        let mut name = path.file_stem().unwrap_or_default().to_owned();
+        name.push(format!("-{number:0digits$}."));
+        name.push(path.extension().unwrap_or_default());
+        Self::File(path.with_file_name(name), *format)
+    }
+
     /// Whether a file there has room for layers.
     pub(crate) fn has_layers(&self) -> bool {
         matches!(self, Self::File(_, Format::Exr))
@@ -69,24 +81,37 @@ impl Target {
         image: &ImageSettings,
         attributes: &[(String, String)],
     ) -> Result<Vec<u8>, Failure> {
-        let &Picture { width, height, ref pixels } = picture;
+        let (width, height) = (picture.width, picture.height);
         let format = match self {
             Self::Stdout => Format::Png,
             Self::File(_, format) => *format,
         };
-        let developed = || srgb8(picture, image.exposure, image.tonemap);
+        // Behind a picture with alpha lies its background; where the format has no room for alpha, black.
+        let (is_transparent, background) = match image.background {
+            Background::Transparent => (true, [0.0; 3]),
+            Background::Color(color) => (false, color),
+            Background::Environment => (false, [0.0; 3]),
+        };
+        let developed = || srgb8_before(picture, background, image.exposure, image.tonemap);
+        let linear = || picture.clone().before(background).pixels;
         let bytes = match format {
+            Format::Png if is_transparent => {
+                encode_png_with_alpha(width, height, &srgba8(picture, image.exposure, image.tonemap))
+            }
             Format::Png => encode_png(width, height, &developed()),
             Format::Ppm => encode_ppm(width, height, &developed()),
-            Format::Hdr => encode_hdr(width, height, pixels),
-            Format::Pfm => encode_pfm(width, height, pixels),
+            Format::Hdr => encode_hdr(width, height, &linear()),
+            Format::Pfm => encode_pfm(width, height, &linear()),
             Format::Exr => {
+                let pixels = linear();
                 let channel = |index: usize| pixels.iter().map(|pixel| pixel[index]).collect::<Vec<f32>>();
                 let [r, g, b] = [channel(0), channel(1), channel(2)];
                 let channels = [("R", &r), ("G", &g), ("B", &b)];
                 let channels = channels.map(|(name, values)| (name.to_owned(), values.as_slice()));
+                let alpha: Vec<f32> = picture.alpha.iter().map(|alpha| alpha.clamp(0.0, 1.0)).collect();
+                let alpha = is_transparent.then(|| ("A".to_owned(), alpha.as_slice()));
                 let layers = layers.iter().map(|(name, values)| (name.clone(), values.as_slice()));
-                let channels: Vec<_> = channels.into_iter().chain(layers).collect();
+                let channels: Vec<_> = channels.into_iter().chain(alpha).chain(layers).collect();
                 encode_exr(width, height, &channels, attributes)
             }
         };
@@ -251,6 +276,13 @@ mod tests {
         let scenes: Vec<PathBuf> = scenes.iter().map(PathBuf::from).collect();
         let targets = scenes.iter().map(|scene| target(scene, output.map(Path::new), scenes.len()));
         targets.map(|target| target.map(|target| target.name()).map_err(|failure| failure.code())).collect()
+    }
+
+    #[test]
+    fn numbers_of_pictures() {
+        let target = target(Path::new("a.b.toml"), Some(Path::new("x/")), 1).unwrap();
+        assert_eq!(target.numbered(7, 36).name(), "x/a.b-007.png");
+        assert_eq!(target.numbered(7, 10_001).name(), "x/a.b-00007.png");
     }
 
     #[test]

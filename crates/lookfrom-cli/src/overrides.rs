@@ -41,6 +41,7 @@ impl Overrides {
         replace(&mut render.color, self.color);
         replace(&mut render.light_sampler, self.light_sampler);
         replace(&mut image.layers, self.layers);
+        replace(&mut image.background, self.model.background);
         replace(&mut render.depth, self.depth);
         replace(&mut render.min_contribution, self.min_contribution);
         replace(&mut render.sampler, self.sampler);
@@ -51,7 +52,11 @@ impl Overrides {
     fn resize(&self, image: &mut ImageSettings) -> Result<(), Failure> {
         let (old_width, old_height) = (u64::from(image.width), u64::from(image.height));
         // One side alone: the other is what keeps the shape, to the nearest pixel.
-        let (width, height) = match (self.width.map(u64::from), self.height.map(u64::from)) {
+        let [typed_width, typed_height] = match self.model.size {
+            Some(size) => size.map(Some),
+            None => [self.width, self.height],
+        };
+        let (width, height) = match (typed_width.map(u64::from), typed_height.map(u64::from)) {
             (None, None) => return Ok(()),
             (Some(width), Some(height)) => (width, height),
             (Some(width), None) => (width, (width * old_height + old_width / 2) / old_width),

@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 
 use lookfrom::world::World;
 use lookfrom_scene::camera::Camera;
+use lookfrom_scene::image::{self, Image};
 use lookfrom_scene::scene::Bounds;
-use lookfrom_scene::settings::{ImageSettings, RenderSettings};
-use lookfrom_scene::{Disk, Location, Sources, Warning, load, model, studio};
+use lookfrom_scene::settings::{ImageSettings, Integrator, RenderSettings};
+use lookfrom_scene::{Choice, Disk, Location, Sources, Warning, load, model, studio};
 
 use crate::args::{Common, Overrides};
 use crate::count::Counts;
@@ -42,13 +43,22 @@ pub(crate) struct Prepared {
 ///
 /// # Errors
 /// `Scene` where the file cannot be read or made into a world, `Usage` where the overrides do not suit it, `Strict` where it
-/// gives warnings that `--strict` does not allow.
-pub(crate) fn prepare(path: &Path, common: &Common, overrides: &Overrides) -> Result<Prepared, Failure> {
+/// gives warnings that `--strict` does not allow. `environment` is that of the function of this name.
+pub(crate) fn prepare(
+    path: &Path,
+    common: &Common,
+    overrides: &Overrides,
+    environment: Option<&Image>,
+) -> Result<Prepared, Failure> {
     // Read.
     let started = Instant::now();
-    let mut sources = Sources::new(&Disk);
+    let asked = &overrides.model;
+    let mut sources = Sources { choice: asked.choice(), ..Sources::new(&Disk) };
     let mut scene = load::scene(path, &mut sources)?;
     let mut warnings = sources.warnings;
+    let mut warn = |message: &str| {
+        warnings.push(Warning { at: Location::file(path), message: message.to_owned() });
+    };
     let read = started.elapsed();
 
     // Change and furnish.
@@ -56,28 +66,44 @@ pub(crate) fn prepare(path: &Path, common: &Common, overrides: &Overrides) -> Re
     overrides.apply_to_settings(&mut scene.image, &mut scene.render)?;
     let (counts, bounds) = (Counts::of(&scene), scene.bounds());
     if bounds.is_empty() {
-        let message = "nothing stands in this scene: the picture shows the background alone".to_owned();
-        warnings.push(Warning { at: Location::file(path), message });
+        warn("nothing stands in this scene: the picture shows the background alone");
+    }
+    if asked.choice() != Choice::default() && !is_gltf(path) {
+        warn("--animation, --at, --variant, --scene and --camera choose from a glTF file; this file is none");
+    }
+    if asked.floor && !is_path_traced(scene.render.integrator) {
+        warn("a floor that is seen only by its shadows needs the path tracer; here it is grey");
     }
     let had_camera = scene.camera.is_some();
-    let (lights, shapes) = (scene.lights.len(), scene.shapes.len());
+    let lights = scene.lights.len();
+    let up = overrides.up;
     // The eye comes first: inside a room it needs other light.
-    studio::frame(&mut scene, overrides.up);
+    studio::frame(&mut scene, up);
     overrides.apply_to_camera(&mut scene)?;
-    let bare_model = model::is_model(path);
-    if bare_model {
-        studio::furnish_with_floor(&mut scene, overrides.up);
+    if let Some(environment) = environment {
+        studio::surround(&mut scene, environment.clone(), up);
+    }
+    // What glows in a glTF file is seldom meant to light it alone.
+    if is_gltf(path) || model::is_model(path) && !studio::shines(&scene) {
+        studio::furnish_model(&mut scene, up);
     } else {
-        studio::furnish(&mut scene, overrides.up);
+        studio::furnish(&mut scene, up);
     }
     let mut added = Vec::new();
     if !had_camera {
         added.push("camera");
     }
-    if scene.lights.len() > lights {
+    if scene.lights.len() > lights && environment.is_none() {
         added.push("lights");
     }
-    if bare_model && scene.shapes.len() > shapes {
+    if let Some(degrees) = asked.rotate_environment {
+        studio::turn_environments(&mut scene, up, degrees);
+    }
+    if let Some(degrees) = asked.turn {
+        studio::turn(&mut scene, up, degrees);
+    }
+    if asked.floor {
+        studio::add_floor(&mut scene, up);
         added.push("floor");
     }
 
@@ -90,6 +116,24 @@ pub(crate) fn prepare(path: &Path, common: &Common, overrides: &Overrides) -> Re
         return Err(Failure::Strict(warnings));
     }
     Ok(Prepared { world, image, render, camera, counts, bounds, added, warnings, read, build })
+}
+
+/// The picture of the surroundings that the command line names, read once for all scenes.
+///
+/// # Errors
+/// `Scene` where it cannot be read.
+pub(crate) fn environment(overrides: &Overrides) -> Result<Option<Image>, Failure> {
+    let Some(path) = &overrides.model.environment else { return Ok(None) };
+    Ok(Some(image::read(path, &mut Sources::new(&Disk))?))
+}
+
+fn is_gltf(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    ["gltf", "glb"].contains(&&*ending)
+}
+
+fn is_path_traced(integrator: Integrator) -> bool {
+    matches!(integrator, Integrator::Path | Integrator::SimplePath | Integrator::RandomWalk)
 }
 
 /// Sets how many threads build and render. Call it once, before anything else.

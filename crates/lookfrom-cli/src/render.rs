@@ -5,9 +5,10 @@ use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
 use lookfrom::render::{End, Enough, Frame};
+use lookfrom_scene::image::Image;
 use lookfrom_scene::settings::Layers;
 
-use crate::args::{Fireflies, RenderArguments};
+use crate::args::{Fireflies, Overrides, RenderArguments};
 use crate::exit::{self, DONE, Failure, INTERRUPTED, answer, say};
 use crate::header::{self, Taken};
 use crate::output::{self, Target};
@@ -33,14 +34,21 @@ pub(crate) fn run(arguments: &RenderArguments) -> u8 {
         )),
         _ => Ok(targets),
     });
-    let targets = match ready {
-        Ok(targets) => targets,
+    let ready = ready.and_then(|targets| match arguments.turntable {
+        Some(_) if targets.contains(&Target::Stdout) => {
+            Err(Failure::Usage("--turntable makes several files; -o - is none".to_owned()))
+        }
+        _ => Ok(targets),
+    });
+    let ready = ready.and_then(|targets| Ok((targets, prepare::environment(&arguments.overrides)?)));
+    let (targets, environment) = match ready {
+        Ok(ready) => ready,
         Err(failure) => return failure.report(),
     };
     interrupt::listen();
     let mut code = DONE;
     for (index, (scene, target)) in arguments.scenes.iter().zip(&targets).enumerate() {
-        let of_scene = match render(scene, target, arguments) {
+        let of_scene = match render_all(scene, target, arguments, environment.as_ref()) {
             Ok(of_scene) => of_scene,
             Err(failure) => {
                 let of_failure = failure.report();
@@ -60,10 +68,42 @@ pub(crate) fn run(arguments: &RenderArguments) -> u8 {
     code
 }
 
-/// Renders one scene and says what was done; gives the exit code.
-fn render(path: &Path, target: &Target, arguments: &RenderArguments) -> Result<u8, Failure> {
-    let mut prepared = prepare(path, &arguments.common, &arguments.overrides)?;
-    if !arguments.quiet {
+/// Renders all pictures of one scene: one, or those of a turntable.
+fn render_all(
+    path: &Path,
+    target: &Target,
+    arguments: &RenderArguments,
+    environment: Option<&Image>,
+) -> Result<u8, Failure> {
+    let Some(count) = arguments.turntable else {
+        return render(path, target, arguments, &arguments.overrides, environment, arguments.quiet);
+    };
+    let start = arguments.overrides.model.turn.unwrap_or(0.0);
+    for number in 0..count {
+        // Each picture is made as if it were the only one, so that it can be made, and inspected, alone.
+        let mut overrides = arguments.overrides.clone();
+        overrides.model.turn = Some(start + 360.0 * f64::from(number) / f64::from(count));
+        let target = target.numbered(number, count);
+        let unheard = arguments.quiet || number > 0;
+        match render(path, &target, arguments, &overrides, environment, unheard)? {
+            DONE => {}
+            code => return Ok(code),
+        }
+    }
+    Ok(DONE)
+}
+
+/// Renders one picture and says what was done; gives the exit code.
+fn render(
+    path: &Path,
+    target: &Target,
+    arguments: &RenderArguments,
+    overrides: &Overrides,
+    environment: Option<&Image>,
+    are_warnings_known: bool,
+) -> Result<u8, Failure> {
+    let mut prepared = prepare(path, &arguments.common, overrides, environment)?;
+    if !are_warnings_known {
         exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
     }
     // A limit of time or noise replaces the scene's number of samples, not that of the command line.

@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
-use lookfrom_scene::settings::{Crop, Filter, Layers};
+use lookfrom_scene::image::{linear_from_srgb, srgb_from_linear};
+use lookfrom_scene::settings::{Background, Crop, Filter, Layers};
 
 use crate::args::Fireflies;
 
@@ -69,6 +70,59 @@ fn separated<T: FromStr + Copy + Default, const N: usize>(
 ) -> Result<[T; N], String> {
     let numbers: Option<Vec<T>> = typed.split(',').map(|number| number.trim().parse().ok()).collect();
     numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| format!("expected {expected}"))
+}
+
+/// `N` or `WxH`: columns and rows.
+pub(crate) fn size(typed: &str) -> Result<[u32; 2], String> {
+    let side = |typed: &str| typed.trim().parse::<u32>().ok().filter(|&side| side > 0);
+    let (width, height) = typed.split_once(['x', '×']).unwrap_or((typed, typed));
+    match (side(width), side(height)) {
+        (Some(width), Some(height)) => Ok([width, height]),
+        _ => Err("expected pixels, as 256 for a square or 640x360".to_owned()),
+    }
+}
+
+/// `1.5s`, `500ms`, `1.5`: seconds, at least 0.
+pub(crate) fn moment(typed: &str) -> Result<f64, String> {
+    let unit = UNITS.iter().find_map(|(unit, seconds)| Some((typed.strip_suffix(unit)?, *seconds)));
+    let (number, seconds) = unit.unwrap_or((typed, 1.0));
+    match number.trim().parse::<f64>() {
+        Ok(number) if (0.0..=1e9).contains(&number) => Ok(number * seconds),
+        _ => Err("expected a time of at least 0, as 1.5s, 500ms or 1.5".to_owned()),
+    }
+}
+
+/// `environment`, `transparent`, `white`, `black` or `#rrggbb`.
+pub(crate) fn background(typed: &str) -> Result<Background, String> {
+    let hex = |digits: &str| match digits.len() {
+        6 => u32::from_str_radix(digits, 16).ok(),
+        _ => None,
+    };
+    match typed {
+        "environment" => Ok(Background::Environment),
+        "transparent" => Ok(Background::Transparent),
+        "white" => Ok(Background::Color([1.0; 3])),
+        "black" => Ok(Background::Color([0.0; 3])),
+        _ => match typed.strip_prefix('#').and_then(hex) {
+            Some(rgb) => {
+                let channel = |shift: u32| linear_from_srgb((rgb >> shift & 0xff) as f32 / 255.0);
+                Ok(Background::Color([channel(16), channel(8), channel(0)]))
+            }
+            None => Err("expected environment, transparent, white, black or #rrggbb".to_owned()),
+        },
+    }
+}
+
+/// A background in the words of the command line.
+pub(crate) fn background_name(background: Background) -> String {
+    match background {
+        Background::Environment => "environment".to_owned(),
+        Background::Transparent => "transparent".to_owned(),
+        Background::Color(rgb) => {
+            let [r, g, b] = rgb.map(|c| (255.0 * srgb_from_linear(c) + 0.5) as u8);
+            format!("#{r:02x}{g:02x}{b:02x}")
+        }
+    }
 }
 
 /// A number within a range; NaN is in none.
@@ -150,6 +204,27 @@ mod tests {
         assert_eq!(duration("1.5h"), duration("90 m"));
         for wrong in ["", "5", "s", "0s", "-1s", "NaNs", "infs", "1e99h", "5 days", "1m30s"] {
             assert!(duration(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn sizes_moments_and_backgrounds() {
+        assert_eq!((size("256"), size("640x360")), (Ok([256, 256]), Ok([640, 360])));
+        for wrong in ["", "0", "x", "640x", "640x0", "-1", "1.5", "1x2x3"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(
+            (moment("1.5s"), moment("500ms"), moment("0"), moment("2")),
+            (Ok(1.5), Ok(0.5), Ok(0.0), Ok(2.0))
+        );
+        for wrong in ["", "-1s", "s", "NaN", "inf"] {
+            assert!(moment(wrong).is_err(), "{wrong}");
+        }
+        for name in ["environment", "transparent", "#ffffff", "#000000", "#2080c0"] {
+            assert_eq!(background_name(background(name).unwrap()), name);
+        }
+        for wrong in ["", "#fff", "#gggggg", "red"] {
+            assert!(background(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -14,4 +14,4 @@ pub use self::openexr::{Channels, encode_exr, read_exr};
 pub use self::read::{decode, read, read_data, read_encoded, read_opacity};
 pub use self::srgb::{linear_from_srgb, srgb_from_linear};
 pub use self::texels::Image;
-pub use self::write::{encode_hdr, encode_pfm, encode_png, encode_ppm};
+pub use self::write::{encode_hdr, encode_pfm, encode_png, encode_png_with_alpha, encode_ppm};

@@ -27,5 +27,5 @@ pub mod texture;
 pub mod toml;
 
 pub use error::{Error, ErrorKind, Location, Result, Warning};
-pub use files::{Disk, Files, Limits, Memory, Sources};
+pub use files::{Choice, Disk, Files, Limits, Memory, Sources};
 pub use scene::Scene;

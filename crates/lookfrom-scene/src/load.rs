@@ -6,12 +6,17 @@ use crate::camera::Camera;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Sources;
 use crate::light::Light;
+use crate::material::{Color, Material, MaterialKind};
 use crate::scene::{MaterialId, Scene};
 use crate::shape::{Part, Shape};
-use crate::{gltf, model, pbrt, toml};
+use crate::{gltf, model, pbrt, studio, toml};
 
-/// Reads a scene in our own format (`.toml`), one of pbrt-v4 (`.pbrt`), a glTF file (`.gltf`, `.glb`), or a model file, whose parts stand in the scene
-/// where the file has them and wear a grey "default" where the file gives them no material.
+/// The reflectance of a model whose file names no material.
+const CLAY: f32 = 0.65;
+
+/// Reads a scene in our own format (`.toml`), one of pbrt-v4 (`.pbrt`), a glTF file (`.gltf`, `.glb`), or a model file,
+/// whose parts stand in the scene where the file has them and wear a matte grey "default" where the file gives them no
+/// material.
 ///
 /// # Errors
 /// `Unsupported` where the format is not known, and what the reader of the format finds.
@@ -25,10 +30,12 @@ pub fn scene(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
     if is_gltf(path, sources) {
         return gltf::read(path, sources);
     }
-    let mut scene = Scene::default();
+    let (image, render) = studio::settings_for_models();
+    let mut scene = Scene { image, render, ..Scene::default() };
     let parts = model(path, sources, &mut scene)?.parts;
     let default = MaterialId(scene.materials.len() as u32);
-    scene.materials.push(toml::default_material());
+    let clay = MaterialKind::Diffuse { reflectance: Color::gray(CLAY) };
+    scene.materials.push(Material::new("default", Location::default(), clay));
     scene.shapes = shapes(parts, &Location::file(path), default);
     Ok(scene)
 }

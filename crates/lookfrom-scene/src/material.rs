@@ -1,5 +1,7 @@
 //! How surfaces look.
 
+use glam::Vec3;
+
 use crate::error::Location;
 use crate::scene::{CurveId, ImageId, MaterialId, TextureId};
 
@@ -163,6 +165,12 @@ pub enum MaterialKind {
         /// Radiance that it is seen with.
         color: Color,
     },
+    /// A floor that is seen only by the shadows on it: matte, as bright as what lies behind it where nothing is in the way
+    /// of the light from infinitely far, darker where something is.
+    ShadowCatcher {
+        /// Where the floor looks: of unit length, in the world.
+        normal: Vec3,
+    },
     /// No surface at all: the border of a medium.
     Interface,
 }
@@ -195,9 +203,11 @@ impl MaterialKind {
                 vec![look.base_color, look.specular_color, look.sheen_color, look.diffuse_transmission_color]
             }
             Self::Unlit { color } => vec![*color],
-            Self::Dielectric { .. } | Self::ThinDielectric { .. } | Self::Mix { .. } | Self::Interface => {
-                Vec::new()
-            }
+            Self::Dielectric { .. }
+            | Self::ThinDielectric { .. }
+            | Self::Mix { .. }
+            | Self::ShadowCatcher { .. }
+            | Self::Interface => Vec::new(),
         }
     }
 }

@@ -19,6 +19,20 @@ pub struct ImageSettings {
     pub sensor: Sensor,
     /// Which layers an EXR gets besides the picture.
     pub layers: Layers,
+    /// What the camera sees where nothing stands.
+    pub background: Background,
+}
+
+/// What the camera sees where nothing stands; light is the same for all of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Background {
+    /// The environments.
+    #[default]
+    Environment,
+    /// A colour: linear Rec. 709.
+    Color([f32; 3]),
+    /// Nothing: the picture has an alpha channel.
+    Transparent,
 }
 
 /// What turns light into colour.
@@ -59,6 +73,7 @@ impl Default for ImageSettings {
             tonemap: Tonemap::default(),
             sensor: Sensor::default(),
             layers: Layers::None,
+            background: Background::default(),
         }
     }
 }

@@ -1,8 +1,11 @@
-//! What does a model need to be shown? A camera that frames it, light, and a floor to stand on.
+//! What does a model need to be shown? A camera that frames it, and light.
 //!
-//! Model files have none of these, and scenes may leave them out. Everything is proportional to the bounds, so that a
-//! model of any size makes the same picture. The arrangement is the photographer's: a three-quarter view from slightly
-//! above, a large soft key light from the upper left of the camera, and a fill from all around.
+//! Model files often have neither, and scenes may leave them out. Everything is proportional to the bounds, so that a
+//! model of any size makes the same picture: a three-quarter view from slightly above. Models stand in a studio, which
+//! `surroundings` builds; scenes without light get a lamp: a large soft key light from the upper left of the camera, and
+//! a fill from all around.
+
+mod surroundings;
 
 use glam::DVec3;
 
@@ -12,7 +15,10 @@ use crate::light::{Amount, Falloff, Light, LightKind, Sky};
 use crate::material::{Color, Whitted};
 use crate::model::surface::push_material;
 use crate::scene::{Bounds, Scene};
+use crate::settings::{ImageSettings, Integrator, RenderSettings, Tonemap};
 use crate::shape::{Emission, Geometry, Shape};
+
+pub use surroundings::{add_floor, surround, turn_environments};
 
 /// Vertical field of view in degrees, and the tangent of its half: 2 − √3.
 const FOV: f64 = 30.0;
@@ -35,9 +41,8 @@ const FILL_NADIR: [f32; 3] = [0.17, 0.165, 0.16];
 /// In a room: light from everywhere, and from a lamp at the eye.
 const ROOM: f32 = 0.3;
 const LAMP: f32 = 0.55;
-/// Radius of the floor in radii of the bounds: beyond the upper edge of the picture.
-const FLOOR_RADIUS: f64 = 60.0;
-const FLOOR_REFLECTANCE: f32 = 0.55;
+/// Samples a pixel of a picture of a model.
+const MODEL_SAMPLES: u32 = 64;
 
 /// Adds a camera that frames the scene's bounds, if there is none. `up` as in [`furnish`].
 pub fn frame(scene: &mut Scene, up: Option<DVec3>) {
@@ -52,12 +57,49 @@ pub fn furnish(scene: &mut Scene, up: Option<DVec3>) {
     stage.add_light(scene);
 }
 
-/// The same, and a large matte floor under everything: for models that come without surroundings.
-pub fn furnish_with_floor(scene: &mut Scene, up: Option<DVec3>) {
+/// Adds what a model lacks: a camera that frames its bounds, if there is none, and a studio around it, if there are no
+/// lights; where the eye is inside, a lamp at the eye as well. `up` as in [`furnish`].
+pub fn furnish_model(scene: &mut Scene, up: Option<DVec3>) {
     let stage = Stage::of(scene, up);
     stage.add_camera(scene);
-    stage.add_light(scene);
-    stage.add_floor(scene);
+    if scene.lights.is_empty() {
+        stage.add_studio(scene);
+        if let Some(position) = stage.eye_inside(scene) {
+            add_lamp(scene, position);
+        }
+    }
+}
+
+/// Whether any shape gives off light.
+pub fn shines(scene: &Scene) -> bool {
+    let in_objects = scene.objects.iter().flat_map(|object| &object.shapes);
+    scene.shapes.iter().chain(in_objects).any(|shape| shape.emission.is_some())
+}
+
+/// How pictures of models are made where nobody says otherwise: path traced, and shown by Khronos' PBR Neutral.
+pub fn settings_for_models() -> (ImageSettings, RenderSettings) {
+    let image = ImageSettings { tonemap: Tonemap::PbrNeutral, ..ImageSettings::default() };
+    let render =
+        RenderSettings { integrator: Integrator::Path, samples: MODEL_SAMPLES, ..RenderSettings::default() };
+    (image, render)
+}
+
+/// Turns the camera, which must be there, around the middle of the scene by degrees, against the clock as seen from above,
+/// and all pictures of the surroundings with it: as if the model turned the other way. `up` as in [`furnish`].
+pub fn turn(scene: &mut Scene, up: Option<DVec3>, degrees: f64) {
+    let stage = Stage::of(scene, up);
+    let orbit = surroundings::orbit(stage.bounds, stage.basis[1], degrees);
+    if let Some(camera) = &mut scene.camera {
+        camera.view = match camera.view {
+            View::Look { lookfrom, lookat, up } => View::Look {
+                lookfrom: orbit.transform_point3(lookfrom),
+                lookat: orbit.transform_point3(lookat),
+                up: orbit.transform_vector3(up),
+            },
+            View::Matrix(matrix) => View::Matrix(orbit * matrix),
+        };
+    }
+    turn_environments(scene, Some(stage.basis[1]), degrees);
 }
 
 /// A camera that shows the box from right, above and before, as large as it fits into a picture of this aspect ratio
@@ -74,6 +116,11 @@ fn add(scene: &mut Scene, name: &str, kind: LightKind) {
         kind,
         amount: Amount::AS_WRITTEN,
     });
+}
+
+fn add_lamp(scene: &mut Scene, position: DVec3) {
+    let intensity = Color::gray(LAMP);
+    add(scene, "lamp", LightKind::Point { position, intensity, falloff: Falloff::None });
 }
 
 /// The bounds to show, and what is right, up and towards the viewer there: unit vectors.
@@ -137,9 +184,7 @@ impl Stage {
     fn add_light(&self, scene: &mut Scene) {
         let is_backdrop =
             |light: &Light| matches!(light.kind, LightKind::Environment { illuminates: false, .. });
-        let in_objects = scene.objects.iter().flat_map(|object| &object.shapes);
-        let shines = scene.shapes.iter().chain(in_objects).any(|shape| shape.emission.is_some());
-        if scene.is_whole || shines || !scene.lights.iter().all(is_backdrop) {
+        if scene.is_whole || shines(scene) || !scene.lights.iter().all(is_backdrop) {
             return;
         }
         let fill = if scene.lights.is_empty() {
@@ -152,8 +197,7 @@ impl Stage {
         match self.eye_inside(scene) {
             Some(eye) => {
                 add(scene, "room", LightKind::Ambient { color: [ROOM; 3] });
-                let intensity = Color::gray(LAMP);
-                add(scene, "lamp", LightKind::Point { position: eye, intensity, falloff: Falloff::None });
+                add_lamp(scene, eye);
             }
             None => {
                 let key = self.key_light(scene);
@@ -202,24 +246,6 @@ impl Stage {
             emission: Some(Emission::new(Color::gray(radiance), false)),
             ..Shape::new(Location::default(), Geometry::Quad { corner, edge_u, edge_v }, material)
         }
-    }
-
-    fn add_floor(&self, scene: &mut Scene) {
-        let up = self.basis[1];
-        let Bounds { min, max } = self.bounds;
-        // The lowest corner of the box along `up`.
-        let lowest = DVec3::select(up.cmpge(DVec3::ZERO), min, max).dot(up);
-        // A little below it: flat undersides must not lie in the floor.
-        let radius = self.bounds.radius();
-        let gap = 1e-3 * radius + 1e-6 * min.abs().max(max.abs()).max_element();
-        let center = self.bounds.center();
-        let center = center + (lowest - gap - center.dot(up)) * up;
-        let matte = Whitted { diffuse: Color::gray(FLOOR_REFLECTANCE), ..Whitted::default() };
-        let material = push_material(scene, "floor", &Location::default(), matte);
-        let geometry = Geometry::Disk { center, normal: up, radius: FLOOR_RADIUS * radius };
-        let floor =
-            Shape { name: Some("floor".to_owned()), ..Shape::new(Location::default(), geometry, material) };
-        scene.shapes.push(floor);
     }
 }
 
@@ -381,19 +407,6 @@ mod tests {
     }
 
     #[test]
-    fn the_floor_lies_below_for_any_up() {
-        for up in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(-1.0, 1.0, 2.0)] {
-            let mut scene = Scene::default();
-            furnish_with_floor(&mut scene, Some(up));
-            let floor = scene.shapes.last().unwrap();
-            let Geometry::Disk { center, normal, .. } = floor.geometry else { panic!("not a disk") };
-            for corner in corners(sane(Bounds::EMPTY)) {
-                assert!((corner - center).dot(normal) > 0.0);
-            }
-        }
-    }
-
-    #[test]
     fn the_key_light_shines_on_the_model_from_the_upper_left_of_the_camera() {
         let mut scene = Scene::default();
         furnish(&mut scene, None);
@@ -426,5 +439,24 @@ mod tests {
         // inside: the fill, light from everywhere and a lamp; outside: the fill and a key light that is a shape
         assert_eq!(lights_with_eye_at(2.0), (3, 1));
         assert_eq!(lights_with_eye_at(9.0), (1, 2));
+    }
+
+    #[test]
+    fn the_turned_camera_keeps_its_distance_and_comes_back() {
+        let mut scene = Scene::default();
+        furnish_model(&mut scene, Some(DVec3::Z));
+        let places = |scene: &Scene| match scene.camera.as_ref().unwrap().view {
+            View::Look { lookfrom, lookat, .. } => (lookfrom, lookat),
+            View::Matrix(_) => panic!("not a lookat"),
+        };
+        let before = places(&scene);
+        for _ in 0..3 {
+            turn(&mut scene, Some(DVec3::Z), 120.0);
+            let now = places(&scene);
+            assert!((now.0.z - before.0.z).abs() < 1e-9 && now.0.is_finite());
+            assert!((now.0.distance(now.1) - before.0.distance(before.1)).abs() < 1e-9);
+        }
+        let after = places(&scene);
+        assert!(after.0.distance(before.0) < 1e-9 && after.1.distance(before.1) < 1e-9);
     }
 }

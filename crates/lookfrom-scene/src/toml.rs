@@ -48,7 +48,6 @@ use crate::shape::Emission;
 use crate::suggest::nearest;
 use crate::{image, load};
 
-pub(crate) use self::material::default_material;
 pub use self::vocabulary::vocabulary;
 
 /// Reads a scene in our own format, with all that it imports.

@@ -15,17 +15,58 @@ use lookfrom_scene::settings::Tonemap;
 /// Light is multiplied by 2^`exposure` (cut to ±128 stops; NaN is none), mapped by `tonemap`, cut to 0 … 1, bent by the
 /// exact sRGB curve and rounded to the nearest byte. NaN and negative light are black, infinite light is white.
 pub fn srgb8(picture: &Picture, exposure: f32, tonemap: Tonemap) -> Vec<u8> {
-    let thresholds = thresholds();
+    srgb8_before(picture, [0.0; 3], exposure, tonemap)
+}
+
+/// As [`srgb8`], before a background of linear colours in 0 … 1 that is shown as it is, without exposure and tone map: its
+/// share is what the picture's alpha leaves, its colour on the screen just this one.
+pub fn srgb8_before(picture: &Picture, background: [f32; 3], exposure: f32, tonemap: Tonemap) -> Vec<u8> {
+    let byte = Bytes::new();
     let scale = scale(exposure);
     let mut bytes = Vec::with_capacity(3 * picture.pixels.len());
-    for &rgb in &picture.pixels {
-        // A byte is the number of thresholds that have been reached.
-        bytes.extend(
-            display(rgb, scale, tonemap)
-                .map(|value| thresholds.partition_point(|&threshold| threshold <= value) as u8),
-        );
+    for (index, &rgb) in picture.pixels.iter().enumerate() {
+        let Some(&alpha) = picture.alpha.get(index) else {
+            bytes.extend(display(rgb, scale, tonemap).map(|value| byte.of(value)));
+            continue;
+        };
+        let (straight, alpha) = straight(rgb, alpha);
+        let shown = display(straight, scale, tonemap);
+        bytes.extend([0, 1, 2].map(|c| byte.of(alpha * shown[c] + (1.0 - alpha) * background[c])));
     }
     bytes
+}
+
+/// As [`srgb8`], with a fourth byte a pixel: how much it hides of what is behind, evenly from 0 to 255. The colours are
+/// divided by it first: those of PNG are not multiplied by their alpha. Pixels without an alpha hide all.
+pub fn srgba8(picture: &Picture, exposure: f32, tonemap: Tonemap) -> Vec<u8> {
+    let byte = Bytes::new();
+    let scale = scale(exposure);
+    let mut bytes = Vec::with_capacity(4 * picture.pixels.len());
+    for (index, &rgb) in picture.pixels.iter().enumerate() {
+        let (straight, alpha) = straight(rgb, picture.alpha.get(index).copied().unwrap_or(1.0));
+        bytes.extend(display(straight, scale, tonemap).map(|value| byte.of(value)));
+        bytes.push((255.0 * alpha + 0.5) as u8);
+    }
+    bytes
+}
+
+/// A colour that was multiplied by its alpha without it, and the alpha cut to 0 … 1.
+fn straight(rgb: [f32; 3], alpha: f32) -> ([f32; 3], f32) {
+    let alpha = alpha.clamp(0.0, 1.0);
+    (if alpha > 0.0 { rgb.map(|c| c / alpha) } else { [0.0; 3] }, alpha)
+}
+
+/// The bytes of linear values in 0 … 1: each is the number of thresholds that its value has reached.
+struct Bytes([f32; 255]);
+
+impl Bytes {
+    fn new() -> Self {
+        Self(thresholds())
+    }
+
+    fn of(&self, value: f32) -> u8 {
+        self.0.partition_point(|&threshold| threshold <= value) as u8
+    }
 }
 
 /// The factor of an exposure in stops.

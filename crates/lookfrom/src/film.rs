@@ -15,7 +15,7 @@ mod noise;
 use self::features::FeatureSums;
 pub use self::features::Features;
 
-use lookfrom_scene::settings::{Crop, Layers};
+use lookfrom_scene::settings::{Background, Crop, ImageSettings, Layers};
 use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 use std::ops::Range;
@@ -42,6 +42,8 @@ pub struct FilmTile {
     pixels: Vec<Pixel>,
     /// As many as there are pixels, or none.
     features: Vec<FeatureSums>,
+    /// Sums of how much samples hide of what is behind, in multiples of 2⁻⁶⁴: as many as there are pixels, or none.
+    alphas: Vec<i128>,
     dropped: u64,
     first_dropped: Option<Address>,
 }
@@ -66,6 +68,20 @@ pub struct Picture {
     pub height: u32,
     /// `width` × `height` pixels: red, green, blue.
     pub pixels: Vec<[f32; 3]>,
+    /// How much each pixel hides of what is behind the picture, 0 … 1 but for noise; the colours are multiplied by it. Empty
+    /// where nothing is behind.
+    pub alpha: Vec<f32>,
+}
+
+impl Picture {
+    /// The picture before a background of light as it is, of which alpha shows its share; one without alpha stays the same.
+    pub fn before(mut self, background: [f32; 3]) -> Self {
+        for (pixel, alpha) in self.pixels.iter_mut().zip(std::mem::take(&mut self.alpha)) {
+            let share = 1.0 - alpha.clamp(0.0, 1.0);
+            *pixel = std::array::from_fn(|c| pixel[c] + share * background[c]);
+        }
+        self
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -87,6 +103,15 @@ impl Film {
 
     /// As [`Film::new`], with room for what the layers need besides light.
     pub fn with_layers(width: u32, height: u32, crop: Option<Crop>, layers: Layers) -> Result<Self> {
+        Self::for_image(&ImageSettings { width, height, crop, layers, ..ImageSettings::default() })
+    }
+
+    /// A black film with room for all that a picture is asked for: layers, alpha.
+    ///
+    /// # Errors
+    /// `Limit` as [`Film::new`].
+    pub fn for_image(image: &ImageSettings) -> Result<Self> {
+        let &ImageSettings { width, height, crop, .. } = image;
         let pixels = u64::from(width) * u64::from(height);
         if pixels > MOST_PIXELS {
             return Err(too_large(format!(
@@ -95,7 +120,7 @@ impl Film {
         }
         let whole = Crop { x0: 0, y0: 0, x1: width, y1: height };
         let area = common(whole, crop.unwrap_or(whole));
-        Ok(Self { width, height, tile: FilmTile::with_layers(area, layers)? })
+        Ok(Self { width, height, tile: FilmTile::for_image(area, image)? })
     }
 
     /// Columns of the picture.
@@ -197,7 +222,21 @@ impl Film {
                 *mean = pixel.mean();
             }
         }
-        Picture { width: self.width, height: self.height, pixels }
+        Picture { width: self.width, height: self.height, pixels, alpha: self.alpha() }
+    }
+
+    /// How much each pixel hides of what is behind; empty where that was not asked for.
+    fn alpha(&self) -> Vec<f32> {
+        let FilmTile { pixels, alphas, .. } = &self.tile;
+        if alphas.is_empty() {
+            return Vec::new();
+        }
+        let mean = |index: usize| match pixels[index].samples {
+            0 => 0.0,
+            samples => (alphas[index] as f64 / (samples as f64 * TWO_TO_64)) as f32,
+        };
+        let rows = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
+        rows.map(|(x, y)| self.tile.index(x, y).map_or(0.0, mean)).collect()
     }
 }
 
@@ -211,16 +250,28 @@ impl FilmTile {
 
     /// As [`FilmTile::new`], with room for what the layers need besides light.
     pub fn with_layers(area: Crop, layers: Layers) -> Result<Self> {
+        Self::for_image(area, &ImageSettings { layers, ..ImageSettings::default() })
+    }
+
+    /// As [`FilmTile::new`], with room for all that a picture is asked for: layers, alpha.
+    ///
+    /// # Errors
+    /// `Limit` as [`FilmTile::new`].
+    pub fn for_image(area: Crop, image: &ImageSettings) -> Result<Self> {
         let count = u64::from(area.x1.saturating_sub(area.x0)) * u64::from(area.y1.saturating_sub(area.y0));
         if count > MOST_PIXELS {
             return Err(too_large(format!("{count} pixels; at most {MOST_PIXELS} are possible")));
         }
         let pixels = empty(count)?;
-        let features = match layers {
+        let features = match image.layers {
             Layers::None => Vec::new(),
             Layers::Geometry => empty(count)?,
         };
-        Ok(Self { area, pixels, features, dropped: 0, first_dropped: None })
+        let alphas = match image.background {
+            Background::Environment => Vec::new(),
+            Background::Color(_) | Background::Transparent => empty(count)?,
+        };
+        Ok(Self { area, pixels, features, alphas, dropped: 0, first_dropped: None })
     }
 
     /// Whether there is room for layers: whether [`FilmTile::add_features`] does anything.
@@ -242,8 +293,17 @@ impl FilmTile {
     /// # Panics
     /// If the pixel is outside of the tile.
     pub fn add(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3]) {
+        self.add_with_alpha(x, y, sample, rgb, 1.0);
+    }
+
+    /// As [`FilmTile::add`], and adds how much the sample hides of what is behind, where there is room for that: a sample
+    /// for which this is not finite is dropped as well.
+    ///
+    /// # Panics
+    /// If the pixel is outside of the tile.
+    pub fn add_with_alpha(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3], alpha: f32) {
         let index = self.index_inside(x, y);
-        if !rgb.iter().all(|light| light.is_finite()) {
+        if !alpha.is_finite() || !rgb.iter().all(|light| light.is_finite()) {
             self.drop_samples(1, Some(Address { y, x, sample }));
             return;
         }
@@ -256,6 +316,9 @@ impl FilmTile {
             *sum = sum.saturating_add(fixed_point_square(value));
         }
         pixel.samples = pixel.samples.saturating_add(1);
+        if let Some(sum) = self.alphas.get_mut(index) {
+            *sum = sum.wrapping_add(fixed_point(alpha));
+        }
     }
 
     /// Adds what the camera's ray of one sample met; for a sample that met nothing, do not call it. Does nothing where
@@ -283,6 +346,10 @@ impl FilmTile {
                     *sum = sum.saturating_add(add);
                 }
                 pixel.samples = pixel.samples.saturating_add(add.samples);
+            }
+            let (mine, theirs) = (self.row(y, x0, x1), other.row(y, x0, x1));
+            if let (Some(mine), Some(theirs)) = (self.alphas.get_mut(mine), other.alphas.get(theirs)) {
+                mine.iter_mut().zip(theirs).for_each(|(sum, add)| *sum = sum.wrapping_add(*add));
             }
             let (mine, theirs) = (self.row(y, x0, x1), other.row(y, x0, x1));
             if let (Some(mine), Some(theirs)) = (self.features.get_mut(mine), other.features.get(theirs)) {

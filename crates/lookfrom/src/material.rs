@@ -66,6 +66,11 @@ impl Frame {
 }
 
 impl Shading {
+    /// A matte surface without a relief.
+    pub fn matte(surface: &Surface, reflectance: Spectrum) -> Self {
+        Self { bsdf: Bsdf::diffuse(reflectance), frame: relief::plain(surface) }
+    }
+
     /// The shading normal to the outside, unit length.
     pub fn n(&self) -> Vec3 {
         self.frame.n
@@ -179,8 +184,10 @@ impl At<'_> {
             }
             MaterialKind::Principled(look) => Bsdf::diffuse(self.albedo(look.base_color)),
             MaterialKind::Unlit { color } => Bsdf::diffuse(self.albedo(*color)),
-            // A mixture has been decided by now.
-            MaterialKind::Mix { .. } | MaterialKind::Interface => return None,
+            // A mixture has been decided by now, and a floor of shadows is the world's to shade.
+            MaterialKind::ShadowCatcher { .. } | MaterialKind::Mix { .. } | MaterialKind::Interface => {
+                return None;
+            }
         })
     }
 

@@ -4,6 +4,7 @@
 //! with any number of threads. Everything else ([`Frame::render`], the inspector, later a farm) only decides who calls it
 //! for what.
 
+mod backdrop;
 mod driver;
 mod seen;
 
@@ -11,7 +12,7 @@ use std::ops::Range;
 
 use lookfrom_bvh::{Hit, Left, Ray};
 use lookfrom_scene::settings::{
-    ColorMode, Crop, ImageSettings, Integrator as Kind, RenderSettings, Sensor as SensorSettings,
+    Background, ColorMode, Crop, ImageSettings, Integrator as Kind, RenderSettings, Sensor as SensorSettings,
 };
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
@@ -28,6 +29,7 @@ use crate::spectrum::Spectrum;
 use crate::texture::Lanes;
 use crate::world::World;
 
+use backdrop::Met;
 use seen::Seen;
 
 pub use driver::{End, Enough, FEWEST_SAMPLES, Progress, Rendered};
@@ -96,6 +98,8 @@ pub struct Traced {
     pub lanes: Lanes,
     /// The filter's weight: 1 for filters without negative lobes.
     pub weight: f32,
+    /// How much of what is behind the picture it hides, 1 for all; not yet weighed.
+    pub alpha: f32,
 }
 
 /// The memory of a batch, which the next one uses again.
@@ -107,6 +111,7 @@ struct Batch {
     rays: Vec<Ray>,
     left: Vec<Left>,
     hits: Vec<Hit>,
+    met: Vec<Met>,
     traced: Vec<Traced>,
 }
 
@@ -202,9 +207,13 @@ impl<'a> Frame<'a> {
         batch: &mut Batch,
     ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
-        let Batch { samples, weights, paths, rays, left, hits, traced } = batch;
+        let Batch { samples, weights, paths, rays, left, hits, met, traced } = batch;
         let mut next = Next { samples: std::mem::take(samples), probe };
         next.samples.clear();
+
+        let has_backdrop = self.has_backdrop();
+        met.clear();
+        met.resize(ids.len(), Met::default());
 
         // Start: a ray from the camera for each sample.
         weights.clear();
@@ -241,6 +250,9 @@ impl<'a> Frame<'a> {
                 let SampleId { pixel, sample } = ids[path.slot as usize];
                 Numbers { sampler: self.sampler.of_pixel(pixel), sample, address: path.address }
             };
+            if has_backdrop {
+                self.show_backdrops(paths, hits, met, &mut next);
+            }
             integrator.step_all(self.world, numbers, paths, hits, &mut next);
 
             // Occluded: what arrives of the lights.
@@ -250,12 +262,13 @@ impl<'a> Frame<'a> {
 
         *samples = next.samples;
         traced.clear();
-        traced.extend(samples.radiance.iter().zip(&samples.lanes).zip(&*weights).map(
-            |((&radiance, &lanes), &weight)| Traced {
-                rgb: self.rgb(radiance * weight, &lanes),
-                radiance,
-                lanes,
-                weight,
+        traced.extend(samples.radiance.iter().zip(&samples.lanes).zip(&*weights).zip(&*met).map(
+            |(((&radiance, &lanes), &weight), &met)| {
+                let (rgb, alpha) = match met {
+                    Met::Thing => (self.rgb(radiance * weight, &lanes), 1.0),
+                    _ => self.with_alpha(radiance, weight, &lanes, met),
+                };
+                Traced { rgb, radiance, lanes, weight, alpha }
             },
         ));
         rays_traced
@@ -315,7 +328,7 @@ impl<'a> Frame<'a> {
             };
             for (id, traced) in ids.iter().zip(&batch.traced) {
                 let [x, y] = id.pixel;
-                tile.add(x, y, id.sample, traced.rgb);
+                tile.add_with_alpha(x, y, id.sample, traced.rgb, traced.alpha * traced.weight);
             }
         }
         rays

@@ -3,6 +3,7 @@
 //! *Render space* is the world translated so that its origin is the eye: f32 is finest where the picture looks closest.
 //! After [`World::compile`] nothing fails but cancellation.
 
+mod catcher;
 mod compile;
 mod lights;
 mod place;
@@ -62,6 +63,9 @@ pub struct World {
     pub transmissive: bool,
     /// Whether rays pass any surface without meeting it: alpha, interfaces.
     pub has_gaps: bool,
+    /// What arrives on the floor of shadows ([`MaterialKind::ShadowCatcher`]) from infinitely far where nothing is in the
+    /// way, in linear Rec. 709; `None` where there is no such floor.
+    pub catcher_irradiance: Option<[f32; 3]>,
     /// Names of the scene's materials and shapes, for people.
     pub names: Names,
 }
@@ -178,6 +182,9 @@ impl World {
 
     /// What a surface does with light: see [`material::shading`].
     pub fn shading(&self, surface: &Surface, lanes: &mut Lanes, mix: f32) -> Option<Shading> {
+        if self.catcher_irradiance.is_some() && self.is_catcher(surface) {
+            return Some(Shading::matte(surface, self.catcher_reflectance(surface, lanes)));
+        }
         let point = self.texture_point(surface);
         material::shading(&self.materials, &self.textures, surface, &point, lanes, mix)
     }

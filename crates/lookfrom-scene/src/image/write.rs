@@ -13,14 +13,28 @@ use crate::error::{Error, ErrorKind, Location, Result};
 /// # Errors
 /// `Invalid` where `rgb` is not `3 * width * height` bytes.
 pub fn encode_png(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>> {
-    check_bytes(width, height, rgb)?;
-    let mut bytes = Cursor::new(Vec::new());
-    PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive)
-        .write_image(rgb, width, height, ExtendedColorType::Rgb8)
+    check_bytes(width, height, rgb, 3)?;
+    encode(width, height, rgb, ExtendedColorType::Rgb8)
+}
+
+/// The bytes of a PNG of 8-bit sRGB colours that are not multiplied by the alpha that follows each of them, row 0 on top. The
+/// same input gives the same bytes.
+///
+/// # Errors
+/// `Invalid` where `rgba` is not `4 * width * height` bytes.
+pub fn encode_png_with_alpha(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>> {
+    check_bytes(width, height, rgba, 4)?;
+    encode(width, height, rgba, ExtendedColorType::Rgba8)
+}
+
+fn encode(width: u32, height: u32, bytes: &[u8], color: ExtendedColorType) -> Result<Vec<u8>> {
+    let mut png = Cursor::new(Vec::new());
+    PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
+        .write_image(bytes, width, height, color)
         .map_err(|error| {
             Error::new(ErrorKind::Io, &Location::default(), format!("cannot encode: {error}"))
         })?;
-    Ok(bytes.into_inner())
+    Ok(png.into_inner())
 }
 
 /// The bytes of a binary PPM (P6) of 8-bit sRGB colours, row 0 on top.
@@ -28,7 +42,7 @@ pub fn encode_png(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>> {
 /// # Errors
 /// `Invalid` where `rgb` is not `3 * width * height` bytes.
 pub fn encode_ppm(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>> {
-    check_bytes(width, height, rgb)?;
+    check_bytes(width, height, rgb, 3)?;
     let mut bytes = format!("P6\n{width} {height}\n255\n").into_bytes();
     bytes.extend_from_slice(rgb);
     Ok(bytes)
@@ -61,11 +75,11 @@ pub fn encode_pfm(width: u32, height: u32, texels: &[[f32; 3]]) -> Result<Vec<u8
     Ok(bytes)
 }
 
-fn check_bytes(width: u32, height: u32, rgb: &[u8]) -> Result<()> {
-    if rgb.len().is_multiple_of(3) {
-        return check(width, height, rgb.len() / 3);
+fn check_bytes(width: u32, height: u32, bytes: &[u8], a_pixel: usize) -> Result<()> {
+    if bytes.len().is_multiple_of(a_pixel) {
+        return check(width, height, bytes.len() / a_pixel);
     }
-    Err(Error::invalid(&Location::default(), format!("{} bytes are not three a pixel", rgb.len())))
+    Err(Error::invalid(&Location::default(), format!("{} bytes are not {a_pixel} a pixel", bytes.len())))
 }
 
 /// Whether there is a value for each pixel, and at least one pixel.

@@ -212,7 +212,7 @@ fn familiar(table: &Table<'_>, error: Error) -> Error {
 }
 
 /// Grey, with a slight highlight.
-pub(crate) fn default_material() -> Material {
+fn default_material() -> Material {
     let whitted = Whitted { specular: Color::gray(0.1), ..Whitted::default() };
     Material::new(DEFAULT, Location::default(), MaterialKind::Whitted(whitted))
 }

@@ -71,6 +71,7 @@ pub(super) fn image(table: &Table<'_>) -> Result<ImageSettings> {
         layers: table.or("layers", default.layers, |value| {
             Ok(if value.boolean()? { Layers::Geometry } else { Layers::None })
         })?,
+        background: default.background,
     })
 }
 

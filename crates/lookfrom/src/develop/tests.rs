@@ -7,7 +7,8 @@ const ALL: [Tonemap; 6] =
     [Tonemap::Clamp, Tonemap::Reinhard, Tonemap::Filmic, Tonemap::PbrNeutral, Tonemap::Aces, Tonemap::Agx];
 
 fn develop(rgb: [f32; 3], exposure: f32, tonemap: Tonemap) -> [u8; 3] {
-    let bytes = srgb8(&Picture { width: 1, height: 1, pixels: vec![rgb] }, exposure, tonemap);
+    let bytes =
+        srgb8(&Picture { width: 1, height: 1, pixels: vec![rgb], alpha: Vec::new() }, exposure, tonemap);
     bytes.try_into().unwrap()
 }
 
@@ -61,7 +62,7 @@ fn more_light_is_never_darker() {
     for tonemap in ALL {
         let light: Vec<_> =
             (0..=0x7f80_0000_u32).step_by(50_021).map(|bits| [f32::from_bits(bits); 3]).collect();
-        let picture = Picture { width: light.len() as u32, height: 1, pixels: light };
+        let picture = Picture { width: light.len() as u32, height: 1, pixels: light, alpha: Vec::new() };
         for exposure in [-20.0, 0.0, 3.5, 200.0] {
             let bytes = srgb8(&picture, exposure, tonemap);
             for channel in 0..3 {
@@ -124,4 +125,17 @@ fn aces_and_agx_at_points_of_their_curves() {
         let [r, g, b] = tonemap::mapped([0.02, 0.02, 50.0], tonemap);
         assert!(r > 0.2 && g > 0.2 && b > g, "{tonemap:?} {r} {g} {b}");
     }
+}
+
+#[test]
+fn colours_of_a_transparent_picture_are_divided_by_their_alpha() {
+    let pixels = vec![[0.25, 0.5, 0.0], [0.1; 3], [0.0; 3], [0.5; 3]];
+    let picture = Picture { width: 2, height: 2, pixels, alpha: vec![0.5, 0.0, -0.01, 1.01] };
+    let bytes = srgba8(&picture, 0.0, Tonemap::Clamp);
+    assert_eq!(bytes, [188, 255, 0, 128, 0, 0, 0, 0, 0, 0, 0, 0, 188, 188, 188, 255]);
+    // A background is shown as it is, whatever the tone map, as much as alpha leaves of it.
+    let before = |tonemap, exposure| srgb8_before(&picture, [1.0, 0.5, 0.0], exposure, tonemap);
+    let bytes = before(Tonemap::Clamp, 0.0);
+    assert_eq!(bytes, [225, 225, 0, 255, 188, 0, 255, 188, 0, 188, 188, 188]);
+    assert_eq!(before(Tonemap::PbrNeutral, 3.0)[3..9], [255, 188, 0, 255, 188, 0]);
 }

@@ -95,6 +95,34 @@ impl Environment {
         }
     }
 
+    /// What arrives of it on a surface with the unit normal `n` that nothing is in the way of: the integral of radiance
+    /// times cosine, in linear Rec. 709. Openings are not heeded.
+    pub fn irradiance(&self, textures: &Textures, n: Vec3) -> [f32; 3] {
+        let Sky::Image(sky) = &self.sky else {
+            // The middle of many small parts: light that varies as little as this needs no more.
+            const SIDE: u32 = 64;
+            let place = |k: u32| (k as f32 + 0.5) / SIDE as f32;
+            let sum = (0..SIDE * SIDE).fold(Spectrum::BLACK, |sum, k| {
+                let wi = warp::cosine_hemisphere([place(k % SIDE), place(k / SIDE)], n);
+                sum + self.color(textures, wi, &Lanes::Rgb)
+            });
+            return (sum * (PI / (SIDE * SIDE) as f32)).rgb();
+        };
+        let image = textures.image(sky.image);
+        let (width, height) = (image.width as f32, image.height as f32);
+        let mut sum = [0.0_f64; 3];
+        for (index, texel) in (0..).zip(image.texels()) {
+            let place = [(index % image.width) as f32 + 0.5, (index / image.width) as f32 + 0.5];
+            let uv = [place[0] / width, place[1] / height];
+            let cos = sky.direction(uv).dot(n);
+            if cos > 0.0 {
+                let share = f64::from(cos / sky.per_solid_angle(uv));
+                sum = std::array::from_fn(|c| sum[c] + share * f64::from((texel[c] * sky.scale[c]).max(0.0)));
+            }
+        }
+        sum.map(|sum| (sum / f64::from(width * height)) as f32)
+    }
+
     /// Whether asking it is worth while: its light is not nearly the same all around.
     pub(super) fn is_uneven(&self) -> bool {
         self.portal.is_some() || matches!(self.sky, Sky::Image(_))

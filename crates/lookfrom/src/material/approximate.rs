@@ -41,6 +41,7 @@ pub(crate) fn in_whitteds_model(kind: &MaterialKind, before: &[Material], textur
         }
         MaterialKind::Principled(look) => Whitted { diffuse: look.base_color, ..plain },
         MaterialKind::Unlit { color } => Whitted { diffuse: *color, ..plain },
+        MaterialKind::ShadowCatcher { .. } => Whitted { diffuse: Color::gray(0.5), ..plain },
         MaterialKind::Interface => Whitted { transmission: Color::gray(1.0), ior: 1.0, ..plain },
     }
 }

@@ -14,9 +14,14 @@ use crate::warp;
 /// How far in u and v heights are compared, as pbrt-v4 does it where it knows no footprint.
 const STEP: f32 = 0.0005;
 
+/// The frame of the shading normal as it is.
+pub(super) fn plain(surface: &Surface) -> Frame {
+    around(surface.ns, surface.shading_dpdu)
+}
+
 /// The shading frame at a surface: its normal on the side of the geometric one, its first axis along ∂p/∂u.
 pub(super) fn frame(relief: &Relief, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Frame {
-    let plain = around(surface.ns, surface.shading_dpdu);
+    let plain = plain(surface);
     let bent = match relief {
         Relief::None => return plain,
         Relief::NormalMap(image) => {

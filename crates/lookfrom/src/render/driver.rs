@@ -110,8 +110,7 @@ impl Frame<'_> {
         threads: Option<usize>,
         progress: &dyn Progress,
     ) -> Result<Rendered> {
-        let film =
-            Film::with_layers(self.image.width, self.image.height, self.image.crop, self.image.layers)?;
+        let film = Film::for_image(&self.image)?;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
         let pool =
             pool.map_err(|error| Error::new(ErrorKind::Limit, &Location::default(), error.to_string()))?;
@@ -181,7 +180,7 @@ impl Work<'_> {
                 if self.progress.cancelled() {
                     return Ok(false);
                 }
-                let mut tile = FilmTile::with_layers(*tile_area, self.frame.image.layers)?;
+                let mut tile = FilmTile::for_image(*tile_area, &self.frame.image)?;
                 let rays = self.frame.render_tile(samples.clone(), &mut tile);
                 let rays_so_far = {
                     let mut guard = self.film.lock().unwrap_or_else(std::sync::PoisonError::into_inner);

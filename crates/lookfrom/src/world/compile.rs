@@ -11,6 +11,7 @@ use lookfrom_scene::scene::Scene;
 use lookfrom_scene::settings::{ColorMode, Integrator as Kind};
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
+use super::catcher;
 use super::lights::Lights;
 use super::place::{Compiler, Group};
 use super::{Instance, Names, World};
@@ -113,6 +114,10 @@ impl World {
             materials.push(Material { kind: material.kind, relief: material.relief, medium, whitted });
             names.materials.push(material.name);
         }
+        let catcher = materials.iter().find_map(|material| match material.kind {
+            MaterialKind::ShadowCatcher { normal } => Some(normal),
+            _ => None,
+        });
         let is_environment = |index: &u32| matches!(lights[*index as usize], Light::Environment(_));
         Ok(Self {
             origin,
@@ -124,6 +129,7 @@ impl World {
             transmissive: materials.iter().any(|material| material.whitted.transmission != Color::BLACK),
             has_gaps: !alphas.is_empty()
                 || materials.iter().any(|material| material.kind == MaterialKind::Interface),
+            catcher_irradiance: catcher.map(|n| catcher::irradiance(&lights, &textures, n)),
             materials,
             alphas,
             media,

@@ -1,0 +1,244 @@
+//! What surrounds a model that comes without light: a photographer's studio, computed, not painted; or a picture of
+//! somewhere else; and a floor that is seen only by the shadows on it.
+//!
+//! The studio is a backdrop that grows darker downward, with lamps behind soft boxes: a large key light at the upper left of
+//! the camera, one overhead, and two upright strips, at the right and behind at the left, that draw edges on whatever
+//! mirrors. It is a light from infinitely far, so that a model of any size looks the same in it.
+
+use glam::{DMat4, DVec3};
+
+use super::Stage;
+use crate::error::Location;
+use crate::image::Image;
+use crate::light::{LightKind, Sky};
+use crate::material::{Material, MaterialKind};
+use crate::model::surface::push_image;
+use crate::scene::{Bounds, MaterialId, Scene};
+use crate::shape::{Geometry, Shape};
+
+/// Texels of the studio's picture.
+const WIDTH: u32 = 256;
+const HEIGHT: u32 = 128;
+
+/// The backdrop by the height of the direction, from −1 to 1, linear in between.
+const BACKDROP: [(f64, [f64; 3]); 5] = [
+    (-1.0, [0.20, 0.20, 0.205]),
+    (-0.55, [0.36, 0.365, 0.375]),
+    (-0.1, [0.66, 0.665, 0.675]),
+    (0.3, [0.30, 0.305, 0.315]),
+    (1.0, [0.18, 0.185, 0.195]),
+];
+
+/// A lamp behind a rectangle of cloth.
+struct SoftBox {
+    /// From the model, in parts of right, up and towards the camera; any length.
+    toward: [f64; 3],
+    /// Half its width and height at a distance of 1.
+    half: [f64; 2],
+    /// Radiance in its middle.
+    radiance: [f64; 3],
+}
+
+const SOFT_BOXES: [SoftBox; 4] = [
+    SoftBox { toward: [-0.62, 0.85, 0.6], half: [0.42, 0.42], radiance: [3.9, 3.8, 3.67] },
+    SoftBox { toward: [0.1, 1.0, -0.35], half: [0.55, 0.32], radiance: [1.6, 1.6, 1.6] },
+    SoftBox { toward: [0.95, 0.5, 0.1], half: [0.16, 0.42], radiance: [2.8, 2.9, 3.05] },
+    SoftBox { toward: [-0.75, 0.68, -0.75], half: [0.14, 0.42], radiance: [3.6, 3.7, 3.9] },
+];
+
+/// The share of a box's half size over which its edge fades.
+const FADE: f64 = 0.12;
+
+/// Radius of the floor in radii of the bounds: beyond the upper edge of the picture.
+const FLOOR_RADIUS: f64 = 60.0;
+
+impl Stage {
+    /// Adds the studio, turned to the viewer whom models look at.
+    pub(super) fn add_studio(&self, scene: &mut Scene) {
+        let image = push_image(scene, studio());
+        let sky = Sky::Image { image, scale: [1.0; 3], world_from_light: self.world_from_light() };
+        super::add(scene, "studio", LightKind::Environment { sky, portal: None, illuminates: true });
+    }
+
+    /// From a picture of the surroundings with +y up, whose middle lies before the viewer.
+    fn world_from_light(&self) -> DMat4 {
+        let [right, up, back] = self.basis.map(|axis| axis.extend(0.0));
+        DMat4::from_cols(right, up, back, DMat4::IDENTITY.w_axis)
+    }
+}
+
+/// Lets a picture in latitude and longitude, +y up, take the place of all environments. `up` as in [`super::furnish`].
+pub fn surround(scene: &mut Scene, picture: Image, up: Option<DVec3>) {
+    scene.lights.retain(|light| !matches!(light.kind, LightKind::Environment { .. }));
+    let world_from_light = Stage::of(scene, up).world_from_light();
+    let image = push_image(scene, picture);
+    let sky = Sky::Image { image, scale: [1.0; 3], world_from_light };
+    super::add(scene, "environment", LightKind::Environment { sky, portal: None, illuminates: true });
+}
+
+/// Turns pictures of the surroundings around what is up, by degrees against the clock as seen from above. `up` as in
+/// [`super::furnish`].
+pub fn turn_environments(scene: &mut Scene, up: Option<DVec3>, degrees: f64) {
+    let turn = turn(Stage::of(scene, up).basis[1], degrees);
+    for light in &mut scene.lights {
+        if let LightKind::Environment { sky, .. } = &mut light.kind
+            && let Sky::Image { world_from_light, .. } | Sky::Octahedral { world_from_light, .. } = sky
+        {
+            *world_from_light = turn * *world_from_light;
+        }
+    }
+}
+
+/// The rotation around an axis of unit length by degrees.
+pub(super) fn turn(axis: DVec3, degrees: f64) -> DMat4 {
+    let (sin, cos) = libm::sincos(degrees.to_radians());
+    let column = |v: DVec3| (cos * v + sin * axis.cross(v) + (1.0 - cos) * axis.dot(v) * axis).extend(0.0);
+    DMat4::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z), DMat4::IDENTITY.w_axis)
+}
+
+/// Adds a large floor under everything, which is seen only by the shadows on it ([`MaterialKind::ShadowCatcher`]). `up` as
+/// in [`super::furnish`].
+pub fn add_floor(scene: &mut Scene, up: Option<DVec3>) {
+    let Stage { bounds, basis: [_, up, _] } = Stage::of(scene, up);
+    // What is in objects stands in the world as well: the lowest corner of the box along `up`.
+    let Bounds { min, max } = bounds;
+    let lowest = DVec3::select(up.cmpge(DVec3::ZERO), min, max).dot(up);
+    // A little below it: flat undersides must not lie in the floor.
+    let radius = bounds.radius();
+    let gap = 1e-3 * radius + 1e-6 * min.abs().max(max.abs()).max_element();
+    let center = bounds.center();
+    let center = center + (lowest - gap - center.dot(up)) * up;
+    let material = MaterialId(scene.materials.len() as u32);
+    let kind = MaterialKind::ShadowCatcher { normal: up.as_vec3() };
+    scene.materials.push(Material::new("floor", Location::default(), kind));
+    let geometry = Geometry::Disk { center, normal: up, radius: FLOOR_RADIUS * radius };
+    scene.shapes.push(Shape {
+        name: Some("floor".to_owned()),
+        ..Shape::new(Location::default(), geometry, material)
+    });
+}
+
+/// The studio's picture in latitude and longitude: the camera stands at +z.
+fn studio() -> Image {
+    let turns = |parts: f64| libm::sincos(std::f64::consts::PI * parts);
+    let columns: Vec<(f64, f64)> =
+        (0..WIDTH).map(|x| turns(2.0 * ((f64::from(x) + 0.5) / f64::from(WIDTH) - 0.5))).collect();
+    let frames = SOFT_BOXES.map(|of| basis_facing(DVec3::from_array(of.toward)));
+    let mut texels = Vec::with_capacity((WIDTH * HEIGHT) as usize);
+    for y in 0..HEIGHT {
+        let (sin_theta, cos_theta) = turns((f64::from(y) + 0.5) / f64::from(HEIGHT));
+        for (sin_phi, cos_phi) in &columns {
+            let direction = DVec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta);
+            texels.push(radiance(direction, &frames).map(|c| c as f32));
+        }
+    }
+    Image::from_linear("studio", WIDTH, HEIGHT, texels)
+}
+
+/// What comes from a unit direction in the studio.
+fn radiance(direction: DVec3, frames: &[[DVec3; 3]; 4]) -> [f64; 3] {
+    // The backdrop.
+    let above = BACKDROP[1..].iter().position(|(y, _)| direction.y <= *y).unwrap_or(BACKDROP.len() - 2);
+    let [(y0, low), (y1, high)] = [BACKDROP[above], BACKDROP[above + 1]];
+    let t = ((direction.y - y0) / (y1 - y0)).clamp(0.0, 1.0);
+    let mut sum: [f64; 3] = std::array::from_fn(|c| low[c] + t * (high[c] - low[c]));
+
+    // What lies before it.
+    for (SoftBox { half, radiance, .. }, [right, up, toward]) in SOFT_BOXES.iter().zip(frames) {
+        let depth = direction.dot(*toward);
+        if depth <= 0.0 {
+            continue;
+        }
+        let inside = |axis: DVec3, half: f64| {
+            let from_edge = (1.0 - (direction.dot(axis) / (depth * half)).abs()) / FADE;
+            let t = (0.5 + 0.5 * from_edge).clamp(0.0, 1.0);
+            t * t * (3.0 - 2.0 * t)
+        };
+        let share = inside(*right, half[0]) * inside(*up, half[1]);
+        sum = std::array::from_fn(|c| sum[c] + share * (radiance[c] - sum[c]));
+    }
+    sum
+}
+
+/// Right, up and the direction itself, of unit length, for something that faces where `toward` comes from.
+fn basis_facing(toward: DVec3) -> [DVec3; 3] {
+    let toward = toward.normalize();
+    let hint = if toward.y > 0.95 { DVec3::Z } else { DVec3::Y };
+    let right = hint.cross(toward).normalize();
+    [right, toward.cross(right), toward]
+}
+
+/// What a camera's place becomes when it goes around the middle of the bounds with everything that it is lit by.
+pub(super) fn orbit(bounds: Bounds, up: DVec3, degrees: f64) -> DMat4 {
+    let middle = bounds.center();
+    DMat4::from_translation(middle) * turn(up, degrees) * DMat4::from_translation(-middle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_studio_is_bright_enough_for_a_white_model_and_no_brighter() {
+        let image = studio();
+        // What a white matte surface that looks there sends back.
+        let seen = |normal: DVec3| {
+            let normal = normal.normalize();
+            let mut sum = [0.0; 3];
+            for (index, texel) in (0..).zip(&image.texels) {
+                let (x, y) = (index % WIDTH, index / WIDTH);
+                let (u, v) =
+                    ((f64::from(x) + 0.5) / f64::from(WIDTH), (f64::from(y) + 0.5) / f64::from(HEIGHT));
+                let ((sin_phi, cos_phi), (sin, cos)) =
+                    (((u - 0.5) * std::f64::consts::TAU).sin_cos(), (v * std::f64::consts::PI).sin_cos());
+                let direction = DVec3::new(sin_phi * sin, cos, -cos_phi * sin);
+                let area =
+                    2.0 * std::f64::consts::PI * std::f64::consts::PI * sin / f64::from(WIDTH * HEIGHT);
+                let weight = direction.dot(normal).max(0.0) * area / std::f64::consts::PI;
+                sum = std::array::from_fn(|c| sum[c] + weight * f64::from(texel[c]));
+            }
+            sum
+        };
+        let [up, key, front, right, below] =
+            [DVec3::Y, DVec3::from_array(SOFT_BOXES[0].toward), DVec3::Z, DVec3::X, -DVec3::Y].map(seen);
+        println!("up {up:?} key {key:?} front {front:?} right {right:?} below {below:?}");
+        assert!((0.9..1.3).contains(&up[1]) && key[1] < 1.5, "{up:?} {key:?}");
+        // No side is without light, and none is coloured.
+        for side in [up, key, front, right, below] {
+            assert!(side[1] > 0.25 && (side[0] / side[2] - 1.0).abs() < 0.06, "{side:?}");
+        }
+        assert!(key[1] > 1.3 * right[1], "it must have a bright side");
+    }
+
+    #[test]
+    fn environments_turn_around_what_is_up() {
+        let mut scene = Scene::default();
+        Stage::of(&scene, Some(DVec3::Z)).add_studio(&mut scene);
+        let middle = |scene: &Scene| match &scene.lights[0].kind {
+            LightKind::Environment { sky: Sky::Image { world_from_light, .. }, .. } => {
+                [-DVec3::Z, DVec3::Y].map(|v| world_from_light.transform_vector3(v))
+            }
+            other => panic!("{other:?}"),
+        };
+        let [ahead, up] = middle(&scene);
+        assert!(ahead.distance(DVec3::Y) < 1e-12 && up.distance(DVec3::Z) < 1e-12, "{ahead} {up}");
+        turn_environments(&mut scene, Some(DVec3::Z), 90.0);
+        let [ahead, up] = middle(&scene);
+        assert!(ahead.distance(-DVec3::X) < 1e-12 && up.distance(DVec3::Z) < 1e-12, "{ahead} {up}");
+    }
+
+    #[test]
+    fn the_floor_lies_below_for_any_up() {
+        for up in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(-1.0, 1.0, 2.0)] {
+            let mut scene = Scene::default();
+            add_floor(&mut scene, Some(up));
+            let floor = scene.shapes.last().unwrap();
+            let Geometry::Disk { center, normal, .. } = floor.geometry else { panic!("not a disk") };
+            for corner in super::super::corners(super::super::sane(Bounds::EMPTY)) {
+                assert!((corner - center).dot(normal) > 0.0);
+            }
+            let [_, vertical, _] = super::super::basis(up);
+            assert!(vertical.distance(normal) < 1e-12);
+        }
+    }
+}
