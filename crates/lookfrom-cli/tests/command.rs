@@ -10,6 +10,7 @@ mod command {
     #[cfg(unix)]
     mod interrupt;
     mod layers;
+    mod models;
     mod render;
     mod stage;
 }

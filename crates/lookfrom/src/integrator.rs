@@ -29,6 +29,7 @@ use crate::world::World;
 pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
 pub use media::Media;
 pub use occlusion::AmbientOcclusion;
+pub(crate) use path::power_heuristic;
 pub use path::{Departure, PathTracer, Wisdom};
 pub use raycast::Raycast;
 pub use shadow::Shadow;
@@ -186,7 +187,7 @@ impl<P: Probe> Next<'_, P> {
         self.add_to(path.slot, path.address, term, value);
     }
 
-    fn add_to(&mut self, slot: u32, address: u64, term: Term, value: Spectrum) {
+    pub(crate) fn add_to(&mut self, slot: u32, address: u64, term: Term, value: Spectrum) {
         if !value.is_black() {
             self.samples.radiance[slot as usize] += value;
             self.probe.notice(|| Event::Add { address, term, value });

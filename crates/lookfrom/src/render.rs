@@ -254,6 +254,9 @@ impl<'a> Frame<'a> {
                 self.show_backdrops(paths, hits, met, &mut next);
             }
             integrator.step_all(self.world, numbers, paths, hits, &mut next);
+            if has_backdrop {
+                self.expect_light(met, &mut next);
+            }
 
             // Occluded: what arrives of the lights.
             rays_traced.shadow += resolve_shadows(self.world, self.passing(), &mut next);

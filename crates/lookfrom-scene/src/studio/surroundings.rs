@@ -185,7 +185,7 @@ mod tests {
         let seen = |normal: DVec3| {
             let normal = normal.normalize();
             let mut sum = [0.0; 3];
-            for (index, texel) in (0..).zip(&image.texels) {
+            for (index, texel) in (0..).zip(image.texels()) {
                 let (x, y) = (index % WIDTH, index / WIDTH);
                 let (u, v) =
                     ((f64::from(x) + 0.5) / f64::from(WIDTH), (f64::from(y) + 0.5) / f64::from(HEIGHT));

@@ -350,7 +350,7 @@ impl PathTracer {
 
 /// The weight of a way that finds light with density `this`, where another one finds it with `other` (Veach & Guibas
 /// 1995, β = 2).
-fn power_heuristic(this: f32, other: f32) -> f32 {
+pub(crate) fn power_heuristic(this: f32, other: f32) -> f32 {
     // In this form nothing overflows.
     let ratio = other / this;
     1.0 / (1.0 + ratio * ratio)

@@ -10,7 +10,8 @@ use lookfrom_bvh::Hit;
 use lookfrom_scene::settings::{Background, Integrator as Kind};
 
 use super::Frame;
-use crate::integrator::{Event, Next, Path, Probe};
+use crate::integrator::{Event, Next, Path, Probe, Shadow, Term, power_heuristic};
+use crate::light::{Light, Reference};
 use crate::math;
 use crate::spectrum::Spectrum;
 use crate::texture::Lanes;
@@ -25,6 +26,8 @@ pub(super) enum Met {
     Nothing,
     /// The floor of shadows.
     Floor,
+    /// The same, and the path has met what comes next.
+    LeftFloor,
 }
 
 impl Frame<'_> {
@@ -45,13 +48,11 @@ impl Frame<'_> {
         let mut kept = 0;
         for index in 0..paths.len() {
             let (mut path, hit) = (paths[index], hits[index]);
-            if path.depth == 0 {
-                let slot = path.slot as usize;
-                met[slot] = self.show_backdrop(&mut path, &hit, next);
-                if met[slot] == Met::Nothing && self.image.background != Background::Environment {
-                    next.probe.notice(|| Event::Met { path, hit });
-                    continue;
-                }
+            let met = &mut met[path.slot as usize];
+            self.show_backdrop(&mut path, &hit, met, next);
+            if *met == Met::Nothing && self.image.background != Background::Environment {
+                next.probe.notice(|| Event::Met { path, hit });
+                continue;
             }
             (paths[kept], hits[kept]) = (path, hit);
             kept += 1;
@@ -60,20 +61,76 @@ impl Frame<'_> {
         hits.truncate(kept);
     }
 
-    /// Shows the backdrop to a ray from the camera, and says what it met; after `Nothing`, all is seen. Light from the floor
-    /// is weighed so that it looks like the backdrop where no shadow falls.
-    fn show_backdrop<P: Probe>(&self, path: &mut Path, hit: &Hit, next: &mut Next<'_, P>) -> Met {
+    /// Shows the backdrop to a ray from the camera, and says in `met` what it met; after `Nothing`, all is seen. Light from
+    /// the floor is weighed so that it looks like the backdrop where no shadow falls.
+    ///
+    /// The path tracer's floor shows the backdrop less what is in the way of the light: the light that its samples would find
+    /// if nothing stood there is expected, and subtracted ([`Frame::expect_light`]). Where nothing does, nothing is left to
+    /// be noise.
+    fn show_backdrop<P: Probe>(
+        &self,
+        path: &mut Path,
+        hit: &Hit,
+        met: &mut Met,
+        next: &mut Next<'_, P>,
+    ) {
         let lanes = next.samples.lanes[path.slot as usize];
-        if !hit.is_hit() {
-            return Met::Nothing;
+        if *met == Met::Floor && path.depth == 1 {
+            *met = Met::LeftFloor;
+            let expected = self.sky_found(path, &lanes);
+            next.add(path, Term::Sky, expected * -1.0);
         }
-        if !self.is_path_traced() || !self.world.hits_catcher(&path.ray, hit) {
-            return Met::Thing;
+        if path.depth > 0 {
+            return;
         }
-        let behind = self.behind(path, &lanes);
-        let direction = Vec3::from_array(path.ray.direction);
-        path.beta *= self.world.catcher_correction(direction, behind, &lanes);
-        Met::Floor
+        *met = match hit.is_hit() {
+            false => Met::Nothing,
+            true if self.is_path_traced() && self.world.hits_catcher(&path.ray, hit) => Met::Floor,
+            true => Met::Thing,
+        };
+        if *met == Met::Floor {
+            let behind = self.behind(path, &lanes);
+            if self.render.integrator == Kind::Path {
+                next.add(path, Term::Sky, path.beta * behind);
+            }
+            let direction = Vec3::from_array(path.ray.direction);
+            path.beta *= self.world.catcher_correction(direction, behind, &lanes);
+        }
+    }
+
+    /// Subtracts what the lights infinitely far that paths asked at the floor just now bring if nothing is in the way.
+    pub(super) fn expect_light<P: Probe>(&self, met: &[Met], next: &mut Next<'_, P>) {
+        if self.render.integrator != Kind::Path {
+            return;
+        }
+        let is_far = |shadow: &Shadow| match shadow.term {
+            Term::Light(light) => {
+                matches!(self.world.lights[light as usize], Light::Environment(_) | Light::Distant { .. })
+            }
+            _ => false,
+        };
+        for index in 0..next.samples.shadows.len() {
+            let shadow = next.samples.shadows[index];
+            if met[shadow.slot as usize] == Met::Floor && is_far(&shadow) {
+                next.add_to(shadow.slot, shadow.address, Term::Sky, shadow.contribution * -1.0);
+            }
+        }
+    }
+
+    /// What the path tracer adds if a path that left the floor meets nothing.
+    fn sky_found(&self, path: &Path, lanes: &Lanes) -> Spectrum {
+        if self.render.integrator != Kind::Path {
+            return Spectrum::BLACK;
+        }
+        let direction = Vec3::from_array(path.ray.direction).normalize();
+        let at = Reference { point: path.departure.point.as_dvec3(), n: path.departure.n };
+        let lit =
+            self.world.environments.iter().filter(|&&index| self.world.lights[index as usize].illuminates());
+        lit.fold(Spectrum::BLACK, |sum, &index| {
+            let light_pdf = self.world.light_pdf(index, &at, direction, None);
+            let weight = power_heuristic(path.departure.pdf, light_pdf);
+            sum + path.beta * self.world.sky_of(index, &path.ray, lanes) * weight
+        })
     }
 
     fn behind(&self, path: &Path, lanes: &Lanes) -> Spectrum {
@@ -103,7 +160,7 @@ impl Frame<'_> {
             }
             Met::Thing => (self.rgb(radiance * weight, lanes), 1.0),
             Met::Nothing => ([0.0; 3], 0.0),
-            Met::Floor => ([0.0; 3], 1.0 - math::luminance(self.rgb(radiance, lanes))),
+            Met::Floor | Met::LeftFloor => ([0.0; 3], 1.0 - math::luminance(self.rgb(radiance, lanes))),
         }
     }
 }

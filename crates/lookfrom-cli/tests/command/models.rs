@@ -1,0 +1,181 @@
+//! Pictures with nothing but a model: size, surroundings, background, floor, turntable, many files.
+
+use std::path::Path;
+
+use lookfrom_scene::image::{self, Image, encode_hdr};
+use lookfrom_scene::{Disk, Sources};
+
+use super::stage::Stage;
+
+/// A plate that looks up, small against its bounds, which a far point makes large.
+const PLATE: &str = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 4 3 2 1\n";
+
+fn picture(path: &Path) -> Image {
+    image::read(path, &mut Sources::new(&Disk)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn channel(stage: &Stage, file: &str, name: &str) -> Vec<f32> {
+    let found = image::read_exr(&stage.path(file), &mut Sources::new(&Disk)).unwrap();
+    found.channel(name).unwrap_or_else(|| panic!("{file} has no channel {name}")).to_vec()
+}
+
+/// A sky that is brighter above, and coloured, so that directions and channels cannot be mistaken.
+fn write_sky(stage: &Stage) {
+    let texels: Vec<[f32; 3]> = (0..64 * 32)
+        .map(|index| {
+            let (x, y) = ((index % 64) as f32, (index / 64) as f32);
+            [1.5 - y / 32.0, 1.0 + x / 64.0, 0.5 + y / 16.0]
+        })
+        .collect();
+    std::fs::write(stage.path("sky.hdr"), encode_hdr(64, 32, &texels).unwrap()).unwrap();
+}
+
+#[test]
+fn a_broken_file_among_others_is_told_of_and_the_others_are_rendered() {
+    let stage = Stage::new("some-broken");
+    stage.write("broken.obj", "v 0 0\nf 1 2 3\n");
+    stage.write("other.obj", PLATE);
+    let run = stage
+        .run("render model.obj broken.obj missing.ply other.obj -q -o out-{name}.png --size 24 --samples 1");
+    run.fails(1, &["broken.obj", "missing.ply: no such file"]);
+    for name in ["out-model.png", "out-other.png"] {
+        let picture = picture(&stage.path(name));
+        assert_eq!((picture.width, picture.height), (24, 24));
+    }
+    assert!(!stage.names().contains(&"out-broken.png".to_owned()));
+}
+
+#[test]
+fn a_turntable_makes_numbered_pictures_that_can_be_made_alone() {
+    let stage = Stage::new("turntable");
+    stage.done("render model.obj -q -o t.png --size 16x12 --samples 1 --turntable 4");
+    let names: Vec<String> = stage.names().into_iter().filter(|name| name.starts_with("t-")).collect();
+    assert_eq!(names, ["t-000.png", "t-001.png", "t-002.png", "t-003.png"]);
+    assert!(stage.bytes("t-000.png") != stage.bytes("t-001.png"), "nothing turns");
+    stage.done("render model.obj -q -o alone.png --size 16x12 --samples 1 --turn 90");
+    assert!(stage.bytes("t-001.png") == stage.bytes("alone.png"), "the second of four is not that of 90°");
+    stage.done("render model.obj -q -o straight.png --size 16x12 --samples 1");
+    assert!(stage.bytes("t-000.png") == stage.bytes("straight.png"), "the first is not where it begins");
+    stage.run("render model.obj -o - --turntable 2").fails(2, &["--turntable"]);
+}
+
+#[test]
+fn transparent_pictures_hide_only_what_the_model_hides() {
+    let stage = Stage::new("transparent");
+    let common = "render model.obj -q --size 32 --samples 8 --filter box --background";
+    stage.done(&format!("{common} transparent -o p.png"));
+    let png = ::image::open(stage.path("p.png")).unwrap().into_rgba8();
+    let at = |x, y| png.get_pixel(x, y).0;
+    assert_eq!(at(0, 0), [0; 4], "the corner hides something");
+    let opaque: Vec<_> = png.pixels().filter(|pixel| pixel.0[3] == 255).collect();
+    assert!(opaque.len() > 100 && opaque.iter().all(|pixel| pixel.0[0] > 60), "the model hides nothing");
+    assert!(png.pixels().any(|pixel| (1..255).contains(&pixel.0[3])), "no edge is smooth");
+
+    // The EXR's colours are multiplied by its alpha, and no layer else is changed by it.
+    stage.done(&format!("{common} transparent -o p.exr"));
+    let (alpha, green) = (channel(&stage, "p.exr", "A"), channel(&stage, "p.exr", "G"));
+    assert_eq!((alpha[0], green[0]), (0.0, 0.0));
+    stage.done(&format!("{common} environment -o e.exr"));
+    let whole = channel(&stage, "e.exr", "G");
+    for ((alpha, green), whole) in alpha.iter().zip(&green).zip(&whole) {
+        assert!(*alpha > 0.0 || *green == 0.0);
+        assert!(*alpha < 1.0 || green == whole, "the light on the model changes with the background");
+    }
+
+    // A colour is shown as it is.
+    stage.done(&format!("{common} #2080c0 -o c.png"));
+    let png = ::image::open(stage.path("c.png")).unwrap().into_rgb8();
+    assert_eq!(png.get_pixel(0, 0).0, [0x20, 0x80, 0xc0]);
+    stage.run("render model.obj --background red").fails(2, &["#rrggbb"]);
+}
+
+#[test]
+fn a_picture_of_the_surroundings_takes_the_place_of_the_studio_and_turns() {
+    let stage = Stage::new("environment");
+    write_sky(&stage);
+    let common = "render model.obj -q --size 24 --samples 4 --environment sky.hdr";
+    let render = |more: &str| {
+        stage.done(&format!("{common} {more} -o p.pfm"));
+        picture(&stage.path("p.pfm")).texels().collect::<Vec<_>>()
+    };
+    let plain = render("");
+    // The camera looks down, where the sky is blue.
+    let [r, _, b] = plain[0];
+    assert!(b > r, "the studio is still there: {r} {b}");
+    let turned = render("--rotate-environment 90");
+    assert!((turned[0][1] - plain[0][1]).abs() > 0.1, "{:?} {:?}", turned[0], plain[0]);
+    stage.run("render model.obj --environment none.hdr").fails(1, &["none.hdr", "no such file"]);
+}
+
+#[test]
+fn a_floor_without_shadows_is_the_background() {
+    let stage = Stage::new("floor");
+    write_sky(&stage);
+    // A plate so small that it hides and shadows nothing in most of the picture; the far point only widens the view.
+    stage.write(
+        "small.obj",
+        "v 0 0 0\nv 0.01 0 0\nv 0 0 0.01\nf 3 2 1\nv 10 0 0\nv 10.01 0 0\nv 10 0 0.01\nf 6 5 4\n",
+    );
+    for light in ["", "--environment sky.hdr"] {
+        let common = format!("render small.obj -q --size 40 --samples 16 --filter box {light}");
+        stage.done(&format!("{common} -o without.pfm"));
+        stage.done(&format!("{common} --floor -o with.pfm"));
+        let [without, with] = ["without.pfm", "with.pfm"].map(|name| picture(&stage.path(name)).texels().collect::<Vec<_>>());
+        let same = without
+            .iter()
+            .zip(&with)
+            .filter(|(a, b)| a.iter().zip(*b).all(|(a, b)| (a - b).abs() <= 2e-4 * a.max(1.0)));
+        let (same, all) = (same.count(), with.len());
+        assert!(same * 10 > all * 9, "{light}: {same} of {all} pixels look like the background");
+    }
+    // The other integrators know no such trick, but by noise they see the same.
+    let common = "render small.obj -q --size 16 --samples 256 --environment sky.hdr";
+    stage.done(&format!("{common} -o without.pfm"));
+    stage.done(&format!("{common} --floor --integrator simple_path -o with.pfm"));
+    let [without, with] = ["without.pfm", "with.pfm"].map(|name| {
+        let texels = picture(&stage.path(name)).texels().collect::<Vec<_>>();
+        let sum = texels.iter().fold([0.0; 3], |sum: [f32; 3], texel| [0, 1, 2].map(|c| sum[c] + texel[c]));
+        sum.map(|sum| sum / texels.len() as f32)
+    });
+    for (a, b) in without.iter().zip(&with) {
+        assert!((a / b - 1.0).abs() < 0.01, "{without:?} {with:?}");
+    }
+}
+
+#[test]
+fn shadows_lie_on_the_floor_alone() {
+    let stage = Stage::new("shadows");
+    stage.write(
+        "lifted.obj",
+        "v 0 0 0\nv 0.001 0 0\nv 0 0 0.001\nf 3 2 1\nv 0 1 0\nv 2 1 0\nv 2 1 2\nv 0 1 2\nf 7 6 5 4\n",
+    );
+    stage.done("render lifted.obj -q --size 48 --samples 16 --floor --background transparent -o p.exr");
+    let (alpha, red) = (channel(&stage, "p.exr", "A"), channel(&stage, "p.exr", "R"));
+    let shadows = alpha.iter().zip(&red).filter(|(alpha, red)| **red == 0.0 && **alpha > 0.2).count();
+    let free = alpha.iter().filter(|alpha| **alpha < 0.02).count();
+    assert!(shadows > 50 && free > 50, "{shadows} {free}");
+    assert!(alpha.iter().all(|alpha| (0.0..=1.0).contains(alpha)));
+}
+
+#[test]
+fn the_same_bytes_for_any_number_of_threads_with_alpha() {
+    let stage = Stage::new("alpha-threads");
+    let [one, two] = [1, 2].map(|threads| {
+        stage.done(&format!(
+            "render model.obj -q --size 70 --samples 3 --floor --background transparent --threads {threads} -o p.exr"
+        ));
+        stage.bytes("p.exr")
+    });
+    assert!(one == two);
+}
+
+#[test]
+fn sizes_and_choices() {
+    let stage = Stage::new("sizes");
+    stage.done("render scene.toml -q -o p.png --size 17x9 --samples 1");
+    let found = picture(&stage.path("p.png"));
+    assert_eq!((found.width, found.height), (17, 9));
+    stage.run("render scene.toml --size 17 --width 9").fails(2, &["--size", "--width"]);
+    let run = stage.done("render model.obj -o p.png --size 8 --samples 1 --animation Walk --at 1.5s");
+    assert!(run.stderr.contains("--animation") && run.stderr.contains("glTF"), "{}", run.stderr);
+}
