@@ -64,6 +64,10 @@ pub(crate) fn prepare(
     // Change and furnish.
     let started = Instant::now();
     overrides.apply_to_settings(&mut scene.image, &mut scene.render)?;
+    let is_model = is_gltf(path) || model::is_model(path);
+    if is_model && overrides.samples.is_none() {
+        scene.render.samples = studio::samples_for_models(&scene.image);
+    }
     let (counts, bounds) = (Counts::of(&scene), scene.bounds());
     if bounds.is_empty() {
         warn("nothing stands in this scene: the picture shows the background alone");
@@ -84,7 +88,7 @@ pub(crate) fn prepare(
         studio::surround(&mut scene, environment.clone(), up);
     }
     // What glows in a glTF file is seldom meant to light it alone.
-    if is_gltf(path) || model::is_model(path) && !studio::shines(&scene) {
+    if is_model && (is_gltf(path) || !studio::shines(&scene)) {
         studio::furnish_model(&mut scene, up);
     } else {
         studio::furnish(&mut scene, up);

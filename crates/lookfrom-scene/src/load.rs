@@ -12,7 +12,7 @@ use crate::shape::{Part, Shape};
 use crate::{gltf, model, pbrt, studio, toml};
 
 /// The reflectance of a model whose file names no material.
-const CLAY: f32 = 0.65;
+const CLAY: f32 = 0.8;
 
 /// Reads a scene in our own format (`.toml`), one of pbrt-v4 (`.pbrt`), a glTF file (`.gltf`, `.glb`), or a model file,
 /// whose parts stand in the scene where the file has them and wear a matte grey "default" where the file gives them no

@@ -41,8 +41,11 @@ const FILL_NADIR: [f32; 3] = [0.17, 0.165, 0.16];
 /// In a room: light from everywhere, and from a lamp at the eye.
 const ROOM: f32 = 0.3;
 const LAMP: f32 = 0.55;
-/// Samples a pixel of a picture of a model.
+/// Samples a pixel of a picture of a model, and of one so small that nobody looks at single pixels.
 const MODEL_SAMPLES: u32 = 64;
+const THUMBNAIL_SAMPLES: u32 = 16;
+/// The most pixels of a thumbnail.
+const THUMBNAIL_PIXELS: u64 = 256 * 256;
 
 /// Adds a camera that frames the scene's bounds, if there is none. `up` as in [`furnish`].
 pub fn frame(scene: &mut Scene, up: Option<DVec3>) {
@@ -79,9 +82,15 @@ pub fn shines(scene: &Scene) -> bool {
 /// How pictures of models are made where nobody says otherwise: path traced, and shown by Khronos' PBR Neutral.
 pub fn settings_for_models() -> (ImageSettings, RenderSettings) {
     let image = ImageSettings { tonemap: Tonemap::PbrNeutral, ..ImageSettings::default() };
-    let render =
-        RenderSettings { integrator: Integrator::Path, samples: MODEL_SAMPLES, ..RenderSettings::default() };
+    let samples = samples_for_models(&image);
+    let render = RenderSettings { integrator: Integrator::Path, samples, ..RenderSettings::default() };
     (image, render)
+}
+
+/// How many samples a pixel a picture of a model gets where nobody says otherwise.
+pub fn samples_for_models(image: &ImageSettings) -> u32 {
+    let pixels = u64::from(image.width) * u64::from(image.height);
+    if pixels <= THUMBNAIL_PIXELS { THUMBNAIL_SAMPLES } else { MODEL_SAMPLES }
 }
 
 /// Turns the camera, which must be there, around the middle of the scene by degrees, against the clock as seen from above,

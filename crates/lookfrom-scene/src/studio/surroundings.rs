@@ -40,10 +40,10 @@ struct SoftBox {
 }
 
 const SOFT_BOXES: [SoftBox; 4] = [
-    SoftBox { toward: [-0.62, 0.85, 0.6], half: [0.42, 0.42], radiance: [3.9, 3.8, 3.67] },
-    SoftBox { toward: [0.1, 1.0, -0.35], half: [0.55, 0.32], radiance: [1.6, 1.6, 1.6] },
-    SoftBox { toward: [0.95, 0.5, 0.1], half: [0.16, 0.42], radiance: [2.8, 2.9, 3.05] },
-    SoftBox { toward: [-0.75, 0.68, -0.75], half: [0.14, 0.42], radiance: [3.6, 3.7, 3.9] },
+    SoftBox { toward: [-0.62, 0.85, 0.6], half: [0.62, 0.62], radiance: [2.15, 2.1, 2.03] },
+    SoftBox { toward: [0.1, 1.0, -0.35], half: [0.6, 0.4], radiance: [1.1, 1.1, 1.1] },
+    SoftBox { toward: [0.95, 0.5, 0.1], half: [0.16, 0.42], radiance: [1.5, 1.55, 1.63] },
+    SoftBox { toward: [-0.75, 0.68, -0.75], half: [0.14, 0.42], radiance: [1.9, 1.95, 2.05] },
 ];
 
 /// The share of a box's half size over which its edge fades.
