@@ -13,6 +13,9 @@ use lookfrom_scene::settings::Filter as Shape;
 /// Cells of a table from the centre to the radius.
 const CELLS: usize = 1024;
 
+/// Parts that shares are sorted into before a cell is looked for.
+const PARTS: usize = 1024;
+
 /// A pixel filter, made ready for sampling.
 ///
 /// Box and triangle are inverted exactly. The others are tabulated: along each axis 1024 cells from the centre to the
@@ -32,6 +35,8 @@ pub struct Filter {
 struct Table {
     /// Share of ∫|f| before each cell, and 1 at the end.
     cumulative: Vec<f32>,
+    /// For each of [`PARTS`] equal parts of 0 … 1, the cell that holds its beginning: where to begin to look.
+    first: Vec<u16>,
     /// Whether f is negative in the cell.
     negative: Vec<bool>,
     /// (∫|f| / ∫f)², for both axes together.
@@ -142,13 +147,21 @@ impl Table {
         }
         cumulative[CELLS] = 1.0;
         let negative = cells.iter().map(|&cell| cell < 0.0).collect();
-        Some((Self { cumulative, negative, weight }, 2.0 * total))
+        let first = |part: usize| {
+            let share = part as f32 / PARTS as f32;
+            cumulative[1..].partition_point(|&end| end <= share).min(CELLS - 1) as u16
+        };
+        let first = (0..PARTS).map(first).collect();
+        Some((Self { cumulative, first, negative, weight }, 2.0 * total))
     }
 
     /// How far out (0 … 1) the given share of |f| reaches, and the sign of f there. `share` is in [0, 1).
     fn invert(&self, share: f32) -> (f32, f32) {
         // Find the last cell that begins at or before it: one of positive width in the table.
-        let cell = self.cumulative[1..].partition_point(|&end| end <= share).min(CELLS - 1);
+        let mut cell = usize::from(self.first[(share * PARTS as f32) as usize]);
+        while cell < CELLS - 1 && self.cumulative[cell + 1] <= share {
+            cell += 1;
+        }
         let (start, end) = (self.cumulative[cell], self.cumulative[cell + 1]);
         let place = (cell as f32 + (share - start) / (end - start)) / CELLS as f32;
         (place, if self.negative[cell] { -1.0 } else { 1.0 })
