@@ -14,6 +14,7 @@ mod json;
 mod light;
 mod material;
 mod mesh;
+mod meshopt;
 mod node;
 mod texture;
 mod uri;

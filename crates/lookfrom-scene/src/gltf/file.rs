@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use super::json::{self, Root, Whole};
+use super::meshopt::{self, Layout};
 use super::uri::{self, Uri};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, Sources};
@@ -154,12 +155,12 @@ impl Document {
         Ok(View { bytes: self.part(view.buffer, view.byte_offset, view.byte_length, &place)?, stride })
     }
 
-    fn unpack(&self, _bytes: &[u8], _packed: &json::Meshopt, place: &str) -> Result<Vec<u8>> {
-        Err(Error::new(
-            ErrorKind::Unsupported,
-            &self.at(place),
-            "compressed by meshopt, which is not read yet",
-        ))
+    fn unpack(&self, bytes: &[u8], packed: &json::Meshopt, place: &str) -> Result<Vec<u8>> {
+        let at = self.at(place);
+        let layout = Layout::new(packed, &at)?;
+        // Elements can have hundreds of bytes, and a damaged file many views: count what they are made of.
+        self.count(layout.count.saturating_mul(layout.stride / 4), place)?;
+        meshopt::decode(bytes, &layout, &at, &self.limits)
     }
 
     /// A part of a buffer.
