@@ -8,6 +8,7 @@ mod accessor;
 mod build;
 mod camera;
 mod choose;
+mod draco;
 mod extension;
 mod file;
 mod json;

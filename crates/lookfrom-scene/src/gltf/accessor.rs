@@ -2,6 +2,7 @@
 //!
 //! Everything is checked against the buffers and the limits before memory is asked for.
 
+use super::draco::{self, Role};
 use super::file::Document;
 use super::json::{self, Whole};
 use crate::error::{Error, Result};
@@ -234,6 +235,15 @@ impl Document {
         let count = accessor.count.index();
         self.count(count as u64, asked)?;
 
+        // A part of a compressed mesh; where that cannot be had, what stands there for those who cannot unpack it.
+        if let Some((view, role)) = self.compressed.role(index) {
+            match self.unpacked(view, asked) {
+                Ok(mesh) => return self.part_of(mesh, role, layout.normalized, asked),
+                Err(error) if accessor.buffer_view.is_none() => return Err(error),
+                Err(_) => {}
+            }
+        }
+
         // What is there: zeros where no view is named.
         let mut elements = match accessor.buffer_view {
             Some(view) => self.gather(layout, view, accessor.byte_offset, count, asked)?,
@@ -249,6 +259,33 @@ impl Document {
             }
         }
         Ok(elements)
+    }
+
+    /// What stands in one part of a compressed mesh: as much as the mesh has, whatever the accessor counts.
+    fn part_of<V: Value, const N: usize>(
+        &self,
+        mesh: &draco::Decoded,
+        role: Role,
+        normalized: bool,
+        asked: &str,
+    ) -> Result<Vec<[V; N]>> {
+        let (found, numbers, one) = match role {
+            Role::Indices => {
+                let index = |&index: &u32| [V::of(index, false); N];
+                return Ok(mesh.indices.iter().map(index).collect());
+            }
+            Role::Attribute(id) => match mesh.attributes.get(&id) {
+                Some(attribute) => (attribute.width, &attribute.numbers, attribute.one),
+                None => return Err(self.invalid(asked, format!("the compressed mesh has no attribute {id}"))),
+            },
+        };
+        if found != N {
+            let message = format!("the compressed mesh has {found} numbers an element; expected {N}");
+            return Err(self.invalid(asked, message));
+        }
+        let one = if normalized { one } else { None };
+        let value = |number: f32| V::of(one.map_or(number, |one| (number / one).max(-1.0)), false);
+        Ok(numbers.as_chunks::<N>().0.iter().map(|element| element.map(value)).collect())
     }
 
     /// `count` elements of a view, from `offset` on.

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
+use super::draco::{self, Compressed, Decoded};
 use super::json::{self, Root, Whole};
 use super::meshopt::{self, Layout};
 use super::uri::{self, Uri};
@@ -35,6 +36,8 @@ pub(crate) struct Document {
     buffers: Vec<Bytes>,
     /// What compressed views become, once one of them has been asked for.
     decoded: Vec<OnceLock<Result<Vec<u8>>>>,
+    /// What compressed meshes become.
+    pub(super) compressed: Compressed,
     /// How many values of accessors were read so far.
     values: AtomicU64,
 }
@@ -72,6 +75,7 @@ impl Document {
         check_version(&root, &at, sources)?;
         let decoded = root.buffer_views.iter().map(|_| OnceLock::new()).collect();
         let limits = sources.limits;
+        let compressed = Compressed::new(&root);
         let mut document = Self {
             root,
             path: path.to_owned(),
@@ -80,6 +84,7 @@ impl Document {
             content,
             buffers: Vec::new(),
             decoded,
+            compressed,
             values: AtomicU64::new(0),
         };
         document.read_buffers(binary.as_ref(), sources);
@@ -161,6 +166,21 @@ impl Document {
         // Elements can have hundreds of bytes, and a damaged file many views: count what they are made of.
         self.count(layout.count.saturating_mul(layout.stride / 4), place)?;
         meshopt::decode(bytes, &layout, &at, &self.limits)
+    }
+
+    /// The mesh that a view holds in Draco's compression; `asked` is the pointer of what uses it.
+    ///
+    /// # Errors
+    /// As [`Document::view`], and where it cannot be unpacked.
+    pub(super) fn unpacked(&self, view: Whole, asked: &str) -> Result<&Decoded> {
+        self.one_of(&self.root.buffer_views, view, "buffer view", asked)?;
+        self.compressed.get_or_decode(view, || {
+            let place = format!("/bufferViews/{}", view.0);
+            let mesh = draco::decode(self.view(view, asked)?.bytes, &self.at(&place), &self.limits)?;
+            self.count(mesh.vertices as u64, &place)?;
+            self.count(mesh.indices.len() as u64, &place)?;
+            Ok(mesh)
+        })
     }
 
     /// A part of a buffer.

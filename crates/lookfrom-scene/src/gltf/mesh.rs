@@ -99,6 +99,10 @@ pub(crate) fn vertices(
     if let Some(index) = primitive.indices {
         let indices = document.whole_vectors::<1>(index, &format!("{pointer}/indices"))?;
         vertices.indices = Some(indices.into_flattened());
+    } else if let Some(draco) = &primitive.extensions.draco {
+        // A compressed mesh always has indices, and files may forget to say so.
+        vertices.indices =
+            document.unpacked(draco.buffer_view, pointer).ok().map(|mesh| mesh.indices.clone());
     }
     Ok(Some(vertices))
 }
