@@ -2,7 +2,8 @@
 //!
 //! `json` says what stands in the file, `file` and `uri` which bytes belong to it, `accessor` how bytes become vectors.
 //! `node` places things, `mesh` gives them form, `material` and `texture` a look; `camera` and `light` do what their
-//! names say, and `build` joins everything. Errors name the file and the place in its JSON as a pointer (RFC 6901).
+//! names say, and `build` joins everything. `pose` and `track` say how nodes stand at a moment, `morph` and `skin` how
+//! meshes follow; `meshopt` and `draco` unpack what is compressed. Errors name the file and the place in its JSON as a pointer (RFC 6901).
 
 mod accessor;
 mod build;
@@ -16,8 +17,13 @@ mod light;
 mod material;
 mod mesh;
 mod meshopt;
+mod morph;
 mod node;
+mod pose;
+mod skin;
+mod tangents;
 mod texture;
+mod track;
 mod uri;
 
 use std::path::Path;

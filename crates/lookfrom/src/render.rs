@@ -12,7 +12,7 @@ use std::ops::Range;
 
 use lookfrom_bvh::{Hit, Left, Ray};
 use lookfrom_scene::settings::{
-    Background, ColorMode, Crop, ImageSettings, Integrator as Kind, RenderSettings, Sensor as SensorSettings,
+    ColorMode, Crop, ImageSettings, Integrator as Kind, RenderSettings, Sensor as SensorSettings,
 };
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 

@@ -120,7 +120,8 @@ fn a_floor_without_shadows_is_the_background() {
         let common = format!("render small.obj -q --size 40 --samples 16 --filter box {light}");
         stage.done(&format!("{common} -o without.pfm"));
         stage.done(&format!("{common} --floor -o with.pfm"));
-        let [without, with] = ["without.pfm", "with.pfm"].map(|name| picture(&stage.path(name)).texels().collect::<Vec<_>>());
+        let [without, with] =
+            ["without.pfm", "with.pfm"].map(|name| picture(&stage.path(name)).texels().collect::<Vec<_>>());
         let same = without
             .iter()
             .zip(&with)

@@ -1,17 +1,21 @@
 //! How do a file's nodes, meshes, looks, camera and lights become one model?
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use glam::{DMat4, DVec3, DVec4};
 
 use super::camera::{self, Eye};
 use super::choose::choose;
 use super::file::Document;
-use super::json::{Instancing, Node, Primitive, Whole};
+use super::json::{Instancing, Primitive, Whole};
 use super::light;
 use super::material::{Look, Looks};
 use super::mesh;
+use super::morph::morph;
 use super::node::{Tree, placed};
+use super::pose::{self, Pose};
+use super::skin::Skin;
 use crate::error::{Location, Result};
 use crate::files::Sources;
 use crate::light::Light;
@@ -78,7 +82,7 @@ fn size(aspect: f64, most: u32) -> (u32, u32) {
 
 /// Reads everything; pictures are decoded last, side by side.
 pub(super) fn model(document: &Document, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Model> {
-    let local: Vec<DMat4> = document.root.nodes.iter().map(Node::at_rest).collect();
+    let Pose { local, weights } = pose::pose(document, sources)?;
     let tree = Tree::new(document, &local, sources)?;
     let variant = match (&sources.choice.variant, &document.root.extensions.variants) {
         (None, _) => None,
@@ -92,6 +96,7 @@ pub(super) fn model(document: &Document, sources: &mut Sources<'_>, scene: &mut 
         document,
         looks: Looks::new(document),
         pieces: BTreeMap::new(),
+        weights,
         variant,
         model: Model {
             shapes: Vec::new(),
@@ -119,6 +124,15 @@ struct Piece {
     pointer: Location,
     geometry: Geometry,
     look: Look,
+    /// Where it stands, whatever its node says, if joints hold it.
+    world_from_skinned: Option<DMat4>,
+}
+
+/// A mesh in one form: that of every node which does not bend it, or that of one node which does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Form {
+    mesh: usize,
+    node: Option<usize>,
 }
 
 struct Builder<'b, 'd, 'f> {
@@ -127,7 +141,9 @@ struct Builder<'b, 'd, 'f> {
     scene: &'b mut Scene,
     looks: Looks<'d>,
     /// Of each mesh that was needed.
-    pieces: BTreeMap<usize, Vec<Piece>>,
+    pieces: BTreeMap<Form, Vec<Piece>>,
+    /// How much of their meshes' morph targets nodes have, where they do not leave it to the mesh.
+    weights: Vec<Option<Vec<f64>>>,
     variant: Option<usize>,
     model: Model,
 }
@@ -135,76 +151,130 @@ struct Builder<'b, 'd, 'f> {
 impl Builder<'_, '_, '_> {
     fn nodes(&mut self, tree: &Tree) -> Result<()> {
         let nodes = &self.document.root.nodes;
-        let mut uses: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut uses: BTreeMap<Form, usize> = BTreeMap::new();
         for &node in &tree.shown {
-            if let Some(mesh) = nodes[node].mesh {
-                *uses.entry(mesh.index()).or_default() += 1;
+            if let Some(form) = self.form(node) {
+                *uses.entry(form).or_default() += 1;
             }
         }
-        let mut objects: BTreeMap<usize, ObjectId> = BTreeMap::new();
+        let mut skins: BTreeMap<usize, Skin> = BTreeMap::new();
+        let mut objects: BTreeMap<Form, ObjectId> = BTreeMap::new();
         if nodes.is_empty() && self.document.root.scenes.is_empty() {
             // A library of meshes: they all stand at the origin.
-            for index in 0..self.document.root.meshes.len() {
-                let pieces = self.mesh(Whole(index as u64), "/meshes")?;
-                let name = self.document.root.meshes[index].name.clone();
+            for mesh in 0..self.document.root.meshes.len() {
+                let pieces = self.mesh(Form { mesh, node: None }, None, "/meshes")?;
+                let name = self.document.root.meshes[mesh].name.clone();
                 pieces.iter().for_each(|piece| self.shape(piece, &name, DMat4::IDENTITY));
             }
         }
         for &node in &tree.shown {
-            let Some(index) = nodes[node].mesh else { continue };
-            let pieces = self.mesh(index, &format!("/nodes/{node}/mesh"))?;
+            let Some(form) = self.form(node) else { continue };
+            let skin = match nodes[node].skin {
+                Some(index) => {
+                    if let Entry::Vacant(place) = skins.entry(index.index()) {
+                        place.insert(Skin::new(self.document, index, &format!("/nodes/{node}/skin"), tree)?);
+                    }
+                    skins.get(&index.index())
+                }
+                None => None,
+            };
+            let pieces = self.mesh(form, skin, &format!("/nodes/{node}/mesh"))?;
             let world_from_node = tree.world_from_node[node];
-            let name =
-                nodes[node].name.clone().or_else(|| self.document.root.meshes[index.index()].name.clone());
+            let name = nodes[node].name.clone().or_else(|| self.document.root.meshes[form.mesh].name.clone());
             if let Some(instancing) = &nodes[node].extensions.instancing {
                 let places = self.places(instancing, node)?;
-                let object = *objects.entry(index.index()).or_insert_with(|| self.object(&name, &pieces));
+                let object = *objects.entry(form).or_insert_with(|| self.object(&name, &pieces));
+                let world_from_node = if skin.is_some() { DMat4::IDENTITY } else { world_from_node };
                 for place in places {
                     self.instance(node, object, world_from_node * place);
                 }
                 continue;
             }
-            let repeated = triangles(&pieces, self.scene).saturating_mul(uses[&index.index()] - 1);
+            let repeated = triangles(&pieces, self.scene).saturating_mul(uses[&form] - 1);
             // Instances do not shine.
             let shines = pieces.iter().any(|piece| piece.look.emission.is_some());
             if repeated > MOST_REPEATED_TRIANGLES && !shines {
-                let object = *objects.entry(index.index()).or_insert_with(|| self.object(&name, &pieces));
+                let object = *objects.entry(form).or_insert_with(|| self.object(&name, &pieces));
                 self.instance(node, object, world_from_node);
                 continue;
             }
             for piece in &pieces {
-                self.shape(piece, &name, world_from_node);
+                self.shape(piece, &name, piece.world_from_skinned.unwrap_or(world_from_node));
             }
         }
         Ok(())
     }
 
-    /// What a mesh is made of; each is read once.
-    fn mesh(&mut self, index: Whole, asked: &str) -> Result<Vec<Piece>> {
-        let mesh = self.document.one_of(&self.document.root.meshes, index, "mesh", asked)?;
-        if let Some(pieces) = self.pieces.get(&index.index()) {
+    /// Which form of which mesh a node has.
+    fn form(&self, node: usize) -> Option<Form> {
+        let root = &self.document.root;
+        let index = root.nodes[node].mesh?.index();
+        let has_targets = || {
+            let primitives = root.meshes.get(index).map_or(&[][..], |mesh| &mesh.primitives);
+            primitives.iter().any(|primitive| !primitive.targets.is_empty())
+        };
+        let is_own = root.nodes[node].skin.is_some() || (self.weights[node].is_some() && has_targets());
+        Some(Form { mesh: index, node: is_own.then_some(node) })
+    }
+
+    /// What a mesh is made of; each form is read once.
+    fn mesh(&mut self, form: Form, skin: Option<&Skin>, asked: &str) -> Result<Vec<Piece>> {
+        let mesh =
+            self.document.one_of(&self.document.root.meshes, Whole(form.mesh as u64), "mesh", asked)?;
+        if let Some(pieces) = self.pieces.get(&form) {
             return Ok(pieces.clone());
         }
-        let name = mesh.name.clone().unwrap_or_else(|| format!("mesh {}", index.0));
+        let name = mesh.name.clone().unwrap_or_else(|| format!("mesh {}", form.mesh));
+        let weights = form.node.and_then(|node| self.weights[node].clone());
+        let weights = weights.or_else(|| mesh.weights.clone()).unwrap_or_default();
         let mut pieces = Vec::new();
         for (place, primitive) in mesh.primitives.iter().enumerate() {
-            let pointer = format!("/meshes/{}/primitives/{place}", index.0);
-            pieces.extend(self.piece(primitive, &name, &pointer)?);
+            let pointer = format!("/meshes/{}/primitives/{place}", form.mesh);
+            pieces.extend(self.piece(primitive, &weights, skin, &name, &pointer)?);
         }
-        self.pieces.insert(index.index(), pieces.clone());
+        self.pieces.insert(form, pieces.clone());
         Ok(pieces)
     }
 
-    fn piece(&mut self, primitive: &Primitive, name: &str, pointer: &str) -> Result<Option<Piece>> {
-        let Some(vertices) = mesh::vertices(self.document, primitive, pointer, self.sources)? else {
+    fn piece(
+        &mut self,
+        primitive: &Primitive,
+        weights: &[f64],
+        skin: Option<&Skin>,
+        name: &str,
+        pointer: &str,
+    ) -> Result<Option<Piece>> {
+        let document = self.document;
+        let Some(mut vertices) = mesh::vertices(document, primitive, pointer, self.sources)? else {
             return Ok(None);
         };
+        if !primitive.targets.is_empty() {
+            morph(document, &primitive.targets, weights, pointer, &mut vertices)?;
+        }
+        let mut world_from_skinned = None;
+        if let Some(skin) = skin {
+            let is_bent = skin.bend(document, primitive, pointer, &mut vertices)?;
+            world_from_skinned = is_bent.then_some(skin.world_from_skinned);
+        }
         let brought = vertices.brought();
         let (material, asked) = self.material(primitive, pointer);
         let look = self.looks.look(material, &asked, brought, self.sources, self.scene)?;
-        let geometry =
-            mesh::geometry(self.document, primitive, vertices, name, pointer, self.sources, self.scene)?;
-        Ok(geometry.map(|geometry| Piece { pointer: self.document.at(pointer), geometry, look }))
+        let geometry = mesh::geometry(
+            document,
+            primitive,
+            vertices,
+            look.grain,
+            name,
+            pointer,
+            self.sources,
+            self.scene,
+        )?;
+        Ok(geometry.map(|geometry| Piece {
+            pointer: document.at(pointer),
+            geometry,
+            look,
+            world_from_skinned,
+        }))
     }
 
     /// The material of a primitive in the variant that is meant, and the pointer that says so.
@@ -294,6 +364,7 @@ fn shape(piece: &Piece, name: &Option<String>) -> Shape {
         emission: piece.look.emission,
         alpha: piece.look.alpha,
         single_sided: piece.look.single_sided,
+        world_from_object: piece.world_from_skinned.unwrap_or(DMat4::IDENTITY),
         ..Shape::new(piece.pointer.clone(), piece.geometry.clone(), piece.look.material)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::file::Document;
 use crate::error::Result;
+use crate::suggest::nearest;
 
 /// The index of what is meant: what has this name, else, where it is a number, what has this number from 0.
 ///
@@ -30,6 +31,9 @@ pub(crate) fn choose<'a>(
         .collect();
     if known.len() < names.len() {
         known.push("…".to_owned());
+    }
+    if let Some(near) = nearest(asked, names.iter().copied().flatten()) {
+        return Err(error.hint(format!("did you mean {near:?}? there are: {}", known.join(", "))));
     }
     Err(match known.len() {
         0 => error.hint("the file has none at all"),

@@ -7,6 +7,7 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 use super::file::Document;
 use super::json::{Primitive, Whole};
 use super::material::Brought;
+use super::tangents;
 use crate::error::Result;
 use crate::files::Sources;
 use crate::model::polygon::has_area;
@@ -43,6 +44,21 @@ impl Vertices {
             colors: !self.colors.is_empty(),
             opacities: self.opacities.iter().any(|&opacity| opacity != 1.0),
         }
+    }
+
+    /// Adds a copy of a vertex, without its tangent, and says which it is.
+    pub(super) fn repeat(&mut self, vertex: usize) -> u32 {
+        fn again<T: Copy>(values: &mut Vec<T>, vertex: usize) {
+            if let Some(&value) = values.get(vertex) {
+                values.push(value);
+            }
+        }
+        again(&mut self.positions, vertex);
+        again(&mut self.normals, vertex);
+        self.uvs.iter_mut().for_each(|uvs| again(uvs, vertex));
+        again(&mut self.colors, vertex);
+        again(&mut self.opacities, vertex);
+        self.positions.len() as u32 - 1
     }
 }
 
@@ -148,14 +164,15 @@ fn colors(
 }
 
 /// What a primitive becomes: triangles as a mesh of the scene, points and lines as what they are. `None`, with a warning
-/// where something is odd, if nothing is left.
+/// where something is odd, if nothing is left. `grain` is the set of texture coordinates that triangles need tangents for.
 ///
 /// # Errors
 /// Where an index is beyond the vertices, or the mode is not known.
 pub(crate) fn geometry(
     document: &Document,
     primitive: &Primitive,
-    vertices: Vertices,
+    mut vertices: Vertices,
+    grain: Option<u32>,
     name: &str,
     pointer: &str,
     sources: &mut Sources<'_>,
@@ -209,6 +226,9 @@ pub(crate) fn geometry(
             let corners = |triangle: &[u32; 3]| triangle.map(|vertex| vertices.positions[vertex as usize]);
             // Triangles without area hold strips together, and no ray meets one.
             triangles.retain(|triangle| usable(triangle) && has_area(corners(triangle)));
+            if let Some(set) = grain {
+                tangents::complete(&mut vertices, &mut triangles, set);
+            }
             (!triangles.is_empty()).then(|| Geometry::Mesh(push_mesh(scene, name, vertices, triangles)))
         }
     };

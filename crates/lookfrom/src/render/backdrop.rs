@@ -67,13 +67,7 @@ impl Frame<'_> {
     /// The path tracer's floor shows the backdrop less what is in the way of the light: the light that its samples would find
     /// if nothing stood there is expected, and subtracted ([`Frame::expect_light`]). Where nothing does, nothing is left to
     /// be noise.
-    fn show_backdrop<P: Probe>(
-        &self,
-        path: &mut Path,
-        hit: &Hit,
-        met: &mut Met,
-        next: &mut Next<'_, P>,
-    ) {
+    fn show_backdrop<P: Probe>(&self, path: &mut Path, hit: &Hit, met: &mut Met, next: &mut Next<'_, P>) {
         let lanes = next.samples.lanes[path.slot as usize];
         if *met == Met::Floor && path.depth == 1 {
             *met = Met::LeftFloor;

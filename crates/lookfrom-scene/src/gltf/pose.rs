@@ -1,0 +1,178 @@
+//! How do a file's nodes stand at one moment of one of its animations, or at rest (specification, §3.11)?
+//!
+//! [`Sources::choice`] says which. Channels that extensions bring (`KHR_animation_pointer`) are passed over with a
+//! warning.
+
+use glam::{DMat4, DVec3, DVec4};
+
+use super::choose::choose;
+use super::file::Document;
+use super::json::{AnimationSampler, Node, Whole};
+use super::node::placed;
+use super::track::{Interpolation, Track};
+use crate::error::Result;
+use crate::files::Sources;
+
+/// How nodes stand.
+pub(crate) struct Pose {
+    /// The transform of each node within its parent.
+    pub(crate) local: Vec<DMat4>,
+    /// For each node, how much of its mesh's morph targets there is, where the node or the animation says so.
+    pub(crate) weights: Vec<Option<Vec<f64>>>,
+}
+
+/// Where a node stands in its parent, by parts.
+#[derive(Clone, Copy)]
+struct Placement {
+    translation: DVec3,
+    /// x, y, z, w.
+    rotation: DVec4,
+    scale: DVec3,
+}
+
+impl Placement {
+    fn at_rest(node: &Node) -> Self {
+        if node.matrix.is_some() {
+            // Animations are for nodes without matrices; take the matrix apart where that can be done.
+            let matrix = node.at_rest();
+            if matrix.determinant().is_normal() && matrix.is_finite() {
+                let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
+                return Self { translation, rotation: rotation.into(), scale };
+            }
+        }
+        Self {
+            translation: node.translation.map_or(DVec3::ZERO, DVec3::from_array),
+            rotation: node.rotation.map_or(DVec4::W, DVec4::from_array),
+            scale: node.scale.map_or(DVec3::ONE, DVec3::from_array),
+        }
+    }
+}
+
+/// The pose that is asked for.
+///
+/// # Errors
+/// Where there is no such animation, or what it names is not there.
+pub(crate) fn pose(document: &Document, sources: &mut Sources<'_>) -> Result<Pose> {
+    let nodes = &document.root.nodes;
+    let mut pose = Pose {
+        local: nodes.iter().map(Node::at_rest).collect(),
+        weights: nodes.iter().map(|node| node.weights.clone()).collect(),
+    };
+    if let Some(animation) = chosen(document, sources)? {
+        animate(document, animation, &mut pose, sources)?;
+    }
+    Ok(pose)
+}
+
+/// The number of the animation that is asked for.
+fn chosen(document: &Document, sources: &mut Sources<'_>) -> Result<Option<usize>> {
+    let animations = &document.root.animations;
+    match &sources.choice.animation {
+        Some(name) => {
+            let names = animations.iter().map(|animation| animation.name.as_deref());
+            choose(document, "animation", "/animations", name, names).map(Some)
+        }
+        None if sources.choice.at == 0.0 => Ok(None),
+        None if animations.is_empty() => {
+            sources.warn(&document.at(""), "a time is given, but the file has no animations: it is at rest");
+            Ok(None)
+        }
+        None => Ok(Some(0)),
+    }
+}
+
+fn animate(document: &Document, index: usize, pose: &mut Pose, sources: &mut Sources<'_>) -> Result<()> {
+    let root = &document.root;
+    let animation = &root.animations[index];
+    let time = sources.choice.at;
+    let mut placements: Vec<Option<Placement>> = vec![None; root.nodes.len()];
+    for (place, channel) in animation.channels.iter().enumerate() {
+        let pointer = format!("/animations/{index}/channels/{place}");
+        let sampler = document.one_of(
+            &animation.samplers,
+            channel.sampler,
+            "sampler",
+            &format!("{pointer}/sampler"),
+        )?;
+        let asked = format!("/animations/{index}/samplers/{}", channel.sampler.0);
+        let Some(target) = channel.target.node else {
+            sources.warn(&document.at(&pointer), "the channel moves no node and is passed over");
+            continue;
+        };
+        let node = document.one_of(&root.nodes, target, "node", &format!("{pointer}/target/node"))?;
+        let target = target.index();
+        let width = match channel.target.path.as_str() {
+            "translation" | "scale" => Some(3),
+            "rotation" => Some(4),
+            "weights" => None,
+            path => {
+                let message = format!("the channel moves {path:?}, which is not known, and is passed over");
+                sources.warn(&document.at(&pointer), message);
+                continue;
+            }
+        };
+        let Some(numbers) = sample(document, sampler, width, time, &asked)? else {
+            sources.warn(
+                &document.at(&pointer),
+                "the channel says nothing that is a number, and is passed over",
+            );
+            continue;
+        };
+        let placement = || placements[target].unwrap_or_else(|| Placement::at_rest(node));
+        match (channel.target.path.as_str(), numbers.as_slice()) {
+            ("translation", &[x, y, z]) => {
+                placements[target] = Some(Placement { translation: DVec3::new(x, y, z), ..placement() });
+            }
+            ("scale", &[x, y, z]) => {
+                placements[target] = Some(Placement { scale: DVec3::new(x, y, z), ..placement() });
+            }
+            ("rotation", &[x, y, z, w]) => {
+                placements[target] = Some(Placement { rotation: DVec4::new(x, y, z, w), ..placement() });
+            }
+            _ => pose.weights[target] = Some(numbers),
+        }
+    }
+    for (local, placement) in pose.local.iter_mut().zip(placements) {
+        if let Some(Placement { translation, rotation, scale }) = placement {
+            *local = placed(translation, rotation, scale);
+        }
+    }
+    Ok(())
+}
+
+/// What a sampler says: so many numbers, or for `None` one for each morph target. `None` where any is not finite.
+fn sample(
+    document: &Document,
+    sampler: &AnimationSampler,
+    width: Option<usize>,
+    time: f64,
+    pointer: &str,
+) -> Result<Option<Vec<f64>>> {
+    let word = sampler.interpolation.as_deref().unwrap_or("LINEAR");
+    let interpolation = Interpolation::of(word).ok_or_else(|| {
+        document
+            .invalid(&format!("{pointer}/interpolation"), format!("the interpolation {word:?} is not known"))
+            .hint("LINEAR, STEP and CUBICSPLINE are possible")
+    })?;
+    let times = document.scalars(sampler.input, &format!("{pointer}/input"))?;
+    let asked = format!("{pointer}/output");
+    let flat = |output: Whole| match width {
+        Some(3) => Ok(document.vectors::<3>(output, &asked)?.into_flattened()),
+        Some(_) => Ok(document.vectors::<4>(output, &asked)?.into_flattened()),
+        None => document.scalars(output, &asked),
+    };
+    let values = flat(sampler.output)?;
+    let elements = times.len() * interpolation.elements();
+    if elements == 0 {
+        return Ok(None);
+    }
+    let is_rotation = width == Some(4);
+    let width = width.unwrap_or(values.len() / elements);
+    if values.len() != elements * width || width == 0 {
+        let message = format!("{} numbers for {} keys: each has {word} values", values.len(), times.len());
+        return Err(document.invalid(&asked, message).hint("the file was written wrongly: export it again"));
+    }
+    let track = Track { times: &times, values: &values, width, interpolation };
+    let numbers = if is_rotation { track.rotation(time).to_array().to_vec() } else { track.vector(time) };
+    Ok(numbers.iter().all(|number| number.is_finite()).then_some(numbers))
+}
