@@ -5,7 +5,8 @@
 //! `wo.z < 0` means that it is seen from inside. Lanes are treated alike, whatever they mean. Evaluating textures and
 //! turning directions is left to [`crate::material`] and integrators.
 //!
-//! They mean what pbrt-v4's mean (Pharr, Jakob & Humphreys 2023); where it clamps, so do these constructors.
+//! They mean what pbrt-v4's mean (Pharr, Jakob & Humphreys 2023); where it clamps, so do these constructors. glTF's is in
+//! [`principled`].
 
 pub mod conductor;
 pub mod dielectric;
@@ -15,6 +16,7 @@ pub mod henyey_greenstein;
 pub mod layered;
 pub mod lobes;
 pub mod microfacet;
+pub mod principled;
 pub mod whitted;
 
 use glam::Vec3;
@@ -26,6 +28,7 @@ use diffuse::{Diffuse, DiffuseTransmission};
 use layered::{Base, Coat, Layered};
 use lobes::Lobes;
 use microfacet::TrowbridgeReitz;
+use principled::Principled;
 use whitted::Whitted;
 
 /// What travels from `wo` into the scene: radiance comes the other way on paths from the camera, importance on paths
@@ -57,6 +60,8 @@ pub enum Bsdf {
     CoatedConductor(Layered<Conductor>),
     /// Whitted's model.
     Whitted(Whitted),
+    /// glTF's.
+    Principled(Principled),
 }
 
 /// A direction chosen by [`Bsdf::sample`].
@@ -162,6 +167,7 @@ impl Bsdf {
             Self::CoatedDiffuse(bsdf) => bsdf.f(wo, wi, mode),
             Self::CoatedConductor(bsdf) => bsdf.f(wo, wi, mode),
             Self::Whitted(bsdf) => bsdf.f(wo, wi),
+            Self::Principled(bsdf) => bsdf.f(wo, wi, mode),
         }
     }
 
@@ -181,6 +187,7 @@ impl Bsdf {
             Self::CoatedDiffuse(bsdf) => bsdf.pdf(wo, wi, mode),
             Self::CoatedConductor(bsdf) => bsdf.pdf(wo, wi, mode),
             Self::Whitted(bsdf) => bsdf.pdf(wo, wi, lobes),
+            Self::Principled(bsdf) => bsdf.pdf(wo, wi, lobes),
         }
     }
 
@@ -200,6 +207,7 @@ impl Bsdf {
             Self::CoatedDiffuse(bsdf) => bsdf.sample(wo, uc, u, mode),
             Self::CoatedConductor(bsdf) => bsdf.sample(wo, uc, u, mode),
             Self::Whitted(bsdf) => bsdf.sample(wo, uc, u, lobes),
+            Self::Principled(bsdf) => bsdf.sample(wo, uc, u, mode, lobes),
         }?;
         let is_useful = sample.pdf > 0.0
             && sample.pdf < f32::INFINITY
@@ -221,6 +229,7 @@ impl Bsdf {
             Self::CoatedDiffuse(bsdf) => bsdf.lobes(),
             Self::CoatedConductor(bsdf) => bsdf.lobes(),
             Self::Whitted(bsdf) => bsdf.lobes(),
+            Self::Principled(bsdf) => bsdf.lobes(),
         }
     }
 
@@ -231,6 +240,7 @@ impl Bsdf {
             Self::Dielectric(bsdf) => bsdf.regularize(),
             Self::CoatedDiffuse(bsdf) => bsdf.regularize(),
             Self::CoatedConductor(bsdf) => bsdf.regularize(),
+            Self::Principled(bsdf) => bsdf.regularize(),
             Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::ThinDielectric(_) | Self::Whitted(_) => {}
         }
     }

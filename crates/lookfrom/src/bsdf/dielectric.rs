@@ -70,14 +70,6 @@ impl Dielectric {
         Some(Facet { wm, fresnel: fresnel::dielectric(wo.dot(wm), self.eta), reflects, eta })
     }
 
-    /// `|dω_m / dω_i|` of refraction by a facet; 0 where it has no finite value.
-    #[inline]
-    fn refraction_jacobian(wo: Vec3, wi: Vec3, wm: Vec3, eta: f32) -> f32 {
-        let sum = wi.dot(wm) + wo.dot(wm) / eta;
-        let squared = sum * sum;
-        if squared > 0.0 { (wi.dot(wm).abs() / squared).min(f32::MAX) } else { 0.0 }
-    }
-
     /// `f` through or off the facet.
     #[inline]
     fn facet_f(&self, wo: Vec3, wi: Vec3, facet: &Facet, mode: Mode) -> Spectrum {
@@ -87,7 +79,7 @@ impl Dielectric {
             0.25 * visible * fresnel
         } else {
             let transmitted =
-                visible * (1.0 - fresnel) * wo.dot(wm).abs() * Self::refraction_jacobian(wo, wi, wm, eta);
+                visible * (1.0 - fresnel) * wo.dot(wm).abs() * refraction_jacobian(wo, wi, wm, eta);
             radiance_scale(transmitted, eta, mode)
         };
         Spectrum([f; 4])
@@ -100,7 +92,7 @@ impl Dielectric {
         let jacobian = if facet.reflects {
             0.25
         } else {
-            wo.dot(facet.wm).abs() * Self::refraction_jacobian(wo, wi, facet.wm, facet.eta)
+            wo.dot(facet.wm).abs() * refraction_jacobian(wo, wi, facet.wm, facet.eta)
         };
         visible * jacobian * probability
     }
@@ -184,9 +176,17 @@ impl Dielectric {
     }
 }
 
+/// `|dω_m / dω_i|` of refraction by a facet; 0 where it has no finite value.
+#[inline]
+pub(super) fn refraction_jacobian(wo: Vec3, wi: Vec3, wm: Vec3, eta: f32) -> f32 {
+    let sum = wi.dot(wm) + wo.dot(wm) / eta;
+    let squared = sum * sum;
+    if squared > 0.0 { (wi.dot(wm).abs() / squared).min(f32::MAX) } else { 0.0 }
+}
+
 /// What passes, when it is radiance: it is spread over η² times the solid angle on the side where `wo` looks.
 #[inline]
-fn radiance_scale(f: f32, eta: f32, mode: Mode) -> f32 {
+pub(super) fn radiance_scale(f: f32, eta: f32, mode: Mode) -> f32 {
     match mode {
         Mode::Radiance => f / (eta * eta),
         Mode::Importance => f,

@@ -184,6 +184,28 @@ pub(super) fn scattering(shading: &Shading, factor: impl Fn(Spectrum) -> Factor)
                 ("ior", vec![bsdf.ior]),
             ],
         ),
+        Bsdf::Principled(bsdf) => {
+            let p = bsdf.parameters();
+            (
+                "principled",
+                "glTF's layers: metal, glass and a matte body by parts, under fibres and a clear coat",
+                vec![
+                    ("base color", factor(p.base_color)),
+                    ("metallic", vec![p.metallic]),
+                    alpha(p.roughness),
+                    ("eta", vec![p.eta]),
+                    ("f0", factor(p.f0)),
+                    ("specular", vec![p.f90]),
+                    ("transmission", vec![p.transmission]),
+                    ("diffuse transmission", vec![p.diffuse_transmission]),
+                    ("clearcoat", vec![p.clearcoat]),
+                    ("clearcoat alpha", vec![p.clearcoat_roughness.alpha_x]),
+                    ("sheen color", factor(p.sheen_color)),
+                    ("sheen roughness", vec![p.sheen_roughness]),
+                    ("iridescence", vec![p.iridescence]),
+                ],
+            )
+        }
     };
     let lobes = words(shading.bsdf.lobes());
     ScatteringReport { kind, does, numbers, lobes, n: shading.n().to_array() }
