@@ -19,6 +19,7 @@ mod model;
 mod object;
 mod physical;
 mod place;
+mod principled;
 mod round;
 mod settings;
 mod shape;

@@ -5,6 +5,7 @@
 //! material.
 
 mod approximate;
+mod principled;
 mod relief;
 mod whitted;
 
@@ -45,6 +46,8 @@ pub struct Shading {
     /// In the local frame.
     pub bsdf: Bsdf,
     frame: Frame,
+    /// The geometric normal, where nothing may leak through a surface that the shading normal has turned.
+    ng: Option<Vec3>,
 }
 
 /// An orthonormal frame of unit vectors in render space.
@@ -63,12 +66,17 @@ impl Frame {
     fn render(&self, v: Vec3) -> Vec3 {
         v.x * self.s + v.y * self.t + v.z * self.n
     }
+
+    /// With the first axis along a direction.
+    fn along(&self, direction: Vec3) -> Self {
+        relief::around(self.n, direction)
+    }
 }
 
 impl Shading {
     /// A matte surface without a relief.
     pub fn matte(surface: &Surface, reflectance: Spectrum) -> Self {
-        Self { bsdf: Bsdf::diffuse(reflectance), frame: relief::plain(surface) }
+        Self { bsdf: Bsdf::diffuse(reflectance), frame: relief::plain(surface), ng: None }
     }
 
     /// The shading normal to the outside, unit length.
@@ -81,8 +89,19 @@ impl Shading {
         w.dot(self.frame.n)
     }
 
+    /// Whether the surface itself has two directions on the sides on which the shading normal has them.
+    fn agrees(&self, wo: Vec3, wi: Vec3) -> bool {
+        self.ng.is_none_or(|ng| {
+            let shaded = wo.dot(self.frame.n) * wi.dot(self.frame.n) > 0.0;
+            (wo.dot(ng) * wi.dot(ng) > 0.0) == shaded
+        })
+    }
+
     /// The scattering function between two unit directions of render space, without a cosine.
     pub fn f(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        if !self.agrees(wo, wi) {
+            return Spectrum::BLACK;
+        }
         self.bsdf.f(self.frame.local(wo), self.frame.local(wi), Mode::Radiance)
     }
 
@@ -94,7 +113,8 @@ impl Shading {
     /// A direction by importance; its `wi` is in render space and of unit length.
     pub fn sample(&self, wo: Vec3, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
         let sample = self.bsdf.sample(self.frame.local(wo), lobe, u, Mode::Radiance, Lobes::ALL)?;
-        Some(BsdfSample { wi: self.frame.render(sample.wi).normalize(), ..sample })
+        let wi = self.frame.render(sample.wi).normalize();
+        self.agrees(wo, wi).then_some(BsdfSample { wi, ..sample })
     }
 
     /// A direction all around, whatever the material: for checking what is chosen by importance.
@@ -124,8 +144,13 @@ pub fn shading(
         material = &materials[chosen.index()];
     }
     let mut at = At { textures, point, lanes };
+    if let MaterialKind::Principled(look) = &material.kind {
+        let frame = relief::valid_frame(&material.relief, textures, surface, point);
+        let (bsdf, frame) = at.principled(look, surface, frame);
+        return Some(Shading { bsdf, frame, ng: Some(surface.ng.as_vec3()) });
+    }
     let bsdf = at.bsdf(material)?;
-    Some(Shading { bsdf, frame: relief::frame(&material.relief, textures, surface, point) })
+    Some(Shading { bsdf, frame: relief::frame(&material.relief, textures, surface, point), ng: None })
 }
 
 /// Where a material is asked.
@@ -182,12 +207,14 @@ impl At<'_> {
                     }
                 }
             }
-            MaterialKind::Principled(look) => Bsdf::diffuse(self.albedo(look.base_color)),
-            MaterialKind::Unlit { color } => Bsdf::diffuse(self.albedo(*color)),
-            // A mixture has been decided by now, and a floor of shadows is the world's to shade.
-            MaterialKind::ShadowCatcher { .. } | MaterialKind::Mix { .. } | MaterialKind::Interface => {
-                return None;
-            }
+            // It is only seen: see [`unlit`].
+            MaterialKind::Unlit { .. } => Bsdf::diffuse(Spectrum::BLACK),
+            // A mixture has been decided by now, glTF's material needs the surface, and a floor of shadows is the world's to
+            // shade.
+            MaterialKind::Mix { .. }
+            | MaterialKind::Principled(_)
+            | MaterialKind::ShadowCatcher { .. }
+            | MaterialKind::Interface => return None,
         })
     }
 

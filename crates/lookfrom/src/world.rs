@@ -199,6 +199,14 @@ impl World {
         }
     }
 
+    /// Radiance that a surface is seen with, whatever the light, which no one asks for: `None` for all but unlit materials.
+    pub fn unlit(&self, surface: &Surface, lanes: &Lanes) -> Option<Spectrum> {
+        let MaterialKind::Unlit { color } = &self.materials[surface.material as usize].kind else {
+            return None;
+        };
+        Some(self.textures.spectrum(*color, Usage::Illuminant, &self.texture_point(surface), lanes))
+    }
+
     /// Radiance that arrives along a ray that meets nothing.
     pub fn sky(&self, ray: &Ray, lanes: &Lanes) -> Spectrum {
         self.environments.iter().fold(Spectrum::BLACK, |sum, &index| sum + self.sky_of(index, ray, lanes))

@@ -4,7 +4,7 @@ use super::color::plain_color;
 use super::light::amount;
 use super::table::{Kinds, Table};
 use super::value::Value;
-use super::{Reader, chain};
+use super::{Reader, chain, principled};
 use crate::error::{Error, Location, Result};
 use crate::material::{Color, Material, MaterialKind, Relief, Whitted};
 use crate::scene::MaterialId;
@@ -54,6 +54,8 @@ pub(super) const KEYS: Kinds = &[
             "bump",
         ],
     ),
+    ("principled", principled::KEYS),
+    ("unlit", &["color"]),
     ("mix", &["materials", "amount"]),
     ("interface", &[]),
 ];

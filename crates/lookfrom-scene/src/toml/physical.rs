@@ -40,6 +40,8 @@ impl Reader<'_, '_> {
                 roughness: self.roughness(table, "base_roughness")?,
                 coat: self.coat(table)?,
             },
+            "principled" => MaterialKind::Principled(Box::new(self.principled(table)?)),
+            "unlit" => MaterialKind::Unlit { color: self.color_or(table, "color", 1.0)? },
             "mix" => {
                 let value = table.need("materials", "[\"red\", \"gold\"]")?;
                 let [first, second] = value.list_of("the names of two materials")?;

@@ -24,7 +24,8 @@ pub(super) fn local_light<P: Probe>(
         surface: Box::new(*surface),
         coefficients: Some(Box::new(coefficients)),
     });
-    next.add(path, Term::Emission, path.beta * world.emitted(surface, &lanes));
+    let shines = world.emitted(surface, &lanes) + world.unlit(surface, &lanes).unwrap_or_default();
+    next.add(path, Term::Emission, path.beta * shines);
     next.add(path, Term::Ambient, path.beta * coefficients.ambient * world.ambient(&lanes));
     if !coefficients.is_lit() {
         return coefficients;

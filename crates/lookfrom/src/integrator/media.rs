@@ -41,10 +41,16 @@ impl Media {
             let beyond = if surface.front { inside } else { outside };
             return beyond.map_or(Self::default(), |medium| Self::default().entered(Some(medium.0)));
         }
-        match (&world.materials[surface.material as usize], surface.front) {
-            (Material { kind: MaterialKind::Whitted(_), medium, .. }, true) => self.entered(*medium),
-            (Material { kind: MaterialKind::Whitted(_), .. }, false) => self.left(),
-            _ => self,
+        let Material { kind, medium, .. } = &world.materials[surface.material as usize];
+        let is_body = match kind {
+            MaterialKind::Whitted(_) => true,
+            MaterialKind::Principled(look) => look.is_solid,
+            _ => false,
+        };
+        match (is_body, surface.front) {
+            (true, true) => self.entered(*medium),
+            (true, false) => self.left(),
+            (false, _) => self,
         }
     }
 

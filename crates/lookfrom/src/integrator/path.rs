@@ -151,6 +151,9 @@ impl Integrator for PathTracer {
 
         // Add what the surface itself shines.
         self.add_emission(world, path, &surface, next);
+        if let Some(radiance) = world.unlit(&surface, &next.lanes(path)) {
+            next.add(path, Term::Emission, path.beta * radiance);
+        }
 
         // What it does with light; dispersion leaves one wavelength.
         let lanes = &mut next.samples.lanes[path.slot as usize];

@@ -1,7 +1,7 @@
 //! What a physical material is in Whitted's model: for ray casting and Whitted's tree, which know no other. A likeness, not
 //! the same.
 
-use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Roughness, Scalar, Whitted};
+use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Principled, Roughness, Scalar, Whitted};
 
 use super::Material;
 use crate::bsdf::fresnel;
@@ -39,10 +39,49 @@ pub(crate) fn in_whitteds_model(kind: &MaterialKind, before: &[Material], textur
             };
             before.get(greater.index()).map_or_else(Whitted::default, |material| material.whitted.clone())
         }
-        MaterialKind::Principled(look) => Whitted { diffuse: look.base_color, ..plain },
-        MaterialKind::Unlit { color } => Whitted { diffuse: *color, ..plain },
+        MaterialKind::Principled(look) => principled(look, textures),
+        // It is seen by its own light.
+        MaterialKind::Unlit { .. } => plain,
         MaterialKind::ShadowCatcher { .. } => Whitted { diffuse: Color::gray(0.5), ..plain },
         MaterialKind::Interface => Whitted { transmission: Color::gray(1.0), ior: 1.0, ..plain },
+    }
+}
+
+/// Metal, glass or plastic, whichever it is most; of a texture, the corner's number counts.
+fn principled(look: &Principled, textures: &Textures) -> Whitted {
+    let number = |scalar| textures.scalar(scalar, &TexturePoint::NOWHERE);
+    let roughness = look.roughness;
+    if number(look.metallic) > 0.5 {
+        let roughness = Roughness { u: squared(roughness), v: squared(roughness), remap: false };
+        return metallic(&Metal::Reflectance(look.base_color), &roughness, textures);
+    }
+    let plain = Whitted {
+        diffuse: Color::BLACK,
+        ior: if look.ior > 0.0 { look.ior } else { 1.0 },
+        ..Whitted::default()
+    };
+    if number(look.transmission) > 0.5 {
+        let transmission = look.base_color;
+        return match look.is_solid {
+            true => Whitted { transmission, fresnel: true, absorption: look.absorption, ..plain },
+            false => Whitted { transmission, mirror: Color::gray(COAT), ior: 1.0, ..plain },
+        };
+    }
+    let is_coated = number(look.clearcoat) > 0.5;
+    let above = if is_coated { look.clearcoat_roughness } else { roughness };
+    let shininess = shininess(&Roughness { u: squared(above), v: squared(above), remap: false });
+    let mirror = if shininess > 1e4 { Color::gray(COAT) } else { Color::BLACK };
+    // A broad highlight is a faint one.
+    let specular = Color::gray(0.2 * number(look.specular).min(1.0) * (shininess / 50.0).min(1.0));
+    let absorption = if look.is_solid { look.absorption } else { [0.0; 3] };
+    Whitted { diffuse: look.base_color, specular, shininess, mirror, absorption, ..plain }
+}
+
+/// α of glTF's roughness, where it is a number.
+fn squared(roughness: Scalar) -> Scalar {
+    match roughness {
+        Scalar::Value(value) => Scalar::Value(value * value),
+        texture @ Scalar::Texture(_) => texture,
     }
 }
 

@@ -1,14 +1,17 @@
 //! Bumps and normal maps: the frame in which a material is shaded.
 //!
+//! pbrt's materials take the normal as it comes. glTF's take one that is [`valid`], so that what they mirror leaves the
+//! surface: neither black where a mirrored direction would lead inside, nor lit through the surface.
+//!
 //! Blinn 1978 (bumps).
 
 use glam::Vec3;
-use lookfrom_scene::material::{Relief, Scalar};
+use lookfrom_scene::material::{Color, NormalTexture, Relief, Scalar};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
 use super::Frame;
 use crate::surface::Surface;
-use crate::texture::{self, TexturePoint, Textures};
+use crate::texture::{self, TexturePoint, Textures, Usage};
 use crate::warp;
 
 /// How far in u and v heights are compared, as pbrt-v4 does it where it knows no footprint.
@@ -21,22 +24,84 @@ pub(super) fn plain(surface: &Surface) -> Frame {
 
 /// The shading frame at a surface: its normal on the side of the geometric one, its first axis along ∂p/∂u.
 pub(super) fn frame(relief: &Relief, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Frame {
-    let plain = plain(surface);
+    let bent = bent(relief, textures, surface, at);
+    let side = if bent.dot(surface.ng.as_vec3()) < 0.0 { -bent } else { bent };
+    around(side, surface.shading_dpdu)
+}
+
+/// The same for glTF's material, with a normal that is [`valid`].
+pub(super) fn valid_frame(
+    relief: &Relief,
+    textures: &Textures,
+    surface: &Surface,
+    at: &TexturePoint,
+) -> Frame {
+    around(valid(bent(relief, textures, surface, at), surface), surface.shading_dpdu)
+}
+
+/// The normal, of unit length.
+fn bent(relief: &Relief, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Vec3 {
+    let plain = || plain(surface);
     let bent = match relief {
-        Relief::None => return plain,
+        Relief::None => return surface.ns,
         Relief::NormalMap(image) => {
             let st = [at.uv.x, 1.0 - at.uv.y];
             let texel =
                 texture::look_up(textures.image(image.index()), st, [Wrap::Repeat; 2], TexelFilter::Bilinear);
             let local = Vec3::from_array(texel.map(|c| 2.0 * c - 1.0)).normalize_or(Vec3::Z);
-            plain.render(local)
+            plain().render(local)
         }
-        Relief::NormalTexture(_) => plain.n,
+        Relief::NormalTexture(map) => return mapped(map, textures, surface, at),
         Relief::Bump(height) => bumped(*height, textures, surface, at),
     };
-    let bent = bent.normalize_or(surface.ns);
-    let side = if bent.dot(surface.ng.as_vec3()) < 0.0 { -bent } else { bent };
-    around(side, surface.shading_dpdu)
+    bent.normalize_or(surface.ns)
+}
+
+/// The directions of u and v at a surface, across its shading normal and each other, of unit length.
+pub(super) fn tangents(surface: &Surface) -> [Vec3; 2] {
+    let Frame { s, t, .. } = around(surface.ns, surface.shading_dpdu);
+    [s, if t.dot(surface.shading_dpdv) < 0.0 { -t } else { t }]
+}
+
+/// The normal that a texture says, of unit length.
+pub(super) fn mapped(map: &NormalTexture, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Vec3 {
+    let texel = textures.rgb(Color::Texture(map.texture), Usage::Unbounded, at);
+    let [x, y, z] = texel.map(|c| 2.0 * c - 1.0);
+    let [s, t] = tangents(surface);
+    (map.scale * x * s + map.scale * y * t + z * surface.ns).normalize_or(surface.ns)
+}
+
+/// The normal nearest to `n`, turned toward the geometric one, about which `wo` is mirrored to outside of the surface.
+///
+/// Let the geometric normal on the side of `wo` be g, and t the direction across it to which `n` leans by an angle θ. The
+/// mirrored direction then has the height `x sin 2θ + z cos 2θ` over the surface, where `wo` has x along t and z along g:
+/// a wave in 2θ of amplitude `A = √(x² + z²)`, which begins at z and falls to a height h at `2θ = atan2(x, z) + acos(h / A)`.
+/// That is as far as `n` may lean.
+pub(super) fn valid(n: Vec3, surface: &Surface) -> Vec3 {
+    let facing = if surface.front { 1.0 } else { -1.0 };
+    let (n, g, wo) = (facing * n, surface.ng_facing(), surface.wo);
+    let z = wo.dot(g);
+    // Along the surface a mirrored direction stays nearly so.
+    let least = (0.9 * z).min(0.01);
+    let leans = n.dot(g);
+    if leans > 0.0 && 2.0 * n.dot(wo) * leans - z >= least {
+        return facing * n;
+    }
+    let Some(t) = (n - leans * g).try_normalize() else { return facing * g };
+    let x = wo.dot(t);
+    let amplitude = (x * x + z * z).sqrt();
+    if !(amplitude > 0.0) {
+        return facing * g;
+    }
+    let (height, wave) = (least / amplitude, [x / amplitude, z / amplitude]);
+    let rest = (1.0 - height * height).max(0.0).sqrt();
+    let cos_twice = height * wave[1] - rest * wave[0];
+    let sin_twice = height * wave[0] + rest * wave[1];
+    // Half the angle, by the root that does not cancel.
+    let greater = (0.5 * (1.0 + cos_twice.abs())).sqrt();
+    let smaller = 0.5 * sin_twice / greater;
+    let (cos, sin) = if cos_twice > 0.0 { (greater, smaller) } else { (smaller, greater) };
+    facing * (cos * g + sin * t).normalize_or(g)
 }
 
 /// The normal of the surface moved along its shading normal; not of unit length.
@@ -58,7 +123,7 @@ fn bumped(height: Scalar, textures: &Textures, surface: &Surface, at: &TexturePo
     if surface.shading_dpdu.cross(surface.shading_dpdv).dot(n) < 0.0 { -across } else { across }
 }
 
-fn around(n: Vec3, dpdu: Vec3) -> Frame {
+pub(super) fn around(n: Vec3, dpdu: Vec3) -> Frame {
     let across = dpdu - n * n.dot(dpdu);
     match across.try_normalize() {
         Some(s) => Frame { s, t: n.cross(s), n },
@@ -68,3 +133,6 @@ fn around(n: Vec3, dpdu: Vec3) -> Frame {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
