@@ -3,6 +3,7 @@
 pub mod compare;
 mod encoding;
 pub mod flip;
+mod ktx2;
 mod openexr;
 mod read;
 mod srgb;

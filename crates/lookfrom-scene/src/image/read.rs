@@ -7,12 +7,12 @@ use std::path::Path;
 use ::image::error::{ImageError, LimitErrorKind};
 use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
-use super::{Encoding, Image, openexr};
+use super::{Encoding, Image, ktx2, openexr};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, Sources};
 
 /// What can be read, for messages.
-const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF";
+const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, KTX2";
 
 /// Reads a picture of colours: 8- and 16-bit formats are taken to be sRGB and become linear, formats of floating-point
 /// numbers are linear already. Values that are not finite become 0, with a warning.
@@ -50,6 +50,10 @@ pub fn decode(bytes: &[u8], name: &str, encoding: Encoding<'_>, sources: &mut So
     let at = Location::file(Path::new(name));
     let limits = sources.limits;
     // Formats that the crate `image` does not read are told by their first bytes.
+    if bytes.starts_with(&ktx2::MAGIC) {
+        let ktx2::Pixels { width, height, texels } = ktx2::decode(bytes, &at, &limits)?;
+        return Ok(Image::from_bytes(name, width, height, texels, encoding));
+    }
     let floats = if bytes.starts_with(&openexr::MAGIC) {
         openexr::decode_rgb(bytes, &at, &limits)?
     } else if is_pfm(bytes) {
@@ -79,14 +83,14 @@ pub fn decode(bytes: &[u8], name: &str, encoding: Encoding<'_>, sources: &mut So
 }
 
 /// The opacity (alpha) of a picture, as greys, where it has one that is not 1 everywhere. `encoding` is as in
-/// [`read_encoded`]; an EXR's opacity is not looked at.
+/// [`read_encoded`]; that of EXR and KTX2 is not looked at.
 ///
 /// # Errors
 /// As [`read`].
 pub fn read_opacity(path: &Path, sources: &mut Sources<'_>, encoding: Encoding<'_>) -> Result<Option<Image>> {
     let at = Location::file(path);
     let bytes = sources.read(path)?;
-    if bytes.starts_with(&openexr::MAGIC) || is_pfm(&bytes) {
+    if bytes.starts_with(&openexr::MAGIC) || bytes.starts_with(&ktx2::MAGIC) || is_pfm(&bytes) {
         return Ok(None);
     }
     let picture = decode_common(&bytes, path, &at, &sources.limits)?;
