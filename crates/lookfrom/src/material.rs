@@ -46,8 +46,8 @@ pub struct Shading {
     /// In the local frame.
     pub bsdf: Bsdf,
     frame: Frame,
-    /// The geometric normal, where nothing may leak through a surface that the shading normal has turned.
-    ng: Option<Vec3>,
+    /// The geometric normal to the outside, for what must not leak through where the shading normal is another.
+    ng: Vec3,
 }
 
 /// An orthonormal frame of unit vectors in render space.
@@ -89,12 +89,11 @@ impl Shading {
         w.dot(self.frame.n)
     }
 
-    /// Whether the surface itself has two directions on the sides on which the shading normal has them.
+    /// Whether the surface itself has two directions on the sides on which the shading normal has them. pbrt's materials do
+    /// not ask.
     fn agrees(&self, wo: Vec3, wi: Vec3) -> bool {
-        self.ng.is_none_or(|ng| {
-            let shaded = wo.dot(self.frame.n) * wi.dot(self.frame.n) > 0.0;
-            (wo.dot(ng) * wi.dot(ng) > 0.0) == shaded
-        })
+        let on_one_side = |n: Vec3| wo.dot(n) * wi.dot(n) > 0.0;
+        !matches!(self.bsdf, Bsdf::Principled(_)) || on_one_side(self.ng) == on_one_side(self.frame.n)
     }
 
     /// The scattering function between two unit directions of render space, without a cosine.
@@ -144,13 +143,14 @@ pub fn shading(
         material = &materials[chosen.index()];
     }
     let mut at = At { textures, point, lanes };
+    let ng = surface.ng.as_vec3();
     if let MaterialKind::Principled(look) = &material.kind {
         let frame = relief::valid_frame(&material.relief, textures, surface, point);
         let (bsdf, frame) = at.principled(look, surface, frame);
-        return Some(Shading { bsdf, frame, ng: Some(surface.ng.as_vec3()) });
+        return Some(Shading { bsdf, frame, ng });
     }
     let bsdf = at.bsdf(material)?;
-    Some(Shading { bsdf, frame: relief::frame(&material.relief, textures, surface, point), ng: None })
+    Some(Shading { bsdf, frame: relief::frame(&material.relief, textures, surface, point), ng })
 }
 
 /// Where a material is asked.
