@@ -35,7 +35,7 @@ mod view;
 use glam::Vec3;
 
 use super::microfacet::TrowbridgeReitz;
-use super::{BsdfSample, Lobes, Mode, is_grazing};
+use super::{BsdfSample, Lobes, Mode, fresnel, is_grazing};
 use crate::spectrum::Spectrum;
 use film::Film;
 use view::View;
@@ -192,7 +192,7 @@ impl Principled {
                 .wavelengths
                 .map_or([0; 4], |lambda| lambda.map(|nm| (nm * WAVELENGTH_STEPS + 0.5) as u16)),
             roughness: p.roughness,
-            eta: finite(p.eta, 1e6),
+            eta: if p.eta > 0.0 { fresnel::valid_eta(p.eta) } else { 0.0 },
             f0_greatest: finite(p.f0_greatest, 1.0),
             coat_alpha: p.clearcoat_roughness.alpha_x,
             coat_normal: if is_usable { [normal.x, normal.y] } else { [0.0; 2] },

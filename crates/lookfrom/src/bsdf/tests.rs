@@ -471,6 +471,32 @@ fn numbers_of_any_size_never_become_nan() {
             ior: small(46),
             fresnel: trial.is_multiple_of(2),
         };
+        let share = |seed| any_size(seed, trial, 20).min(1.0);
+        let look = principled::Parameters {
+            base_color: lanes(80),
+            metallic: share(81),
+            roughness,
+            eta: if trial.is_multiple_of(7) { 0.0 } else { size(82) },
+            f0: lanes(83),
+            f0_greatest: share(84),
+            f90: share(85),
+            transmission: share(86),
+            is_solid: trial.is_multiple_of(2),
+            diffuse_transmission: share(87),
+            clearcoat: share(88),
+            clearcoat_roughness: rough(small(89), small(89)),
+            clearcoat_normal: Vec3 { z: direction(90, trial).z.abs(), ..direction(90, trial) },
+            sheen_color: if trial.is_multiple_of(3) { lanes(91) } else { Spectrum::BLACK },
+            sheen_greatest: share(92),
+            sheen_roughness: share(93),
+            iridescence: if trial.is_multiple_of(5) { share(94) } else { 0.0 },
+            film: principled::film::Film {
+                eta: size(95),
+                thickness: size(96),
+                wavelengths: trial.is_multiple_of(2).then_some([450.0, 500.0, 600.0, 700.0]),
+            },
+            ..principled::Parameters::default()
+        };
         let (wo, wi) = (direction(50, trial), direction(60, trial));
         let (uc, u) = numbers(70, trial);
         let u = if trial.is_multiple_of(5) { [0.0, u[1]] } else { u };
@@ -485,6 +511,7 @@ fn numbers_of_any_size_never_become_nan() {
             Bsdf::coated_diffuse(lanes(71), &coat),
             Bsdf::coated_conductor(lanes(73), lanes(74), roughness, &coat),
             Bsdf::Whitted(whitted),
+            Bsdf::Principled(Principled::new(&look)),
         ] {
             let good = |x: f32| x.is_finite() && x >= 0.0;
             for lobes in [Lobes::ALL, Lobes::REFLECTION, Lobes::TRANSMISSION] {

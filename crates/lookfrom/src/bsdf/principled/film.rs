@@ -76,7 +76,7 @@ impl Film {
             Some(lambda) => {
                 Spectrum(std::array::from_fn(|k| at_wavelength(&lane(f0.0[k]), path / lambda[k])))
             }
-            None => in_rgb([0, 1, 2].map(|k| lane(f0.0[k])), path),
+            None => in_rgb(&[0, 1, 2].map(|k| lane(f0.0[k])), path),
         }
     }
 }
@@ -90,7 +90,7 @@ fn at_wavelength(lane: &Lane, turns: f32) -> f32 {
 }
 
 /// Two terms of the series, as the eye sees them.
-fn in_rgb(lanes: [Lane; 3], path: f32) -> Spectrum {
+fn in_rgb(lanes: &[Lane; 3], path: f32) -> Spectrum {
     let series = [0, 1, 2].map(|k| lanes[k].series());
     let mut sum = [0, 1, 2].map(|k| series[k].0);
     let mut power = [1.0; 3];

@@ -194,7 +194,7 @@ impl Surface {
             schlick(cos)
         } else {
             let straight = ((self.eta - 1.0) / (self.eta + 1.0)) * ((self.eta - 1.0) / (self.eta + 1.0));
-            (fresnel::dielectric(cos, self.eta) - straight) / (1.0 - straight)
+            (fresnel::dielectric(cos, self.eta) - straight) / (1.0 - straight).max(1e-6)
         };
         let s = s.clamp(0.0, 1.0);
         let of = |f0: f32| f0 + (self.f90 - f0) * s;
