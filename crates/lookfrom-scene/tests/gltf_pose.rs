@@ -165,6 +165,24 @@ fn errors_of_poses_say_what_there_is() {
 }
 
 #[test]
+fn damaged_numbers_are_survived() {
+    let (mut numbers, root) = arm();
+    let odd = [0, 1, 0x3f, 0x7f, 0x80, 0xc0, 0xff];
+    for place in 0..numbers.bytes.len() {
+        let before = numbers.bytes[place];
+        for value in odd {
+            numbers.bytes[place] = value;
+            for (animation, time) in [("bend", 1.5), ("slide", f64::NAN)] {
+                let Ok((scene, _)) = numbers.read(root.clone(), Some(animation), time) else { continue };
+                let mut places = scene.meshes.iter().flat_map(|mesh| &mesh.positions);
+                assert!(places.all(|place| place.is_finite()), "{value} at {place}");
+            }
+        }
+        numbers.bytes[place] = before;
+    }
+}
+
+#[test]
 fn channels_that_are_not_known_are_passed_over() {
     let (numbers, mut root) = arm();
     root["animations"][0]["channels"] = json!([

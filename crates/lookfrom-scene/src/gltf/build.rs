@@ -259,16 +259,9 @@ impl Builder<'_, '_, '_> {
         let brought = vertices.brought();
         let (material, asked) = self.material(primitive, pointer);
         let look = self.looks.look(material, &asked, brought, self.sources, self.scene)?;
-        let geometry = mesh::geometry(
-            document,
-            primitive,
-            vertices,
-            look.grain,
-            name,
-            pointer,
-            self.sources,
-            self.scene,
-        )?;
+        vertices.grain = look.grain;
+        let geometry =
+            mesh::geometry(document, primitive, vertices, name, pointer, self.sources, self.scene)?;
         Ok(geometry.map(|geometry| Piece {
             pointer: document.at(pointer),
             geometry,

@@ -35,6 +35,8 @@ pub(crate) struct Vertices {
     pub(crate) opacities: Vec<f32>,
     /// Which vertices are used, in which order; `None` is all of them as they stand.
     pub(crate) indices: Option<Vec<u32>>,
+    /// The set of texture coordinates that its look needs tangents for.
+    pub(crate) grain: Option<u32>,
 }
 
 impl Vertices {
@@ -164,7 +166,7 @@ fn colors(
 }
 
 /// What a primitive becomes: triangles as a mesh of the scene, points and lines as what they are. `None`, with a warning
-/// where something is odd, if nothing is left. `grain` is the set of texture coordinates that triangles need tangents for.
+/// where something is odd, if nothing is left.
 ///
 /// # Errors
 /// Where an index is beyond the vertices, or the mode is not known.
@@ -172,7 +174,6 @@ pub(crate) fn geometry(
     document: &Document,
     primitive: &Primitive,
     mut vertices: Vertices,
-    grain: Option<u32>,
     name: &str,
     pointer: &str,
     sources: &mut Sources<'_>,
@@ -226,7 +227,7 @@ pub(crate) fn geometry(
             let corners = |triangle: &[u32; 3]| triangle.map(|vertex| vertices.positions[vertex as usize]);
             // Triangles without area hold strips together, and no ray meets one.
             triangles.retain(|triangle| usable(triangle) && has_area(corners(triangle)));
-            if let Some(set) = grain {
+            if let Some(set) = vertices.grain {
                 tangents::complete(&mut vertices, &mut triangles, set);
             }
             (!triangles.is_empty()).then(|| Geometry::Mesh(push_mesh(scene, name, vertices, triangles)))

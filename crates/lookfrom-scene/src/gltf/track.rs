@@ -119,7 +119,7 @@ fn slerp(from: DQuat, to: DQuat, part: f64) -> DQuat {
         return (from * (1.0 - part) + to * part).normalize();
     }
     let angle = libm::acos(cos);
-    let [a, b] = [(1.0 - part) * angle, part * angle].map(|angle| libm::sin(angle));
+    let [a, b] = [(1.0 - part) * angle, part * angle].map(libm::sin);
     (from * a + to * b).normalize()
 }
 

@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use super::*;
+use crate::files::{Memory, Sources};
+use crate::shape::Geometry;
 
 fn hex(text: &str) -> Vec<u8> {
     text.as_bytes()
@@ -179,4 +181,29 @@ fn damaged_streams_give_errors_or_other_numbers_but_never_a_panic() {
             }
         }
     }
+}
+
+#[test]
+fn a_view_of_a_file_is_unpacked() {
+    let json = r#"{
+        "asset": {"version": "2.0"}, "extensionsRequired": ["EXT_meshopt_compression"],
+        "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "mode": 0}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 40, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 1, "byteLength": 480, "extensions": {"EXT_meshopt_compression": {
+            "buffer": 0, "byteLength": LENGTH, "byteStride": 12, "count": 40, "mode": "ATTRIBUTES", "filter": "FILTER"}}}],
+        "buffers": [{"uri": "b", "byteLength": LENGTH}, {"byteLength": 480}]
+    }"#;
+    let bytes = hex(FLOATS_1);
+    let json = json.replace("LENGTH", &bytes.len().to_string());
+    let read = |filter: &str| {
+        let json = json.replace("FILTER", filter).into_bytes();
+        let files = Memory([("a.gltf".into(), json), ("b".into(), bytes.clone())].into());
+        crate::gltf::read(Path::new("a.gltf"), &mut Sources::new(&files))
+    };
+    let scene = read("NONE").unwrap();
+    let Geometry::Spheres(points) = &scene.shapes[0].geometry else { panic!("no points") };
+    assert_eq!((points.len(), points[39].center.to_array()), (40, [4.875, 24.765625, 5.0]));
+    let error = read("SQUARE").unwrap_err().to_string();
+    let place = "a.gltf#/bufferViews/0/extensions/EXT_meshopt_compression";
+    assert!(error.starts_with(&format!("{place}: the meshopt filter \"SQUARE\" is not known")), "{error}");
 }

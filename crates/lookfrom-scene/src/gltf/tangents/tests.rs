@@ -22,7 +22,8 @@ fn bitangent(vertices: &Vertices, vertex: usize) -> Vec3 {
 
 #[test]
 fn tangents_lie_along_u_and_their_w_says_where_v_grows() {
-    let cases: [(fn(f32, f32) -> [f32; 2], Vec3, Vec3); 4] = [
+    type Mapping = fn(f32, f32) -> [f32; 2];
+    let cases: [(Mapping, Vec3, Vec3); 4] = [
         (|x, y| [x, y], Vec3::X, Vec3::Y),
         (|x, y| [y, -x], Vec3::Y, Vec3::NEG_X),
         (|x, y| [-x, y], Vec3::NEG_X, Vec3::Y),
