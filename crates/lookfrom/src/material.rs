@@ -76,7 +76,7 @@ impl Frame {
 impl Shading {
     /// A matte surface without a relief.
     pub fn matte(surface: &Surface, reflectance: Spectrum) -> Self {
-        Self { bsdf: Bsdf::diffuse(reflectance), frame: relief::plain(surface), ng: None }
+        Self { bsdf: Bsdf::diffuse(reflectance), frame: relief::plain(surface), ng: surface.ng.as_vec3() }
     }
 
     /// The shading normal to the outside, unit length.

@@ -48,7 +48,7 @@ impl World {
     }
 
     /// What the camera's light from the floor is to be multiplied by for the floor to look like `behind` in place of what
-    /// [`World::catcher_reflectance`] makes of it; `direction` is the camera ray's, of any length.
+    /// its reflectance in the path tracer makes of it; `direction` is the camera ray's, of any length.
     pub fn catcher_correction(&self, direction: Vec3, behind: Spectrum, lanes: &Lanes) -> Spectrum {
         let irradiance = self.light_of(self.catcher_irradiance.unwrap_or_default(), lanes);
         let reflected = self.reflectance_seen_along(direction.normalize(), lanes) * irradiance;
