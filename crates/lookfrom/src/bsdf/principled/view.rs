@@ -57,6 +57,8 @@ struct Surface {
     eta: f32,
     is_solid: bool,
     film: Option<(f32, Film)>,
+    /// What the film makes of the dielectric's mirror about everywhere.
+    filmed: Spectrum,
     /// The mirror's mean albedo, and what it leaves of light from everywhere.
     mean: Split,
     mean_left: Spectrum,
@@ -127,9 +129,17 @@ impl Surface {
             is_solid: p.is_solid,
             film: (p.iridescence > 0.0).then_some((p.iridescence, p.film)),
             mean: if alpha == 0.0 { albedo::SMOOTH_MEAN } else { albedo::mirror_mean(alpha) },
+            filmed: Spectrum::BLACK,
             mean_left: Spectrum::BLACK,
         };
-        surface.mean_left = surface.left(MEAN_COSINE, surface.mean);
+        if let Some((_, film)) = &surface.film
+            && surface.matte > 0.0
+        {
+            surface.filmed = film.fresnel(MEAN_COSINE, surface.f0);
+        }
+        if surface.matte > 0.0 {
+            surface.mean_left = surface.left(MEAN_COSINE, surface.mean);
+        }
         surface
     }
 
@@ -168,8 +178,8 @@ impl Surface {
         match &self.film {
             None => Spectrum([plain; 4]),
             Some((amount, film)) => {
-                let (here, around) = (film.fresnel(cos, self.f0), film.fresnel(MEAN_COSINE, self.f0));
-                let filmed = here.zip(around, |here, around| {
+                let here = if cos == MEAN_COSINE { self.filmed } else { film.fresnel(cos, self.f0) };
+                let filmed = here.zip(self.filmed, |here, around| {
                     (1.0 - here * split.all() - multiple(around, mean) * hidden).max(0.0)
                 });
                 filmed * *amount + Spectrum([plain * (1.0 - amount); 4])
