@@ -55,7 +55,8 @@ impl<'a> Plain<'a> {
         let Form::Mesh(mesh) = &world.forms[hit.geometry as usize] else { return None };
         let look = &mesh.look;
         let is_flat = mesh.normals.is_empty() && !mesh.wants_derivatives;
-        if !is_flat || look.light.is_some() || look.alpha.is_some() || look.sides.is_some() {
+        let is_plain = look.light.is_none() && look.alpha.is_none() && look.sides.is_none();
+        if !is_flat || !is_plain || look.single_sided {
             return None;
         }
         let material = &world.materials[look.material as usize];
