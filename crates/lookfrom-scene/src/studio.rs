@@ -43,7 +43,7 @@ const ROOM: f32 = 0.3;
 const LAMP: f32 = 0.55;
 /// Samples a pixel of a picture of a model, and of one so small that nobody looks at single pixels.
 const MODEL_SAMPLES: u32 = 64;
-const THUMBNAIL_SAMPLES: u32 = 16;
+const THUMBNAIL_SAMPLES: u32 = 8;
 /// The most pixels of a thumbnail.
 const THUMBNAIL_PIXELS: u64 = 256 * 256;
 

@@ -64,20 +64,28 @@ impl Split {
     }
 }
 
-struct Tables {
-    mirror: Vec<Split>,
-    mirror_mean: Vec<Split>,
-    sheen: Vec<f32>,
+struct Mirrors {
+    /// Column by column.
+    albedo: Vec<Split>,
+    /// By column.
+    mean: Vec<Split>,
 }
 
-static TABLES: LazyLock<Tables> = LazyLock::new(|| {
-    let grid = || (0..ROUGHNESSES).flat_map(|r| (0..COSINES).map(move |c| (fraction(r, ROUGHNESSES), c)));
-    let mirror: Vec<Split> =
-        grid().map(|(roughness, c)| integrated_mirror(cosine(c), roughness * roughness)).collect();
-    let mirror_mean = mirror.chunks(COSINES).map(mean).collect();
-    let sheen = grid().map(|(roughness, c)| sheen::integrated(cosine(c), roughness)).collect();
-    Tables { mirror, mirror_mean, sheen }
+static MIRRORS: LazyLock<Mirrors> = LazyLock::new(|| {
+    let albedo: Vec<Split> =
+        grid().map(|(cos, roughness)| integrated_mirror(cos, roughness * roughness)).collect();
+    let mean = albedo.chunks(COSINES).map(mean).collect();
+    Mirrors { albedo, mean }
 });
+
+/// Of fibres: apart, since it takes longest and few ask for it.
+static SHEENS: LazyLock<Vec<f32>> =
+    LazyLock::new(|| grid().map(|(cos, roughness)| sheen::integrated(cos, roughness)).collect());
+
+/// Cosines and roughnesses of the tables, column by column of one roughness.
+fn grid() -> impl Iterator<Item = (f32, f32)> {
+    (0..ROUGHNESSES).flat_map(|r| (0..COSINES).map(move |c| (cosine(c), fraction(r, ROUGHNESSES))))
+}
 
 fn fraction(index: usize, count: usize) -> f32 {
     index as f32 / (count - 1) as f32
@@ -106,7 +114,7 @@ pub(super) fn mirror(cos: f32, alpha: f32) -> Split {
     }
     let (row, down) = place(cos.sqrt(), COSINES);
     let (column, right) = place(alpha.sqrt(), ROUGHNESSES);
-    let table = &TABLES.mirror[column * COSINES + row..];
+    let table = &MIRRORS.albedo[column * COSINES + row..];
     let (left, next) = (table[0].mixed(table[1], down), table[COSINES].mixed(table[COSINES + 1], down));
     left.mixed(next, right)
 }
@@ -115,7 +123,7 @@ pub(super) fn mirror(cos: f32, alpha: f32) -> Split {
 #[inline]
 pub(super) fn mirror_mean(alpha: f32) -> Split {
     let (column, right) = place(alpha.sqrt(), ROUGHNESSES);
-    let table = &TABLES.mirror_mean;
+    let table = &MIRRORS.mean;
     table[column].mixed(table[column + 1], right)
 }
 
@@ -124,7 +132,7 @@ pub(super) fn mirror_mean(alpha: f32) -> Split {
 pub(super) fn sheen(cos: f32, roughness: f32) -> f32 {
     let (row, down) = place(cos.sqrt(), COSINES);
     let (column, right) = place(roughness, ROUGHNESSES);
-    let table = &TABLES.sheen[column * COSINES + row..];
+    let table = &SHEENS[column * COSINES + row..];
     let mix = |a: f32, b: f32, t: f32| a + t * (b - a);
     mix(mix(table[0], table[1], down), mix(table[COSINES], table[COSINES + 1], down), right)
 }
