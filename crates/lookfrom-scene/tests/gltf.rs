@@ -194,6 +194,7 @@ fn every_mode_has_its_form() {
     for (mode, count) in [(1, 2), (2, 4), (3, 3)] {
         let scene = read(mode);
         assert!(matches!(&scene.shapes[0].geometry, Geometry::Curves(strands) if strands.len() == count));
+        assert!(!scene.shapes[0].single_sided, "lines are seen from everywhere");
     }
     assert!(matches!(&read(0).shapes[0].geometry, Geometry::Spheres(spheres) if spheres.len() == 4));
 }

@@ -352,11 +352,13 @@ impl Builder<'_, '_, '_> {
 }
 
 fn shape(piece: &Piece, name: &Option<String>) -> Shape {
+    // Points and lines have no backs.
+    let single_sided = piece.look.single_sided && matches!(piece.geometry, Geometry::Mesh(_));
     Shape {
         name: name.clone(),
         emission: piece.look.emission,
         alpha: piece.look.alpha,
-        single_sided: piece.look.single_sided,
+        single_sided,
         world_from_object: piece.world_from_skinned.unwrap_or(DMat4::IDENTITY),
         ..Shape::new(piece.pointer.clone(), piece.geometry.clone(), piece.look.material)
     }
