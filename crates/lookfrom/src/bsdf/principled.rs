@@ -29,7 +29,9 @@
 
 mod albedo;
 pub mod film;
+mod layers;
 mod sheen;
+mod surface;
 mod view;
 
 use glam::Vec3;

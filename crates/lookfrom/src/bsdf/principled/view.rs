@@ -5,22 +5,18 @@
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
-use super::albedo::{self, Split, schlick};
-use super::sheen::{self, Sheen};
-use super::{Film, Principled, towards};
+use super::albedo::{self, Split};
+use super::layers::{Coat, Fibres};
+use super::sheen;
+use super::surface::{Facet, MEAN_COSINE, Surface, multiple};
+use super::{Principled, towards};
 use crate::bsdf::conductor::half_vector;
 use crate::bsdf::dielectric::{radiance_scale, refraction_jacobian};
 use crate::bsdf::diffuse::cosine_direction;
-use crate::bsdf::microfacet::TrowbridgeReitz;
-use crate::bsdf::{BsdfSample, Lobes, Mode, fresnel, is_grazing};
+use crate::bsdf::{BsdfSample, Lobes, Mode, is_grazing};
 use crate::math;
 use crate::spectrum::Spectrum;
 use crate::warp;
-
-/// What the coat, of index 1.5, mirrors straight on.
-const COAT_F0: f32 = 0.04;
-/// The cosine at which a film stands for its mean.
-const MEAN_COSINE: f32 = 0.7;
 
 /// A surface, unpacked, and what is known once `wo` is.
 pub(super) struct View {
@@ -37,54 +33,6 @@ pub(super) struct View {
     coat: Option<Coat>,
 }
 
-/// What lies under coat and sheen.
-struct Surface {
-    base: Spectrum,
-    f0: Spectrum,
-    f0_greatest: f32,
-    f90: f32,
-    metal: f32,
-    /// Of the whole surface: a matte body, and one that lets pass.
-    matte: f32,
-    glass: f32,
-    /// Of the matte body.
-    leaf: f32,
-    leaf_color: Spectrum,
-    roughness: TrowbridgeReitz,
-    /// Of an isotropic mirror that sends back as much.
-    alpha: f32,
-    /// Inside over outside.
-    eta: f32,
-    is_solid: bool,
-    film: Option<(f32, Film)>,
-    /// What the film makes of the dielectric's mirror about everywhere.
-    filmed: Spectrum,
-    /// The mirror's mean albedo, and what it leaves of light from everywhere.
-    mean: Split,
-    mean_left: Spectrum,
-}
-
-struct Fibres {
-    fibres: Sheen,
-    color: Spectrum,
-    greatest: f32,
-    roughness: f32,
-    /// What they take from light along `wo`.
-    taken: f32,
-}
-
-struct Coat {
-    amount: f32,
-    roughness: TrowbridgeReitz,
-    alpha: f32,
-    /// Axes, the last of them the normal.
-    frame: [Vec3; 3],
-    /// In this frame.
-    wo: Vec3,
-    /// What it takes from light along `wo`.
-    taken: f32,
-}
-
 /// Probabilities of the lobes.
 pub(super) struct Choice {
     coat: f32,
@@ -93,163 +41,6 @@ pub(super) struct Choice {
     facet: f32,
     matte: f32,
     matte_through: f32,
-}
-
-/// What a facet mirrors and lets pass.
-struct Facet {
-    mirrored: Spectrum,
-    passed: Spectrum,
-}
-
-/// The part that leaves a rough mirror after more than one bounce, by Fresnel's mean and the mean albedo of one bounce.
-fn multiple(fresnel: f32, mean: f32) -> f32 {
-    fresnel * fresnel * mean / (1.0 - fresnel * (1.0 - mean))
-}
-
-impl Surface {
-    fn new(look: &Principled) -> Self {
-        let p = look.parameters();
-        let roughness = p.roughness;
-        let alpha =
-            if roughness.is_smooth() { 0.0 } else { (roughness.alpha_x * roughness.alpha_y).sqrt().min(1.0) };
-        let body = 1.0 - p.metallic;
-        let mut surface = Self {
-            base: p.base_color,
-            f0: p.f0,
-            f0_greatest: p.f0_greatest,
-            f90: p.f90,
-            metal: p.metallic,
-            matte: body * (1.0 - p.transmission),
-            glass: body * p.transmission,
-            leaf: p.diffuse_transmission,
-            leaf_color: p.diffuse_transmission_color,
-            roughness,
-            alpha,
-            eta: p.eta,
-            is_solid: p.is_solid,
-            film: (p.iridescence > 0.0).then_some((p.iridescence, p.film)),
-            mean: if alpha == 0.0 { albedo::SMOOTH_MEAN } else { albedo::mirror_mean(alpha) },
-            filmed: Spectrum::BLACK,
-            mean_left: Spectrum::BLACK,
-        };
-        if let Some((_, film)) = &surface.film
-            && surface.matte > 0.0
-        {
-            surface.filmed = film.fresnel(MEAN_COSINE, surface.f0);
-        }
-        if surface.matte > 0.0 {
-            surface.mean_left = surface.left(MEAN_COSINE, surface.mean);
-        }
-        surface
-    }
-
-    /// With the film over it, what mirrors `f0` straight on.
-    #[inline]
-    fn under_film(&self, cos: f32, f0: Spectrum, plain: Spectrum) -> Spectrum {
-        match &self.film {
-            Some((amount, film)) => plain * (1.0 - amount) + film.fresnel(cos, f0) * *amount,
-            None => plain,
-        }
-    }
-
-    /// What the metal mirrors.
-    #[inline]
-    fn metal(&self, cos: f32) -> Spectrum {
-        let s = schlick(cos);
-        self.under_film(cos, self.base, self.base.map(|f0| f0 + (1.0 - f0) * s))
-    }
-
-    /// What mirrors over the matte body.
-    #[inline]
-    fn lacquer(&self, cos: f32) -> Spectrum {
-        let s = schlick(cos);
-        self.under_film(cos, self.f0, self.f0.map(|f0| f0 + (self.f90 - f0) * s))
-    }
-
-    /// What the lacquer's albedo leaves for the body below.
-    fn left(&self, cos: f32, split: Split) -> Spectrum {
-        let hidden = 1.0 - split.all();
-        let mean = self.mean.all();
-        let plain = {
-            let again = multiple(self.f0_greatest + (self.f90 - self.f0_greatest) / 21.0, mean);
-            1.0 - split.of(self.f0_greatest, self.f90) - again * hidden
-        };
-        let plain = plain.max(0.0);
-        match &self.film {
-            None => Spectrum([plain; 4]),
-            Some((amount, film)) => {
-                let here = if cos == MEAN_COSINE { self.filmed } else { film.fresnel(cos, self.f0) };
-                let filmed = here.zip(self.filmed, |here, around| {
-                    (1.0 - here * split.all() - multiple(around, mean) * hidden).max(0.0)
-                });
-                filmed * *amount + Spectrum([plain * (1.0 - amount); 4])
-            }
-        }
-    }
-
-    /// What the glass does at a cosine to a facet, on the side of `wo`.
-    fn pane(&self, cos: f32, is_inside: bool) -> Facet {
-        // Inside of a body, what counts is the angle outside.
-        let cos = if is_inside && self.is_solid && self.bends() {
-            let sin2 = self.eta * self.eta * (1.0 - cos * cos).max(0.0);
-            if sin2 >= 1.0 {
-                return Facet { mirrored: Spectrum([1.0; 4]), passed: Spectrum::BLACK };
-            }
-            (1.0 - sin2).sqrt()
-        } else {
-            cos
-        };
-        // Fresnel's curve from 0 to 1.
-        let s = if self.eta == 0.0 {
-            schlick(cos)
-        } else {
-            let straight = ((self.eta - 1.0) / (self.eta + 1.0)) * ((self.eta - 1.0) / (self.eta + 1.0));
-            (fresnel::dielectric(cos, self.eta) - straight) / (1.0 - straight).max(1e-6)
-        };
-        let s = s.clamp(0.0, 1.0);
-        let of = |f0: f32| f0 + (self.f90 - f0) * s;
-        let (mirrored, passed) = (self.f0.map(of), 1.0 - of(self.f0_greatest));
-        match &self.film {
-            None => Facet { mirrored, passed: Spectrum([passed; 4]) },
-            Some((amount, film)) => {
-                let filmed = film.fresnel(cos, self.f0);
-                Facet {
-                    mirrored: mirrored * (1.0 - amount) + filmed * *amount,
-                    passed: filmed.map(|f| passed * (1.0 - amount) + (1.0 - f) * amount),
-                }
-            }
-        }
-    }
-
-    /// Whether the index of a body changes directions.
-    #[inline]
-    fn bends(&self) -> bool {
-        self.eta != 1.0 && self.eta != 0.0
-    }
-
-    /// Whether what passes has one direction only.
-    #[inline]
-    fn passes_sharply(&self) -> bool {
-        self.alpha == 0.0 || (self.is_solid && !self.bends())
-    }
-
-    /// What a facet does at a cosine, each part with its weight and tint.
-    fn facet(&self, cos: f32, is_inside: bool) -> Facet {
-        let mut mirrored = Spectrum::BLACK;
-        if self.metal > 0.0 {
-            mirrored += self.metal(cos) * self.metal;
-        }
-        if self.matte > 0.0 {
-            mirrored += self.lacquer(cos) * self.matte;
-        }
-        let mut passed = Spectrum::BLACK;
-        if self.glass > 0.0 {
-            let pane = self.pane(cos, is_inside);
-            mirrored += pane.mirrored * self.glass;
-            passed = pane.passed * self.base * self.glass;
-        }
-        Facet { mirrored, passed }
-    }
 }
 
 impl View {
@@ -560,94 +351,5 @@ impl View {
         };
         let f = part * radiance_scale(coat * sheen / wi.z.abs(), eta, mode);
         Some(BsdfSample { eta, ..BsdfSample::new(wi, f, probability, side | Lobes::SPECULAR) })
-    }
-}
-
-impl Fibres {
-    fn new(look: &Principled, cos: f32) -> Option<Self> {
-        if look.sheen_color.is_black() {
-            return None;
-        }
-        let roughness = look.sheen_roughness.value();
-        let mut fibres = Self {
-            fibres: Sheen::new(roughness),
-            color: look.sheen_color.lanes(),
-            greatest: look.sheen_greatest.value(),
-            roughness,
-            taken: 0.0,
-        };
-        fibres.taken = fibres.taken(cos);
-        Some(fibres)
-    }
-
-    fn albedo(&self, cos: f32) -> f32 {
-        albedo::sheen(cos, self.roughness)
-    }
-
-    fn taken(&self, cos: f32) -> f32 {
-        (self.greatest * self.albedo(cos)).min(1.0)
-    }
-
-    fn f(&self, wo: Vec3, wi: Vec3) -> f32 {
-        self.fibres.f(wo, wi)
-    }
-}
-
-impl Coat {
-    fn new(look: &Principled, wo: Vec3) -> Option<Self> {
-        let amount = look.coat.value();
-        if amount == 0.0 {
-            return None;
-        }
-        let roughness = TrowbridgeReitz { alpha_x: look.coat_alpha, alpha_y: look.coat_alpha };
-        let n = look.parameters().clearcoat_normal;
-        let (s, t) = warp::orthonormal_basis(n);
-        let alpha = if roughness.is_smooth() { 0.0 } else { look.coat_alpha.min(1.0) };
-        let mut coat = Self { amount, roughness, alpha, frame: [s, t, n], wo, taken: 0.0 };
-        coat.wo = coat.local(wo);
-        coat.taken = coat.taken(coat.wo.z);
-        Some(coat)
-    }
-
-    fn local(&self, w: Vec3) -> Vec3 {
-        Vec3::from_array(self.frame.map(|axis| w.dot(axis)))
-    }
-
-    /// What it takes from light whose cosine to its normal is this: nothing, from behind.
-    fn taken(&self, cos: f32) -> f32 {
-        if cos > 0.0 { self.amount * albedo::mirror(cos.min(1.0), self.alpha).of(COAT_F0, 1.0) } else { 0.0 }
-    }
-
-    /// `wi` in its frame and the facet between, where both are above it.
-    fn facet(&self, wi: Vec3) -> Option<(Vec3, Vec3)> {
-        let wi = self.local(wi);
-        if self.alpha == 0.0 || self.wo.z <= 0.0 || wi.z <= 0.0 || is_grazing(self.wo) || is_grazing(wi) {
-            return None;
-        }
-        Some((wi, half_vector(self.wo, wi)?))
-    }
-
-    /// Per cosine to the normal of the surface below.
-    fn f(&self, wi: Vec3) -> f32 {
-        let Some((local, wm)) = self.facet(wi) else { return 0.0 };
-        let fresnel = COAT_F0 + (1.0 - COAT_F0) * schlick(self.wo.dot(wm));
-        let visible = self.roughness.d(wm) * self.roughness.g(self.wo, local);
-        self.amount * fresnel * visible / (4.0 * self.wo.z * wi.z)
-    }
-
-    fn pdf(&self, wi: Vec3) -> f32 {
-        self.facet(wi).map_or(0.0, |(_, wm)| 0.25 * self.roughness.visible_per_cosine(self.wo, wm))
-    }
-
-    /// A direction above it and above the surface.
-    fn sample(&self, u: [f32; 2]) -> Option<Vec3> {
-        if self.wo.z <= 0.0 || is_grazing(self.wo) {
-            return None;
-        }
-        let wm = if self.alpha == 0.0 { Vec3::Z } else { self.roughness.sample(self.wo, u) };
-        let local = math::reflect(self.wo, wm);
-        let [s, t, n] = self.frame;
-        let wi = (local.x * s + local.y * t + local.z * n).normalize();
-        (local.z > 0.0 && wi.z > 0.0 && !is_grazing(wi)).then_some(wi)
     }
 }
