@@ -256,7 +256,7 @@ fn round_toward<S: Simd>(simd: S, x: Wide<S>, up: mask64x8<S>, still: mask64x8<S
 
 /// For vectors of single precision.
 #[inline(always)]
-pub(crate) fn narrow_mask<S: Simd>(simd: S, mask: mask64x8<S>) -> mask32x8<S> {
+fn narrow_mask<S: Simd>(simd: S, mask: mask64x8<S>) -> mask32x8<S> {
     mask32x8::from_bitmask(simd, mask.to_bitmask())
 }
 

@@ -219,8 +219,7 @@ impl At<'_> {
     }
 
     fn albedo(&self, color: lookfrom_scene::material::Color) -> Spectrum {
-        let color = self.textures.spectrum(color, Usage::Albedo, self.point, self.lanes);
-        color.map(|lane| lane.clamp(0.0, 1.0))
+        self.textures.albedo(color, self.point, self.lanes)
     }
 
     fn scalar(&self, scalar: Scalar) -> f32 {

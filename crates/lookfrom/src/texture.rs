@@ -156,6 +156,12 @@ impl Textures {
         self.spectrum_of_any(color, usage, at, lanes)
     }
 
+    /// The same for a reflectance: 0 … 1 in every lane.
+    #[inline(always)]
+    pub fn albedo(&self, color: Color, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
+        self.spectrum(color, Usage::Albedo, at, lanes).map(|lane| lane.clamp(0.0, 1.0))
+    }
+
     fn spectrum_of_any(&self, color: Color, usage: Usage, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
         match lanes {
             Lanes::Rgb => self.read(color, at, &Rgb(usage)),

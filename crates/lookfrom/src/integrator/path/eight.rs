@@ -19,7 +19,7 @@ use crate::light::Target;
 use crate::sampler::eight::{PixelSamplers, mix};
 use crate::shape::{Form, Mesh};
 use crate::spectrum::Spectrum;
-use crate::texture::{Lanes, TexturePoint, Usage};
+use crate::texture::{Lanes, TexturePoint};
 use crate::warp;
 use crate::world::World;
 use asked::Asked;
@@ -65,10 +65,7 @@ impl<'a> Plain<'a> {
         else {
             return None;
         };
-        let reflectance = world
-            .textures
-            .spectrum(*color, Usage::Albedo, &TexturePoint::NOWHERE, lanes)
-            .map(|lane| lane.clamp(0.0, 1.0));
+        let reflectance = world.textures.albedo(*color, &TexturePoint::NOWHERE, lanes);
         (!reflectance.is_black()).then(|| Self { path, hit, mesh, reflectance, numbers: numbers() })
     }
 }
