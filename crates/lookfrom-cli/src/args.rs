@@ -38,7 +38,7 @@ const RENDER_EXAMPLES: &str = "\
 Examples:
   lookfrom render scene.toml -o picture.exr --samples 64
   lookfrom render model.obj --lookfrom -3,2,5 --up 0,0,1
-  lookfrom render model.ply --size 512 --floor --background transparent
+  lookfrom render model.glb --size 512 --floor --background transparent
   lookfrom render model.stl --up 0,0,1 --turntable 36 -o 'around/{name}.png'
   lookfrom render a.toml b.toml -o pictures/             pictures/a.png, pictures/b.png
   lookfrom render *.toml -o 'out/{name}-small.png' --width 160
@@ -113,7 +113,7 @@ pub(crate) enum Command {
 
 #[derive(Args, Debug)]
 pub(crate) struct RenderArguments {
-    /// Scenes (.toml, .pbrt) or models (.obj, .ply, .stl)
+    /// Scenes (.toml, .pbrt) or models (.gltf, .glb, .obj, .ply, .stl)
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
@@ -182,7 +182,7 @@ pub(crate) enum Fireflies {
 
 #[derive(Args, Debug)]
 pub(crate) struct InspectArguments {
-    /// A scene (.toml, .pbrt) or a model (.obj, .ply, .stl)
+    /// A scene (.toml, .pbrt) or a model (.gltf, .glb, .obj, .ply, .stl)
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 
@@ -215,7 +215,7 @@ pub(crate) struct InspectArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct InfoArguments {
-    /// Scenes (.toml, .pbrt) or models (.obj, .ply, .stl)
+    /// Scenes (.toml, .pbrt) or models (.gltf, .glb, .obj, .ply, .stl)
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
@@ -260,7 +260,7 @@ pub(crate) struct CompareArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct BenchArguments {
-    /// Scenes (.toml, .pbrt) or models (.obj, .ply, .stl)
+    /// Scenes (.toml, .pbrt) or models (.gltf, .glb, .obj, .ply, .stl)
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 

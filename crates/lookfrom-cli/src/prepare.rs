@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 use lookfrom::world::World;
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::image::{self, Image};
-use lookfrom_scene::scene::Bounds;
-use lookfrom_scene::settings::{ImageSettings, Integrator, RenderSettings};
-use lookfrom_scene::{Choice, Disk, Location, Sources, Warning, load, model, studio};
+use lookfrom_scene::scene::{Bounds, Origin};
+use lookfrom_scene::settings::{ImageSettings, RenderSettings};
+use lookfrom_scene::{Choice, Disk, Location, Sources, Warning, load, studio};
 
 use crate::args::{Common, Overrides};
 use crate::count::Counts;
@@ -64,18 +64,18 @@ pub(crate) fn prepare(
     // Change and furnish.
     let started = Instant::now();
     overrides.apply_to_settings(&mut scene.image, &mut scene.render)?;
-    let is_model = is_gltf(path) || model::is_model(path);
-    if is_model && overrides.samples.is_none() {
+    let origin = scene.origin;
+    if origin != Origin::Scene && overrides.samples.is_none() {
         scene.render.samples = studio::samples_for_models(&scene.image);
     }
     let (counts, bounds) = (Counts::of(&scene), scene.bounds());
     if bounds.is_empty() {
         warn("nothing stands in this scene: the picture shows the background alone");
     }
-    if asked.choice() != Choice::default() && !is_gltf(path) {
+    if asked.choice() != Choice::default() && origin != Origin::Gltf {
         warn("--animation, --at, --variant, --scene and --camera choose from a glTF file; this file is none");
     }
-    if asked.floor && !is_path_traced(scene.render.integrator) {
+    if asked.floor && !scene.render.integrator.is_path_traced() {
         warn("a floor that is seen only by its shadows needs the path tracer; here it is grey");
     }
     let had_camera = scene.camera.is_some();
@@ -88,7 +88,7 @@ pub(crate) fn prepare(
         studio::surround(&mut scene, environment.clone(), up);
     }
     // What glows in a glTF file is seldom meant to light it alone.
-    if is_model && (is_gltf(path) || !studio::shines(&scene)) {
+    if origin == Origin::Gltf || origin == Origin::Model && !studio::shines(&scene) {
         studio::furnish_model(&mut scene, up);
     } else {
         studio::furnish(&mut scene, up);
@@ -129,15 +129,6 @@ pub(crate) fn prepare(
 pub(crate) fn environment(overrides: &Overrides) -> Result<Option<Image>, Failure> {
     let Some(path) = &overrides.model.environment else { return Ok(None) };
     Ok(Some(image::read(path, &mut Sources::new(&Disk))?))
-}
-
-fn is_gltf(path: &Path) -> bool {
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    ["gltf", "glb"].contains(&&*ending)
-}
-
-fn is_path_traced(integrator: Integrator) -> bool {
-    matches!(integrator, Integrator::Path | Integrator::SimplePath | Integrator::RandomWalk)
 }
 
 /// Sets how many threads build and render. Call it once, before anything else.

@@ -7,7 +7,7 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Sources;
 use crate::light::Light;
 use crate::material::{Color, Material, MaterialKind};
-use crate::scene::{MaterialId, Scene};
+use crate::scene::{MaterialId, Origin, Scene};
 use crate::shape::{Part, Shape};
 use crate::{gltf, model, pbrt, studio, toml};
 
@@ -28,10 +28,10 @@ pub fn scene(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         return pbrt::read(path, sources);
     }
     if is_gltf(path, sources) {
-        return gltf::read(path, sources);
+        return Ok(Scene { origin: Origin::Gltf, ..gltf::read(path, sources)? });
     }
     let (image, render) = studio::settings_for_models();
-    let mut scene = Scene { image, render, ..Scene::default() };
+    let mut scene = Scene { origin: Origin::Model, image, render, ..Scene::default() };
     let parts = model(path, sources, &mut scene)?.parts;
     let default = MaterialId(scene.materials.len() as u32);
     let clay = MaterialKind::Diffuse { reflectance: Color::gray(CLAY) };

@@ -51,6 +51,8 @@ pub struct Scene {
     /// Whether the file says all that there is, so that no light is added to show it: a scene of pbrt without lights is
     /// black.
     pub is_whole: bool,
+    /// What kind of file it was read from.
+    pub origin: Origin,
     /// The eye; `None` where the file names none: then the scene is framed by its bounds.
     pub camera: Option<Camera>,
     /// Size, filter and development of the picture.
@@ -77,6 +79,18 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// Lights that are not shapes; shapes shine by [`Shape::emission`].
     pub lights: Vec<Light>,
+}
+
+/// What kind of file a scene was read from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Origin {
+    /// A scene of ours or of pbrt, or no file.
+    #[default]
+    Scene,
+    /// A glTF file.
+    Gltf,
+    /// A model of another format, which has neither a camera nor lights.
+    Model,
 }
 
 /// A named group of shapes, invisible until an [`Instance`] places it.

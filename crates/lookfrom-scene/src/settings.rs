@@ -297,6 +297,11 @@ impl Integrator {
         ("id", Self::Id),
     ];
 
+    /// Whether paths are followed from surface to surface by chance.
+    pub fn is_path_traced(self) -> bool {
+        matches!(self, Self::Path | Self::SimplePath | Self::RandomWalk)
+    }
+
     /// Its word. Ambient occlusion has one for both of its ways to choose directions.
     pub fn word(self) -> &'static str {
         let spoken = match self {

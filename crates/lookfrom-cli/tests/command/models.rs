@@ -180,3 +180,14 @@ fn sizes_and_choices() {
     let run = stage.done("render model.obj -o p.png --size 8 --samples 1 --animation Walk --at 1.5s");
     assert!(run.stderr.contains("--animation") && run.stderr.contains("glTF"), "{}", run.stderr);
 }
+
+#[test]
+fn what_a_model_is_its_content_says() {
+    let stage = Stage::new("content");
+    stage.write(
+        "triangle",
+        r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}]}"#,
+    );
+    // Nothing is warned of: what is chosen is of a glTF file, whatever its name.
+    stage.done("render triangle -q -o t.png --size 8 --samples 1 --scene 0 --strict");
+}

@@ -79,7 +79,9 @@ impl Frame<'_> {
         }
         *met = match hit.is_hit() {
             false => Met::Nothing,
-            true if self.is_path_traced() && self.world.hits_catcher(&path.ray, hit) => Met::Floor,
+            true if self.render.integrator.is_path_traced() && self.world.hits_catcher(&path.ray, hit) => {
+                Met::Floor
+            }
             true => Met::Thing,
         };
         if *met == Met::Floor {
@@ -133,10 +135,6 @@ impl Frame<'_> {
             // White, so that what is seen is the share that shadows leave.
             Background::Color(_) | Background::Transparent => self.world.light_of([1.0; 3], lanes),
         }
-    }
-
-    fn is_path_traced(&self) -> bool {
-        matches!(self.render.integrator, Kind::Path | Kind::SimplePath | Kind::RandomWalk)
     }
 
     /// The colour of a sample and how much of what is behind it hides, 1 for all: of the floor of shadows a picture
