@@ -91,7 +91,7 @@ impl Path {
     pub const ROOT: u64 = 1;
 
     /// Where it left from, as lights are asked there.
-    fn reference(&self) -> Reference {
+    pub(crate) fn reference(&self) -> Reference {
         Reference { point: self.departure.point.as_dvec3(), n: self.departure.n }
     }
 

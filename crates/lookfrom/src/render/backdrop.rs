@@ -11,7 +11,7 @@ use lookfrom_scene::settings::{Background, Integrator as Kind};
 
 use super::Frame;
 use crate::integrator::{Event, Next, Path, Probe, Shadow, Term, power_heuristic};
-use crate::light::{Light, Reference};
+use crate::light::Light;
 use crate::math;
 use crate::spectrum::Spectrum;
 use crate::texture::Lanes;
@@ -119,7 +119,7 @@ impl Frame<'_> {
             return Spectrum::BLACK;
         }
         let direction = Vec3::from_array(path.ray.direction).normalize();
-        let at = Reference { point: path.departure.point.as_dvec3(), n: path.departure.n };
+        let at = path.reference();
         let lit =
             self.world.environments.iter().filter(|&&index| self.world.lights[index as usize].illuminates());
         lit.fold(Spectrum::BLACK, |sum, &index| {
