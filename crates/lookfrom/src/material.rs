@@ -125,16 +125,39 @@ impl Shading {
     }
 }
 
+/// What comes to a surface, as far as what it does with light depends on that.
+#[derive(Debug)]
+pub struct Arrival<'a> {
+    /// What the lanes mean. Where wavelengths go different ways, only the first is left.
+    pub lanes: &'a mut Lanes,
+    /// The path's share of the sample. In RGB mode, where colours go different ways, one of those in it is left, at the
+    /// weight of all.
+    pub share: &'a mut Spectrum,
+    /// Chance, in [0, 1): which of mixed materials there is, which colour is left. Used where [`Material::is_chancy`].
+    pub u: f32,
+}
+
+impl Material {
+    /// Whether it takes chance to tell what it does with light.
+    pub fn is_chancy(&self) -> bool {
+        match &self.kind {
+            MaterialKind::Mix { .. } => true,
+            MaterialKind::Principled(look) => principled::disperses(look),
+            _ => false,
+        }
+    }
+}
+
 /// The scattering function of a material at a surface; `None` for one that is not there (an interface). A mixed material
-/// is one of its parts, chosen by `u ∈ [0, 1)`. Where wavelengths go different ways, `lanes` keeps only the first.
+/// is one of its parts.
 pub fn shading(
     materials: &[Material],
     textures: &Textures,
     surface: &Surface,
     point: &TexturePoint,
-    lanes: &mut Lanes,
-    mut u: f32,
+    arrival: Arrival<'_>,
 ) -> Option<Shading> {
+    let Arrival { lanes, share, mut u } = arrival;
     let mut material = &materials[surface.material as usize];
     while let MaterialKind::Mix { materials: [first, second], amount } = &material.kind {
         let amount = textures.scalar(*amount, point).clamp(0.0, 1.0);
@@ -142,7 +165,7 @@ pub fn shading(
         u = if u < amount { u / amount } else { (u - amount) / (1.0 - amount) };
         material = &materials[chosen.index()];
     }
-    let mut at = At { textures, point, lanes };
+    let mut at = At { textures, point, lanes, share, u };
     let ng = surface.ng.as_vec3();
     if let MaterialKind::Principled(look) = &material.kind {
         let frame = relief::valid_frame(&material.relief, textures, surface, point);
@@ -158,6 +181,8 @@ struct At<'a> {
     textures: &'a Textures,
     point: &'a TexturePoint,
     lanes: &'a mut Lanes,
+    share: &'a mut Spectrum,
+    u: f32,
 }
 
 impl At<'_> {

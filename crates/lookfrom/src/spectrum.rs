@@ -43,6 +43,26 @@ impl Spectrum {
         self.0.into_iter().fold(f32::NEG_INFINITY, f32::max)
     }
 
+    /// The one lane that is not 0; `None` where there are several or none.
+    pub fn only_lane(self) -> Option<usize> {
+        let mut lanes = (0..4).filter(|&lane| self.0[lane] != 0.0);
+        lanes.next().filter(|_| lanes.next().is_none())
+    }
+
+    /// Leaves one of the lanes that are not 0, chosen evenly by `u ∈ [0, 1)`, at the weight of all of them: the mean stays
+    /// what it was.
+    pub fn leave_one(&mut self, u: f32) {
+        let count = self.0.iter().filter(|lane| **lane != 0.0).count();
+        let chosen = ((u * count as f32) as usize).min(count.saturating_sub(1));
+        let mut rank = 0;
+        for lane in &mut self.0 {
+            if *lane != 0.0 {
+                *lane = if rank == chosen { *lane * count as f32 } else { 0.0 };
+                rank += 1;
+            }
+        }
+    }
+
     /// Whether there is no light in any lane.
     pub fn is_black(self) -> bool {
         self.0 == [0.0; 4]

@@ -17,7 +17,7 @@ use lookfrom_scene::medium::{Medium, Sides};
 
 use crate::camera::{Camera, CameraRay};
 use crate::light::{Coverage, Light, LightChoice, Reference};
-use crate::material::{self, Material, Shading};
+use crate::material::{self, Arrival, Material, Shading};
 use crate::math;
 use crate::shape::{Form, FormPoint, Mesh, VertexData};
 use crate::spectrum::Spectrum;
@@ -169,10 +169,9 @@ impl World {
         surface.alpha.is_none_or(|alpha| u < self.textures.scalar(alpha, &self.texture_point(surface)))
     }
 
-    /// Whether chance has a say in what a surface is: by its alpha, or by a mixed material.
+    /// Whether chance has a say in what a surface is: by its alpha, or by its material.
     pub fn is_chancy(&self, surface: &Surface) -> bool {
-        let mixed = matches!(self.materials[surface.material as usize].kind, MaterialKind::Mix { .. });
-        mixed || surface.alpha.is_some()
+        self.materials[surface.material as usize].is_chancy() || surface.alpha.is_some()
     }
 
     /// Whether a surface is only the border of a medium.
@@ -181,12 +180,12 @@ impl World {
     }
 
     /// What a surface does with light: see [`material::shading`].
-    pub fn shading(&self, surface: &Surface, lanes: &mut Lanes, mix: f32) -> Option<Shading> {
+    pub fn shading(&self, surface: &Surface, arrival: Arrival<'_>) -> Option<Shading> {
         if self.catcher_irradiance.is_some() && self.is_catcher(surface) {
-            return Some(Shading::matte(surface, self.catcher_reflectance(surface, lanes)));
+            return Some(Shading::matte(surface, self.catcher_reflectance(surface, arrival.lanes)));
         }
         let point = self.texture_point(surface);
-        material::shading(&self.materials, &self.textures, surface, &point, lanes, mix)
+        material::shading(&self.materials, &self.textures, surface, &point, arrival)
     }
 
     /// Radiance that a surface gives off toward `wo`.

@@ -123,8 +123,10 @@ pub struct RayReport {
     pub candidates: Vec<Candidate>,
     /// What it met; `None` for the sky.
     pub met: Option<MetReport>,
-    /// The share at what it met, after absorption on the way; where a path is scattered.
+    /// The share at what it met, after absorption on the way and dispersion there; where a path is scattered.
     pub share_there: Option<Factor>,
+    /// In RGB mode: the one colour that goes on, at the weight of all, where they go different ways in what was met.
+    pub only_color: Option<&'static str>,
     /// Lights that it found by itself, along a path.
     pub found: Vec<FoundReport>,
     /// What the surface does with light, along a path.

@@ -236,6 +236,7 @@ impl<'a> Story<'a> {
             candidates: candidate::candidates(self.world, &path.ray, hit),
             met: surface.map(|surface| met_report(self.world, hit, &surface)),
             share_there: None,
+            only_color: None,
             found: Vec::new(),
             scattering: None,
             lights: Vec::new(),
@@ -284,7 +285,13 @@ impl<'a> Story<'a> {
     fn shaded(&mut self, address: u64, shading: &Shading, beta: Spectrum) {
         let report = scatter::scattering(shading, |value| self.factor(value));
         let share = self.factor(beta);
+        let only = match self.lanes {
+            Lanes::Rgb => beta.only_lane().map(|lane| ["red", "green", "blue", ""][lane]),
+            Lanes::Spectral(_) => None,
+        };
         self.at(address, |ray| {
+            let had_others = ray.share.iter().filter(|lane| **lane != 0.0).count() > 1;
+            ray.only_color = only.filter(|_| had_others);
             ray.scattering = Some(report);
             ray.share_there = Some(share);
         });

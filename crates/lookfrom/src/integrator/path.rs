@@ -15,14 +15,14 @@ use crate::bsdf::BsdfSample;
 use crate::eight::LANES;
 use crate::integrator::{Bounce, Event, Integrator, Next, Numbers, Path, Probe, Samples, Shadow, Term};
 use crate::light::{Coverage, Reference};
-use crate::material::Shading;
+use crate::material::{Arrival, Shading};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::world::World;
 
 /// Purposes of random numbers at a surface.
 mod purpose {
-    /// Whether the surface is there; which of two mixed materials is.
+    /// Whether the surface is there; which of two mixed materials is, which colour goes on.
     pub(super) const PRESENCE: u32 = 0;
     /// Which light, which lobe.
     pub(super) const CHOICE: u32 = 1;
@@ -137,10 +137,10 @@ impl Integrator for PathTracer {
         // Absorb on the way to the surface.
         let length = Vec3::from_array(path.ray.direction).length() * hit.t;
         let transmittance = path.media.transmittance(world, length, &next.lanes(path));
-        let path = &Path { beta: path.beta * transmittance, ..*path };
+        let mut path = Path { beta: path.beta * transmittance, ..*path };
 
         // Light passes where the surface is not there.
-        let [presence, mix] = match world.is_chancy(&surface) {
+        let [presence, u] = match world.is_chancy(&surface) {
             true => numbers.two(purpose::PRESENCE),
             false => [0.0; 2],
         };
@@ -150,14 +150,15 @@ impl Integrator for PathTracer {
         }
 
         // Add what the surface itself shines.
-        self.add_emission(world, path, &surface, next);
-        if let Some(radiance) = world.unlit(&surface, &next.lanes(path)) {
-            next.add(path, Term::Emission, path.beta * radiance);
+        self.add_emission(world, &path, &surface, next);
+        if let Some(radiance) = world.unlit(&surface, &next.lanes(&path)) {
+            next.add(&path, Term::Emission, path.beta * radiance);
         }
 
-        // What it does with light; dispersion leaves one wavelength.
+        // What it does with light; dispersion leaves one wavelength, or one colour.
         let lanes = &mut next.samples.lanes[path.slot as usize];
-        let Some(mut shading) = world.shading(&surface, lanes, mix) else {
+        let arrival = Arrival { lanes, share: &mut path.beta, u };
+        let Some(mut shading) = world.shading(&surface, arrival) else {
             let media = path.media.crossed(world, &surface);
             next.samples.paths.push(Path { media, ..path.passed(&surface) });
             return;
@@ -179,7 +180,7 @@ impl Integrator for PathTracer {
         let [which_light, which_lobe] = numbers.two(purpose::CHOICE);
         if self.wisdom != Wisdom::None && shading.bsdf.lobes().is_non_specular() {
             let u = numbers.two(purpose::LIGHT);
-            self.ask_light(world, path, (&surface, &shading), which_light, u, next);
+            self.ask_light(world, &path, (&surface, &shading), which_light, u, next);
         }
 
         // Go on in one direction.

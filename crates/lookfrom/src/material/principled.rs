@@ -1,7 +1,8 @@
 //! glTF's material at a point: textures looked up, colours clamped, directions of brushed metal and coat in one frame.
 //!
-//! A glTF file's `KHR_materials_dispersion` counts in spectral mode, where a wavelength is left alone with its own index
-//! (Cauchy's equation by Abbe's number); in RGB mode the index is the same for all.
+//! Dispersion (`KHR_materials_dispersion`) leaves one wavelength alone, with the index that Cauchy's equation has for it by
+//! Abbe's number. In RGB mode it leaves one of red, green and blue: they stand for the Fraunhofer lines C, d and F, which are
+//! as far apart as Abbe's number says, with d in the middle, as Khronos' sample renderer has it.
 
 use glam::Vec3;
 use lookfrom_scene::material::{Color, Principled as Written, Scalar};
@@ -22,6 +23,29 @@ fn straight(ior: f32) -> f32 {
     }
     let ratio = (ior - 1.0) / (ior + 1.0);
     ratio * ratio
+}
+
+/// Whether colours go different ways in a body.
+pub(super) fn disperses(look: &Written) -> bool {
+    look.dispersion > 0.0 && look.is_solid && look.ior > 1.0
+}
+
+/// The index of refraction for the one wavelength or colour that is left; the written one where more are.
+fn index_of(look: &Written, lanes: &Lanes, share: Spectrum) -> f32 {
+    // Twenty times n_F − n_C.
+    let spread = (look.ior - 1.0) * look.dispersion;
+    match lanes {
+        Lanes::Spectral(wavelengths) if wavelengths.secondary_terminated() => {
+            let [lambda, ..] = wavelengths.lambda;
+            let bent = 523_655.0 / (lambda * lambda) - 1.5168;
+            (look.ior + spread / 20.0 * bent).max(1.0)
+        }
+        Lanes::Rgb => match share.only_lane() {
+            Some(lane) => (look.ior + spread * (0.025 * (lane as f32 - 1.0))).max(1.0),
+            None => look.ior,
+        },
+        Lanes::Spectral(_) => look.ior,
+    }
 }
 
 impl At<'_> {
@@ -114,17 +138,17 @@ impl At<'_> {
         (Bsdf::Principled(Principled::new(&parameters)), frame)
     }
 
-    /// The index of refraction; one that differs by wavelength leaves only the first, where light passes.
+    /// The index of refraction; one that differs by wavelength leaves only the first, one that differs by colour only one,
+    /// where light passes.
     fn index(&mut self, look: &Written, passing: f32) -> f32 {
-        match self.lanes {
-            Lanes::Spectral(wavelengths) if look.dispersion > 0.0 && look.is_solid && passing > 0.0 => {
-                wavelengths.terminate_secondary();
-                let [lambda, ..] = wavelengths.lambda;
-                let bent = 523_655.0 / (lambda * lambda) - 1.5168;
-                (look.ior + (look.ior - 1.0) * look.dispersion / 20.0 * bent).max(1.0)
-            }
-            _ => look.ior,
+        if !disperses(look) || !(passing > 0.0) {
+            return look.ior;
         }
+        match self.lanes {
+            Lanes::Spectral(wavelengths) => wavelengths.terminate_secondary(),
+            Lanes::Rgb => self.share.leave_one(self.u),
+        }
+        index_of(look, self.lanes, *self.share)
     }
 
     /// A factor, and its greatest primary. White changes nothing.

@@ -83,7 +83,13 @@ impl Inspection {
             Some(met) => write_met(f, met, pad)?,
         }
         if let Some(share) = ray.share_there.as_ref().filter(|share| **share != ray.share) {
-            writeln!(f, "{pad}  of the light on this way a part is absorbed: β = {}", lanes(share))?;
+            let why = match ray.only_color {
+                Some(color) => {
+                    format!("colours go different ways here: {color} goes on alone, for all of them")
+                }
+                None => "of the light on this way a part is absorbed".into(),
+            };
+            writeln!(f, "{pad}  {why}: β = {}", lanes(share))?;
         }
         for found in &ray.found {
             self.write_found(f, ray, found)?;
