@@ -7,7 +7,6 @@
 
 mod direct;
 mod event;
-mod media;
 mod occlusion;
 mod path;
 mod raycast;
@@ -20,6 +19,7 @@ use lookfrom_bvh::{Hit, Left, Ray};
 
 use crate::hash;
 use crate::light::Reference;
+use crate::material::Media;
 use crate::sampler::PixelSampler;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
@@ -27,7 +27,6 @@ use crate::texture::Lanes;
 use crate::world::World;
 
 pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
-pub use media::Media;
 pub use occlusion::AmbientOcclusion;
 pub(crate) use path::power_heuristic;
 pub use path::{Departure, PathTracer, Wisdom};

@@ -5,6 +5,7 @@
 //! material.
 
 mod approximate;
+mod media;
 mod principled;
 mod relief;
 mod whitted;
@@ -25,6 +26,7 @@ use crate::texture::{Lanes, TexturePoint, Textures, Usage};
 use crate::warp;
 
 pub(crate) use approximate::in_whitteds_model;
+pub use media::Media;
 pub use whitted::{Branches, Coefficients};
 
 /// A material of a world.
@@ -133,6 +135,8 @@ pub struct Arrival<'a> {
     /// The path's share of the sample. In RGB mode, where colours go different ways, one of those in it is left, at the
     /// weight of all.
     pub share: &'a mut Spectrum,
+    /// What light comes through.
+    pub media: Media,
     /// Chance, in [0, 1): which of mixed materials there is, which colour is left. Used where [`Material::is_chancy`].
     pub u: f32,
 }
@@ -157,19 +161,21 @@ pub fn shading(
     point: &TexturePoint,
     arrival: Arrival<'_>,
 ) -> Option<Shading> {
-    let Arrival { lanes, share, mut u } = arrival;
-    let mut material = &materials[surface.material as usize];
+    let Arrival { lanes, share, media, mut u } = arrival;
+    let mut index = surface.material;
+    let mut material = &materials[index as usize];
     while let MaterialKind::Mix { materials: [first, second], amount } = &material.kind {
         let amount = textures.scalar(*amount, point).clamp(0.0, 1.0);
         let chosen = if u < amount { second } else { first };
         u = if u < amount { u / amount } else { (u - amount) / (1.0 - amount) };
+        index = chosen.0;
         material = &materials[chosen.index()];
     }
-    let mut at = At { textures, point, lanes, share, u };
+    let mut at = At { materials, textures, point, lanes, share, media, u };
     let ng = surface.ng.as_vec3();
     if let MaterialKind::Principled(look) = &material.kind {
         let frame = relief::valid_frame(&material.relief, textures, surface, point);
-        let (bsdf, frame) = at.principled(look, surface, frame);
+        let (bsdf, frame) = at.principled(look, index, surface, frame);
         return Some(Shading { bsdf, frame, ng });
     }
     let bsdf = at.bsdf(material)?;
@@ -178,10 +184,12 @@ pub fn shading(
 
 /// Where a material is asked.
 struct At<'a> {
+    materials: &'a [Material],
     textures: &'a Textures,
     point: &'a TexturePoint,
     lanes: &'a mut Lanes,
     share: &'a mut Spectrum,
+    media: Media,
     u: f32,
 }
 

@@ -21,9 +21,10 @@ use crate::color::{Sensor, Wavelengths};
 use crate::film::FilmTile;
 use crate::filter::Filter;
 use crate::integrator::{
-    AmbientOcclusion, Departure, Integrator, Media, Next, Numbers, Passing, Path, PathTracer, Probe, Raycast,
+    AmbientOcclusion, Departure, Integrator, Next, Numbers, Passing, Path, PathTracer, Probe, Raycast,
     Samples, View, Whitted, Wisdom, resolve_shadows,
 };
+use crate::material::Media;
 use crate::sampler::Sampler;
 use crate::spectrum::Spectrum;
 use crate::texture::Lanes;

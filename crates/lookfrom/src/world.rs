@@ -17,7 +17,7 @@ use lookfrom_scene::medium::{Medium, Sides};
 
 use crate::camera::{Camera, CameraRay};
 use crate::light::{Coverage, Light, LightChoice, Reference};
-use crate::material::{self, Arrival, Material, Shading};
+use crate::material::{self, Arrival, Material, Media, Shading};
 use crate::math;
 use crate::shape::{Form, FormPoint, Mesh, VertexData};
 use crate::spectrum::Spectrum;
@@ -230,6 +230,16 @@ impl World {
             return 0.0;
         }
         probability * self.lights[light as usize].pdf(at, wi, surface, Coverage::Incomplete)
+    }
+
+    /// What is left of light after `distance` in what it is inside of (Beer's law).
+    pub fn transmittance(&self, media: Media, distance: f32, lanes: &Lanes) -> Spectrum {
+        let medium = media.medium(&self.materials).and_then(|index| self.media.get(index as usize));
+        let Some(medium) = medium else { return lanes.one() };
+        let sigma =
+            self.textures.spectrum(medium.absorption, Usage::Unbounded, &TexturePoint::NOWHERE, lanes);
+        let length = medium.scale * distance;
+        lanes.one() * sigma.map(|sigma| libm::expf(-sigma * length))
     }
 
     /// Whitted's `I_a`.

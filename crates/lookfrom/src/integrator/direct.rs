@@ -47,7 +47,7 @@ pub(super) fn local_light<P: Probe>(
         let arriving = sample.li / (std::f32::consts::PI * sample.pdf);
         let contribution = path.beta * (diffuse + specular) * arriving;
         if !contribution.is_black() {
-            next.samples.shadows.push(Shadow::new(path, surface, &sample, index, contribution));
+            next.samples.shadows.push(Shadow::new(world, path, surface, &sample, index, contribution));
         }
     }
     coefficients

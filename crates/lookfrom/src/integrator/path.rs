@@ -136,7 +136,7 @@ impl Integrator for PathTracer {
 
         // Absorb on the way to the surface.
         let length = Vec3::from_array(path.ray.direction).length() * hit.t;
-        let transmittance = path.media.transmittance(world, length, &next.lanes(path));
+        let transmittance = world.transmittance(path.media, length, &next.lanes(path));
         let mut path = Path { beta: path.beta * transmittance, ..*path };
 
         // Light passes where the surface is not there.
@@ -157,9 +157,9 @@ impl Integrator for PathTracer {
 
         // What it does with light; dispersion leaves one wavelength, or one colour.
         let lanes = &mut next.samples.lanes[path.slot as usize];
-        let arrival = Arrival { lanes, share: &mut path.beta, u };
+        let arrival = Arrival { lanes, share: &mut path.beta, media: path.media, u };
         let Some(mut shading) = world.shading(&surface, arrival) else {
-            let media = path.media.crossed(world, &surface);
+            let media = path.media.crossed(&world.materials, &surface);
             next.samples.paths.push(Path { media, ..path.passed(&surface) });
             return;
         };
@@ -208,7 +208,7 @@ impl Integrator for PathTracer {
         if !survives || beta.is_black() {
             return;
         }
-        let media = if transmitted { path.media.crossed(world, &surface) } else { path.media };
+        let media = if transmitted { path.media.crossed(&world.materials, &surface) } else { path.media };
         next.samples.paths.push(Path {
             ray: Ray::new(surface.origin(wi), wi.to_array()),
             beta: beta / survival,
@@ -329,7 +329,7 @@ impl PathTracer {
             f,
         });
         if !contribution.is_black() {
-            next.samples.shadows.push(Shadow::new(path, surface, &sample, index, contribution));
+            next.samples.shadows.push(Shadow::new(world, path, surface, &sample, index, contribution));
         }
     }
 

@@ -8,9 +8,9 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, Left, Point, Ray};
 
 use crate::hash;
-use crate::integrator::{Event, Media, Next, Path, Probe, Samples, Term};
+use crate::integrator::{Event, Next, Path, Probe, Samples, Term};
 use crate::light::{LightSample, Target};
-use crate::material::Coefficients;
+use crate::material::{Coefficients, Media};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::texture::Lanes;
@@ -40,6 +40,7 @@ pub struct Shadow {
 
 impl Shadow {
     pub(super) fn new(
+        world: &World,
         path: &Path,
         surface: &Surface,
         sample: &LightSample,
@@ -62,7 +63,11 @@ impl Shadow {
                 toward(origin, guarded.leave(normal.to_array(), back).map(f64::from))
             }
         };
-        let Path { slot, address, media, .. } = *path;
+        let Path { slot, address, mut media, .. } = *path;
+        // Through the surface it travels in what is behind.
+        if (surface.ng.dot(sample.wi.as_dvec3()) > 0.0) != surface.front {
+            media = media.crossed(&world.materials, surface);
+        }
         let left = surface.left;
         Self { ray, left, contribution, slot, address, term: Term::Light(light), media }
     }
@@ -166,7 +171,7 @@ impl Shadow {
     fn reached(&self, world: &World, lanes: &Lanes) -> Spectrum {
         let length = Vec3::from_array(self.ray.direction).length() * self.ray.t_max;
         // A medium that fills infinite space lets all through.
-        if length.is_finite() { self.media.transmittance(world, length, lanes) } else { lanes.one() }
+        if length.is_finite() { world.transmittance(self.media, length, lanes) } else { lanes.one() }
     }
 
     /// The part of the light that comes through to where the ray met `surface` and through it.
@@ -179,7 +184,7 @@ impl Shadow {
         lanes: &Lanes,
     ) -> Spectrum {
         let length = Vec3::from_array(self.ray.direction).length() * hit.t;
-        let through_medium = self.media.transmittance(world, length, lanes);
+        let through_medium = world.transmittance(self.media, length, lanes);
         if !world.is_there(surface, self.number(hit)) || world.is_interface(surface) {
             return through_medium;
         }
@@ -206,7 +211,7 @@ impl Shadow {
         self.left = surface.left;
         self.ray.t_max -= hit.t;
         if world.is_there(surface, self.number(hit)) {
-            self.media = self.media.crossed(world, surface);
+            self.media = self.media.crossed(&world.materials, surface);
         }
     }
 }

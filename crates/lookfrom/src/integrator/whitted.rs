@@ -43,7 +43,7 @@ impl Integrator for Whitted {
         let surface = world.surface(&path.ray, hit);
         let length = Vec3::from_array(path.ray.direction).length() * hit.t;
         let path =
-            &Path { beta: path.beta * path.media.transmittance(world, length, &next.lanes(path)), ..*path };
+            &Path { beta: path.beta * world.transmittance(path.media, length, &next.lanes(path)), ..*path };
 
         // Light passes where the surface is not there: an only child, straight on.
         if path.goes_through(world, &surface, numbers.presence(world, &surface)) {
@@ -99,7 +99,9 @@ impl Whitted {
         let ng = surface.ng_facing();
         let (direction, media, last_bit) = match branch {
             Branch::Mirrored => (same_side(direction, ng, 1.0), path.media, 0),
-            Branch::Refracted => (same_side(direction, ng, -1.0), path.media.crossed(world, surface), 1),
+            Branch::Refracted => {
+                (same_side(direction, ng, -1.0), path.media.crossed(&world.materials, surface), 1)
+            }
         };
         Ok(Path {
             ray: Ray::new(surface.origin(direction), direction.to_array()),

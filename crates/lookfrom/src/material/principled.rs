@@ -3,9 +3,12 @@
 //! Dispersion (`KHR_materials_dispersion`) leaves one wavelength alone, with the index that Cauchy's equation has for it by
 //! Abbe's number. In RGB mode it leaves one of red, green and blue: they stand for the Fraunhofer lines C, d and F, which are
 //! as far apart as Abbe's number says, with d in the middle, as Khronos' sample renderer has it.
+//!
+//! Indices are over that of the body around, where light comes through one of this kind: water in a glass is not water in
+//! air. The clear coat and the film are as in air.
 
 use glam::Vec3;
-use lookfrom_scene::material::{Color, Principled as Written, Scalar};
+use lookfrom_scene::material::{Color, MaterialKind, Principled as Written, Scalar};
 
 use super::{At, Frame, relief};
 use crate::bsdf::Bsdf;
@@ -53,13 +56,17 @@ impl At<'_> {
     pub(super) fn principled(
         &mut self,
         look: &Written,
+        material: u32,
         surface: &Surface,
         mut frame: Frame,
     ) -> (Bsdf, Frame) {
         let share = |at: &Self, scalar| at.scalar(scalar).clamp(0.0, 1.0);
         let transmission = share(self, look.transmission);
         let metallic = share(self, look.metallic);
-        let eta = self.index(look, transmission * (1.0 - metallic));
+        let ior = self.index(look, transmission * (1.0 - metallic));
+        let around = self.around(look, material, surface.front);
+        let is_hidden = around.is_none();
+        let eta = around.map_or(1.0, |around| ior / around);
 
         // Roughness, drawn out along the grain.
         let alpha = |roughness: f32| roughness * roughness;
@@ -81,12 +88,12 @@ impl At<'_> {
         }
 
         // What the dielectric mirrors.
-        let specular = share(self, look.specular);
+        let specular = if is_hidden { 0.0 } else { share(self, look.specular) };
         let (color, greatest) = self.with_greatest(look.specular_color);
         let mirrored = straight(eta);
         let f0 = color.map(|lane| (mirrored * lane).clamp(0.0, 1.0) * specular);
 
-        let clearcoat = share(self, look.clearcoat);
+        let clearcoat = if is_hidden { 0.0 } else { share(self, look.clearcoat) };
         let mut clearcoat_normal = Vec3::Z;
         if clearcoat > 0.0 {
             let bent =
@@ -96,6 +103,7 @@ impl At<'_> {
         let coat_alpha = alpha(share(self, look.clearcoat_roughness));
         let (sheen_color, sheen_greatest) = match look.sheen_color {
             Color::BLACK => (Spectrum::BLACK, 0.0),
+            _ if is_hidden => (Spectrum::BLACK, 0.0),
             color => self.with_greatest(color),
         };
         let diffuse_transmission = share(self, look.diffuse_transmission);
@@ -121,7 +129,7 @@ impl At<'_> {
             sheen_color,
             sheen_greatest,
             sheen_roughness: share(self, look.sheen_roughness),
-            iridescence: if look.iridescence == Scalar::Value(0.0) {
+            iridescence: if look.iridescence == Scalar::Value(0.0) || is_hidden {
                 0.0
             } else {
                 share(self, look.iridescence)
@@ -149,6 +157,21 @@ impl At<'_> {
             Lanes::Rgb => self.share.leave_one(self.u),
         }
         index_of(look, self.lanes, *self.share)
+    }
+
+    /// The index of refraction on the other side of a surface of a material; `None` where that is hidden, since something
+    /// that was entered later is on both of its sides.
+    fn around(&self, look: &Written, material: u32, front: bool) -> Option<f32> {
+        let leaves = look.is_solid && !front;
+        if leaves && self.media.hides(material) {
+            return None;
+        }
+        let outside = if leaves { self.media.left(material) } else { self.media };
+        let around = outside.material().map(|index| &self.materials[index as usize].kind);
+        Some(match around {
+            Some(MaterialKind::Principled(body)) if body.ior > 0.0 => index_of(body, self.lanes, *self.share),
+            _ => 1.0,
+        })
     }
 
     /// A factor, and its greatest primary. White changes nothing.

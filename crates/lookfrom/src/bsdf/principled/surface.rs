@@ -130,9 +130,12 @@ impl Surface {
 
     /// What the glass does at a cosine to a facet, on the side of `wo`.
     pub(super) fn pane(&self, cos: f32, is_inside: bool) -> Facet {
-        // Inside of a body, what counts is the angle outside.
-        let cos = if is_inside && self.is_solid && self.bends() {
-            let sin2 = self.eta * self.eta * (1.0 - cos * cos).max(0.0);
+        // Between two sides what counts is the angle on that of the lower index: outside, but for what is lighter than what
+        // is around it.
+        let bends = self.is_solid && self.bends();
+        let eta = if bends && self.eta < 1.0 { 1.0 / self.eta } else { self.eta };
+        let cos = if bends && is_inside == (self.eta > 1.0) {
+            let sin2 = eta * eta * (1.0 - cos * cos).max(0.0);
             if sin2 >= 1.0 {
                 return Facet { mirrored: Spectrum([1.0; 4]), passed: Spectrum::BLACK };
             }
@@ -141,11 +144,11 @@ impl Surface {
             cos
         };
         // Fresnel's curve from 0 to 1.
-        let s = if self.eta == 0.0 {
+        let s = if eta == 0.0 {
             schlick(cos)
         } else {
-            let straight = ((self.eta - 1.0) / (self.eta + 1.0)) * ((self.eta - 1.0) / (self.eta + 1.0));
-            (fresnel::dielectric(cos, self.eta) - straight) / (1.0 - straight).max(1e-6)
+            let straight = ((eta - 1.0) / (eta + 1.0)) * ((eta - 1.0) / (eta + 1.0));
+            (fresnel::dielectric(cos, eta) - straight) / (1.0 - straight).max(1e-6)
         };
         let s = s.clamp(0.0, 1.0);
         let of = |f0: f32| f0 + (self.f90 - f0) * s;
