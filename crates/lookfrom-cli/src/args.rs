@@ -44,6 +44,7 @@ Examples:
   lookfrom render *.toml -o 'out/{name}-small.png' --width 160
   lookfrom render scene.toml -o - | display
   lookfrom render scene.pbrt --noise 0.02 --write-every 10s
+  lookfrom render scene.pbrt --samples 16 --denoise
 
 Ctrl-C stops after the tiles that are being worked on and writes the picture so far; a second one ends at once.
 Exit codes: 0 done, 1 scene, 2 usage, 3 output, 130 interrupted.";
@@ -333,6 +334,13 @@ pub(crate) struct Overrides {
     /// What an EXR holds besides the picture: geometry is albedo, normals, position, depth, uv and variance
     #[arg(long, value_name = "NAME", value_parser = values::word(values::LAYERS))]
     pub(crate) layers: Option<Layers>,
+
+    /// Whether noise is filtered out of the picture (alone: on) [default: what the scene says; on for models, where none of
+    /// --samples, --time, --noise, --adaptive and --layers is asked for]
+    ///
+    /// An EXR then keeps the light as it was computed, too, in the channels noisy.R, noisy.G and noisy.B.
+    #[arg(long, value_name = "on|off", value_parser = values::word(values::ON_OFF), num_args = 0..=1, default_missing_value = "on")]
+    pub(crate) denoise: Option<bool>,
 
     /// How many times a ray may be mirrored, refracted or scattered
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=256))]

@@ -72,6 +72,8 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
     exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
     let most = if arguments.time.is_some() { MOST_SAMPLES } else { SAMPLES };
     prepared.render.samples = arguments.overrides.samples.unwrap_or(most);
+    // What is measured is how light is computed.
+    prepared.image.denoise = false;
     let threads = arguments.common.threads.map(usize::from);
 
     // What is measured.

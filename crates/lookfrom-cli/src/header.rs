@@ -21,6 +21,8 @@ pub(crate) struct Taken {
     pub(crate) noise: Option<f64>,
     /// Whether fireflies are spread.
     pub(crate) fireflies_spread: bool,
+    /// Whether noise is filtered out.
+    pub(crate) denoised: bool,
 }
 
 /// The texts for the header, by name.
@@ -57,6 +59,12 @@ pub(crate) fn attributes(scene: &Path, prepared: &Prepared, taken: &Taken) -> Ve
     }
     if taken.fireflies_spread {
         texts.push(("fireflies", "median".to_owned()));
+    }
+    if taken.denoised {
+        texts.push((
+            "denoised",
+            "non-local means; noisy.R, noisy.G and noisy.B are the light as it was computed".to_owned(),
+        ));
     }
     if let Some(Crop { x0, y0, x1, y1 }) = image.crop {
         texts.push(("crop", format!("{x0} {y0} {x1} {y1}")));

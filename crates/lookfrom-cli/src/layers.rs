@@ -1,6 +1,7 @@
 //! What the layers beside a picture are called in an EXR: as pbrt's `gbuffer` film calls them.
 
-use lookfrom::film::Film;
+use lookfrom::film::{Film, Picture};
+use lookfrom_scene::settings::{Background, ImageSettings};
 
 /// In the order of [`to_array`](lookfrom::film::Features::to_array); `depth` is ours, the others are pbrt's.
 const FEATURES: [&str; 15] = [
@@ -10,6 +11,18 @@ const FEATURES: [&str; 15] = [
 
 /// The variances of one sample; in pbrt, and so here, those of X, Y and Z.
 const VARIANCES: [&str; 3] = ["Variance.R", "Variance.G", "Variance.B"];
+
+/// The channels of a picture before it was denoised, before its background as the denoised one is.
+pub(crate) fn noisy(image: &ImageSettings, picture: Picture) -> Vec<(String, Vec<f32>)> {
+    let picture = match image.background {
+        Background::Color(color) => picture.before(color),
+        Background::Transparent | Background::Environment => picture,
+    };
+    let channel = |index: usize| picture.pixels.iter().map(|pixel| pixel[index]).collect();
+    [("noisy.R", 0), ("noisy.G", 1), ("noisy.B", 2)]
+        .map(|(name, index)| (name.to_owned(), channel(index)))
+        .to_vec()
+}
 
 /// The channels of the layers of a film, 0 where there is nothing.
 pub(crate) fn channels(film: &Film) -> Vec<(String, Vec<f32>)> {

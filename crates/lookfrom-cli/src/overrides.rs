@@ -41,6 +41,7 @@ impl Overrides {
         replace(&mut render.color, self.color);
         replace(&mut render.light_sampler, self.light_sampler);
         replace(&mut image.layers, self.layers);
+        replace(&mut image.denoise, self.denoise);
         replace(&mut image.background, self.model.background);
         replace(&mut render.depth, self.depth);
         replace(&mut render.min_contribution, self.min_contribution);

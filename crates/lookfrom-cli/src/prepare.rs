@@ -66,6 +66,10 @@ pub(crate) fn prepare(
     overrides.apply_to_settings(&mut scene.image, &mut scene.render)?;
     let origin = scene.origin;
     if origin != Origin::Scene && overrides.samples.is_none() {
+        let is_left_to_us = overrides.denoise.is_none() && overrides.layers.is_none();
+        if is_left_to_us && scene.render.integrator.is_path_traced() {
+            scene.image.denoise = true;
+        }
         scene.render.samples = studio::samples_for_models(&scene.image);
     }
     let (counts, bounds) = (Counts::of(&scene), scene.bounds());

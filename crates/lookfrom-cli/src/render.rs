@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
+use lookfrom::denoise::denoised;
 use lookfrom::render::{End, Enough, Frame};
 use lookfrom_scene::image::Image;
 use lookfrom_scene::settings::Layers;
@@ -102,6 +103,10 @@ fn render(
     environment: Option<&Image>,
     are_warnings_known: bool,
 ) -> Result<u8, Failure> {
+    // Who says when there is enough wants the light as it comes.
+    let is_limited = arguments.time.is_some() || arguments.noise.is_some() || arguments.adaptive;
+    let denoise = overrides.denoise.or(is_limited.then_some(false));
+    let overrides = &Overrides { denoise, ..overrides.clone() };
     let mut prepared = prepare(path, &arguments.common, overrides, environment)?;
     if !are_warnings_known {
         exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
@@ -165,10 +170,18 @@ fn render_frame(
             mean: (cancelled || noise.is_some()).then_some(samples_taken),
             noise,
             fireflies_spread: spread,
+            denoised: prepared.image.denoise,
         };
         let attributes = header::attributes(path, prepared, &taken);
-        let picture = if spread { film.picture_without_fireflies() } else { film.picture() };
-        let layers = if film.has_layers() { layers::channels(film) } else { Vec::new() };
+        let mut picture = if spread { film.picture_without_fireflies() } else { film.picture() };
+        let mut layers = if film.has_layers() { layers::channels(film) } else { Vec::new() };
+        if prepared.image.denoise {
+            let noisy = picture;
+            picture = denoised(film, &noisy);
+            if target.has_layers() {
+                layers.extend(layers::noisy(&prepared.image, noisy));
+            }
+        }
         target.write(&target.encode(&picture, &layers, &prepared.image, &attributes)?)?;
     }
 
@@ -188,6 +201,7 @@ fn render_frame(
         },
         relative_error: rendered.error.is_finite().then_some(rendered.error),
         integrator: prepared.render.integrator.word(),
+        denoised: prepared.image.denoise && samples_done > 0,
         seconds: Seconds {
             read: report::seconds(prepared.read),
             build: report::seconds(prepared.build),

@@ -24,6 +24,7 @@ pub(crate) struct Summary {
     /// `None` where there are too few samples to say.
     pub(crate) relative_error: Option<f64>,
     pub(crate) integrator: &'static str,
+    pub(crate) denoised: bool,
     pub(crate) seconds: Seconds,
     pub(crate) rays: RayCounts,
     pub(crate) mrays_per_s: f64,
@@ -100,7 +101,8 @@ impl Summary {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{scene} → {output}: {width} × {height} pixels, {samples} samples each, {integrator}"
+            "{scene} → {output}: {width} × {height} pixels, {samples} samples each, {integrator}{}",
+            if self.denoised { ", denoised" } else { "" }
         );
         let _ = writeln!(
             text,
@@ -201,6 +203,7 @@ mod tests {
             ended_by: "samples",
             relative_error: None,
             integrator: "whitted",
+            denoised: false,
             seconds: Seconds { read: 0.0, build: 0.0, render: 2.5, write: 0.0 },
             rays: Rays { camera: 1000, secondary: 20, shadow: 3 }.into(),
             mrays_per_s: 1.5,

@@ -14,6 +14,9 @@ use crate::args::Fireflies;
 /// What an EXR holds besides the picture.
 pub(crate) const LAYERS: &[(&str, Layers)] = &[("none", Layers::None), ("geometry", Layers::Geometry)];
 
+/// Whether something is done.
+pub(crate) const ON_OFF: &[(&str, bool)] = &[("on", true), ("off", false)];
+
 /// What becomes of fireflies.
 pub(crate) const FIREFLIES: &[(&str, Fireflies)] = &[("off", Fireflies::Off), ("median", Fireflies::Median)];
 

@@ -21,6 +21,8 @@ pub struct ImageSettings {
     pub layers: Layers,
     /// What the camera sees where nothing stands.
     pub background: Background,
+    /// Whether noise is filtered out of the picture.
+    pub denoise: bool,
 }
 
 /// What the camera sees where nothing stands; light is the same for all of them.
@@ -74,6 +76,7 @@ impl Default for ImageSettings {
             sensor: Sensor::default(),
             layers: Layers::None,
             background: Background::default(),
+            denoise: false,
         }
     }
 }

@@ -46,6 +46,10 @@ const MODEL_SAMPLES: u32 = 64;
 const THUMBNAIL_SAMPLES: u32 = 8;
 /// The most pixels of a thumbnail.
 const THUMBNAIL_PIXELS: u64 = 256 * 256;
+/// The same for pictures that are denoised.
+const DENOISED_SAMPLES: u32 = 16;
+const SMALL_DENOISED_SAMPLES: u32 = 8;
+const SMALL_DENOISED_PIXELS: u64 = 512 * 512;
 
 /// Adds a camera that frames the scene's bounds, if there is none. `up` as in [`furnish`].
 pub fn frame(scene: &mut Scene, up: Option<DVec3>) {
@@ -90,6 +94,9 @@ pub fn settings_for_models() -> (ImageSettings, RenderSettings) {
 /// How many samples a pixel a picture of a model gets where nobody says otherwise.
 pub fn samples_for_models(image: &ImageSettings) -> u32 {
     let pixels = u64::from(image.width) * u64::from(image.height);
+    if image.denoise {
+        return if pixels <= SMALL_DENOISED_PIXELS { SMALL_DENOISED_SAMPLES } else { DENOISED_SAMPLES };
+    }
     if pixels <= THUMBNAIL_PIXELS { THUMBNAIL_SAMPLES } else { MODEL_SAMPLES }
 }
 

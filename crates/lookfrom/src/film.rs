@@ -4,16 +4,20 @@
 //! pixel holds three fixed-point sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the
 //! variance; any division of the work among threads, tiles, passes or machines ends in the same bytes *by
 //! construction*. What a camera sees first, for layers, is in [`features`]; how much noise there is, in `noise`; what
-//! becomes of single samples that outshine a pixel, in `fireflies`. How a picture is shown is left to [`crate::develop`].
+//! becomes of single samples that outshine a pixel, in `fireflies`; what the denoiser is told, in [`guides`]. How a picture is shown
+//! is left to [`crate::develop`].
 //!
-//! A pixel takes 112 bytes, and as much more as [`features`] says where layers are asked for.
+//! A pixel takes 112 bytes, and as much more as [`features`] and [`guides`] say where they are asked for.
 
 pub mod features;
 mod fireflies;
+pub mod guides;
 mod noise;
 
 use self::features::FeatureSums;
 pub use self::features::Features;
+use self::guides::GuideSums;
+pub use self::guides::{GUIDED_SAMPLES, Guide};
 
 use lookfrom_scene::settings::{Background, Crop, ImageSettings, Layers};
 use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
@@ -42,6 +46,8 @@ pub struct FilmTile {
     pixels: Vec<Pixel>,
     /// As many as there are pixels, or none.
     features: Vec<FeatureSums>,
+    /// As many as there are pixels, or none.
+    guides: Vec<GuideSums>,
     /// Sums of how much samples hide of what is behind, in multiples of 2⁻⁶⁴: as many as there are pixels, or none.
     alphas: Vec<i128>,
     dropped: u64,
@@ -196,6 +202,27 @@ impl Film {
         self.tile.has_layers()
     }
 
+    /// What the denoiser is told of a pixel; `None` where the film has no room for it or no sample was asked, and outside of
+    /// [`Film::area`].
+    pub fn guide(&self, x: u32, y: u32) -> Option<Guide> {
+        self.tile.guides.get(self.tile.index(x, y)?)?.mean()
+    }
+
+    /// The variance of how much *one* sample of a pixel hides of what is behind, estimated as [`Film::variance`] is. 0 where the
+    /// film has no alpha or no room for what the denoiser is told, and outside of [`Film::area`].
+    pub fn alpha_variance(&self, x: u32, y: u32) -> f32 {
+        let FilmTile { pixels, alphas, guides, .. } = &self.tile;
+        let Some(index) = self.tile.index(x, y) else { return 0.0 };
+        let (Some(&sum), Some(guide)) = (alphas.get(index), guides.get(index)) else { return 0.0 };
+        let samples = pixels[index].samples;
+        if samples < 2 {
+            return f32::INFINITY;
+        }
+        let n = samples as f64;
+        let mean = sum as f64 / (n * TWO_TO_64);
+        ((guide.alpha_square(samples) - mean * mean).max(0.0) * (n / (n - 1.0))) as f32
+    }
+
     /// How many samples a pixel holds, without those that were dropped.
     pub fn samples(&self, x: u32, y: u32) -> u64 {
         self.tile.pixel(x, y).map_or(0, |pixel| pixel.samples)
@@ -267,16 +294,22 @@ impl FilmTile {
             Layers::None => Vec::new(),
             Layers::Geometry => empty(count)?,
         };
+        let guides = if image.denoise { empty(count)? } else { Vec::new() };
         let alphas = match image.background {
             Background::Environment => Vec::new(),
             Background::Color(_) | Background::Transparent => empty(count)?,
         };
-        Ok(Self { area, pixels, features, alphas, dropped: 0, first_dropped: None })
+        Ok(Self { area, pixels, features, guides, alphas, dropped: 0, first_dropped: None })
     }
 
     /// Whether there is room for layers: whether [`FilmTile::add_features`] does anything.
     pub fn has_layers(&self) -> bool {
         !self.features.is_empty()
+    }
+
+    /// Whether there is room for what the denoiser is told: whether [`FilmTile::add_guide`] does anything.
+    pub fn has_guides(&self) -> bool {
+        !self.guides.is_empty()
     }
 
     /// The pixels it covers.
@@ -318,6 +351,9 @@ impl FilmTile {
         pixel.samples = pixel.samples.saturating_add(1);
         if let Some(sum) = self.alphas.get_mut(index) {
             *sum = sum.wrapping_add(fixed_point(alpha));
+            if let Some(guide) = self.guides.get_mut(index) {
+                guide.add_alpha_square(fixed_point_square(f64::from(alpha.clamp(-BRIGHTEST, BRIGHTEST))));
+            }
         }
     }
 
@@ -330,6 +366,18 @@ impl FilmTile {
         let index = self.index_inside(x, y);
         if let Some(sums) = self.features.get_mut(index) {
             sums.add(features);
+        }
+    }
+
+    /// Adds what the camera's ray of one sample met (`None` for nothing), for the denoiser: of the first [`GUIDED_SAMPLES`] of a
+    /// pixel. Does nothing where there is no room for it.
+    ///
+    /// # Panics
+    /// If the pixel is outside of the tile.
+    pub fn add_guide(&mut self, x: u32, y: u32, sample: u32, met: Option<&Guide>) {
+        let index = self.index_inside(x, y);
+        if let Some(sums) = self.guides.get_mut(index) {
+            sums.add(sample, met);
         }
     }
 
@@ -353,6 +401,10 @@ impl FilmTile {
             }
             let (mine, theirs) = (self.row(y, x0, x1), other.row(y, x0, x1));
             if let (Some(mine), Some(theirs)) = (self.features.get_mut(mine), other.features.get(theirs)) {
+                mine.iter_mut().zip(theirs).for_each(|(sums, add)| sums.merge(add));
+            }
+            let (mine, theirs) = (self.row(y, x0, x1), other.row(y, x0, x1));
+            if let (Some(mine), Some(theirs)) = (self.guides.get_mut(mine), other.guides.get(theirs)) {
                 mine.iter_mut().zip(theirs).for_each(|(sums, add)| sums.merge(add));
             }
         }

@@ -6,6 +6,7 @@
 pub mod bsdf;
 pub mod camera;
 pub mod color;
+pub mod denoise;
 pub mod develop;
 pub mod distribution;
 mod eight;

@@ -5,6 +5,7 @@
 //! material.
 
 mod approximate;
+mod base;
 mod media;
 mod principled;
 mod relief;
@@ -26,6 +27,7 @@ use crate::texture::{Lanes, TexturePoint, Textures, Usage};
 use crate::warp;
 
 pub(crate) use approximate::in_whitteds_model;
+pub use base::base_color;
 pub use media::Media;
 pub use whitted::{Branches, Coefficients};
 
@@ -180,6 +182,19 @@ pub fn shading(
     }
     let bsdf = at.bsdf(material)?;
     Some(Shading { bsdf, frame: relief::frame(&material.relief, textures, surface, point), ng })
+}
+
+/// The normal that a material is shaded with, to the outside, of unit length: that of [`shading`], of mixed materials the first's.
+pub fn normal(materials: &[Material], textures: &Textures, surface: &Surface, point: &TexturePoint) -> Vec3 {
+    let mut material = &materials[surface.material as usize];
+    while let MaterialKind::Mix { materials: [first, _], .. } = &material.kind {
+        material = &materials[first.index()];
+    }
+    match (&material.relief, &material.kind) {
+        (Relief::None, _) => surface.ns,
+        (relief, MaterialKind::Principled(_)) => relief::valid_frame(relief, textures, surface, point).n,
+        (relief, _) => relief::frame(relief, textures, surface, point).n,
+    }
 }
 
 /// Where a material is asked.

@@ -6,6 +6,7 @@
 
 mod backdrop;
 mod driver;
+mod guide;
 mod seen;
 
 use std::ops::Range;
@@ -18,7 +19,7 @@ use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
 use crate::camera::CameraRay;
 use crate::color::{Sensor, Wavelengths};
-use crate::film::FilmTile;
+use crate::film::{FilmTile, GUIDED_SAMPLES};
 use crate::filter::Filter;
 use crate::integrator::{
     AmbientOcclusion, Departure, Integrator, Next, Numbers, Passing, Path, PathTracer, Probe, Raycast,
@@ -31,6 +32,7 @@ use crate::texture::Lanes;
 use crate::world::World;
 
 use backdrop::Met;
+use guide::First;
 use seen::Seen;
 
 pub use driver::{End, Enough, FEWEST_SAMPLES, Progress, Rendered};
@@ -113,6 +115,8 @@ struct Batch {
     left: Vec<Left>,
     hits: Vec<Hit>,
     met: Vec<Met>,
+    /// What the camera's rays met, by slot; only where it is asked for.
+    firsts: Vec<First>,
     traced: Vec<Traced>,
 }
 
@@ -208,7 +212,7 @@ impl<'a> Frame<'a> {
         batch: &mut Batch,
     ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
-        let Batch { samples, weights, paths, rays, left, hits, met, traced } = batch;
+        let Batch { samples, weights, paths, rays, left, hits, met, firsts, traced } = batch;
         let mut next = Next { samples: std::mem::take(samples), probe };
         next.samples.clear();
 
@@ -245,6 +249,7 @@ impl<'a> Frame<'a> {
             left.clear();
             left.extend(paths.iter().map(|path| path.departure.left));
             self.world.bvh.closest_hits_leaving(rays, left, hits);
+            guide::note_firsts(firsts, paths, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.
             let numbers = |path: &Path| {
@@ -318,6 +323,9 @@ impl<'a> Frame<'a> {
         for sample in samples {
             ids.clear();
             ids.extend(blocks(tile.area()).map(|pixel| SampleId { pixel, sample }));
+            let is_guided = tile.has_guides() && sample < GUIDED_SAMPLES;
+            batch.firsts.clear();
+            batch.firsts.resize(if is_guided { ids.len() } else { 0 }, First::NOTHING);
             rays += if tile.has_layers() {
                 let mut seen = Seen::new(self, ids.iter().map(|id| self.lanes(*id)).collect());
                 let rays = self.trace_batch(&ids, &mut seen, &mut batch);
@@ -330,6 +338,7 @@ impl<'a> Frame<'a> {
             } else {
                 self.trace_batch(&ids, &mut (), &mut batch)
             };
+            self.add_guides(&ids, &batch.firsts, tile);
             for (id, traced) in ids.iter().zip(&batch.traced) {
                 let [x, y] = id.pixel;
                 tile.add_with_alpha(x, y, id.sample, traced.rgb, traced.alpha * traced.weight);

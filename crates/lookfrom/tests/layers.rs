@@ -18,6 +18,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("color", &["math", "spectrum"]),
     ("bsdf", &["hash", "math", "spectrum", "warp"]),
     ("film", &["spectrum"]),
+    ("denoise", &["film", "math"]),
     ("develop", &["film"]),
     ("sampler", &["eight", "hash"]),
     ("noise", &["hash"]),

@@ -20,6 +20,7 @@ pub(super) const IMAGE: &[&str] = &[
     "white_balance",
     "max_component",
     "layers",
+    "denoise",
 ];
 /// The keys of `filter` as a table.
 pub(super) const FILTER: &[&str] = &["type", "radius", "sigma", "b", "c"];
@@ -72,6 +73,7 @@ pub(super) fn image(table: &Table<'_>) -> Result<ImageSettings> {
             Ok(if value.boolean()? { Layers::Geometry } else { Layers::None })
         })?,
         background: default.background,
+        denoise: table.or("denoise", default.denoise, Value::boolean)?,
     })
 }
 
