@@ -17,6 +17,7 @@ pub mod layered;
 pub mod lobes;
 pub mod microfacet;
 pub mod principled;
+mod toward;
 pub mod whitted;
 
 use glam::Vec3;
@@ -30,6 +31,8 @@ use lobes::Lobes;
 use microfacet::TrowbridgeReitz;
 use principled::Principled;
 use whitted::Whitted;
+
+pub use toward::Toward;
 
 /// What travels from `wo` into the scene: radiance comes the other way on paths from the camera, importance on paths
 /// from lights. Only refraction asks.
@@ -85,6 +88,17 @@ impl BsdfSample {
     #[inline]
     fn new(wi: Vec3, f: Spectrum, pdf: f32, lobe: Lobes) -> Self {
         Self { wi, f, pdf, lobe, eta: 1.0, pdf_is_proportional: false }
+    }
+
+    /// The same, where light would come from there and all is finite.
+    #[inline]
+    fn if_useful(self) -> Option<Self> {
+        let is_useful = self.pdf > 0.0
+            && self.pdf < f32::INFINITY
+            && !is_grazing(self.wi)
+            && !self.f.is_black()
+            && self.f.0.into_iter().all(f32::is_finite);
+        is_useful.then_some(self)
     }
 }
 
@@ -198,7 +212,7 @@ impl Bsdf {
         if is_grazing(wo) || !self.lobes().intersects(sides(lobes)) {
             return None;
         }
-        let sample = match self {
+        match self {
             Self::Diffuse(bsdf) => Base::sample(bsdf, wo, u),
             Self::DiffuseTransmission(bsdf) => bsdf.sample(wo, uc, u, lobes),
             Self::Conductor(bsdf) => Base::sample(bsdf, wo, u),
@@ -208,13 +222,8 @@ impl Bsdf {
             Self::CoatedConductor(bsdf) => bsdf.sample(wo, uc, u, mode),
             Self::Whitted(bsdf) => bsdf.sample(wo, uc, u, lobes),
             Self::Principled(bsdf) => bsdf.sample(wo, uc, u, mode, lobes),
-        }?;
-        let is_useful = sample.pdf > 0.0
-            && sample.pdf < f32::INFINITY
-            && !is_grazing(sample.wi)
-            && !sample.f.is_black()
-            && sample.f.0.into_iter().all(f32::is_finite);
-        is_useful.then_some(sample)
+        }?
+        .if_useful()
     }
 
     /// The kinds of scattering it has.

@@ -158,6 +158,7 @@ impl Camera {
     }
 
     /// The ray through the point `(x_k, y_k)` of the image, `y_k` up; `lens` in `[0, 1)²` chooses a point of the lens.
+    #[inline]
     pub fn ray(&self, [x_k, y_k]: [f64; 2], lens: [f32; 2]) -> CameraRay {
         let p_k = DVec4::new(x_k, y_k, 0.0, 1.0);
         let after_t1 = self.t1 * p_k;

@@ -20,7 +20,7 @@ use crate::bsdf::layered::Coat;
 use crate::bsdf::lobes::Lobes;
 use crate::bsdf::microfacet::TrowbridgeReitz;
 use crate::bsdf::whitted::Whitted as WhittedBsdf;
-use crate::bsdf::{Bsdf, BsdfSample, Mode};
+use crate::bsdf::{self, Bsdf, BsdfSample, Mode};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::texture::{Lanes, TexturePoint, Textures, Usage};
@@ -100,32 +100,51 @@ impl Shading {
         !matches!(self.bsdf, Bsdf::Principled(_)) || on_one_side(self.ng) == on_one_side(self.frame.n)
     }
 
-    /// The scattering function between two unit directions of render space, without a cosine.
-    pub fn f(&self, wo: Vec3, wi: Vec3) -> Spectrum {
-        if !self.agrees(wo, wi) {
-            return Spectrum::BLACK;
+    /// Lets `ask` ask what it does toward a unit direction of render space.
+    #[inline]
+    pub fn toward<R>(&self, wo: Vec3, ask: impl FnOnce(&Toward<'_>) -> R) -> R {
+        self.bsdf.toward(self.frame.local(wo), Mode::Radiance, Lobes::ALL, |bsdf| {
+            ask(&Toward { shading: self, wo, bsdf })
+        })
+    }
+}
+
+/// What a surface does with light that leaves along ω_o. All directions are of unit length and in render space.
+pub struct Toward<'a> {
+    /// The surface's.
+    pub shading: &'a Shading,
+    wo: Vec3,
+    bsdf: &'a bsdf::Toward<'a>,
+}
+
+impl Toward<'_> {
+    /// The scattering function for light from `wi`, without a cosine, and where it is not black the density over solid
+    /// angle with which [`Toward::sample`] chooses `wi`.
+    pub fn f_and_pdf(&self, wi: Vec3) -> (Spectrum, f32) {
+        if !self.shading.agrees(self.wo, wi) {
+            return (Spectrum::BLACK, 0.0);
         }
-        self.bsdf.f(self.frame.local(wo), self.frame.local(wi), Mode::Radiance)
+        self.bsdf.f_and_pdf(self.shading.frame.local(wi))
     }
 
-    /// The density over solid angle with which [`Shading::sample`] chooses `wi`.
-    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        self.bsdf.pdf(self.frame.local(wo), self.frame.local(wi), Mode::Radiance, Lobes::ALL)
+    /// That density alone.
+    pub fn pdf(&self, wi: Vec3) -> f32 {
+        self.bsdf.pdf(self.shading.frame.local(wi))
     }
 
-    /// A direction by importance; its `wi` is in render space and of unit length.
-    pub fn sample(&self, wo: Vec3, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
-        let sample = self.bsdf.sample(self.frame.local(wo), lobe, u, Mode::Radiance, Lobes::ALL)?;
-        let wi = self.frame.render(sample.wi).normalize();
-        self.agrees(wo, wi).then_some(BsdfSample { wi, ..sample })
+    /// A direction by importance.
+    pub fn sample(&self, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
+        let sample = self.bsdf.sample(lobe, u)?;
+        let wi = self.shading.frame.render(sample.wi).normalize();
+        self.shading.agrees(self.wo, wi).then_some(BsdfSample { wi, ..sample })
     }
 
     /// A direction all around, whatever the material: for checking what is chosen by importance.
-    pub fn uniform(&self, wo: Vec3, u: [f32; 2]) -> BsdfSample {
+    pub fn uniform(&self, u: [f32; 2]) -> BsdfSample {
         let wi = warp::uniform_sphere(u);
         let lobe = Lobes::REFLECTION.union(Lobes::DIFFUSE);
-        let pdf = warp::UNIFORM_SPHERE_PDF;
-        BsdfSample { wi, f: self.f(wo, wi), pdf, lobe, eta: 1.0, pdf_is_proportional: false }
+        let (f, _) = self.f_and_pdf(wi);
+        BsdfSample { wi, f, pdf: warp::UNIFORM_SPHERE_PDF, lobe, eta: 1.0, pdf_is_proportional: false }
     }
 }
 

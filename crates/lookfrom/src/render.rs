@@ -105,9 +105,18 @@ pub struct Traced {
     pub alpha: f32,
 }
 
+/// Random numbers for the camera's rays of a batch, by slot. Empty where nothing asks for them.
+#[derive(Debug, Default)]
+struct StartNumbers {
+    filter: Vec<[f32; 2]>,
+    lens: Vec<[f32; 2]>,
+    wavelengths: Vec<[f32; 2]>,
+}
+
 /// The memory of a batch, which the next one uses again.
 #[derive(Debug, Default)]
 struct Batch {
+    numbers: StartNumbers,
     samples: Samples,
     weights: Vec<f32>,
     paths: Vec<Path>,
@@ -164,12 +173,14 @@ impl<'a> Frame<'a> {
 
     /// The camera's ray for a sample and the filter's weight.
     pub fn camera_ray(&self, id: SampleId) -> (CameraRay, f32) {
+        let two = |dimension| self.sampler.two(id.pixel, id.sample, dimension);
+        self.camera_ray_by(id, two(FILTER_DIMENSION), two(LENS_DIMENSION))
+    }
+
+    #[inline]
+    fn camera_ray_by(&self, id: SampleId, u: [f32; 2], lens: [f32; 2]) -> (CameraRay, f32) {
         let [column, row] = id.pixel.map(f64::from);
-        let (offset, weight) = self.filter.sample(self.sampler.two(id.pixel, id.sample, FILTER_DIMENSION));
-        let lens = match self.world.camera.lens {
-            Some(_) => self.sampler.two(id.pixel, id.sample, LENS_DIMENSION),
-            None => [0.5; 2],
-        };
+        let (offset, weight) = self.filter.sample(u);
         let x_k = column + 0.5 + f64::from(offset[0]);
         let y_k = f64::from(self.image.height) - (row + 0.5 + f64::from(offset[1]));
         (self.world.camera.ray([x_k, y_k], lens), weight)
@@ -212,7 +223,7 @@ impl<'a> Frame<'a> {
         batch: &mut Batch,
     ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
-        let Batch { samples, weights, paths, rays, left, hits, met, firsts, traced } = batch;
+        let Batch { numbers: start, samples, weights, paths, rays, left, hits, met, firsts, traced } = batch;
         let mut next = Next { samples: std::mem::take(samples), probe };
         next.samples.clear();
 
@@ -221,11 +232,13 @@ impl<'a> Frame<'a> {
         met.resize(ids.len(), Met::default());
 
         // Start: a ray from the camera for each sample.
+        self.prepare_start(ids, start);
         weights.clear();
         for (slot, id) in ids.iter().enumerate() {
-            let (ray, weight) = self.camera_ray(*id);
+            let lens = start.lens.get(slot).copied().unwrap_or_default();
+            let (ray, weight) = self.camera_ray_by(*id, start.filter[slot], lens);
             weights.push(weight);
-            let lanes = self.lanes(*id);
+            let lanes = start.wavelengths.get(slot).map_or(Lanes::Rgb, |u| lanes_by(*u));
             next.samples.start(lanes);
             next.samples.paths.push(Path {
                 ray: self.world.camera_ray(&ray),
@@ -283,15 +296,31 @@ impl<'a> Frame<'a> {
         rays_traced
     }
 
+    /// Draws the numbers that the camera's rays of a batch ask for.
+    fn prepare_start(&self, ids: &[SampleId], numbers: &mut StartNumbers) {
+        let StartNumbers { filter, lens, wavelengths } = numbers;
+        let draw = |is_asked: bool, dimension: u32, numbers: &mut Vec<[f32; 2]>| {
+            let count = if is_asked { ids.len() } else { 0 };
+            self.sampler.two_of_each(count, |k| (ids[k].pixel, ids[k].sample), dimension, numbers);
+        };
+        draw(true, FILTER_DIMENSION, filter);
+        draw(self.world.camera.lens.is_some(), LENS_DIMENSION, lens);
+        draw(self.is_spectral(), WAVELENGTH_DIMENSION, wavelengths);
+    }
+
+    /// Whether the lanes of samples are wavelengths.
+    fn is_spectral(&self) -> bool {
+        use Kind::{Depth, Id, Normals, Uv};
+        self.render.color == ColorMode::Spectral
+            && !matches!(self.render.integrator, Normals | Depth | Uv | Id)
+    }
+
     /// What the lanes of a sample mean.
     fn lanes(&self, id: SampleId) -> Lanes {
-        use Kind::{Depth, Id, Normals, Uv};
-        match (self.render.color, self.render.integrator) {
-            (ColorMode::Rgb, _) | (_, Normals | Depth | Uv | Id) => Lanes::Rgb,
-            (ColorMode::Spectral, _) => {
-                let [u, _] = self.sampler.two(id.pixel, id.sample, WAVELENGTH_DIMENSION);
-                Lanes::Spectral(Wavelengths::sample_visible(u))
-            }
+        if self.is_spectral() {
+            lanes_by(self.sampler.two(id.pixel, id.sample, WAVELENGTH_DIMENSION))
+        } else {
+            Lanes::Rgb
         }
     }
 
@@ -346,6 +375,11 @@ impl<'a> Frame<'a> {
         }
         rays
     }
+}
+
+/// The wavelengths of a sample, by its random numbers.
+fn lanes_by([u, _]: [f32; 2]) -> Lanes {
+    Lanes::Spectral(Wavelengths::sample_visible(u))
 }
 
 /// The pixels of an area by square blocks of 8 × 8, so that the rays of a packet of the kernel lie close together.

@@ -96,6 +96,7 @@ pub struct Instance {
 
 impl World {
     /// The kernel's form of a camera ray, with `t` of the notes: 1 on the image plane.
+    #[inline]
     pub fn camera_ray(&self, ray: &CameraRay) -> Ray {
         let a = self.camera.lookfrom() - self.origin + ray.a_from_eye;
         Ray::new(a.as_vec3().to_array(), ray.direction.as_vec3().to_array())

@@ -40,7 +40,7 @@ use super::microfacet::TrowbridgeReitz;
 use super::{BsdfSample, Lobes, Mode, fresnel, is_grazing};
 use crate::spectrum::Spectrum;
 use film::Film;
-use view::View;
+use view::{Choice, View};
 
 /// What a principled surface is made of, in numbers. All shares and colours are within 0 … 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -251,11 +251,10 @@ impl Principled {
     }
 
     pub(super) fn pdf(&self, wo: Vec3, wi: Vec3, lobes: Lobes) -> f32 {
-        if is_grazing(wo) || is_grazing(wi) {
+        if is_grazing(wi) {
             return 0.0;
         }
-        let view = View::new(self, wo);
-        view.choice(lobes).map_or(0.0, |choice| view.pdf(towards(wo, wi), &choice, lobes))
+        self.toward(wo, lobes).map_or(0.0, |toward| toward.pdf(towards(wo, wi)))
     }
 
     pub(super) fn sample(
@@ -266,11 +265,12 @@ impl Principled {
         mode: Mode,
         lobes: Lobes,
     ) -> Option<BsdfSample> {
-        if is_grazing(wo) {
-            return None;
-        }
-        let sample = View::new(self, wo).sample(uc, u, mode, lobes)?;
-        Some(BsdfSample { wi: towards(wo, sample.wi), ..sample })
+        self.toward(wo, lobes)?.sample(wo, uc, u, mode)
+    }
+
+    /// What is known of it toward a direction; `None` for a grazing one.
+    pub(super) fn toward(&self, wo: Vec3, lobes: Lobes) -> Option<Toward> {
+        (!is_grazing(wo)).then(|| Toward::new(View::new(self, wo), lobes))
     }
 
     pub(super) fn lobes(&self) -> Lobes {
@@ -307,6 +307,37 @@ impl Principled {
         let mut coat = TrowbridgeReitz { alpha_x: self.coat_alpha, alpha_y: self.coat_alpha };
         coat.regularize();
         self.coat_alpha = coat.alpha_x;
+    }
+}
+
+/// A surface toward a direction ω_o, with the choice between its lobes.
+pub(super) struct Toward {
+    view: View,
+    choice: Option<Choice>,
+    lobes: Lobes,
+}
+
+impl Toward {
+    fn new(view: View, lobes: Lobes) -> Self {
+        Self { choice: view.choice(lobes), view, lobes }
+    }
+
+    /// The function, and where it is not black the density.
+    pub(super) fn f_and_pdf(&self, wo: Vec3, wi: Vec3, mode: Mode) -> (Spectrum, f32) {
+        if is_grazing(wi) {
+            return (Spectrum::BLACK, 0.0);
+        }
+        self.view.f_and_pdf(towards(wo, wi), mode, self.choice.as_ref(), self.lobes)
+    }
+
+    /// In the mirrored frame, for what is not grazing.
+    fn pdf(&self, wi: Vec3) -> f32 {
+        self.choice.as_ref().map_or(0.0, |choice| self.view.pdf(wi, choice, self.lobes))
+    }
+
+    pub(super) fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode) -> Option<BsdfSample> {
+        let sample = self.view.sample(uc, u, mode, self.choice.as_ref()?, self.lobes)?;
+        Some(BsdfSample { wi: towards(wo, sample.wi), ..sample })
     }
 }
 

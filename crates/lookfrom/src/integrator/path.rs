@@ -15,7 +15,7 @@ use crate::bsdf::BsdfSample;
 use crate::eight::LANES;
 use crate::integrator::{Bounce, Event, Integrator, Next, Numbers, Path, Probe, Samples, Shadow, Term};
 use crate::light::{Coverage, Reference};
-use crate::material::{Arrival, Shading};
+use crate::material::{Arrival, Toward};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::world::World;
@@ -176,23 +176,48 @@ impl Integrator for PathTracer {
             return;
         }
 
+        shading.toward(surface.wo, |toward| self.scatter(world, numbers, &path, &surface, toward, next));
+    }
+}
+
+impl PathTracer {
+    /// Steps of paths that met the commonest surfaces, eight at a time.
+    fn step_plain(&self, world: &World, plain: &[Plain<'_>], next: &mut Samples) {
+        let Some(last) = plain.last() else { return };
+        let eight: [Plain<'_>; LANES] = std::array::from_fn(|lane| *plain.get(lane).unwrap_or(last));
+        let steps = Steps { tracer: self, world, plain: &eight, count: plain.len(), samples: next };
+        at_level(Level::new(), steps);
+    }
+
+    /// What light does at a surface: from one lamp, and from one direction.
+    fn scatter<P: Probe>(
+        &self,
+        world: &World,
+        numbers: &Numbers,
+        path: &Path,
+        surface: &Surface,
+        toward: &Toward<'_>,
+        next: &mut Next<'_, P>,
+    ) {
+        let shading = toward.shading;
+
         // Ask one light.
         let [which_light, which_lobe] = numbers.two(purpose::CHOICE);
         if self.wisdom != Wisdom::None && shading.bsdf.lobes().is_non_specular() {
             let u = numbers.two(purpose::LIGHT);
-            self.ask_light(world, &path, (&surface, &shading), which_light, u, next);
+            self.ask_light(world, path, (surface, toward), which_light, u, next);
         }
 
         // Go on in one direction.
         let u = numbers.two(purpose::DIRECTION);
-        let Some(sample) = self.direction(&shading, &surface, which_lobe, u) else { return };
+        let Some(sample) = self.direction(toward, which_lobe, u) else { return };
         let wi = sample.wi;
         let cos = shading.cos(wi).abs();
         let beta = path.beta * sample.f * (cos / sample.pdf);
         let is_sharp = sample.lobe.is_specular();
         let pdf = match (is_sharp, sample.pdf_is_proportional) {
             (true, _) => f32::INFINITY,
-            (false, true) => shading.pdf(surface.wo, wi),
+            (false, true) => toward.pdf(wi),
             (false, false) => sample.pdf,
         };
         let transmitted = sample.lobe.is_transmission();
@@ -208,7 +233,7 @@ impl Integrator for PathTracer {
         if !survives || beta.is_black() {
             return;
         }
-        let media = if transmitted { path.media.crossed(&world.materials, &surface) } else { path.media };
+        let media = if transmitted { path.media.crossed(&world.materials, surface) } else { path.media };
         next.samples.paths.push(Path {
             ray: Ray::new(surface.origin(wi), wi.to_array()),
             beta: beta / survival,
@@ -225,16 +250,6 @@ impl Integrator for PathTracer {
                 blurred: path.departure.blurred || !is_sharp,
             },
         });
-    }
-}
-
-impl PathTracer {
-    /// Steps of paths that met the commonest surfaces, eight at a time.
-    fn step_plain(&self, world: &World, plain: &[Plain<'_>], next: &mut Samples) {
-        let Some(last) = plain.last() else { return };
-        let eight: [Plain<'_>; LANES] = std::array::from_fn(|lane| *plain.get(lane).unwrap_or(last));
-        let steps = Steps { tracer: self, world, plain: &eight, count: plain.len(), samples: next };
-        at_level(Level::new(), steps);
     }
 
     fn add_sky<P: Probe>(&self, world: &World, path: &Path, next: &mut Next<'_, P>) {
@@ -290,12 +305,12 @@ impl PathTracer {
         &self,
         world: &World,
         path: &Path,
-        (surface, shading): (&Surface, &Shading),
+        (surface, toward): (&Surface, &Toward<'_>),
         which: f32,
         u: [f32; 2],
         next: &mut Next<'_, P>,
     ) {
-        let at = Reference { point: DVec3::from_array(surface.point.position), n: shading.n() };
+        let at = Reference { point: DVec3::from_array(surface.point.position), n: toward.shading.n() };
         let Some((index, probability)) = world.light_choice.sample(&at, which) else { return };
         let light = &world.lights[index as usize];
         let sample = light.sample(&world.textures, &at, u, &next.lanes(path), Coverage::Incomplete);
@@ -305,17 +320,15 @@ impl PathTracer {
             next.probe.notice(|| in_vain(None));
             return;
         };
-        let f = shading.f(surface.wo, sample.wi) * shading.cos(sample.wi).abs();
+        let (f, bsdf_pdf) = toward.f_and_pdf(sample.wi);
+        let f = f * toward.shading.cos(sample.wi).abs();
         if f.is_black() {
             next.probe.notice(|| in_vain(Some(sample)));
             return;
         }
         let light_pdf = probability * sample.pdf;
         let (weight, bsdf_pdf) = match (self.wisdom, light.is_delta()) {
-            (Wisdom::Combined, false) => {
-                let bsdf_pdf = shading.pdf(surface.wo, sample.wi);
-                (power_heuristic(light_pdf, bsdf_pdf), bsdf_pdf)
-            }
+            (Wisdom::Combined, false) => (power_heuristic(light_pdf, bsdf_pdf), bsdf_pdf),
             _ => (1.0, 0.0),
         };
         let contribution = path.beta * f * sample.li * (weight / light_pdf);
@@ -333,11 +346,11 @@ impl PathTracer {
         }
     }
 
-    fn direction(&self, shading: &Shading, surface: &Surface, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
+    fn direction(&self, toward: &Toward<'_>, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
         if self.wisdom == Wisdom::None {
-            return Some(shading.uniform(surface.wo, u));
+            return Some(toward.uniform(u));
         }
-        let sample = shading.sample(surface.wo, lobe, u)?;
+        let sample = toward.sample(lobe, u)?;
         (sample.pdf > 0.0).then_some(sample)
     }
 

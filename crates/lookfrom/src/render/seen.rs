@@ -83,16 +83,18 @@ impl Probe for Seen<'_> {
 
 /// The part of the light from all around that leaves along `wo`, by a few directions.
 fn albedo(shading: &Shading, wo: Vec3) -> Spectrum {
-    let mut sum = Spectrum::BLACK;
     let place = |k: u32| (k as f32 + 0.5) / ALBEDO_GRID as f32;
-    for k in 0..ALBEDO_GRID * ALBEDO_GRID {
-        let u = [place(k % ALBEDO_GRID), place(k / ALBEDO_GRID)];
-        let lobe = place((5 * k + 2) % ALBEDO_GRID);
-        if let Some(sample) = shading.sample(wo, lobe, u)
-            && sample.pdf > 0.0
-        {
-            sum += sample.f * (shading.cos(sample.wi).abs() / sample.pdf);
+    shading.toward(wo, |toward| {
+        let mut sum = Spectrum::BLACK;
+        for k in 0..ALBEDO_GRID * ALBEDO_GRID {
+            let u = [place(k % ALBEDO_GRID), place(k / ALBEDO_GRID)];
+            let lobe = place((5 * k + 2) % ALBEDO_GRID);
+            if let Some(sample) = toward.sample(lobe, u)
+                && sample.pdf > 0.0
+            {
+                sum += sample.f * (shading.cos(sample.wi).abs() / sample.pdf);
+            }
         }
-    }
-    sum / (ALBEDO_GRID * ALBEDO_GRID) as f32
+        sum / (ALBEDO_GRID * ALBEDO_GRID) as f32
+    })
 }

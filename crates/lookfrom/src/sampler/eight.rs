@@ -1,9 +1,9 @@
 //! Random numbers of eight samples at once, one in each lane: the twin of [`PixelSampler`], bit for bit.
 
-use lookfrom_bvh::simd::{Simd, f32x8, prelude::*, u32x8, u64x8};
+use lookfrom_bvh::simd::{Level, Simd, Work, at_level, f32x8, prelude::*, u32x8, u64x8};
 use lookfrom_scene::settings::Sampler as Kind;
 
-use super::PixelSampler;
+use super::{PixelSampler, Sampler};
 use crate::eight::{LANES, by_lane};
 use crate::hash::GOLDEN;
 
@@ -41,6 +41,49 @@ impl<S: Simd> PixelSamplers<S> {
                 let bits = mix(pattern + (number + 1) * GOLDEN);
                 [unit(simd, low_half(bits >> 32)), unit(simd, low_half(bits))]
             }
+        }
+    }
+}
+
+impl Sampler {
+    /// Puts [`Sampler::two`] of one dimension at each of `count` addresses (pixel and sample) in place of `numbers`.
+    pub(crate) fn two_of_each(
+        &self,
+        count: usize,
+        address: impl Fn(usize) -> ([u32; 2], u32),
+        dimension: u32,
+        numbers: &mut Vec<[f32; 2]>,
+    ) {
+        numbers.clear();
+        at_level(Level::new(), Each { sampler: self, count, address, dimension, numbers });
+    }
+}
+
+struct Each<'a, F> {
+    sampler: &'a Sampler,
+    count: usize,
+    address: F,
+    dimension: u32,
+    numbers: &'a mut Vec<[f32; 2]>,
+}
+
+impl<F: Fn(usize) -> ([u32; 2], u32)> Work for Each<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { sampler, count, address, dimension, numbers } = self;
+        let dimension = u64x8::splat(simd, u64::from(dimension));
+        for first in (0..count).step_by(LANES) {
+            // The last ones fill up with the very last.
+            let addresses = by_lane!(lane => address((first + lane).min(count - 1)));
+            let pixels =
+                by_lane!(lane => u64::from(addresses[lane].0[0]) | u64::from(addresses[lane].0[1]) << 32);
+            let keys = mix(u64x8::load_array(simd, pixels) ^ sampler.key);
+            let sample = u32x8::load_array(simd, by_lane!(lane => addresses[lane].1));
+            let [a, b] = PixelSamplers { kind: sampler.kind, keys }.two(simd, sample, dimension);
+            let (a, b): ([f32; LANES], [f32; LANES]) = (a.into(), b.into());
+            numbers.extend((0..LANES.min(count - first)).map(|lane| [a[lane], b[lane]]));
         }
     }
 }
@@ -99,8 +142,6 @@ fn scramble_from_the_low_end<S: Simd>(mut bits: u32x8<S>, seed: u32x8<S>) -> u32
 mod tests {
     use super::*;
     use crate::hash;
-    use crate::sampler::Sampler;
-    use lookfrom_bvh::simd::{Level, Work, at_level};
 
     struct Two<'a>(&'a [PixelSampler; LANES], [u32; LANES], [u32; LANES]);
 
@@ -112,6 +153,21 @@ mod tests {
             let dimension = u64x8::load_array(simd, by_lane!(lane => u64::from(self.2[lane])));
             let [a, b] = samplers.two(simd, u32x8::load_array(simd, self.1), dimension);
             [a.into(), b.into()]
+        }
+    }
+
+    #[test]
+    fn all_of_a_batch_are_each_on_its_own() {
+        for (kind, count) in [(Kind::Sobol, 29), (Kind::Independent, 16), (Kind::Sobol, 0)] {
+            let sampler = Sampler::new(kind, 3);
+            let address = |k: usize| ([hash::pair(k as u64, 5) as u32, k as u32], 77 * k as u32);
+            let mut numbers = vec![[9.0; 2]];
+            sampler.two_of_each(count, address, 11, &mut numbers);
+            assert_eq!(numbers.len(), count);
+            for (k, &of_batch) in numbers.iter().enumerate() {
+                let (pixel, sample) = address(k);
+                assert_eq!(of_batch, sampler.two(pixel, sample, 11));
+            }
         }
     }
 

@@ -33,6 +33,17 @@ pub(super) struct View {
     coat: Option<Coat>,
 }
 
+/// The facet that sends `wo` to a direction.
+#[derive(Clone, Copy)]
+struct FacetToward {
+    /// Of both directions to its normal.
+    cos: f32,
+    /// What turns its reflectance, or what it lets pass, into `f`.
+    scale: f32,
+    /// Of such facets, over the solid angle of the direction.
+    density: f32,
+}
+
 /// Probabilities of the lobes.
 pub(super) struct Choice {
     coat: f32,
@@ -157,9 +168,8 @@ impl View {
         }
     }
 
-    /// The facet that sends `wo` to `wi`, its cosine, and what turns its reflectance into `f`, and its density over the
-    /// solid angle of `wi`. `None` where there is none.
-    fn facet(&self, wi: Vec3, mode: Mode) -> Option<(f32, f32, f32)> {
+    /// The facet that sends `wo` to `wi`. `None` where there is none.
+    fn facet(&self, wi: Vec3, mode: Mode) -> Option<FacetToward> {
         let surface = &self.surface;
         let (wo, roughness) = (self.wo, surface.roughness);
         let through = wi.z < 0.0;
@@ -170,8 +180,11 @@ impl View {
             // A thin sheet sends through what a mirror would send back.
             let wi = Vec3::new(wi.x, wi.y, wi.z.abs());
             let wm = half_vector(wo, wi)?;
-            let f = roughness.d(wm) * roughness.g(wo, wi) / (4.0 * wo.z * wi.z);
-            return Some((wo.dot(wm), f, 0.25 * roughness.visible_per_cosine(wo, wm)));
+            return Some(FacetToward {
+                cos: wo.dot(wm),
+                scale: roughness.d(wm) * roughness.g(wo, wi) / (4.0 * wo.z * wi.z),
+                density: 0.25 * roughness.visible_per_cosine(wo, wm),
+            });
         }
         let eta = self.relative_eta();
         let wm = (wi * eta + wo).try_normalize()?;
@@ -182,17 +195,42 @@ impl View {
         }
         let jacobian = cos * refraction_jacobian(wo, wi, wm, eta);
         let f = roughness.d(wm) * roughness.g(wo, wi) / (wo.z * -wi.z) * jacobian;
-        Some((cos, radiance_scale(f, eta, mode), roughness.visible_per_cosine(wo, wm) * jacobian))
+        Some(FacetToward {
+            cos,
+            scale: radiance_scale(f, eta, mode),
+            density: roughness.visible_per_cosine(wo, wm) * jacobian,
+        })
     }
 
     /// As [`super::Bsdf::f`], for `wi` in the mirrored frame and not grazing.
     pub(super) fn f(&self, wi: Vec3, mode: Mode) -> Spectrum {
+        self.f_by(wi, self.facet(wi, mode))
+    }
+
+    /// [`Self::f`] and, where it is not black, [`Self::pdf`]: both ask the same facet.
+    pub(super) fn f_and_pdf(
+        &self,
+        wi: Vec3,
+        mode: Mode,
+        choice: Option<&Choice>,
+        lobes: Lobes,
+    ) -> (Spectrum, f32) {
+        let facet = self.facet(wi, mode);
+        let f = self.f_by(wi, facet);
+        let pdf = match choice {
+            Some(choice) if !f.is_black() => self.pdf_by(wi, choice, lobes, facet),
+            _ => 0.0,
+        };
+        (f, pdf)
+    }
+
+    fn f_by(&self, wi: Vec3, of_facet: Option<FacetToward>) -> Spectrum {
         let through = wi.z < 0.0;
         let (below_coat, below_sheen) = self.below(wi);
         let mut f = self.matte(wi.z.abs(), through) * FRAC_1_PI;
-        if let Some((cos, value, _)) = self.facet(wi, mode) {
+        if let Some(FacetToward { cos, scale, .. }) = of_facet {
             let facet = self.surface.facet(cos, self.is_inside);
-            f += if through { facet.passed } else { facet.mirrored } * value;
+            f += if through { facet.passed } else { facet.mirrored } * scale;
         }
         f = f * below_sheen;
         if let Some(sheen) = &self.sheen
@@ -259,11 +297,15 @@ impl View {
 
     /// Density of all lobes that are spread.
     pub(super) fn pdf(&self, wi: Vec3, choice: &Choice, lobes: Lobes) -> f32 {
+        self.pdf_by(wi, choice, lobes, self.facet(wi, Mode::Importance))
+    }
+
+    fn pdf_by(&self, wi: Vec3, choice: &Choice, lobes: Lobes, of_facet: Option<FacetToward>) -> f32 {
         let through = wi.z < 0.0;
         let even = if through { choice.matte_through } else { choice.matte };
         let mut pdf = even * warp::cosine_hemisphere_pdf(wi.z.abs());
         if choice.facet > 0.0
-            && let Some((cos, _, density)) = self.facet(wi, Mode::Importance)
+            && let Some(FacetToward { cos, density, .. }) = of_facet
             && let Some(mirrors) = self.mirrors_at(cos, lobes)
         {
             pdf += choice.facet * if through { 1.0 - mirrors } else { mirrors } * density;
@@ -278,8 +320,14 @@ impl View {
     }
 
     /// As [`super::Bsdf::sample`], in the mirrored frame.
-    pub(super) fn sample(&self, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        let choice = self.choice(lobes)?;
+    pub(super) fn sample(
+        &self,
+        uc: f32,
+        u: [f32; 2],
+        mode: Mode,
+        choice: &Choice,
+        lobes: Lobes,
+    ) -> Option<BsdfSample> {
         let (wo, surface) = (self.wo, &self.surface);
         // What is left of uc chooses on.
         let mut rest = uc;
@@ -321,7 +369,7 @@ impl View {
         }
         let eta = if wi.z < 0.0 && side == Lobes::GLOSSY { self.relative_eta() } else { 1.0 };
         let lobe = side | if wi.z < 0.0 { Lobes::TRANSMISSION } else { Lobes::REFLECTION };
-        let (f, pdf) = (self.f(wi, mode), self.pdf(wi, &choice, lobes));
+        let (f, pdf) = self.f_and_pdf(wi, mode, Some(choice), lobes);
         Some(BsdfSample { eta, ..BsdfSample::new(wi, f, pdf, lobe) })
     }
 
