@@ -155,6 +155,7 @@ fn push_guide(guide: &mut Vec<u32>, sums: &[f64]) {
 }
 
 /// The entry in whose share `u` lies, and where in it (0 … 1). `sums` must end in more than 0.
+#[inline]
 fn choose(sums: &[f64], guide: &[u32], u: f32) -> (usize, f64) {
     let u = u.clamp(0.0, ONE_MINUS_EPSILON);
     let goal = f64::from(u) * sums[sums.len() - 1];

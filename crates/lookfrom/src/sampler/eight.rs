@@ -54,17 +54,16 @@ impl Sampler {
         dimension: u32,
         numbers: &mut Vec<[f32; 2]>,
     ) {
-        numbers.clear();
-        at_level(Level::new(), Each { sampler: self, count, address, dimension, numbers });
+        numbers.resize(count, [0.0; 2]);
+        at_level(Level::new(), Each { sampler: self, address, dimension, numbers });
     }
 }
 
 struct Each<'a, F> {
     sampler: &'a Sampler,
-    count: usize,
     address: F,
     dimension: u32,
-    numbers: &'a mut Vec<[f32; 2]>,
+    numbers: &'a mut [[f32; 2]],
 }
 
 impl<F: Fn(usize) -> ([u32; 2], u32)> Work for Each<'_, F> {
@@ -72,9 +71,11 @@ impl<F: Fn(usize) -> ([u32; 2], u32)> Work for Each<'_, F> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { sampler, count, address, dimension, numbers } = self;
+        let Self { sampler, address, dimension, numbers } = self;
+        let count = numbers.len();
         let dimension = u64x8::splat(simd, u64::from(dimension));
-        for first in (0..count).step_by(LANES) {
+        for (block, numbers) in numbers.chunks_mut(LANES).enumerate() {
+            let first = block * LANES;
             // The last ones fill up with the very last.
             let addresses = by_lane!(lane => address((first + lane).min(count - 1)));
             let pixels =
@@ -83,7 +84,9 @@ impl<F: Fn(usize) -> ([u32; 2], u32)> Work for Each<'_, F> {
             let sample = u32x8::load_array(simd, by_lane!(lane => addresses[lane].1));
             let [a, b] = PixelSamplers { kind: sampler.kind, keys }.two(simd, sample, dimension);
             let (a, b): ([f32; LANES], [f32; LANES]) = (a.into(), b.into());
-            numbers.extend((0..LANES.min(count - first)).map(|lane| [a[lane], b[lane]]));
+            for (lane, number) in numbers.iter_mut().enumerate() {
+                *number = [a[lane], b[lane]];
+            }
         }
     }
 }
