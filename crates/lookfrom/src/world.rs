@@ -193,7 +193,8 @@ impl World {
     pub fn emitted(&self, surface: &Surface, lanes: &Lanes) -> Spectrum {
         match surface.light.map(|index| &self.lights[index as usize]) {
             Some(Light::Area(light)) => {
-                light.emitted(&self.textures, &self.texture_point(surface), surface.front, lanes)
+                let cos = || surface.ns.dot(surface.wo);
+                light.emitted(&self.textures, &self.texture_point(surface), surface.front, cos, lanes)
             }
             _ => Spectrum::BLACK,
         }

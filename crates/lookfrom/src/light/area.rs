@@ -32,6 +32,8 @@ pub struct AreaLight {
     pub alpha: Option<Scalar>,
     /// Whether both sides shine.
     pub two_sided: bool,
+    /// How much of a clear coat is over it; `None` where there is none.
+    pub coat: Option<Scalar>,
     /// Where it shines from.
     pub form: LightForm,
 }
@@ -97,9 +99,27 @@ impl AreaLight {
         }
     }
 
-    /// Radiance that leaves a point of the light on the side of its normal (`front`) or on the other.
-    pub fn emitted(&self, textures: &Textures, at: &TexturePoint, front: bool, lanes: &Lanes) -> Spectrum {
-        if front || self.two_sided { self.radiance.at(textures, at, lanes) } else { Spectrum::BLACK }
+    /// Radiance that leaves a point of the light on the side of its normal (`front`) or on the other, at an angle of cosine
+    /// `cos` to its shading normal (on either side; asked only where there is a coat).
+    pub fn emitted(
+        &self,
+        textures: &Textures,
+        at: &TexturePoint,
+        front: bool,
+        cos: impl FnOnce() -> f32,
+        lanes: &Lanes,
+    ) -> Spectrum {
+        if !front && !self.two_sided {
+            return Spectrum::BLACK;
+        }
+        let radiance = self.radiance.at(textures, at, lanes);
+        match self.coat {
+            None => radiance,
+            Some(amount) => {
+                let amount = textures.scalar(amount, at).clamp(0.0, 1.0);
+                radiance * (1.0 - amount * mirrored_by_coat(cos().abs()))
+            }
+        }
     }
 
     /// One way from the light to a point.
@@ -115,7 +135,8 @@ impl AreaLight {
         let front = normal.dot(wi.as_dvec3()) < 0.0;
         let at = self.texture_point(&light_point);
         let there = self.alpha.map_or(1.0, |alpha| textures.scalar(alpha, &at).clamp(0.0, 1.0));
-        let li = self.emitted(textures, &at, front, lanes) * there;
+        let cos = || self.shading_normal(&light_point).dot(wi.as_dvec3()) as f32;
+        let li = self.emitted(textures, &at, front, cos, lanes) * there;
         (!li.is_black()).then_some(LightSample { wi, li, pdf, target: Target::Surface(point, normal) })
     }
 
@@ -123,7 +144,7 @@ impl AreaLight {
     /// the number.
     #[inline]
     pub(crate) fn triangle(&self, u0: f32) -> Option<(&LightTriangle, f32, f32)> {
-        match (&self.form, self.alpha, self.radiance.color) {
+        match (&self.form, self.alpha.or(self.coat), self.radiance.color) {
             (LightForm::Mesh(light), None, Color::Value(_)) => light.triangle(u0),
             _ => None,
         }
@@ -132,12 +153,22 @@ impl AreaLight {
     /// What the colour of a patterned light depends on: not its place in the world.
     fn texture_point(&self, point: &LightPoint) -> TexturePoint {
         let at = TexturePoint { uv: point.uv, n: point.normal.as_vec3(), ..TexturePoint::NOWHERE };
-        let is_even = self.alpha.is_none() && !matches!(self.radiance.color, Color::Texture(_));
+        let is_even = self.alpha.is_none()
+            && !matches!(self.coat, Some(Scalar::Texture(_)))
+            && !matches!(self.radiance.color, Color::Texture(_));
         match &self.form {
             LightForm::Mesh(light) if !is_even => {
                 light.with_vertices(at, point.primitive, point.on_primitive)
             }
             _ => at,
+        }
+    }
+
+    /// The normal that its coat is seen with.
+    fn shading_normal(&self, point: &LightPoint) -> DVec3 {
+        match &self.form {
+            LightForm::Mesh(light) => light.shading_normal(point.primitive, point.on_primitive),
+            _ => point.normal,
         }
     }
 
@@ -200,6 +231,15 @@ impl AreaLight {
         let cos_normals = (cos as f32 - 1e-6).max(-1.0);
         Extent { min, max, axis: axis.as_vec3(), cos_normals, two_sided: self.two_sided }
     }
+}
+
+/// The part of light that a clear coat mirrors back into what is below, for a cosine to its normal. As
+/// `KHR_materials_clearcoat` has it for emission: Schlick's curve from 0.04, smooth however rough the coat is. (Its normal map
+/// is left out: a light does not know it.)
+fn mirrored_by_coat(cos: f32) -> f32 {
+    let x = (1.0 - cos).clamp(0.0, 1.0);
+    let x2 = x * x;
+    0.04 + 0.96 * (x2 * x2 * x)
 }
 
 /// Directions around an axis of unit length, up to an angle of this cosine.

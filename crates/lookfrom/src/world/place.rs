@@ -218,7 +218,7 @@ impl Compiler<'_> {
         for sphere in spheres {
             let center = matrix.transform_point3(sphere.center).as_vec3();
             let radius = (sphere.radius * scale) as f32;
-            let light = self.shine(shape, || {
+            let light = self.shine(placing, || {
                 let kind = whole_sphere(f64::from(radius));
                 let own = DMat4::from_translation(center.as_dvec3()) * DMat4::from_mat3(render_from_z);
                 Some(LightForm::Quadric(Box::new(QuadricLight::new(Quadric::new(kind, 360.0, &own, flip)?)?)))
@@ -243,7 +243,7 @@ impl Compiler<'_> {
             axis_v: matrix.transform_vector3(radius * axis_v),
             flip: placing.mirrors() != shape.reverse_orientation,
         };
-        let light = self.shine(shape, || Some(LightForm::Disk(disk)));
+        let light = self.shine(placing, || Some(LightForm::Disk(disk)));
         group.disks.disks.push(disk);
         group.disks.looks.push(Look { light, ..look });
     }
@@ -258,22 +258,32 @@ impl Compiler<'_> {
         let Placing { shape, matrix, look } = placing;
         let quadric = Quadric::new(kind, phi_max, matrix, shape.reverse_orientation)
             .ok_or_else(|| not_invertible(&shape.at))?;
-        let light =
-            self.shine(shape, || QuadricLight::new(quadric).map(|light| LightForm::Quadric(Box::new(light))));
+        let light = self
+            .shine(placing, || QuadricLight::new(quadric).map(|light| LightForm::Quadric(Box::new(light))));
         group.quadrics.quadrics.push(quadric);
         group.quadrics.looks.push(Look { light, ..look });
         Ok(())
     }
 
     /// The light of a shape that shines, made from its form.
-    fn shine(&mut self, shape: &Shape, form: impl FnOnce() -> Option<LightForm>) -> Option<u32> {
+    fn shine(&mut self, placing: Placing, form: impl FnOnce() -> Option<LightForm>) -> Option<u32> {
+        let Placing { shape, look, .. } = placing;
         let Emission { radiance, amount, two_sided } = shape.emission?;
         if radiance == Color::BLACK {
             return None;
         }
         let form = form()?;
-        let mut light =
-            AreaLight { radiance: Glow { color: radiance, scale: 1.0 }, alpha: shape.alpha, two_sided, form };
+        let coat = match self.scene.materials.get(look.material as usize).map(|material| &material.kind) {
+            Some(MaterialKind::Principled(look)) => Some(look.clearcoat),
+            _ => None,
+        };
+        let mut light = AreaLight {
+            radiance: Glow { color: radiance, scale: 1.0 },
+            alpha: shape.alpha,
+            two_sided,
+            coat: coat.filter(|amount| *amount != Scalar::Value(0.0)),
+            form,
+        };
         // what white radiance of 1 sends out
         let sides = if two_sided { 2.0 } else { 1.0 };
         light.radiance = self.lights.glow(radiance, &amount, sides * PI * light.area() as f32);

@@ -145,6 +145,11 @@ impl MeshLight {
         with_vertices(&self.mesh, at, index as usize, place)
     }
 
+    /// The shading normal at a point of a triangle.
+    pub(super) fn shading_normal(&self, index: u32, place: Vec2) -> DVec3 {
+        self.mesh.point(index as usize, place.x, place.y).ns
+    }
+
     pub(super) fn sample(&self, from: DVec3, [u0, u1]: [f32; 2]) -> Option<LightPoint> {
         let (rank, probability, u0) = self.choice.sample(u0);
         let triangle = self.triangles.get(rank)?;

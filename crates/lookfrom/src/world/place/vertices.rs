@@ -46,7 +46,7 @@ impl Compiler<'_> {
         placed.look.light = Some(self.next_light());
         let mut placed = Arc::new(placed);
         let textures = self.lights.textures;
-        let light = self.shine(shape, || {
+        let light = self.shine(placing, || {
             let light = match shape.emission.map(|emission| emission.radiance) {
                 Some(pattern @ Color::Texture(_)) => MeshLight::patterned(placed.clone(), &|at| {
                     let brightest =
@@ -88,7 +88,7 @@ impl Compiler<'_> {
         };
         placed.look.light = Some(self.next_light());
         let mut placed = Arc::new(placed);
-        let light = self.shine(shape, || PatchLight::new(placed.clone()).map(LightForm::Patches));
+        let light = self.shine(placing, || PatchLight::new(placed.clone()).map(LightForm::Patches));
         if light.is_none() {
             Arc::make_mut(&mut placed).look.light = None;
         }
