@@ -14,7 +14,10 @@
 //!
 //! What they leave open is done so that nothing is won and, where the texts allow, nothing lost:
 //! - **More than one bounce** between the facets of a rough mirror is a lobe of Kulla & Conty 2017, for metals, dielectrics
-//!   and thin sheets. Bodies of rough glass are Walter's (2007), single scattering, as pbrt's.
+//!   and thin sheets.
+//! - **Bodies of rough glass** have Walter's facets (2007), each as far as it is seen (Heitz 2018). What a facet sends out is
+//!   never hidden by others: it leaves as it is, and what would go to the wrong side leaves as if mirrored at the surface.
+//!   So nothing is lost, whatever the roughness and the index. This is the one lobe that is not reciprocal.
 //! - **Matte under the mirror** gets what the mirror leaves, on the way in and out, divided by the mean: `(1 − E(ω_o))(1 −
 //!   E(ω_i)) / (1 − Ē)`, with E the mirror's albedo (Kelemen & Szirmay-Kalos 2001). It is reciprocal, and white stays white.
 //!   Where the mirror is coloured, its greatest primary is what counts, as `KHR_materials_specular` says.

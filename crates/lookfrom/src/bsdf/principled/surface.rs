@@ -177,8 +177,14 @@ impl Surface {
         self.alpha == 0.0 || (self.is_solid && !self.bends())
     }
 
-    /// What a facet does at a cosine, each part with its weight and tint.
-    pub(super) fn facet(&self, cos: f32, is_inside: bool) -> Facet {
+    /// Whether its glass is a body whose facets bend light, each in a direction of its own.
+    #[inline]
+    pub(super) fn is_rough_body(&self) -> bool {
+        self.alpha > 0.0 && self.glass > 0.0 && self.is_solid && self.bends()
+    }
+
+    /// What the metal and the mirror over the matte body do at a cosine, with their weights.
+    pub(super) fn opaque(&self, cos: f32) -> Spectrum {
         let mut mirrored = Spectrum::BLACK;
         if self.metal > 0.0 {
             mirrored += self.metal(cos) * self.metal;
@@ -186,6 +192,12 @@ impl Surface {
         if self.matte > 0.0 {
             mirrored += self.lacquer(cos) * self.matte;
         }
+        mirrored
+    }
+
+    /// What a facet does at a cosine, each part with its weight and tint.
+    pub(super) fn facet(&self, cos: f32, is_inside: bool) -> Facet {
+        let mut mirrored = self.opaque(cos);
         let mut passed = Spectrum::BLACK;
         if self.glass > 0.0 {
             let pane = self.pane(cos, is_inside);

@@ -119,6 +119,46 @@ fn white_stays_white_in_a_furnace() {
 }
 
 #[test]
+fn bodies_of_white_glass_keep_all_light() {
+    let mut faults = Vec::new();
+    for roughness in [0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0_f32] {
+        for eta in [0.5, 0.9, 1.01, 1.1, 1.33, 1.5, 2.0_f32] {
+            let straight = ((eta - 1.0) / (eta + 1.0)).powi(2);
+            let glass = Parameters {
+                eta,
+                f0: grey(straight),
+                f0_greatest: straight,
+                transmission: 1.0,
+                is_solid: true,
+                roughness: rough(roughness * roughness),
+                ..Parameters::default()
+            };
+            for (name, parameters) in [
+                ("glass", glass),
+                ("brushed", Parameters { roughness: TrowbridgeReitz::new(0.1, 0.8), ..glass }),
+                ("without a mirror", Parameters { f0: grey(0.0), f0_greatest: 0.0, f90: 0.0, ..glass }),
+            ] {
+                let bsdf = of(parameters);
+                for angle in ANGLES.into_iter().flat_map(|angle| [angle, 180.0 - angle]) {
+                    for index in 0..100 {
+                        // Not in the mean only: whatever is chosen.
+                        let (uc, u) = numbers(37, index);
+                        let sample = bsdf.sample(direction(angle, 20.0), uc, u, Mode::Importance, Lobes::ALL);
+                        let weight = sample.map_or(0.0, |s| s.f.0[0] * s.wi.z.abs() / s.pdf);
+                        if !((weight - 1.0).abs() < 1e-3) {
+                            faults.push(format!(
+                                "{name}, roughness {roughness}, index {eta}, {angle}°: {weight} {sample:?}"
+                            ));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{} faults\n{}", faults.len(), faults.join("\n"));
+}
+
+#[test]
 fn nothing_gives_more_than_it_gets() {
     let mut faults = Vec::new();
     for trial in 0..60 {
@@ -168,6 +208,7 @@ fn nothing_gives_more_than_it_gets() {
 #[test]
 fn limits_are_what_is_there_already() {
     let close = |a: f32, b: f32, bound: f32| (a - b).abs() <= bound * b.abs().max(1e-2);
+    let mut near = (0, 0);
     for alpha in [0.0, 0.2] {
         let glass = of(Parameters {
             transmission: 1.0,
@@ -197,10 +238,14 @@ fn limits_are_what_is_there_already() {
                 }
                 assert!(close(ours.eta, theirs.eta, 1e-5));
                 if !ours.lobe.is_specular() {
+                    // But for the light that pbrt's facets hide, and what they send to the wrong side.
+                    let seen = rough(alpha).g(wo, theirs.wi) / rough(alpha).g1(wo);
                     let [f, pbrts] = [&glass, &pbrt].map(|bsdf| bsdf.f(wo, theirs.wi, mode).0[0]);
-                    assert!(close(f, pbrts, 2e-3), "{angle}: {f} {pbrts}");
+                    assert!(f * seen > 0.998 * pbrts, "{angle}: {f} {pbrts}");
+                    near.0 += u32::from(close(f * seen, pbrts, 5e-3));
                     let [pdf, pbrts] = [&glass, &pbrt].map(|bsdf| bsdf.pdf(wo, theirs.wi, mode, Lobes::ALL));
-                    assert!(close(pdf, pbrts, 2e-3), "{angle}: {pdf} {pbrts}");
+                    assert!(pdf > 0.998 * pbrts, "{angle}: {pdf} {pbrts}");
+                    near.1 += 1;
                     continue;
                 }
                 assert!((ours.wi - theirs.wi).length() < 1e-4);
@@ -210,6 +255,7 @@ fn limits_are_what_is_there_already() {
             }
         }
     }
+    assert!(near.1 > 400 && near.0 * 10 > near.1 * 9, "{near:?}");
     // A metal of Schlick's is near one of the same reflectance, up to what its curve is.
     let reflectance = Spectrum([0.9, 0.6, 0.3, 0.5]);
     let metal = of(Parameters {

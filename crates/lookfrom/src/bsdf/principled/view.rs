@@ -33,15 +33,24 @@ pub(super) struct View {
     coat: Option<Coat>,
 }
 
-/// The facet that sends `wo` to a direction.
+/// A facet that sends `wo` to some direction.
 #[derive(Clone, Copy)]
-struct FacetToward {
-    /// Of both directions to its normal.
+struct Facing {
+    /// Its normal.
+    wm: Vec3,
+    /// The cosine of `wo` to it.
     cos: f32,
-    /// What turns its reflectance, or what it lets pass, into `f`.
-    scale: f32,
-    /// Of such facets, over the solid angle of the direction.
+    /// How dense it makes that direction, over solid angle, where facets are chosen as `wo` sees them.
     density: f32,
+}
+
+/// All facets that send `wo` to a direction. On a rough body there are two: what the second sends goes to the wrong side, and
+/// leaves as if mirrored at the surface.
+type Facings = [Option<Facing>; 2];
+
+/// The direction mirrored at the surface.
+fn across(w: Vec3) -> Vec3 {
+    Vec3::new(w.x, w.y, -w.z)
 }
 
 /// Probabilities of the lobes.
@@ -168,23 +177,20 @@ impl View {
         }
     }
 
-    /// The facet that sends `wo` to `wi`. `None` where there is none.
-    fn facet(&self, wi: Vec3, mode: Mode) -> Option<FacetToward> {
+    /// The facet that mirrors `wo` to `wi`, or bends it there (`through`). `None` where there is none.
+    fn facet(&self, wi: Vec3, through: bool) -> Option<Facing> {
         let surface = &self.surface;
         let (wo, roughness) = (self.wo, surface.roughness);
-        let through = wi.z < 0.0;
         if surface.alpha == 0.0 || (through && (surface.glass == 0.0 || surface.passes_sharply())) {
             return None;
         }
         if !through || !surface.is_solid {
             // A thin sheet sends through what a mirror would send back.
-            let wi = Vec3::new(wi.x, wi.y, wi.z.abs());
+            let wi = if through { across(wi) } else { wi };
             let wm = half_vector(wo, wi)?;
-            return Some(FacetToward {
-                cos: wo.dot(wm),
-                scale: roughness.d(wm) * roughness.g(wo, wi) / (4.0 * wo.z * wi.z),
-                density: 0.25 * roughness.visible_per_cosine(wo, wm),
-            });
+            let density = 0.25 * roughness.visible_per_cosine(wo, wm);
+            let cos = wo.dot(wm);
+            return (cos > 0.0).then_some(Facing { wm, cos, density });
         }
         let eta = self.relative_eta();
         let wm = (wi * eta + wo).try_normalize()?;
@@ -194,20 +200,21 @@ impl View {
             return None;
         }
         let jacobian = cos * refraction_jacobian(wo, wi, wm, eta);
-        let f = roughness.d(wm) * roughness.g(wo, wi) / (wo.z * -wi.z) * jacobian;
-        Some(FacetToward {
-            cos,
-            scale: radiance_scale(f, eta, mode),
-            density: roughness.visible_per_cosine(wo, wm) * jacobian,
-        })
+        Some(Facing { wm, cos, density: roughness.visible_per_cosine(wo, wm) * jacobian })
+    }
+
+    fn facets(&self, wi: Vec3) -> Facings {
+        let through = wi.z < 0.0;
+        let back = self.surface.is_rough_body().then(|| self.facet(across(wi), through)).flatten();
+        [self.facet(wi, through), back]
     }
 
     /// As [`super::Bsdf::f`], for `wi` in the mirrored frame and not grazing.
     pub(super) fn f(&self, wi: Vec3, mode: Mode) -> Spectrum {
-        self.f_by(wi, self.facet(wi, mode))
+        self.f_by(wi, mode, &self.facets(wi))
     }
 
-    /// [`Self::f`] and, where it is not black, [`Self::pdf`]: both ask the same facet.
+    /// [`Self::f`] and, where it is not black, [`Self::pdf`]: both ask the same facets.
     pub(super) fn f_and_pdf(
         &self,
         wi: Vec3,
@@ -215,23 +222,20 @@ impl View {
         choice: Option<&Choice>,
         lobes: Lobes,
     ) -> (Spectrum, f32) {
-        let facet = self.facet(wi, mode);
-        let f = self.f_by(wi, facet);
+        let facets = self.facets(wi);
+        let f = self.f_by(wi, mode, &facets);
         let pdf = match choice {
-            Some(choice) if !f.is_black() => self.pdf_by(wi, choice, lobes, facet),
+            Some(choice) if !f.is_black() => self.pdf_by(wi, choice, lobes, &facets),
             _ => 0.0,
         };
         (f, pdf)
     }
 
-    fn f_by(&self, wi: Vec3, of_facet: Option<FacetToward>) -> Spectrum {
+    fn f_by(&self, wi: Vec3, mode: Mode, facets: &Facings) -> Spectrum {
         let through = wi.z < 0.0;
         let (below_coat, below_sheen) = self.below(wi);
         let mut f = self.matte(wi.z.abs(), through) * FRAC_1_PI;
-        if let Some(FacetToward { cos, scale, .. }) = of_facet {
-            let facet = self.surface.facet(cos, self.is_inside);
-            f += if through { facet.passed } else { facet.mirrored } * scale;
-        }
+        f += self.facets_f(wi, mode, facets);
         f = f * below_sheen;
         if let Some(sheen) = &self.sheen
             && !through
@@ -245,6 +249,36 @@ impl View {
             f += Spectrum([coat.f(wi); 4]);
         }
         f
+    }
+
+    /// What facets mirror and let pass.
+    fn facets_f(&self, wi: Vec3, mode: Mode, facets: &Facings) -> Spectrum {
+        let surface = &self.surface;
+        let through = wi.z < 0.0;
+        let is_rough_body = surface.is_rough_body();
+        let mut sum = Spectrum::BLACK;
+        if !(is_rough_body && through)
+            && let [Some(Facing { wm, cos, .. }), _] = *facets
+        {
+            // The part of this light that other facets do not hide.
+            let (wo, wi) = (self.wo, Vec3::new(wi.x, wi.y, wi.z.abs()));
+            let value = surface.roughness.d(wm) * surface.roughness.g(wo, wi) / (4.0 * wo.z * wi.z);
+            sum += match (is_rough_body, through) {
+                (true, _) => surface.opaque(cos),
+                (false, true) => surface.facet(cos, self.is_inside).passed,
+                (false, false) => surface.facet(cos, self.is_inside).mirrored,
+            } * value;
+        }
+        if is_rough_body {
+            // All of it.
+            let eta = if through { self.relative_eta() } else { 1.0 };
+            for Facing { cos, density, .. } in facets.iter().flatten() {
+                let pane = surface.pane(*cos, self.is_inside);
+                let part = if through { pane.passed * surface.base } else { pane.mirrored };
+                sum += part * (surface.glass * radiance_scale(density / wi.z.abs(), eta, mode));
+            }
+        }
+        sum
     }
 
     /// The probabilities of the lobes among the sides that are allowed; `None` where nothing is left.
@@ -297,18 +331,19 @@ impl View {
 
     /// Density of all lobes that are spread.
     pub(super) fn pdf(&self, wi: Vec3, choice: &Choice, lobes: Lobes) -> f32 {
-        self.pdf_by(wi, choice, lobes, self.facet(wi, Mode::Importance))
+        self.pdf_by(wi, choice, lobes, &self.facets(wi))
     }
 
-    fn pdf_by(&self, wi: Vec3, choice: &Choice, lobes: Lobes, of_facet: Option<FacetToward>) -> f32 {
+    fn pdf_by(&self, wi: Vec3, choice: &Choice, lobes: Lobes, facets: &Facings) -> f32 {
         let through = wi.z < 0.0;
         let even = if through { choice.matte_through } else { choice.matte };
         let mut pdf = even * warp::cosine_hemisphere_pdf(wi.z.abs());
-        if choice.facet > 0.0
-            && let Some(FacetToward { cos, density, .. }) = of_facet
-            && let Some(mirrors) = self.mirrors_at(cos, lobes)
-        {
-            pdf += choice.facet * if through { 1.0 - mirrors } else { mirrors } * density;
+        if choice.facet > 0.0 {
+            for Facing { cos, density, .. } in facets.iter().flatten() {
+                if let Some(mirrors) = self.mirrors_at(*cos, lobes) {
+                    pdf += choice.facet * if through { 1.0 - mirrors } else { mirrors } * density;
+                }
+            }
         }
         if !through {
             if let Some(coat) = &self.coat {
@@ -383,9 +418,10 @@ impl View {
         } else if surface.is_solid {
             math::refract(wo, wm, self.relative_eta())?
         } else {
-            let mirrored = math::reflect(wo, wm);
-            Vec3::new(mirrored.x, mirrored.y, -mirrored.z)
+            across(math::reflect(wo, wm))
         };
+        let is_there = (wi.z > 0.0) == reflects;
+        let wi = if !is_there && surface.is_rough_body() { across(wi) } else { wi };
         (!is_grazing(wi) && (wi.z > 0.0) == reflects).then_some(wi)
     }
 
