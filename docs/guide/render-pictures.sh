@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Renders the pictures of the guide: docs/guide/img/NAME.png from docs/guide/scenes/NAME.toml, docs/guide/img/scene-NAME.png from
-# scenes/NAME.toml, and docs/img/hero.png.
+# Renders the pictures of the guide: docs/guide/img/NAME.png from docs/guide/scenes/NAME.toml, docs/guide/img/gltf-NAME.png from
+# docs/guide/scenes/gltf/NAME.gltf, docs/guide/img/scene-NAME.png from scenes/NAME.toml, and docs/img/hero.png.
 #
 #   docs/guide/render-pictures.sh              all of them
-#   docs/guide/render-pictures.sh light-spot   those that are named, of the guide's own scenes
+#   docs/guide/render-pictures.sh light-spot gltf/sheen   those that are named, of the guide's own scenes
 #
 # Builds the command, unless LOOKFROM names a binary. The same scene gives the same bytes on any machine, so a picture that
 # changes here is one that the program changed.
@@ -26,14 +26,33 @@ of_guide() {
     picture "docs/guide/scenes/$1.toml" -o "docs/guide/img/$1.png" ${more[@]+"${more[@]}"}
 }
 
+# A row of things, or three rows where a file has variants.
+of_gltf() {
+    local model="docs/guide/scenes/gltf/$1.gltf" out="docs/guide/img/gltf-$1" variant
+    case $1 in
+        dispersion) picture "$model" -o "$out.png" --width 360 --samples 256 --color spectral --fireflies median ;;
+        variants)
+            for variant in clay lacquer gold; do
+                picture "$model" -o "$out-$variant.png" --width 240 --samples 128 --fireflies median --variant "$variant"
+            done
+            ;;
+        *) picture "$model" -o "$out.png" --width 360 --samples 128 --fireflies median ;;
+    esac
+}
+
 if (($# > 0)); then
-    for name in "$@"; do of_guide "$name"; done
+    for name in "$@"; do
+        if [[ $name == gltf/* ]]; then of_gltf "${name#gltf/}"; else of_guide "$name"; fi
+    done
     exit
 fi
 
 mkdir -p docs/guide/img docs/img
 for scene in docs/guide/scenes/*.toml; do
     of_guide "$(basename "$scene" .toml)"
+done
+for model in docs/guide/scenes/gltf/*.gltf; do
+    of_gltf "$(basename "$model" .gltf)"
 done
 picture scenes/hero.toml -o docs/img/hero.png
 
