@@ -34,7 +34,7 @@ use crate::error::Result;
 use crate::files::Sources;
 use crate::load;
 use crate::scene::Scene;
-use crate::settings::{Integrator, Tonemap};
+use crate::studio;
 
 /// Reads a glTF file (`.gltf` or `.glb`) as a scene: path traced, developed by Khronos' tone map, seen by the file's
 /// camera where it has one. [`Sources::choice`] says which scene, camera, animation and variant are meant.
@@ -44,9 +44,8 @@ use crate::settings::{Integrator, Tonemap};
 /// `Invalid` where what it says cannot be.
 pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
     let content = sources.read(path)?;
-    let mut scene = Scene::default();
-    scene.render.integrator = Integrator::Path;
-    scene.image.tonemap = Tonemap::PbrNeutral;
+    let (image, render) = studio::settings_for_models();
+    let mut scene = Scene { image, render, ..Scene::default() };
     let model = document_model(content, path, sources, &mut scene)?;
     model.into_scene(&mut scene);
     Ok(scene)
