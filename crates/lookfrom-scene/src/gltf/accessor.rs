@@ -247,7 +247,10 @@ impl Document {
         // What is there: zeros where no view is named.
         let mut elements = match accessor.buffer_view {
             Some(view) => self.gather(layout, view, accessor.byte_offset, count, asked)?,
-            None => vec![[V::default(); N]; count],
+            None => {
+                self.count_zeros(count as u64, asked)?;
+                vec![[V::default(); N]; count]
+            }
         };
         if let Some(sparse) = &accessor.sparse {
             let replaced = self.sparse_indices(sparse, count, asked)?;

@@ -185,8 +185,9 @@ impl Builder<'_, '_, '_> {
                 let places = self.places(instancing, node)?;
                 let object = *objects.entry(form).or_insert_with(|| self.object(&name, &pieces));
                 let world_from_node = if skin.is_some() { DMat4::IDENTITY } else { world_from_node };
+                let at = self.document.at(&format!("/nodes/{node}"));
                 for place in places {
-                    self.instance(node, object, world_from_node * place);
+                    self.instance(at.clone(), object, world_from_node * place);
                 }
                 continue;
             }
@@ -195,7 +196,8 @@ impl Builder<'_, '_, '_> {
             let shines = pieces.iter().any(|piece| piece.look.emission.is_some());
             if repeated > MOST_REPEATED_TRIANGLES && !shines {
                 let object = *objects.entry(form).or_insert_with(|| self.object(&name, &pieces));
-                self.instance(node, object, world_from_node);
+                let at = self.document.at(&format!("/nodes/{node}"));
+                self.instance(at, object, world_from_node);
                 continue;
             }
             for piece in &pieces {
@@ -307,10 +309,9 @@ impl Builder<'_, '_, '_> {
         id
     }
 
-    fn instance(&mut self, node: usize, object: ObjectId, world_from_object: DMat4) {
+    fn instance(&mut self, at: Location, object: ObjectId, world_from_object: DMat4) {
         let is_empty = self.model.objects[object.index()].shapes.is_empty();
         if !is_empty && is_invertible(&world_from_object) {
-            let at = self.document.at(&format!("/nodes/{node}"));
             self.model.instances.push(Instance { at, object, world_from_object, material: None });
         }
     }

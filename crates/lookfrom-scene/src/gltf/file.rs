@@ -23,6 +23,10 @@ const BINARY_CHUNK: u32 = 0x004E_4942;
 /// How many values of attributes and indices one element of [`Limits::elements`] may have: a vertex has several.
 const VALUES_AN_ELEMENT: u64 = 8;
 
+/// How many elements of accessors without bytes behind them, which are zeros, a file may have in all: a file of a few
+/// bytes could ask for all memory otherwise.
+const MOST_ZEROS: u64 = 1 << 26;
+
 /// A file with its buffers.
 pub(crate) struct Document {
     /// What the JSON says.
@@ -40,6 +44,8 @@ pub(crate) struct Document {
     pub(super) compressed: Compressed,
     /// How many values of accessors were read so far.
     values: AtomicU64,
+    /// How many of them have no bytes behind them.
+    zeros: AtomicU64,
 }
 
 /// Where a buffer's bytes are.
@@ -67,11 +73,11 @@ impl Document {
     /// `Syntax` where it is no glTF, `Unsupported` where it is of another version.
     pub(crate) fn open(content: Vec<u8>, path: &Path, sources: &mut Sources<'_>) -> Result<Self> {
         let at = Location::file(path);
-        let (json, binary) = match content.starts_with(MAGIC) {
-            true => chunks(&content, &at, sources)?,
-            false => (0..content.len(), None),
+        let (what, (json, binary)) = match content.starts_with(MAGIC) {
+            true => ("the JSON of the GLB container", chunks(&content, &at, sources)?),
+            false => ("the file", (0..content.len(), None)),
         };
-        let root = parse(&content[json], &at, sources)?;
+        let root = parse(&content[json], what, &at, sources)?;
         check_version(&root, &at, sources)?;
         let decoded = root.buffer_views.iter().map(|_| OnceLock::new()).collect();
         let limits = sources.limits;
@@ -86,6 +92,7 @@ impl Document {
             decoded,
             compressed,
             values: AtomicU64::new(0),
+            zeros: AtomicU64::new(0),
         };
         document.read_buffers(binary.as_ref(), sources);
         Ok(document)
@@ -134,6 +141,22 @@ impl Document {
             );
             return Err(Error::new(ErrorKind::Limit, &self.at(asked), message)
                 .hint("divide the model, or raise `Limits::elements`"));
+        }
+        Ok(())
+    }
+
+    /// Notes that so many zeros are about to be made.
+    ///
+    /// # Errors
+    /// `Limit` where all of them together are too many.
+    pub(crate) fn count_zeros(&self, zeros: u64, asked: &str) -> Result<()> {
+        let before = self.zeros.fetch_add(zeros, Ordering::Relaxed);
+        if before.saturating_add(zeros) > MOST_ZEROS {
+            let message = format!(
+                "{zeros} elements without a buffer view, after {before} others, are more than the limit of {MOST_ZEROS}"
+            );
+            return Err(Error::new(ErrorKind::Limit, &self.at(asked), message)
+                .hint("the file is damaged or was written wrongly: export it again"));
         }
         Ok(())
     }
@@ -340,7 +363,8 @@ fn chunks(
     }
 }
 
-fn parse(bytes: &[u8], at: &Location, sources: &mut Sources<'_>) -> Result<Root> {
+/// The JSON in bytes, which are called `what`.
+fn parse(bytes: &[u8], what: &str, at: &Location, sources: &mut Sources<'_>) -> Result<Root> {
     let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     let text = String::from_utf8_lossy(bytes);
     if matches!(text, std::borrow::Cow::Owned(_)) {
@@ -348,16 +372,35 @@ fn parse(bytes: &[u8], at: &Location, sources: &mut Sources<'_>) -> Result<Root>
     }
     let text = text.trim_end_matches(['\0', ' ', '\n', '\r', '\t']);
     if text.is_empty() {
-        return Err(Error::syntax(at, "the file is empty; expected the JSON of a glTF 2.0 model"));
+        let found = if bytes.is_empty() { "is empty" } else { "has nothing but spaces and zeros" };
+        return Err(Error::syntax(at, format!("{what} {found}; expected the JSON of a glTF 2.0 model")));
     }
-    json::parse(text).map_err(|wrong| match wrong.pointer {
-        Some(pointer) => Error::invalid(&at.pointer(&pointer), wrong.message)
-            .hint("Khronos' glTF validator shows everything that is wrong with the file"),
-        None => {
-            Error::syntax(&at.at(wrong.line, wrong.column), format!("this is no JSON: {}", wrong.message))
-                .hint("check that the file is whole")
+    json::parse(text).map_err(|wrong| {
+        let Some(pointer) = wrong.pointer else {
+            let place = at.at(wrong.line, wrong.column);
+            return Error::syntax(&place, format!("this is no JSON: {}", wrong.message))
+                .hint(instead_of_json(text));
+        };
+        // Things are called otherwise in other versions: that is what is wrong then.
+        match json::version(text) {
+            Some(version) if !version.starts_with("2.") => {
+                unsupported(&at.pointer("/asset/version"), &format!("glTF {version}"))
+            }
+            _ => Error::invalid(&at.pointer(&pointer), wrong.message)
+                .hint("Khronos' glTF validator shows everything that is wrong with the file"),
         }
     })
+}
+
+/// What to do where something else than JSON was found.
+fn instead_of_json(text: &str) -> &'static str {
+    if text.starts_with("version https://git-lfs") {
+        "this is a pointer of Git LFS, not the model: `git lfs pull` brings the model"
+    } else if text.starts_with('<') {
+        "this is a web page or XML: download the model itself"
+    } else {
+        "check that the file is whole"
+    }
 }
 
 fn check_version(root: &Root, at: &Location, sources: &mut Sources<'_>) -> Result<()> {

@@ -642,6 +642,15 @@ pub(super) fn parse(text: &str) -> Result<Root, Wrong> {
     })
 }
 
+/// The version that a JSON says it is written for, where it says one as glTF does.
+pub(super) fn version(text: &str) -> Option<String> {
+    #[derive(Deserialize)]
+    struct Versioned {
+        asset: Asset,
+    }
+    serde_json::from_str::<Versioned>(text).ok().map(|found| found.asset.version)
+}
+
 /// Without the names of our types.
 fn in_words_of_json(message: &str) -> String {
     let words = [

@@ -35,6 +35,9 @@ pub(crate) struct Vertices {
     pub(crate) opacities: Vec<f32>,
     /// Which vertices are used, in which order; `None` is all of them as they stand.
     pub(crate) indices: Option<Vec<u32>>,
+    /// Whether they are those of a compressed mesh: three for each triangle, even where the mode says strips, as the
+    /// extension allows without saying how.
+    pub(crate) is_compressed: bool,
     /// The set of texture coordinates that its look needs tangents for.
     pub(crate) grain: Option<u32>,
 }
@@ -117,10 +120,16 @@ pub(crate) fn vertices(
     if let Some(index) = primitive.indices {
         let indices = document.whole_vectors::<1>(index, &format!("{pointer}/indices"))?;
         vertices.indices = Some(indices.into_flattened());
-    } else if let Some(draco) = &primitive.extensions.draco {
-        // A compressed mesh always has indices, and files may forget to say so.
-        vertices.indices =
-            document.unpacked(draco.buffer_view, pointer).ok().map(|mesh| mesh.indices.clone());
+    }
+    if let Some(mesh) = primitive
+        .extensions
+        .draco
+        .as_ref()
+        .and_then(|draco| document.unpacked(draco.buffer_view, pointer).ok())
+    {
+        vertices.is_compressed = true;
+        // It always has indices, and files may forget to say so.
+        vertices.indices.get_or_insert_with(|| mesh.indices.clone());
     }
     Ok(Some(vertices))
 }
@@ -185,6 +194,7 @@ pub(crate) fn geometry(
             .invalid(&format!("{pointer}/mode"), format!("the mode {} is not known", mode.0))
             .hint("modes are 0 (points) to 6 (fans)"));
     };
+    let topology = if vertices.is_compressed { topology.listed() } else { topology };
     let count = vertices.positions.len();
     if let Some(&beyond) = vertices.indices.iter().flatten().find(|&&index| index as usize >= count) {
         let message = format!("vertex {beyond} is used, but there are only {count}");

@@ -96,7 +96,10 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, sources: &mut Sou
         )?;
         let asked = format!("/animations/{index}/samplers/{}", channel.sampler.0);
         let Some(target) = channel.target.node else {
-            sources.warn(&document.at(&pointer), "the channel moves no node and is passed over");
+            // Channels of `KHR_animation_pointer` may be many; that it is not known is said once.
+            if channel.target.path != "pointer" {
+                sources.warn(&document.at(&pointer), "the channel moves no node and is passed over");
+            }
             continue;
         };
         let node = document.one_of(&root.nodes, target, "node", &format!("{pointer}/target/node"))?;

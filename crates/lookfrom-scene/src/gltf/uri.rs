@@ -7,7 +7,8 @@ use crate::error::{Error, ErrorKind, Location, Result};
 pub(crate) enum Uri {
     /// Its own bytes.
     Data(Vec<u8>),
-    /// A file's name relative to this file: as it is meant, and as it is written where that differs.
+    /// A file's name relative to this file: as it is meant, and as it is written where that differs; then with slashes
+    /// for backslashes.
     Names(Vec<String>),
 }
 
@@ -44,6 +45,10 @@ pub(super) fn read(uri: &str, at: &Location) -> Result<Uri> {
         _ => {}
     }
     names.push(written);
+    // Programs for Windows may write names as they are there.
+    let turned: Vec<String> =
+        names.iter().filter(|name| name.contains('\\')).map(|name| name.replace('\\', "/")).collect();
+    names.extend(turned);
     Ok(Uri::Names(names))
 }
 
@@ -177,6 +182,10 @@ mod tests {
         assert_eq!(names("a%20b.bin"), ["a b.bin", "a%20b.bin"]);
         assert_eq!(names("100%.png"), ["100%.png"]);
         assert_eq!(names("C:/a.png"), ["C:/a.png"]);
+        assert_eq!(
+            names(r"maps\a%20b.png"),
+            [r"maps\a b.png", r"maps\a%20b.png", "maps/a b.png", "maps/a%20b.png"]
+        );
         assert!(names("https://example.org/a.png").is_empty());
     }
 }

@@ -29,6 +29,14 @@ impl Topology {
             _ => return None,
         })
     }
+
+    /// The same with each triangle by itself.
+    pub(super) fn listed(self) -> Self {
+        match self {
+            Self::TriangleStrip | Self::TriangleFan => Self::Triangles,
+            other => other,
+        }
+    }
 }
 
 /// All lines; vertices that make no whole line are passed over.

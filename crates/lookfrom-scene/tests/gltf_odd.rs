@@ -1,0 +1,138 @@
+//! glTF files as they come: older ones, pointers in place of models, names from other systems, extensions half known.
+
+use std::path::{Path, PathBuf};
+
+use lookfrom_scene::files::Choice;
+use lookfrom_scene::image::encode_png;
+use lookfrom_scene::shape::Geometry;
+use lookfrom_scene::{Disk, Files, Memory, Result, Scene, Sources, load};
+
+type Read = Result<(Scene, Vec<String>)>;
+
+fn read_by(name: &str, files: &dyn Files, choice: Choice) -> Read {
+    let mut sources = Sources { choice, ..Sources::new(files) };
+    let scene = load::scene(Path::new(name), &mut sources)?;
+    Ok((scene, sources.warnings.iter().map(ToString::to_string).collect()))
+}
+
+fn read<const N: usize>(files: [(&str, &[u8]); N]) -> Read {
+    let memory = Memory(files.map(|(name, content)| (PathBuf::from(name), content.to_vec())).into());
+    read_by(files[0].0, &memory, Choice::default())
+}
+
+/// The error of one file.
+fn error(name: &str, content: &[u8]) -> String {
+    let error = read([(name, content)]).map(|(_, warnings)| warnings).expect_err("it is not valid");
+    format!("{error}")
+}
+
+/// A GLB container with this JSON.
+fn container(json: &[u8]) -> Vec<u8> {
+    let mut bytes = b"glTF\x02\0\0\0".to_vec();
+    bytes.extend((20 + json.len() as u32).to_le_bytes());
+    bytes.extend((json.len() as u32).to_le_bytes());
+    bytes.extend(b"JSON");
+    bytes.extend(json);
+    bytes
+}
+
+/// Three vertices at (0, 0, 0), (1, 0, 0), (0, 1, 0), and what else the file says.
+fn triangle(rest: &str) -> String {
+    format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}],
+        "buffers": [{{"byteLength": 36, "uri": "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 36}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}}], {rest}}}"#
+    )
+}
+
+#[test]
+fn the_first_version_is_told_by_name() {
+    // There, nodes have names in place of numbers: that they are no numbers is not what is wrong.
+    let old = br#"{"asset": {"version": "1.0"}, "scene": "all", "scenes": {"all": {"nodes": ["box"]}}}"#;
+    let message = error("a.gltf", old);
+    assert!(message.starts_with("a.gltf#/asset/version: glTF 1.0 is not read, only glTF 2.0"), "{message}");
+    // In a file of the second version it is.
+    let message = error("a.gltf", br#"{"asset": {"version": "2.0"}, "scene": "all"}"#);
+    assert!(message.starts_with("a.gltf#/scene: "), "{message}");
+}
+
+#[test]
+fn what_stands_in_place_of_a_model_is_told() {
+    let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 12\n";
+    assert!(error("a.glb", pointer).contains("`git lfs pull`"));
+    assert!(error("a.glb", b"<!DOCTYPE html><html></html>").contains("web page"));
+    assert!(error("a.gltf", b"").starts_with("a.gltf: the file is empty"));
+    assert!(error("a.gltf", b" \n").starts_with("a.gltf: the file has nothing but spaces"));
+    assert!(error("a.glb", &container(b"")).starts_with("a.glb: the JSON of the GLB container is empty"));
+    let zeros = error("a.glb", &container(&[0; 8]));
+    assert!(
+        zeros.starts_with("a.glb: the JSON of the GLB container has nothing but spaces and zeros"),
+        "{zeros}"
+    );
+}
+
+#[test]
+fn names_from_windows_are_found() {
+    let file = triangle(
+        r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+        "textures": [{"source": 0}], "images": [{"uri": "maps\\red%20one.png"}]"#,
+    );
+    let png = encode_png(1, 1, &[255, 0, 0]).expect("it is a picture");
+    let (scene, warnings) =
+        read([("m/a.gltf", file.as_bytes()), ("m/maps/red one.png", &png)]).expect("it is valid");
+    assert_eq!(warnings, Vec::<String>::new());
+    assert_eq!((scene.images.len(), scene.images[0].width), (1, 1));
+    // Without the picture, the name is told as it stands in the file.
+    let (_, warnings) = read([("m/a.gltf", file.as_bytes())]).expect("it is valid");
+    assert!(warnings.len() == 1 && warnings[0].contains(r"maps\red one.png: no such file"), "{warnings:?}");
+}
+
+#[test]
+fn zeros_that_no_bytes_stand_for_have_a_limit() {
+    let accessors = |count: u64| {
+        format!(
+            r#"{{"asset": {{"version": "2.0"}}, "nodes": [{{"mesh": 0}}], "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+            "accessors": [{{"componentType": 5126, "count": {count}, "type": "VEC3"}}]}}"#
+        )
+    };
+    assert!(read([("a.gltf", accessors(1000).as_bytes())]).is_ok());
+    let message = error("a.gltf", accessors(1 << 29).as_bytes());
+    assert!(message.contains("536870912 elements without a buffer view"), "{message}");
+}
+
+#[test]
+fn pointers_of_animations_are_told_of_once() {
+    let channel = r#"{"sampler": 0, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": "/nodes/0/scale"}}}}"#;
+    let file = triangle(&format!(
+        r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}], "extensionsUsed": ["KHR_animation_pointer"],
+        "animations": [{{"samplers": [{{"input": 0, "output": 0}}], "channels": [{channel}, {channel}, {channel}]}}]"#
+    ));
+    let memory = Memory([(PathBuf::from("a.gltf"), file.into_bytes())].into());
+    let choice = Choice { animation: Some("0".to_owned()), at: 0.5, ..Choice::default() };
+    let (_, warnings) = read_by("a.gltf", &memory, choice).expect("it is valid");
+    assert_eq!(
+        warnings,
+        ["a.gltf#/extensionsUsed/0: the extension KHR_animation_pointer is not known and is passed over"]
+    );
+}
+
+/// The extension allows strips, but compressed streams have triangles one by one.
+#[cfg(feature = "draco")]
+#[test]
+fn a_compressed_mesh_is_made_of_triangles_even_where_strips_are_announced() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide/scenes/gltf");
+    let path = folder.join("draco-compression.gltf");
+    let file = std::fs::read_to_string(&path).expect("the guide has it");
+    let (listed, _) = read_by(&path.display().to_string(), &Disk, Choice::default()).expect("it is valid");
+    let strips = file.replace(r#""indices": 5,"#, r#""indices": 5, "mode": 5,"#);
+    assert!(strips != file);
+    let (announced, _) = read([("a.gltf", strips.as_bytes())]).expect("it is valid");
+    let triangles = |scene: &Scene| {
+        let Geometry::Mesh(id) = scene.shapes[1].geometry else { panic!("no mesh") };
+        scene.meshes[id.index()].triangles.clone()
+    };
+    assert_eq!(triangles(&announced), triangles(&listed));
+    assert!(triangles(&listed).len() > 2000);
+}
