@@ -2,6 +2,7 @@
 
 mod command {
     mod compare;
+    mod denoise;
     mod enough;
     mod errors;
     mod guide;

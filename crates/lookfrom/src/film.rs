@@ -17,7 +17,7 @@ mod noise;
 use self::features::FeatureSums;
 pub use self::features::Features;
 use self::guides::GuideSums;
-pub use self::guides::{GUIDED_SAMPLES, Guide};
+pub use self::guides::{GUIDED_SAMPLES, Guide, MeanGuide};
 
 use lookfrom_scene::settings::{Background, Crop, ImageSettings, Layers};
 use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
@@ -204,7 +204,7 @@ impl Film {
 
     /// What the denoiser is told of a pixel; `None` where the film has no room for it or no sample was asked, and outside of
     /// [`Film::area`].
-    pub fn guide(&self, x: u32, y: u32) -> Option<Guide> {
+    pub fn guide(&self, x: u32, y: u32) -> Option<MeanGuide> {
         self.tile.guides.get(self.tile.index(x, y)?)?.mean()
     }
 

@@ -203,14 +203,14 @@ fn lights<const N: usize>(light: &[Vec<f32>; N], start: usize) -> [&[f32; WIDE];
 /// How far two pixels are apart whose light differs by this (squared, all channels together): 0 in the mean where only noise
 /// differs.
 #[inline(always)]
-fn distance(square: f32, p_variance: f32, q_variance: f32) -> f32 {
+pub(super) fn distance(square: f32, p_variance: f32, q_variance: f32) -> f32 {
     let less = if p_variance < q_variance { p_variance } else { q_variance };
     (square - (p_variance + less)) / (LEAST_VARIANCE + TOLERANCE * (p_variance + q_variance))
 }
 
 /// The weight of a neighbour: about `exp(−x)` of the sum of its distances, `of_light` over all pixels of the patches.
 #[inline(always)]
-fn falloff(of_light: f32, of_guides: f32) -> f32 {
+pub(super) fn falloff(of_light: f32, of_guides: f32) -> f32 {
     const SHARE: f32 = 1.0 / ((2 * PATCH + 1) * (2 * PATCH + 1)) as f32;
     let mean = of_light * SHARE;
     let x = of_guides + if mean > 0.0 { mean } else { 0.0 };

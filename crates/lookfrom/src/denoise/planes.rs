@@ -106,7 +106,7 @@ impl<const N: usize> Planes<N> {
 fn known<const N: usize>(film: &Film, picture: &Picture, [x, y]: [u32; 2], alpha_divisor: f32) -> Known<N> {
     let index = y as usize * picture.width as usize + x as usize;
     let samples = film.samples(x, y);
-    let guide = film.guide(x, y).unwrap_or(Guide { albedo: [1.0; 3], ..Guide::default() });
+    let guide = film.guide(x, y).map_or(Guide { albedo: [1.0; 3], ..Guide::default() }, |mean| mean.guide);
     let divisor: [f32; N] = std::array::from_fn(|c| match guide.albedo.get(c) {
         Some(albedo) => albedo + MIRRORED,
         None => alpha_divisor,

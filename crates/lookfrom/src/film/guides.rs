@@ -10,7 +10,7 @@ use super::TWO_TO_48;
 /// How many samples of a pixel are asked what they met.
 pub const GUIDED_SAMPLES: u32 = 16;
 
-/// What the camera's ray of one sample met, or the mean over a pixel's. Directions and places are in one space, whichever.
+/// What the camera's ray of one sample met, or the mean over a pixel's samples. Directions and places are in one space, whichever.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Guide {
     /// What the surface multiplies light by, more or less: 0 … 1 by channel. The mean is over all samples that were asked; nothing
@@ -24,6 +24,17 @@ pub struct Guide {
     pub place: [f32; 3],
 }
 
+/// The mean over the samples of a pixel that were asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeanGuide {
+    /// What they met.
+    pub guide: Guide,
+    /// How many were asked.
+    pub samples: u32,
+    /// The share of them that met something: 0 … 1.
+    pub coverage: f32,
+}
+
 /// Sums over the first samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct GuideSums {
@@ -33,6 +44,8 @@ pub(super) struct GuideSums {
     n: [i32; 3],
     /// How many were asked.
     samples: u32,
+    /// How many of them met something.
+    hits: u32,
     /// The least number of a sample that met something; `u32::MAX` for none.
     first: u32,
     /// The bits of that one's normal and place.
@@ -44,16 +57,16 @@ pub(super) struct GuideSums {
 
 impl Default for GuideSums {
     fn default() -> Self {
-        let none = Self {
+        Self {
             albedo: [0; 3],
             n: [0; 3],
             samples: 0,
+            hits: 0,
             first: u32::MAX,
             ng: [0; 3],
             place: [0; 3],
             alpha_squares: 0,
-        };
-        Self { ..none }
+        }
     }
 }
 
@@ -73,6 +86,7 @@ impl GuideSums {
             *sum = sum.wrapping_add((value.clamp(0.0, 1.0) * TWO_TO_16) as u32);
         }
         let Some(guide) = met else { return };
+        self.hits = self.hits.saturating_add(1);
         for (sum, value) in self.n.iter_mut().zip(guide.n) {
             *sum = sum.wrapping_add((value.clamp(-1.0, 1.0) * TWO_TO_16) as i32);
         }
@@ -95,6 +109,7 @@ impl GuideSums {
             *sum = sum.wrapping_add(add);
         }
         self.samples = self.samples.saturating_add(other.samples);
+        self.hits = self.hits.saturating_add(other.hits);
         if other.first < self.first {
             (self.first, self.ng, self.place) = (other.first, other.ng, other.place);
         }
@@ -102,17 +117,19 @@ impl GuideSums {
     }
 
     /// The mean; `None` where none was asked.
-    pub(super) fn mean(&self) -> Option<Guide> {
+    pub(super) fn mean(&self) -> Option<MeanGuide> {
         if self.samples == 0 {
             return None;
         }
         let scale = 1.0 / (self.samples as f32 * TWO_TO_16);
-        Some(Guide {
+        let guide = Guide {
             albedo: self.albedo.map(|sum| sum as f32 * scale),
             n: self.n.map(|sum| sum as f32 * scale),
             ng: self.ng.map(f32::from_bits),
             place: self.place.map(f32::from_bits),
-        })
+        };
+        let coverage = self.hits as f32 / self.samples as f32;
+        Some(MeanGuide { guide, samples: self.samples, coverage })
     }
 
     /// The mean of the squares of how much each of a pixel's `samples` hides.

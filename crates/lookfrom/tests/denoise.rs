@@ -1,0 +1,113 @@
+//! Are pictures of few samples nearer to the truth when they are denoised, and are they then the same bits everywhere?
+
+mod support;
+
+use lookfrom::denoise::denoised;
+use lookfrom::film::{Film, Picture};
+use lookfrom_scene::Scene;
+use lookfrom_scene::settings::{Crop, Integrator};
+use support::{Compiled, own_scene};
+
+fn small(name: &str, samples: u32) -> Scene {
+    let mut scene = own_scene(name);
+    (scene.image.width, scene.image.height) = (96, 72);
+    (scene.image.crop, scene.image.denoise) = (None, true);
+    (scene.render.samples, scene.render.integrator) = (samples, Integrator::Path);
+    scene
+}
+
+fn film(name: &str, samples: u32) -> Film {
+    Compiled::new(small(name, samples)).film()
+}
+
+/// The truth, of other samples.
+fn truth(name: &str) -> Picture {
+    let mut scene = small(name, 1024);
+    (scene.render.seed, scene.image.denoise) = (99, false);
+    Compiled::new(scene).film().picture()
+}
+
+/// The mean of squared errors, relative to the squared truth.
+fn relative_error(picture: &Picture, truth: &Picture) -> f64 {
+    let of_pixel = |(is, should): (&[f32; 3], &[f32; 3])| {
+        let square = |v: [f32; 3]| v.iter().map(|c| f64::from(*c).powi(2)).sum::<f64>();
+        square([0, 1, 2].map(|c| is[c] - should[c])) / (square(*should) + 0.03)
+    };
+    picture.pixels.iter().zip(&truth.pixels).map(of_pixel).sum::<f64>() / truth.pixels.len() as f64
+}
+
+fn mean(picture: &Picture) -> f64 {
+    picture.pixels.iter().flatten().map(|light| f64::from(*light)).sum::<f64>()
+}
+
+#[test]
+fn few_samples_come_near_to_many() {
+    for (name, factor) in [("cornell.toml", 3.0), ("soft-shadows.toml", 3.0)] {
+        let truth = truth(name);
+        let film = film(name, 8);
+        let noisy = film.picture();
+        let clean = denoised(&film, &noisy);
+        let [before, after] = [&noisy, &clean].map(|picture| relative_error(picture, &truth));
+        assert!(after * factor < before, "{name}: {before} → {after}");
+        let share = mean(&clean) / mean(&noisy);
+        assert!((share - 1.0).abs() < 0.02, "{name}: of the light, {share} is left");
+    }
+}
+
+#[test]
+fn many_samples_are_not_made_worse() {
+    for name in ["cornell.toml", "textures.toml"] {
+        let truth = truth(name);
+        let film = film(name, 256);
+        let noisy = film.picture();
+        let [before, after] =
+            [&noisy, &denoised(&film, &noisy)].map(|picture| relative_error(picture, &truth));
+        assert!(after <= before, "{name}: {before} → {after}");
+    }
+}
+
+#[test]
+fn threads_and_splits_do_not_matter() {
+    let compiled = Compiled::new(small("soft-shadows.toml", 3));
+    let one = compiled.render(1).film;
+    assert!(one == compiled.render(3).film);
+    let picture = one.picture();
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| denoised(&one, &picture))
+    };
+    assert_eq!(on(1), on(3));
+}
+
+#[test]
+fn a_crop_is_denoised_as_the_whole_is_where_it_knows_as_much() {
+    let name = "soft-shadows.toml";
+    let whole = film(name, 4);
+    let whole = denoised(&whole, &whole.picture());
+    let mut scene = small(name, 4);
+    let crop = Crop { x0: 20, y0: 10, x1: 70, y1: 60 };
+    scene.image.crop = Some(crop);
+    let part = Compiled::new(scene).film();
+    let part = denoised(&part, &part.picture());
+    // As far as the filter looks, and what it looks at looks at its neighbours.
+    const REACH: u32 = 8;
+    for y in crop.y0 + REACH..crop.y1 - REACH {
+        for x in crop.x0 + REACH..crop.x1 - REACH {
+            let index = (y * 96 + x) as usize;
+            assert_eq!(part.pixels[index], whole.pixels[index], "({x}, {y})");
+        }
+    }
+    assert_eq!(part.pixels[0], [0.0; 3]);
+}
+
+#[test]
+fn every_integrator_can_be_denoised() {
+    for &(word, integrator) in Integrator::WORDS {
+        let mut scene = small("glass-and-mirror.toml", 2);
+        (scene.image.width, scene.image.height) = (24, 18);
+        scene.render.integrator = integrator;
+        let film = Compiled::new(scene).film();
+        let clean = denoised(&film, &film.picture());
+        assert!(clean.pixels.iter().flatten().all(|light| light.is_finite()), "{word}");
+    }
+}
