@@ -55,6 +55,10 @@ for model in docs/guide/scenes/gltf/*.gltf; do
     of_gltf "$(basename "$model" .gltf)"
 done
 picture scenes/hero.toml -o docs/img/hero.png
+for denoise in off:noisy on:clean; do
+    picture scenes/hero.toml --integrator path --width 300 --samples 8 --denoise "${denoise%:*}" \
+        -o "docs/guide/img/denoise-${denoise#*:}.png"
+done
 
 # Larger scenes, small enough for a page.
 of_scene() {

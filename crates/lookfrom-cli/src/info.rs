@@ -83,6 +83,7 @@ fn as_json(path: &Path, prepared: &Prepared) -> Value {
             "filter": values::filter_name(&image.filter),
             "exposure": image.exposure,
             "tonemap": values::name(Tonemap::WORDS, &image.tonemap),
+            "denoise": image.denoise,
         },
         "render": {
             "integrator": render.integrator.word(),
@@ -152,6 +153,9 @@ fn for_people(path: &Path, prepared: &Prepared) -> String {
     );
     if let Some(Crop { x0, y0, x1, y1 }) = image.crop {
         let _ = write!(picture, ", crop {x0},{y0},{x1},{y1}");
+    }
+    if image.denoise {
+        picture.push_str(", denoised");
     }
     line("image", picture);
     let render = &prepared.render;

@@ -9,7 +9,7 @@ use super::{PATCH, RADIUS};
 use crate::film::Picture;
 
 /// How much patches may differ, in standard deviations of their difference, before the weight is `exp(−1)`: squared.
-const TOLERANCE: f32 = 0.36;
+const TOLERANCE: f32 = 0.42;
 
 /// What keeps a quotient of nothing by nothing from being none.
 const LEAST_VARIANCE: f32 = 1e-12;
@@ -44,12 +44,12 @@ impl<const N: usize> Planes<N> {
         for (index, change) in changes.into_iter().enumerate() {
             let (x, y) = (self.area.x0 as usize + index % width, self.area.y0 as usize + index / width);
             let place = y * columns + x;
-            let divisor = self.divisor(index);
+            let change = self.change(index, change);
             for c in 0..3 {
-                pixels[place][c] += change[c] * divisor[c];
+                pixels[place][c] += change[c];
             }
             if N == 4 {
-                alpha[place] += change[N - 1] * divisor[N - 1];
+                alpha[place] += change[N - 1];
             }
         }
     }
@@ -101,7 +101,7 @@ impl<const N: usize> Work for Filter<'_, N> {
     #[inline(always)]
     fn run<S: Simd>(self, _: S) {
         let Self { block, changes } = self;
-        let Planes { stride, light, variance, compared, place, plane, .. } = block.planes;
+        let Planes { stride, light, variance, compared, trust, place, plane, .. } = block.planes;
         let mut distances = [[0.0_f32; WIDE]; HIGH];
         let mut sums_of_rows = [[0.0_f32; COLUMNS]; HIGH];
         let mut weights = [[1.0_f32; COLUMNS]; ROWS];
@@ -162,8 +162,10 @@ impl<const N: usize> Work for Filter<'_, N> {
                 }
                 // The weight, and what comes of it.
                 let mut weight = [0.0_f32; COLUMNS];
+                let trust = row::<COLUMNS>(trust, here);
                 for x in 0..COLUMNS {
-                    weight[x] = falloff(of_light[x], of_guides[x] + off_plane[x] * off_plane[x]);
+                    let of_guides = (of_guides[x] + off_plane[x] * off_plane[x]) * trust[x];
+                    weight[x] = falloff(of_light[x], of_guides);
                     weights[y][x] += weight[x];
                 }
                 for c in 0..N {

@@ -2,23 +2,24 @@
 //! a border as wide as the filter looks.
 
 use lookfrom_scene::settings::Crop;
+use lookfrom_scene::spectrum::space::xyz_of_rec709;
 use rayon::prelude::*;
 
 use super::filter::COLUMNS;
 use super::{PATCH, RADIUS};
-use crate::film::{Film, Guide, Picture};
+use crate::film::{Film, Guide, MeanGuide, Picture};
 
 /// The width of the border.
 pub(super) const BORDER: usize = RADIUS + PATCH;
 
-/// Added to an albedo before light is divided by it: what black things mirror is no multiple of their albedo.
-const MIRRORED: f32 = 0.02;
+/// Added to an albedo before light is divided by it: what dark things mirror is no multiple of their albedo.
+const MIRRORED: f32 = 0.1;
 
 /// Standard deviations of guides: a difference of so much makes a pixel's weight `exp(−½)`.
 const NORMAL_DEVIATION: f32 = 0.15;
-const ALBEDO_DEVIATION: f32 = 0.3;
+const ALBEDO_DEVIATION: f32 = 0.15;
 /// Distance from a pixel's tangent plane, in pixels as far away as the surface is.
-const PLANE_DEVIATION: f32 = 2.0;
+const PLANE_DEVIATION: f32 = 4.0;
 
 /// A normal in the border and of pixels without samples: like no other.
 const NOWHERE: f32 = 1e6;
@@ -26,23 +27,25 @@ const NOWHERE: f32 = 1e6;
 /// Guides that both pixels have: normal, albedo.
 pub(super) const COMPARED: usize = 6;
 
-/// The picture with `N` channels: red, green, blue, and perhaps alpha.
+/// The picture with `N` channels: X, Y, Z, whose variances the film knows, and perhaps alpha.
 pub(super) struct Planes<const N: usize> {
     /// The part of the picture that is held.
     pub(super) area: Crop,
     /// From one row to the next.
     pub(super) stride: usize,
-    /// Light over albedo.
+    /// Light over albedo; alpha times the picture's mean light.
     pub(super) light: [Vec<f32>; N],
     /// The variance of `light`, in all channels together, smoothed.
     pub(super) variance: Vec<f32>,
     /// Normal and albedo over their deviations.
     pub(super) compared: [Vec<f32>; COMPARED],
+    /// The share of a difference in guides that counts.
+    pub(super) trust: Vec<f32>,
     /// Where the surface is.
     pub(super) place: [Vec<f32>; 3],
     /// The geometric normal over the deviation of distances along it.
     pub(super) plane: [Vec<f32>; 3],
-    /// What light was divided by: without a border.
+    /// What red, green, blue and alpha were divided by: without a border.
     divisors: Vec<[f32; N]>,
 }
 
@@ -52,6 +55,7 @@ struct Known<const N: usize> {
     divisor: [f32; N],
     variance: f32,
     guide: Guide,
+    trust: f32,
     is_sampled: bool,
 }
 
@@ -79,12 +83,13 @@ impl<const N: usize> Planes<N> {
             _ => spread(&|x, y| known.at(x, y).guide.albedo[i - 3] / (2.0_f32.sqrt() * ALBEDO_DEVIATION)),
         });
         known.mark_border(&mut compared[0]);
+        let trust = spread(&|x, y| known.at(x, y).trust);
         let place = std::array::from_fn(|i| spread(&|x, y| known.at(x, y).guide.place[i]));
         let scales: Vec<f32> = known.each(|x, y| known.plane_scale(x, y));
         let plane =
             std::array::from_fn(|i| spread(&|x, y| known.at(x, y).guide.ng[i] * scales[y * width + x]));
         let divisors = known.pixels.iter().map(|pixel| pixel.divisor).collect();
-        Self { area, stride: stride(width), light, variance, compared, place, plane, divisors }
+        Self { area, stride: stride(width), light, variance, compared, trust, place, plane, divisors }
     }
 
     /// Columns that are held.
@@ -97,39 +102,74 @@ impl<const N: usize> Planes<N> {
         (self.area.y1 - self.area.y0) as usize
     }
 
-    /// What light of a pixel of the area, counted row by row, was divided by.
-    pub(super) fn divisor(&self, index: usize) -> [f32; N] {
-        self.divisors[index]
+    /// What is added to red, green, blue (and alpha) of a pixel of the area, counted row by row, by a change of the planes' light.
+    pub(super) fn change(&self, index: usize, of_light: [f32; N]) -> [f32; N] {
+        let divisors = &self.divisors[index];
+        let rgb = rgb([of_light[0], of_light[1], of_light[2]]);
+        std::array::from_fn(|c| rgb.get(c).unwrap_or(&of_light[c]) * divisors[c])
     }
 }
 
 fn known<const N: usize>(film: &Film, picture: &Picture, [x, y]: [u32; 2], alpha_divisor: f32) -> Known<N> {
     let index = y as usize * picture.width as usize + x as usize;
     let samples = film.samples(x, y);
-    let guide = film.guide(x, y).map_or(Guide { albedo: [1.0; 3], ..Guide::default() }, |mean| mean.guide);
+    let (guide, trust) = match film.guide(x, y) {
+        Some(mean) => (mean.guide, trust(&mean)),
+        None => (Guide { albedo: [1.0; 3], ..Guide::default() }, 1.0),
+    };
     let divisor: [f32; N] = std::array::from_fn(|c| match guide.albedo.get(c) {
         Some(albedo) => albedo + MIRRORED,
         None => alpha_divisor,
     });
-    let rgb = picture.pixels[index];
-    let light = std::array::from_fn(|c| rgb.get(c).unwrap_or_else(|| &picture.alpha[index]) / divisor[c]);
-    let of_one = deviations(film.variance(x, y));
-    let variance = (0..N).fold(0.0, |sum, c| {
-        let deviation = of_one.get(c).copied().unwrap_or_else(|| film.alpha_variance(x, y).sqrt());
-        sum + (deviation / divisor[c]) * (deviation / divisor[c])
+    let [r, g, b] = picture.pixels[index];
+    let raw = xyz([r, g, b]);
+    let over_albedo = xyz([r / divisor[0], g / divisor[1], b / divisor[2]]);
+    let light = std::array::from_fn(|c| {
+        over_albedo.get(c).copied().unwrap_or_else(|| picture.alpha[index] / divisor[c])
     });
-    Known { light, divisor, variance: variance / samples.max(1) as f32, guide, is_sampled: samples > 0 }
+
+    // The variance of X, Y and Z is known before the division, which makes each smaller by some mean of the divisors.
+    let rgb_divisors = [divisor[0], divisor[1], divisor[2]];
+    let least = rgb_divisors.into_iter().fold(f32::INFINITY, f32::min);
+    let greatest = rgb_divisors.into_iter().fold(0.0, f32::max);
+    let of_xyz = film.variance(x, y);
+    let variance = (0..N).fold(0.0, |sum, c| {
+        let (of_one, factor) = match of_xyz.get(c) {
+            Some(_) if !(raw[c] > 0.0) => (of_xyz[c], 1.0 / least),
+            Some(_) => (of_xyz[c], (over_albedo[c] / raw[c]).clamp(1.0 / greatest, 1.0 / least)),
+            None => (film.alpha_variance(x, y), 1.0 / divisor[c]),
+        };
+        sum + of_one * (factor * factor)
+    });
+    Known {
+        light,
+        divisor,
+        variance: variance / samples.max(1) as f32,
+        guide,
+        trust,
+        is_sampled: samples > 0,
+    }
 }
 
-/// Standard deviations of red, green and blue from variances of X, Y and Z, as if all noise had one colour.
-fn deviations(variances: [f32; 3]) -> [f32; 3] {
-    let [x, y, z] = variances.map(f32::sqrt);
-    let rgb = [
-        3.2406 * x - 1.5372 * y - 0.4986 * z,
-        -0.9689 * x + 1.8758 * y + 0.0415 * z,
-        0.0557 * x - 0.2040 * y + 1.0570 * z,
-    ];
-    rgb.map(|deviation| deviation.max(0.3 * y))
+/// The share of a difference in guides that counts: less where a pixel sees several things, by the variance of its mean normal.
+fn trust(mean: &MeanGuide) -> f32 {
+    let square = mean.guide.n.into_iter().fold(0.0, |sum, n| sum + n * n);
+    let variance = (mean.coverage - square).max(0.0) / mean.samples as f32;
+    1.0 / (1.0 + variance / (NORMAL_DEVIATION * NORMAL_DEVIATION))
+}
+
+/// X, Y and Z of linear Rec. 709.
+fn xyz(rgb: [f32; 3]) -> [f32; 3] {
+    xyz_of_rec709(rgb.map(f64::from)).map(|value| value as f32)
+}
+
+/// Linear Rec. 709 of X, Y and Z.
+pub(super) fn rgb([x, y, z]: [f32; 3]) -> [f32; 3] {
+    [
+        3.240_97 * x - 1.537_383_2 * y - 0.498_610_76 * z,
+        -0.969_243_65 * x + 1.875_967_5 * y + 0.041_555_06 * z,
+        0.055_630_08 * x - 0.203_976_96 * y + 1.056_971_5 * z,
+    ]
 }
 
 impl<const N: usize> Known<N> {
