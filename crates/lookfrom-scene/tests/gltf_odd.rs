@@ -103,6 +103,22 @@ fn zeros_that_no_bytes_stand_for_have_a_limit() {
 }
 
 #[test]
+fn what_is_beyond_all_numbers_of_rays_is_left_out() {
+    let file = triangle(r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]"#);
+    let far = file.replace(
+        r#""scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}]"#,
+        r#""scenes": [{"nodes": [0, 1]}], "nodes": [{"mesh": 0, "translation": [1e300, 0, 0]}, {"mesh": 0}]"#,
+    );
+    assert!(far != file);
+    let (scene, warnings) = read([("a.gltf", far.as_bytes())]).expect("it is valid");
+    assert_eq!(scene.shapes.len(), 1);
+    assert!(
+        warnings.len() == 1 && warnings[0].starts_with("a.gltf#/nodes/0: the node is too far"),
+        "{warnings:?}"
+    );
+}
+
+#[test]
 fn pointers_of_animations_are_told_of_once() {
     let channel = r#"{"sampler": 0, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": "/nodes/0/scale"}}}}"#;
     let file = triangle(&format!(

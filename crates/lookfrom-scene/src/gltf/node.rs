@@ -39,6 +39,11 @@ pub(crate) fn placed(translation: DVec3, rotation: DVec4, scale: DVec3) -> DMat4
     DMat4::from_scale_rotation_translation(scale, rotation, translation)
 }
 
+/// Whether all numbers of a transform are such that points and rays can have, too.
+fn is_within_reach(matrix: &DMat4) -> bool {
+    matrix.to_cols_array().iter().all(|&number| (number as f32).is_finite())
+}
+
 impl Tree {
     /// The tree that the nodes make with these transforms, one for each.
     ///
@@ -92,7 +97,13 @@ impl Tree {
             let is_visible =
                 nodes[node].extensions.visibility.as_ref().and_then(|v| v.visible).unwrap_or(true);
             if is_visible && !std::mem::replace(&mut is_shown[node], true) {
-                shown.push(node);
+                if is_within_reach(&world_from_node[node]) {
+                    shown.push(node);
+                } else {
+                    let message =
+                        "the node is too far away or too large to be computed with, and is left out";
+                    sources.warn(&document.at(&format!("/nodes/{node}")), message);
+                }
                 let children = nodes[node].children.iter().rev().map(|child| child.index());
                 waiting.extend(children.filter(|&child| is_child(node, child)));
             }
