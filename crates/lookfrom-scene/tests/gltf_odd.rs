@@ -103,6 +103,24 @@ fn zeros_that_no_bytes_stand_for_have_a_limit() {
 }
 
 #[test]
+fn instances_at_one_place_are_one() {
+    let file = triangle(
+        r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "extensionsUsed": ["EXT_mesh_gpu_instancing"]"#,
+    );
+    let instanced = file
+        .replace(
+            r#""type": "VEC3"}]"#,
+            r#""type": "VEC3"}, {"componentType": 5126, "count": 1000000, "type": "VEC3"}]"#,
+        )
+        .replace(
+            r#"[{"mesh": 0}]"#,
+            r#"[{"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 1}}}}]"#,
+        );
+    let (scene, warnings) = read([("a.gltf", instanced.as_bytes())]).expect("it is valid");
+    assert_eq!((scene.instances.len(), warnings), (1, vec![]));
+}
+
+#[test]
 fn what_is_beyond_all_numbers_of_rays_is_left_out() {
     let file = triangle(r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]"#);
     let far = file.replace(

@@ -348,7 +348,10 @@ impl Builder<'_, '_, '_> {
                 rotations.as_ref().map_or(DVec4::W, |all| DVec4::from_array(all[i].map(f64::from)));
             placed(vector(&translations, i, DVec3::ZERO), rotation, vector(&scales, i, DVec3::ONE))
         };
-        Ok((0..count).map(place).collect())
+        let mut places: Vec<DMat4> = (0..count).map(place).collect();
+        // A file of a few bytes can ask for millions at one place, which no tree of boxes can tell apart.
+        places.dedup();
+        Ok(places)
     }
 }
 
