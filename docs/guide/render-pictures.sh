@@ -56,7 +56,7 @@ for model in docs/guide/scenes/gltf/*.gltf; do
 done
 picture scenes/hero.toml -o docs/img/hero.png
 for denoise in off:noisy on:clean; do
-    picture scenes/hero.toml --integrator path --width 300 --samples 8 --denoise "${denoise%:*}" \
+    picture scenes/cornell.toml --width 240 --samples 8 --denoise "${denoise%:*}" \
         -o "docs/guide/img/denoise-${denoise#*:}.png"
 done
 

@@ -12,7 +12,7 @@ const FEATURES: [&str; 15] = [
 /// The variances of one sample; in pbrt, and so here, those of X, Y and Z.
 const VARIANCES: [&str; 3] = ["Variance.R", "Variance.G", "Variance.B"];
 
-/// The channels of a picture before it was denoised, before its background as the denoised one is.
+/// The channels of a film's picture as it is, before the same background as the one that was denoised.
 pub(crate) fn noisy(image: &ImageSettings, picture: Picture) -> Vec<(String, Vec<f32>)> {
     let picture = match image.background {
         Background::Color(color) => picture.before(color),

@@ -176,10 +176,9 @@ fn render_frame(
         let mut picture = if spread { film.picture_without_fireflies() } else { film.picture() };
         let mut layers = if film.has_layers() { layers::channels(film) } else { Vec::new() };
         if prepared.image.denoise {
-            let noisy = picture;
-            picture = denoised(film, &noisy);
+            picture = denoised(film, &picture);
             if target.has_layers() {
-                layers.extend(layers::noisy(&prepared.image, noisy));
+                layers.extend(layers::noisy(&prepared.image, film.picture()));
             }
         }
         target.write(&target.encode(&picture, &layers, &prepared.image, &attributes)?)?;
