@@ -15,7 +15,7 @@ const TOLERANCE: f32 = 0.42;
 const LEAST_VARIANCE: f32 = 1e-12;
 
 /// A block of pixels that are filtered together: columns and rows. Its memory stays in the nearest cache.
-pub(super) const COLUMNS: usize = 32;
+pub(super) const COLUMNS: usize = 64;
 const ROWS: usize = 16;
 
 /// A row of a block with the patches' margins.
