@@ -18,7 +18,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("color", &["math", "spectrum"]),
     ("bsdf", &["hash", "math", "spectrum", "warp"]),
     ("film", &["spectrum"]),
-    ("denoise", &["film", "math"]),
+    ("denoise", &["film"]),
     ("develop", &["film"]),
     ("sampler", &["eight", "hash"]),
     ("noise", &["hash"]),

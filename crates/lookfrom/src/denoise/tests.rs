@@ -141,9 +141,8 @@ fn check_against_twin<const N: usize>(planes: &Planes<N>, noisy: &Picture, clean
     let width = noisy.width as usize;
     for index in 0..noisy.pixels.len() {
         let change = planes.change(index, change(planes, index % width, index / width));
-        for c in 0..3 {
-            assert_eq!(clean.pixels[index][c], noisy.pixels[index][c] + change[c], "pixel {index}");
-        }
+        let expected: [f32; 3] = std::array::from_fn(|c| noisy.pixels[index][c] + change[c]);
+        assert_eq!(clean.pixels[index], expected, "pixel {index}");
         if N == 4 {
             assert_eq!(clean.alpha[index], noisy.alpha[index] + change[N - 1]);
         }
@@ -174,7 +173,7 @@ fn noise_on_a_wall_falls_by_a_factor_and_its_mean_stays() {
 #[test]
 fn textures_and_edges_stay_and_lose_their_noise() {
     // A checker of the finest squares, and a shadow's edge that no guide tells of.
-    let albedo = |x: u32, y: u32| if (x + y) % 2 == 0 { 0.8 } else { 0.2 };
+    let albedo = |x: u32, y: u32| if (x + y).is_multiple_of(2) { 0.8 } else { 0.2 };
     let lit = |x: u32| if x < 40 { 1.0 } else { 0.25 };
     let truth = |x: usize, y: usize| albedo(x as u32, y as u32) * lit(x as u32);
     let mut numbers = Numbers(6);
@@ -277,7 +276,6 @@ proptest! {
         let picture = film.picture();
         let clean = denoised(&film, &picture);
         prop_assert!(clean.pixels.iter().flatten().chain(&clean.alpha).all(|value| value.is_finite()));
-        // A mean is between its ends, in light over albedo.
         prop_assert_eq!(clean.alpha.len(), picture.alpha.len());
     }
 }
