@@ -164,10 +164,21 @@ pub struct Arrival<'a> {
 
 impl Material {
     /// Whether it takes chance to tell what it does with light.
+    #[inline]
     pub fn is_chancy(&self) -> bool {
         match &self.kind {
             MaterialKind::Mix { .. } => true,
             MaterialKind::Principled(look) => principled::disperses(look),
+            _ => false,
+        }
+    }
+
+    /// Whether its shapes are bodies that light goes into.
+    #[inline]
+    pub fn is_body(&self) -> bool {
+        match &self.kind {
+            MaterialKind::Whitted(_) => true,
+            MaterialKind::Principled(look) => look.is_solid,
             _ => false,
         }
     }

@@ -235,7 +235,17 @@ impl World {
     }
 
     /// What is left of light after `distance` in what it is inside of (Beer's law).
+    #[inline]
     pub fn transmittance(&self, media: Media, distance: f32, lanes: &Lanes) -> Spectrum {
+        if media == Media::default() {
+            lanes.one()
+        } else {
+            self.transmittance_inside(media, distance, lanes)
+        }
+    }
+
+    #[inline(never)]
+    fn transmittance_inside(&self, media: Media, distance: f32, lanes: &Lanes) -> Spectrum {
         let medium = media.medium(&self.materials).and_then(|index| self.media.get(index as usize));
         let Some(medium) = medium else { return lanes.one() };
         let sigma =

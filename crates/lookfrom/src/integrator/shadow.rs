@@ -64,8 +64,11 @@ impl Shadow {
             }
         };
         let Path { slot, address, mut media, .. } = *path;
-        // Through the surface it travels in what is behind.
-        if (surface.ng.dot(sample.wi.as_dvec3()) > 0.0) != surface.front {
+        // Through the surface of a body it travels in what is behind.
+        let may_cross = media != Media::default()
+            || surface.sides.is_some()
+            || world.materials[surface.material as usize].is_body();
+        if may_cross && (surface.ng.dot(sample.wi.as_dvec3()) > 0.0) != surface.front {
             media = media.crossed(&world.materials, surface);
         }
         let left = surface.left;

@@ -3,7 +3,6 @@
 //! Bodies may be nested or overlap (a drink that reaches a little into its glass): the one that was entered last counts, and
 //! leaving takes a body away wherever it lies. Where it did not lie on top, nothing is to be seen of its surface.
 
-use lookfrom_scene::material::MaterialKind;
 use lookfrom_scene::medium::Sides;
 
 use super::Material;
@@ -76,12 +75,7 @@ impl Media {
             let beyond = if surface.front { inside } else { outside };
             return beyond.map_or(Self::default(), |medium| Self::in_space(medium.0));
         }
-        let is_body = match &materials[surface.material as usize].kind {
-            MaterialKind::Whitted(_) => true,
-            MaterialKind::Principled(look) => look.is_solid,
-            _ => false,
-        };
-        match (is_body, surface.front) {
+        match (materials[surface.material as usize].is_body(), surface.front) {
             (true, true) => self.entered(surface.material),
             (true, false) => self.left(surface.material),
             (false, _) => self,

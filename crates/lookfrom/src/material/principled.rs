@@ -29,6 +29,7 @@ fn straight(ior: f32) -> f32 {
 }
 
 /// Whether colours go different ways in a body.
+#[inline]
 pub(super) fn disperses(look: &Written) -> bool {
     look.dispersion > 0.0 && look.is_solid && look.ior > 1.0
 }
