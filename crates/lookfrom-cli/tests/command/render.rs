@@ -151,6 +151,7 @@ fn the_summary_has_its_keys() {
         keys,
         [
             "cancelled",
+            "denoised",
             "dropped_samples",
             "ended_by",
             "height",
