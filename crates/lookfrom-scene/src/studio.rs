@@ -48,7 +48,7 @@ const THUMBNAIL_SAMPLES: u32 = 8;
 const THUMBNAIL_PIXELS: u64 = 256 * 256;
 /// The same for pictures that are denoised.
 const DENOISED_SAMPLES: u32 = 16;
-const SMALL_DENOISED_SAMPLES: u32 = 8;
+const SMALL_DENOISED_SAMPLES: u32 = 6;
 const SMALL_DENOISED_PIXELS: u64 = 512 * 512;
 
 /// Adds a camera that frames the scene's bounds, if there is none. `up` as in [`furnish`].
