@@ -30,7 +30,7 @@ of_guide() {
 of_gltf() {
     local model="docs/guide/scenes/gltf/$1.gltf" out="docs/guide/img/gltf-$1" variant
     case $1 in
-        dispersion) picture "$model" -o "$out.png" --width 360 --samples 256 --color spectral --fireflies median ;;
+        dispersion) picture "$model" -o "$out.png" --width 360 --samples 256 --fireflies median ;;
         variants)
             for variant in clay lacquer gold; do
                 picture "$model" -o "$out-$variant.png" --width 240 --samples 128 --fireflies median --variant "$variant"
