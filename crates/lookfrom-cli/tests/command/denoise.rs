@@ -16,7 +16,7 @@ fn models_are_denoised_where_nothing_else_is_asked_for() {
         let summary = &stage.json(&format!("render model.obj --json -o p.png {options}"))[0];
         (summary["denoised"].as_bool().unwrap(), summary["samples"].as_u64().unwrap())
     };
-    assert_eq!(summary("--size 24"), (true, 8));
+    assert_eq!(summary("--size 24"), (true, 6));
     assert_eq!(summary("--size 24 --samples 3"), (false, 3));
     assert_eq!(summary("--size 24 --samples 3 --denoise"), (true, 3));
     assert_eq!(summary("--size 24 --denoise off"), (false, 8));
