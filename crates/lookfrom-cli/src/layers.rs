@@ -1,7 +1,9 @@
 //! What the layers beside a picture are called in an EXR: as pbrt's `gbuffer` film calls them.
 
 use lookfrom::film::{Film, Picture};
-use lookfrom_scene::settings::{Background, ImageSettings};
+use lookfrom_scene::settings::ImageSettings;
+
+use crate::output::behind;
 
 /// In the order of [`to_array`](lookfrom::film::Features::to_array); `depth` is ours, the others are pbrt's.
 const FEATURES: [&str; 15] = [
@@ -14,10 +16,7 @@ const VARIANCES: [&str; 3] = ["Variance.R", "Variance.G", "Variance.B"];
 
 /// The channels of a film's picture as it is, before the same background as the one that was denoised.
 pub(crate) fn noisy(image: &ImageSettings, picture: Picture) -> Vec<(String, Vec<f32>)> {
-    let picture = match image.background {
-        Background::Color(color) => picture.before(color),
-        Background::Transparent | Background::Environment => picture,
-    };
+    let picture = picture.before(behind(image));
     let channel = |index: usize| picture.pixels.iter().map(|pixel| pixel[index]).collect();
     [("noisy.R", 0), ("noisy.G", 1), ("noisy.B", 2)]
         .map(|(name, index)| (name.to_owned(), channel(index)))

@@ -18,6 +18,14 @@ use crate::exit::Failure;
 /// The stem of the scene in a pattern of names.
 const NAME: &str = "{name}";
 
+/// What lies behind a picture with alpha, where nothing has room for alpha: its background, or black.
+pub(crate) fn behind(image: &ImageSettings) -> [f32; 3] {
+    match image.background {
+        Background::Color(color) => color,
+        Background::Transparent | Background::Environment => [0.0; 3],
+    }
+}
+
 /// The formats of pictures, by extension.
 const FORMATS: [(&str, Format); 5] = [
     ("png", Format::Png),
@@ -87,11 +95,8 @@ impl Target {
             Self::File(_, format) => *format,
         };
         // Behind a picture with alpha lies its background; where the format has no room for alpha, black.
-        let (is_transparent, background) = match image.background {
-            Background::Transparent => (true, [0.0; 3]),
-            Background::Color(color) => (false, color),
-            Background::Environment => (false, [0.0; 3]),
-        };
+        let is_transparent = image.background == Background::Transparent;
+        let background = behind(image);
         let developed = || srgb8_before(picture, background, image.exposure, image.tonemap);
         let linear = || picture.clone().before(background).pixels;
         let bytes = match format {

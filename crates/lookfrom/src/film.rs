@@ -219,8 +219,7 @@ impl Film {
             return f32::INFINITY;
         }
         let n = samples as f64;
-        let mean = sum as f64 / (n * TWO_TO_64);
-        ((guide.alpha_square(samples) - mean * mean).max(0.0) * (n / (n - 1.0))) as f32
+        unbiased_variance(n, sum as f64 / (n * TWO_TO_64), guide.alpha_square(samples)) as f32
     }
 
     /// How many samples a pixel holds, without those that were dropped.
@@ -385,28 +384,11 @@ impl FilmTile {
     fn merge(&mut self, other: &Self) {
         let Crop { x0, y0, x1, y1 } = common(self.area, other.area);
         for y in y0..y1 {
-            let (mine, theirs) = (self.row(y, x0, x1), other.row(y, x0, x1));
-            for (pixel, add) in self.pixels[mine].iter_mut().zip(&other.pixels[theirs]) {
-                for (sum, add) in pixel.sums.iter_mut().zip(add.sums) {
-                    *sum = sum.wrapping_add(add);
-                }
-                for (sum, add) in pixel.squares.iter_mut().zip(add.squares) {
-                    *sum = sum.saturating_add(add);
-                }
-                pixel.samples = pixel.samples.saturating_add(add.samples);
-            }
-            let (mine, theirs) = (self.row(y, x0, x1), other.row(y, x0, x1));
-            if let (Some(mine), Some(theirs)) = (self.alphas.get_mut(mine), other.alphas.get(theirs)) {
-                mine.iter_mut().zip(theirs).for_each(|(sum, add)| *sum = sum.wrapping_add(*add));
-            }
-            let (mine, theirs) = (self.row(y, x0, x1), other.row(y, x0, x1));
-            if let (Some(mine), Some(theirs)) = (self.features.get_mut(mine), other.features.get(theirs)) {
-                mine.iter_mut().zip(theirs).for_each(|(sums, add)| sums.merge(add));
-            }
-            let (mine, theirs) = (self.row(y, x0, x1), other.row(y, x0, x1));
-            if let (Some(mine), Some(theirs)) = (self.guides.get_mut(mine), other.guides.get(theirs)) {
-                mine.iter_mut().zip(theirs).for_each(|(sums, add)| sums.merge(add));
-            }
+            let rows = [self.row(y, x0, x1), other.row(y, x0, x1)];
+            merge_row(&mut self.pixels, &other.pixels, &rows, Pixel::merge);
+            merge_row(&mut self.alphas, &other.alphas, &rows, |sum, add| *sum = sum.wrapping_add(*add));
+            merge_row(&mut self.features, &other.features, &rows, FeatureSums::merge);
+            merge_row(&mut self.guides, &other.guides, &rows, GuideSums::merge);
         }
         self.drop_samples(other.dropped, other.first_dropped);
     }
@@ -440,6 +422,16 @@ impl FilmTile {
 }
 
 impl Pixel {
+    fn merge(&mut self, add: &Self) {
+        for (sum, add) in self.sums.iter_mut().zip(add.sums) {
+            *sum = sum.wrapping_add(add);
+        }
+        for (sum, add) in self.squares.iter_mut().zip(add.squares) {
+            *sum = sum.saturating_add(add);
+        }
+        self.samples = self.samples.saturating_add(add.samples);
+    }
+
     fn mean(&self) -> [f32; 3] {
         if self.samples == 0 {
             return [0.0; 3];
@@ -456,10 +448,21 @@ impl Pixel {
         let n = self.samples as f64;
         let mean = xyz(self.sums.map(|sum| sum as f64 / (n * TWO_TO_64)));
         std::array::from_fn(|channel| {
-            let mean_of_squares = self.squares[channel] as f64 / (n * TWO_TO_48);
-            // Rounding leaves a little of equal samples, on either side of zero.
-            (mean_of_squares - mean[channel] * mean[channel]).max(0.0) * (n / (n - 1.0))
+            unbiased_variance(n, mean[channel], self.squares[channel] as f64 / (n * TWO_TO_48))
         })
+    }
+}
+
+/// Of one of `n` > 1 samples, by their mean and that of their squares.
+fn unbiased_variance(n: f64, mean: f64, mean_of_squares: f64) -> f64 {
+    // Rounding leaves a little of equal samples, on either side of zero.
+    (mean_of_squares - mean * mean).max(0.0) * (n / (n - 1.0))
+}
+
+/// Adds some of `theirs` to as many of `mine`, unless one of the two films has no room for them.
+fn merge_row<T>(mine: &mut [T], theirs: &[T], [to, from]: &[Range<usize>; 2], add: impl Fn(&mut T, &T)) {
+    if let (Some(mine), Some(theirs)) = (mine.get_mut(to.clone()), theirs.get(from.clone())) {
+        mine.iter_mut().zip(theirs).for_each(|(mine, theirs)| add(mine, theirs));
     }
 }
 

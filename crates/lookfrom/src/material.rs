@@ -173,6 +173,14 @@ impl Material {
         }
     }
 
+    /// The frame it is shaded in.
+    fn frame(&self, textures: &Textures, surface: &Surface, point: &TexturePoint) -> Frame {
+        match self.kind {
+            MaterialKind::Principled(_) => relief::valid_frame(&self.relief, textures, surface, point),
+            _ => relief::frame(&self.relief, textures, surface, point),
+        }
+    }
+
     /// Whether its shapes are bodies that light goes into.
     #[inline]
     pub fn is_body(&self) -> bool {
@@ -206,12 +214,12 @@ pub fn shading(
     let mut at = At { materials, textures, point, lanes, share, media, u };
     let ng = surface.ng.as_vec3();
     if let MaterialKind::Principled(look) = &material.kind {
-        let frame = relief::valid_frame(&material.relief, textures, surface, point);
+        let frame = material.frame(textures, surface, point);
         let (bsdf, frame) = at.principled(look, index, surface, frame);
         return Some(Shading { bsdf, frame, ng });
     }
     let bsdf = at.bsdf(material)?;
-    Some(Shading { bsdf, frame: relief::frame(&material.relief, textures, surface, point), ng })
+    Some(Shading { bsdf, frame: material.frame(textures, surface, point), ng })
 }
 
 /// The normal that a material is shaded with, to the outside, of unit length: that of [`shading`], of mixed materials the first's.
@@ -220,10 +228,9 @@ pub fn normal(materials: &[Material], textures: &Textures, surface: &Surface, po
     while let MaterialKind::Mix { materials: [first, _], .. } = &material.kind {
         material = &materials[first.index()];
     }
-    match (&material.relief, &material.kind) {
-        (Relief::None, _) => surface.ns,
-        (relief, MaterialKind::Principled(_)) => relief::valid_frame(relief, textures, surface, point).n,
-        (relief, _) => relief::frame(relief, textures, surface, point).n,
+    match material.relief {
+        Relief::None => surface.ns,
+        _ => material.frame(textures, surface, point).n,
     }
 }
 

@@ -59,6 +59,14 @@ pub fn power(x: f32, n: f32) -> f32 {
     libm::powf(x, n)
 }
 
+/// Schlick's s: 0 straight on, 1 along the surface.
+#[inline]
+pub fn schlick(cos: f32) -> f32 {
+    let x = (1.0 - cos).clamp(0.0, 1.0);
+    let x2 = x * x;
+    x2 * x2 * x
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

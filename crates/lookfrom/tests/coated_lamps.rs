@@ -4,7 +4,7 @@ mod support;
 
 use lookfrom_scene::Scene;
 use lookfrom_scene::settings::Integrator;
-use support::{Compiled, scene};
+use support::{Compiled, SMALL, scene};
 
 /// What the extension says of emission under a coat.
 fn formula(amount: f64, cos: f64) -> f64 {
@@ -22,12 +22,7 @@ fn plate(look: &str, degrees: f64) -> Scene {
         lookat = [0, 0, 0]
         up = [1, 0, 0]
         height = 0.5
-        [image]
-        width = 8
-        height = 8
-        filter = "box"
-        [render]
-        integrator = "path"
+        {SMALL}
         samples = 4
         [materials.plate]
         type = "principled"

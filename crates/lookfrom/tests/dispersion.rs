@@ -5,7 +5,7 @@ mod support;
 
 use lookfrom::inspect::inspect;
 use lookfrom::render::SampleId;
-use support::{Compiled, scene};
+use support::{Compiled, SMALL, scene};
 
 /// A ball before a sky that is brighter above, close up.
 fn ball(look: &str, samples: u32) -> Compiled {
@@ -15,12 +15,7 @@ fn ball(look: &str, samples: u32) -> Compiled {
         lookfrom = [0, 0.3, 4]
         lookat = [0, 0.3, 0]
         fov = 24
-        [image]
-        width = 8
-        height = 8
-        filter = "box"
-        [render]
-        integrator = "path"
+        {SMALL}
         samples = {samples}
         depth = 16
         [materials.ball]

@@ -8,7 +8,7 @@ use lookfrom::inspect::{Inspection, RayReport, inspect};
 use lookfrom::render::SampleId;
 use lookfrom_scene::Scene;
 use lookfrom_scene::settings::Integrator;
-use support::{Compiled, scene};
+use support::{Compiled, SMALL, scene};
 
 const GLASS: f64 = 1.5;
 const WATER: f64 = 1.33;
@@ -22,12 +22,7 @@ fn balls(radii: &[(&str, f64)], more: &str) -> Scene {
         lookfrom = [0, 0.4, 5]
         lookat = [0, 0.1, 0]
         fov = 22
-        [image]
-        width = 8
-        height = 8
-        filter = "box"
-        [render]
-        integrator = "path"
+        {SMALL}
         samples = 1024
         depth = 40
         [materials]

@@ -254,10 +254,7 @@ impl Principled {
     }
 
     pub(super) fn pdf(&self, wo: Vec3, wi: Vec3, lobes: Lobes) -> f32 {
-        if is_grazing(wi) {
-            return 0.0;
-        }
-        self.toward(wo, lobes).map_or(0.0, |toward| toward.pdf(towards(wo, wi)))
+        self.toward(wo, lobes).map_or(0.0, |toward| toward.pdf(wo, wi))
     }
 
     pub(super) fn sample(
@@ -333,9 +330,11 @@ impl Toward {
         self.view.f_and_pdf(towards(wo, wi), mode, self.choice.as_ref(), self.lobes)
     }
 
-    /// In the mirrored frame, for what is not grazing.
-    fn pdf(&self, wi: Vec3) -> f32 {
-        self.choice.as_ref().map_or(0.0, |choice| self.view.pdf(wi, choice, self.lobes))
+    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        match &self.choice {
+            Some(choice) if !is_grazing(wi) => self.view.pdf(towards(wo, wi), choice, self.lobes),
+            _ => 0.0,
+        }
     }
 
     pub(super) fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode) -> Option<BsdfSample> {

@@ -52,7 +52,10 @@ impl Toward<'_> {
     /// [`Bsdf::pdf`].
     #[inline]
     pub fn pdf(&self, wi: Vec3) -> f32 {
-        self.bsdf.pdf(self.wo, wi, self.mode, self.lobes)
+        match self.principled {
+            Some(principled) => principled.pdf(self.wo, wi),
+            None => self.bsdf.pdf(self.wo, wi, self.mode, self.lobes),
+        }
     }
 
     /// [`Bsdf::sample`].

@@ -12,6 +12,7 @@ use lookfrom_bvh::Point;
 use lookfrom_scene::material::{Color, Scalar};
 
 use super::{Glow, LightSample, Target, toward};
+use crate::math;
 use crate::shape::Disk;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
@@ -237,9 +238,7 @@ impl AreaLight {
 /// `KHR_materials_clearcoat` has it for emission: Schlick's curve from 0.04, smooth however rough the coat is. (Its normal map
 /// is left out: a light does not know it.)
 fn mirrored_by_coat(cos: f32) -> f32 {
-    let x = (1.0 - cos).clamp(0.0, 1.0);
-    let x2 = x * x;
-    0.04 + 0.96 * (x2 * x2 * x)
+    0.04 + 0.96 * math::schlick(cos)
 }
 
 /// Directions around an axis of unit length, up to an angle of this cosine.

@@ -18,6 +18,15 @@ pub(crate) fn scene(toml: &str) -> Scene {
     lookfrom_scene::load::scene(&name, &mut Sources::new(&files)).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// Settings of a small path-traced picture in TOML; what follows adds to `[render]`.
+pub(crate) const SMALL: &str = r#"
+        [image]
+        width = 8
+        height = 8
+        filter = "box"
+        [render]
+        integrator = "path""#;
+
 /// A scene from the repository's `scenes/`.
 pub(crate) fn own_scene(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);

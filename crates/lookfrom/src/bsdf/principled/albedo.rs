@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 
 use super::sheen;
 use crate::bsdf::microfacet::TrowbridgeReitz;
-use crate::math;
+use crate::math::{self, schlick};
 
 /// Rows by the square root of the cosine.
 const COSINES: usize = 32;
@@ -22,14 +22,6 @@ const COSINES: usize = 32;
 const ROUGHNESSES: usize = 24;
 /// Micro-normals that are asked for one number: turns over half a circle (the other half is its mirror image), and radii.
 const STEPS: [usize; 2] = [8, 24];
-
-/// Schlick's s: 0 straight on, 1 along the surface.
-#[inline]
-pub(super) fn schlick(cos: f32) -> f32 {
-    let x = (1.0 - cos).clamp(0.0, 1.0);
-    let x2 = x * x;
-    x2 * x2 * x
-}
 
 /// What a rough mirror sends back.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

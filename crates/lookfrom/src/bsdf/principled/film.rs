@@ -8,7 +8,7 @@
 
 use std::f32::consts::{PI, TAU};
 
-use super::albedo::schlick;
+use crate::math::schlick;
 use crate::spectrum::Spectrum;
 
 /// A film over a surface, air above it.

@@ -3,12 +3,12 @@
 use glam::Vec3;
 
 use super::Principled;
-use super::albedo::{self, schlick};
+use super::albedo;
 use super::sheen::Sheen;
 use crate::bsdf::conductor::half_vector;
 use crate::bsdf::is_grazing;
 use crate::bsdf::microfacet::TrowbridgeReitz;
-use crate::math;
+use crate::math::{self, schlick};
 use crate::spectrum::Spectrum;
 use crate::warp;
 

@@ -1,9 +1,10 @@
 //! What lies under coat and sheen: a mirror, of metal or over a body that is matte or lets light pass.
 
-use super::albedo::{self, Split, schlick};
+use super::albedo::{self, Split};
 use super::{Film, Principled};
 use crate::bsdf::fresnel;
 use crate::bsdf::microfacet::TrowbridgeReitz;
+use crate::math::schlick;
 use crate::spectrum::Spectrum;
 
 /// The cosine at which a film stands for its mean.
