@@ -5,7 +5,7 @@ use crate::group::{GROUPS, Group, RAYS, least};
 use crate::node::{Entered, Node};
 use crate::prepared::{self, SHORT};
 use crate::ray::Ray;
-use crate::simd::{Simd, f32x8, i32x8, prelude::*};
+use lookfrom_simd::{Simd, f32x8, i32x8, prelude::*};
 
 /// Directions of a packet differ by at most this part of their length.
 const SPREAD: f32 = 0.25;

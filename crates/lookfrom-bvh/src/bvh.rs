@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::aabb::Aabb;
+use crate::dispatch::at_level;
 use crate::filter::TriangleBlock;
 use crate::instance::Instance;
 use crate::masks::Masks;
@@ -11,11 +12,11 @@ use crate::packet::{OccludedMany, TraceMany};
 use crate::procedural::Procedural;
 use crate::query::{All, Any, Closest};
 use crate::ray::{Hit, Left, Ray};
-use crate::simd::{Level, at_level};
 use crate::sphere::Sphere;
 use crate::traverse::Trace;
 use crate::validate::{Invalid, Statistics};
 use crate::watch::Watch;
+use lookfrom_simd::Level;
 
 /// Rays (or points) that one thread answers before it looks for others' work.
 #[cfg(feature = "parallel")]

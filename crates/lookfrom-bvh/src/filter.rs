@@ -6,7 +6,7 @@
 use crate::aabb::Aabb;
 use crate::prepared::{self, Prepared};
 use crate::ray::NONE;
-use crate::simd::{Chosen, Simd, f32x8, mask32x8, prelude::*};
+use lookfrom_simd::{Chosen, Simd, f32x8, mask32x8, prelude::*};
 
 /// Triangles in a block.
 pub(crate) const BLOCK: usize = 8;
@@ -395,10 +395,11 @@ impl SeenBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dispatch::{at_level, levels};
     use crate::exact::Exact;
     use crate::ray::Ray;
-    use crate::simd::{Work, at_level, levels};
     use crate::triangle::decide;
+    use lookfrom_simd::Work;
 
     struct Filter<'a>(&'a TriangleBlock, &'a Prepared);
 

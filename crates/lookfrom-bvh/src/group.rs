@@ -4,7 +4,7 @@ use crate::aabb::Aabb;
 use crate::filter::{self, Sieve};
 use crate::prepared::{self, FAR, LARGEST_RECIPROCAL, SHORT};
 use crate::ray::Ray;
-use crate::simd::{Simd, f32x8, i32x8, prelude::*};
+use lookfrom_simd::{Simd, f32x8, i32x8, prelude::*};
 
 /// Rays in a group.
 pub(crate) const LANES: usize = 8;

@@ -8,6 +8,7 @@ mod beam;
 mod build;
 mod bvh;
 mod closest_point;
+mod dispatch;
 mod double;
 mod ellipsoid;
 mod exact;
@@ -25,8 +26,6 @@ mod ray;
 pub mod reference;
 mod refit;
 mod selection;
-#[doc(hidden)]
-pub mod simd;
 mod sphere;
 #[cfg(test)]
 mod testing;

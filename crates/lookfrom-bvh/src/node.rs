@@ -17,7 +17,7 @@
 
 use crate::aabb::Aabb;
 use crate::prepared::Prepared;
-use crate::simd::{Simd, f32x8, i32x8, prelude::*};
+use lookfrom_simd::{Simd, f32x8, i32x8, prelude::*};
 
 /// How many children a node has at most.
 pub(crate) const WIDTH: usize = 8;
@@ -172,9 +172,10 @@ impl Node {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dispatch::{at_level, levels};
     use crate::exact::Exact;
     use crate::ray::Ray;
-    use crate::simd::{Work, at_level, levels};
+    use lookfrom_simd::Work;
 
     struct Enter<'a>(&'a Node, &'a Ray);
 

@@ -13,9 +13,9 @@ use crate::group::{GROUPS, Group, LANES, NO_BLOCK, RAYS, least};
 use crate::node::{Child, Content};
 use crate::query::{Any, Closest};
 use crate::ray::{Hit, Left, NONE, Ray};
-use crate::simd::{Chosen, Simd, Work, i32x8, prelude::*};
 use crate::traverse::{Answer, cross_surely, decide, trace};
 use crate::waiting::{Stack, Waiting, with_stack};
+use lookfrom_simd::{Chosen, Simd, Work, i32x8, prelude::*};
 
 /// The closest hits of rays, in their order; as many as there are places for.
 pub(crate) struct TraceMany<'a> {
@@ -293,8 +293,8 @@ impl<S: Simd> Packet<'_, S> {
 
 #[cfg(test)]
 mod tests {
+    use crate::dispatch::levels;
     use crate::ray::{Hit, Ray};
-    use crate::simd::levels;
     use crate::testing::Random;
     use crate::{Builder, Triangles};
 

@@ -10,7 +10,7 @@
 use crate::exact::Exact;
 use crate::filter::{self, LARGEST_FILTERED, SURE_AFTER};
 use crate::ray::Ray;
-use crate::simd::{Simd, f32x4, prelude::*};
+use lookfrom_simd::{Simd, f32x4, prelude::*};
 
 /// The largest product of an origin and a reciprocal, 2¹²⁶: beyond it a reciprocal is made smaller, that of 0 too. So no
 /// slab distance is ever NaN, and inside a padded box such a component leaves t free.

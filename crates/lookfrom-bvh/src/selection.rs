@@ -8,10 +8,10 @@ use crate::filter::TriangleBlock;
 use crate::masks::Masks;
 use crate::query::{All, Any, Closest, Query};
 use crate::ray::{Hit, Ray};
-use crate::simd::Chosen;
 use crate::traverse::Trace;
 use crate::triangle;
 use crate::watch::Watch;
+use lookfrom_simd::Chosen;
 
 /// Which faces of surfaces rays hit.
 ///

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use crate::Bvh;
 use crate::bvh::{Leaf, SphereItem};
+use crate::dispatch::at_level;
 use crate::exact::Exact;
 use crate::filter::{Sieve, TriangleBlock};
 use crate::instance::Instance;
@@ -16,11 +17,11 @@ use crate::prepared::Prepared;
 use crate::query::Query;
 use crate::ray::{Hit, NONE, Ray};
 use crate::selection::shown;
-use crate::simd::{Chosen, Simd, Work, at_level};
 use crate::triangle::Crossing;
 use crate::waiting::{Stack, Waiting, with_stack};
 use crate::watch::Watch;
 use crate::{sphere, triangle};
+use lookfrom_simd::{Chosen, Simd, Work};
 
 /// Traces one ray at the best level that there is, and gives back the query. `ask` makes it: inside of the code for the level, so
 /// that it may live in registers.
@@ -351,7 +352,7 @@ fn procedurals<Q: Query, W: Watch>(
 
 #[cfg(test)]
 mod tests {
-    use crate::simd::levels;
+    use crate::dispatch::levels;
     use crate::testing::Random;
     use crate::{Builder, Ray, Sphere, Triangles};
 

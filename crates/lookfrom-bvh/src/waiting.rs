@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use crate::node::{Child, Entered, LARGEST_DEPTH, Node, WIDTH};
 use crate::query::Query;
-use crate::simd::Simd;
+use lookfrom_simd::Simd;
 
 /// A child that waits for its visit: where the ray enters it (f32 bits) above what it is. Positive distances are ordered
 /// as these numbers are; the others only cost time.

@@ -4,7 +4,7 @@
 //! say, since every operation is theirs, in their order. Functions are `#[inline(always)]`, so that they are compiled for the level
 //! that their caller runs at.
 
-use lookfrom_bvh::simd::{Simd, f32x8, f64x8, i32x8, mask32x8, mask64x8, prelude::*};
+use lookfrom_simd::{Simd, f32x8, f64x8, i32x8, mask32x8, mask64x8, prelude::*};
 
 /// How many at once.
 pub(crate) const LANES: usize = 8;
@@ -275,7 +275,7 @@ pub(crate) fn orthonormal_bases<S: Simd>(simd: S, n: Vectors<Narrow<S>>) -> [Vec
 mod tests {
     use glam::Vec3;
     use lookfrom_bvh::Point;
-    use lookfrom_bvh::simd::{Level, Work, at_level};
+    use lookfrom_simd::{Level, Work, at_level};
 
     use super::*;
     use crate::{hash, warp};

@@ -8,7 +8,7 @@
 //! Shirley & Chiu 1997 (disk); Malley (hemisphere by the disk); Heitz 2019 (triangle); Duff et al. 2017 (basis).
 
 use glam::{Vec2, Vec3};
-use lookfrom_bvh::simd::{Simd, f32x8, prelude::*};
+use lookfrom_simd::{Simd, f32x8, prelude::*};
 use std::f32::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_4, PI};
 
 /// A uniform point of the unit disk, over area: the density is [`CONCENTRIC_DISK_PDF`]. The centre of the square is the

@@ -87,6 +87,15 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
 ];
 
+/// Each crate of the workspace and the crates of the workspace that it may use. Rows may name only rows above them.
+const CRATES: &[(&str, &[&str])] = &[
+    ("lookfrom-simd", &[]),
+    ("lookfrom-bvh", &["lookfrom-simd"]),
+    ("lookfrom-scene", &[]),
+    ("lookfrom", &["lookfrom-bvh", "lookfrom-scene", "lookfrom-simd"]),
+    ("lookfrom-cli", &["lookfrom", "lookfrom-scene"]),
+];
+
 /// What a library must not do: only doors speak and decide when the program ends.
 const FOR_DOORS: &[&str] = &["print!(", "println!(", "dbg!(", "process::exit", "process::abort"];
 
@@ -170,25 +179,37 @@ fn modules_use_only_what_the_table_allows() {
 }
 
 #[test]
-fn the_lower_libraries_do_not_know_each_other() {
-    for (library, others) in [
-        ("lookfrom-bvh", ["lookfrom_scene", "lookfrom-scene", "lookfrom::"]),
-        ("lookfrom-scene", ["lookfrom_bvh", "lookfrom-bvh", "lookfrom::"]),
-    ] {
-        let folder = crate_folder(library);
-        let mut files = sources(&folder.join("src"));
-        files.push(folder.join("Cargo.toml"));
-        for path in files {
-            for other in others {
-                assert!(!code(&path).contains(other), "{} names {other}", path.display());
+fn crates_use_only_what_the_table_allows() {
+    for (row, (name, allowed)) in CRATES.iter().enumerate() {
+        for used in *allowed {
+            assert!(
+                CRATES[..row].iter().any(|(above, _)| above == used),
+                "{used} is not above {name} in the table"
+            );
+        }
+        let folder = crate_folder(name);
+        let manifest = folder.join("Cargo.toml");
+        for (other, _) in CRATES.iter().filter(|(other, _)| other != name && !allowed.contains(other)) {
+            let path = format!("{}::", other.replace('-', "_"));
+            for file in sources(&folder.join("src")) {
+                assert!(!names_the_crate(&code(&file), &path), "{} names {other}", file.display());
+            }
+            for dependency in [format!("{other}."), format!("{other} =")] {
+                assert!(!names_the_crate(&code(&manifest), &dependency), "{name} depends on {other}");
             }
         }
     }
 }
 
+/// Whether a name stands in the code by itself, not as the end of a longer one.
+fn names_the_crate(code: &str, name: &str) -> bool {
+    let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
+    code.match_indices(name).any(|(at, _)| !code[..at].ends_with(is_part))
+}
+
 #[test]
 fn libraries_return_and_doors_speak() {
-    for library in ["lookfrom", "lookfrom-bvh", "lookfrom-scene"] {
+    for library in ["lookfrom", "lookfrom-bvh", "lookfrom-scene", "lookfrom-simd"] {
         for path in sources(&crate_folder(library).join("src")) {
             for forbidden in FOR_DOORS {
                 assert!(!code(&path).contains(forbidden), "{} says {forbidden}", path.display());
@@ -201,4 +222,8 @@ fn libraries_return_and_doors_speak() {
 fn arrows_are_found() {
     let code = "use crate::light::Light;\nfn f(x: &crate::film::Film) {}\nuse other_crate::math;\nuse crate::{a, b};";
     assert_eq!(named_from_the_root(code), ["light", "film", ""]);
+    assert!(
+        names_the_crate("use lookfrom::world;", "lookfrom::")
+            && !names_the_crate("my_lookfrom::x", "lookfrom::")
+    );
 }

@@ -5,7 +5,7 @@
 
 use crate::aabb::Aabb;
 use crate::filter::BLOCK;
-use crate::simd::{Simd, Work, f32x4, f32x8, prelude::*, u32x4};
+use lookfrom_simd::{Simd, Work, f32x4, f32x8, prelude::*, u32x4};
 
 use super::reference::{Covered, Reference};
 
@@ -209,7 +209,7 @@ impl<S: Simd> Side<S> {
 mod tests {
     use super::*;
     use crate::build::primitives::Kind;
-    use crate::simd::{at_level, levels};
+    use crate::dispatch::{at_level, levels};
     use crate::testing::Random;
 
     /// The cheapest cut, plainly: the least cost, and the references on its two sides.

@@ -22,9 +22,9 @@ use crate::instance::Instance;
 use crate::masks::Masks;
 use crate::node::Child;
 use crate::procedural::Procedural;
-use crate::simd::Level;
 use crate::sphere::Sphere;
 use crate::validate::Statistics;
+use lookfrom_simd::Level;
 
 use plan::Plan;
 use primitives::{Geometry, Primitives};

@@ -1,7 +1,7 @@
 //! A primitive while it is sorted: its box and what it is, in one vector.
 
 use crate::aabb::Aabb;
-use crate::simd::{Simd, f32x8, prelude::*};
+use lookfrom_simd::{Simd, f32x8, prelude::*};
 
 use super::primitives::Kind;
 

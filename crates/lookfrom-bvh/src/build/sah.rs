@@ -5,7 +5,8 @@
 //! The tree is the same for any number of threads and any instructions.
 
 use crate::aabb::Aabb;
-use crate::simd::{Level, at_level};
+use crate::dispatch::at_level;
+use lookfrom_simd::Level;
 
 use super::Quality;
 use super::cut::{Cut, MAX_BINS};

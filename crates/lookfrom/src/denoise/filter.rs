@@ -1,7 +1,7 @@
 //! The filter's inner loop: for every offset between two pixels, a whole block of pixels at once, so that the machine's vectors
 //! have something to do. The slow twin, which goes pixel by pixel, is in the tests.
 
-use lookfrom_bvh::simd::{Level, Simd, Work, at_level};
+use lookfrom_simd::{Level, Simd, Work, at_level};
 use rayon::prelude::*;
 
 use super::planes::{BORDER, Planes};

@@ -6,8 +6,8 @@
 mod eight;
 
 use glam::{DVec3, Vec3};
-use lookfrom_bvh::simd::{Level, at_level};
 use lookfrom_bvh::{Hit, Left, Ray};
+use lookfrom_simd::{Level, at_level};
 
 use eight::{Plain, Steps};
 

@@ -1,7 +1,7 @@
 //! Random numbers of eight samples at once, one in each lane: the twin of [`PixelSampler`], bit for bit.
 
-use lookfrom_bvh::simd::{Level, Simd, Work, at_level, f32x8, prelude::*, u32x8, u64x8};
 use lookfrom_scene::settings::Sampler as Kind;
+use lookfrom_simd::{Level, Simd, Work, at_level, f32x8, prelude::*, u32x8, u64x8};
 
 use super::{PixelSampler, Sampler};
 use crate::eight::{LANES, by_lane};
@@ -109,7 +109,7 @@ pub(crate) fn low_half<S: Simd>(bits: u64x8<S>) -> u32x8<S> {
 #[inline(always)]
 fn unit<S: Simd>(simd: S, bits: u32x8<S>) -> f32x8<S> {
     // Below 2²⁴, so that a signed number holds it too.
-    let number: lookfrom_bvh::simd::i32x8<S> = (bits >> 8).bitcast();
+    let number: lookfrom_simd::i32x8<S> = (bits >> 8).bitcast();
     number.to_float::<f32x8<S>>() * f32x8::splat(simd, 1.0 / 16_777_216.0)
 }
 

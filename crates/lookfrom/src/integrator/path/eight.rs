@@ -6,9 +6,9 @@ mod asked;
 
 use std::f32::consts::FRAC_1_PI;
 
-use lookfrom_bvh::simd::{Simd, Work, f32x8, f64x8, prelude::*, u32x8, u64x8};
 use lookfrom_bvh::{Hit, Left, NONE, Ray};
 use lookfrom_scene::material::{Color, MaterialKind, Relief};
+use lookfrom_simd::{Simd, Work, f32x8, f64x8, prelude::*, u32x8, u64x8};
 
 use super::{Departure, PathTracer, power_heuristic, purpose};
 use crate::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, orthonormal_bases};
@@ -209,7 +209,7 @@ impl<S: Simd> Surfaces<S> {
 
     /// Whether directions of these cosines are on the side that is looked at, and neither is grazing.
     #[inline(always)]
-    fn same_side(&self, simd: S, wi_z: Narrow<S>) -> lookfrom_bvh::simd::mask32x8<S> {
+    fn same_side(&self, simd: S, wi_z: Narrow<S>) -> lookfrom_simd::mask32x8<S> {
         let least = f32x8::splat(simd, 1e-12);
         let product = self.wo_z * wi_z;
         product.simd_gt(f32x8::splat(simd, 0.0)) & self.wo_z.abs().simd_gt(least) & wi_z.abs().simd_gt(least)

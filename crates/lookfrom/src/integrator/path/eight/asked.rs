@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 use lookfrom_bvh::Point;
-use lookfrom_bvh::simd::{Simd, f32x8, f64x8, prelude::*};
+use lookfrom_simd::{Simd, f32x8, f64x8, prelude::*};
 
 use super::{Plain, RandomNumbers, Surfaces, purpose};
 use crate::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, narrow};

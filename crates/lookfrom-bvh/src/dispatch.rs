@@ -1,0 +1,22 @@
+//! SIMD dispatch of the kernel: `lookfrom_simd`'s, and in unit tests the scalar level as well.
+
+use lookfrom_simd::{Level, Work};
+
+/// [`lookfrom_simd::at_level`].
+#[inline(always)]
+pub(crate) fn at_level<W: Work>(level: Level, work: W) -> W::Output {
+    #[cfg(test)]
+    if level.is_fallback() {
+        return work.run(fearless_simd::Fallback::new());
+    }
+    lookfrom_simd::at_level(level, work)
+}
+
+/// Every level that this machine has.
+#[cfg(test)]
+pub(crate) fn levels() -> Vec<Level> {
+    let mut levels = vec![Level::fallback(), Level::baseline(), Level::new()];
+    #[cfg(target_arch = "x86_64")]
+    levels.extend(Level::new().as_avx2().map(Level::Avx2));
+    levels
+}
