@@ -3,6 +3,7 @@
 use glam::{DMat4, DVec3};
 
 use crate::error::Location;
+use crate::scene::MediumId;
 
 /// The eye as it was written. Whether it can see is checked when it is turned into matrices.
 #[derive(Clone, Debug)]
@@ -19,6 +20,8 @@ pub struct Camera {
     pub window: Option<Window>,
     /// `d`, the distance of the image plane: > 0. Only the `t` that is shown to people depends on it.
     pub distance: f64,
+    /// What fills the space that it stands in; `None` is a vacuum.
+    pub medium: Option<MediumId>,
 }
 
 /// Where the eye stands and looks.
@@ -85,6 +88,7 @@ impl Default for Camera {
             lens: None,
             window: None,
             distance: 1.0,
+            medium: None,
         }
     }
 }

@@ -33,12 +33,13 @@ use std::path::{Path, PathBuf};
 use glam::DMat4;
 
 use self::file::Model;
+use self::medium::NamedMedium;
 use self::state::{Opened, Options, State};
 use self::text::Place;
 use crate::error::{Error, Location, Result};
 use crate::files::Sources;
 use crate::material::{Color, Material, MaterialKind};
-use crate::scene::{CurveId, ImageId, MaterialId, MediumId, ObjectId, Scene, TextureId};
+use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
 use crate::settings::ColorMode;
 
 /// Reads a scene of pbrt-v4 with all that it includes. Names of files are relative to the folder of `path`, or else to
@@ -75,6 +76,7 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         models: BTreeMap::new(),
         warned: BTreeSet::new(),
         media: BTreeMap::new(),
+        without_media: None,
     };
     reader.file(path)?;
     reader.finish(path)?;
@@ -128,8 +130,10 @@ struct Reader<'s, 'f> {
     models: BTreeMap<PathBuf, Model>,
     /// What was warned of already.
     warned: BTreeSet<String>,
-    /// Media by name; `None` for those that are not rendered.
-    media: BTreeMap<String, Option<MediumId>>,
+    /// By name.
+    media: BTreeMap<String, NamedMedium>,
+    /// An integrator that knows no media, until that is told of.
+    without_media: Option<(String, Place)>,
 }
 
 /// A material that was made or mentioned.

@@ -203,6 +203,10 @@ pub struct RenderSettings {
     pub regularize: bool,
     /// How far ambient occlusion looks.
     pub occlusion_distance: f32,
+    /// Whether what fills space counts: the media on the sides of surfaces ([`Sides`](crate::medium::Sides)) and around
+    /// the camera. Without them interfaces stop shadow rays, but no others, as in pbrt's integrators that know no media.
+    /// What materials say of the inside of bodies counts always.
+    pub media: bool,
 }
 
 /// What the four lanes of light mean.
@@ -252,6 +256,7 @@ impl Default for RenderSettings {
             light_sampler: LightSampler::Bvh,
             regularize: false,
             occlusion_distance: f32::INFINITY,
+            media: true,
         }
     }
 }

@@ -6,7 +6,8 @@ use glam::{DMat4, DVec3, Vec3};
 use lookfrom_scene::camera::{Projection, View, Window};
 use lookfrom_scene::light::{Amount, LightKind, Sky};
 use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Scalar};
-use lookfrom_scene::scene::{MaterialId, MeshId};
+use lookfrom_scene::medium::Sides;
+use lookfrom_scene::scene::{MaterialId, MediumId, MeshId};
 use lookfrom_scene::settings::{ColorMode, Crop, Filter, Integrator, Layers, Sampler};
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::Curve;
@@ -238,12 +239,12 @@ fn what_is_not_rendered_is_warned_of_once() {
     let (scene, warnings) = read_files(&[(
         "a.pbrt",
         "Integrator \"bdpt\" Sampler \"stratified\" \"integer xsamples\" 3 WorldBegin\n\
-         MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" MediumInterface \"fog\" \"\" MediumInterface \"fog\"\n\
+         MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" MediumInterface \"fog\" \"\" Shape \"disk\" MediumInterface \"fog\"\n\
          Material \"hair\" Material \"hair\" Material \"subsurface\" \"float mfp\" 2\n\
          Shape \"sphere\" \"float raduis\" 2",
     )]);
     let expected = [
-        "a.pbrt:1:1: the integrator \"bdpt\" is not there: \"path\" computes the same light in its place",
+        "a.pbrt:1:1: the integrator \"bdpt\" is not there: \"volpath\" computes the same light in its place",
         "a.pbrt:2:1: the medium \"fog\" only absorbs: what it would scatter is not rendered yet",
         "a.pbrt:3:1: hair is not shaded as hair yet: \"diffuse\" takes the place of it",
         "a.pbrt:3:33: light under surfaces is not followed yet: \"coateddiffuse\" takes the place of \"subsurface\"",
@@ -251,6 +252,44 @@ fn what_is_not_rendered_is_warned_of_once() {
     ];
     assert_eq!(warnings, expected);
     assert_eq!(scene.render.samples, 12);
+}
+
+#[test]
+fn media_are_around_the_camera_and_beside_shapes() {
+    let made = "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0 0 0 ]\n\
+                MakeNamedMedium \"b\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0 0 0 ] \"rgb Le\" [ 1 0 0 ]\n\
+                MakeNamedMedium \"c\" \"string type\" \"cloud\"\n";
+    let world = "Camera \"perspective\" WorldBegin Shape \"sphere\" MediumInterface \"a\" Shape \"sphere\"\n\
+                 MediumInterface \"c\" \"\" Shape \"sphere\"";
+    let of = |integrator: &str| {
+        read_files(&[("a.pbrt", &format!("{integrator}\n{made}MediumInterface \"a\" \"b\"\n{world}"))])
+    };
+    let unrendered = [
+        "a.pbrt:3:1: the medium \"b\" only absorbs: what it would emit is not rendered yet",
+        "a.pbrt:4:1: the medium \"c\" is not rendered yet: light passes it as a vacuum",
+    ];
+    for integrator in ["", "Integrator \"volpath\"", "Integrator \"simplevolpath\""] {
+        let (scene, warnings) = of(integrator);
+        assert_eq!(warnings, unrendered);
+        assert!(scene.render.media, "{integrator}");
+        assert_eq!(scene.camera.expect("one").medium, Some(MediumId(1)));
+        let sides: Vec<_> = scene.shapes.iter().map(|shape| shape.sides).collect();
+        let border = Sides { inside: Some(MediumId(0)), outside: Some(MediumId(1)) };
+        // What is not rendered is another thing than the vacuum.
+        assert_eq!(sides, [Some(border), None, Some(Sides { inside: None, outside: None })]);
+    }
+    for integrator in ["path", "simplepath", "randomwalk", "ambientocclusion"] {
+        let (scene, warnings) = of(&format!("Integrator \"{integrator}\""));
+        assert!(!scene.render.media, "{integrator}");
+        assert_eq!(warnings.len(), 1);
+        assert!(
+            warnings[0].starts_with(&format!("a.pbrt:1:1: the integrator {integrator:?} knows no media"))
+        );
+    }
+    let unknown = "MediumInterface \"d\" Camera \"perspective\" WorldBegin";
+    let files = Memory([(PathBuf::from("a.pbrt"), unknown.as_bytes().to_vec())].into());
+    let error = load::scene(Path::new("a.pbrt"), &mut Sources::new(&files)).expect_err("an unknown medium");
+    assert!(error.to_string().starts_with("a.pbrt:1:21: \"d\" is no medium that is known"), "{error}");
 }
 
 #[test]

@@ -19,7 +19,7 @@ use lookfrom_bvh::{Hit, Left, Ray};
 
 use crate::hash;
 use crate::light::Reference;
-use crate::material::Media;
+use crate::material::InteriorStack;
 use crate::sampler::PixelSampler;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
@@ -80,7 +80,7 @@ pub struct Path {
     /// refracted one 2n + 1; along a path the next ray of n is n + 1.
     pub address: u64,
     /// What it travels in.
-    pub media: Media,
+    pub media: InteriorStack,
     /// What it remembers of the surface that it left.
     pub departure: Departure,
 }
@@ -99,6 +99,16 @@ impl Path {
     fn goes_through(&self, world: &World, surface: &Surface, u: f32) -> bool {
         let is_back = surface.single_sided && !surface.front && !self.departure.blurred;
         is_back || !world.is_there(surface, u)
+    }
+
+    /// The same path after what it is inside of took its part of the light, on the way to `hit` or, where nothing is met,
+    /// to infinity.
+    fn absorbed(&self, world: &World, hit: &Hit, lanes: &Lanes) -> Self {
+        let length = match hit.is_hit() {
+            true => Vec3::from_array(self.ray.direction).length() * hit.t,
+            false => f32::INFINITY,
+        };
+        Self { beta: self.beta * world.transmittance(self.media, length, lanes), ..*self }
     }
 
     /// The same path behind a surface that is not there.

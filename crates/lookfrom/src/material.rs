@@ -6,7 +6,7 @@
 
 mod approximate;
 mod base;
-mod media;
+mod interior;
 mod principled;
 mod relief;
 mod whitted;
@@ -28,7 +28,7 @@ use crate::warp;
 
 pub(crate) use approximate::in_whitteds_model;
 pub use base::base_color;
-pub use media::Media;
+pub use interior::InteriorStack;
 pub use whitted::{Branches, Coefficients};
 
 /// A material of a world.
@@ -157,7 +157,7 @@ pub struct Arrival<'a> {
     /// weight of all.
     pub share: &'a mut Spectrum,
     /// What light comes through.
-    pub media: Media,
+    pub media: InteriorStack,
     /// Chance, in [0, 1): which of mixed materials there is, which colour is left. Used where [`Material::is_chancy`].
     pub u: f32,
 }
@@ -241,7 +241,7 @@ struct At<'a> {
     point: &'a TexturePoint,
     lanes: &'a mut Lanes,
     share: &'a mut Spectrum,
-    media: Media,
+    media: InteriorStack,
     u: f32,
 }
 

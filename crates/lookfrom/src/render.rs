@@ -25,7 +25,6 @@ use crate::integrator::{
     AmbientOcclusion, Departure, Integrator, Next, Numbers, Passing, Path, PathTracer, Probe, Raycast,
     Samples, View, Whitted, Wisdom, resolve_shadows,
 };
-use crate::material::Media;
 use crate::sampler::Sampler;
 use crate::spectrum::Spectrum;
 use crate::texture::Lanes;
@@ -246,7 +245,7 @@ impl<'a> Frame<'a> {
                 slot: slot as u32,
                 depth: 0,
                 address: Path::ROOT,
-                media: Media::default(),
+                media: self.world.around_camera,
                 departure: Departure::default(),
             });
         }

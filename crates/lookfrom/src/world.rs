@@ -17,7 +17,7 @@ use lookfrom_scene::medium::{Medium, Sides};
 
 use crate::camera::{Camera, CameraRay};
 use crate::light::{Coverage, Light, LightChoice, Reference};
-use crate::material::{self, Arrival, Material, Media, Shading};
+use crate::material::{self, Arrival, InteriorStack, Material, Shading};
 use crate::math;
 use crate::shape::{Form, FormPoint, Mesh, VertexData};
 use crate::spectrum::Spectrum;
@@ -45,6 +45,12 @@ pub struct World {
     pub alphas: Vec<Scalar>,
     /// What fills bodies and space.
     pub media: Vec<Medium>,
+    /// Whether what fills space counts ([`RenderSettings::media`](lookfrom_scene::settings::RenderSettings::media)).
+    pub has_media: bool,
+    /// What the camera is inside of.
+    pub around_camera: InteriorStack,
+    /// Half the diagonal of the box around everything that is placed.
+    pub radius: f32,
     /// What surfaces say is on their sides, see [`Look::sides`](crate::shape::Look::sides).
     pub sides: Vec<Sides>,
     /// Meshes with further texture coordinates or opacities, see [`Look::vertex_data`](crate::shape::Look::vertex_data).
@@ -234,24 +240,27 @@ impl World {
         probability * self.lights[light as usize].pdf(at, wi, surface, Coverage::Incomplete)
     }
 
-    /// What is left of light after `distance` in what it is inside of (Beer's law).
+    /// What is left of light after `distance` in what it is inside of (Beer's law). After an infinite one nothing is left in
+    /// space that is filled with what absorbs, and all in a body, which must end somewhere although its end was not met.
     #[inline]
-    pub fn transmittance(&self, media: Media, distance: f32, lanes: &Lanes) -> Spectrum {
-        if media == Media::default() {
-            lanes.one()
-        } else {
-            self.transmittance_inside(media, distance, lanes)
-        }
+    pub fn transmittance(&self, media: InteriorStack, distance: f32, lanes: &Lanes) -> Spectrum {
+        if media.is_empty() { lanes.one() } else { self.transmittance_inside(media, distance, lanes) }
     }
 
     #[inline(never)]
-    fn transmittance_inside(&self, media: Media, distance: f32, lanes: &Lanes) -> Spectrum {
+    fn transmittance_inside(&self, media: InteriorStack, distance: f32, lanes: &Lanes) -> Spectrum {
         let medium = media.medium(&self.materials).and_then(|index| self.media.get(index as usize));
         let Some(medium) = medium else { return lanes.one() };
+        if distance.is_infinite() && media.space().is_none() {
+            return lanes.one();
+        }
         let sigma =
             self.textures.spectrum(medium.absorption, Usage::Unbounded, &TexturePoint::NOWHERE, lanes);
+        if medium.scale == 0.0 {
+            return lanes.one();
+        }
         let length = medium.scale * distance;
-        lanes.one() * sigma.map(|sigma| libm::expf(-sigma * length))
+        lanes.one() * sigma.map(|sigma| if sigma == 0.0 { 1.0 } else { libm::expf(-sigma * length) })
     }
 
     /// Whitted's `I_a`.

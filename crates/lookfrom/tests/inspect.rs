@@ -209,7 +209,6 @@ fn check_ray(inspection: &Inspection, ray: &RayReport, what: &str) {
     let is_path = inspection.integrator == "path";
     for found in &ray.found {
         let (radiance, w) = (&found.radiance.lanes, found.weight);
-        // where an interface shines, absorption on the way is not told
         assert_close(&found.added.lanes, |lane| share[lane] * radiance[lane] * w, &format!("{what}: found"));
         match (ray.pdf, inspection.integrator) {
             (Some(p), "path") => assert!(close(w, heuristic(p, found.light_pdf)), "{what}: {found:?}"),

@@ -196,6 +196,41 @@ fn what_stands_in_water_mirrors_less() {
     assert!(pbrts > 5, "{pbrts}");
 }
 
+/// What a material is numbered does not matter.
+#[test]
+fn bodies_are_told_apart_among_any_number_of_materials() {
+    let radii = [("ink", 1.0), ("water", 0.7)];
+    let ink = r#"
+        [materials.ink]
+        type = "principled"
+        base_color = 1
+        roughness = 0
+        transmission = 1
+        solid = true
+        ior = 1.6
+        absorption = [1, 0.5, 0.1]
+    "#;
+    let picture = |before: u32| {
+        let mut scene = balls(&radii, ink);
+        scene.render.samples = 16;
+        for material in 0..before {
+            let color = lookfrom_scene::material::Color::gray(0.5);
+            let kind = lookfrom_scene::material::MaterialKind::Diffuse { reflectance: color };
+            let name = format!("another {material}");
+            let material =
+                lookfrom_scene::material::Material::new(name, lookfrom_scene::Location::default(), kind);
+            scene.materials.push(material);
+        }
+        let count = scene.materials.len() as u32;
+        scene.materials.rotate_right(before as usize);
+        for shape in &mut scene.shapes {
+            shape.material.0 = (shape.material.0 + before) % count;
+        }
+        Compiled::new(scene).film().picture().pixels
+    };
+    assert_eq!(picture(70_000), picture(0));
+}
+
 /// Colourless glass in front of light that is the same all around cannot be seen, whatever it holds.
 #[test]
 fn nothing_is_lost_between_bodies() {

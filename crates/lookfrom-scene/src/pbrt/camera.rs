@@ -9,8 +9,8 @@ use crate::camera::{Camera, Lens, Projection, View, Window};
 use crate::error::{Location, Result};
 
 impl Reader<'_, '_> {
-    /// The camera and the matrix from the world to its space; without one, pbrt's: at the origin, along +z.
-    pub(super) fn camera(&mut self, camera: Option<&(Entity, DMat4)>) -> Result<()> {
+    /// The camera, the matrix from the world to its space and the name of the medium around it; without one, pbrt's: at the origin, along +z.
+    pub(super) fn camera(&mut self, camera: Option<&(Entity, DMat4)>, medium: &str) -> Result<()> {
         let aspect = f64::from(self.scene.image.width) / f64::from(self.scene.image.height);
         let Some((Entity { kind, parameters }, camera_from_world)) = camera else {
             self.scene.camera = Some(Camera {
@@ -66,6 +66,7 @@ impl Reader<'_, '_> {
             projection,
             lens: lens.filter(|_| is_flat),
             window: window.filter(|_| is_flat),
+            medium: self.medium_around(medium, &parameters.place)?,
             ..Camera::default()
         });
         Ok(())

@@ -188,6 +188,8 @@ impl Reader<'_, '_> {
                 }
                 self.coordinate_systems.insert("camera".to_owned(), matrix.inverse());
                 self.options.camera = Some((entity, matrix));
+                let media = self.state.media.as_deref();
+                self.options.camera_medium = media.map(|[_, outside]| outside.clone()).unwrap_or_default();
             }
             b"Film" => self.options.film = Some(self.option(word, place, lexer)?),
             b"PixelFilter" => self.options.filter = Some(self.option(word, place, lexer)?),
@@ -425,7 +427,7 @@ impl Reader<'_, '_> {
         self.filter(options.filter.as_ref())?;
         self.sampler(options.sampler.as_ref())?;
         self.integrator(options.integrator.as_ref())?;
-        self.camera(options.camera.as_ref())?;
+        self.camera(options.camera.as_ref(), &options.camera_medium)?;
         let entities = [options.film, options.filter, options.sampler, options.integrator];
         let entities = entities.into_iter().chain([options.camera.map(|(entity, _)| entity)]).flatten();
         entities.for_each(|entity| entity.parameters.finish(self.sources));

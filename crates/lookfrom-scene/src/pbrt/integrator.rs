@@ -77,6 +77,8 @@ impl Reader<'_, '_> {
         if !INTEGRATORS.contains(&&**kind) {
             return Err(Self::unknown(&parameters.place, "integrator", kind, INTEGRATORS.iter().copied()));
         }
+        self.settle_media(kind, &parameters.place);
+        let render = &mut self.scene.render;
         if kind != "ambientocclusion" {
             render.depth = parameters.integer("maxdepth", 5, 0, i32::MAX)? as u32;
         }
@@ -102,8 +104,9 @@ impl Reader<'_, '_> {
                 Integrator::Path
             }
             _ => {
+                let other = if self.scene.render.media { "volpath" } else { "path" };
                 let message = format!(
-                    "the integrator {kind:?} is not there: \"path\" computes the same light in its place"
+                    "the integrator {kind:?} is not there: {other:?} computes the same light in its place"
                 );
                 self.sources.warn(&parameters.place.location(), message);
                 let theirs = [

@@ -7,7 +7,7 @@ use super::lexer::{Lexer, Token};
 use super::params::Parameters;
 use super::spectra::Meaning::Unbounded;
 use super::text::Place;
-use crate::error::Result;
+use crate::error::{Result, Warning};
 use crate::material::Color;
 use crate::medium::{Medium, Sides};
 use crate::scene::MediumId;
@@ -17,32 +17,49 @@ const KINDS: &[&str] = &["cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformg
 /// pbrt's `sigma_a` where a file names none, per mm of its unit.
 const SIGMA_A: [f32; 3] = [0.0011, 0.0024, 0.014];
 
+/// The integrators that know media; the others let light pass as if all were a vacuum.
+const KNOWING: &[&str] = &["volpath", "simplevolpath", "bdpt", "mlt"];
+
+/// A medium that was made.
+pub(super) struct NamedMedium {
+    /// `None` for one that is not rendered.
+    id: Option<MediumId>,
+    /// What of it is not rendered, to be told when it is used.
+    warning: Option<Warning>,
+}
+
 impl Reader<'_, '_> {
     pub(super) fn make_medium(&mut self, name: String, p: &Parameters) -> Result<()> {
         let kind = p.string("type")?.unwrap_or_default().to_owned();
         if !KINDS.contains(&kind.as_str()) {
             return Err(Self::unknown(&p.place, "medium", &kind, KINDS.iter().copied()));
         }
+        let warning = |message: String| Some(Warning { at: p.place.location(), message });
         if kind != "homogeneous" || p.has("preset") {
             p.ignore_all();
             let message = format!("the medium {name:?} is not rendered yet: light passes it as a vacuum");
-            self.warn_once(&format!("medium {name}"), &p.place, message);
-            self.media.insert(name, None);
+            self.media.insert(name, NamedMedium { id: None, warning: warning(message) });
             return Ok(());
         }
         let absorption = self.color(p, "sigma_a", Color::Value(SIGMA_A), Unbounded)?;
         let scattering = self.color_or_none(p, "sigma_s", Unbounded)?;
-        let is_clear = |color| matches!(color, Color::Value(rgb) if rgb == [0.0; 3]);
-        if !scattering.is_some_and(is_clear) {
-            let message =
-                format!("the medium {name:?} only absorbs: what it would scatter is not rendered yet");
-            self.warn_once(&format!("medium {name}"), &p.place, message);
-        }
-        p.ignore(&["Le", "Lescale", "g"]);
+        let emission = self.light_color(p, "Le")?;
+        p.ignore(&["Lescale", "g"]);
+        let is_black = |color| matches!(color, Color::Value(rgb) if rgb == [0.0; 3]);
+        // Where nothing is written, pbrt's media scatter, but do not shine.
+        let missing = match (scattering.is_some_and(is_black), emission.is_none_or(is_black)) {
+            (false, true) => Some("scatter"),
+            (true, false) => Some("emit"),
+            (false, false) => Some("scatter and emit"),
+            (true, true) => None,
+        };
+        let warning = missing.and_then(|missing| {
+            warning(format!("the medium {name:?} only absorbs: what it would {missing} is not rendered yet"))
+        });
         let scale = p.float_where("scale", 1.0, "a number of at least 0", |scale| scale >= 0.0)?;
         let id = MediumId(self.scene.media.len() as u32);
         self.scene.media.push(Medium { name: name.clone(), at: p.place.location(), absorption, scale });
-        self.media.insert(name, Some(id));
+        self.media.insert(name, NamedMedium { id: Some(id), warning });
         Ok(())
     }
 
@@ -56,18 +73,53 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
+    /// Notes whether the scene's integrator knows media.
+    pub(super) fn settle_media(&mut self, integrator: &str, place: &Place) {
+        self.scene.render.media = KNOWING.contains(&integrator);
+        self.without_media = (!self.scene.render.media).then(|| (integrator.to_owned(), place.clone()));
+    }
+
     /// What the next shape has on its sides.
-    pub(super) fn sides(&self, place: &Place) -> Result<Option<Sides>> {
+    pub(super) fn sides(&mut self, place: &Place) -> Result<Option<Sides>> {
         let Some(names) = self.state.media.clone() else { return Ok(None) };
-        let find = |name: &String| {
-            if name.is_empty() {
-                return Ok(None);
+        let [inside, outside] = [self.medium(&names[0], place)?, self.medium(&names[1], place)?];
+        // The same on both sides is no border.
+        if names[0] == names[1] {
+            return Ok(None);
+        }
+        names.iter().for_each(|name| self.use_medium(name));
+        Ok(Some(Sides { inside, outside }))
+    }
+
+    /// The medium around the camera: what was outside of shapes where it was written.
+    pub(super) fn medium_around(&mut self, name: &str, camera: &Place) -> Result<Option<MediumId>> {
+        let medium = self.medium(name, camera)?;
+        self.use_medium(name);
+        Ok(medium)
+    }
+
+    /// A medium by its name; the name of the vacuum is empty.
+    fn medium(&self, name: &str, place: &Place) -> Result<Option<MediumId>> {
+        if name.is_empty() {
+            return Ok(None);
+        }
+        let known = self.media.keys().map(String::as_str);
+        let named = self.media.get(name).ok_or_else(|| Self::unknown(place, "medium", name, known))?;
+        Ok(named.id)
+    }
+
+    /// Warns of what is not rendered of a medium, the first time that one is used.
+    fn use_medium(&mut self, name: &str) {
+        let Some(named) = self.media.get_mut(name) else { return };
+        match self.without_media.take() {
+            Some((integrator, place)) => {
+                let message = format!(
+                    "the integrator {integrator:?} knows no media, as in pbrt: light passes them as a vacuum; \"volpath\" knows them"
+                );
+                self.sources.warn(&place.location(), message);
             }
-            let known = self.media.keys().map(String::as_str);
-            self.media.get(name).copied().ok_or_else(|| Self::unknown(place, "medium", name, known))
-        };
-        let [inside, outside] = [find(&names[0])?, find(&names[1])?];
-        // the same on both sides is no border
-        Ok((inside != outside).then_some(Sides { inside, outside }))
+            None if self.scene.render.media => self.sources.warnings.extend(named.warning.take()),
+            None => {}
+        }
     }
 }

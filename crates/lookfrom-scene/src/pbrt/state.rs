@@ -69,6 +69,8 @@ pub(super) struct Entity {
 pub(super) struct Options {
     /// With the matrix from the world to its space.
     pub(super) camera: Option<(Entity, DMat4)>,
+    /// The name of the medium around the camera; empty is a vacuum.
+    pub(super) camera_medium: String,
     pub(super) film: Option<Entity>,
     pub(super) filter: Option<Entity>,
     pub(super) sampler: Option<Entity>,

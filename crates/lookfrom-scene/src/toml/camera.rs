@@ -55,6 +55,7 @@ pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
         lens: lens(table, w.dot(lookat - lookfrom), |focus| w.dot(focus - lookfrom))?,
         window: table.or("window", None, |value| window(value).map(Some))?,
         distance: table.or("distance", 1.0, Value::positive)?,
+        medium: None,
     })
 }
 

@@ -153,5 +153,6 @@ pub(super) fn render(table: &Table<'_>) -> Result<RenderSettings> {
             .or("light_sampler", default.light_sampler, |value| value.choice(LightSampler::WORDS))?,
         regularize: table.or("regularize", default.regularize, Value::boolean)?,
         occlusion_distance: table.or("occlusion_distance", default.occlusion_distance, above_zero)?,
+        media: default.media,
     })
 }

@@ -84,7 +84,7 @@ impl<'a> Story<'a> {
                 self.at(*address, |ray| ray.lights.push(report));
             }
             Event::Shaded { address, shading, beta, .. } => self.shaded(*address, shading, *beta),
-            Event::Found { address, light, radiance, light_pdf, weight } => {
+            Event::Found { address, light, radiance, light_pdf, weight, beta } => {
                 let report = FoundReport {
                     index: *light,
                     light: self.world.names.lights[*light as usize].clone(),
@@ -93,7 +93,13 @@ impl<'a> Story<'a> {
                     weight: *weight,
                     added: self.amount(Spectrum::BLACK),
                 };
-                self.at(*address, |ray| ray.found.push(report));
+                let share = self.factor(*beta);
+                self.at(*address, |ray| {
+                    if share != ray.share {
+                        ray.share_there = Some(share);
+                    }
+                    ray.found.push(report);
+                });
             }
             Event::AskedInVain { address, light, probability, sample } => {
                 let answer = sample

@@ -106,6 +106,8 @@ pub enum Event {
         light_pdf: f32,
         /// The share that this way of finding the light has.
         weight: f32,
+        /// The path's share there, after what was absorbed on the way.
+        beta: Spectrum,
     },
     /// One light of many was asked in vain.
     AskedInVain {

@@ -4,6 +4,7 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
 
 use crate::integrator::{Integrator, Next, Numbers, Path, Probe, Shadow, Term};
+use crate::material::InteriorStack;
 use crate::warp;
 use crate::world::World;
 
@@ -30,7 +31,7 @@ impl Integrator for AmbientOcclusion {
         }
         let surface = world.surface(&path.ray, hit);
         let [presence, _] = numbers.two(0);
-        if path.goes_through(world, &surface, presence) {
+        if path.goes_through(world, &surface, presence) || world.is_interface(&surface) {
             next.samples.paths.push(path.passed(&surface));
             return;
         }
@@ -55,7 +56,8 @@ impl Integrator for AmbientOcclusion {
             slot: path.slot,
             address: path.address,
             term: Term::Unoccluded,
-            media: path.media,
+            // Whether something is near does not depend on what fills the space between.
+            media: InteriorStack::default(),
         });
     }
 }

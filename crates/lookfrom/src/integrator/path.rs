@@ -127,17 +127,15 @@ impl Integrator for PathTracer {
         hit: &Hit,
         next: &mut Next<'_, P>,
     ) {
+        // Absorb on the way.
+        let mut path = path.absorbed(world, hit, &next.lanes(path));
+
         // A path that leaves the scene sees the sky.
         if !hit.is_hit() {
-            self.add_sky(world, path, next);
+            self.add_sky(world, &path, next);
             return;
         }
         let surface = world.surface(&path.ray, hit);
-
-        // Absorb on the way to the surface.
-        let length = Vec3::from_array(path.ray.direction).length() * hit.t;
-        let transmittance = world.transmittance(path.media, length, &next.lanes(path));
-        let mut path = Path { beta: path.beta * transmittance, ..*path };
 
         // Light passes where the surface is not there.
         let [presence, u] = match world.is_chancy(&surface) {
@@ -159,7 +157,8 @@ impl Integrator for PathTracer {
         let lanes = &mut next.samples.lanes[path.slot as usize];
         let arrival = Arrival { lanes, share: &mut path.beta, media: path.media, u };
         let Some(mut shading) = world.shading(&surface, arrival) else {
-            let media = path.media.crossed(&world.materials, &surface);
+            let direction = Vec3::from_array(path.ray.direction);
+            let media = path.media.leaving(&world.materials, &surface, direction, true);
             next.samples.paths.push(Path { media, ..path.passed(&surface) });
             return;
         };
@@ -233,7 +232,7 @@ impl PathTracer {
         if !survives || beta.is_black() {
             return;
         }
-        let media = if transmitted { path.media.crossed(&world.materials, surface) } else { path.media };
+        let media = path.media.leaving(&world.materials, surface, wi, transmitted);
         next.samples.paths.push(Path {
             ray: Ray::new(surface.origin(wi), wi.to_array()),
             beta: beta / survival,
@@ -286,7 +285,14 @@ impl PathTracer {
     ) {
         let weight = self.weight_of_found(path, &light_pdf);
         let address = path.address;
-        next.probe.notice(|| Event::Found { address, light, radiance, light_pdf: light_pdf(), weight });
+        next.probe.notice(|| Event::Found {
+            address,
+            light,
+            radiance,
+            light_pdf: light_pdf(),
+            weight,
+            beta: path.beta,
+        });
         next.add(path, Term::Found { light, weight }, path.beta * radiance * weight);
     }
 

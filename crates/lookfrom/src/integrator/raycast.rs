@@ -19,6 +19,7 @@ impl Integrator for Raycast {
         hit: &Hit,
         next: &mut Next<'_, P>,
     ) {
+        let path = &path.absorbed(world, hit, &next.lanes(path));
         if !hit.is_hit() {
             next.add(path, Term::Sky, path.beta * world.sky(&path.ray, &next.lanes(path)));
             return;

@@ -10,7 +10,7 @@ use lookfrom_bvh::{Hit, Left, Point, Ray};
 use crate::hash;
 use crate::integrator::{Event, Next, Path, Probe, Samples, Term};
 use crate::light::{LightSample, Target};
-use crate::material::{Coefficients, Media};
+use crate::material::{Coefficients, InteriorStack};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::texture::Lanes;
@@ -35,7 +35,7 @@ pub struct Shadow {
     /// Why it is added.
     pub term: Term,
     /// What it travels in.
-    pub media: Media,
+    pub media: InteriorStack,
 }
 
 impl Shadow {
@@ -63,14 +63,10 @@ impl Shadow {
                 toward(origin, guarded.leave(normal.to_array(), back).map(f64::from))
             }
         };
-        let Path { slot, address, mut media, .. } = *path;
+        let Path { slot, address, media, .. } = *path;
         // Through the surface of a body it travels in what is behind.
-        let may_cross = media != Media::default()
-            || surface.sides.is_some()
-            || world.materials[surface.material as usize].is_body();
-        if may_cross && (surface.ng.dot(sample.wi.as_dvec3()) > 0.0) != surface.front {
-            media = media.crossed(&world.materials, surface);
-        }
+        let crosses = (surface.ng.dot(sample.wi.as_dvec3()) > 0.0) != surface.front;
+        let media = media.leaving(&world.materials, surface, sample.wi, crosses);
         let left = surface.left;
         Self { ray, left, contribution, slot, address, term: Term::Light(light), media }
     }
@@ -173,8 +169,9 @@ impl Shadow {
     /// The part of the light that comes through what fills the rest of the way.
     fn reached(&self, world: &World, lanes: &Lanes) -> Spectrum {
         let length = Vec3::from_array(self.ray.direction).length() * self.ray.t_max;
-        // A medium that fills infinite space lets all through.
-        if length.is_finite() { world.transmittance(self.media, length, lanes) } else { lanes.one() }
+        // Lights infinitely far shine from twice the scene's radius away, as far as media are concerned, as in pbrt.
+        let is_far = length.is_infinite() && self.media.space().is_some();
+        world.transmittance(self.media, if is_far { 2.0 * world.radius } else { length }, lanes)
     }
 
     /// The part of the light that comes through to where the ray met `surface` and through it.
@@ -188,7 +185,7 @@ impl Shadow {
     ) -> Spectrum {
         let length = Vec3::from_array(self.ray.direction).length() * hit.t;
         let through_medium = world.transmittance(self.media, length, lanes);
-        if !world.is_there(surface, self.number(hit)) || world.is_interface(surface) {
+        if !world.is_there(surface, self.number(hit)) || world.has_media && world.is_interface(surface) {
             return through_medium;
         }
         if passing == Passing::Gaps {
@@ -214,7 +211,7 @@ impl Shadow {
         self.left = surface.left;
         self.ray.t_max -= hit.t;
         if world.is_there(surface, self.number(hit)) {
-            self.media = self.media.crossed(&world.materials, surface);
+            self.media = self.media.leaving(&world.materials, surface, direction, true);
         }
     }
 }

@@ -33,17 +33,15 @@ impl Integrator for Whitted {
         hit: &Hit,
         next: &mut Next<'_, P>,
     ) {
+        // Absorb on the way.
+        let path = &path.absorbed(world, hit, &next.lanes(path));
+
         // A ray that leaves the scene sees the sky.
         if !hit.is_hit() {
             next.add(path, Term::Sky, path.beta * world.sky(&path.ray, &next.lanes(path)));
             return;
         }
-
-        // Absorb on the way to the surface.
         let surface = world.surface(&path.ray, hit);
-        let length = Vec3::from_array(path.ray.direction).length() * hit.t;
-        let path =
-            &Path { beta: path.beta * world.transmittance(path.media, length, &next.lanes(path)), ..*path };
 
         // Light passes where the surface is not there: an only child, straight on.
         if path.goes_through(world, &surface, numbers.presence(world, &surface)) {
@@ -97,19 +95,18 @@ impl Whitted {
             return Err(Cut::Depth);
         }
         let ng = surface.ng_facing();
-        let (direction, media, last_bit) = match branch {
-            Branch::Mirrored => (same_side(direction, ng, 1.0), path.media, 0),
-            Branch::Refracted => {
-                (same_side(direction, ng, -1.0), path.media.crossed(&world.materials, surface), 1)
-            }
+        let (direction, last_bit) = match branch {
+            Branch::Mirrored => (same_side(direction, ng, 1.0), 0),
+            Branch::Refracted => (same_side(direction, ng, -1.0), 1),
         };
+        let crosses = branch == Branch::Refracted;
         Ok(Path {
             ray: Ray::new(surface.origin(direction), direction.to_array()),
             beta,
             slot: path.slot,
             depth: path.depth + 1,
             address: path.address << 1 | last_bit,
-            media,
+            media: path.media.leaving(&world.materials, surface, direction, crosses),
             departure: path.departure,
         })
     }

@@ -17,7 +17,7 @@ use super::place::{Compiler, Group};
 use super::{Instance, Names, World};
 use crate::camera::Camera;
 use crate::light::{Light, LightChoice};
-use crate::material::{self, Material};
+use crate::material::{self, InteriorStack, Material};
 use crate::math;
 use crate::shape::Form;
 use crate::texture::Textures;
@@ -27,12 +27,17 @@ impl World {
     ///
     /// # Errors
     /// `Invalid` for a camera that cannot see (see [`Camera::new`]) or a transform that cannot be inverted; `Limit` for
-    /// more than 2³² vertices or triangles in one shape.
+    /// more than 2³² vertices or triangles in one shape, or 2³¹ materials and media.
     pub fn compile(mut scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
         let written = scene.camera.clone().unwrap_or_default();
         let camera = Camera::new(&written, scene.image.width, scene.image.height)?;
         let origin = camera.lookfrom();
         let render_from_world = DMat4::from_translation(-origin);
+        let has_media = scene.render.media;
+        if scene.materials.len().saturating_add(scene.media.len()) > InteriorStack::MOST {
+            let message = format!("more than {} materials and media", InteriorStack::MOST);
+            return Err(Error::new(ErrorKind::Limit, &Location::default(), message));
+        }
         let mut textures = Textures::new(
             std::mem::take(&mut scene.textures).into_iter().map(|texture| texture.kind).collect(),
             std::mem::take(&mut scene.images),
@@ -128,7 +133,10 @@ impl World {
             instances,
             transmissive: materials.iter().any(|material| material.whitted.transmission != Color::BLACK),
             has_gaps: !alphas.is_empty()
-                || materials.iter().any(|material| material.kind == MaterialKind::Interface),
+                || has_media && materials.iter().any(|material| material.kind == MaterialKind::Interface),
+            has_media,
+            around_camera: InteriorStack::in_space(written.medium.filter(|_| has_media)),
+            radius,
             catcher_irradiance: catcher.map(|n| catcher::irradiance(&lights, &textures, n)),
             materials,
             alphas,

@@ -126,7 +126,7 @@ impl Compiler<'_> {
                 self.alphas.push(alpha);
                 self.alphas.len() as u32 - 1
             });
-        let sides = shape.sides.map(|sides| {
+        let sides = shape.sides.filter(|_| self.scene.render.media).map(|sides| {
             self.sides.push(sides);
             self.sides.len() as u32 - 1
         });

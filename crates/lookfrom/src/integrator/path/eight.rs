@@ -16,7 +16,6 @@ use crate::hash::GOLDEN;
 use crate::integrator::shadow;
 use crate::integrator::{Numbers, Path, Samples, Shadow, Term};
 use crate::light::Target;
-use crate::material::Media;
 use crate::sampler::eight::{PixelSamplers, mix};
 use crate::shape::{Form, Mesh};
 use crate::spectrum::Spectrum;
@@ -46,11 +45,7 @@ impl<'a> Plain<'a> {
         lanes: &Lanes,
         numbers: impl FnOnce() -> Numbers,
     ) -> Option<Self> {
-        if !hit.is_hit()
-            || hit.instance != NONE
-            || path.depth >= tracer.depth
-            || path.media != Media::default()
-        {
+        if !hit.is_hit() || hit.instance != NONE || path.depth >= tracer.depth || !path.media.is_empty() {
             return None;
         }
         let Form::Mesh(mesh) = &world.forms[hit.geometry as usize] else { return None };
