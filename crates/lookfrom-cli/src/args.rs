@@ -41,7 +41,7 @@ Examples:
   lookfrom render model.glb --size 512 --floor --background transparent
   lookfrom render model.stl --up 0,0,1 --turntable 36 -o 'around/{name}.png'
   lookfrom render a.toml b.toml -o pictures/             pictures/a.png, pictures/b.png
-  lookfrom render *.toml -o 'out/{name}-small.png' --width 160
+  lookfrom render */chair.obj -o 'out/{parent}.png'      out/oak.png, out/steel.png
   lookfrom render scene.toml -o - | display
   lookfrom render scene.pbrt --noise 0.02 --write-every 10s
   lookfrom render scene.pbrt --samples 16 --denoise
@@ -121,7 +121,10 @@ pub(crate) struct RenderArguments {
     /// Where to: a file (.png, .exr, .hdr, .pfm, .ppm), a folder, a pattern with {name}, or - for a PNG to stdout
     ///
     /// PNG and PPM are 8-bit sRGB after exposure and tone map; EXR, HDR and PFM are linear light as it was computed. Without
-    /// it: NAME.png in the current folder, by the name of the scene. For several scenes give a folder or a pattern.
+    /// it: NAME.png in the current folder, by the name of the scene. For several scenes give a folder or a pattern, in which
+    /// {name} is the scene's name without folder and extension, {dir} its folder as typed, {parent} the name of that folder,
+    /// {n} its number in the call, from 1, and {{ and }} are braces. Folders that are missing are made. No file that a scene
+    /// is made of is ever written over.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
 

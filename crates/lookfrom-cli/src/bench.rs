@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use lookfrom::film::Film;
 use lookfrom::render::{Enough, Frame, Rendered};
+use lookfrom_scene::Inputs;
 use lookfrom_scene::image::compare::{Sampled, compare};
 use serde::Serialize;
 
@@ -67,8 +68,10 @@ const HEADING: &str =
     "scene                     samples  seconds  Msamples/s   Mrays/s  relative MSE  error × s";
 
 fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure> {
-    let environment = prepare::environment(&arguments.overrides)?;
-    let mut prepared = prepare(path, &arguments.common, &arguments.overrides, environment.as_ref())?;
+    // Nothing is written that could take the place of an input.
+    let inputs = Inputs::default();
+    let environment = prepare::environment(&arguments.overrides, &inputs)?;
+    let mut prepared = prepare(path, &arguments.common, &arguments.overrides, environment.as_ref(), &inputs)?;
     exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
     let most = if arguments.time.is_some() { MOST_SAMPLES } else { SAMPLES };
     prepared.render.samples = arguments.overrides.samples.unwrap_or(most);
@@ -86,7 +89,7 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
 
     // What it is measured by.
     let reference = match &arguments.reference {
-        Some(file) => read(file, None)?,
+        Some(file) => read(file, None, &inputs)?,
         None => {
             let mut other = prepared.render.clone();
             (other.samples, other.seed) = (arguments.reference_samples, other.seed.wrapping_add(1));

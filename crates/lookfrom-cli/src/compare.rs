@@ -5,7 +5,7 @@ use std::path::Path;
 use lookfrom_scene::image::compare::{Comparison, Sampled, compare};
 use lookfrom_scene::image::flip::{PIXELS_PER_DEGREE, flip};
 use lookfrom_scene::image::{self, Channels};
-use lookfrom_scene::{Disk, Sources};
+use lookfrom_scene::{Disk, Inputs, Sources};
 use serde::Serialize;
 
 use crate::args::CompareArguments;
@@ -55,10 +55,11 @@ fn compare_all(arguments: &CompareArguments) -> Result<u8, Failure> {
             arguments.pictures.len()
         )));
     }
+    let inputs = Inputs::default();
     let mut shown = Vec::new();
     let mut code = DONE;
     for pair in arguments.pictures.chunks_exact(2) {
-        let (verdict, pictures) = compare_pair(&pair[0], &pair[1], arguments)?;
+        let (verdict, pictures) = compare_pair(&pair[0], &pair[1], arguments, &inputs)?;
         if !verdict.passed {
             code = BAD_SCENE;
         }
@@ -73,8 +74,7 @@ fn compare_all(arguments: &CompareArguments) -> Result<u8, Failure> {
         }
     }
     if let Some(path) = &arguments.html {
-        output::replace_file(path, html::report(&shown).as_bytes())
-            .map_err(|error| Failure::Output(format!("cannot write {}: {error}", path.display())))?;
+        output::replace_file(path, html::report(&shown).as_bytes(), &inputs, "--html")?;
     }
     Ok(code)
 }
@@ -90,9 +90,10 @@ fn compare_pair(
     picture: &Path,
     reference: &Path,
     arguments: &CompareArguments,
+    inputs: &Inputs,
 ) -> Result<(Verdict, Pictures), Failure> {
     let [of_picture, of_reference] = arguments.samples.map_or([None; 2], |samples| samples.map(Some));
-    let (a, b) = (read(picture, of_picture)?, read(reference, of_reference)?);
+    let (a, b) = (read(picture, of_picture, inputs)?, read(reference, of_reference, inputs)?);
     let Comparison { means, relative, rmse, relative_mse, noise } =
         compare(&a, &b).map_err(exit::in_scene(picture))?;
     let exposed = |of: &Sampled| exposed(of, arguments.exposure);
@@ -132,9 +133,10 @@ fn passes(verdict: &Verdict, arguments: &CompareArguments) -> bool {
     means && pixels && verdict.not_finite == 0
 }
 
-/// A picture of any format; only an EXR knows its noise.
-pub(crate) fn read(path: &Path, samples: Option<u64>) -> Result<Sampled, Failure> {
-    let mut sources = Sources::new(&Disk);
+/// A picture of any format, which joins `inputs`; only an EXR knows its noise.
+pub(crate) fn read(path: &Path, samples: Option<u64>, inputs: &Inputs) -> Result<Sampled, Failure> {
+    let files = inputs.record(&Disk, "the comparison");
+    let mut sources = Sources::new(&files);
     let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
     let file = if is_exr {
         image::read_exr(path, &mut sources)?

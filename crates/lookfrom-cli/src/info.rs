@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use glam::DVec3;
+use lookfrom_scene::Inputs;
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::settings::{Crop, Sampler, Tonemap};
 use serde::Serialize;
@@ -37,7 +38,7 @@ pub(crate) fn run(arguments: &InfoArguments) -> u8 {
 }
 
 fn info(path: &Path, arguments: &InfoArguments) -> Result<(), Failure> {
-    let prepared = prepare(path, &arguments.common, &Overrides::default(), None)?;
+    let prepared = prepare(path, &arguments.common, &Overrides::default(), None, &Inputs::default())?;
     if arguments.json {
         return answer(&as_json(path, &prepared).to_string());
     }

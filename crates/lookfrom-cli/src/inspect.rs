@@ -2,6 +2,7 @@
 
 use lookfrom::inspect;
 use lookfrom::render::{Frame, SampleId};
+use lookfrom_scene::Inputs;
 
 use crate::args::InspectArguments;
 use crate::exit::{self, DONE, Failure, say};
@@ -18,8 +19,10 @@ pub(crate) fn run(arguments: &InspectArguments) -> u8 {
 
 fn follow(arguments: &InspectArguments) -> Result<(), Failure> {
     prepare::use_threads(&arguments.common)?;
-    let environment = prepare::environment(&arguments.overrides)?;
-    let prepared = prepare(&arguments.scene, &arguments.common, &arguments.overrides, environment.as_ref())?;
+    let inputs = Inputs::default();
+    let environment = prepare::environment(&arguments.overrides, &inputs)?;
+    let InspectArguments { scene, common, overrides, .. } = arguments;
+    let prepared = prepare(scene, common, overrides, environment.as_ref(), &inputs)?;
     exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
     let &InspectArguments { x, y, sample, .. } = arguments;
     let (width, height) = (prepared.image.width, prepared.image.height);
@@ -36,16 +39,20 @@ fn follow(arguments: &InspectArguments) -> Result<(), Failure> {
     }
     let frame = Frame::new(&prepared.world, &prepared.image, &prepared.render)?;
     let id = SampleId { pixel: [x, y], sample };
-    report(&frame, id, arguments)
+    report(&frame, id, arguments, &inputs)
 }
 
 /// Answers as text or JSON, and with a drawing where one is asked for.
-fn report(frame: &Frame<'_>, id: SampleId, arguments: &InspectArguments) -> Result<(), Failure> {
+fn report(
+    frame: &Frame<'_>,
+    id: SampleId,
+    arguments: &InspectArguments,
+    inputs: &Inputs,
+) -> Result<(), Failure> {
     let inspection = inspect::inspect(frame, id);
     if let Some(path) = &arguments.svg {
         let drawing = inspect::svg(frame.world(), &inspection);
-        output::replace_file(path, drawing.as_bytes())
-            .map_err(|error| Failure::Output(format!("{}: {error}", path.display())))?;
+        output::replace_file(path, drawing.as_bytes(), inputs, "--svg")?;
     }
     let text = if arguments.json {
         serde_json::to_string_pretty(&inspection).map_err(|error| Failure::Output(error.to_string()))?

@@ -15,6 +15,7 @@ mod info;
 mod inspect;
 mod interrupt;
 mod layers;
+mod naming;
 mod output;
 mod overrides;
 mod prepare;

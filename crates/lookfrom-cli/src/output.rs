@@ -1,9 +1,8 @@
 //! Where pictures go and in which format: decided and tried before anything is rendered, and written so that a file is there
-//! as a whole or not at all.
+//! as a whole or not at all, and never in the place of one that was read.
 
-use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use lookfrom::develop::{srgb8_before, srgba8};
@@ -12,11 +11,9 @@ use lookfrom_scene::image::{
     encode_exr, encode_hdr, encode_pfm, encode_png, encode_png_with_alpha, encode_ppm,
 };
 use lookfrom_scene::settings::{Background, ImageSettings};
+use lookfrom_scene::{Disk, Inputs};
 
 use crate::exit::Failure;
-
-/// The stem of the scene in a pattern of names.
-const NAME: &str = "{name}";
 
 /// What lies behind a picture with alpha, where nothing has room for alpha: its background, or black.
 pub(crate) fn behind(image: &ImageSettings) -> [f32; 3] {
@@ -27,7 +24,7 @@ pub(crate) fn behind(image: &ImageSettings) -> [f32; 3] {
 }
 
 /// The formats of pictures, by extension.
-const FORMATS: [(&str, Format); 5] = [
+pub(crate) const FORMATS: [(&str, Format); 5] = [
     ("png", Format::Png),
     ("exr", Format::Exr),
     ("hdr", Format::Hdr),
@@ -123,35 +120,50 @@ impl Target {
         bytes.map_err(|error| Failure::Output(format!("{}: {}", self.name(), error.message)))
     }
 
+    /// Whether something is there already.
+    pub(crate) fn exists(&self) -> bool {
+        matches!(self, Self::File(path, _) if path.exists())
+    }
+
+    /// Refuses to write over a file that was read.
+    ///
+    /// # Errors
+    /// `Output` where this target is such a file.
+    pub(crate) fn keep_inputs(&self, inputs: &Inputs) -> Result<(), Failure> {
+        match self {
+            Self::Stdout => Ok(()),
+            Self::File(path, _) => keep_inputs(path, inputs, "-o"),
+        }
+    }
+
     /// Puts bytes there.
     ///
     /// # Errors
-    /// `Output` where that is not possible; what was there before is then still there.
-    pub(crate) fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
-        let written = match self {
-            Self::Stdout => std::io::stdout().write_all(bytes).and_then(|()| std::io::stdout().flush()),
-            Self::File(path, _) => replace_file(path, bytes),
-        };
-        written.map_err(|error| Failure::Output(format!("cannot write {}: {error}", self.name())))
+    /// `Output` where that is not possible or would overwrite an input; what was there before is then still there.
+    pub(crate) fn write(&self, bytes: &[u8], inputs: &Inputs) -> Result<(), Failure> {
+        match self {
+            Self::Stdout => std::io::stdout()
+                .write_all(bytes)
+                .and_then(|()| std::io::stdout().flush())
+                .map_err(|error| Failure::Output(format!("cannot write -: {error}"))),
+            Self::File(path, _) => replace_file(path, bytes, inputs, "-o"),
+        }
     }
 
-    /// Whether it seems that the picture can be put there.
-    fn check(&self) -> Result<(), Failure> {
+    /// Whether it seems that the picture can be put there. Folders that are missing are made when there is a picture.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
         let Self::File(path, _) = self else { return Ok(()) };
         let wrong = |message: String| Err(Failure::Output(message));
         if path.is_dir() {
             return wrong(format!("cannot write {}: it is a folder", path.display()));
         }
-        let folder = folder_of(path);
+        let mut folders = path.ancestors().skip(1).map(|folder| folder_or_here(Some(folder)));
+        let folder = folders.find(|folder| folder.exists()).unwrap_or(Path::new("."));
         if !folder.is_dir() {
-            return wrong(format!(
-                "cannot write {}: there is no folder {}",
-                path.display(),
-                folder.display()
-            ));
+            return wrong(format!("cannot write {}: {} is not a folder", path.display(), folder.display()));
         }
         // Permissions, full disks, read-only disks: trying is the only way to know.
-        let trial = partial(path);
+        let trial = folder.join(partial());
         if let Err(error) = File::create(&trial).and_then(|_| fs::remove_file(&trial)) {
             return wrong(format!("cannot write into the folder {}: {error}", folder.display()));
         }
@@ -159,154 +171,52 @@ impl Target {
     }
 }
 
-/// Where the pictures of scenes go, by what was typed after `-o`; everything that can be known before rendering is checked.
+/// Refuses to write over a file that was read; `option` says where another name can be given.
 ///
 /// # Errors
-/// `Usage` for an unknown format, several scenes for one file, or a picture to a terminal; `Output` where a folder is not there
-/// or cannot be written to.
-pub(crate) fn targets(scenes: &[PathBuf], output: Option<&Path>, json: bool) -> Result<Vec<Target>, Failure> {
-    let targets =
-        scenes.iter().map(|scene| target(scene, output, scenes.len())).collect::<Result<Vec<_>, _>>()?;
-    if targets.contains(&Target::Stdout) {
-        let usage = |message: &str| Err(Failure::Usage(message.to_owned()));
-        if json {
-            return usage("-o - and --json cannot both write to stdout; write the picture to a file");
-        }
-        if std::io::stdout().is_terminal() {
-            return usage(
-                "a picture is not written to a terminal; give -o a file, or send stdout to a pipe or file",
-            );
-        }
-    }
-    for (index, target) in targets.iter().enumerate() {
-        if let Some(other) = targets[..index].iter().position(|earlier| earlier == target) {
-            return Err(Failure::Usage(format!(
-                "the pictures of {} and {} would both be {}; render them in two calls with different -o",
-                scenes[other].display(),
-                scenes[index].display(),
-                target.name()
-            )));
-        }
-        target.check()?;
-    }
-    Ok(targets)
+/// `Output` where `path` leads to such a file.
+pub(crate) fn keep_inputs(path: &Path, inputs: &Inputs, option: &str) -> Result<(), Failure> {
+    let Some(input) = inputs.at(path, &Disk) else { return Ok(()) };
+    let name = input.path.display().to_string();
+    let what = match input.reader {
+        reader if reader == name => "the scene itself".to_owned(),
+        reader => format!("an input of {reader}"),
+    };
+    let spelled = if input.path == path { String::new() } else { format!(", by the name {name}") };
+    let extension = path.extension().unwrap_or_default().display();
+    Err(Failure::Output(format!(
+        "cannot write {}: it is {what}{spelled}\n  help: give the output another name: {option} other.{extension}",
+        path.display(),
+    )))
 }
 
-/// Where the picture of one of `count` scenes goes.
-fn target(scene: &Path, output: Option<&Path>, count: usize) -> Result<Target, Failure> {
-    let stem = scene.file_stem().unwrap_or(OsStr::new("picture"));
-    let mut default_name = stem.to_owned();
-    default_name.push(".png");
-    let file = |path: PathBuf| Ok(Target::File(path.clone(), format(&path)?));
-    let Some(output) = output else { return file(default_name.into()) };
-    if output == Path::new("-") {
-        return match count {
-            1 => Ok(Target::Stdout),
-            _ => Err(Failure::Usage(
-                "-o - is for one scene; give several a folder or a pattern with {name}".to_owned(),
-            )),
-        };
-    }
-    if let Some(pattern) = output.to_str().filter(|pattern| pattern.contains(NAME)) {
-        return file(pattern.replace(NAME, &stem.to_string_lossy()).into());
-    }
-    // Several scenes go into a folder; one goes there if it is there or its name ends like a folder's.
-    let ends_like_folder = output.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
-    if output.is_dir() || ends_like_folder {
-        return file(output.join(default_name));
-    }
-    if count == 1 {
-        return file(output.to_owned());
-    }
-    if output.exists()
-        || FORMATS.iter().any(|(extension, _)| Some(OsStr::new(extension)) == output.extension())
-    {
-        return Err(Failure::Usage(format!(
-            "{count} pictures do not fit into the one file {}; give -o a folder or a pattern with {NAME}",
-            output.display()
-        )));
-    }
-    file(output.join(default_name))
-}
-
-/// The format of a file by its extension.
-fn format(path: &Path) -> Result<Format, Failure> {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let known = FORMATS.iter().find(|(of_format, _)| *of_format == extension);
-    known.map(|&(_, format)| format).ok_or_else(|| {
-        let all = FORMATS.map(|(extension, _)| format!(".{extension}")).join(", ");
-        let found = if extension.is_empty() {
-            "no extension".to_owned()
-        } else {
-            format!("the extension .{extension}")
-        };
-        Failure::Usage(format!("{} has {found}; pictures are written as {all}", path.display()))
-    })
-}
-
-/// Writes a file beside the one that is meant, then lets it take its place.
-pub(crate) fn replace_file(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let partial = partial(path);
-    let written = OpenOptions::new()
-        .write(true)
-        .create(true)
-        .truncate(true)
-        .open(&partial)
+/// Writes a file beside the one that is meant, then lets it take its place. Folders that are missing are made.
+///
+/// # Errors
+/// `Output` where it cannot be written, or would take the place of an input; `option` as for [`keep_inputs`].
+pub(crate) fn replace_file(path: &Path, bytes: &[u8], inputs: &Inputs, option: &str) -> Result<(), Failure> {
+    keep_inputs(path, inputs, option)?;
+    let folder = folder_or_here(path.parent());
+    let partial = folder.join(partial());
+    let written = fs::create_dir_all(folder)
+        .and_then(|()| OpenOptions::new().write(true).create(true).truncate(true).open(&partial))
         .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
         .and_then(|()| fs::rename(&partial, path));
-    if written.is_err() {
+    if let Err(error) = written {
         // The first error is the one to tell of.
         let _ = fs::remove_file(&partial);
+        return Err(Failure::Output(format!("cannot write {}: {error}", path.display())));
     }
-    written
+    inputs.note_output(path, &Disk);
+    Ok(())
 }
 
-/// A name beside a file that no other process uses.
-fn partial(path: &Path) -> PathBuf {
-    folder_of(path).join(format!(".lookfrom-{}.partial", std::process::id()))
+/// A name for a file that no other process uses.
+fn partial() -> String {
+    format!(".lookfrom-{}.partial", std::process::id())
 }
 
-fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn of(scenes: &[&str], output: Option<&str>) -> Result<Vec<String>, u8> {
-        let scenes: Vec<PathBuf> = scenes.iter().map(PathBuf::from).collect();
-        let targets = scenes.iter().map(|scene| target(scene, output.map(Path::new), scenes.len()));
-        targets.map(|target| target.map(|target| target.name()).map_err(|failure| failure.code())).collect()
-    }
-
-    #[test]
-    fn numbers_of_pictures() {
-        let target = target(Path::new("a.b.toml"), Some(Path::new("x/")), 1).unwrap();
-        assert_eq!(target.numbered(7, 36).name(), "x/a.b-007.png");
-        assert_eq!(target.numbered(7, 10_001).name(), "x/a.b-00007.png");
-    }
-
-    #[test]
-    fn names_of_pictures() {
-        assert_eq!(of(&["a/b.toml"], None).unwrap(), ["b.png"]);
-        assert_eq!(of(&["a/b.toml", "c.ply"], None).unwrap(), ["b.png", "c.png"]);
-        assert_eq!(of(&["a/b.toml"], Some("x/y.EXR")).unwrap(), ["x/y.EXR"]);
-        assert_eq!(
-            of(&["a/b.toml", "c.ply"], Some("x/{name}/{name}.hdr")).unwrap(),
-            ["x/b/b.hdr", "x/c/c.hdr"]
-        );
-        assert_eq!(of(&["b.toml"], Some("x/")).unwrap(), ["x/b.png"]);
-        assert_eq!(of(&["b.toml", "c.ply"], Some("x")).unwrap(), ["x/b.png", "x/c.png"]);
-        assert_eq!(of(&["b.toml"], Some("-")).unwrap(), ["-"]);
-        for wrong in ["x", "x.toml", "x.jpg", ".png", "{name}"] {
-            assert_eq!(of(&["b.toml"], Some(wrong)), Err(2), "{wrong}");
-        }
-        for wrong in ["-", "x.png"] {
-            assert_eq!(of(&["b.toml", "c.ply"], Some(wrong)), Err(2), "{wrong}");
-        }
-    }
+/// The folder of a file by the path's parent.
+pub(crate) fn folder_or_here(parent: Option<&Path>) -> &Path {
+    parent.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

@@ -1,6 +1,6 @@
 //! From a file to a world that rays can meet: read, changed by the command line, furnished, compiled.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use lookfrom::world::World;
@@ -8,7 +8,7 @@ use lookfrom_scene::camera::Camera;
 use lookfrom_scene::image::{self, Image};
 use lookfrom_scene::scene::{Bounds, Origin};
 use lookfrom_scene::settings::{ImageSettings, RenderSettings};
-use lookfrom_scene::{Choice, Disk, Location, Sources, Warning, load, studio};
+use lookfrom_scene::{Choice, Disk, Inputs, Location, Sources, Warning, load, studio};
 
 use crate::args::{Common, Overrides};
 use crate::count::Counts;
@@ -43,17 +43,20 @@ pub(crate) struct Prepared {
 ///
 /// # Errors
 /// `Scene` where the file cannot be read or made into a world, `Usage` where the overrides do not suit it, `Strict` where it
-/// gives warnings that `--strict` does not allow. `environment` is that of the function of this name.
+/// gives warnings that `--strict` does not allow. `environment` is that of the function of this name; every file that is
+/// read joins `inputs`.
 pub(crate) fn prepare(
     path: &Path,
     common: &Common,
     overrides: &Overrides,
     environment: Option<&Image>,
+    inputs: &Inputs,
 ) -> Result<Prepared, Failure> {
     // Read.
     let started = Instant::now();
     let asked = &overrides.model;
-    let mut sources = Sources { choice: asked.choice(), ..Sources::new(&Disk) };
+    let files = inputs.record(&Disk, path.display().to_string());
+    let mut sources = Sources { choice: asked.choice(), ..Sources::new(&files) };
     let mut scene = load::scene(path, &mut sources)?;
     let mut warnings = sources.warnings;
     let mut warn = |message: &str| {
@@ -130,9 +133,19 @@ pub(crate) fn prepare(
 ///
 /// # Errors
 /// `Scene` where it cannot be read.
-pub(crate) fn environment(overrides: &Overrides) -> Result<Option<Image>, Failure> {
+pub(crate) fn environment(overrides: &Overrides, inputs: &Inputs) -> Result<Option<Image>, Failure> {
     let Some(path) = &overrides.model.environment else { return Ok(None) };
-    Ok(Some(image::read(path, &mut Sources::new(&Disk))?))
+    let files = inputs.record(&Disk, "--environment");
+    Ok(Some(image::read(path, &mut Sources::new(&files))?))
+}
+
+/// Reads scenes for nothing but the files that they read, which join `inputs`. What is wrong with them is told when they are
+/// prepared.
+pub(crate) fn read_ahead(scenes: &[PathBuf], overrides: &Overrides, inputs: &Inputs) {
+    for scene in scenes {
+        let files = inputs.record(&Disk, scene.display().to_string());
+        let _ = load::scene(scene, &mut Sources { choice: overrides.model.choice(), ..Sources::new(&files) });
+    }
 }
 
 /// Sets how many threads build and render. Call it once, before anything else.

@@ -6,18 +6,19 @@ use std::time::Instant;
 
 use lookfrom::denoise::denoised;
 use lookfrom::render::{End, Enough, Frame};
+use lookfrom_scene::Inputs;
 use lookfrom_scene::image::Image;
 use lookfrom_scene::settings::Layers;
 
 use crate::args::{Fireflies, Overrides, RenderArguments};
 use crate::exit::{self, DONE, Failure, INTERRUPTED, answer, say};
 use crate::header::{self, Taken};
-use crate::output::{self, Target};
+use crate::output::Target;
 use crate::prepare::{self, Prepared, prepare};
 use crate::preview::{Preview, SoFar};
 use crate::progress::Watcher;
 use crate::report::{self, Dropped, Seconds, Summary};
-use crate::{interrupt, layers};
+use crate::{interrupt, layers, naming};
 
 /// The most samples that a pixel can be given.
 const MOST_SAMPLES: u32 = 1 << 24;
@@ -27,7 +28,7 @@ const ADAPTIVE_NOISE: f64 = 0.02;
 
 /// Renders every scene; goes on after one that fails, with the code of the first failure.
 pub(crate) fn run(arguments: &RenderArguments) -> u8 {
-    let ready = output::targets(&arguments.scenes, arguments.output.as_deref(), arguments.json)
+    let ready = naming::targets(&arguments.scenes, arguments.output.as_deref(), arguments.json)
         .and_then(|targets| prepare::use_threads(&arguments.common).map(|()| targets));
     let ready = ready.and_then(|targets| match arguments.write_every {
         Some(_) if targets.contains(&Target::Stdout) => Err(Failure::Usage(
@@ -41,15 +42,21 @@ pub(crate) fn run(arguments: &RenderArguments) -> u8 {
         }
         _ => Ok(targets),
     });
-    let ready = ready.and_then(|targets| Ok((targets, prepare::environment(&arguments.overrides)?)));
+    let inputs = Inputs::default();
+    let ready = ready.and_then(|targets| Ok((targets, prepare::environment(&arguments.overrides, &inputs)?)));
     let (targets, environment) = match ready {
         Ok(ready) => ready,
         Err(failure) => return failure.report(),
     };
     interrupt::listen();
+    // A picture may be in the place of what a later scene reads. Where there is nothing yet, nothing can be lost.
+    if targets.len() > 1 && targets.iter().flat_map(|target| pictures(target, arguments)).any(|t| t.exists())
+    {
+        prepare::read_ahead(&arguments.scenes, &arguments.overrides, &inputs);
+    }
     let mut code = DONE;
     for (index, (scene, target)) in arguments.scenes.iter().zip(&targets).enumerate() {
-        let of_scene = match render_all(scene, target, arguments, environment.as_ref()) {
+        let of_scene = match render_all(scene, target, arguments, environment.as_ref(), &inputs) {
             Ok(of_scene) => of_scene,
             Err(failure) => {
                 let of_failure = failure.report();
@@ -69,24 +76,31 @@ pub(crate) fn run(arguments: &RenderArguments) -> u8 {
     code
 }
 
-/// Renders all pictures of one scene: one, or those of a turntable.
+/// Where the pictures of one scene go: one, or those of a turntable.
+fn pictures(target: &Target, arguments: &RenderArguments) -> Vec<Target> {
+    match arguments.turntable {
+        None => vec![target.clone()],
+        Some(count) => (0..count).map(|number| target.numbered(number, count)).collect(),
+    }
+}
+
+/// Renders all pictures of one scene.
 fn render_all(
     path: &Path,
     target: &Target,
     arguments: &RenderArguments,
     environment: Option<&Image>,
+    inputs: &Inputs,
 ) -> Result<u8, Failure> {
-    let Some(count) = arguments.turntable else {
-        return render(path, target, arguments, &arguments.overrides, environment, arguments.quiet);
-    };
+    let targets = pictures(target, arguments);
     let start = arguments.overrides.model.turn.unwrap_or(0.0);
-    for number in 0..count {
+    for number in 0..targets.len() {
         // Each picture is made as if it were the only one, so that it can be made, and inspected, alone.
         let mut overrides = arguments.overrides.clone();
-        overrides.model.turn = Some(start + 360.0 * f64::from(number) / f64::from(count));
-        let target = target.numbered(number, count);
-        let unheard = arguments.quiet || number > 0;
-        match render(path, &target, arguments, &overrides, environment, unheard)? {
+        if let Some(count) = arguments.turntable {
+            overrides.model.turn = Some(start + 360.0 * number as f64 / f64::from(count));
+        }
+        match render(path, &targets, number, arguments, &overrides, environment, inputs)? {
             DONE => {}
             code => return Ok(code),
         }
@@ -94,22 +108,27 @@ fn render_all(
     Ok(DONE)
 }
 
-/// Renders one picture and says what was done; gives the exit code.
+/// Renders picture `number` of a scene and says what was done; gives the exit code.
 fn render(
     path: &Path,
-    target: &Target,
+    targets: &[Target],
+    number: usize,
     arguments: &RenderArguments,
     overrides: &Overrides,
     environment: Option<&Image>,
-    are_warnings_known: bool,
+    inputs: &Inputs,
 ) -> Result<u8, Failure> {
+    let target = &targets[number];
     // Who says when there is enough wants the light as it comes.
     let is_limited = arguments.time.is_some() || arguments.noise.is_some() || arguments.adaptive;
     let denoise = overrides.denoise.or(is_limited.then_some(false));
     let overrides = &Overrides { denoise, ..overrides.clone() };
-    let mut prepared = prepare(path, &arguments.common, overrides, environment)?;
-    if !are_warnings_known {
-        exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
+    let mut prepared = prepare(path, &arguments.common, overrides, environment, inputs)?;
+    if number == 0 {
+        if !arguments.quiet {
+            exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
+        }
+        keep_inputs(path, targets, inputs)?;
     }
     // A limit of time or noise replaces the scene's number of samples, not that of the command line.
     if arguments.overrides.samples.is_none() && (arguments.time.is_some() || arguments.noise.is_some()) {
@@ -121,7 +140,7 @@ fn render(
     let frame = Frame::new(&prepared.world, &prepared.image, &prepared.render);
     let frame = frame.map_err(exit::in_scene(path))?;
     interrupt::keeping(|| {
-        let summary = render_frame(path, target, &prepared, &frame, arguments)?;
+        let summary = render_frame(path, target, &prepared, &frame, arguments, inputs)?;
         if !arguments.quiet {
             say(&summary.for_people());
         }
@@ -132,12 +151,27 @@ fn render(
     })
 }
 
+/// Refuses pictures in the place of files that were read, and a scene that reads a picture of this call.
+fn keep_inputs(path: &Path, targets: &[Target], inputs: &Inputs) -> Result<(), Failure> {
+    targets.iter().try_for_each(|target| target.keep_inputs(inputs))?;
+    let scene = path.display().to_string();
+    match inputs.own_output(&scene) {
+        None => Ok(()),
+        Some(input) => Err(Failure::Output(format!(
+            "{scene} reads {}, which this call has just written as the picture of another scene\n  help: render them \
+             in two calls, or give the pictures a folder of their own with -o",
+            input.path.display()
+        ))),
+    }
+}
+
 fn render_frame(
     path: &Path,
     target: &Target,
     prepared: &Prepared,
     frame: &Frame<'_>,
     arguments: &RenderArguments,
+    inputs: &Inputs,
 ) -> Result<Summary, Failure> {
     // Render, and write what there is in between.
     let noise = arguments.noise.or(arguments.adaptive.then_some(ADAPTIVE_NOISE));
@@ -146,7 +180,7 @@ fn render_frame(
     let (rendered, samples_done) = std::thread::scope(|scope| {
         let preview = arguments.write_every.map(|every| {
             let (preview, pictures) = Preview::start(every);
-            scope.spawn(move || write_previews(path, target, prepared, &pictures));
+            scope.spawn(move || write_previews(path, target, prepared, &pictures, inputs));
             preview
         });
         let watcher = Watcher::start(arguments.quiet, arguments.time, preview);
@@ -181,7 +215,7 @@ fn render_frame(
                 layers.extend(layers::noisy(&prepared.image, film.picture()));
             }
         }
-        target.write(&target.encode(&picture, &layers, &prepared.image, &attributes)?)?;
+        target.write(&target.encode(&picture, &layers, &prepared.image, &attributes)?, inputs)?;
     }
 
     let rays = rendered.rays;
@@ -220,13 +254,19 @@ fn render_frame(
 }
 
 /// Writes pictures as they come. One that cannot be written is told of once; the last one, by others, is what counts.
-fn write_previews(path: &Path, target: &Target, prepared: &Prepared, pictures: &Receiver<SoFar>) {
+fn write_previews(
+    path: &Path,
+    target: &Target,
+    prepared: &Prepared,
+    pictures: &Receiver<SoFar>,
+    inputs: &Inputs,
+) {
     let mut told = false;
     for (picture, mean) in pictures {
         let taken = Taken { samples: prepared.render.samples, mean: Some(mean), ..Taken::default() };
         let attributes = header::attributes(path, prepared, &taken);
         let bytes = target.encode(&picture, &[], &prepared.image, &attributes);
-        if let Err(failure) = bytes.and_then(|bytes| target.write(&bytes))
+        if let Err(failure) = bytes.and_then(|bytes| target.write(&bytes, inputs))
             && !told
         {
             say(&format!("warning: no preview: {failure}"));

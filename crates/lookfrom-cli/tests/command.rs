@@ -7,11 +7,13 @@ mod command {
     mod errors;
     mod guide;
     mod info;
+    mod inputs;
     mod inspect;
     #[cfg(unix)]
     mod interrupt;
     mod layers;
     mod models;
+    mod naming;
     mod render;
     mod stage;
 }

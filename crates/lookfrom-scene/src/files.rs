@@ -1,8 +1,9 @@
-//! The one door to outside bytes: the disk, or memory in tests and other doors, always within stated limits.
+//! The one door to outside bytes: the disk, or memory in tests and other doors, always within stated limits. What goes
+//! through it is remembered where [`Inputs`](crate::inputs::Inputs) keep the door.
 
 use std::collections::HashMap;
 use std::io::{ErrorKind as IoKind, Read};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use crate::error::{Error, ErrorKind, Location, Result, Warning};
 
@@ -32,6 +33,26 @@ pub trait Files: Sync {
     /// # Errors
     /// `Io` when it cannot be read, `Limit` when it is longer than `limit`.
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>>;
+
+    /// Which file a path leads to, whether it exists or not: two paths with an identity in common lead to the same file.
+    /// Without an implementation of its own, a file is its path.
+    fn identities(&self, path: &Path) -> Vec<FileId> {
+        vec![FileId::Path(path.to_owned())]
+    }
+}
+
+/// An identity of a file. A file may have several.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum FileId {
+    /// The path, on a disk absolute and with all links resolved.
+    Path(PathBuf),
+    /// The file system's own number: the same for hard links, and for names in upper and lower case where these are one.
+    Number {
+        /// The file system.
+        device: u64,
+        /// The file in it (inode).
+        file: u64,
+    },
 }
 
 /// What is read, in bytes, of something that does not say how long it is.
@@ -70,6 +91,38 @@ impl Files for Disk {
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| io(&e))?;
         if bytes.len() as u64 > limit { Err(too_long(&at, limit)) } else { Ok(bytes) }
     }
+
+    fn identities(&self, path: &Path) -> Vec<FileId> {
+        let mut identities = vec![FileId::Path(resolved(path))];
+        #[cfg(unix)]
+        if let Ok(metadata) = std::fs::metadata(path) {
+            use std::os::unix::fs::MetadataExt;
+            identities.push(FileId::Number { device: metadata.dev(), file: metadata.ino() });
+        }
+        identities
+    }
+}
+
+/// A path that is absolute and has no links, as far as it exists.
+fn resolved(path: &Path) -> PathBuf {
+    if let Ok(resolved) = std::fs::canonicalize(path) {
+        return resolved;
+    }
+    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let mut resolved = PathBuf::new();
+    for component in absolute.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                resolved.pop();
+            }
+            other => {
+                resolved.push(other);
+                resolved = std::fs::canonicalize(&resolved).unwrap_or(resolved);
+            }
+        }
+    }
+    resolved
 }
 
 fn too_long(at: &Location, limit: u64) -> Error {

@@ -2,7 +2,7 @@
 
 /// The candidate that is the fewest edits away, if that is near enough to be a slip of the hand; the first in the
 /// alphabet among equals.
-pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word: Vec<char> = word.chars().flat_map(char::to_lowercase).collect();
     let near_enough = (word.len() / 3).max(1);
     if word.len() > 64 {

@@ -33,10 +33,12 @@ fn an_output_that_cannot_be_is_refused_before_rendering() {
     endless(&stage);
     stage.run("render endless.toml -o p.jpg").fails(2, &["p.jpg", ".jpg", ".png, .exr, .hdr, .pfm, .ppm"]);
     stage.run("render endless.toml -o picture").fails(2, &["no extension"]);
-    stage.run("render endless.toml -o nowhere/p.png").fails(3, &["no folder nowhere"]);
-    stage.run("render endless.toml -o nowhere/").fails(3, &["no folder nowhere"]);
+    stage.run("render endless.toml -o scene.toml/p.png").fails(3, &["scene.toml is not a folder"]);
+    stage.run("render endless.toml -o scene.toml/new/").fails(3, &["scene.toml is not a folder"]);
     std::fs::create_dir(stage.path("folder.png")).unwrap();
-    stage.run("render endless.toml scene.toml -o {name}/p.png").fails(3, &["no folder endless"]);
+    stage
+        .run("render endless.toml scene.toml -o {name}.toml/p.png")
+        .fails(3, &["endless.toml is not a folder"]);
     stage.run("render endless.toml scene.toml -o p.png").fails(2, &["one file p.png", "{name}"]);
     stage.run("render endless.toml scene.toml -o -").fails(2, &["one scene"]);
     stage.run("render endless.toml endless.toml").fails(2, &["both be endless.png"]);

@@ -31,5 +31,7 @@ fn an_inspection_in_words_and_as_a_drawing() {
         assert!(text.contains(word), "{word:?} is not in: {text}");
     }
     assert!(String::from_utf8(stage.bytes("rays.svg")).unwrap().contains("<svg"));
-    stage.run("inspect scene.toml 20 14 --svg nowhere/rays.svg").fails(3, &["nowhere/rays.svg"]);
+    stage
+        .run("inspect scene.toml 20 14 --svg model.obj/rays.svg")
+        .fails(3, &["cannot write model.obj/rays.svg"]);
 }

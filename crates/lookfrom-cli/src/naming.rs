@@ -1,0 +1,286 @@
+//! What pictures are called: by the names of their scenes, and by what was typed after `-o`.
+
+use std::collections::HashMap;
+use std::ffi::{OsStr, OsString};
+use std::io::IsTerminal;
+use std::path::{Component, Path, PathBuf};
+
+use lookfrom_scene::suggest::nearest;
+use lookfrom_scene::{Disk, Files};
+
+use crate::exit::Failure;
+use crate::output::{FORMATS, Format, Target, folder_or_here};
+
+/// What a pattern can say of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Word {
+    /// Its name without folder and extension.
+    Name,
+    /// Its folder, as typed.
+    Dir,
+    /// The name of its folder.
+    Parent,
+    /// Its number in the call, from 1, with as many digits as the number of the last.
+    Number,
+}
+
+/// The words of patterns.
+const WORDS: [(&str, Word); 4] =
+    [("name", Word::Name), ("dir", Word::Dir), ("parent", Word::Parent), ("n", Word::Number)];
+
+/// A part of a pattern.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Piece {
+    Text(String),
+    Word(Word),
+}
+
+/// A scene among those of a call.
+#[derive(Clone, Copy)]
+struct Numbered<'a> {
+    scene: &'a Path,
+    /// From 0.
+    index: usize,
+    count: usize,
+}
+
+/// Where the pictures of scenes go, by what was typed after `-o`; everything that can be known before scenes are read is
+/// checked.
+///
+/// # Errors
+/// `Usage` for an unknown format, several scenes for one file, a pattern that makes no sense, or a picture to a terminal;
+/// `Output` where a folder cannot be written to.
+pub(crate) fn targets(scenes: &[PathBuf], output: Option<&Path>, json: bool) -> Result<Vec<Target>, Failure> {
+    let count = scenes.len();
+    let numbered = |(index, scene): (usize, &'_ PathBuf)| target(Numbered { scene, index, count }, output);
+    let targets = scenes.iter().enumerate().map(numbered).collect::<Result<Vec<_>, _>>()?;
+    if targets.contains(&Target::Stdout) {
+        let usage = |message: &str| Err(Failure::Usage(message.to_owned()));
+        if json {
+            return usage("-o - and --json cannot both write to stdout; write the picture to a file");
+        }
+        if std::io::stdout().is_terminal() {
+            return usage(
+                "a picture is not written to a terminal; give -o a file, or send stdout to a pipe or file",
+            );
+        }
+    }
+    let mut taken = HashMap::new();
+    for (index, target) in targets.iter().enumerate() {
+        let Target::File(path, _) = target else { continue };
+        for identity in Disk.identities(path) {
+            match taken.insert(identity, index) {
+                Some(other) if other != index => {
+                    return Err(same_name(&scenes[other], &scenes[index], path));
+                }
+                _ => {}
+            }
+        }
+        target.check()?;
+    }
+    Ok(targets)
+}
+
+/// The error that two pictures would be one file.
+fn same_name(first: &Path, second: &Path, path: &Path) -> Failure {
+    let extension = path.extension().unwrap_or_default().display();
+    Failure::Usage(format!(
+        "the pictures of {} and {} would both be {}\n  help: tell them apart by the folders of the scenes or by number: \
+         -o 'pictures/{{parent}}-{{name}}.{extension}', 'pictures/{{dir}}/{{name}}.{extension}' or 'pictures/{{n}}-{{name}}.{extension}'",
+        first.display(),
+        second.display(),
+        path.display(),
+    ))
+}
+
+/// Where the picture of a scene goes.
+fn target(of: Numbered<'_>, output: Option<&Path>) -> Result<Target, Failure> {
+    let mut default_name = stem(of.scene).to_owned();
+    default_name.push(".png");
+    let file = |path: PathBuf| Ok(Target::File(path.clone(), format(&path)?));
+    let Some(output) = output else { return file(default_name.into()) };
+    if output == Path::new("-") {
+        return match of.count {
+            1 => Ok(Target::Stdout),
+            _ => Err(Failure::Usage(
+                "-o - is for one scene; give several a folder or a pattern with {name}".to_owned(),
+            )),
+        };
+    }
+    // What is no text has no words.
+    let pieces = output.to_str().map(pieces).transpose()?;
+    let has_words = pieces.iter().flatten().any(|piece| matches!(piece, Piece::Word(_)));
+    let output = pieces.map_or_else(|| output.to_owned(), |pieces| filled(&pieces, of));
+    // Several scenes go into a folder; one goes there if it is there or its name ends like a folder's.
+    let ends_like_folder = output.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
+    if output.is_dir() || ends_like_folder {
+        return file(output.join(default_name));
+    }
+    if of.count == 1 || has_words {
+        return file(output);
+    }
+    if output.exists()
+        || FORMATS.iter().any(|(extension, _)| Some(OsStr::new(extension)) == output.extension())
+    {
+        return Err(Failure::Usage(format!(
+            "{} pictures do not fit into the one file {}; give -o a folder or a pattern with {{name}}",
+            of.count,
+            output.display()
+        )));
+    }
+    file(output.join(default_name))
+}
+
+/// The parts of a pattern: `{word}` is a word, `{{` and `}}` are braces.
+fn pieces(typed: &str) -> Result<Vec<Piece>, Failure> {
+    let wrong = |what: String, hint: String| {
+        Err(Failure::Usage(format!("-o {typed}: {what}\n  help: {hint}; {{{{ and }}}} stand for braces")))
+    };
+    let known = || WORDS.map(|(word, _)| format!("{{{word}}}")).join(", ");
+    let mut pieces = Vec::new();
+    let mut text = String::new();
+    let mut rest = typed;
+    while let Some(at) = rest.find(['{', '}']) {
+        text.push_str(&rest[..at]);
+        let (brace, behind) = rest[at..].split_at(1);
+        if let Some(behind) = behind.strip_prefix(brace) {
+            text.push_str(brace);
+            rest = behind;
+            continue;
+        }
+        let Some((word, behind)) = behind.split_once('}').filter(|_| brace == "{") else {
+            return wrong(format!("a single {brace}"), format!("what can stand in braces is {}", known()));
+        };
+        let Some(&(_, found)) = WORDS.iter().find(|(known, _)| *known == word) else {
+            let near = nearest(word, WORDS.map(|(word, _)| word));
+            let meant = near.map_or(String::new(), |near| format!("did you mean {{{near}}}? "));
+            return wrong(format!("there is no {{{word}}}"), format!("{meant}there are {}", known()));
+        };
+        pieces.extend([Piece::Text(std::mem::take(&mut text)), Piece::Word(found)]);
+        rest = behind;
+    }
+    pieces.push(Piece::Text(text + rest));
+    Ok(pieces)
+}
+
+/// What a pattern comes to for a scene.
+fn filled(pieces: &[Piece], Numbered { scene, index, count }: Numbered<'_>) -> PathBuf {
+    let mut name = OsString::new();
+    let folder = folder_or_here(scene.parent());
+    for piece in pieces {
+        match piece {
+            Piece::Text(text) => name.push(text),
+            Piece::Word(Word::Name) => name.push(stem(scene)),
+            Piece::Word(Word::Dir) => name.push(folder),
+            Piece::Word(Word::Parent) => name.push(name_of_folder(folder)),
+            Piece::Word(Word::Number) => {
+                let digits = count.to_string().len();
+                name.push(format!("{:0digits$}", index + 1));
+            }
+        }
+    }
+    name.into()
+}
+
+/// The last name in the path of a folder; where that is `.` or `..`, the name that the file system has.
+fn name_of_folder(folder: &Path) -> OsString {
+    if let Some(Component::Normal(name)) = folder.components().next_back() {
+        return name.to_owned();
+    }
+    let resolved = folder.canonicalize().unwrap_or_default();
+    resolved.file_name().unwrap_or_default().to_owned()
+}
+
+fn stem(scene: &Path) -> &OsStr {
+    scene.file_stem().unwrap_or(OsStr::new("picture"))
+}
+
+/// The format of a file by its extension.
+fn format(path: &Path) -> Result<Format, Failure> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let known = FORMATS.iter().find(|(of_format, _)| *of_format == extension);
+    known.map(|&(_, format)| format).ok_or_else(|| {
+        let all = FORMATS.map(|(extension, _)| format!(".{extension}")).join(", ");
+        let found = if extension.is_empty() {
+            "no extension".to_owned()
+        } else {
+            format!("the extension .{extension}")
+        };
+        Failure::Usage(format!("{} has {found}; pictures are written as {all}", path.display()))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(scenes: &[&str], output: Option<&str>) -> Result<Vec<String>, u8> {
+        let count = scenes.len();
+        let numbered = |(index, scene): (usize, &&str)| {
+            let target = target(Numbered { scene: Path::new(scene), index, count }, output.map(Path::new));
+            target.map(|target| target.name()).map_err(|failure| failure.code())
+        };
+        scenes.iter().enumerate().map(numbered).collect()
+    }
+
+    #[test]
+    fn names_of_pictures() {
+        assert_eq!(of(&["a/b.toml"], None).unwrap(), ["b.png"]);
+        assert_eq!(of(&["a/b.toml", "c.ply"], None).unwrap(), ["b.png", "c.png"]);
+        assert_eq!(of(&["a/b.toml"], Some("x/y.EXR")).unwrap(), ["x/y.EXR"]);
+        assert_eq!(
+            of(&["a/b.toml", "c.ply"], Some("x/{name}/{name}.hdr")).unwrap(),
+            ["x/b/b.hdr", "x/c/c.hdr"]
+        );
+        assert_eq!(of(&["b.toml"], Some("x/")).unwrap(), ["x/b.png"]);
+        assert_eq!(of(&["b.toml", "c.ply"], Some("x")).unwrap(), ["x/b.png", "x/c.png"]);
+        assert_eq!(of(&["b.toml"], Some("-")).unwrap(), ["-"]);
+        for wrong in ["x", "x.toml", "x.jpg", ".png", "{name}"] {
+            assert_eq!(of(&["b.toml"], Some(wrong)), Err(2), "{wrong}");
+        }
+        for wrong in ["-", "x.png"] {
+            assert_eq!(of(&["b.toml", "c.ply"], Some(wrong)), Err(2), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn words_of_patterns() {
+        let scenes = ["a/b/s.toml", "/c/s.toml", "s.toml"];
+        let names = |output: &str| of(&scenes, Some(output)).unwrap();
+        assert_eq!(names("{dir}/{name}.png"), ["a/b/s.png", "/c/s.png", "./s.png"]);
+        assert_eq!(names("{parent}-{name}.png")[..2], ["b-s.png", "c-s.png"]);
+        assert_eq!(names("x/{parent}/")[..2], ["x/b/s.png", "x/c/s.png"]);
+        assert_eq!(names("{n}.exr"), ["1.exr", "2.exr", "3.exr"]);
+        assert_eq!(of(&["s.toml"; 10], Some("{n}-{name}.png")).unwrap()[8..], ["09-s.png", "10-s.png"]);
+        // A folder without a name of its own has that of the file system: tests run in the folder of the crate.
+        assert_eq!(names("{parent}.png")[2], "lookfrom-cli.png");
+        assert_eq!(of(&["./s.toml"], Some("{parent}.png")).unwrap(), ["lookfrom-cli.png"]);
+        assert_eq!(of(&["../s.toml"], Some("{parent}.png")).unwrap(), ["crates.png"]);
+    }
+
+    #[test]
+    fn braces_are_doubled() {
+        assert_eq!(of(&["{n}.toml"], Some("{{{name}}}-{{name}}.png")).unwrap(), ["{{n}}-{name}.png"]);
+        for wrong in
+            ["{nam}.png", "{}.png", "{name.png", "name}.png", "{{name}.png", "{Name}.png", "{ n }.png"]
+        {
+            assert_eq!(of(&["a.toml"], Some(wrong)), Err(2), "{wrong}");
+        }
+        let message = |typed: &str| pieces(typed).unwrap_err().to_string();
+        let all = "there are {name}, {dir}, {parent}, {n}; {{ and }} stand for braces";
+        assert_eq!(
+            message("{nam}.png"),
+            format!("-o {{nam}}.png: there is no {{nam}}\n  help: did you mean {{name}}? {all}")
+        );
+        assert_eq!(message("{width}"), format!("-o {{width}}: there is no {{width}}\n  help: {all}"));
+        assert!(message("a}").starts_with("-o a}: a single }\n  help: what can stand in braces is {name}, "));
+    }
+
+    #[test]
+    fn numbers_of_pictures() {
+        let numbered = Numbered { scene: Path::new("a.b.toml"), index: 0, count: 1 };
+        let target = target(numbered, Some(Path::new("x/"))).unwrap();
+        assert_eq!(target.numbered(7, 36).name(), "x/a.b-007.png");
+        assert_eq!(target.numbered(7, 10_001).name(), "x/a.b-00007.png");
+    }
+}
