@@ -13,7 +13,7 @@ use crate::args::BenchArguments;
 use crate::compare::read;
 use crate::exit::{self, DONE, Failure, answer, say};
 use crate::prepare::{self, prepare};
-use crate::report;
+use crate::{json, report};
 
 /// Samples a pixel where nobody said.
 const SAMPLES: u32 = 16;
@@ -50,9 +50,7 @@ pub(crate) fn run(arguments: &BenchArguments) -> u8 {
             if std::mem::take(&mut heading) {
                 answer(HEADING)?;
             }
-            // It has neither maps nor types that could fail.
-            let json = || serde_json::to_string(&measured).unwrap_or_default();
-            answer(&if arguments.json { json() } else { measured.row() })
+            answer(&if arguments.json { json::line(&measured) } else { measured.row() })
         });
         if let Err(failure) = told {
             let of_scene = failure.report();

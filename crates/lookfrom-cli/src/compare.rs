@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::args::CompareArguments;
 use crate::exit::{self, BAD_SCENE, DONE, Failure, answer, say};
 use crate::html::{self, Shown};
-use crate::output;
+use crate::{json, output};
 
 /// Noise in a mean is no reason to call it wrong: up to this many standard errors.
 const MOST_STANDARD_ERRORS_OF_MEAN: f64 = 3.5;
@@ -64,8 +64,7 @@ fn compare_all(arguments: &CompareArguments) -> Result<u8, Failure> {
             code = BAD_SCENE;
         }
         if arguments.json {
-            // It has neither maps nor types that could fail.
-            answer(&serde_json::to_string(&verdict).unwrap_or_default())?;
+            answer(&json::line(&verdict))?;
         } else {
             answer(&verdict.for_people())?;
         }

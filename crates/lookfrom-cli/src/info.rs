@@ -1,5 +1,7 @@
 //! `lookfrom info`: what is in scenes and models, and what they become.
 
+mod object;
+
 use std::fmt::Write;
 use std::path::Path;
 
@@ -8,14 +10,15 @@ use lookfrom_scene::Inputs;
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::settings::{Crop, Sampler, Tonemap};
 use serde::Serialize;
-use serde_json::{Value, json};
+
+use self::object::Object;
 
 use crate::args::{InfoArguments, Overrides};
 use crate::count::Counts;
 use crate::exit::{self, DONE, Failure, answer, say};
 use crate::prepare::{self, Prepared, prepare};
 use crate::report::{self, bytes, thousands};
-use crate::values;
+use crate::{json, values};
 
 /// Describes every scene; goes on after one that fails, with the code of the first failure.
 pub(crate) fn run(arguments: &InfoArguments) -> u8 {
@@ -40,7 +43,7 @@ pub(crate) fn run(arguments: &InfoArguments) -> u8 {
 fn info(path: &Path, arguments: &InfoArguments) -> Result<(), Failure> {
     let prepared = prepare(path, &arguments.common, &Overrides::default(), None, &Inputs::default())?;
     if arguments.json {
-        return answer(&as_json(path, &prepared).to_string());
+        return answer(&json::line(&Object::new(path, &prepared)));
     }
     exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
     answer(&for_people(path, &prepared))
@@ -66,66 +69,6 @@ fn tree(prepared: &Prepared) -> Tree {
         memory_bytes: bvh.memory(),
         left_out: statistics.left_out,
     }
-}
-
-fn as_json(path: &Path, prepared: &Prepared) -> Value {
-    let Prepared { image, render, bounds, counts, .. } = prepared;
-    let crop = image.crop.map(|Crop { x0, y0, x1, y1 }| [x0, y0, x1, y1]);
-    let bounds =
-        (!bounds.is_empty()).then(|| json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() }));
-    let mut object = json!({
-        "scene": path.display().to_string(),
-        "bounds": bounds,
-        "camera": camera_as_json(&prepared.camera),
-        "image": {
-            "width": image.width,
-            "height": image.height,
-            "crop": crop,
-            "filter": values::filter_name(&image.filter),
-            "exposure": image.exposure,
-            "tonemap": values::name(Tonemap::WORDS, &image.tonemap),
-            "denoise": image.denoise,
-        },
-        "render": {
-            "integrator": render.integrator.word(),
-            "samples": render.samples,
-            "depth": render.depth,
-            "min_contribution": render.min_contribution,
-            "sampler": values::name(Sampler::WORDS, &render.sampler),
-            "seed": render.seed,
-            "transparent_shadows": render.transparent_shadows,
-        },
-        "bvh": tree(prepared),
-        "seconds": { "read": report::seconds(prepared.read), "build": report::seconds(prepared.build) },
-        "added": prepared.added,
-        "warnings": prepared.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
-    });
-    if let (Value::Object(object), Value::Object(counts)) = (&mut object, json!(counts)) {
-        object.extend(counts);
-    }
-    object
-}
-
-fn camera_as_json(camera: &Camera) -> Value {
-    let mut object = match camera.view {
-        View::Look { lookfrom, lookat, up } => json!({
-            "lookfrom": lookfrom.to_array(),
-            "lookat": lookat.to_array(),
-            "up": up.to_array(),
-        }),
-        View::Matrix(matrix) => json!({ "matrix_by_columns": matrix.to_cols_array() }),
-    };
-    match camera.projection {
-        Projection::Perspective { fov } => object["fov"] = json!(fov),
-        Projection::Orthographic { height } => object["height"] = json!(height),
-        Projection::Equirectangular => object["projection"] = json!("equirectangular"),
-        Projection::Octahedral => object["projection"] = json!("octahedral"),
-    }
-    if let Some(lens) = camera.lens {
-        object["lens_radius"] = json!(lens.radius);
-        object["focus_distance"] = json!(lens.focus_distance);
-    }
-    object
 }
 
 fn for_people(path: &Path, prepared: &Prepared) -> String {
@@ -218,6 +161,15 @@ fn contents(counts: &Counts, line: &mut impl FnMut(&str, String)) {
     line("lights", kinds(&counts.lights));
 }
 
+fn projection_in_words(projection: Projection) -> String {
+    match projection {
+        Projection::Perspective { fov } => format!("fov {}°", digits(fov)),
+        Projection::Orthographic { height } => format!("parallel rays, height {}", digits(height)),
+        Projection::Equirectangular => "all around by latitude and longitude".to_owned(),
+        Projection::Octahedral => "all around on an octahedral square".to_owned(),
+    }
+}
+
 fn camera_in_words(camera: &Camera) -> String {
     let mut text = match camera.view {
         View::Look { lookfrom, lookat, up } => {
@@ -225,12 +177,7 @@ fn camera_in_words(camera: &Camera) -> String {
         }
         View::Matrix(matrix) => format!("lookfrom {}, by a matrix", numbers(matrix.w_axis.truncate())),
     };
-    let _ = match camera.projection {
-        Projection::Perspective { fov } => write!(text, ", fov {fov}°"),
-        Projection::Orthographic { height } => write!(text, ", parallel rays, height {height}"),
-        Projection::Equirectangular => write!(text, ", all around by latitude and longitude"),
-        Projection::Octahedral => write!(text, ", all around on an octahedral square"),
-    };
+    let _ = write!(text, ", {}", projection_in_words(camera.projection));
     if let Some(lens) = camera.lens {
         let _ =
             write!(text, ", lens of radius {} sharp at {}", digits(lens.radius), digits(lens.focus_distance));

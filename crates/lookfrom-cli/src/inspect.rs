@@ -6,8 +6,8 @@ use lookfrom_scene::Inputs;
 
 use crate::args::InspectArguments;
 use crate::exit::{self, DONE, Failure, say};
-use crate::output;
 use crate::prepare::{self, prepare};
+use crate::{json, output};
 
 /// Inspects one sample of one pixel.
 pub(crate) fn run(arguments: &InspectArguments) -> u8 {
@@ -54,10 +54,6 @@ fn report(
         let drawing = inspect::svg(frame.world(), &inspection);
         output::replace_file(path, drawing.as_bytes(), inputs, "--svg")?;
     }
-    let text = if arguments.json {
-        serde_json::to_string_pretty(&inspection).map_err(|error| Failure::Output(error.to_string()))?
-    } else {
-        inspection.to_string()
-    };
+    let text = if arguments.json { json::document(&inspection) } else { inspection.to_string() };
     exit::answer(text.trim_end())
 }

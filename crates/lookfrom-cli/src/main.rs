@@ -14,6 +14,7 @@ mod html;
 mod info;
 mod inspect;
 mod interrupt;
+mod json;
 mod layers;
 mod naming;
 mod output;

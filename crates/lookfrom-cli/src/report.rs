@@ -9,6 +9,7 @@ use lookfrom::render::Rays;
 use serde::Serialize;
 
 use crate::exit::Failure;
+use crate::json;
 
 /// What was done for one scene. The names are those of the JSON object, which docs/guide/command.md explains.
 #[derive(Debug, Serialize)]
@@ -85,8 +86,7 @@ impl From<Address> for DroppedAddress {
 impl Summary {
     /// The summary as one line of JSON.
     pub(crate) fn as_json(&self) -> String {
-        // It has neither maps nor types that could fail.
-        serde_json::to_string(self).unwrap_or_default()
+        json::line(self)
     }
 
     /// The summary for a person.
@@ -150,7 +150,12 @@ impl Summary {
 
 /// What is said of a scene that could not be rendered, as JSON.
 pub(crate) fn failure(scene: &Path, failure: &Failure) -> String {
-    serde_json::json!({ "scene": scene.display().to_string(), "error": failure.to_string() }).to_string()
+    #[derive(Serialize)]
+    struct Failed {
+        scene: String,
+        error: String,
+    }
+    json::line(&Failed { scene: scene.display().to_string(), error: failure.to_string() })
 }
 
 /// A duration in seconds, to the microsecond.

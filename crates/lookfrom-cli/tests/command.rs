@@ -11,6 +11,7 @@ mod command {
     mod inspect;
     #[cfg(unix)]
     mod interrupt;
+    mod json;
     mod layers;
     mod models;
     mod naming;

@@ -238,7 +238,8 @@ impl<'a> Story<'a> {
             a: in_world(self.world, path.ray.origin),
             direction: path.ray.direction,
             share: self.factor(path.beta),
-            pdf: pdf.is_finite().then_some(pdf),
+            // Infinite is a choice without an alternative.
+            pdf: (pdf != f32::INFINITY).then_some(pdf),
             candidates: candidate::candidates(self.world, &path.ray, hit),
             met: surface.map(|surface| met_report(self.world, hit, &surface)),
             share_there: None,

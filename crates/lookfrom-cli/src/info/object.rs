@@ -1,0 +1,179 @@
+//! What `info --json` answers: the names are explained in docs/guide/command.md.
+
+use std::path::Path;
+
+use lookfrom_scene::camera::{Camera, Projection, View};
+use lookfrom_scene::scene::Bounds;
+use lookfrom_scene::settings::{ImageSettings, RenderSettings, Sampler, Tonemap};
+use serde::Serialize;
+
+use super::{Tree, tree};
+use crate::count::Counts;
+use crate::prepare::Prepared;
+use crate::{report, values};
+
+/// A scene, and what it becomes.
+#[derive(Serialize)]
+pub(super) struct Object<'a> {
+    scene: String,
+    #[serde(flatten)]
+    counts: &'a Counts,
+    bounds: Option<BoundsObject>,
+    camera: CameraObject,
+    image: ImageObject,
+    render: RenderObject,
+    bvh: Tree,
+    seconds: SecondsObject,
+    added: &'a [&'static str],
+    warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct BoundsObject {
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+/// A projection by the words that scenes of ours have for it.
+#[derive(Serialize)]
+struct ProjectionObject {
+    projection: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fov: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    height: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct CameraObject {
+    #[serde(flatten)]
+    view: ViewObject,
+    #[serde(flatten)]
+    projection: ProjectionObject,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lens_radius: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    focus_distance: Option<f64>,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum ViewObject {
+    Look { lookfrom: [f64; 3], lookat: [f64; 3], up: [f64; 3] },
+    Matrix { matrix_by_columns: [f64; 16] },
+}
+
+#[derive(Serialize)]
+struct ImageObject {
+    width: u32,
+    height: u32,
+    crop: Option<[u32; 4]>,
+    filter: String,
+    exposure: f32,
+    tonemap: &'static str,
+    denoise: bool,
+}
+
+#[derive(Serialize)]
+struct RenderObject {
+    integrator: &'static str,
+    samples: u32,
+    depth: u32,
+    min_contribution: f32,
+    sampler: &'static str,
+    seed: u64,
+    transparent_shadows: bool,
+}
+
+#[derive(Serialize)]
+struct SecondsObject {
+    read: f64,
+    build: f64,
+}
+
+impl<'a> Object<'a> {
+    /// What is told of a scene.
+    pub(super) fn new(path: &Path, prepared: &'a Prepared) -> Self {
+        let Prepared { image, render, bounds, .. } = prepared;
+        Self {
+            scene: path.display().to_string(),
+            counts: &prepared.counts,
+            bounds: (!bounds.is_empty()).then(|| bounds.into()),
+            camera: (&prepared.camera).into(),
+            image: image.into(),
+            render: render.into(),
+            bvh: tree(prepared),
+            seconds: SecondsObject {
+                read: report::seconds(prepared.read),
+                build: report::seconds(prepared.build),
+            },
+            added: &prepared.added,
+            warnings: prepared.warnings.iter().map(ToString::to_string).collect(),
+        }
+    }
+}
+
+impl From<&Bounds> for BoundsObject {
+    fn from(bounds: &Bounds) -> Self {
+        Self { min: bounds.min.to_array(), max: bounds.max.to_array() }
+    }
+}
+
+impl From<Projection> for ProjectionObject {
+    fn from(projection: Projection) -> Self {
+        let (projection, fov, height) = match projection {
+            Projection::Perspective { fov } => ("perspective", Some(fov), None),
+            Projection::Orthographic { height } => ("orthographic", None, Some(height)),
+            Projection::Equirectangular => ("equirectangular", None, None),
+            Projection::Octahedral => ("octahedral", None, None),
+        };
+        Self { projection, fov, height }
+    }
+}
+
+impl From<&Camera> for CameraObject {
+    fn from(camera: &Camera) -> Self {
+        let view = match camera.view {
+            View::Look { lookfrom, lookat, up } => ViewObject::Look {
+                lookfrom: lookfrom.to_array(),
+                lookat: lookat.to_array(),
+                up: up.to_array(),
+            },
+            View::Matrix(matrix) => ViewObject::Matrix { matrix_by_columns: matrix.to_cols_array() },
+        };
+        Self {
+            view,
+            projection: camera.projection.into(),
+            lens_radius: camera.lens.map(|lens| lens.radius),
+            focus_distance: camera.lens.map(|lens| lens.focus_distance),
+        }
+    }
+}
+
+impl From<&ImageSettings> for ImageObject {
+    fn from(image: &ImageSettings) -> Self {
+        Self {
+            width: image.width,
+            height: image.height,
+            crop: image.crop.map(|crop| [crop.x0, crop.y0, crop.x1, crop.y1]),
+            filter: values::filter_name(&image.filter),
+            exposure: image.exposure,
+            tonemap: values::name(Tonemap::WORDS, &image.tonemap),
+            denoise: image.denoise,
+        }
+    }
+}
+
+impl From<&RenderSettings> for RenderObject {
+    fn from(render: &RenderSettings) -> Self {
+        Self {
+            integrator: render.integrator.word(),
+            samples: render.samples,
+            depth: render.depth,
+            min_contribution: render.min_contribution,
+            sampler: values::name(Sampler::WORDS, &render.sampler),
+            seed: render.seed,
+            transparent_shadows: render.transparent_shadows,
+        }
+    }
+}
