@@ -8,6 +8,7 @@ use std::path::Path;
 use glam::DVec3;
 use lookfrom_scene::Inputs;
 use lookfrom_scene::camera::{Camera, Projection, View};
+use lookfrom_scene::contents::{AnimationEntry, CameraEntry, Contents};
 use lookfrom_scene::settings::{Crop, Sampler, Tonemap};
 use serde::Serialize;
 
@@ -85,6 +86,7 @@ fn for_people(path: &Path, prepared: &Prepared) -> String {
             format!("{} to {}, size {}", numbers(bounds.min), numbers(bounds.max), numbers(size))
         },
     );
+    choices(&prepared.contents, &mut line);
     line("camera", camera_in_words(&prepared.camera));
     let image = &prepared.image;
     let mut picture = format!(
@@ -159,6 +161,40 @@ fn contents(counts: &Counts, line: &mut impl FnMut(&str, String)) {
         line("image", format!("{}, {} × {}", image.name, image.width, image.height));
     }
     line("lights", kinds(&counts.lights));
+}
+
+/// What one can choose from by name or number; where there is no choice, nothing is said.
+fn choices(contents: &Contents, line: &mut impl FnMut(&str, String)) {
+    let mut list = |kind: &str, entries: Vec<String>| {
+        if !entries.is_empty() {
+            let numbered = entries.iter().enumerate().map(|(number, entry)| format!("{number}{entry}"));
+            line(kind, numbered.collect::<Vec<_>>().join(", "));
+        }
+    };
+    let quoted = |name: &Option<String>| name.as_ref().map_or(String::new(), |name| format!(" {name:?}"));
+    if contents.scenes.len() > 1 {
+        let entry = |(number, name): (usize, &Option<String>)| {
+            quoted(name) + if contents.scene == Some(number) { " (this one)" } else { "" }
+        };
+        list("scenes", contents.scenes.iter().enumerate().map(entry).collect());
+    }
+    let entry = |AnimationEntry { name, duration }: &AnimationEntry| match duration {
+        Some(duration) => format!("{} {} s", quoted(name), digits(*duration)),
+        None => format!("{} without keys", quoted(name)),
+    };
+    list("animations", contents.animations.iter().map(entry).collect());
+    list("variants", contents.variants.iter().map(quoted).collect());
+    let entry = |CameraEntry { name, projection }: &CameraEntry| {
+        let projection = match projection {
+            Some(seen @ Projection::Perspective { .. }) => {
+                format!("perspective, {}", projection_in_words(*seen))
+            }
+            Some(seen) => projection_in_words(*seen),
+            None => "numbers out of range".to_owned(),
+        };
+        format!("{} ({projection})", quoted(name))
+    };
+    list("cameras", contents.cameras.iter().map(entry).collect());
 }
 
 fn projection_in_words(projection: Projection) -> String {

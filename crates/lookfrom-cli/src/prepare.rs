@@ -5,10 +5,11 @@ use std::time::{Duration, Instant};
 
 use lookfrom::world::World;
 use lookfrom_scene::camera::Camera;
+use lookfrom_scene::contents::Contents;
 use lookfrom_scene::image::{self, Image};
 use lookfrom_scene::scene::{Bounds, Origin};
 use lookfrom_scene::settings::{ImageSettings, RenderSettings};
-use lookfrom_scene::{Choice, Disk, Inputs, Location, Sources, Warning, load, studio};
+use lookfrom_scene::{CameraChoice, Choice, Disk, Inputs, Location, Sources, Warning, load, studio};
 
 use crate::args::{Common, Overrides};
 use crate::count::Counts;
@@ -27,6 +28,8 @@ pub(crate) struct Prepared {
     pub(crate) camera: Camera,
     /// What the file has, without what was added to show it.
     pub(crate) counts: Counts,
+    /// What can be chosen in the file.
+    pub(crate) contents: Contents,
     /// The box around what the file has.
     pub(crate) bounds: Bounds,
     /// What was added to show it: "camera", "lights", "floor".
@@ -76,10 +79,16 @@ pub(crate) fn prepare(
         scene.render.samples = studio::samples_for_models(&scene.image);
     }
     let (counts, bounds) = (Counts::of(&scene), scene.bounds());
+    let contents = std::mem::take(&mut scene.contents);
     if bounds.is_empty() {
         warn("nothing stands in this scene: the picture shows the background alone");
     }
-    if asked.choice() != Choice::default() && origin != Origin::Gltf {
+    // Any file's camera can be left aside.
+    let mut of_gltf = asked.choice();
+    if of_gltf.camera == CameraChoice::None {
+        of_gltf.camera = CameraChoice::First;
+    }
+    if of_gltf != Choice::default() && origin != Origin::Gltf {
         warn("--animation, --at, --variant, --scene and --camera choose from a glTF file; this file is none");
     }
     if asked.floor && !scene.render.integrator.is_path_traced() {
@@ -126,7 +135,7 @@ pub(crate) fn prepare(
     if common.strict && !warnings.is_empty() {
         return Err(Failure::Strict(warnings));
     }
-    Ok(Prepared { world, image, render, camera, counts, bounds, added, warnings, read, build })
+    Ok(Prepared { world, image, render, camera, counts, contents, bounds, added, warnings, read, build })
 }
 
 /// The picture of the surroundings that the command line names, read once for all scenes.

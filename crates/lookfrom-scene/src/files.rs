@@ -166,8 +166,20 @@ pub struct Choice {
     pub variant: Option<String>,
     /// The scene, by name or number from 0.
     pub scene: Option<String>,
-    /// The camera, by name or number from 0; `None` is the first.
-    pub camera: Option<String>,
+    /// The camera.
+    pub camera: CameraChoice,
+}
+
+/// Which of a file's cameras is meant.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum CameraChoice {
+    /// The first of the scene, where there is one.
+    #[default]
+    First,
+    /// The one of this name, or of this number from 0.
+    Named(String),
+    /// None of them: the scene is framed as if its file had no camera, whatever its format.
+    None,
 }
 
 impl<'a> Sources<'a> {

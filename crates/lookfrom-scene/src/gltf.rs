@@ -2,13 +2,14 @@
 //!
 //! `json` says what stands in the file, `file` and `uri` which bytes belong to it, `accessor` how bytes become vectors.
 //! `node` places things, `mesh` gives them form, `material` and `texture` a look; `camera` and `light` do what their
-//! names say, and `build` joins everything. `pose` and `track` say how nodes stand at a moment, `morph` and `skin` how
+//! names say, `build` joins everything, and `contents` lists what there is to `choose` from. `pose` and `track` say how nodes stand at a moment, `morph` and `skin` how
 //! meshes follow; `meshopt` and `draco` unpack what is compressed. Errors name the file and the place in its JSON as a pointer (RFC 6901).
 
 mod accessor;
 mod build;
 mod camera;
 mod choose;
+mod contents;
 mod draco;
 mod extension;
 mod file;

@@ -4,6 +4,7 @@
 //! itself, and knows nothing of rays. Start reading at [`scene`].
 
 pub mod camera;
+pub mod contents;
 pub mod error;
 pub mod files;
 pub mod gltf;
@@ -28,6 +29,6 @@ pub mod texture;
 pub mod toml;
 
 pub use error::{Error, ErrorKind, Location, Result, Warning};
-pub use files::{Choice, Disk, Files, Limits, Memory, Sources};
+pub use files::{CameraChoice, Choice, Disk, Files, Limits, Memory, Sources};
 pub use inputs::Inputs;
 pub use scene::Scene;

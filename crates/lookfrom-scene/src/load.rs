@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::camera::Camera;
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::Sources;
+use crate::files::{CameraChoice, Sources};
 use crate::light::Light;
 use crate::material::{Color, Material, MaterialKind};
 use crate::scene::{MaterialId, Origin, Scene};
@@ -16,11 +16,19 @@ const CLAY: f32 = 0.8;
 
 /// Reads a scene in our own format (`.toml`), one of pbrt-v4 (`.pbrt`), a glTF file (`.gltf`, `.glb`), or a model file,
 /// whose parts stand in the scene where the file has them and wear a matte grey "default" where the file gives them no
-/// material.
+/// material. A file's cameras count as [`Sources::choice`] says.
 ///
 /// # Errors
 /// `Unsupported` where the format is not known, and what the reader of the format finds.
 pub fn scene(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
+    let mut scene = whole(path, sources)?;
+    if sources.choice.camera == CameraChoice::None {
+        scene.camera = None;
+    }
+    Ok(scene)
+}
+
+fn whole(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
     if is_toml(path) {
         return toml::read(path, sources);
     }

@@ -6,6 +6,7 @@
 use glam::{DMat4, DVec3};
 
 use crate::camera::Camera;
+use crate::contents::Contents;
 use crate::error::Location;
 use crate::image::Image;
 use crate::light::Light;
@@ -53,6 +54,8 @@ pub struct Scene {
     pub is_whole: bool,
     /// What kind of file it was read from.
     pub origin: Origin,
+    /// What can be chosen in the file.
+    pub contents: Contents,
     /// The eye; `None` where the file names none: then the scene is framed by its bounds.
     pub camera: Option<Camera>,
     /// Size, filter and development of the picture.

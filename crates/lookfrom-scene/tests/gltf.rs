@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_scene::camera::{Projection, View};
-use lookfrom_scene::files::Choice;
+use lookfrom_scene::files::{CameraChoice, Choice};
 use lookfrom_scene::image::encode_png;
 use lookfrom_scene::light::LightKind;
 use lookfrom_scene::material::{Color, MaterialKind, Principled, Relief, Scalar};
@@ -313,13 +313,26 @@ fn cameras_look_along_minus_z() {
     assert_eq!(matrix.transform_vector3(DVec3::X), DVec3::NEG_X, "left");
     assert_eq!((scene.image.width, scene.image.height), (640, 320));
 
-    let above = Choice { camera: Some("above".to_owned()), ..Choice::default() };
+    let above = Choice { camera: CameraChoice::Named("above".to_owned()), ..Choice::default() };
     let (scene, _) = model.chosen(root(json!({})), above).expect("it is there");
     assert_eq!(scene.camera.map(|camera| camera.projection), Some(Projection::Orthographic { height: 4.0 }));
     assert_eq!((scene.image.width, scene.image.height), (320, 640));
-    let below = Choice { camera: Some("below".to_owned()), ..Choice::default() };
+    let below = Choice { camera: CameraChoice::Named("below".to_owned()), ..Choice::default() };
     let error = model.chosen(root(json!({})), below).expect_err("it is not there").to_string();
     assert!(error.contains("\"above\""), "{error}");
+
+    // As if the file had none, also for the shape of the picture.
+    let none = Choice { camera: CameraChoice::None, ..Choice::default() };
+    let (scene, warnings) = model.chosen(root(json!({})), none.clone()).expect("it is valid");
+    assert!(scene.camera.is_none() && warnings.is_empty(), "{warnings:?}");
+    assert_eq!((scene.image.width, scene.image.height), (640, 480));
+    let names: Vec<_> = scene.contents.cameras.iter().map(|camera| camera.name.as_deref()).collect();
+    assert_eq!(names, [None, Some("above")], "they are there all the same");
+    let mut memory = model.memory(root(json!({})));
+    memory.0.insert("a.toml".into(), b"import = \"m/a.gltf\"".to_vec());
+    let mut sources = Sources { choice: none, ..Sources::new(&memory) };
+    let scene = load::scene(Path::new("a.toml"), &mut sources).expect("it is valid");
+    assert!(scene.camera.is_none());
 }
 
 #[test]

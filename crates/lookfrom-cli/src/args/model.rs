@@ -5,8 +5,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lookfrom_scene::Choice;
 use lookfrom_scene::settings::Background;
+use lookfrom_scene::{CameraChoice, Choice};
 
 use crate::values;
 
@@ -58,7 +58,7 @@ pub(crate) struct ModelArguments {
     #[arg(long = "scene", value_name = "NAME|N")]
     pub(crate) scene_of_file: Option<String>,
 
-    /// The camera of a glTF file, by name or number from 0
+    /// The camera of a glTF file, by name or number from 0; or none: any scene is framed as if it had no camera
     #[arg(long, value_name = "NAME|N")]
     pub(crate) camera: Option<String>,
 }
@@ -71,7 +71,11 @@ impl ModelArguments {
             at: self.at.unwrap_or(0.0),
             variant: self.variant.clone(),
             scene: self.scene_of_file.clone(),
-            camera: self.camera.clone(),
+            camera: match self.camera.as_deref() {
+                None => CameraChoice::First,
+                Some("none") => CameraChoice::None,
+                Some(name) => CameraChoice::Named(name.to_owned()),
+            },
         }
     }
 }

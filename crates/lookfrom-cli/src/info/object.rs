@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use lookfrom_scene::camera::{Camera, Projection, View};
+use lookfrom_scene::contents::{AnimationEntry, CameraEntry, Contents};
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, RenderSettings, Sampler, Tonemap};
 use serde::Serialize;
@@ -19,6 +20,10 @@ pub(super) struct Object<'a> {
     #[serde(flatten)]
     counts: &'a Counts,
     bounds: Option<BoundsObject>,
+    scenes: Vec<SceneObject<'a>>,
+    animations: Vec<AnimationObject<'a>>,
+    variants: &'a [Option<String>],
+    cameras: Vec<CameraEntryObject<'a>>,
     camera: CameraObject,
     image: ImageObject,
     render: RenderObject,
@@ -32,6 +37,26 @@ pub(super) struct Object<'a> {
 struct BoundsObject {
     min: [f64; 3],
     max: [f64; 3],
+}
+
+#[derive(Serialize)]
+struct SceneObject<'a> {
+    name: Option<&'a str>,
+    /// Whether everything else is told of this one.
+    shown: bool,
+}
+
+#[derive(Serialize)]
+struct AnimationObject<'a> {
+    name: Option<&'a str>,
+    seconds: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct CameraEntryObject<'a> {
+    name: Option<&'a str>,
+    #[serde(flatten)]
+    projection: Option<ProjectionObject>,
 }
 
 /// A projection by the words that scenes of ours have for it.
@@ -94,11 +119,15 @@ struct SecondsObject {
 impl<'a> Object<'a> {
     /// What is told of a scene.
     pub(super) fn new(path: &Path, prepared: &'a Prepared) -> Self {
-        let Prepared { image, render, bounds, .. } = prepared;
+        let Prepared { image, render, contents, bounds, .. } = prepared;
         Self {
             scene: path.display().to_string(),
             counts: &prepared.counts,
             bounds: (!bounds.is_empty()).then(|| bounds.into()),
+            scenes: scenes(contents),
+            animations: contents.animations.iter().map(Into::into).collect(),
+            variants: &contents.variants,
+            cameras: contents.cameras.iter().map(Into::into).collect(),
             camera: (&prepared.camera).into(),
             image: image.into(),
             render: render.into(),
@@ -113,9 +142,26 @@ impl<'a> Object<'a> {
     }
 }
 
+fn scenes(contents: &Contents) -> Vec<SceneObject<'_>> {
+    let names = contents.scenes.iter().map(Option::as_deref).enumerate();
+    names.map(|(number, name)| SceneObject { name, shown: contents.scene == Some(number) }).collect()
+}
+
 impl From<&Bounds> for BoundsObject {
     fn from(bounds: &Bounds) -> Self {
         Self { min: bounds.min.to_array(), max: bounds.max.to_array() }
+    }
+}
+
+impl<'a> From<&'a AnimationEntry> for AnimationObject<'a> {
+    fn from(entry: &'a AnimationEntry) -> Self {
+        Self { name: entry.name.as_deref(), seconds: entry.duration }
+    }
+}
+
+impl<'a> From<&'a CameraEntry> for CameraEntryObject<'a> {
+    fn from(entry: &'a CameraEntry) -> Self {
+        Self { name: entry.name.as_deref(), projection: entry.projection.map(Into::into) }
     }
 }
 

@@ -41,6 +41,46 @@ fn a_model_says_what_was_added() {
     assert_eq!(model["bounds"]["max"], json!([1.0, 1.0, 0.0]));
 }
 
+/// Two of everything that a person can choose from.
+const CHOICES: &str = r#"{"asset":{"version":"2.0"},"scene":1,"scenes":[{"nodes":[]},{"name":"Hall","nodes":[0,1,2]}],
+"nodes":[{"mesh":0},{"name":"Front","camera":0,"translation":[0,0,3]},{"camera":1,"translation":[0,0,3]}],
+"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}},{"name":"Plan","type":"orthographic","orthographic":{"xmag":2,"ymag":1.5,"znear":1,"zfar":2}}],
+"animations":[{"name":"Walk","samplers":[{"input":1,"output":1}],"channels":[]},{"channels":[],"samplers":[]}],
+"extensionsUsed":["KHR_materials_variants"],"extensions":{"KHR_materials_variants":{"variants":[{"name":"Oak"},{"name":"Steel"}]}},
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},{"bufferView":0,"byteOffset":8,"componentType":5126,"count":2,"type":"SCALAR"}]}"#;
+
+#[test]
+fn what_can_be_chosen_is_listed() {
+    let stage = Stage::new("info-choices");
+    stage.write("hall.gltf", CHOICES);
+    let text = String::from_utf8(stage.done("info hall.gltf").stdout).unwrap();
+    for line in [
+        "  scenes     0, 1 \"Hall\" (this one)",
+        "  animations 0 \"Walk\" 1 s, 1 without keys",
+        "  variants   0 \"Oak\", 1 \"Steel\"",
+        "  cameras    0 \"Front\" (perspective, fov 57.2958°), 1 \"Plan\" (parallel rays, height 3)",
+    ] {
+        assert!(text.lines().any(|found| found == line), "{line:?} is not in: {text}");
+    }
+    let object = &stage.json("info hall.gltf --json")[0];
+    let scenes = json!([{ "name": null, "shown": false }, { "name": "Hall", "shown": true }]);
+    assert_eq!(object["scenes"], scenes);
+    assert_eq!(
+        object["animations"],
+        json!([{ "name": "Walk", "seconds": 1.0 }, { "name": null, "seconds": null }])
+    );
+    assert_eq!(object["variants"], json!(["Oak", "Steel"]));
+    assert_eq!(object["cameras"][1], json!({ "name": "Plan", "projection": "orthographic", "height": 3.0 }));
+    assert_eq!(object["cameras"][0]["projection"], "perspective");
+    assert_eq!(object["camera"]["projection"], "perspective");
+    // A file of another format has none of this.
+    let model = &stage.json("info model.obj --json")[0];
+    assert_eq!((&model["animations"], &model["cameras"]), (&json!([]), &json!([])));
+}
+
 #[test]
 fn versions_and_completions() {
     let stage = Stage::new("version");

@@ -191,3 +191,24 @@ fn what_a_model_is_its_content_says() {
     // Nothing is warned of: what is chosen is of a glTF file, whatever its name.
     stage.done("render triangle -q -o t.png --size 8 --samples 1 --scene 0 --strict");
 }
+
+#[test]
+fn any_files_camera_can_be_left_aside() {
+    let stage = Stage::new("camera-none");
+    let options = "-q --size 24x18 --samples 1 --strict";
+    let scene = super::stage::SCENE;
+    stage.write("bare.toml", &scene[scene.find("[image]").unwrap()..]);
+    stage.done(&format!("render scene.toml {options} --camera none -o none.png"));
+    stage.done(&format!("render scene.toml {options} -o own.png"));
+    stage.done(&format!("render bare.toml {options} -o bare.png"));
+    assert!(stage.bytes("none.png") == stage.bytes("bare.png"), "it is not framed");
+    assert!(stage.bytes("none.png") != stage.bytes("own.png"), "it is seen by its own camera");
+    // From afar a sphere is small, framed it is large.
+    let pbrt = "LookAt 0 0 90  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n";
+    stage.write("s.pbrt", pbrt);
+    let [own, none] = ["", "--camera none"].map(|camera| {
+        stage.done(&format!("render s.pbrt {options} --integrator normals {camera} -o n.pfm"));
+        picture(&stage.path("n.pfm")).texels().filter(|texel| *texel != [0.0; 3]).count()
+    });
+    assert!(own <= 4 && none > 40, "{own} {none}");
+}

@@ -5,8 +5,9 @@ use std::collections::btree_map::Entry;
 
 use glam::{DMat4, DVec3, DVec4};
 
-use super::camera::{self, Eye};
+use super::camera::{self, Cameras, Eye};
 use super::choose::choose;
+use super::contents::contents;
 use super::file::Document;
 use super::json::{Instancing, Primitive, Whole};
 use super::light;
@@ -16,6 +17,7 @@ use super::morph::morph;
 use super::node::{Tree, placed};
 use super::pose::{self, Pose};
 use super::skin::Skin;
+use crate::contents::Contents;
 use crate::error::{Location, Result};
 use crate::files::Sources;
 use crate::light::Light;
@@ -35,6 +37,7 @@ pub(super) struct Model {
     instances: Vec<Instance>,
     eye: Option<Eye>,
     lights: Vec<Light>,
+    contents: Contents,
 }
 
 impl Model {
@@ -50,6 +53,7 @@ impl Model {
         scene.objects = self.objects;
         scene.instances = self.instances;
         scene.lights = self.lights;
+        scene.contents = self.contents;
     }
 
     /// Everything for another scene, instances one by one.
@@ -84,6 +88,7 @@ fn size(aspect: f64, most: u32) -> (u32, u32) {
 pub(super) fn model(document: &Document, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Model> {
     let Pose { local, weights } = pose::pose(document, sources)?;
     let tree = Tree::new(document, &local, sources)?;
+    let cameras = Cameras::new(document, &tree)?;
     let variant = match (&sources.choice.variant, &document.root.extensions.variants) {
         (None, _) => None,
         (Some(name), variants) => {
@@ -102,8 +107,9 @@ pub(super) fn model(document: &Document, sources: &mut Sources<'_>, scene: &mut 
             shapes: Vec::new(),
             objects: Vec::new(),
             instances: Vec::new(),
-            eye: camera::eye(document, &tree, sources)?,
+            eye: camera::eye(&cameras, &tree, sources)?,
             lights: light::lights(document, &tree, sources)?,
+            contents: contents(document, &tree, &cameras),
         },
         sources,
         scene,

@@ -9,8 +9,9 @@ use super::file::Document;
 use super::json;
 use super::node::Tree;
 use crate::camera::{Camera, Projection, View};
+use crate::contents::CameraEntry;
 use crate::error::Result;
-use crate::files::Sources;
+use crate::files::{CameraChoice, Sources};
 
 /// A camera of the file, and width over height of the picture that it is meant for, where it says so.
 pub(super) struct Eye {
@@ -18,33 +19,75 @@ pub(super) struct Eye {
     pub(super) aspect: Option<f64>,
 }
 
+/// The cameras of the scene.
+pub(super) struct Cameras<'d> {
+    document: &'d Document,
+    /// The node and the number of each.
+    placed: Vec<(usize, usize)>,
+}
+
+impl<'d> Cameras<'d> {
+    /// Those of the nodes that are shown.
+    ///
+    /// # Errors
+    /// Where a node names a camera that is not there.
+    pub(super) fn new(document: &'d Document, tree: &Tree) -> Result<Self> {
+        let mut placed = Vec::new();
+        for &node in &tree.shown {
+            if let Some(index) = document.root.nodes[node].camera {
+                let asked = format!("/nodes/{node}/camera");
+                document.one_of(&document.root.cameras, index, "camera", &asked)?;
+                placed.push((node, index.index()));
+            }
+        }
+        Ok(Self { document, placed })
+    }
+
+    /// What they are called, and their projections.
+    pub(super) fn entries(&self) -> Vec<CameraEntry> {
+        let entry = |&(node, index): &(usize, usize)| {
+            let camera = &self.document.root.cameras[index];
+            let name = self.document.root.nodes[node].name.as_ref().or(camera.name.as_ref());
+            CameraEntry {
+                name: name.cloned(),
+                projection: projection(camera).map(|(projection, _)| projection),
+            }
+        };
+        self.placed.iter().map(entry).collect()
+    }
+
+    /// The one that is asked for, or else the first.
+    ///
+    /// # Errors
+    /// Where the one that is asked for is not there.
+    fn chosen(&self, choice: &CameraChoice) -> Result<Option<(usize, usize)>> {
+        let root = &self.document.root;
+        Ok(match choice {
+            CameraChoice::Named(name) => {
+                let names = self.placed.iter().map(|&(node, index)| {
+                    let own = root.cameras[index].name.as_deref();
+                    own.filter(|own| own == name).or(root.nodes[node].name.as_deref()).or(own)
+                });
+                let chosen = choose(self.document, "camera in the scene", "/cameras", name, names)?;
+                Some(self.placed[chosen])
+            }
+            CameraChoice::First => self.placed.first().copied(),
+            CameraChoice::None => None,
+        })
+    }
+}
+
 /// The camera that is asked for, or else the first of the scene.
 ///
 /// # Errors
 /// Where the one that is asked for is not there, or none of its numbers can be.
-pub(super) fn eye(document: &Document, tree: &Tree, sources: &mut Sources<'_>) -> Result<Option<Eye>> {
-    let cameras = &document.root.cameras;
-    let mut placed = Vec::new();
-    for &node in &tree.shown {
-        if let Some(index) = document.root.nodes[node].camera {
-            document.one_of(cameras, index, "camera", &format!("/nodes/{node}/camera"))?;
-            placed.push((node, index.index()));
-        }
-    }
-    let chosen = match &sources.choice.camera {
-        Some(name) => {
-            let names = placed.iter().map(|&(node, index)| {
-                let own = cameras[index].name.as_deref();
-                own.filter(|own| own == name).or(document.root.nodes[node].name.as_deref()).or(own)
-            });
-            Some(placed[choose(document, "camera in the scene", "/cameras", name, names)?])
-        }
-        None => placed.first().copied(),
-    };
+pub(super) fn eye(cameras: &Cameras<'_>, tree: &Tree, sources: &mut Sources<'_>) -> Result<Option<Eye>> {
+    let document = cameras.document;
+    let chosen = cameras.chosen(&sources.choice.camera)?;
     let Some((node, index)) = chosen else { return Ok(None) };
     let pointer = format!("/cameras/{index}");
     let at = document.at(&pointer);
-    let Some((projection, aspect)) = projection(&cameras[index]) else {
+    let Some((projection, aspect)) = projection(&document.root.cameras[index]) else {
         sources.warn(&at, "the camera's numbers cannot be; the scene is framed without it");
         return Ok(None);
     };

@@ -14,6 +14,8 @@ pub(crate) struct Tree {
     pub(crate) world_from_node: Vec<DMat4>,
     /// The nodes of the scene, parents before their children.
     pub(crate) shown: Vec<usize>,
+    /// The number of the scene, where the file has any.
+    pub(crate) scene: Option<usize>,
 }
 
 impl Node {
@@ -89,7 +91,7 @@ impl Tree {
         }
 
         // Those of the scene.
-        let mut waiting: Vec<usize> = Self::roots(document, &parents, sources)?;
+        let (scene, mut waiting) = Self::roots(document, &parents, sources)?;
         waiting.reverse();
         let mut shown = Vec::new();
         let mut is_shown = vec![false; nodes.len()];
@@ -108,11 +110,15 @@ impl Tree {
                 waiting.extend(children.filter(|&child| is_child(node, child)));
             }
         }
-        Ok(Self { world_from_node, shown })
+        Ok(Self { world_from_node, shown, scene })
     }
 
-    /// The nodes that the scene names; without any scene, all that have no parent.
-    fn roots(document: &Document, parents: &[Option<usize>], sources: &Sources<'_>) -> Result<Vec<usize>> {
+    /// The scene's number and the nodes that it names; without any scene, all that have no parent.
+    fn roots(
+        document: &Document,
+        parents: &[Option<usize>],
+        sources: &Sources<'_>,
+    ) -> Result<(Option<usize>, Vec<usize>)> {
         let root = &document.root;
         let scene = match (&sources.choice.scene, root.scene) {
             (Some(name), _) => {
@@ -124,7 +130,7 @@ impl Tree {
                 index.index()
             }
             (None, None) if root.scenes.is_empty() => {
-                return Ok((0..parents.len()).filter(|&node| parents[node].is_none()).collect());
+                return Ok((None, (0..parents.len()).filter(|&node| parents[node].is_none()).collect()));
             }
             (None, None) => 0,
         };
@@ -133,6 +139,6 @@ impl Tree {
             document.one_of(&root.nodes, node, "node", &format!("/scenes/{scene}/nodes/{place}"))?;
             roots.push(node.index());
         }
-        Ok(roots)
+        Ok((Some(scene), roots))
     }
 }

@@ -8,7 +8,7 @@ use super::value::Value;
 use super::{Reader, place};
 use crate::camera::{Camera, Projection, View};
 use crate::error::Result;
-use crate::files::Choice;
+use crate::files::{CameraChoice, Choice};
 use crate::light::{Light, LightKind};
 use crate::load;
 use crate::shape::Part;
@@ -66,12 +66,12 @@ impl Reader<'_, '_> {
             at: table.or("at", asked.at, Value::number)?,
             variant: name("variant", &asked.variant)?,
             scene: name("scene", &asked.scene)?,
-            camera: None,
+            camera: CameraChoice::First,
         };
         let has_camera = match table.find("camera") {
             Some(value) => match value.as_text() {
                 Some(name) => {
-                    choice.camera = Some(name.to_owned());
+                    choice.camera = CameraChoice::Named(name.to_owned());
                     true
                 }
                 None => value.boolean().map_err(|_| value.wrong("true, false or the name of a camera"))?,

@@ -1,0 +1,63 @@
+//! Lists of what [`choose`](super::choose) chooses from.
+
+use std::collections::HashMap;
+
+use super::camera::Cameras;
+use super::file::Document;
+use super::json::{Animation, Whole};
+use super::node::Tree;
+use crate::contents::{AnimationEntry, Contents};
+
+/// Keys of animations that are looked at: to tell how long animations are is not worth more.
+const MOST_KEYS: u64 = 1 << 22;
+
+/// What the file holds. What is wrong with animations that nobody asked for is no error.
+pub(super) fn contents(document: &Document, tree: &Tree, cameras: &Cameras<'_>) -> Contents {
+    let root = &document.root;
+    let variants = root.extensions.variants.as_ref().map_or(&[][..], |variants| &variants.variants);
+    let mut clock = Clock { document, last_keys: HashMap::new(), left: MOST_KEYS };
+    let entry = |animation: &Animation| AnimationEntry {
+        name: animation.name.clone(),
+        duration: clock.duration(animation),
+    };
+    Contents {
+        scenes: root.scenes.iter().map(|scene| scene.name.clone()).collect(),
+        scene: tree.scene,
+        cameras: cameras.entries(),
+        animations: root.animations.iter().map(entry).collect(),
+        variants: variants.iter().map(|variant| variant.name.clone()).collect(),
+    }
+}
+
+/// How long animations are; channels often share their keys.
+struct Clock<'d> {
+    document: &'d Document,
+    /// By accessor.
+    last_keys: HashMap<Whole, Option<f64>>,
+    /// Keys that may still be looked at.
+    left: u64,
+}
+
+impl Clock<'_> {
+    fn duration(&mut self, animation: &Animation) -> Option<f64> {
+        let samplers = animation.samplers.iter();
+        samplers.filter_map(|sampler| self.last_key(sampler.input)).reduce(f64::max)
+    }
+
+    fn last_key(&mut self, times: Whole) -> Option<f64> {
+        if let Some(&known) = self.last_keys.get(&times) {
+            return known;
+        }
+        let accessor = self.document.root.accessors.get(times.index())?;
+        // Keys that no view holds are all 0, and counted against the limits of the file.
+        let mut keys = Vec::new();
+        if accessor.buffer_view.is_some() && accessor.count.0 <= self.left {
+            self.left -= accessor.count.0;
+            keys = self.document.scalars(times, "/animations").unwrap_or_default();
+        }
+        let keys = keys.into_iter().map(f64::from);
+        let last = keys.filter(|key| key.is_finite() && *key >= 0.0).reduce(f64::max);
+        self.last_keys.insert(times, last);
+        last
+    }
+}
