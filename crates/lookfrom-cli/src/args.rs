@@ -155,8 +155,9 @@ pub(crate) struct RenderArguments {
 
     /// Make this many pictures of each scene, evenly around it, as if it stood on a turntable: NAME-000.png, NAME-001.png …
     ///
-    /// The camera goes around what is up, against the clock as seen from above; light from all around goes with it, and lamps
-    /// stay with the scene.
+    /// The camera goes around an upright axis, against the clock as seen from above; light from all around goes with it, and
+    /// lamps stay with the scene. The axis goes through what a scene's camera looks at (or --lookat), else through the
+    /// middle of what is visible. A model is framed so that nothing is cut at any angle.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) turntable: Option<u32>,
 
@@ -338,10 +339,10 @@ pub(crate) struct Overrides {
     #[arg(long, value_name = "NAME", value_parser = values::word(values::LAYERS))]
     pub(crate) layers: Option<Layers>,
 
-    /// Whether noise is filtered out of the picture (alone: on) [default: what the scene says; on for models, where none of
-    /// --samples, --time, --noise, --adaptive and --layers is asked for]
+    /// Whether noise is filtered out of the picture (alone: on) [default: what the scene says; on for models]
     ///
-    /// An EXR then keeps the light as it was computed, too, in the channels noisy.R, noisy.G and noisy.B.
+    /// An EXR then keeps the light as it was computed, too, in the channels noisy.R, noisy.G and noisy.B, and layers are
+    /// those of that light. Pictures of --write-every are filtered only at the end.
     #[arg(long, value_name = "on|off", value_parser = values::word(values::ON_OFF), num_args = 0..=1, default_missing_value = "on")]
     pub(crate) denoise: Option<bool>,
 

@@ -83,7 +83,9 @@ pub(crate) fn attributes(scene: &Path, prepared: &Prepared, taken: &Taken) -> Ve
     match camera.projection {
         Projection::Perspective { fov } => texts.push(("camera.fov", fov.to_string())),
         Projection::Orthographic { height } => texts.push(("camera.height", height.to_string())),
-        Projection::Equirectangular => texts.push(("camera.projection", "equirectangular".to_owned())),
+        Projection::Equirectangular | Projection::EquirectangularPbrt => {
+            texts.push(("camera.projection", "equirectangular".to_owned()));
+        }
         Projection::Octahedral => texts.push(("camera.projection", "octahedral".to_owned())),
     }
     if let Some(lens) = camera.lens {

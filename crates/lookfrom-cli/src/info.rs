@@ -201,7 +201,7 @@ fn projection_in_words(projection: Projection) -> String {
     match projection {
         Projection::Perspective { fov } => format!("fov {}°", digits(fov)),
         Projection::Orthographic { height } => format!("parallel rays, height {}", digits(height)),
-        Projection::Equirectangular => "all around by latitude and longitude".to_owned(),
+        Projection::Equirectangular | Projection::EquirectangularPbrt => "all around by latitude and longitude".to_owned(),
         Projection::Octahedral => "all around on an octahedral square".to_owned(),
     }
 }

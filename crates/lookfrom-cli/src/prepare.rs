@@ -9,6 +9,7 @@ use lookfrom_scene::contents::Contents;
 use lookfrom_scene::image::{self, Image};
 use lookfrom_scene::scene::{Bounds, Origin};
 use lookfrom_scene::settings::{ImageSettings, RenderSettings};
+use lookfrom_scene::studio::Turntable;
 use lookfrom_scene::{CameraChoice, Choice, Disk, Inputs, Location, Sources, Warning, load, studio};
 
 use crate::args::{Common, Overrides};
@@ -26,6 +27,8 @@ pub(crate) struct Prepared {
     pub(crate) render: RenderSettings,
     /// The eye, with what the command line says.
     pub(crate) camera: Camera,
+    /// What kind of file it was read from.
+    pub(crate) origin: Origin,
     /// What the file has, without what was added to show it.
     pub(crate) counts: Counts,
     /// What can be chosen in the file.
@@ -71,12 +74,12 @@ pub(crate) fn prepare(
     let started = Instant::now();
     overrides.apply_to_settings(&mut scene.image, &mut scene.render)?;
     let origin = scene.origin;
-    if origin != Origin::Scene && overrides.samples.is_none() {
-        let is_left_to_us = overrides.denoise.is_none() && overrides.layers.is_none();
-        if is_left_to_us && scene.render.integrator.is_path_traced() {
-            scene.image.denoise = true;
+    if origin != Origin::Scene {
+        // Models are denoised until somebody says otherwise.
+        scene.image.denoise = overrides.denoise.unwrap_or(scene.render.integrator.is_path_traced());
+        if overrides.samples.is_none() {
+            scene.render.samples = studio::samples_for_models(&scene.image);
         }
-        scene.render.samples = studio::samples_for_models(&scene.image);
     }
     let (counts, bounds) = (Counts::of(&scene), scene.bounds());
     let contents = std::mem::take(&mut scene.contents);
@@ -98,7 +101,11 @@ pub(crate) fn prepare(
     let lights = scene.lights.len();
     let up = overrides.up;
     // The eye comes first: inside a room it needs other light.
-    studio::frame(&mut scene, up);
+    let turn = asked.turn.map(|degrees| (Turntable::new(&scene, up, overrides.lookat), degrees));
+    match &turn {
+        Some((turntable, _)) => turntable.frame(&mut scene),
+        None => studio::frame(&mut scene, up),
+    }
     overrides.apply_to_camera(&mut scene)?;
     if let Some(environment) = environment {
         studio::surround(&mut scene, environment.clone(), up);
@@ -119,8 +126,8 @@ pub(crate) fn prepare(
     if let Some(degrees) = asked.rotate_environment {
         studio::turn_environments(&mut scene, up, degrees);
     }
-    if let Some(degrees) = asked.turn {
-        studio::turn(&mut scene, up, degrees);
+    if let Some((turntable, degrees)) = turn {
+        turntable.turn(&mut scene, degrees);
     }
     if asked.floor {
         studio::add_floor(&mut scene, up);
@@ -135,7 +142,7 @@ pub(crate) fn prepare(
     if common.strict && !warnings.is_empty() {
         return Err(Failure::Strict(warnings));
     }
-    Ok(Prepared { world, image, render, camera, counts, contents, bounds, added, warnings, read, build })
+    Ok(Prepared { world, image, render, camera, origin, counts, contents, bounds, added, warnings, read, build })
 }
 
 /// The picture of the surroundings that the command line names, read once for all scenes.

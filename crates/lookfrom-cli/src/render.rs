@@ -8,7 +8,9 @@ use lookfrom::denoise::denoised;
 use lookfrom::render::{End, Enough, Frame};
 use lookfrom_scene::Inputs;
 use lookfrom_scene::image::Image;
+use lookfrom_scene::scene::Origin;
 use lookfrom_scene::settings::Layers;
+use lookfrom_scene::studio;
 
 use crate::args::{Fireflies, Overrides, RenderArguments};
 use crate::exit::{self, DONE, Failure, INTERRUPTED, answer, say};
@@ -119,10 +121,6 @@ fn render(
     inputs: &Inputs,
 ) -> Result<u8, Failure> {
     let target = &targets[number];
-    // Who says when there is enough wants the light as it comes.
-    let is_limited = arguments.time.is_some() || arguments.noise.is_some() || arguments.adaptive;
-    let denoise = overrides.denoise.or(is_limited.then_some(false));
-    let overrides = &Overrides { denoise, ..overrides.clone() };
     let mut prepared = prepare(path, &arguments.common, overrides, environment, inputs)?;
     if number == 0 {
         if !arguments.quiet {
@@ -131,8 +129,13 @@ fn render(
         keep_inputs(path, targets, inputs)?;
     }
     // A limit of time or noise replaces the scene's number of samples, not that of the command line.
-    if arguments.overrides.samples.is_none() && (arguments.time.is_some() || arguments.noise.is_some()) {
-        prepared.render.samples = MOST_SAMPLES;
+    if arguments.overrides.samples.is_none() {
+        if arguments.time.is_some() || arguments.noise.is_some() {
+            prepared.render.samples = MOST_SAMPLES;
+        } else if arguments.adaptive && prepared.origin != Origin::Scene {
+            // A model's few samples for the denoiser leave nothing to adapt.
+            prepared.render.samples = studio::MODEL_SAMPLES;
+        }
     }
     if !target.has_layers() {
         prepared.image.layers = Layers::None;

@@ -12,6 +12,8 @@ pub struct Camera {
     pub at: Location,
     /// Where it stands and looks.
     pub view: View,
+    /// What a [`View::Matrix`] looks at, where the file says so.
+    pub target: Option<Target>,
     /// How space is flattened.
     pub projection: Projection,
     /// A lens that blurs what is not in focus; `None` is a pinhole.
@@ -41,6 +43,22 @@ pub enum View {
     Matrix(DMat4),
 }
 
+/// What an eye looks at. The picture does not depend on it; a camera that goes around goes around this.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// The point, in the world.
+    pub lookat: DVec3,
+    /// What is up, in the world; any length.
+    pub up: DVec3,
+}
+
+impl Target {
+    /// The same in the space that a matrix leads to.
+    pub fn transformed(&self, matrix: &DMat4) -> Self {
+        Self { lookat: matrix.transform_point3(self.lookat), up: matrix.transform_vector3(self.up) }
+    }
+}
+
 /// How space is flattened.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
@@ -54,8 +72,15 @@ pub enum Projection {
         /// The height of the picture in the world: > 0.
         height: f64,
     },
-    /// All around: rows are angles from the up axis, columns go around it.
+    /// All around in latitude and longitude: rows are angles from the up axis, the middle column is the direction of view,
+    /// and columns further right look further to the right. Of surroundings that are a [`Sky::Image`], an eye that looks
+    /// along −z of its space, with y up, sees that picture again.
+    ///
+    /// [`Sky::Image`]: crate::light::Sky::Image
     Equirectangular,
+    /// The equirectangular mapping of pbrt's spherical camera: the first column looks to the right, one quarter on is the
+    /// direction of view, and columns further right look further to the *left*.
+    EquirectangularPbrt,
     /// All around, on a square of equal area folded from an octahedron (Clarberg 2008).
     Octahedral,
 }
@@ -84,6 +109,7 @@ impl Default for Camera {
         Self {
             at: Location::default(),
             view: View::Look { lookfrom: DVec3::new(0.0, 1.0, 5.0), lookat: DVec3::ZERO, up: DVec3::Y },
+            target: None,
             projection: Projection::Perspective { fov: 45.0 },
             lens: None,
             window: None,

@@ -212,6 +212,49 @@ impl MaterialKind {
     }
 }
 
+impl MaterialKind {
+    /// Its colours that are shares of the light that arrives, by name: 1 is all of it.
+    pub fn reflectances(&self) -> Vec<(&'static str, Color)> {
+        match self {
+            Self::Whitted(k) => vec![
+                ("diffuse", k.diffuse),
+                ("specular", k.specular),
+                ("mirror", k.mirror),
+                ("transmission", k.transmission),
+            ],
+            Self::DiffuseTransmission { reflectance, transmittance, .. } => {
+                vec![("reflectance", *reflectance), ("transmittance", *transmittance)]
+            }
+            Self::Diffuse { reflectance } => vec![("reflectance", *reflectance)],
+            Self::CoatedDiffuse { reflectance, coat } => {
+                vec![("reflectance", *reflectance), ("coat_albedo", coat.albedo)]
+            }
+            Self::Conductor { metal: Metal::Reflectance(reflectance), .. } => {
+                vec![("reflectance", *reflectance)]
+            }
+            Self::CoatedConductor { metal, coat, .. } => {
+                let mut colors = vec![("coat_albedo", coat.albedo)];
+                if let Metal::Reflectance(reflectance) = metal {
+                    colors.push(("reflectance", *reflectance));
+                }
+                colors
+            }
+            Self::Principled(look) => vec![
+                ("base_color", look.base_color),
+                ("sheen_color", look.sheen_color),
+                ("diffuse_transmission_color", look.diffuse_transmission_color),
+            ],
+            Self::Conductor { metal: Metal::Indices { .. }, .. }
+            | Self::Dielectric { .. }
+            | Self::ThinDielectric { .. }
+            | Self::Mix { .. }
+            | Self::Unlit { .. }
+            | Self::ShadowCatcher { .. }
+            | Self::Interface => Vec::new(),
+        }
+    }
+}
+
 /// glTF 2.0's metallic-roughness material with its extensions: a metal, glass or diffuse body, by parts, under sheen and
 /// a clear coat. All numbers are those of the extensions, with textures and factors multiplied.
 #[derive(Clone, Debug, PartialEq)]

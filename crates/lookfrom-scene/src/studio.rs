@@ -5,20 +5,24 @@
 //! `surroundings` builds; scenes without light get a lamp: a large soft key light from the upper left of the camera, and
 //! a fill from all around.
 
+mod framing;
 mod surroundings;
+mod turntable;
 
+use framing::Framing;
 use glam::DVec3;
 
-use crate::camera::{Camera, Projection, View};
+use crate::camera::{Camera, View};
 use crate::error::Location;
 use crate::light::{Amount, Falloff, Light, LightKind, Sky};
 use crate::material::{Color, Whitted};
 use crate::model::surface::push_material;
-use crate::scene::{Bounds, Scene};
+use crate::scene::{Bounds, Instance, Scene};
 use crate::settings::{ImageSettings, Integrator, RenderSettings, Tonemap};
 use crate::shape::{Emission, Geometry, Shape};
 
 pub use surroundings::{add_floor, surround, turn_environments};
+pub use turntable::Turntable;
 
 /// Vertical field of view in degrees, and the tangent of its half: 2 − √3.
 const FOV: f64 = 30.0;
@@ -41,8 +45,9 @@ const FILL_NADIR: [f32; 3] = [0.17, 0.165, 0.16];
 /// In a room: light from everywhere, and from a lamp at the eye.
 const ROOM: f32 = 0.3;
 const LAMP: f32 = 0.55;
-/// Samples a pixel of a picture of a model, and of one so small that nobody looks at single pixels.
-const MODEL_SAMPLES: u32 = 64;
+/// Samples a pixel of a picture of a model that is not denoised.
+pub const MODEL_SAMPLES: u32 = 64;
+/// The same of one so small that nobody looks at single pixels.
 const THUMBNAIL_SAMPLES: u32 = 8;
 /// The most pixels of a thumbnail.
 const THUMBNAIL_PIXELS: u64 = 256 * 256;
@@ -100,29 +105,13 @@ pub fn samples_for_models(image: &ImageSettings) -> u32 {
     if pixels <= THUMBNAIL_PIXELS { THUMBNAIL_SAMPLES } else { MODEL_SAMPLES }
 }
 
-/// Turns the camera, which must be there, around the middle of the scene by degrees, against the clock as seen from above,
-/// and all pictures of the surroundings with it: as if the model turned the other way. `up` as in [`furnish`].
-pub fn turn(scene: &mut Scene, up: Option<DVec3>, degrees: f64) {
-    let stage = Stage::of(scene, up);
-    let orbit = surroundings::orbit(stage.bounds, stage.basis[1], degrees);
-    if let Some(camera) = &mut scene.camera {
-        camera.view = match camera.view {
-            View::Look { lookfrom, lookat, up } => View::Look {
-                lookfrom: orbit.transform_point3(lookfrom),
-                lookat: orbit.transform_point3(lookat),
-                up: orbit.transform_vector3(up),
-            },
-            View::Matrix(matrix) => View::Matrix(orbit * matrix),
-        };
-    }
-    turn_environments(scene, Some(stage.basis[1]), degrees);
-}
-
 /// A camera that shows the box from right, above and before, as large as it fits into a picture of this aspect ratio
 /// (width / height). An empty box is taken to be a unit box around the origin. `up` may have any length.
 pub fn framing(bounds: Bounds, aspect: f64, up: DVec3) -> Camera {
     let bounds = sane(bounds);
-    Stage { bounds, basis: basis(up) }.camera(aspect, |see| corners(bounds).into_iter().for_each(see))
+    let mut framing = Framing::new(bounds.center(), basis(up), aspect);
+    corners(bounds).into_iter().for_each(|corner| framing.include(corner));
+    framing.camera()
 }
 
 fn add(scene: &mut Scene, name: &str, kind: LightKind) {
@@ -156,44 +145,15 @@ impl Stage {
         Self { bounds: sane(scene.bounds()), basis: basis(up.or_else(of_camera).unwrap_or(DVec3::Y)) }
     }
 
-    fn in_world(&self, [right, up, back]: [f64; 3]) -> DVec3 {
-        right * self.basis[0] + up * self.basis[1] + back * self.basis[2]
-    }
-
-    /// A camera that sees all points that `visit` shows it.
-    fn camera(&self, aspect: f64, visit: impl FnOnce(&mut dyn FnMut(DVec3))) -> Camera {
-        let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
-        let forward = -self.in_world(TO_CAMERA).normalize();
-        let right = forward.cross(self.basis[1]).normalize();
-        let up = right.cross(forward);
-        let center = self.bounds.center();
-        // A point is inside the right edge of the picture where x − eye.x ≤ k (z − eye.z), and so on for the four edges.
-        // Opposite edges together bound eye.z; halfway between them lies the eye.
-        let slopes = [FILL * TAN_HALF_FOV * aspect, FILL * TAN_HALF_FOV];
-        let mut edges = [[f64::NEG_INFINITY; 2]; 2];
-        visit(&mut |point| {
-            let offset = point - center;
-            for (axis, along) in [offset.dot(right), offset.dot(up)].into_iter().enumerate() {
-                let depth = slopes[axis] * offset.dot(forward);
-                edges[axis][0] = edges[axis][0].max(along - depth);
-                edges[axis][1] = edges[axis][1].max(-along - depth);
-            }
-        });
-        let [x, y] = edges.map(|[above, below]| 0.5 * (above - below));
-        let depth_for = |axis: usize| -(edges[axis][0] + edges[axis][1]) / (2.0 * slopes[axis]);
-        let z = depth_for(0).min(depth_for(1));
-        let lookat = center + x * right + y * up;
-        let view = View::Look { lookfrom: lookat + z * forward, lookat, up: self.basis[1] };
-        Camera { view, projection: Projection::Perspective { fov: FOV }, ..Camera::default() }
-    }
-
     fn add_camera(&self, scene: &mut Scene) {
         if scene.camera.is_none() {
-            let aspect = f64::from(scene.image.width) / f64::from(scene.image.height);
-            let is_whole = self.bounds == scene.bounds();
-            scene.camera = Some(self.camera(aspect, |see| {
-                if is_whole { visit(scene, see) } else { corners(self.bounds).into_iter().for_each(see) }
-            }));
+            let mut framing = Framing::new(self.bounds.center(), self.basis, aspect(scene));
+            if self.bounds == scene.bounds() {
+                visit(scene, &mut |point| framing.include(point));
+            } else {
+                corners(self.bounds).into_iter().for_each(|corner| framing.include(corner));
+            }
+            scene.camera = Some(framing.camera());
         }
     }
 
@@ -265,31 +225,46 @@ impl Stage {
     }
 }
 
+/// Width over height of the scene's picture.
+fn aspect(scene: &Scene) -> f64 {
+    f64::from(scene.image.width) / f64::from(scene.image.height)
+}
+
 /// Shows all that stands in the world: the vertices of meshes, the corners of boxes around other things.
 fn visit(scene: &Scene, see: &mut dyn FnMut(DVec3)) {
     for shape in &scene.shapes {
-        if let Geometry::Mesh(id) = &shape.geometry {
-            let mesh = &scene.meshes[id.index()];
-            let vertices = mesh.triangles.iter().flatten();
-            vertices
-                .map(|&vertex| mesh.positions[vertex as usize].as_dvec3())
-                .for_each(|vertex| see(shape.world_from_object.transform_point3(vertex)));
-        } else {
-            corners(shape.bounds(&scene.meshes)).into_iter().for_each(&mut *see);
-        }
+        visit_shape(scene, shape, see);
     }
-    let of = |shapes: &[Shape]| {
-        shapes.iter().map(|shape| shape.bounds(&scene.meshes)).fold(Bounds::EMPTY, Bounds::union)
-    };
-    let objects: Vec<Bounds> = scene.objects.iter().map(|object| of(&object.shapes)).collect();
     for instance in &scene.instances {
-        let bounds = objects[instance.object.index()];
-        if !bounds.is_empty() {
-            corners(bounds)
-                .into_iter()
-                .for_each(|corner| see(instance.world_from_object.transform_point3(corner)));
-        }
+        let shapes = &scene.objects[instance.object.index()].shapes;
+        visit_instance(instance, bounds_of(scene, shapes), see);
     }
+}
+
+fn visit_shape(scene: &Scene, shape: &Shape, see: &mut dyn FnMut(DVec3)) {
+    if let Geometry::Mesh(id) = &shape.geometry {
+        let mesh = &scene.meshes[id.index()];
+        let vertices = mesh.triangles.iter().flatten();
+        vertices
+            .map(|&vertex| mesh.positions[vertex as usize].as_dvec3())
+            .for_each(|vertex| see(shape.world_from_object.transform_point3(vertex)));
+    } else {
+        corners(shape.bounds(&scene.meshes)).into_iter().for_each(see);
+    }
+}
+
+/// Shows the corners of an object's bounds, in its own space, where an instance places them.
+fn visit_instance(instance: &Instance, of_object: Bounds, see: &mut dyn FnMut(DVec3)) {
+    if !of_object.is_empty() {
+        corners(of_object)
+            .into_iter()
+            .for_each(|corner| see(instance.world_from_object.transform_point3(corner)));
+    }
+}
+
+/// The box around shapes, in the space that they are placed in.
+fn bounds_of<'a>(scene: &Scene, shapes: impl IntoIterator<Item = &'a Shape>) -> Bounds {
+    shapes.into_iter().map(|shape| shape.bounds(&scene.meshes)).fold(Bounds::EMPTY, Bounds::union)
 }
 
 /// The eight corners of a box.
@@ -455,24 +430,5 @@ mod tests {
         // inside: the fill, light from everywhere and a lamp; outside: the fill and a key light that is a shape
         assert_eq!(lights_with_eye_at(2.0), (3, 1));
         assert_eq!(lights_with_eye_at(9.0), (1, 2));
-    }
-
-    #[test]
-    fn the_turned_camera_keeps_its_distance_and_comes_back() {
-        let mut scene = Scene::default();
-        furnish_model(&mut scene, Some(DVec3::Z));
-        let places = |scene: &Scene| match scene.camera.as_ref().unwrap().view {
-            View::Look { lookfrom, lookat, .. } => (lookfrom, lookat),
-            View::Matrix(_) => panic!("not a lookat"),
-        };
-        let before = places(&scene);
-        for _ in 0..3 {
-            turn(&mut scene, Some(DVec3::Z), 120.0);
-            let now = places(&scene);
-            assert!((now.0.z - before.0.z).abs() < 1e-9 && now.0.is_finite());
-            assert!((now.0.distance(now.1) - before.0.distance(before.1)).abs() < 1e-9);
-        }
-        let after = places(&scene);
-        assert!(after.0.distance(before.0) < 1e-9 && after.1.distance(before.1) < 1e-9);
     }
 }

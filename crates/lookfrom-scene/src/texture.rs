@@ -187,6 +187,20 @@ pub enum Channel {
 }
 
 impl TextureKind {
+    /// The colours that its places have, or lie between; none where they are only factors of others.
+    pub fn colors(&self) -> Vec<Color> {
+        match self {
+            Self::Checker { even: a, odd: b, .. }
+            | Self::Noise { low: a, high: b, .. }
+            | Self::Marble { vein: a, base: b, .. }
+            | Self::DirectionMix { low: a, high: b, .. }
+            | Self::Mix { low: a, high: b, .. }
+            | Self::Dots { inside: a, outside: b, .. } => vec![*a, *b],
+            Self::Bilinear { corners, .. } => corners.to_vec(),
+            _ => Vec::new(),
+        }
+    }
+
     /// What the texture is made of: its colours, and its numbers' textures as colours.
     pub fn parts(&self) -> Vec<Color> {
         let scalar = |scalar: &Scalar| match *scalar {

@@ -170,3 +170,19 @@ fn a_compressed_mesh_is_made_of_triangles_even_where_strips_are_announced() {
     assert_eq!(triangles(&announced), triangles(&listed));
     assert!(triangles(&listed).len() > 2000);
 }
+
+#[test]
+fn colours_above_one_are_told_of() {
+    let warnings = |material: &str| {
+        let mesh = r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}]"#;
+        let text = triangle(&format!(r#"{mesh}, "materials": [{material}]"#));
+        read([("a.gltf", text.as_bytes())]).expect("it is read").1
+    };
+    let found = warnings(r#"{"pbrMetallicRoughness": {"baseColorFactor": [255, 128, 0, 1]}}"#);
+    let at = "a.gltf#/materials/0/pbrMetallicRoughness/baseColorFactor: the factor is [255, 128, 0]";
+    assert!(found.len() == 1 && found[0].starts_with(at), "{found:?}");
+    let sheen = r#"{"extensions": {"KHR_materials_sheen": {"sheenColorFactor": [2, 0, 0]}}}"#;
+    let found = warnings(sheen);
+    assert!(found.len() == 1 && found[0].contains("/sheenColorFactor: the factor is [2, 0, 0]"), "{found:?}");
+    assert!(warnings(r#"{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 0, 1]}}"#).is_empty());
+}

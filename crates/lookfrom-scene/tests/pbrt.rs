@@ -53,6 +53,18 @@ fn the_camera_sees_what_pbrts_sees() {
     let point = world_from_camera.transform_point3(DVec3::new(-1.0, 2.0, 4.0));
     assert!((point - DVec3::new(4.0, 2.0, 4.0)).length() < 1e-12, "{point}");
     assert!(world_from_camera.determinant() < 0.0, "pbrt's world is left-handed");
+    // What it looks at is known to who goes around it, whatever other transforms there are.
+    let target = camera.target.expect("one");
+    assert!(
+        (target.lookat - DVec3::new(3.0, 0.0, 5.0)).length() < 1e-12 && target.up == DVec3::Y,
+        "{target:?}"
+    );
+    let moved =
+        read("Scale -1 1 1 LookAt 3 0 0  3 0 5  0 1 0 Translate 0 0 1 Camera \"perspective\" WorldBegin");
+    let target = moved.camera.and_then(|camera| camera.target).expect("one");
+    assert!((target.lookat - DVec3::new(3.0, 0.0, 4.0)).length() < 1e-12, "{target:?}");
+    let reset = read("LookAt 3 0 0  3 0 5  0 1 0 Identity Camera \"perspective\" WorldBegin");
+    assert_eq!(reset.camera.and_then(|camera| camera.target), None);
     // The field of view is that of the shorter side.
     assert_eq!(camera.projection, Projection::Perspective { fov: 30.0 });
     assert_eq!(camera.window, Some(Window { x: [-1.0, 1.0], y: [-2.0, 2.0] }));

@@ -90,7 +90,7 @@ impl Camera {
             }
             Projection::Orthographic { height } => positive(at, "height", height)?,
             // The image plane of the notes is only a name here: 2 × 2.
-            Projection::Equirectangular | Projection::Octahedral => 2.0,
+            Projection::Equirectangular | Projection::EquirectangularPbrt | Projection::Octahedral => 2.0,
         };
         if let Some(Lens { radius, focus_distance }) = written.lens {
             positive(at, "focus_distance", focus_distance)?;
@@ -170,8 +170,10 @@ impl Camera {
         let (start, straight) = match self.projection {
             Projection::Perspective { .. } => (DVec3::ZERO, image_point),
             Projection::Orthographic { .. } => (image_point.with_z(0.0), DVec3::Z * image_point.z),
-            Projection::Equirectangular => {
-                (DVec3::ZERO, around(x_k / f64::from(self.size[0]), y_k / f64::from(self.size[1])))
+            Projection::Equirectangular | Projection::EquirectangularPbrt => {
+                let [u, v] = [x_k / f64::from(self.size[0]), y_k / f64::from(self.size[1])];
+                let is_pbrts = self.projection == Projection::EquirectangularPbrt;
+                (DVec3::ZERO, if is_pbrts { equirectangular_pbrt(u, v) } else { equirectangular(u, v) })
             }
             Projection::Octahedral => {
                 let square = [x_k / f64::from(self.size[0]), 1.0 - y_k / f64::from(self.size[1])];
@@ -203,8 +205,15 @@ impl Camera {
 }
 
 /// The direction at `(u, v)` of a picture of everything around, `v` up, in view space: θ = π (1 − v) from the up axis,
-/// φ = 2π u from the viewer's right toward the front.
-fn around(u: f64, v: f64) -> DVec3 {
+/// φ = 2π (u − ½) from the front toward the viewer's right.
+fn equirectangular(u: f64, v: f64) -> DVec3 {
+    let (theta, phi) = (std::f64::consts::PI * (1.0 - v), std::f64::consts::TAU * (u - 0.5));
+    let sin_theta = libm::sin(theta);
+    DVec3::new(-sin_theta * libm::sin(phi), libm::cos(theta), sin_theta * libm::cos(phi))
+}
+
+/// The same for pbrt's spherical camera: φ = 2π u from the viewer's right toward the front.
+fn equirectangular_pbrt(u: f64, v: f64) -> DVec3 {
     let (theta, phi) = (std::f64::consts::PI * (1.0 - v), std::f64::consts::TAU * u);
     let sin_theta = libm::sin(theta);
     DVec3::new(-sin_theta * libm::cos(phi), libm::cos(theta), sin_theta * libm::sin(phi))
@@ -335,5 +344,29 @@ mod tests {
         assert!(of(&Written { lens, ..good() }).contains("focus_distance"));
         assert!(Camera::new(&good(), 0, 10).unwrap_err().to_string().contains("0 × 10"));
         assert!(Camera::new(&good(), 10, 10).is_ok());
+    }
+
+    #[test]
+    fn pictures_of_everything_around_have_their_columns_in_order() {
+        let camera = |projection| {
+            let written = Written { projection, ..look([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]) };
+            Camera::new(&written, 400, 200).unwrap()
+        };
+        let sees = |projection, u: f64, direction: [f64; 3]| {
+            let ray = camera(projection).ray([400.0 * u, 100.0], [0.5; 2]);
+            assert!(
+                ray.direction.distance(direction.into()) < 1e-12,
+                "{projection:?} {u}: {}",
+                ray.direction
+            );
+        };
+        let (left, front, right) = ([-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]);
+        for (u, direction) in [(0.25, left), (0.5, front), (0.75, right), (0.0, [0.0, 0.0, 1.0])] {
+            sees(Projection::Equirectangular, u, direction);
+        }
+        // pbrt-v4's SphericalCamera: (sin θ cos φ, cos θ, sin θ sin φ) with φ = 2π u, x to the right and z forward.
+        for (u, direction) in [(0.0, right), (0.25, front), (0.5, left)] {
+            sees(Projection::EquirectangularPbrt, u, direction);
+        }
     }
 }

@@ -7,6 +7,8 @@ mod catcher;
 mod compile;
 mod lights;
 mod place;
+mod reflectance;
+mod view;
 
 use std::sync::Arc;
 

@@ -38,7 +38,7 @@ pub(crate) struct ModelArguments {
     #[arg(long)]
     pub(crate) floor: bool,
 
-    /// Turn the camera around the middle of the scene, and pictures of the surroundings with it: as if the model turned
+    /// Turn the camera around what it looks at, and pictures of the surroundings with it: one picture of --turntable
     #[arg(long, value_name = "DEGREES", value_parser = values::between(-36000.0f64, 36000.0), allow_hyphen_values = true)]
     pub(crate) turn: Option<f64>,
 

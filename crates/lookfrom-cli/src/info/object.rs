@@ -170,7 +170,7 @@ impl From<Projection> for ProjectionObject {
         let (projection, fov, height) = match projection {
             Projection::Perspective { fov } => ("perspective", Some(fov), None),
             Projection::Orthographic { height } => ("orthographic", None, Some(height)),
-            Projection::Equirectangular => ("equirectangular", None, None),
+            Projection::Equirectangular | Projection::EquirectangularPbrt => ("equirectangular", None, None),
             Projection::Octahedral => ("octahedral", None, None),
         };
         Self { projection, fov, height }

@@ -10,19 +10,24 @@ fn exr(stage: &Stage, file: &str) -> Channels {
 }
 
 #[test]
-fn models_are_denoised_where_nothing_else_is_asked_for() {
+fn models_are_denoised_until_somebody_says_otherwise() {
     let stage = Stage::new("denoise-models");
     let summary = |options: &str| {
         let summary = &stage.json(&format!("render model.obj --json -o p.png {options}"))[0];
         (summary["denoised"].as_bool().unwrap(), summary["samples"].as_u64().unwrap())
     };
     assert_eq!(summary("--size 24"), (true, 6));
-    assert_eq!(summary("--size 24 --samples 3"), (false, 3));
+    assert_eq!(summary("--size 24 --samples 3"), (true, 3));
     assert_eq!(summary("--size 24 --samples 3 --denoise"), (true, 3));
+    assert_eq!(summary("--size 24 --samples 3 --denoise off"), (false, 3));
     assert_eq!(summary("--size 24 --denoise off"), (false, 8));
-    assert!(!summary("--size 24 --layers geometry").0);
-    assert!(!summary("--size 24 --noise 0.5").0);
-    assert!(summary("--size 24 --noise 0.5 --denoise on").0);
+    assert_eq!(summary("--size 24 --layers geometry"), (true, 6));
+    for limit in ["--noise 0.5", "--time 200ms", "--adaptive", "--time 200ms --write-every 100ms"] {
+        assert!(summary(&format!("--size 24 {limit}")).0, "{limit}");
+        assert!(!summary(&format!("--size 24 {limit} --denoise off")).0, "{limit}");
+    }
+    // There is something to adapt.
+    assert!(summary("--size 24 --adaptive").1 > 6);
     assert!(!summary("--size 24 --integrator normals").0);
     let scene = &stage.json("render scene.toml --json -o p.png")[0];
     assert_eq!(scene["denoised"], false);
@@ -44,6 +49,21 @@ fn an_exr_keeps_the_light_as_it_was_computed_and_says_what_was_done() {
     let says = |file: &Channels| file.attributes.iter().any(|(name, _)| name == "denoised");
     assert!(says(&clean) && !says(&raw));
     assert!(clean.channel("Albedo.R").is_some());
+}
+
+#[test]
+fn an_exr_of_a_model_keeps_the_light_and_the_layers_besides() {
+    let stage = Stage::new("denoise-layers");
+    let options = "--size 24 --samples 4 -q --layers geometry";
+    stage.done(&format!("render model.obj -o raw.exr {options} --denoise off"));
+    stage.done(&format!("render model.obj -o clean.exr {options}"));
+    let (raw, clean) = (exr(&stage, "raw.exr"), exr(&stage, "clean.exr"));
+    assert_eq!(clean.channel("noisy.G"), raw.channel("G"));
+    assert_ne!(clean.channel("G"), raw.channel("G"));
+    for layer in ["Albedo.R", "Nsx", "dzdx", "Variance.G"] {
+        assert_eq!(clean.channel(layer).is_some(), raw.channel(layer).is_some(), "{layer}");
+        assert_eq!(clean.channel(layer), raw.channel(layer), "{layer}");
+    }
 }
 
 #[test]

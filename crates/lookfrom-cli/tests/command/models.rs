@@ -54,15 +54,90 @@ fn a_turntable_makes_numbered_pictures_that_can_be_made_alone() {
     assert!(stage.bytes("t-000.png") != stage.bytes("t-001.png"), "nothing turns");
     stage.done("render model.obj -q -o alone.png --size 16x12 --samples 1 --turn 90");
     assert!(stage.bytes("t-001.png") == stage.bytes("alone.png"), "the second of four is not that of 90°");
-    stage.done("render model.obj -q -o straight.png --size 16x12 --samples 1");
-    assert!(stage.bytes("t-000.png") == stage.bytes("straight.png"), "the first is not where it begins");
+    stage.done("render model.obj -q -o first.png --size 16x12 --samples 1 --turn 0");
+    assert!(stage.bytes("t-000.png") == stage.bytes("first.png"), "the first is not where it begins");
     stage.run("render model.obj -o - --turntable 2").fails(2, &["--turntable"]);
+}
+
+/// Whether nothing touches the edge of a transparent picture, and something is in it.
+fn is_whole(stage: &Stage, file: &str) -> bool {
+    let png = ::image::open(stage.path(file)).unwrap().into_rgba8();
+    let (width, height) = png.dimensions();
+    let is_edge = |x: u32, y: u32| x == 0 || y == 0 || x + 1 == width || y + 1 == height;
+    let shown = || png.enumerate_pixels().filter(|(.., pixel)| pixel.0[3] > 0);
+    shown().count() > 0 && !shown().any(|(x, y, _)| is_edge(x, y))
+}
+
+#[test]
+fn a_turntable_cuts_nothing() {
+    let stage = Stage::new("turntable-whole");
+    // A long plate that stands aside.
+    stage.write("long.obj", "v 100 0 0\nv 110 0 0\nv 110 1 0.5\nv 100 1 0.5\nf 1 2 3 4\n");
+    let common =
+        "render long.obj -q --size 40x24 --samples 1 --denoise off --filter box --background transparent";
+    stage.done(&format!("{common} -o t.png --turntable 8"));
+    for number in 0..8 {
+        assert!(is_whole(&stage, &format!("t-00{number}.png")), "{number}");
+    }
+    stage.done(&format!("{common} -o z.png --turn 77 --up 0,0,1"));
+    assert!(is_whole(&stage, "z.png"));
+}
+
+#[test]
+fn a_scene_turns_around_what_it_looks_at_and_a_model_around_what_is_asked_for() {
+    let stage = Stage::new("turn-scene");
+    let lamp = "[[light]]\ntype = \"sphere\"\ncenter = [700, 400, 0]\nradius = 5\nradiance = 900\n";
+    stage.write("lamp.toml", &format!("{}{lamp}", super::stage::SCENE));
+    let middle = |options: &str| {
+        stage.done(&format!("render {options} -q --integrator id --filter box --samples 1 -o p.pfm"));
+        let picture = picture(&stage.path("p.pfm"));
+        let at = picture.height / 2 * picture.width + picture.width / 2;
+        picture.texels().nth(at as usize).unwrap()
+    };
+    let ball = middle("lamp.toml");
+    for turn in [0, 90, 180, 300] {
+        assert_eq!(middle(&format!("lamp.toml --turn {turn}")), ball, "{turn}");
+    }
+    let plain = middle("model.obj --size 99 --lookat 0.2,0.2,0 --turn 0");
+    assert_eq!(middle("model.obj --size 99 --lookat 0.2,0.2,0 --turn 40"), plain);
+}
+
+/// An environment, seen by a camera that sees all around, is its own picture again.
+#[test]
+fn the_picture_of_the_surroundings_is_that_of_the_camera_all_around() {
+    let stage = Stage::new("around");
+    let texel = |x: u32, y: u32| {
+        let [x, y] = [x, y].map(|at| at as f32 / 64.0);
+        [0.2 + x, 0.3 + 0.5 * y + (x - 0.3).abs(), 1.2 - y]
+    };
+    for (layout, projection, width, height) in
+        [("latitude_longitude", "equirectangular", 64, 32), ("octahedral", "octahedral", 32, 32)]
+    {
+        let texels: Vec<[f32; 3]> =
+            (0..width * height).map(|index| texel(index % width, index / width)).collect();
+        std::fs::write(stage.path("sky.hdr"), encode_hdr(width, height, &texels).unwrap()).unwrap();
+        stage.write("wide.toml", &format!(
+            "[camera]\nlookfrom = [3, 1, 2]\nlookat = [3, 1, 0]\nprojection = \"{projection}\"\n\
+             [image]\nwidth = {width}\nheight = {height}\nfilter = \"box\"\n[render]\nintegrator = \"path\"\nsamples = 16\n\
+             [[light]]\ntype = \"environment\"\nimage = \"sky.hdr\"\nlayout = \"{layout}\"\n"
+        ));
+        stage.done("render wide.toml -q -o p.pfm");
+        let [written, seen] = ["sky.hdr", "p.pfm"].map(|name| picture(&stage.path(name)));
+        let mut worst = 0.0_f32;
+        for (index, (written, seen)) in (0..).zip(written.texels().zip(seen.texels())) {
+            // Where the first column meets the last the picture jumps.
+            if (1..width - 1).contains(&(index % width)) {
+                worst = (0..3).fold(worst, |worst, c| worst.max((written[c] - seen[c]).abs()));
+            }
+        }
+        assert!(worst < 0.02, "{projection}: {worst}");
+    }
 }
 
 #[test]
 fn transparent_pictures_hide_only_what_the_model_hides() {
     let stage = Stage::new("transparent");
-    let common = "render model.obj -q --size 32 --samples 8 --filter box --background";
+    let common = "render model.obj -q --size 32 --samples 8 --denoise off --filter box --background";
     stage.done(&format!("{common} transparent -o p.png"));
     let png = ::image::open(stage.path("p.png")).unwrap().into_rgba8();
     let at = |x, y| png.get_pixel(x, y).0;

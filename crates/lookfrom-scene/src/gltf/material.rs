@@ -136,19 +136,21 @@ impl Reader<'_, '_, '_> {
         let (factor, info, place) =
             match (&entry.extensions.specular_glossiness, &entry.pbr_metallic_roughness) {
                 (Some(own), _) => {
-                    let place = "/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture";
+                    let place = "/extensions/KHR_materials_pbrSpecularGlossiness/diffuse";
                     (own.diffuse_factor, own.diffuse_texture.as_ref(), place)
                 }
                 (None, Some(own)) => (
                     own.base_color_factor,
                     own.base_color_texture.as_ref(),
-                    "/pbrMetallicRoughness/baseColorTexture",
+                    "/pbrMetallicRoughness/baseColor",
                 ),
                 (None, None) => (None, None, ""),
             };
-        let [r, g, b, a] = factor.unwrap_or([1.0; 4]).map(|factor| unit(Some(factor), 1.0));
-        let color = self.color([r, g, b], info, place)?;
-        let alpha = self.number(a, info, place, Channel::Alpha)?;
+        let [r, g, b, a] = factor.unwrap_or([1.0; 4]);
+        let tint = self.reflectance([r, g, b], &format!("{place}Factor"));
+        let place = format!("{place}Texture");
+        let color = self.color(tint, info, &place)?;
+        let alpha = self.number(unit(Some(a), 1.0), info, &place, Channel::Alpha)?;
         Ok((color, alpha))
     }
 
@@ -191,7 +193,8 @@ impl Reader<'_, '_, '_> {
             look.diffuse_transmission = self.number(factor, info, place, Channel::Alpha)?;
             let place = "/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture";
             let factor = own.diffuse_transmission_color_factor.unwrap_or([1.0; 3]);
-            let factor = factor.map(|factor| unit(Some(factor), 1.0));
+            let pointer = "/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorFactor";
+            let factor = self.reflectance(factor, pointer);
             let info = own.diffuse_transmission_color_texture.as_ref();
             look.diffuse_transmission_color = self.color(factor, info, place)?;
         }
@@ -214,7 +217,8 @@ impl Reader<'_, '_, '_> {
         }
         if let Some(own) = &extensions.sheen {
             let place = "/extensions/KHR_materials_sheen/sheenColorTexture";
-            let factor = own.sheen_color_factor.unwrap_or([0.0; 3]).map(|factor| unit(Some(factor), 0.0));
+            let factor = own.sheen_color_factor.unwrap_or([0.0; 3]);
+            let factor = self.reflectance(factor, "/extensions/KHR_materials_sheen/sheenColorFactor");
             look.sheen_color = match factor {
                 [0.0, 0.0, 0.0] => Color::BLACK,
                 _ => self.color(factor, own.sheen_color_texture.as_ref(), place)?,
@@ -256,6 +260,18 @@ impl Reader<'_, '_, '_> {
                 Ok(Scalar::Texture(self.textures.push(kind, &self.pointer, self.scene)))
             }
         }
+    }
+
+    /// A colour factor that is a share of light: clamped to 0 to 1, with a warning where it is above that.
+    fn reflectance(&mut self, factor: [f64; 3], place: &str) -> [f32; 3] {
+        let [r, g, b] = factor;
+        if r.max(g).max(b) > 1.0 {
+            let at = self.document.at(&format!("{}{place}", self.pointer));
+            let message =
+                format!("the factor is [{r}, {g}, {b}]; expected 0 to 1: what is above 1 is taken as 1");
+            self.sources.warn(&at, message);
+        }
+        factor.map(|factor| unit(Some(factor), 1.0))
     }
 
     fn ior(&mut self, ior: Option<f64>) -> f32 {

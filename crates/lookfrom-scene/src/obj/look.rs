@@ -166,6 +166,20 @@ impl Looks {
         let passing = if is_glass && opacity == 1.0 { 1.0 } else { 1.0 - opacity };
         let covering = (1.0 - passing) * (1.0 - metallic);
 
+        // Without a picture the colour itself is checked where the scene becomes a world.
+        let tinted = [(written.diffuse, &written.diffuse_map), (written.specular, &written.specular_map)];
+        for (tint, map) in tinted {
+            if let (Some([r, g, b]), Some(map)) = (tint, map)
+                && r.max(g).max(b) > 1.0
+            {
+                let file = &map.file;
+                let message = format!(
+                    "material `{name}` multiplies `{file}` by [{r}, {g}, {b}], and colours of surfaces go from 0 to 1: \
+                     the surface gives off more light than arrives"
+                );
+                sources.warn(&written.at, message);
+            }
+        }
         let mut color = |constant: [f32; 3], map: Option<&Map>, scale: f32, scene: &mut Scene| {
             let constant = constant.map(|value| value * scale);
             let picture = map.filter(|_| scale > 0.0).and_then(|map| {

@@ -37,8 +37,8 @@ impl Reader<'_, '_> {
                 Projection::Octahedral,
                 &[
                     ("equalarea", Projection::Octahedral),
-                    ("equirectangular", Projection::Equirectangular),
-                    ("equirect", Projection::Equirectangular),
+                    ("equirectangular", Projection::EquirectangularPbrt),
+                    ("equirect", Projection::EquirectangularPbrt),
                 ],
             )?,
             _ => {

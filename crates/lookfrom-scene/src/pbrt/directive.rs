@@ -10,6 +10,7 @@ use super::spectra::Space;
 use super::state::{Entity, Opened, TARGETS};
 use super::text::Place;
 use super::{Reader, transform, version3};
+use crate::camera::Target;
 use crate::error::{ErrorKind, Result};
 use crate::scene::{Instance, MaterialId, Object, ObjectId};
 use crate::spectrum::space;
@@ -100,6 +101,9 @@ impl Reader<'_, '_> {
             b"LookAt" => {
                 let view = transform::numbers(lexer)?;
                 self.concatenate(transform::look_at(view, place)?, place);
+                let [_, _, _, x, y, z, ux, uy, uz] = view;
+                let target = Target { lookat: DVec3::new(x, y, z), up: DVec3::new(ux, uy, uz) };
+                self.options.look = self.state.at_start.then(|| target.transformed(&self.state.matrix));
             }
             b"Transform" => {
                 let matrix = transform::matrix(lexer, place)?;
@@ -187,6 +191,7 @@ impl Reader<'_, '_> {
                         .invalid("the transform in force here flattens space: a camera cannot see by it"));
                 }
                 self.coordinate_systems.insert("camera".to_owned(), matrix.inverse());
+                self.options.target = self.options.look.map(|look| look.transformed(&matrix.inverse()));
                 self.options.camera = Some((entity, matrix));
                 let media = self.state.media.as_deref();
                 self.options.camera_medium = media.map(|[_, outside]| outside.clone()).unwrap_or_default();
@@ -339,12 +344,15 @@ impl Reader<'_, '_> {
     }
 
     fn concatenate(&mut self, matrix: DMat4, place: &Place) {
+        let look = self.options.look;
         self.set_matrix(self.state.matrix * matrix, place);
+        self.options.look = look;
     }
 
     fn set_matrix(&mut self, matrix: DMat4, place: &Place) {
         if self.state.at_start {
             self.state.matrix = matrix;
+            self.options.look = None;
         }
         if self.state.at_start != self.state.at_end {
             let message = "motion is not rendered yet: everything stands where it is at the start";
@@ -428,6 +436,9 @@ impl Reader<'_, '_> {
         self.sampler(options.sampler.as_ref())?;
         self.integrator(options.integrator.as_ref())?;
         self.camera(options.camera.as_ref(), &options.camera_medium)?;
+        if let Some(camera) = &mut self.scene.camera {
+            camera.target = options.target;
+        }
         let entities = [options.film, options.filter, options.sampler, options.integrator];
         let entities = entities.into_iter().chain([options.camera.map(|(entity, _)| entity)]).flatten();
         entities.for_each(|entity| entity.parameters.finish(self.sources));

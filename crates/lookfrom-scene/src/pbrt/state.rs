@@ -7,6 +7,7 @@ use glam::DMat4;
 use super::params::{Inherited, Parameters};
 use super::spectra::{SRGB, Space};
 use super::text::Place;
+use crate::camera::Target;
 use crate::scene::MaterialId;
 use crate::shape::Emission;
 
@@ -67,10 +68,14 @@ pub(super) struct Entity {
 /// What was said before `WorldBegin`.
 #[derive(Default)]
 pub(super) struct Options {
+    /// What the last `LookAt` looks at and what is up for it, by the transforms so far: in the camera's space.
+    pub(super) look: Option<Target>,
     /// With the matrix from the world to its space.
     pub(super) camera: Option<(Entity, DMat4)>,
     /// The name of the medium around the camera; empty is a vacuum.
     pub(super) camera_medium: String,
+    /// What it looks at.
+    pub(super) target: Option<Target>,
     pub(super) film: Option<Entity>,
     pub(super) filter: Option<Entity>,
     pub(super) sampler: Option<Entity>,

@@ -79,7 +79,7 @@ pub fn surround(scene: &mut Scene, picture: Image, up: Option<DVec3>) {
 /// Turns pictures of the surroundings around what is up, by degrees against the clock as seen from above. `up` as in
 /// [`super::furnish`].
 pub fn turn_environments(scene: &mut Scene, up: Option<DVec3>, degrees: f64) {
-    let turn = turn(Stage::of(scene, up).basis[1], degrees);
+    let turn = rotation(Stage::of(scene, up).basis[1], degrees);
     for light in &mut scene.lights {
         if let LightKind::Environment { sky, .. } = &mut light.kind
             && let Sky::Image { world_from_light, .. } | Sky::Octahedral { world_from_light, .. } = sky
@@ -90,7 +90,7 @@ pub fn turn_environments(scene: &mut Scene, up: Option<DVec3>, degrees: f64) {
 }
 
 /// The rotation around an axis of unit length by degrees.
-pub(super) fn turn(axis: DVec3, degrees: f64) -> DMat4 {
+pub(super) fn rotation(axis: DVec3, degrees: f64) -> DMat4 {
     let (sin, cos) = libm::sincos(degrees.to_radians());
     let column = |v: DVec3| (cos * v + sin * axis.cross(v) + (1.0 - cos) * axis.dot(v) * axis).extend(0.0);
     DMat4::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z), DMat4::IDENTITY.w_axis)
@@ -166,12 +166,6 @@ fn basis_facing(toward: DVec3) -> [DVec3; 3] {
     let hint = if toward.y > 0.95 { DVec3::Z } else { DVec3::Y };
     let right = hint.cross(toward).normalize();
     [right, toward.cross(right), toward]
-}
-
-/// What a camera's place becomes when it goes around the middle of the bounds with everything that it is lit by.
-pub(super) fn orbit(bounds: Bounds, up: DVec3, degrees: f64) -> DMat4 {
-    let middle = bounds.center();
-    DMat4::from_translation(middle) * turn(up, degrees) * DMat4::from_translation(-middle)
 }
 
 #[cfg(test)]

@@ -51,6 +51,7 @@ pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
     Ok(Camera {
         at: table.at(),
         view: View::Look { lookfrom, lookat, up },
+        target: None,
         projection,
         lens: lens(table, w.dot(lookat - lookfrom), |focus| w.dot(focus - lookfrom))?,
         window: table.or("window", None, |value| window(value).map(Some))?,

@@ -123,6 +123,11 @@ impl Reader<'_, '_> {
 
     fn whitted(&mut self, table: &Table<'_>) -> Result<Whitted> {
         let default = Whitted::default();
+        let transmission = self.color_or(table, "transmission", 0.0)?;
+        let absorption = table.or("absorption", default.absorption, plain_color)?;
+        if absorption != [0.0; 3] && transmission == Color::BLACK {
+            self.ineffective(table, "absorption", "`transmission`: no light gets inside");
+        }
         Ok(Whitted {
             ambient: table.find("ambient").map(|value| self.color(value)).transpose()?,
             diffuse: self.color_or(table, "diffuse", 0.8)?,
@@ -131,12 +136,18 @@ impl Reader<'_, '_> {
                 value.single_where("a number of at least 0", |n| n >= 0.0)
             })?,
             mirror: self.color_or(table, "mirror", 0.0)?,
-            transmission: self.color_or(table, "transmission", 0.0)?,
+            transmission,
             ior: table
                 .or("ior", default.ior, |value| value.single_where("a number greater than 0", |n| n > 0.0))?,
             fresnel: table.or("fresnel", default.fresnel, Value::boolean)?,
-            absorption: table.or("absorption", default.absorption, plain_color)?,
+            absorption,
         })
+    }
+
+    /// Warns of a key that changes nothing without another.
+    pub(super) fn ineffective(&mut self, table: &Table<'_>, key: &str, without: &str) {
+        let at = table.find(key).map_or_else(|| table.at(), Value::at);
+        self.sources.warn(&at, format!("`{key}` has no effect without {without}"));
     }
 
     fn relief(&mut self, table: &Table<'_>) -> Result<Relief> {

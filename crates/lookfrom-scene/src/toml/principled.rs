@@ -57,6 +57,11 @@ impl Reader<'_, '_> {
             },
             None => None,
         };
+        let is_solid = table.or("solid", false, Value::boolean)?;
+        let absorption = table.or("absorption", [0.0; 3], plain_color)?;
+        if absorption != [0.0; 3] && !is_solid {
+            self.ineffective(table, "absorption", "`solid = true`: a thin sheet has no inside");
+        }
         Ok(Principled {
             base_color: self.color_or(table, "base_color", 0.8)?,
             metallic: self.share_or(table, "metallic", 0.0)?,
@@ -71,8 +76,8 @@ impl Reader<'_, '_> {
             specular: self.share_or(table, "specular", 1.0)?,
             specular_color: self.color_or(table, "specular_color", 1.0)?,
             transmission: self.share_or(table, "transmission", 0.0)?,
-            is_solid: table.or("solid", false, Value::boolean)?,
-            absorption: table.or("absorption", [0.0; 3], plain_color)?,
+            is_solid,
+            absorption,
             diffuse_transmission: self.share_or(table, "diffuse_transmission", 0.0)?,
             diffuse_transmission_color: self.color_or(table, "diffuse_transmission_color", 1.0)?,
             clearcoat: self.share_or(table, "clearcoat", 0.0)?,

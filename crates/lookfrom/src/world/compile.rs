@@ -7,14 +7,14 @@ use lookfrom_bvh::{Builder, Bvh, Triangles};
 use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{Color, MaterialKind};
 use lookfrom_scene::medium::Medium;
-use lookfrom_scene::scene::Scene;
+use lookfrom_scene::scene::{Origin, Scene};
 use lookfrom_scene::settings::{ColorMode, Integrator as Kind};
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
 use super::catcher;
 use super::lights::Lights;
 use super::place::{Compiler, Group};
-use super::{Instance, Names, World};
+use super::{Instance, Names, World, reflectance, view};
 use crate::camera::Camera;
 use crate::light::{Light, LightChoice};
 use crate::material::{self, InteriorStack, Material};
@@ -31,6 +31,7 @@ impl World {
     pub fn compile(mut scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
         let written = scene.camera.clone().unwrap_or_default();
         let camera = Camera::new(&written, scene.image.width, scene.image.height)?;
+        reflectance::check(&scene, warnings);
         let origin = camera.lookfrom();
         let render_from_world = DMat4::from_translation(-origin);
         let has_media = scene.render.media;
@@ -86,7 +87,8 @@ impl World {
             compiler.lights.add(light, origin);
         }
         let Compiler { lights, shapes, alphas, sides, vertex_data, .. } = compiler;
-        let radius = scene.bounds().radius() as f32;
+        let (bounds, is_model) = (scene.bounds(), scene.origin != Origin::Scene);
+        let radius = bounds.radius() as f32;
         let light_choice =
             LightChoice::new(scene.render.light_sampler, &lights.lights, &lights.brightness, radius);
         let Lights { lights, names: light_names, ambient, .. } = lights;
@@ -124,7 +126,7 @@ impl World {
             _ => None,
         });
         let is_environment = |index: &u32| matches!(lights[*index as usize], Light::Environment(_));
-        Ok(Self {
+        let world = Self {
             origin,
             camera,
             bvh,
@@ -149,7 +151,9 @@ impl World {
             light_choice,
             ambient,
             names,
-        })
+        };
+        view::check(&world, bounds, &written.at, is_model, warnings);
+        Ok(world)
     }
 }
 

@@ -1,0 +1,81 @@
+//! A perspective camera that frames a set of points, and points that turn around an axis.
+//!
+//! A point is inside the right edge of the picture where x − eye.x ≤ k (z − eye.z), and so on for the four edges: each edge is
+//! a plane whose offset grows with a linear function of the point. Opposite edges together bound eye.z; halfway between them
+//! lies the eye. Of a circle, that a point sweeps, the greatest value of the linear function counts.
+
+use glam::DVec3;
+
+use super::{FILL, FOV, TAN_HALF_FOV, TO_CAMERA};
+use crate::camera::{Camera, Projection, View};
+
+/// The four edges of a picture, moved outward by each point that it has to show.
+pub(super) struct Framing {
+    /// The origin of the offsets.
+    center: DVec3,
+    /// What is up in the world: of unit length.
+    vertical: DVec3,
+    forward: DVec3,
+    /// Right and up in the picture.
+    axes: [DVec3; 2],
+    /// How the picture's half width and half height grow with the depth.
+    slopes: [f64; 2],
+    /// For each axis of the picture, the greatest offset of its upper and of its lower edge.
+    edges: [[f64; 2]; 2],
+}
+
+impl Framing {
+    /// A three-quarter view from slightly above; `basis` is right, up and towards the viewer, of unit length, and `aspect` the
+    /// picture's width over its height.
+    pub(super) fn new(center: DVec3, basis: [DVec3; 3], aspect: f64) -> Self {
+        let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
+        let to_camera = TO_CAMERA[0] * basis[0] + TO_CAMERA[1] * basis[1] + TO_CAMERA[2] * basis[2];
+        let forward = -to_camera.normalize();
+        let right = forward.cross(basis[1]).normalize();
+        Self {
+            center,
+            vertical: basis[1],
+            forward,
+            axes: [right, right.cross(forward)],
+            slopes: [FILL * TAN_HALF_FOV * aspect, FILL * TAN_HALF_FOV],
+            edges: [[f64::NEG_INFINITY; 2]; 2],
+        }
+    }
+
+    /// Makes the picture show a point.
+    pub(super) fn include(&mut self, point: DVec3) {
+        let offset = point - self.center;
+        for (axis, along) in self.axes.map(|axis| offset.dot(axis)).into_iter().enumerate() {
+            let depth = self.slopes[axis] * offset.dot(self.forward);
+            self.edges[axis][0] = self.edges[axis][0].max(along - depth);
+            self.edges[axis][1] = self.edges[axis][1].max(-along - depth);
+        }
+    }
+
+    /// Makes the picture show all places of a point that turns around the vertical through the centre.
+    pub(super) fn include_turning(&mut self, point: DVec3) {
+        let offset = point - self.center;
+        let height = offset.dot(self.vertical);
+        let radius = (offset - height * self.vertical).length();
+        for axis in 0..2 {
+            for (edge, sign) in [1.0, -1.0].into_iter().enumerate() {
+                // The edge's linear function is the dot product with this vector.
+                let gradient = sign * self.axes[axis] - self.slopes[axis] * self.forward;
+                let along = gradient.dot(self.vertical);
+                let across = (gradient - along * self.vertical).length();
+                self.edges[axis][edge] = self.edges[axis][edge].max(height * along + radius * across);
+            }
+        }
+    }
+
+    /// The nearest camera of this direction that shows all points so far, of which there must be one.
+    pub(super) fn camera(self) -> Camera {
+        let Self { center, vertical, forward, axes: [right, up], slopes, edges } = self;
+        let [x, y] = edges.map(|[above, below]| 0.5 * (above - below));
+        let depth_for = |axis: usize| -(edges[axis][0] + edges[axis][1]) / (2.0 * slopes[axis]);
+        let z = depth_for(0).min(depth_for(1));
+        let lookat = center + x * right + y * up;
+        let view = View::Look { lookfrom: lookat + z * forward, lookat, up: vertical };
+        Camera { view, projection: Projection::Perspective { fov: FOV }, ..Camera::default() }
+    }
+}

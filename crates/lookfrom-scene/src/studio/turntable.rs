@@ -1,0 +1,210 @@
+//! A turntable: the camera's orbit around a scene, and a framing that holds at every angle.
+//!
+//! The axis goes through the point that the camera looks at, where the scene says it, and else through the middle of what is
+//! visible: lamps, backdrops and floors without end would move it away from what the picture is about.
+
+use glam::{DMat4, DVec3};
+
+use super::framing::Framing;
+use super::surroundings::{rotation, turn_environments};
+use super::{aspect, basis, bounds_of, corners, sane, visit_instance, visit_shape};
+use crate::camera::{Target, View};
+use crate::material::MaterialKind;
+use crate::scene::{Bounds, Instance, Origin, Scene};
+use crate::shape::{Geometry, Shape};
+
+/// How many times larger than the solid things a flat one may be before it is a backdrop or a floor without end: its radius over
+/// that of their bounds.
+const LARGEST_FLAT: f64 = 3.0;
+/// The thickness of a flat mesh as a share of its extent.
+const FLAT: f64 = 1e-3;
+
+/// The axis of a turntable, and what stands on it.
+#[derive(Clone, Debug)]
+pub struct Turntable {
+    /// A point of the axis.
+    pivot: DVec3,
+    /// Right, up (the direction of the axis) and towards the viewer: unit vectors.
+    basis: [DVec3; 3],
+}
+
+impl Turntable {
+    /// The turntable of a scene to which nothing was added yet. The axis goes through `lookat`; where that is `None`, through
+    /// the point that the scene's own camera looks at, or else through the middle of what is visible. `up` is the axis'
+    /// direction (of any length); where it is `None`, the camera's, or else y.
+    pub fn new(scene: &Scene, up: Option<DVec3>, lookat: Option<DVec3>) -> Self {
+        let target = scene.camera.as_ref().and_then(|camera| match camera.view {
+            View::Look { lookat, up, .. } => Some(Target { lookat, up }),
+            View::Matrix(_) => camera.target,
+        });
+        let of_matrix = || match scene.camera.as_ref()?.view {
+            // The format says what is up.
+            View::Matrix(matrix) if scene.origin != Origin::Gltf => Some(matrix.y_axis.truncate()),
+            _ => None,
+        };
+        let up = up.or(target.map(|target| target.up)).or_else(of_matrix);
+        let lookat = lookat.or(target.map(|target| target.lookat));
+        let pivot = lookat.unwrap_or_else(|| sane(bounds(scene, &visible(scene))).center());
+        Self { pivot, basis: basis(up.unwrap_or(DVec3::Y)) }
+    }
+
+    /// Adds a camera, if there is none, that shows all that is visible at every angle, in the same size.
+    pub fn frame(&self, scene: &mut Scene) {
+        if scene.camera.is_some() {
+            return;
+        }
+        let mut framing = Framing::new(self.pivot, self.basis, aspect(scene));
+        let items = visible(scene);
+        let written = bounds(scene, &items);
+        if sane(written) == written {
+            items.iter().for_each(|item| item.visit(scene, &mut |point| framing.include_turning(point)));
+        } else {
+            corners(sane(written)).into_iter().for_each(|corner| framing.include_turning(corner));
+        }
+        scene.camera = Some(framing.camera());
+    }
+
+    /// Takes the camera around the axis by degrees, against the clock as seen from above, and all pictures of the surroundings
+    /// with it: as if everything else turned the other way.
+    pub fn turn(&self, scene: &mut Scene, degrees: f64) {
+        let [_, up, _] = self.basis;
+        let orbit = DMat4::from_translation(self.pivot)
+            * rotation(up, degrees)
+            * DMat4::from_translation(-self.pivot);
+        if let Some(camera) = &mut scene.camera {
+            camera.view = match camera.view {
+                View::Look { lookfrom, lookat, up } => View::Look {
+                    lookfrom: orbit.transform_point3(lookfrom),
+                    lookat: orbit.transform_point3(lookat),
+                    up: orbit.transform_vector3(up),
+                },
+                View::Matrix(matrix) => View::Matrix(orbit * matrix),
+            };
+        }
+        turn_environments(scene, Some(up), degrees);
+    }
+}
+
+/// Something that stands in the world.
+#[derive(Clone, Copy)]
+enum Item<'a> {
+    Shape(&'a Shape),
+    Instance(&'a Instance),
+}
+
+impl Item<'_> {
+    fn visit(self, scene: &Scene, see: &mut dyn FnMut(DVec3)) {
+        match self {
+            Self::Shape(shape) => visit_shape(scene, shape, see),
+            Self::Instance(instance) => visit_instance(instance, visible_of_object(scene, instance), see),
+        }
+    }
+
+    fn bounds(self, scene: &Scene) -> Bounds {
+        match self {
+            Self::Shape(shape) => shape.bounds(&scene.meshes),
+            Self::Instance(instance) => {
+                visible_of_object(scene, instance).transformed(&instance.world_from_object)
+            }
+        }
+    }
+
+    /// Whether all of it lies in a plane.
+    fn is_flat(self, scene: &Scene) -> bool {
+        match self {
+            Self::Shape(shape) => match &shape.geometry {
+                Geometry::Quad { .. } | Geometry::Disk { .. } | Geometry::PartialDisk { .. } => true,
+                Geometry::Mesh(id) => {
+                    let mesh = &scene.meshes[id.index()];
+                    is_coplanar(|| {
+                        mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize].as_dvec3())
+                    })
+                }
+                Geometry::Bilinear(patches) => {
+                    is_coplanar(|| patches.positions.iter().map(|position| position.as_dvec3()))
+                }
+                _ => false,
+            },
+            Self::Instance(instance) => {
+                let Bounds { min, max } = visible_of_object(scene, instance);
+                (max - min).min_element() <= FLAT * (max - min).max_element()
+            }
+        }
+    }
+}
+
+/// The box around what can be seen of an object, in its own space.
+fn visible_of_object(scene: &Scene, instance: &Instance) -> Bounds {
+    let shapes = &scene.objects[instance.object.index()].shapes;
+    bounds_of(scene, shapes.iter().filter(|shape| !is_hidden(scene, shape)))
+}
+
+fn bounds(scene: &Scene, items: &[Item<'_>]) -> Bounds {
+    items.iter().map(|item| item.bounds(scene)).fold(Bounds::EMPTY, Bounds::union)
+}
+
+/// What the picture is about. In a scene where nothing is left, everything is.
+fn visible(scene: &Scene) -> Vec<Item<'_>> {
+    let shapes = scene.shapes.iter().map(Item::Shape);
+    let all: Vec<Item<'_>> = shapes.chain(scene.instances.iter().map(Item::Instance)).collect();
+    let shown: Vec<Item<'_>> = all
+        .iter()
+        .copied()
+        .filter(|item| match item {
+            Item::Shape(shape) => !is_hidden(scene, shape),
+            Item::Instance(_) => !item.bounds(scene).is_empty(),
+        })
+        .collect();
+    if shown.is_empty() {
+        return all;
+    }
+    let (surfaces, solids): (Vec<Item<'_>>, Vec<Item<'_>>) =
+        shown.iter().partition(|item| item.is_flat(scene) || surrounds_the_eye(scene, item));
+    if solids.is_empty() {
+        return shown;
+    }
+    let largest = LARGEST_FLAT * bounds(scene, &solids).radius();
+    let small = surfaces.into_iter().filter(|item| item.bounds(scene).radius() <= largest);
+    solids.iter().copied().chain(small).collect()
+}
+
+/// Whether a shape is a lamp or only the border of a medium. In a model what glows is a part of it.
+fn is_hidden(scene: &Scene, shape: &Shape) -> bool {
+    let is_lamp = scene.origin == Origin::Scene && shape.emission.is_some();
+    let material = scene.materials.get(shape.material.index());
+    is_lamp || material.is_some_and(|material| matches!(material.kind, MaterialKind::Interface))
+}
+
+/// Whether an item is a sphere around the eye: a sky that is painted on a dome.
+fn surrounds_the_eye(scene: &Scene, item: &Item<'_>) -> bool {
+    let Item::Shape(Shape { geometry: Geometry::Sphere(_) | Geometry::PartialSphere { .. }, .. }) = item
+    else {
+        return false;
+    };
+    let eye = match scene.camera.as_ref().map(|camera| camera.view) {
+        Some(View::Look { lookfrom, .. }) => lookfrom,
+        Some(View::Matrix(matrix)) => matrix.w_axis.truncate(),
+        None => return false,
+    };
+    let Bounds { min, max } = item.bounds(scene);
+    eye.cmpgt(min).all() && eye.cmplt(max).all()
+}
+
+/// Whether points lie in a plane, as far as their extent goes.
+fn is_coplanar<P: Iterator<Item = DVec3>>(points: impl Fn() -> P) -> bool {
+    let farthest = |measure: &dyn Fn(DVec3) -> f64| {
+        points().fold((0.0, DVec3::ZERO), |(most, at), point| {
+            let value = measure(point);
+            if value > most { (value, point) } else { (most, at) }
+        })
+    };
+    let Some(first) = points().next() else { return true };
+    let (extent, second) = farthest(&|point| point.distance(first));
+    let axis = (second - first).normalize_or_zero();
+    let (_, third) = farthest(&|point| (point - first).cross(axis).length());
+    let normal = (third - first).cross(axis).normalize_or_zero();
+    farthest(&|point| (point - first).dot(normal).abs()).0 <= FLAT * extent
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,158 @@
+//! Warnings about the camera's place: it sees nothing of the scene, or it stands inside something.
+//!
+//! Rays decide. A body is around the eye where rays to nearly all sides cross its surface an odd number of times and come to
+//! its back first, and where its back is nearly all that the picture shows. Rooms are not meant: their surfaces look inward,
+//! other things stand in them, or a lamp lights them from within.
+
+use glam::{DVec3, Vec3};
+use lookfrom_bvh::{Hit, Ray};
+use lookfrom_scene::material::{Color, MaterialKind, Scalar};
+use lookfrom_scene::scene::Bounds;
+use lookfrom_scene::{Location, Warning};
+
+use super::World;
+use crate::light::{Coverage, Light, Reference, Target};
+use crate::surface::Surface;
+use crate::texture::Lanes;
+use crate::warp;
+
+/// Camera rays along each side of the picture: at first, and where those meet nothing.
+const COARSE: u32 = 16;
+const FINE: u32 = 128;
+/// Rays to all sides are the square of this.
+const AROUND: u32 = 8;
+/// The share of rays that has to agree.
+const NEARLY_ALL: f64 = 0.9;
+
+/// Warns where the picture would be the background alone, or the inside of something. `bounds` are those of the scene in the
+/// world, `at` is where the camera was written; all parts of a model (`is_model`) are taken for one body.
+pub(super) fn check(
+    world: &World,
+    bounds: Bounds,
+    at: &Location,
+    is_model: bool,
+    warnings: &mut Vec<Warning>,
+) {
+    if bounds.is_empty() {
+        return;
+    }
+    let seen = seen(world, COARSE);
+    let message = if seen.iter().all(Option::is_none) {
+        if self::seen(world, FINE).iter().any(Option::is_some) {
+            return;
+        }
+        let Bounds { min, max } = bounds;
+        format!(
+            "the camera sees nothing of the scene, which lies between {min} and {max}: the picture shows the background alone; \
+             look at it from elsewhere, or in another direction"
+        )
+    } else {
+        let Some(shape) = body_around_the_eye(world, &seen, is_model) else { return };
+        if is_lit_from_within(world) {
+            return;
+        }
+        let body = match world.names.shapes.get(shape as usize) {
+            Some(name) if !is_model => format!("`{name}`"),
+            _ => "the model".to_owned(),
+        };
+        format!(
+            "the camera stands inside {body}: the picture shows its inner side alone; move the eye (lookfrom) out of it"
+        )
+    };
+    warnings.push(Warning { at: at.clone(), message });
+}
+
+/// What rays through a grid over the picture meet first.
+fn seen(world: &World, side: u32) -> Vec<Option<Surface>> {
+    let [width, height] = world.camera.size.map(f64::from);
+    let middle = |cell: u32| (f64::from(cell) + 0.5) / f64::from(side);
+    let mut hits = Vec::new();
+    let mut first = |cell: u32| {
+        let place = [width * middle(cell % side), height * middle(cell / side)];
+        let ray = world.camera_ray(&world.camera.ray(place, [0.5; 2]));
+        world.bvh.all_hits(&ray, &mut hits);
+        // The camera's rays pass these.
+        let is_passed =
+            |surface: &Surface| surface.single_sided && !surface.front || world.is_interface(surface);
+        hits.iter().map(|hit| world.surface(&ray, hit)).find(|surface| !is_passed(surface))
+    };
+    (0..side * side).map(&mut first).collect()
+}
+
+/// The number of a shape that is closed around the eye and fills the picture.
+fn body_around_the_eye(world: &World, seen: &[Option<Surface>], is_model: bool) -> Option<u32> {
+    let backs = || seen.iter().flatten().filter(|surface| !surface.front && is_opaque(world, surface));
+    let shape = backs().next()?.shape;
+    let is_part = |surface: &Surface| is_model || surface.shape == shape;
+    if !is_nearly_all(backs().filter(|surface| is_part(surface)).count(), seen.len()) {
+        return None;
+    }
+
+    let mut hits: Vec<Hit> = Vec::new();
+    let mut is_enclosed = |cell: u32| {
+        // Not through the middle of what is symmetric.
+        let place = |cell: u32| (cell as f32 + 0.37) / AROUND as f32;
+        let direction = warp::octahedral_direction([place(cell % AROUND), place(cell / AROUND)]);
+        let ray = Ray::new([0.0; 3], direction.to_array());
+        world.bvh.all_hits(&ray, &mut hits);
+        let surfaces = hits.iter().map(|hit| world.surface(&ray, hit));
+        let crossed: Vec<Surface> =
+            surfaces.filter(|surface| is_part(surface) && is_opaque(world, surface)).collect();
+        crossed.len() % 2 == 1 && !crossed[0].front
+    };
+    let count = (0..AROUND * AROUND).filter(|&cell| is_enclosed(cell)).count();
+    is_nearly_all(count, (AROUND * AROUND) as usize).then_some(shape)
+}
+
+fn is_nearly_all(count: usize, of: usize) -> bool {
+    count as f64 >= NEARLY_ALL * of as f64
+}
+
+/// Whether nothing is seen through a surface, and it does not shine.
+fn is_opaque(world: &World, surface: &Surface) -> bool {
+    surface.alpha.is_none()
+        && surface.light.is_none()
+        && !surface.single_sided
+        && match &world.materials[surface.material as usize].kind {
+            MaterialKind::Whitted(whitted) => whitted.transmission == Color::BLACK,
+            MaterialKind::Principled(look) => {
+                [look.transmission, look.diffuse_transmission] == [Scalar::Value(0.0); 2]
+            }
+            MaterialKind::Diffuse { .. }
+            | MaterialKind::Conductor { .. }
+            | MaterialKind::CoatedDiffuse { .. }
+            | MaterialKind::CoatedConductor { .. } => true,
+            // A sky on a dome is unlit.
+            MaterialKind::Unlit { .. }
+            | MaterialKind::DiffuseTransmission { .. }
+            | MaterialKind::Dielectric { .. }
+            | MaterialKind::ThinDielectric { .. }
+            | MaterialKind::Mix { .. }
+            | MaterialKind::ShadowCatcher { .. }
+            | MaterialKind::Interface => false,
+        }
+}
+
+/// Whether a lamp elsewhere than at the eye is seen from there.
+fn is_lit_from_within(world: &World) -> bool {
+    let eye = Reference { point: DVec3::ZERO, n: Vec3::Z };
+    (0..).zip(&world.lights).any(|(index, light)| {
+        if matches!(light, Light::Distant { .. } | Light::Environment(_)) {
+            return false;
+        }
+        let sample = light.sample(&world.textures, &eye, [0.5; 2], &Lanes::Rgb, Coverage::Complete);
+        let Some(sample) = sample else { return false };
+        match sample.target {
+            Target::Point(place) => {
+                place != DVec3::ZERO
+                    && !world.bvh.occluded(&Ray::new([0.0; 3], place.as_vec3().to_array()).until(1.0))
+            }
+            Target::Surface(..) => {
+                let ray = Ray::new([0.0; 3], sample.wi.to_array());
+                let hit = world.bvh.closest_hit(&ray);
+                hit.is_hit() && world.surface(&ray, &hit).light == Some(index)
+            }
+            Target::Infinity => false,
+        }
+    })
+}
