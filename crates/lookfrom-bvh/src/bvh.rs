@@ -16,7 +16,7 @@ use crate::sphere::Sphere;
 use crate::traverse::Trace;
 use crate::validate::{Invalid, Statistics};
 use crate::watch::Watch;
-use lookfrom_simd::Level;
+use lookfrom_simd::{Level, level};
 
 /// Rays (or points) that one thread answers before it looks for others' work.
 #[cfg(feature = "parallel")]
@@ -91,7 +91,7 @@ impl Default for Bvh {
             bounds: Aabb::EMPTY,
             statistics: Statistics::default(),
             largest: 0.0,
-            level: Level::new(),
+            level: level(),
         }
     }
 }

@@ -10,6 +10,7 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use glam::DVec3;
+use lookfrom::session::Fireflies;
 use lookfrom_scene::settings::{ColorMode, Crop, Filter, Integrator, Layers, LightSampler, Sampler, Tonemap};
 
 use crate::values;
@@ -174,15 +175,6 @@ pub(crate) struct RenderArguments {
 
     #[command(flatten)]
     pub(crate) overrides: Overrides,
-}
-
-/// What becomes of pixels that single samples make far too bright.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Fireflies {
-    /// They stay.
-    Off,
-    /// Their excess is spread.
-    Median,
 }
 
 #[derive(Args, Debug)]

@@ -4,7 +4,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use lookfrom::film::Film;
-use lookfrom::render::{Enough, Frame, Rendered};
+use lookfrom::render::{Rendered, StopCriteria};
+use lookfrom::session::{MOST_SAMPLES, Options};
 use lookfrom_scene::Inputs;
 use lookfrom_scene::image::compare::{Sampled, compare};
 use serde::Serialize;
@@ -17,9 +18,6 @@ use crate::{json, report};
 
 /// Samples a pixel where nobody said.
 const SAMPLES: u32 = 16;
-
-/// The most samples that a pixel can be given.
-const MOST_SAMPLES: u32 = 1 << 24;
 
 /// What a scene took; the keys are explained in docs/guide/command.md.
 #[derive(Debug, Serialize)]
@@ -69,19 +67,21 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
     // Nothing is written that could take the place of an input.
     let inputs = Inputs::default();
     let environment = prepare::environment(&arguments.overrides, &inputs)?;
-    let mut prepared = prepare(path, &arguments.common, &arguments.overrides, environment.as_ref(), &inputs)?;
-    exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
     let most = if arguments.time.is_some() { MOST_SAMPLES } else { SAMPLES };
-    prepared.render.samples = arguments.overrides.samples.unwrap_or(most);
-    // What is measured is how light is computed.
-    prepared.image.denoise = false;
-    let threads = arguments.common.threads.map(usize::from);
+    let options = Options {
+        samples: Some(arguments.overrides.samples.unwrap_or(most)),
+        // What is measured is how light is computed.
+        denoise: Some(false),
+        stop: StopCriteria { time: arguments.time, noise: None },
+        ..arguments.overrides.options(&arguments.common, environment.as_ref())
+    };
+    let session = prepare(path, &arguments.common, &options, &inputs)?;
+    exit::listed(session.warnings()).iter().for_each(|line| say(&format!("warning: {line}")));
 
     // What is measured.
-    let frame = Frame::new(&prepared.world, &prepared.image, &prepared.render);
-    let frame = frame.map_err(exit::in_scene(path))?;
+    let renderer = session.renderer();
     let started = Instant::now();
-    let rendered = frame.render_until(&Enough { time: arguments.time, noise: None }, threads, &());
+    let rendered = renderer.render_until(&options.stop, options.threads, &());
     let Rendered { film, rays, samples, samples_taken, .. } = rendered.map_err(exit::in_scene(path))?;
     let seconds = report::seconds(started.elapsed()).max(1e-6);
 
@@ -89,18 +89,18 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
     let reference = match &arguments.reference {
         Some(file) => read(file, None, &inputs)?,
         None => {
-            let mut other = prepared.render.clone();
+            let mut other = session.settings().clone();
             (other.samples, other.seed) = (arguments.reference_samples, other.seed.wrapping_add(1));
-            let frame = Frame::new(&prepared.world, &prepared.image, &other).map_err(exit::in_scene(path))?;
-            sampled(&frame.render(threads, &()).map_err(exit::in_scene(path))?.film)
+            let other = renderer.with_settings(other).map_err(exit::in_scene(path))?;
+            sampled(&other.render(options.threads, &()).map_err(exit::in_scene(path))?.film)
         }
     };
     let comparison = compare(&sampled(&film), &reference).map_err(exit::in_scene(path))?;
     Ok(Measured {
         scene: path.display().to_string(),
         samples,
-        read_seconds: report::seconds(prepared.read),
-        build_seconds: report::seconds(prepared.build),
+        read_seconds: report::seconds(session.info().read),
+        build_seconds: report::seconds(session.info().build),
         render_seconds: seconds,
         samples_per_s: samples_taken as f64 / seconds,
         rays_per_s: rays.total() as f64 / seconds,

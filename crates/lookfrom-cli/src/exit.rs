@@ -4,7 +4,7 @@ use std::fmt;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 
-use lookfrom_scene::{Error, Location, Warning};
+use lookfrom_scene::{Error, ErrorKind, Location, Warning};
 
 /// All that was asked is done.
 pub(crate) const DONE: u8 = 0;
@@ -64,7 +64,10 @@ impl fmt::Display for Failure {
 
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
-        Self::Scene(error)
+        match error.kind {
+            ErrorKind::Request => Self::Usage(error.message),
+            _ => Self::Scene(error),
+        }
     }
 }
 
@@ -74,7 +77,7 @@ pub(crate) fn in_scene(path: &Path) -> impl Fn(Error) -> Failure {
         if error.at.file.is_empty() {
             error.at = Location::file(path);
         }
-        Failure::Scene(error)
+        error.into()
     }
 }
 

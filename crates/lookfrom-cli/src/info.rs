@@ -6,20 +6,21 @@ use std::fmt::Write;
 use std::path::Path;
 
 use glam::DVec3;
+use lookfrom::session::Session;
 use lookfrom_scene::Inputs;
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::contents::{AnimationEntry, CameraEntry, Contents};
-use lookfrom_scene::settings::{Crop, Sampler, Tonemap};
+use lookfrom_scene::count::Counts;
+use lookfrom_scene::settings::Crop;
 use serde::Serialize;
 
 use self::object::Object;
 
 use crate::args::{InfoArguments, Overrides};
-use crate::count::Counts;
 use crate::exit::{self, DONE, Failure, answer, say};
-use crate::prepare::{self, Prepared, prepare};
+use crate::json;
+use crate::prepare::{self, prepare};
 use crate::report::{self, bytes, thousands};
-use crate::{json, values};
 
 /// Describes every scene; goes on after one that fails, with the code of the first failure.
 pub(crate) fn run(arguments: &InfoArguments) -> u8 {
@@ -42,12 +43,13 @@ pub(crate) fn run(arguments: &InfoArguments) -> u8 {
 }
 
 fn info(path: &Path, arguments: &InfoArguments) -> Result<(), Failure> {
-    let prepared = prepare(path, &arguments.common, &Overrides::default(), None, &Inputs::default())?;
+    let options = Overrides::default().options(&arguments.common, None);
+    let session = prepare(path, &arguments.common, &options, &Inputs::default())?;
     if arguments.json {
-        return answer(&json::line(&Object::new(path, &prepared)));
+        return answer(&json::line(&Object::new(path, &session)));
     }
-    exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
-    answer(&for_people(path, &prepared))
+    exit::listed(session.warnings()).iter().for_each(|line| say(&format!("warning: {line}")));
+    answer(&for_people(path, &session))
 }
 
 /// What a tree consists of. Those of objects, which instances share, are not counted in.
@@ -60,8 +62,8 @@ struct Tree {
     left_out: usize,
 }
 
-fn tree(prepared: &Prepared) -> Tree {
-    let bvh = &prepared.world.bvh;
+fn tree(session: &Session) -> Tree {
+    let bvh = session.world().bvh();
     let statistics = bvh.statistics();
     Tree {
         nodes: statistics.nodes,
@@ -72,11 +74,12 @@ fn tree(prepared: &Prepared) -> Tree {
     }
 }
 
-fn for_people(path: &Path, prepared: &Prepared) -> String {
+fn for_people(path: &Path, session: &Session) -> String {
+    let info = session.info();
     let mut lines = vec![path.display().to_string()];
     let mut line = |name: &str, text: String| lines.push(format!("  {name:<10} {text}"));
-    contents(&prepared.counts, &mut line);
-    let bounds = prepared.bounds;
+    contents(&info.counts, &mut line);
+    let bounds = info.bounds;
     let size = bounds.max - bounds.min;
     line(
         "bounds",
@@ -86,16 +89,16 @@ fn for_people(path: &Path, prepared: &Prepared) -> String {
             format!("{} to {}, size {}", numbers(bounds.min), numbers(bounds.max), numbers(size))
         },
     );
-    choices(&prepared.contents, &mut line);
-    line("camera", camera_in_words(&prepared.camera));
-    let image = &prepared.image;
+    choices(&info.contents, &mut line);
+    line("camera", camera_in_words(session.camera()));
+    let image = session.image();
     let mut picture = format!(
         "{} × {} pixels, filter {}, exposure {}, tonemap {}",
         image.width,
         image.height,
-        values::filter_name(&image.filter),
+        image.filter,
         image.exposure,
-        values::name(Tonemap::WORDS, &image.tonemap)
+        image.tonemap.word()
     );
     if let Some(Crop { x0, y0, x1, y1 }) = image.crop {
         let _ = write!(picture, ", crop {x0},{y0},{x1},{y1}");
@@ -104,7 +107,7 @@ fn for_people(path: &Path, prepared: &Prepared) -> String {
         picture.push_str(", denoised");
     }
     line("image", picture);
-    let render = &prepared.render;
+    let render = session.settings();
     line(
         "render",
         format!(
@@ -113,14 +116,14 @@ fn for_people(path: &Path, prepared: &Prepared) -> String {
             render.samples,
             render.depth,
             render.min_contribution,
-            values::name(Sampler::WORDS, &render.sampler),
+            render.sampler.word(),
             render.seed
         ),
     );
-    if !prepared.added.is_empty() {
-        line("added", format!("{} (the file has none)", prepared.added.join(", ")));
+    if !info.added.is_empty() {
+        line("added", format!("{} (the file has none)", info.added.join(", ")));
     }
-    let Tree { nodes, leaves, depth, memory_bytes, left_out } = tree(prepared);
+    let Tree { nodes, leaves, depth, memory_bytes, left_out } = tree(session);
     let mut tree = format!("{nodes} nodes, {leaves} leaves, depth {depth}, {}", bytes(memory_bytes as u64));
     if left_out > 0 {
         let _ = write!(tree, "; {left_out} primitives without size or place left out");
@@ -128,11 +131,7 @@ fn for_people(path: &Path, prepared: &Prepared) -> String {
     line("bvh", tree);
     line(
         "time",
-        format!(
-            "read {:.2} s, build {:.2} s",
-            report::seconds(prepared.read),
-            report::seconds(prepared.build)
-        ),
+        format!("read {:.2} s, build {:.2} s", report::seconds(info.read), report::seconds(info.build)),
     );
     lines.join("\n")
 }
@@ -201,7 +200,9 @@ fn projection_in_words(projection: Projection) -> String {
     match projection {
         Projection::Perspective { fov } => format!("fov {}°", digits(fov)),
         Projection::Orthographic { height } => format!("parallel rays, height {}", digits(height)),
-        Projection::Equirectangular | Projection::EquirectangularPbrt => "all around by latitude and longitude".to_owned(),
+        Projection::Equirectangular | Projection::EquirectangularPbrt => {
+            "all around by latitude and longitude".to_owned()
+        }
         Projection::Octahedral => "all around on an octahedral square".to_owned(),
     }
 }

@@ -1,7 +1,7 @@
 //! `lookfrom inspect`: all that happens on the way of one sample. The inspection itself is the library's.
 
 use lookfrom::inspect;
-use lookfrom::render::{Frame, SampleId};
+use lookfrom::render::{Renderer, SampleId};
 use lookfrom_scene::Inputs;
 
 use crate::args::InspectArguments;
@@ -22,36 +22,35 @@ fn follow(arguments: &InspectArguments) -> Result<(), Failure> {
     let inputs = Inputs::default();
     let environment = prepare::environment(&arguments.overrides, &inputs)?;
     let InspectArguments { scene, common, overrides, .. } = arguments;
-    let prepared = prepare(scene, common, overrides, environment.as_ref(), &inputs)?;
-    exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
+    let options = overrides.options(common, environment.as_ref());
+    let session = prepare(scene, common, &options, &inputs)?;
+    exit::listed(session.warnings()).iter().for_each(|line| say(&format!("warning: {line}")));
     let &InspectArguments { x, y, sample, .. } = arguments;
-    let (width, height) = (prepared.image.width, prepared.image.height);
+    let (width, height) = (session.image().width, session.image().height);
     if x >= width || y >= height {
         return Err(Failure::Usage(format!(
             "pixel {x} {y} is not in the picture of {width} × {height} pixels"
         )));
     }
-    if sample >= prepared.render.samples {
+    let samples = session.settings().samples;
+    if sample >= samples {
         return Err(Failure::Usage(format!(
-            "there is no sample {sample}: the picture has {} samples a pixel, counted from 0",
-            prepared.render.samples
+            "there is no sample {sample}: the picture has {samples} samples a pixel, counted from 0"
         )));
     }
-    let frame = Frame::new(&prepared.world, &prepared.image, &prepared.render)?;
-    let id = SampleId { pixel: [x, y], sample };
-    report(&frame, id, arguments, &inputs)
+    report(session.renderer(), SampleId { pixel: [x, y], sample }, arguments, &inputs)
 }
 
 /// Answers as text or JSON, and with a drawing where one is asked for.
 fn report(
-    frame: &Frame<'_>,
+    renderer: &Renderer,
     id: SampleId,
     arguments: &InspectArguments,
     inputs: &Inputs,
 ) -> Result<(), Failure> {
-    let inspection = inspect::inspect(frame, id);
+    let inspection = inspect::inspect(renderer, id);
     if let Some(path) = &arguments.svg {
-        let drawing = inspect::svg(frame.world(), &inspection);
+        let drawing = inspect::svg(renderer, &inspection);
         output::replace_file(path, drawing.as_bytes(), inputs, "--svg")?;
     }
     let text = if arguments.json { json::document(&inspection) } else { inspection.to_string() };

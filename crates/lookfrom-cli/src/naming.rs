@@ -5,11 +5,12 @@ use std::ffi::{OsStr, OsString};
 use std::io::IsTerminal;
 use std::path::{Component, Path, PathBuf};
 
+use lookfrom::session::Format;
 use lookfrom_scene::suggest::nearest;
 use lookfrom_scene::{Disk, Files};
 
 use crate::exit::Failure;
-use crate::output::{FORMATS, Format, Target, folder_or_here};
+use crate::output::{Target, folder_or_here};
 
 /// What a pattern can say of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,7 +121,7 @@ fn target(of: Numbered<'_>, output: Option<&Path>) -> Result<Target, Failure> {
         return file(output);
     }
     if output.exists()
-        || FORMATS.iter().any(|(extension, _)| Some(OsStr::new(extension)) == output.extension())
+        || Format::EXTENSIONS.iter().any(|(extension, _)| Some(OsStr::new(extension)) == output.extension())
     {
         return Err(Failure::Usage(format!(
             "{} pictures do not fit into the one file {}; give -o a folder or a pattern with {{name}}",
@@ -197,10 +198,11 @@ fn stem(scene: &Path) -> &OsStr {
 
 /// The format of a file by its extension.
 fn format(path: &Path) -> Result<Format, Failure> {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let known = FORMATS.iter().find(|(of_format, _)| *of_format == extension);
-    known.map(|&(_, format)| format).ok_or_else(|| {
-        let all = FORMATS.map(|(extension, _)| format!(".{extension}")).join(", ");
+    Format::of_path(path).ok_or_else(|| {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let all: Vec<String> =
+            Format::EXTENSIONS.iter().map(|(extension, _)| format!(".{extension}")).collect();
+        let all = all.join(", ");
         let found = if extension.is_empty() {
             "no extension".to_owned()
         } else {

@@ -5,42 +5,10 @@ use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use lookfrom::develop::{srgb8_before, srgba8};
-use lookfrom::film::Picture;
-use lookfrom_scene::image::{
-    encode_exr, encode_hdr, encode_pfm, encode_png, encode_png_with_alpha, encode_ppm,
-};
-use lookfrom_scene::settings::{Background, ImageSettings};
+use lookfrom::session::Format;
 use lookfrom_scene::{Disk, Inputs};
 
 use crate::exit::Failure;
-
-/// What lies behind a picture with alpha, where nothing has room for alpha: its background, or black.
-pub(crate) fn behind(image: &ImageSettings) -> [f32; 3] {
-    match image.background {
-        Background::Color(color) => color,
-        Background::Transparent | Background::Environment => [0.0; 3],
-    }
-}
-
-/// The formats of pictures, by extension.
-pub(crate) const FORMATS: [(&str, Format); 5] = [
-    ("png", Format::Png),
-    ("exr", Format::Exr),
-    ("hdr", Format::Hdr),
-    ("pfm", Format::Pfm),
-    ("ppm", Format::Ppm),
-];
-
-/// A format of pictures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Format {
-    Png,
-    Exr,
-    Hdr,
-    Pfm,
-    Ppm,
-}
 
 /// Where a picture goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,54 +38,12 @@ impl Target {
         Self::File(path.with_file_name(name), *format)
     }
 
-    /// Whether a file there has room for layers.
-    pub(crate) fn has_layers(&self) -> bool {
-        matches!(self, Self::File(_, Format::Exr))
-    }
-
-    /// The bytes of a picture in the target's format; `layers` and `attributes` are for a format that has room for them.
-    ///
-    /// # Errors
-    /// `Output` where the format cannot hold the picture.
-    pub(crate) fn encode(
-        &self,
-        picture: &Picture,
-        layers: &[(String, Vec<f32>)],
-        image: &ImageSettings,
-        attributes: &[(String, String)],
-    ) -> Result<Vec<u8>, Failure> {
-        let (width, height) = (picture.width, picture.height);
-        let format = match self {
+    /// The format of the picture there.
+    pub(crate) fn format(&self) -> Format {
+        match self {
             Self::Stdout => Format::Png,
             Self::File(_, format) => *format,
-        };
-        // Behind a picture with alpha lies its background; where the format has no room for alpha, black.
-        let is_transparent = image.background == Background::Transparent;
-        let background = behind(image);
-        let developed = || srgb8_before(picture, background, image.exposure, image.tonemap);
-        let linear = || picture.clone().before(background).pixels;
-        let bytes = match format {
-            Format::Png if is_transparent => {
-                encode_png_with_alpha(width, height, &srgba8(picture, image.exposure, image.tonemap))
-            }
-            Format::Png => encode_png(width, height, &developed()),
-            Format::Ppm => encode_ppm(width, height, &developed()),
-            Format::Hdr => encode_hdr(width, height, &linear()),
-            Format::Pfm => encode_pfm(width, height, &linear()),
-            Format::Exr => {
-                let pixels = linear();
-                let channel = |index: usize| pixels.iter().map(|pixel| pixel[index]).collect::<Vec<f32>>();
-                let [r, g, b] = [channel(0), channel(1), channel(2)];
-                let channels = [("R", &r), ("G", &g), ("B", &b)];
-                let channels = channels.map(|(name, values)| (name.to_owned(), values.as_slice()));
-                let alpha: Vec<f32> = picture.alpha.iter().map(|alpha| alpha.clamp(0.0, 1.0)).collect();
-                let alpha = is_transparent.then(|| ("A".to_owned(), alpha.as_slice()));
-                let layers = layers.iter().map(|(name, values)| (name.clone(), values.as_slice()));
-                let channels: Vec<_> = channels.into_iter().chain(alpha).chain(layers).collect();
-                encode_exr(width, height, &channels, attributes)
-            }
-        };
-        bytes.map_err(|error| Failure::Output(format!("{}: {}", self.name(), error.message)))
+        }
     }
 
     /// Whether something is there already.

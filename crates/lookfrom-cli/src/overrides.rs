@@ -1,245 +1,46 @@
-//! What the command line says in place of the scene, applied in two steps: the settings first, since a camera is framed for a
-//! shape of picture; then the camera, which a model has only by then.
+//! What was typed as options of a session.
 
-use glam::{DMat3, DMat4, DVec3};
-use lookfrom_scene::camera::{Camera, Projection, View};
-use lookfrom_scene::settings::{Crop, ImageSettings, RenderSettings};
-use lookfrom_scene::{Location, Scene};
+use lookfrom::session::Options;
+use lookfrom_scene::image::Image;
 
-use crate::args::Overrides;
-use crate::exit::Failure;
-
-/// The most pixels of a picture.
-const MOST_PIXELS: u64 = lookfrom::film::MOST_PIXELS;
+use crate::args::{Common, Overrides};
 
 impl Overrides {
-    /// Changes the settings of the picture and of the computation.
-    ///
-    /// # Errors
-    /// `Usage` for a picture that is too large or a crop that is no part of it.
-    pub(crate) fn apply_to_settings(
-        &self,
-        image: &mut ImageSettings,
-        render: &mut RenderSettings,
-    ) -> Result<(), Failure> {
-        self.resize(image)?;
-        if let Some(crop) = self.crop {
-            if crop.x1 > image.width || crop.y1 > image.height {
-                let Crop { x0, y0, x1, y1 } = crop;
-                return Err(Failure::Usage(format!(
-                    "--crop {x0},{y0},{x1},{y1} is not a part of the picture of {} × {} pixels",
-                    image.width, image.height
-                )));
-            }
-            image.crop = Some(crop);
-        }
-        replace(&mut image.filter, self.filter);
-        replace(&mut image.exposure, self.exposure);
-        replace(&mut image.tonemap, self.tonemap);
-        replace(&mut render.samples, self.samples);
-        replace(&mut render.integrator, self.integrator);
-        replace(&mut render.color, self.color);
-        replace(&mut render.light_sampler, self.light_sampler);
-        replace(&mut image.layers, self.layers);
-        replace(&mut image.denoise, self.denoise);
-        replace(&mut image.background, self.model.background);
-        replace(&mut render.depth, self.depth);
-        replace(&mut render.min_contribution, self.min_contribution);
-        replace(&mut render.sampler, self.sampler);
-        replace(&mut render.seed, self.seed);
-        Ok(())
-    }
-
-    fn resize(&self, image: &mut ImageSettings) -> Result<(), Failure> {
-        let (old_width, old_height) = (u64::from(image.width), u64::from(image.height));
-        // One side alone: the other is what keeps the shape, to the nearest pixel.
-        let [typed_width, typed_height] = match self.model.size {
+    /// The options, with the picture of the surroundings that was read for them.
+    pub(crate) fn options(&self, common: &Common, environment: Option<&Image>) -> Options {
+        let [width, height] = match self.model.size {
             Some(size) => size.map(Some),
             None => [self.width, self.height],
         };
-        let (width, height) = match (typed_width.map(u64::from), typed_height.map(u64::from)) {
-            (None, None) => return Ok(()),
-            (Some(width), Some(height)) => (width, height),
-            (Some(width), None) => (width, (width * old_height + old_width / 2) / old_width),
-            (None, Some(height)) => ((height * old_width + old_height / 2) / old_height, height),
-        };
-        let (width, height) = (width.max(1), height.max(1));
-        if width.saturating_mul(height) > MOST_PIXELS {
-            return Err(Failure::Usage(format!(
-                "a picture of {width} × {height} pixels; at most {MOST_PIXELS} pixels are possible"
-            )));
+        Options {
+            width,
+            height,
+            crop: self.crop,
+            samples: self.samples,
+            integrator: self.integrator,
+            color: self.color,
+            light_sampler: self.light_sampler,
+            layers: self.layers,
+            denoise: self.denoise,
+            depth: self.depth,
+            min_contribution: self.min_contribution,
+            sampler: self.sampler,
+            seed: self.seed,
+            filter: self.filter,
+            exposure: self.exposure,
+            tonemap: self.tonemap,
+            background: self.model.background,
+            lookfrom: self.lookfrom,
+            lookat: self.lookat,
+            up: self.up,
+            fov: self.fov,
+            environment: environment.cloned(),
+            rotate_environment: self.model.rotate_environment,
+            floor: self.model.floor,
+            turn: self.model.turn,
+            import: self.model.choice(),
+            threads: common.threads.map(usize::from),
+            ..Options::default()
         }
-        // A crop that the scene asks for stays the same part of the picture, to the next pixel outward.
-        image.crop = image.crop.map(|Crop { x0, y0, x1, y1 }| {
-            let down = |edge: u32, new: u64, old: u64| (u64::from(edge) * new / old) as u32;
-            let up = |edge: u32, new: u64, old: u64| (u64::from(edge) * new).div_ceil(old) as u32;
-            Crop {
-                x0: down(x0, width, old_width),
-                y0: down(y0, height, old_height),
-                x1: up(x1, width, old_width),
-                y1: up(y1, height, old_height),
-            }
-        });
-        (image.width, image.height) = (width as u32, height as u32);
-        Ok(())
-    }
-
-    /// Changes the camera of a scene that has one.
-    ///
-    /// # Errors
-    /// `Usage` for `--fov` where rays are parallel, and for a new place or direction of a camera that skews or mirrors.
-    pub(crate) fn apply_to_camera(&self, scene: &mut Scene) -> Result<(), Failure> {
-        let moved = self.lookfrom.is_some() || self.lookat.is_some() || self.up.is_some();
-        let middle = scene.bounds().center();
-        let Some(camera) = &mut scene.camera else { return Ok(()) };
-        if let Some(degrees) = self.fov {
-            let Projection::Perspective { fov } = &mut camera.projection else {
-                return Err(Failure::Usage(
-                    "--fov has no meaning here: the rays of this scene's camera are parallel".to_owned(),
-                ));
-            };
-            *fov = degrees;
-        }
-        if moved {
-            self.look(camera, middle)?;
-            // What is wrong with the camera from here on is no line of a file.
-            camera.at = Location { file: "the command line".into(), ..Location::default() };
-        }
-        Ok(())
-    }
-
-    fn look(&self, camera: &mut Camera, middle: DVec3) -> Result<(), Failure> {
-        let (mut lookfrom, mut lookat, mut up) = match camera.view {
-            View::Look { lookfrom, lookat, up } => (lookfrom, lookat, up),
-            View::Matrix(matrix) => look_of_matrix(&matrix, middle).ok_or_else(|| {
-                Failure::Usage(
-                    "--lookfrom, --lookat and --up cannot change a camera whose matrix skews or mirrors"
-                        .to_owned(),
-                )
-            })?,
-        };
-        let distance_before = lookfrom.distance(lookat);
-        replace(&mut lookfrom, self.lookfrom);
-        replace(&mut lookat, self.lookat);
-        replace(&mut up, self.up);
-        // A lens that was sharp at lookat stays so.
-        if let Some(lens) = &mut camera.lens
-            && (lens.focus_distance - distance_before).abs() <= 1e-9 * distance_before
-        {
-            lens.focus_distance = lookfrom.distance(lookat);
-        }
-        camera.view = View::Look { lookfrom, lookat, up };
-        Ok(())
-    }
-}
-
-/// `lookfrom`, `lookat` and `up` of a camera that only turns and scales evenly. It looks at the point of its axis that is
-/// nearest to the middle of the scene, if that lies before it.
-fn look_of_matrix(matrix: &DMat4, middle: DVec3) -> Option<(DVec3, DVec3, DVec3)> {
-    let linear = DMat3::from_mat4(*matrix);
-    let scale = linear.z_axis.length();
-    let turned = (linear.transpose() * linear * (1.0 / (scale * scale))).abs_diff_eq(DMat3::IDENTITY, 1e-6);
-    if !turned || linear.determinant() <= 0.0 {
-        return None;
-    }
-    let lookfrom = matrix.w_axis.truncate();
-    let w = linear.z_axis / scale;
-    let along = (middle - lookfrom).dot(w);
-    let distance = if along > 0.0 && along.is_finite() { along } else { 1.0 };
-    Some((lookfrom, lookfrom + distance * w, linear.y_axis))
-}
-
-fn replace<T>(setting: &mut T, typed: Option<T>) {
-    if let Some(typed) = typed {
-        *setting = typed;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use lookfrom_scene::camera::Lens;
-
-    fn image(width: u32, height: u32, crop: Option<Crop>) -> ImageSettings {
-        ImageSettings { width, height, crop, ..ImageSettings::default() }
-    }
-
-    fn resized(of: &Overrides, mut image: ImageSettings) -> Result<ImageSettings, Failure> {
-        of.apply_to_settings(&mut image, &mut RenderSettings::default()).map(|()| image)
-    }
-
-    #[test]
-    fn one_side_keeps_the_shape() {
-        let of = |width, height| {
-            let image =
-                resized(&Overrides { width, height, ..Overrides::default() }, image(640, 480, None)).unwrap();
-            (image.width, image.height)
-        };
-        assert_eq!(of(Some(320), None), (320, 240));
-        assert_eq!(of(None, Some(3)), (4, 3));
-        assert_eq!(of(Some(1), None), (1, 1));
-        assert_eq!(of(Some(7), Some(9)), (7, 9));
-        let flat = Overrides { height: Some(1), ..Overrides::default() };
-        assert_eq!(resized(&flat, image(1, 1000, None)).unwrap().width, 1);
-        let huge = Overrides { width: Some(u32::MAX), ..Overrides::default() };
-        assert!(matches!(resized(&huge, image(1, 1 << 28, None)), Err(Failure::Usage(_))));
-    }
-
-    #[test]
-    fn a_crop_of_the_scene_stays_the_same_part() {
-        let crop = Some(Crop { x0: 10, y0: 0, x1: 30, y1: 50 });
-        let half = Overrides { width: Some(50), ..Overrides::default() };
-        let image = resized(&half, image(100, 100, crop)).unwrap();
-        assert_eq!(image.crop, Some(Crop { x0: 5, y0: 0, x1: 15, y1: 25 }));
-    }
-
-    #[test]
-    fn a_crop_beyond_the_picture_is_refused() {
-        let crop = Some(Crop { x0: 0, y0: 0, x1: 11, y1: 10 });
-        let beyond = Overrides { crop, ..Overrides::default() };
-        assert!(matches!(resized(&beyond, image(10, 10, None)), Err(Failure::Usage(_))));
-        assert!(resized(&beyond, image(11, 10, None)).is_ok());
-    }
-
-    fn moved(of: &Overrides, camera: Camera) -> Result<Camera, Failure> {
-        let mut scene = Scene { camera: Some(camera), ..Scene::default() };
-        of.apply_to_camera(&mut scene).map(|()| scene.camera.unwrap())
-    }
-
-    #[test]
-    fn a_camera_moves_and_keeps_the_rest() {
-        let lens = Some(Lens { radius: 0.1, focus_distance: 26.0_f64.sqrt() });
-        let away = Overrides { lookfrom: Some(DVec3::new(0.0, 0.0, -3.0)), ..Overrides::default() };
-        let camera = moved(&away, Camera { lens, ..Camera::default() }).unwrap();
-        let View::Look { lookfrom, lookat, up } = camera.view else { panic!("{camera:?}") };
-        assert_eq!((lookfrom, lookat, up), (DVec3::new(0.0, 0.0, -3.0), DVec3::ZERO, DVec3::Y));
-        assert_eq!(camera.lens.unwrap().focus_distance, 3.0);
-    }
-
-    #[test]
-    fn a_matrix_that_turns_becomes_a_look_and_one_that_mirrors_does_not() {
-        // stands at (0, 0, 5), looks along −z; x of its space, the viewer's left, is −x
-        let turned = DMat4::from_cols(
-            DVec3::NEG_X.extend(0.0),
-            DVec3::Y.extend(0.0),
-            DVec3::NEG_Z.extend(0.0),
-            DVec3::new(0.0, 0.0, 5.0).extend(1.0),
-        );
-        let rise = Overrides { lookfrom: Some(DVec3::new(0.0, 4.0, 5.0)), ..Overrides::default() };
-        let camera = moved(&rise, Camera { view: View::Matrix(turned), ..Camera::default() }).unwrap();
-        let View::Look { lookat, up, .. } = camera.view else { panic!("{camera:?}") };
-        assert_eq!((lookat, up), (DVec3::new(0.0, 0.0, 4.0), DVec3::Y));
-        let mirrored = turned * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-        let camera = Camera { view: View::Matrix(mirrored), ..Camera::default() };
-        assert!(matches!(moved(&rise, camera), Err(Failure::Usage(_))));
-    }
-
-    #[test]
-    fn parallel_rays_have_no_field_of_view() {
-        let wide = Overrides { fov: Some(90.0), ..Overrides::default() };
-        let parallel = Camera { projection: Projection::Orthographic { height: 2.0 }, ..Camera::default() };
-        assert!(matches!(moved(&wide, parallel), Err(Failure::Usage(_))));
-        let camera = moved(&wide, Camera::default()).unwrap();
-        assert_eq!(camera.projection, Projection::Perspective { fov: 90.0 });
     }
 }

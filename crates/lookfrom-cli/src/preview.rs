@@ -4,38 +4,44 @@ use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 
-use lookfrom::film::{Film, Picture};
+use lookfrom::film::Picture;
+use lookfrom::render::TileDone;
+use lookfrom_scene::settings::{Crop, ImageSettings};
 
 /// A picture, and how many samples a pixel it has on average, rounded down.
 pub(crate) type SoFar = (Picture, u64);
 
-/// Says when it is time for another picture, and hands it on.
+/// Puts the picture together from its tiles, says when it is time for another one to be written, and hands it on.
 pub(crate) struct Preview {
     every: Duration,
-    last: Mutex<Instant>,
+    /// How many pixels are computed.
+    pixels: u64,
+    so_far: Mutex<(Picture, Instant)>,
     sender: SyncSender<SoFar>,
 }
 
 impl Preview {
     /// Starts the clock. Who writes takes pictures from the receiver until there are no more.
-    pub(crate) fn start(every: Duration) -> (Self, Receiver<SoFar>) {
+    pub(crate) fn start(every: Duration, image: &ImageSettings) -> (Self, Receiver<SoFar>) {
         let (sender, receiver) = sync_channel(0);
-        (Self { every, last: Mutex::new(Instant::now()), sender }, receiver)
+        let &ImageSettings { width, height, crop, .. } = image;
+        let Crop { x0, y0, x1, y1 } = crop.unwrap_or(Crop { x0: 0, y0: 0, x1: width, y1: height });
+        let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
+        let black = vec![[0.0; 3]; width as usize * height as usize];
+        let picture = Picture { width, height, pixels: black, alpha: Vec::new() };
+        (Self { every, pixels, so_far: Mutex::new((picture, Instant::now())), sender }, receiver)
     }
 
-    /// Hands on the film's picture if it is time; not if the last one is still being written.
-    pub(crate) fn look(&self, film: &Film) {
-        let Ok(mut last) = self.last.try_lock() else { return };
-        if last.elapsed() >= self.every && self.sender.try_send((film.picture(), mean_samples(film))).is_ok()
+    /// Adds a tile, and hands the picture on if it is time; not while the last one is still being written.
+    pub(crate) fn add(&self, tile: TileDone) {
+        let Some(of_tile) = tile.picture else { return };
+        let mut so_far = self.so_far.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let (picture, last) = &mut *so_far;
+        picture.replace(tile.area.x0, tile.area.y0, &of_tile);
+        if last.elapsed() >= self.every
+            && self.sender.try_send((picture.clone(), tile.done / self.pixels.max(1))).is_ok()
         {
             *last = Instant::now();
         }
     }
-}
-
-fn mean_samples(film: &Film) -> u64 {
-    let area = film.area();
-    let pixels = || (area.y0..area.y1).flat_map(|y| (area.x0..area.x1).map(move |x| (x, y)));
-    let all: u64 = pixels().map(|(x, y)| film.samples(x, y)).sum();
-    all / (pixels().count() as u64).max(1)
 }

@@ -4,8 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use lookfrom::film::Film;
-use lookfrom::render::Progress;
+use lookfrom::render::{Progress, TileDone};
 
 use crate::exit::stderr_is_terminal;
 use crate::interrupt;
@@ -42,7 +41,8 @@ impl Watcher {
 }
 
 impl Progress for Watcher {
-    fn advance(&self, done: u64, total: u64, rays: u64) {
+    fn tile(&self, tile: TileDone) {
+        let TileDone { done, total, rays, .. } = tile;
         // Threads may come here out of order; the greatest number is the latest.
         self.done.fetch_max(done, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
@@ -60,12 +60,13 @@ impl Progress for Watcher {
             bar.set_position(position);
             bar.set_message(format!("{rate:.2} Mrays/s"));
         }
+        if let Some(preview) = &self.preview {
+            preview.add(tile);
+        }
     }
 
-    fn look(&self, film: &Film) {
-        if let Some(preview) = &self.preview {
-            preview.look(film);
-        }
+    fn wants_pixels(&self) -> bool {
+        self.preview.is_some()
     }
 
     fn cancelled(&self) -> bool {

@@ -4,29 +4,19 @@ use std::path::Path;
 use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
-use lookfrom::denoise::denoised;
-use lookfrom::render::{End, Enough, Frame};
+use lookfrom::render::{StopCriteria, StopReason};
+use lookfrom::session::{Options, Session};
 use lookfrom_scene::Inputs;
 use lookfrom_scene::image::Image;
-use lookfrom_scene::scene::Origin;
-use lookfrom_scene::settings::Layers;
-use lookfrom_scene::studio;
 
-use crate::args::{Fireflies, Overrides, RenderArguments};
+use crate::args::{Overrides, RenderArguments};
 use crate::exit::{self, DONE, Failure, INTERRUPTED, answer, say};
-use crate::header::{self, Taken};
 use crate::output::Target;
-use crate::prepare::{self, Prepared, prepare};
+use crate::prepare::{self, prepare};
 use crate::preview::{Preview, SoFar};
 use crate::progress::Watcher;
-use crate::report::{self, Dropped, Seconds, Summary};
-use crate::{interrupt, layers, naming};
-
-/// The most samples that a pixel can be given.
-const MOST_SAMPLES: u32 = 1 << 24;
-
-/// What is clean enough where nobody said.
-const ADAPTIVE_NOISE: f64 = 0.02;
+use crate::report::{self, Summary};
+use crate::{interrupt, naming};
 
 /// Renders every scene; goes on after one that fails, with the code of the first failure.
 pub(crate) fn run(arguments: &RenderArguments) -> u8 {
@@ -121,29 +111,22 @@ fn render(
     inputs: &Inputs,
 ) -> Result<u8, Failure> {
     let target = &targets[number];
-    let mut prepared = prepare(path, &arguments.common, overrides, environment, inputs)?;
+    let options = Options {
+        stop: StopCriteria { time: arguments.time, noise: arguments.noise },
+        adaptive: arguments.adaptive,
+        fireflies: arguments.fireflies,
+        format: Some(target.format()),
+        ..overrides.options(&arguments.common, environment)
+    };
+    let session = prepare(path, &arguments.common, &options, inputs)?;
     if number == 0 {
         if !arguments.quiet {
-            exit::listed(&prepared.warnings).iter().for_each(|line| say(&format!("warning: {line}")));
+            exit::listed(session.warnings()).iter().for_each(|line| say(&format!("warning: {line}")));
         }
         keep_inputs(path, targets, inputs)?;
     }
-    // A limit of time or noise replaces the scene's number of samples, not that of the command line.
-    if arguments.overrides.samples.is_none() {
-        if arguments.time.is_some() || arguments.noise.is_some() {
-            prepared.render.samples = MOST_SAMPLES;
-        } else if arguments.adaptive && prepared.origin != Origin::Scene {
-            // A model's few samples for the denoiser leave nothing to adapt.
-            prepared.render.samples = studio::MODEL_SAMPLES;
-        }
-    }
-    if !target.has_layers() {
-        prepared.image.layers = Layers::None;
-    }
-    let frame = Frame::new(&prepared.world, &prepared.image, &prepared.render);
-    let frame = frame.map_err(exit::in_scene(path))?;
     interrupt::keeping(|| {
-        let summary = render_frame(path, target, &prepared, &frame, arguments, inputs)?;
+        let summary = render_picture(path, target, &session, arguments, inputs)?;
         if !arguments.quiet {
             say(&summary.for_people());
         }
@@ -168,107 +151,52 @@ fn keep_inputs(path: &Path, targets: &[Target], inputs: &Inputs) -> Result<(), F
     }
 }
 
-fn render_frame(
+fn render_picture(
     path: &Path,
     target: &Target,
-    prepared: &Prepared,
-    frame: &Frame<'_>,
+    session: &Session,
     arguments: &RenderArguments,
     inputs: &Inputs,
 ) -> Result<Summary, Failure> {
     // Render, and write what there is in between.
-    let noise = arguments.noise.or(arguments.adaptive.then_some(ADAPTIVE_NOISE));
-    let enough = Enough { time: arguments.time, noise };
     let started = Instant::now();
-    let (rendered, samples_done) = std::thread::scope(|scope| {
+    let finished = std::thread::scope(|scope| {
         let preview = arguments.write_every.map(|every| {
-            let (preview, pictures) = Preview::start(every);
-            scope.spawn(move || write_previews(path, target, prepared, &pictures, inputs));
+            let (preview, pictures) = Preview::start(every, session.image());
+            scope.spawn(move || write_previews(target, session, &pictures, inputs));
             preview
         });
         let watcher = Watcher::start(arguments.quiet, arguments.time, preview);
-        let rendered = frame.render_until(&enough, arguments.common.threads.map(usize::from), &watcher);
-        (rendered, watcher.finish())
+        let finished = session.render(&watcher);
+        watcher.finish();
+        finished
     });
     let render_time = report::seconds(started.elapsed());
-    let rendered = rendered.map_err(exit::in_scene(path))?;
-    let film = &rendered.film;
+    let finished = finished.map_err(exit::in_scene(path))?;
 
     // Write; before the first sample there is nothing that could be called a picture.
-    let area = film.area();
-    let pixels = u64::from(area.x1 - area.x0) * u64::from(area.y1 - area.y0);
-    let samples_taken = samples_done / pixels;
-    let cancelled = rendered.end == End::Cancelled;
     let started = Instant::now();
-    if samples_done > 0 {
-        let spread = arguments.fireflies == Fireflies::Median;
-        let taken = Taken {
-            samples: if cancelled { prepared.render.samples } else { rendered.samples },
-            mean: (cancelled || noise.is_some()).then_some(samples_taken),
-            noise,
-            fireflies_spread: spread,
-            denoised: prepared.image.denoise,
-        };
-        let attributes = header::attributes(path, prepared, &taken);
-        let mut picture = if spread { film.picture_without_fireflies() } else { film.picture() };
-        let mut layers = if film.has_layers() { layers::channels(film) } else { Vec::new() };
-        if prepared.image.denoise {
-            picture = denoised(film, &picture);
-            if target.has_layers() {
-                layers.extend(layers::noisy(&prepared.image, film.picture()));
-            }
-        }
-        target.write(&target.encode(&picture, &layers, &prepared.image, &attributes)?, inputs)?;
+    let has_picture = finished.rendered.samples_taken > 0;
+    if has_picture {
+        let bytes = finished.encode(target.format());
+        let bytes =
+            bytes.map_err(|error| Failure::Output(format!("{}: {}", target.name(), error.message)))?;
+        target.write(&bytes, inputs)?;
     }
-
-    let rays = rendered.rays;
-    Ok(Summary {
-        scene: path.display().to_string(),
-        output: (samples_done > 0).then(|| target.name()),
-        width: prepared.image.width,
-        height: prepared.image.height,
-        samples: if cancelled { prepared.render.samples } else { rendered.samples },
-        samples_taken,
-        ended_by: match rendered.end {
-            End::Samples => "samples",
-            End::Time => "time",
-            End::Noise => "noise",
-            End::Cancelled => "interrupt",
-        },
-        relative_error: rendered.error.is_finite().then_some(rendered.error),
-        integrator: prepared.render.integrator.word(),
-        denoised: prepared.image.denoise && samples_done > 0,
-        seconds: Seconds {
-            read: report::seconds(prepared.read),
-            build: report::seconds(prepared.build),
-            render: render_time,
-            write: report::seconds(started.elapsed()),
-        },
-        rays: rays.into(),
-        mrays_per_s: rays.total() as f64 * 1e-6 / render_time.max(1e-6),
-        peak_memory_bytes: report::peak_memory(),
-        triangles: prepared.counts.triangles,
-        spheres: prepared.counts.spheres,
-        instances: prepared.counts.instances,
-        warnings: prepared.warnings.iter().map(ToString::to_string).collect(),
-        cancelled,
-        dropped_samples: Dropped { count: film.dropped(), first: film.first_dropped().map(Into::into) },
-    })
+    let mut summary = Summary::new(session, &finished);
+    summary.output = has_picture.then(|| target.name());
+    summary.denoised &= has_picture;
+    summary.cancelled = finished.rendered.reason == StopReason::Cancelled;
+    summary.measured(render_time, report::seconds(started.elapsed()));
+    Ok(summary)
 }
 
 /// Writes pictures as they come. One that cannot be written is told of once; the last one, by others, is what counts.
-fn write_previews(
-    path: &Path,
-    target: &Target,
-    prepared: &Prepared,
-    pictures: &Receiver<SoFar>,
-    inputs: &Inputs,
-) {
+fn write_previews(target: &Target, session: &Session, pictures: &Receiver<SoFar>, inputs: &Inputs) {
     let mut told = false;
     for (picture, mean) in pictures {
-        let taken = Taken { samples: prepared.render.samples, mean: Some(mean), ..Taken::default() };
-        let attributes = header::attributes(path, prepared, &taken);
-        let bytes = target.encode(&picture, &[], &prepared.image, &attributes);
+        let bytes = session.encode_preview(&picture, mean, target.format());
+        let bytes = bytes.map_err(|error| Failure::Output(format!("{}: {}", target.name(), error.message)));
         if let Err(failure) = bytes.and_then(|bytes| target.write(&bytes, inputs))
             && !told
         {

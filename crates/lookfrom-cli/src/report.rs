@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use lookfrom::film::Address;
 use lookfrom::render::Rays;
+use lookfrom::session::{Finished, Session};
 use serde::Serialize;
 
 use crate::exit::Failure;
@@ -84,6 +85,46 @@ impl From<Address> for DroppedAddress {
 }
 
 impl Summary {
+    /// What was done, but for where the picture went and how long that took.
+    pub(crate) fn new(session: &Session, finished: &Finished) -> Self {
+        let (info, rendered) = (session.info(), &finished.rendered);
+        let film = &rendered.film;
+        Self {
+            scene: session.name().to_owned(),
+            output: None,
+            width: session.image().width,
+            height: session.image().height,
+            samples: finished.samples(),
+            samples_taken: finished.samples_taken(),
+            ended_by: rendered.reason.word(),
+            relative_error: rendered.error.is_finite().then_some(rendered.error),
+            integrator: session.renderer().integrator(),
+            denoised: finished.denoised,
+            seconds: Seconds {
+                read: seconds(info.read),
+                build: seconds(info.build),
+                render: 0.0,
+                write: 0.0,
+            },
+            rays: rendered.rays.into(),
+            mrays_per_s: 0.0,
+            peak_memory_bytes: None,
+            triangles: info.counts.triangles,
+            spheres: info.counts.spheres,
+            instances: info.counts.instances,
+            warnings: session.warnings().iter().map(ToString::to_string).collect(),
+            cancelled: false,
+            dropped_samples: Dropped { count: film.dropped(), first: film.first_dropped().map(Into::into) },
+        }
+    }
+
+    /// Adds how long it took to render and to write, in seconds.
+    pub(crate) fn measured(&mut self, render: f64, write: f64) {
+        (self.seconds.render, self.seconds.write) = (render, write);
+        self.mrays_per_s = self.rays.total as f64 * 1e-6 / render.max(1e-6);
+        self.peak_memory_bytes = peak_memory();
+    }
+
     /// The summary as one line of JSON.
     pub(crate) fn as_json(&self) -> String {
         json::line(self)
@@ -164,7 +205,7 @@ pub(crate) fn seconds(duration: Duration) -> f64 {
 }
 
 /// The most memory that this process has had so far, where the system tells.
-pub(crate) fn peak_memory() -> Option<u64> {
+fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kilobytes| kilobytes * 1024)

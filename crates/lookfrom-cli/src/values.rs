@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
-use lookfrom_scene::image::{linear_from_srgb, srgb_from_linear};
+use lookfrom_scene::image::linear_from_srgb;
 use lookfrom_scene::settings::{Background, Crop, Filter, Layers};
 
-use crate::args::Fireflies;
+use lookfrom::session::Fireflies;
 
 /// What an EXR holds besides the picture.
 pub(crate) const LAYERS: &[(&str, Layers)] = &[("none", Layers::None), ("geometry", Layers::Geometry)];
@@ -18,18 +18,13 @@ pub(crate) const LAYERS: &[(&str, Layers)] = &[("none", Layers::None), ("geometr
 pub(crate) const ON_OFF: &[(&str, bool)] = &[("on", true), ("off", false)];
 
 /// What becomes of fireflies.
-pub(crate) const FIREFLIES: &[(&str, Fireflies)] = &[("off", Fireflies::Off), ("median", Fireflies::Median)];
+pub(crate) const FIREFLIES: &[(&str, Fireflies)] = &[("off", Fireflies::Keep), ("median", Fireflies::Spread)];
 
 /// Units of time, in seconds; those whose names end like others' come first.
 const UNITS: [(&str, f64); 4] = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];
 
 /// The widest filter, in pixels: as in scene files.
 const GREATEST_RADIUS: f32 = 16.0;
-
-/// The word for a value; every value has one.
-pub(crate) fn name<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'static str {
-    words.iter().find(|(_, of_word)| of_word == value).map_or("?", |(word, _)| word)
-}
 
 /// `60s`, `500ms`, `2m`, `1.5h`: a time of more than 0 and at most a year.
 pub(crate) fn duration(typed: &str) -> Result<Duration, String> {
@@ -116,18 +111,6 @@ pub(crate) fn background(typed: &str) -> Result<Background, String> {
     }
 }
 
-/// A background in the words of the command line.
-pub(crate) fn background_name(background: Background) -> String {
-    match background {
-        Background::Environment => "environment".to_owned(),
-        Background::Transparent => "transparent".to_owned(),
-        Background::Color(rgb) => {
-            let [r, g, b] = rgb.map(|c| (255.0 * srgb_from_linear(c) + 0.5) as u8);
-            format!("#{r:02x}{g:02x}{b:02x}")
-        }
-    }
-}
-
 /// A number within a range; NaN is in none.
 pub(crate) fn between<T>(least: T, greatest: T) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync
 where
@@ -172,17 +155,6 @@ pub(crate) fn filter(typed: &str) -> Result<Filter, String> {
     Ok(filter)
 }
 
-/// A filter in words: `NAME:RADIUS` and what shapes it besides.
-pub(crate) fn filter_name(filter: &Filter) -> String {
-    match filter {
-        Filter::Box { radius } => format!("box:{radius}"),
-        Filter::Triangle { radius } => format!("triangle:{radius}"),
-        Filter::Gaussian { radius, sigma } => format!("gaussian:{radius} sigma {sigma}"),
-        Filter::Mitchell { radius, b, c } => format!("mitchell:{radius} b {b} c {c}"),
-        Filter::BlackmanHarris { radius } => format!("blackman_harris:{radius}"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -191,9 +163,7 @@ mod tests {
     fn every_filter_keeps_its_name_and_takes_a_radius() {
         for (name, shape) in Filter::WORDS {
             assert_eq!(filter(name).as_ref(), Ok(shape));
-            assert!(
-                filter_name(&filter(&format!("{name}:3.5")).unwrap()).starts_with(&format!("{name}:3.5"))
-            );
+            assert!(filter(&format!("{name}:3.5")).unwrap().to_string().starts_with(&format!("{name}:3.5")));
         }
         for wrong in ["", "cone", "box:", "box:0", "box:-1", "box:17", "box:NaN", "box:inf", "box:1:2"] {
             assert!(filter(wrong).is_err(), "{wrong}");
@@ -224,7 +194,7 @@ mod tests {
             assert!(moment(wrong).is_err(), "{wrong}");
         }
         for name in ["environment", "transparent", "#ffffff", "#000000", "#2080c0"] {
-            assert_eq!(background_name(background(name).unwrap()), name);
+            assert_eq!(background(name).unwrap().to_string(), name);
         }
         for wrong in ["", "#fff", "#gggggg", "red"] {
             assert!(background(wrong).is_err(), "{wrong}");

@@ -13,8 +13,10 @@ mod command {
     mod interrupt;
     mod json;
     mod layers;
+    mod library;
     mod models;
     mod naming;
+    mod pinned;
     mod render;
     mod stage;
 }

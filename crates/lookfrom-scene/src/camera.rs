@@ -43,6 +43,16 @@ pub enum View {
     Matrix(DMat4),
 }
 
+impl View {
+    /// Where the eye is.
+    pub fn lookfrom(&self) -> DVec3 {
+        match self {
+            Self::Look { lookfrom, .. } => *lookfrom,
+            Self::Matrix(matrix) => matrix.w_axis.truncate(),
+        }
+    }
+}
+
 /// What an eye looks at. The picture does not depend on it; a camera that goes around goes around this.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {

@@ -61,6 +61,8 @@ pub enum ErrorKind {
     Unsupported,
     /// Larger or deeper than the stated limits allow.
     Limit,
+    /// What is asked of a scene, besides what its file says, does not suit it.
+    Request,
 }
 
 /// What was found, what was expected, where, and what to do.

@@ -5,6 +5,7 @@
 
 pub mod camera;
 pub mod contents;
+pub mod count;
 pub mod error;
 pub mod files;
 pub mod gltf;

@@ -1,4 +1,6 @@
-//! What is asked of the picture and of the computation, with the defaults.
+//! Settings of the picture and of the computation, with their defaults.
+
+use crate::image::srgb_from_linear;
 
 /// Size, filter and development of the picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +37,20 @@ pub enum Background {
     Color([f32; 3]),
     /// Nothing: the picture has an alpha channel.
     Transparent,
+}
+
+/// `environment`, `transparent` or `#rrggbb` in sRGB.
+impl std::fmt::Display for Background {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Environment => f.write_str("environment"),
+            Self::Transparent => f.write_str("transparent"),
+            Self::Color(rgb) => {
+                let [r, g, b] = rgb.map(|c| (255.0 * srgb_from_linear(c) + 0.5) as u8);
+                write!(f, "#{r:02x}{g:02x}{b:02x}")
+            }
+        }
+    }
 }
 
 /// What turns light into colour.
@@ -142,6 +158,19 @@ impl Filter {
     ];
 }
 
+/// `name:radius`, and what shapes it besides.
+impl std::fmt::Display for Filter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Box { radius } => write!(f, "box:{radius}"),
+            Self::Triangle { radius } => write!(f, "triangle:{radius}"),
+            Self::Gaussian { radius, sigma } => write!(f, "gaussian:{radius} sigma {sigma}"),
+            Self::Mitchell { radius, b, c } => write!(f, "mitchell:{radius} b {b} c {c}"),
+            Self::BlackmanHarris { radius } => write!(f, "blackman_harris:{radius}"),
+        }
+    }
+}
+
 impl Default for Filter {
     fn default() -> Self {
         Self::BlackmanHarris { radius: 1.5 }
@@ -176,6 +205,11 @@ impl Tonemap {
         ("aces", Self::Aces),
         ("agx", Self::Agx),
     ];
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        word_of(Self::WORDS, self)
+    }
 }
 
 /// How light is computed.
@@ -222,6 +256,11 @@ pub enum ColorMode {
 impl ColorMode {
     /// The words for them, in scene files and on the command line.
     pub const WORDS: &'static [(&'static str, Self)] = &[("rgb", Self::Rgb), ("spectral", Self::Spectral)];
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        word_of(Self::WORDS, self)
+    }
 }
 
 /// How a light is chosen where one of many is asked.
@@ -240,6 +279,11 @@ impl LightSampler {
     /// The words for them, in scene files and on the command line.
     pub const WORDS: &'static [(&'static str, Self)] =
         &[("uniform", Self::Uniform), ("power", Self::Power), ("bvh", Self::Bvh)];
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        word_of(Self::WORDS, self)
+    }
 }
 
 impl Default for RenderSettings {
@@ -316,7 +360,7 @@ impl Integrator {
             Self::AmbientOcclusion { .. } => Self::AmbientOcclusion { cosine: true },
             other => other,
         };
-        Self::WORDS.iter().find(|(_, integrator)| *integrator == spoken).map_or("?", |(word, _)| word)
+        word_of(Self::WORDS, spoken)
     }
 }
 
@@ -334,4 +378,14 @@ impl Sampler {
     /// The words for them, in scene files and on the command line.
     pub const WORDS: &'static [(&'static str, Self)] =
         &[("sobol", Self::Sobol), ("independent", Self::Independent)];
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        word_of(Self::WORDS, self)
+    }
+}
+
+/// The word for a value; every value has one.
+fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'static str {
+    words.iter().find(|(_, of_word)| *of_word == value).map_or("?", |(word, _)| word)
 }

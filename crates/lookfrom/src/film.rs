@@ -80,6 +80,25 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// Puts a smaller picture in the place of a part of this one, whose upper left corner is at column `x0` and row `y0`.
+    /// What lies outside is left out.
+    pub fn replace(&mut self, x0: u32, y0: u32, part: &Self) {
+        let (width, columns) = (self.width as usize, part.width.min(self.width.saturating_sub(x0)) as usize);
+        if columns == 0 {
+            return;
+        }
+        if !part.alpha.is_empty() && self.alpha.is_empty() {
+            self.alpha = vec![0.0; self.pixels.len()];
+        }
+        for row in 0..part.height.min(self.height.saturating_sub(y0)) as usize {
+            let (to, from) = ((y0 as usize + row) * width + x0 as usize, row * part.width as usize);
+            self.pixels[to..to + columns].copy_from_slice(&part.pixels[from..from + columns]);
+            if !part.alpha.is_empty() {
+                self.alpha[to..to + columns].copy_from_slice(&part.alpha[from..from + columns]);
+            }
+        }
+    }
+
     /// The picture before a background of light as it is, of which alpha shows its share; one without alpha stays the same.
     pub fn before(mut self, background: [f32; 3]) -> Self {
         for (pixel, alpha) in self.pixels.iter_mut().zip(std::mem::take(&mut self.alpha)) {
@@ -239,20 +258,26 @@ impl Film {
 
     /// The means of all pixels, black outside of [`Film::area`].
     pub fn picture(&self) -> Picture {
-        let mut pixels = vec![[0.0; 3]; self.width as usize * self.height as usize];
-        let Crop { x0, y0, x1, y1 } = self.tile.area;
+        self.picture_of(Crop { x0: 0, y0: 0, x1: self.width, y1: self.height })
+    }
+
+    /// The means of the pixels of a rectangle, black outside of [`Film::area`]: a picture of its size.
+    pub fn picture_of(&self, part: Crop) -> Picture {
+        let (width, height) = (part.x1.saturating_sub(part.x0), part.y1.saturating_sub(part.y0));
+        let mut pixels = vec![[0.0; 3]; width as usize * height as usize];
+        let Crop { x0, y0, x1, y1 } = common(part, self.tile.area);
         for y in y0..y1 {
-            let start = y as usize * self.width as usize;
-            let row = &mut pixels[start + x0 as usize..start + x1 as usize];
+            let start = (y - part.y0) as usize * width as usize;
+            let row = &mut pixels[start + (x0 - part.x0) as usize..start + (x1 - part.x0) as usize];
             for (mean, pixel) in row.iter_mut().zip(&self.tile.pixels[self.tile.row(y, x0, x1)]) {
                 *mean = pixel.mean();
             }
         }
-        Picture { width: self.width, height: self.height, pixels, alpha: self.alpha() }
+        Picture { width, height, pixels, alpha: self.alpha(part) }
     }
 
-    /// How much each pixel hides of what is behind; empty where that was not asked for.
-    fn alpha(&self) -> Vec<f32> {
+    /// How much each pixel of a rectangle hides of what is behind; empty where that was not asked for.
+    fn alpha(&self, part: Crop) -> Vec<f32> {
         let FilmTile { pixels, alphas, .. } = &self.tile;
         if alphas.is_empty() {
             return Vec::new();
@@ -261,7 +286,7 @@ impl Film {
             0 => 0.0,
             samples => (alphas[index] as f64 / (samples as f64 * TWO_TO_64)) as f32,
         };
-        let rows = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
+        let rows = (part.y0..part.y1).flat_map(|y| (part.x0..part.x1).map(move |x| (x, y)));
         rows.map(|(x, y)| self.tile.index(x, y).map_or(0.0, mean)).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! What happened on the way of one sample: every matrix, every determinant, every root, every ray with its densities.
 //!
-//! This is the render itself with a watcher listening: [`inspect`] traces the one sample through [`Frame::trace`], as a
+//! This is the render itself with a watcher listening: [`inspect`] traces the one sample through [`Renderer::trace`], as a
 //! tile would, and arranges what the watcher heard. What it shows adds up, bit for bit, to what the film received.
 //! Points are shown in the world (not in render space).
 
@@ -13,7 +13,7 @@ mod svg;
 mod text;
 
 use crate::integrator::Event;
-use crate::render::{Frame, SampleId};
+use crate::render::{Renderer, SampleId};
 use crate::texture::Lanes;
 
 use story::Story;
@@ -27,9 +27,9 @@ pub use scatter::{AnswerReport, AskedReport, BounceReport, FoundReport, Scatteri
 pub use svg::svg;
 
 /// Follows one sample and reports all that happens on its way.
-pub fn inspect(frame: &Frame<'_>, id: SampleId) -> Inspection {
+pub fn inspect(renderer: &Renderer, id: SampleId) -> Inspection {
     let mut events: Vec<Event> = Vec::new();
-    let (traced, _) = frame.trace(&[id], &mut events);
+    let (traced, _) = renderer.trace_events(&[id], &mut events);
     let traced = traced[0];
     let wavelengths = match traced.lanes {
         Lanes::Rgb => None,
@@ -40,16 +40,16 @@ pub fn inspect(frame: &Frame<'_>, id: SampleId) -> Inspection {
         }),
     };
 
-    let mut story = Story::new(frame, traced.lanes);
+    let mut story = Story::new(renderer, traced.lanes);
     events.iter().for_each(|event| story.hear(event));
     let told = story.end();
-    let film = frame.rgb(told.sum * traced.weight, &traced.lanes);
+    let film = renderer.rgb(told.sum * traced.weight, &traced.lanes);
     Inspection {
         pixel: id.pixel,
         sample: id.sample,
-        integrator: frame.settings().integrator.word(),
+        integrator: renderer.integrator(),
         wavelengths,
-        camera: camera::camera_steps(frame, id),
+        camera: camera::camera_steps(renderer, id),
         rays: told.rays,
         radiance: told.radiance,
         additions: told.additions,

@@ -7,11 +7,11 @@
 
 mod direct;
 mod event;
+mod first_hit;
 mod occlusion;
 mod path;
 mod raycast;
 mod shadow;
-mod view;
 mod whitted;
 
 use glam::Vec3;
@@ -27,17 +27,36 @@ use crate::texture::Lanes;
 use crate::world::World;
 
 pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
+pub use first_hit::FirstHit;
 pub use occlusion::AmbientOcclusion;
 pub(crate) use path::power_heuristic;
 pub use path::{Departure, PathTracer, Wisdom};
 pub use raycast::Raycast;
+pub use shadow::Passing;
 pub use shadow::Shadow;
-pub(crate) use shadow::{Passing, resolve as resolve_shadows};
-pub use view::View;
+pub(crate) use shadow::resolve as resolve_shadows;
 pub use whitted::Whitted;
 
-/// How one ray's hit is turned into light.
-pub trait Integrator: Sync {
+/// How one ray's hit is turned into light. Implement it to plug a light transport algorithm of your own into a
+/// [`Renderer`](crate::render::Renderer): the renderer traces rays in batches, and calls [`Integrator::step`] for each path and
+/// what it hit.
+pub trait Integrator: std::fmt::Debug + Send + Sync {
+    /// Whether what it computes is light, which the spectral mode and the sensor apply to, and not false colours.
+    const IS_LIGHT: bool = true;
+
+    /// What it is called, in a word.
+    fn name(&self) -> &'static str;
+
+    /// What lets shadow rays pass.
+    fn passing(&self) -> Passing {
+        Passing::Gaps
+    }
+
+    /// How a shadow catcher is shown.
+    fn catcher(&self) -> Catcher {
+        Catcher::Surface
+    }
+
     /// Adds to `next` what follows from `path` having met `hit`.
     fn step<P: Probe>(
         &self,
@@ -63,6 +82,19 @@ pub trait Integrator: Sync {
             self.step(world, &numbers(path), path, hit, next);
         }
     }
+}
+
+/// How an integrator shows a shadow catcher: a floor that is seen only by the shadows on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Catcher {
+    /// As an ordinary grey surface.
+    Surface,
+    /// As what is behind it, times the share of the light that arrives.
+    Shaded,
+    /// The same, with the unoccluded light as a control variate, so that there is no noise where nothing casts a shadow. For
+    /// integrators that weigh light samples and directions by the power heuristic, as [`PathTracer`] does.
+    ControlVariate,
 }
 
 /// A ray on its way, and all that is remembered of where it came from.

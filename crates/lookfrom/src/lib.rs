@@ -1,7 +1,4 @@
-//! Light: compile a scene, sample, shade, integrate and accumulate it into a picture.
-//!
-//! bytes —read→ [`lookfrom_scene::Scene`] —compile→ [`world::World`] —render→ [`film::Film`] —develop→ pixels.
-//! Start reading at [`render`].
+#![doc = include_str!("../README.md")]
 
 pub mod bsdf;
 pub mod camera;
@@ -21,11 +18,16 @@ pub mod math;
 pub mod noise;
 pub mod render;
 pub mod sampler;
+pub mod session;
 pub mod shape;
 pub mod spectrum;
 #[cfg(test)]
 mod statistics;
 pub mod surface;
 pub mod texture;
+pub mod view;
 pub mod warp;
 pub mod world;
+
+/// The vectors and matrices of this crate's interface.
+pub use glam;

@@ -1,57 +1,66 @@
-//! The way of a pixel: start, hit, step, occluded, add. Who calls it for which pixels is in `driver`.
+//! The way of a pixel: start, hit, step, occluded, add. Which pixels and samples are rendered when is decided in `driver`.
 //!
-//! [`Frame::render_tile`] is pure: the same world, settings, pixels and sample numbers give the same bits, on any machine,
-//! with any number of threads. Everything else ([`Frame::render`], the inspector, later a farm) only decides who calls it
-//! for what.
+//! [`Renderer::render_tile`] is pure: the same world, view, settings, pixels and sample numbers give the same bits, on any
+//! machine, with any number of threads. Everything else ([`Renderer::render`], the inspector, a session) only decides which
+//! tiles and samples are rendered.
 
 mod backdrop;
 mod driver;
 mod guide;
+mod outlook;
 mod seen;
+mod transport;
 
 use std::ops::Range;
+use std::sync::Arc;
 
+use glam::DVec3;
 use lookfrom_bvh::{Hit, Left, Ray};
-use lookfrom_scene::settings::{
-    ColorMode, Crop, ImageSettings, Integrator as Kind, RenderSettings, Sensor as SensorSettings,
-};
-use lookfrom_scene::{Error, ErrorKind, Location, Result};
+use lookfrom_scene::scene::Origin;
+use lookfrom_scene::settings::{ColorMode, Crop, ImageSettings, RenderSettings, Sensor as SensorSettings};
+use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 
 use crate::camera::CameraRay;
 use crate::color::{Sensor, Wavelengths};
 use crate::film::{FilmTile, GUIDED_SAMPLES};
 use crate::filter::Filter;
-use crate::integrator::{
-    AmbientOcclusion, Departure, Integrator, Next, Numbers, Passing, Path, PathTracer, Probe, Raycast,
-    Samples, View, Whitted, Wisdom, resolve_shadows,
-};
+use crate::integrator::{Departure, Event, Integrator, Next, Numbers, Path, Probe, Samples, resolve_shadows};
 use crate::sampler::Sampler;
 use crate::spectrum::Spectrum;
 use crate::texture::Lanes;
+use crate::view::View;
 use crate::world::World;
 
 use backdrop::Met;
 use guide::First;
 use seen::Seen;
+use transport::Transport;
 
-pub use driver::{End, Enough, FEWEST_SAMPLES, Progress, Rendered};
+pub use driver::{FEWEST_SAMPLES, Progress, Rendered, StopCriteria, StopReason, TileDone};
 
 /// The dimensions of a sample's random numbers that the camera uses; rays use hashes of their place in the tree.
 const FILTER_DIMENSION: u32 = 0;
 const LENS_DIMENSION: u32 = 1;
 const WAVELENGTH_DIMENSION: u32 = 2;
 
-/// A world with everything that is asked of its picture.
-#[derive(Debug)]
-pub struct Frame<'a> {
-    world: &'a World,
+/// A world, a view of it and the settings of the computation: everything that decides the light of a picture.
+///
+/// Owns what it needs and is cheap to clone; the world is shared.
+#[derive(Clone, Debug)]
+pub struct Renderer {
+    world: Arc<World>,
+    view: View,
+    settings: RenderSettings,
+    integrator: Arc<dyn Transport>,
+    /// Whether the integrator is not the one that the settings name.
+    is_plugged_in: bool,
+    /// The camera's position in render space.
+    eye: DVec3,
     filter: Filter,
     sampler: Sampler,
     sensor: Sensor,
     /// For reflectances: no exposure, no white balance.
     plain_sensor: Sensor,
-    image: ImageSettings,
-    render: RenderSettings,
 }
 
 /// Which sample of which pixel.
@@ -128,17 +137,15 @@ struct Batch {
     traced: Vec<Traced>,
 }
 
-impl<'a> Frame<'a> {
-    /// A picture of `world`, whose camera was made for the same size.
+impl Renderer {
+    /// A renderer of a picture of `world` as `view` sees it.
     ///
     /// # Errors
-    /// `Invalid` for no samples, a crop without pixels, or a size that is not the camera's.
-    pub fn new(world: &'a World, image: &ImageSettings, render: &RenderSettings) -> Result<Self> {
+    /// `Invalid` for no samples, or a crop without pixels.
+    pub fn new(world: Arc<World>, view: View, settings: RenderSettings) -> Result<Self> {
         let invalid = |message: String| Err(Error::new(ErrorKind::Invalid, &Location::default(), message));
-        if world.camera.size != [image.width, image.height] {
-            return invalid(format!("the camera was made for {:?} pixels", world.camera.size));
-        }
-        if render.samples == 0 {
+        let image = &view.image;
+        if settings.samples == 0 {
             return invalid("0 samples a pixel; expected at least 1".into());
         }
         if let Some(Crop { x0, y0, x1, y1 }) = image.crop
@@ -149,25 +156,83 @@ impl<'a> Frame<'a> {
                 image.width, image.height
             ));
         }
+        let eye = view.camera.lookfrom() - world.origin();
         Ok(Self {
-            world,
             filter: Filter::new(image.filter),
-            sampler: Sampler::new(render.sampler, render.seed),
+            sampler: Sampler::new(settings.sampler, settings.seed),
             plain_sensor: Sensor::new(1.0, None),
             sensor: Sensor::new(image.sensor.imaging_ratio, image.sensor.white_balance),
-            image: image.clone(),
-            render: render.clone(),
+            integrator: transport::of_settings(&settings, &view.camera, eye),
+            is_plugged_in: false,
+            world,
+            view,
+            settings,
+            eye,
         })
     }
 
+    /// Compiles a scene, and renders the view by its own camera with its own settings. What can be survived is added to
+    /// `warnings`.
+    ///
+    /// # Errors
+    /// As [`View::of_scene`], [`World::compile`] and [`Renderer::new`].
+    pub fn of_scene(scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
+        let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
+        let at = scene.camera.as_ref().map(|camera| camera.at.clone()).unwrap_or_default();
+        let (bounds, is_model) = (scene.bounds(), scene.origin != Origin::Scene);
+        let renderer = Self::new(Arc::new(World::compile(scene, warnings)?), view, settings)?;
+        outlook::check(&renderer, bounds, &at, is_model, warnings);
+        Ok(renderer)
+    }
+
+    /// The same with an integrator of one's own in place of the one that the settings name.
+    #[must_use]
+    pub fn with_integrator(self, integrator: impl Integrator + 'static) -> Self {
+        Self { integrator: Arc::new(integrator), is_plugged_in: true, ..self }
+    }
+
+    /// The same world and settings, seen otherwise.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn with_view(&self, view: View) -> Result<Self> {
+        let other = Self::new(self.world.clone(), view, self.settings.clone())?;
+        Ok(match self.is_plugged_in {
+            true => Self { integrator: self.integrator.clone(), is_plugged_in: true, ..other },
+            false => other,
+        })
+    }
+
+    /// The same view of the same world, computed otherwise: by the integrator that the settings name.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn with_settings(&self, settings: RenderSettings) -> Result<Self> {
+        Self::new(self.world.clone(), self.view.clone(), settings)
+    }
+
     /// The world that is pictured.
-    pub fn world(&self) -> &World {
-        self.world
+    pub fn world(&self) -> &Arc<World> {
+        &self.world
+    }
+
+    /// The view of it.
+    pub fn view(&self) -> &View {
+        &self.view
     }
 
     /// How it is rendered.
     pub fn settings(&self) -> &RenderSettings {
-        &self.render
+        &self.settings
+    }
+
+    /// The name of the integrator.
+    pub fn integrator(&self) -> &'static str {
+        self.integrator.name()
+    }
+
+    fn image(&self) -> &ImageSettings {
+        &self.view.image
     }
 
     /// The camera's ray for a sample and the filter's weight.
@@ -181,37 +246,22 @@ impl<'a> Frame<'a> {
         let [column, row] = id.pixel.map(f64::from);
         let (offset, weight) = self.filter.sample(u);
         let x_k = column + 0.5 + f64::from(offset[0]);
-        let y_k = f64::from(self.image.height) - (row + 0.5 + f64::from(offset[1]));
-        (self.world.camera.ray([x_k, y_k], lens), weight)
+        let y_k = f64::from(self.image().height) - (row + 0.5 + f64::from(offset[1]));
+        (self.view.camera.ray([x_k, y_k], lens), weight)
     }
 
-    /// Follows samples to their light, telling `probe` what happens. The result for a sample does not depend on the others.
-    pub fn trace<P: Probe>(&self, ids: &[SampleId], probe: &mut P) -> (Vec<Traced>, Rays) {
+    /// Follows samples to their light. The result for a sample does not depend on the others.
+    pub fn trace(&self, ids: &[SampleId]) -> (Vec<Traced>, Rays) {
         let mut batch = Batch::default();
-        let rays = self.trace_batch(ids, probe, &mut batch);
+        let rays = self.integrator.trace(self, ids, &mut batch);
         (batch.traced, rays)
     }
 
-    fn trace_batch<P: Probe>(&self, ids: &[SampleId], probe: &mut P, batch: &mut Batch) -> Rays {
-        // One match a batch: an integrator is a type, and its step is compiled for it.
-        let RenderSettings { integrator, depth, min_contribution, regularize, occlusion_distance, .. } =
-            self.render;
-        let path = |wisdom| PathTracer { depth, regularize, wisdom };
-        match integrator {
-            Kind::Raycast => self.trace_with(&Raycast, ids, probe, batch),
-            Kind::Whitted => self.trace_with(&Whitted { depth, min_contribution }, ids, probe, batch),
-            Kind::Path => self.trace_with(&path(Wisdom::Combined), ids, probe, batch),
-            Kind::SimplePath => self.trace_with(&path(Wisdom::Separate), ids, probe, batch),
-            Kind::RandomWalk => self.trace_with(&path(Wisdom::None), ids, probe, batch),
-            Kind::AmbientOcclusion { cosine } => {
-                let occlusion = AmbientOcclusion { cosine, distance: occlusion_distance };
-                self.trace_with(&occlusion, ids, probe, batch)
-            }
-            Kind::Normals => self.trace_with(&View::Normals, ids, probe, batch),
-            Kind::Depth => self.trace_with(&View::Depth, ids, probe, batch),
-            Kind::Uv => self.trace_with(&View::Uv, ids, probe, batch),
-            Kind::Id => self.trace_with(&View::Id, ids, probe, batch),
-        }
+    /// As [`Renderer::trace`], with everything that happens on the way added to `events`.
+    pub fn trace_events(&self, ids: &[SampleId], events: &mut Vec<Event>) -> (Vec<Traced>, Rays) {
+        let mut batch = Batch::default();
+        let rays = self.integrator.trace_events(self, ids, events, &mut batch);
+        (batch.traced, rays)
     }
 
     fn trace_with<I: Integrator, P: Probe>(
@@ -231,6 +281,7 @@ impl<'a> Frame<'a> {
         met.resize(ids.len(), Met::default());
 
         // Start: a ray from the camera for each sample.
+        let around_camera = self.world.space_of(self.view.medium);
         self.prepare_start(ids, start);
         weights.clear();
         for (slot, id) in ids.iter().enumerate() {
@@ -240,12 +291,12 @@ impl<'a> Frame<'a> {
             let lanes = start.wavelengths.get(slot).map_or(Lanes::Rgb, |u| lanes_by(*u));
             next.samples.start(lanes);
             next.samples.paths.push(Path {
-                ray: self.world.camera_ray(&ray),
+                ray: self.kernel_ray(&ray),
                 beta: lanes.one(),
                 slot: slot as u32,
                 depth: 0,
                 address: Path::ROOT,
-                media: self.world.around_camera,
+                media: around_camera,
                 departure: Departure::default(),
             });
         }
@@ -271,13 +322,13 @@ impl<'a> Frame<'a> {
             if has_backdrop {
                 self.show_backdrops(paths, hits, met, &mut next);
             }
-            integrator.step_all(self.world, numbers, paths, hits, &mut next);
+            integrator.step_all(&self.world, numbers, paths, hits, &mut next);
             if has_backdrop {
                 self.expect_light(met, &mut next);
             }
 
             // Occluded: what arrives of the lights.
-            rays_traced.shadow += resolve_shadows(self.world, self.passing(), &mut next);
+            rays_traced.shadow += resolve_shadows(&self.world, integrator.passing(), &mut next);
             rays_traced.secondary += next.samples.paths.len() as u64;
         }
 
@@ -295,6 +346,13 @@ impl<'a> Frame<'a> {
         rays_traced
     }
 
+    /// The kernel's form of a camera ray, with `t` of the notes: 1 on the image plane.
+    #[inline]
+    fn kernel_ray(&self, ray: &CameraRay) -> Ray {
+        let a = self.eye + ray.a_from_eye;
+        Ray::new(a.as_vec3().to_array(), ray.direction.as_vec3().to_array())
+    }
+
     /// Draws the numbers that the camera's rays of a batch ask for.
     fn prepare_start(&self, ids: &[SampleId], numbers: &mut StartNumbers) {
         let StartNumbers { filter, lens, wavelengths } = numbers;
@@ -303,15 +361,13 @@ impl<'a> Frame<'a> {
             self.sampler.two_of_each(count, |k| (ids[k].pixel, ids[k].sample), dimension, numbers);
         };
         draw(true, FILTER_DIMENSION, filter);
-        draw(self.world.camera.lens.is_some(), LENS_DIMENSION, lens);
+        draw(self.view.camera.lens.is_some(), LENS_DIMENSION, lens);
         draw(self.is_spectral(), WAVELENGTH_DIMENSION, wavelengths);
     }
 
     /// Whether the lanes of samples are wavelengths.
     fn is_spectral(&self) -> bool {
-        use Kind::{Depth, Id, Normals, Uv};
-        self.render.color == ColorMode::Spectral
-            && !matches!(self.render.integrator, Normals | Depth | Uv | Id)
+        self.settings.color == ColorMode::Spectral && self.integrator.is_light()
     }
 
     /// What the lanes of a sample mean.
@@ -323,23 +379,15 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// What lets shadow rays pass.
-    fn passing(&self) -> Passing {
-        match self.render.integrator {
-            Kind::Raycast | Kind::Whitted if self.render.transparent_shadows => Passing::Transparent,
-            _ => Passing::Gaps,
-        }
-    }
-
     /// What the sensor makes of light: linear Rec. 709.
     pub fn rgb(&self, light: Spectrum, lanes: &Lanes) -> [f32; 3] {
         let rgb = match lanes {
-            Lanes::Rgb if self.image.sensor == SensorSettings::default() => return light.rgb(),
+            Lanes::Rgb if self.image().sensor == SensorSettings::default() => return light.rgb(),
             Lanes::Rgb => self.sensor.balanced(light.rgb()),
             Lanes::Spectral(wavelengths) => self.sensor.rgb(light, wavelengths),
         };
         let brightest = rgb.into_iter().fold(f32::NEG_INFINITY, f32::max);
-        let most = self.image.sensor.max_component;
+        let most = self.image().sensor.max_component;
         if brightest > most { rgb.map(|c| c * (most / brightest)) } else { rgb }
     }
 
@@ -356,7 +404,7 @@ impl<'a> Frame<'a> {
             batch.firsts.resize(if is_guided { ids.len() } else { 0 }, First::NOTHING);
             rays += if tile.has_layers() {
                 let mut seen = Seen::new(self, ids.iter().map(|id| self.lanes(*id)).collect());
-                let rays = self.trace_batch(&ids, &mut seen, &mut batch);
+                let rays = self.integrator.trace_seen(self, &ids, &mut seen, &mut batch);
                 for (id, features) in ids.iter().zip(seen.into_features()) {
                     if let Some(features) = features {
                         tile.add_features(id.pixel[0], id.pixel[1], &features);
@@ -364,7 +412,7 @@ impl<'a> Frame<'a> {
                 }
                 rays
             } else {
-                self.trace_batch(&ids, &mut (), &mut batch)
+                self.integrator.trace(self, &ids, &mut batch)
             };
             self.add_guides(&ids, &batch.firsts, tile);
             for (id, traced) in ids.iter().zip(&batch.traced) {

@@ -1,6 +1,7 @@
 //! What light meets: a scene compiled to flat arrays and integer ids, frozen.
 //!
-//! *Render space* is the world translated so that its origin is the eye: f32 is finest where the picture looks closest.
+//! *Render space* is the world translated so that its origin is the eye of the scene's camera: f32 is finest where the
+//! picture looks closest.
 //! After [`World::compile`] nothing fails but cancellation.
 
 mod catcher;
@@ -8,7 +9,6 @@ mod compile;
 mod lights;
 mod place;
 mod reflectance;
-mod view;
 
 use std::sync::Arc;
 
@@ -16,8 +16,8 @@ use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Bvh, Hit, Left, NONE, Ray};
 use lookfrom_scene::material::{Color, MaterialKind, Scalar};
 use lookfrom_scene::medium::{Medium, Sides};
+use lookfrom_scene::scene::MediumId;
 
-use crate::camera::{Camera, CameraRay};
 use crate::light::{Coverage, Light, LightChoice, Reference};
 use crate::material::{self, Arrival, InteriorStack, Material, Shading};
 use crate::math;
@@ -30,52 +30,48 @@ use crate::texture::{Lanes, TexturePoint, Textures, Usage};
 #[derive(Debug)]
 pub struct World {
     /// Where the origin of render space lies in the world.
-    pub origin: DVec3,
-    /// The eye.
-    pub camera: Camera,
+    pub(crate) origin: DVec3,
     /// Everything that rays can meet.
-    pub bvh: Bvh,
+    pub(crate) bvh: Bvh,
     /// What stands in the world once, by the kernel's geometry id.
-    pub forms: Vec<Form>,
+    pub(crate) forms: Vec<Form>,
     /// Objects, which instances repeat: forms by geometry id.
-    pub objects: Vec<Vec<Form>>,
+    pub(crate) objects: Vec<Vec<Form>>,
     /// By the kernel's instance id.
-    pub instances: Vec<Instance>,
+    pub(crate) instances: Vec<Instance>,
     /// Looks of surfaces.
-    pub materials: Vec<Material>,
+    pub(crate) materials: Vec<Material>,
     /// Parts of surfaces that are there, see [`Look::alpha`](crate::shape::Look::alpha).
-    pub alphas: Vec<Scalar>,
+    pub(crate) alphas: Vec<Scalar>,
     /// What fills bodies and space.
-    pub media: Vec<Medium>,
+    pub(crate) media: Vec<Medium>,
     /// Whether what fills space counts ([`RenderSettings::media`](lookfrom_scene::settings::RenderSettings::media)).
-    pub has_media: bool,
-    /// What the camera is inside of.
-    pub around_camera: InteriorStack,
+    pub(crate) has_media: bool,
     /// Half the diagonal of the box around everything that is placed.
-    pub radius: f32,
+    pub(crate) radius: f32,
     /// What surfaces say is on their sides, see [`Look::sides`](crate::shape::Look::sides).
-    pub sides: Vec<Sides>,
+    pub(crate) sides: Vec<Sides>,
     /// Meshes with further texture coordinates or opacities, see [`Look::vertex_data`](crate::shape::Look::vertex_data).
-    pub vertex_data: Vec<Arc<Mesh>>,
+    pub(crate) vertex_data: Vec<Arc<Mesh>>,
     /// Colours over surfaces.
-    pub textures: Textures,
+    pub(crate) textures: Textures,
     /// Lights to be sampled.
-    pub lights: Vec<Light>,
+    pub(crate) lights: Vec<Light>,
     /// Which light is asked where only one is.
-    pub light_choice: LightChoice,
+    pub(crate) light_choice: LightChoice,
     /// Whitted's `I_a`.
-    pub ambient: [f32; 3],
+    pub(crate) ambient: [f32; 3],
     /// Indices into `lights` of those that are seen where a ray meets nothing.
-    pub environments: Vec<u32>,
+    pub(crate) environments: Vec<u32>,
     /// Whether any material lets light through.
-    pub transmissive: bool,
+    pub(crate) transmissive: bool,
     /// Whether rays pass any surface without meeting it: alpha, interfaces.
-    pub has_gaps: bool,
+    pub(crate) has_gaps: bool,
     /// What arrives on the floor of shadows ([`MaterialKind::ShadowCatcher`]) from infinitely far where nothing is in the
     /// way, in linear Rec. 709; `None` where there is no such floor.
-    pub catcher_irradiance: Option<[f32; 3]>,
+    pub(crate) catcher_irradiance: Option<[f32; 3]>,
     /// Names of the scene's materials and shapes, for people.
-    pub names: Names,
+    pub(crate) names: Names,
 }
 
 /// Names, for people.
@@ -103,11 +99,29 @@ pub struct Instance {
 }
 
 impl World {
-    /// The kernel's form of a camera ray, with `t` of the notes: 1 on the image plane.
-    #[inline]
-    pub fn camera_ray(&self, ray: &CameraRay) -> Ray {
-        let a = self.camera.lookfrom() - self.origin + ray.a_from_eye;
-        Ray::new(a.as_vec3().to_array(), ray.direction.as_vec3().to_array())
+    /// Where the origin of render space lies in the world.
+    pub fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// What a ray is inside of that starts in a medium, and in no body.
+    pub(crate) fn space_of(&self, medium: Option<MediumId>) -> InteriorStack {
+        InteriorStack::in_space(medium.filter(|_| self.has_media))
+    }
+
+    /// Everything that rays can meet.
+    pub fn bvh(&self) -> &Bvh {
+        &self.bvh
+    }
+
+    /// Lights to be sampled.
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// How one of the lights is chosen to be sampled.
+    pub fn light_choice(&self) -> &LightChoice {
+        &self.light_choice
     }
 
     /// The form that a hit belongs to and its instance, where it is in one.

@@ -24,7 +24,7 @@ fn octant(d: Vec3) -> usize {
 }
 
 fn light(world: &World) -> &AreaLight {
-    match &world.lights[0] {
+    match &world.lights()[0] {
         Light::Area(light) => light,
         other => panic!("{other:?} is no area light"),
     }
@@ -61,7 +61,7 @@ fn by_samples(world: &World, from: Vec3, random: &mut Random, what: &str) -> [Oc
         let to = DVec3::from_array(sample.point.position) - from.as_dvec3();
         assert!((to.normalize() - sample.wi.as_dvec3()).length() < 1e-5, "{what}: wi leads to the point");
         let ray = Ray::new(from.to_array(), sample.wi.to_array());
-        let hit = world.bvh.closest_hit(&ray);
+        let hit = world.bvh().closest_hit(&ray);
         let visible = (f64::from(hit.t) / to.length() - 1.0).abs() < 1e-4;
         if !visible {
             continue;
@@ -90,7 +90,7 @@ fn by_directions(world: &World, from: Vec3, random: &mut Random) -> [[(f64, f64)
     for _ in 0..10 * COUNT {
         let direction = random.direction().as_vec3();
         let ray = Ray::new(from.to_array(), direction.to_array());
-        let hit = world.bvh.closest_hit(&ray);
+        let hit = world.bvh().closest_hit(&ray);
         if hit.is_hit() {
             let pdf = light(world).pdf(from.as_dvec3(), &world.surface(&ray, &hit), direction);
             for (sum, value) in sums.iter_mut().zip([f64::from(pdf), 1.0]) {
@@ -154,7 +154,7 @@ fn a_sphere_that_shines_inward_is_seen_from_its_own_wall() {
     let geometry = Geometry::Sphere(Sphere { center: DVec3::new(1.0, 2.0, 3.0), radius: 2.0 });
     let world = world(shining(geometry, DMat4::IDENTITY, false, true), vec![]);
     let inside = Ray::new([1.0, 2.0, 3.0], [0.3, 0.4, 0.5]);
-    let wall = world.surface(&inside, &world.bvh.closest_hit(&inside));
+    let wall = world.surface(&inside, &world.bvh().closest_hit(&inside));
     assert!(wall.front, "the outside is inside");
     let from = DVec3::from_array(wall.point.position);
     let mut sum = 0.0;
@@ -215,8 +215,8 @@ fn what_shines_is_linked_to_its_light() {
         let mut met = 0;
         for _ in 0..200 {
             let ray = support::forms::ray(&mut random, &map);
-            let hit = lit.bvh.closest_hit(&ray);
-            assert_eq!(hit, dark.bvh.closest_hit(&ray));
+            let hit = lit.bvh().closest_hit(&ray);
+            assert_eq!(hit, dark.bvh().closest_hit(&ray));
             if hit.is_hit() {
                 met += 1;
                 assert_eq!(lit.surface(&ray, &hit).light, Some(0), "{what}");

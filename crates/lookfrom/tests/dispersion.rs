@@ -91,10 +91,10 @@ fn what_lets_no_colour_go_its_own_way_keeps_its_bits() {
 #[test]
 fn the_inspector_tells_which_colour_is_left() {
     let compiled = ball(&format!("{GLASS} ior = 1.6\n dispersion = 4"), 4);
-    let frame = compiled.frame();
+    let renderer = compiled.renderer();
     let mut told = std::collections::BTreeSet::new();
     for (x, y, sample) in (0..8).flat_map(|x| (0..8).flat_map(move |y| (0..3).map(move |s| (x, y, s)))) {
-        let inspection = inspect(&frame, SampleId { pixel: [x, y], sample });
+        let inspection = inspect(&renderer, SampleId { pixel: [x, y], sample });
         assert!(inspection.adds_up);
         let mut lane = None;
         for ray in &inspection.rays {

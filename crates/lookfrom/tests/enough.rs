@@ -5,8 +5,7 @@ mod support;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use lookfrom::film::Film;
-use lookfrom::render::{End, Enough, FEWEST_SAMPLES, Progress};
+use lookfrom::render::{FEWEST_SAMPLES, Progress, StopCriteria, StopReason, TileDone};
 use lookfrom_scene::Scene;
 use support::{Compiled, own_scene};
 
@@ -21,32 +20,32 @@ fn small(samples: u32) -> Scene {
 #[test]
 fn what_is_rendered_until_a_time_is_the_picture_of_that_many_samples() {
     let compiled = Compiled::new(small(1 << 24));
-    let enough = Enough { time: Some(Duration::from_millis(300)), noise: None };
+    let enough = StopCriteria { time: Some(Duration::from_millis(300)), noise: None };
     let started = Instant::now();
-    let rendered = compiled.frame().render_until(&enough, Some(2), &()).expect("a render");
+    let rendered = compiled.renderer().render_until(&enough, Some(2), &()).expect("a render");
     assert!(started.elapsed() < Duration::from_secs(20));
-    assert_eq!(rendered.end, End::Time);
+    assert_eq!(rendered.reason, StopReason::Time);
     assert!(rendered.samples >= 1);
     assert_eq!(rendered.samples_taken, u64::from(rendered.samples) * 72 * 50);
     let whole = Compiled::new(small(rendered.samples)).render(1);
-    assert_eq!(whole.end, End::Samples);
+    assert_eq!(whole.reason, StopReason::Samples);
     assert!(whole.film == rendered.film);
 }
 
 #[test]
 fn no_time_at_all_is_one_sample() {
     let compiled = Compiled::new(small(100));
-    let enough = Enough { time: Some(Duration::ZERO), noise: Some(1e-9) };
-    let rendered = compiled.frame().render_until(&enough, None, &()).expect("a render");
-    assert_eq!((rendered.end, rendered.samples), (End::Time, 1));
+    let enough = StopCriteria { time: Some(Duration::ZERO), noise: Some(1e-9) };
+    let rendered = compiled.renderer().render_until(&enough, None, &()).expect("a render");
+    assert_eq!((rendered.reason, rendered.samples), (StopReason::Time, 1));
 }
 
 #[test]
 fn clean_tiles_get_no_more_samples_and_threads_do_not_matter() {
     let compiled = Compiled::new(small(256));
     let until = |noise, threads| {
-        let enough = Enough { time: None, noise: Some(noise) };
-        compiled.frame().render_until(&enough, Some(threads), &()).expect("a render")
+        let enough = StopCriteria { time: None, noise: Some(noise) };
+        compiled.renderer().render_until(&enough, Some(threads), &()).expect("a render")
     };
     let one = until(0.03, 1);
     assert!(one.film == until(0.03, 3).film);
@@ -54,7 +53,7 @@ fn clean_tiles_get_no_more_samples_and_threads_do_not_matter() {
         (0..50).flat_map(|y| (0..72).map(move |x| (x, y))).map(|(x, y)| one.film.samples(x, y)).collect();
     let (least, most) = (*counts.iter().min().unwrap(), *counts.iter().max().unwrap());
     assert!(least >= u64::from(FEWEST_SAMPLES) && most > least, "{least} … {most}");
-    assert_eq!((one.end, u64::from(one.samples)), (End::Noise, most));
+    assert_eq!((one.reason, u64::from(one.samples)), (StopReason::Noise, most));
     assert_eq!(one.samples_taken, counts.iter().sum::<u64>());
     assert!(one.error <= 0.03, "{}", one.error);
     // It is the mean over more than those of the first rounds, and near to what all samples say.
@@ -63,23 +62,30 @@ fn clean_tiles_get_no_more_samples_and_threads_do_not_matter() {
     assert!(difference.abs() < 0.003, "{difference}");
     // Nothing is ever so clean.
     let never = until(0.0, 2);
-    assert!(never.end == End::Samples || never.end == End::Noise);
+    assert!(never.reason == StopReason::Samples || never.reason == StopReason::Noise);
     assert!(never.error <= one.error);
 }
 
-/// Breaks off after a number of tiles, and remembers how many samples the films had that it saw.
+/// Breaks off after a number of tiles, and remembers how many samples there were after each.
 struct Watcher {
     after: usize,
     seen: Mutex<Vec<u64>>,
 }
 
 impl Progress for Watcher {
-    fn advance(&self, done: u64, total: u64, _: u64) {
-        assert!(done <= total);
+    fn tile(&self, tile: TileDone) {
+        assert!(tile.done <= tile.total && tile.rays > 0);
+        let picture = tile.picture.expect("pixels were asked for");
+        assert_eq!(
+            [picture.width, picture.height],
+            [tile.area.x1 - tile.area.x0, tile.area.y1 - tile.area.y0]
+        );
+        assert!(picture.pixels.iter().flatten().any(|&c| c > 0.0));
+        self.seen.lock().expect("a lock").push(tile.done);
     }
 
-    fn look(&self, film: &Film) {
-        self.seen.lock().expect("a lock").push(film.samples(0, 0));
+    fn wants_pixels(&self) -> bool {
+        true
     }
 
     fn cancelled(&self) -> bool {
@@ -91,10 +97,10 @@ impl Progress for Watcher {
 fn who_watches_sees_the_film_grow_and_may_stop_it() {
     let compiled = Compiled::new(small(64));
     let watcher = Watcher { after: 9, seen: Mutex::default() };
-    let rendered = compiled.frame().render(Some(1), &watcher).expect("a render");
+    let rendered = compiled.renderer().render(Some(1), &watcher).expect("a render");
     let seen = watcher.seen.into_inner().expect("a lock");
     assert_eq!(seen.len(), 9);
-    assert!(seen.windows(2).all(|pair| pair[0] <= pair[1]) && seen[8] >= 1);
-    assert_eq!((rendered.end, rendered.samples), (End::Cancelled, 1));
+    assert!(seen.windows(2).all(|pair| pair[0] < pair[1]));
+    assert_eq!((rendered.reason, rendered.samples), (StopReason::Cancelled, 1));
     assert!(rendered.samples_taken > 72 * 50 && rendered.samples_taken < 2 * 72 * 50);
 }

@@ -7,8 +7,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use lookfrom::render::Frame;
-use lookfrom::world::World;
+use lookfrom::render::Renderer;
 use lookfrom_scene::settings::{ColorMode, Filter, Sampler};
 use lookfrom_scene::{Memory, Scene, Sources, load};
 
@@ -156,10 +155,8 @@ fn render(scene: &Scene, samples: u32, seed: u64) -> Vec<[f32; 3]> {
     let render = &mut scene.render;
     (render.samples, render.depth, render.seed) = (samples, 24, seed);
     (render.color, render.sampler) = (ColorMode::Rgb, Sampler::Independent);
-    let (image, render) = (scene.image.clone(), scene.render.clone());
-    let world = World::compile(scene, &mut Vec::new()).expect("a good scene");
-    let rendered =
-        Frame::new(&world, &image, &render).expect("a frame").render(None, &()).expect("a picture");
+    let renderer = Renderer::of_scene(scene, &mut Vec::new()).expect("a good scene");
+    let rendered = renderer.render(None, &()).expect("a picture");
     assert_eq!(rendered.film.dropped(), 0);
     rendered.film.picture().pixels
 }

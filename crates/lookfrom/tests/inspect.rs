@@ -158,16 +158,16 @@ fn what_is_shown_of_a_path_adds_up_to_what_the_film_received() {
     for integrator in INTEGRATORS {
         for color in [ColorMode::Rgb, ColorMode::Spectral] {
             let compiled = Compiled::new(room(integrator, color));
-            let frame = compiled.frame();
+            let renderer = compiled.renderer();
             let area = Crop { x0: 0, y0: 0, x1: 48, y1: 32 };
             let mut tile = FilmTile::new(area).expect("a small tile");
-            frame.render_tile(2..3, &mut tile);
+            renderer.render_tile(2..3, &mut tile);
             let mut film = Film::new(48, 32, None).expect("a small film");
             film.add_tile(&tile);
 
             let mut light_was_seen = false;
             for [x, y] in pixels() {
-                let inspection = inspect(&frame, SampleId { pixel: [x, y], sample: 2 });
+                let inspection = inspect(&renderer, SampleId { pixel: [x, y], sample: 2 });
                 let at = format!("{integrator:?} {color:?} at {x} {y}");
                 let mut sum = vec![0.0; if color == ColorMode::Rgb { 3 } else { 4 }];
                 for addition in &inspection.additions {
@@ -179,7 +179,7 @@ fn what_is_shown_of_a_path_adds_up_to_what_the_film_received() {
                 assert!(inspection.adds_up, "{at}");
                 assert_eq!(film.mean(x, y), inspection.film, "{at}");
                 assert!(inspection.to_string().contains("the same, bit for bit"), "{at}");
-                assert!(svg(frame.world(), &inspection).ends_with("</svg>\n"), "{at}");
+                assert!(svg(&renderer, &inspection).ends_with("</svg>\n"), "{at}");
                 light_was_seen |= inspection.film != [0.0; 3];
             }
             assert!(light_was_seen, "{integrator:?} {color:?} is black");
@@ -261,9 +261,9 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
     for integrator in INTEGRATORS {
         for color in [ColorMode::Rgb, ColorMode::Spectral] {
             let compiled = Compiled::new(room(integrator, color));
-            let frame = compiled.frame();
+            let renderer = compiled.renderer();
             for (pixel, sample) in pixels().flat_map(|pixel| [0, 1, 3].map(|sample| (pixel, sample))) {
-                let inspection = inspect(&frame, SampleId { pixel, sample });
+                let inspection = inspect(&renderer, SampleId { pixel, sample });
                 for ray in &inspection.rays {
                     let name = inspection.integrator;
                     check_ray(

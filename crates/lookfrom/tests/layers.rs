@@ -31,19 +31,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("light", &["distribution", "math", "sampler", "shape", "spectrum", "surface", "texture", "warp"]),
     (
         "world",
-        &[
-            "camera",
-            "distribution",
-            "light",
-            "material",
-            "math",
-            "shape",
-            "spectrum",
-            "surface",
-            "texture",
-            "warp",
-        ],
+        &["distribution", "light", "material", "math", "shape", "spectrum", "surface", "texture", "warp"],
     ),
+    ("view", &["camera"]),
     (
         "integrator",
         &[
@@ -66,6 +56,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "spectrum",
             "surface",
             "texture",
+            "view",
+            "warp",
             "world",
         ],
     ),

@@ -50,10 +50,10 @@ fn balls(radii: &[(&str, f64)], more: &str) -> Scene {
 }
 
 fn inspections(compiled: &Compiled) -> Vec<Inspection> {
-    let frame = compiled.frame();
+    let renderer = compiled.renderer();
     let pixels = (0..8).flat_map(|x| (0..8).map(move |y| [x, y]));
     let ids = pixels.flat_map(|pixel| (0..4).map(move |sample| SampleId { pixel, sample }));
-    ids.map(|id| inspect(&frame, id)).collect()
+    ids.map(|id| inspect(&renderer, id)).collect()
 }
 
 fn eta(ray: &RayReport) -> Option<f32> {

@@ -1,8 +1,7 @@
 //! Path tracing against radiance that is known: inside lit spheres, in a white furnace, through two integrators.
 
 use glam::{DMat4, DVec3};
-use lookfrom::render::Frame;
-use lookfrom::world::World;
+use lookfrom::render::Renderer;
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::light::{Amount, Falloff, Light, LightKind, Sky};
 use lookfrom_scene::material::{Coat, Color, Ior, Material, MaterialKind, Metal, Roughness, Scalar};
@@ -38,10 +37,8 @@ fn light(kind: LightKind) -> Light {
 /// The mean over the picture by channel.
 fn mean(scene: Scene) -> [f64; 3] {
     let mut warnings: Vec<Warning> = Vec::new();
-    let (image, render) = (scene.image.clone(), scene.render.clone());
-    let world = World::compile(scene, &mut warnings).expect("a good scene");
-    let rendered =
-        Frame::new(&world, &image, &render).expect("a frame").render(None, &()).expect("a picture");
+    let renderer = Renderer::of_scene(scene, &mut warnings).expect("a good scene");
+    let rendered = renderer.render(None, &()).expect("a picture");
     assert_eq!(rendered.film.dropped(), 0);
     let pixels = rendered.film.picture().pixels;
     let mut sum = [0.0; 3];

@@ -5,8 +5,7 @@
 
 use std::path::Path;
 
-use lookfrom::render::Frame;
-use lookfrom::world::World;
+use lookfrom::render::Renderer;
 use lookfrom_scene::image::compare::{Sampled, compare};
 use lookfrom_scene::image::read_exr;
 use lookfrom_scene::{Disk, Sources, load};
@@ -28,10 +27,8 @@ fn picture(scene: &Path) -> Sampled {
     let mut sources = Sources::new(&Disk);
     let mut scene = load::scene(scene, &mut sources).unwrap_or_else(|error| panic!("{error}"));
     scene.render.samples = SAMPLES;
-    let (image, render) = (scene.image.clone(), scene.render.clone());
-    let world = World::compile(scene, &mut sources.warnings).unwrap_or_else(|error| panic!("{error}"));
-    let frame = Frame::new(&world, &image, &render).expect("a frame");
-    let film = frame.render(None, &()).expect("a picture").film;
+    let renderer = Renderer::of_scene(scene, &mut sources.warnings).unwrap_or_else(|error| panic!("{error}"));
+    let film = renderer.render(None, &()).expect("a picture").film;
     assert_eq!(film.dropped(), 0, "samples that are not finite, the first at {:?}", film.first_dropped());
     let places = || (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
     let of_mean = |(x, y)| film.variance(x, y).map(|v| f64::from(v) / f64::from(SAMPLES));

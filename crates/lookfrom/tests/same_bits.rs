@@ -43,12 +43,12 @@ fn any_number_of_threads() {
 fn any_split_of_pixels_and_samples() {
     let compiled = Compiled::new(small("glass-and-mirror.toml"));
     let whole = compiled.film();
-    let frame = compiled.frame();
+    let renderer = compiled.renderer();
     let mut merged = lookfrom::film::Film::new(72, 50, None).expect("a small film");
     for (samples, columns) in [(2..3, 0..41), (0..2, 41..72), (0..1, 0..41), (2..3, 41..72), (1..2, 0..41)] {
         let area = Crop { x0: columns.start, y0: 0, x1: columns.end, y1: 50 };
         let mut tile = FilmTile::new(area).expect("a small tile");
-        frame.render_tile(samples, &mut tile);
+        renderer.render_tile(samples, &mut tile);
         merged.add_tile(&tile);
     }
     assert!(whole == merged);
@@ -73,9 +73,9 @@ fn what_the_inspector_shows_adds_up_to_what_the_film_received() {
         for integrator in [Integrator::Whitted, Integrator::Raycast, Integrator::Normals] {
             scene.render.integrator = integrator;
             let compiled = Compiled::new(scene.clone());
-            let frame = compiled.frame();
+            let renderer = compiled.renderer();
             for (x, y) in [(20, 12), (36, 25), (50, 30), (25, 40), (64, 20)] {
-                let inspection = inspect(&frame, SampleId { pixel: [x, y], sample: 2 });
+                let inspection = inspect(&renderer, SampleId { pixel: [x, y], sample: 2 });
                 // the additions that are shown, in their order …
                 let mut sum = [0.0f32; 3];
                 for addition in &inspection.additions {
@@ -88,13 +88,13 @@ fn what_the_inspector_shows_adds_up_to_what_the_film_received() {
                 // … are what a tile with all of its other pixels gave to the film
                 let area = Crop { x0: x / 32 * 32, y0: 0, x1: (x / 32 * 32 + 32).min(72), y1: 50 };
                 let mut tile = FilmTile::new(area).expect("a small tile");
-                frame.render_tile(2..3, &mut tile);
+                renderer.render_tile(2..3, &mut tile);
                 let mut film = lookfrom::film::Film::new(72, 50, None).expect("a small film");
                 film.add_tile(&tile);
                 assert_eq!(film.mean(x, y), inspection.film, "{name} at {x} {y}");
                 let text = inspection.to_string();
                 assert!(text.contains("the same, bit for bit"), "{text}");
-                assert!(svg(frame.world(), &inspection).ends_with("</svg>\n"));
+                assert!(svg(&renderer, &inspection).ends_with("</svg>\n"));
             }
         }
     }
@@ -103,10 +103,10 @@ fn what_the_inspector_shows_adds_up_to_what_the_film_received() {
 #[test]
 fn the_inspector_shows_every_number_of_the_notes() {
     let compiled = Compiled::new(small("notes-exercise.toml"));
-    let frame = compiled.frame();
+    let renderer = compiled.renderer();
     let texts: Vec<String> = [(36, 25), (20, 25), (50, 25), (30, 15), (44, 35), (55, 20)]
         .into_iter()
-        .map(|(x, y)| inspect(&frame, SampleId { pixel: [x, y], sample: 0 }).to_string())
+        .map(|(x, y)| inspect(&renderer, SampleId { pixel: [x, y], sample: 0 }).to_string())
         .collect();
     let all = texts.concat();
     for word in
@@ -182,13 +182,13 @@ fn steps_eight_at_once_are_steps_one_by_one() {
     for lights in [&[LAMP][..], &[POINT], &[SUN], &[SKY], &[BULB], &[LAMP, BULB, POINT, SUN, SKY]] {
         for settings in ["", "independent", "spectral"] {
             let compiled = Compiled::new(room(lights, settings));
-            let frame = compiled.frame();
+            let renderer = compiled.renderer();
             let pixels = (0..40).flat_map(|y| (0..48).map(move |x| [x, y]));
             let ids: Vec<SampleId> = pixels.map(|pixel| SampleId { pixel, sample: 1 }).collect();
-            let (in_lanes, rays) = frame.trace(&ids, &mut ());
+            let (in_lanes, rays) = renderer.trace(&ids);
             // Who listens hears of every path, so that they go one by one.
             let mut events = Vec::new();
-            let (one_by_one, same_rays) = frame.trace(&ids, &mut events);
+            let (one_by_one, same_rays) = renderer.trace_events(&ids, &mut events);
             assert_eq!(rays, same_rays);
             let mut lit = 0;
             for (a, b) in in_lanes.iter().zip(&one_by_one) {

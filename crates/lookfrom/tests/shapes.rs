@@ -23,7 +23,7 @@ fn rays_meet_what_they_meet_of_fine_triangles() {
             let (mut hits, mut different) = (0, 0);
             for _ in 0..4000 {
                 let ray = ray(&mut random, &map);
-                let (hit, other) = (exact.bvh.closest_hit(&ray), triangles.bvh.closest_hit(&ray));
+                let (hit, other) = (exact.bvh().closest_hit(&ray), triangles.bvh().closest_hit(&ray));
                 hits += u32::from(hit.is_hit());
                 if !hit.is_hit() || !other.is_hit() {
                     different += u32::from(hit.is_hit() != other.is_hit());
@@ -53,7 +53,7 @@ fn points_are_where_the_formula_says_and_so_are_derivatives() {
             let size = map.transform_vector3(DVec3::X).length();
             for _ in 0..500 {
                 let ray = ray(&mut random, &map);
-                let hit = exact.bvh.closest_hit(&ray);
+                let hit = exact.bvh().closest_hit(&ray);
                 if !hit.is_hit() {
                     continue;
                 }
@@ -98,7 +98,7 @@ fn a_reversed_shape_has_its_outside_inside() {
         let [usual, reversed] = [usual, reversed].map(|shape| world(shape, vec![]));
         for _ in 0..100 {
             let ray = ray(&mut random, &map);
-            let (a, b) = (usual.bvh.closest_hit(&ray), reversed.bvh.closest_hit(&ray));
+            let (a, b) = (usual.bvh().closest_hit(&ray), reversed.bvh().closest_hit(&ray));
             assert_eq!(a, b);
             if a.is_hit() {
                 let (a, b) = (usual.surface(&ray, &a), reversed.surface(&ray, &b));
@@ -120,13 +120,13 @@ fn rays_that_leave_a_hair_start_outside_of_it() {
             let to = map.transform_point3(Vec3::from_array(STRAND[0]).as_dvec3() * random.between(-1.0, 1.0));
             let from = map.transform_point3(3.0 * random.direction());
             let ray = Ray::new(from.as_vec3().to_array(), (to - from).as_vec3().to_array());
-            let hit = exact.bvh.closest_hit(&ray);
+            let hit = exact.bvh().closest_hit(&ray);
             if !hit.is_hit() {
                 continue;
             }
             let surface = exact.surface(&ray, &hit);
             let (ray, _) = leaving(&mut random, &surface, 1.0);
-            let next = exact.bvh.closest_hit(&ray);
+            let next = exact.bvh().closest_hit(&ray);
             left += 1;
             let width = map.transform_vector3(DVec3::X).length() * 0.02;
             again += u32::from(f64::from(next.t) < 2.0 * width);
@@ -157,7 +157,7 @@ fn rays_that_leave_do_not_meet_what_they_left() {
             let size = map.transform_vector3(DVec3::X).length();
             for _ in 0..4000 {
                 let ray = ray(&mut random, &map);
-                let hit = exact.bvh.closest_hit(&ray);
+                let hit = exact.bvh().closest_hit(&ray);
                 if !hit.is_hit() {
                     continue;
                 }
@@ -165,7 +165,7 @@ fn rays_that_leave_do_not_meet_what_they_left() {
                 for _ in 0..2 {
                     left += 1;
                     let (ray, length) = leaving(&mut random, &surface, size);
-                    let next = exact.bvh.closest_hit(&ray);
+                    let next = exact.bvh().closest_hit(&ray);
                     let way = f64::from(next.t) * length;
                     assert!(way > 1e-3 * size, "{} at {far}: again after {way} of {size}", form.name);
                     // It starts no farther away than f32 and the error of the point make necessary.
@@ -192,7 +192,7 @@ fn rays_that_leave_an_ellipsoid_never_meet_it_however_thin_it_is() {
             let at = |d: DVec3| map.transform_point3(DVec3::new(0.5, -1.0, 2.0) + d).as_vec3();
             let (from, to) = (at(3.0 * random.direction()), at(0.29 * random.direction()));
             let ray = Ray::new(from.to_array(), (to - from).to_array());
-            let hit = exact.bvh.closest_hit(&ray);
+            let hit = exact.bvh().closest_hit(&ray);
             if !hit.is_hit() {
                 continue;
             }
@@ -201,7 +201,7 @@ fn rays_that_leave_an_ellipsoid_never_meet_it_however_thin_it_is() {
                 let direction = random.direction().as_vec3();
                 if direction.as_dvec3().dot(surface.ng) > 0.0 {
                     let next =
-                        exact.bvh.closest_hit(&Ray::new(surface.origin(direction), direction.to_array()));
+                        exact.bvh().closest_hit(&Ray::new(surface.origin(direction), direction.to_array()));
                     assert!(!next.is_hit(), "far {far}, thin {thin:?}: {surface:?}");
                     left += 1;
                 }
@@ -223,9 +223,9 @@ fn rays_that_leave_inward_from_near_a_pole_do_not_start_outside() {
         let mut near = || 4e-3 * (2.0 * random.unit() - 1.0);
         let from = (center + DVec3::new(0.0, near(), near())).as_vec3().to_array();
         let ray = Ray::new(from, [1.0, near() as f32, near() as f32]);
-        let surface = exact.surface(&ray, &exact.bvh.closest_hit(&ray));
+        let surface = exact.surface(&ray, &exact.bvh().closest_hit(&ray));
         let direction = Vec3::new(-1.0, 20.0 * near() as f32, 20.0 * near() as f32);
-        let next = exact.bvh.closest_hit(&Ray::new(surface.origin(direction), direction.to_array()));
+        let next = exact.bvh().closest_hit(&Ray::new(surface.origin(direction), direction.to_array()));
         assert!(next.t > 0.4, "again after {} from {surface:?}", next.t);
     }
 }
@@ -243,7 +243,7 @@ fn rays_that_leave_a_flat_patch_never_meet_it_however_flat_they_are() {
         let (x, y) = (random.between(-900.0, 900.0) as f32, random.between(-900.0, 900.0) as f32);
         let from = 2000.0 * random.direction().as_vec3();
         let ray = Ray::new(from.to_array(), (at(x, y) - from).to_array());
-        let hit = exact.bvh.closest_hit(&ray);
+        let hit = exact.bvh().closest_hit(&ray);
         if !hit.is_hit() {
             continue;
         }
@@ -252,7 +252,7 @@ fn rays_that_leave_a_flat_patch_never_meet_it_however_flat_they_are() {
         let up = 2f64.powf(random.between(-22.0, 0.0));
         let direction = (flat + up * surface.ng).as_vec3();
         if direction.as_dvec3().dot(surface.ng) > 0.0 {
-            let next = exact.bvh.closest_hit(&Ray::new(surface.origin(direction), direction.to_array()));
+            let next = exact.bvh().closest_hit(&Ray::new(surface.origin(direction), direction.to_array()));
             assert!(!next.is_hit(), "{direction} from {surface:?}");
             left += 1;
         }
@@ -270,7 +270,7 @@ fn tangents_and_texture_coordinates_of_meshes_lead_the_derivatives() {
     let ray = Ray::new([0.5, 0.5, 3.0], [0.0, 0.0, -1.0]);
     let surface = |mesh: &Mesh| {
         let world = world(shape(Geometry::Mesh(MeshId(0)), DMat4::IDENTITY), vec![mesh.clone()]);
-        world.surface(&ray, &world.bvh.closest_hit(&ray))
+        world.surface(&ray, &world.bvh().closest_hit(&ray))
     };
     let plain = surface(&mesh);
     assert_eq!((plain.dpdu, plain.dpdv), (Vec3::X * 2.0, Vec3::Y * 4.0));
@@ -298,7 +298,7 @@ fn alpha_comes_with_the_surface() {
     half.alpha = Some(Scalar::Value(0.5));
     let world = world(half, vec![]);
     let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
-    assert_eq!(world.surface(&ray, &world.bvh.closest_hit(&ray)).alpha, Some(Scalar::Value(0.5)));
+    assert_eq!(world.surface(&ray, &world.bvh().closest_hit(&ray)).alpha, Some(Scalar::Value(0.5)));
 }
 
 const STRAND: [[f32; 3]; 4] = [[-1.0, -0.5, 0.0], [-0.2, 0.9, 0.4], [0.3, -0.9, -0.3], [1.0, 0.5, 0.2]];
@@ -345,7 +345,7 @@ fn curves_are_met_where_a_search_along_them_says() {
                 .map(|k| f64::from(k) / 4000.0)
                 .map(|u| (seen(u), u))
                 .fold((f64::INFINITY, 0.0), |a, b| if b.0 < a.0 { b } else { a });
-            let hit = exact.bvh.closest_hit(&ray);
+            let hit = exact.bvh().closest_hit(&ray);
             hits += u32::from(hit.is_hit());
             if turned(u) < 0.5 {
                 continue; // seen edge on, what is left of the width is not wider than the search is exact
@@ -386,7 +386,7 @@ fn poles_have_derivatives_and_nonsense_has_no_surface() {
     let stretched = DMat4::from_scale(DVec3::new(1.0, 2.0, 1.0));
     for map in [DMat4::IDENTITY, stretched] {
         let world = world(shape(whole.clone(), map), vec![]);
-        let surface = world.surface(&pole, &world.bvh.closest_hit(&pole));
+        let surface = world.surface(&pole, &world.bvh().closest_hit(&pole));
         assert!(surface.dpdu.cross(surface.dpdv).normalize().dot(surface.ns) > 0.999, "{surface:?}");
     }
 
@@ -412,7 +412,7 @@ fn poles_have_derivatives_and_nonsense_has_no_surface() {
         let world = world(shining(geometry, DMat4::IDENTITY, true, false), vec![]);
         for _ in 0..200 {
             let ray = ray(&mut random, &DMat4::IDENTITY);
-            assert!(!world.bvh.closest_hit(&ray).is_hit(), "{text}");
+            assert!(!world.bvh().closest_hit(&ray).is_hit(), "{text}");
         }
     }
 }

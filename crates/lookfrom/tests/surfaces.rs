@@ -3,7 +3,7 @@
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom::light::Light;
-use lookfrom::render::Frame;
+use lookfrom::render::Renderer;
 use lookfrom::world::World;
 use lookfrom_bvh::Ray;
 use lookfrom_scene::camera::{Camera, Projection, View};
@@ -27,10 +27,8 @@ fn compiled(scene: Scene) -> World {
 
 /// The mean over the picture.
 fn mean(scene: Scene) -> f64 {
-    let (image, render) = (scene.image.clone(), scene.render.clone());
-    let world = compiled(scene);
-    let rendered =
-        Frame::new(&world, &image, &render).expect("a frame").render(None, &()).expect("a picture");
+    let renderer = Renderer::of_scene(scene, &mut Vec::new()).expect("a good scene");
+    let rendered = renderer.render(None, &()).expect("a picture");
     assert_eq!(rendered.film.dropped(), 0);
     let pixels = rendered.film.picture().pixels;
     pixels.iter().flatten().map(|&c| f64::from(c)).sum::<f64>() / (3 * pixels.len()) as f64
@@ -140,7 +138,7 @@ fn time_of_a_million_triangles_that_shine() {
             under_lamp(708, |scene| Color::Texture(picture_of(scene, spot(side), Channel::Rgb, Mapping::UV)));
         let start = std::time::Instant::now();
         let world = compiled(scene);
-        println!("{name}: {:?} for {} lights", start.elapsed(), world.lights.len());
+        println!("{name}: {:?} for {} lights", start.elapsed(), world.lights().len());
     }
     let start = std::time::Instant::now();
     compiled(under_lamp(708, |_| Color::BLACK));
@@ -152,7 +150,7 @@ fn triangles_of_a_pattern_are_asked_where_it_shines() {
     let world = compiled(under_lamp(32, |scene| {
         Color::Texture(picture_of(scene, spot(16), Channel::Rgb, Mapping::UV))
     }));
-    let Light::Area(lamp) = &world.lights[0] else { panic!("{:?}", world.lights[0]) };
+    let Light::Area(lamp) = &world.lights()[0] else { panic!("{:?}", world.lights()[0]) };
     assert!(lamp.is_asked() && (lamp.mean_of_pattern().unwrap() * 256.0 - 1.0).abs() < 1e-3);
     for k in 0..256 {
         let u = [(k % 16) as f32 / 16.0, (k / 16) as f32 / 16.0];
@@ -168,10 +166,10 @@ fn triangles_of_a_pattern_are_asked_where_it_shines() {
     let dark = Image::from_bytes("dark", 1, 1, vec![[0, 0, 0, 255]], Encoding::Srgb);
     let world =
         compiled(under_lamp(4, |scene| Color::Texture(picture_of(scene, dark, Channel::Rgb, Mapping::UV))));
-    let Light::Area(lamp) = &world.lights[0] else { panic!("{:?}", world.lights[0]) };
+    let Light::Area(lamp) = &world.lights()[0] else { panic!("{:?}", world.lights()[0]) };
     assert!(!lamp.is_asked() && lamp.sample_point(DVec3::ZERO, [0.5; 2]).is_none());
     let at = lookfrom::light::Reference { point: DVec3::ZERO, n: Vec3::Z };
-    assert!(world.light_choice.sample(&at, 0.5).is_none());
+    assert!(world.light_choice().sample(&at, 0.5).is_none());
 }
 
 /// A point light over a white floor, and between light and floor (seen from above) whatever `between` is.
@@ -274,9 +272,9 @@ fn met(mesh: &Mesh, place: DMat4, as_instance: bool, reverse: bool) -> lookfrom:
         scene.shapes.push(shape);
     }
     let world = compiled(scene);
-    let origin = (DVec3::new(0.3, 3.0, 0.4) - world.origin).as_vec3();
+    let origin = (DVec3::new(0.3, 3.0, 0.4) - world.origin()).as_vec3();
     let ray = Ray::new(origin.to_array(), [0.0, -1.0, 0.0]);
-    let hit = world.bvh.closest_hit(&ray);
+    let hit = world.bvh().closest_hit(&ray);
     assert!(hit.is_hit());
     world.surface(&ray, &hit)
 }
@@ -346,8 +344,8 @@ fn further_coordinates_and_opacities_come_with_the_surface() {
         }
         let world = compiled(scene);
         let at = |from: DVec3| {
-            let ray = Ray::new((from - world.origin).as_vec3().to_array(), [0.0, -1.0, 0.0]);
-            let surface = world.surface(&ray, &world.bvh.closest_hit(&ray));
+            let ray = Ray::new((from - world.origin()).as_vec3().to_array(), [0.0, -1.0, 0.0]);
+            let surface = world.surface(&ray, &world.bvh().closest_hit(&ray));
             (surface, world.texture_point(&surface))
         };
         let (_, point) = at(DVec3::new(0.5, 3.0, 0.5));

@@ -24,7 +24,7 @@ use crate::node::Child;
 use crate::procedural::Procedural;
 use crate::sphere::Sphere;
 use crate::validate::Statistics;
-use lookfrom_simd::Level;
+use lookfrom_simd::level;
 
 use plan::Plan;
 use primitives::{Geometry, Primitives};
@@ -346,7 +346,7 @@ impl Builder {
         let mut references = primitives.references();
         let bounds = primitives.bounds_of(&references);
         let left_out = primitives.count() - references.len();
-        let mut binary = sah::build(&mut references, self.quality, Level::new());
+        let mut binary = sah::build(&mut references, self.quality, level());
         let mut plan = Plan::new(&binary, &references);
         if self.quality == Quality::Best
             && let Some((other, sorted)) = reinsert::reinsert(&binary, &references)

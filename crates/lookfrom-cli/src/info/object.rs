@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
+use lookfrom::session::{SceneInfo, Session};
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::contents::{AnimationEntry, CameraEntry, Contents};
+use lookfrom_scene::count::Counts;
 use lookfrom_scene::scene::Bounds;
-use lookfrom_scene::settings::{ImageSettings, RenderSettings, Sampler, Tonemap};
+use lookfrom_scene::settings::{ImageSettings, RenderSettings};
 use serde::Serialize;
 
 use super::{Tree, tree};
-use crate::count::Counts;
-use crate::prepare::Prepared;
-use crate::{report, values};
+use crate::report;
 
 /// A scene, and what it becomes.
 #[derive(Serialize)]
@@ -118,26 +118,23 @@ struct SecondsObject {
 
 impl<'a> Object<'a> {
     /// What is told of a scene.
-    pub(super) fn new(path: &Path, prepared: &'a Prepared) -> Self {
-        let Prepared { image, render, contents, bounds, .. } = prepared;
+    pub(super) fn new(path: &Path, session: &'a Session) -> Self {
+        let SceneInfo { counts, contents, bounds, added, read, build } = session.info();
         Self {
             scene: path.display().to_string(),
-            counts: &prepared.counts,
+            counts,
             bounds: (!bounds.is_empty()).then(|| bounds.into()),
             scenes: scenes(contents),
             animations: contents.animations.iter().map(Into::into).collect(),
             variants: &contents.variants,
             cameras: contents.cameras.iter().map(Into::into).collect(),
-            camera: (&prepared.camera).into(),
-            image: image.into(),
-            render: render.into(),
-            bvh: tree(prepared),
-            seconds: SecondsObject {
-                read: report::seconds(prepared.read),
-                build: report::seconds(prepared.build),
-            },
-            added: &prepared.added,
-            warnings: prepared.warnings.iter().map(ToString::to_string).collect(),
+            camera: session.camera().into(),
+            image: session.image().into(),
+            render: session.settings().into(),
+            bvh: tree(session),
+            seconds: SecondsObject { read: report::seconds(*read), build: report::seconds(*build) },
+            added,
+            warnings: session.warnings().iter().map(ToString::to_string).collect(),
         }
     }
 }
@@ -202,9 +199,9 @@ impl From<&ImageSettings> for ImageObject {
             width: image.width,
             height: image.height,
             crop: image.crop.map(|crop| [crop.x0, crop.y0, crop.x1, crop.y1]),
-            filter: values::filter_name(&image.filter),
+            filter: image.filter.to_string(),
             exposure: image.exposure,
-            tonemap: values::name(Tonemap::WORDS, &image.tonemap),
+            tonemap: image.tonemap.word(),
             denoise: image.denoise,
         }
     }
@@ -217,7 +214,7 @@ impl From<&RenderSettings> for RenderObject {
             samples: render.samples,
             depth: render.depth,
             min_contribution: render.min_contribution,
-            sampler: values::name(Sampler::WORDS, &render.sampler),
+            sampler: render.sampler.word(),
             seed: render.seed,
             transparent_shadows: render.transparent_shadows,
         }

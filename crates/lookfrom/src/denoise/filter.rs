@@ -1,7 +1,7 @@
 //! The filter's inner loop: for every offset between two pixels, a whole block of pixels at once, so that the machine's vectors
 //! have something to do. The slow twin, which goes pixel by pixel, is in the tests.
 
-use lookfrom_simd::{Level, Simd, Work, at_level};
+use lookfrom_simd::{Simd, Work, at_level, level};
 use rayon::prelude::*;
 
 use super::planes::{BORDER, Planes};
@@ -33,7 +33,7 @@ impl<const N: usize> Planes<N> {
         }
         let mut changes = vec![[0.0; N]; width * self.height()];
         changes.par_chunks_mut(width * ROWS).enumerate().for_each(|(band, changes)| {
-            let level = Level::new();
+            let level = level();
             for left in (0..width).step_by(COLUMNS) {
                 let block = Block { planes: self, left, top: band * ROWS, rows: changes.len() / width };
                 if block.is_noisy() {

@@ -3,11 +3,11 @@
 use glam::{DMat4, DVec4};
 
 use super::report::{CameraSteps, MatrixStep};
-use crate::render::{Frame, SampleId};
+use crate::render::{Renderer, SampleId};
 
-pub(super) fn camera_steps(frame: &Frame<'_>, id: SampleId) -> CameraSteps {
-    let camera = &frame.world().camera;
-    let (ray, _) = frame.camera_ray(id);
+pub(super) fn camera_steps(renderer: &Renderer, id: SampleId) -> CameraSteps {
+    let camera = renderer.view().camera();
+    let (ray, _) = renderer.camera_ray(id);
     let rows = |matrix: &DMat4| matrix.transpose().to_cols_array_2d();
     let mut product = DMat4::IDENTITY;
     let mut step = |name, does, matrix: &DMat4, point: DVec4| {

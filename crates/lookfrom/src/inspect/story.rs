@@ -18,7 +18,7 @@ use super::scatter::{self, AnswerReport, AskedReport, BounceReport, FoundReport}
 use crate::integrator::{Bounce, Branch, Cut, Event, Path, Shadow, Term};
 use crate::light::LightSample;
 use crate::material::{Coefficients, Shading};
-use crate::render::Frame;
+use crate::render::Renderer;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::texture::Lanes;
@@ -26,7 +26,7 @@ use crate::world::World;
 
 /// What has been heard so far.
 pub(super) struct Story<'a> {
-    frame: &'a Frame<'a>,
+    renderer: &'a Renderer,
     world: &'a World,
     /// What the lanes mean in the end.
     lanes: Lanes,
@@ -54,10 +54,10 @@ fn is_path(integrator: Integrator) -> bool {
 
 impl<'a> Story<'a> {
     /// Nothing yet.
-    pub(super) fn new(frame: &'a Frame<'a>, lanes: Lanes) -> Self {
+    pub(super) fn new(renderer: &'a Renderer, lanes: Lanes) -> Self {
         Self {
-            frame,
-            world: frame.world(),
+            renderer,
+            world: renderer.world(),
             lanes,
             rays: BTreeMap::new(),
             added: BTreeMap::new(),
@@ -108,7 +108,7 @@ impl<'a> Story<'a> {
                 self.asked(*address, *light, *probability, answer);
             }
             Event::AskedOne { address, light, probability, sample, f, bsdf_pdf, weight } => {
-                let is_weighed = self.frame.settings().integrator == Integrator::Path
+                let is_weighed = self.renderer.settings().integrator == Integrator::Path
                     && !self.world.lights[*light as usize].is_delta();
                 let answer = self.answer(*probability, sample, *f, is_weighed.then_some(*bsdf_pdf), *weight);
                 self.asked(*address, *light, *probability, Some(answer));
@@ -142,7 +142,7 @@ impl<'a> Story<'a> {
 
     /// All of it: the sums are drawn.
     pub(super) fn end(mut self) -> Told {
-        let is_path = is_path(self.frame.settings().integrator);
+        let is_path = is_path(self.renderer.settings().integrator);
         if is_path {
             self.end_paths();
         }
@@ -171,7 +171,7 @@ impl<'a> Story<'a> {
 
     /// What is known of a path only when the next ray is, or when there is none.
     fn end_paths(&mut self) {
-        let settings = self.frame.settings();
+        let settings = self.renderer.settings();
         let addresses: Vec<u64> = self.rays.keys().copied().collect();
         for address in addresses {
             let next = self.rays.get(&(address + 1)).map(|next| next.share.clone());
@@ -219,7 +219,7 @@ impl<'a> Story<'a> {
     }
 
     fn amount(&self, value: Spectrum) -> Amount {
-        Amount { lanes: self.factor(value), rgb: self.frame.rgb(value, &self.lanes) }
+        Amount { lanes: self.factor(value), rgb: self.renderer.rgb(value, &self.lanes) }
     }
 
     fn ray(&self, path: &Path, hit: &Hit) -> RayReport {
@@ -409,7 +409,7 @@ impl<'a> Story<'a> {
             Term::View => "view".into(),
             Term::Unoccluded => "open sky".into(),
             Term::Found { light, .. } => format!("found {}", name(light)),
-            Term::Light(light) if is_path(self.frame.settings().integrator) => {
+            Term::Light(light) if is_path(self.renderer.settings().integrator) => {
                 format!("asked {}", name(light))
             }
             Term::Light(light) => name(light).clone(),

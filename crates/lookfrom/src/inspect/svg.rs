@@ -6,6 +6,8 @@ use std::fmt::Write;
 use glam::{DVec2, DVec3, Vec3};
 
 use super::{Inspection, RayReport};
+use crate::camera::Camera;
+use crate::render::Renderer;
 use crate::shape::Form;
 use crate::world::World;
 
@@ -16,8 +18,9 @@ const WIDTH: f64 = 1000.0;
 const MOST_TRIANGLES: usize = 600;
 
 /// Draws an inspection in a plane that holds the direction of view (to the right) and up.
-pub fn svg(world: &World, inspection: &Inspection) -> String {
-    let side = SideView::new(world);
+pub fn svg(renderer: &Renderer, inspection: &Inspection) -> String {
+    let (world, camera) = (renderer.world(), renderer.view().camera());
+    let side = SideView::new(camera);
     let segments = segments(&side, inspection);
 
     // Frame the rays and the eye; what lies beyond is cut off.
@@ -66,7 +69,7 @@ pub fn svg(world: &World, inspection: &Inspection) -> String {
         draw_numbers(&mut out, &segments, &place);
     }
     let eye = place(side.project(DVec3::from_array(inspection.camera.lookfrom)));
-    draw_camera(&mut out, eye, side.project(world.camera.w()));
+    draw_camera(&mut out, eye, side.project(camera.w()));
     draw_legend(&mut out, height, inspection, &segments);
     out.push_str("</svg>\n");
     out
@@ -80,8 +83,8 @@ struct SideView {
 }
 
 impl SideView {
-    fn new(world: &World) -> Self {
-        let axes = &world.camera.r3;
+    fn new(camera: &Camera) -> Self {
+        let axes = &camera.r3;
         let (up, forward) = (axes.y_axis.truncate().normalize(), axes.z_axis.truncate().normalize());
         let level = forward.reject_from_normalized(DVec3::Y);
         if level.length() > 0.3 {

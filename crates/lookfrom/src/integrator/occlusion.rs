@@ -18,6 +18,10 @@ pub struct AmbientOcclusion {
 }
 
 impl Integrator for AmbientOcclusion {
+    fn name(&self) -> &'static str {
+        "ambient_occlusion"
+    }
+
     fn step<P: Probe>(
         &self,
         world: &World,

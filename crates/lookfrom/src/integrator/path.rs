@@ -7,13 +7,15 @@ mod eight;
 
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::{Hit, Left, Ray};
-use lookfrom_simd::{Level, at_level};
+use lookfrom_simd::{at_level, level};
 
 use eight::{Plain, Steps};
 
 use crate::bsdf::BsdfSample;
 use crate::eight::LANES;
-use crate::integrator::{Bounce, Event, Integrator, Next, Numbers, Path, Probe, Samples, Shadow, Term};
+use crate::integrator::{
+    Bounce, Catcher, Event, Integrator, Next, Numbers, Path, Probe, Samples, Shadow, Term,
+};
 use crate::light::{Coverage, Reference};
 use crate::material::{Arrival, Toward};
 use crate::spectrum::Spectrum;
@@ -91,6 +93,18 @@ impl Default for Departure {
 }
 
 impl Integrator for PathTracer {
+    fn name(&self) -> &'static str {
+        match self.wisdom {
+            Wisdom::Combined => "path",
+            Wisdom::Separate => "simple_path",
+            Wisdom::None => "random_walk",
+        }
+    }
+
+    fn catcher(&self) -> Catcher {
+        if self.wisdom == Wisdom::Combined { Catcher::ControlVariate } else { Catcher::Shaded }
+    }
+
     fn step_all<P: Probe>(
         &self,
         world: &World,
@@ -185,7 +199,7 @@ impl PathTracer {
         let Some(last) = plain.last() else { return };
         let eight: [Plain<'_>; LANES] = std::array::from_fn(|lane| *plain.get(lane).unwrap_or(last));
         let steps = Steps { tracer: self, world, plain: &eight, count: plain.len(), samples: next };
-        at_level(Level::new(), steps);
+        at_level(level(), steps);
     }
 
     /// What light does at a surface: from one lamp, and from one direction.

@@ -3,14 +3,25 @@
 use lookfrom_bvh::Hit;
 
 use crate::integrator::direct::local_light;
-use crate::integrator::{Integrator, Next, Numbers, Path, Probe, Term};
+use crate::integrator::{Integrator, Next, Numbers, Passing, Path, Probe, Term};
 use crate::world::World;
 
 /// Ray casting.
 #[derive(Clone, Copy, Debug)]
-pub struct Raycast;
+pub struct Raycast {
+    /// Whether shadow rays pass transparent materials, coloured by them.
+    pub transparent_shadows: bool,
+}
 
 impl Integrator for Raycast {
+    fn name(&self) -> &'static str {
+        "raycast"
+    }
+
+    fn passing(&self) -> Passing {
+        Passing::of_whitted(self.transparent_shadows)
+    }
+
     fn step<P: Probe>(
         &self,
         world: &World,

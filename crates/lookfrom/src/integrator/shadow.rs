@@ -80,11 +80,19 @@ pub(super) fn toward(origin: [f32; 3], target: [f64; 3]) -> Ray {
 
 /// What lets shadow rays pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Passing {
+#[non_exhaustive]
+pub enum Passing {
     /// Only where there is no surface: by its alpha, or an interface of media.
     Gaps,
-    /// Transparent materials as well, straight on.
+    /// Transparent materials as well, straight on, coloured by them (Whitted's model).
     Transparent,
+}
+
+impl Passing {
+    /// Of Whitted's model, where transparent shadows may be asked for.
+    pub(super) fn of_whitted(transparent_shadows: bool) -> Self {
+        if transparent_shadows { Self::Transparent } else { Self::Gaps }
+    }
 }
 
 /// Traces all shadow rays of a batch and adds what arrives, in their order. Gives the number of rays traced.

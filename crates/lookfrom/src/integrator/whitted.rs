@@ -7,7 +7,7 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
 
 use crate::integrator::direct::local_light;
-use crate::integrator::{Branch, Cut, Event, Integrator, Next, Numbers, Path, Probe, Term};
+use crate::integrator::{Branch, Cut, Event, Integrator, Next, Numbers, Passing, Path, Probe, Term};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::world::World;
@@ -22,9 +22,19 @@ pub struct Whitted {
     pub depth: u32,
     /// Branches with a smaller share of the pixel are not followed.
     pub min_contribution: f32,
+    /// Whether shadow rays pass transparent materials, coloured by them.
+    pub transparent_shadows: bool,
 }
 
 impl Integrator for Whitted {
+    fn name(&self) -> &'static str {
+        "whitted"
+    }
+
+    fn passing(&self) -> Passing {
+        Passing::of_whitted(self.transparent_shadows)
+    }
+
     fn step<P: Probe>(
         &self,
         world: &World,

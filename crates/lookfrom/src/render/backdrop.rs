@@ -7,10 +7,10 @@
 
 use glam::Vec3;
 use lookfrom_bvh::Hit;
-use lookfrom_scene::settings::{Background, Integrator as Kind};
+use lookfrom_scene::settings::Background;
 
-use super::Frame;
-use crate::integrator::{Event, Next, Path, Probe, Shadow, Term, power_heuristic};
+use super::Renderer;
+use crate::integrator::{Catcher, Event, Next, Path, Probe, Shadow, Term, power_heuristic};
 use crate::light::Light;
 use crate::math;
 use crate::spectrum::Spectrum;
@@ -30,10 +30,10 @@ pub(super) enum Met {
     LeftFloor,
 }
 
-impl Frame<'_> {
+impl Renderer {
     /// Whether rays from the camera are asked at all.
     pub(super) fn has_backdrop(&self) -> bool {
-        self.image.background != Background::Environment || self.world.catcher_irradiance.is_some()
+        self.image().background != Background::Environment || self.world.catcher_irradiance.is_some()
     }
 
     /// Shows the backdrop to the rays of a batch that come from the camera, and notes what they met, by slot. Those that have
@@ -50,7 +50,7 @@ impl Frame<'_> {
             let (mut path, hit) = (paths[index], hits[index]);
             let met = &mut met[path.slot as usize];
             self.show_backdrop(&mut path, &hit, met, next);
-            if *met == Met::Nothing && self.image.background != Background::Environment {
+            if *met == Met::Nothing && self.image().background != Background::Environment {
                 next.probe.notice(|| Event::Met { path, hit });
                 continue;
             }
@@ -65,7 +65,7 @@ impl Frame<'_> {
     /// the floor is weighed so that it looks like the backdrop where no shadow falls.
     ///
     /// The path tracer's floor shows the backdrop less what is in the way of the light: the light that its samples would find
-    /// if nothing stood there is expected, and subtracted ([`Frame::expect_light`]). Where nothing does, nothing is left to
+    /// if nothing stood there is expected, and subtracted ([`Renderer::expect_light`]). Where nothing does, nothing is left to
     /// be noise.
     fn show_backdrop<P: Probe>(&self, path: &mut Path, hit: &Hit, met: &mut Met, next: &mut Next<'_, P>) {
         let lanes = next.samples.lanes[path.slot as usize];
@@ -79,14 +79,16 @@ impl Frame<'_> {
         }
         *met = match hit.is_hit() {
             false => Met::Nothing,
-            true if self.render.integrator.is_path_traced() && self.world.hits_catcher(&path.ray, hit) => {
+            true if self.integrator.catcher() != Catcher::Surface
+                && self.world.hits_catcher(&path.ray, hit) =>
+            {
                 Met::Floor
             }
             true => Met::Thing,
         };
         if *met == Met::Floor {
             let behind = self.behind(path, &lanes);
-            if self.render.integrator == Kind::Path {
+            if self.integrator.catcher() == Catcher::ControlVariate {
                 next.add(path, Term::Sky, path.beta * behind);
             }
             let direction = Vec3::from_array(path.ray.direction);
@@ -96,7 +98,7 @@ impl Frame<'_> {
 
     /// Subtracts what the lights infinitely far that paths asked at the floor just now bring if nothing is in the way.
     pub(super) fn expect_light<P: Probe>(&self, met: &[Met], next: &mut Next<'_, P>) {
-        if self.render.integrator != Kind::Path {
+        if self.integrator.catcher() != Catcher::ControlVariate {
             return;
         }
         let is_far = |shadow: &Shadow| match shadow.term {
@@ -115,7 +117,7 @@ impl Frame<'_> {
 
     /// What the path tracer adds if a path that left the floor meets nothing.
     fn sky_found(&self, path: &Path, lanes: &Lanes) -> Spectrum {
-        if self.render.integrator != Kind::Path {
+        if self.integrator.catcher() != Catcher::ControlVariate {
             return Spectrum::BLACK;
         }
         let direction = Vec3::from_array(path.ray.direction).normalize();
@@ -130,7 +132,7 @@ impl Frame<'_> {
     }
 
     fn behind(&self, path: &Path, lanes: &Lanes) -> Spectrum {
-        match self.image.background {
+        match self.image().background {
             Background::Environment => self.world.sky(&path.ray, lanes),
             // White, so that what is seen is the share that shadows leave.
             Background::Color(_) | Background::Transparent => self.world.light_of([1.0; 3], lanes),
@@ -147,7 +149,7 @@ impl Frame<'_> {
         met: Met,
     ) -> ([f32; 3], f32) {
         match met {
-            _ if self.image.background == Background::Environment => {
+            _ if self.image().background == Background::Environment => {
                 (self.rgb(radiance * weight, lanes), 1.0)
             }
             Met::Thing => (self.rgb(radiance * weight, lanes), 1.0),

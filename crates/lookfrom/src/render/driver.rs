@@ -1,6 +1,6 @@
 //! Who renders which tile when: threads, passes over the picture, when there is enough, progress and stopping.
 //!
-//! Nothing here decides what a sample brings; that is [`Frame::render_tile`], and the film of a number of samples is the same
+//! Nothing here decides what a sample brings; that is [`Renderer::render_tile`], and the film of a number of samples is the same
 //! for any division of the work. What decides about *numbers* of samples, other than the clock, is only the film at the ends
 //! of *rounds* (after 1, 2, 4 … 64 samples of a pixel, then every 64): so adaptive pictures, too, are the same for any number
 //! of threads. Whether a tile has enough is decided from the samples that its picture is made of, which favours pictures
@@ -16,8 +16,8 @@ use lookfrom_scene::settings::Crop;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 use rayon::prelude::*;
 
-use super::{Frame, Rays};
-use crate::film::{Film, FilmTile};
+use super::{Rays, Renderer};
+use crate::film::{Film, FilmTile, Picture};
 
 /// Pixels on the side of a tile. One sample of each pixel of a tile is a batch.
 const TILE: u32 = 32;
@@ -28,9 +28,9 @@ const LONGEST_ROUND: u32 = 64;
 /// A tile or picture of fewer samples a pixel is not taken to be clean, whatever it looks like.
 pub const FEWEST_SAMPLES: u32 = 16;
 
-/// When a render has enough, besides its number of samples.
+/// When a render ends, besides its number of samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Enough {
+pub struct StopCriteria {
     /// Stop after the pass over the picture that reaches this time. At least one sample of each pixel is taken.
     pub time: Option<Duration>,
     /// Give no more samples to a tile whose [relative error](Film::relative_error) is at most this, and stop when
@@ -40,7 +40,8 @@ pub struct Enough {
 
 /// Why a render ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+#[non_exhaustive]
+pub enum StopReason {
     /// Every pixel has all its samples.
     Samples,
     /// The time was over.
@@ -51,14 +52,45 @@ pub enum End {
     Cancelled,
 }
 
-/// Told how far a render is, and asked whether it shall stop. Called from many threads.
-pub trait Progress: Sync {
-    /// `done` of `total` samples are taken, with `rays` rays so far. `total` is an estimate where something else than
-    /// the number of samples ends the render.
-    fn advance(&self, done: u64, total: u64, rays: u64);
+impl StopReason {
+    /// Its word, for summaries.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Samples => "samples",
+            Self::Time => "time",
+            Self::Noise => "noise",
+            Self::Cancelled => "interrupt",
+        }
+    }
+}
 
-    /// The film so far, after each tile; others wait meanwhile.
-    fn look(&self, _film: &Film) {}
+/// A tile that has got more samples.
+#[derive(Clone, Debug)]
+pub struct TileDone {
+    /// Which pixels.
+    pub area: Crop,
+    /// Which samples of each of them.
+    pub samples: Range<u32>,
+    /// Samples taken so far, of all pixels together.
+    pub done: u64,
+    /// Samples of all pixels together; an estimate where something else than the number of samples ends the render.
+    pub total: u64,
+    /// Rays traced so far.
+    pub rays: u64,
+    /// The tile's picture so far, where [`Progress::wants_pixels`] asked for it: as large as `area`, row by row from its top
+    /// left, linear light.
+    pub picture: Option<Picture>,
+}
+
+/// Told how far a render is, and asked whether it shall stop. Called from many threads; no lock is held meanwhile.
+pub trait Progress: Sync {
+    /// A tile has got more samples. Tiles may come in any order, those of one place in the order of their samples.
+    fn tile(&self, _done: TileDone) {}
+
+    /// Whether tiles shall come with their pictures.
+    fn wants_pixels(&self) -> bool {
+        false
+    }
 
     /// Whether to stop before the next tile.
     fn cancelled(&self) -> bool {
@@ -67,9 +99,7 @@ pub trait Progress: Sync {
 }
 
 /// Nobody is told anything.
-impl Progress for () {
-    fn advance(&self, _: u64, _: u64, _: u64) {}
-}
+impl Progress for () {}
 
 /// What came of a render.
 #[derive(Debug)]
@@ -79,7 +109,7 @@ pub struct Rendered {
     /// How many rays it took.
     pub rays: Rays,
     /// Why it ended.
-    pub end: End,
+    pub reason: StopReason,
     /// How many samples the pixels have that have most, not counting a pass that was broken off.
     pub samples: u32,
     /// Samples of all pixels together.
@@ -88,7 +118,7 @@ pub struct Rendered {
     pub error: f64,
 }
 
-impl Frame<'_> {
+impl Renderer {
     /// Renders the whole picture with all its samples on `threads` threads (all that there are for `None`).
     ///
     /// The samples of a pixel are taken in passes of 1, 1, 2, 4 … over the whole picture, so that a render that is stopped
@@ -97,42 +127,42 @@ impl Frame<'_> {
     /// # Errors
     /// `Limit` when there is no memory for the film or there are no threads to be had.
     pub fn render(&self, threads: Option<usize>, progress: &dyn Progress) -> Result<Rendered> {
-        self.render_until(&Enough::default(), threads, progress)
+        self.render_until(&StopCriteria::default(), threads, progress)
     }
 
-    /// As [`Frame::render`], but ends when there is `enough`, if that comes before the number of samples.
+    /// As [`Renderer::render`], but ends when a criterion is met, if that comes before the number of samples.
     ///
     /// # Errors
-    /// As [`Frame::render`].
+    /// As [`Renderer::render`].
     pub fn render_until(
         &self,
-        enough: &Enough,
+        stop: &StopCriteria,
         threads: Option<usize>,
         progress: &dyn Progress,
     ) -> Result<Rendered> {
-        let film = Film::for_image(&self.image)?;
+        let film = Film::for_image(self.image())?;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
         let pool =
             pool.map_err(|error| Error::new(ErrorKind::Limit, &Location::default(), error.to_string()))?;
         let mut tiles = tiles(film.area());
         let all: u64 = tiles.iter().map(area).sum();
         let work = Work {
-            frame: self,
+            renderer: self,
             progress,
             film: Mutex::new((film, Rays::default())),
             done: AtomicU64::new(0),
-            total: AtomicU64::new(all * u64::from(self.render.samples)),
+            total: AtomicU64::new(all * u64::from(self.settings.samples)),
         };
-        let (samples, end) = pool.install(|| work.rounds(&mut tiles, enough))?;
+        let (samples, reason) = pool.install(|| work.rounds(&mut tiles, stop))?;
         let (film, rays) = work.film.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
         let error = film.relative_error(film.area(), film.mean_luminance());
-        Ok(Rendered { film, rays, end, samples, samples_taken: work.done.into_inner(), error })
+        Ok(Rendered { film, rays, reason, samples, samples_taken: work.done.into_inner(), error })
     }
 }
 
 /// A render under way.
 struct Work<'a> {
-    frame: &'a Frame<'a>,
+    renderer: &'a Renderer,
     progress: &'a dyn Progress,
     film: Mutex<(Film, Rays)>,
     done: AtomicU64,
@@ -140,36 +170,36 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Takes samples until there are enough; tiles that have enough leave `tiles`. Returns the samples of the others' pixels
+    /// Takes samples until a criterion is met; tiles that have enough leave `tiles`. Returns the samples of the others' pixels
     /// and why it ended.
-    fn rounds(&self, tiles: &mut Vec<Crop>, enough: &Enough) -> Result<(u32, End)> {
+    fn rounds(&self, tiles: &mut Vec<Crop>, stop: &StopCriteria) -> Result<(u32, StopReason)> {
         let started = Instant::now();
         let mut samples = 0;
-        for round in rounds(self.frame.render.samples) {
+        for round in rounds(self.renderer.settings.samples) {
             while samples < round.end {
-                let length = match enough.time {
+                let length = match stop.time {
                     Some(time) => affordable(samples, started.elapsed(), time),
                     None => u32::MAX,
                 };
                 let pass = samples..round.end.min(samples.saturating_add(length));
                 if !self.pass(tiles, pass.clone())? {
-                    return Ok((samples, End::Cancelled));
+                    return Ok((samples, StopReason::Cancelled));
                 }
                 samples = pass.end;
-                if enough.time.is_some_and(|time| started.elapsed() >= time)
-                    && samples < self.frame.render.samples
+                if stop.time.is_some_and(|time| started.elapsed() >= time)
+                    && samples < self.renderer.settings.samples
                 {
-                    return Ok((samples, End::Time));
+                    return Ok((samples, StopReason::Time));
                 }
             }
-            if let Some(noise) = enough.noise {
+            if let Some(noise) = stop.noise {
                 self.leave_clean(tiles, samples, noise);
                 if tiles.is_empty() {
-                    return Ok((samples, End::Noise));
+                    return Ok((samples, StopReason::Noise));
                 }
             }
         }
-        Ok((samples, End::Samples))
+        Ok((samples, StopReason::Samples))
     }
 
     /// Adds samples to every pixel of the tiles; false if it was broken off.
@@ -180,18 +210,24 @@ impl Work<'_> {
                 if self.progress.cancelled() {
                     return Ok(false);
                 }
-                let mut tile = FilmTile::for_image(*tile_area, &self.frame.image)?;
-                let rays = self.frame.render_tile(samples.clone(), &mut tile);
-                let rays_so_far = {
+                let mut tile = FilmTile::for_image(*tile_area, self.renderer.image())?;
+                let rays = self.renderer.render_tile(samples.clone(), &mut tile);
+                let wants_pixels = self.progress.wants_pixels();
+                let (rays, picture) = {
                     let mut guard = self.film.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
                     guard.0.add_tile(&tile);
                     guard.1 += rays;
-                    self.progress.look(&guard.0);
-                    guard.1.total()
+                    (guard.1.total(), wants_pixels.then(|| guard.0.picture_of(*tile_area)))
                 };
                 let of_tile = area(tile_area) * u64::from(samples.end - samples.start);
-                let done = self.done.fetch_add(of_tile, Ordering::Relaxed) + of_tile;
-                self.progress.advance(done, self.total.load(Ordering::Relaxed), rays_so_far);
+                self.progress.tile(TileDone {
+                    area: *tile_area,
+                    samples: samples.clone(),
+                    done: self.done.fetch_add(of_tile, Ordering::Relaxed) + of_tile,
+                    total: self.total.load(Ordering::Relaxed),
+                    rays,
+                    picture,
+                });
                 Ok(true)
             })
             .collect::<Result<_>>()?;
@@ -210,7 +246,7 @@ impl Work<'_> {
             let error = guard.0.relative_error(*tile, mean);
             // Errors fall with the root of the samples.
             let ratio = error / noise;
-            let needed = (f64::from(samples) * ratio * ratio).min(f64::from(self.frame.render.samples));
+            let needed = (f64::from(samples) * ratio * ratio).min(f64::from(self.renderer.settings.samples));
             total += area(tile) as f64 * (needed - f64::from(samples)).max(0.0);
             !(error <= noise)
         });

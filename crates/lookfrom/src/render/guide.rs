@@ -6,7 +6,7 @@
 use glam::DVec3;
 use lookfrom_bvh::{Hit, Ray};
 
-use super::{Frame, SampleId};
+use super::{Renderer, SampleId};
 use crate::film::{FilmTile, Guide};
 use crate::integrator::Path;
 use crate::material;
@@ -35,7 +35,7 @@ pub(super) fn note_firsts(firsts: &mut [First], paths: &[Path], hits: &[Hit]) {
     }
 }
 
-impl Frame<'_> {
+impl Renderer {
     /// Tells a tile what the rays of samples met, where that was noted.
     pub(super) fn add_guides(&self, ids: &[SampleId], firsts: &[First], tile: &mut FilmTile) {
         for (id, first) in ids.iter().zip(firsts) {
@@ -46,7 +46,7 @@ impl Frame<'_> {
     }
 
     fn guide(&self, first: &First) -> Guide {
-        let world = self.world;
+        let world = &self.world;
         let surface = world.surface(&first.ray, &first.hit);
         let point = world.texture_point(&surface);
         let n = material::normal(&world.materials, &world.textures, &surface, &point);

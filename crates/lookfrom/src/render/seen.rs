@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3, Vec3};
 
-use super::Frame;
+use super::Renderer;
 use crate::film::Features;
 use crate::integrator::{Event, Probe};
 use crate::material::Shading;
@@ -15,7 +15,7 @@ const ALBEDO_GRID: u32 = 4;
 
 /// Keeps the first surface of each sample.
 pub(super) struct Seen<'a> {
-    frame: &'a Frame<'a>,
+    renderer: &'a Renderer,
     /// By slot: what the lanes meant at the start.
     lanes: Vec<Lanes>,
     /// To the camera's space, where x is to the left.
@@ -27,9 +27,9 @@ pub(super) struct Seen<'a> {
 }
 
 impl<'a> Seen<'a> {
-    pub(super) fn new(frame: &'a Frame<'a>, lanes: Vec<Lanes>) -> Self {
-        let view_from_world = frame.world.camera.world_from_view().inverse();
-        Self { frame, view_from_world, features: vec![None; lanes.len()], lanes, current: None }
+    pub(super) fn new(renderer: &'a Renderer, lanes: Vec<Lanes>) -> Self {
+        let view_from_world = renderer.view.camera.world_from_view().inverse();
+        Self { renderer, view_from_world, features: vec![None; lanes.len()], lanes, current: None }
     }
 
     /// By slot.
@@ -39,13 +39,13 @@ impl<'a> Seen<'a> {
 
     fn see(&mut self, surface: &Surface, albedo: Spectrum) {
         let Some(slot) = self.current else { return };
-        let world = self.frame.world;
+        let world = &self.renderer.world;
         let lanes = &self.lanes[slot];
         let albedo = match lanes {
             Lanes::Rgb => albedo.rgb(),
             Lanes::Spectral(wavelengths) => {
                 let white = world.light_of([1.0; 3], lanes);
-                self.frame.plain_sensor.rgb(albedo * white, wavelengths)
+                self.renderer.plain_sensor.rgb(albedo * white, wavelengths)
             }
         };
         // From render space to the features', where x is to the right.

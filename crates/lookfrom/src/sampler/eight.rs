@@ -1,7 +1,7 @@
 //! Random numbers of eight samples at once, one in each lane: the twin of [`PixelSampler`], bit for bit.
 
 use lookfrom_scene::settings::Sampler as Kind;
-use lookfrom_simd::{Level, Simd, Work, at_level, f32x8, prelude::*, u32x8, u64x8};
+use lookfrom_simd::{Simd, Work, at_level, f32x8, level, prelude::*, u32x8, u64x8};
 
 use super::{PixelSampler, Sampler};
 use crate::eight::{LANES, by_lane};
@@ -55,7 +55,7 @@ impl Sampler {
         numbers: &mut Vec<[f32; 2]>,
     ) {
         numbers.resize(count, [0.0; 2]);
-        at_level(Level::new(), Each { sampler: self, address, dimension, numbers });
+        at_level(level(), Each { sampler: self, address, dimension, numbers });
     }
 }
 
@@ -183,7 +183,7 @@ mod tests {
                 let samplers = std::array::from_fn(|lane| sampler.of_pixel([number(lane, 0), lane as u32]));
                 let samples = std::array::from_fn(|lane| number(lane, 1) >> (round % 32));
                 let dimensions = std::array::from_fn(|lane| number(lane, 2));
-                let [a, b] = at_level(Level::new(), Two(&samplers, samples, dimensions));
+                let [a, b] = at_level(level(), Two(&samplers, samples, dimensions));
                 for lane in 0..LANES {
                     let expected = samplers[lane].two(samples[lane], dimensions[lane]);
                     assert_eq!([a[lane], b[lane]], expected);

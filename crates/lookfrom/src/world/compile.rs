@@ -7,15 +7,14 @@ use lookfrom_bvh::{Builder, Bvh, Triangles};
 use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{Color, MaterialKind};
 use lookfrom_scene::medium::Medium;
-use lookfrom_scene::scene::{Origin, Scene};
+use lookfrom_scene::scene::Scene;
 use lookfrom_scene::settings::{ColorMode, Integrator as Kind};
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
 use super::catcher;
 use super::lights::Lights;
 use super::place::{Compiler, Group};
-use super::{Instance, Names, World, reflectance, view};
-use crate::camera::Camera;
+use super::{Instance, Names, World, reflectance};
 use crate::light::{Light, LightChoice};
 use crate::material::{self, InteriorStack, Material};
 use crate::math;
@@ -23,16 +22,19 @@ use crate::shape::Form;
 use crate::texture::Textures;
 
 impl World {
-    /// Compiles a scene. What can be survived is added to `warnings`.
+    /// Compiles a scene. What can be survived is added to `warnings`. The origin of render space is the eye of the scene's
+    /// camera (of the default camera where it has none).
     ///
     /// # Errors
-    /// `Invalid` for a camera that cannot see (see [`Camera::new`]) or a transform that cannot be inverted; `Limit` for
-    /// more than 2³² vertices or triangles in one shape, or 2³¹ materials and media.
+    /// `Invalid` for a camera whose place is not finite or a transform that cannot be inverted; `Limit` for more than 2³²
+    /// vertices or triangles in one shape, or 2³¹ materials and media.
     pub fn compile(mut scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
-        let written = scene.camera.clone().unwrap_or_default();
-        let camera = Camera::new(&written, scene.image.width, scene.image.height)?;
+        let camera = scene.camera.clone().unwrap_or_default();
+        let origin = camera.view.lookfrom();
+        if !origin.is_finite() {
+            return Err(Error::invalid(&camera.at, format!("lookfrom is {origin}; expected finite numbers")));
+        }
         reflectance::check(&scene, warnings);
-        let origin = camera.lookfrom();
         let render_from_world = DMat4::from_translation(-origin);
         let has_media = scene.render.media;
         if scene.materials.len().saturating_add(scene.media.len()) > InteriorStack::MOST {
@@ -87,8 +89,7 @@ impl World {
             compiler.lights.add(light, origin);
         }
         let Compiler { lights, shapes, alphas, sides, vertex_data, .. } = compiler;
-        let (bounds, is_model) = (scene.bounds(), scene.origin != Origin::Scene);
-        let radius = bounds.radius() as f32;
+        let radius = scene.bounds().radius() as f32;
         let light_choice =
             LightChoice::new(scene.render.light_sampler, &lights.lights, &lights.brightness, radius);
         let Lights { lights, names: light_names, ambient, .. } = lights;
@@ -126,9 +127,8 @@ impl World {
             _ => None,
         });
         let is_environment = |index: &u32| matches!(lights[*index as usize], Light::Environment(_));
-        let world = Self {
+        Ok(Self {
             origin,
-            camera,
             bvh,
             forms,
             objects,
@@ -137,7 +137,6 @@ impl World {
             has_gaps: !alphas.is_empty()
                 || has_media && materials.iter().any(|material| material.kind == MaterialKind::Interface),
             has_media,
-            around_camera: InteriorStack::in_space(written.medium.filter(|_| has_media)),
             radius,
             catcher_irradiance: catcher.map(|n| catcher::irradiance(&lights, &textures, n)),
             materials,
@@ -151,9 +150,7 @@ impl World {
             light_choice,
             ambient,
             names,
-        };
-        view::check(&world, bounds, &written.at, is_model, warnings);
-        Ok(world)
+        })
     }
 }
 

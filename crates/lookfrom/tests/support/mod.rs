@@ -5,9 +5,11 @@
 pub(crate) mod forms;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use lookfrom::film::Film;
-use lookfrom::render::{Frame, Rendered};
+use lookfrom::render::{Rendered, Renderer};
+use lookfrom::view::View;
 use lookfrom::world::World;
 use lookfrom_scene::{Memory, Scene, Sources};
 
@@ -37,27 +39,29 @@ pub(crate) fn own_scene(name: &str) -> Scene {
 /// A scene with the settings that its frame needs.
 pub(crate) struct Compiled {
     /// What light meets.
-    pub(crate) world: World,
-    image: lookfrom_scene::settings::ImageSettings,
+    pub(crate) world: Arc<World>,
+    view: View,
     render: lookfrom_scene::settings::RenderSettings,
 }
 
 impl Compiled {
     /// Compiles a scene.
     pub(crate) fn new(scene: Scene) -> Self {
-        let (image, render) = (scene.image.clone(), scene.render.clone());
+        let render = scene.render.clone();
+        let view = View::of_scene(&scene).unwrap_or_else(|error| panic!("{error}"));
         let world = World::compile(scene, &mut Vec::new()).unwrap_or_else(|error| panic!("{error}"));
-        Self { world, image, render }
+        Self { world: Arc::new(world), view, render }
     }
 
-    /// The frame.
-    pub(crate) fn frame(&self) -> Frame<'_> {
-        Frame::new(&self.world, &self.image, &self.render).unwrap_or_else(|error| panic!("{error}"))
+    /// The renderer.
+    pub(crate) fn renderer(&self) -> Renderer {
+        Renderer::new(self.world.clone(), self.view.clone(), self.render.clone())
+            .unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// Renders on a number of threads.
     pub(crate) fn render(&self, threads: usize) -> Rendered {
-        self.frame().render(Some(threads), &()).unwrap_or_else(|error| panic!("{error}"))
+        self.renderer().render(Some(threads), &()).unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// Renders.

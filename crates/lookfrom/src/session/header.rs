@@ -1,55 +1,53 @@
 //! What an OpenEXR file says of itself: everything that decides its light, and nothing else, so that the same picture is the
 //! same bytes whatever the number of threads, the time and the machine.
 
-use std::path::Path;
-
 use glam::DVec3;
 use lookfrom_scene::camera::{Projection, View};
-use lookfrom_scene::settings::{Background, ColorMode, Crop, LightSampler, Sampler};
+use lookfrom_scene::settings::{Background, Crop};
 
-use crate::prepare::Prepared;
-use crate::values;
+use super::Session;
 
 /// How many samples a picture is made of.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Taken {
+pub(super) struct Taken {
     /// Of the pixels that have most.
-    pub(crate) samples: u32,
+    pub(super) samples: u32,
     /// Of a pixel on average, rounded down, where not all pixels have the same or it was stopped.
-    pub(crate) mean: Option<u64>,
+    pub(super) mean: Option<u64>,
     /// What is clean enough for a tile to get no more.
-    pub(crate) noise: Option<f64>,
+    pub(super) noise: Option<f64>,
     /// Whether fireflies are spread.
-    pub(crate) fireflies_spread: bool,
+    pub(super) fireflies_spread: bool,
     /// Whether noise is filtered out.
-    pub(crate) denoised: bool,
+    pub(super) denoised: bool,
 }
 
 /// The texts for the header, by name.
-pub(crate) fn attributes(scene: &Path, prepared: &Prepared, taken: &Taken) -> Vec<(String, String)> {
-    let Prepared { image, render, camera, .. } = prepared;
+pub(super) fn header(session: &Session, taken: &Taken) -> Vec<(String, String)> {
+    let (image, render) = (session.renderer.view().image(), session.renderer.settings());
+    let camera = &session.camera;
     let mut texts = vec![
         ("software", format!("lookfrom {}", env!("CARGO_PKG_VERSION"))),
-        ("scene", scene.display().to_string()),
+        ("scene", session.name.clone()),
         ("size", format!("{} {}", image.width, image.height)),
-        ("integrator", render.integrator.word().to_owned()),
+        ("integrator", session.renderer.integrator().to_owned()),
         ("samples", taken.samples.to_string()),
         ("depth", render.depth.to_string()),
-        ("color", values::name(ColorMode::WORDS, &render.color).to_owned()),
-        ("light_sampler", values::name(LightSampler::WORDS, &render.light_sampler).to_owned()),
+        ("color", render.color.word().to_owned()),
+        ("light_sampler", render.light_sampler.word().to_owned()),
         ("regularize", render.regularize.to_string()),
         ("min_contribution", render.min_contribution.to_string()),
         ("transparent_shadows", render.transparent_shadows.to_string()),
         ("seed", render.seed.to_string()),
-        ("sampler", values::name(Sampler::WORDS, &render.sampler).to_owned()),
-        ("filter", values::filter_name(&image.filter)),
+        ("sampler", render.sampler.word().to_owned()),
+        ("filter", image.filter.to_string()),
         // What the scene asks of 8-bit pictures; the light in this file is as it was computed.
         ("exposure", image.exposure.to_string()),
         ("tonemap", "none".to_owned()),
         ("camera.distance", camera.distance.to_string()),
     ];
     if image.background != Background::Environment {
-        texts.push(("background", values::background_name(image.background)));
+        texts.push(("background", image.background.to_string()));
     }
     if let Some(mean) = taken.mean {
         texts.push(("samples_taken", mean.to_string()));

@@ -2,42 +2,51 @@
 
 use std::collections::BTreeMap;
 
-use lookfrom_scene::Scene;
-use lookfrom_scene::light::LightKind;
-use lookfrom_scene::shape::Geometry;
 use serde::Serialize;
+
+use crate::light::LightKind;
+use crate::scene::Scene;
+use crate::shape::Geometry;
 
 /// How much there is in a scene. What is in an object counts once, however often it is repeated.
 #[derive(Clone, Debug, Default, Serialize)]
-pub(crate) struct Counts {
+pub struct Counts {
     /// Shapes by kind; those that are not there are left out.
-    pub(crate) shapes: BTreeMap<&'static str, u64>,
+    pub shapes: BTreeMap<&'static str, u64>,
     /// Of meshes, once for each shape that has the mesh; and two for each quad.
-    pub(crate) triangles: u64,
+    pub triangles: u64,
     /// Of meshes, as they are stored.
-    pub(crate) vertices: u64,
+    pub vertices: u64,
     /// Single ones and those of clouds.
-    pub(crate) spheres: u64,
-    pub(crate) objects: u64,
-    pub(crate) instances: u64,
-    pub(crate) materials: u64,
-    pub(crate) textures: u64,
-    pub(crate) images: Vec<ImageCount>,
+    pub spheres: u64,
+    /// Groups of shapes that instances repeat.
+    pub objects: u64,
+    /// Repetitions of objects.
+    pub instances: u64,
+    /// Materials.
+    pub materials: u64,
+    /// Textures.
+    pub textures: u64,
+    /// Pictures that textures and environments use.
+    pub images: Vec<ImageCount>,
     /// Lights by kind; shapes that shine are "emissive shape".
-    pub(crate) lights: BTreeMap<&'static str, u64>,
+    pub lights: BTreeMap<&'static str, u64>,
 }
 
 /// A picture that a scene uses.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct ImageCount {
-    pub(crate) name: String,
-    pub(crate) width: u32,
-    pub(crate) height: u32,
+pub struct ImageCount {
+    /// Its file, or what its file calls it.
+    pub name: String,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
 }
 
 impl Counts {
     /// Counts.
-    pub(crate) fn of(scene: &Scene) -> Self {
+    pub fn of(scene: &Scene) -> Self {
         let mut counts = Self {
             vertices: scene.meshes.iter().map(|mesh| mesh.positions.len() as u64).sum(),
             objects: scene.objects.len() as u64,

@@ -1,4 +1,4 @@
-//! False colours, for looking at a scene: normals, depth, texture coordinates, shapes.
+//! First-hit visualisation in false colours: normals, depth, texture coordinates, shape ids.
 
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::Hit;
@@ -9,20 +9,37 @@ use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::world::World;
 
-/// What is shown in place of light. Where nothing is met, black.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum View {
+/// The quantity of the first hit that is shown in place of light; black where nothing is hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FirstHit {
     /// The shading normal in the world: `½ + ½ n` in red, green, blue.
     Normals,
-    /// The distance from the eye along the view axis, in the scene's units, in all three.
-    Depth,
+    /// The distance from the camera along the view axis, in the scene's units, in all three channels.
+    Depth {
+        /// The camera's position in render space.
+        eye: DVec3,
+        /// The view axis, of unit length.
+        forward: DVec3,
+    },
     /// u in red, v in green, each without its whole part.
     Uv,
     /// A colour for each shape.
     Id,
 }
 
-impl Integrator for View {
+impl Integrator for FirstHit {
+    const IS_LIGHT: bool = false;
+
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Normals => "normals",
+            Self::Depth { .. } => "depth",
+            Self::Uv => "uv",
+            Self::Id => "id",
+        }
+    }
+
     fn step<P: Probe>(&self, world: &World, _: &Numbers, path: &Path, hit: &Hit, next: &mut Next<'_, P>) {
         if !hit.is_hit() {
             return;
@@ -38,18 +55,16 @@ impl Integrator for View {
             surface: Box::new(surface),
             coefficients: None,
         });
-        next.add(path, Term::View, path.beta * Spectrum::from_rgb(self.color(world, &surface)));
+        next.add(path, Term::View, path.beta * Spectrum::from_rgb(self.color(&surface)));
     }
 }
 
-impl View {
-    fn color(self, world: &World, surface: &Surface) -> [f32; 3] {
+impl FirstHit {
+    fn color(self, surface: &Surface) -> [f32; 3] {
         match self {
             Self::Normals => (0.5 + 0.5 * surface.ns).to_array(),
-            Self::Depth => {
-                let from_eye =
-                    world.origin - world.camera.lookfrom() + DVec3::from_array(surface.point.position);
-                [(world.camera.w().normalize().dot(from_eye)) as f32; 3]
+            Self::Depth { eye, forward } => {
+                [forward.dot(DVec3::from_array(surface.point.position) - eye) as f32; 3]
             }
             Self::Uv => {
                 let uv = surface.uv - surface.uv.floor();

@@ -1,11 +1,11 @@
-//! What the layers beside a picture are called in an EXR: as pbrt's `gbuffer` film calls them.
+//! AOVs of a film as EXR channels, with the names of pbrt's `gbuffer` film.
 
-use lookfrom::film::{Film, Picture};
 use lookfrom_scene::settings::ImageSettings;
 
-use crate::output::behind;
+use super::encode::behind;
+use crate::film::{Film, Picture};
 
-/// In the order of [`to_array`](lookfrom::film::Features::to_array); `depth` is ours, the others are pbrt's.
+/// In the order of [`to_array`](crate::film::Features::to_array); `depth` is ours, the others are pbrt's.
 const FEATURES: [&str; 15] = [
     "Albedo.R", "Albedo.G", "Albedo.B", "N.X", "N.Y", "N.Z", "Ns.X", "Ns.Y", "Ns.Z", "P.X", "P.Y", "P.Z",
     "depth", "u", "v",
@@ -15,7 +15,7 @@ const FEATURES: [&str; 15] = [
 const VARIANCES: [&str; 3] = ["Variance.R", "Variance.G", "Variance.B"];
 
 /// The channels of a film's picture as it is, before the same background as the one that was denoised.
-pub(crate) fn noisy(image: &ImageSettings, picture: Picture) -> Vec<(String, Vec<f32>)> {
+pub(super) fn noisy(image: &ImageSettings, picture: Picture) -> Vec<(String, Vec<f32>)> {
     let picture = picture.before(behind(image));
     let channel = |index: usize| picture.pixels.iter().map(|pixel| pixel[index]).collect();
     [("noisy.R", 0), ("noisy.G", 1), ("noisy.B", 2)]
@@ -24,7 +24,7 @@ pub(crate) fn noisy(image: &ImageSettings, picture: Picture) -> Vec<(String, Vec
 }
 
 /// The channels of the layers of a film, 0 where there is nothing.
-pub(crate) fn channels(film: &Film) -> Vec<(String, Vec<f32>)> {
+pub(super) fn channels(film: &Film) -> Vec<(String, Vec<f32>)> {
     let pixels = || (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
     let mut channels: Vec<(String, Vec<f32>)> = FEATURES
         .iter()

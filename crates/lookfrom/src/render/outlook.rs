@@ -4,17 +4,18 @@
 //! its back first, and where its back is nearly all that the picture shows. Rooms are not meant: their surfaces look inward,
 //! other things stand in them, or a lamp lights them from within.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
 use lookfrom_scene::material::{Color, MaterialKind, Scalar};
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::{Location, Warning};
 
-use super::World;
+use super::Renderer;
 use crate::light::{Coverage, Light, Reference, Target};
 use crate::surface::Surface;
 use crate::texture::Lanes;
 use crate::warp;
+use crate::world::World;
 
 /// Camera rays along each side of the picture: at first, and where those meet nothing.
 const COARSE: u32 = 16;
@@ -27,7 +28,7 @@ const NEARLY_ALL: f64 = 0.9;
 /// Warns where the picture would be the background alone, or the inside of something. `bounds` are those of the scene in the
 /// world, `at` is where the camera was written; all parts of a model (`is_model`) are taken for one body.
 pub(super) fn check(
-    world: &World,
+    renderer: &Renderer,
     bounds: Bounds,
     at: &Location,
     is_model: bool,
@@ -36,9 +37,10 @@ pub(super) fn check(
     if bounds.is_empty() {
         return;
     }
-    let seen = seen(world, COARSE);
+    let world = renderer.world();
+    let seen = seen(renderer, COARSE);
     let message = if seen.iter().all(Option::is_none) {
-        if self::seen(world, FINE).iter().any(Option::is_some) {
+        if self::seen(renderer, FINE).iter().any(Option::is_some) {
             return;
         }
         let Bounds { min, max } = bounds;
@@ -47,8 +49,8 @@ pub(super) fn check(
              look at it from elsewhere, or in another direction"
         )
     } else {
-        let Some(shape) = body_around_the_eye(world, &seen, is_model) else { return };
-        if is_lit_from_within(world) {
+        let Some(shape) = body_around_the_eye(renderer, &seen, is_model) else { return };
+        if is_lit_from_within(renderer) {
             return;
         }
         let body = match world.names.shapes.get(shape as usize) {
@@ -63,13 +65,14 @@ pub(super) fn check(
 }
 
 /// What rays through a grid over the picture meet first.
-fn seen(world: &World, side: u32) -> Vec<Option<Surface>> {
-    let [width, height] = world.camera.size.map(f64::from);
+fn seen(renderer: &Renderer, side: u32) -> Vec<Option<Surface>> {
+    let (world, camera) = (renderer.world(), renderer.view().camera());
+    let [width, height] = camera.size.map(f64::from);
     let middle = |cell: u32| (f64::from(cell) + 0.5) / f64::from(side);
     let mut hits = Vec::new();
     let mut first = |cell: u32| {
         let place = [width * middle(cell % side), height * middle(cell / side)];
-        let ray = world.camera_ray(&world.camera.ray(place, [0.5; 2]));
+        let ray = renderer.kernel_ray(&camera.ray(place, [0.5; 2]));
         world.bvh.all_hits(&ray, &mut hits);
         // The camera's rays pass these.
         let is_passed =
@@ -80,7 +83,8 @@ fn seen(world: &World, side: u32) -> Vec<Option<Surface>> {
 }
 
 /// The number of a shape that is closed around the eye and fills the picture.
-fn body_around_the_eye(world: &World, seen: &[Option<Surface>], is_model: bool) -> Option<u32> {
+fn body_around_the_eye(renderer: &Renderer, seen: &[Option<Surface>], is_model: bool) -> Option<u32> {
+    let (world, eye) = (renderer.world(), renderer.eye.as_vec3().to_array());
     let backs = || seen.iter().flatten().filter(|surface| !surface.front && is_opaque(world, surface));
     let shape = backs().next()?.shape;
     let is_part = |surface: &Surface| is_model || surface.shape == shape;
@@ -93,7 +97,7 @@ fn body_around_the_eye(world: &World, seen: &[Option<Surface>], is_model: bool) 
         // Not through the middle of what is symmetric.
         let place = |cell: u32| (cell as f32 + 0.37) / AROUND as f32;
         let direction = warp::octahedral_direction([place(cell % AROUND), place(cell / AROUND)]);
-        let ray = Ray::new([0.0; 3], direction.to_array());
+        let ray = Ray::new(eye, direction.to_array());
         world.bvh.all_hits(&ray, &mut hits);
         let surfaces = hits.iter().map(|hit| world.surface(&ray, hit));
         let crossed: Vec<Surface> =
@@ -134,8 +138,9 @@ fn is_opaque(world: &World, surface: &Surface) -> bool {
 }
 
 /// Whether a lamp elsewhere than at the eye is seen from there.
-fn is_lit_from_within(world: &World) -> bool {
-    let eye = Reference { point: DVec3::ZERO, n: Vec3::Z };
+fn is_lit_from_within(renderer: &Renderer) -> bool {
+    let (world, origin) = (renderer.world(), renderer.eye);
+    let eye = Reference { point: origin, n: Vec3::Z };
     (0..).zip(&world.lights).any(|(index, light)| {
         if matches!(light, Light::Distant { .. } | Light::Environment(_)) {
             return false;
@@ -144,11 +149,11 @@ fn is_lit_from_within(world: &World) -> bool {
         let Some(sample) = sample else { return false };
         match sample.target {
             Target::Point(place) => {
-                place != DVec3::ZERO
-                    && !world.bvh.occluded(&Ray::new([0.0; 3], place.as_vec3().to_array()).until(1.0))
+                let way = (place - origin).as_vec3().to_array();
+                place != origin && !world.bvh.occluded(&Ray::new(origin.as_vec3().to_array(), way).until(1.0))
             }
             Target::Surface(..) => {
-                let ray = Ray::new([0.0; 3], sample.wi.to_array());
+                let ray = Ray::new(origin.as_vec3().to_array(), sample.wi.to_array());
                 let hit = world.bvh.closest_hit(&ray);
                 hit.is_hit() && world.surface(&ray, &hit).light == Some(index)
             }

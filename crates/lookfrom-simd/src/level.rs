@@ -1,0 +1,52 @@
+//! The SIMD level that work is done at: the machine's best, or a lower one for tests and measurements.
+
+use std::sync::OnceLock;
+
+use fearless_simd::Level;
+
+/// The machine's best level, or the lower one that the environment variable `LOOKFROM_SIMD` names: `sse2`, `avx2` or `avx512`.
+/// Results have the same bits at every level; the variable is for tests that show it, and to measure what a level brings. A
+/// level that the machine does not have, and any other word, is its best.
+///
+/// The variable is read once.
+pub fn level() -> Level {
+    static LEVEL: OnceLock<Level> = OnceLock::new();
+    *LEVEL.get_or_init(|| named(&std::env::var("LOOKFROM_SIMD").unwrap_or_default(), Level::new()))
+}
+
+/// The level of a name, where it is at most `best`.
+#[cfg(target_arch = "x86_64")]
+fn named(name: &str, best: Level) -> Level {
+    let lower = match name {
+        "sse2" => best.as_sse2().map(Level::Sse2),
+        "avx2" => best.as_avx2().map(Level::Avx2),
+        _ => None,
+    };
+    lower.unwrap_or(best)
+}
+
+/// Other machines have one level.
+#[cfg(not(target_arch = "x86_64"))]
+fn named(_: &str, best: Level) -> Level {
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_words_are_the_best_level() {
+        let best = Level::new();
+        for word in ["", "avx512", "altivec"] {
+            assert_eq!(format!("{:?}", named(word, best)), format!("{best:?}"));
+        }
+    }
+
+    #[test]
+    #[cfg(target_arch = "x86_64")]
+    fn lower_levels_are_lower() {
+        assert!(named("sse2", Level::new()).as_avx2().is_none());
+        assert!(named("avx2", Level::new()).as_avx512().is_none());
+    }
+}

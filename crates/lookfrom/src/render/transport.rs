@@ -1,0 +1,109 @@
+//! Integrators behind a pointer: one virtual call a batch, and the code of each integrator compiled for who listens.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use lookfrom_scene::settings::{Integrator as Kind, RenderSettings};
+
+use super::seen::Seen;
+use super::{Batch, Rays, Renderer, SampleId};
+use crate::camera::Camera;
+use crate::integrator::{
+    AmbientOcclusion, Catcher, Event, FirstHit, Integrator, PathTracer, Raycast, Whitted, Wisdom,
+};
+
+/// What a renderer asks of an [`Integrator`], whichever it is.
+pub(super) trait Transport: std::fmt::Debug + Send + Sync {
+    fn name(&self) -> &'static str;
+
+    fn is_light(&self) -> bool;
+
+    fn catcher(&self) -> Catcher;
+
+    /// Follows samples to their light.
+    fn trace(&self, renderer: &Renderer, ids: &[SampleId], batch: &mut Batch) -> Rays;
+
+    /// The same for the inspector.
+    fn trace_events(
+        &self,
+        renderer: &Renderer,
+        ids: &[SampleId],
+        events: &mut Vec<Event>,
+        batch: &mut Batch,
+    ) -> Rays;
+
+    /// The same for layers.
+    fn trace_seen(
+        &self,
+        renderer: &Renderer,
+        ids: &[SampleId],
+        seen: &mut Seen<'_>,
+        batch: &mut Batch,
+    ) -> Rays;
+}
+
+impl<I: Integrator> Transport for I {
+    fn name(&self) -> &'static str {
+        Integrator::name(self)
+    }
+
+    fn is_light(&self) -> bool {
+        I::IS_LIGHT
+    }
+
+    fn catcher(&self) -> Catcher {
+        Integrator::catcher(self)
+    }
+
+    fn trace(&self, renderer: &Renderer, ids: &[SampleId], batch: &mut Batch) -> Rays {
+        renderer.trace_with(self, ids, &mut (), batch)
+    }
+
+    fn trace_events(
+        &self,
+        renderer: &Renderer,
+        ids: &[SampleId],
+        events: &mut Vec<Event>,
+        batch: &mut Batch,
+    ) -> Rays {
+        renderer.trace_with(self, ids, events, batch)
+    }
+
+    fn trace_seen(
+        &self,
+        renderer: &Renderer,
+        ids: &[SampleId],
+        seen: &mut Seen<'_>,
+        batch: &mut Batch,
+    ) -> Rays {
+        renderer.trace_with(self, ids, seen, batch)
+    }
+}
+
+/// The integrator that settings name, for a camera that stands at `eye` in render space.
+pub(super) fn of_settings(settings: &RenderSettings, camera: &Camera, eye: DVec3) -> Arc<dyn Transport> {
+    let &RenderSettings {
+        integrator,
+        depth,
+        min_contribution,
+        transparent_shadows,
+        regularize,
+        occlusion_distance,
+        ..
+    } = settings;
+    let path = |wisdom| Arc::new(PathTracer { depth, regularize, wisdom });
+    match integrator {
+        Kind::Raycast => Arc::new(Raycast { transparent_shadows }),
+        Kind::Whitted => Arc::new(Whitted { depth, min_contribution, transparent_shadows }),
+        Kind::Path => path(Wisdom::Combined),
+        Kind::SimplePath => path(Wisdom::Separate),
+        Kind::RandomWalk => path(Wisdom::None),
+        Kind::AmbientOcclusion { cosine } => {
+            Arc::new(AmbientOcclusion { cosine, distance: occlusion_distance })
+        }
+        Kind::Normals => Arc::new(FirstHit::Normals),
+        Kind::Depth => Arc::new(FirstHit::Depth { eye, forward: camera.w().normalize() }),
+        Kind::Uv => Arc::new(FirstHit::Uv),
+        Kind::Id => Arc::new(FirstHit::Id),
+    }
+}

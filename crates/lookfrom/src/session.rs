@@ -1,0 +1,255 @@
+//! One way from a file to a finished picture: what every door calls, and nothing else.
+//!
+//! A [`Session`] reads (or is given) a scene, applies [`Options`], decides what both leave open — camera, lights, samples,
+//! denoising, AOVs — and owns the compiled [`World`](crate::world::World). Its picture is rendered with progress and
+//! cancellation; its camera and settings may be changed and the picture rendered again.
+//!
+//! ```no_run
+//! use lookfrom::session::{Format, Options, Session};
+//!
+//! let session = Session::open("scene.toml", &Options::default())?;
+//! let picture = session.render(&())?;
+//! std::fs::write("scene.png", picture.encode(Format::Png)?)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod encode;
+mod finish;
+mod header;
+mod layers;
+mod options;
+mod prepare;
+mod running;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use lookfrom_scene::camera::Camera;
+use lookfrom_scene::contents::Contents;
+use lookfrom_scene::count::Counts;
+use lookfrom_scene::scene::Bounds;
+use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
+use lookfrom_scene::{Disk, Error, Files, Location, Memory, Result, Scene, Sources, Warning, load};
+
+use crate::film::Picture;
+use crate::integrator::Integrator;
+use crate::render::{Progress, Renderer, StopCriteria};
+use crate::view::View;
+use crate::world::World;
+
+pub use encode::Format;
+pub use finish::Finished;
+pub use options::{ADAPTIVE_NOISE, Fireflies, MOST_SAMPLES, Options};
+pub use running::Running;
+
+/// A scene that is ready to be rendered, and to be rendered again from elsewhere or with other settings.
+///
+/// Owns what it needs; a clone shares the world.
+#[derive(Clone, Debug)]
+pub struct Session {
+    name: String,
+    renderer: Renderer,
+    camera: Camera,
+    stop: StopCriteria,
+    fireflies: Fireflies,
+    threads: Option<usize>,
+    format: Option<Format>,
+    info: SceneInfo,
+    warnings: Vec<Warning>,
+}
+
+/// What a session found in its file, and what it took to get it ready.
+#[derive(Clone, Debug)]
+pub struct SceneInfo {
+    /// What the file has, without what was added to show it.
+    pub counts: Counts,
+    /// What can be chosen in the file: animations, variants, cameras, scenes.
+    pub contents: Contents,
+    /// The box around what the file has.
+    pub bounds: Bounds,
+    /// What was added to show it: "camera", "lights", "floor".
+    pub added: Vec<&'static str>,
+    /// The time it took to read the file.
+    pub read: Duration,
+    /// The time it took from there to the world.
+    pub build: Duration,
+}
+
+impl Session {
+    /// A session of a scene or model file on disk.
+    ///
+    /// # Errors
+    /// What the file's reader finds, what [`World::compile`] finds, and `Request` where the options do not suit the scene.
+    pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Self> {
+        Self::read(path.as_ref(), &Disk, options)
+    }
+
+    /// A session of a scene or model file in memory, which is self-contained. The extension of `name` says its format.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn from_bytes(name: &str, bytes: Vec<u8>, options: &Options) -> Result<Self> {
+        let path = PathBuf::from(name);
+        Self::read(&path, &Memory([(path.clone(), bytes)].into()), options)
+    }
+
+    /// A session of a scene or model file, with all that it refers to, read through `files`.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn read(path: &Path, files: &dyn Files, options: &Options) -> Result<Self> {
+        let started = Instant::now();
+        let mut sources = Sources { choice: options.import.clone(), ..Sources::new(files) };
+        let scene = load::scene(path, &mut sources)?;
+        Self::prepare(scene, path, sources.warnings, started, options)
+    }
+
+    /// A session of a scene that was made or read elsewhere.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn of_scene(scene: Scene, options: &Options) -> Result<Self> {
+        Self::prepare(scene, Path::new(""), Vec::new(), Instant::now(), options)
+    }
+
+    fn prepare(
+        mut scene: Scene,
+        path: &Path,
+        mut warnings: Vec<Warning>,
+        started: Instant,
+        options: &Options,
+    ) -> Result<Self> {
+        let read = started.elapsed();
+        let started = Instant::now();
+        let (counts, bounds) = (Counts::of(&scene), scene.bounds());
+        let contents = std::mem::take(&mut scene.contents);
+        let noise = options.stop.noise.or(options.adaptive.then_some(ADAPTIVE_NOISE));
+        let added = prepare::prepare(&mut scene, path, options, &mut warnings)?;
+        if options.format.is_some_and(|format| !format.has_layers()) {
+            scene.image.layers = Layers::None;
+        }
+        let camera = scene.camera.clone().unwrap_or_default();
+        let renderer = Renderer::of_scene(scene, &mut warnings).map_err(in_file(path))?;
+        Ok(Self {
+            name: path.display().to_string(),
+            renderer,
+            camera,
+            stop: StopCriteria { noise, ..options.stop },
+            fireflies: options.fireflies,
+            threads: options.threads,
+            format: options.format,
+            info: SceneInfo { counts, contents, bounds, added, read, build: started.elapsed() },
+            warnings,
+        })
+    }
+
+    /// The file's name as it was given; empty for a scene that was made elsewhere.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What could be survived in reading and compiling.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// What the file has, and what was added to it.
+    pub fn info(&self) -> &SceneInfo {
+        &self.info
+    }
+
+    /// The camera as it is written, with what the options say.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// What is asked of the picture.
+    pub fn image(&self) -> &ImageSettings {
+        self.renderer.view().image()
+    }
+
+    /// What is asked of the computation.
+    pub fn settings(&self) -> &RenderSettings {
+        self.renderer.settings()
+    }
+
+    /// The compiled world.
+    pub fn world(&self) -> &Arc<World> {
+        self.renderer.world()
+    }
+
+    /// The renderer of the picture, for those who call it themselves.
+    pub fn renderer(&self) -> &Renderer {
+        &self.renderer
+    }
+
+    /// Looks at the world from elsewhere; nothing is read or built again.
+    ///
+    /// # Errors
+    /// `Invalid` for a camera that cannot see; then nothing has changed.
+    pub fn set_camera(&mut self, camera: Camera) -> Result<()> {
+        let view = View::new(&camera, self.image().clone())?;
+        self.renderer = self.renderer.with_view(view)?;
+        self.camera = camera;
+        Ok(())
+    }
+
+    /// Asks for another picture of the same world: another size, crop, filter, background or development.
+    ///
+    /// # Errors
+    /// `Invalid` for a size or crop without pixels; then nothing has changed.
+    pub fn set_image(&mut self, image: ImageSettings) -> Result<()> {
+        self.renderer = self.renderer.with_view(View::new(&self.camera, image)?)?;
+        Ok(())
+    }
+
+    /// Asks for another computation: samples, integrator, depth, seed. How lights are chosen stays as the world was compiled.
+    ///
+    /// # Errors
+    /// `Invalid` for no samples; then nothing has changed.
+    pub fn set_settings(&mut self, settings: RenderSettings) -> Result<()> {
+        self.renderer = self.renderer.with_settings(settings)?;
+        Ok(())
+    }
+
+    /// Renders with an integrator of one's own. The next [`Session::set_settings`] takes it away again.
+    pub fn set_integrator(&mut self, integrator: impl Integrator + 'static) {
+        self.renderer = self.renderer.clone().with_integrator(integrator);
+    }
+
+    /// Renders and finishes the picture.
+    ///
+    /// # Errors
+    /// `Limit` when there is no memory for the film or there are no threads to be had.
+    pub fn render(&self, progress: &dyn Progress) -> Result<Finished> {
+        let rendered = self.renderer.render_until(&self.stop, self.threads, progress)?;
+        Ok(self.finish(rendered))
+    }
+
+    /// The bytes of a file of the picture so far, which is not finished: without AOVs, fireflies and noise in it, after
+    /// `mean_samples` samples a pixel.
+    ///
+    /// # Errors
+    /// As [`Finished::encode`].
+    pub fn encode_preview(&self, picture: &Picture, mean_samples: u64, format: Format) -> Result<Vec<u8>> {
+        let samples = self.settings().samples;
+        let taken = header::Taken { samples, mean: Some(mean_samples), ..header::Taken::default() };
+        encode::encode(format, picture, &[], self.image(), &header::header(self, &taken))
+    }
+
+    /// Whether the picture goes where there is room for AOVs, as far as is known.
+    fn has_room_for_layers(&self) -> bool {
+        self.format.is_none_or(Format::has_layers)
+    }
+}
+
+/// What is wrong with a scene; where no place is known, its file is the place.
+fn in_file(path: &Path) -> impl Fn(Error) -> Error {
+    move |mut error| {
+        if error.at.file.is_empty() && !path.as_os_str().is_empty() {
+            error.at = Location::file(path);
+        }
+        error
+    }
+}

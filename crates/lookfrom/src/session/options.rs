@@ -1,0 +1,338 @@
+//! Render options: what may be asked of a picture in place of what its file says.
+//!
+//! Applied in two steps: the settings first, since a camera is framed for a shape of picture; then the camera, which a bare
+//! model has only by then.
+
+use glam::{DMat3, DMat4, DVec3};
+use lookfrom_scene::camera::{Camera, Projection, View};
+use lookfrom_scene::image::Image;
+use lookfrom_scene::settings::{
+    Background, ColorMode, Crop, Filter, ImageSettings, Integrator, Layers, LightSampler, RenderSettings,
+    Sampler, Tonemap,
+};
+use lookfrom_scene::{Choice, Error, ErrorKind, Location, Result, Scene};
+
+use super::Format;
+use crate::film::MOST_PIXELS;
+use crate::render::StopCriteria;
+
+/// What is asked of a picture in place of what its file says; `None` leaves the file's word, or the default.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Columns; alone it keeps the shape of the picture.
+    pub width: Option<u32>,
+    /// Rows; alone it keeps the shape of the picture.
+    pub height: Option<u32>,
+    /// Only this part is computed.
+    pub crop: Option<Crop>,
+    /// Samples per pixel.
+    pub samples: Option<u32>,
+    /// The light transport algorithm.
+    pub integrator: Option<Integrator>,
+    /// RGB or spectral.
+    pub color: Option<ColorMode>,
+    /// How one of many lights is chosen.
+    pub light_sampler: Option<LightSampler>,
+    /// AOVs besides the picture.
+    pub layers: Option<Layers>,
+    /// Whether the picture is denoised.
+    pub denoise: Option<bool>,
+    /// The greatest path depth.
+    pub depth: Option<u32>,
+    /// Share of the pixel below which a branch of Whitted's tree is cut off.
+    pub min_contribution: Option<f32>,
+    /// Where random numbers come from.
+    pub sampler: Option<Sampler>,
+    /// Seed of the random numbers.
+    pub seed: Option<u64>,
+    /// Pixel filter.
+    pub filter: Option<Filter>,
+    /// In stops.
+    pub exposure: Option<f32>,
+    /// From linear light to 8 bits.
+    pub tonemap: Option<Tonemap>,
+    /// What the camera sees where nothing stands.
+    pub background: Option<Background>,
+    /// Where the camera is.
+    pub lookfrom: Option<DVec3>,
+    /// What it looks at.
+    pub lookat: Option<DVec3>,
+    /// What is up: for the camera, and for the surroundings of a model. Any length.
+    pub up: Option<DVec3>,
+    /// Vertical field of view in degrees, in (0, 180).
+    pub fov: Option<f64>,
+    /// Light from all around, in latitude and longitude, in place of the studio or of a scene's own environments.
+    pub environment: Option<Image>,
+    /// Turns environments around what is up, in degrees, counter-clockwise as seen from above.
+    pub rotate_environment: Option<f64>,
+    /// Whether a floor that shows only the shadows on it lies below the model.
+    pub floor: bool,
+    /// Turns the camera around the model, in degrees, counter-clockwise as seen from above, and the environments with it.
+    pub turn: Option<f64>,
+    /// Which of several animations, variants, scenes and cameras of a file is meant.
+    pub import: Choice,
+    /// When the render ends, besides the number of samples. Without `samples`, there is no other limit.
+    pub stop: StopCriteria,
+    /// Gives tiles that are clean enough no more samples ([`ADAPTIVE_NOISE`], where `stop` says nothing of noise), with the number
+    /// of samples as a limit.
+    pub adaptive: bool,
+    /// What becomes of pixels that single samples make far too bright.
+    pub fireflies: Fireflies,
+    /// The format that the picture will be encoded in, where that is known: what it has no room for is not computed.
+    pub format: Option<Format>,
+    /// Threads to render with; `None` is as many as there are processors.
+    pub threads: Option<usize>,
+}
+
+/// What becomes of pixels that single samples make far too bright.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fireflies {
+    /// They stay.
+    #[default]
+    Keep,
+    /// Their excess is spread over the pixels around.
+    Spread,
+}
+
+/// The standard error, in shares of the light, that is clean enough for [`Options::adaptive`].
+pub const ADAPTIVE_NOISE: f64 = 0.02;
+
+/// The most samples that a pixel can be given.
+pub const MOST_SAMPLES: u32 = 1 << 24;
+
+/// What was asked does not suit the scene.
+fn unsuitable(message: String) -> Error {
+    Error::new(ErrorKind::Request, &Location::default(), message)
+}
+
+impl Options {
+    /// Changes the settings of the picture and of the computation.
+    ///
+    /// # Errors
+    /// `Request` for a picture that is too large or a crop that is no part of it.
+    pub(super) fn apply_to_settings(
+        &self,
+        image: &mut ImageSettings,
+        render: &mut RenderSettings,
+    ) -> Result<()> {
+        self.resize(image)?;
+        if let Some(crop) = self.crop {
+            if crop.x1 > image.width || crop.y1 > image.height {
+                let Crop { x0, y0, x1, y1 } = crop;
+                return Err(unsuitable(format!(
+                    "the crop {x0},{y0},{x1},{y1} is not a part of the picture of {} × {} pixels",
+                    image.width, image.height
+                )));
+            }
+            image.crop = Some(crop);
+        }
+        replace(&mut image.filter, self.filter);
+        replace(&mut image.exposure, self.exposure);
+        replace(&mut image.tonemap, self.tonemap);
+        replace(&mut render.samples, self.samples);
+        replace(&mut render.integrator, self.integrator);
+        replace(&mut render.color, self.color);
+        replace(&mut render.light_sampler, self.light_sampler);
+        replace(&mut image.layers, self.layers);
+        replace(&mut image.denoise, self.denoise);
+        replace(&mut image.background, self.background);
+        replace(&mut render.depth, self.depth);
+        replace(&mut render.min_contribution, self.min_contribution);
+        replace(&mut render.sampler, self.sampler);
+        replace(&mut render.seed, self.seed);
+        Ok(())
+    }
+
+    fn resize(&self, image: &mut ImageSettings) -> Result<()> {
+        let (old_width, old_height) = (u64::from(image.width), u64::from(image.height));
+        // One side alone: the other is what keeps the shape, to the nearest pixel.
+        let (width, height) = match (self.width.map(u64::from), self.height.map(u64::from)) {
+            (None, None) => return Ok(()),
+            (Some(width), Some(height)) => (width, height),
+            (Some(width), None) => (width, (width * old_height + old_width / 2) / old_width),
+            (None, Some(height)) => ((height * old_width + old_height / 2) / old_height, height),
+        };
+        let (width, height) = (width.max(1), height.max(1));
+        if width.saturating_mul(height) > MOST_PIXELS {
+            return Err(unsuitable(format!(
+                "a picture of {width} × {height} pixels; at most {MOST_PIXELS} pixels are possible"
+            )));
+        }
+        // A crop that the scene asks for stays the same part of the picture, to the next pixel outward.
+        image.crop = image.crop.map(|Crop { x0, y0, x1, y1 }| {
+            let down = |edge: u32, new: u64, old: u64| (u64::from(edge) * new / old) as u32;
+            let up = |edge: u32, new: u64, old: u64| (u64::from(edge) * new).div_ceil(old) as u32;
+            Crop {
+                x0: down(x0, width, old_width),
+                y0: down(y0, height, old_height),
+                x1: up(x1, width, old_width),
+                y1: up(y1, height, old_height),
+            }
+        });
+        (image.width, image.height) = (width as u32, height as u32);
+        Ok(())
+    }
+
+    /// Changes the camera of a scene that has one.
+    ///
+    /// # Errors
+    /// `Request` for a field of view where rays are parallel, and for a new place or direction of a camera that skews or mirrors.
+    pub(super) fn apply_to_camera(&self, scene: &mut Scene) -> Result<()> {
+        let moved = self.lookfrom.is_some() || self.lookat.is_some() || self.up.is_some();
+        let middle = scene.bounds().center();
+        let Some(camera) = &mut scene.camera else { return Ok(()) };
+        if let Some(degrees) = self.fov {
+            let Projection::Perspective { fov } = &mut camera.projection else {
+                return Err(unsuitable(
+                    "a field of view has no meaning here: the rays of this scene's camera are parallel"
+                        .to_owned(),
+                ));
+            };
+            *fov = degrees;
+        }
+        if moved {
+            self.look(camera, middle)?;
+            // What is wrong with the camera from here on is no line of a file.
+            camera.at = Location { file: "the options".into(), ..Location::default() };
+        }
+        Ok(())
+    }
+
+    fn look(&self, camera: &mut Camera, middle: DVec3) -> Result<()> {
+        let (mut lookfrom, mut lookat, mut up) = match camera.view {
+            View::Look { lookfrom, lookat, up } => (lookfrom, lookat, up),
+            View::Matrix(matrix) => look_of_matrix(&matrix, middle).ok_or_else(|| {
+                unsuitable(
+                    "lookfrom, lookat and up cannot change a camera whose matrix skews or mirrors".to_owned(),
+                )
+            })?,
+        };
+        let distance_before = lookfrom.distance(lookat);
+        replace(&mut lookfrom, self.lookfrom);
+        replace(&mut lookat, self.lookat);
+        replace(&mut up, self.up);
+        // A lens that was sharp at lookat stays so.
+        if let Some(lens) = &mut camera.lens
+            && (lens.focus_distance - distance_before).abs() <= 1e-9 * distance_before
+        {
+            lens.focus_distance = lookfrom.distance(lookat);
+        }
+        camera.view = View::Look { lookfrom, lookat, up };
+        Ok(())
+    }
+}
+
+/// `lookfrom`, `lookat` and `up` of a camera that only turns and scales evenly. It looks at the point of its axis that is
+/// nearest to the middle of the scene, if that lies before it.
+fn look_of_matrix(matrix: &DMat4, middle: DVec3) -> Option<(DVec3, DVec3, DVec3)> {
+    let linear = DMat3::from_mat4(*matrix);
+    let scale = linear.z_axis.length();
+    let turned = (linear.transpose() * linear * (1.0 / (scale * scale))).abs_diff_eq(DMat3::IDENTITY, 1e-6);
+    if !turned || linear.determinant() <= 0.0 {
+        return None;
+    }
+    let lookfrom = matrix.w_axis.truncate();
+    let w = linear.z_axis / scale;
+    let along = (middle - lookfrom).dot(w);
+    let distance = if along > 0.0 && along.is_finite() { along } else { 1.0 };
+    Some((lookfrom, lookfrom + distance * w, linear.y_axis))
+}
+
+fn replace<T>(setting: &mut T, typed: Option<T>) {
+    if let Some(typed) = typed {
+        *setting = typed;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lookfrom_scene::camera::Lens;
+
+    fn image(width: u32, height: u32, crop: Option<Crop>) -> ImageSettings {
+        ImageSettings { width, height, crop, ..ImageSettings::default() }
+    }
+
+    fn resized(of: &Options, mut image: ImageSettings) -> Result<ImageSettings> {
+        of.apply_to_settings(&mut image, &mut RenderSettings::default()).map(|()| image)
+    }
+
+    #[test]
+    fn one_side_keeps_the_shape() {
+        let of = |width, height| {
+            let image =
+                resized(&Options { width, height, ..Options::default() }, image(640, 480, None)).unwrap();
+            (image.width, image.height)
+        };
+        assert_eq!(of(Some(320), None), (320, 240));
+        assert_eq!(of(None, Some(3)), (4, 3));
+        assert_eq!(of(Some(1), None), (1, 1));
+        assert_eq!(of(Some(7), Some(9)), (7, 9));
+        let flat = Options { height: Some(1), ..Options::default() };
+        assert_eq!(resized(&flat, image(1, 1000, None)).unwrap().width, 1);
+        let huge = Options { width: Some(u32::MAX), ..Options::default() };
+        assert!(matches!(
+            resized(&huge, image(1, 1 << 28, None)),
+            Err(Error { kind: ErrorKind::Request, .. })
+        ));
+    }
+
+    #[test]
+    fn a_crop_of_the_scene_stays_the_same_part() {
+        let crop = Some(Crop { x0: 10, y0: 0, x1: 30, y1: 50 });
+        let half = Options { width: Some(50), ..Options::default() };
+        let image = resized(&half, image(100, 100, crop)).unwrap();
+        assert_eq!(image.crop, Some(Crop { x0: 5, y0: 0, x1: 15, y1: 25 }));
+    }
+
+    #[test]
+    fn a_crop_beyond_the_picture_is_refused() {
+        let crop = Some(Crop { x0: 0, y0: 0, x1: 11, y1: 10 });
+        let beyond = Options { crop, ..Options::default() };
+        assert!(matches!(resized(&beyond, image(10, 10, None)), Err(Error { kind: ErrorKind::Request, .. })));
+        assert!(resized(&beyond, image(11, 10, None)).is_ok());
+    }
+
+    fn moved(of: &Options, camera: Camera) -> Result<Camera> {
+        let mut scene = Scene { camera: Some(camera), ..Scene::default() };
+        of.apply_to_camera(&mut scene).map(|()| scene.camera.unwrap())
+    }
+
+    #[test]
+    fn a_camera_moves_and_keeps_the_rest() {
+        let lens = Some(Lens { radius: 0.1, focus_distance: 26.0_f64.sqrt() });
+        let away = Options { lookfrom: Some(DVec3::new(0.0, 0.0, -3.0)), ..Options::default() };
+        let camera = moved(&away, Camera { lens, ..Camera::default() }).unwrap();
+        let View::Look { lookfrom, lookat, up } = camera.view else { panic!("{camera:?}") };
+        assert_eq!((lookfrom, lookat, up), (DVec3::new(0.0, 0.0, -3.0), DVec3::ZERO, DVec3::Y));
+        assert_eq!(camera.lens.unwrap().focus_distance, 3.0);
+    }
+
+    #[test]
+    fn a_matrix_that_turns_becomes_a_look_and_one_that_mirrors_does_not() {
+        // stands at (0, 0, 5), looks along −z; x of its space, the viewer's left, is −x
+        let turned = DMat4::from_cols(
+            DVec3::NEG_X.extend(0.0),
+            DVec3::Y.extend(0.0),
+            DVec3::NEG_Z.extend(0.0),
+            DVec3::new(0.0, 0.0, 5.0).extend(1.0),
+        );
+        let rise = Options { lookfrom: Some(DVec3::new(0.0, 4.0, 5.0)), ..Options::default() };
+        let camera = moved(&rise, Camera { view: View::Matrix(turned), ..Camera::default() }).unwrap();
+        let View::Look { lookat, up, .. } = camera.view else { panic!("{camera:?}") };
+        assert_eq!((lookat, up), (DVec3::new(0.0, 0.0, 4.0), DVec3::Y));
+        let mirrored = turned * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        let camera = Camera { view: View::Matrix(mirrored), ..Camera::default() };
+        assert!(matches!(moved(&rise, camera), Err(Error { kind: ErrorKind::Request, .. })));
+    }
+
+    #[test]
+    fn parallel_rays_have_no_field_of_view() {
+        let wide = Options { fov: Some(90.0), ..Options::default() };
+        let parallel = Camera { projection: Projection::Orthographic { height: 2.0 }, ..Camera::default() };
+        assert!(matches!(moved(&wide, parallel), Err(Error { kind: ErrorKind::Request, .. })));
+        let camera = moved(&wide, Camera::default()).unwrap();
+        assert_eq!(camera.projection, Projection::Perspective { fov: 90.0 });
+    }
+}

@@ -1,0 +1,138 @@
+//! A session: the same picture by every way in, moved cameras, cancellation, integrators of one's own.
+
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use lookfrom::film::Film;
+use lookfrom::glam::DVec3;
+use lookfrom::integrator::{Integrator, Next, Numbers, Path as LightPath, Probe, Term};
+use lookfrom::render::{Progress, StopReason, TileDone};
+use lookfrom::session::{Format, Options, Session};
+use lookfrom::spectrum::Spectrum;
+use lookfrom::world::World;
+use lookfrom_bvh::Hit;
+use lookfrom_scene::camera::{Camera, View};
+use lookfrom_scene::{Disk, ErrorKind, Sources, load};
+
+fn own(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name)
+}
+
+fn small() -> Options {
+    Options { width: Some(48), height: Some(32), samples: Some(2), ..Options::default() }
+}
+
+fn film(session: &Session) -> Film {
+    session.render(&()).expect("a picture").rendered.film
+}
+
+#[test]
+fn every_way_in_makes_the_same_picture() {
+    let path = own("models/star.ply");
+    let opened = Session::open(&path, &small()).expect("a model");
+    let bytes = std::fs::read(&path).expect("a file");
+    let from_bytes = Session::from_bytes("star.ply", bytes, &small()).expect("a model");
+    let scene = load::scene(&path, &mut Sources::new(&Disk)).expect("a model");
+    let of_scene = Session::of_scene(scene, &small()).expect("a model");
+    let film = film(&opened);
+    for other in [&from_bytes, &of_scene, &opened.clone()] {
+        assert!(film == self::film(other));
+    }
+    assert!(opened.image().denoise && opened.info().added.contains(&"lights"));
+}
+
+#[test]
+fn a_session_goes_to_another_thread() {
+    fn is_send<T: Send + Sync + 'static>() {}
+    is_send::<Session>();
+    is_send::<lookfrom::render::Renderer>();
+}
+
+#[test]
+fn a_moved_camera_builds_nothing_and_sees_what_a_new_session_sees() {
+    let mut moved = Session::open(own("whitted1980.toml"), &small()).expect("a scene");
+    let world = moved.world().clone();
+    let View::Look { lookfrom, lookat, up } = moved.camera().view else { panic!("not a look") };
+    let elsewhere = lookfrom + DVec3::new(0.5, 0.25, -0.5);
+    let view = View::Look { lookfrom: elsewhere, lookat, up };
+    moved.set_camera(Camera { view, ..moved.camera().clone() }).expect("a camera that sees");
+    assert!(std::sync::Arc::ptr_eq(&world, moved.world()));
+
+    let options = Options { lookfrom: Some(elsewhere), ..small() };
+    let anew = Session::open(own("whitted1980.toml"), &options).expect("a scene");
+    let (a, b) = (film(&moved).picture(), film(&anew).picture());
+    // Positions are rounded relative to another origin: a few samples at edges fall to the other side.
+    let differ = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).any(|c| (a[c] - b[c]).abs() > 0.01 * (0.1 + b[c]));
+    let differing = a.pixels.iter().zip(&b.pixels).filter(|&pair| differ(pair)).count();
+    assert!(differing < a.pixels.len() / 100, "{differing} pixels differ");
+
+    let nowhere = Camera { view: View::Look { lookfrom, lookat: lookfrom, up }, ..moved.camera().clone() };
+    assert_eq!(moved.set_camera(nowhere).expect_err("it looks nowhere").kind, ErrorKind::Invalid);
+    assert_eq!(film(&moved).picture(), a, "a camera that is refused changes nothing");
+}
+
+#[test]
+fn options_that_do_not_suit_the_scene_are_refused() {
+    let options = Options { fov: Some(30.0), ..small() };
+    let error = Session::open(own("orthographic.toml"), &options).expect_err("parallel rays");
+    assert_eq!(error.kind, ErrorKind::Request);
+    let missing = Session::open(own("nothing.toml"), &small()).expect_err("no such file");
+    assert_eq!(missing.kind, ErrorKind::Io);
+}
+
+struct Count(std::sync::Arc<Mutex<u64>>);
+
+impl Progress for Count {
+    fn tile(&self, done: TileDone) {
+        *self.0.lock().expect("a lock") = done.done;
+    }
+}
+
+#[test]
+fn a_render_in_the_background_can_be_cancelled() {
+    let options = Options { samples: Some(1 << 20), threads: Some(1), ..small() };
+    let session = Session::open(own("whitted1980.toml"), &options).expect("a scene");
+    let done = std::sync::Arc::new(Mutex::new(0));
+    let running = session.start(Count(done.clone())).expect("a thread");
+    while *done.lock().expect("a lock") == 0 {
+        std::thread::yield_now();
+    }
+    running.cancel();
+    let finished = running.finish().expect("a picture");
+    assert_eq!(finished.rendered.reason, StopReason::Cancelled);
+    assert!(finished.rendered.samples_taken > 0);
+    assert!(finished.encode(Format::Png).expect("a PNG").starts_with(b"\x89PNG"));
+}
+
+/// White where anything is hit.
+#[derive(Debug)]
+struct Silhouette;
+
+impl Integrator for Silhouette {
+    fn name(&self) -> &'static str {
+        "silhouette"
+    }
+
+    fn step<P: Probe>(&self, _: &World, _: &Numbers, path: &LightPath, hit: &Hit, next: &mut Next<'_, P>) {
+        if hit.is_hit() {
+            next.add(path, Term::View, Spectrum::from_rgb([1.0; 3]));
+        }
+    }
+}
+
+#[test]
+fn an_integrator_of_ones_own() {
+    let options = Options { denoise: Some(false), ..small() };
+    let mut session = Session::open(own("models/star.ply"), &options).expect("a model");
+    session.set_integrator(Silhouette);
+    let finished = session.render(&()).expect("a picture");
+    assert!(finished.header.contains(&("integrator".to_owned(), "silhouette".to_owned())));
+    let values: Vec<f32> = finished.picture.pixels.iter().map(|rgb| rgb[0]).collect();
+    assert!(values.iter().any(|&v| v == 0.0) && values.iter().any(|&v| v == 1.0));
+    assert!(values.iter().all(|v| (0.0..=1.0).contains(v)));
+    // It stays when the camera moves, and the settings' own comes back with them.
+    session.set_camera(session.camera().clone()).expect("the same camera");
+    assert_eq!(session.renderer().integrator(), "silhouette");
+    session.set_settings(session.settings().clone()).expect("the same settings");
+    assert_eq!(session.renderer().integrator(), "path");
+}
