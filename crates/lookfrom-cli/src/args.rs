@@ -11,7 +11,9 @@ use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use glam::DVec3;
 use lookfrom::session::Fireflies;
-use lookfrom_scene::settings::{ColorMode, Crop, Filter, Integrator, Layers, LightSampler, Sampler, Tonemap};
+use lookfrom_scene::settings::{
+    ColorMode, Crop, Filter, Integrator, Layers, LightSampler, Sampler, Sensor, Tonemap,
+};
 
 use crate::values;
 
@@ -237,6 +239,13 @@ pub(crate) struct CompareArguments {
     /// Samples a pixel of picture and reference, where the files do not say them
     #[arg(long, value_name = "N,M", value_parser = crate::compare::samples)]
     pub(crate) samples: Option<[u64; 2]>,
+
+    /// The sensor of pictures that do not say which one their variances are of: NAME, or NAME,KELVIN with its white balance
+    ///
+    /// As in a scene file: cie1931, canon_eos_5d_mkiv … Ours say it; pbrt's do not, and are taken for the same as the other
+    /// picture's, or for cie1931 without a white balance.
+    #[arg(long, value_name = "NAME", value_parser = crate::compare::sensor)]
+    pub(crate) sensor: Option<Sensor>,
 
     /// A channel's mean may be farther from the reference's than this share only if noise explains it
     #[arg(long, value_name = "SHARE", value_parser = values::between(0.0f64, 1e6))]

@@ -2,9 +2,13 @@
 
 use std::path::Path;
 
-use lookfrom_scene::image::compare::{Comparison, Sampled, compare};
+use lookfrom::color;
+use lookfrom_scene::image::compare::{Comparison, Sampled, channels_of_both, compare};
 use lookfrom_scene::image::flip::{PIXELS_PER_DEGREE, flip};
 use lookfrom_scene::image::{self, Channels};
+use lookfrom_scene::settings::Sensor;
+use lookfrom_scene::spectrum::CameraSensor;
+use lookfrom_scene::spectrum::space::XYZ_FROM_RGB;
 use lookfrom_scene::{Disk, Inputs, Sources};
 use serde::Serialize;
 
@@ -34,10 +38,22 @@ pub(crate) struct Verdict {
 /// What noise explains.
 #[derive(Debug, Serialize)]
 pub(crate) struct Noise {
+    pub(crate) channels: NoiseChannels,
     pub(crate) pixels_within: f64,
     pub(crate) blocks_within: f64,
     pub(crate) mean: [f64; 3],
     pub(crate) relative_error_of_mean: f64,
+}
+
+/// What noise is measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub(crate) enum NoiseChannels {
+    /// The standard observer's.
+    #[serde(rename = "XYZ")]
+    Xyz,
+    /// Those of the sensor that a picture, or the command line, names.
+    #[serde(rename = "sensor")]
+    Sensor,
 }
 
 /// Compares every pair.
@@ -92,7 +108,20 @@ fn compare_pair(
     inputs: &Inputs,
 ) -> Result<(Verdict, Pictures), Failure> {
     let [of_picture, of_reference] = arguments.samples.map_or([None; 2], |samples| samples.map(Some));
-    let (a, b) = (read(picture, of_picture, inputs)?, read(reference, of_reference, inputs)?);
+    let (mut a, mut b) = (read(picture, of_picture, inputs)?, read(reference, of_reference, inputs)?);
+    if let Some(sensor) = &arguments.sensor {
+        let said = *color::Sensor::new(sensor).channels_from_rgb();
+        for side in [&mut a, &mut b] {
+            side.channels_from_rgb.get_or_insert(said);
+        }
+    }
+    let channels = channels_of_both(&a, &b);
+    if channels.is_none() && a.variances.is_some() && b.variances.is_some() {
+        let (picture, reference) = (picture.display(), reference.display());
+        say(&format!(
+            "warning: {picture} and {reference} know the noise of different sensors: it is not compared"
+        ));
+    }
     let Comparison { means, relative, rmse, relative_mse, noise } =
         compare(&a, &b).map_err(exit::in_scene(picture))?;
     let exposed = |of: &Sampled| exposed(of, arguments.exposure);
@@ -106,6 +135,7 @@ fn compare_pair(
         relative_mse,
         flip: map.iter().map(|&error| f64::from(error)).sum::<f64>() / map.len() as f64,
         noise: noise.map(|noise| Noise {
+            channels: if channels == Some(XYZ_FROM_RGB) { NoiseChannels::Xyz } else { NoiseChannels::Sensor },
             pixels_within: noise.pixels_within,
             blocks_within: noise.blocks_within,
             mean: noise.mean,
@@ -198,14 +228,20 @@ impl Verdict {
         let percent = |share: f64| format!("{:+.3} %", share * 100.0);
         let mean = |mean: [f64; 3]| mean.map(|channel| format!("{channel:.6}")).join(" ");
         let noise = match &self.noise {
-            Some(noise) => format!(
-                "\n  noise       {:.2} % of the pixels and {:.2} % of the blocks within 3.5 standard errors; the means differ by \
-                 {} (X, Y, Z), one is {:.3} % of Y",
-                noise.pixels_within * 100.0,
-                noise.blocks_within * 100.0,
-                noise.mean.map(|z| format!("{z:+.2}")).join(" "),
-                noise.relative_error_of_mean * 100.0,
-            ),
+            Some(noise) => {
+                let [channels, second] = match noise.channels {
+                    NoiseChannels::Xyz => ["X, Y, Z", "Y"],
+                    NoiseChannels::Sensor => ["the sensor's channels", "the second"],
+                };
+                format!(
+                    "\n  noise       {:.2} % of the pixels and {:.2} % of the blocks within 3.5 standard errors; the means differ by \
+                     {} ({channels}), one is {:.3} % of {second}",
+                    noise.pixels_within * 100.0,
+                    noise.blocks_within * 100.0,
+                    noise.mean.map(|z| format!("{z:+.2}")).join(" "),
+                    noise.relative_error_of_mean * 100.0,
+                )
+            }
             None => String::new(),
         };
         let not_finite = match self.not_finite {
@@ -237,4 +273,31 @@ pub(crate) fn samples(typed: &str) -> Result<[u64; 2], String> {
                 .to_owned())
         }
     }
+}
+
+/// A sensor, `NAME` or `NAME,KELVIN`.
+pub(crate) fn sensor(typed: &str) -> Result<Sensor, String> {
+    let (name, kelvin) = match typed.split_once(',') {
+        Some((name, kelvin)) => (name.trim(), Some(kelvin.trim())),
+        None => (typed.trim(), None),
+    };
+    let camera = match CameraSensor::named(name) {
+        None if name != Sensor::OBSERVER => {
+            let cameras = CameraSensor::all().map(CameraSensor::name);
+            let known: Vec<&str> = std::iter::once(Sensor::OBSERVER).chain(cameras).collect();
+            return Err(format!(
+                "expected a sensor, with its white balance after a comma, if any: canon_eos_5d_mkiv,5000; there are {}",
+                known.join(", ")
+            ));
+        }
+        camera => camera,
+    };
+    let white_balance = match kelvin.map(str::parse) {
+        None => None,
+        Some(Ok(kelvin)) if (500.0..=100_000.0).contains(&kelvin) => Some(kelvin),
+        Some(_) => {
+            return Err("expected a white balance in kelvin from 500 to 100000 after the comma".to_owned());
+        }
+    };
+    Ok(Sensor { camera, white_balance, ..Sensor::default() })
 }

@@ -2,6 +2,8 @@
 
 use crate::image::srgb_from_linear;
 
+use crate::spectrum::CameraSensor;
+
 /// Size, filter and development of the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageSettings {
@@ -56,17 +58,34 @@ impl std::fmt::Display for Background {
 /// What turns light into colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
+    /// The camera whose spectral responses it has; `None` is the CIE 1931 standard observer.
+    pub camera: Option<CameraSensor>,
     /// Multiplies all light: exposure time × ISO / 100 of pbrt's films.
     pub imaging_ratio: f32,
-    /// The colour temperature, in kelvin, of the light that shall look white; `None` leaves colours as they are.
+    /// The colour temperature, in kelvin, of the light that shall look white; `None` leaves colours as they are, and is
+    /// [`Sensor::DAYLIGHT`] for a camera.
     pub white_balance: Option<f32>,
-    /// A sample whose greatest channel is brighter is darkened to it: a bias against fireflies. Infinite is none.
+    /// A sample whose greatest channel is brighter is darkened to it: a bias against fireflies. Channels are those of the
+    /// sensor, before white balance: the camera's red, green and blue, or X, Y and Z. Infinite is none.
     pub max_component: f32,
+}
+
+impl Sensor {
+    /// The word for the standard observer, where cameras have their names.
+    pub const OBSERVER: &str = "cie1931";
+
+    /// The white balance of a camera where nothing is said, in kelvin.
+    pub const DAYLIGHT: f32 = 6500.0;
+
+    /// Whether its channels are X, Y and Z of the picture's light.
+    pub fn measures_xyz(&self) -> bool {
+        self.camera.is_none() && self.white_balance.is_none()
+    }
 }
 
 impl Default for Sensor {
     fn default() -> Self {
-        Self { imaging_ratio: 1.0, white_balance: None, max_component: f32::INFINITY }
+        Self { camera: None, imaging_ratio: 1.0, white_balance: None, max_component: f32::INFINITY }
     }
 }
 

@@ -2,15 +2,17 @@
 //!
 //! A [`Curve`] is a spectrum as a file states it: a constant, a table, a black body. Measured ones have names
 //! ([`named`]), or are read from `.spd` files ([`read_spd`]). Beside them: the standard observer, which weighs
-//! wavelengths as the eye does, daylight of any temperature, and the RGB colour spaces. Sampling wavelengths and lifting
-//! RGB to a spectrum are left to the crate `lookfrom`.
+//! wavelengths as the eye does, the sensors of digital cameras, daylight of any temperature, and the RGB colour spaces.
+//! Sampling wavelengths and lifting RGB to a spectrum are left to the crate `lookfrom`.
 
+mod camera;
 pub mod daylight;
 mod named;
 pub mod observer;
 mod read;
 pub mod space;
 
+pub use camera::{CameraSensor, swatches};
 pub use named::{named, names};
 pub use read::read_spd;
 

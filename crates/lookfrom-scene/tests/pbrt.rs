@@ -10,7 +10,7 @@ use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::{MaterialId, MediumId, MeshId};
 use lookfrom_scene::settings::{ColorMode, Crop, Filter, Integrator, Layers, Sampler};
 use lookfrom_scene::shape::{Geometry, Profile};
-use lookfrom_scene::spectrum::Curve;
+use lookfrom_scene::spectrum::{CameraSensor, Curve};
 use lookfrom_scene::texture::{Mapping, TextureKind};
 use lookfrom_scene::{Memory, Scene, Sources, load};
 
@@ -72,6 +72,20 @@ fn the_camera_sees_what_pbrts_sees() {
     assert_eq!((lens.radius, lens.focus_distance), (0.5, 7.0));
     assert_eq!(scene.image.crop, Some(Crop { x0: 0, y0: 100, x1: 100, y1: 400 }));
     assert_eq!((scene.image.layers, scene.image.sensor.imaging_ratio), (Layers::Geometry, 2.0));
+}
+
+#[test]
+fn films_have_sensors() {
+    let scene = read(
+        "Camera \"perspective\" \"float shutterclose\" .5\n\
+         Film \"rgb\" \"string sensor\" \"nikon_d850\" \"float iso\" 300 \"float whitebalance\" 5000 \"float maxcomponentvalue\" 10\n\
+         WorldBegin",
+    );
+    let sensor = scene.image.sensor;
+    assert_eq!(sensor.camera, CameraSensor::named("nikon_d850"));
+    assert_eq!((sensor.imaging_ratio, sensor.white_balance, sensor.max_component), (1.5, Some(5000.0), 10.0));
+    let observer = read("Film \"rgb\" \"string sensor\" \"cie1931\" WorldBegin").image.sensor;
+    assert_eq!(observer, read("WorldBegin").image.sensor);
 }
 
 #[test]

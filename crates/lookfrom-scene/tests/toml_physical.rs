@@ -8,7 +8,7 @@ use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Relief, Roughness, Scalar};
 use lookfrom_scene::settings::{ColorMode, Integrator, Layers, LightSampler};
 use lookfrom_scene::shape::{Geometry, Profile};
-use lookfrom_scene::spectrum::{self, Curve};
+use lookfrom_scene::spectrum::{self, CameraSensor, Curve};
 use lookfrom_scene::texture::{Mapping, TextureKind};
 use lookfrom_scene::{Memory, Scene, Sources, image, load};
 
@@ -173,6 +173,7 @@ light_sampler = "power"
 regularize = true
 occlusion_distance = 3
 [image]
+sensor = "sony_ilce_9"
 imaging_ratio = 2
 white_balance = 5000
 max_component = 10
@@ -188,6 +189,7 @@ window = { x = [-1, 2], y = [0, 1] }
     assert_eq!((render.color, render.light_sampler), (ColorMode::Spectral, LightSampler::Power));
     assert_eq!((render.regularize, render.occlusion_distance), (true, 3.0));
     let sensor = scene.image.sensor;
+    assert_eq!(sensor.camera.map(CameraSensor::name), Some("sony_ilce_9"));
     assert_eq!((sensor.imaging_ratio, sensor.white_balance, sensor.max_component), (2.0, Some(5000.0), 10.0));
     assert_eq!(scene.image.layers, Layers::Geometry);
     let camera = scene.camera.expect("a camera");

@@ -6,6 +6,7 @@
 //! (Pharr, Jakob, Humphreys 2023), with one difference of units: here light of luminance 1 is seen as 1, where pbrt has
 //! lights divide by their luminous integral and the sensor not. RGB is linear with the primaries of Rec. 709.
 
+mod calibration;
 mod dense;
 mod sensor;
 mod sigmoid;

@@ -3,17 +3,20 @@
 //! Step 7 on the way of a pixel. Sums of floating-point numbers depend on their order, sums of integers do not. So each
 //! pixel holds three fixed-point sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the
 //! variance; any division of the work among threads, tiles, passes or machines ends in the same bytes *by
-//! construction*. What a camera sees first, for layers, is in [`features`]; how much noise there is, in `noise`; what
+//! construction*. What a camera sees first, for layers, is in [`features`]; what its sensor measures, in `channels`; how much
+//! noise there is, in `noise`; what
 //! becomes of single samples that outshine a pixel, in `fireflies`; what the denoiser is told, in [`guides`]. How a picture is shown
 //! is left to [`crate::develop`].
 //!
-//! A pixel takes 112 bytes, and as much more as [`features`] and [`guides`] say where they are asked for.
+//! A pixel takes 112 bytes, and as much more as [`features`], `channels` and [`guides`] say where they are asked for.
 
+mod channels;
 pub mod features;
 mod fireflies;
 pub mod guides;
 mod noise;
 
+use self::channels::ChannelSums;
 use self::features::FeatureSums;
 pub use self::features::Features;
 use self::guides::GuideSums;
@@ -46,6 +49,8 @@ pub struct FilmTile {
     pixels: Vec<Pixel>,
     /// As many as there are pixels, or none.
     features: Vec<FeatureSums>,
+    /// As many as there are pixels, or none.
+    channels: Vec<ChannelSums>,
     /// As many as there are pixels, or none.
     guides: Vec<GuideSums>,
     /// Sums of how much samples hide of what is behind, in multiples of 2⁻⁶⁴: as many as there are pixels, or none.
@@ -209,6 +214,12 @@ impl Film {
             .map_or([f32::INFINITY; 3], |pixel| pixel.variance().map(|variance| variance as f32))
     }
 
+    /// The variance of *one* sample of a pixel in the channels of the sensor, estimated as [`Film::variance`] is; `None` where the
+    /// film has no room for it (no layers, or a sensor that measures X, Y and Z), and outside of [`Film::area`].
+    pub fn channel_variance(&self, x: u32, y: u32) -> Option<[f32; 3]> {
+        self.tile.channels.get(self.tile.index(x, y)?).map(ChannelSums::variance)
+    }
+
     /// What the camera sees first in a pixel, in the mean over its samples ([`Features`] says which); `None` where the
     /// film has no room for it, where no sample met anything, and outside of [`Film::area`].
     pub fn features(&self, x: u32, y: u32) -> Option<Features> {
@@ -318,17 +329,26 @@ impl FilmTile {
             Layers::None => Vec::new(),
             Layers::Geometry => empty(count)?,
         };
+        let channels = match image.layers {
+            Layers::Geometry if !image.sensor.measures_xyz() => empty(count)?,
+            _ => Vec::new(),
+        };
         let guides = if image.denoise { empty(count)? } else { Vec::new() };
         let alphas = match image.background {
             Background::Environment => Vec::new(),
             Background::Color(_) | Background::Transparent => empty(count)?,
         };
-        Ok(Self { area, pixels, features, guides, alphas, dropped: 0, first_dropped: None })
+        Ok(Self { area, pixels, features, channels, guides, alphas, dropped: 0, first_dropped: None })
     }
 
     /// Whether there is room for layers: whether [`FilmTile::add_features`] does anything.
     pub fn has_layers(&self) -> bool {
         !self.features.is_empty()
+    }
+
+    /// Whether there is room for what the sensor measures: whether [`FilmTile::add_channels`] does anything.
+    pub fn has_channels(&self) -> bool {
+        !self.channels.is_empty()
     }
 
     /// Whether there is room for what the denoiser is told: whether [`FilmTile::add_guide`] does anything.
@@ -393,6 +413,17 @@ impl FilmTile {
         }
     }
 
+    /// Adds what the sensor's channels measured of one sample, where there is room for it and all is finite.
+    ///
+    /// # Panics
+    /// If the pixel is outside of the tile.
+    pub fn add_channels(&mut self, x: u32, y: u32, channels: [f32; 3]) {
+        let index = self.index_inside(x, y);
+        if let Some(sums) = self.channels.get_mut(index) {
+            sums.add(channels);
+        }
+    }
+
     /// Adds what the camera's ray of one sample met (`None` for nothing), for the denoiser: of the first [`GUIDED_SAMPLES`] of a
     /// pixel. Does nothing where there is no room for it.
     ///
@@ -413,6 +444,7 @@ impl FilmTile {
             merge_row(&mut self.pixels, &other.pixels, &rows, Pixel::merge);
             merge_row(&mut self.alphas, &other.alphas, &rows, |sum, add| *sum = sum.wrapping_add(*add));
             merge_row(&mut self.features, &other.features, &rows, FeatureSums::merge);
+            merge_row(&mut self.channels, &other.channels, &rows, ChannelSums::merge);
             merge_row(&mut self.guides, &other.guides, &rows, GuideSums::merge);
         }
         self.drop_samples(other.dropped, other.first_dropped);

@@ -160,8 +160,8 @@ impl Renderer {
         Ok(Self {
             filter: Filter::new(image.filter),
             sampler: Sampler::new(settings.sampler, settings.seed),
-            plain_sensor: Sensor::new(1.0, None),
-            sensor: Sensor::new(image.sensor.imaging_ratio, image.sensor.white_balance),
+            plain_sensor: Sensor::default(),
+            sensor: Sensor::new(&image.sensor),
             integrator: transport::of_settings(&settings, &view.camera, eye),
             is_plugged_in: false,
             world,
@@ -219,6 +219,11 @@ impl Renderer {
     /// The view of it.
     pub fn view(&self) -> &View {
         &self.view
+    }
+
+    /// What light is turned into colour by.
+    pub fn sensor(&self) -> &Sensor {
+        &self.sensor
     }
 
     /// How it is rendered.
@@ -386,8 +391,18 @@ impl Renderer {
             Lanes::Rgb => self.sensor.balanced(light.rgb()),
             Lanes::Spectral(wavelengths) => self.sensor.rgb(light, wavelengths),
         };
-        let brightest = rgb.into_iter().fold(f32::NEG_INFINITY, f32::max);
+        self.limited(rgb)
+    }
+
+    /// A colour of which no channel of the sensor is brighter than it may be (pbrt's `maxcomponentvalue`). Channels are looked
+    /// at before they become RGB: there single wavelengths are far outside of the gamut.
+    fn limited(&self, rgb: [f32; 3]) -> [f32; 3] {
         let most = self.image().sensor.max_component;
+        if most == f32::INFINITY {
+            return rgb;
+        }
+        // Light that a filter's negative lobes weigh is limited as well.
+        let brightest = self.sensor.channels(rgb).into_iter().fold(0.0, |most, c| c.abs().max(most));
         if brightest > most { rgb.map(|c| c * (most / brightest)) } else { rgb }
     }
 
@@ -418,6 +433,9 @@ impl Renderer {
             for (id, traced) in ids.iter().zip(&batch.traced) {
                 let [x, y] = id.pixel;
                 tile.add_with_alpha(x, y, id.sample, traced.rgb, traced.alpha * traced.weight);
+                if tile.has_channels() {
+                    tile.add_channels(x, y, self.sensor.channels(traced.rgb));
+                }
             }
         }
         rays

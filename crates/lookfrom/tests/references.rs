@@ -8,6 +8,7 @@ use std::path::Path;
 use lookfrom::render::Renderer;
 use lookfrom_scene::image::compare::{Sampled, compare};
 use lookfrom_scene::image::read_exr;
+use lookfrom_scene::settings::Layers;
 use lookfrom_scene::{Disk, Sources, load};
 
 const SAMPLES: u32 = 16;
@@ -20,6 +21,7 @@ const SCENES: &[(&str, &str, u64)] = &[
     ("killeroos/killeroo-gold", "killeroo-gold", 1024),
     ("coffee/scene", "coffee", 1024),
     ("staircase2/scene", "staircase2", 512),
+    ("cornell-sensor/scene", "cornell-sensor", 256),
 ];
 
 /// Our picture of a scene with the variance of each pixel's samples.
@@ -27,16 +29,20 @@ fn picture(scene: &Path) -> Sampled {
     let mut sources = Sources::new(&Disk);
     let mut scene = load::scene(scene, &mut sources).unwrap_or_else(|error| panic!("{error}"));
     scene.render.samples = SAMPLES;
+    // A camera's noise is known in its own channels where there are layers.
+    scene.image.layers = Layers::Geometry;
     let renderer = Renderer::of_scene(scene, &mut sources.warnings).unwrap_or_else(|error| panic!("{error}"));
     let film = renderer.render(None, &()).expect("a picture").film;
     assert_eq!(film.dropped(), 0, "samples that are not finite, the first at {:?}", film.first_dropped());
+    let channels = |(x, y)| film.channel_variance(x, y).unwrap_or_else(|| film.variance(x, y));
     let places = || (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
-    let of_mean = |(x, y)| film.variance(x, y).map(|v| f64::from(v) / f64::from(SAMPLES));
+    let of_mean = |(x, y)| channels((x, y)).map(|v| f64::from(v) / f64::from(SAMPLES));
     Sampled {
         width: film.width() as usize,
         pixels: film.picture().pixels,
         not_finite: 0,
         variances: Some(places().map(of_mean).collect()),
+        channels_from_rgb: Some(*frame.sensor().channels_from_rgb()),
     }
 }
 

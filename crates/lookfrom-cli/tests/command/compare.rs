@@ -27,6 +27,31 @@ fn a_picture_and_its_reference() {
 }
 
 #[test]
+fn noise_of_cameras() {
+    let stage = Stage::new("compare-sensor");
+    let scene = String::from_utf8(stage.bytes("scene.toml")).unwrap();
+    assert!(scene.contains("[image]\n"), "{scene}");
+    let canon = scene.replace("[image]\n", "[image]\nsensor = \"canon_eos_m\"\n");
+    std::fs::write(stage.path("canon.toml"), &canon).unwrap();
+    let options = "-q --layers geometry --sampler independent --color spectral --samples 32";
+    stage.done(&format!("render scene.toml -o plain.exr {options}"));
+    stage.done(&format!("render canon.toml -o a.exr {options}"));
+    stage.done(&format!("render canon.toml -o b.exr --seed 1 {options}"));
+    let answer = |pair: &str| stage.json(&format!("compare {pair} --json"))[0].clone();
+    let same = answer("a.exr b.exr");
+    assert_eq!(same["noise"]["channels"], "sensor");
+    assert!(same["noise"]["pixels_within"].as_f64().unwrap() > 0.9, "{same}");
+    assert_eq!(answer("plain.exr plain.exr")["noise"]["channels"], "XYZ");
+    // A picture says its sensor, and another one's noise is not that of the same channels.
+    let run = stage.run("compare plain.exr a.exr");
+    assert!(run.stderr.contains("different sensors") && run.code == Some(0), "{}", run.stderr);
+    assert_eq!(answer("plain.exr a.exr")["noise"], serde_json::Value::Null);
+    stage.run("compare a.exr b.exr --sensor canon_m").fails(2, &["canon_eos_m"]);
+    stage.run("compare a.exr b.exr --sensor canon_eos_m,hot").fails(2, &["kelvin"]);
+    stage.done("compare a.exr b.exr --sensor nikon_d850,5000");
+}
+
+#[test]
 fn pictures_without_noise() {
     let stage = Stage::new("compare-png");
     stage.done("render scene.toml -q -o a.png");

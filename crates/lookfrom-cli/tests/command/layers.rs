@@ -22,6 +22,11 @@ fn layers_have_the_names_of_pbrts() {
     // The picture is the same, and its variance is that of soft edges: nothing in most places.
     let read = |file: &str| image::read_exr(&stage.path(file), &mut Sources::new(&Disk)).unwrap();
     let (plain, layers) = (read("plain.exr"), read("layers.exr"));
+    // What the variances are of is said: here of X, Y and Z.
+    let says =
+        |of: &image::Channels| of.attributes.iter().find(|(name, _)| name == "variance.from_rgb").cloned();
+    assert_eq!(says(&plain), None);
+    assert!(says(&layers).expect("an attribute").1.starts_with("0.4123908 0.3575843 "));
     assert_eq!(plain.channel("G"), layers.channel("G"));
     let variances = layers.channel("Variance.G").unwrap();
     assert!(

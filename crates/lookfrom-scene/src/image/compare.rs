@@ -1,12 +1,16 @@
 //! Are two pictures of the same thing the same but for noise, and how far apart are they?
 //!
-//! Means and errors in numbers; and where both pictures know their variance (channels `Variance.R G B`: of *one* sample, of X,
-//! Y and Z, as pbrt's `gbuffer` film writes them and ours does), a z-test of each pixel and of each block of pixels: the
-//! difference in shares of the standard error that both sides' noise gives it. How it looks is left to [`super::flip`].
+//! Means and errors in numbers; and where both pictures know their variance (channels `Variance.R G B`: of *one* sample, as pbrt's
+//! `gbuffer` film writes them and ours does), a z-test of each pixel and of each block of pixels: the difference in shares of
+//! the standard error that both sides' noise gives it. How it looks is left to [`super::flip`].
+//!
+//! Variances are those of the channels of the sensor: of X, Y and Z, or of a camera's own red, green and blue. They cannot be
+//! converted without their covariances, so colours are. Ours say what they are of (`variance.from_rgb`), pbrt's do not: they are
+//! taken for the same as the other picture's.
 
 use super::openexr::Channels;
 use crate::error::{Error, Location, Result};
-use crate::spectrum::space::xyz_of_rec709 as xyz;
+use crate::spectrum::space::{Matrix, XYZ_FROM_RGB, apply};
 
 /// A pixel farther away than this many standard errors is not explained by noise.
 pub const MOST_STANDARD_ERRORS: f64 = 3.5;
@@ -22,6 +26,23 @@ const WITHOUT_VARIANCE: f64 = 1e-2;
 /// Added to the square of the reference in [`Comparison::relative_mse`], so that black is no pole.
 const DARK: f64 = 1e-2;
 
+/// The attribute of an EXR that says which channels its variances are of: nine numbers, by rows, that give them from linear
+/// Rec. 709.
+pub const CHANNELS_ATTRIBUTE: &str = "variance.from_rgb";
+
+/// The text of that attribute.
+pub fn channels_text(channels_from_rgb: &Matrix) -> String {
+    channels_from_rgb.as_flattened().iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
+}
+
+/// The matrix of such a text; `None` for anything but nine finite numbers.
+fn matrix(text: &str) -> Option<Matrix> {
+    let numbers: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
+    let &[a, b, c, d, e, f, g, h, i] = numbers?.as_slice() else { return None };
+    let matrix = [[a, b, c], [d, e, f], [g, h, i]];
+    matrix.iter().flatten().all(|number| number.is_finite()).then_some(matrix)
+}
+
 /// A picture to compare: linear colours, and what is known of their noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampled {
@@ -31,8 +52,10 @@ pub struct Sampled {
     pub pixels: Vec<[f32; 3]>,
     /// How many values were not finite; they are 0 in `pixels`.
     pub not_finite: usize,
-    /// The variances of the pixels (not of one sample) in X, Y and Z.
+    /// The variances of the pixels (not of one sample) in three channels.
     pub variances: Option<Vec<[f64; 3]>>,
+    /// What gives the channels that the variances are of from linear Rec. 709; `None` where that is not known.
+    pub channels_from_rgb: Option<Matrix>,
 }
 
 /// What two pictures have to do with each other. Channels are red, green, blue.
@@ -46,11 +69,11 @@ pub struct Comparison {
     pub rmse: f64,
     /// Mean squared difference in shares of the reference's square plus 0.01.
     pub relative_mse: f64,
-    /// What noise explains, where both know their variance.
+    /// What noise explains, where both know their variance, and in the same channels.
     pub noise: Option<NoiseTest>,
 }
 
-/// How much of the differences noise explains, in X, Y and Z.
+/// How much of the differences noise explains, in the channels of the variances: X, Y and Z, or those of a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseTest {
     /// The share of pixels of which all three differ by at most [`MOST_STANDARD_ERRORS`].
@@ -59,7 +82,7 @@ pub struct NoiseTest {
     pub blocks_within: f64,
     /// The difference of the pictures' means in standard errors.
     pub mean: [f64; 3],
-    /// The standard error of the difference of the means in Y, in shares of the reference's mean.
+    /// The standard error of the difference of the means in the second channel (Y, green), in shares of the reference's mean.
     pub relative_error_of_mean: f64,
 }
 
@@ -86,14 +109,17 @@ impl Sampled {
             *value = 0.0;
             not_finite += 1;
         }
-        let attribute = |name: &str| file.attributes.iter().find(|(found, _)| found == name)?.1.parse().ok();
-        let samples = samples.or_else(|| attribute("samples")).or_else(|| attribute("samplesPerPixel"));
+        let attribute =
+            |name: &str| Some(file.attributes.iter().find(|(found, _)| found == name)?.1.as_str());
+        let number = |name: &str| attribute(name)?.parse().ok();
+        let samples = samples.or_else(|| number("samples")).or_else(|| number("samplesPerPixel"));
         let variances =
             three(["Variance.R", "Variance.G", "Variance.B"]).zip(samples).map(|(variances, n)| {
                 let of_mean = |variance: f32| f64::from(variance.max(0.0)) / n.max(1) as f64;
                 variances.into_iter().map(|one| one.map(of_mean)).collect()
             });
-        Ok(Self { width: file.width as usize, pixels, not_finite, variances })
+        let channels_from_rgb = attribute(CHANNELS_ATTRIBUTE).and_then(matrix);
+        Ok(Self { width: file.width as usize, pixels, not_finite, variances, channels_from_rgb })
     }
 }
 
@@ -127,9 +153,10 @@ pub fn compare(picture: &Sampled, reference: &Sampled) -> Result<Comparison> {
         relative: [0, 1, 2].map(|c| relative(means[0][c] - means[1][c], means[1][c])),
         rmse: (squares / (3.0 * count)).sqrt(),
         relative_mse: relative_squares / (3.0 * count),
-        noise: picture.variances.as_ref().zip(reference.variances.as_ref()).map(|(a, b)| {
-            let cells = cells(picture, a, reference, b);
-            NoiseTest {
+        noise: channels_of_both(picture, reference).and_then(|channels| {
+            let (a, b) = (picture.variances.as_ref()?, reference.variances.as_ref()?);
+            let cells = cells((picture, a), (reference, b), &channels);
+            Some(NoiseTest {
                 pixels_within: within(&cells),
                 blocks_within: within(&blocks(&cells, picture.width)),
                 mean: whole(&cells).standard_errors(),
@@ -137,9 +164,19 @@ pub fn compare(picture: &Sampled, reference: &Sampled) -> Result<Comparison> {
                     let whole = whole(&cells);
                     relative(whole.variance[1].sqrt(), whole.reference[1])
                 },
-            }
+            })
         }),
     })
+}
+
+/// The channels in which two pictures' noise can be compared, from linear Rec. 709: those that either says, or X, Y and Z.
+/// `None` where they say different ones.
+pub fn channels_of_both(picture: &Sampled, reference: &Sampled) -> Option<Matrix> {
+    match (picture.channels_from_rgb, reference.channels_from_rgb) {
+        (Some(a), Some(b)) if a != b => None,
+        (Some(channels), _) | (None, Some(channels)) => Some(channels),
+        (None, None) => Some(XYZ_FROM_RGB),
+    }
 }
 
 /// `part / of`, and 0 where nothing is no part of anything.
@@ -147,7 +184,7 @@ fn relative(part: f64, of: f64) -> f64 {
     if part == 0.0 { 0.0 } else { part / of.abs() }
 }
 
-/// A pixel, a block or the whole, in X, Y and Z.
+/// A pixel, a block or the whole, in the channels of the variances.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
     difference: [f64; 3],
@@ -170,7 +207,11 @@ impl Cell {
     }
 }
 
-fn cells(picture: &Sampled, a: &[[f64; 3]], reference: &Sampled, b: &[[f64; 3]]) -> Vec<Cell> {
+fn cells(
+    (picture, a): (&Sampled, &[[f64; 3]]),
+    (reference, b): (&Sampled, &[[f64; 3]]),
+    channels: &Matrix,
+) -> Vec<Cell> {
     // A side without variance saw the same all the time, or did not count what it saw: the other's noise is the guess.
     let variance = |a: f64, b: f64| match (a > 0.0, b > 0.0) {
         (false, true) => 2.0 * b,
@@ -178,7 +219,8 @@ fn cells(picture: &Sampled, a: &[[f64; 3]], reference: &Sampled, b: &[[f64; 3]])
         _ => a + b,
     };
     let cell = |pixel: usize| {
-        let [picture, reference] = [picture, reference].map(|of| xyz(of.pixels[pixel].map(f64::from)));
+        let [picture, reference] =
+            [picture, reference].map(|of| apply(channels, of.pixels[pixel].map(f64::from)));
         Cell {
             difference: [0, 1, 2].map(|i| picture[i] - reference[i]),
             reference,
@@ -249,7 +291,7 @@ mod tests {
             (0..WIDTH * HEIGHT).map(|_| (light + deviation * normal(&mut state)) as f32).collect();
         // Of Rec. 709's gray g, X is 0.95 g and Z is 1.09 g.
         let variance = |scale: f64| vec![(deviation * deviation * scale * scale * 16.0) as f32; gray.len()];
-        let [x, y, z] = xyz([1.0; 3]).map(variance);
+        let [x, y, z] = apply(&XYZ_FROM_RGB, [1.0; 3]).map(variance);
         let names = ["R", "G", "B", "Variance.R", "Variance.G", "Variance.B"];
         let values = [gray.clone(), gray.clone(), gray, x, y, z];
         Channels {
@@ -298,6 +340,43 @@ mod tests {
         assert_eq!((comparison.relative, comparison.rmse), ([3.0; 3], 4.5_f64.sqrt()));
         assert_eq!((comparison.relative_mse, comparison.noise), (9.0 / DARK / 2.0, None));
         assert_eq!(Sampled::new(&channels([1.0, f32::INFINITY]), None).unwrap().not_finite, 3);
+    }
+
+    #[test]
+    fn noise_is_compared_in_the_channels_it_is_of() {
+        // Two channels of a sensor that are far from X and Y: noise that looks large in X, Y and Z is none there.
+        let channels = [[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [0.0, 0.0, 1.0]];
+        let known = |file: &Channels| {
+            let mut file = file.clone();
+            let variances = [1e-12, 1e-12, 0.1 * 0.1 * 16.0];
+            for ((_, values), variance) in file.channels[3..].iter_mut().zip(variances) {
+                values.fill(variance);
+            }
+            file
+        };
+        let says = |file: &Channels| {
+            let attribute = (CHANNELS_ATTRIBUTE.to_owned(), channels_text(&channels));
+            Channels {
+                attributes: file.attributes.iter().cloned().chain([attribute]).collect(),
+                ..file.clone()
+            }
+        };
+        let [a, b] = [1, 2].map(|seed| known(&noisy(1.0, 0.1, seed)));
+        // Grey noise has none of the first two channels. One picture says so, or both do.
+        for (a, b) in [(&says(&a), &b), (&a, &says(&b)), (&says(&a), &says(&b))] {
+            let noise = compared(a, b).noise.expect("noise");
+            assert!(noise.pixels_within > 0.998 && noise.mean[2].abs() < 4.0, "{noise:?}");
+        }
+        assert!(compared(&a, &b).noise.expect("noise").pixels_within < 0.5, "taken for X, Y and Z");
+        // Who says different things is not compared.
+        let mut other = a.clone();
+        other.attributes.push((CHANNELS_ATTRIBUTE.to_owned(), channels_text(&XYZ_FROM_RGB)));
+        assert_eq!(compared(&other, &says(&b)).noise, None);
+        // What is no matrix says nothing.
+        for text in ["", "1 2 3", "1 0 0 0 1 0 0 0 inf", "1 0 0 0 1 0 0 0 one", "1 0 0 0 1 0 0 0 1 1"] {
+            assert_eq!(matrix(text), None, "{text}");
+        }
+        assert_eq!(matrix(&channels_text(&XYZ_FROM_RGB)), Some(XYZ_FROM_RGB));
     }
 
     #[test]

@@ -6,30 +6,10 @@ use super::spectra::SRGB;
 use super::state::Entity;
 use crate::error::Result;
 use crate::settings::{Crop, Filter, Layers, Sensor};
+use crate::spectrum::CameraSensor;
 
 /// The largest width and height.
 const LARGEST: i32 = 1 << 16;
-
-/// pbrt's cameras whose response it knows; ours is that of the standard observer.
-const SENSORS: &[&str] = &[
-    "canon_eos_100d",
-    "canon_eos_1dx_mkii",
-    "canon_eos_200d",
-    "canon_eos_200d_mkii",
-    "canon_eos_5d",
-    "canon_eos_5d_mkii",
-    "canon_eos_5d_mkiii",
-    "canon_eos_5d_mkiv",
-    "canon_eos_5ds",
-    "canon_eos_m",
-    "hasselblad_l1d_20c",
-    "nikon_d810",
-    "nikon_d850",
-    "sony_ilce_6400",
-    "sony_ilce_7m3",
-    "sony_ilce_7rm3",
-    "sony_ilce_9",
-];
 
 impl Reader<'_, '_> {
     /// The film, and of the camera the time that its shutter is open.
@@ -61,7 +41,7 @@ impl Reader<'_, '_> {
             _ => return Err(Self::unknown(&parameters.place, "film", kind, ["rgb", "gbuffer", "spectral"])),
         }
         parameters.ignore(&["filename", "savefp16", "diagonal", "coordinatesystem", "displayfile"]);
-        let sensor = self.sensor(parameters, shutter)?;
+        let sensor = Self::sensor(parameters, shutter)?;
         let image = &mut self.scene.image;
         image.width = parameters.integer("xresolution", 1280, 1, LARGEST)? as u32;
         image.height = parameters.integer("yresolution", 720, 1, LARGEST)? as u32;
@@ -77,22 +57,25 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    fn sensor(&mut self, parameters: &Parameters, shutter: f32) -> Result<Sensor> {
+    fn sensor(parameters: &Parameters, shutter: f32) -> Result<Sensor> {
         let iso = parameters.positive("iso", 100.0)?;
         let exposure_time = parameters.positive("exposuretime", 1.0)?;
-        let mut white =
+        let white =
             parameters.float_where("whitebalance", 0.0, "a temperature in kelvin, or 0", |k| k >= 0.0)?;
-        if let Some(name) = parameters.string("sensor")?.filter(|&name| name != "cie1931") {
-            if !SENSORS.contains(&name) {
-                let known = [&["cie1931"], SENSORS].concat();
-                return Err(Self::unknown(&parameters.place, "sensor", name, known));
-            }
-            // A camera's own sensor is balanced for daylight where nothing is said.
-            white = if white == 0.0 { 6500.0 } else { white };
-            let message = format!("the sensor {name:?} is not known yet: \"cie1931\" takes its place");
-            self.sources.warn(&parameters.place.location(), message);
-        }
+        let camera = match parameters.string("sensor")? {
+            None | Some(Sensor::OBSERVER) => None,
+            Some(name) => Some(CameraSensor::named(name).ok_or_else(|| {
+                let cameras = CameraSensor::all().map(CameraSensor::name);
+                Self::unknown(
+                    &parameters.place,
+                    "sensor",
+                    name,
+                    std::iter::once(Sensor::OBSERVER).chain(cameras),
+                )
+            })?),
+        };
         Ok(Sensor {
+            camera,
             imaging_ratio: shutter * exposure_time * iso / 100.0,
             white_balance: (white > 0.0).then_some(white),
             max_component: parameters.positive("maxcomponentvalue", f32::INFINITY)?,

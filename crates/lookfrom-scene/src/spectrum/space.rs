@@ -82,12 +82,15 @@ pub fn inverse(matrix: &Matrix) -> Matrix {
     std::array::from_fn(|row| std::array::from_fn(|column| minor(column, row) / determinant))
 }
 
-/// X, Y and Z of linear Rec. 709 (white, D65, has Y = 1), by seven digits: what films and comparisons of them measure noise
-/// in. Y is the luminance.
-pub fn xyz_of_rec709([r, g, b]: [f64; 3]) -> [f64; 3] {
-    [
-        0.412_390_8 * r + 0.357_584_3 * g + 0.180_480_8 * b,
-        0.212_639 * r + 0.715_168_7 * g + 0.072_192_3 * b,
-        0.019_330_8 * r + 0.119_194_8 * g + 0.950_532_2 * b,
-    ]
+/// What gives X, Y and Z of linear Rec. 709 (white, D65, has Y = 1), by seven digits: what films and comparisons of them measure
+/// noise in. Y is the luminance.
+pub const XYZ_FROM_RGB: Matrix = [
+    [0.412_390_8, 0.357_584_3, 0.180_480_8],
+    [0.212_639, 0.715_168_7, 0.072_192_3],
+    [0.019_330_8, 0.119_194_8, 0.950_532_2],
+];
+
+/// X, Y and Z by [`XYZ_FROM_RGB`].
+pub fn xyz_of_rec709(rgb: [f64; 3]) -> [f64; 3] {
+    apply(&XYZ_FROM_RGB, rgb)
 }

@@ -216,3 +216,73 @@ fn the_shared_gold_is_ours() {
         }
     }
 }
+
+/// The sum over a table of each camera's red, green and blue, so that no number changes unseen.
+const SUMS_OF_RESPONSES: &[(&str, [f64; 3])] = &[
+    ("canon_eos_100d", [4.819924, 9.856912, 7.099039]),
+    ("canon_eos_1dx_mkii", [5.341798, 10.199717, 6.994573]),
+    ("canon_eos_200d", [5.594447, 10.213169, 6.885481]),
+    ("canon_eos_200d_mkii", [5.396714, 10.284562, 6.937101]),
+    ("canon_eos_5d", [4.382393, 8.809695, 6.283319]),
+    ("canon_eos_5d_mkii", [4.214292, 9.251356, 6.168651]),
+    ("canon_eos_5d_mkiii", [4.484123, 9.625701, 6.299909]),
+    ("canon_eos_5d_mkiv", [4.992194, 10.219386, 7.478424]),
+    ("canon_eos_5ds", [4.447982, 9.841008, 6.172539]),
+    ("canon_eos_m", [4.746938, 9.764003, 7.060697]),
+    ("hasselblad_l1d_20c", [3.486208, 9.750814, 5.906690]),
+    ("nikon_d810", [4.656981, 9.239415, 7.463092]),
+    ("nikon_d850", [4.428167, 8.621736, 6.649898]),
+    ("sony_ilce_6400", [3.928346, 10.397300, 6.522820]),
+    ("sony_ilce_7m3", [3.961588, 9.522420, 6.671254]),
+    ("sony_ilce_7rm3", [3.770776, 9.569875, 6.611200]),
+    ("sony_ilce_9", [4.090399, 9.599525, 7.202757]),
+];
+
+#[test]
+fn cameras_have_their_responses() {
+    let names: Vec<&str> = CameraSensor::all().map(CameraSensor::name).collect();
+    assert_eq!(names, SUMS_OF_RESPONSES.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+    for (name, sums) in SUMS_OF_RESPONSES {
+        let responses = CameraSensor::named(name).expect("a camera").responses();
+        for ((response, sum), peak) in responses.iter().zip(sums).zip([580..=610, 520..=520, 450..=480]) {
+            let at = |nm: u16| f64::from(response.at(f32::from(nm)));
+            let table = || (380..=720).step_by(10);
+            assert!((table().map(at).sum::<f64>() - sum).abs() < 2e-6, "{name}");
+            assert!(table().all(|nm| at(nm) > 0.0 && at(nm) <= 1.0), "{name}");
+            let greatest = table().max_by(|&a, &b| at(a).total_cmp(&at(b))).expect("one");
+            assert!(peak.contains(&greatest), "{name}: {greatest} nm");
+            assert_eq!((at(379), at(721)), (0.0, 0.0), "{name}");
+        }
+        assert_eq!(responses[1].at(520.0), 1.0, "{name}");
+    }
+    assert_eq!(CameraSensor::named("cie1931"), None);
+}
+
+#[test]
+fn swatches_are_those_of_the_chart() {
+    let swatches: Vec<Curve> = swatches().collect();
+    assert_eq!(swatches.len(), 24);
+    assert_eq!((swatches[18].at(380.0), swatches[18].at(730.0), swatches[18].at(731.0)), (0.189, 0.933, 0.0));
+    // Luminance factors in daylight, within the spread of charts: the grey steps, and blue, green and red.
+    let white = named("stdillum-D65").expect("one of ours");
+    let luminance = |swatch: &Curve| {
+        let sum =
+            |nm: u32| f64::from(observer::matching()[1][(nm - SHORTEST) as usize] * white.at(nm as f32));
+        let lit = |nm: u32| sum(nm) * f64::from(swatch.at(nm as f32));
+        (SHORTEST..=LONGEST).map(lit).sum::<f64>() / (SHORTEST..=LONGEST).map(sum).sum::<f64>()
+    };
+    for (index, expected) in [
+        (18, 0.90),
+        (19, 0.59),
+        (20, 0.36),
+        (21, 0.19),
+        (22, 0.09),
+        (23, 0.032),
+        (12, 0.062),
+        (13, 0.23),
+        (14, 0.12),
+    ] {
+        let found = luminance(&swatches[index]);
+        assert!((found / expected - 1.0).abs() < 0.05, "{index}: {found}");
+    }
+}

@@ -7,6 +7,7 @@ use crate::settings::{
     ColorMode, Crop, Filter, ImageSettings, Integrator, Layers, LightSampler, RenderSettings, Sampler,
     Sensor, Tonemap,
 };
+use crate::spectrum::CameraSensor;
 
 /// The keys of `[image]`.
 pub(super) const IMAGE: &[&str] = &[
@@ -16,6 +17,7 @@ pub(super) const IMAGE: &[&str] = &[
     "tonemap",
     "crop",
     "filter",
+    "sensor",
     "imaging_ratio",
     "white_balance",
     "max_component",
@@ -65,6 +67,7 @@ pub(super) fn image(table: &Table<'_>) -> Result<ImageSettings> {
         })?,
         tonemap: table.or("tonemap", default.tonemap, |value| value.choice(Tonemap::WORDS))?,
         sensor: Sensor {
+            camera: table.or("sensor", None, camera)?,
             imaging_ratio: table.or("imaging_ratio", default.sensor.imaging_ratio, above_zero)?,
             white_balance: table.or("white_balance", None, |value| kelvin(value).map(Some))?,
             max_component: table.or("max_component", default.sensor.max_component, above_zero)?,
@@ -75,6 +78,12 @@ pub(super) fn image(table: &Table<'_>) -> Result<ImageSettings> {
         background: default.background,
         denoise: table.or("denoise", default.denoise, Value::boolean)?,
     })
+}
+
+/// A camera's sensor, or none for the standard observer.
+fn camera(value: Value<'_>) -> Result<Option<CameraSensor>> {
+    let cameras = CameraSensor::all().map(|sensor| (sensor.name(), Some(sensor)));
+    value.choice(&std::iter::once((Sensor::OBSERVER, None)).chain(cameras).collect::<Vec<_>>())
 }
 
 fn above_zero(value: Value<'_>) -> Result<f32> {

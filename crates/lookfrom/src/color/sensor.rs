@@ -1,58 +1,69 @@
-//! What does the film see of light?
+//! What a film sees of light: the sensor's channels, exposure and white balance.
 //!
-//! pbrt-v4's sensor `cie1931`: the standard observer, an exposure, and a white balance (von Kries's, in Bradford's
-//! responses). The spectral responses of real cameras are left for later.
+//! pbrt-v4's `PixelSensor`. The standard observer measures X, Y and Z and is balanced by von Kries's scaling of Bradford's
+//! responses. A camera measures its own red, green and blue, and a matrix makes XYZ of them ([`super::calibration`]).
 
 use std::sync::Arc;
 
+use lookfrom_scene::settings::Sensor as Settings;
 use lookfrom_scene::spectrum::daylight::daylight;
 use lookfrom_scene::spectrum::observer::{self, SAMPLES};
-use lookfrom_scene::spectrum::space;
+use lookfrom_scene::spectrum::space::{self, Matrix};
 
-use super::dense::nearest;
-use super::{Wavelengths, matrices};
+use super::dense::{Dense, nearest};
+use super::{Wavelengths, calibration, matrices};
 use crate::spectrum::Spectrum;
 
-/// The standard observer with exposure and white balance. Cheap to clone.
+/// The standard observer or a camera, with exposure and white balance. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Sensor {
     /// At each nm, what light of density 1 in one of four lanes adds to red, green, blue.
     responses: Arc<[[f32; 3]; SAMPLES]>,
-    /// Exposure and white balance of a colour that is RGB already.
+    /// What becomes of a colour that is RGB already.
     balanced_from_rgb: [[f32; 3]; 3],
+    channels_from_rgb: Matrix,
 }
 
 impl Default for Sensor {
     fn default() -> Self {
-        Self::new(1.0, None)
+        Self::new(&Settings::default())
     }
 }
 
 impl Sensor {
-    /// A sensor that multiplies by `imaging_ratio` (exposure time in s · ISO / 100 in pbrt's files, 1 where they say nothing)
-    /// and shows daylight of the temperature `white_balance` in kelvin as white. Without one, D65 is white.
-    pub fn new(imaging_ratio: f32, white_balance: Option<f32>) -> Self {
+    /// The sensor of a picture's settings. Its limit of brightness is left to [`crate::render`].
+    pub fn new(settings: &Settings) -> Self {
         let (xyz_from_rgb, rgb_from_xyz) = matrices();
-        let mut rgb_from_sensor = *rgb_from_xyz;
-        if let Some(kelvin) = white_balance {
-            let from = observer::xyz(&daylight(kelvin));
-            let to = space::apply(xyz_from_rgb, [1.0; 3]);
-            // A black body too cold to be seen has no colour to balance.
-            if from.iter().all(|value| *value > 0.0) {
-                rgb_from_sensor = space::product(rgb_from_xyz, &space::adapted(from, to));
+        let imaging_ratio = f64::from(settings.imaging_ratio);
+        let scaled = |matrix: &Matrix| matrix.map(|row| row.map(|value| value * imaging_ratio));
+        let (functions, xyz_from_channels) = match settings.camera {
+            Some(camera) => {
+                let responses = camera.responses().map(|response| *Dense::from(&response).samples());
+                let kelvin = settings.white_balance.unwrap_or(Settings::DAYLIGHT);
+                let matrix = calibration::xyz_from_camera(&responses, kelvin);
+                (responses, Some(matrix))
             }
-        }
-        let rgb_from_sensor = rgb_from_sensor.map(|row| row.map(|value| value * f64::from(imaging_ratio)));
-        let per_lane = 1.0 / (4.0 * observer::Y_INTEGRAL);
-        let matching = observer::matching();
-        let response = |i: usize| {
-            let xyz = matching.each_ref().map(|function| f64::from(function[i]) * per_lane);
-            space::apply(&rgb_from_sensor, xyz).map(|value| value as f32)
+            None => (*observer::matching(), settings.white_balance.and_then(balance)),
         };
-        let balanced = space::product(&rgb_from_sensor, xyz_from_rgb);
+        let rgb_from_channels =
+            xyz_from_channels.map_or(*rgb_from_xyz, |matrix| space::product(rgb_from_xyz, &matrix));
+        let exposed = scaled(&rgb_from_channels);
+        let per_lane = 1.0 / (4.0 * observer::Y_INTEGRAL);
+        let response = |i: usize| {
+            let channels = functions.each_ref().map(|function| f64::from(function[i]) * per_lane);
+            space::apply(&exposed, channels).map(|value| value as f32)
+        };
+        let balanced = match settings.camera {
+            Some(_) => scaled(&calibration::rgb_by_camera(&functions, &rgb_from_channels)),
+            None => space::product(&exposed, xyz_from_rgb),
+        };
         Self {
             responses: Arc::new(std::array::from_fn(response)),
             balanced_from_rgb: balanced.map(|row| row.map(|value| value as f32)),
+            channels_from_rgb: match settings.measures_xyz() {
+                true => space::XYZ_FROM_RGB,
+                false => space::inverse(&rgb_from_channels),
+            },
         }
     }
 
@@ -69,8 +80,31 @@ impl Sensor {
         rgb
     }
 
-    /// What a colour of RGB mode looks like after exposure and white balance.
+    /// What a colour of RGB mode looks like after exposure and white balance. For a camera, whose response to a colour depends
+    /// on its spectrum, the least squares over the swatches of a ColorChecker in daylight.
     pub fn balanced(&self, [r, g, b]: [f32; 3]) -> [f32; 3] {
         self.balanced_from_rgb.map(|[x, y, z]| x * r + y * g + z * b)
     }
+
+    /// What gives the values of the sensor's channels, before white balance, of a colour that it made: the camera's red, green
+    /// and blue, or X, Y and Z. In these units the standard observer sees light of luminance 1 as Y = 1.
+    pub fn channels_from_rgb(&self) -> &Matrix {
+        &self.channels_from_rgb
+    }
+
+    /// The values of the sensor's channels of a colour that it made.
+    pub fn channels(&self, rgb: [f32; 3]) -> [f32; 3] {
+        space::apply(&self.channels_from_rgb, rgb.map(f64::from)).map(|value| value as f32)
+    }
 }
+
+/// What makes daylight of that temperature, in kelvin, as white as D65; `None` for a black body too cold to be seen, which
+/// has no colour to balance.
+fn balance(kelvin: f32) -> Option<Matrix> {
+    let from = observer::xyz(&daylight(kelvin));
+    let to = space::apply(&matrices().0, [1.0; 3]);
+    from.iter().all(|value| *value > 0.0).then(|| space::adapted(from, to))
+}
+
+#[cfg(test)]
+mod tests;

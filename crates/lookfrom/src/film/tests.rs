@@ -352,3 +352,33 @@ fn time_of_add() {
     let nanoseconds = start.elapsed().as_secs_f64() * 1e9 / f64::from(N);
     println!("{nanoseconds:.2} ns ({:?})", tile.pixels[7].mean());
 }
+
+#[test]
+fn channels_have_their_variance() {
+    use lookfrom_scene::settings::Sensor;
+    let sensor = Sensor { white_balance: Some(5000.0), ..Sensor::default() };
+    let image =
+        ImageSettings { width: 2, height: 1, layers: Layers::Geometry, sensor, ..ImageSettings::default() };
+    let samples = [[1.0, 2.0, -3.0], [3.0, 2.5, 0.0], [2.0, 0.0, 0.5], [f32::NAN, 1.0, 1.0]];
+    let film_of = |samples: &[[f32; 3]]| {
+        let mut film = Film::for_image(&image).unwrap();
+        let mut tile = FilmTile::for_image(film.area(), &image).unwrap();
+        assert!(tile.has_channels());
+        samples.iter().for_each(|&channels| tile.add_channels(0, 0, channels));
+        film.add_tile(&tile);
+        film
+    };
+    let mut film = film_of(&samples[2..]);
+    film.merge(&film_of(&samples[..2])).unwrap();
+    assert_eq!(film, film_of(&samples));
+    // By hand: 1, 3, 2 and 2, 2.5, 0 and -3, 0, 0.5.
+    for (found, expected) in film.channel_variance(0, 0).unwrap().into_iter().zip([1.0, 1.75, 3.583_333_3]) {
+        assert!((found - expected).abs() < 1e-6, "{found} ≠ {expected}");
+    }
+    assert_eq!(film.channel_variance(1, 0), Some([f32::INFINITY; 3]));
+    // X, Y and Z have their variance already, and without layers nobody asks.
+    for (layers, sensor) in [(Layers::Geometry, Sensor::default()), (Layers::None, sensor)] {
+        let image = ImageSettings { layers, sensor, ..ImageSettings::default() };
+        assert_eq!(Film::for_image(&image).unwrap().channel_variance(0, 0), None);
+    }
+}

@@ -3,9 +3,11 @@
 
 use glam::DVec3;
 use lookfrom_scene::camera::{Projection, View};
-use lookfrom_scene::settings::{Background, Crop};
+use lookfrom_scene::image::compare::{CHANNELS_ATTRIBUTE, channels_text};
+use lookfrom_scene::settings::{Background, Crop, ImageSettings, Layers, Sensor};
 
 use super::Session;
+use crate::color;
 
 /// How many samples a picture is made of.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,6 +48,7 @@ pub(super) fn header(session: &Session, taken: &Taken) -> Vec<(String, String)> 
         ("tonemap", "none".to_owned()),
         ("camera.distance", camera.distance.to_string()),
     ];
+    texts.extend(sensor(image));
     if image.background != Background::Environment {
         texts.push(("background", image.background.to_string()));
     }
@@ -91,6 +94,30 @@ pub(super) fn header(session: &Session, taken: &Taken) -> Vec<(String, String)> 
         texts.push(("camera.focus_distance", lens.focus_distance.to_string()));
     }
     texts.into_iter().map(|(name, text)| (name.to_owned(), text)).collect()
+}
+
+/// What is not as usual of the sensor, and which channels the variances among the layers are of.
+fn sensor(image: &ImageSettings) -> Vec<(&'static str, String)> {
+    let Sensor { camera, imaging_ratio, white_balance, max_component } = image.sensor;
+    let default = Sensor::default();
+    let mut texts = Vec::new();
+    if let Some(camera) = camera {
+        texts.push(("sensor", camera.name().to_owned()));
+    }
+    if imaging_ratio != default.imaging_ratio {
+        texts.push(("imaging_ratio", imaging_ratio.to_string()));
+    }
+    if let Some(kelvin) = white_balance {
+        texts.push(("white_balance", kelvin.to_string()));
+    }
+    if max_component != default.max_component {
+        texts.push(("max_component", max_component.to_string()));
+    }
+    if image.layers == Layers::Geometry {
+        let channels = *color::Sensor::new(&image.sensor).channels_from_rgb();
+        texts.push((CHANNELS_ATTRIBUTE, channels_text(&channels)));
+    }
+    texts
 }
 
 /// Three numbers with spaces between them.

@@ -11,7 +11,8 @@ const FEATURES: [&str; 15] = [
     "depth", "u", "v",
 ];
 
-/// The variances of one sample; in pbrt, and so here, those of X, Y and Z.
+/// The variances of one sample; in pbrt, and so here, those of the sensor's channels: X, Y and Z, or a camera's red, green and
+/// blue. The header says which (`variance.from_rgb`).
 const VARIANCES: [&str; 3] = ["Variance.R", "Variance.G", "Variance.B"];
 
 /// The channels of a film's picture as it is, before the same background as the one that was denoised.
@@ -32,7 +33,8 @@ pub(super) fn channels(film: &Film) -> Vec<(String, Vec<f32>)> {
         .map(|name| ((*name).to_owned(), Vec::with_capacity(pixels().count())))
         .collect();
     for (x, y) in pixels() {
-        let variances = film.variance(x, y).map(|variance| if variance.is_finite() { variance } else { 0.0 });
+        let variances = film.channel_variance(x, y).unwrap_or_else(|| film.variance(x, y));
+        let variances = variances.map(|variance| if variance.is_finite() { variance } else { 0.0 });
         let values = film.features(x, y).unwrap_or_default().to_array().into_iter().chain(variances);
         for ((_, channel), value) in channels.iter_mut().zip(values) {
             channel.push(value);

@@ -1,0 +1,71 @@
+//! The colours that a camera's sensor stands for: matrices by least squares over the swatches of a ColorChecker.
+//!
+//! As pbrt-v4's `PixelSensor` (after PhysLight: Langlands & Fascione 2020): XYZ is what the standard observer sees of the swatches
+//! in D65 where the camera sees them in the light that shall look white.
+
+use lookfrom_scene::settings::Sensor as Settings;
+use lookfrom_scene::spectrum::daylight::daylight;
+use lookfrom_scene::spectrum::observer::{self, SAMPLES};
+use lookfrom_scene::spectrum::space::{self, Matrix};
+use lookfrom_scene::spectrum::swatches;
+
+use super::dense::{Dense, standard_illuminant};
+use super::rgb_from_xyz;
+
+/// Three functions of the wavelength.
+type Functions = [[f32; SAMPLES]; 3];
+
+/// XYZ of a camera's red, green and blue, by its responses at each nm: daylight of this temperature, in kelvin, looks like D65
+/// of the same luminance. A black body so cold that it tells nothing of colours is replaced by [`Settings::DAYLIGHT`].
+pub(super) fn xyz_from_camera(responses: &Functions, kelvin: f32) -> Matrix {
+    let solved = |kelvin: f32| {
+        let (white, daylight) = (Dense::from(&daylight(kelvin)), standard_illuminant());
+        let observer = observer::matching();
+        let lit = |light: &Dense, functions: &Functions| -> Vec<[f64; 3]> {
+            swatches().map(|swatch| measured(&Dense::from(&swatch), light, functions)).collect()
+        };
+        let luminance = |light: &Dense| f64::from(light.y_integral());
+        // Both sides in shares of the luminance of their light.
+        let seen = lit(&white, responses).into_iter().map(|rgb| rgb.map(|value| value / luminance(&white)));
+        let meant =
+            lit(daylight, observer).into_iter().map(|xyz| xyz.map(|value| value / luminance(daylight)));
+        least_squares(seen.zip(meant))
+    };
+    let matrix = solved(kelvin);
+    let is_known = space::inverse(&matrix).iter().flatten().all(|value| value.is_finite());
+    if is_known { matrix } else { solved(Settings::DAYLIGHT) }
+}
+
+/// What a camera makes of linear Rec. 709 on average, where `rgb_from_camera` is its matrix: by the colours of the swatches in
+/// D65.
+pub(super) fn rgb_by_camera(responses: &Functions, rgb_from_camera: &Matrix) -> Matrix {
+    let daylight = standard_illuminant();
+    least_squares(swatches().map(|swatch| {
+        let swatch = Dense::from(&swatch);
+        let of = |functions: &Functions| {
+            measured(&swatch, daylight, functions).map(|sum| sum / observer::Y_INTEGRAL)
+        };
+        let rgb = rgb_from_xyz(of(observer::matching()).map(|value| value as f32));
+        (rgb.map(f64::from), space::apply(rgb_from_camera, of(responses)))
+    }))
+}
+
+/// The integrals of a reflectance times a light, weighed by three functions.
+fn measured(reflectance: &Dense, light: &Dense, functions: &Functions) -> [f64; 3] {
+    functions.each_ref().map(|function| {
+        let products = function.iter().zip(reflectance.samples()).zip(light.samples());
+        products.map(|((&f, &share), &light)| f64::from(f) * f64::from(share) * f64::from(light)).sum()
+    })
+}
+
+/// The matrix that takes the first of each pair nearest to the second: (Σ b aᵀ)(Σ a aᵀ)⁻¹.
+fn least_squares(pairs: impl Iterator<Item = ([f64; 3], [f64; 3])>) -> Matrix {
+    let (mut products, mut squares): (Matrix, Matrix) = Default::default();
+    for (a, b) in pairs {
+        for (row, column) in (0..3).flat_map(|row| (0..3).map(move |column| (row, column))) {
+            products[row][column] += b[row] * a[column];
+            squares[row][column] += a[row] * a[column];
+        }
+    }
+    space::product(&products, &space::inverse(&squares))
+}
