@@ -299,7 +299,7 @@ pub(crate) struct Common {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 
-    /// Treat warnings as errors
+    /// Treat warnings as errors, but for harmless ones (notes)
     #[arg(long)]
     pub(crate) strict: bool,
 }

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::args::BenchArguments;
 use crate::compare::read;
-use crate::exit::{self, DONE, Failure, answer, say};
+use crate::exit::{self, DONE, Failure, answer};
 use crate::prepare::{self, prepare};
 use crate::{json, report};
 
@@ -76,7 +76,7 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
         ..arguments.overrides.options(&arguments.common, environment.as_ref())
     };
     let session = prepare(path, &arguments.common, &options, &inputs)?;
-    exit::listed(session.warnings()).iter().for_each(|line| say(&format!("warning: {line}")));
+    exit::say_warnings(session.warnings());
 
     // What is measured.
     let renderer = session.renderer();

@@ -13,7 +13,7 @@ use lookfrom_scene::{Disk, Inputs, Sources};
 use serde::Serialize;
 
 use crate::args::CompareArguments;
-use crate::exit::{self, BAD_SCENE, DONE, Failure, answer, say};
+use crate::exit::{self, BAD_SCENE, DONE, Failure, answer};
 use crate::html::{self, Shown};
 use crate::{json, output};
 
@@ -176,7 +176,7 @@ pub(crate) fn read(path: &Path, samples: Option<u64>, inputs: &Inputs) -> Result
         let (width, height) = (picture.width, picture.height);
         Channels { width, height, channels, attributes: Vec::new() }
     };
-    sources.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+    exit::say_warnings(&sources.warnings);
     Sampled::new(&file, samples).map_err(exit::in_scene(path))
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 
-use lookfrom_scene::{Error, ErrorKind, Location, Warning};
+use lookfrom_scene::{Error, ErrorKind, Location, Warning, WarningGroup, WarningKind};
 
 /// All that was asked is done.
 pub(crate) const DONE: u8 = 0;
@@ -17,7 +17,7 @@ pub(crate) const BAD_OUTPUT: u8 = 3;
 /// Stopped by Ctrl-C or SIGTERM.
 pub(crate) const INTERRUPTED: u8 = 130;
 
-/// More warnings than this about one scene are only counted.
+/// More kinds of warnings than this about one scene are only counted.
 const MOST_WARNINGS: usize = 20;
 
 /// Why a subcommand cannot go on.
@@ -25,7 +25,7 @@ const MOST_WARNINGS: usize = 20;
 pub(crate) enum Failure {
     /// A scene could not be read or is invalid.
     Scene(Error),
-    /// Warnings where `--strict` allows none.
+    /// Warnings that are not harmless where `--strict` allows none.
     Strict(Vec<Warning>),
     /// The command line does not make sense, by itself or for this scene.
     Usage(String),
@@ -55,7 +55,8 @@ impl fmt::Display for Failure {
         match self {
             Self::Scene(error) => error.fmt(f),
             Self::Strict(warnings) => {
-                write!(f, "warnings, which --strict makes errors:\n  {}", listed(warnings).join("\n  "))
+                let lines = listed(warnings, WarningKind::Warning);
+                write!(f, "warnings, which --strict makes errors:\n  {}", lines.join("\n  "))
             }
             Self::Usage(message) | Self::Output(message) => message.fmt(f),
         }
@@ -81,13 +82,33 @@ pub(crate) fn in_scene(path: &Path) -> impl Fn(Error) -> Failure {
     }
 }
 
-/// Warnings for a person: the first few, and how many more there are.
-pub(crate) fn listed(warnings: &[Warning]) -> Vec<String> {
-    let mut lines: Vec<String> = warnings.iter().take(MOST_WARNINGS).map(ToString::to_string).collect();
-    if warnings.len() > MOST_WARNINGS {
-        lines.push(format!("… and {} more", warnings.len() - MOST_WARNINGS));
+/// Whether `--strict` allows none of them: one is not harmless.
+pub(crate) fn is_bad(warnings: &[Warning]) -> bool {
+    warnings.iter().any(|warning| warning.kind == WarningKind::Warning)
+}
+
+/// Warnings of a kind, in one line those that say the same of several places.
+pub(crate) fn lines(warnings: &[Warning], kind: WarningKind) -> Vec<String> {
+    let groups = WarningGroup::of(warnings);
+    groups.iter().filter(|group| group.kind() == kind).map(ToString::to_string).collect()
+}
+
+/// The first few of those lines, and how many more there are.
+fn listed(warnings: &[Warning], kind: WarningKind) -> Vec<String> {
+    let mut lines = lines(warnings, kind);
+    if lines.len() > MOST_WARNINGS {
+        let left = lines.len() - MOST_WARNINGS;
+        lines.truncate(MOST_WARNINGS);
+        lines.push(format!("… and {left} more"));
     }
     lines
+}
+
+/// Says warnings on stderr: those that matter for the picture, then the harmless ones.
+pub(crate) fn say_warnings(warnings: &[Warning]) {
+    for (kind, word) in [(WarningKind::Warning, "warning"), (WarningKind::Notice, "note")] {
+        listed(warnings, kind).iter().for_each(|line| say(&format!("{word}: {line}")));
+    }
 }
 
 /// Writes a line to stderr. Where nobody listens any more, nothing is lost.

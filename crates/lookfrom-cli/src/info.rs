@@ -17,7 +17,7 @@ use serde::Serialize;
 use self::object::Object;
 
 use crate::args::{InfoArguments, Overrides};
-use crate::exit::{self, DONE, Failure, answer, say};
+use crate::exit::{self, DONE, Failure, answer};
 use crate::json;
 use crate::prepare::{self, prepare};
 use crate::report::{self, bytes, thousands};
@@ -48,7 +48,7 @@ fn info(path: &Path, arguments: &InfoArguments) -> Result<(), Failure> {
     if arguments.json {
         return answer(&json::line(&Object::new(path, &session)));
     }
-    exit::listed(session.warnings()).iter().for_each(|line| say(&format!("warning: {line}")));
+    exit::say_warnings(session.warnings());
     answer(&for_people(path, &session))
 }
 

@@ -5,7 +5,7 @@ use lookfrom::render::{Renderer, SampleId};
 use lookfrom_scene::Inputs;
 
 use crate::args::InspectArguments;
-use crate::exit::{self, DONE, Failure, say};
+use crate::exit::{self, DONE, Failure};
 use crate::prepare::{self, prepare};
 use crate::{json, output};
 
@@ -24,7 +24,7 @@ fn follow(arguments: &InspectArguments) -> Result<(), Failure> {
     let InspectArguments { scene, common, overrides, .. } = arguments;
     let options = overrides.options(common, environment.as_ref());
     let session = prepare(scene, common, &options, &inputs)?;
-    exit::listed(session.warnings()).iter().for_each(|line| say(&format!("warning: {line}")));
+    exit::say_warnings(session.warnings());
     let &InspectArguments { x, y, sample, .. } = arguments;
     let (width, height) = (session.image().width, session.image().height);
     if x >= width || y >= height {

@@ -13,7 +13,7 @@ use crate::exit::{self, Failure};
 ///
 /// # Errors
 /// `Scene` where the file cannot be read or made into a world, `Usage` where the options do not suit it, `Strict` where it
-/// gives warnings that `--strict` does not allow.
+/// gives warnings that `--strict` does not allow: all that are not harmless.
 pub(crate) fn prepare(
     path: &Path,
     common: &Common,
@@ -22,7 +22,7 @@ pub(crate) fn prepare(
 ) -> Result<Session, Failure> {
     let files = inputs.record(&Disk, path.display().to_string());
     let session = Session::read(path, &files, options).map_err(exit::in_scene(path))?;
-    if common.strict && !session.warnings().is_empty() {
+    if common.strict && exit::is_bad(session.warnings()) {
         return Err(Failure::Strict(session.warnings().to_vec()));
     }
     Ok(session)

@@ -121,7 +121,7 @@ fn render(
     let session = prepare(path, &arguments.common, &options, inputs)?;
     if number == 0 {
         if !arguments.quiet {
-            exit::listed(session.warnings()).iter().for_each(|line| say(&format!("warning: {line}")));
+            exit::say_warnings(session.warnings());
         }
         keep_inputs(path, targets, inputs)?;
     }

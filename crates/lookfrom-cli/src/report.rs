@@ -7,9 +7,10 @@ use std::time::Duration;
 use lookfrom::film::Address;
 use lookfrom::render::Rays;
 use lookfrom::session::{Finished, Session};
+use lookfrom_scene::WarningKind;
 use serde::Serialize;
 
-use crate::exit::Failure;
+use crate::exit::{self, Failure};
 use crate::json;
 
 /// What was done for one scene. The names are those of the JSON object, which docs/guide/command.md explains.
@@ -34,7 +35,10 @@ pub(crate) struct Summary {
     pub(crate) triangles: u64,
     pub(crate) spheres: u64,
     pub(crate) instances: u64,
+    /// By which the picture may differ from what was meant.
     pub(crate) warnings: Vec<String>,
+    /// Harmless ones.
+    pub(crate) notices: Vec<String>,
     pub(crate) cancelled: bool,
     pub(crate) dropped_samples: Dropped,
 }
@@ -112,7 +116,8 @@ impl Summary {
             triangles: info.counts.triangles,
             spheres: info.counts.spheres,
             instances: info.counts.instances,
-            warnings: session.warnings().iter().map(ToString::to_string).collect(),
+            warnings: exit::lines(session.warnings(), WarningKind::Warning),
+            notices: exit::lines(session.warnings(), WarningKind::Notice),
             cancelled: false,
             dropped_samples: Dropped { count: film.dropped(), first: film.first_dropped().map(Into::into) },
         }
@@ -258,6 +263,7 @@ mod tests {
             spheres: 0,
             instances: 0,
             warnings: Vec::new(),
+            notices: Vec::new(),
             cancelled: false,
             dropped_samples: Dropped { count: 0, first: None },
         }

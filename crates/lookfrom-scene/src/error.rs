@@ -1,6 +1,6 @@
 //! What can be wrong with what is on disk, where, and what to do about it.
 //!
-//! Every reader returns [`Error`] for what stops it and collects [`Warning`]s for what can be survived. Nothing here prints.
+//! Every reader returns [`Error`] for what stops it and collects [`Warning`](crate::Warning)s for what can be survived. Nothing here prints.
 
 use std::fmt;
 use std::path::Path;
@@ -76,12 +76,17 @@ pub struct Error {
     pub message: String,
     /// What to do about it, where that is known.
     pub hint: Option<String>,
+    /// Further errors found in the same run.
+    pub more: Vec<Error>,
 }
+
+/// How many of an error and its further ones are written out; the rest are counted.
+const MOST_WRITTEN: usize = 20;
 
 impl Error {
     /// An error of `kind` at a place.
     pub fn new(kind: ErrorKind, at: &Location, message: impl Into<String>) -> Self {
-        Self { kind, at: at.clone(), message: message.into(), hint: None }
+        Self { kind, at: at.clone(), message: message.into(), hint: None, more: Vec::new() }
     }
 
     /// The bytes are not what the format allows.
@@ -99,34 +104,64 @@ impl Error {
         self.hint = Some(hint.into());
         self
     }
+
+    /// All errors of a run as one: the first, with the others as its further ones. `None` where there are none.
+    pub fn all(errors: Vec<Self>) -> Option<Self> {
+        let mut flat = errors.into_iter().flat_map(|mut error| {
+            let more = std::mem::take(&mut error.more);
+            std::iter::once(error).chain(more)
+        });
+        let first = flat.next()?;
+        Some(Self { more: flat.collect(), ..first })
+    }
+
+    /// This error and its further ones.
+    pub fn each(&self) -> impl Iterator<Item = &Self> {
+        std::iter::once(self).chain(&self.more)
+    }
+
+    /// Those of [`each`](Self::each) that are written out, and how many are left.
+    pub fn first_few(&self) -> (impl Iterator<Item = &Self>, usize) {
+        (self.each().take(MOST_WRITTEN), (1 + self.more.len()).saturating_sub(MOST_WRITTEN))
+    }
 }
 
+/// For logs and messages: each error as `file:line:column: message` and an indented remedy, and how many are left out. The
+/// lines that they point at are not shown.
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.at, self.message)?;
-        match &self.hint {
-            Some(hint) => write!(f, "\n  help: {hint}"),
-            None => Ok(()),
+        let (written, left) = self.first_few();
+        for (index, error) in written.enumerate() {
+            let separator = if index == 0 { "" } else { "\n" };
+            write!(f, "{separator}{}: {}", error.at, error.message)?;
+            if let Some(hint) = &error.hint {
+                write!(f, "\n  help: {hint}")?;
+            }
         }
+        if left > 0 { write!(f, "\n… and {left} more") } else { Ok(()) }
     }
 }
 
 impl std::error::Error for Error {}
 
-/// Something that can be survived: the picture is made, but may differ from what was meant.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Warning {
-    /// Where.
-    pub at: Location,
-    /// What was found and what was done instead.
-    pub message: String,
-}
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.at, self.message)
-    }
-}
-
 /// What a reader gives back.
 pub type Result<T> = std::result::Result<T, Error>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_errors_are_one_that_writes_the_first_twenty() {
+        let at = |line| Location::file(Path::new("a.toml")).at(line, 1);
+        assert_eq!(Error::all(Vec::new()), None);
+        let inner = Error::all(vec![Error::invalid(&at(1), "one"), Error::invalid(&at(2), "two")]);
+        let all = vec![inner.expect("two errors"), Error::invalid(&at(3), "three").hint("count")];
+        let all = Error::all(all).expect("three errors");
+        assert_eq!(all.to_string(), "a.toml:1:1: one\na.toml:2:1: two\na.toml:3:1: three\n  help: count");
+        assert!(all.more.iter().all(|error| error.more.is_empty()));
+        let many = Error::all((1..=51).map(|line| Error::invalid(&at(line), "wrong")).collect());
+        let text = many.expect("51 errors").to_string();
+        assert!(text.ends_with("a.toml:20:1: wrong\n… and 31 more"), "{text}");
+    }
+}

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use std::io::{ErrorKind as IoKind, Read};
 use std::path::{Component, Path, PathBuf};
 
-use crate::error::{Error, ErrorKind, Location, Result, Warning};
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::warning::Warning;
 
 /// How much a scene may ask for. Scene files are hostile input; a limit met is an [`ErrorKind::Limit`].
 #[derive(Clone, Copy, Debug)]
@@ -196,8 +197,13 @@ impl<'a> Sources<'a> {
         self.files.read(path, self.limits.file_bytes)
     }
 
-    /// Notes something that can be survived.
+    /// Notes something that can be survived, after which the picture may differ from what was meant.
     pub fn warn(&mut self, at: &Location, message: impl Into<String>) {
-        self.warnings.push(Warning { at: at.clone(), message: message.into() });
+        self.warnings.push(Warning::new(at, message));
+    }
+
+    /// Notes something harmless: the picture is the one that was meant.
+    pub fn notice(&mut self, at: &Location, message: impl Into<String>) {
+        self.warnings.push(Warning::notice(at, message));
     }
 }

@@ -1,5 +1,6 @@
 //! A decoded picture, how it is read from a file, how one is written, and how two differ.
 
+mod basis;
 pub mod compare;
 mod encoding;
 pub mod flip;

@@ -9,7 +9,7 @@ use crate::light::Light;
 use crate::material::{Color, Material, MaterialKind};
 use crate::scene::{MaterialId, Origin, Scene};
 use crate::shape::{Part, Shape};
-use crate::{gltf, model, pbrt, studio, toml};
+use crate::{gltf, model, packed, pbrt, studio, toml};
 
 /// The reflectance of a model whose file names no material.
 const CLAY: f32 = 0.8;
@@ -55,12 +55,9 @@ pub(crate) fn is_toml(path: &Path) -> bool {
 
 /// Whether a file is a scene of pbrt, by its name (`.pbrt`, `.pbrt.gz`), or by its content where that says nothing.
 fn is_pbrt(path: &Path, sources: &Sources<'_>) -> bool {
-    let is_packed =
-        extension(path) == "gz" && path.file_stem().is_some_and(|stem| extension(stem.as_ref()) == "pbrt");
     let is_other = model::is_model(path) || GLTF.contains(&&*extension(path));
-    extension(path) == "pbrt"
-        || is_packed
-        || (!is_other && sources.read(path).is_ok_and(|bytes| pbrt::is_pbrt(&bytes)))
+    extension(&packed::unpacked_name(path)) == "pbrt"
+        || (!is_other && packed::read(path, sources).is_ok_and(|bytes| pbrt::is_pbrt(&bytes)))
 }
 
 /// The endings of names of glTF files.
@@ -91,8 +88,7 @@ pub(crate) fn model(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -
         Error::new(ErrorKind::Unsupported, &Location::file(path), message)
             .hint("scenes are .toml or .pbrt files, models .gltf, .glb, .obj, .ply or .stl")
     };
-    let extension = extension(path);
-    if extension == "pbrt" {
+    if extension(&packed::unpacked_name(path)) == "pbrt" {
         return Err(unsupported("a scene of pbrt cannot be a part of another scene".to_owned()));
     }
     if is_gltf(path, sources) {

@@ -18,7 +18,7 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Sources;
 use crate::scene::Scene;
 use crate::shape::Part;
-use crate::{obj, ply, stl};
+use crate::{obj, packed, ply, stl};
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Format {
@@ -27,7 +27,8 @@ enum Format {
     Stl,
 }
 
-/// Whether the ending of the name is that of a model format: `.obj`, `.ply` or `.stl` in any case.
+/// Whether the ending of the name is that of a model format: `.obj`, `.ply` or `.stl` in any case, with or without a
+/// further `.gz` of a file that gzip packed.
 pub fn is_model(path: &Path) -> bool {
     by_name(path).is_some()
 }
@@ -38,7 +39,7 @@ pub fn is_model(path: &Path) -> bool {
 /// # Errors
 /// `Unsupported` where neither name nor content is that of a model; otherwise those of the format's reader.
 pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    let bytes = sources.read(path)?;
+    let bytes = packed::read(path, sources)?;
     let file = Location::file(path);
     if bytes.is_empty() {
         return Err(Error::syntax(&file, "the file is empty"));
@@ -59,7 +60,8 @@ pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result
 }
 
 fn by_name(path: &Path) -> Option<Format> {
-    let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+    let name = packed::unpacked_name(path);
+    let ending = name.extension()?.to_str()?.to_ascii_lowercase();
     match ending.as_str() {
         "obj" => Some(Format::Obj),
         "ply" => Some(Format::Ply),

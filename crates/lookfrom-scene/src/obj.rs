@@ -15,6 +15,7 @@ use crate::error::{Error, Location, Result};
 use crate::files::Sources;
 use crate::image::linear_from_srgb;
 use crate::model::{points, text};
+use crate::packed;
 use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Part};
 
@@ -24,7 +25,7 @@ use crate::shape::{Geometry, Part};
 /// # Errors
 /// `Io`, `Limit`, `Syntax` and `Invalid`, at line and column. After an error the scene may hold pieces of the file.
 pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    from_bytes(&sources.read(path)?, path, sources, scene)
+    from_bytes(&packed::read(path, sources)?, path, sources, scene)
 }
 
 /// The same for the content of a file; `path` is where it came from, for messages and for the files it names.

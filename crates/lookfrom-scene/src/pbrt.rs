@@ -17,6 +17,7 @@ mod loop_subdivision;
 mod material;
 mod medium;
 mod mesh;
+mod missing;
 mod params;
 mod picture;
 mod shape;
@@ -34,6 +35,7 @@ use glam::DMat4;
 
 use self::file::Model;
 use self::medium::NamedMedium;
+use self::missing::Missing;
 use self::state::{Opened, Options, State};
 use self::text::Place;
 use crate::error::{Error, Location, Result};
@@ -48,7 +50,8 @@ use crate::settings::ColorMode;
 /// # Errors
 /// With line, column and the line that is wrong: `Syntax` where words are not those of the format, `Invalid` where they
 /// say what cannot be (a scene of pbrt-v3 among them), `Limit` where something is too large or nests too deep, and
-/// whatever goes wrong in the files that are named.
+/// whatever goes wrong in the files that are named. Files that are not there are told of all at once, as
+/// [`Error::more`].
 pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
     let mut scene = Scene::default();
     scene.render.color = ColorMode::Spectral;
@@ -77,9 +80,12 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         warned: BTreeSet::new(),
         media: BTreeMap::new(),
         without_media: None,
+        missing: Missing::default(),
     };
-    reader.file(path)?;
-    reader.finish(path)?;
+    let result = reader.file(path).and_then(|()| reader.finish(path));
+    if let Some(error) = reader.missing.and(result) {
+        return Err(error);
+    }
     let mut scene = reader.scene;
     scene.is_whole = true;
     Ok(scene)
@@ -134,6 +140,8 @@ struct Reader<'s, 'f> {
     media: BTreeMap<String, NamedMedium>,
     /// An integrator that knows no media, until that is told of.
     without_media: Option<(String, Place)>,
+    /// Files that are not there, so far.
+    missing: Missing,
 }
 
 /// A material that was made or mentioned.
@@ -182,8 +190,13 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// What can only be done when everything is known.
+    /// What can only be done when everything is known. Models are read whatever is wrong, to find all that are missing.
     fn finish(&mut self, path: &Path) -> Result<()> {
+        let result = self.finish_without_models(path);
+        self.read_models().and(result)
+    }
+
+    fn finish_without_models(&mut self, path: &Path) -> Result<()> {
         if let Some(opened) = self.stack.last() {
             let error = opened.place.syntax(format!("this {}Begin has no {}End", opened.word, opened.word));
             return Err(error.hint("the file may be cut off"));
@@ -214,7 +227,7 @@ impl Reader<'_, '_> {
         self.place_instances()?;
         curve::join(&mut self.scene.shapes);
         self.scene.objects.iter_mut().for_each(|object| curve::join(&mut object.shapes));
-        self.read_models()
+        Ok(())
     }
 }
 

@@ -15,6 +15,7 @@ use std::path::Path;
 pub use self::write::write;
 use crate::error::{Location, Result};
 use crate::files::Sources;
+use crate::packed;
 use crate::scene::Scene;
 use crate::shape::Part;
 
@@ -25,7 +26,7 @@ use crate::shape::Part;
 /// `Io`, `Limit`, `Syntax` and `Invalid`; at line and column, or at a byte in what is binary. After an error the scene
 /// may hold pieces of the file.
 pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    from_bytes(&sources.read(path)?, path, sources, scene)
+    from_bytes(&packed::read(path, sources)?, path, sources, scene)
 }
 
 /// The same for the content of a file; `path` is where it came from, for messages and for the files it names.

@@ -19,6 +19,7 @@ use crate::model::surface::push_vertex_colors;
 use crate::model::tally::Tally;
 use crate::model::text;
 use crate::model::weld::Weld;
+use crate::packed;
 use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Mesh, Part};
 
@@ -34,7 +35,7 @@ const NO_COLOR: u32 = u32::MAX;
 /// # Errors
 /// `Io`, `Limit` and `Syntax`; at line and column, or at a byte in what is binary.
 pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    from_bytes(&sources.read(path)?, path, sources, scene)
+    from_bytes(&packed::read(path, sources)?, path, sources, scene)
 }
 
 /// The same for the content of a file; `path` is where it came from, for messages.
@@ -60,7 +61,7 @@ pub fn from_bytes(
         &file,
         sources,
     );
-    triangles.flat.warn("triangle", "left out: without area", &file, sources);
+    triangles.flat.notice("triangle", "left out: without area", &file, sources);
     let mut parts = Vec::new();
     for (name, mut mesh) in solids {
         if mesh.triangles.is_empty() {
@@ -171,7 +172,7 @@ fn read_binary(
     let is_whole = body.len().is_multiple_of(TRIANGLE);
     let count = if claimed == 0 && is_whole && there > 0 {
         // Some programs do not know the number when they start to write.
-        sources.warn(file, format!("the header says that there are no triangles; all {there} are read"));
+        sources.notice(file, format!("the header says that there are no triangles; all {there} are read"));
         there
     } else {
         claimed
@@ -185,8 +186,11 @@ fn read_binary(
         return Err(Error::new(ErrorKind::Limit, file, message).hint("raise `Limits::elements`"));
     }
     let used = TRIANGLE * count as usize;
-    if used < body.len() {
-        sources.warn(file, format!("{} bytes after the last triangle are ignored", body.len() - used));
+    let rest = body.len() - used;
+    if rest > 0 {
+        let message = format!("{rest} bytes after the last triangle are ignored");
+        // Triangles may be among them; less than one is padding.
+        if rest >= TRIANGLE { sources.warn(file, message) } else { sources.notice(file, message) }
     }
     let header = &bytes[..HEADER - 4];
     let magics = header.windows(6).position(|window| window == b"COLOR=");

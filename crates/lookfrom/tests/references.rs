@@ -67,3 +67,46 @@ fn pictures_are_pbrts() {
         assert!(noise.blocks_within > 0.97, "{name}: {found:?}");
     }
 }
+
+/// Which part of the pixels has nearly the normal (`N`, `Ns`) of pbrt's picture.
+fn alike(scene: &Path, reference: &Path) -> [f64; 2] {
+    let theirs = read_exr(reference, &mut Sources::new(&Disk)).expect("a picture");
+    let mut sources = Sources::new(&Disk);
+    let mut scene = load::scene(scene, &mut sources).unwrap_or_else(|error| panic!("{error}"));
+    (scene.render.samples, scene.render.depth, scene.image.layers) = (SAMPLES, 0, Layers::Geometry);
+    let (image, render) = (scene.image.clone(), scene.render.clone());
+    let world = World::compile(scene, &mut sources.warnings).unwrap_or_else(|error| panic!("{error}"));
+    let film =
+        Frame::new(&world, &image, &render).expect("a frame").render(None, &()).expect("a picture").film;
+    let places = || (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
+    let ours: Vec<_> = places().map(|(x, y)| film.features(x, y).unwrap_or_default()).collect();
+    ["N", "Ns"].map(|layer| {
+        let axes = ["X", "Y", "Z"].map(|axis| theirs.channel(&format!("{layer}.{axis}")).expect("a layer"));
+        let cosine = |index: usize| {
+            let normal = if layer == "N" { ours[index].ng } else { ours[index].ns };
+            let theirs = axes.map(|axis| axis[index]);
+            let is_nothing = [normal, theirs].map(|normal| normal == [0.0; 3]);
+            if is_nothing == [true; 2] {
+                1.0
+            } else {
+                normal.iter().zip(theirs).map(|(a, b)| a * b).sum::<f32>()
+            }
+        };
+        (0..ours.len()).filter(|&index| cosine(index) > 0.98).count() as f64 / ours.len() as f64
+    })
+}
+
+#[test]
+fn normals_are_pbrts() {
+    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
+    if !shared.join("reference").is_dir() {
+        println!("skipped: there is no {}", shared.display());
+        return;
+    }
+    for (scene, name, _) in SCENES {
+        let reference = shared.join(format!("reference/{name}.exr"));
+        let found = alike(&shared.join(format!("scenes/{scene}.pbrt")), &reference);
+        println!("{name}: {found:?} of the pixels have pbrt's N, Ns");
+        assert!(found.iter().all(|&part| part > 0.97), "{name}: {found:?}");
+    }
+}

@@ -6,12 +6,13 @@ use lookfrom::session::{SceneInfo, Session};
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::contents::{AnimationEntry, CameraEntry, Contents};
 use lookfrom_scene::count::Counts;
+use lookfrom_scene::WarningKind;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, RenderSettings};
 use serde::Serialize;
 
 use super::{Tree, tree};
-use crate::report;
+use crate::{exit, report};
 
 /// A scene, and what it becomes.
 #[derive(Serialize)]
@@ -31,6 +32,7 @@ pub(super) struct Object<'a> {
     seconds: SecondsObject,
     added: &'a [&'static str],
     warnings: Vec<String>,
+    notices: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -134,7 +136,8 @@ impl<'a> Object<'a> {
             bvh: tree(session),
             seconds: SecondsObject { read: report::seconds(*read), build: report::seconds(*build) },
             added,
-            warnings: session.warnings().iter().map(ToString::to_string).collect(),
+            warnings: exit::lines(session.warnings(), WarningKind::Warning),
+            notices: exit::lines(session.warnings(), WarningKind::Notice),
         }
     }
 }

@@ -103,6 +103,32 @@ fn warnings_and_strict() {
 }
 
 #[test]
+fn harmless_warnings_are_notes_of_one_line_that_strict_allows() {
+    let stage = Stage::new("notes");
+    let flat = format!("{MODEL}f 1 1 2\nf 3 3 3\n");
+    let names = ["a", "b", "c", "d", "e"].map(|name| format!("{name}.obj"));
+    names.iter().for_each(|name| stage.write(name, &flat));
+    let models: String = names.iter().map(|name| format!("[[mesh]]\nfile = \"{name}\"\n\n")).collect();
+    let head = "[camera]\nlookfrom = [0, 0, 5]\nlookat = [0, 0, 0]\n\n";
+    stage.write("all.toml", &format!("{head}{models}"));
+    let run = stage.done("render all.toml --width 8 --samples 1 --strict --json");
+    let note = "10 triangles left out: without area (also at b.obj:5, c.obj:5 and 2 more places)";
+    assert!(run.stderr.contains(&format!("note: a.obj:5: {note}\n")), "{}", run.stderr);
+    assert_eq!((run.stderr.matches("note: ").count(), run.stderr.matches("warning: ").count()), (1, 0));
+    let summary = &run.json()[0];
+    assert_eq!(summary["notices"].as_array().map(Vec::len), Some(1), "{summary}");
+    assert_eq!(summary["warnings"], serde_json::json!([]));
+    // One that matters comes before them, and is what --strict tells of.
+    stage.write("e.obj", &format!("mtllib none.mtl\n{flat}"));
+    let run = stage.done("render all.toml --width 8 --samples 1");
+    let [warning, note] = ["warning: e.obj:1", "note: a.obj:5"].map(|line| run.stderr.find(line));
+    assert!(warning.is_some() && warning < note, "{}", run.stderr);
+    let run = stage.run("info all.toml --strict");
+    assert!(!run.stderr.contains("without area"), "{}", run.stderr);
+    run.fails(1, &["--strict", "none.mtl"]);
+}
+
+#[test]
 fn many_warnings_are_counted() {
     let stage = Stage::new("many");
     let libraries: String = (0..30).map(|i| format!("mtllib none{i}.mtl\n")).collect();

@@ -34,6 +34,52 @@ fn layers_have_the_names_of_pbrts() {
     );
 }
 
+/// Unit vectors of a layer, pixel by pixel; those of pixels in which nothing is are left out.
+fn normals(stage: &Stage, file: &str, layer: &str) -> Vec<[f32; 3]> {
+    let found = image::read_exr(&stage.path(file), &mut Sources::new(&Disk)).unwrap();
+    let [x, y, z] = ["X", "Y", "Z"].map(|axis| found.channel(&format!("{layer}.{axis}")).unwrap());
+    let all = x.iter().zip(y).zip(z).map(|((&x, &y), &z)| [x, y, z]);
+    let normals: Vec<[f32; 3]> = all.filter(|normal| *normal != [0.0; 3]).collect();
+    for [x, y, z] in &normals {
+        assert!((x * x + y * y + z * z - 1.0).abs() < 1e-4, "{layer}: {x} {y} {z}");
+    }
+    normals
+}
+
+#[test]
+fn normals_look_to_the_viewer_and_have_bumps() {
+    let stage = Stage::new("normals");
+    // Seen from behind, bent by heights that rise along u, which is to the left then: as far as 45°.
+    let scene = |material: &str| {
+        format!(
+            "[camera]\nlookfrom = [0, 0, -3]\nlookat = [0, 0, 0]\n\n[image]\nwidth = 12\nheight = 8\n\n\
+             [render]\nsamples = 4\nintegrator = \"path\"\n\n\
+             [materials.m]\ntype = \"diffuse\"\n{material}\n\n\
+             [textures.slope]\ntype = \"image\"\nfile = \"slope.pfm\"\nwrap = \"clamp\"\n\n\
+             [[quad]]\ncorner = [-0.5, -0.5, 0]\nedge_u = [1, 0, 0]\nedge_v = [0, 1, 0]\nmaterial = \"m\"\n"
+        )
+    };
+    let slope: Vec<u8> =
+        b"Pf\n2 1\n-1.0\n".iter().copied().chain([0.0_f32, 0.5].map(f32::to_le_bytes).concat()).collect();
+    std::fs::write(stage.path("slope.pfm"), slope).unwrap();
+    stage.write("plain.toml", &scene(""));
+    stage.write("bump.toml", &scene("bump = \"slope\""));
+    for name in ["plain", "bump"] {
+        stage.done(&format!("render {name}.toml -q -o {name}.exr --layers geometry"));
+        let geometric = normals(&stage, &format!("{name}.exr"), "N");
+        assert!(!geometric.is_empty() && geometric.iter().all(|n| *n == [0.0, 0.0, -1.0]), "{geometric:?}");
+    }
+    let smooth = normals(&stage, "plain.exr", "Ns");
+    assert!(smooth.iter().all(|n| *n == [0.0, 0.0, -1.0]), "{smooth:?}");
+    let bent = normals(&stage, "bump.exr", "Ns");
+    assert!(bent.iter().any(|[x, _, z]| x.abs() > 0.5 && *z < -0.5), "{bent:?}");
+    // At the outline of a sphere samples see other normals, and their mean is as long.
+    stage.done("render scene.toml -q -o sphere.exr --layers geometry");
+    for layer in ["N", "Ns"] {
+        assert!(normals(&stage, "sphere.exr", layer).iter().all(|[_, _, z]| *z < 0.0), "{layer}");
+    }
+}
+
 #[test]
 fn what_light_is_and_how_lights_are_chosen_is_in_the_header() {
     let stage = Stage::new("color");

@@ -158,6 +158,7 @@ fn the_summary_has_its_keys() {
             "instances",
             "integrator",
             "mrays_per_s",
+            "notices",
             "output",
             "peak_memory_bytes",
             "rays",

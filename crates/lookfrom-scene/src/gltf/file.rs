@@ -249,7 +249,8 @@ impl Document {
             };
             if (length as u64) < buffer.byte_length.0 {
                 let expected = buffer.byte_length.0;
-                sources.warn(&self.at(&place), format!("{expected} bytes are announced, {length} are there"));
+                sources
+                    .notice(&self.at(&place), format!("{expected} bytes are announced, {length} are there"));
             }
             buffers.push(bytes);
         }
@@ -328,7 +329,8 @@ fn chunks(
         return Err(unsupported(at, &format!("version {version} of the GLB container")));
     }
     if length as usize != content.len() {
-        sources.warn(at, format!("the GLB header announces {length} bytes; the file has {}", content.len()));
+        sources
+            .notice(at, format!("the GLB header announces {length} bytes; the file has {}", content.len()));
     }
 
     let mut json = None;
@@ -368,7 +370,7 @@ fn parse(bytes: &[u8], what: &str, at: &Location, sources: &mut Sources<'_>) -> 
     let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     let text = String::from_utf8_lossy(bytes);
     if matches!(text, std::borrow::Cow::Owned(_)) {
-        sources.warn(at, "the JSON is not UTF-8; what is not is taken as �");
+        sources.notice(at, "the JSON is not UTF-8; what is not is taken as �");
     }
     let text = text.trim_end_matches(['\0', ' ', '\n', '\r', '\t']);
     if text.is_empty() {

@@ -13,6 +13,7 @@ use crate::files::Sources;
 use crate::model::polygon::has_area;
 use crate::scene::{Bounds, MeshId, Scene};
 use crate::shape::{Geometry, Mesh, Profile, Sphere, Strand};
+use crate::warning::Warning;
 
 use self::topology::Topology;
 
@@ -244,12 +245,13 @@ pub(crate) fn geometry(
         }
     };
     if left_out > 0 {
-        sources.warn(
-            &at,
-            format!(
-                "{left_out} points, lines or triangles are left out: a position is infinite or not a number"
-            ),
-        );
+        let what = "left out: a position is infinite or not a number";
+        let noun = match topology {
+            Topology::Points => "point",
+            Topology::Lines | Topology::LineLoop | Topology::LineStrip => "line",
+            Topology::Triangles | Topology::TriangleStrip | Topology::TriangleFan => "triangle",
+        };
+        sources.warnings.push(Warning::new(&at, what).of(left_out as u64, noun));
     }
     Ok(geometry)
 }

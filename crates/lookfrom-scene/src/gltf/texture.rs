@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::file::Document;
 use super::json::{Sampler, Texture as TextureEntry, TextureInfo, Whole};
 use super::uri::Uri;
-use crate::error::{Error, ErrorKind, Result, Warning};
+use crate::error::{Error, ErrorKind, Result};
 use crate::files::Sources;
 use crate::image::{self, Encoding, Image};
 use crate::material::{Color, Scalar};
@@ -173,7 +173,7 @@ impl<'d> Textures<'d> {
             let image = image.unwrap_or_else(|error| {
                 let message =
                     format!("the picture cannot be used, and white is in its place: {}", error.message);
-                sources.warnings.push(Warning { at: error.at, message });
+                sources.warn(&error.at, message);
                 blank(document, index, meaning)
             });
             (id, image, sources.warnings)

@@ -2,11 +2,11 @@
 //! Format Specification", version 2.0, 2021)?
 //!
 //! Only the first picture is read, without its smaller versions. Whether its bytes are colours by the sRGB curve, those
-//! who use it know. The crate `basisu` unpacks Basis Universal's formats; without the feature `basis` they are not read.
-//! Formats of graphics cards other than these (BC7, ASTC …) are not, either.
+//! who use it know. `basis` unpacks Basis Universal's formats; other formats of graphics cards (BC7, ASTC …) are not read.
 
 use std::io::Read;
 
+use super::basis;
 use super::read::check_size;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Limits;
@@ -14,9 +14,8 @@ use crate::files::Limits;
 /// The first bytes of every file.
 pub(super) const MAGIC: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
 
-/// Bytes of the header before the list of levels, and of one entry of that.
+/// Bytes of the header before the list of levels.
 const HEADER: usize = 80;
-const LEVEL: usize = 24;
 
 const NOT_WHOLE: &str = "check that the file is whole; writing it again may repair it";
 
@@ -25,6 +24,10 @@ const PLAIN: u32 = 0;
 const BASIS_LZ: u32 = 1;
 const ZSTANDARD: u32 = 2;
 const ZLIB: u32 = 3;
+
+/// Colour models of the descriptor.
+const ETC1S: u8 = 163;
+const UASTC: u8 = 166;
 
 /// A decoded picture.
 #[derive(Debug)]
@@ -42,6 +45,11 @@ struct Header {
     width: u32,
     height: u32,
     packing: u32,
+    /// How many pictures there are: levels, layers, faces.
+    images: usize,
+    descriptor: std::ops::Range<usize>,
+    /// What all pictures share.
+    shared: std::ops::Range<usize>,
     /// Of the first level.
     level: std::ops::Range<usize>,
     /// Bytes of that once it is unpacked.
@@ -79,11 +87,13 @@ fn header(bytes: &[u8], at: &Location) -> Result<Header> {
         (end <= bytes.len()).then_some(offset as usize..end)
     };
     let read = || {
-        // Besides the first level: descriptor, keys and values, and what all levels share must be there.
-        within(u64::from(field(48)?), u64::from(field(52)?))?;
+        // Keys and values are not read, but must be there.
         within(u64::from(field(56)?), u64::from(field(60)?))?;
-        within(long(64)?, long(72)?)?;
+        let counts = [field(32)?, field(36)?, field(40)?];
         Some(Header {
+            images: counts.iter().fold(1, |images, &count| images.saturating_mul(count.max(1) as usize)),
+            descriptor: within(u64::from(field(48)?), u64::from(field(52)?))?,
+            shared: within(long(64)?, long(72)?)?,
             format: field(12)?,
             width: field(20)?,
             height: field(24)?.max(1),
@@ -165,69 +175,30 @@ fn plain(bytes: &[u8], header: &Header, at: &Location) -> Result<Vec<[u8; 4]>> {
     Ok(level.chunks_exact(size).map(texel).collect())
 }
 
-/// ETC1S, UASTC and their kin.
-#[cfg(feature = "basis")]
+/// ETC1S and UASTC.
 fn basis(bytes: &[u8], header: &Header, at: &Location) -> Result<Vec<[u8; 4]>> {
-    use basisu::{DecodeFlags, TargetFormat, Transcoder};
-
-    let whole: Vec<u8>;
-    let bytes = match header.packing {
-        PLAIN | BASIS_LZ => bytes,
-        // What is packed as a whole is unpacked here, within limits.
-        _ => {
-            let blocks = |length: u32| u64::from(length.div_ceil(4));
-            let level = unpacked(bytes, header, 16 * blocks(header.width) * blocks(header.height), at)?;
-            whole = alone(bytes, &level);
-            &whole
+    let size = [header.width, header.height].map(|length| length as usize);
+    let texels = match (bytes[header.descriptor.clone()].get(12), header.packing) {
+        (Some(&ETC1S), BASIS_LZ) => {
+            basis::etc1s(&bytes[header.shared.clone()], &bytes[header.level.clone()], header.images, size)
+        }
+        // There may be more than one picture in it.
+        (Some(&UASTC), PLAIN) => basis::uastc(&bytes[header.level.clone()], size),
+        (Some(&UASTC), _) => {
+            let [columns, rows] = size.map(|length| length.div_ceil(4) as u64);
+            let level = unpacked(bytes, header, basis::BLOCK as u64 * columns * rows, at)?;
+            basis::uastc(&level, size)
+        }
+        (model, packing) => {
+            let model = model.map_or("no colour model".to_owned(), |model| format!("colour model {model}"));
+            let message = format!("KTX 2 of {model} and supercompression {packing} is not read");
+            return Err(Error::new(ErrorKind::Unsupported, at, message)
+                .hint("write it as Basis Universal's ETC1S or UASTC, as PNG or as WebP"));
         }
     };
-    // The crate's arithmetic on damaged files may overflow or leave its slices; a panic of it is such a file's fault,
-    // leaves nothing of ours half done, and must not take down whoever asked.
-    let transcode = || Transcoder::new(bytes)?.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE);
-    match std::panic::catch_unwind(transcode) {
-        Ok(Ok(texels)) => Ok(texels.as_chunks().0.to_vec()),
-        Ok(Err(error)) => {
-            Err(Error::syntax(at, format!("the Basis Universal picture cannot be decoded: {error:?}"))
-                .hint(NOT_WHOLE))
-        }
-        Err(_) => Err(Error::syntax(at, "the Basis Universal picture is damaged").hint(NOT_WHOLE)),
-    }
-}
-
-/// Nothing can be decoded without the feature.
-#[cfg(not(feature = "basis"))]
-fn basis(_: &[u8], _: &Header, at: &Location) -> Result<Vec<[u8; 4]>> {
-    Err(Error::new(ErrorKind::Unsupported, at, "compressed by Basis Universal, which this build cannot read")
-        .hint("build with the feature `basis`, or write the picture as PNG or WebP"))
-}
-
-/// The same file with nothing but its first level, which is not packed, and its descriptor.
-#[cfg(feature = "basis")]
-fn alone(bytes: &[u8], level: &[u8]) -> Vec<u8> {
-    let field = |offset: usize| {
-        let field: [u8; 4] = std::array::from_fn(|i| bytes[offset + i]);
-        u32::from_le_bytes(field) as usize
-    };
-    let descriptor = &bytes[field(48)..][..field(52)];
-    let mut file = bytes[..HEADER + LEVEL].to_vec();
-    let mut put = |offset: usize, value: u64, size: usize| {
-        file[offset..offset + size].copy_from_slice(&value.to_le_bytes()[..size]);
-    };
-    let start = (HEADER + LEVEL + descriptor.len()).next_multiple_of(16);
-    put(40, 1, 4);
-    put(44, u64::from(PLAIN), 4);
-    put(48, (HEADER + LEVEL) as u64, 4);
-    // No keys and values, nothing shared.
-    put(56, 0, 8);
-    put(64, 0, 8);
-    put(72, 0, 8);
-    put(HEADER, start as u64, 8);
-    put(HEADER + 8, level.len() as u64, 8);
-    put(HEADER + 16, level.len() as u64, 8);
-    file.extend_from_slice(descriptor);
-    file.resize(start, 0);
-    file.extend_from_slice(level);
-    file
+    texels.map_err(|damage| {
+        Error::syntax(at, format!("the Basis Universal picture is damaged: {damage}")).hint(NOT_WHOLE)
+    })
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use crate::error::Location;
 use crate::files::Sources;
+use crate::warning::{Warning, WarningKind};
 
 /// Counts one kind of mishap.
 #[derive(Clone, Copy, Default)]
@@ -31,14 +32,18 @@ impl Tally {
 
     /// Warns where there were any: "3 triangles `what`".
     pub(crate) fn warn(self, noun: &str, what: &str, file: &Location, sources: &mut Sources<'_>) {
+        self.tell(WarningKind::Warning, noun, what, file, sources);
+    }
+
+    /// The same of something harmless: the picture is the one that was meant.
+    pub(crate) fn notice(self, noun: &str, what: &str, file: &Location, sources: &mut Sources<'_>) {
+        self.tell(WarningKind::Notice, noun, what, file, sources);
+    }
+
+    fn tell(self, kind: WarningKind, noun: &str, what: &str, file: &Location, sources: &mut Sources<'_>) {
         if self.count > 0 {
-            let (plural, first) = match (self.count, self.first) {
-                (1, _) => ("", ""),
-                (_, 0) => ("s", ""),
-                _ => ("s", " (the first is here)"),
-            };
-            let message = format!("{} {noun}{plural} {what}{first}", self.count);
-            sources.warn(&file.at(self.first, 0), message);
+            let warning = Warning { kind, ..Warning::new(&file.at(self.first, 0), what) };
+            sources.warnings.push(warning.of(self.count, noun));
         }
     }
 }

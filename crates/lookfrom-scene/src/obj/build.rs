@@ -55,7 +55,7 @@ pub(super) fn meshes(
         }
     }
     tallies.not_finite.warn("face", "left out: a coordinate is infinite or not a number", file, sources);
-    tallies.flat.warn("triangle", "left out: without area", file, sources);
+    tallies.flat.notice("triangle", "left out: without area", file, sources);
     tallies.values.warn("normal or texture coordinate", "ignored: infinite or not a number", file, sources);
     if triangulator.gave_up() {
         sources.warn(

@@ -26,6 +26,7 @@ use crate::model::surface::{
     base_name, beside, picture, push_image, push_material, push_texture, push_vertex_colors, read_image,
 };
 use crate::model::tally::Tally;
+use crate::packed;
 use crate::scene::{ImageId, MaterialId, Scene};
 use crate::shape::Emission;
 use crate::texture::{TextureKind, Wrap};
@@ -83,7 +84,7 @@ impl Looks {
                 missing = tried.filter_map(|(name, result)| Some((name, result.err()?))).collect();
             }
             // Libraries are renamed along with their models, but not in them.
-            let same_stem = path.with_extension("mtl");
+            let same_stem = packed::unpacked_name(path).with_extension("mtl");
             let is_replaced = missing.len() == words.len() && looks.read_at(&same_stem, sources).is_ok();
             for (name, error) in missing {
                 let instead = if is_replaced {

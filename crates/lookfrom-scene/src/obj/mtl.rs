@@ -94,7 +94,13 @@ pub fn parse(bytes: &[u8], path: &Path, sources: &mut Sources<'_>) -> Vec<MtlMat
     unreadable.warn("line", "ignored: the values are not what the keyword expects", &file, sources);
     orphans.warn("line", "before the first `newmtl` ignored", &file, sources);
     for (name, tally) in ignored {
-        tally.warn(&format!("`{name}` statement"), "ignored: not supported", &file, sources);
+        let noun = format!("`{name}` statement");
+        let what = "ignored: not supported";
+        match name {
+            // It is about a picture that `refl` names.
+            "sharpness" => tally.notice(&noun, what, &file, sources),
+            _ => tally.warn(&noun, what, &file, sources),
+        }
     }
     materials
 }

@@ -324,7 +324,7 @@ impl Parser<'_> {
         if self.statements.groups.iter().any(|group| !group.faces.is_empty()) {
             self.loose.warn("point or line element", "left out: only faces are drawn", file, sources);
         }
-        self.thin.warn("face", "left out: fewer than three corners", file, sources);
+        self.thin.notice("face", "left out: fewer than three corners", file, sources);
         self.curves.warn("curve or surface", "left out: free-form geometry is not supported", file, sources);
         self.calls.warn(
             "`call` or `csh` statement",

@@ -1,6 +1,5 @@
 //! How do the files that a scene names get read: included ones at once, models side by side when all are known?
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -9,16 +8,14 @@ use super::Reader;
 use super::lexer::{Lexer, Token};
 use super::text::{Place, Text};
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::{Limits, Sources};
+use crate::files::Sources;
+use crate::packed;
 use crate::ply;
 use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Mesh};
 
 /// How many files may be included: small files that include one another twice would have no end.
 const MOST_INCLUDED: u32 = 1 << 17;
-
-/// Packed files of meshes are a tenth as long as unpacked; this much is suspicious.
-const MOST_UNPACKED: u64 = 250;
 
 /// A model file that shapes wait for.
 pub(super) struct Model {
@@ -31,7 +28,7 @@ pub(super) struct Model {
 impl Reader<'_, '_> {
     /// Reads a scene file, the first or an included one.
     pub(super) fn file(&mut self, path: &Path) -> Result<()> {
-        let bytes = bytes(path, self.sources)?;
+        let bytes = packed::read(path, self.sources)?;
         let whole = Location::file(path);
         if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
             return Err(Error::syntax(&whole, "the text is UTF-16").hint("save it as UTF-8"));
@@ -59,7 +56,7 @@ impl Reader<'_, '_> {
         let mut path = self.resolve(name);
         if let Some(local) = self.resolve_locally(name)
             && local != path
-            && matches!(self.sources.files.read(&path, self.sources.limits.file_bytes), Err(error) if error.kind == ErrorKind::Io)
+            && matches!(packed::read(&path, self.sources), Err(error) if error.kind == ErrorKind::Io)
         {
             path = local;
         }
@@ -82,7 +79,11 @@ impl Reader<'_, '_> {
                 .error(ErrorKind::Limit, message)
                 .hint("files may include one another in circles"));
         }
-        self.file(&path).map_err(|error| place.blame(error))
+        match self.file(&path) {
+            // This file's own: what it names in turn has been noted.
+            Err(error) if error.kind == ErrorKind::Io => self.missing.add_text(&path, place.blame(error)),
+            result => result.map_err(|error| place.blame(error)),
+        }
     }
 
     /// The path of a file that is named in the scene: relative to the folder of the scene's first file.
@@ -105,7 +106,7 @@ impl Reader<'_, '_> {
         model.mesh
     }
 
-    /// Reads all model files, several at once; meshes and warnings come in the order of the files' names.
+    /// Reads all model files, several at once; meshes, warnings and errors come in the order of the files' names.
     pub(super) fn read_models(&mut self) -> Result<()> {
         let models: Vec<(PathBuf, Model)> = std::mem::take(&mut self.models).into_iter().collect();
         let (files, limits) = (self.sources.files, self.sources.limits);
@@ -116,10 +117,12 @@ impl Reader<'_, '_> {
             (mesh, sources.warnings)
         };
         let contents: Vec<_> = paths.par_iter().map(read).collect();
-        for ((_, model), (mesh, warnings)) in models.iter().zip(contents) {
+        for ((path, model), (mesh, warnings)) in models.iter().zip(contents) {
             self.sources.warnings.extend(warnings);
-            let mesh = mesh.map_err(|error| model.place.blame(error))?;
-            self.scene.meshes[model.mesh.index()] = mesh;
+            match mesh {
+                Ok(mesh) => self.scene.meshes[model.mesh.index()] = mesh,
+                Err(error) => self.missing.add(path, model.place.blame(error))?,
+            }
         }
         Ok(())
     }
@@ -127,7 +130,7 @@ impl Reader<'_, '_> {
 
 /// The mesh in a PLY file, packed or not.
 fn mesh(path: &Path, sources: &mut Sources<'_>) -> Result<Mesh> {
-    let bytes = bytes(path, sources)?;
+    let bytes = packed::read(path, sources)?;
     let mut alone = Scene::default();
     let parts = ply::from_bytes(&bytes, path, sources, &mut alone)?;
     if parts.iter().any(|part| !matches!(part.geometry, Geometry::Mesh(_))) {
@@ -138,61 +141,4 @@ fn mesh(path: &Path, sources: &mut Sources<'_>) -> Result<Mesh> {
     // A material of its own is what would use them.
     mesh.colors = Vec::new();
     Ok(mesh)
-}
-
-/// A file's content, unpacked where it is packed by gzip.
-fn bytes(path: &Path, sources: &Sources<'_>) -> Result<Vec<u8>> {
-    let bytes = sources.read(path)?;
-    if bytes.starts_with(b"\x1f\x8b") { unpacked(&bytes, path, &sources.limits) } else { Ok(bytes) }
-}
-
-fn unpacked(packed: &[u8], path: &Path, limits: &Limits) -> Result<Vec<u8>> {
-    let at = Location::file(path);
-    let plausible = (packed.len() as u64).saturating_mul(MOST_UNPACKED).saturating_add(1 << 20);
-    let limit = limits.file_bytes.min(plausible);
-    let mut bytes = Vec::new();
-    let mut reader = flate2::read::MultiGzDecoder::new(packed).take(limit + 1);
-    reader.read_to_end(&mut bytes).map_err(|error| {
-        Error::syntax(&at, format!("cannot be unpacked: {error}")).hint("check that the file is whole")
-    })?;
-    if bytes.len() as u64 > limit {
-        let error = Error::new(
-            ErrorKind::Limit,
-            &at,
-            format!("unpacked it is longer than the limit of {limit} bytes"),
-        );
-        return Err(error.hint("unpack it with gunzip and name the unpacked file"));
-    }
-    Ok(bytes)
-}
-
-#[cfg(test)]
-mod tests {
-    use std::io::Write;
-
-    use super::*;
-
-    fn packed(content: &[u8]) -> Vec<u8> {
-        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
-        encoder.write_all(content).expect("memory");
-        encoder.finish().expect("memory")
-    }
-
-    #[test]
-    fn packed_files_are_unpacked() {
-        let (path, limits) = (Path::new("a.gz"), Limits::default());
-        let two = [packed(b"one "), packed(b"two")].concat();
-        assert_eq!(unpacked(&two, path, &limits).expect("whole"), b"one two");
-        assert_eq!(
-            unpacked(&two[..two.len() - 3], path, &limits).map_err(|e| e.kind),
-            Err(ErrorKind::Syntax)
-        );
-    }
-
-    #[test]
-    fn bombs_are_defused() {
-        let bomb = packed(&vec![0; 100 << 20]);
-        let error = unpacked(&bomb, Path::new("a.gz"), &Limits::default()).expect_err("too long");
-        assert_eq!(error.kind, ErrorKind::Limit);
-    }
 }

@@ -88,7 +88,7 @@ impl Reader<'_, '_> {
                     if !parameters.boolean(name, true)? {
                         let message =
                             format!("\"bool {name}\" false: both ways of sampling are used all the same");
-                        self.sources.warn(&parameters.place.location(), message);
+                        self.sources.notice(&parameters.place.location(), message);
                     }
                 }
                 Integrator::SimplePath
@@ -108,7 +108,7 @@ impl Reader<'_, '_> {
                 let message = format!(
                     "the integrator {kind:?} is not there: {other:?} computes the same light in its place"
                 );
-                self.sources.warn(&parameters.place.location(), message);
+                self.sources.notice(&parameters.place.location(), message);
                 let theirs = [
                     "samplelights",
                     "samplebsdf",

@@ -110,7 +110,8 @@ impl Reader<'_, '_> {
             "mix" => self.mix(p)?,
             "interface" => MaterialKind::Interface,
             "" | "none" => {
-                self.sources.warn(&p.place.location(), "a material that is nothing is called \"interface\"");
+                self.sources
+                    .notice(&p.place.location(), "a material that is nothing is called \"interface\"");
                 MaterialKind::Interface
             }
             "subsurface" => self.subsurface(p)?,

@@ -34,7 +34,7 @@ impl Reader<'_, '_> {
         if !KINDS.contains(&kind.as_str()) {
             return Err(Self::unknown(&p.place, "medium", &kind, KINDS.iter().copied()));
         }
-        let warning = |message: String| Some(Warning { at: p.place.location(), message });
+        let warning = |message: String| Some(Warning::new(&p.place.location(), message));
         if kind != "homogeneous" || p.has("preset") {
             p.ignore_all();
             let message = format!("the medium {name:?} is not rendered yet: light passes it as a vacuum");

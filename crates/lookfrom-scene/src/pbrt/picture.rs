@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::Reader;
 use super::text::Place;
-use crate::error::Result;
+use crate::error::{ErrorKind, Result};
 use crate::image::{self, Encoding, Image};
 use crate::scene::ImageId;
 
@@ -15,9 +15,9 @@ impl Reader<'_, '_> {
         if let Some(&id) = self.images.get(&key) {
             return Ok(id);
         }
-        let opacity = with_encoding(encoding, place, |encoding| {
-            image::read_opacity(&key.0, self.sources, encoding).map_err(|error| place.blame(error))
-        })?;
+        let opacity =
+            with_encoding(encoding, place, |encoding| image::read_opacity(&key.0, self.sources, encoding));
+        let opacity = self.or_blank(opacity, &key.0, place, Some(blank(name)))?;
         let Some(opacity) = opacity else { return self.picture(name, encoding, place) };
         Ok(self.push_picture(key, opacity))
     }
@@ -34,10 +34,18 @@ impl Reader<'_, '_> {
         if let Some(&id) = self.images.get(&key) {
             return Ok(id);
         }
-        let image = with_encoding(encoding, place, |encoding| {
-            image::read_encoded(&path, self.sources, encoding).map_err(|error| place.blame(error))
-        })?;
+        let image =
+            with_encoding(encoding, place, |encoding| image::read_encoded(&path, self.sources, encoding));
+        let image = self.or_blank(image, &path, place, blank(name))?;
         Ok(self.push_picture(key, image))
+    }
+
+    /// What was read of a picture; where it is not there, that is noted and `blank` takes its place.
+    fn or_blank<T>(&mut self, read: Result<T>, path: &Path, place: &Place, blank: T) -> Result<T> {
+        match read.map_err(|error| place.blame(error)) {
+            Err(error) if error.kind == ErrorKind::Io => self.missing.add(path, error).map(|()| blank),
+            read => read,
+        }
     }
 
     fn push_picture(&mut self, key: (PathBuf, String), image: Image) -> ImageId {
@@ -46,6 +54,11 @@ impl Reader<'_, '_> {
         self.images.insert(key, id);
         id
     }
+}
+
+/// What stands for a picture that is missing until all is read.
+fn blank(name: &str) -> Image {
+    Image::from_linear(name, 1, 1, vec![[1.0; 3]])
 }
 
 /// What `read` makes of the encoding of that name.

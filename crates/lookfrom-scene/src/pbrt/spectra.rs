@@ -123,21 +123,23 @@ impl Reader<'_, '_> {
             Some(curve) => curve,
             None => {
                 let path = self.resolve(name);
-                spectrum::read_spd(&path, self.sources).map_err(|error| match error.kind {
-                    ErrorKind::Io => {
-                        let path = path.display();
+                match spectrum::read_spd(&path, self.sources) {
+                    Err(error) if error.kind == ErrorKind::Io => {
+                        let file = path.display();
                         let error = place.invalid(format!(
-                            "there is no spectrum of the name {name:?}, and no file {path}"
+                            "there is no spectrum of the name {name:?}, and no file {file}"
                         ));
-                        match nearest(name, spectrum::names()) {
-                            Some(meant) => error.hint(format!("did you mean {meant:?}?")),
+                        let hint = match nearest(name, spectrum::names()) {
+                            Some(meant) => format!("did you mean {meant:?}?"),
                             None => {
-                                error.hint("names are those of pbrt-v4: \"metal-Cu-eta\", \"glass-BK7\", …")
+                                "names are those of pbrt-v4: \"metal-Cu-eta\", \"glass-BK7\", …".to_owned()
                             }
-                        }
+                        };
+                        self.missing.add(&path, error.hint(hint))?;
+                        Curve::Constant(1.0)
                     }
-                    _ => error,
-                })?
+                    read => read?,
+                }
             }
         };
         let id = self.push_curve(curve);

@@ -31,7 +31,7 @@ pub(super) fn parts(
     let file = Location::file(path);
     let mut thin = Tally::default();
     thin.add_many(content.thin.0, content.thin.1);
-    thin.warn("face", "left out: fewer than three corners", &file, sources);
+    thin.notice("face", "left out: fewer than three corners", &file, sources);
     if content.positions.is_empty() {
         sources.warn(&file, "there are no vertices");
         return Ok(Vec::new());
@@ -92,7 +92,7 @@ fn mesh(content: Content, file: &Location, sources: &mut Sources<'_>) -> Mesh {
         start = end;
     }
     not_finite.warn("face", "left out: a coordinate is infinite or not a number", file, sources);
-    flat.warn("triangle", "left out: without area", file, sources);
+    flat.notice("triangle", "left out: without area", file, sources);
     if triangulator.gave_up() {
         sources.warn(
             file,

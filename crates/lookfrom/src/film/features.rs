@@ -6,14 +6,16 @@
 /// What the ray of one sample met first, or the mean over the samples of a pixel.
 ///
 /// In the mean, the albedo is over all samples of the pixel (nothing is black), as the picture is; all else is over those
-/// that met something, as pbrt's `gbuffer` film has it. A mean of normals is shorter than one.
+/// that met something, as pbrt's `gbuffer` film has it. A mean of normals is made as long as one of them again; where they
+/// cancel, it is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Features {
     /// The share of light that the surface throws back, by channel: 0 … 1.
     pub albedo: [f32; 3],
-    /// The surface's normal as it stands, in the camera's space, of unit length.
+    /// Geometric normal on the viewer's side, in the camera's space, of unit length.
     pub ng: [f32; 3],
-    /// The normal that is shaded with, in the camera's space, of unit length.
+    /// Shading normal (smoothed, bent by bumps and normal maps where the integrator shades with them) on the viewer's side, in
+    /// the camera's space, of unit length.
     pub ns: [f32; 3],
     /// The point, in the camera's space: x to the right, y up, z ahead, in the scene's unit.
     pub position: [f32; 3],
@@ -94,16 +96,21 @@ impl FeatureSums {
         let met = self.samples as f64;
         let [r, g, b, ..] =
             self.narrow.map(|sum| (sum as f64 / (all.max(self.samples) as f64 * TWO_TO_32)) as f32);
-        let [_, _, _, gx, gy, gz, sx, sy, sz] =
-            self.narrow.map(|sum| (sum as f64 / (met * TWO_TO_32)) as f32);
+        let [_, _, _, ng @ .., sx, sy, sz] = self.narrow.map(|sum| sum as f64 / TWO_TO_32);
         let [x, y, z, depth, u, v] = self.wide.map(|sum| (sum as f64 / (met * TWO_TO_64)) as f32);
         Some(Features {
             albedo: [r, g, b],
-            ng: [gx, gy, gz],
-            ns: [sx, sy, sz],
+            ng: unit(ng),
+            ns: unit([sx, sy, sz]),
             position: [x, y, z],
             depth,
             uv: [u, v],
         })
     }
+}
+
+/// The vector of unit length in this direction; 0 where there is none.
+fn unit(v: [f64; 3]) -> [f32; 3] {
+    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if length > 0.0 { v.map(|x| (x / length) as f32) } else { [0.0; 3] }
 }

@@ -305,6 +305,15 @@ fn layers_are_means_whatever_the_order() {
     assert_eq!((mean.albedo, mean.depth), ([0.375, 0.1875, 0.0], 7.0));
     assert_eq!((mean.position, mean.ng, mean.uv), ([1e3, -1.0, 7.0], [0.0, 0.0, -1.0], [1e-3, 0.5]));
     assert_eq!((films[0].features(1, 0), films[0].features(9, 9)), (None, None));
+    // A mean of normals is of unit length again, and 0 where they cancel.
+    let mut tile = FilmTile::with_layers(whole, Layers::Geometry).unwrap();
+    tile.add_features(0, 0, &Features { ns: [1.0, 0.0, 0.0], ..of(0.0) });
+    tile.add_features(0, 0, &Features { ng: [0.0, 0.0, 1.0], ns: [0.0, 1.0, 0.0], ..of(0.0) });
+    let mut film = film_with_layers();
+    film.add_tile(&tile);
+    let mean = film.features(0, 0).unwrap();
+    let diagonal = std::f32::consts::FRAC_1_SQRT_2;
+    assert_eq!((mean.ng, mean.ns), ([0.0; 3], [diagonal, diagonal, 0.0]));
     // Without room for them nothing happens.
     let mut plain = FilmTile::new(whole).unwrap();
     plain.add_features(0, 0, &of(1.0));

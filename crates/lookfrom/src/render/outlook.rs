@@ -61,7 +61,7 @@ pub(super) fn check(
             "the camera stands inside {body}: the picture shows its inner side alone; move the eye (lookfrom) out of it"
         )
     };
-    warnings.push(Warning { at: at.clone(), message });
+    warnings.push(Warning::new(at, message));
 }
 
 /// What rays through a grid over the picture meet first.

@@ -37,7 +37,8 @@ impl<'a> Seen<'a> {
         self.features
     }
 
-    fn see(&mut self, surface: &Surface, albedo: Spectrum) {
+    /// Keeps a surface that is shaded with `ns`, a unit vector of render space.
+    fn see(&mut self, surface: &Surface, ns: Vec3, albedo: Spectrum) {
         let Some(slot) = self.current else { return };
         let world = &self.renderer.world;
         let lanes = &self.lanes[slot];
@@ -52,12 +53,15 @@ impl<'a> Seen<'a> {
         let mirrored = |v: DVec3| Vec3::new(-v.x as f32, v.y as f32, v.z as f32);
         let point = world.origin + DVec3::from_array(surface.point.position);
         let position = mirrored(self.view_from_world.transform_point3(point));
-        let normal =
-            |n: DVec3| mirrored(self.view_from_world.transform_vector3(n)).normalize_or_zero().to_array();
+        let wo = surface.wo.as_dvec3();
+        let normal = |n: DVec3| {
+            let facing = if n.dot(wo) < 0.0 { -n } else { n };
+            mirrored(self.view_from_world.transform_vector3(facing)).normalize_or_zero().to_array()
+        };
         self.features[slot] = Some(Features {
             albedo,
             ng: normal(surface.ng),
-            ns: normal(surface.ns.as_dvec3()),
+            ns: normal(ns.as_dvec3()),
             position: position.to_array(),
             depth: position.z,
             uv: surface.uv.to_array(),
@@ -70,11 +74,11 @@ impl Probe for Seen<'_> {
         match event() {
             Event::Met { path, .. } => self.current = (path.depth == 0).then_some(path.slot as usize),
             Event::Shaded { surface, shading, .. } if self.current.is_some() => {
-                self.see(&surface, albedo(&shading, surface.wo));
+                self.see(&surface, shading.n(), albedo(&shading, surface.wo));
             }
             Event::Surface { surface, coefficients, .. } => {
                 let albedo = coefficients.map_or(Spectrum::BLACK, |k| k.diffuse + k.mirror + k.transmission);
-                self.see(&surface, albedo);
+                self.see(&surface, surface.ns, albedo);
             }
             _ => {}
         }

@@ -20,7 +20,7 @@ pub(super) fn prepare(
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<&'static str>> {
     let mut warn = |message: &str| {
-        warnings.push(Warning { at: Location::file(file), message: message.to_owned() });
+        warnings.push(Warning::new(&Location::file(file), message));
     };
     options.apply_to_settings(&mut scene.image, &mut scene.render)?;
     let origin = scene.origin;

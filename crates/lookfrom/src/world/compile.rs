@@ -96,8 +96,8 @@ impl World {
         if let Some(light) = scene.lights.iter().find(|light| matches!(light.kind, LightKind::Ambient { .. }))
             && matches!(scene.render.integrator, Kind::Path | Kind::SimplePath | Kind::RandomWalk)
         {
-            let message = "ambient light belongs to Whitted's model: path tracing leaves it out".to_owned();
-            warnings.push(Warning { at: light.at.clone(), message });
+            let message = "ambient light belongs to Whitted's model: path tracing leaves it out";
+            warnings.push(Warning::new(&light.at, message));
         }
 
         // Build the trees: of the objects, and of the world over them.

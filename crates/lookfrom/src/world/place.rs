@@ -300,7 +300,7 @@ impl Compiler<'_> {
     }
 
     fn warn(&mut self, at: &Location, message: &str) {
-        self.warnings.push(Warning { at: at.clone(), message: message.to_owned() });
+        self.warnings.push(Warning::new(at, message));
     }
 }
 

@@ -32,7 +32,7 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<Warning>) {
             "the {key} of material `{name}` is [{r}, {g}, {b}], and colours of surfaces go from 0 to 1: \
              {what_becomes_of_it}{remedy}"
         );
-        warnings.push(Warning { at: at.clone(), message });
+        warnings.push(Warning::new(at, message));
     }
 }
 

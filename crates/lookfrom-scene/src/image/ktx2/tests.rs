@@ -75,7 +75,6 @@ fn what_is_not_read_says_so() {
     assert_eq!(run(&large).unwrap_err().kind, ErrorKind::Limit);
 }
 
-#[cfg(feature = "basis")]
 mod basis {
     use super::*;
 

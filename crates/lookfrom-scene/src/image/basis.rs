@@ -1,0 +1,48 @@
+//! Pictures of Basis Universal as they stand in KTX 2 files: ETC1S behind BasisLZ, and UASTC, to bytes of red, green, blue and
+//! opacity.
+//!
+//! Whatever bytes there are, the answer is texels or a [`Damage`]: codes and indices are looked up with `get`, numbers of bits are
+//! those of tables here. Khronos, "KTX File Format Specification", version 2.0 (2021), sections on BasisLZ; Binomial, "UASTC LDR
+//! 4x4 Texture Specification" (2020). ETC1S, BasisLZ and UASTC are by Rich Geldreich and Stephanie Hurlburt.
+
+mod codebook;
+mod etc1s;
+mod huffman;
+mod uastc;
+
+pub(super) use self::etc1s::etc1s;
+pub(super) use self::uastc::{BLOCK, uastc};
+
+/// What of a file is not as its format asks.
+pub(super) type Damage = &'static str;
+
+/// Columns and rows.
+pub(super) type Size = [usize; 2];
+
+/// Red, green, blue, opacity.
+type Texel = [u8; 4];
+
+/// Columns and rows of blocks that cover a picture.
+fn blocks(size: Size) -> Size {
+    size.map(|length| length.div_ceil(4))
+}
+
+/// Puts the 4 × 4 texels of each block where they belong, row by row from the top; those beyond the picture are dropped.
+fn lay<const N: usize>(
+    texels: &mut [[u8; N]],
+    [width, _]: Size,
+    blocks: impl Iterator<Item = [[u8; N]; 16]>,
+) {
+    let mut blocks = blocks;
+    for rows in texels.chunks_mut(4 * width) {
+        for column in 0..width.div_ceil(4) {
+            let Some(block) = blocks.next() else { return };
+            for (row, from) in rows.chunks_mut(width).zip(block.as_chunks::<4>().0) {
+                row.iter_mut().skip(4 * column).zip(from).for_each(|(to, from)| *to = *from);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,193 @@
+//! ETC1S: blocks that choose among four colours of one hue, by numbers of a codebook.
+
+use super::codebook::{Codebook, Endpoint};
+use super::huffman::Bits;
+use super::{Damage, Size, Texel, blocks, lay};
+
+/// The symbol that stands for the predictors of the blocks before, several times.
+const REPEAT: u32 = 256;
+
+/// The shortest runs, of predictors and of selectors.
+const LEAST_RUN: u32 = 3;
+
+/// The longest run of selectors that is a symbol; the symbol itself tells that a number follows.
+const LONG_RUN: u32 = 63;
+
+/// The picture of the first image of a file: `global` is what its images share, `level` the first level, `images` their number.
+///
+/// # Errors
+/// Where it is damaged.
+pub(in crate::image) fn etc1s(
+    global: &[u8],
+    level: &[u8],
+    images: usize,
+    size: Size,
+) -> Result<Vec<Texel>, Damage> {
+    let codebook = Codebook::read(global, images)?;
+    // The first image: flags, then offset and length of its colours and of its opacities.
+    let field = |index: usize| {
+        let bytes = global.get(20 + 4 * index..)?.first_chunk()?;
+        usize::try_from(u32::from_le_bytes(*bytes)).ok()
+    };
+    let slice = |index: usize| {
+        let (offset, length) = (field(index)?, field(index + 1)?);
+        level.get(offset..)?.get(..length)
+    };
+    let read = |index: usize| codebook.slice(slice(index).ok_or("a slice is cut off")?, size);
+    let colors = read(1)?;
+    let has_opacity = field(4).is_some_and(|length| length > 0);
+    let opacities = if has_opacity { Some(read(3)?) } else { None };
+
+    let [width, height] = size;
+    let mut texels = vec![[0; 4]; width * height];
+    let mut opacities = opacities.into_iter().flatten();
+    let opaque = [[255; 4]; 16];
+    let both = colors.into_iter().map(|color| {
+        let opacity = opacities.next().map_or(opaque, |(endpoint, choices)| block(endpoint, choices));
+        let mut block = block(color.0, color.1);
+        for (texel, [_, opacity, ..]) in block.iter_mut().zip(opacity) {
+            texel[3] = opacity;
+        }
+        block
+    });
+    lay(&mut texels, size, both);
+    Ok(texels)
+}
+
+/// The texels of a block.
+fn block(endpoint: Endpoint, choices: [u8; 4]) -> [Texel; 16] {
+    let colors = endpoint.colors();
+    std::array::from_fn(|index| {
+        let [r, g, b] = colors[usize::from(choices[index / 4] >> (2 * (index % 4)) & 3)];
+        [r, g, b, 255]
+    })
+}
+
+/// Selectors that were used lately, those that are used again nearer to the front.
+struct Recent {
+    selectors: Vec<u32>,
+    /// Where the next new one goes, in the second half.
+    next: usize,
+}
+
+impl Recent {
+    fn new(count: usize) -> Self {
+        Self { selectors: vec![0; count], next: count / 2 }
+    }
+
+    fn add(&mut self, selector: u32) {
+        let half = self.selectors.len() / 2;
+        if let Some(entry) = self.selectors.get_mut(self.next) {
+            *entry = selector;
+        }
+        self.next = if self.next + 1 < self.selectors.len() { self.next + 1 } else { half };
+    }
+
+    fn again(&mut self, index: usize) -> Option<u32> {
+        let selector = self.selectors.get(index).copied()?;
+        self.selectors.swap(index, index / 2);
+        Some(selector)
+    }
+}
+
+impl Codebook {
+    /// The blocks of a slice, row by row: their colours and what their texels choose.
+    fn slice(&self, bytes: &[u8], size: Size) -> Result<Vec<(Endpoint, [u8; 4])>, Damage> {
+        let [columns, rows] = blocks(size);
+        let bits = &mut Bits::new(bytes);
+        let count = self.endpoints.len() as u32;
+        let recent = Recent::new(self.codes.recent);
+        let mut selectors = Selectors { recent, run: 0, blocks: columns as u64 * rows as u64 };
+        let (mut predictors, mut repeats) = (0, 0_u32);
+        // The endpoints of the row above and of this one, and the predictors of this row that were told with the one above.
+        let (mut above, mut row) = (vec![0; columns], Vec::with_capacity(columns));
+        let mut told = vec![0; columns.div_ceil(2)];
+        let mut last = 0;
+        let mut found = Vec::new();
+        for y in 0..rows {
+            row.clear();
+            let mut predictor = 0;
+            for x in 0..columns {
+                if x % 2 == 0 {
+                    let told = &mut told[x / 2];
+                    if y % 2 == 0 {
+                        if repeats > 0 {
+                            repeats -= 1;
+                        } else {
+                            match self.codes.predictors.symbol(bits)? {
+                                REPEAT => repeats = bits.number(4).saturating_add(LEAST_RUN - 1),
+                                symbol => predictors = symbol,
+                            }
+                        }
+                        (predictor, *told) = (predictors, predictors >> 4);
+                    } else {
+                        predictor = *told;
+                    }
+                }
+                let from_above = if y > 0 { Some(&above) } else { None };
+                last = match predictor & 3 {
+                    0 if x > 0 => last,
+                    1 => *from_above.ok_or("a block is like none")?.get(x).ok_or("a block is like none")?,
+                    2 if x > 0 => {
+                        *from_above.and_then(|above| above.get(x - 1)).ok_or("a block is like none")?
+                    }
+                    3 => {
+                        let endpoint = self.codes.endpoints.symbol(bits)? + last;
+                        if endpoint >= count { endpoint - count } else { endpoint }
+                    }
+                    _ => return Err("a block is like none"),
+                };
+                predictor >>= 2;
+                row.push(last);
+                let endpoint =
+                    self.endpoints.get(last as usize).ok_or("an endpoint is none of its codebook")?;
+                let selector = selectors.next(self, bits)?;
+                let choices =
+                    self.selectors.get(selector as usize).ok_or("a selector is none of its codebook")?;
+                found.push((*endpoint, *choices));
+            }
+            if bits.is_past_end() {
+                return Err("a slice ends too early");
+            }
+            std::mem::swap(&mut above, &mut row);
+        }
+        Ok(found)
+    }
+}
+
+/// Selectors of a slice, block after block.
+struct Selectors {
+    recent: Recent,
+    /// How many of the next blocks have the first of the recent ones.
+    run: u32,
+    /// How many blocks there are.
+    blocks: u64,
+}
+
+impl Selectors {
+    fn next(&mut self, codebook: &Codebook, bits: &mut Bits<'_>) -> Result<u32, Damage> {
+        let (codes, count) = (&codebook.codes, codebook.selectors.len() as u32);
+        let mut index = 0;
+        if self.run > 0 {
+            self.run -= 1;
+        } else {
+            let symbol = codes.selectors.symbol(bits)?;
+            if symbol < count {
+                self.recent.add(symbol);
+                return Ok(symbol);
+            }
+            index = (symbol - count) as usize;
+            if index == codes.recent {
+                let run = match codes.runs.symbol(bits)? {
+                    LONG_RUN => bits.number(7),
+                    run => run,
+                };
+                (self.run, index) = (run.saturating_add(LEAST_RUN - 1), 0);
+                if u64::from(self.run) >= self.blocks {
+                    return Err("a run is longer than its slice");
+                }
+            }
+        }
+        self.recent.again(index).ok_or("a selector is none of the recent ones")
+    }
+}

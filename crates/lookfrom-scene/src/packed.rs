@@ -1,0 +1,103 @@
+//! Files packed by gzip (RFC 1952): scenes of pbrt and models, read as if they were not packed.
+
+use std::ffi::OsString;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::files::{Limits, Sources};
+
+/// The extension of packed files.
+const EXTENSION: &str = "gz";
+
+/// The first bytes of packed files.
+const MAGIC: &[u8] = b"\x1f\x8b";
+
+/// Packed files of meshes are a tenth as long as unpacked; this much is suspicious.
+const MOST_UNPACKED: u64 = 250;
+
+/// The name without `.gz`, which tells the format.
+pub(crate) fn unpacked_name(path: &Path) -> PathBuf {
+    match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case(EXTENSION) => path.with_extension(""),
+        _ => path.to_owned(),
+    }
+}
+
+/// A file's content, unpacked where it is packed. Where `x.ply` cannot be read, `x.ply.gz` is read in its place.
+///
+/// # Errors
+/// `Io` where neither can be read, `Syntax` where the packed bytes are damaged, `Limit` where they or the unpacked ones are too many.
+pub(crate) fn read(path: &Path, sources: &Sources<'_>) -> Result<Vec<u8>> {
+    let (bytes, path) = match sources.read(path) {
+        Ok(bytes) => (bytes, path.to_owned()),
+        Err(error) if error.kind == ErrorKind::Io && unpacked_name(path) == path => {
+            let mut packed = OsString::from(path);
+            packed.push(".");
+            packed.push(EXTENSION);
+            let packed = PathBuf::from(packed);
+            match sources.read(&packed) {
+                Ok(bytes) => (bytes, packed),
+                Err(other) if other.kind == ErrorKind::Io => return Err(error),
+                Err(other) => return Err(other),
+            }
+        }
+        Err(error) => return Err(error),
+    };
+    unpacked(bytes, &path, &sources.limits)
+}
+
+/// The same bytes, or what they hold where they are packed.
+pub(crate) fn unpacked(packed: Vec<u8>, path: &Path, limits: &Limits) -> Result<Vec<u8>> {
+    if !packed.starts_with(MAGIC) {
+        return Ok(packed);
+    }
+    let at = Location::file(path);
+    let plausible = (packed.len() as u64).saturating_mul(MOST_UNPACKED).saturating_add(1 << 20);
+    let limit = limits.file_bytes.min(plausible);
+    let mut bytes = Vec::new();
+    let mut reader = flate2::read::MultiGzDecoder::new(&*packed).take(limit.saturating_add(1));
+    reader.read_to_end(&mut bytes).map_err(|error| {
+        Error::syntax(&at, format!("cannot be unpacked: {error}")).hint("check that the file is whole")
+    })?;
+    if bytes.len() as u64 > limit {
+        let error = Error::new(
+            ErrorKind::Limit,
+            &at,
+            format!("unpacked it is longer than the limit of {limit} bytes"),
+        );
+        return Err(error.hint("unpack it with gunzip and name the unpacked file"));
+    }
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    fn packed(content: &[u8]) -> Vec<u8> {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+        encoder.write_all(content).expect("memory");
+        encoder.finish().expect("memory")
+    }
+
+    #[test]
+    fn packed_files_are_unpacked() {
+        let (path, limits) = (Path::new("a.gz"), Limits::default());
+        let two = [packed(b"one "), packed(b"two")].concat();
+        assert_eq!(unpacked(two.clone(), path, &limits).expect("whole"), b"one two");
+        assert_eq!(
+            unpacked(two[..two.len() - 3].to_vec(), path, &limits).map_err(|e| e.kind),
+            Err(ErrorKind::Syntax)
+        );
+    }
+
+    #[test]
+    fn bombs_are_defused() {
+        let bomb = packed(&vec![0; 100 << 20]);
+        let error = unpacked(bomb, Path::new("a.gz"), &Limits::default()).expect_err("too long");
+        assert_eq!(error.kind, ErrorKind::Limit);
+    }
+}

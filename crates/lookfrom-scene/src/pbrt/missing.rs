@@ -1,0 +1,54 @@
+//! Files that a scene names and that are not there: reading goes on without them, and tells of all of them at the end.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Result};
+
+/// After so many, reading stops.
+const MOST_MISSING: usize = 1000;
+
+/// What is missing so far.
+#[derive(Default)]
+pub(super) struct Missing {
+    /// In the order in which they were found.
+    errors: Vec<Error>,
+    /// The files of these errors.
+    paths: BTreeSet<PathBuf>,
+    /// Whether a part of the scene's text is among them, so that names may be unknown only because of that.
+    has_text: bool,
+}
+
+impl Missing {
+    /// Notes that a file is missing; once is enough for each.
+    ///
+    /// # Errors
+    /// The same error where there are too many.
+    pub(super) fn add(&mut self, path: &Path, error: Error) -> Result<()> {
+        if self.errors.len() >= MOST_MISSING {
+            return Err(error);
+        }
+        if self.paths.insert(path.to_owned()) {
+            self.errors.push(error);
+        }
+        Ok(())
+    }
+
+    /// The same for a part of the scene's text.
+    ///
+    /// # Errors
+    /// As [`add`](Self::add).
+    pub(super) fn add_text(&mut self, path: &Path, error: Error) -> Result<()> {
+        self.has_text = true;
+        self.add(path, error)
+    }
+
+    /// All errors of a scene as one: files that are missing, and what stopped reading where that was not for want of text.
+    pub(super) fn and(self, result: Result<()>) -> Option<Error> {
+        let mut errors = self.errors;
+        if !self.has_text || errors.is_empty() {
+            errors.extend(result.err());
+        }
+        Error::all(errors)
+    }
+}

@@ -1,0 +1,187 @@
+//! What could be survived: warnings, how much each means for the picture, and those that say the same as one line.
+
+use std::collections::HashMap;
+use std::fmt;
+
+use crate::error::Location;
+
+/// What a warning means for the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum WarningKind {
+    /// The picture may differ from what was meant.
+    Warning,
+    /// Harmless: the picture is the one that was meant.
+    Notice,
+}
+
+/// Something that can be survived: the picture is made all the same.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// What it means for the picture.
+    pub kind: WarningKind,
+    /// Where; of several things in a file, the first.
+    pub at: Location,
+    /// What was found and what was done instead. Where things were [counted](Self::counted), without their number and noun.
+    pub message: String,
+    /// The things that the message is about, where they were counted.
+    pub counted: Option<Counted>,
+}
+
+/// A number of things of one kind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counted {
+    /// How many: at least 1.
+    pub count: u64,
+    /// What one of them is called.
+    pub noun: String,
+}
+
+impl Warning {
+    /// A warning that the picture may differ from what was meant.
+    pub fn new(at: &Location, message: impl Into<String>) -> Self {
+        Self { kind: WarningKind::Warning, at: at.clone(), message: message.into(), counted: None }
+    }
+
+    /// A harmless one.
+    pub fn notice(at: &Location, message: impl Into<String>) -> Self {
+        Self { kind: WarningKind::Notice, ..Self::new(at, message) }
+    }
+
+    /// The same warning about a number of things.
+    #[must_use]
+    pub fn of(mut self, count: u64, noun: impl Into<String>) -> Self {
+        self.counted = Some(Counted { count, noun: noun.into() });
+        self
+    }
+}
+
+impl fmt::Display for Counted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { count, noun } = self;
+        write!(f, "{count} {noun}{} ", if *count == 1 { "" } else { "s" })
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.at)?;
+        if let Some(counted) = &self.counted {
+            counted.fmt(f)?;
+        }
+        f.write_str(&self.message)?;
+        let has_further = self.counted.as_ref().is_some_and(|counted| counted.count > 1);
+        if has_further && self.at.line > 0 { f.write_str(" (the first is here)") } else { Ok(()) }
+    }
+}
+
+/// Further places of a [`WarningGroup`] that its line names.
+const PLACES: usize = 2;
+
+/// Warnings that say the same of several places.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WarningGroup {
+    /// The first of them, with the number of things of all.
+    pub first: Warning,
+    /// Where the others are.
+    pub further: Vec<Location>,
+}
+
+impl WarningGroup {
+    /// Groups of the warnings that say the same: those that matter for the picture, then the harmless ones; otherwise in the order in
+    /// which they were found.
+    pub fn of(warnings: &[Warning]) -> Vec<Self> {
+        let mut groups: Vec<Self> = Vec::new();
+        let mut by_what = HashMap::new();
+        for warning in warnings {
+            let noun = warning.counted.as_ref().map(|counted| &counted.noun);
+            let index = *by_what.entry((warning.kind, noun, &warning.message)).or_insert(groups.len());
+            let Some(group) = groups.get_mut(index) else {
+                groups.push(Self { first: warning.clone(), further: Vec::new() });
+                continue;
+            };
+            if let (Some(sum), Some(add)) = (&mut group.first.counted, &warning.counted) {
+                sum.count = sum.count.saturating_add(add.count);
+            }
+            if *group.further.last().unwrap_or(&group.first.at) != warning.at {
+                group.further.push(warning.at.clone());
+            }
+        }
+        groups.sort_by_key(|group| group.first.kind);
+        groups
+    }
+
+    /// What they mean for the picture.
+    pub fn kind(&self) -> WarningKind {
+        self.first.kind
+    }
+}
+
+impl fmt::Display for WarningGroup {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { first: Warning { at, message, counted, .. }, further } = self;
+        if further.is_empty() {
+            return self.first.fmt(f);
+        }
+        write!(f, "{at}: ")?;
+        if let Some(counted) = counted {
+            counted.fmt(f)?;
+        }
+        write!(f, "{message} (also at ")?;
+        let left = further.len().saturating_sub(PLACES);
+        for (index, place) in further.iter().take(PLACES).enumerate() {
+            let is_last = left == 0 && index + 1 == further.len();
+            let before = match index {
+                0 => "",
+                _ if is_last => " and ",
+                _ => ", ",
+            };
+            write!(f, "{before}{place}")?;
+        }
+        match left {
+            0 => f.write_str(")"),
+            1 => f.write_str(" and one more place)"),
+            _ => write!(f, " and {left} more places)"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn lines(warnings: &[Warning]) -> Vec<String> {
+        WarningGroup::of(warnings).iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn what_is_said_often_is_one_line_behind_what_matters() {
+        let flat = |name: &str, line: u32, count: u64| {
+            let at = Location::file(Path::new(name)).at(line, 0);
+            Warning::notice(&at, "left out: without area").of(count, "triangle")
+        };
+        let other = Warning::new(&Location::file(Path::new("z.obj")), "something real");
+        let mut warnings = vec![flat("a.ply", 0, 1), flat("b.ply", 7, 62), other.clone()];
+        assert_eq!(
+            lines(&warnings),
+            ["z.obj: something real", "a.ply: 63 triangles left out: without area (also at b.ply:7)"]
+        );
+        assert_eq!(lines(&warnings[..1]), ["a.ply: 1 triangle left out: without area"]);
+        assert_eq!(
+            lines(&warnings[1..2]),
+            ["b.ply:7: 62 triangles left out: without area (the first is here)"]
+        );
+        warnings.push(flat("c.ply", 0, 1));
+        assert!(
+            lines(&warnings)[1].ends_with("64 triangles left out: without area (also at b.ply:7 and c.ply)")
+        );
+        warnings.push(flat("d.ply", 0, 1));
+        assert!(lines(&warnings)[1].ends_with("(also at b.ply:7, c.ply and one more place)"));
+        warnings.extend((0..115).map(|k| flat(&format!("{k}.ply"), 0, 1)));
+        assert!(lines(&warnings)[1].ends_with("(also at b.ply:7, c.ply and 116 more places)"));
+        // The same words of another kind are another line, and a place named twice is one place.
+        let twice = [other.clone(), Warning { kind: WarningKind::Notice, ..other.clone() }, other];
+        assert_eq!(lines(&twice), ["z.obj: something real"; 2]);
+    }
+}
