@@ -161,7 +161,7 @@ pub(crate) struct RenderArguments {
     /// The camera goes around an upright axis, against the clock as seen from above; light from all around goes with it, and
     /// lamps stay with the scene. The axis goes through what a scene's camera looks at (or --lookat), else through the
     /// middle of what is visible. A model is framed so that nothing is cut at any angle.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", value_parser = values::whole(1u32, 100_000))]
     pub(crate) turntable: Option<u32>,
 
     /// Say nothing but errors
@@ -186,15 +186,15 @@ pub(crate) struct InspectArguments {
     pub(crate) scene: PathBuf,
 
     /// Column of the pixel, from the left, from 0
-    #[arg(value_name = "X")]
+    #[arg(value_name = "X", value_parser = values::whole(0, u32::MAX))]
     pub(crate) x: u32,
 
     /// Row of the pixel, from the top, from 0
-    #[arg(value_name = "Y")]
+    #[arg(value_name = "Y", value_parser = values::whole(0, u32::MAX))]
     pub(crate) y: u32,
 
     /// Which sample of the pixel, from 0
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::whole(0, u32::MAX))]
     pub(crate) sample: u32,
 
     /// Answer with one JSON object
@@ -279,7 +279,7 @@ pub(crate) struct BenchArguments {
     pub(crate) reference: Option<PathBuf>,
 
     /// Samples a pixel of a reference that is rendered
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = values::whole(1u32, 1 << 24))]
     pub(crate) reference_samples: u32,
 
     /// Answer with one JSON object a line for each scene
@@ -296,7 +296,7 @@ pub(crate) struct BenchArguments {
 #[derive(Args, Debug)]
 pub(crate) struct Common {
     /// Threads to build and render with [default: as many as there are processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = values::whole(1u16, 1024))]
     pub(crate) threads: Option<u16>,
 
     /// Treat warnings as errors, but for harmless ones (notes)
@@ -309,11 +309,11 @@ pub(crate) struct Common {
 #[command(next_help_heading = "In place of what the scene says")]
 pub(crate) struct Overrides {
     /// Columns; alone it keeps the shape of the picture
-    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "PIXELS", value_parser = values::whole(1, u32::MAX))]
     pub(crate) width: Option<u32>,
 
     /// Rows; alone it keeps the shape of the picture
-    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "PIXELS", value_parser = values::whole(1, u32::MAX))]
     pub(crate) height: Option<u32>,
 
     /// Compute only this part: columns X0 to before X1, rows Y0 to before Y1, from the top left
@@ -321,7 +321,7 @@ pub(crate) struct Overrides {
     pub(crate) crop: Option<Crop>,
 
     /// Samples a pixel
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    #[arg(long, value_name = "N", value_parser = values::whole(1u32, 1 << 24))]
     pub(crate) samples: Option<u32>,
 
     /// How light is computed; the last four show what is there
@@ -348,7 +348,7 @@ pub(crate) struct Overrides {
     pub(crate) denoise: Option<bool>,
 
     /// How many times a ray may be mirrored, refracted or scattered
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=256))]
+    #[arg(long, value_name = "N", value_parser = values::whole(0u32, 256))]
     pub(crate) depth: Option<u32>,
 
     /// Share of the pixel below which a branch of the tree of rays is cut off
@@ -360,7 +360,7 @@ pub(crate) struct Overrides {
     pub(crate) sampler: Option<Sampler>,
 
     /// Another seed, other noise
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = values::whole(0, u64::MAX))]
     pub(crate) seed: Option<u64>,
 
     /// How a pixel weighs the light around it: box, triangle, gaussian, mitchell or blackman_harris, and its radius in

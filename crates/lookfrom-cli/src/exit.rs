@@ -6,6 +6,8 @@ use std::path::Path;
 
 use lookfrom_scene::{Error, ErrorKind, Location, Warning, WarningGroup, WarningKind};
 
+use crate::diagnostic;
+
 /// All that was asked is done.
 pub(crate) const DONE: u8 = 0;
 /// A scene could not be read or is invalid.
@@ -43,9 +45,13 @@ impl Failure {
         }
     }
 
-    /// Says it on stderr and gives back the exit code.
+    /// Says it on stderr, in the way of [`diagnostic`], and gives back the exit code.
     pub(crate) fn report(&self) -> u8 {
-        say(&format!("error: {self}"));
+        say_in_color(&match self {
+            Self::Scene(error) => diagnostic::of_files(error),
+            Self::Usage(message) => diagnostic::of_usage(message),
+            Self::Strict(_) | Self::Output(_) => diagnostic::plain(&self.to_string()),
+        });
         self.code()
     }
 }
@@ -75,11 +81,24 @@ impl From<Error> for Failure {
 /// What is wrong with a scene; where no place is known, its file is the place.
 pub(crate) fn in_scene(path: &Path) -> impl Fn(Error) -> Failure {
     move |mut error| {
-        if error.at.file.is_empty() {
-            error.at = Location::file(path);
+        for at in std::iter::once(&mut error.at).chain(error.more.iter_mut().map(|error| &mut error.at)) {
+            if at.file.is_empty() {
+                *at = Location::file(path);
+            }
         }
         error.into()
     }
+}
+
+/// Says what was wrong with the command line, or the help that it asks for, and gives back the exit code.
+pub(crate) fn not_parsed(error: &clap::Error) -> u8 {
+    if error.use_stderr() {
+        say_in_color(diagnostic::of_clap(error).trim_end());
+    } else {
+        // Where nobody listens any more, nothing is lost.
+        let _ = error.print();
+    }
+    u8::try_from(error.exit_code()).unwrap_or(BAD_USAGE)
 }
 
 /// Whether `--strict` allows none of them: one is not harmless.
@@ -114,6 +133,11 @@ pub(crate) fn say_warnings(warnings: &[Warning]) {
 /// Writes a line to stderr. Where nobody listens any more, nothing is lost.
 pub(crate) fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// Writes lines with colours to stderr, or without where it is no terminal that shows them, or nobody wants them.
+fn say_in_color(lines: &str) {
+    let _ = writeln!(anstream::stderr(), "{lines}");
 }
 
 /// Writes a line to stdout. A reader that has closed the pipe (`| head`) has read enough.

@@ -7,6 +7,7 @@ mod args;
 mod bench;
 mod compare;
 mod completions;
+mod diagnostic;
 mod exit;
 mod html;
 mod info;
@@ -30,7 +31,11 @@ use clap::Parser;
 use crate::args::{Arguments, Command};
 
 fn main() -> ExitCode {
-    let code = match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return ExitCode::from(exit::not_parsed(&error)),
+    };
+    let code = match arguments.command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),

@@ -122,6 +122,17 @@ where
     }
 }
 
+/// A whole number within a range.
+pub(crate) fn whole<T>(least: T, greatest: T) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync
+where
+    T: FromStr + PartialOrd + Display + Copy + Send + Sync,
+{
+    move |typed| match typed.parse::<T>() {
+        Ok(number) if (least..=greatest).contains(&number) => Ok(number),
+        _ => Err(format!("expected a whole number from {least} to {greatest}")),
+    }
+}
+
 /// An angle between 0° and 180°, neither of them included.
 pub(crate) fn field_of_view(typed: &str) -> Result<f64, String> {
     match typed.parse::<f64>() {
@@ -213,6 +224,11 @@ mod tests {
         }
         assert!(
             field_of_view("0").is_err() && field_of_view("180").is_err() && field_of_view("NaN").is_err()
+        );
+        assert_eq!(whole(1, 9)("x"), Err("expected a whole number from 1 to 9".to_owned()));
+        assert_eq!(
+            [whole(0u32, 9)("-1").is_err(), whole(1, 9)("10").is_err(), whole(1, 9)("2.5").is_err()],
+            [true; 3]
         );
         assert!(between(0.0, 1.0)("NaN").is_err() && between(0.0, 1.0)("1").is_ok());
     }

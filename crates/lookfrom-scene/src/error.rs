@@ -127,7 +127,7 @@ impl Error {
 }
 
 /// For logs and messages: each error as `file:line:column: message` and an indented remedy, and how many are left out. The
-/// lines that they point at are not shown.
+/// lines that they point at are not shown: see [`Excerpts`](crate::excerpt::Excerpts).
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (written, left) = self.first_few();

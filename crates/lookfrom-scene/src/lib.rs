@@ -7,6 +7,7 @@ pub mod camera;
 pub mod contents;
 pub mod count;
 pub mod error;
+pub mod excerpt;
 pub mod files;
 pub mod gltf;
 pub mod image;

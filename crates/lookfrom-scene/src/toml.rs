@@ -1,7 +1,8 @@
 //! Our own scene format: what `docs/guide/scene-format.md` describes becomes a [`Scene`], or an error that points at
 //! the line that is wrong.
 //!
-//! This file reads files and joins what they import. Beside it: `value` (a TOML value and its place), and a decoder
+//! This file reads files and joins what they import. Beside it: `document`, `table` and `value` (what is there, with its
+//! place; what is wrong is noted there), `syntax` (texts that are no TOML), `synonyms` (what others call it), and a decoder
 //! for each part of the vocabulary.
 
 mod camera;
@@ -9,6 +10,7 @@ mod chain;
 mod color;
 mod curve;
 mod directed;
+mod document;
 mod form;
 mod import;
 mod light;
@@ -25,6 +27,8 @@ mod settings;
 mod shape;
 mod sky;
 mod strip;
+mod synonyms;
+mod syntax;
 mod table;
 mod texture;
 mod value;
@@ -35,9 +39,11 @@ use std::path::{Path, PathBuf};
 
 use ::toml::de::DeTable;
 
+use self::document::Document;
 use self::import::tidy;
-use self::table::Table;
-use self::value::{Document, Value};
+use self::syntax::Readable;
+use self::table::{SCENE, Table};
+use self::value::Value;
 use self::vocabulary::TOP;
 use crate::error::{Error, Location, Result};
 use crate::files::{Choice, Sources};
@@ -54,7 +60,7 @@ pub use self::vocabulary::vocabulary;
 /// Reads a scene in our own format, with all that it imports.
 ///
 /// # Errors
-/// With the line and column of the first thing that is wrong: `Syntax` where the text is no TOML, `Invalid` where a
+/// With the line and column of all that is wrong, as far as one run can find it: `Syntax` where the text is no TOML, `Invalid` where a
 /// key, a type, a number or a name is not what it can be, `Limit` where something is too large or nests too deep, and
 /// whatever goes wrong in the files that it names.
 pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
@@ -78,8 +84,13 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         has_image: false,
         has_render: false,
         names_integrator: false,
+        knows_all_names: true,
+        errors: Vec::new(),
     };
     reader.file(path)?;
+    if let Some(error) = Error::all(reader.errors) {
+        return Err(error);
+    }
     // Only the path tracer knows what light does on physical materials.
     let mut scene = reader.scene;
     let is_physical = |kind: &MaterialKind| !matches!(kind, MaterialKind::Whitted(_));
@@ -121,9 +132,14 @@ struct Reader<'s, 'f> {
     has_render: bool,
     /// Whether the `[render]` that counts says which integrator.
     names_integrator: bool,
+    /// Whether all could be read that gives names. Else a name that stands for nothing may be one of the others.
+    knows_all_names: bool,
+    /// Errors of the files that have been read.
+    errors: Vec<Error>,
 }
 
 impl Reader<'_, '_> {
+    /// Reads a file; what is wrong in its tables is noted.
     fn file(&mut self, path: &Path) -> Result<()> {
         let whole = Location::file(path);
         let bytes = self.sources.read(path)?;
@@ -133,58 +149,70 @@ impl Reader<'_, '_> {
             Error::syntax(&whole.at(u32::try_from(line).unwrap_or(0), 0), "the text is not UTF-8")
                 .hint("save it as UTF-8; a model or picture has to be named by its own extension")
         })?;
+        let document = Document::new(whole.clone(), text);
+        let (root, wrong) = DeTable::parse_recoverable(document.text());
+        if wrong.is_empty() {
+            self.document(path, &document, root.get_ref(), Vec::new());
+            return Ok(());
+        }
+        let Readable { text, errors, has_all_names } = syntax::readable(&document);
+        self.knows_all_names &= has_all_names;
         let document = Document::new(whole, text);
-        let root = DeTable::parse(document.text()).map_err(|error| {
-            let at = document.location(error.span().map_or(0, |span| span.start));
-            Error::syntax(&at, error.message().replace('\n', "; "))
-                .hint("the text is no TOML here; docs/guide/scene-format.md shows how scenes are written")
-        })?;
-        let top = Table::new(&document, 0, "a scene".to_owned(), root.get_ref());
-        top.allow(&[TOP, &shape::kinds()])?;
-
-        self.open.push(path.to_owned());
-        if let Some(value) = top.find("import") {
-            self.imports(value)?;
-        }
-        self.settings(&top)?;
-        if let Some(value) = top.find("textures") {
-            self.read_textures(value)?;
-        }
-        if let Some(value) = top.find("materials") {
-            self.read_materials(value)?;
-        }
-        if let Some(value) = top.find("objects") {
-            self.read_objects(value)?;
-        }
-        let shapes = self.shapes(&top)?;
-        self.scene.shapes.extend(shapes);
-        if let Some(value) = top.find("instance") {
-            value.tables()?.try_for_each(|table| self.read_instance(&table?))?;
-        }
-        if let Some(value) = top.find("light") {
-            value.tables()?.try_for_each(|table| self.read_light(&table?))?;
-        }
-        self.open.pop();
-        self.done.insert(tidy(path));
+        let (root, _) = DeTable::parse_recoverable(document.text());
+        self.document(path, &document, root.get_ref(), errors);
         Ok(())
     }
 
-    /// The camera, picture and computation of this file, or else of the first import that has one.
-    fn settings(&mut self, top: &Table<'_>) -> Result<()> {
-        if let Some(value) = top.find("camera") {
-            self.scene.camera = Some(camera::camera(&value.table("[camera]")?)?);
+    /// Reads what was parsed of a file; `errors` are those of its syntax.
+    fn document(&mut self, path: &Path, document: &Document, root: &DeTable<'_>, errors: Vec<Error>) {
+        self.open.push(path.to_owned());
+        self.tables(&Table::new(document, 0, SCENE.to_owned(), root));
+        self.open.pop();
+        self.done.insert(tidy(path));
+        self.errors.extend(document.errors(errors));
+    }
+
+    fn tables(&mut self, top: &Table<'_>) {
+        top.allow(&[TOP, &shape::kinds()]);
+        self.knows_all_names &= !top.means(&["import", "materials", "textures", "objects"]);
+        if let Some(value) = top.find("import") {
+            self.imports(value);
         }
-        if let Some(value) = top.find("image") {
-            self.scene.image = settings::image(&value.table("[image]")?)?;
+        self.settings(top);
+        if let Some(value) = top.find("textures") {
+            self.read_textures(value);
+        }
+        if let Some(value) = top.find("materials") {
+            self.read_materials(value);
+        }
+        if let Some(value) = top.find("objects") {
+            self.read_objects(value);
+        }
+        let shapes = self.shapes(top);
+        self.scene.shapes.extend(shapes);
+        if let Some(value) = top.find("instance") {
+            value.tables().for_each(|table| self.read_instance(&table));
+        }
+        if let Some(value) = top.find("light") {
+            value.tables().for_each(|table| self.read_light(&table));
+        }
+    }
+
+    /// The camera, picture and computation of this file, or else of the first import that has one.
+    fn settings(&mut self, top: &Table<'_>) {
+        if let Some(table) = top.maybe("camera", |value| value.table("[camera]")) {
+            let camera = camera::camera(&table).map_err(|error| table.note(error));
+            self.scene.camera = camera.ok();
+        }
+        if let Some(table) = top.maybe("image", |value| value.table("[image]")) {
+            self.scene.image = settings::image(&table);
             self.has_image = true;
         }
-        if let Some(value) = top.find("render") {
-            let table = value.table("[render]")?;
-            self.scene.render = settings::render(&table)?;
+        if let Some(table) = top.maybe("render", |value| value.table("[render]")) {
+            self.scene.render = settings::render(&table);
             self.has_render = true;
             self.names_integrator = table.has("integrator");
         }
-        Ok(())
     }
 
     /// A picture; each file is read once.
@@ -229,29 +257,40 @@ impl Reader<'_, '_> {
         let folder = self.open.last().and_then(|file| file.parent()).unwrap_or(Path::new(""));
         Ok(folder.join(name))
     }
-}
 
-/// What a name stands for, or the error that it stands for nothing.
-fn named<Id: Copy>(known: &BTreeMap<String, Id>, what: &str, value: Value<'_>, name: &str) -> Result<Id> {
-    known.get(name).copied().ok_or_else(|| {
-        let error = value.error(format!("there is no {what} {name:?}"));
-        let names = || known.keys().map(String::as_str);
-        let example = match what {
-            "object" => format!("[[objects.{name}.sphere]]"),
-            _ => format!("[{what}s.{name}]"),
-        };
-        match nearest(name, names()) {
-            Some(meant) => error.hint(format!("did you mean {meant:?}?")),
-            None if known.is_empty() => error.hint(format!("there is none at all: write it as {example}")),
-            None => {
-                let mut some: Vec<&str> = names().take(12).collect();
-                if known.len() > some.len() {
-                    some.push("…");
-                }
-                error.hint(format!("there are: {}", some.join(", ")))
+    /// What a name stands for, or the error that it stands for nothing.
+    fn named<Id: Copy>(
+        &self,
+        known: &BTreeMap<String, Id>,
+        what: &str,
+        value: Value<'_>,
+        name: &str,
+    ) -> Result<Id> {
+        known.get(name).copied().ok_or_else(|| {
+            if !self.knows_all_names {
+                return Error::untold();
             }
-        }
-    })
+            let error = value.error(format!("there is no {what} {name:?}"));
+            let names = || known.keys().map(String::as_str);
+            let example = match what {
+                "object" => format!("[[objects.{name}.sphere]]"),
+                _ => format!("[{what}s.{name}]"),
+            };
+            match nearest(name, names()) {
+                Some(meant) => error.hint(format!("did you mean {meant:?}?")),
+                None if known.is_empty() => {
+                    error.hint(format!("there is none at all: write it as {example}"))
+                }
+                None => {
+                    let mut some: Vec<&str> = names().take(12).collect();
+                    if known.len() > some.len() {
+                        some.push("…");
+                    }
+                    error.hint(format!("there are: {}", some.join(", ")))
+                }
+            }
+        })
+    }
 }
 
 /// The error that a name is given to two things.

@@ -2,14 +2,27 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Memory, Sources, load};
+use lookfrom_scene::excerpt::Excerpts;
+use lookfrom_scene::{Error, Memory, Sources, load};
+
+/// Each of the errors with the line that it points at.
+fn shown(error: &Error, files: &Memory) -> String {
+    let mut excerpts = Excerpts::new(files);
+    let each = error.each().map(|error| {
+        let excerpt = excerpts.of(&error.at).map(|excerpt| format!("\n{excerpt}").replace('\n', "\n  | "));
+        let hint = error.hint.as_ref().map(|hint| format!("\n  help: {hint}"));
+        let [excerpt, hint] = [excerpt, hint].map(Option::unwrap_or_default);
+        format!("{}: {}{excerpt}{hint}", error.at, error.message)
+    });
+    each.collect::<Vec<_>>().join("\n")
+}
 
 /// All that is said of a scene: its error if there is one, and then its warnings.
 fn said(text: &str) -> String {
     let files = Memory([(PathBuf::from("a.pbrt"), text.as_bytes().to_vec())].into());
     let mut sources = Sources::new(&files);
     let error = load::scene(Path::new("a.pbrt"), &mut sources).err();
-    let error = error.map(|error| error.to_string());
+    let error = error.map(|error| shown(&error, &files));
     let all: Vec<String> =
         error.into_iter().chain(sources.warnings.iter().map(ToString::to_string)).collect();
     if all.is_empty() { "nothing".to_owned() } else { all.join("\n") }

@@ -4,11 +4,12 @@ use std::path::Path;
 
 use glam::{DMat4, DVec3};
 use lookfrom_scene::camera::{Projection, View};
+use lookfrom_scene::excerpt::Excerpts;
 use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{Color, MaterialKind, Whitted};
 use lookfrom_scene::shape::Geometry;
 use lookfrom_scene::texture::{Mapping, TextureKind};
-use lookfrom_scene::{ErrorKind, Memory, Result, Scene, Sources, image, load};
+use lookfrom_scene::{Error, ErrorKind, Memory, Result, Scene, Sources, image, load};
 
 fn files(texts: &[(&str, &str)]) -> Memory {
     let mut files = Memory::default();
@@ -34,6 +35,18 @@ fn look(scene: &Scene, index: usize) -> &Whitted {
     whitted
 }
 
+/// Each of the errors with the line that it points at.
+fn shown(error: &Error, files: &Memory) -> String {
+    let mut excerpts = Excerpts::new(files);
+    let each = error.each().map(|error| {
+        let excerpt = excerpts.of(&error.at).map(|excerpt| format!("\n{excerpt}").replace('\n', "\n  | "));
+        let hint = error.hint.as_ref().map(|hint| format!("\n  help: {hint}"));
+        let [excerpt, hint] = [excerpt, hint].map(Option::unwrap_or_default);
+        format!("{}: {}{excerpt}{hint}", error.at, error.message)
+    });
+    each.collect::<Vec<_>>().join("\n")
+}
+
 /// `tests/toml/errors.txt` has bad scenes and what is said of them; `LOOKFROM_ACCEPT=1 cargo test` writes anew what is
 /// said.
 #[test]
@@ -43,9 +56,10 @@ fn errors_say_where_and_what_to_do() {
     let (mut found, mut count) = (String::new(), 0);
     for case in cases.by_ref() {
         let (text, _) = case.split_once("\n-----\n").unwrap_or((case, ""));
-        let error = match read_files(&[("a.toml", text)]) {
+        let files = files(&[("a.toml", text)]);
+        let error = match load::scene(Path::new("a.toml"), &mut Sources::new(&files)) {
             Ok(_) => "no error".to_owned(),
-            Err(error) => error.to_string(),
+            Err(error) => shown(&error, &files),
         };
         if count > 0 {
             found.push_str("\n=====\n");

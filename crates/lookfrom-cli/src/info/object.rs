@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use lookfrom::session::{SceneInfo, Session};
+use lookfrom_scene::WarningKind;
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::contents::{AnimationEntry, CameraEntry, Contents};
 use lookfrom_scene::count::Counts;
-use lookfrom_scene::WarningKind;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, RenderSettings};
 use serde::Serialize;

@@ -19,12 +19,63 @@ fn a_missing_scene() {
 fn a_bad_scene_is_told_by_line_and_column() {
     let stage = Stage::new("bad");
     stage.write("syntax.toml", "[camera]\nlookfrom = [0, 1\nfov = 40\n");
-    stage.run("render syntax.toml").fails(1, &["error: syntax.toml:3:"]);
+    stage.run("render syntax.toml").fails(1, &["error: ", "--> syntax.toml:3:1\n"]);
     stage.write("key.toml", &SCENE.replace("fov", "fow"));
-    stage.run("render key.toml").fails(1, &["error: key.toml:5:1: ", "fov"]);
+    let shown = "error: unknown key `fow` in [camera]\n --> key.toml:5:1\n  |\n5 | fow = 40\n  | ^^^\n  = help: did you mean `fov`?\n";
+    stage.run("render key.toml").fails(1, &[shown]);
     stage.write("scene.pbrt", "WorldBegin\nShape sphere");
-    stage.run("render scene.pbrt").fails(1, &["scene.pbrt:2:"]);
+    stage.run("render scene.pbrt").fails(1, &["--> scene.pbrt:2:7\n", "2 | Shape sphere\n  |       ^^^^^^"]);
+    stage.write("model.obj", "v 0 0 0\r\nv 1 zwei 0\r\n");
+    stage.run("render model.obj").fails(1, &["--> model.obj:2:5\n  |\n2 | v 1 zwei 0\n  |     ^^^^\n"]);
     assert!(stage.names().iter().all(|name| !name.ends_with("png")));
+}
+
+#[test]
+fn all_errors_of_a_scene_are_told_in_one_run() {
+    let stage = Stage::new("all");
+    let wrong = SCENE
+        .replace("fov", "fow")
+        .replace("width = 40", "width = 0")
+        .replace("samples", "spp")
+        .replace("intensity", "strength");
+    stage.write("wrong.toml", &wrong);
+    let run = stage.run("render wrong.toml");
+    run.fails(1, &["`fov`?", "`width` is 0", "`samples`?", "`intensity`?"]);
+    assert_eq!(run.stderr.matches("error: ").count(), 4, "{}", run.stderr);
+    let lights = "[[light]]\ntype = \"area\"\n".repeat(51);
+    stage.write("many.toml", &lights);
+    let run = stage.run("render many.toml");
+    run.fails(1, &["\n\n… and 31 more\n"]);
+    assert_eq!(run.stderr.matches("--> many.toml:").count(), 20, "{}", run.stderr);
+}
+
+#[test]
+fn what_the_parser_says_and_what_we_say_look_alike() {
+    let stage = Stage::new("alike");
+    stage
+        .run("rendr scene.toml")
+        .fails(2, &["error: unrecognized subcommand 'rendr'\n\n  help: ", "'render'"]);
+    let run = stage.run("render scene.toml --width abc");
+    run.fails(
+        2,
+        &[
+            "error: invalid value 'abc' for '--width",
+            ": expected a whole number from 1 to",
+            "For more information, try '--help'.\n",
+        ],
+    );
+    // What only the scene can tell is said like what the parser can.
+    let run = stage.run("render scene.toml --crop 0,0,41,30");
+    run.fails(2, &["error: --crop 0,0,41,30 is not", "\n\nFor more information, try '--help'.\n"]);
+    for arguments in ["render nowhere.toml", "rendr scene.toml", "render scene.toml --crop 0,0,41,30"] {
+        let output = stage.command(arguments).env("CLICOLOR_FORCE", "1").output().unwrap();
+        let colored = String::from_utf8(output.stderr).unwrap();
+        assert!(colored.starts_with("\u{1b}[1m\u{1b}[31merror:\u{1b}[0m "), "{colored:?}");
+        assert!(!stage.run(arguments).stderr.contains('\u{1b}'));
+    }
+    assert!(!stage.run("rendr").stderr.contains("tip:"));
+    assert_eq!(stage.run("--help").code, Some(0));
+    assert_eq!(stage.run("--version").code, Some(0));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Where is a byte of a scene file, and how is a person shown what is wrong there?
+//! Where is a byte of a scene file?
 //!
 //! Lines are counted only when somebody asks, and onwards from where they were last counted: a large file is not
 //! searched for line ends before it is read, nor again for every shape.
@@ -8,9 +8,6 @@ use std::path::Path;
 use std::rc::Rc;
 
 use crate::error::{Error, ErrorKind, Location};
-
-/// The widest piece of a line that is shown, in characters.
-const EXCERPT: usize = 100;
 
 /// A file's content, with what is needed to name places in it.
 pub(super) struct Text {
@@ -49,30 +46,6 @@ impl Text {
         let before = String::from_utf8_lossy(&self.bytes[start..offset]).chars().count();
         self.whole.at(line, u32::try_from(before + 1).unwrap_or(0))
     }
-
-    /// The line around a byte, and below it a mark under the byte.
-    fn excerpt(&self, offset: usize) -> String {
-        let (_, start) = self.line(offset);
-        let rest = &self.bytes[offset..];
-        let length =
-            rest.iter().take(4 * EXCERPT).take_while(|&&byte| byte != b'\n' && byte != b'\r').count();
-        let plain = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace(|c: char| c.is_control(), " ");
-        let (before, after) = (plain(&self.bytes[start..offset]), plain(&rest[..length]));
-        let skipped = before.chars().count().saturating_sub(EXCERPT * 3 / 4);
-        let mut line: String = before.chars().skip(skipped).collect();
-        if skipped > 0 {
-            line = line.chars().skip(1).fold("…".to_owned(), |line, c| line + c.encode_utf8(&mut [0; 4]));
-        } else {
-            line = line.trim_start().to_owned();
-        }
-        let column = line.chars().count();
-        let room = EXCERPT - column;
-        line.extend(after.chars().take(room));
-        if after.chars().count() > room {
-            line.push('…');
-        }
-        format!("\n  | {}\n  | {}^", line.trim_end(), " ".repeat(column))
-    }
 }
 
 /// A byte of a file.
@@ -91,9 +64,9 @@ impl Place {
         self.text.location(self.offset)
     }
 
-    /// An error here, with the line that is wrong.
+    /// An error here.
     pub(super) fn error(&self, kind: ErrorKind, message: impl std::fmt::Display) -> Error {
-        Error::new(kind, &self.location(), format!("{message}{}", self.text.excerpt(self.offset)))
+        Error::new(kind, &self.location(), message.to_string())
     }
 
     /// The bytes here are not what the format allows.
@@ -132,17 +105,5 @@ mod tests {
             [(1, 1), (2, 1), (2, 5), (3, 1), (4, 1), (4, 5)]
         );
         assert_eq!([at(9), at(2), at(12)], [(2, 5), (1, 3), (4, 1)]);
-    }
-
-    #[test]
-    fn long_lines_are_cut_around_the_place() {
-        let mut line = vec![b'a'; 5000];
-        line[3000] = b'!';
-        let text = Text::new(Path::new("a"), line);
-        let shown = text.excerpt(3000);
-        let rows: Vec<Vec<char>> = shown.lines().skip(1).map(|row| row.chars().collect()).collect();
-        let mark = rows[1].iter().position(|&c| c == '^').expect("a mark");
-        assert_eq!(rows[0][mark], '!');
-        assert!(rows[0].len() <= EXCERPT + 6);
     }
 }

@@ -23,9 +23,18 @@ pub(super) trait Made {
 }
 
 /// Checks these of the things, and what they are made of.
-pub(super) fn check<T: Made>(things: &[T], indices: impl IntoIterator<Item = usize>) -> Result<()> {
+pub(super) fn check<T: Made>(things: &[T], indices: impl IntoIterator<Item = usize>) -> Vec<Error> {
     let mut search = Search { things, chain: Vec::new(), heights: BTreeMap::new() };
-    indices.into_iter().try_for_each(|index| search.height(index).map(|_| ()))
+    let mut errors = Vec::new();
+    for index in indices {
+        if let Err(error) = search.height(index) {
+            errors.push(error);
+            // Told once: what stands in this chain counts as flat from here on.
+            let chain = search.chain.drain(..).map(|index| (index, 1));
+            search.heights.extend(chain);
+        }
+    }
+    errors
 }
 
 struct Search<'a, T> {

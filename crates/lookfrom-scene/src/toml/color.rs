@@ -50,7 +50,7 @@ impl Reader<'_, '_> {
             if !table.has("type") {
                 return self.curve(value, &[]).map(Color::Curve);
             }
-            let kind = self.texture_kind(&table)?;
+            let kind = self.texture_kind(&table);
             return Ok(Color::Texture(self.add_texture(value, kind)));
         }
         match value.as_text() {
@@ -60,8 +60,8 @@ impl Reader<'_, '_> {
     }
 
     /// A colour of a table, or a grey where it is not given.
-    pub(super) fn color_or(&mut self, table: &Table<'_>, key: &str, gray: f32) -> Result<Color> {
-        table.find(key).map_or(Ok(Color::gray(gray)), |value| self.color(value))
+    pub(super) fn color_or(&mut self, table: &Table<'_>, key: &str, gray: f32) -> Color {
+        table.or(key, Color::gray(gray), |value| self.color(value))
     }
 
     /// A number that may be a texture, by name or written in its place; as `expected` where `ok`.
@@ -81,8 +81,8 @@ impl Reader<'_, '_> {
     }
 
     /// A part of a whole that may be a texture, or a default where it is not given.
-    pub(super) fn share_or(&mut self, table: &Table<'_>, key: &str, default: f32) -> Result<Scalar> {
-        table.find(key).map_or(Ok(Scalar::Value(default)), |value| {
+    pub(super) fn share_or(&mut self, table: &Table<'_>, key: &str, default: f32) -> Scalar {
+        table.or(key, Scalar::Value(default), |value| {
             self.scalar_where(value, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
         })
     }
@@ -98,7 +98,7 @@ impl Reader<'_, '_> {
                     .error(format!("`{}` is a light that nobody sees", value.key()))
                     .hint("give it values above 0 between 400 and 700 nm"));
             }
-            return Ok((Color::Curve(curve), table.or("scale", 1.0, primary)?));
+            return Ok((Color::Curve(curve), table.or("scale", 1.0, primary)));
         }
         let is_texture = value.is_table() || value.as_text().is_some_and(|text| !text.starts_with('#'));
         if is_texture && !textures {
@@ -125,7 +125,7 @@ impl Reader<'_, '_> {
     }
 
     fn texture_named(&self, value: Value<'_>, name: &str) -> Result<TextureId> {
-        super::named(&self.textures, "texture", value, name)
+        self.named(&self.textures, "texture", value, name)
     }
 }
 

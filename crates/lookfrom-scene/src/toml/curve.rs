@@ -25,12 +25,12 @@ impl Reader<'_, '_> {
     /// A table of one of [`KEYS`], and perhaps of `others`.
     pub(super) fn curve(&mut self, value: Value<'_>, others: &[&'static str]) -> Result<CurveId> {
         let table = value.table("a colour by wavelength")?;
-        let Some(one) = table.one_of(KEYS)? else {
+        let Some(one) = table.one_of(KEYS) else {
             return Err(value.error(format!("`{}` is a table without a `type`: no texture", value.key())).hint(
                 "add `type = \"checker\"` or another; a colour by wavelength has `kelvin`, `curve`, `spd` or `illuminant`",
             ));
         };
-        table.allow(&[KEYS, others])?;
+        table.allow(&[KEYS, others]);
         match one.key() {
             "kelvin" => {
                 let kelvin = kelvin(one)?;

@@ -3,39 +3,51 @@
 use glam::{DMat4, DVec3};
 
 use super::Reader;
-use super::light::{aim, amount, falloff, turned};
+use super::light::{aim, amount, falloff, position, turned};
 use super::sky::up_from_pole;
 use super::table::Table;
+use super::value::Value;
 use crate::error::Result;
 use crate::light::{Amount, LightKind};
+use crate::scene::ImageId;
 
 impl Reader<'_, '_> {
     /// Into a cone.
     pub(super) fn spot(&mut self, table: &Table<'_>) -> Result<(LightKind, Amount)> {
-        let position = table.need("position", "[0, 5, 0]")?.vector()?;
-        let direction = aim(table, position)?;
+        let position = position(table);
+        let direction = aim(table, position);
         let expected = "degrees, more than 0 and at most 180";
+        let (intensity, amount) = self.intensity(table, "power");
+        let falloff = falloff(table);
         let cone_angle = table.or("cone_angle", 30.0, |value| {
             value.number_where(expected, |angle| angle > 0.0 && angle <= 180.0)
-        })?;
+        });
+        table.sound(&["cone_angle"])?;
         let inner_angle = table.or("inner_angle", 0.8 * cone_angle, |value| {
             value.number_where("degrees from 0 to `cone_angle`", |angle| (0.0..=cone_angle).contains(&angle))
-        })?;
-        let (intensity, amount) = self.intensity(table, "power")?;
-        let falloff = falloff(table)?;
+        });
         Ok((LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, falloff }, amount))
     }
 
     /// A picture that is thrown.
     pub(super) fn projection(&mut self, table: &Table<'_>) -> Result<(LightKind, Amount)> {
-        let position = table.need("position", "[0, 5, 0]")?.vector()?;
-        let forward = aim(table, position)?.normalize();
-        let up = match table.find("up") {
-            Some(value) => {
-                let up = value.direction()?.normalize();
+        let position = position(table);
+        let forward = aim(table, position).normalize();
+        let up = table.maybe("up", Value::direction);
+        let expected = "degrees between 0 and 180, neither of them included";
+        let fov = table.or("fov", 45.0, |value| value.single_where(expected, |fov| fov > 0.0 && fov < 180.0));
+        let intensity = table.or("intensity", 1.0, |value| {
+            value.single_where("a number of at least 0: the picture has the colours", |number| number >= 0.0)
+        });
+        let amount = amount(table, "power", 1.0);
+        let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.image(value));
+        table.sound(&["position", "target", "direction", "up"])?;
+        let up = match up {
+            Some(up) => {
+                let up = up.normalize();
                 if up.cross(forward).length_squared() < 1e-20 {
-                    return Err(value
-                        .error(format!("up {up} is parallel to where the light goes"))
+                    return Err(table
+                        .error_at("up", format!("up {up} is parallel to where the light goes"))
                         .hint("give another `up`, such as [0, 0, 1] for a light straight down"));
                 }
                 up
@@ -50,23 +62,15 @@ impl Reader<'_, '_> {
             forward.extend(0.0),
             position.extend(1.0),
         );
-        let expected = "degrees between 0 and 180, neither of them included";
-        let fov =
-            table.or("fov", 45.0, |value| value.single_where(expected, |fov| fov > 0.0 && fov < 180.0))?;
-        let intensity = table.or("intensity", 1.0, |value| {
-            value.single_where("a number of at least 0: the picture has the colours", |number| number >= 0.0)
-        })?;
-        let image = self.image(table.need("image", "\"picture.png\"")?)?;
-        Ok((LightKind::Projection { image, intensity, fov, world_from_light }, amount(table, "power", 1.0)?))
+        Ok((LightKind::Projection { image, intensity, fov, world_from_light }, amount))
     }
 
     /// Brightness by direction.
-    pub(super) fn goniometric(&mut self, table: &Table<'_>) -> Result<(LightKind, Amount)> {
-        let position = table.need("position", "[0, 5, 0]")?.vector()?;
-        let value = table.need("image", "\"picture.png\"")?;
-        let image = self.octahedral_image(value)?;
-        let (intensity, amount) = self.intensity(table, "power")?;
-        let world_from_light = DMat4::from_translation(position) * turned(table)? * up_from_pole();
-        Ok((LightKind::Goniometric { intensity, image, world_from_light }, amount))
+    pub(super) fn goniometric(&mut self, table: &Table<'_>) -> (LightKind, Amount) {
+        let position = position(table);
+        let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.octahedral_image(value));
+        let (intensity, amount) = self.intensity(table, "power");
+        let world_from_light = DMat4::from_translation(position) * turned(table) * up_from_pole();
+        (LightKind::Goniometric { intensity, image, world_from_light }, amount)
     }
 }

@@ -9,12 +9,18 @@ use crate::load;
 use crate::scene::MaterialId;
 
 impl Reader<'_, '_> {
-    /// One file or a list of them.
-    pub(super) fn imports(&mut self, value: Value<'_>) -> Result<()> {
-        if !value.is_list() {
-            return self.import(value);
+    /// One file or a list of them. Without all of them, not all names are known.
+    pub(super) fn imports(&mut self, value: Value<'_>) {
+        let mut import = |value: Value<'_>| {
+            if let Err(error) = self.import(value) {
+                value.note(error);
+                self.knows_all_names = false;
+            }
+        };
+        match value.list("") {
+            Ok(items) => items.for_each(import),
+            Err(_) => import(value),
         }
-        value.list("the name of a file, or a list of names")?.try_for_each(|item| self.import(item))
     }
 
     fn import(&mut self, value: Value<'_>) -> Result<()> {

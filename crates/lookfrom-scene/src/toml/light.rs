@@ -7,7 +7,7 @@ use super::form::tangents;
 use super::place::{about, rotate};
 use super::table::{Kinds, Table};
 use super::value::Value;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::light::{Amount, Falloff, Light, LightKind};
 use crate::material::Color;
 use crate::shape::{Emission, Geometry, Shape, Sphere};
@@ -57,69 +57,68 @@ pub(super) const KEYS: Kinds = &[
         ],
     ),
 ];
+/// The words for how light fades with distance.
+pub(super) const FALLOFFS: &[(&str, Falloff)] =
+    &[("none", Falloff::None), ("linear", Falloff::Linear), ("quadratic", Falloff::Quadratic)];
 /// What every light may have.
 pub(super) const COMMON: &[&str] = &["type", "name"];
 
 impl Reader<'_, '_> {
     /// One `[[light]]`.
-    pub(super) fn read_light(&mut self, table: &Table<'_>) -> Result<()> {
-        let word = table.kind(KEYS, None, |_| COMMON)?;
+    pub(super) fn read_light(&mut self, table: &Table<'_>) {
+        let Some(word) = table.kind(KEYS, None, |_| COMMON) else { return };
+        if let Err(error) = self.light(word, table) {
+            table.note(error);
+        }
+    }
+
+    fn light(&mut self, word: &str, table: &Table<'_>) -> Result<()> {
+        let name = name(table);
         let (kind, amount) = match word {
             "ambient" => {
-                let color = self.light_rgb(table.need("color", "0.1")?)?;
+                let color = table.need("color", "0.1", [1.0; 3], |value| self.light_rgb(value));
                 (LightKind::Ambient { color }, Amount::AS_WRITTEN)
             }
             "point" => {
-                let position = table.need("position", "[0, 5, 0]")?.vector()?;
-                let (intensity, amount) = self.intensity(table, "power")?;
-                (LightKind::Point { position, intensity, falloff: falloff(table)? }, amount)
+                let (intensity, amount) = self.intensity(table, "power");
+                (LightKind::Point { position: position(table), intensity, falloff: falloff(table) }, amount)
             }
             "distant" => {
+                let (intensity, amount) = self.intensity(table, "illuminance");
                 let direction = distant_direction(table)?;
-                let (intensity, amount) = self.intensity(table, "illuminance")?;
                 (LightKind::Distant { direction, intensity }, amount)
             }
             "spot" => self.spot(table)?,
             "projection" => self.projection(table)?,
-            "goniometric" => self.goniometric(table)?,
+            "goniometric" => self.goniometric(table),
             "environment" => self.environment(table)?,
-            _ => return self.read_lamp(word, table),
+            _ => return self.read_lamp(word, table, name),
         };
-        let name = name(table)?;
         self.scene.lights.push(Light { name, at: table.at(), kind, amount });
         Ok(())
     }
 
     /// A light that is a shape.
-    fn read_lamp(&mut self, word: &str, table: &Table<'_>) -> Result<()> {
+    fn read_lamp(&mut self, word: &str, table: &Table<'_>, name: Option<String>) -> Result<()> {
+        let (radiance, scale) = match table.find("radiance") {
+            None if table.has("power") || table.means(&["power"]) => (Color::gray(1.0), 1.0),
+            _ => table.need("radiance", "10", (Color::BLACK, 1.0), |value| self.light_color(value, true)),
+        };
+        let amount = amount(table, "power", scale);
+        let two_sided = table.or("two_sided", false, Value::boolean);
+        let center = || table.need("center", "[0, 5, 0]", DVec3::ZERO, Value::vector);
+        let radius = || table.need("radius", "1", 1.0, Value::positive);
         let geometry = match word {
             "rectangle" => rectangle(table)?,
             "disk" => {
-                let center = table.need("center", "[0, 5, 0]")?.vector()?;
-                let normal = match table.one_of(&["normal", "target"])? {
-                    Some(value) if value.key() == "target" => towards(value, center)?,
-                    Some(value) => value.direction()?,
-                    None => {
-                        return Err(table
-                            .error("`normal` or `target` is missing")
-                            .hint("add `target = [0, 0, 0]`"));
-                    }
-                };
-                Geometry::Disk { center, normal, radius: table.need("radius", "1")?.positive()? }
+                let (center, radius) = (center(), radius());
+                let normal = facing(table, ["target", "normal"], center, "add `target = [0, 0, 0]`");
+                Geometry::Disk { center, normal, radius }
             }
-            _ => Geometry::Sphere(Sphere {
-                center: table.need("center", "[0, 5, 0]")?.vector()?,
-                radius: table.need("radius", "1")?.positive()?,
-            }),
+            _ => Geometry::Sphere(Sphere { center: center(), radius: radius() }),
         };
-        let (radiance, scale) = match table.find("radiance") {
-            None if table.has("power") => (Color::gray(1.0), 1.0),
-            _ => self.light_color(table.need("radiance", "10")?, true)?,
-        };
-        let amount = amount(table, "power", scale)?;
-        let two_sided = table.or("two_sided", false, Value::boolean)?;
         let shape = Shape {
-            name: name(table)?,
+            name,
             emission: Some(Emission { radiance, amount, two_sided }),
             ..Shape::new(table.at(), geometry, self.black_material())
         };
@@ -128,39 +127,38 @@ impl Reader<'_, '_> {
     }
 
     /// `intensity` and how much of it; `total` is the key that may say so instead.
-    pub(super) fn intensity(&mut self, table: &Table<'_>, total: &str) -> Result<(Color, Amount)> {
+    pub(super) fn intensity(&mut self, table: &Table<'_>, total: &str) -> (Color, Amount) {
         let (color, scale) = match table.find("intensity") {
-            None if table.has(total) => (Color::gray(1.0), 1.0),
-            _ => self.light_color(table.need("intensity", "1")?, false)?,
+            None if table.has(total) || table.means(&[total]) => (Color::gray(1.0), 1.0),
+            _ => table.need("intensity", "1", (Color::BLACK, 1.0), |value| self.light_color(value, false)),
         };
-        Ok((color, amount(table, total, scale)?))
+        (color, amount(table, total, scale))
     }
 }
 
 /// How much light: as the key `total` says, or else as the colour, times `scale`, says.
-pub(super) fn amount(table: &Table<'_>, total: &str, scale: f32) -> Result<Amount> {
+pub(super) fn amount(table: &Table<'_>, total: &str, scale: f32) -> Amount {
     let total = table.or(total, None, |value| {
         value.single_where("a number of at least 0", |total| total >= 0.0).map(Some)
-    })?;
+    });
     // What it comes to is then known, whatever the colour's brightness.
     let scale = if total.is_some() { 1.0 } else { scale };
-    Ok(Amount { scale, total, absolute: false })
+    Amount { scale, total, absolute: false }
 }
 
 /// `rotate`: degrees about y, or as for shapes.
-pub(super) fn turned(table: &Table<'_>) -> Result<DMat4> {
+pub(super) fn turned(table: &Table<'_>) -> DMat4 {
     table.or("rotate", DMat4::IDENTITY, |value| {
         if value.is_number() { Ok(about(DVec3::Y, value.number()?)) } else { rotate(value) }
     })
 }
 
-pub(super) fn name(table: &Table<'_>) -> Result<Option<String>> {
-    table.or("name", None, |value| Ok(Some(value.text("a name in quotes")?.to_owned())))
+pub(super) fn name(table: &Table<'_>) -> Option<String> {
+    table.maybe("name", |value| value.text("a name in quotes").map(str::to_owned))
 }
 
-pub(super) fn falloff(table: &Table<'_>) -> Result<Falloff> {
-    let words = [("none", Falloff::None), ("linear", Falloff::Linear), ("quadratic", Falloff::Quadratic)];
-    table.or("falloff", Falloff::default(), |value| value.choice(&words))
+pub(super) fn falloff(table: &Table<'_>) -> Falloff {
+    table.or("falloff", Falloff::default(), |value| value.choice(FALLOFFS))
 }
 
 /// The way from a point to the point that a value names.
@@ -175,39 +173,65 @@ fn towards(target: Value<'_>, from: DVec3) -> Result<DVec3> {
 }
 
 fn distant_direction(table: &Table<'_>) -> Result<DVec3> {
-    match (table.one_of(&["direction", "from"])?, table.one_of(&["direction", "to"])?) {
-        (Some(value), None) if value.key() == "direction" => value.direction(),
-        (Some(value), Some(_)) if value.key() == "direction" => value.direction(),
-        (Some(from), Some(to)) => towards(to, from.vector()?),
-        (Some(from), None) => Ok(-from.direction()?),
-        (None, _) => Err(table
-            .error("`direction` or `from` is missing")
-            .hint("add `direction = [0, -1, 0]`, where the light goes to")),
+    table.one_of(&["direction", "from"]);
+    table.one_of(&["direction", "to"]);
+    let direction = table.maybe("direction", Value::direction);
+    let from = table.maybe("from", Value::vector);
+    table.sound(&["direction", "from", "to"])?;
+    if !table.has("direction") && !table.has("from") {
+        let error = table.error("`direction` or `from` is missing");
+        let error = error.hint("add `direction = [0, -1, 0]`, where the light goes to");
+        table.lacks(&["direction", "from"], error);
+        return Err(Error::untold());
+    }
+    match (direction, from, table.find("to")) {
+        (Some(direction), ..) => Ok(direction),
+        (None, Some(from), Some(to)) => towards(to, from),
+        _ => Ok(-table.or("from", DVec3::Y, Value::direction)),
     }
 }
 
+/// Where a light stands.
+pub(super) fn position(table: &Table<'_>) -> DVec3 {
+    table.need("position", "[0, 5, 0]", DVec3::ZERO, Value::vector)
+}
+
 /// Where a light at `position` shines to.
-pub(super) fn aim(table: &Table<'_>, position: DVec3) -> Result<DVec3> {
-    match table.one_of(&["target", "direction"])? {
-        Some(value) if value.key() == "target" => towards(value, position),
-        Some(value) => value.direction(),
-        None => Err(table.error("`target` or `direction` is missing").hint("add `target = [0, 0, 0]`")),
+pub(super) fn aim(table: &Table<'_>, position: DVec3) -> DVec3 {
+    facing(table, ["target", "direction"], position, "add `target = [0, 0, 0]`")
+}
+
+/// Where something at a point faces: to another point, or in a direction.
+fn facing(table: &Table<'_>, [target, direction]: [&str; 2], from: DVec3, remedy: &str) -> DVec3 {
+    let is_placed = table.sound(&["position", "center"]).is_ok();
+    if let Some(value) = table.one_of(&[target, direction]) {
+        return table.or(value.key(), -DVec3::Y, |value| match value.key() == target {
+            true if is_placed => towards(value, from),
+            true => value.vector().map(|_| -DVec3::Y),
+            false => value.direction(),
+        });
     }
+    let error = table.error(format!("`{target}` or `{direction}` is missing")).hint(remedy);
+    table.lacks(&[target, direction], error);
+    -DVec3::Y
 }
 
 /// By a corner and two edges, or by its middle, where it faces, and its sides.
 fn rectangle(table: &Table<'_>) -> Result<Geometry> {
-    if let Some(value) = table.find("center") {
+    if table.has("center") {
         let keys: &[&str] = &["center", "target", "width", "height", "radiance", "power", "two_sided"];
-        table.allow(&[COMMON, keys])?;
-        let center = value.vector()?;
-        let normal = towards(table.need("target", "[0, 0, 0]")?, center)?.normalize();
-        let (u, v) = tangents(normal);
-        let edge_u = u * table.need("width", "1")?.positive()?;
-        let edge_v = v * table.need("height", "1")?.positive()?;
+        table.allow(&[COMMON, keys]);
+        let center = table.or("center", DVec3::ZERO, Value::vector);
+        let width = table.need("width", "1", 1.0, Value::positive);
+        let height = table.need("height", "1", 1.0, Value::positive);
+        let target = table.need("target", "[0, 0, 0]", None, |value| value.vector().map(|_| Some(value)));
+        table.sound(&["center", "target"])?;
+        let Some(target) = target else { return Err(Error::untold()) };
+        let (u, v) = tangents(towards(target, center)?.normalize());
+        let (edge_u, edge_v) = (u * width, v * height);
         return Ok(Geometry::Quad { corner: center - 0.5 * (edge_u + edge_v), edge_u, edge_v });
     }
     let keys: &[&str] = &["corner", "edge_u", "edge_v", "radiance", "power", "two_sided"];
-    table.allow(&[COMMON, keys])?;
+    table.allow(&[COMMON, keys]);
     super::shape::quad(table)
 }

@@ -12,10 +12,13 @@ use crate::texture::Mapping;
 pub(super) const KEYS: &[&str] =
     &["space", "scale", "offset", "size", "rotate", "translate", "axis_u", "axis_v"];
 
+/// The words for `space`.
+pub(super) const SPACES: [&str; 5] = ["uv", "world", "spherical", "cylindrical", "planar"];
+
 /// Where it lives, in the default `space` unless another is named.
 pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
-    let words = ["uv", "world", "spherical", "cylindrical", "planar"].map(|word| (word, word));
-    let space = table.or("space", default, |value| value.choice(&words))?;
+    let words = SPACES.map(|word| (word, word));
+    let space = table.find("space").map_or(Ok(default), |value| value.choice(&words))?;
     let for_others: &[(&str, &[&str])] = &[
         ("uv", &["offset"]),
         ("planar", &["offset", "axis_u", "axis_v", "size", "rotate", "translate"]),
@@ -28,17 +31,16 @@ pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
         if !has(space) {
             let spaces = words.map(|word| word.0).into_iter().filter(|word| has(word));
             let spaces = spaces.map(|word| format!("{word:?}")).collect::<Vec<_>>().join(" or ");
-            return Err(key
-                .error(format!("`{}` means nothing in space = {space:?}", key.key()))
-                .hint(format!("leave it out, or give space = {spaces}")));
+            let error = key.error(format!("`{}` means nothing in space = {space:?}", key.key()));
+            key.note(error.hint(format!("leave it out, or give space = {spaces}")));
         }
     }
     if space == "uv" {
-        let scale = table.or("scale", [1.0; 2], pair)?;
-        return Ok(Mapping::Uv { scale, offset: offset(table)? });
+        let scale = table.or("scale", [1.0; 2], pair);
+        return Ok(Mapping::Uv { scale, offset: offset(table) });
     }
-    let size = table.or("size", 1.0, Value::positive)?;
-    let world_from_texture = scale_rotate_translate(table)? * DMat4::from_scale(DVec3::splat(size));
+    let size = table.or("size", 1.0, Value::positive);
+    let world_from_texture = scale_rotate_translate(table) * DMat4::from_scale(DVec3::splat(size));
     let texture_from_world = world_from_texture.inverse();
     if !texture_from_world.is_finite() {
         return Err(table
@@ -53,8 +55,8 @@ pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
         "cylindrical" => Mapping::Cylindrical { texture_from_world: pole_on_z },
         _ => Mapping::Planar {
             texture_from_world,
-            axes: [table.or("axis_u", Vec3::X, axis)?, table.or("axis_v", Vec3::Y, axis)?],
-            offset: offset(table)?,
+            axes: [table.or("axis_u", Vec3::X, axis), table.or("axis_v", Vec3::Y, axis)],
+            offset: offset(table),
         },
     })
 }
@@ -65,7 +67,7 @@ fn axis(value: Value<'_>) -> Result<Vec3> {
     super::shape::point(value)
 }
 
-fn offset(table: &Table<'_>) -> Result<[f32; 2]> {
+fn offset(table: &Table<'_>) -> [f32; 2] {
     table.or("offset", [0.0; 2], |value| value.singles("two numbers, [u, v]"))
 }
 

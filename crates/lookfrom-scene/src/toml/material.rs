@@ -5,7 +5,7 @@ use super::light::amount;
 use super::table::{Kinds, Table};
 use super::value::Value;
 use super::{Reader, chain, principled};
-use crate::error::{Error, Location, Result};
+use crate::error::{Location, Result};
 use crate::material::{Color, Material, MaterialKind, Relief, Whitted};
 use crate::scene::MaterialId;
 use crate::shape::Emission;
@@ -84,64 +84,73 @@ impl chain::Made for Material {
 
 impl Reader<'_, '_> {
     /// `[materials]`: all names first, so that a mix may use the others, wherever they are written.
-    pub(super) fn read_materials(&mut self, value: Value<'_>) -> Result<()> {
-        let mut ids = Vec::new();
-        for entry in value.table("[materials]")?.entries() {
+    pub(super) fn read_materials(&mut self, value: Value<'_>) {
+        self.knows_all_names &= value.is_table();
+        let mut read = Vec::new();
+        for entry in value.named("[materials]") {
             let name = entry.key();
             let kind = MaterialKind::Whitted(Whitted::default());
             let material = Material::new(name, entry.at(), kind);
             // The default may have been needed before it was written.
-            ids.push(match self.materials.get(name) {
+            let id = match self.materials.get(name) {
                 Some(&id) if Some(id) == self.unwritten_default => {
                     self.scene.materials[id.index()] = material;
                     self.unwritten_default = None;
                     id
                 }
                 Some(id) => {
-                    return Err(super::twice(entry, "material", &self.scene.materials[id.index()].at));
+                    entry.note(super::twice(entry, "material", &self.scene.materials[id.index()].at));
+                    continue;
                 }
                 None => self.add_material(material),
-            });
-        }
-        for (entry, &id) in value.table("[materials]")?.entries().zip(&ids) {
-            let table = entry.table(format!("[materials.{}]", entry.key()))?;
-            let word = table
-                .kind(KEYS, Some("whitted"), |_| COMMON)
-                .map_err(|error| if error.hint.is_none() { familiar(&table, error) } else { error })?;
-            let kind = match word {
-                "whitted" => MaterialKind::Whitted(self.whitted(&table)?),
-                _ => self.physical(word, &table)?,
             };
-            self.scene.materials[id.index()].kind = kind;
-            self.scene.materials[id.index()].relief = self.relief(&table)?;
-            if let Some(glow) = self.emission(&table)? {
-                self.glows.insert(id, glow);
+            read.push((entry, id));
+        }
+        for &(entry, id) in &read {
+            let table = entry.table(format!("[materials.{}]", entry.key()));
+            if let Some(table) = entry.noting(table.map(Some), None) {
+                self.read_material(&table, id);
             }
         }
-        chain::check(&self.scene.materials, ids.iter().map(|id| id.index()))
+        for error in chain::check(&self.scene.materials, read.iter().map(|(_, id)| id.index())) {
+            value.note(error);
+        }
     }
 
-    fn whitted(&mut self, table: &Table<'_>) -> Result<Whitted> {
+    fn read_material(&mut self, table: &Table<'_>, id: MaterialId) {
+        let Some(word) = table.kind(KEYS, Some("whitted"), |_| COMMON) else { return };
+        let kind = match word {
+            "whitted" => MaterialKind::Whitted(self.whitted(table)),
+            _ => self.physical(word, table),
+        };
+        self.scene.materials[id.index()].kind = kind;
+        self.scene.materials[id.index()].relief = self.relief(table);
+        if let Some(glow) = self.emission(table) {
+            self.glows.insert(id, glow);
+        }
+    }
+
+    fn whitted(&mut self, table: &Table<'_>) -> Whitted {
         let default = Whitted::default();
-        let transmission = self.color_or(table, "transmission", 0.0)?;
-        let absorption = table.or("absorption", default.absorption, plain_color)?;
+        let transmission = self.color_or(table, "transmission", 0.0);
+        let absorption = table.or("absorption", default.absorption, plain_color);
         if absorption != [0.0; 3] && transmission == Color::BLACK {
             self.ineffective(table, "absorption", "`transmission`: no light gets inside");
         }
-        Ok(Whitted {
-            ambient: table.find("ambient").map(|value| self.color(value)).transpose()?,
-            diffuse: self.color_or(table, "diffuse", 0.8)?,
-            specular: self.color_or(table, "specular", 0.0)?,
+        Whitted {
+            ambient: table.maybe("ambient", |value| self.color(value)),
+            diffuse: self.color_or(table, "diffuse", 0.8),
+            specular: self.color_or(table, "specular", 0.0),
             shininess: table.or("shininess", default.shininess, |value| {
                 value.single_where("a number of at least 0", |n| n >= 0.0)
-            })?,
-            mirror: self.color_or(table, "mirror", 0.0)?,
+            }),
+            mirror: self.color_or(table, "mirror", 0.0),
             transmission,
             ior: table
-                .or("ior", default.ior, |value| value.single_where("a number greater than 0", |n| n > 0.0))?,
-            fresnel: table.or("fresnel", default.fresnel, Value::boolean)?,
+                .or("ior", default.ior, |value| value.single_where("a number greater than 0", |n| n > 0.0)),
+            fresnel: table.or("fresnel", default.fresnel, Value::boolean),
             absorption,
-        })
+        }
     }
 
     /// Warns of a key that changes nothing without another.
@@ -150,29 +159,31 @@ impl Reader<'_, '_> {
         self.sources.warn(&at, format!("`{key}` has no effect without {without}"));
     }
 
-    fn relief(&mut self, table: &Table<'_>) -> Result<Relief> {
-        Ok(match table.one_of(&["normal_map", "bump"])? {
-            Some(value) if value.key() == "normal_map" => Relief::NormalMap(self.image_as(value, true)?),
-            Some(value) => Relief::Bump(self.scalar_where(value, "a number", |_| true)?),
-            None => Relief::None,
-        })
+    fn relief(&mut self, table: &Table<'_>) -> Relief {
+        table.one_of(&["normal_map", "bump"]);
+        let normal_map = table.maybe("normal_map", |value| self.image_as(value, true));
+        let bump = table.maybe("bump", |value| self.scalar_where(value, "a number", |_| true));
+        match (normal_map, bump) {
+            (Some(image), _) => Relief::NormalMap(image),
+            (None, Some(height)) => Relief::Bump(height),
+            (None, None) => Relief::None,
+        }
     }
 
     /// `emission`, `power` and `two_sided` of a material or shape.
-    pub(super) fn emission(&mut self, table: &Table<'_>) -> Result<Option<Emission>> {
-        let radiance = match (table.find("emission"), table.find("power"), table.find("two_sided")) {
-            (Some(value), ..) => self.light_color(value, true)?,
-            (None, Some(_), _) => (Color::gray(1.0), 1.0),
-            (None, None, None) => return Ok(None),
-            (None, None, Some(value)) => {
-                return Err(value
-                    .error("`two_sided` says which sides shine, but there is no `emission`")
-                    .hint("surfaces are seen from both sides anyway: leave it out, or add `emission`"));
+    pub(super) fn emission(&mut self, table: &Table<'_>) -> Option<Emission> {
+        if !table.has("emission") && !table.has("power") {
+            if let Some(value) = table.find("two_sided").filter(|_| !table.means(&["emission", "power"])) {
+                let error = value.error("`two_sided` says which sides shine, but there is no `emission`");
+                let remedy = "surfaces are seen from both sides anyway: leave it out, or add `emission`";
+                value.note(error.hint(remedy));
             }
-        };
-        let amount = amount(table, "power", radiance.1)?;
-        let two_sided = table.or("two_sided", false, Value::boolean)?;
-        Ok(Some(Emission { radiance: radiance.0, amount, two_sided }))
+            return None;
+        }
+        let radiance = table.or("emission", (Color::gray(1.0), 1.0), |value| self.light_color(value, true));
+        let amount = amount(table, "power", radiance.1);
+        let two_sided = table.or("two_sided", false, Value::boolean);
+        Some(Emission { radiance: radiance.0, amount, two_sided })
     }
 
     pub(super) fn add_material(&mut self, material: Material) -> MaterialId {
@@ -185,7 +196,7 @@ impl Reader<'_, '_> {
     /// A material of a name that the file gives.
     pub(super) fn material_named(&self, value: Value<'_>) -> Result<MaterialId> {
         let name = value.text("the name of a material")?;
-        super::named(&self.materials, "material", value, name)
+        self.named(&self.materials, "material", value, name)
     }
 
     /// What a shape without a material wears: grey with a slight highlight, unless a file says otherwise.
@@ -209,19 +220,6 @@ impl Reader<'_, '_> {
         self.black = Some(id);
         id
     }
-}
-
-/// An error about a type with a hint where the type has a name elsewhere.
-fn familiar(table: &Table<'_>, error: Error) -> Error {
-    let meant = match table.find("type").and_then(Value::as_text).unwrap_or_default() {
-        "glass" | "water" => "it is a \"dielectric\" here",
-        "metal" | "mirror" => "it is a \"conductor\" here",
-        "plastic" => "it is \"coated_diffuse\" here",
-        "matte" | "lambert" => "it is \"diffuse\" here",
-        "emissive" | "light" => "every type may have an `emission`",
-        _ => return error,
-    };
-    error.hint(meant)
 }
 
 /// Grey, with a slight highlight.

@@ -5,6 +5,7 @@ use glam::Vec2;
 use super::model::CHOICE;
 use super::shape::point;
 use super::table::Table;
+use super::value::Value;
 use super::{Reader, color};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::MeshId;
@@ -24,19 +25,24 @@ impl Reader<'_, '_> {
 
     pub(super) fn inline_mesh(&mut self, table: &Table<'_>) -> Result<Mesh> {
         if !table.has("positions") {
-            return Err(table
-                .error("`file` or `positions` is missing")
-                .hint("name a model file, or give `positions` and `triangles`"));
+            let error = table.error("`file` or `positions` is missing");
+            table.lacks(
+                &["file", "positions"],
+                error.hint("name a model file, or give `positions` and `triangles`"),
+            );
+            return Err(Error::untold());
         }
         if let Some(key) = CHOICE.iter().find_map(|key| table.find(key)) {
             return Err(key.error(format!("`{}` is for a `file`, not for `positions`", key.key())));
         }
-        let positions = table.need("positions", "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]")?;
-        let triangles = table.need("triangles", "[[0, 1, 2]]")?;
-        let mut mesh = Mesh { name: "mesh".to_owned(), ..Mesh::default() };
-        for value in positions.list("a list of points, [x, y, z]")? {
-            mesh.positions.push(point(value)?);
-        }
+        let positions = table.need("positions", "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]", Vec::new(), |value| {
+            value.list("a list of points, [x, y, z]")?.map(point).collect()
+        });
+        let triangles = table.need("triangles", "[[0, 1, 2]]", None, |value| Ok(Some(value)));
+        let mut mesh = Mesh { name: "mesh".to_owned(), positions, ..Mesh::default() };
+        self.vertex_data(table, &mut mesh);
+        table.sound(&["positions", "triangles"])?;
+        let Some(triangles) = triangles else { return Ok(mesh) };
         for value in triangles.list("a list of triangles, [i, j, k]")? {
             let mut corners = [0; 3];
             for (corner, item) in corners.iter_mut().zip(value.list_of::<3>("three vertices, [i, j, k]")?) {
@@ -60,30 +66,39 @@ impl Reader<'_, '_> {
         if count > self.sources.limits.elements {
             return Err(too_many(table, count, self.sources.limits.elements));
         }
-        self.vertex_data(table, &mut mesh)?;
         Ok(mesh)
     }
 
     /// Normals, uvs and colours: each as many as there are vertices.
-    pub(super) fn vertex_data(&mut self, table: &Table<'_>, mesh: &mut Mesh) -> Result<()> {
-        for key in ["normals", "uvs", "colors"] {
-            let Some(value) = table.find(key) else { continue };
-            let items = value.list("a list with a value for each vertex")?;
-            let (found, expected) = (items.len(), mesh.positions.len());
-            if found != expected {
-                return Err(value
-                    .error(format!("`{key}` has {found} values; expected {expected}, one for each vertex")));
-            }
-            for item in items {
-                match key {
-                    "normals" => mesh.normals.push(point(item)?),
-                    "uvs" => mesh.uvs.push(Vec2::from_array(item.singles("two numbers, [u, v]")?)),
-                    _ => mesh.colors.push(color::plain_color(item)?),
-                }
-            }
-        }
-        Ok(())
+    pub(super) fn vertex_data(&mut self, table: &Table<'_>, mesh: &mut Mesh) {
+        let expected = mesh.positions.len();
+        mesh.normals = for_vertices(table, "normals", expected, point);
+        mesh.uvs = for_vertices(table, "uvs", expected, |item| {
+            item.singles("two numbers, [u, v]").map(Vec2::from_array)
+        });
+        mesh.colors = for_vertices(table, "colors", expected, color::plain_color);
     }
+}
+
+/// The values of a key, one for each of the vertices, if it is given.
+fn for_vertices<'a, T>(
+    table: &Table<'a>,
+    key: &str,
+    expected: usize,
+    decode: impl Fn(Value<'a>) -> Result<T>,
+) -> Vec<T> {
+    // Where the vertices are wrong, nobody knows how many there should be.
+    let is_counted = table.sound(&["positions", "vertices"]).is_ok();
+    table.or(key, Vec::new(), |value| {
+        let items = value.list("a list with a value for each vertex")?;
+        let found = items.len();
+        if is_counted && found != expected {
+            return Err(
+                value.error(format!("`{key}` has {found} values; expected {expected}, one for each vertex"))
+            );
+        }
+        items.map(decode).collect()
+    })
 }
 
 /// The error that there are more elements than is allowed.

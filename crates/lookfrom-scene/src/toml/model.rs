@@ -25,17 +25,18 @@ impl Reader<'_, '_> {
         file: Value<'_>,
         world_from_model: &DMat4,
     ) -> Result<Vec<Part>> {
-        if let Some(both) = table.one_of(&["file", "positions"])?.and(table.find("triangles")) {
-            return Err(both.error("`triangles` needs `positions`, not `file`"));
+        table.one_of(&["file", "positions"]);
+        if let Some(triangles) = table.find("triangles").filter(|_| !table.has("positions")) {
+            triangles.note(triangles.error("`triangles` needs `positions`, not `file`"));
         }
-        table.allow(&[&["file"], CHOICE, COMMON, place::KEYS])?;
+        table.allow(&[&["file", "positions", "triangles"], CHOICE, COMMON, place::KEYS]);
         let path = self.resolve(file, "the name of a model file")?;
         if let Some(key) = CHOICE.iter().find_map(|key| table.find(key))
             && !load::is_gltf(&path, self.sources)
         {
             return Err(key.error(format!("`{}` is for glTF files, which hold several things", key.key())));
         }
-        let (choice, has_camera) = self.choice(table)?;
+        let (choice, has_camera) = self.choice(table);
         let stray = ["lights", "camera"].into_iter().find_map(|key| table.find(key));
         if let Some(key) = stray.filter(|_| self.in_object) {
             return Err(key
@@ -43,7 +44,7 @@ impl Reader<'_, '_> {
                 .hint("give it to a [[mesh]] that stands in the scene itself"));
         }
         let model = self.model(file, &choice)?;
-        if table.or("lights", false, Value::boolean)? {
+        if table.or("lights", false, Value::boolean) {
             self.scene
                 .lights
                 .extend(model.lights.into_iter().map(|light| moved_light(light, world_from_model)));
@@ -55,30 +56,26 @@ impl Reader<'_, '_> {
     }
 
     /// What is asked of the file, and whether its camera is.
-    fn choice(&self, table: &Table<'_>) -> Result<(Choice, bool)> {
-        let name = |key: &str, otherwise: &Option<String>| match table.find(key) {
-            Some(value) => Ok(Some(value.text("a name")?.to_owned())),
-            None => Ok(otherwise.clone()),
+    fn choice(&self, table: &Table<'_>) -> (Choice, bool) {
+        let name = |key: &str, otherwise: &Option<String>| {
+            table.or(key, otherwise.clone(), |value| Ok(Some(value.text("a name")?.to_owned())))
         };
         let asked = &self.sources.choice;
         let mut choice = Choice {
-            animation: name("animation", &asked.animation)?,
-            at: table.or("at", asked.at, Value::number)?,
-            variant: name("variant", &asked.variant)?,
-            scene: name("scene", &asked.scene)?,
+            animation: name("animation", &asked.animation),
+            at: table.or("at", asked.at, Value::number),
+            variant: name("variant", &asked.variant),
+            scene: name("scene", &asked.scene),
             camera: CameraChoice::First,
         };
-        let has_camera = match table.find("camera") {
-            Some(value) => match value.as_text() {
-                Some(name) => {
-                    choice.camera = CameraChoice::Named(name.to_owned());
-                    true
-                }
-                None => value.boolean().map_err(|_| value.wrong("true, false or the name of a camera"))?,
-            },
-            None => false,
-        };
-        Ok((choice, has_camera))
+        let has_camera = table.or("camera", false, |value| match value.as_text() {
+            Some(name) => {
+                choice.camera = CameraChoice::Named(name.to_owned());
+                Ok(true)
+            }
+            None => value.boolean().map_err(|_| value.wrong("true, false or the name of a camera")),
+        });
+        (choice, has_camera)
     }
 }
 

@@ -4,46 +4,56 @@ use super::shape::{INSTANCE, kinds};
 use super::table::Table;
 use super::value::Value;
 use super::{Reader, place};
-use crate::error::Result;
 use crate::scene::{Instance, Object, ObjectId};
+use crate::shape::Shape;
 
 impl Reader<'_, '_> {
     /// `[objects]`.
-    pub(super) fn read_objects(&mut self, value: Value<'_>) -> Result<()> {
-        for entry in value.table("[objects]")?.entries() {
-            let table = entry.table(format!("[objects.{}]", entry.key()))?;
-            table.allow(&[&kinds()])?;
+    pub(super) fn read_objects(&mut self, value: Value<'_>) {
+        self.knows_all_names &= value.is_table();
+        for entry in value.named("[objects]") {
             if let Some(before) = self.objects.get(entry.key()) {
-                return Err(super::twice(entry, "object", &self.scene.objects[before.index()].at));
+                entry.note(super::twice(entry, "object", &self.scene.objects[before.index()].at));
+                continue;
             }
-            self.in_object = true;
-            let shapes = self.shapes(&table);
-            self.in_object = false;
-            let shapes = shapes?;
-            if shapes.is_empty() {
-                return Err(table
-                    .error("it has no shapes")
-                    .hint(format!("add one, such as [[objects.{}.sphere]]", entry.key())));
+            let errors = entry.document.count();
+            let table = entry.table(format!("[objects.{}]", entry.key()));
+            let shapes = match entry.noting(table.map(Some), None) {
+                Some(table) => self.object_shapes(&table),
+                None => Vec::new(),
+            };
+            if shapes.is_empty() && entry.document.count() == errors {
+                let error = entry.error(format!("[objects.{}]: it has no shapes", entry.key()));
+                entry.note(error.hint(format!("add one, such as [[objects.{}.sphere]]", entry.key())));
             }
             self.objects.insert(entry.key().to_owned(), ObjectId(self.scene.objects.len() as u32));
-            self.scene.objects.push(Object { name: entry.key().to_owned(), at: table.at(), shapes });
+            self.scene.objects.push(Object { name: entry.key().to_owned(), at: entry.at(), shapes });
         }
-        Ok(())
+    }
+
+    fn object_shapes(&mut self, table: &Table<'_>) -> Vec<Shape> {
+        table.allow(&[&kinds()]);
+        self.in_object = true;
+        let shapes = self.shapes(table);
+        self.in_object = false;
+        shapes
     }
 
     /// One `[[instance]]`.
-    pub(super) fn read_instance(&mut self, table: &Table<'_>) -> Result<()> {
-        table.allow(&[INSTANCE, place::KEYS])?;
-        let value = table.need("object", "\"the name of an object\"")?;
-        let name = value.text("the name of an object")?;
-        let object = super::named(&self.objects, "object", value, name)?;
-        let material = table.find("material").map(|value| self.material_named(value)).transpose()?;
+    pub(super) fn read_instance(&mut self, table: &Table<'_>) {
+        table.allow(&[INSTANCE, place::KEYS]);
+        let object = table.need("object", "\"the name of an object\"", None, |value| {
+            let name = value.text("the name of an object")?;
+            self.named(&self.objects, "object", value, name).map(Some)
+        });
+        let material = table.maybe("material", |value| self.material_named(value));
         if material.is_some_and(|id| self.glows.contains_key(&id)) {
             let message = "the emission of an instance's material is ignored: its shapes keep theirs";
             self.sources.warn(&table.at(), message);
         }
-        let world_from_object = place::place(table)?;
-        self.scene.instances.push(Instance { at: table.at(), object, world_from_object, material });
-        Ok(())
+        let world_from_object = place::place(table);
+        if let Some(object) = object {
+            self.scene.instances.push(Instance { at: table.at(), object, world_from_object, material });
+        }
     }
 }

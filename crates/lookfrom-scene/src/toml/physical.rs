@@ -7,103 +7,118 @@ use super::Reader;
 use super::table::Table;
 use super::value::Value;
 use crate::error::Result;
-use crate::material::{Coat, Ior, MaterialKind, Metal, Roughness, Scalar};
+use crate::material::{Coat, Color, Ior, MaterialKind, Metal, Roughness, Scalar};
 
 /// Index of refraction where none is given.
 const IOR: f32 = 1.5;
 
 impl Reader<'_, '_> {
     /// A material of a type that is not "whitted".
-    pub(super) fn physical(&mut self, word: &str, table: &Table<'_>) -> Result<MaterialKind> {
-        Ok(match word {
-            "diffuse" => MaterialKind::Diffuse { reflectance: self.color_or(table, "reflectance", 0.8)? },
+    pub(super) fn physical(&mut self, word: &str, table: &Table<'_>) -> MaterialKind {
+        match word {
+            "diffuse" => MaterialKind::Diffuse { reflectance: self.color_or(table, "reflectance", 0.8) },
             "diffuse_transmission" => MaterialKind::DiffuseTransmission {
-                reflectance: self.color_or(table, "reflectance", 0.25)?,
-                transmittance: self.color_or(table, "transmittance", 0.25)?,
+                reflectance: self.color_or(table, "reflectance", 0.25),
+                transmittance: self.color_or(table, "transmittance", 0.25),
                 scale: 1.0,
             },
             "conductor" => MaterialKind::Conductor {
-                metal: self.metal_of(table)?,
-                roughness: self.roughness(table, "roughness")?,
+                metal: self.metal_of(table),
+                roughness: self.roughness(table, "roughness"),
             },
             "dielectric" => MaterialKind::Dielectric {
-                eta: self.ior_of(table)?,
-                roughness: self.roughness(table, "roughness")?,
+                eta: self.ior_of(table),
+                roughness: self.roughness(table, "roughness"),
             },
-            "thin_dielectric" => MaterialKind::ThinDielectric { eta: self.ior_of(table)? },
+            "thin_dielectric" => MaterialKind::ThinDielectric { eta: self.ior_of(table) },
             "coated_diffuse" => MaterialKind::CoatedDiffuse {
-                reflectance: self.color_or(table, "reflectance", 0.8)?,
-                coat: self.coat(table)?,
+                reflectance: self.color_or(table, "reflectance", 0.8),
+                coat: self.coat(table),
             },
             "coated_conductor" => MaterialKind::CoatedConductor {
-                metal: self.metal_of(table)?,
-                roughness: self.roughness(table, "base_roughness")?,
-                coat: self.coat(table)?,
+                metal: self.metal_of(table),
+                roughness: self.roughness(table, "base_roughness"),
+                coat: self.coat(table),
             },
-            "principled" => MaterialKind::Principled(Box::new(self.principled(table)?)),
-            "unlit" => MaterialKind::Unlit { color: self.color_or(table, "color", 1.0)? },
+            "principled" => MaterialKind::Principled(Box::new(self.principled(table))),
+            "unlit" => MaterialKind::Unlit { color: self.color_or(table, "color", 1.0) },
             "mix" => {
-                let value = table.need("materials", "[\"red\", \"gold\"]")?;
-                let [first, second] = value.list_of("the names of two materials")?;
-                let materials = [self.material_named(first)?, self.material_named(second)?];
-                MaterialKind::Mix { materials, amount: self.share_or(table, "amount", 0.5)? }
+                let amount = self.share_or(table, "amount", 0.5);
+                let materials = table.need("materials", "[\"red\", \"gold\"]", None, |value| {
+                    let names = value.list_of::<2>("the names of two materials")?;
+                    let [first, second] =
+                        names.map(|name| name.noting(self.material_named(name).map(Some), None));
+                    Ok(first.zip(second))
+                });
+                match materials {
+                    Some((first, second)) => MaterialKind::Mix { materials: [first, second], amount },
+                    None => MaterialKind::Interface,
+                }
             }
             _ => MaterialKind::Interface,
-        })
-    }
-
-    /// By its name, by its colour, or by its optical constants.
-    fn metal_of(&mut self, table: &Table<'_>) -> Result<Metal> {
-        table.one_of(&["metal", "reflectance", "k"])?;
-        match table.one_of(&["metal", "reflectance", "eta"])? {
-            Some(value) if value.key() == "metal" => {
-                let [eta, k] = self.metal(value)?;
-                Ok(Metal::Indices { eta, k })
-            }
-            Some(value) if value.key() == "reflectance" => Ok(Metal::Reflectance(self.color(value)?)),
-            Some(eta) => Ok(Metal::Indices {
-                eta: self.optical_color(eta)?,
-                k: self.optical_color(table.need("k", "[3, 2.5, 2]")?)?,
-            }),
-            None if table.has("k") => Err(table.error("`eta` is missing").hint("`k` needs `eta`")),
-            None => Err(table
-                .error("it does not say which metal")
-                .hint("add `metal = \"gold\"`, or a `reflectance`, or `eta` and `k`")),
         }
     }
 
-    fn ior_of(&mut self, table: &Table<'_>) -> Result<Ior> {
-        table.find("ior").map_or(Ok(Ior::Value(IOR)), |value| self.ior(value))
+    /// By its name, by its colour, or by its optical constants.
+    fn metal_of(&mut self, table: &Table<'_>) -> Metal {
+        table.one_of(&["metal", "reflectance", "k"]);
+        table.one_of(&["metal", "reflectance", "eta"]);
+        let stand_in = Metal::Reflectance(Color::gray(1.0));
+        if table.has("metal") {
+            return table
+                .or("metal", stand_in, |value| self.metal(value).map(|[eta, k]| Metal::Indices { eta, k }));
+        }
+        if table.has("reflectance") {
+            return table.or("reflectance", stand_in, |value| self.color(value).map(Metal::Reflectance));
+        }
+        if !table.has("eta") && !table.has("k") {
+            let error = table.error("it does not say which metal");
+            let error = error.hint("add `metal = \"gold\"`, or a `reflectance`, or `eta` and `k`");
+            table.lacks(&["metal", "reflectance", "eta", "k"], error);
+            return stand_in;
+        }
+        if !table.has("eta") {
+            table.lacks(&["eta"], table.error("`eta` is missing").hint("`k` needs `eta`"));
+        }
+        Metal::Indices {
+            eta: table.or("eta", Color::gray(1.0), |value| self.optical_color(value)),
+            k: table.need("k", "[3, 2.5, 2]", Color::gray(1.0), |value| self.optical_color(value)),
+        }
     }
 
-    fn coat(&mut self, table: &Table<'_>) -> Result<Coat> {
-        let thickness = table
-            .find("thickness")
-            .map(|value| self.scalar_where(value, "a number of at least 0", |thickness| thickness >= 0.0));
-        let g = table
-            .find("g")
-            .map(|value| self.scalar_where(value, "a number between -1 and 1", |g| g > -1.0 && g < 1.0));
-        Ok(Coat {
-            eta: self.ior_of(table)?,
-            roughness: self.roughness(table, "roughness")?,
-            thickness: thickness.unwrap_or(Ok(Scalar::Value(0.01)))?,
-            albedo: self.color_or(table, "coat_albedo", 0.0)?,
-            g: g.unwrap_or(Ok(Scalar::Value(0.0)))?,
+    fn ior_of(&mut self, table: &Table<'_>) -> Ior {
+        table.or("ior", Ior::Value(IOR), |value| self.ior(value))
+    }
+
+    fn coat(&mut self, table: &Table<'_>) -> Coat {
+        let thickness = table.or("thickness", Scalar::Value(0.01), |value| {
+            self.scalar_where(value, "a number of at least 0", |thickness| thickness >= 0.0)
+        });
+        let g = table.or("g", Scalar::Value(0.0), |value| {
+            self.scalar_where(value, "a number between -1 and 1", |g| g > -1.0 && g < 1.0)
+        });
+        Coat {
+            eta: self.ior_of(table),
+            roughness: self.roughness(table, "roughness"),
+            thickness,
+            albedo: self.color_or(table, "coat_albedo", 0.0),
+            g,
             max_depth: 10,
             samples: 1,
-        })
+        }
     }
 
     /// One for all directions, or a list of those along u and v; smooth where it is not given.
-    fn roughness(&mut self, table: &Table<'_>, key: &str) -> Result<Roughness> {
-        let Some(value) = table.find(key) else { return Ok(Roughness { remap: false, ..Roughness::SMOOTH }) };
-        let [u, v] = if value.is_list() {
-            let [u, v] = value.list_of("a number from 0 to 1, a texture, or two of them, [u, v]")?;
-            [self.alpha_of(u)?, self.alpha_of(v)?]
-        } else {
-            [self.alpha_of(value)?; 2]
-        };
-        Ok(Roughness { u, v, remap: false })
+    fn roughness(&mut self, table: &Table<'_>, key: &str) -> Roughness {
+        table.or(key, Roughness { remap: false, ..Roughness::SMOOTH }, |value| {
+            let [u, v] = if value.is_list() {
+                let [u, v] = value.list_of("a number from 0 to 1, a texture, or two of them, [u, v]")?;
+                [self.alpha_of(u)?, self.alpha_of(v)?]
+            } else {
+                [self.alpha_of(value)?; 2]
+            };
+            Ok(Roughness { u, v, remap: false })
+        })
     }
 
     fn alpha_of(&mut self, value: Value<'_>) -> Result<Scalar> {

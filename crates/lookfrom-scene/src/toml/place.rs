@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::table::Table;
 use super::value::Value;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// The keys that place a thing.
 pub(super) const KEYS: &[&str] = &["scale", "rotate", "translate", "transform"];
@@ -14,16 +14,26 @@ pub(super) const STEPS: &[&str] = &["scale", "rotate", "translate", "matrix"];
 pub(super) const ROTATION: &[&str] = &["axis", "angle"];
 
 /// The matrix from a thing's own space to the one it is placed in: affine, finite and invertible.
-pub(super) fn place(table: &Table<'_>) -> Result<DMat4> {
-    let Some(steps) = table.find("transform") else { return scale_rotate_translate(table) };
-    for key in ["scale", "rotate", "translate"] {
-        table.one_of(&[key, "transform"])?;
+pub(super) fn place(table: &Table<'_>) -> DMat4 {
+    if !table.has("transform") {
+        return scale_rotate_translate(table);
     }
+    for key in ["scale", "rotate", "translate"] {
+        table.one_of(&[key, "transform"]);
+    }
+    table.or("transform", DMat4::IDENTITY, transform)
+}
+
+/// Any number of steps.
+fn transform(steps: Value<'_>) -> Result<DMat4> {
     let mut matrix = DMat4::IDENTITY;
     for step in steps.list("a list of steps, such as [{ scale = 2 }, { translate = [0, 1, 0] }]")? {
         let step_table = step.table("a step of `transform`")?;
-        step_table.allow(&[STEPS])?;
-        let Some(one) = step_table.one_of(STEPS)? else {
+        step_table.allow(&[STEPS]);
+        let Some(one) = step_table.one_of(STEPS) else {
+            if step_table.means(STEPS) {
+                return Err(Error::untold());
+            }
             return Err(step
                 .error("this step of `transform` is empty")
                 .hint("give one of scale, rotate, translate, matrix in each step"));
@@ -40,18 +50,16 @@ pub(super) fn place(table: &Table<'_>) -> Result<DMat4> {
 }
 
 /// `scale`, `rotate` and `translate` of a table, in this order.
-pub(super) fn scale_rotate_translate(table: &Table<'_>) -> Result<DMat4> {
+pub(super) fn scale_rotate_translate(table: &Table<'_>) -> DMat4 {
     let mut matrix = DMat4::IDENTITY;
     for (key, step) in [
         ("scale", scale as fn(Value<'_>) -> Result<DMat4>),
         ("rotate", rotate),
         ("translate", |value| Ok(DMat4::from_translation(value.vector()?))),
     ] {
-        if let Some(value) = table.find(key) {
-            matrix = invertible(step(value)? * matrix, value)?;
-        }
+        matrix = table.or(key, matrix, |value| invertible(step(value)? * matrix, value));
     }
-    Ok(matrix)
+    matrix
 }
 
 fn scale(value: Value<'_>) -> Result<DMat4> {
@@ -71,9 +79,9 @@ fn scale(value: Value<'_>) -> Result<DMat4> {
 pub(super) fn rotate(value: Value<'_>) -> Result<DMat4> {
     if value.is_table() {
         let table = value.table("`rotate`")?;
-        table.allow(&[ROTATION])?;
-        let axis = table.need("axis", "[0, 1, 0]")?.direction()?.normalize();
-        return Ok(about(axis, table.need("angle", "90")?.number()?));
+        table.allow(&[ROTATION]);
+        let axis = table.need("axis", "[0, 1, 0]", DVec3::Y, Value::direction).normalize();
+        return Ok(about(axis, table.need("angle", "90", 0.0, Value::number)));
     }
     let [x, y, z] = value.numbers("degrees about x, y and z, or { axis = [x, y, z], angle = degrees }")?;
     Ok(about(DVec3::Z, z) * about(DVec3::Y, y) * about(DVec3::X, x))

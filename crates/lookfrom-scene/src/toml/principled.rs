@@ -4,7 +4,6 @@ use super::Reader;
 use super::color::plain_color;
 use super::table::Table;
 use super::value::Value;
-use crate::error::Result;
 use crate::material::{Anisotropy, Color, NormalTexture, Principled, Scalar};
 
 /// The keys of the type.
@@ -36,36 +35,32 @@ pub(super) const KEYS: &[&str] = &[
 ];
 
 impl Reader<'_, '_> {
-    pub(super) fn principled(&mut self, table: &Table<'_>) -> Result<Principled> {
+    pub(super) fn principled(&mut self, table: &Table<'_>) -> Principled {
         let number = |key, default, expected, ok: fn(f32) -> bool| {
             table.or(key, default, |value| value.single_where(expected, ok))
         };
         let share = |key| number(key, 0.0, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share));
-        let strength = share("anisotropy")?;
-        let rotation = number("anisotropy_rotation", 0.0, "an angle in degrees", |_| true)?;
-        let ior = number("ior", 1.5, "a number of at least 1", |ior| ior >= 1.0)?;
-        let iridescence_ior = number("iridescence_ior", 1.3, "a number of at least 1", |ior| ior >= 1.0)?;
-        let dispersion = number("dispersion", 0.0, "a number of at least 0", |dispersion| dispersion >= 0.0)?;
-        let thickness = match table.find("iridescence_thickness") {
-            Some(value) => self.scalar_where(value, "a thickness in nm", |nm| nm >= 0.0)?,
-            None => Scalar::Value(400.0),
-        };
-        let clearcoat_normal = match table.find("clearcoat_normal_map") {
-            Some(value) => match self.color(value)? {
-                Color::Texture(texture) => Some(NormalTexture { texture, scale: 1.0 }),
-                _ => return Err(value.wrong("a texture")),
-            },
-            None => None,
-        };
-        let is_solid = table.or("solid", false, Value::boolean)?;
-        let absorption = table.or("absorption", [0.0; 3], plain_color)?;
+        let strength = share("anisotropy");
+        let rotation = number("anisotropy_rotation", 0.0, "an angle in degrees", |_| true);
+        let ior = number("ior", 1.5, "a number of at least 1", |ior| ior >= 1.0);
+        let iridescence_ior = number("iridescence_ior", 1.3, "a number of at least 1", |ior| ior >= 1.0);
+        let dispersion = number("dispersion", 0.0, "a number of at least 0", |dispersion| dispersion >= 0.0);
+        let thickness = table.or("iridescence_thickness", Scalar::Value(400.0), |value| {
+            self.scalar_where(value, "a thickness in nm", |nm| nm >= 0.0)
+        });
+        let clearcoat_normal = table.maybe("clearcoat_normal_map", |value| match self.color(value)? {
+            Color::Texture(texture) => Ok(NormalTexture { texture, scale: 1.0 }),
+            _ => Err(value.wrong("a texture")),
+        });
+        let is_solid = table.or("solid", false, Value::boolean);
+        let absorption = table.or("absorption", [0.0; 3], plain_color);
         if absorption != [0.0; 3] && !is_solid {
             self.ineffective(table, "absorption", "`solid = true`: a thin sheet has no inside");
         }
-        Ok(Principled {
-            base_color: self.color_or(table, "base_color", 0.8)?,
-            metallic: self.share_or(table, "metallic", 0.0)?,
-            roughness: self.share_or(table, "roughness", 0.5)?,
+        Principled {
+            base_color: self.color_or(table, "base_color", 0.8),
+            metallic: self.share_or(table, "metallic", 0.0),
+            roughness: self.share_or(table, "roughness", 0.5),
             anisotropy: (strength > 0.0).then_some(Anisotropy {
                 strength,
                 rotation: rotation.to_radians(),
@@ -73,21 +68,21 @@ impl Reader<'_, '_> {
             }),
             ior,
             dispersion,
-            specular: self.share_or(table, "specular", 1.0)?,
-            specular_color: self.color_or(table, "specular_color", 1.0)?,
-            transmission: self.share_or(table, "transmission", 0.0)?,
+            specular: self.share_or(table, "specular", 1.0),
+            specular_color: self.color_or(table, "specular_color", 1.0),
+            transmission: self.share_or(table, "transmission", 0.0),
             is_solid,
             absorption,
-            diffuse_transmission: self.share_or(table, "diffuse_transmission", 0.0)?,
-            diffuse_transmission_color: self.color_or(table, "diffuse_transmission_color", 1.0)?,
-            clearcoat: self.share_or(table, "clearcoat", 0.0)?,
-            clearcoat_roughness: self.share_or(table, "clearcoat_roughness", 0.0)?,
+            diffuse_transmission: self.share_or(table, "diffuse_transmission", 0.0),
+            diffuse_transmission_color: self.color_or(table, "diffuse_transmission_color", 1.0),
+            clearcoat: self.share_or(table, "clearcoat", 0.0),
+            clearcoat_roughness: self.share_or(table, "clearcoat_roughness", 0.0),
             clearcoat_normal,
-            sheen_color: self.color_or(table, "sheen_color", 0.0)?,
-            sheen_roughness: self.share_or(table, "sheen_roughness", 0.5)?,
-            iridescence: self.share_or(table, "iridescence", 0.0)?,
+            sheen_color: self.color_or(table, "sheen_color", 0.0),
+            sheen_roughness: self.share_or(table, "sheen_roughness", 0.5),
+            iridescence: self.share_or(table, "iridescence", 0.0),
             iridescence_ior,
             iridescence_thickness: thickness,
-        })
+        }
     }
 }

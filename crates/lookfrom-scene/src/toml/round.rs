@@ -16,8 +16,9 @@ const DEEPEST_FLAKE: u64 = 7;
 
 impl Reader<'_, '_> {
     pub(super) fn sphereflake(&mut self, table: &Table<'_>) -> Result<Geometry> {
-        let Sphere { center, radius } = sphere(table)?;
-        let depth = table.or("depth", 4, |value| value.integer(0, DEEPEST_FLAKE))? as u32;
+        let Sphere { center, radius } = sphere(table);
+        let depth = table.or("depth", 4, |value| value.integer(0, DEEPEST_FLAKE)) as u32;
+        table.sound(&["center", "radius", "depth"])?;
         // All of them together: a few lines of text must not fill the memory.
         self.flake_spheres = self.flake_spheres.saturating_add(form::sphereflake_count(depth));
         if self.flake_spheres > self.sources.limits.elements {
@@ -33,38 +34,43 @@ impl Reader<'_, '_> {
     }
 }
 
-fn sphere(table: &Table<'_>) -> Result<Sphere> {
-    Ok(Sphere {
-        center: table.or("center", DVec3::ZERO, Value::vector)?,
-        radius: table.or("radius", 1.0, Value::positive)?,
-    })
+fn sphere(table: &Table<'_>) -> Sphere {
+    Sphere {
+        center: table.or("center", DVec3::ZERO, Value::vector),
+        radius: table.or("radius", 1.0, Value::positive),
+    }
 }
 
 /// A sphere, whole or cut; and where its own space lies.
 pub(super) fn sphere_or_part(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
-    let Sphere { center, radius } = sphere(table)?;
+    let Sphere { center, radius } = sphere(table);
     if !["z_min", "z_max", "phi_max"].iter().any(|key| table.has(key)) {
         return Ok((Geometry::Sphere(Sphere { center, radius }), DMat4::IDENTITY));
     }
+    let phi_max = phi_max(table);
+    table.sound(&["radius"])?;
     let expected = "a number from -radius to radius";
     let cut = |key, default| {
         table.or(key, default, |value| value.number_where(expected, |z| (-radius..=radius).contains(&z)))
     };
-    let z = [cut("z_min", -radius)?, cut("z_max", radius)?];
+    let z = [cut("z_min", -radius), cut("z_max", radius)];
+    table.sound(&["z_min", "z_max"])?;
     if z[0] >= z[1] {
         return Err(table
             .error(format!("nothing is left between z_min = {} and z_max = {}", z[0], z[1]))
             .hint("`z_min` has to be below `z_max`; both count from the middle"));
     }
-    let part = Geometry::PartialSphere { radius, z, phi_max: phi_max(table)? };
+    let part = Geometry::PartialSphere { radius, z, phi_max };
     Ok((part, DMat4::from_translation(center)))
 }
 
 /// A disk, whole or with a hole or a gap; and where its own space lies.
 pub(super) fn disk(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
-    let center = table.need("center", "[0, 0, 0]")?.vector()?;
-    let normal = table.need("normal", "[0, 1, 0]")?.direction()?;
-    let radius = table.need("radius", "1")?.positive()?;
+    let center = table.need("center", "[0, 0, 0]", DVec3::ZERO, Value::vector);
+    let normal = table.need("normal", "[0, 1, 0]", DVec3::Y, Value::direction);
+    let radius = table.need("radius", "1", 1.0, Value::positive);
+    let phi_max = phi_max(table);
+    table.sound(&["radius"])?;
     if !table.has("inner_radius") && !table.has("phi_max") {
         return Ok((Geometry::Disk { center, normal, radius }, DMat4::IDENTITY));
     }
@@ -72,30 +78,29 @@ pub(super) fn disk(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
         value.number_where("a number of at least 0 and less than `radius`", |inner| {
             (0.0..radius).contains(&inner)
         })
-    })?;
-    let part = Geometry::PartialDisk { height: 0.0, radius, inner_radius, phi_max: phi_max(table)? };
+    });
+    let part = Geometry::PartialDisk { height: 0.0, radius, inner_radius, phi_max };
     Ok((part, along(center, normal.normalize())))
 }
 
 /// A tube between two points; and where its own space lies.
 pub(super) fn cylinder(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
-    let from = table.need("from", "[0, 0, 0]")?.vector()?;
-    let value = table.need("to", "[0, 1, 0]")?;
-    let axis = value.vector()? - from;
+    let from = table.need("from", "[0, 0, 0]", DVec3::ZERO, Value::vector);
+    let to = table.need("to", "[0, 1, 0]", DVec3::Y, Value::vector);
+    let radius = table.need("radius", "0.5", 1.0, Value::positive);
+    let phi_max = phi_max(table);
+    table.sound(&["from", "to"])?;
+    let axis = to - from;
     let length = axis.length();
     if !length.is_normal() {
-        return Err(value
-            .error("`to` is where `from` is, or too near or too far")
+        return Err(table
+            .error_at("to", "`to` is where `from` is, or too near or too far")
             .hint("give the middles of the two ends of the tube"));
     }
-    let radius = table.need("radius", "0.5")?.positive()?;
-    Ok((
-        Geometry::Cylinder { radius, z: [0.0, length], phi_max: phi_max(table)? },
-        along(from, axis / length),
-    ))
+    Ok((Geometry::Cylinder { radius, z: [0.0, length], phi_max }, along(from, axis / length)))
 }
 
-fn phi_max(table: &Table<'_>) -> Result<f64> {
+fn phi_max(table: &Table<'_>) -> f64 {
     table.or("phi_max", 360.0, |value| {
         value.number_where("degrees, more than 0 and at most 360", |phi| phi > 0.0 && phi <= 360.0)
     })

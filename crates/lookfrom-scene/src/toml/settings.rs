@@ -2,7 +2,7 @@
 
 use super::table::Table;
 use super::value::Value;
-use crate::error::{ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::settings::{
     ColorMode, Crop, Filter, ImageSettings, Integrator, Layers, LightSampler, RenderSettings, Sampler,
     Sensor, Tonemap,
@@ -45,39 +45,40 @@ pub(super) const RENDER: &[&str] = &[
 const MOST_PIXELS: u64 = 1 << 28;
 
 /// Size, filter and development of the picture.
-pub(super) fn image(table: &Table<'_>) -> Result<ImageSettings> {
-    table.allow(&[IMAGE])?;
+pub(super) fn image(table: &Table<'_>) -> ImageSettings {
+    table.allow(&[IMAGE]);
     let default = ImageSettings::default();
     let side = |key, default: u32| table.or(key, default.into(), |value| value.integer(1, u32::MAX.into()));
-    let (width, height) = (side("width", default.width)?, side("height", default.height)?);
-    if width * height > MOST_PIXELS {
+    let (width, height) = (side("width", default.width), side("height", default.height));
+    let is_sized = table.sound(&["width", "height"]).is_ok();
+    if is_sized && width * height > MOST_PIXELS {
         let mut error =
             table.error(format!("{width}×{height} pixels are more than the limit of {MOST_PIXELS}"));
         error.kind = ErrorKind::Limit;
-        return Err(error.hint("make the picture smaller"));
+        table.note(error.hint("make the picture smaller"));
     }
     let (width, height) = (width as u32, height as u32);
-    Ok(ImageSettings {
+    ImageSettings {
         width,
         height,
-        crop: table.or("crop", None, |value| crop(value, width, height).map(Some))?,
-        filter: table.or("filter", default.filter, filter)?,
+        crop: table.or("crop", None, |value| crop(value, is_sized.then_some([width, height])).map(Some)),
+        filter: table.or("filter", default.filter, filter),
         exposure: table.or("exposure", default.exposure, |value| {
             value.single_where("stops from -64 to 64", |stops| (-64.0..=64.0).contains(&stops))
-        })?,
-        tonemap: table.or("tonemap", default.tonemap, |value| value.choice(Tonemap::WORDS))?,
+        }),
+        tonemap: table.or("tonemap", default.tonemap, |value| value.choice(Tonemap::WORDS)),
         sensor: Sensor {
-            camera: table.or("sensor", None, camera)?,
-            imaging_ratio: table.or("imaging_ratio", default.sensor.imaging_ratio, above_zero)?,
-            white_balance: table.or("white_balance", None, |value| kelvin(value).map(Some))?,
-            max_component: table.or("max_component", default.sensor.max_component, above_zero)?,
+            camera: table.or("sensor", None, camera),
+            imaging_ratio: table.or("imaging_ratio", default.sensor.imaging_ratio, above_zero),
+            white_balance: table.or("white_balance", None, |value| kelvin(value).map(Some)),
+            max_component: table.or("max_component", default.sensor.max_component, above_zero),
         },
         layers: table.or("layers", default.layers, |value| {
             Ok(if value.boolean()? { Layers::Geometry } else { Layers::None })
-        })?,
+        }),
         background: default.background,
-        denoise: table.or("denoise", default.denoise, Value::boolean)?,
-    })
+        denoise: table.or("denoise", default.denoise, Value::boolean),
+    }
 }
 
 /// A camera's sensor, or none for the standard observer.
@@ -95,13 +96,15 @@ pub(super) fn kelvin(value: Value<'_>) -> Result<f32> {
     value.single_where("kelvin from 500 to 100000", |kelvin| (500.0..=100_000.0).contains(&kelvin))
 }
 
-fn crop(value: Value<'_>, width: u32, height: u32) -> Result<Crop> {
+/// A part of a picture, whose size is not always known.
+fn crop(value: Value<'_>, size: Option<[u32; 2]>) -> Result<Crop> {
     let expected = "four whole numbers, [x0, y0, x1, y1]";
     let mut edges = [0; 4];
     for (edge, item) in edges.iter_mut().zip(value.list_of::<4>(expected)?) {
         *edge = item.integer(0, u32::MAX.into())? as u32;
     }
     let [x0, y0, x1, y1] = edges;
+    let Some([width, height]) = size else { return Ok(Crop { x0, y0, x1, y1 }) };
     if x0 < x1 && x1 <= width && y0 < y1 && y1 <= height {
         return Ok(Crop { x0, y0, x1, y1 });
     }
@@ -117,51 +120,52 @@ fn filter(value: Value<'_>) -> Result<Filter> {
         return value.choice(Filter::WORDS);
     }
     let table = value.table("`filter`")?;
-    table.allow(&[FILTER])?;
+    table.allow(&[FILTER]);
     let width =
         |value: Value<'_>| value.single_where("pixels, more than 0 and at most 16", |r| r > 0.0 && r <= 16.0);
-    let mut chosen = table.need("type", "\"gaussian\"")?.choice(Filter::WORDS)?;
+    let chosen = table.need("type", "\"gaussian\"", None, |value| value.choice(Filter::WORDS).map(Some));
+    let Some(mut chosen) = chosen else { return Err(Error::untold()) };
     match &mut chosen {
         Filter::Box { radius } | Filter::Triangle { radius } | Filter::BlackmanHarris { radius } => {
-            table.allow(&[&["type", "radius"]])?;
-            *radius = table.or("radius", *radius, width)?;
+            table.allow(&[&["type", "radius"]]);
+            *radius = table.or("radius", *radius, width);
         }
         Filter::Gaussian { radius, sigma } => {
-            table.allow(&[&["type", "radius", "sigma"]])?;
-            *radius = table.or("radius", *radius, width)?;
-            *sigma = table.or("sigma", *sigma, width)?;
+            table.allow(&[&["type", "radius", "sigma"]]);
+            *radius = table.or("radius", *radius, width);
+            *sigma = table.or("sigma", *sigma, width);
         }
         Filter::Mitchell { radius, b, c } => {
-            table.allow(&[&["type", "radius", "b", "c"]])?;
-            *radius = table.or("radius", *radius, width)?;
+            table.allow(&[&["type", "radius", "b", "c"]]);
+            *radius = table.or("radius", *radius, width);
             let share =
                 |value: Value<'_>| value.single_where("a number from 0 to 1", |s| (0.0..=1.0).contains(&s));
-            *b = table.or("b", *b, share)?;
-            *c = table.or("c", *c, share)?;
+            *b = table.or("b", *b, share);
+            *c = table.or("c", *c, share);
         }
     }
     Ok(chosen)
 }
 
 /// How light is computed.
-pub(super) fn render(table: &Table<'_>) -> Result<RenderSettings> {
-    table.allow(&[RENDER])?;
+pub(super) fn render(table: &Table<'_>) -> RenderSettings {
+    table.allow(&[RENDER]);
     let default = RenderSettings::default();
-    Ok(RenderSettings {
-        integrator: table.or("integrator", default.integrator, |value| value.choice(Integrator::WORDS))?,
-        samples: table.or("samples", default.samples.into(), |value| value.integer(1, 1 << 24))? as u32,
-        depth: table.or("depth", default.depth.into(), |value| value.integer(0, 256))? as u32,
+    RenderSettings {
+        integrator: table.or("integrator", default.integrator, |value| value.choice(Integrator::WORDS)),
+        samples: table.or("samples", default.samples.into(), |value| value.integer(1, 1 << 24)) as u32,
+        depth: table.or("depth", default.depth.into(), |value| value.integer(0, 256)) as u32,
         min_contribution: table.or("min_contribution", default.min_contribution, |value| {
             value.single_where("a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
-        })?,
-        sampler: table.or("sampler", default.sampler, |value| value.choice(Sampler::WORDS))?,
-        seed: table.or("seed", default.seed, |value| value.integer(0, u64::MAX))?,
-        transparent_shadows: table.or("transparent_shadows", default.transparent_shadows, Value::boolean)?,
-        color: table.or("color", default.color, |value| value.choice(ColorMode::WORDS))?,
+        }),
+        sampler: table.or("sampler", default.sampler, |value| value.choice(Sampler::WORDS)),
+        seed: table.or("seed", default.seed, |value| value.integer(0, u64::MAX)),
+        transparent_shadows: table.or("transparent_shadows", default.transparent_shadows, Value::boolean),
+        color: table.or("color", default.color, |value| value.choice(ColorMode::WORDS)),
         light_sampler: table
-            .or("light_sampler", default.light_sampler, |value| value.choice(LightSampler::WORDS))?,
-        regularize: table.or("regularize", default.regularize, Value::boolean)?,
-        occlusion_distance: table.or("occlusion_distance", default.occlusion_distance, above_zero)?,
+            .or("light_sampler", default.light_sampler, |value| value.choice(LightSampler::WORDS)),
+        regularize: table.or("regularize", default.regularize, Value::boolean),
+        occlusion_distance: table.or("occlusion_distance", default.occlusion_distance, above_zero),
         media: default.media,
-    })
+    }
 }

@@ -51,26 +51,27 @@ pub(super) fn kinds() -> Vec<&'static str> {
 
 impl Reader<'_, '_> {
     /// All shapes of a table that holds arrays of them.
-    pub(super) fn shapes(&mut self, table: &Table<'_>) -> Result<Vec<Shape>> {
+    pub(super) fn shapes(&mut self, table: &Table<'_>) -> Vec<Shape> {
         let mut shapes = Vec::new();
         for &(kind, keys) in KEYS {
             let Some(value) = table.find(kind) else { continue };
-            for table in value.tables()? {
-                let table = table?;
-                table.allow(&[keys, COMMON, place::KEYS])?;
-                self.shape(kind, &table, &mut shapes)?;
+            for table in value.tables() {
+                table.allow(&[keys, COMMON, place::KEYS]);
+                if let Err(error) = self.shape(kind, &table, &mut shapes) {
+                    table.note(error);
+                }
             }
         }
-        Ok(shapes)
+        shapes
     }
 
     fn shape(&mut self, kind: &str, table: &Table<'_>, shapes: &mut Vec<Shape>) -> Result<()> {
-        let material = table.find("material").map(|value| self.material_named(value)).transpose()?;
-        let emission = self.emission(table)?;
-        let alpha = table.find("alpha").map(|_| self.share_or(table, "alpha", 1.0)).transpose()?;
-        let reverse_orientation = table.or("reverse_orientation", false, Value::boolean)?;
-        let name = light::name(table)?;
-        let mut world_from_object = place::place(table)?;
+        let material = table.maybe("material", |value| self.material_named(value));
+        let emission = self.emission(table);
+        let alpha = table.find("alpha").map(|_| self.share_or(table, "alpha", 1.0));
+        let reverse_orientation = table.or("reverse_orientation", false, Value::boolean);
+        let name = light::name(table);
+        let mut world_from_object = place::place(table);
         let parts = match (kind, table.find("file")) {
             ("mesh", Some(file)) => self.model_parts(table, file, &world_from_object)?,
             _ => {
@@ -113,31 +114,36 @@ impl Reader<'_, '_> {
             "patch" => strip::patch(table)?,
             "curve" => strip::curve(table, self.sources.limits.elements)?,
             "plane" => {
-                let point = table.or("point", DVec3::ZERO, Value::vector)?;
-                let normal = table.or("normal", DVec3::Y, Value::direction)?;
-                let size = table.or("size", 1000.0, Value::positive)?;
+                let point = table.or("point", DVec3::ZERO, Value::vector);
+                let normal = table.or("normal", DVec3::Y, Value::direction);
+                let size = table.or("size", 1000.0, Value::positive);
                 self.mesh(table, form::plane(point, normal, size))?
             }
             "box" => {
-                let (low, high) = (table.need("min", "[-1, -1, -1]")?, table.need("max", "[1, 1, 1]")?);
-                let (min, max) = (low.vector()?, high.vector()?);
+                let min = table.need("min", "[-1, -1, -1]", DVec3::NEG_ONE, Value::vector);
+                let max = table.need("max", "[1, 1, 1]", DVec3::ONE, Value::vector);
+                table.sound(&["min", "max"])?;
                 if min.cmpge(max).any() {
-                    return Err(high
-                        .error(format!("`max` {max} is not beyond `min` {min} along every axis"))
+                    return Err(table
+                        .error_at("max", format!("`max` {max} is not beyond `min` {min} along every axis"))
                         .hint("a box without thickness is a quad"));
                 }
                 self.mesh(table, form::cuboid(min, max))?
             }
             "triangle" => {
-                let value = table.need("vertices", "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]")?;
-                let vertices = value.list_of::<3>("three points")?;
-                let mut mesh =
-                    form::triangle([point(vertices[0])?, point(vertices[1])?, point(vertices[2])?]);
+                let example = "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
+                let vertices = table.need("vertices", example, [Vec3::ZERO; 3], |value| {
+                    let [a, b, c] = value.list_of("three points")?;
+                    Ok([point(a)?, point(b)?, point(c)?])
+                });
+                let mut mesh = form::triangle(vertices);
+                self.vertex_data(table, &mut mesh);
+                table.sound(&["vertices"])?;
                 let [a, b, c] = [0, 1, 2].map(|i| mesh.positions[i].as_dvec3());
                 if (b - a).cross(c - a) == DVec3::ZERO {
-                    return Err(value.error("the triangle has no area: its vertices lie on a line"));
+                    let message = "the triangle has no area: its vertices lie on a line";
+                    return Err(table.error_at("vertices", message));
                 }
-                self.vertex_data(table, &mut mesh)?;
                 self.mesh(table, mesh)?
             }
             _ => {
@@ -156,12 +162,12 @@ pub(super) fn point(value: Value<'_>) -> Result<Vec3> {
 
 /// A quad, of a shape or a light.
 pub(super) fn quad(table: &Table<'_>) -> Result<Geometry> {
-    let corner = table.need("corner", "[0, 0, 0]")?.vector()?;
-    let edge_u = table.need("edge_u", "[1, 0, 0]")?.direction()?;
-    let second = table.need("edge_v", "[0, 1, 0]")?;
-    let edge_v = second.direction()?;
+    let corner = table.need("corner", "[0, 0, 0]", DVec3::ZERO, Value::vector);
+    let edge_u = table.need("edge_u", "[1, 0, 0]", DVec3::X, Value::direction);
+    let edge_v = table.need("edge_v", "[0, 1, 0]", DVec3::Y, Value::direction);
+    table.sound(&["edge_u", "edge_v"])?;
     if edge_u.normalize().cross(edge_v.normalize()).length_squared() < 1e-24 {
-        return Err(second.error("`edge_v` is parallel to `edge_u`: the quad has no area"));
+        return Err(table.error_at("edge_v", "`edge_v` is parallel to `edge_u`: the quad has no area"));
     }
     Ok(Geometry::Quad { corner, edge_u, edge_v })
 }

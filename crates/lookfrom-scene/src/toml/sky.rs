@@ -6,30 +6,33 @@ use super::Reader;
 use super::light::{COMMON, amount, turned};
 use super::table::Table;
 use super::value::Value;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::light::{Amount, LightKind, Sky, is_rectangle};
 use crate::scene::ImageId;
 
 /// Its keys, besides those of its colours.
 const ALWAYS: &[&str] = &["illuminance", "portal", "illuminates"];
 
+/// The words for how directions lie in a picture, and whether in an octahedron's way.
+pub(super) const LAYOUTS: &[(&str, bool)] = &[("latitude_longitude", false), ("octahedral", true)];
+
 impl Reader<'_, '_> {
     pub(super) fn environment(&mut self, table: &Table<'_>) -> Result<(LightKind, Amount)> {
+        let portal = table.maybe("portal", portal);
+        let illuminates = table.or("illuminates", true, Value::boolean);
         let (sky, scale) = self.sky(table)?;
-        let kind = LightKind::Environment {
-            sky,
-            portal: table.or("portal", None, |value| portal(value).map(Some))?,
-            illuminates: table.or("illuminates", true, Value::boolean)?,
-        };
-        Ok((kind, amount(table, "illuminance", scale)?))
+        let kind = LightKind::Environment { sky, portal, illuminates };
+        Ok((kind, amount(table, "illuminance", scale)))
     }
 
     fn sky(&mut self, table: &Table<'_>) -> Result<(Sky, f32)> {
-        let Some(value) = table.one_of(&["color", "zenith", "image"])? else {
-            return Err(table
-                .error("it has no colours")
-                .hint("give `color`, or `zenith` and `horizon`, or `image`"));
+        let Some(value) = table.one_of(&["color", "zenith", "image"]) else {
+            let error = table.error("it has no colours");
+            let error = error.hint("give `color`, or `zenith` and `horizon`, or `image`");
+            table.lacks(&["color", "zenith", "image"], error);
+            return Err(Error::untold());
         };
+        table.sound(&["color", "zenith", "image"])?;
         let groups: [(&str, &[&str]); 3] = [
             ("color", &["color"]),
             ("zenith", &["zenith", "horizon", "nadir"]),
@@ -37,7 +40,7 @@ impl Reader<'_, '_> {
         ];
         for (word, keys) in groups {
             if word == value.key() {
-                table.allow(&[COMMON, ALWAYS, keys])?;
+                table.allow(&[COMMON, ALWAYS, keys]);
             }
         }
         Ok(match value.key() {
@@ -46,8 +49,8 @@ impl Reader<'_, '_> {
                 (Sky::Constant(color), scale)
             }
             "zenith" => {
-                let horizon = self.light_rgb(table.need("horizon", "[1, 1, 1]")?)?;
-                let nadir = table.find("nadir").map_or(Ok(horizon), |value| self.light_rgb(value))?;
+                let horizon = table.need("horizon", "[1, 1, 1]", [1.0; 3], |value| self.light_rgb(value));
+                let nadir = table.or("nadir", horizon, |value| self.light_rgb(value));
                 (Sky::Gradient { zenith: self.light_rgb(value)?, horizon, nadir }, 1.0)
             }
             _ => (self.sky_picture(table, value)?, 1.0),
@@ -55,12 +58,10 @@ impl Reader<'_, '_> {
     }
 
     fn sky_picture(&mut self, table: &Table<'_>, value: Value<'_>) -> Result<Sky> {
-        let is_octahedral = table.or("layout", false, |value| {
-            value.choice(&[("latitude_longitude", false), ("octahedral", true)])
-        })?;
+        let is_octahedral = table.or("layout", false, |value| value.choice(LAYOUTS));
+        let scale = table.or("scale", [1.0; 3], |value| self.light_rgb(value));
+        let turn = turned(table);
         let image = if is_octahedral { self.octahedral_image(value)? } else { self.image(value)? };
-        let scale = table.find("scale").map_or(Ok([1.0; 3]), |value| self.light_rgb(value))?;
-        let turn = turned(table)?;
         if !is_octahedral {
             return Ok(Sky::Image { image, scale, world_from_light: turn });
         }

@@ -13,23 +13,27 @@ use crate::shape::{Geometry, Patches, Profile, Strand};
 
 /// A bilinear patch between four corners.
 pub(super) fn patch(table: &Table<'_>) -> Result<Geometry> {
-    let value = table.need("corners", "[[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1]]")?;
-    let corners = four(value, "four points, at (u, v) = (0, 0), (1, 0), (0, 1), (1, 1)", point)?;
-    let [a, b, c, d] = corners.map(Vec3::as_dvec3);
-    let is_flat_at = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p) == DVec3::ZERO;
-    if is_flat_at(a, b, c) && is_flat_at(d, b, c) {
-        return Err(value.error("the patch has no area: its corners lie on a line").hint("move one of them"));
-    }
-    let normals = table.find("normals").map(|value| four(value, "four normals, one for each corner", point));
-    let uvs = table.find("uvs").map(|value| {
+    let example = "[[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1]]";
+    let corners = table.need("corners", example, [Vec3::ZERO; 4], |value| {
+        four(value, "four points, at (u, v) = (0, 0), (1, 0), (0, 1), (1, 1)", point)
+    });
+    let normals = table.maybe("normals", |value| four(value, "four normals, one for each corner", point));
+    let uvs = table.maybe("uvs", |value| {
         let pair = |value: Value<'_>| value.singles("two numbers, [u, v]").map(Vec2::from_array);
         four(value, "four pairs [u, v], one for each corner", pair)
     });
+    table.sound(&["corners"])?;
+    let [a, b, c, d] = corners.map(Vec3::as_dvec3);
+    let is_flat_at = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p) == DVec3::ZERO;
+    if is_flat_at(a, b, c) && is_flat_at(d, b, c) {
+        let message = "the patch has no area: its corners lie on a line";
+        return Err(table.error_at("corners", message).hint("move one of them"));
+    }
     Ok(Geometry::Bilinear(Arc::new(Patches {
         positions: corners.to_vec(),
         patches: vec![[0, 1, 2, 3]],
-        normals: normals.transpose()?.map_or(Vec::new(), |normals| normals.to_vec()),
-        uvs: uvs.transpose()?.map_or(Vec::new(), |uvs| uvs.to_vec()),
+        normals: normals.map_or(Vec::new(), |normals| normals.to_vec()),
+        uvs: uvs.map_or(Vec::new(), |uvs| uvs.to_vec()),
     })))
 }
 
@@ -40,23 +44,28 @@ fn four<T>(value: Value<'_>, expected: &str, decode: impl Fn(Value<'_>) -> Resul
 
 /// Cubic Bézier curves, each beginning where the one before ends.
 pub(super) fn curve(table: &Table<'_>, limit: u64) -> Result<Geometry> {
-    let value = table.need("points", "[[0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 2, 0]]")?;
-    let expected = "4, 7, 10, … points: each curve has two between its ends";
-    let items = value.list(expected)?;
-    let count = items.len();
-    if count as u64 > limit {
-        return Err(too_many(table, count as u64, limit));
-    }
-    if count < 4 || count % 3 != 1 {
-        return Err(value.wrong(expected).hint("curves that follow one another share an end"));
-    }
-    let points = items.map(point).collect::<Result<Vec<Vec3>>>()?;
-    let joints = count / 3 + 1;
-    let widths = widths(table.need("width", "0.1")?, joints)?;
-    let normals = ribbon(table, joints)?;
     let is_round = table.or("profile", false, |value| {
         value.choice(&[("flat", false), ("cylinder", true), ("ribbon", false)])
-    })?;
+    });
+    let example = "[[0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 2, 0]]";
+    let points = table.need("points", example, Vec::new(), |value| {
+        let expected = "4, 7, 10, … points: each curve has two between its ends";
+        let items = value.list(expected)?;
+        let count = items.len();
+        if count as u64 > limit {
+            return Err(too_many(table, count as u64, limit));
+        }
+        if count < 4 || count % 3 != 1 {
+            return Err(value.wrong(expected).hint("curves that follow one another share an end"));
+        }
+        items.map(point).collect::<Result<Vec<Vec3>>>()
+    });
+    table.sound(&["points"])?;
+    let joints = points.len() / 3 + 1;
+    let widths = table.need("width", "0.1", Vec::new(), |value| widths(value, joints));
+    table.sound(&["profile"])?;
+    let normals = ribbon(table, joints)?;
+    table.sound(&["width"])?;
     let strands = (0..joints - 1).map(|i| Strand {
         points: [0, 1, 2, 3].map(|j| points[3 * i + j]),
         width: [widths[i], widths[i + 1]],

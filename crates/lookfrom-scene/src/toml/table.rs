@@ -1,27 +1,40 @@
 //! A TOML table: keys that must be there, may be there, or are unknown.
 
-use ::toml::Spanned;
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+
 use ::toml::de::DeTable;
 
-use super::value::{Document, Value};
+use super::document::Document;
+use super::synonyms;
+use super::value::Value;
+use super::vocabulary::SETTINGS;
 use crate::error::{Error, Location, Result};
 use crate::suggest::nearest;
+
+/// What the outermost table is called in messages.
+pub(super) const SCENE: &str = "a scene";
 
 /// The types of a thing, and the keys of each.
 pub(super) type Kinds = &'static [(&'static str, &'static [&'static str])];
 
-/// A table whose keys are looked up by name.
+/// A table whose keys are looked up by name. What is wrong is noted and something else taken in its place, so that one run
+/// finds all errors; what was read is of use only where none was noted.
 pub(super) struct Table<'a> {
     document: &'a Document,
     offset: usize,
     title: String,
     map: &'a DeTable<'a>,
+    /// The keys whose values were found to be wrong, or missing, so far.
+    wrong: RefCell<BTreeSet<String>>,
+    /// The keys that are probably meant by those that are not known.
+    meant: RefCell<Vec<&'static str>>,
 }
 
 impl<'a> Table<'a> {
     /// A table that begins at a byte, as `title` in messages.
     pub(super) fn new(document: &'a Document, offset: usize, title: String, map: &'a DeTable<'a>) -> Self {
-        Self { document, offset, title, map }
+        Self { document, offset, title, map, wrong: RefCell::default(), meant: RefCell::default() }
     }
 
     pub(super) fn at(&self) -> Location {
@@ -33,55 +46,133 @@ impl<'a> Table<'a> {
         Error::invalid(&self.at(), format!("{}: {message}", self.title))
     }
 
+    /// An error about one of its values.
+    pub(super) fn error_at(&self, key: &str, message: impl Into<String>) -> Error {
+        let at = self.find(key).map_or_else(|| self.at(), Value::at);
+        Error::invalid(&at, message)
+    }
+
+    /// Notes an error about the table as a whole.
+    pub(super) fn note(&self, error: Error) {
+        self.document.note(self.offset, error);
+    }
+
+    /// Nothing, unless one of these values was found to be wrong: what they come to together is then no error to be told.
+    pub(super) fn sound(&self, keys: &[&str]) -> Result<()> {
+        let is_wrong = keys.iter().any(|&key| self.wrong.borrow().contains(key));
+        if is_wrong { Err(Error::untold()) } else { Ok(()) }
+    }
+
+    fn are_wrong(&self, keys: &[&str]) {
+        self.wrong.borrow_mut().extend(keys.iter().map(|&key| key.to_owned()));
+    }
+
+    /// Whether one of these keys is probably meant by an unknown one.
+    pub(super) fn means(&self, keys: &[&str]) -> bool {
+        self.meant.borrow().iter().any(|meant| keys.contains(meant))
+    }
+
+    /// Notes that none of these keys is there, but not where one of them is probably meant by an unknown one.
+    pub(super) fn lacks(&self, keys: &[&str], error: Error) {
+        self.are_wrong(keys);
+        if !self.means(keys) {
+            self.note(error);
+        }
+    }
+
     /// Refuses every key that is in none of the groups: a slip of the hand must not pass in silence.
-    pub(super) fn allow(&self, groups: &[&[&'static str]]) -> Result<()> {
-        let known = || groups.iter().copied().flatten().copied();
-        let Some(key) = self.map.keys().find(|key| known().all(|word| word != key.get_ref().as_ref())) else {
-            return Ok(());
+    pub(super) fn allow(&self, groups: &[&[&'static str]]) {
+        let known = groups.concat();
+        for key in self.map.keys().filter(|key| !known.contains(&key.get_ref().as_ref())) {
+            let word: &str = key.get_ref();
+            let message = format!("unknown key `{word}` in {}", self.title);
+            let list = || format!("it may have: {}", known.join(", "));
+            let hint = self.suggestion(word, &known).unwrap_or_else(list);
+            self.refuse(key.span().start, message, hint);
+        }
+    }
+
+    /// What was probably meant by a word that is not one of the known keys, as a question.
+    fn suggestion(&self, word: &str, known: &[&'static str]) -> Option<String> {
+        let ask = |keys: &[&'static str]| {
+            self.assume(keys);
+            format!("did you mean `{}`?", keys.join("` and `"))
         };
-        let at = self.document.location(key.span().start);
-        let error = Error::invalid(&at, format!("unknown key `{}` in {}", key.get_ref(), self.title));
-        Err(match nearest(key.get_ref(), known()) {
-            Some(meant) => error.hint(format!("did you mean `{meant}`?")),
-            None => error.hint(format!("it may have: {}", known().collect::<Vec<_>>().join(", "))),
+        let synonyms = synonyms::keys(word, known);
+        if !synonyms.is_empty() {
+            return Some(ask(synonyms));
+        }
+        // Settings are easily taken for those of another table.
+        let is_setting = self.title == SCENE || SETTINGS.iter().any(|(title, _)| *title == self.title);
+        let others = || SETTINGS.iter().filter(|(title, _)| is_setting && *title != self.title);
+        if let Some((title, _)) = others().find(|(_, keys)| keys.contains(&word)) {
+            return Some(format!("`{word}` stands in {title}"));
+        }
+        if let Some(meant) = nearest(word, known.iter().copied()) {
+            return Some(ask(&[meant]));
+        }
+        others().find_map(|(title, keys)| match synonyms::keys(word, keys) {
+            [] => None,
+            meant => Some(format!("did you mean `{}` in {title}?", meant.join("` and `"))),
         })
     }
 
+    /// Remembers that these keys are probably meant.
+    pub(super) fn assume(&self, keys: &[&'static str]) {
+        self.are_wrong(keys);
+        self.meant.borrow_mut().extend(keys);
+    }
+
+    fn refuse(&self, offset: usize, message: String, hint: String) {
+        // Keys are checked against all that a type has, and then against what goes together.
+        if !self.document.is_noted(offset) {
+            let error = Error::invalid(&self.document.location(offset), message).hint(hint);
+            self.document.note(offset, error);
+        }
+    }
+
     /// The type that is asked for, or else the default one. Refuses every key that it does not have, and says so if another
-    /// type has it.
+    /// type has it. `None` where it is no type: the error is noted.
     pub(super) fn kind(
         &self,
         kinds: Kinds,
         default: Option<&'static str>,
         common: impl Fn(&'static str) -> &'static [&'static str],
-    ) -> Result<&'static str> {
+    ) -> Option<&'static str> {
         let words: Vec<(&str, &'static str)> = kinds.iter().map(|&(word, _)| (word, word)).collect();
         let word = match (self.find("type"), default) {
             (None, Some(word)) => word,
-            _ => self.need("type", &format!("{:?}", kinds[1].0))?.choice(&words)?,
-        };
-        let has = |word: &'static str, key: &str| {
-            let own = kinds.iter().find(|kind| kind.0 == word).map_or(&[][..], |kind| kind.1);
-            own.iter().chain(common(word)).any(|&known| known == key)
-        };
-        for entry in self.entries() {
-            let key = entry.key();
-            let others = kinds.iter().filter(|kind| has(kind.0, key)).map(|kind| format!("{:?}", kind.0));
-            let others: Vec<String> = others.collect();
-            if !has(word, key) && !others.is_empty() {
-                let at = self.key_at(key);
-                return Err(Error::invalid(&at, format!("{} of type {word:?} has no `{key}`", self.title))
-                    .hint(format!("it is for type = {}", others.join(" or "))));
+            (Some(value), _) => value.noting(value.choice(&words).map(Some), None)?,
+            (None, None) => {
+                let error = self.error("`type` is missing").hint(format!("add `type = {:?}`", kinds[1].0));
+                self.lacks(&["type"], error);
+                return None;
             }
+        };
+        let keys_of = |word: &'static str| {
+            let own = kinds.iter().find(|kind| kind.0 == word).map_or(&[][..], |kind| kind.1);
+            [&["type"], own, common(word)].concat()
+        };
+        let known = keys_of(word);
+        for key in self.map.keys().filter(|key| !known.contains(&key.get_ref().as_ref())) {
+            let name: &str = key.get_ref();
+            let others = kinds.iter().filter(|kind| keys_of(kind.0).contains(&name));
+            let others: Vec<String> = others.map(|kind| format!("{:?}", kind.0)).collect();
+            if others.is_empty() {
+                continue;
+            }
+            let message = format!("{} of type {word:?} has no `{name}`", self.title);
+            let elsewhere = format!("is for type = {}", others.join(" or "));
+            let meant = synonyms::keys(name, &known);
+            self.assume(meant);
+            let hint = match meant {
+                [] => format!("it {elsewhere}"),
+                _ => format!("did you mean `{}`? `{name}` {elsewhere}", meant.join("` and `")),
+            };
+            self.refuse(key.span().start, message, hint);
         }
-        let own = kinds.iter().find(|kind| kind.0 == word).map_or(&[][..], |kind| kind.1);
-        self.allow(&[&["type"], own, common(word)])?;
-        Ok(word)
-    }
-
-    fn key_at(&self, key: &str) -> Location {
-        let span = self.map.keys().find(|known| known.get_ref() == key).map(Spanned::span);
-        self.document.location(span.map_or(self.offset, |span| span.start))
+        self.allow(&[&known]);
+        Some(word)
     }
 
     pub(super) fn has(&self, key: &str) -> bool {
@@ -93,32 +184,51 @@ impl<'a> Table<'a> {
         Some(Value { document: self.document, key: key.get_ref(), item })
     }
 
-    /// A value that has to be there; `example` shows how it could look.
-    pub(super) fn need(&self, key: &str, example: &str) -> Result<Value<'a>> {
-        self.find(key)
-            .ok_or_else(|| self.error(format!("`{key}` is missing")).hint(format!("add `{key} = {example}`")))
-    }
-
-    /// A value decoded, or a default where it is not given.
-    pub(super) fn or<T>(
+    /// A value that has to be there, decoded, or a stand-in; `example` shows how it could look.
+    pub(super) fn need<T>(
         &self,
         key: &str,
-        default: T,
+        example: &str,
+        stand_in: T,
         decode: impl FnOnce(Value<'a>) -> Result<T>,
-    ) -> Result<T> {
-        self.find(key).map_or(Ok(default), decode)
+    ) -> T {
+        if self.has(key) {
+            return self.or(key, stand_in, decode);
+        }
+        self.lacks(&[key], self.missing(key, example));
+        stand_in
     }
 
-    /// At most one of these keys may be given: which, if any.
-    pub(super) fn one_of(&self, keys: &[&str]) -> Result<Option<Value<'a>>> {
+    /// The error that a key is missing.
+    pub(super) fn missing(&self, key: &str, example: &str) -> Error {
+        self.error(format!("`{key}` is missing")).hint(format!("add `{key} = {example}`"))
+    }
+
+    /// A value decoded, or a default where it is not given or is wrong.
+    pub(super) fn or<T>(&self, key: &str, default: T, decode: impl FnOnce(Value<'a>) -> Result<T>) -> T {
+        let Some(value) = self.find(key) else { return default };
+        let result = decode(value);
+        if result.is_err() {
+            self.are_wrong(&[key]);
+        }
+        value.noting(result, default)
+    }
+
+    /// A value decoded, where it is given and right.
+    pub(super) fn maybe<T>(&self, key: &str, decode: impl FnOnce(Value<'a>) -> Result<T>) -> Option<T> {
+        self.or(key, None, |value| decode(value).map(Some))
+    }
+
+    /// At most one of these keys may be given: the first, if any.
+    pub(super) fn one_of(&self, keys: &[&str]) -> Option<Value<'a>> {
         let mut given = keys.iter().filter_map(|key| self.find(key));
         let first = given.next();
-        match (first, given.next()) {
-            (Some(one), Some(other)) => Err(other
-                .error(format!("{} has both `{}` and `{}`", self.title, one.key, other.key))
-                .hint(format!("give one of {}", keys.join(", ")))),
-            _ => Ok(first),
+        if let (Some(one), Some(other)) = (first, given.next()) {
+            let error = other.error(format!("{} has both `{}` and `{}`", self.title, one.key, other.key));
+            self.are_wrong(keys);
+            other.note(error.hint(format!("give one of {}", keys.join(", "))));
         }
+        first
     }
 
     /// All that is in the table, in the order of the names.

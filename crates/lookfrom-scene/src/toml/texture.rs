@@ -1,13 +1,15 @@
 //! `[textures]`: pictures and patterns.
 
+use glam::DVec3;
+
 use super::color::plain_color;
 use super::mapping::mapping;
 use super::table::{Kinds, Table};
 use super::value::Value;
 use super::{Reader, chain};
-use crate::error::{Location, Result};
+use crate::error::{Error, Location, Result};
 use crate::material::{Color, Scalar};
-use crate::scene::TextureId;
+use crate::scene::{ImageId, TextureId};
 use crate::texture::{Channel, TexelFilter, Texture, TextureKind, Wrap};
 
 /// The keys of textures, by type, besides `type` and those of `mapping`.
@@ -26,6 +28,15 @@ pub(super) const KEYS: Kinds = &[
     ("direction_mix", &["low", "high", "direction"]),
     ("vertex_color", &["tint"]),
 ];
+
+/// The words for what a picture's numbers are, and whether they are linear.
+pub(super) const ENCODINGS: &[(&str, bool)] = &[("srgb", false), ("linear", true)];
+/// The words for what lies beyond a picture's edges.
+pub(super) const WRAPS: &[(&str, Wrap)] =
+    &[("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp), ("black", Wrap::Black)];
+/// The words for what lies between texels.
+pub(super) const FILTERS: &[(&str, TexelFilter)] =
+    &[("bilinear", TexelFilter::Bilinear), ("nearest", TexelFilter::Nearest)];
 
 /// Whether a type of textures lives somewhere, rather than being made of others.
 pub(super) fn is_mapped(kind: &str) -> bool {
@@ -49,33 +60,46 @@ impl chain::Made for Texture {
 
 impl Reader<'_, '_> {
     /// `[textures]`: all names first, so that each may use the others, wherever they are written.
-    pub(super) fn read_textures(&mut self, value: Value<'_>) -> Result<()> {
+    pub(super) fn read_textures(&mut self, value: Value<'_>) {
+        self.knows_all_names &= value.is_table();
         let first = self.scene.textures.len();
-        for entry in value.table("[textures]")?.entries() {
+        for entry in value.named("[textures]") {
             let name = entry.key();
             if name.starts_with('#') || name.is_empty() {
-                return Err(entry.error(format!("a texture cannot be named {name:?}")));
+                entry.note(entry.error(format!("a texture cannot be named {name:?}")));
             }
             let id = TextureId(self.scene.textures.len() as u32);
             let at = entry.at();
             if let Some(before) = self.textures.insert(name.to_owned(), id) {
-                return Err(super::twice(entry, "texture", &self.scene.textures[before.index()].at));
+                entry.note(super::twice(entry, "texture", &self.scene.textures[before.index()].at));
             }
             // Its place is held until it can be read.
             let kind = TextureKind::VertexColor { tint: [1.0; 3] };
             self.scene.textures.push(Texture { name: name.to_owned(), at, kind });
         }
-        for (index, entry) in value.table("[textures]")?.entries().enumerate() {
-            let table = entry.table(format!("[textures.{}]", entry.key()))?;
-            self.scene.textures[first + index].kind = self.texture_kind(&table)?;
+        for (index, entry) in value.named("[textures]").enumerate() {
+            let table = entry.table(format!("[textures.{}]", entry.key()));
+            if let Some(table) = entry.noting(table.map(Some), None) {
+                self.scene.textures[first + index].kind = self.texture_kind(&table);
+            }
         }
-        chain::check(&self.scene.textures, first..self.scene.textures.len())
+        for error in chain::check(&self.scene.textures, first..self.scene.textures.len()) {
+            value.note(error);
+        }
     }
 
-    pub(super) fn texture_kind(&mut self, table: &Table<'_>) -> Result<TextureKind> {
-        let word = table.kind(KEYS, None, |kind| if is_mapped(kind) { super::mapping::KEYS } else { &[] })?;
-        let octaves =
-            |default| table.or("octaves", default, |value| value.integer(1, 16)).map(|count| count as u32);
+    /// A texture; where it is wrong, that is noted.
+    pub(super) fn texture_kind(&mut self, table: &Table<'_>) -> TextureKind {
+        self.typed(table).unwrap_or_else(|error| {
+            table.note(error);
+            TextureKind::VertexColor { tint: [1.0; 3] }
+        })
+    }
+
+    fn typed(&mut self, table: &Table<'_>) -> Result<TextureKind> {
+        let mapping_keys = |kind| if is_mapped(kind) { super::mapping::KEYS } else { &[] };
+        let Some(word) = table.kind(KEYS, None, mapping_keys) else { return Err(Error::untold()) };
+        let octaves = |default| table.or("octaves", default, |value| value.integer(1, 16)) as u32;
         let roughness = || {
             table.or("roughness", 0.5, |value| {
                 value.single_where("a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
@@ -84,90 +108,88 @@ impl Reader<'_, '_> {
         Ok(match word {
             "image" => self.picture(table)?,
             "checker" => TextureKind::Checker {
-                even: self.color_or(table, "even", 0.9)?,
-                odd: self.color_or(table, "odd", 0.1)?,
+                even: self.color_or(table, "even", 0.9),
+                odd: self.color_or(table, "odd", 0.1),
                 mapping: mapping(table, "uv")?,
             },
             "noise" => TextureKind::Noise {
-                low: self.color_or(table, "low", 0.0)?,
-                high: self.color_or(table, "high", 1.0)?,
-                octaves: octaves(4)?,
+                low: self.color_or(table, "low", 0.0),
+                high: self.color_or(table, "high", 1.0),
+                octaves: octaves(4),
                 mapping: mapping(table, "world")?,
             },
             "marble" => TextureKind::Marble {
-                vein: self.color_or(table, "vein", 0.1)?,
-                base: self.color_or(table, "base", 0.9)?,
-                octaves: octaves(6)?,
+                vein: self.color_or(table, "vein", 0.1),
+                base: self.color_or(table, "base", 0.9),
+                octaves: octaves(6),
                 turbulence: table.or("turbulence", 1.5, |value| {
                     value.single_where("a number of at least 0", |number| number >= 0.0)
-                })?,
+                }),
                 mapping: mapping(table, "world")?,
             },
             "dots" => TextureKind::Dots {
-                inside: self.color_or(table, "inside", 0.9)?,
-                outside: self.color_or(table, "outside", 0.1)?,
+                inside: self.color_or(table, "inside", 0.9),
+                outside: self.color_or(table, "outside", 0.1),
                 mapping: mapping(table, "uv")?,
             },
             "bilinear" => {
-                let value = table.need("corners", "[0, 1, 1, 0]")?;
-                let mut corners = [Color::BLACK; 4];
-                let items = value.list_of::<4>("four colours, at (0, 0), (0, 1), (1, 0) and (1, 1)")?;
-                for (corner, item) in corners.iter_mut().zip(items) {
-                    *corner = self.color(item)?;
-                }
+                let corners = table.need("corners", "[0, 1, 1, 0]", [Color::BLACK; 4], |value| {
+                    let mut corners = [Color::BLACK; 4];
+                    let items = value.list_of::<4>("four colours, at (0, 0), (0, 1), (1, 0) and (1, 1)")?;
+                    for (corner, item) in corners.iter_mut().zip(items) {
+                        *corner = self.color(item)?;
+                    }
+                    Ok(corners)
+                });
                 TextureKind::Bilinear { corners, mapping: mapping(table, "uv")? }
             }
             "fbm" => TextureKind::Fbm {
-                octaves: octaves(8)?,
-                roughness: roughness()?,
+                octaves: octaves(8),
+                roughness: roughness(),
                 mapping: mapping(table, "world")?,
             },
             "wrinkled" => TextureKind::Wrinkled {
-                octaves: octaves(8)?,
-                roughness: roughness()?,
+                octaves: octaves(8),
+                roughness: roughness(),
                 mapping: mapping(table, "world")?,
             },
             "windy" => TextureKind::Windy { mapping: mapping(table, "world")? },
             "scale" => TextureKind::Scale {
-                color: self.color(table.need("color", "\"the name of a texture\"")?)?,
-                by: self.scalar_where(table.need("by", "0.5")?, "a number of at least 0", |by| by >= 0.0)?,
+                color: table
+                    .need("color", "\"the name of a texture\"", Color::BLACK, |value| self.color(value)),
+                by: table.need("by", "0.5", Scalar::Value(1.0), |value| {
+                    self.scalar_where(value, "a number of at least 0", |by| by >= 0.0)
+                }),
             },
             "mix" => TextureKind::Mix {
-                low: self.color_or(table, "low", 0.0)?,
-                high: self.color_or(table, "high", 1.0)?,
-                amount: self.share_or(table, "amount", 0.5)?,
+                low: self.color_or(table, "low", 0.0),
+                high: self.color_or(table, "high", 1.0),
+                amount: self.share_or(table, "amount", 0.5),
             },
             "direction_mix" => TextureKind::DirectionMix {
-                low: self.color_or(table, "low", 0.0)?,
-                high: self.color_or(table, "high", 1.0)?,
-                direction: table.need("direction", "[0, 1, 0]")?.direction()?.normalize().as_vec3(),
+                low: self.color_or(table, "low", 0.0),
+                high: self.color_or(table, "high", 1.0),
+                direction: table
+                    .need("direction", "[0, 1, 0]", DVec3::Y, Value::direction)
+                    .normalize()
+                    .as_vec3(),
             },
-            _ => TextureKind::VertexColor { tint: table.or("tint", [1.0; 3], plain_color)? },
+            _ => TextureKind::VertexColor { tint: table.or("tint", [1.0; 3], plain_color) },
         })
     }
 
     fn picture(&mut self, table: &Table<'_>) -> Result<TextureKind> {
-        let is_data =
-            table.or("encoding", false, |value| value.choice(&[("srgb", false), ("linear", true)]))?;
+        let is_data = table.or("encoding", false, |value| value.choice(ENCODINGS));
         Ok(TextureKind::Image {
-            image: self.image_as(table.need("file", "\"picture.png\"")?, is_data)?,
+            image: table.need("file", "\"picture.png\"", ImageId(0), |value| self.image_as(value, is_data)),
             mapping: mapping(table, "uv")?,
-            wrap: [table.or("wrap", Wrap::default(), |value| {
-                value.choice(&[
-                    ("repeat", Wrap::Repeat),
-                    ("mirror", Wrap::Mirror),
-                    ("clamp", Wrap::Clamp),
-                    ("black", Wrap::Black),
-                ])
-            })?; 2],
-            filter: table.or("filter", TexelFilter::default(), |value| {
-                value.choice(&[("bilinear", TexelFilter::Bilinear), ("nearest", TexelFilter::Nearest)])
-            })?,
+            wrap: [table.or("wrap", Wrap::default(), |value| value.choice(WRAPS)); 2],
+            filter: table.or("filter", TexelFilter::default(), |value| value.choice(FILTERS)),
             channel: Channel::Rgb,
             scale: table.or("multiply", 1.0, |value| {
                 value.single_where("a number of at least 0", |number| number >= 0.0)
-            })?,
-            invert: table.or("invert", false, Value::boolean)?,
+            }),
+            invert: table.or("invert", false, Value::boolean),
         })
     }
 

@@ -5,36 +5,11 @@ use ::toml::Spanned;
 use ::toml::de::DeValue;
 use glam::DVec3;
 
+use super::document::Document;
+use super::synonyms;
 use super::table::Table;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::suggest::nearest;
-
-/// A file's text, with what is needed to name places in it.
-pub(super) struct Document {
-    whole: Location,
-    text: String,
-    line_starts: Vec<usize>,
-}
-
-impl Document {
-    pub(super) fn new(whole: Location, text: String) -> Self {
-        let breaks = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n').map(|(index, _)| index + 1);
-        let line_starts = std::iter::once(0).chain(breaks).collect();
-        Self { whole, text, line_starts }
-    }
-
-    pub(super) fn text(&self) -> &str {
-        &self.text
-    }
-
-    /// The line and column of a byte.
-    pub(super) fn location(&self, offset: usize) -> Location {
-        let line = self.line_starts.partition_point(|&start| start <= offset);
-        let start = self.line_starts[line - 1];
-        let before = self.text.get(start..offset).map_or(0, |text| text.chars().count());
-        self.whole.at(u32::try_from(line).unwrap_or(0), u32::try_from(before + 1).unwrap_or(0))
-    }
-}
 
 /// A value, and the key it was given for.
 #[derive(Clone, Copy)]
@@ -53,6 +28,19 @@ impl<'a> Value<'a> {
         self.key
     }
 
+    /// Notes an error that is about this value.
+    pub(super) fn note(self, error: Error) {
+        self.document.note(self.item.span().start, error);
+    }
+
+    /// What was decoded of this value, or a stand-in where that failed: the error is noted.
+    pub(super) fn noting<T>(self, result: Result<T>, stand_in: T) -> T {
+        result.unwrap_or_else(|error| {
+            self.note(error);
+            stand_in
+        })
+    }
+
     /// An error at this place.
     pub(super) fn error(self, message: impl Into<String>) -> Error {
         Error::invalid(&self.at(), message)
@@ -64,7 +52,8 @@ impl<'a> Value<'a> {
     }
 
     /// A file that cannot be opened or is of no known kind is this value's fault; what is wrong inside a file is not.
-    pub(super) fn blame(self, error: Error) -> Error {
+    pub(super) fn blame(self, mut error: Error) -> Error {
+        error.more = std::mem::take(&mut error.more).into_iter().map(|error| self.blame(error)).collect();
         if error.at.line > 0 || !matches!(error.kind, ErrorKind::Io | ErrorKind::Unsupported) {
             return error;
         }
@@ -183,9 +172,11 @@ impl<'a> Value<'a> {
         let word = self.as_text().ok_or_else(|| self.wrong(&format!("one of {}", expected())))?;
         choices.iter().find(|choice| choice.0 == word).map(|choice| choice.1).ok_or_else(|| {
             let error = self.wrong(&format!("one of {}", expected()));
-            match nearest(word, words()) {
-                Some(meant) => error.hint(format!("did you mean {meant:?}?")),
-                None => error,
+            let known: Vec<&str> = words().collect();
+            match (synonyms::choice(word, &known), nearest(word, words())) {
+                (Some(hint), _) => error.hint(hint),
+                (None, Some(meant)) => error.hint(format!("did you mean {meant:?}?")),
+                (None, None) => error,
             }
         })
     }
@@ -243,10 +234,22 @@ impl<'a> Value<'a> {
         Ok(Table::new(self.document, self.item.span().start, title.into(), map))
     }
 
-    /// The tables of an array `[[key]]`.
-    pub(super) fn tables(self) -> Result<impl Iterator<Item = Result<Table<'a>>>> {
+    /// The tables of an array `[[key]]`; of what is none, an error is noted.
+    pub(super) fn tables(self) -> impl Iterator<Item = Table<'a>> {
         let remedy = format!("write [[{}]], with two brackets, for each of them", self.key);
-        let items = self.list("an array of tables").map_err(|error| error.hint(remedy))?;
-        Ok(items.map(|item| item.table(format!("[[{}]]", item.key))))
+        let items = self.list("an array of tables").map_err(|error| error.hint(remedy));
+        let items = items.map(Some).unwrap_or_else(|error| self.noting(Err(error), None));
+        let tables = items.into_iter().flatten().map(|item| {
+            let table = item.table(format!("[[{}]]", item.key));
+            item.noting(table.map(Some), None)
+        });
+        tables.flatten().take_while(move |_| !self.document.is_full())
+    }
+
+    /// The entries of a table whose keys are names.
+    pub(super) fn named(self, title: &str) -> impl Iterator<Item = Value<'a>> {
+        let table = self.noting(self.table(title).map(Some), None);
+        let entries = table.into_iter().flat_map(|table| table.entries().collect::<Vec<_>>());
+        entries.take_while(move |_| !self.document.is_full())
     }
 }

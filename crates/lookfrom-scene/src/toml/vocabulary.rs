@@ -1,10 +1,15 @@
 //! Which tables and keys are there? Gathered from the decoders, for documentation, editors and tests.
 
+use super::table::Kinds;
 use super::{camera, curve, light, mapping, material, place, settings, shape, texture};
 
 /// The keys of a file besides the kinds of shapes.
 pub(super) const TOP: &[&str] =
     &["import", "camera", "image", "render", "materials", "textures", "objects", "instance", "light"];
+
+/// The tables of which there is one, and their keys.
+pub(super) const SETTINGS: Kinds =
+    &[("[camera]", camera::KEYS), ("[image]", settings::IMAGE), ("[render]", settings::RENDER)];
 
 /// Every table of the format and the keys that it may have: for documentation, editors and tests.
 pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
@@ -35,4 +40,33 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
         tables.push((format!("[[light]] {kind}"), [light::COMMON, keys].concat()));
     }
     tables
+}
+
+/// Where one of a few words is chosen, and which.
+#[cfg(test)]
+pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
+    use super::sky;
+    use crate::settings::{ColorMode, Filter, Integrator, LightSampler, Sampler, Tonemap};
+
+    fn words<T>(words: &[(&'static str, T)]) -> Vec<&'static str> {
+        words.iter().map(|(word, _)| *word).collect()
+    }
+    vec![
+        ("[materials.NAME]", words(material::KEYS)),
+        ("[textures.NAME]", words(texture::KEYS)),
+        ("[[light]]", words(light::KEYS)),
+        ("projection", words(&camera::PROJECTIONS)),
+        ("space", mapping::SPACES.to_vec()),
+        ("layout", words(sky::LAYOUTS)),
+        ("falloff", words(light::FALLOFFS)),
+        ("encoding", words(texture::ENCODINGS)),
+        ("wrap", words(texture::WRAPS)),
+        ("filter", words(texture::FILTERS)),
+        ("filter", words(Filter::WORDS)),
+        ("tonemap", words(Tonemap::WORDS)),
+        ("integrator", words(Integrator::WORDS)),
+        ("sampler", words(Sampler::WORDS)),
+        ("color", words(ColorMode::WORDS)),
+        ("light_sampler", words(LightSampler::WORDS)),
+    ]
 }

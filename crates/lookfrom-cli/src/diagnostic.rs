@@ -1,0 +1,116 @@
+//! Errors for a person at a terminal: what is wrong, where, the line that it is about, and what to do.
+//!
+//! All have one form, which is also that of compilers: `error: …`, then the place as `--> file:line:column`, one word to
+//! search for or to click on, and the line with carets, then `help: …`. What the parser of the command line says looks alike
+//! and ends with the way to `--help`. Colours are those of that parser; who prints takes them out where they are not wanted.
+
+use std::fmt::Write;
+
+use clap::builder::Styles;
+use clap::builder::styling::{AnsiColor, Style};
+use lookfrom_scene::excerpt::{Excerpt, Excerpts};
+use lookfrom_scene::{Disk, Error, Files, Result};
+
+/// The last words of what is wrong with a command line, as the parser has them.
+const TO_HELP: &str = "\n\nFor more information, try '--help'.";
+
+/// The frame around a line of a file.
+const FRAME: Style = AnsiColor::Blue.on_default().bold();
+
+/// An error without a place.
+pub(crate) fn plain(message: &str) -> String {
+    let error = *Styles::styled().get_error();
+    format!("{error}error:{error:#} {message}")
+}
+
+/// The command line makes no sense for this scene, which its parser could not know.
+pub(crate) fn of_usage(message: &str) -> String {
+    plain(message) + TO_HELP
+}
+
+/// What the parser says of the command line; what it calls a tip is called help like everywhere else.
+pub(crate) fn of_clap(error: &clap::Error) -> String {
+    let valid = *Styles::styled().get_valid();
+    let [tip, help] = ["tip:", "help:"].map(|word| format!("{valid}{word}{valid:#}"));
+    error.render().ansi().to_string().replace(&tip, &help)
+}
+
+/// What is wrong in files, with the lines that are wrong.
+pub(crate) fn of_files(error: &Error) -> String {
+    let mut excerpts = Excerpts::new(&Regular);
+    let (few, left) = error.first_few();
+    let mut text = few.map(|error| of_file(error, excerpts.of(&error.at))).collect::<Vec<_>>().join("\n\n");
+    if left > 0 {
+        let _ = write!(text, "\n\n… and {left} more");
+    }
+    text
+}
+
+fn of_file(error: &Error, excerpt: Option<Excerpt>) -> String {
+    let styles = Styles::styled();
+    let (red, green) = (*styles.get_error(), *styles.get_valid());
+    let at = &error.at;
+    // Of a file as a whole the message says something only together with its name.
+    let mut text = match at.line {
+        0 => plain(&format!("{at}: {}", error.message)),
+        _ => plain(&error.message),
+    };
+    let gutter = if excerpt.is_some() { at.line.to_string().len() } else { 1 };
+    let indent = " ".repeat(gutter);
+    if at.line > 0 {
+        let _ = write!(text, "\n{indent}{FRAME}-->{FRAME:#} {at}");
+    }
+    if let Some(Excerpt { text: line, mark }) = excerpt {
+        let bar = format!("{FRAME}|{FRAME:#}");
+        let (space, carets) = (" ".repeat(mark.start), "^".repeat(mark.len()));
+        let _ = write!(text, "\n{indent} {bar}");
+        let _ = write!(text, "\n{FRAME}{}{FRAME:#} {bar} {}", at.line, line.trim_end());
+        let _ = write!(text, "\n{indent} {bar} {space}{red}{carets}{red:#}");
+    }
+    if let Some(hint) = &error.hint {
+        let _ = write!(text, "\n{indent} {FRAME}={FRAME:#} {green}help:{green:#} {hint}");
+    }
+    text
+}
+
+/// The disk, but nothing that can be read only once, or would be waited for.
+struct Regular;
+
+impl Files for Regular {
+    fn read(&self, path: &std::path::Path, limit: u64) -> Result<Vec<u8>> {
+        if path.is_file() {
+            return Disk.read(path, limit);
+        }
+        Err(Error::new(lookfrom_scene::ErrorKind::Io, &lookfrom_scene::Location::file(path), "not a file"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lookfrom_scene::Location;
+    use std::path::Path;
+
+    fn without_color(text: &str) -> String {
+        anstream::adapter::strip_str(text).to_string()
+    }
+
+    #[test]
+    fn errors_have_one_form() {
+        let at = Location::file(Path::new("scene.toml")).at(12, 3);
+        let error = Error::invalid(&at, "unknown key `color`").hint("did you mean `reflectance`?");
+        let excerpt = Excerpt { text: "  color = 1".to_owned(), mark: 2..7 };
+        assert_eq!(
+            without_color(&of_file(&error, Some(excerpt))),
+            "error: unknown key `color`\n  --> scene.toml:12:3\n   |\n12 |   color = 1\n   |   ^^^^^\n   = help: did you mean `reflectance`?"
+        );
+        assert_eq!(
+            without_color(&of_file(&error, None)),
+            "error: unknown key `color`\n --> scene.toml:12:3\n  = help: did you mean `reflectance`?"
+        );
+        let gone =
+            Error::invalid(&Location::file(Path::new("a.toml")), "no such file").hint("check the name");
+        assert_eq!(without_color(&of_files(&gone)), "error: a.toml: no such file\n  = help: check the name");
+        assert!(of_usage("no").starts_with("\u{1b}[1m\u{1b}[31merror:\u{1b}[0m no\n\nFor more information"));
+    }
+}

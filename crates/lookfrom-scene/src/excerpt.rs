@@ -1,0 +1,236 @@
+//! The line of a text file that a [`Location`] points at, with the columns to mark, for whoever shows errors to people.
+//!
+//! Readers keep no text in their errors: the line is read again when somebody looks. So every location of every text format
+//! has one, also those that are found long after reading.
+
+use std::fmt;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+use unicode_width::UnicodeWidthChar;
+
+use crate::error::Location;
+use crate::files::{Files, Limits};
+use crate::packed;
+
+/// The widest piece of a line that is shown, in columns of a terminal.
+const WIDEST: usize = 96;
+/// Columns of a tab.
+const TAB: &str = "    ";
+/// Longer files are not read again to show a line of them.
+const LONGEST_FILE: u64 = 1 << 28;
+
+/// A line, or a piece of it, as it can be printed: tabs are spaces, control characters are replaced.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Excerpt {
+    /// The line without its end; `…` stands where it was cut.
+    pub text: String,
+    /// The columns of a terminal to mark, counted from 0; never empty.
+    pub mark: Range<usize>,
+}
+
+/// The text, and below it carets under the mark.
+impl fmt::Display for Excerpt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.text.trim_end())?;
+        write!(f, "{}{}", " ".repeat(self.mark.start), "^".repeat(self.mark.len()))
+    }
+}
+
+/// Cuts excerpts out of files; the last file is kept.
+pub struct Excerpts<'a> {
+    files: &'a dyn Files,
+    last: Option<(Arc<str>, Vec<u8>)>,
+}
+
+impl<'a> Excerpts<'a> {
+    /// Excerpts of these files.
+    pub fn new(files: &'a dyn Files) -> Self {
+        Self { files, last: None }
+    }
+
+    /// The line at a place, or `None` where no line is known, the file cannot be read (again), or it is no text there.
+    pub fn of(&mut self, at: &Location) -> Option<Excerpt> {
+        let line_index = usize::try_from(at.line.checked_sub(1)?).ok()?;
+        if self.last.as_ref().is_none_or(|(file, _)| *file != at.file) {
+            let path = Path::new(&*at.file);
+            let bytes = self.files.read(path, LONGEST_FILE).ok()?;
+            let bytes =
+                packed::unpacked(bytes, path, &Limits { file_bytes: LONGEST_FILE, ..Limits::default() })
+                    .ok()?;
+            self.last = Some((at.file.clone(), bytes));
+        }
+        let (_, bytes) = self.last.as_ref()?;
+        let line = bytes.split(|&byte| byte == b'\n').nth(line_index)?;
+        let line = line.strip_suffix(b"\r").unwrap_or(line);
+        let line = if line_index == 0 { line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line) } else { line };
+        (!line.contains(&0)).then(|| cut(&String::from_utf8_lossy(line), at.column as usize))
+    }
+}
+
+/// What is shown of a line where the character of this number, from 1, is meant; 0 is the whole line.
+fn cut(line: &str, column: usize) -> Excerpt {
+    let characters: Vec<char> = line.chars().collect();
+    let marked = match column.checked_sub(1) {
+        Some(first) => first.min(characters.len())..token_end(&characters, first),
+        None => {
+            let is_text = |c: &char| !c.is_whitespace();
+            let first = characters.iter().position(is_text).unwrap_or(0);
+            first..characters.iter().rposition(is_text).map_or(0, |last| last + 1)
+        }
+    };
+    // What is printed of each character, and in how many columns of the line before any cut.
+    let mut printed = Vec::with_capacity(characters.len());
+    let mut starts = vec![0];
+    for &character in &characters {
+        let text = match character {
+            '\t' => TAB.to_owned(),
+            // Nor may what is shown be turned around by what it says (Boucher & Anderson 2021).
+            '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}'.to_string(),
+            c if c.is_control() => '\u{fffd}'.to_string(),
+            c => c.to_string(),
+        };
+        let width: usize = text.chars().filter_map(UnicodeWidthChar::width).sum();
+        starts.push(starts.last().unwrap_or(&0) + width);
+        printed.push(text);
+    }
+    let end = characters.len();
+    let mark = starts[marked.start]..starts[marked.end.min(end)].max(starts[marked.start] + 1);
+
+    // A piece of the line in which the mark begins, a third from its left where the line is cut there.
+    let is_whole = starts[end] <= WIDEST;
+    let from = match is_whole || mark.end < WIDEST {
+        true => 0,
+        false => starts.partition_point(|&start| start + WIDEST / 3 < mark.start).min(marked.start),
+    };
+    let left = if from > 0 { "…" } else { "" };
+    let offset = starts[from] - left.chars().count();
+    let fits = |index: &usize| starts[index + 1] - offset < WIDEST;
+    let to = if is_whole { end } else { (from..end).take_while(fits).last().map_or(from, |last| last + 1) };
+    let right = if to < end { "…" } else { "" };
+    let text = format!("{left}{}{right}", printed[from..to].concat());
+    let shown_end = starts[to] - offset + right.chars().count();
+    let start = mark.start - offset;
+    Excerpt { text, mark: start..(mark.end - offset).min(shown_end).max(start + 1) }
+}
+
+/// Where that ends which begins at a character: a word, a string, or brackets and what is in them.
+fn token_end(line: &[char], first: usize) -> usize {
+    let Some(&opening) = line.get(first) else { return first };
+    let is_word = |c: char| !c.is_whitespace() && !"=,;()[]{}\"'".contains(c);
+    match opening {
+        '"' | '\'' => string_end(line, first).unwrap_or(line.len()),
+        '[' | '{' => brackets_end(line, first).unwrap_or(first + 1),
+        c if is_word(c) => first + line[first..].iter().take_while(|&&c| is_word(c)).count(),
+        _ => first + 1,
+    }
+}
+
+/// The end of a string, behind its closing quote.
+fn string_end(line: &[char], first: usize) -> Option<usize> {
+    let mut index = first + 1;
+    while let Some(&c) = line.get(index) {
+        if c == line[first] {
+            return Some(index + 1);
+        }
+        index += if c == '\\' { 2 } else { 1 };
+    }
+    None
+}
+
+/// The end of brackets that are closed in this line.
+fn brackets_end(line: &[char], first: usize) -> Option<usize> {
+    let (mut index, mut depth) = (first, 0_usize);
+    while let Some(&c) = line.get(index) {
+        match c {
+            '"' | '\'' => {
+                index = string_end(line, index)?;
+                continue;
+            }
+            '[' | '{' => depth += 1,
+            ']' | '}' if depth == 1 => return Some(index + 1),
+            ']' | '}' => depth -= 1,
+            _ => {}
+        }
+        index += 1;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::Memory;
+
+    fn rows(line: &str, column: usize) -> [String; 2] {
+        let shown = cut(line, column).to_string();
+        let (text, mark) = shown.split_once('\n').expect("two rows");
+        [text.to_owned(), mark.to_owned()]
+    }
+
+    #[test]
+    fn tokens_are_marked_as_a_whole() {
+        for (line, column, mark) in [
+            ("color = [1, 0, 0]", 1, "^^^^^"),
+            ("color = [1, 0, 0]", 9, "        ^^^^^^^^^"),
+            ("color = [1, 0, 0]", 13, "            ^"),
+            ("[[light]] # one", 1, "^^^^^^^^^"),
+            ("name = \"a \\\" b\" # c", 8, "       ^^^^^^^^"),
+            ("a = [\"]\", { b = 1 }]", 5, "    ^^^^^^^^^^^^^^^^"),
+            ("a = [1,", 5, "    ^"),
+            ("a = \"open", 5, "    ^^^^^"),
+            ("end", 4, "   ^"),
+            ("end", 40, "   ^"),
+            ("", 1, "^"),
+            ("  f 1 2 x  ", 0, "  ^^^^^^^"),
+            ("", 0, "^"),
+        ] {
+            assert_eq!(rows(line, column)[1], mark, "{line} {column}");
+        }
+    }
+
+    #[test]
+    fn tabs_wide_and_combining_characters_and_control_characters_keep_the_mark_in_place() {
+        assert_eq!(rows("\tä = é", 4), ["    ä = é".to_owned(), "      ^".to_owned()]);
+        assert_eq!(rows("名前 = x", 6), ["名前 = x".to_owned(), "       ^".to_owned()]);
+        assert_eq!(rows("名前 = x", 1)[1], "^^^^");
+        assert_eq!(rows("e\u{301} = x", 6)[1], "    ^");
+        assert_eq!(
+            rows("a\u{1b}[31m\u{202e} = x", 9),
+            ["a\u{fffd}[31m\u{fffd} = x".to_owned(), " ".repeat(8) + "^"]
+        );
+    }
+
+    #[test]
+    fn long_lines_are_cut_around_the_mark() {
+        let mut line = vec!['a'; 5000];
+        for place in [0, 1, 40, 90, 95, 96, 97, 200, 3000, 4990, 4999] {
+            line.fill(' ');
+            line[place] = '!';
+            let [text, mark] = rows(&(line.iter().collect::<String>() + "b"), place + 1);
+            let column = mark.chars().position(|c| c == '^').expect("a mark");
+            assert_eq!(text.chars().nth(column), Some('!'), "{place}: {text}");
+            assert!(text.chars().count() <= WIDEST + 1 && mark.chars().count() <= WIDEST + 1);
+            assert_eq!(text.starts_with('…'), place >= 95);
+        }
+        // A mark longer than there is room for ends with what is shown.
+        let [text, mark] = rows(&format!("{}\"{}\"", " ".repeat(500), "x".repeat(500)), 501);
+        assert!(mark.chars().count() <= text.chars().count() && text.ends_with('…'));
+    }
+
+    #[test]
+    fn lines_end_with_or_without_a_carriage_return_and_files_may_be_gone() {
+        let text = b"\xef\xbb\xbfone\r\ntwo \xff\r\n\r\nl\0st".to_vec();
+        let files = Memory([("a.toml".into(), text)].into());
+        let mut excerpts = Excerpts::new(&files);
+        let whole = Location::file(Path::new("a.toml"));
+        let mut text = |line, column| excerpts.of(&whole.at(line, column)).map(|excerpt| excerpt.text);
+        assert_eq!(text(1, 1).as_deref(), Some("one"));
+        assert_eq!(text(2, 5).as_deref(), Some("two \u{fffd}"));
+        assert_eq!(text(3, 1).as_deref(), Some(""));
+        assert_eq!([text(4, 1), text(5, 1), text(0, 0), text(u32::MAX, u32::MAX)], [None, None, None, None]);
+        let gone = Location::file(Path::new("b.toml")).at(1, 1);
+        assert_eq!(Excerpts::new(&files).of(&gone), None);
+    }
+}

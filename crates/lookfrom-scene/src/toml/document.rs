@@ -1,0 +1,82 @@
+//! The text of a scene, places in it, and the errors that were noted: where one thing is wrong, reading goes on with a
+//! stand-in, and what was read is thrown away in the end.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use crate::error::{Error, Location};
+
+/// The most errors that are noted of one file.
+const MOST_ERRORS: usize = 1000;
+
+/// A file's text, with what is needed to name places in it, and the errors that were noted so far.
+pub(super) struct Document {
+    whole: Location,
+    text: String,
+    line_starts: Vec<usize>,
+    /// By the byte that they are about, and what they say: each once.
+    errors: RefCell<BTreeMap<(usize, String), Error>>,
+}
+
+impl Document {
+    pub(super) fn new(whole: Location, text: String) -> Self {
+        let breaks = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n').map(|(index, _)| index + 1);
+        let line_starts = std::iter::once(0).chain(breaks).collect();
+        Self { whole, text, line_starts, errors: RefCell::default() }
+    }
+
+    /// Notes an error that is about what begins at a byte; reading goes on.
+    pub(super) fn note(&self, offset: usize, error: Error) {
+        if !self.is_full() && !error.is_untold() {
+            self.errors.borrow_mut().entry((offset, error.message.clone())).or_insert(error);
+        }
+    }
+
+    /// Whether an error was noted that is about what begins at a byte.
+    pub(super) fn is_noted(&self, offset: usize) -> bool {
+        self.errors.borrow().range((offset, String::new())..).next().is_some_and(|((at, _), _)| *at == offset)
+    }
+
+    /// How many errors were noted.
+    pub(super) fn count(&self) -> usize {
+        self.errors.borrow().len()
+    }
+
+    /// Whether there are so many errors that no more are looked for.
+    pub(super) fn is_full(&self) -> bool {
+        self.count() >= MOST_ERRORS
+    }
+
+    /// The errors that were noted, and some others of the same file, in the order of its lines.
+    pub(super) fn errors(&self, others: Vec<Error>) -> Vec<Error> {
+        let line = |offset: usize| self.location(offset).line;
+        let others = others.into_iter().map(|error| (error.at.line, error));
+        let noted = self.errors.take().into_iter().map(|((offset, _), error)| (line(offset), error));
+        let mut all: Vec<(u32, Error)> = others.chain(noted).collect();
+        all.sort_by_key(|&(line, _)| line);
+        all.into_iter().map(|(_, error)| error).collect()
+    }
+
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The line and column of a byte.
+    pub(super) fn location(&self, offset: usize) -> Location {
+        let line = self.line_starts.partition_point(|&start| start <= offset);
+        let start = self.line_starts[line - 1];
+        let before = self.text.get(start..offset).map_or(0, |text| text.chars().count());
+        self.whole.at(u32::try_from(line).unwrap_or(0), u32::try_from(before + 1).unwrap_or(0))
+    }
+}
+
+impl Error {
+    /// An error that is not told, for it follows from another that is.
+    pub(super) fn untold() -> Self {
+        Self::invalid(&Location::default(), "")
+    }
+
+    fn is_untold(&self) -> bool {
+        self.message.is_empty()
+    }
+}
