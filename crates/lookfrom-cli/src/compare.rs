@@ -13,7 +13,7 @@ use lookfrom_scene::{Disk, Inputs, Sources};
 use serde::Serialize;
 
 use crate::args::CompareArguments;
-use crate::exit::{self, BAD_SCENE, DONE, Failure, answer};
+use crate::exit::{self, BAD_SCENE, DONE, Failure, answer, say};
 use crate::html::{self, Shown};
 use crate::{json, output};
 
@@ -110,7 +110,7 @@ fn compare_pair(
     let [of_picture, of_reference] = arguments.samples.map_or([None; 2], |samples| samples.map(Some));
     let (mut a, mut b) = (read(picture, of_picture, inputs)?, read(reference, of_reference, inputs)?);
     if let Some(sensor) = &arguments.sensor {
-        let said = *color::Sensor::new(sensor).channels_from_rgb();
+        let said = *color::Sensor::new(sensor).variance_from_rgb();
         for side in [&mut a, &mut b] {
             side.channels_from_rgb.get_or_insert(said);
         }

@@ -4,6 +4,7 @@ use std::fmt;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 
+use lookfrom::session::OPTIONS;
 use lookfrom_scene::{Error, ErrorKind, Location, Warning, WarningGroup, WarningKind};
 
 use crate::diagnostic;
@@ -84,6 +85,8 @@ pub(crate) fn in_scene(path: &Path) -> impl Fn(Error) -> Failure {
         for at in std::iter::once(&mut error.at).chain(error.more.iter_mut().map(|error| &mut error.at)) {
             if at.file.is_empty() {
                 *at = Location::file(path);
+            } else if *at.file == *OPTIONS {
+                at.file = "the command line".into();
             }
         }
         error.into()

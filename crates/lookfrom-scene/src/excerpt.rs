@@ -71,8 +71,12 @@ impl<'a> Excerpts<'a> {
 
 /// What is shown of a line where the character of this number, from 1, is meant; 0 is the whole line.
 fn cut(line: &str, column: usize) -> Excerpt {
-    let characters: Vec<char> = line.chars().collect();
-    let marked = match column.checked_sub(1) {
+    // A line may be the whole of a large file: what lies far from the mark is not looked at.
+    let skipped = column.saturating_sub(2 * WIDEST);
+    let mut rest = line.chars().skip(skipped);
+    let characters: Vec<char> = rest.by_ref().take(6 * WIDEST).collect();
+    let (is_begun, is_left) = (skipped > 0, rest.next().is_some());
+    let marked = match column.checked_sub(1 + skipped) {
         Some(first) => first.min(characters.len())..token_end(&characters, first),
         None => {
             let is_text = |c: &char| !c.is_whitespace();
@@ -99,20 +103,20 @@ fn cut(line: &str, column: usize) -> Excerpt {
     let mark = starts[marked.start]..starts[marked.end.min(end)].max(starts[marked.start] + 1);
 
     // A piece of the line in which the mark begins, a third from its left where the line is cut there.
-    let is_whole = starts[end] <= WIDEST;
-    let from = match is_whole || mark.end < WIDEST {
+    let is_whole = starts[end] <= WIDEST && !is_begun && !is_left;
+    let from = match is_whole || (mark.end < WIDEST && !is_begun) {
         true => 0,
         false => starts.partition_point(|&start| start + WIDEST / 3 < mark.start).min(marked.start),
     };
-    let left = if from > 0 { "…" } else { "" };
-    let offset = starts[from] - left.chars().count();
-    let fits = |index: &usize| starts[index + 1] - offset < WIDEST;
+    let left = if from > 0 || is_begun { "…" } else { "" };
+    let shown = |column: usize| column - starts[from] + left.chars().count();
+    let fits = |index: &usize| shown(starts[index + 1]) < WIDEST;
     let to = if is_whole { end } else { (from..end).take_while(fits).last().map_or(from, |last| last + 1) };
-    let right = if to < end { "…" } else { "" };
+    let right = if to < end || is_left { "…" } else { "" };
     let text = format!("{left}{}{right}", printed[from..to].concat());
-    let shown_end = starts[to] - offset + right.chars().count();
-    let start = mark.start - offset;
-    Excerpt { text, mark: start..(mark.end - offset).min(shown_end).max(start + 1) }
+    let shown_end = shown(starts[to]) + right.chars().count();
+    let start = shown(mark.start);
+    Excerpt { text, mark: start..shown(mark.end).min(shown_end).max(start + 1) }
 }
 
 /// Where that ends which begins at a character: a word, a string, or brackets and what is in them.
@@ -214,6 +218,10 @@ mod tests {
             assert!(text.chars().count() <= WIDEST + 1 && mark.chars().count() <= WIDEST + 1);
             assert_eq!(text.starts_with('…'), place >= 95);
         }
+        // Characters of no width take no room, however many there are.
+        let accents = "\u{301}".repeat(3000);
+        let [text, mark] = rows(&format!("{accents}!{accents}"), 3001);
+        assert!(text.starts_with('…') && text.ends_with('…') && text.contains('!') && mark.ends_with(" ^"));
         // A mark longer than there is room for ends with what is shown.
         let [text, mark] = rows(&format!("{}\"{}\"", " ".repeat(500), "x".repeat(500)), 501);
         assert!(mark.chars().count() <= text.chars().count() && text.ends_with('…'));

@@ -48,7 +48,7 @@ use crate::settings::ColorMode;
 /// that of the file they stand in.
 ///
 /// # Errors
-/// With line, column and the line that is wrong: `Syntax` where words are not those of the format, `Invalid` where they
+/// With line and column: `Syntax` where words are not those of the format, `Invalid` where they
 /// say what cannot be (a scene of pbrt-v3 among them), `Limit` where something is too large or nests too deep, and
 /// whatever goes wrong in the files that are named. Files that are not there are told of all at once, as
 /// [`Error::more`].

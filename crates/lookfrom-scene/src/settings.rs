@@ -405,6 +405,6 @@ impl Sampler {
 }
 
 /// The word for a value; every value has one.
-fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'static str {
+fn word_of<T: PartialEq + Copy>(words: &[(&'static str, T)], value: T) -> &'static str {
     words.iter().find(|(_, of_word)| *of_word == value).map_or("?", |(word, _)| word)
 }

@@ -1,7 +1,7 @@
 //! How much of something is there at each wavelength?
 //!
 //! A [`Curve`] is a spectrum as a file states it: a constant, a table, a black body. Measured ones have names
-//! ([`named`]), or are read from `.spd` files ([`read_spd`]). Beside them: the standard observer, which weighs
+//! ([`named()`]), or are read from `.spd` files ([`read_spd`]). Beside them: the standard observer, which weighs
 //! wavelengths as the eye does, the sensors of digital cameras, daylight of any temperature, and the RGB colour spaces.
 //! Sampling wavelengths and lifting RGB to a spectrum are left to the crate `lookfrom`.
 

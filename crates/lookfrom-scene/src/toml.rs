@@ -41,6 +41,7 @@ use ::toml::de::DeTable;
 
 use self::document::Document;
 use self::import::tidy;
+use self::material::DEFAULT;
 use self::syntax::Readable;
 use self::table::{SCENE, Table};
 use self::value::Value;
@@ -99,6 +100,9 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
     }
     Ok(scene)
 }
+
+/// The most names that are compared with one that stands for nothing.
+const MOST_COMPARED: usize = 1000;
 
 /// A scene on its way from files, and the names that were given so far.
 struct Reader<'s, 'f> {
@@ -271,19 +275,21 @@ impl Reader<'_, '_> {
                 return Error::untold();
             }
             let error = value.error(format!("there is no {what} {name:?}"));
-            let names = || known.keys().map(String::as_str);
+            // What only we have named is no name of the file's.
+            let is_ours =
+                |name: &str| what == "material" && self.unwritten_default.is_some() && name == DEFAULT;
+            let names = || known.keys().map(String::as_str).filter(|name| !is_ours(name));
+            let count = names().count();
             let example = match what {
                 "object" => format!("[[objects.{name}.sphere]]"),
                 _ => format!("[{what}s.{name}]"),
             };
-            match nearest(name, names()) {
+            match nearest(name, names().take(MOST_COMPARED)) {
                 Some(meant) => error.hint(format!("did you mean {meant:?}?")),
-                None if known.is_empty() => {
-                    error.hint(format!("there is none at all: write it as {example}"))
-                }
+                None if count == 0 => error.hint(format!("there is none at all: write it as {example}")),
                 None => {
                     let mut some: Vec<&str> = names().take(12).collect();
-                    if known.len() > some.len() {
+                    if count > some.len() {
                         some.push("…");
                     }
                     error.hint(format!("there are: {}", some.join(", ")))

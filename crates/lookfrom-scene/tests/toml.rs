@@ -371,3 +371,23 @@ fn many_spheres_are_read_in_about_a_second() {
     assert_eq!(scene.shapes.len(), 100_000);
     assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
 }
+
+/// Errors by the thousand are found, counted and shown in about a second, also where the text is one long line.
+#[test]
+fn thousands_of_errors_are_no_burden() {
+    let table = |i: usize| {
+        format!("[[sphere]]\nradus = 1\nmaterial = \"x\"\n[materials.m{i}]\ncolor = [1, 2]\nior = 0\n")
+    };
+    let many = (0..20_000).map(table).collect::<String>();
+    let long = format!("sphere = [{}]", "{ raduis = 1, material = \"x\", center = 1 }, ".repeat(20_000));
+    let broken = "[[sphere]]\nradius = = 1\n".repeat(20_000);
+    for (text, most) in [(many, 1000), (long, 1000), (broken, 20_000)] {
+        let started = std::time::Instant::now();
+        let files = files(&[("a.toml", &text)]);
+        let error = load::scene(Path::new("a.toml"), &mut Sources::new(&files)).expect_err("errors");
+        assert_eq!(error.each().count(), most);
+        let mut excerpts = Excerpts::new(&files);
+        assert!(error.first_few().0.all(|error| excerpts.of(&error.at).is_some()));
+        assert!(started.elapsed().as_secs() < 20, "{:?}", started.elapsed());
+    }
+}

@@ -1,7 +1,7 @@
 //! One way from a file to a finished picture: what every door calls, and nothing else.
 //!
 //! A [`Session`] reads (or is given) a scene, applies [`Options`], decides what both leave open — camera, lights, samples,
-//! denoising, AOVs — and owns the compiled [`World`](crate::world::World). Its picture is rendered with progress and
+//! denoising, AOVs — and owns the compiled [`World`]. Its picture is rendered with progress and
 //! cancellation; its camera and settings may be changed and the picture rendered again.
 //!
 //! ```no_run
@@ -40,7 +40,7 @@ use crate::world::World;
 
 pub use encode::Format;
 pub use finish::Finished;
-pub use options::{ADAPTIVE_NOISE, Fireflies, MOST_SAMPLES, Options};
+pub use options::{ADAPTIVE_NOISE, Fireflies, MOST_SAMPLES, OPTIONS, Options};
 pub use running::Running;
 
 /// A scene that is ready to be rendered, and to be rendered again from elsewhere or with other settings.

@@ -88,7 +88,7 @@ pub struct Names {
 /// A repetition of an object.
 #[derive(Clone, Debug)]
 pub struct Instance {
-    /// Index into [`World::objects`].
+    /// Index into the world's objects.
     pub object: u32,
     /// From the object's space to render space.
     pub render_from_object: DMat4,

@@ -77,6 +77,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "world",
         ],
     ),
+    ("session", &["color", "denoise", "develop", "film", "integrator", "render", "view", "world"]),
 ];
 
 /// Each crate of the workspace and the crates of the workspace that it may use. Rows may name only rows above them.

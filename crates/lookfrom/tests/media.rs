@@ -235,11 +235,11 @@ fn what_is_told_of_media_adds_up() {
     let world = mirror(OUTSIDE, false) + r#"LightSource "infinite" "rgb L" [ 2 1 3 ]"#;
     for before in ["", BOTH] {
         let compiled = Compiled::new(read(&text("volpath", SIGMA, before, &world)).0);
-        let frame = compiled.frame();
+        let renderer = compiled.renderer();
         let film = compiled.film();
         let mut sum = [0.0; 3];
         for sample in 0..64 {
-            let inspection = inspect(&frame, SampleId { pixel: [1, 0], sample });
+            let inspection = inspect(&renderer, SampleId { pixel: [1, 0], sample });
             assert!(inspection.adds_up);
             for ray in &inspection.rays {
                 let share = ray.share_there.as_ref().unwrap_or(&ray.share);

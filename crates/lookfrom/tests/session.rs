@@ -128,7 +128,7 @@ fn an_integrator_of_ones_own() {
     let finished = session.render(&()).expect("a picture");
     assert!(finished.header.contains(&("integrator".to_owned(), "silhouette".to_owned())));
     let values: Vec<f32> = finished.picture.pixels.iter().map(|rgb| rgb[0]).collect();
-    assert!(values.iter().any(|&v| v == 0.0) && values.iter().any(|&v| v == 1.0));
+    assert!(values.contains(&0.0) && values.contains(&1.0));
     assert!(values.iter().all(|v| (0.0..=1.0).contains(v)));
     // It stays when the camera moves, and the settings' own comes back with them.
     session.set_camera(session.camera().clone()).expect("the same camera");

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom::world::World;
+use lookfrom::render::Renderer;
 use lookfrom_scene::{Memory, Sources, image, load};
 
 /// The warnings of reading and compiling the first of some files.
@@ -15,7 +15,7 @@ fn warnings_of(files: &[(&str, String)]) -> Vec<String> {
     let mut sources = Sources::new(&memory);
     let scene = load::scene(Path::new(name), &mut sources).unwrap_or_else(|error| panic!("{error}"));
     let mut warnings = sources.warnings;
-    World::compile(scene, &mut warnings).unwrap_or_else(|error| panic!("{error}"));
+    Renderer::of_scene(scene, &mut warnings).unwrap_or_else(|error| panic!("{error}"));
     warnings.iter().map(ToString::to_string).collect()
 }
 
@@ -103,7 +103,7 @@ fn all_parts_of_a_model_are_one_body() {
         // The lamp that the studio hangs up at the eye is none of a room.
         lookfrom_scene::studio::furnish_model(&mut scene, None);
         let mut warnings = Vec::new();
-        World::compile(scene, &mut warnings).unwrap();
+        Renderer::of_scene(scene, &mut warnings).unwrap();
         warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     one(&warnings([0.0, 0.2, 0.3]), &["the camera stands inside the model"]);
@@ -118,10 +118,9 @@ fn an_eye_that_sees_nothing_is_told_of() {
     // Small or thin things are something, and so is the light around without a thing.
     none(&seen_from([0.0, 0.0, 9.0], "[[sphere]]\ncenter = [0.3, 0.2, 0]\nradius = 0.1"));
     none(&seen_from([0.0; 3], ""));
-    // Two faces that show only their backs to a camera that passes these.
-    let around = "[image]\nwidth = 64\nheight = 32";
-    let all = seen_from([0.0; 3], &format!("projection = \"equirectangular\"\n{around}\n{ball}"));
-    none(&all);
+    // What is behind is seen by an eye that sees all around.
+    let around = "projection = \"equirectangular\"\n[image]\nwidth = 64\nheight = 32";
+    none(&seen_from([0.0; 3], &format!("{around}\n{ball}")));
 }
 
 #[test]
@@ -140,7 +139,7 @@ fn reflectances_above_one_are_told_of() {
     one(&material("type = \"conductor\"\nreflectance = 2"), &["reflectance"]);
     let texture = "reflectance = { type = \"checker\", even = [200, 10, 10], odd = 0.5 }";
     one(&material(&format!("type = \"diffuse\"\n{texture}")), &["a.toml:6:", "[200, 10, 10]"]);
-    let curve = "reflectance = { wavelengths = [400, 700], values = [0.5, 50] }";
+    let curve = "reflectance = { curve = [[400, 0.5], [700, 50]] }";
     one(&material(&format!("type = \"diffuse\"\n{curve}")), &["reflectance"]);
     // Light, optical constants and tints of highlights go above it.
     for fine in [

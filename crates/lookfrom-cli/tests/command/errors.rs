@@ -66,7 +66,7 @@ fn what_the_parser_says_and_what_we_say_look_alike() {
     );
     // What only the scene can tell is said like what the parser can.
     let run = stage.run("render scene.toml --crop 0,0,41,30");
-    run.fails(2, &["error: --crop 0,0,41,30 is not", "\n\nFor more information, try '--help'.\n"]);
+    run.fails(2, &["error: the crop 0,0,41,30 is not", "\n\nFor more information, try '--help'.\n"]);
     for arguments in ["render nowhere.toml", "rendr scene.toml", "render scene.toml --crop 0,0,41,30"] {
         let output = stage.command(arguments).env("CLICOLOR_FORCE", "1").output().unwrap();
         let colored = String::from_utf8(output.stderr).unwrap();

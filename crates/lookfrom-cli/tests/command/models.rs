@@ -102,38 +102,6 @@ fn a_scene_turns_around_what_it_looks_at_and_a_model_around_what_is_asked_for() 
     assert_eq!(middle("model.obj --size 99 --lookat 0.2,0.2,0 --turn 40"), plain);
 }
 
-/// An environment, seen by a camera that sees all around, is its own picture again.
-#[test]
-fn the_picture_of_the_surroundings_is_that_of_the_camera_all_around() {
-    let stage = Stage::new("around");
-    let texel = |x: u32, y: u32| {
-        let [x, y] = [x, y].map(|at| at as f32 / 64.0);
-        [0.2 + x, 0.3 + 0.5 * y + (x - 0.3).abs(), 1.2 - y]
-    };
-    for (layout, projection, width, height) in
-        [("latitude_longitude", "equirectangular", 64, 32), ("octahedral", "octahedral", 32, 32)]
-    {
-        let texels: Vec<[f32; 3]> =
-            (0..width * height).map(|index| texel(index % width, index / width)).collect();
-        std::fs::write(stage.path("sky.hdr"), encode_hdr(width, height, &texels).unwrap()).unwrap();
-        stage.write("wide.toml", &format!(
-            "[camera]\nlookfrom = [3, 1, 2]\nlookat = [3, 1, 0]\nprojection = \"{projection}\"\n\
-             [image]\nwidth = {width}\nheight = {height}\nfilter = \"box\"\n[render]\nintegrator = \"path\"\nsamples = 16\n\
-             [[light]]\ntype = \"environment\"\nimage = \"sky.hdr\"\nlayout = \"{layout}\"\n"
-        ));
-        stage.done("render wide.toml -q -o p.pfm");
-        let [written, seen] = ["sky.hdr", "p.pfm"].map(|name| picture(&stage.path(name)));
-        let mut worst = 0.0_f32;
-        for (index, (written, seen)) in (0..).zip(written.texels().zip(seen.texels())) {
-            // Where the first column meets the last the picture jumps.
-            if (1..width - 1).contains(&(index % width)) {
-                worst = (0..3).fold(worst, |worst, c| worst.max((written[c] - seen[c]).abs()));
-            }
-        }
-        assert!(worst < 0.02, "{projection}: {worst}");
-    }
-}
-
 #[test]
 fn transparent_pictures_hide_only_what_the_model_hides() {
     let stage = Stage::new("transparent");
@@ -180,6 +148,38 @@ fn a_picture_of_the_surroundings_takes_the_place_of_the_studio_and_turns() {
     let turned = render("--rotate-environment 90");
     assert!((turned[0][1] - plain[0][1]).abs() > 0.1, "{:?} {:?}", turned[0], plain[0]);
     stage.run("render model.obj --environment none.hdr").fails(1, &["none.hdr", "no such file"]);
+}
+
+/// An environment, seen by a camera that sees all around, is its own picture again.
+#[test]
+fn the_picture_of_the_surroundings_is_that_of_the_camera_all_around() {
+    let stage = Stage::new("around");
+    let texel = |x: u32, y: u32| {
+        let [x, y] = [x, y].map(|at| at as f32 / 64.0);
+        [0.2 + x, 0.3 + 0.5 * y + (x - 0.3).abs(), 1.2 - y]
+    };
+    for (layout, projection, width, height) in
+        [("latitude_longitude", "equirectangular", 64, 32), ("octahedral", "octahedral", 32, 32)]
+    {
+        let texels: Vec<[f32; 3]> =
+            (0..width * height).map(|index| texel(index % width, index / width)).collect();
+        std::fs::write(stage.path("sky.hdr"), encode_hdr(width, height, &texels).unwrap()).unwrap();
+        stage.write("wide.toml", &format!(
+            "[camera]\nlookfrom = [3, 1, 2]\nlookat = [3, 1, 0]\nprojection = \"{projection}\"\n\
+             [image]\nwidth = {width}\nheight = {height}\nfilter = \"box\"\n[render]\nintegrator = \"path\"\nsamples = 16\n\
+             [[light]]\ntype = \"environment\"\nimage = \"sky.hdr\"\nlayout = \"{layout}\"\n"
+        ));
+        stage.done("render wide.toml -q -o p.pfm");
+        let [written, seen] = ["sky.hdr", "p.pfm"].map(|name| picture(&stage.path(name)));
+        let mut worst = 0.0_f32;
+        for (index, (written, seen)) in (0..).zip(written.texels().zip(seen.texels())) {
+            // Where the first column meets the last the picture jumps.
+            if (1..width - 1).contains(&(index % width)) {
+                worst = (0..3).fold(worst, |worst, c| worst.max((written[c] - seen[c]).abs()));
+            }
+        }
+        assert!(worst < 0.02, "{projection}: {worst}");
+    }
 }
 
 #[test]

@@ -21,7 +21,7 @@ const SETTINGS: [(&str, &str); 5] = [
     ("path", "--integrator path"),
     ("spectral", "--integrator path --color spectral"),
     ("occlusion", "--integrator ambient_occlusion"),
-    ("layers", "--integrator path --layers geometry --denoise"),
+    ("layers", "--integrator path --layers geometry --denoise on"),
 ];
 
 /// Levels that a machine does not have are replaced by the next one that it has: then a row is tested twice.

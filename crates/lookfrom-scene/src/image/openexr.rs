@@ -49,7 +49,7 @@ impl Channels {
 /// the part's name and a point.
 ///
 /// # Errors
-/// As [`super::read`].
+/// As [`super::read()`].
 pub fn read_exr(path: &Path, sources: &mut Sources<'_>) -> Result<Channels> {
     let bytes = sources.read(path)?;
     decode_channels(&bytes, &Location::file(path), &sources.limits)

@@ -7,10 +7,11 @@ use super::lexer::{Lexer, Token};
 use super::params::Parameters;
 use super::spectra::Meaning::Unbounded;
 use super::text::Place;
-use crate::error::{Result, Warning};
+use crate::error::Result;
 use crate::material::Color;
 use crate::medium::{Medium, Sides};
 use crate::scene::MediumId;
+use crate::warning::Warning;
 
 const KINDS: &[&str] = &["cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"];
 

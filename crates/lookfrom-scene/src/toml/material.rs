@@ -63,7 +63,7 @@ pub(super) const KEYS: Kinds = &[
 pub(super) const COMMON: &[&str] = &["type", "emission", "power", "two_sided"];
 
 /// What a shape without a material wears.
-const DEFAULT: &str = "default";
+pub(super) const DEFAULT: &str = "default";
 
 impl chain::Made for Material {
     const WHAT: &'static str = "material";

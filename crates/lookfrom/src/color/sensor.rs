@@ -22,6 +22,7 @@ pub struct Sensor {
     /// What becomes of a colour that is RGB already.
     balanced_from_rgb: [[f32; 3]; 3],
     channels_from_rgb: Matrix,
+    measures_xyz: bool,
 }
 
 impl Default for Sensor {
@@ -60,10 +61,8 @@ impl Sensor {
         Self {
             responses: Arc::new(std::array::from_fn(response)),
             balanced_from_rgb: balanced.map(|row| row.map(|value| value as f32)),
-            channels_from_rgb: match settings.measures_xyz() {
-                true => space::XYZ_FROM_RGB,
-                false => space::inverse(&rgb_from_channels),
-            },
+            channels_from_rgb: space::inverse(&rgb_from_channels),
+            measures_xyz: settings.measures_xyz(),
         }
     }
 
@@ -86,13 +85,14 @@ impl Sensor {
         self.balanced_from_rgb.map(|[x, y, z]| x * r + y * g + z * b)
     }
 
-    /// What gives the values of the sensor's channels, before white balance, of a colour that it made: the camera's red, green
-    /// and blue, or X, Y and Z. In these units the standard observer sees light of luminance 1 as Y = 1.
-    pub fn channels_from_rgb(&self) -> &Matrix {
-        &self.channels_from_rgb
+    /// What gives the channels that a film knows the variance of, from linear Rec. 709: those of [`Sensor::channels`], where X, Y and
+    /// Z are by [`space::XYZ_FROM_RGB`].
+    pub fn variance_from_rgb(&self) -> &Matrix {
+        if self.measures_xyz { &space::XYZ_FROM_RGB } else { &self.channels_from_rgb }
     }
 
-    /// The values of the sensor's channels of a colour that it made.
+    /// The values of the sensor's channels, before white balance, of a colour that it made: the camera's red, green and blue, or X,
+    /// Y and Z. The standard observer sees light of luminance 1 as Y = 1.
     pub fn channels(&self, rgb: [f32; 3]) -> [f32; 3] {
         space::apply(&self.channels_from_rgb, rgb.map(f64::from)).map(|value| value as f32)
     }

@@ -17,9 +17,10 @@ use crate::texture::Lanes;
 use crate::warp;
 use crate::world::World;
 
-/// Camera rays along each side of the picture: at first, and where those meet nothing.
+/// Camera rays along each side of the picture: at first, and where those meet nothing. Then an odd number: what is small and far is
+/// mostly looked at.
 const COARSE: u32 = 16;
-const FINE: u32 = 128;
+const FINE: u32 = 129;
 /// Rays to all sides are the square of this.
 const AROUND: u32 = 8;
 /// The share of rays that has to agree.

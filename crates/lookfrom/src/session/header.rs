@@ -114,7 +114,7 @@ fn sensor(image: &ImageSettings) -> Vec<(&'static str, String)> {
         texts.push(("max_component", max_component.to_string()));
     }
     if image.layers == Layers::Geometry {
-        let channels = *color::Sensor::new(&image.sensor).channels_from_rgb();
+        let channels = *color::Sensor::new(&image.sensor).variance_from_rgb();
         texts.push((CHANNELS_ATTRIBUTE, channels_text(&channels)));
     }
     texts

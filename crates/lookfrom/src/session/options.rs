@@ -101,6 +101,9 @@ pub const ADAPTIVE_NOISE: f64 = 0.02;
 /// The most samples that a pixel can be given.
 pub const MOST_SAMPLES: u32 = 1 << 24;
 
+/// The place of what is wrong with options, in [`Location::file`].
+pub const OPTIONS: &str = "the options";
+
 /// What was asked does not suit the scene.
 fn unsuitable(message: String) -> Error {
     Error::new(ErrorKind::Request, &Location::default(), message)
@@ -194,7 +197,7 @@ impl Options {
         if moved {
             self.look(camera, middle)?;
             // What is wrong with the camera from here on is no line of a file.
-            camera.at = Location { file: "the options".into(), ..Location::default() };
+            camera.at = Location { file: OPTIONS.into(), ..Location::default() };
         }
         Ok(())
     }

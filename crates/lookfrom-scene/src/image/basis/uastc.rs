@@ -246,13 +246,13 @@ pub(super) fn subsets(seed: u32, count: u32) -> [usize; 16] {
     // Slopes of three planes over x and over y.
     let slope = |index: u32| {
         let nibble = hash >> (4 * index) & 15;
-        nibble * nibble >> shifts[index as usize % 2]
+        (nibble * nibble) >> shifts[index as usize % 2]
     };
     std::array::from_fn(|texel| {
         // Blocks of fewer than 31 texels are taken twice as large.
         let [x, y] = [texel % 4, texel / 4].map(|place| 2 * place as u32);
         let height =
-            |index: u32| slope(2 * index) * x + slope(2 * index + 1) * y + (hash >> (14 - 4 * index)) & 63;
+            |index: u32| (slope(2 * index) * x + slope(2 * index + 1) * y + (hash >> (14 - 4 * index))) & 63;
         let [a, b, c] = [height(0), height(1), if count == 3 { height(2) } else { 0 }];
         if a >= b && a >= c {
             0

@@ -209,7 +209,7 @@ impl View {
         [self.facet(wi, through), back]
     }
 
-    /// As [`super::Bsdf::f`], for `wi` in the mirrored frame and not grazing.
+    /// As [`crate::bsdf::Bsdf::f`], for `wi` in the mirrored frame and not grazing.
     pub(super) fn f(&self, wi: Vec3, mode: Mode) -> Spectrum {
         self.f_by(wi, mode, &self.facets(wi))
     }
@@ -354,7 +354,7 @@ impl View {
         pdf
     }
 
-    /// As [`super::Bsdf::sample`], in the mirrored frame.
+    /// As [`crate::bsdf::Bsdf::sample`], in the mirrored frame.
     pub(super) fn sample(
         &self,
         uc: f32,

@@ -131,7 +131,7 @@ fn channels_are_what_the_camera_measures() {
     let expected = responses.map(|response| 3.0 * response.at(540.0) / observer::Y_INTEGRAL as f32);
     assert!(far(sensor.channels(rgb), expected) < 1e-6, "{:?} ≠ {expected:?}", sensor.channels(rgb));
     // The standard observer's are X, Y and Z before the balance.
-    assert_eq!(Sensor::default().channels_from_rgb(), &space::XYZ_FROM_RGB);
+    assert_eq!(Sensor::default().variance_from_rgb(), &space::XYZ_FROM_RGB);
     let [plain, warm] = [None, Some(3000.0)].map(|kelvin| balanced(1.0, kelvin));
     let [a, b] =
         [plain, warm].map(|sensor| sensor.channels(sensor.rgb(Spectrum([1.0, 0.0, 0.0, 0.0]), &wavelengths)));

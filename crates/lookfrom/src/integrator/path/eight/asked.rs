@@ -141,7 +141,7 @@ impl<S: Simd> Asked<S> {
         Self { samples, wi: Vectors::<Narrow<S>>::of_rows(simd, &wi), points, normal }
     }
 
-    /// The directions of shadow rays, from their origins to just before the lights' surfaces: the twin of [`Shadow::new`].
+    /// The directions of shadow rays, from their origins to just before the lights' surfaces: the twin of [`crate::integrator::Shadow::new`].
     #[inline(always)]
     pub(super) fn ends(&self, simd: S, origins: &Vectors<Narrow<S>>) -> Vectors<Narrow<S>> {
         let origins = origins.widen();
@@ -155,7 +155,7 @@ impl<S: Simd> Asked<S> {
     }
 }
 
-/// The twin of [`warp::uniform_triangle`]: β and γ.
+/// The twin of [`crate::warp::uniform_triangle`]: β and γ.
 #[inline(always)]
 fn uniform_triangles<S: Simd>(simd: S, u: Narrow<S>, v: Narrow<S>) -> [Narrow<S>; 2] {
     let (half, one) = (f32x8::splat(simd, 0.5), f32x8::splat(simd, 1.0));
