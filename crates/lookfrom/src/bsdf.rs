@@ -90,6 +90,11 @@ impl BsdfSample {
         Self { wi, f, pdf, lobe, eta: 1.0, pdf_is_proportional: false }
     }
 
+    /// A direction that a diffuse surface reflects to.
+    pub(crate) fn diffuse(wi: Vec3, f: Spectrum, pdf: f32) -> Self {
+        Self::new(wi, f, pdf, Lobes::REFLECTION | Lobes::DIFFUSE)
+    }
+
     /// The same, where light would come from there and all is finite.
     #[inline]
     fn if_useful(self) -> Option<Self> {

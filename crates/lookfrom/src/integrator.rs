@@ -5,6 +5,7 @@
 //! further paths are the next batch. Whitted's tree of rays thus grows breadth first, and the contributions to one
 //! sample are added in one fixed order, whatever else is in the batch.
 
+mod background;
 mod direct;
 mod event;
 mod first_hit;
@@ -16,6 +17,7 @@ mod whitted;
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Left, Ray};
+use lookfrom_scene::settings::Background;
 
 use crate::hash;
 use crate::light::Reference;
@@ -26,10 +28,10 @@ use crate::surface::Surface;
 use crate::texture::Lanes;
 use crate::world::World;
 
+pub use background::Alpha;
 pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
 pub use first_hit::FirstHit;
 pub use occlusion::AmbientOcclusion;
-pub(crate) use path::power_heuristic;
 pub use path::{Departure, PathTracer, Wisdom};
 pub use raycast::Raycast;
 pub use shadow::Passing;
@@ -50,11 +52,6 @@ pub trait Integrator: std::fmt::Debug + Send + Sync {
     /// What lets shadow rays pass.
     fn passing(&self) -> Passing {
         Passing::Gaps
-    }
-
-    /// How a shadow catcher is shown.
-    fn catcher(&self) -> Catcher {
-        Catcher::Surface
     }
 
     /// Adds to `next` what follows from `path` having met `hit`.
@@ -82,19 +79,6 @@ pub trait Integrator: std::fmt::Debug + Send + Sync {
             self.step(world, &numbers(path), path, hit, next);
         }
     }
-}
-
-/// How an integrator shows a shadow catcher: a floor that is seen only by the shadows on it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Catcher {
-    /// As an ordinary grey surface.
-    Surface,
-    /// As what is behind it, times the share of the light that arrives.
-    Shaded,
-    /// The same, with the unoccluded light as a control variate, so that there is no noise where nothing casts a shadow. For
-    /// integrators that weigh light samples and directions by the power heuristic, as [`PathTracer`] does.
-    ControlVariate,
 }
 
 /// A ray on its way, and all that is remembered of where it came from.
@@ -182,6 +166,8 @@ pub struct Samples {
     pub radiance: Vec<Spectrum>,
     /// What the lanes mean, by slot.
     pub lanes: Vec<Lanes>,
+    /// What each sample hides of a background of the view's own, by slot.
+    pub alpha: Vec<Alpha>,
     /// To be traced next.
     pub paths: Vec<Path>,
     /// To be traced before that.
@@ -197,6 +183,7 @@ impl Samples {
     pub fn clear(&mut self) {
         self.radiance.clear();
         self.lanes.clear();
+        self.alpha.clear();
         self.paths.clear();
         self.shadows.clear();
     }
@@ -205,6 +192,7 @@ impl Samples {
     pub fn start(&mut self, lanes: Lanes) {
         self.radiance.push(Spectrum::BLACK);
         self.lanes.push(lanes);
+        self.alpha.push(Alpha::Opaque);
     }
 }
 
@@ -213,6 +201,8 @@ impl Samples {
 pub struct Next<'a, P: Probe> {
     /// The samples that steps add to.
     pub samples: Samples,
+    /// What the camera sees where nothing stands.
+    pub background: Background,
     /// Who listens.
     pub probe: &'a mut P,
 }

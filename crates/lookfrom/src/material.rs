@@ -11,7 +11,7 @@ mod principled;
 mod relief;
 mod whitted;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lookfrom_scene::material::{Coat as WrittenCoat, Ior, MaterialKind, Metal, Relief, Roughness};
 use lookfrom_scene::material::{Scalar, Whitted};
 use lookfrom_scene::scene::CurveId;
@@ -81,6 +81,11 @@ impl Shading {
     /// A matte surface without a relief.
     pub fn matte(surface: &Surface, reflectance: Spectrum) -> Self {
         Self { bsdf: Bsdf::diffuse(reflectance), frame: relief::plain(surface), ng: surface.ng.as_vec3() }
+    }
+
+    /// A diffuse surface in an orthonormal frame whose third axis is the shading normal.
+    pub(crate) fn diffuse(reflectance: Spectrum, [s, t, n]: [Vec3; 3], ng: DVec3) -> Self {
+        Self { bsdf: Bsdf::diffuse(reflectance), frame: Frame { s, t, n }, ng: ng.as_vec3() }
     }
 
     /// The shading normal to the outside, unit length.

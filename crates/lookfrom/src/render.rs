@@ -4,7 +4,6 @@
 //! machine, with any number of threads. Everything else ([`Renderer::render`], the inspector, a session) only decides which
 //! tiles and samples are rendered.
 
-mod backdrop;
 mod driver;
 mod guide;
 mod outlook;
@@ -17,21 +16,21 @@ use std::sync::Arc;
 use glam::DVec3;
 use lookfrom_bvh::{Hit, Left, Ray};
 use lookfrom_scene::scene::Origin;
-use lookfrom_scene::settings::{ColorMode, Crop, ImageSettings, RenderSettings, Sensor as SensorSettings};
+use lookfrom_scene::settings::{Background, ColorMode, Crop, ImageSettings, RenderSettings, Sensor as SensorSettings};
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 
 use crate::camera::CameraRay;
 use crate::color::{Sensor, Wavelengths};
 use crate::film::{FilmTile, GUIDED_SAMPLES};
 use crate::filter::Filter;
-use crate::integrator::{Departure, Event, Integrator, Next, Numbers, Path, Probe, Samples, resolve_shadows};
+use crate::integrator::{Alpha, Departure, Event, Integrator, Next, Numbers, Path, Probe, Samples, resolve_shadows};
 use crate::sampler::Sampler;
+use crate::math;
 use crate::spectrum::Spectrum;
 use crate::texture::Lanes;
 use crate::view::View;
 use crate::world::World;
 
-use backdrop::Met;
 use guide::First;
 use seen::Seen;
 use transport::Transport;
@@ -131,7 +130,6 @@ struct Batch {
     rays: Vec<Ray>,
     left: Vec<Left>,
     hits: Vec<Hit>,
-    met: Vec<Met>,
     /// What the camera's rays met, by slot; only where it is asked for.
     firsts: Vec<First>,
     traced: Vec<Traced>,
@@ -277,13 +275,9 @@ impl Renderer {
         batch: &mut Batch,
     ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
-        let Batch { numbers: start, samples, weights, paths, rays, left, hits, met, firsts, traced } = batch;
-        let mut next = Next { samples: std::mem::take(samples), probe };
+        let Batch { numbers: start, samples, weights, paths, rays, left, hits, firsts, traced } = batch;
+        let mut next = Next { samples: std::mem::take(samples), background: self.image().background, probe };
         next.samples.clear();
-
-        let has_backdrop = self.has_backdrop();
-        met.clear();
-        met.resize(ids.len(), Met::default());
 
         // Start: a ray from the camera for each sample.
         let around_camera = self.world.space_of(self.view.medium);
@@ -324,13 +318,7 @@ impl Renderer {
                 let SampleId { pixel, sample } = ids[path.slot as usize];
                 Numbers { sampler: self.sampler.of_pixel(pixel), sample, address: path.address }
             };
-            if has_backdrop {
-                self.show_backdrops(paths, hits, met, &mut next);
-            }
             integrator.step_all(&self.world, numbers, paths, hits, &mut next);
-            if has_backdrop {
-                self.expect_light(met, &mut next);
-            }
 
             // Occluded: what arrives of the lights.
             rays_traced.shadow += resolve_shadows(&self.world, integrator.passing(), &mut next);
@@ -339,15 +327,11 @@ impl Renderer {
 
         *samples = next.samples;
         traced.clear();
-        traced.extend(samples.radiance.iter().zip(&samples.lanes).zip(&*weights).zip(&*met).map(
-            |(((&radiance, &lanes), &weight), &met)| {
-                let (rgb, alpha) = match met {
-                    Met::Thing => (self.rgb(radiance * weight, &lanes), 1.0),
-                    _ => self.with_alpha(radiance, weight, &lanes, met),
-                };
-                Traced { rgb, radiance, lanes, weight, alpha }
-            },
-        ));
+        for (slot, &weight) in weights.iter().enumerate() {
+            let (radiance, lanes) = (samples.radiance[slot], samples.lanes[slot]);
+            let (rgb, alpha) = self.with_alpha(radiance, weight, &lanes, samples.alpha[slot]);
+            traced.push(Traced { rgb, radiance, lanes, weight, alpha });
+        }
         rays_traced
     }
 
@@ -381,6 +365,18 @@ impl Renderer {
             lanes_by(self.sampler.two(id.pixel, id.sample, WAVELENGTH_DIMENSION))
         } else {
             Lanes::Rgb
+        }
+    }
+
+    /// The colour of a sample, and how much of the view's own background it hides, 1 for all: where a shadow catcher is seen the
+    /// picture holds only that. Single samples may be outside of 0 … 1; their mean is not but for noise.
+    fn with_alpha(&self, radiance: Spectrum, weight: f32, lanes: &Lanes, alpha: Alpha) -> ([f32; 3], f32) {
+        match alpha {
+            Alpha::Transparent => ([0.0; 3], 0.0),
+            Alpha::Shadow if self.image().background != Background::Environment => {
+                ([0.0; 3], 1.0 - math::luminance(self.rgb(radiance, lanes)))
+            }
+            Alpha::Shadow | Alpha::Opaque => (self.rgb(radiance * weight, lanes), 1.0),
         }
     }
 

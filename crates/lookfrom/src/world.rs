@@ -204,7 +204,7 @@ impl World {
 
     /// What a surface does with light: see [`material::shading`].
     pub fn shading(&self, surface: &Surface, arrival: Arrival<'_>) -> Option<Shading> {
-        if self.catcher_irradiance.is_some() && self.is_catcher(surface) {
+        if self.is_catcher(surface) {
             return Some(Shading::matte(surface, self.catcher_reflectance(surface, arrival.lanes)));
         }
         let point = self.texture_point(surface);

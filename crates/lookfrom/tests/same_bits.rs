@@ -4,6 +4,9 @@ mod support;
 
 use lookfrom::film::FilmTile;
 use lookfrom::inspect::{inspect, svg};
+use lookfrom::integrator::{Integrator as Transport, Next, Numbers, Path, PathTracer, Probe, Wisdom};
+use lookfrom::world::World;
+use lookfrom_bvh::Hit;
 use lookfrom::render::SampleId;
 use lookfrom_scene::Scene;
 use lookfrom_scene::settings::{Crop, Integrator};
@@ -161,6 +164,27 @@ fn room(lights: &[&str], settings: &str) -> Scene {
     scene
 }
 
+/// The path tracer without its steps in lanes: the slow, obviously right twin.
+#[derive(Debug)]
+struct OneByOne(PathTracer);
+
+impl Transport for OneByOne {
+    fn name(&self) -> &'static str {
+        "one by one"
+    }
+
+    fn step<P: Probe>(
+        &self,
+        world: &World,
+        numbers: &Numbers,
+        path: &Path,
+        hit: &Hit,
+        next: &mut Next<'_, P>,
+    ) {
+        self.0.step(world, numbers, path, hit, next);
+    }
+}
+
 #[test]
 fn steps_eight_at_once_are_steps_one_by_one() {
     const LAMP: &str = r#"
@@ -186,14 +210,23 @@ fn steps_eight_at_once_are_steps_one_by_one() {
             let pixels = (0..40).flat_map(|y| (0..48).map(move |x| [x, y]));
             let ids: Vec<SampleId> = pixels.map(|pixel| SampleId { pixel, sample: 1 }).collect();
             let (in_lanes, rays) = renderer.trace(&ids);
-            // Who listens hears of every path, so that they go one by one.
-            let mut events = Vec::new();
-            let (one_by_one, same_rays) = renderer.trace_events(&ids, &mut events);
+            let tracer = PathTracer { depth: 7, regularize: false, wisdom: Wisdom::Combined };
+            let scalar = renderer.clone().with_integrator(OneByOne(tracer));
+            let (one_by_one, same_rays) = scalar.trace(&ids);
             assert_eq!(rays, same_rays);
             let mut lit = 0;
             for (a, b) in in_lanes.iter().zip(&one_by_one) {
                 assert_eq!(a.radiance, b.radiance, "{lights:?} {settings}");
                 lit += usize::from(!a.radiance.is_black());
+            }
+            // A watched sample takes the same steps and tells the same of each.
+            for id in ids.iter().step_by(97) {
+                let (mut events, mut expected) = (Vec::new(), Vec::new());
+                let (watched, _) = renderer.trace_events(&[*id], &mut events);
+                scalar.trace_events(&[*id], &mut expected);
+                assert_eq!(format!("{events:?}"), format!("{expected:?}"), "{lights:?} {settings} {id:?}");
+                let unwatched = &in_lanes[(id.pixel[1] * 48 + id.pixel[0]) as usize];
+                assert_eq!(watched[0].radiance, unwatched.radiance);
             }
             assert!(lit > 600, "{lit} samples see light of {lights:?}");
         }

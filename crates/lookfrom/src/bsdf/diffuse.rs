@@ -40,9 +40,8 @@ impl Base for Diffuse {
             return None;
         }
         let wi = cosine_direction(u, wo.z);
-        let lobe = Lobes::REFLECTION | Lobes::DIFFUSE;
         let pdf = warp::cosine_hemisphere_pdf(wi.z.abs());
-        Some(BsdfSample::new(wi, self.reflectance * FRAC_1_PI, pdf, lobe))
+        Some(BsdfSample::diffuse(wi, self.reflectance * FRAC_1_PI, pdf))
     }
 
     #[inline]

@@ -203,6 +203,15 @@ pub trait Probe {
 
     /// Something happened.
     fn notice(&mut self, event: impl FnOnce() -> Event);
+
+    /// Something may have happened.
+    fn notice_some(&mut self, event: impl FnOnce() -> Option<Event>) {
+        if Self::LISTENS
+            && let Some(event) = event()
+        {
+            self.notice(|| event);
+        }
+    }
 }
 
 impl Probe for () {

@@ -42,6 +42,7 @@ impl Integrator for FirstHit {
 
     fn step<P: Probe>(&self, world: &World, _: &Numbers, path: &Path, hit: &Hit, next: &mut Next<'_, P>) {
         if !hit.is_hit() {
+            next.shows_background(path);
             return;
         }
         let surface = world.surface(&path.ray, hit);

@@ -31,6 +31,7 @@ impl Integrator for AmbientOcclusion {
         next: &mut Next<'_, P>,
     ) {
         if !hit.is_hit() {
+            next.shows_background(path);
             return;
         }
         let surface = world.surface(&path.ray, hit);

@@ -3,6 +3,7 @@
 //! heuristic), and paths that carry little are ended by chance (Russian roulette, Arvo & Kirk 1990). The order of
 //! things is pbrt-v4's, so that the same scene converges to the same picture.
 
+mod catcher;
 mod eight;
 
 use glam::{DVec3, Vec3};
@@ -14,7 +15,7 @@ use eight::{Plain, Steps};
 use crate::bsdf::BsdfSample;
 use crate::eight::LANES;
 use crate::integrator::{
-    Bounce, Catcher, Event, Integrator, Next, Numbers, Path, Probe, Samples, Shadow, Term,
+    Bounce, Event, Integrator, Next, Numbers, Path, Probe, Shadow, Term,
 };
 use crate::light::{Coverage, Reference};
 use crate::material::{Arrival, Toward};
@@ -77,6 +78,8 @@ pub struct Departure {
     pub eta_scale: f32,
     /// Whether any bounce so far was not a mirror's.
     pub blurred: bool,
+    /// Whether the surface was a shadow catcher, seen by the camera.
+    pub is_catcher: bool,
 }
 
 impl Default for Departure {
@@ -88,6 +91,7 @@ impl Default for Departure {
             n: Vec3::Z,
             eta_scale: 1.0,
             blurred: false,
+            is_catcher: false,
         }
     }
 }
@@ -101,10 +105,6 @@ impl Integrator for PathTracer {
         }
     }
 
-    fn catcher(&self) -> Catcher {
-        if self.wisdom == Wisdom::Combined { Catcher::ControlVariate } else { Catcher::Shaded }
-    }
-
     fn step_all<P: Probe>(
         &self,
         world: &World,
@@ -113,24 +113,24 @@ impl Integrator for PathTracer {
         hits: &[Hit],
         next: &mut Next<'_, P>,
     ) {
-        let in_lanes = !P::LISTENS && self.wisdom == Wisdom::Combined;
+        let in_lanes = self.wisdom == Wisdom::Combined;
         let mut waiting: Vec<Plain<'_>> = Vec::with_capacity(LANES);
         for (path, hit) in paths.iter().zip(hits) {
             let lanes = next.lanes(path);
             let plain =
                 if in_lanes { Plain::of(self, world, path, hit, &lanes, || numbers(path)) } else { None };
+            next.probe.notice(|| Event::Met { path: *path, hit: *hit });
             let Some(plain) = plain else {
-                next.probe.notice(|| Event::Met { path: *path, hit: *hit });
                 self.step(world, &numbers(path), path, hit, next);
                 continue;
             };
             waiting.push(plain);
             if waiting.len() == LANES {
-                self.step_plain(world, &waiting, &mut next.samples);
+                self.step_plain(world, &waiting, next);
                 waiting.clear();
             }
         }
-        self.step_plain(world, &waiting, &mut next.samples);
+        self.step_plain(world, &waiting, next);
     }
 
     fn step<P: Probe>(
@@ -141,12 +141,16 @@ impl Integrator for PathTracer {
         hit: &Hit,
         next: &mut Next<'_, P>,
     ) {
+        let path = &self.leave_catcher(world, path, next);
+
         // Absorb on the way.
         let mut path = path.absorbed(world, hit, &next.lanes(path));
 
         // A path that leaves the scene sees the sky.
         if !hit.is_hit() {
-            self.add_sky(world, &path, next);
+            if !next.shows_background(&path) {
+                self.add_sky(world, &path, next);
+            }
             return;
         }
         let surface = world.surface(&path.ray, hit);
@@ -159,6 +163,12 @@ impl Integrator for PathTracer {
         if path.goes_through(world, &surface, presence) {
             next.samples.paths.push(path.passed(&surface));
             return;
+        }
+
+        // A shadow catcher shows what is behind it, less the light that is blocked.
+        let is_catcher = path.depth == 0 && world.is_catcher(&surface);
+        if is_catcher {
+            self.show_behind(world, &mut path, next);
         }
 
         // Add what the surface itself shines.
@@ -189,16 +199,25 @@ impl Integrator for PathTracer {
             return;
         }
 
-        shading.toward(surface.wo, |toward| self.scatter(world, numbers, &path, &surface, toward, next));
+        let at = Scattering { path: &path, surface: &surface, is_catcher };
+        shading.toward(surface.wo, |toward| self.scatter(world, numbers, at, toward, next));
     }
+}
+
+/// A path at a surface.
+#[derive(Clone, Copy)]
+struct Scattering<'a> {
+    path: &'a Path,
+    surface: &'a Surface,
+    is_catcher: bool,
 }
 
 impl PathTracer {
     /// Steps of paths that met the commonest surfaces, eight at a time.
-    fn step_plain(&self, world: &World, plain: &[Plain<'_>], next: &mut Samples) {
+    fn step_plain<P: Probe>(&self, world: &World, plain: &[Plain<'_>], next: &mut Next<'_, P>) {
         let Some(last) = plain.last() else { return };
         let eight: [Plain<'_>; LANES] = std::array::from_fn(|lane| *plain.get(lane).unwrap_or(last));
-        let steps = Steps { tracer: self, world, plain: &eight, count: plain.len(), samples: next };
+        let steps = Steps { tracer: self, world, plain: &eight, count: plain.len(), next };
         at_level(level(), steps);
     }
 
@@ -207,18 +226,18 @@ impl PathTracer {
         &self,
         world: &World,
         numbers: &Numbers,
-        path: &Path,
-        surface: &Surface,
+        at: Scattering<'_>,
         toward: &Toward<'_>,
         next: &mut Next<'_, P>,
     ) {
+        let Scattering { path, surface, is_catcher } = at;
         let shading = toward.shading;
 
         // Ask one light.
         let [which_light, which_lobe] = numbers.two(purpose::CHOICE);
         if self.wisdom != Wisdom::None && shading.bsdf.lobes().is_non_specular() {
             let u = numbers.two(purpose::LIGHT);
-            self.ask_light(world, path, (surface, toward), which_light, u, next);
+            self.ask_light(world, at, toward, which_light, u, next);
         }
 
         // Go on in one direction.
@@ -261,6 +280,7 @@ impl PathTracer {
                 n: shading.n(),
                 eta_scale,
                 blurred: path.departure.blurred || !is_sharp,
+                is_catcher,
             },
         });
     }
@@ -324,16 +344,17 @@ impl PathTracer {
     fn ask_light<P: Probe>(
         &self,
         world: &World,
-        path: &Path,
-        (surface, toward): (&Surface, &Toward<'_>),
+        at: Scattering<'_>,
+        toward: &Toward<'_>,
         which: f32,
         u: [f32; 2],
         next: &mut Next<'_, P>,
     ) {
-        let at = Reference { point: DVec3::from_array(surface.point.position), n: toward.shading.n() };
-        let Some((index, probability)) = world.light_choice.sample(&at, which) else { return };
+        let Scattering { path, surface, is_catcher } = at;
+        let from = Reference { point: DVec3::from_array(surface.point.position), n: toward.shading.n() };
+        let Some((index, probability)) = world.light_choice.sample(&from, which) else { return };
         let light = &world.lights[index as usize];
-        let sample = light.sample(&world.textures, &at, u, &next.lanes(path), Coverage::Incomplete);
+        let sample = light.sample(&world.textures, &from, u, &next.lanes(path), Coverage::Incomplete);
         let in_vain =
             |sample| Event::AskedInVain { address: path.address, light: index, probability, sample };
         let Some(sample) = sample else {
@@ -363,6 +384,9 @@ impl PathTracer {
         });
         if !contribution.is_black() {
             next.samples.shadows.push(Shadow::new(world, path, surface, &sample, index, contribution));
+            if is_catcher {
+                self.expect_light(light, path, contribution, next);
+            }
         }
     }
 

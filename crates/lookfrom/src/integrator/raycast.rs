@@ -32,7 +32,9 @@ impl Integrator for Raycast {
     ) {
         let path = &path.absorbed(world, hit, &next.lanes(path));
         if !hit.is_hit() {
-            next.add(path, Term::Sky, path.beta * world.sky(&path.ray, &next.lanes(path)));
+            if !next.shows_background(path) {
+                next.add(path, Term::Sky, path.beta * world.sky(&path.ray, &next.lanes(path)));
+            }
             return;
         }
         let surface = world.surface(&path.ray, hit);

@@ -48,7 +48,9 @@ impl Integrator for Whitted {
 
         // A ray that leaves the scene sees the sky.
         if !hit.is_hit() {
-            next.add(path, Term::Sky, path.beta * world.sky(&path.ray, &next.lanes(path)));
+            if !next.shows_background(path) {
+                next.add(path, Term::Sky, path.beta * world.sky(&path.ray, &next.lanes(path)));
+            }
             return;
         }
         let surface = world.surface(&path.ray, hit);

@@ -9,7 +9,7 @@ use super::seen::Seen;
 use super::{Batch, Rays, Renderer, SampleId};
 use crate::camera::Camera;
 use crate::integrator::{
-    AmbientOcclusion, Catcher, Event, FirstHit, Integrator, PathTracer, Raycast, Whitted, Wisdom,
+    AmbientOcclusion, Event, FirstHit, Integrator, PathTracer, Raycast, Whitted, Wisdom,
 };
 
 /// What a renderer asks of an [`Integrator`], whichever it is.
@@ -17,8 +17,6 @@ pub(super) trait Transport: std::fmt::Debug + Send + Sync {
     fn name(&self) -> &'static str;
 
     fn is_light(&self) -> bool;
-
-    fn catcher(&self) -> Catcher;
 
     /// Follows samples to their light.
     fn trace(&self, renderer: &Renderer, ids: &[SampleId], batch: &mut Batch) -> Rays;
@@ -49,10 +47,6 @@ impl<I: Integrator> Transport for I {
 
     fn is_light(&self) -> bool {
         I::IS_LIGHT
-    }
-
-    fn catcher(&self) -> Catcher {
-        Integrator::catcher(self)
     }
 
     fn trace(&self, renderer: &Renderer, ids: &[SampleId], batch: &mut Batch) -> Rays {

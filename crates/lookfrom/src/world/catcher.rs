@@ -6,7 +6,7 @@
 //! counts for E₀ comes from infinitely far, so that E₀ is the same all over the floor, and computed once.
 
 use glam::Vec3;
-use lookfrom_bvh::{Hit, Ray};
+use lookfrom_bvh::Ray;
 use lookfrom_scene::material::{Color, MaterialKind};
 
 use super::World;
@@ -33,13 +33,9 @@ pub(super) fn irradiance(lights: &[Light], textures: &Textures, n: Vec3) -> [f32
 }
 
 impl World {
-    /// Whether a ray met a floor that is seen only by the shadows on it.
-    pub fn hits_catcher(&self, ray: &Ray, hit: &Hit) -> bool {
-        self.catcher_irradiance.is_some() && hit.is_hit() && self.is_catcher(&self.surface(ray, hit))
-    }
-
-    pub(super) fn is_catcher(&self, surface: &Surface) -> bool {
-        matches!(self.materials[surface.material as usize].kind, MaterialKind::ShadowCatcher { .. })
+    /// Whether a surface is a floor that is seen only by the shadows on it.
+    pub(crate) fn is_catcher(&self, surface: &Surface) -> bool {
+        self.catcher_irradiance.is_some() && matches!(self.materials[surface.material as usize].kind, MaterialKind::ShadowCatcher { .. })
     }
 
     /// The floor's reflectance: that with which it looks like the environment behind it, as far as matter can.

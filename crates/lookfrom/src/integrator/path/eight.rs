@@ -6,7 +6,7 @@ mod asked;
 
 use std::f32::consts::FRAC_1_PI;
 
-use lookfrom_bvh::{Hit, Left, NONE, Ray};
+use lookfrom_bvh::{Hit, Left, NONE, Point, Ray};
 use lookfrom_scene::material::{Color, MaterialKind, Relief};
 use lookfrom_simd::{Simd, Work, f32x8, f64x8, prelude::*, u32x8, u64x8};
 
@@ -14,7 +14,10 @@ use super::{Departure, PathTracer, power_heuristic, purpose};
 use crate::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, orthonormal_bases};
 use crate::hash::GOLDEN;
 use crate::integrator::shadow;
-use crate::integrator::{Numbers, Path, Samples, Shadow, Term};
+use crate::bsdf::BsdfSample;
+use crate::integrator::{Bounce, Event, Next, Numbers, Path, Probe, Shadow, Term};
+use crate::material::Shading;
+use crate::surface::Surface;
 use crate::light::Target;
 use crate::sampler::eight::{PixelSamplers, mix};
 use crate::shape::{Form, Mesh};
@@ -45,7 +48,7 @@ impl<'a> Plain<'a> {
         lanes: &Lanes,
         numbers: impl FnOnce() -> Numbers,
     ) -> Option<Self> {
-        if !hit.is_hit() || hit.instance != NONE || path.depth >= tracer.depth || !path.media.is_empty() {
+        if !hit.is_hit() || hit.instance != NONE || path.depth >= tracer.depth || !path.media.is_empty() || path.departure.is_catcher {
             return None;
         }
         let Form::Mesh(mesh) = &world.forms[hit.geometry as usize] else { return None };
@@ -67,37 +70,44 @@ impl<'a> Plain<'a> {
 }
 
 /// The steps of paths.
-pub(super) struct Steps<'a, 'b> {
+pub(super) struct Steps<'a, 'b, 'c, P: Probe> {
     pub(super) tracer: &'a PathTracer,
     pub(super) world: &'a World,
     /// As many as are to be stepped; the others repeat one of them.
     pub(super) plain: &'a [Plain<'a>; LANES],
     pub(super) count: usize,
-    pub(super) samples: &'b mut Samples,
+    pub(super) next: &'b mut Next<'c, P>,
 }
 
-impl Work for Steps<'_, '_> {
+impl<P: Probe> Work for Steps<'_, '_, '_, P> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { tracer, world, plain, count, samples } = self;
+        let Self { tracer, world, plain, count, next } = self;
         let surfaces = Surfaces::new(simd, plain);
         let numbers = RandomNumbers::new(simd, plain);
 
+        for (lane, plain) in plain.iter().enumerate().take(count) {
+            next.probe.notice(|| surfaces.shaded(lane, world, plain));
+        }
+
         // Ask one light.
-        let asked = Asked::new(simd, world, plain, &surfaces, &numbers, &samples.lanes);
+        let asked = Asked::new(simd, world, plain, &surfaces, &numbers, &next.samples.lanes);
         let cos = asked.wi.dot(surfaces.n);
         let same_side = surfaces.same_side(simd, cos);
         let facing: [f32; LANES] = same_side.select(cos.abs(), f32x8::splat(simd, 0.0)).into();
         let origins = surfaces.points.leave(simd, surfaces.ng, asked.wi.widen());
         let ends = asked.ends(simd, &origins);
         for lane in 0..count {
-            let (Some(sample), Plain { path, reflectance, .. }) = (&asked.samples[lane], &plain[lane]) else {
+            let Plain { path, reflectance, .. } = &plain[lane];
+            let Some(sample) = &asked.samples[lane] else {
+                next.probe.notice_some(|| asked.in_vain(lane, path.address));
                 continue;
             };
             let cos = facing[lane];
             if cos == 0.0 {
+                next.probe.notice_some(|| asked.in_vain(lane, path.address));
                 continue;
             }
             let f = *reflectance * FRAC_1_PI * cos;
@@ -105,7 +115,20 @@ impl Work for Steps<'_, '_> {
             let bsdf_pdf = warp::cosine_hemisphere_pdf(cos);
             let weight = if sample.is_delta { 1.0 } else { power_heuristic(light_pdf, bsdf_pdf) };
             let contribution = path.beta * f * sample.li * (weight / light_pdf);
-            if f.is_black() || contribution.is_black() {
+            if f.is_black() {
+                next.probe.notice_some(|| asked.in_vain(lane, path.address));
+                continue;
+            }
+            next.probe.notice(|| Event::AskedOne {
+                address: path.address,
+                light: sample.light,
+                probability: sample.probability,
+                sample: asked.light_sample(lane, sample),
+                f,
+                bsdf_pdf: if sample.is_delta { 0.0 } else { bsdf_pdf },
+                weight,
+            });
+            if contribution.is_black() {
                 continue;
             }
             let origin = origins.lane(lane);
@@ -115,7 +138,7 @@ impl Work for Steps<'_, '_> {
                 Target::Surface(..) => Ray { t_max: 1.0, ..Ray::new(origin, ends.lane(lane)) },
             };
             let Path { slot, address, media, .. } = **path;
-            samples.shadows.push(Shadow {
+            next.samples.shadows.push(Shadow {
                 ray,
                 left: Left::of(plain[lane].hit),
                 contribution,
@@ -133,7 +156,7 @@ impl Work for Steps<'_, '_> {
         let cos = wi.dot(surfaces.n).abs();
         let factor = cos / pdf;
         let origins = surfaces.points.leave(simd, surfaces.ng, wi.widen());
-        let (pdf, factor): ([f32; LANES], [f32; LANES]) = (pdf.into(), factor.into());
+        let [pdf, factor, cos]: [[f32; LANES]; 3] = [pdf.into(), factor.into(), cos.into()];
         let (side, height): ([f32; LANES], [f32; LANES]) = (surfaces.wo_z.into(), local.0[2].into());
         let points = surfaces.points.position.narrow();
         for lane in 0..count {
@@ -148,10 +171,16 @@ impl Work for Steps<'_, '_> {
             let eta_scale = path.departure.eta_scale;
             let depth = path.depth + 1;
             let (survival, survives) = tracer.roulette(numbers, beta, eta_scale, depth);
+            next.probe.notice(|| {
+                let wi = wi.lane(lane).into();
+                let sample = BsdfSample::diffuse(wi, f, pdf[lane]);
+                let bounce = Bounce { wi, cos: cos[lane], sample, beta, survival, survives };
+                Event::Bounced { address: path.address, bounce: Box::new(bounce) }
+            });
             if !survives || beta.is_black() {
                 continue;
             }
-            samples.paths.push(Path {
+            next.samples.paths.push(Path {
                 ray: Ray::new(origins.lane(lane), wi.lane(lane)),
                 beta: beta / survival,
                 slot: path.slot,
@@ -165,6 +194,7 @@ impl Work for Steps<'_, '_> {
                     n: surfaces.n.lane(lane).into(),
                     eta_scale,
                     blurred: true,
+                    is_catcher: false,
                 },
             });
         }
@@ -200,6 +230,24 @@ impl<S: Simd> Surfaces<S> {
         let wo = direction.widen().normalize(simd).scale(minus).narrow();
         let [s, t] = orthonormal_bases(simd, n);
         Self { points, ng, n, s, t, wo_z: wo.dot(n) }
+    }
+
+    /// What one of them is, for who listens.
+    fn shaded(&self, lane: usize, world: &World, plain: &Plain<'_>) -> Event {
+        let Plain { path, hit, reflectance, .. } = plain;
+        let [n, s, t] = [self.n, self.s, self.t].map(|axis| axis.lane(lane).into());
+        let ng = by_axis!(i => self.ng.0[i][lane]).into();
+        let point = Point {
+            position: by_axis!(i => self.points.position.0[i][lane]),
+            error: by_axis!(i => self.points.error.0[i][lane]),
+        };
+        let surface = Surface { point, ng, ns: n, ..world.surface(&path.ray, hit) };
+        Event::Shaded {
+            address: path.address,
+            shading: Box::new(Shading::diffuse(*reflectance, [s, t, n], surface.ng)),
+            surface: Box::new(surface),
+            beta: path.beta,
+        }
     }
 
     /// Whether directions of these cosines are on the side that is looked at, and neither is grazing.

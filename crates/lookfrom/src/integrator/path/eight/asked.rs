@@ -8,6 +8,7 @@ use lookfrom_simd::{Simd, f32x8, f64x8, prelude::*};
 
 use super::{Plain, RandomNumbers, Surfaces, purpose};
 use crate::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, narrow};
+use crate::integrator::Event;
 use crate::light::{Coverage, Light, LightSample, LightTriangle, Reference, Target};
 use crate::spectrum::Spectrum;
 use crate::texture::Lanes;
@@ -26,6 +27,8 @@ pub(super) struct Answer {
 
 /// What lights answered.
 pub(super) struct Asked<S: Simd> {
+    /// Which light each asks, and the probability of having chosen it.
+    choice: [Option<(u32, f32)>; LANES],
     pub(super) samples: [Option<Answer>; LANES],
     pub(super) wi: Vectors<Narrow<S>>,
     /// Where on the lights, of those that are surfaces, and their normals.
@@ -138,7 +141,27 @@ impl<S: Simd> Asked<S> {
                 }
             }
         }
-        Self { samples, wi: Vectors::<Narrow<S>>::of_rows(simd, &wi), points, normal }
+        Self { choice, samples, wi: Vectors::<Narrow<S>>::of_rows(simd, &wi), points, normal }
+    }
+
+    /// What was asked of the light of a lane, for who listens.
+    pub(super) fn light_sample(&self, lane: usize, answer: &Answer) -> LightSample {
+        let target = match answer.target {
+            Target::Surface(..) => {
+                let position = by_axis!(i => self.points.position.0[i][lane]);
+                let error = by_axis!(i => self.points.error.0[i][lane]);
+                Target::Surface(Point { position, error }, by_axis!(i => self.normal.0[i][lane]).into())
+            }
+            target => target,
+        };
+        LightSample { wi: self.wi.lane(lane).into(), li: answer.li, pdf: answer.pdf, target }
+    }
+
+    /// That the light of a lane was asked in vain, for who listens; `None` where there is no light.
+    pub(super) fn in_vain(&self, lane: usize, address: u64) -> Option<Event> {
+        let (light, probability) = self.choice[lane]?;
+        let sample = self.samples[lane].as_ref().map(|answer| self.light_sample(lane, answer));
+        Some(Event::AskedInVain { address, light, probability, sample })
     }
 
     /// The directions of shadow rays, from their origins to just before the lights' surfaces: the twin of [`crate::integrator::Shadow::new`].

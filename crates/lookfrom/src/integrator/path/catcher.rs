@@ -1,0 +1,74 @@
+//! Shadow catchers in path tracing: a floor that looks like what is behind it, less the light that is blocked.
+//!
+//! Paths that leave the floor estimate how much of the light arrives, and the floor's reflectance is such that all of it would
+//! look like the background (see `world::catcher`). With multiple importance sampling the light that a path's samples would find if
+//! nothing stood in the way is a control variate: it is expected, shown and subtracted, so that there is no noise where nothing
+//! casts a shadow.
+
+use glam::Vec3;
+use lookfrom_scene::settings::Background;
+
+use super::{PathTracer, Wisdom, power_heuristic};
+use crate::integrator::{Alpha, Next, Path, Probe, Term};
+use crate::light::Light;
+use crate::spectrum::Spectrum;
+use crate::texture::Lanes;
+use crate::world::World;
+
+impl PathTracer {
+    /// Shows the background to a path from the camera that met a shadow catcher, and weighs the light that the path gathers
+    /// from there on.
+    pub(super) fn show_behind<P: Probe>(&self, world: &World, path: &mut Path, next: &mut Next<'_, P>) {
+        let lanes = next.lanes(path);
+        next.samples.alpha[path.slot as usize] = Alpha::Shadow;
+        let behind = match next.background {
+            Background::Environment => world.sky(&path.ray, &lanes),
+            // White: the light of the sample is the part that shadows leave.
+            Background::Color(_) | Background::Transparent => world.light_of([1.0; 3], &lanes),
+        };
+        if self.has_control_variate() {
+            next.add(path, Term::Sky, path.beta * behind);
+        }
+        path.beta *= world.catcher_correction(Vec3::from_array(path.ray.direction), behind, &lanes);
+    }
+
+    /// Subtracts what a sampled light infinitely far brings to a catcher if nothing is in the way.
+    pub(super) fn expect_light<P: Probe>(
+        &self,
+        light: &Light,
+        path: &Path,
+        contribution: Spectrum,
+        next: &mut Next<'_, P>,
+    ) {
+        let is_far = matches!(light, Light::Environment(_) | Light::Distant { .. });
+        if is_far && self.has_control_variate() {
+            next.add(path, Term::Sky, contribution * -1.0);
+        }
+    }
+
+    /// Subtracts what a path that leaves a catcher finds if nothing is in the way. The path forgets where it comes from.
+    pub(super) fn leave_catcher<P: Probe>(&self, world: &World, path: &Path, next: &mut Next<'_, P>) -> Path {
+        let mut path = *path;
+        if std::mem::take(&mut path.departure.is_catcher) && self.has_control_variate() {
+            let expected = sky_found(world, &path, &next.lanes(&path));
+            next.add(&path, Term::Sky, expected * -1.0);
+        }
+        path
+    }
+
+    fn has_control_variate(&self) -> bool {
+        self.wisdom == Wisdom::Combined
+    }
+}
+
+/// What a path adds if it meets nothing.
+fn sky_found(world: &World, path: &Path, lanes: &Lanes) -> Spectrum {
+    let direction = Vec3::from_array(path.ray.direction).normalize();
+    let at = path.reference();
+    let lit = world.environments.iter().filter(|&&index| world.lights[index as usize].illuminates());
+    lit.fold(Spectrum::BLACK, |sum, &index| {
+        let light_pdf = world.light_pdf(index, &at, direction, None);
+        let weight = power_heuristic(path.departure.pdf, light_pdf);
+        sum + path.beta * world.sky_of(index, &path.ray, lanes) * weight
+    })
+}
