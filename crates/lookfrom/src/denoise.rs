@@ -6,7 +6,7 @@
 //! - *Non-local means* (Buades, Coll & Morel 2005, as Rousselle, Knaus & Zwicker 2012 have it for renderings): the light of the 3 × 3
 //!   pixels around both may differ by no more than their noise, which the film knows. Where noise is small next to what is shown,
 //!   only equals are left: with ever more samples the picture becomes that of the film.
-//! - *Guides* (joint filtering: Rousselle, Manzi & Zwicker 2013): albedo, normal and place of what the camera saw may differ
+//! - *Features* (joint filtering: Rousselle, Manzi & Zwicker 2013): albedo, normal and place of what the camera saw may differ
 //!   by little.
 //! - Light is divided by the albedo first and multiplied by it afterwards, so that a texture is not taken for noise, nor
 //!   blurred.
@@ -29,7 +29,7 @@ const PATCH: usize = 1;
 
 /// `picture`, that of `film` (perhaps without its fireflies), with noise filtered out: colours, and alpha where it has some.
 ///
-/// Works with what the film knows: without its [guides](Film::guide), textures and edges must be told from noise by light alone. Pixels
+/// Works with what the film knows: without its [features](Film::denoiser_features), textures and edges must be told from noise by light alone. Pixels
 /// without samples, and those outside of [`Film::area`], stay as they are. The mean light of the picture stays much the
 /// same; it is not kept exactly.
 ///

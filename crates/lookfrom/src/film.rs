@@ -3,24 +3,20 @@
 //! Step 7 on the way of a pixel. Sums of floating-point numbers depend on their order, sums of integers do not. So each
 //! pixel holds three fixed-point sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the
 //! variance; any division of the work among threads, tiles, passes or machines ends in the same bytes *by
-//! construction*. What a camera sees first, for layers, is in [`features`]; what its sensor measures, in `channels`; how much
-//! noise there is, in `noise`; what
-//! becomes of single samples that outshine a pixel, in `fireflies`; what the denoiser is told, in [`guides`]. How a picture is shown
+//! construction*. What a camera sees first, for layers and denoiser, is in [`aov`]; what its sensor measures, in `channels`; how much
+//! noise there is, in `noise`; what becomes of single samples that outshine a pixel, in `fireflies`. How a picture is shown
 //! is left to [`crate::develop`].
 //!
-//! A pixel takes 112 bytes, and as much more as [`features`], `channels` and [`guides`] say where they are asked for.
+//! A pixel takes 112 bytes, and as much more as [`aov`] and `channels` say where they are asked for.
 
+pub mod aov;
 mod channels;
-pub mod features;
 mod fireflies;
-pub mod guides;
 mod noise;
 
+use self::aov::{AovSums, LayerSums};
+pub use self::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
 use self::channels::ChannelSums;
-use self::features::FeatureSums;
-pub use self::features::Features;
-use self::guides::GuideSums;
-pub use self::guides::{GUIDED_SAMPLES, Guide, MeanGuide};
 
 use lookfrom_scene::settings::{Background, Crop, ImageSettings, Layers};
 use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
@@ -48,13 +44,15 @@ pub struct FilmTile {
     area: Crop,
     pixels: Vec<Pixel>,
     /// As many as there are pixels, or none.
-    features: Vec<FeatureSums>,
+    layers: Vec<LayerSums>,
     /// As many as there are pixels, or none.
     channels: Vec<ChannelSums>,
     /// As many as there are pixels, or none.
-    guides: Vec<GuideSums>,
+    features: Vec<AovSums>,
     /// Sums of how much samples hide of what is behind, in multiples of 2⁻⁶⁴: as many as there are pixels, or none.
     alphas: Vec<i128>,
+    /// Sums of their squares, in multiples of 2⁻⁴⁸: as many as there are pixels, or none.
+    alpha_squares: Vec<u128>,
     dropped: u64,
     first_dropped: Option<Address>,
 }
@@ -220,11 +218,11 @@ impl Film {
         self.tile.channels.get(self.tile.index(x, y)?).map(ChannelSums::variance)
     }
 
-    /// What the camera sees first in a pixel, in the mean over its samples ([`Features`] says which); `None` where the
-    /// film has no room for it, where no sample met anything, and outside of [`Film::area`].
-    pub fn features(&self, x: u32, y: u32) -> Option<Features> {
-        let index = self.tile.index(x, y)?;
-        self.tile.features.get(index)?.mean(self.tile.pixels[index].samples)
+    /// What the camera sees first in a pixel, in the mean over its samples: the albedo over all of them (nothing is black), all
+    /// else over those that met something. `None` where the film has no room for it, where no sample met anything, and outside
+    /// of [`Film::area`].
+    pub fn aovs(&self, x: u32, y: u32) -> Option<Aovs> {
+        self.tile.layers.get(self.tile.index(x, y)?)?.mean()
     }
 
     /// Whether there is room for layers.
@@ -232,24 +230,24 @@ impl Film {
         self.tile.has_layers()
     }
 
-    /// What the denoiser is told of a pixel; `None` where the film has no room for it or no sample was asked, and outside of
+    /// What the denoiser compares a pixel by; `None` where the film has no room for it or no samples, and outside of
     /// [`Film::area`].
-    pub fn guide(&self, x: u32, y: u32) -> Option<MeanGuide> {
-        self.tile.guides.get(self.tile.index(x, y)?)?.mean()
+    pub fn denoiser_features(&self, x: u32, y: u32) -> Option<DenoiserFeatures> {
+        self.tile.features.get(self.tile.index(x, y)?)?.features()
     }
 
     /// The variance of how much *one* sample of a pixel hides of what is behind, estimated as [`Film::variance`] is. 0 where the
     /// film has no alpha or no room for what the denoiser is told, and outside of [`Film::area`].
     pub fn alpha_variance(&self, x: u32, y: u32) -> f32 {
-        let FilmTile { pixels, alphas, guides, .. } = &self.tile;
+        let FilmTile { pixels, alphas, alpha_squares, .. } = &self.tile;
         let Some(index) = self.tile.index(x, y) else { return 0.0 };
-        let (Some(&sum), Some(guide)) = (alphas.get(index), guides.get(index)) else { return 0.0 };
+        let (Some(&sum), Some(&squares)) = (alphas.get(index), alpha_squares.get(index)) else { return 0.0 };
         let samples = pixels[index].samples;
         if samples < 2 {
             return f32::INFINITY;
         }
         let n = samples as f64;
-        unbiased_variance(n, sum as f64 / (n * TWO_TO_64), guide.alpha_square(samples)) as f32
+        unbiased_variance(n, sum as f64 / (n * TWO_TO_64), squares as f64 / (n * TWO_TO_48)) as f32
     }
 
     /// How many samples a pixel holds, without those that were dropped.
@@ -325,7 +323,7 @@ impl FilmTile {
             return Err(too_large(format!("{count} pixels; at most {MOST_PIXELS} are possible")));
         }
         let pixels = empty(count)?;
-        let features = match image.layers {
+        let layers = match image.layers {
             Layers::None => Vec::new(),
             Layers::Geometry => empty(count)?,
         };
@@ -333,27 +331,30 @@ impl FilmTile {
             Layers::Geometry if !image.sensor.measures_xyz() => empty(count)?,
             _ => Vec::new(),
         };
-        let guides = if image.denoise { empty(count)? } else { Vec::new() };
-        let alphas = match image.background {
-            Background::Environment => Vec::new(),
-            Background::Color(_) | Background::Transparent => empty(count)?,
+        let features = if image.denoise { empty(count)? } else { Vec::new() };
+        let (alphas, alpha_squares) = match image.background {
+            Background::Environment => (Vec::new(), Vec::new()),
+            Background::Color(_) | Background::Transparent => {
+                (empty(count)?, if image.denoise { empty(count)? } else { Vec::new() })
+            }
         };
-        Ok(Self { area, pixels, features, channels, guides, alphas, dropped: 0, first_dropped: None })
+        let (dropped, first_dropped) = (0, None);
+        Ok(Self { area, pixels, layers, channels, features, alphas, alpha_squares, dropped, first_dropped })
     }
 
-    /// Whether there is room for layers: whether [`FilmTile::add_features`] does anything.
+    /// Whether there is room for layers.
     pub fn has_layers(&self) -> bool {
-        !self.features.is_empty()
+        !self.layers.is_empty()
+    }
+
+    /// Whether there is room for what the camera's ray of a sample met: whether [`FilmTile::add_first_hit`] does anything.
+    pub fn wants_first_hit(&self, sample: u32) -> bool {
+        self.has_layers() || !self.features.is_empty() && sample < FEATURE_SAMPLES
     }
 
     /// Whether there is room for what the sensor measures: whether [`FilmTile::add_channels`] does anything.
     pub fn has_channels(&self) -> bool {
         !self.channels.is_empty()
-    }
-
-    /// Whether there is room for what the denoiser is told: whether [`FilmTile::add_guide`] does anything.
-    pub fn has_guides(&self) -> bool {
-        !self.guides.is_empty()
     }
 
     /// The pixels it covers.
@@ -395,21 +396,27 @@ impl FilmTile {
         pixel.samples = pixel.samples.saturating_add(1);
         if let Some(sum) = self.alphas.get_mut(index) {
             *sum = sum.wrapping_add(fixed_point(alpha));
-            if let Some(guide) = self.guides.get_mut(index) {
-                guide.add_alpha_square(fixed_point_square(f64::from(alpha.clamp(-BRIGHTEST, BRIGHTEST))));
+            if let Some(squares) = self.alpha_squares.get_mut(index) {
+                let square = fixed_point_square(f64::from(alpha.clamp(-BRIGHTEST, BRIGHTEST)));
+                *squares = squares.saturating_add(square);
             }
         }
     }
 
-    /// Adds what the camera's ray of one sample met; for a sample that met nothing, do not call it. Does nothing where
-    /// there is no room for layers, or where not all is finite.
+    /// Adds what the camera's ray of one sample met, `None` for nothing, where there is room for it: to the layers, and of the
+    /// first [`FEATURE_SAMPLES`] of a pixel to what the denoiser compares. What is not finite counts as nothing.
     ///
     /// # Panics
     /// If the pixel is outside of the tile.
-    pub fn add_features(&mut self, x: u32, y: u32, features: &Features) {
+    pub fn add_first_hit(&mut self, x: u32, y: u32, sample: u32, met: Option<&Aovs>) {
         let index = self.index_inside(x, y);
-        if let Some(sums) = self.features.get_mut(index) {
-            sums.add(features);
+        if let Some(sums) = self.layers.get_mut(index) {
+            sums.add(sample, met);
+        }
+        if sample < FEATURE_SAMPLES
+            && let Some(sums) = self.features.get_mut(index)
+        {
+            sums.add(sample, met);
         }
     }
 
@@ -424,18 +431,6 @@ impl FilmTile {
         }
     }
 
-    /// Adds what the camera's ray of one sample met (`None` for nothing), for the denoiser: of the first [`GUIDED_SAMPLES`] of a
-    /// pixel. Does nothing where there is no room for it.
-    ///
-    /// # Panics
-    /// If the pixel is outside of the tile.
-    pub fn add_guide(&mut self, x: u32, y: u32, sample: u32, met: Option<&Guide>) {
-        let index = self.index_inside(x, y);
-        if let Some(sums) = self.guides.get_mut(index) {
-            sums.add(sample, met);
-        }
-    }
-
     /// Adds what another tile holds within the area of this one.
     fn merge(&mut self, other: &Self) {
         let Crop { x0, y0, x1, y1 } = common(self.area, other.area);
@@ -443,9 +438,12 @@ impl FilmTile {
             let rows = [self.row(y, x0, x1), other.row(y, x0, x1)];
             merge_row(&mut self.pixels, &other.pixels, &rows, Pixel::merge);
             merge_row(&mut self.alphas, &other.alphas, &rows, |sum, add| *sum = sum.wrapping_add(*add));
-            merge_row(&mut self.features, &other.features, &rows, FeatureSums::merge);
+            merge_row(&mut self.alpha_squares, &other.alpha_squares, &rows, |sum, add| {
+                *sum = sum.saturating_add(*add);
+            });
+            merge_row(&mut self.layers, &other.layers, &rows, LayerSums::merge);
             merge_row(&mut self.channels, &other.channels, &rows, ChannelSums::merge);
-            merge_row(&mut self.guides, &other.guides, &rows, GuideSums::merge);
+            merge_row(&mut self.features, &other.features, &rows, AovSums::merge);
         }
         self.drop_samples(other.dropped, other.first_dropped);
     }

@@ -5,9 +5,8 @@
 //! tiles and samples are rendered.
 
 mod driver;
-mod guide;
+mod first_hit;
 mod outlook;
-mod seen;
 mod transport;
 
 use std::ops::Range;
@@ -16,23 +15,26 @@ use std::sync::Arc;
 use glam::DVec3;
 use lookfrom_bvh::{Hit, Left, Ray};
 use lookfrom_scene::scene::Origin;
-use lookfrom_scene::settings::{Background, ColorMode, Crop, ImageSettings, RenderSettings, Sensor as SensorSettings};
+use lookfrom_scene::settings::{
+    Background, ColorMode, Crop, ImageSettings, RenderSettings, Sensor as SensorSettings,
+};
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 
 use crate::camera::CameraRay;
 use crate::color::{Sensor, Wavelengths};
-use crate::film::{FilmTile, GUIDED_SAMPLES};
+use crate::film::FilmTile;
 use crate::filter::Filter;
-use crate::integrator::{Alpha, Departure, Event, Integrator, Next, Numbers, Path, Probe, Samples, resolve_shadows};
-use crate::sampler::Sampler;
+use crate::integrator::{
+    Alpha, Departure, Event, Integrator, Next, Numbers, Path, Probe, Samples, resolve_shadows,
+};
 use crate::math;
+use crate::sampler::Sampler;
 use crate::spectrum::Spectrum;
 use crate::texture::Lanes;
 use crate::view::View;
 use crate::world::World;
 
-use guide::First;
-use seen::Seen;
+use first_hit::FirstHit;
 use transport::Transport;
 
 pub use driver::{FEWEST_SAMPLES, Progress, Rendered, StopCriteria, StopReason, TileDone};
@@ -58,8 +60,6 @@ pub struct Renderer {
     filter: Filter,
     sampler: Sampler,
     sensor: Sensor,
-    /// For reflectances: no exposure, no white balance.
-    plain_sensor: Sensor,
 }
 
 /// Which sample of which pixel.
@@ -131,7 +131,7 @@ struct Batch {
     left: Vec<Left>,
     hits: Vec<Hit>,
     /// What the camera's rays met, by slot; only where it is asked for.
-    firsts: Vec<First>,
+    first_hits: Vec<FirstHit>,
     traced: Vec<Traced>,
 }
 
@@ -158,7 +158,6 @@ impl Renderer {
         Ok(Self {
             filter: Filter::new(image.filter),
             sampler: Sampler::new(settings.sampler, settings.seed),
-            plain_sensor: Sensor::default(),
             sensor: Sensor::new(&image.sensor),
             integrator: transport::of_settings(&settings, &view.camera, eye),
             is_plugged_in: false,
@@ -275,7 +274,7 @@ impl Renderer {
         batch: &mut Batch,
     ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
-        let Batch { numbers: start, samples, weights, paths, rays, left, hits, firsts, traced } = batch;
+        let Batch { numbers: start, samples, weights, paths, rays, left, hits, first_hits, traced } = batch;
         let mut next = Next { samples: std::mem::take(samples), background: self.image().background, probe };
         next.samples.clear();
 
@@ -311,7 +310,7 @@ impl Renderer {
             left.clear();
             left.extend(paths.iter().map(|path| path.departure.left));
             self.world.bvh.closest_hits_leaving(rays, left, hits);
-            guide::note_firsts(firsts, paths, hits);
+            first_hit::note(first_hits, paths, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.
             let numbers = |path: &Path| {
@@ -359,15 +358,6 @@ impl Renderer {
         self.settings.color == ColorMode::Spectral && self.integrator.is_light()
     }
 
-    /// What the lanes of a sample mean.
-    fn lanes(&self, id: SampleId) -> Lanes {
-        if self.is_spectral() {
-            lanes_by(self.sampler.two(id.pixel, id.sample, WAVELENGTH_DIMENSION))
-        } else {
-            Lanes::Rgb
-        }
-    }
-
     /// The colour of a sample, and how much of the view's own background it hides, 1 for all: where a shadow catcher is seen the
     /// picture holds only that. Single samples may be outside of 0 … 1; their mean is not but for noise.
     fn with_alpha(&self, radiance: Spectrum, weight: f32, lanes: &Lanes, alpha: Alpha) -> ([f32; 3], f32) {
@@ -410,22 +400,11 @@ impl Renderer {
         for sample in samples {
             ids.clear();
             ids.extend(blocks(tile.area()).map(|pixel| SampleId { pixel, sample }));
-            let is_guided = tile.has_guides() && sample < GUIDED_SAMPLES;
-            batch.firsts.clear();
-            batch.firsts.resize(if is_guided { ids.len() } else { 0 }, First::NOTHING);
-            rays += if tile.has_layers() {
-                let mut seen = Seen::new(self, ids.iter().map(|id| self.lanes(*id)).collect());
-                let rays = self.integrator.trace_seen(self, &ids, &mut seen, &mut batch);
-                for (id, features) in ids.iter().zip(seen.into_features()) {
-                    if let Some(features) = features {
-                        tile.add_features(id.pixel[0], id.pixel[1], &features);
-                    }
-                }
-                rays
-            } else {
-                self.integrator.trace(self, &ids, &mut batch)
-            };
-            self.add_guides(&ids, &batch.firsts, tile);
+            let wanted = if tile.wants_first_hit(sample) { ids.len() } else { 0 };
+            batch.first_hits.clear();
+            batch.first_hits.resize(wanted, FirstHit::MISS);
+            rays += self.integrator.trace(self, &ids, &mut batch);
+            self.add_first_hits(&ids, &batch.first_hits, tile);
             for (id, traced) in ids.iter().zip(&batch.traced) {
                 let [x, y] = id.pixel;
                 tile.add_with_alpha(x, y, id.sample, traced.rgb, traced.alpha * traced.weight);

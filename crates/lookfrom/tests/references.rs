@@ -77,7 +77,7 @@ fn alike(scene: &Path, reference: &Path) -> [f64; 2] {
     let renderer = Renderer::of_scene(scene, &mut sources.warnings).unwrap_or_else(|error| panic!("{error}"));
     let film = renderer.render(None, &()).expect("a picture").film;
     let places = || (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
-    let ours: Vec<_> = places().map(|(x, y)| film.features(x, y).unwrap_or_default()).collect();
+    let ours: Vec<_> = places().map(|(x, y)| film.aovs(x, y).unwrap_or_default()).collect();
     ["N", "Ns"].map(|layer| {
         let axes = ["X", "Y", "Z"].map(|axis| theirs.channel(&format!("{layer}.{axis}")).expect("a layer"));
         let cosine = |index: usize| {

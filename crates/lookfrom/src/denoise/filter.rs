@@ -145,13 +145,13 @@ impl<const N: usize> Work for Filter<'_, N> {
                         of_light[x] += sums_of_rows[y + next][x];
                     }
                 }
-                // What the guides say.
-                let mut of_guides = [0.0_f32; COLUMNS];
-                for guide in compared {
-                    let (p, q) = (row::<COLUMNS>(guide, here), row::<COLUMNS>(guide, there));
+                // The features.
+                let mut of_features = [0.0_f32; COLUMNS];
+                for feature in compared {
+                    let (p, q) = (row::<COLUMNS>(feature, here), row::<COLUMNS>(feature, there));
                     for x in 0..COLUMNS {
                         let difference = q[x] - p[x];
-                        of_guides[x] += difference * difference;
+                        of_features[x] += difference * difference;
                     }
                 }
                 let mut off_plane = [0.0_f32; COLUMNS];
@@ -166,8 +166,8 @@ impl<const N: usize> Work for Filter<'_, N> {
                 let mut weight = [0.0_f32; COLUMNS];
                 let trust = row::<COLUMNS>(trust, here);
                 for x in 0..COLUMNS {
-                    let of_guides = (of_guides[x] + off_plane[x] * off_plane[x]) * trust[x];
-                    weight[x] = falloff(of_light[x], of_guides);
+                    let of_features = (of_features[x] + off_plane[x] * off_plane[x]) * trust[x];
+                    weight[x] = falloff(of_light[x], of_features);
                     weights[y][x] += weight[x];
                 }
                 for c in 0..N {
@@ -214,10 +214,10 @@ pub(super) fn distance(square: f32, p_variance: f32, q_variance: f32) -> f32 {
 
 /// The weight of a neighbour: about `exp(−x)` of the sum of its distances, `of_light` over all pixels of the patches.
 #[inline(always)]
-pub(super) fn falloff(of_light: f32, of_guides: f32) -> f32 {
+pub(super) fn falloff(of_light: f32, of_features: f32) -> f32 {
     const SHARE: f32 = 1.0 / ((2 * PATCH + 1) * (2 * PATCH + 1)) as f32;
     let mean = of_light * SHARE;
-    let x = of_guides + if mean > 0.0 { mean } else { 0.0 };
+    let x = of_features + if mean > 0.0 { mean } else { 0.0 };
     let rest = 1.0 - 0.125 * x;
     let rest = if rest > 0.0 { rest } else { 0.0 };
     let square = rest * rest;

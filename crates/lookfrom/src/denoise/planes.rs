@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::filter::COLUMNS;
 use super::{PATCH, RADIUS};
-use crate::film::{Film, Guide, MeanGuide, Picture};
+use crate::film::{Aovs, DenoiserFeatures, Film, Picture};
 
 /// The width of the border.
 pub(super) const BORDER: usize = RADIUS + PATCH;
@@ -15,7 +15,7 @@ pub(super) const BORDER: usize = RADIUS + PATCH;
 /// Added to an albedo before light is divided by it: what dark things mirror is no multiple of their albedo.
 const MIRRORED: f32 = 0.1;
 
-/// Standard deviations of guides: a difference of so much makes a pixel's weight `exp(−½)`.
+/// Standard deviations of features: a difference of so much makes a pixel's weight `exp(−½)`.
 const NORMAL_DEVIATION: f32 = 0.15;
 const ALBEDO_DEVIATION: f32 = 0.15;
 /// Distance from a pixel's tangent plane, in pixels as far away as the surface is.
@@ -24,7 +24,7 @@ const PLANE_DEVIATION: f32 = 4.0;
 /// A normal in the border and of pixels without samples: like no other.
 const NOWHERE: f32 = 1e6;
 
-/// Guides that both pixels have: normal, albedo.
+/// Features that both pixels have: normal, albedo.
 pub(super) const COMPARED: usize = 6;
 
 /// The picture with `N` channels: X, Y, Z, whose variances the film knows, and perhaps alpha.
@@ -39,7 +39,7 @@ pub(super) struct Planes<const N: usize> {
     pub(super) variance: Vec<f32>,
     /// Normal and albedo over their deviations.
     pub(super) compared: [Vec<f32>; COMPARED],
-    /// The share of a difference in guides that counts.
+    /// The share of a difference in features that counts.
     pub(super) trust: Vec<f32>,
     /// Where the surface is.
     pub(super) place: [Vec<f32>; 3],
@@ -54,7 +54,7 @@ struct Known<const N: usize> {
     light: [f32; N],
     divisor: [f32; N],
     variance: f32,
-    guide: Guide,
+    aovs: Aovs,
     trust: f32,
     is_sampled: bool,
 }
@@ -80,14 +80,14 @@ impl<const N: usize> Planes<N> {
         let variance = spread(&|x, y| known.smooth_variance(x, y));
         let mut compared: [Vec<f32>; COMPARED] = std::array::from_fn(|i| match i {
             0..3 => spread(&|x, y| known.at(x, y).normal()[i] / (2.0_f32.sqrt() * NORMAL_DEVIATION)),
-            _ => spread(&|x, y| known.at(x, y).guide.albedo[i - 3] / (2.0_f32.sqrt() * ALBEDO_DEVIATION)),
+            _ => spread(&|x, y| known.at(x, y).aovs.albedo[i - 3] / (2.0_f32.sqrt() * ALBEDO_DEVIATION)),
         });
         known.mark_border(&mut compared[0]);
         let trust = spread(&|x, y| known.at(x, y).trust);
-        let place = std::array::from_fn(|i| spread(&|x, y| known.at(x, y).guide.place[i]));
+        let place = std::array::from_fn(|i| spread(&|x, y| known.at(x, y).aovs.position[i]));
         let scales: Vec<f32> = known.each(|x, y| known.plane_scale(x, y));
         let plane =
-            std::array::from_fn(|i| spread(&|x, y| known.at(x, y).guide.ng[i] * scales[y * width + x]));
+            std::array::from_fn(|i| spread(&|x, y| known.at(x, y).aovs.ng[i] * scales[y * width + x]));
         let divisors = known.pixels.iter().map(|pixel| pixel.divisor).collect();
         Self { area, stride: stride(width), light, variance, compared, trust, place, plane, divisors }
     }
@@ -113,11 +113,11 @@ impl<const N: usize> Planes<N> {
 fn known<const N: usize>(film: &Film, picture: &Picture, [x, y]: [u32; 2], alpha_divisor: f32) -> Known<N> {
     let index = y as usize * picture.width as usize + x as usize;
     let samples = film.samples(x, y);
-    let (guide, trust) = match film.guide(x, y) {
-        Some(mean) => (mean.guide, trust(&mean)),
-        None => (Guide { albedo: [1.0; 3], ..Guide::default() }, 1.0),
+    let (aovs, trust) = match film.denoiser_features(x, y) {
+        Some(features) => (features.aovs, trust(&features)),
+        None => (Aovs { albedo: [1.0; 3], ..Aovs::default() }, 1.0),
     };
-    let divisor: [f32; N] = std::array::from_fn(|c| match guide.albedo.get(c) {
+    let divisor: [f32; N] = std::array::from_fn(|c| match aovs.albedo.get(c) {
         Some(albedo) => albedo + MIRRORED,
         None => alpha_divisor,
     });
@@ -141,19 +141,12 @@ fn known<const N: usize>(film: &Film, picture: &Picture, [x, y]: [u32; 2], alpha
         };
         sum + of_one * (factor * factor)
     });
-    Known {
-        light,
-        divisor,
-        variance: variance / samples.max(1) as f32,
-        guide,
-        trust,
-        is_sampled: samples > 0,
-    }
+    Known { light, divisor, variance: variance / samples.max(1) as f32, aovs, trust, is_sampled: samples > 0 }
 }
 
-/// The share of a difference in guides that counts: less where a pixel sees several things, by the variance of its mean normal.
-fn trust(mean: &MeanGuide) -> f32 {
-    let square = mean.guide.n.into_iter().fold(0.0, |sum, n| sum + n * n);
+/// The share of a difference in features that counts: less where a pixel sees several things, by the variance of its mean normal.
+fn trust(mean: &DenoiserFeatures) -> f32 {
+    let square = mean.aovs.ns.into_iter().fold(0.0, |sum, n| sum + n * n);
     let variance = (mean.coverage - square).max(0.0) / mean.samples as f32;
     1.0 / (1.0 + variance / (NORMAL_DEVIATION * NORMAL_DEVIATION))
 }
@@ -174,7 +167,7 @@ pub(super) fn rgb([x, y, z]: [f32; 3]) -> [f32; 3] {
 
 impl<const N: usize> Known<N> {
     fn normal(&self) -> [f32; 3] {
-        if self.is_sampled { self.guide.n } else { [-NOWHERE; 3] }
+        if self.is_sampled { self.aovs.ns } else { [-NOWHERE; 3] }
     }
 }
 
@@ -273,15 +266,15 @@ impl<const N: usize> Grid<'_, N> {
     /// nothing is known.
     fn plane_scale(&self, x: usize, y: usize) -> f32 {
         let own = self.at(x, y);
-        if own.guide.ng == [0.0; 3] {
+        if own.aovs.ng == [0.0; 3] {
             return 0.0;
         }
         let mut nearest = f32::INFINITY;
         let mut look = |x: usize, y: usize| {
             let other = self.at(x, y);
-            if other.guide.ng != [0.0; 3] {
+            if other.aovs.ng != [0.0; 3] {
                 let square = (0..3).fold(0.0, |sum, i| {
-                    let difference = own.guide.place[i] - other.guide.place[i];
+                    let difference = own.aovs.position[i] - other.aovs.position[i];
                     sum + difference * difference
                 });
                 if square > 0.0 && square < nearest {

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::filter::{distance, falloff};
 use super::*;
-use crate::film::{FilmTile, Guide};
+use crate::film::{Aovs, FilmTile};
 use crate::hash;
 
 /// Numbers in `[0, 1)` from a count.
@@ -22,20 +22,20 @@ fn image(width: u32, height: u32) -> ImageSettings {
     ImageSettings { width, height, denoise: true, ..ImageSettings::default() }
 }
 
-/// A film whose samples and guides are what a function says of pixel and sample.
+/// A film whose samples and features are what a function says of pixel and sample.
 fn film(
     image: &ImageSettings,
     samples: u32,
-    mut of: impl FnMut(u32, u32, u32) -> ([f32; 3], f32, Option<Guide>),
+    mut of: impl FnMut(u32, u32, u32) -> ([f32; 3], f32, Option<Aovs>),
 ) -> Film {
     let mut film = Film::for_image(image).unwrap();
     let mut tile = FilmTile::for_image(film.area(), image).unwrap();
     let Crop { x0, y0, x1, y1 } = film.area();
     for (y, x) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (y, x))) {
         for sample in 0..samples {
-            let (rgb, alpha, guide) = of(x, y, sample);
+            let (rgb, alpha, aovs) = of(x, y, sample);
             tile.add_with_alpha(x, y, sample, rgb, alpha);
-            tile.add_guide(x, y, sample, guide.as_ref());
+            tile.add_first_hit(x, y, sample, aovs.as_ref());
         }
     }
     film.add_tile(&tile);
@@ -43,9 +43,10 @@ fn film(
 }
 
 /// A wall of a colour that looks at the eye.
-fn wall(x: u32, y: u32, albedo: [f32; 3]) -> Option<Guide> {
+fn wall(x: u32, y: u32, albedo: [f32; 3]) -> Option<Aovs> {
     let n = [0.0, 0.0, -1.0];
-    Some(Guide { albedo, n, ng: n, place: [0.01 * x as f32, -0.01 * y as f32, 3.0] })
+    let position = [0.01 * x as f32, -0.01 * y as f32, 3.0];
+    Some(Aovs { albedo, ns: n, ng: n, position, uv: [0.0; 2] })
 }
 
 fn means(picture: &Picture) -> [f64; 3] {
@@ -89,13 +90,13 @@ fn change<const N: usize>(planes: &Planes<N>, x: usize, y: usize) -> [f32; N] {
             of_light = if py == -patch { of_row } else { of_light + of_row };
         }
         let (p, q) = (at(x, y), at(x + dx, y + dy));
-        let of_guides = planes.compared.iter().fold(0.0, |sum, guide| {
-            let difference = guide[q] - guide[p];
+        let of_features = planes.compared.iter().fold(0.0, |sum, feature| {
+            let difference = feature[q] - feature[p];
             sum + difference * difference
         });
         let off_plane =
             (0..3).fold(0.0, |sum, i| sum + (planes.place[i][q] - planes.place[i][p]) * planes.plane[i][p]);
-        let weight = falloff(of_light, (of_guides + off_plane * off_plane) * planes.trust[p]);
+        let weight = falloff(of_light, (of_features + off_plane * off_plane) * planes.trust[p]);
         weights += weight;
         for (sum, light) in sums.iter_mut().zip(&planes.light) {
             *sum += weight * (light[q] - light[p]);
@@ -104,17 +105,17 @@ fn change<const N: usize>(planes: &Planes<N>, x: usize, y: usize) -> [f32; N] {
     sums.map(|sum| sum / weights)
 }
 
-/// A film of noise with exponents of all sizes, guided by surfaces here and there.
+/// A film of noise with exponents of all sizes, with surfaces here and there.
 fn random(image: &ImageSettings, samples: u32, seed: u64) -> Film {
     let mut numbers = Numbers(seed << 32);
     film(image, samples, |x, y, _| {
         let scale = libm::exp2f(40.0 * numbers.next() - 20.0);
         let rgb = [0; 3].map(|_| scale * numbers.next());
         let alpha = numbers.next();
-        let mut guide = wall(x, y, [0; 3].map(|_| numbers.next())).unwrap();
-        guide.n = [0; 3].map(|_| numbers.next() - 0.5);
-        guide.place[2] += libm::exp2f(20.0 * numbers.next() - 18.0);
-        (rgb, alpha, (numbers.next() < 0.7).then_some(guide))
+        let mut aovs = wall(x, y, [0; 3].map(|_| numbers.next())).unwrap();
+        aovs.ns = [0; 3].map(|_| numbers.next() - 0.5);
+        aovs.position[2] += libm::exp2f(20.0 * numbers.next() - 18.0);
+        (rgb, alpha, (numbers.next() < 0.7).then_some(aovs))
     })
 }
 
@@ -172,7 +173,7 @@ fn noise_on_a_wall_falls_by_a_factor_and_its_mean_stays() {
 
 #[test]
 fn textures_and_edges_stay_and_lose_their_noise() {
-    // A checker of the finest squares, and a shadow's edge that no guide tells of.
+    // A checker of the finest squares, and a shadow's edge that no feature shows.
     let albedo = |x: u32, y: u32| if (x + y).is_multiple_of(2) { 0.8 } else { 0.2 };
     let lit = |x: u32| if x < 40 { 1.0 } else { 0.25 };
     let truth = |x: usize, y: usize| albedo(x as u32, y as u32) * lit(x as u32);
@@ -254,7 +255,7 @@ fn pixels_without_samples_and_outside_stay_black() {
 }
 
 #[test]
-fn without_guides_light_alone_tells() {
+fn without_features_light_alone_tells() {
     let mut numbers = Numbers(10);
     let mut film = Film::new(64, 48, None).unwrap();
     for (x, y, sample) in (0..64).flat_map(|x| (0..48).flat_map(move |y| (0..8).map(move |s| (x, y, s)))) {

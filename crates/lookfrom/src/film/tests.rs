@@ -237,8 +237,8 @@ fn a_pixel_outside_of_the_tile_is_a_mistake_of_the_caller() {
 }
 
 #[test]
-fn a_pixel_takes_112_bytes_and_its_layers_176() {
-    assert_eq!((size_of::<Pixel>(), size_of::<FeatureSums>()), (112, 176));
+fn pixels_take_as_many_bytes_as_documented() {
+    assert_eq!([size_of::<Pixel>(), size_of::<AovSums>(), size_of::<LayerSums>()], [112, 96, 208]);
 }
 
 #[test]
@@ -280,12 +280,11 @@ fn noise_is_relative_to_the_light_and_to_the_mean() {
 #[test]
 fn layers_are_means_whatever_the_order() {
     let whole = Crop { x0: 0, y0: 0, x1: 2, y1: 1 };
-    let of = |k: f32| Features {
+    let of = |k: f32| Aovs {
         albedo: [0.5, k * 0.25, 0.0],
         ng: [0.0, 0.0, -1.0],
         ns: [0.6, 0.0, -0.8],
         position: [k * 1e3, -k, 7.0],
-        depth: 7.0,
         uv: [k * 1e-3, 0.5],
     };
     let mut films = [Film::with_layers(2, 1, None, Layers::Geometry).unwrap(), film_with_layers()];
@@ -293,30 +292,30 @@ fn layers_are_means_whatever_the_order() {
         for k in order {
             let mut tile = FilmTile::with_layers(whole, Layers::Geometry).unwrap();
             tile.add(0, 0, k, [1.0; 3]);
-            tile.add_features(0, 0, &of(k as f32));
+            tile.add_first_hit(0, 0, k, Some(&of(k as f32)));
             film.add_tile(&tile);
         }
-        // One sample more that meets nothing, and one whose features are no numbers.
-        film.add(0, 0, 3, [1.0; 3]);
-        film.tile.add_features(0, 0, &Features { depth: f32::NAN, ..of(1.0) });
+        // One sample more, whose position is no number: as one that meets nothing.
+        film.tile.add_first_hit(0, 0, 3, Some(&Aovs { position: [f32::NAN; 3], ..of(1.0) }));
     }
     assert!(films[0] == films[1]);
-    let mean = films[0].features(0, 0).unwrap();
-    assert_eq!((mean.albedo, mean.depth), ([0.375, 0.1875, 0.0], 7.0));
+    let mean = films[0].aovs(0, 0).unwrap();
+    assert_eq!(mean.albedo, [0.375, 0.1875, 0.0]);
     assert_eq!((mean.position, mean.ng, mean.uv), ([1e3, -1.0, 7.0], [0.0, 0.0, -1.0], [1e-3, 0.5]));
-    assert_eq!((films[0].features(1, 0), films[0].features(9, 9)), (None, None));
+    assert_eq!((films[0].aovs(1, 0), films[0].aovs(9, 9)), (None, None));
     // A mean of normals is of unit length again, and 0 where they cancel.
     let mut tile = FilmTile::with_layers(whole, Layers::Geometry).unwrap();
-    tile.add_features(0, 0, &Features { ns: [1.0, 0.0, 0.0], ..of(0.0) });
-    tile.add_features(0, 0, &Features { ng: [0.0, 0.0, 1.0], ns: [0.0, 1.0, 0.0], ..of(0.0) });
+    tile.add_first_hit(0, 0, 0, Some(&Aovs { ns: [1.0, 0.0, 0.0], ..of(0.0) }));
+    let other = Aovs { ng: [0.0, 0.0, 1.0], ns: [0.0, 1.0, 0.0], ..of(0.0) };
+    tile.add_first_hit(0, 0, 1, Some(&other));
     let mut film = film_with_layers();
     film.add_tile(&tile);
-    let mean = film.features(0, 0).unwrap();
+    let mean = film.aovs(0, 0).unwrap();
     let diagonal = std::f32::consts::FRAC_1_SQRT_2;
     assert_eq!((mean.ng, mean.ns), ([0.0; 3], [diagonal, diagonal, 0.0]));
     // Without room for them nothing happens.
     let mut plain = FilmTile::new(whole).unwrap();
-    plain.add_features(0, 0, &of(1.0));
+    plain.add_first_hit(0, 0, 0, Some(&of(1.0)));
     assert!(!plain.has_layers() && plain == FilmTile::new(whole).unwrap());
 }
 

@@ -14,9 +14,7 @@ use eight::{Plain, Steps};
 
 use crate::bsdf::BsdfSample;
 use crate::eight::LANES;
-use crate::integrator::{
-    Bounce, Event, Integrator, Next, Numbers, Path, Probe, Shadow, Term,
-};
+use crate::integrator::{Bounce, Event, Integrator, Next, Numbers, Path, Probe, Shadow, Term};
 use crate::light::{Coverage, Reference};
 use crate::material::{Arrival, Toward};
 use crate::spectrum::Spectrum;

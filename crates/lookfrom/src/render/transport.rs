@@ -5,7 +5,6 @@ use std::sync::Arc;
 use glam::DVec3;
 use lookfrom_scene::settings::{Integrator as Kind, RenderSettings};
 
-use super::seen::Seen;
 use super::{Batch, Rays, Renderer, SampleId};
 use crate::camera::Camera;
 use crate::integrator::{
@@ -27,15 +26,6 @@ pub(super) trait Transport: std::fmt::Debug + Send + Sync {
         renderer: &Renderer,
         ids: &[SampleId],
         events: &mut Vec<Event>,
-        batch: &mut Batch,
-    ) -> Rays;
-
-    /// The same for layers.
-    fn trace_seen(
-        &self,
-        renderer: &Renderer,
-        ids: &[SampleId],
-        seen: &mut Seen<'_>,
         batch: &mut Batch,
     ) -> Rays;
 }
@@ -61,16 +51,6 @@ impl<I: Integrator> Transport for I {
         batch: &mut Batch,
     ) -> Rays {
         renderer.trace_with(self, ids, events, batch)
-    }
-
-    fn trace_seen(
-        &self,
-        renderer: &Renderer,
-        ids: &[SampleId],
-        seen: &mut Seen<'_>,
-        batch: &mut Batch,
-    ) -> Rays {
-        renderer.trace_with(self, ids, seen, batch)
     }
 }
 

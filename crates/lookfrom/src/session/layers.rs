@@ -5,8 +5,8 @@ use lookfrom_scene::settings::ImageSettings;
 use super::encode::behind;
 use crate::film::{Film, Picture};
 
-/// In the order of [`to_array`](crate::film::Features::to_array); `depth` is ours, the others are pbrt's.
-const FEATURES: [&str; 15] = [
+/// In the order of [`to_array`](crate::film::Aovs::to_array); `depth` is ours, the others are pbrt's.
+const AOVS: [&str; 15] = [
     "Albedo.R", "Albedo.G", "Albedo.B", "N.X", "N.Y", "N.Z", "Ns.X", "Ns.Y", "Ns.Z", "P.X", "P.Y", "P.Z",
     "depth", "u", "v",
 ];
@@ -27,7 +27,7 @@ pub(super) fn noisy(image: &ImageSettings, picture: Picture) -> Vec<(String, Vec
 /// The channels of the layers of a film, 0 where there is nothing.
 pub(super) fn channels(film: &Film) -> Vec<(String, Vec<f32>)> {
     let pixels = || (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
-    let mut channels: Vec<(String, Vec<f32>)> = FEATURES
+    let mut channels: Vec<(String, Vec<f32>)> = AOVS
         .iter()
         .chain(&VARIANCES)
         .map(|name| ((*name).to_owned(), Vec::with_capacity(pixels().count())))
@@ -35,7 +35,7 @@ pub(super) fn channels(film: &Film) -> Vec<(String, Vec<f32>)> {
     for (x, y) in pixels() {
         let variances = film.channel_variance(x, y).unwrap_or_else(|| film.variance(x, y));
         let variances = variances.map(|variance| if variance.is_finite() { variance } else { 0.0 });
-        let values = film.features(x, y).unwrap_or_default().to_array().into_iter().chain(variances);
+        let values = film.aovs(x, y).unwrap_or_default().to_array().into_iter().chain(variances);
         for ((_, channel), value) in channels.iter_mut().zip(values) {
             channel.push(value);
         }

@@ -35,7 +35,8 @@ pub(super) fn irradiance(lights: &[Light], textures: &Textures, n: Vec3) -> [f32
 impl World {
     /// Whether a surface is a floor that is seen only by the shadows on it.
     pub(crate) fn is_catcher(&self, surface: &Surface) -> bool {
-        self.catcher_irradiance.is_some() && matches!(self.materials[surface.material as usize].kind, MaterialKind::ShadowCatcher { .. })
+        self.catcher_irradiance.is_some()
+            && matches!(self.materials[surface.material as usize].kind, MaterialKind::ShadowCatcher { .. })
     }
 
     /// The floor's reflectance: that with which it looks like the environment behind it, as far as matter can.

@@ -11,17 +11,17 @@ use lookfrom_scene::material::{Color, MaterialKind, Relief};
 use lookfrom_simd::{Simd, Work, f32x8, f64x8, prelude::*, u32x8, u64x8};
 
 use super::{Departure, PathTracer, power_heuristic, purpose};
+use crate::bsdf::BsdfSample;
 use crate::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, orthonormal_bases};
 use crate::hash::GOLDEN;
 use crate::integrator::shadow;
-use crate::bsdf::BsdfSample;
 use crate::integrator::{Bounce, Event, Next, Numbers, Path, Probe, Shadow, Term};
-use crate::material::Shading;
-use crate::surface::Surface;
 use crate::light::Target;
+use crate::material::Shading;
 use crate::sampler::eight::{PixelSamplers, mix};
 use crate::shape::{Form, Mesh};
 use crate::spectrum::Spectrum;
+use crate::surface::Surface;
 use crate::texture::{Lanes, TexturePoint};
 use crate::warp;
 use crate::world::World;
@@ -48,7 +48,12 @@ impl<'a> Plain<'a> {
         lanes: &Lanes,
         numbers: impl FnOnce() -> Numbers,
     ) -> Option<Self> {
-        if !hit.is_hit() || hit.instance != NONE || path.depth >= tracer.depth || !path.media.is_empty() || path.departure.is_catcher {
+        if !hit.is_hit()
+            || hit.instance != NONE
+            || path.depth >= tracer.depth
+            || !path.media.is_empty()
+            || path.departure.is_catcher
+        {
             return None;
         }
         let Form::Mesh(mesh) = &world.forms[hit.geometry as usize] else { return None };

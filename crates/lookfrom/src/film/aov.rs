@@ -1,0 +1,202 @@
+//! AOVs: what the camera sees first in a pixel (a G-buffer), in the mean over its samples.
+//!
+//! One accumulator for two readers. The layers of a picture are means over all samples; the denoiser compares means over the first
+//! [`FEATURE_SAMPLES`], so that it does the same whether or not layers are asked for. Sums of fixed-point numbers, as those
+//! of light, do not depend on the order of the samples. The denoiser's take 96 bytes a pixel, those of layers 208.
+
+/// How many samples of a pixel count for the denoiser.
+pub const FEATURE_SAMPLES: u32 = 16;
+
+/// What the ray of one sample met first, or a mean over samples.
+///
+/// Directions and places are in the camera's space: x to the right, y up, z ahead, in the scene's unit; the origin is
+/// lookfrom.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Aovs {
+    /// The colour that the surface multiplies light by: 0 … 1 in linear Rec. 709. A look-up of base colours, as Cycles and Open Image
+    /// Denoise have it, not an integral over directions: 1 for glass, the colour of a metal straight on.
+    pub albedo: [f32; 3],
+    /// Geometric normal on the viewer's side, of unit length.
+    pub ng: [f32; 3],
+    /// Shading normal (smoothed, bent by bumps and normal maps) on the viewer's side, of unit length.
+    pub ns: [f32; 3],
+    /// The point. Its z is the depth: the distance from the eye along the view axis.
+    pub position: [f32; 3],
+    /// Texture coordinates.
+    pub uv: [f32; 2],
+}
+
+/// What the denoiser compares pixels by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DenoiserFeatures {
+    /// The mean albedo, where nothing is white, and the mean of the shading normals, where nothing has none; the geometric normal and
+    /// the position of the first sample that met something, 0 where none did. No uv.
+    pub aovs: Aovs,
+    /// How many samples they are of.
+    pub samples: u64,
+    /// The share of them that met something: 0 … 1.
+    pub coverage: f32,
+}
+
+/// Beyond this a place's coordinate is cut: 2⁴⁰.
+const FARTHEST: f32 = 1_099_511_627_776.0;
+
+const TWO_TO_32: f64 = 4_294_967_296.0;
+const TWO_TO_64: f64 = TWO_TO_32 * TWO_TO_32;
+
+/// Sums over the samples of a pixel. Additions wrap, after no less than 2²³ of the greatest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct AovSums {
+    /// Multiples of 2⁻³².
+    albedo: [i64; 3],
+    /// Multiples of 2⁻³².
+    ns: [i64; 3],
+    /// How many were added.
+    samples: u64,
+    /// How many of them met something.
+    hits: u64,
+    /// The least number of a sample that met something; `u32::MAX` for none.
+    first: u32,
+    /// The bits of that one's geometric normal and position.
+    ng: [u32; 3],
+    position: [u32; 3],
+}
+
+/// Sums for layers, of what the denoiser does not compare the means of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct LayerSums {
+    shared: AovSums,
+    /// Multiples of 2⁻³².
+    ng: [i64; 3],
+    /// Position, then uv: multiples of 2⁻⁶⁴.
+    places: [i128; 5],
+}
+
+impl Default for AovSums {
+    fn default() -> Self {
+        Self {
+            albedo: [0; 3],
+            ns: [0; 3],
+            samples: 0,
+            hits: 0,
+            first: u32::MAX,
+            ng: [0; 3],
+            position: [0; 3],
+        }
+    }
+}
+
+impl Aovs {
+    /// Albedo, geometric normal, shading normal, position, depth, texture coordinates.
+    pub fn to_array(&self) -> [f32; 15] {
+        let Self { albedo: [r, g, b], ng: [gx, gy, gz], ns: [sx, sy, sz], position: [x, y, z], uv: [u, v] } =
+            *self;
+        [r, g, b, gx, gy, gz, sx, sy, sz, x, y, z, z, u, v]
+    }
+
+    fn is_finite(&self) -> bool {
+        self.to_array().into_iter().all(f32::is_finite)
+    }
+}
+
+/// Adds a direction's or colour's components as multiples of 2⁻³².
+fn add_narrow(sums: &mut [i64; 3], values: [f32; 3]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum = sum.wrapping_add((f64::from(value) * TWO_TO_32) as i64);
+    }
+}
+
+fn merge_narrow(sums: &mut [i64; 3], others: [i64; 3]) {
+    for (sum, add) in sums.iter_mut().zip(others) {
+        *sum = sum.wrapping_add(add);
+    }
+}
+
+impl AovSums {
+    /// Adds what a sample met, `None` for nothing; what is not finite counts as nothing.
+    pub(super) fn add(&mut self, sample: u32, met: Option<&Aovs>) {
+        self.samples = self.samples.saturating_add(1);
+        let Some(aovs) = met.filter(|aovs| aovs.is_finite()) else { return };
+        self.hits = self.hits.saturating_add(1);
+        add_narrow(&mut self.albedo, aovs.albedo.map(|c| c.clamp(0.0, 1.0)));
+        add_narrow(&mut self.ns, aovs.ns.map(|c| c.clamp(-1.0, 1.0)));
+        if sample < self.first {
+            self.first = sample;
+            (self.ng, self.position) = (aovs.ng.map(f32::to_bits), aovs.position.map(f32::to_bits));
+        }
+    }
+
+    pub(super) fn merge(&mut self, other: &Self) {
+        merge_narrow(&mut self.albedo, other.albedo);
+        merge_narrow(&mut self.ns, other.ns);
+        self.samples = self.samples.saturating_add(other.samples);
+        self.hits = self.hits.saturating_add(other.hits);
+        if other.first < self.first {
+            (self.first, self.ng, self.position) = (other.first, other.ng, other.position);
+        }
+    }
+
+    /// What the denoiser compares; `None` where there are no samples.
+    pub(super) fn features(&self) -> Option<DenoiserFeatures> {
+        if self.samples == 0 {
+            return None;
+        }
+        let scale = 1.0 / (self.samples as f64 * TWO_TO_32);
+        let misses = (self.samples - self.hits) as f64 * TWO_TO_32;
+        let aovs = Aovs {
+            albedo: self.albedo.map(|sum| ((sum as f64 + misses) * scale) as f32),
+            ns: self.ns.map(|sum| (sum as f64 * scale) as f32),
+            ng: self.ng.map(f32::from_bits),
+            position: self.position.map(f32::from_bits),
+            uv: [0.0; 2],
+        };
+        let coverage = self.hits as f32 / self.samples as f32;
+        Some(DenoiserFeatures { aovs, samples: self.samples, coverage })
+    }
+}
+
+impl LayerSums {
+    /// As [`AovSums::add`].
+    pub(super) fn add(&mut self, sample: u32, met: Option<&Aovs>) {
+        self.shared.add(sample, met);
+        let Some(aovs) = met.filter(|aovs| aovs.is_finite()) else { return };
+        add_narrow(&mut self.ng, aovs.ng.map(|c| c.clamp(-1.0, 1.0)));
+        for (sum, value) in self.places.iter_mut().zip(aovs.position.iter().chain(&aovs.uv)) {
+            let value = f64::from(value.clamp(-FARTHEST, FARTHEST)) * TWO_TO_64;
+            *sum = sum.wrapping_add(value as i128);
+        }
+    }
+
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.shared.merge(&other.shared);
+        merge_narrow(&mut self.ng, other.ng);
+        for (sum, add) in self.places.iter_mut().zip(other.places) {
+            *sum = sum.wrapping_add(add);
+        }
+    }
+
+    /// The mean; `None` where no sample met anything. The albedo is over all samples (nothing is black), as the picture is; all
+    /// else is over those that met something, as pbrt's `gbuffer` film has it. A mean of normals is made of unit length again;
+    /// where they cancel, it is 0.
+    pub(super) fn mean(&self) -> Option<Aovs> {
+        let AovSums { albedo, ns, samples, hits, .. } = self.shared;
+        if hits == 0 {
+            return None;
+        }
+        let [x, y, z, u, v] = self.places.map(|sum| (sum as f64 / (hits as f64 * TWO_TO_64)) as f32);
+        Some(Aovs {
+            albedo: albedo.map(|sum| (sum as f64 / (samples as f64 * TWO_TO_32)) as f32),
+            ng: unit(self.ng),
+            ns: unit(ns),
+            position: [x, y, z],
+            uv: [u, v],
+        })
+    }
+}
+
+/// The vector of unit length in this direction; 0 where there is none.
+fn unit(sums: [i64; 3]) -> [f32; 3] {
+    let v = sums.map(|sum| sum as f64 / TWO_TO_32);
+    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if length > 0.0 { v.map(|x| (x / length) as f32) } else { [0.0; 3] }
+}
