@@ -17,11 +17,10 @@ mod tests;
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::Point;
 use lookfrom_scene::light::Falloff;
-use lookfrom_scene::material::Color;
 
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
-use crate::texture::{Lanes, TexturePoint, Textures, Usage};
+use crate::texture::{Lanes, SpectrumTexture, TexturePoint, Textures};
 use cone::Cone;
 use tree::Bundle;
 
@@ -79,8 +78,8 @@ pub enum Light {
 /// The colour of a light and how much there is of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glow {
-    /// As it was written.
-    pub color: Color,
+    /// Of the type [`SpectrumType::Illuminant`](crate::texture::SpectrumType::Illuminant).
+    pub color: SpectrumTexture,
     /// Multiplies it.
     pub scale: f32,
 }
@@ -89,7 +88,7 @@ impl Glow {
     /// The light at a point, in radiometric units.
     #[inline]
     pub fn at(&self, textures: &Textures, point: &TexturePoint, lanes: &Lanes) -> Spectrum {
-        textures.spectrum(self.color, Usage::Illuminant, point, lanes) * self.scale
+        textures.spectrum(&self.color, point, lanes) * self.scale
     }
 
     /// The light of a colour that is the same everywhere.

@@ -4,37 +4,39 @@
 //! what path tracing asks. [`Coefficients`] are those of Whitted's model, which the older integrators ask of every
 //! material.
 
+mod albedo;
 mod approximate;
-mod base;
+mod compile;
 mod interior;
+mod kind;
 mod principled;
 mod relief;
 mod whitted;
 
 use glam::{DVec3, Vec3};
-use lookfrom_scene::material::{Coat as WrittenCoat, Ior, MaterialKind, Metal, Relief, Roughness};
-use lookfrom_scene::material::{Scalar, Whitted};
 use lookfrom_scene::scene::CurveId;
 
-use crate::bsdf::layered::Coat;
+use crate::bsdf::layered::Coat as CoatBsdf;
 use crate::bsdf::lobes::Lobes;
-use crate::bsdf::microfacet::TrowbridgeReitz;
 use crate::bsdf::whitted::Whitted as WhittedBsdf;
 use crate::bsdf::{self, Bsdf, BsdfSample, Mode};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
-use crate::texture::{Lanes, TexturePoint, Textures, Usage};
+use crate::texture::{FloatTexture, Lanes, SpectrumTexture, TexturePoint, Textures};
 use crate::warp;
 
-pub(crate) use approximate::in_whitteds_model;
-pub use base::base_color;
-pub use interior::InteriorStack;
+pub use albedo::albedo;
+pub(crate) use compile::Compiler;
+pub use interior::{InteriorStack, MediumInterface};
+pub use kind::{
+    Anisotropy, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled, Relief, Roughness, Whitted,
+};
 pub use whitted::{Branches, Coefficients};
 
 /// A material of a world.
 #[derive(Clone, Debug)]
 pub struct Material {
-    /// As it was written.
+    /// What it is.
     pub kind: MaterialKind,
     /// What bends the shading normal.
     pub relief: Relief,
@@ -210,11 +212,11 @@ pub fn shading(
     let mut index = surface.material;
     let mut material = &materials[index as usize];
     while let MaterialKind::Mix { materials: [first, second], amount } = &material.kind {
-        let amount = textures.scalar(*amount, point).clamp(0.0, 1.0);
+        let amount = textures.float(*amount, point).clamp(0.0, 1.0);
         let chosen = if u < amount { second } else { first };
         u = if u < amount { u / amount } else { (u - amount) / (1.0 - amount) };
-        index = chosen.0;
-        material = &materials[chosen.index()];
+        index = *chosen;
+        material = &materials[index as usize];
     }
     let mut at = At { materials, textures, point, lanes, share, media, u };
     let ng = surface.ng.as_vec3();
@@ -231,7 +233,7 @@ pub fn shading(
 pub fn normal(materials: &[Material], textures: &Textures, surface: &Surface, point: &TexturePoint) -> Vec3 {
     let mut material = &materials[surface.material as usize];
     while let MaterialKind::Mix { materials: [first, _], .. } = &material.kind {
-        material = &materials[first.index()];
+        material = &materials[*first as usize];
     }
     match material.relief {
         Relief::None => surface.ns,
@@ -265,31 +267,31 @@ impl At<'_> {
                     fresnel: k.fresnel,
                 })
             }
-            MaterialKind::Diffuse { reflectance } => Bsdf::diffuse(self.albedo(*reflectance)),
+            MaterialKind::Diffuse { reflectance } => Bsdf::diffuse(self.albedo(reflectance)),
             MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
                 let [reflected, transmitted] = [reflectance, transmittance].map(|color| {
-                    let color = self.textures.spectrum(*color, Usage::Albedo, self.point, self.lanes);
+                    let color = self.textures.spectrum(color, self.point, self.lanes);
                     (color * *scale).map(|lane| lane.clamp(0.0, 1.0))
                 });
                 Bsdf::diffuse_transmission(reflected, transmitted)
             }
             MaterialKind::Conductor { metal, roughness } => {
-                let roughness = self.roughness(roughness);
+                let roughness = roughness.at(self.textures, self.point);
                 match self.metal(metal) {
                     Constants::Indices(eta, k) => Bsdf::conductor(eta, k, roughness),
                     Constants::Reflectance(color) => Bsdf::conductor_of_reflectance(color, roughness),
                 }
             }
             MaterialKind::Dielectric { eta, roughness } => {
-                Bsdf::dielectric(self.ior(eta), self.roughness(roughness))
+                Bsdf::dielectric(self.ior(eta), roughness.at(self.textures, self.point))
             }
             MaterialKind::ThinDielectric { eta } => Bsdf::thin_dielectric(self.ior(eta)),
             MaterialKind::CoatedDiffuse { reflectance, coat } => {
                 let coat = self.coat(coat);
-                Bsdf::coated_diffuse(self.albedo(*reflectance), &coat)
+                Bsdf::coated_diffuse(self.albedo(reflectance), &coat)
             }
             MaterialKind::CoatedConductor { metal, roughness, coat } => {
-                let (coat, roughness) = (self.coat(coat), self.roughness(roughness));
+                let (coat, roughness) = (self.coat(coat), roughness.at(self.textures, self.point));
                 match self.metal(metal) {
                     Constants::Indices(eta, k) => Bsdf::coated_conductor(eta, k, roughness, &coat),
                     Constants::Reflectance(color) => {
@@ -308,26 +310,19 @@ impl At<'_> {
         })
     }
 
-    fn albedo(&self, color: lookfrom_scene::material::Color) -> Spectrum {
+    fn albedo(&self, color: &SpectrumTexture) -> Spectrum {
         self.textures.albedo(color, self.point, self.lanes)
     }
 
-    fn scalar(&self, scalar: Scalar) -> f32 {
-        self.textures.scalar(scalar, self.point)
-    }
-
-    fn roughness(&self, roughness: &Roughness) -> TrowbridgeReitz {
-        let alpha = [roughness.u, roughness.v].map(|scalar| self.scalar(scalar));
-        TrowbridgeReitz::from_roughness(alpha, roughness.remap)
+    fn float(&self, texture: FloatTexture) -> f32 {
+        self.textures.float(texture, self.point)
     }
 
     fn metal(&self, metal: &Metal) -> Constants {
-        let spectrum = |color, usage| self.textures.spectrum(color, usage, self.point, self.lanes);
-        match *metal {
-            Metal::Indices { eta, k } => {
-                Constants::Indices(spectrum(eta, Usage::Unbounded), spectrum(k, Usage::Unbounded))
-            }
-            Metal::Reflectance(color) => Constants::Reflectance(spectrum(color, Usage::Albedo)),
+        let spectrum = |texture| self.textures.spectrum(texture, self.point, self.lanes);
+        match metal {
+            Metal::Indices { eta, k } => Constants::Indices(spectrum(eta), spectrum(k)),
+            Metal::Reflectance(color) => Constants::Reflectance(spectrum(color)),
         }
     }
 
@@ -339,16 +334,16 @@ impl At<'_> {
         }
     }
 
-    fn coat(&mut self, coat: &WrittenCoat) -> Coat {
+    fn coat(&mut self, coat: &Coat) -> CoatBsdf {
         let eta = self.ior(&coat.eta);
-        Coat {
+        CoatBsdf {
             eta,
-            roughness: self.roughness(&coat.roughness),
-            thickness: self.scalar(coat.thickness),
-            albedo: self.albedo(coat.albedo),
-            g: self.scalar(coat.g).clamp(-1.0, 1.0),
-            max_depth: coat.max_depth.min(u16::MAX.into()) as u16,
-            samples: coat.samples.min(u16::MAX.into()) as u16,
+            roughness: coat.roughness.at(self.textures, self.point),
+            thickness: self.float(coat.thickness),
+            albedo: self.albedo(&coat.albedo),
+            g: self.float(coat.g).clamp(-1.0, 1.0),
+            max_depth: coat.max_depth,
+            samples: coat.samples,
         }
     }
 }

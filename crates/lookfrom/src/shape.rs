@@ -35,8 +35,8 @@ pub struct Look {
     pub shape: u32,
     /// Index into the world's alphas, where part of the surface may not be there.
     pub alpha: Option<u32>,
-    /// Index into the world's sides, where the surface says what fills space around it.
-    pub sides: Option<u32>,
+    /// Index into the world's medium interfaces, where the surface says what fills space around it.
+    pub medium_interface: Option<u32>,
     /// Index into the world's meshes with further texture coordinates or opacities.
     pub vertex_data: Option<u32>,
     /// Whether rays from the camera pass its back faces.

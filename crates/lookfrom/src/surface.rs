@@ -4,8 +4,9 @@
 
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Left, Point};
-use lookfrom_scene::material::Scalar;
-use lookfrom_scene::medium::Sides;
+
+use crate::material::MediumInterface;
+use crate::texture::FloatTexture;
 
 /// A point of a surface, seen from a direction.
 #[derive(Clone, Copy, Debug)]
@@ -43,9 +44,9 @@ pub struct Surface {
     /// Index into the world's meshes with further texture coordinates or opacities, where this is one.
     pub vertex_data: Option<u32>,
     /// The part of the surface that is there; `None` is all of it.
-    pub alpha: Option<Scalar>,
+    pub alpha: Option<FloatTexture>,
     /// What fills space on both sides, where the surface says so.
-    pub sides: Option<Sides>,
+    pub medium_interface: Option<MediumInterface>,
     /// Which shape of the scene, counted over the whole world.
     pub shape: u32,
     /// Which primitive of its form: of a mesh, the triangle.

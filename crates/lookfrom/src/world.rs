@@ -5,26 +5,29 @@
 //! After [`World::compile`] nothing fails but cancellation.
 
 mod catcher;
+mod class;
 mod compile;
 mod lights;
 mod place;
 mod reflectance;
 
+pub use class::Class;
+
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Bvh, Hit, Left, NONE, Ray};
-use lookfrom_scene::material::{Color, MaterialKind, Scalar};
-use lookfrom_scene::medium::{Medium, Sides};
 use lookfrom_scene::scene::MediumId;
 
 use crate::light::{Coverage, Light, LightChoice, Reference};
-use crate::material::{self, Arrival, InteriorStack, Material, Shading};
+use crate::material::{self, Arrival, InteriorStack, Material, MaterialKind, MediumInterface, Shading};
 use crate::math;
 use crate::shape::{Form, FormPoint, Mesh, VertexData};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
-use crate::texture::{Lanes, TexturePoint, Textures, Usage};
+use crate::texture::{
+    FloatTexture, Lanes, SpectrumTexture, SpectrumType, TexturePoint, Textures, spectrum_of,
+};
 
 /// What light meets.
 #[derive(Debug)]
@@ -37,20 +40,22 @@ pub struct World {
     pub(crate) forms: Vec<Form>,
     /// Objects, which instances repeat: forms by geometry id.
     pub(crate) objects: Vec<Vec<Form>>,
+    /// What stands in the world once, by the kernel's geometry id: its class.
+    pub(crate) classes: Vec<Class>,
     /// By the kernel's instance id.
     pub(crate) instances: Vec<Instance>,
     /// Looks of surfaces.
     pub(crate) materials: Vec<Material>,
     /// Parts of surfaces that are there, see [`Look::alpha`](crate::shape::Look::alpha).
-    pub(crate) alphas: Vec<Scalar>,
+    pub(crate) alphas: Vec<FloatTexture>,
     /// What fills bodies and space.
     pub(crate) media: Vec<Medium>,
     /// Whether what fills space counts ([`RenderSettings::media`](lookfrom_scene::settings::RenderSettings::media)).
     pub(crate) has_media: bool,
     /// Half the diagonal of the box around everything that is placed.
     pub(crate) radius: f32,
-    /// What surfaces say is on their sides, see [`Look::sides`](crate::shape::Look::sides).
-    pub(crate) sides: Vec<Sides>,
+    /// What surfaces say is on their sides, see [`Look::medium_interface`](crate::shape::Look::medium_interface).
+    pub(crate) medium_interfaces: Vec<MediumInterface>,
     /// Meshes with further texture coordinates or opacities, see [`Look::vertex_data`](crate::shape::Look::vertex_data).
     pub(crate) vertex_data: Vec<Arc<Mesh>>,
     /// Colours over surfaces.
@@ -60,7 +65,7 @@ pub struct World {
     /// Which light is asked where only one is.
     pub(crate) light_choice: LightChoice,
     /// Whitted's `I_a`.
-    pub(crate) ambient: [f32; 3],
+    pub(crate) ambient: SpectrumTexture,
     /// Indices into `lights` of those that are seen where a ray meets nothing.
     pub(crate) environments: Vec<u32>,
     /// Whether any material lets light through.
@@ -72,6 +77,15 @@ pub struct World {
     pub(crate) catcher_irradiance: Option<[f32; 3]>,
     /// Names of the scene's materials and shapes, for people.
     pub(crate) names: Names,
+}
+
+/// Something that light crosses, and that takes light away on the way.
+#[derive(Clone, Copy, Debug)]
+pub struct Medium {
+    /// The part of light that is lost per unit of length, for short lengths.
+    pub absorption: SpectrumTexture,
+    /// Multiplies it: ≥ 0.
+    pub scale: f32,
 }
 
 /// Names, for people.
@@ -162,7 +176,7 @@ impl World {
             single_sided: look.single_sided,
             vertex_data: look.vertex_data,
             alpha: look.alpha.map(|index| self.alphas[index as usize]),
-            sides: look.sides.map(|index| self.sides[index as usize]),
+            medium_interface: look.medium_interface.map(|index| self.medium_interfaces[index as usize]),
             shape: look.shape,
             primitive: hit.primitive,
             left: Left::of(hit),
@@ -189,7 +203,7 @@ impl World {
 
     /// Whether a surface is where a ray met it: by its alpha, where that is a matter of chance for `u ∈ [0, 1)`.
     pub fn is_there(&self, surface: &Surface, u: f32) -> bool {
-        surface.alpha.is_none_or(|alpha| u < self.textures.scalar(alpha, &self.texture_point(surface)))
+        surface.alpha.is_none_or(|alpha| u < self.textures.float(alpha, &self.texture_point(surface)))
     }
 
     /// Whether chance has a say in what a surface is: by its alpha, or by its material.
@@ -224,10 +238,10 @@ impl World {
 
     /// Radiance that a surface is seen with, whatever the light, which no one asks for: `None` for all but unlit materials.
     pub fn unlit(&self, surface: &Surface, lanes: &Lanes) -> Option<Spectrum> {
-        let MaterialKind::Unlit { color } = &self.materials[surface.material as usize].kind else {
+        let MaterialKind::Unlit { color, .. } = &self.materials[surface.material as usize].kind else {
             return None;
         };
-        Some(self.textures.spectrum(*color, Usage::Illuminant, &self.texture_point(surface), lanes))
+        Some(self.textures.spectrum(color, &self.texture_point(surface), lanes))
     }
 
     /// Radiance that arrives along a ray that meets nothing.
@@ -270,8 +284,7 @@ impl World {
         if distance.is_infinite() && media.space().is_none() {
             return lanes.one();
         }
-        let sigma =
-            self.textures.spectrum(medium.absorption, Usage::Unbounded, &TexturePoint::NOWHERE, lanes);
+        let sigma = self.textures.spectrum(&medium.absorption, &TexturePoint::NOWHERE, lanes);
         if medium.scale == 0.0 {
             return lanes.one();
         }
@@ -281,12 +294,12 @@ impl World {
 
     /// Whitted's `I_a`.
     pub fn ambient(&self, lanes: &Lanes) -> Spectrum {
-        self.light_of(self.ambient, lanes)
+        self.textures.spectrum(&self.ambient, &TexturePoint::NOWHERE, lanes)
     }
 
     /// Light of a colour.
     pub fn light_of(&self, rgb: [f32; 3], lanes: &Lanes) -> Spectrum {
-        self.textures.spectrum(Color::Value(rgb), Usage::Illuminant, &TexturePoint::NOWHERE, lanes)
+        spectrum_of(rgb, SpectrumType::Illuminant, lanes)
     }
 }
 

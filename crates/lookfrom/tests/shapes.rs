@@ -298,7 +298,10 @@ fn alpha_comes_with_the_surface() {
     half.alpha = Some(Scalar::Value(0.5));
     let world = world(half, vec![]);
     let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
-    assert_eq!(world.surface(&ray, &world.bvh().closest_hit(&ray)).alpha, Some(Scalar::Value(0.5)));
+    assert_eq!(
+        world.surface(&ray, &world.bvh().closest_hit(&ray)).alpha,
+        Some(lookfrom::texture::FloatTexture::Constant(0.5))
+    );
 }
 
 const STRAND: [[f32; 3]; 4] = [[-1.0, -0.5, 0.0], [-0.2, 0.9, 0.4], [0.3, -0.9, -0.3], [1.0, 0.5, 0.2]];

@@ -9,14 +9,13 @@ mod quadric;
 
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
-use lookfrom_scene::material::{Color, Scalar};
 
 use super::{Glow, LightSample, Target, toward};
 use crate::math;
 use crate::shape::Disk;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
-use crate::texture::{Lanes, TexturePoint, Textures};
+use crate::texture::{FloatTexture, Lanes, TexturePoint, Textures};
 use crate::warp;
 
 pub use mesh::MeshLight;
@@ -30,11 +29,11 @@ pub struct AreaLight {
     /// Emitted radiance.
     pub radiance: Glow,
     /// The part of the shape that is there; `None` is all of it.
-    pub alpha: Option<Scalar>,
+    pub alpha: Option<FloatTexture>,
     /// Whether both sides shine.
     pub two_sided: bool,
     /// How much of a clear coat is over it; `None` where there is none.
-    pub coat: Option<Scalar>,
+    pub coat: Option<FloatTexture>,
     /// Where it shines from.
     pub form: LightForm,
 }
@@ -117,7 +116,7 @@ impl AreaLight {
         match self.coat {
             None => radiance,
             Some(amount) => {
-                let amount = textures.scalar(amount, at).clamp(0.0, 1.0);
+                let amount = textures.float(amount, at).clamp(0.0, 1.0);
                 radiance * (1.0 - amount * mirrored_by_coat(cos().abs()))
             }
         }
@@ -135,7 +134,7 @@ impl AreaLight {
         let LightPoint { point, normal, wi, pdf, .. } = light_point;
         let front = normal.dot(wi.as_dvec3()) < 0.0;
         let at = self.texture_point(&light_point);
-        let there = self.alpha.map_or(1.0, |alpha| textures.scalar(alpha, &at).clamp(0.0, 1.0));
+        let there = self.alpha.map_or(1.0, |alpha| textures.float(alpha, &at).clamp(0.0, 1.0));
         let cos = || self.shading_normal(&light_point).dot(wi.as_dvec3()) as f32;
         let li = self.emitted(textures, &at, front, cos, lanes) * there;
         (!li.is_black()).then_some(LightSample { wi, li, pdf, target: Target::Surface(point, normal) })
@@ -145,8 +144,12 @@ impl AreaLight {
     /// the number.
     #[inline]
     pub(crate) fn triangle(&self, u0: f32) -> Option<(&LightTriangle, f32, f32)> {
-        match (&self.form, self.alpha.or(self.coat), self.radiance.color) {
-            (LightForm::Mesh(light), None, Color::Value(_)) => light.triangle(u0),
+        match &self.form {
+            LightForm::Mesh(light)
+                if self.radiance.color.is_constant() && self.alpha.or(self.coat).is_none() =>
+            {
+                light.triangle(u0)
+            }
             _ => None,
         }
     }
@@ -155,8 +158,8 @@ impl AreaLight {
     fn texture_point(&self, point: &LightPoint) -> TexturePoint {
         let at = TexturePoint { uv: point.uv, n: point.normal.as_vec3(), ..TexturePoint::NOWHERE };
         let is_even = self.alpha.is_none()
-            && !matches!(self.coat, Some(Scalar::Texture(_)))
-            && !matches!(self.radiance.color, Color::Texture(_));
+            && !self.coat.is_some_and(FloatTexture::varies)
+            && !self.radiance.color.varies();
         match &self.form {
             LightForm::Mesh(light) if !is_even => {
                 light.with_vertices(at, point.primitive, point.on_primitive)

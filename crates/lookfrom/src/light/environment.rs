@@ -3,14 +3,13 @@
 use std::f32::consts::PI;
 
 use glam::{DVec3, Mat3, Vec3};
-use lookfrom_scene::material::Color;
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
 use super::portal::Portal;
 use super::{Coverage, Glow, LightSample, Reference, Target};
 use crate::distribution::Piecewise2D;
 use crate::spectrum::Spectrum;
-use crate::texture::{self, Lanes, TexturePoint, Textures, Usage};
+use crate::texture::{self, Lanes, SpectrumType, Textures};
 use crate::warp;
 
 /// Light from infinitely far, all around.
@@ -90,7 +89,7 @@ impl Environment {
             Sky::Image(sky) => {
                 let through = self.portal.as_ref().and_then(|portal| portal.texel(direction));
                 let rgb = through.unwrap_or_else(|| sky.texel(textures, sky.uv(direction)));
-                sky.radiance(textures, rgb, lanes)
+                sky.radiance(rgb, lanes)
             }
         }
     }
@@ -147,7 +146,7 @@ impl Environment {
             }
             (None, Sky::Image(sky), _) => {
                 let (uv, pdf) = sky.choice(coverage).sample(u);
-                let li = sky.radiance(textures, sky.texel(textures, uv), lanes);
+                let li = sky.radiance(sky.texel(textures, uv), lanes);
                 (sky.direction(uv), pdf * sky.per_solid_angle(uv), li)
             }
             (None, _, Coverage::Incomplete) => return None,
@@ -223,9 +222,9 @@ impl SkyImage {
         }
     }
 
-    fn radiance(&self, textures: &Textures, rgb: [f32; 3], lanes: &Lanes) -> Spectrum {
+    fn radiance(&self, rgb: [f32; 3], lanes: &Lanes) -> Spectrum {
         let rgb = std::array::from_fn(|c| (rgb[c] * self.scale[c]).max(0.0));
-        textures.spectrum(Color::Value(rgb), Usage::Illuminant, &TexturePoint::NOWHERE, lanes)
+        texture::spectrum_of(rgb, SpectrumType::Illuminant, lanes)
     }
 
     /// What turns a density over the picture into one over solid angle.

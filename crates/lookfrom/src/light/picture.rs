@@ -1,12 +1,11 @@
 //! Points that send out a picture: a slide projector, a lamp measured by direction.
 
 use glam::{DVec3, Mat3, Vec3};
-use lookfrom_scene::material::Color;
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
 use super::{Glow, LightSample, Target, toward};
 use crate::spectrum::Spectrum;
-use crate::texture::{self, Lanes, TexturePoint, Textures, Usage};
+use crate::texture::{self, Lanes, SpectrumType, Textures};
 use crate::warp;
 
 /// A picture thrown into a rectangle.
@@ -38,7 +37,7 @@ impl Projection {
         // rows run down
         let st = [0.5 + 0.5 * s, 0.5 - 0.5 * t];
         let rgb = texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Nearest);
-        let white = textures.spectrum(Color::Value(rgb), Usage::Illuminant, &TexturePoint::NOWHERE, lanes);
+        let white = texture::spectrum_of(rgb, SpectrumType::Illuminant, lanes);
         let li = white * (self.scale / (distance * distance) as f32);
         (!li.is_black()).then_some(LightSample { wi, li, pdf: 1.0, target: Target::Point(self.position) })
     }

@@ -3,17 +3,16 @@
 
 use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Principled, Roughness, Scalar, Whitted};
 
-use super::Material;
 use crate::bsdf::fresnel;
 use crate::spectrum::Spectrum;
-use crate::texture::{Lanes, TexturePoint, Textures, Usage};
+use crate::texture::{Lanes, SpectrumType, TexturePoint, Textures};
 
 /// What a dielectric coat reflects at most angles.
 const COAT: f32 = 0.04;
 
-/// The nearest thing in Whitted's model. `before` holds the materials so far: a mixture is its greater part, if that is
+/// The nearest thing in Whitted's model. `before` holds those of the materials so far: a mixture is its greater part, if that is
 /// known already.
-pub(crate) fn in_whitteds_model(kind: &MaterialKind, before: &[Material], textures: &Textures) -> Whitted {
+pub(super) fn in_whitteds_model(kind: &MaterialKind, before: &[Whitted], textures: &Textures) -> Whitted {
     let plain = Whitted { diffuse: Color::BLACK, ..Whitted::default() };
     match kind {
         MaterialKind::Whitted(whitted) => whitted.clone(),
@@ -37,7 +36,7 @@ pub(crate) fn in_whitteds_model(kind: &MaterialKind, before: &[Material], textur
                 Scalar::Value(amount) if *amount > 0.5 => second,
                 _ => first,
             };
-            before.get(greater.index()).map_or_else(Whitted::default, |material| material.whitted.clone())
+            before.get(greater.index()).cloned().unwrap_or_default()
         }
         MaterialKind::Principled(look) => principled(look, textures),
         // It is seen by its own light.
@@ -49,7 +48,7 @@ pub(crate) fn in_whitteds_model(kind: &MaterialKind, before: &[Material], textur
 
 /// Metal, glass or plastic, whichever it is most; of a texture, the corner's number counts.
 fn principled(look: &Principled, textures: &Textures) -> Whitted {
-    let number = |scalar| textures.scalar(scalar, &TexturePoint::NOWHERE);
+    let number = |scalar: Scalar| textures.float(scalar.into(), &TexturePoint::NOWHERE);
     let roughness = look.roughness;
     if number(look.metallic) > 0.5 {
         let roughness = Roughness { u: squared(roughness), v: squared(roughness), remap: false };
@@ -90,8 +89,8 @@ fn metallic(metal: &Metal, roughness: &Roughness, textures: &Textures) -> Whitte
         Metal::Reflectance(color) => *color,
         Metal::Indices { eta, k } => {
             let of = |color| {
-                let rgb = textures.rgb(color, Usage::Unbounded, &TexturePoint::NOWHERE);
-                Spectrum::from_rgb(rgb)
+                let texture = textures.spectrum_texture(color, SpectrumType::Unbounded);
+                Spectrum::from_rgb(textures.rgb(&texture, &TexturePoint::NOWHERE))
             };
             Color::Value(fresnel::conductor(1.0, of(*eta), of(*k)).rgb())
         }

@@ -7,7 +7,6 @@
 //! the ray was inside of before.
 
 use glam::Vec3;
-use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::MediumId;
 
 use super::Material;
@@ -17,6 +16,15 @@ use crate::surface::Surface;
 /// with a medium. Of five, the one that was entered first is forgotten.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InteriorStack([u32; 4]);
+
+/// What fills the space on the two sides of a surface that says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MediumInterface {
+    /// Behind the outside normal.
+    pub inside: InteriorStack,
+    /// Before it.
+    pub outside: InteriorStack,
+}
 
 /// Set in the entry of space that is filled with a medium without being a body: its other bits are the medium's index. A
 /// body's entry is its material's index plus one, and 0 is none.
@@ -83,9 +91,9 @@ impl InteriorStack {
     /// that side, or else, where the ray goes through (`crosses`), in or out of the body that the surface's material is.
     #[inline]
     pub fn leaving(self, materials: &[Material], surface: &Surface, direction: Vec3, crosses: bool) -> Self {
-        if let Some(Sides { inside, outside }) = surface.sides {
+        if let Some(MediumInterface { inside, outside }) = surface.medium_interface {
             let is_outside = surface.ng.dot(direction.as_dvec3()) > 0.0;
-            return Self::in_space(if is_outside { outside } else { inside });
+            return if is_outside { outside } else { inside };
         }
         match (crosses && materials[surface.material as usize].is_body(), surface.front) {
             (true, true) => self.entered(surface.material),

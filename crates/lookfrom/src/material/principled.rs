@@ -8,16 +8,16 @@
 //! air. The clear coat and the film are as in air.
 
 use glam::Vec3;
-use lookfrom_scene::material::{Color, MaterialKind, Principled as Written, Scalar};
 
-use super::{At, Frame, relief};
+use super::kind::Principled as Look;
+use super::{At, Frame, MaterialKind, relief};
 use crate::bsdf::Bsdf;
 use crate::bsdf::microfacet::TrowbridgeReitz;
 use crate::bsdf::principled::film::Film;
 use crate::bsdf::principled::{Parameters, Principled};
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
-use crate::texture::{Lanes, Usage};
+use crate::texture::{Lanes, SpectrumTexture};
 
 /// What a dielectric of an index mirrors straight on; an index of 0 is infinite.
 fn straight(ior: f32) -> f32 {
@@ -30,12 +30,12 @@ fn straight(ior: f32) -> f32 {
 
 /// Whether colours go different ways in a body.
 #[inline]
-pub(super) fn disperses(look: &Written) -> bool {
+pub(super) fn disperses(look: &Look) -> bool {
     look.dispersion > 0.0 && look.is_solid && look.ior > 1.0
 }
 
 /// The index of refraction for the one wavelength or colour that is left; the written one where more are.
-fn index_of(look: &Written, lanes: &Lanes, share: Spectrum) -> f32 {
+fn index_of(look: &Look, lanes: &Lanes, share: Spectrum) -> f32 {
     // Twenty times n_F − n_C.
     let spread = (look.ior - 1.0) * look.dispersion;
     match lanes {
@@ -56,12 +56,12 @@ impl At<'_> {
     /// The scattering function, and the frame turned to where brushed metal's grain runs.
     pub(super) fn principled(
         &mut self,
-        look: &Written,
+        look: &Look,
         material: u32,
         surface: &Surface,
         mut frame: Frame,
     ) -> (Bsdf, Frame) {
-        let share = |at: &Self, scalar| at.scalar(scalar).clamp(0.0, 1.0);
+        let share = |at: &Self, texture| at.float(texture).clamp(0.0, 1.0);
         let transmission = share(self, look.transmission);
         let metallic = share(self, look.metallic);
         let ior = self.index(look, transmission * (1.0 - metallic));
@@ -76,13 +76,13 @@ impl At<'_> {
         if let Some(grain) = &look.anisotropy {
             let mut strength = grain.strength;
             let mut direction = [1.0, 0.0];
-            if let Some(texture) = grain.texture {
-                let [r, g, b] = self.textures.rgb(Color::Texture(texture), Usage::Unbounded, self.point);
+            if let Some(texture) = &grain.texture {
+                let [r, g, b] = self.textures.rgb(texture, self.point);
                 (direction, strength) = ([2.0 * r - 1.0, 2.0 * g - 1.0], strength * b);
             }
             let strength = strength.clamp(0.0, 1.0);
             along = across + (1.0 - across) * strength * strength;
-            let (sin, cos) = libm::sincosf(grain.rotation);
+            let [sin, cos] = grain.sin_cos;
             let [x, y] = direction;
             let [s, t] = relief::tangents(surface);
             frame = frame.along((x * cos - y * sin) * s + (x * sin + y * cos) * t);
@@ -90,7 +90,7 @@ impl At<'_> {
 
         // What the dielectric mirrors.
         let specular = if is_hidden { 0.0 } else { share(self, look.specular) };
-        let (color, greatest) = self.with_greatest(look.specular_color);
+        let (color, greatest) = self.with_greatest(&look.specular_color);
         let mirrored = straight(eta);
         let f0 = color.map(|lane| (mirrored * lane).clamp(0.0, 1.0) * specular);
 
@@ -102,14 +102,13 @@ impl At<'_> {
             clearcoat_normal = frame.local(relief::valid(bent.unwrap_or(surface.ns), surface));
         }
         let coat_alpha = alpha(share(self, look.clearcoat_roughness));
-        let (sheen_color, sheen_greatest) = match look.sheen_color {
-            Color::BLACK => (Spectrum::BLACK, 0.0),
-            _ if is_hidden => (Spectrum::BLACK, 0.0),
+        let (sheen_color, sheen_greatest) = match &look.sheen_color {
+            color if is_hidden || color.is_gray(0.0) => (Spectrum::BLACK, 0.0),
             color => self.with_greatest(color),
         };
         let diffuse_transmission = share(self, look.diffuse_transmission);
         let parameters = Parameters {
-            base_color: self.albedo(look.base_color),
+            base_color: self.albedo(&look.base_color),
             metallic,
             roughness: TrowbridgeReitz::new(along, across),
             eta,
@@ -120,7 +119,7 @@ impl At<'_> {
             is_solid: look.is_solid,
             diffuse_transmission,
             diffuse_transmission_color: if diffuse_transmission > 0.0 {
-                self.albedo(look.diffuse_transmission_color)
+                self.albedo(&look.diffuse_transmission_color)
             } else {
                 Spectrum::BLACK
             },
@@ -130,14 +129,14 @@ impl At<'_> {
             sheen_color,
             sheen_greatest,
             sheen_roughness: share(self, look.sheen_roughness),
-            iridescence: if look.iridescence == Scalar::Value(0.0) || is_hidden {
+            iridescence: if look.iridescence.is(0.0) || is_hidden {
                 0.0
             } else {
                 share(self, look.iridescence)
             },
             film: Film {
                 eta: look.iridescence_ior,
-                thickness: self.scalar(look.iridescence_thickness),
+                thickness: self.float(look.iridescence_thickness),
                 wavelengths: match self.lanes {
                     Lanes::Rgb => None,
                     Lanes::Spectral(wavelengths) => Some(wavelengths.lambda),
@@ -149,7 +148,7 @@ impl At<'_> {
 
     /// The index of refraction; one that differs by wavelength leaves only the first, one that differs by colour only one,
     /// where light passes.
-    fn index(&mut self, look: &Written, passing: f32) -> f32 {
+    fn index(&mut self, look: &Look, passing: f32) -> f32 {
         if !disperses(look) || !(passing > 0.0) {
             return look.ior;
         }
@@ -162,7 +161,7 @@ impl At<'_> {
 
     /// The index of refraction on the other side of a surface of a material; `None` where that is hidden, since something
     /// that was entered later is on both of its sides.
-    fn around(&self, look: &Written, material: u32, front: bool) -> Option<f32> {
+    fn around(&self, look: &Look, material: u32, front: bool) -> Option<f32> {
         let leaves = look.is_solid && !front;
         if leaves && self.media.hides(material) {
             return None;
@@ -176,14 +175,14 @@ impl At<'_> {
     }
 
     /// A factor, and its greatest primary. White changes nothing.
-    fn with_greatest(&self, color: Color) -> (Spectrum, f32) {
-        if color == Color::gray(1.0) {
+    fn with_greatest(&self, color: &SpectrumTexture) -> (Spectrum, f32) {
+        if color.is_gray(1.0) {
             return (Spectrum([1.0; 4]), 1.0);
         }
-        let rgb = self.textures.rgb(color, Usage::Unbounded, self.point);
+        let rgb = self.textures.rgb(color, self.point);
         let lanes = match self.lanes {
             Lanes::Rgb => Spectrum::from_rgb(rgb),
-            Lanes::Spectral(_) => self.textures.spectrum(color, Usage::Unbounded, self.point, self.lanes),
+            Lanes::Spectral(_) => self.textures.spectrum(color, self.point, self.lanes),
         };
         (lanes, rgb.into_iter().fold(0.0, f32::max))
     }

@@ -6,12 +6,11 @@
 //! Blinn 1978 (bumps).
 
 use glam::Vec3;
-use lookfrom_scene::material::{Color, NormalTexture, Relief, Scalar};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
-use super::Frame;
+use super::{Frame, NormalTexture, Relief};
 use crate::surface::Surface;
-use crate::texture::{self, TexturePoint, Textures, Usage};
+use crate::texture::{self, FloatTexture, TexturePoint, Textures};
 use crate::warp;
 
 /// How far in u and v heights are compared, as pbrt-v4 does it where it knows no footprint.
@@ -47,7 +46,7 @@ fn bent(relief: &Relief, textures: &Textures, surface: &Surface, at: &TexturePoi
         Relief::NormalMap(image) => {
             let st = [at.uv.x, 1.0 - at.uv.y];
             let texel =
-                texture::look_up(textures.image(image.index()), st, [Wrap::Repeat; 2], TexelFilter::Bilinear);
+                texture::look_up(textures.image(*image), st, [Wrap::Repeat; 2], TexelFilter::Bilinear);
             let local = Vec3::from_array(texel.map(|c| 2.0 * c - 1.0)).normalize_or(Vec3::Z);
             plain().render(local)
         }
@@ -65,7 +64,7 @@ pub(super) fn tangents(surface: &Surface) -> [Vec3; 2] {
 
 /// The normal that a texture says, of unit length.
 pub(super) fn mapped(map: &NormalTexture, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Vec3 {
-    let texel = textures.rgb(Color::Texture(map.texture), Usage::Unbounded, at);
+    let texel = textures.rgb(&map.texture, at);
     let [x, y, z] = texel.map(|c| 2.0 * c - 1.0);
     let [s, t] = tangents(surface);
     (map.scale * x * s + map.scale * y * t + z * surface.ns).normalize_or(surface.ns)
@@ -105,9 +104,9 @@ pub(super) fn valid(n: Vec3, surface: &Surface) -> Vec3 {
 }
 
 /// The normal of the surface moved along its shading normal; not of unit length.
-fn bumped(height: Scalar, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Vec3 {
+fn bumped(height: FloatTexture, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Vec3 {
     let n = surface.ns;
-    let here = textures.scalar(height, at);
+    let here = textures.float(height, at);
     let [dpdu, dpdv] =
         [(surface.shading_dpdu, Vec3::X), (surface.shading_dpdv, Vec3::Y)].map(|(along, uv)| {
             let moved = TexturePoint {
@@ -117,7 +116,7 @@ fn bumped(height: Scalar, textures: &Textures, surface: &Surface, at: &TexturePo
             };
             // in the tangent plane of the shading normal
             let tangent = along - n * n.dot(along);
-            tangent + n * ((textures.scalar(height, &moved) - here) / STEP)
+            tangent + n * ((textures.float(height, &moved) - here) / STEP)
         });
     let across = dpdu.cross(dpdv);
     if surface.shading_dpdu.cross(surface.shading_dpdv).dot(n) < 0.0 { -across } else { across }

@@ -15,11 +15,11 @@
 //! ```
 
 use glam::Vec3;
-use lookfrom_scene::material::Whitted;
 
+use super::kind::Whitted;
 use crate::math;
 use crate::spectrum::Spectrum;
-use crate::texture::{Lanes, TexturePoint, Textures, Usage};
+use crate::texture::{Lanes, SpectrumTexture, TexturePoint, Textures};
 
 /// Whitted's coefficients at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,15 +58,15 @@ pub struct Branches {
 impl Coefficients {
     /// The material's coefficients at a point.
     pub fn at(material: &Whitted, textures: &Textures, point: &TexturePoint, lanes: &Lanes) -> Self {
-        let color = |color| textures.spectrum(color, Usage::Unbounded, point, lanes);
-        let diffuse = color(material.diffuse);
+        let color = |texture: &SpectrumTexture| textures.spectrum(texture, point, lanes);
+        let diffuse = color(&material.diffuse);
         Self {
-            ambient: material.ambient.map_or(diffuse, color),
+            ambient: material.ambient.as_ref().map_or(diffuse, color),
             diffuse,
-            specular: color(material.specular),
+            specular: color(&material.specular),
             shininess: material.shininess,
-            mirror: color(material.mirror),
-            transmission: color(material.transmission),
+            mirror: color(&material.mirror),
+            transmission: color(&material.transmission),
             ior: material.ior,
             fresnel: material.fresnel,
         }

@@ -63,7 +63,7 @@ impl Renderer {
         };
         let position = world.origin + DVec3::from_array(surface.point.position);
         Aovs {
-            albedo: material::base_color(&world.materials, &world.textures, &surface, &point),
+            albedo: material::albedo(&world.materials, &world.textures, &surface, &point),
             ng: toward_viewer(surface.ng.as_vec3()),
             ns: toward_viewer(material::normal(&world.materials, &world.textures, &surface, &point)),
             position: mirrored(view_from_world.transform_point3(position)),

@@ -6,12 +6,12 @@
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
-use lookfrom_scene::material::{Color, MaterialKind, Scalar};
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::{Location, Warning};
 
 use super::Renderer;
 use crate::light::{Coverage, Light, Reference, Target};
+use crate::material::MaterialKind;
 use crate::surface::Surface;
 use crate::texture::Lanes;
 use crate::warp;
@@ -119,10 +119,8 @@ fn is_opaque(world: &World, surface: &Surface) -> bool {
         && surface.light.is_none()
         && !surface.single_sided
         && match &world.materials[surface.material as usize].kind {
-            MaterialKind::Whitted(whitted) => whitted.transmission == Color::BLACK,
-            MaterialKind::Principled(look) => {
-                [look.transmission, look.diffuse_transmission] == [Scalar::Value(0.0); 2]
-            }
+            MaterialKind::Whitted(whitted) => whitted.transmission.is_gray(0.0),
+            MaterialKind::Principled(look) => look.transmission.is(0.0) && look.diffuse_transmission.is(0.0),
             MaterialKind::Diffuse { .. }
             | MaterialKind::Conductor { .. }
             | MaterialKind::CoatedDiffuse { .. }

@@ -7,8 +7,8 @@ use std::ops::{Add, Mul};
 
 use lookfrom_scene::texture::TexelFilter;
 
-use super::constants::Constants;
-use super::{Measured, Usage};
+use super::input::{Constant, Lifts};
+use super::{Measured, SpectrumType};
 use crate::color::{Sigmoid, Unbounded, standard_illuminant};
 use crate::spectrum::Spectrum;
 
@@ -22,6 +22,11 @@ pub(super) trait Reading {
 
     /// A colour in linear Rec. 709, or a number three times.
     fn color(&self, rgb: [f32; 3]) -> Self::Value;
+
+    /// A colour that was compiled.
+    fn constant(&self, constant: &Constant) -> Self::Value {
+        self.color(constant.rgb)
+    }
 
     /// A colour that is a reflectance, whatever the texture is used for.
     fn reflectance(&self, rgb: [f32; 3]) -> Self::Value;
@@ -81,8 +86,8 @@ fn mean([r, g, b]: [f32; 3]) -> f32 {
     if r == g && g == b { r } else { (r + g + b) / 3.0 }
 }
 
-/// As linear Rec. 709, for a usage.
-pub(super) struct Rgb(pub Usage);
+/// As linear Rec. 709, for what they are used for.
+pub(super) struct Rgb(pub SpectrumType);
 
 impl Reading for Rgb {
     type Value = Spectrum;
@@ -101,49 +106,56 @@ impl Reading for Rgb {
     }
 
     fn curve(&self, curve: &Measured) -> Spectrum {
-        let rgb = if self.0 == Usage::Illuminant { curve.emission } else { curve.reflectance };
+        let rgb = if self.0 == SpectrumType::Illuminant { curve.emission } else { curve.reflectance };
         Spectrum::from_rgb(within(self.0, rgb))
     }
 }
 
-/// As values at four wavelengths in nm, for a usage.
+/// As values at four wavelengths in nm, for what they are used for.
 pub(super) struct Lifted<'a> {
-    pub(super) usage: Usage,
+    pub(super) spectrum_type: SpectrumType,
     pub(super) lambda: &'a [f32; 4],
-    /// Colours that are lifted already.
-    pub(super) constants: &'a Constants,
+}
+
+impl Lifted<'_> {
+    fn lift(&self, rgb: [f32; 3], lifts: Option<&Lifts>) -> Spectrum {
+        let rgb = within(self.spectrum_type, rgb);
+        // A grey is the same at all wavelengths, which needs no table.
+        let is_gray = rgb[0] == rgb[1] && rgb[1] == rgb[2];
+        let values = match self.spectrum_type {
+            _ if is_gray => Spectrum([rgb[0]; 4]),
+            SpectrumType::Albedo => {
+                lifts.map_or_else(|| Sigmoid::from_rgb(rgb), |lifts| lifts.albedo).at(self.lambda)
+            }
+            SpectrumType::Unbounded | SpectrumType::Illuminant => {
+                lifts.map_or_else(|| Unbounded::from_rgb(rgb), |lifts| lifts.unbounded).at(self.lambda)
+            }
+        };
+        if self.spectrum_type == SpectrumType::Illuminant && !values.is_black() {
+            values * standard_illuminant().at(self.lambda)
+        } else {
+            values
+        }
+    }
 }
 
 impl Reading for Lifted<'_> {
     type Value = Spectrum;
 
     fn of_factor(&self) -> Self {
-        Lifted { usage: of_factor(self.usage), ..*self }
+        Lifted { spectrum_type: of_factor(self.spectrum_type), ..*self }
     }
 
     fn color(&self, rgb: [f32; 3]) -> Spectrum {
-        let rgb = within(self.usage, rgb);
-        // A grey is the same at all wavelengths, which needs no table.
-        let is_gray = rgb[0] == rgb[1] && rgb[1] == rgb[2];
-        let known = || self.constants.find(rgb);
-        let values = match self.usage {
-            _ if is_gray => Spectrum([rgb[0]; 4]),
-            Usage::Albedo => {
-                known().map_or_else(|| Sigmoid::from_rgb(rgb), |lifts| lifts.albedo).at(self.lambda)
-            }
-            Usage::Unbounded | Usage::Illuminant => {
-                known().map_or_else(|| Unbounded::from_rgb(rgb), |lifts| lifts.unbounded).at(self.lambda)
-            }
-        };
-        if self.usage == Usage::Illuminant && !values.is_black() {
-            values * standard_illuminant().at(self.lambda)
-        } else {
-            values
-        }
+        self.lift(rgb, None)
+    }
+
+    fn constant(&self, constant: &Constant) -> Spectrum {
+        self.lift(constant.rgb, constant.lifts.as_ref())
     }
 
     fn reflectance(&self, rgb: [f32; 3]) -> Spectrum {
-        Lifted { usage: Usage::Albedo, ..*self }.color(rgb)
+        Lifted { spectrum_type: SpectrumType::Albedo, ..*self }.color(rgb)
     }
 
     fn curve(&self, curve: &Measured) -> Spectrum {
@@ -151,13 +163,13 @@ impl Reading for Lifted<'_> {
     }
 }
 
-fn of_factor(usage: Usage) -> Usage {
-    if usage == Usage::Illuminant { Usage::Unbounded } else { usage }
+fn of_factor(spectrum_type: SpectrumType) -> SpectrumType {
+    if spectrum_type == SpectrumType::Illuminant { SpectrumType::Unbounded } else { spectrum_type }
 }
 
 /// Not negative, for an albedo at most 1; 0 for what is not a number.
 #[inline]
-fn within(usage: Usage, rgb: [f32; 3]) -> [f32; 3] {
+pub(super) fn within(spectrum_type: SpectrumType, rgb: [f32; 3]) -> [f32; 3] {
     let rgb = rgb.map(|c| c.max(0.0));
-    if usage == Usage::Albedo { rgb.map(|c| c.min(1.0)) } else { rgb }
+    if spectrum_type == SpectrumType::Albedo { rgb.map(|c| c.min(1.0)) } else { rgb }
 }

@@ -1,10 +1,30 @@
 use super::*;
 use glam::DMat4;
 use lookfrom_scene::image::Encoding;
+use lookfrom_scene::material::Scalar;
 use lookfrom_scene::scene::ImageId;
 use lookfrom_scene::texture::{Mapping, TexelFilter, Wrap};
 
 const FIRST: TextureId = TextureId(0);
+
+fn textures_of(kinds: Vec<TextureKind>, images: Vec<Image>, curves: Vec<Curve>) -> Textures {
+    Textures::new(&kinds, images, curves, ColorMode::Spectral)
+}
+
+/// What is asked of written colours and numbers.
+impl Textures {
+    fn rgb_of(&self, color: Color, spectrum_type: SpectrumType, at: &TexturePoint) -> [f32; 3] {
+        self.rgb(&self.spectrum_texture(color, spectrum_type), at)
+    }
+
+    fn spectrum_of(&self, color: Color, of: SpectrumType, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
+        self.spectrum(&self.spectrum_texture(color, of), at, lanes)
+    }
+
+    fn scalar(&self, scalar: Scalar, at: &TexturePoint) -> f32 {
+        self.float(scalar.into(), at)
+    }
+}
 
 fn at(u: f32, v: f32) -> TexturePoint {
     TexturePoint { uv: Vec2::new(u, v), n: Vec3::Y, ..TexturePoint::NOWHERE }
@@ -17,7 +37,7 @@ fn in_world(x: f64, y: f64, z: f64) -> TexturePoint {
 const WORLD: Mapping = Mapping::World { texture_from_world: DMat4::IDENTITY };
 
 fn only(kind: TextureKind) -> Textures {
-    Textures::new(vec![kind], vec![], vec![])
+    textures_of(vec![kind], vec![], vec![])
 }
 
 fn number(textures: &Textures, at: &TexturePoint) -> f32 {
@@ -45,8 +65,8 @@ fn two_by_two() -> Image {
 fn texels_sit_where_they_should() {
     let color = Color::Texture(FIRST);
     for filter in [TexelFilter::Nearest, TexelFilter::Bilinear] {
-        let textures = Textures::new(vec![picture(filter, 1.0, false)], vec![two_by_two()], vec![]);
-        let rgb = |u, v| textures.rgb(color, Usage::Unbounded, &at(u, v));
+        let textures = textures_of(vec![picture(filter, 1.0, false)], vec![two_by_two()], vec![]);
+        let rgb = |u, v| textures.rgb_of(color, SpectrumType::Unbounded, &at(u, v));
         // v runs up: the top row of the picture is at v near 1
         assert_eq!(rgb(0.25, 0.75), [0.0; 3]);
         assert_eq!(rgb(0.75, 0.75), [1.0; 3]);
@@ -57,8 +77,8 @@ fn texels_sit_where_they_should() {
             assert_eq!(rgb(0.375, 0.625), [0.75; 3]);
         }
         // An albedo is clamped, light is not.
-        assert_eq!(textures.rgb(color, Usage::Albedo, &at(0.25, 0.25)), [1.0; 3]);
-        assert_eq!(textures.rgb(color, Usage::Illuminant, &at(0.25, 0.25)), [2.0; 3]);
+        assert_eq!(textures.rgb_of(color, SpectrumType::Albedo, &at(0.25, 0.25)), [1.0; 3]);
+        assert_eq!(textures.rgb_of(color, SpectrumType::Illuminant, &at(0.25, 0.25)), [2.0; 3]);
     }
 }
 
@@ -66,10 +86,7 @@ fn texels_sit_where_they_should() {
 fn a_picture_as_a_number() {
     let image = Image::from_linear("", 1, 1, vec![[0.1, 0.2, 0.6]]);
     let value = |filter, scale, invert| {
-        number(
-            &Textures::new(vec![picture(filter, scale, invert)], vec![image.clone()], vec![]),
-            &at(0.5, 0.5),
-        )
+        number(&textures_of(vec![picture(filter, scale, invert)], vec![image.clone()], vec![]), &at(0.5, 0.5))
     };
     assert!((value(TexelFilter::Bilinear, 1.0, false) - 0.3).abs() < 1e-6);
     assert_eq!(value(TexelFilter::Nearest, 1.0, false), 0.1);
@@ -84,9 +101,9 @@ fn a_scaled_picture_is_clamped_after_its_scale() {
     let scale =
         |of: u32, by| TextureKind::Scale { color: Color::Texture(TextureId(of)), by: Scalar::Value(by) };
     let kinds = vec![picture(TexelFilter::Bilinear, 1.0, true), scale(0, 4.0), scale(1, 0.5)];
-    let textures = Textures::new(kinds, vec![image], vec![]);
+    let textures = textures_of(kinds, vec![image], vec![]);
     // 1 − 2 × texel, not 2 × (1 − texel)
-    let rgb = textures.rgb(Color::Texture(TextureId(2)), Usage::Albedo, &at(0.5, 0.5));
+    let rgb = textures.rgb_of(Color::Texture(TextureId(2)), SpectrumType::Albedo, &at(0.5, 0.5));
     assert_eq!(rgb, [0.0, 0.0, 0.5]);
 }
 
@@ -123,11 +140,17 @@ fn blends() {
 
     let scale = |by| TextureKind::Scale { color: Color::Value([0.5, 1.0, 2.0]), by };
     let by_a_number = only(scale(Scalar::Value(2.0)));
-    assert_eq!(by_a_number.rgb(Color::Texture(FIRST), Usage::Unbounded, &at(0.0, 0.0)), [1.0, 2.0, 4.0]);
+    assert_eq!(
+        by_a_number.rgb_of(Color::Texture(FIRST), SpectrumType::Unbounded, &at(0.0, 0.0)),
+        [1.0, 2.0, 4.0]
+    );
     let kinds =
         vec![scale(Scalar::Texture(TextureId(1))), TextureKind::Bilinear { corners, mapping: Mapping::UV }];
-    let by_a_texture = Textures::new(kinds, vec![], vec![]);
-    assert_eq!(by_a_texture.rgb(Color::Texture(FIRST), Usage::Unbounded, &at(1.0, 0.0)), [1.5, 3.0, 6.0]);
+    let by_a_texture = textures_of(kinds, vec![], vec![]);
+    assert_eq!(
+        by_a_texture.rgb_of(Color::Texture(FIRST), SpectrumType::Unbounded, &at(1.0, 0.0)),
+        [1.5, 3.0, 6.0]
+    );
 }
 
 #[test]
@@ -192,7 +215,7 @@ fn patterns_of_noise() {
     let kind =
         TextureKind::PbrtMarble { octaves: 8, roughness: 0.5, scale: 2.0, variation: 0.0, mapping: WORLD };
     let marble = only(kind);
-    let rgb = |y| marble.rgb(Color::Texture(FIRST), Usage::Albedo, &in_world(0.0, y, 0.0));
+    let rgb = |y| marble.rgb_of(Color::Texture(FIRST), SpectrumType::Albedo, &in_world(0.0, y, 0.0));
     let near = |found: [f32; 3], expected: [f32; 3]| {
         assert!((0..3).all(|c| (found[c] - expected[c]).abs() < 1e-5), "{found:?}, not {expected:?}");
     };
@@ -209,11 +232,11 @@ fn spectra_seen_in_daylight_have_their_colors() {
     let texels: Vec<[f32; 3]> =
         (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|c| c as f32 * 0.45 + 0.05)).collect();
     let image = Image::from_linear("", 27, 1, texels.clone());
-    let textures = Textures::new(vec![picture(TexelFilter::Nearest, 1.0, false)], vec![image], vec![]);
+    let textures = textures_of(vec![picture(TexelFilter::Nearest, 1.0, false)], vec![image], vec![]);
     let curve_of = |color, usage, at: &TexturePoint| -> Vec<f32> {
         let spectral = |nm: &f32| {
             let lanes = Lanes::Spectral(Wavelengths { lambda: [*nm; 4], pdf: [1.0; 4] });
-            textures.spectrum(color, usage, at, &lanes).0[2]
+            textures.spectrum_of(color, usage, at, &lanes).0[2]
         };
         lambda.iter().map(spectral).collect()
     };
@@ -224,9 +247,9 @@ fn spectra_seen_in_daylight_have_their_colors() {
             Dense::from_samples(std::array::from_fn(|i| values[i]))
         };
         let found = [
-            dense(Usage::Albedo).to_rgb_reflectance(),
-            dense(Usage::Unbounded).to_rgb_reflectance(),
-            dense(Usage::Illuminant).to_rgb(),
+            dense(SpectrumType::Albedo).to_rgb_reflectance(),
+            dense(SpectrumType::Unbounded).to_rgb_reflectance(),
+            dense(SpectrumType::Illuminant).to_rgb(),
         ];
         for (usage, found) in ["albedo", "unbounded", "illuminant"].iter().zip(found) {
             assert!((0..3).all(|c| (found[c] - texel[c]).abs() < 1e-2), "{usage}: {found:?}, not {texel:?}");
@@ -244,13 +267,13 @@ fn spectra_are_blended_and_curves_read() {
     let red = Color::Value([0.8, 0.1, 0.1]);
     let ramp = Color::Curve(CurveId(1));
     let kinds = vec![TextureKind::Mix { low: red, high: ramp, amount: Scalar::Value(0.25) }];
-    let textures = Textures::new(kinds, vec![], curves);
-    let spectrum = |color| textures.spectrum(color, Usage::Albedo, &at(0.0, 0.0), &lanes);
+    let textures = textures_of(kinds, vec![], curves);
+    let spectrum = |color| textures.spectrum_of(color, SpectrumType::Albedo, &at(0.0, 0.0), &lanes);
     let expected = spectrum(red) * 0.75 + Spectrum([0.25, 0.5, 0.75, 1.0]) * 0.25;
     assert_eq!(spectrum(Color::Texture(FIRST)), expected);
     // A grey needs no table, and is what it is; a curve is what it is in RGB, too.
     assert_eq!(spectrum(Color::gray(0.3)), Spectrum([0.3; 4]));
-    let rgb = textures.rgb(Color::Curve(CurveId(0)), Usage::Albedo, &at(0.0, 0.0));
+    let rgb = textures.rgb_of(Color::Curve(CurveId(0)), SpectrumType::Albedo, &at(0.0, 0.0));
     assert!(rgb.iter().all(|c| (c - 0.5).abs() < 1e-5), "{rgb:?}");
     assert_eq!(textures.curve(CurveId(0)).max(), 0.5);
 }
@@ -293,14 +316,14 @@ fn nothing_is_nan_anywhere() {
                 });
             }
         }
-        let textures = Textures::new(kinds.clone(), vec![two_by_two()], vec![]);
+        let textures = textures_of(kinds.clone(), vec![two_by_two()], vec![]);
         for (index, kind) in kinds.iter().enumerate() {
             for u in wild {
                 for v in wild {
                     let world = DVec3::new(u.into(), v.into(), u.into());
                     let point = TexturePoint { world, ..at(u, v) };
                     let color = Color::Texture(TextureId(index as u32));
-                    let rgb = textures.rgb(color, Usage::Unbounded, &point);
+                    let rgb = textures.rgb_of(color, SpectrumType::Unbounded, &point);
                     assert!(rgb.iter().all(|c| c.is_finite()), "{kind:?} at {u}, {v}: {rgb:?}");
                 }
             }
@@ -332,14 +355,14 @@ fn time_of_look_ups() {
                 scale: 1.0,
                 invert: false,
             };
-            let textures = Textures::new(vec![kind], images.to_vec(), vec![]);
+            let textures = textures_of(vec![kind], images.to_vec(), vec![]);
             let start = std::time::Instant::now();
             let mut sum = Spectrum::BLACK;
             let count = 1 << 21;
             for i in 0..count {
                 let [u, v] = [i % 512, i / 512 % 512].map(|k| k as f32 * reach / 512.0);
                 let point = at(u, v);
-                sum += textures.spectrum(Color::Texture(FIRST), Usage::Albedo, &point, lanes);
+                sum += textures.spectrum_of(Color::Texture(FIRST), SpectrumType::Albedo, &point, lanes);
             }
             let ns = start.elapsed().as_nanos() as f64 / f64::from(count);
             println!("{wrap:?} over {reach}, {name}: {ns:.1} ns ({:.3})", sum.max_lane() / count as f32);
@@ -364,18 +387,18 @@ fn channels_are_greys_and_alpha_is_no_color() {
         scale: 2.0,
         invert: false,
     });
-    let textures = Textures::new(kinds.to_vec(), vec![image], vec![]);
+    let textures = textures_of(kinds.to_vec(), vec![image], vec![]);
     let number = |index, at: &TexturePoint| textures.scalar(Scalar::Texture(TextureId(index)), at);
     let green = lookfrom_scene::image::linear_from_srgb(0.2);
     // In the middle between both texels; nothing of the black above and below shines in at v = 0.5.
     let found: Vec<f32> = (0..4).map(|index| number(index, &at(0.5, 0.5))).collect();
     assert_eq!(found, [2.0, 2.0 * green, 0.0, 2.0 * (0.5 * 0.4 + 0.5 * 0.8)]);
-    let gray = textures.rgb(Color::Texture(TextureId(3)), Usage::Unbounded, &at(0.0, 0.5));
+    let gray = textures.rgb_of(Color::Texture(TextureId(3)), SpectrumType::Unbounded, &at(0.0, 0.5));
     assert_eq!(gray, [0.8; 3]);
     // Each axis wraps by itself.
     assert_eq!((number(3, &at(-3.0, 0.5)), number(3, &at(0.5, 3.0))), (0.8, 0.0));
     assert_eq!(
-        textures.rgb(Color::Texture(TextureId(4)), Usage::Albedo, &at(0.5, 0.5)),
+        textures.rgb_of(Color::Texture(TextureId(4)), SpectrumType::Albedo, &at(0.5, 0.5)),
         [1.0, 2.0 * green, 0.0]
     );
 }
@@ -390,24 +413,24 @@ fn products_multiply_channels_and_only_one_factor_is_light() {
         TextureKind::Product { a: Color::gray(0.5), b: Color::Texture(TextureId(1)) },
         TextureKind::Product { a: Color::gray(2.0), b: Color::Curve(CurveId(0)) },
     ];
-    let textures = Textures::new(kinds, vec![], curves);
+    let textures = textures_of(kinds, vec![], curves);
     let [of_colors, of_grays, nested, with_curve] = [0, 1, 2, 3].map(|id| Color::Texture(TextureId(id)));
     let here = TexturePoint::NOWHERE;
-    assert_eq!(textures.rgb(of_colors, Usage::Unbounded, &here), [0.25, 0.75, 0.0]);
-    assert_eq!(textures.rgb(of_colors, Usage::Albedo, &here), [0.25, 0.25, 0.0]);
+    assert_eq!(textures.rgb_of(of_colors, SpectrumType::Unbounded, &here), [0.25, 0.75, 0.0]);
+    assert_eq!(textures.rgb_of(of_colors, SpectrumType::Albedo, &here), [0.25, 0.25, 0.0]);
     assert_eq!(textures.scalar(Scalar::Texture(TextureId(2)), &here), 3.0);
 
     let lanes = Lanes::Spectral(Wavelengths { lambda: [450.0, 500.0, 550.0, 600.0], pdf: [1.0; 4] });
-    let spectrum = |color, usage| textures.spectrum(color, usage, &here, &lanes);
-    for usage in [Usage::Unbounded, Usage::Illuminant] {
+    let spectrum = |color, usage| textures.spectrum_of(color, usage, &here, &lanes);
+    for usage in [SpectrumType::Unbounded, SpectrumType::Illuminant] {
         let six = spectrum(Color::gray(6.0), usage);
         assert_eq!(spectrum(of_grays, usage), six, "{usage:?}");
         let three = spectrum(Color::gray(3.0), usage);
         assert_eq!(spectrum(nested, usage), three, "{usage:?}");
     }
-    let colored = spectrum(a, Usage::Unbounded) * spectrum(b, Usage::Unbounded);
-    assert_eq!(spectrum(of_colors, Usage::Unbounded), colored);
-    assert_eq!(spectrum(with_curve, Usage::Unbounded), Spectrum([1.0; 4]));
+    let colored = spectrum(a, SpectrumType::Unbounded) * spectrum(b, SpectrumType::Unbounded);
+    assert_eq!(spectrum(of_colors, SpectrumType::Unbounded), colored);
+    assert_eq!(spectrum(with_curve, SpectrumType::Unbounded), Spectrum([1.0; 4]));
 }
 
 #[test]
@@ -425,7 +448,7 @@ fn mappings_choose_a_set_of_coordinates_and_turn_it() {
             invert: false,
         },
     );
-    let textures = Textures::new(kinds.to_vec(), vec![image], vec![]);
+    let textures = textures_of(kinds.to_vec(), vec![image], vec![]);
     let mut here = at(0.4, 0.1);
     here.more_uvs[1] = Vec2::new(0.9, 0.9);
     let number = |id| textures.scalar(Scalar::Texture(TextureId(id)), &here);
@@ -456,14 +479,17 @@ fn vertices_have_opacities_and_what_is_opaque_is_known() {
         TextureKind::Product { a: of(2), b: Color::gray(0.5) },
         TextureKind::Threshold { value: Scalar::Texture(TextureId(4)), edge: 0.5 },
     ];
-    let textures = Textures::new(kinds, vec![clear, opaque], vec![]);
-    let is_one = |id, has| textures.is_one(Scalar::Texture(TextureId(id)), has);
+    let textures = textures_of(kinds, vec![clear, opaque], vec![]);
+    let is_one = |id, has| textures.is_one(FloatTexture::Texture(TextureId(id)), has);
     assert_eq!(
         [0, 1, 2, 3, 4, 5, 6].map(|id| is_one(id, false)),
         [true, false, true, false, true, false, true]
     );
     assert!(![0, 4, 6].iter().any(|&id| is_one(id, true)));
-    assert!(textures.is_one(Scalar::Value(1.0), true) && !textures.is_one(Scalar::Value(0.0), false));
+    assert!(
+        textures.is_one(FloatTexture::Constant(1.0), true)
+            && !textures.is_one(FloatTexture::Constant(0.0), false)
+    );
     for opacity in [0.25, 0.75] {
         let here = TexturePoint { opacity, ..at(0.5, 0.5) };
         assert_eq!(textures.scalar(Scalar::Texture(TextureId(4)), &here), opacity);

@@ -7,13 +7,13 @@
 
 use glam::Vec3;
 use lookfrom_bvh::Ray;
-use lookfrom_scene::material::{Color, MaterialKind};
 
 use super::World;
 use crate::light::Light;
+use crate::material::MaterialKind;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
-use crate::texture::{Lanes, TexturePoint, Textures, Usage};
+use crate::texture::{Lanes, SpectrumType, Textures, spectrum_of};
 
 /// The least reflectance that is reckoned with: what the camera sees of a darker floor is multiplied later.
 const LEAST_REFLECTANCE: f32 = 1e-3;
@@ -61,6 +61,6 @@ impl World {
             let rho = if e0[c] > 0.0 { std::f32::consts::PI * sky[c] / e0[c] } else { 0.0 };
             rho.clamp(LEAST_REFLECTANCE, 1.0)
         });
-        self.textures.spectrum(Color::Value(rho), Usage::Albedo, &TexturePoint::NOWHERE, lanes)
+        spectrum_of(rho, SpectrumType::Albedo, lanes)
     }
 }

@@ -4,22 +4,21 @@ use std::sync::Arc;
 
 use glam::DMat4;
 use lookfrom_bvh::{Builder, Bvh, Triangles};
-use lookfrom_scene::light::{LightKind, Sky};
-use lookfrom_scene::material::{Color, MaterialKind};
-use lookfrom_scene::medium::Medium;
-use lookfrom_scene::scene::Scene;
-use lookfrom_scene::settings::{ColorMode, Integrator as Kind};
+use lookfrom_scene::light::LightKind;
+use lookfrom_scene::material::{Color, MaterialKind as WrittenKind};
+use lookfrom_scene::scene::{MaterialId, Scene};
+use lookfrom_scene::settings::Integrator as Kind;
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
 use super::catcher;
 use super::lights::Lights;
 use super::place::{Compiler, Group};
-use super::{Instance, Names, World, reflectance};
+use super::{Instance, Medium, Names, World, reflectance};
 use crate::light::{Light, LightChoice};
-use crate::material::{self, InteriorStack, Material};
+use crate::material::{self, InteriorStack, Material, MaterialKind};
 use crate::math;
 use crate::shape::Form;
-use crate::texture::Textures;
+use crate::texture::{SpectrumType, Textures};
 
 impl World {
     /// Compiles a scene. What can be survived is added to `warnings`. The origin of render space is the eye of the scene's
@@ -41,22 +40,23 @@ impl World {
             let message = format!("more than {} materials and media", InteriorStack::MOST);
             return Err(Error::new(ErrorKind::Limit, &Location::default(), message));
         }
-        let mut textures = Textures::new(
-            std::mem::take(&mut scene.textures).into_iter().map(|texture| texture.kind).collect(),
+        let kinds: Vec<_> =
+            std::mem::take(&mut scene.textures).into_iter().map(|texture| texture.kind).collect();
+        let textures = Textures::new(
+            &kinds,
             std::mem::take(&mut scene.images),
             std::mem::take(&mut scene.curves),
+            scene.render.color,
         );
-        if scene.render.color == ColorMode::Spectral {
-            textures.expect(&constants(&scene));
-        }
         let mut compiler = Compiler {
             scene: &scene,
             warnings,
             lights: Lights::new(&textures),
             shapes: Vec::new(),
-            wants_derivatives: scene.materials.iter().any(lookfrom_scene::material::Material::has_grain),
+            grains: grains(&scene.materials),
+            has_instance_grain: false,
             alphas: Vec::new(),
-            sides: Vec::new(),
+            medium_interfaces: Vec::new(),
             vertex_data: Vec::new(),
         };
 
@@ -67,13 +67,18 @@ impl World {
         }
         // Objects, each with a tree of its own. What shines in them is left to the instances.
         let mut in_objects = Vec::new();
-        for object in &scene.objects {
+        for (index, object) in scene.objects.iter().enumerate() {
             let mut group = Group::default();
+            compiler.has_instance_grain = scene.instances.iter().any(|instance| {
+                let is_grained = |id: MaterialId| compiler.grains.get(id.index()).is_some_and(|grain| *grain);
+                instance.object.index() == index && instance.material.is_some_and(is_grained)
+            });
             for shape in object.shapes.iter().filter(|shape| shape.emission.is_none()) {
                 compiler.place(shape, &DMat4::IDENTITY, None, &mut group)?;
             }
             in_objects.push(group);
         }
+        compiler.has_instance_grain = false;
         for written in &scene.instances {
             let object = &scene.objects[written.object.index()];
             let material = written.material.map(|id| id.0);
@@ -88,7 +93,7 @@ impl World {
         for light in &scene.lights {
             compiler.lights.add(light, origin);
         }
-        let Compiler { lights, shapes, alphas, sides, vertex_data, .. } = compiler;
+        let Compiler { lights, shapes, alphas, medium_interfaces, vertex_data, .. } = compiler;
         let radius = scene.bounds().radius() as f32;
         let light_choice =
             LightChoice::new(scene.render.light_sampler, &lights.lights, &lights.brightness, radius);
@@ -110,17 +115,22 @@ impl World {
 
         let mut names = Names { shapes, lights: light_names, ..Names::default() };
         let mut materials: Vec<Material> = Vec::new();
-        let mut media = scene.media;
-        for material in scene.materials {
-            let whitted = material::in_whitteds_model(&material.kind, &materials, &textures);
+        let medium = |absorption, scale| {
+            let absorption = textures.spectrum_texture(absorption, SpectrumType::Unbounded);
+            Medium { absorption, scale }
+        };
+        let mut media: Vec<Medium> =
+            scene.media.iter().map(|written| medium(written.absorption, written.scale)).collect();
+        let mut compiler = material::Compiler::new(&textures);
+        for written in scene.materials {
+            let (mut material, absorption) = compiler.compile(&written);
             // A body that absorbs is filled with a medium of its own.
-            let medium = (whitted.absorption != [0.0; 3]).then(|| {
-                let (name, absorption) = (material.name.clone(), Color::Value(whitted.absorption));
-                media.push(Medium { name, at: material.at, absorption, scale: 1.0 });
-                media.len() as u32 - 1
-            });
-            materials.push(Material { kind: material.kind, relief: material.relief, medium, whitted });
-            names.materials.push(material.name);
+            if absorption != [0.0; 3] {
+                material.medium = Some(media.len() as u32);
+                media.push(medium(Color::Value(absorption), 1.0));
+            }
+            materials.push(material);
+            names.materials.push(written.name);
         }
         let catcher = materials.iter().find_map(|material| match material.kind {
             MaterialKind::ShadowCatcher { normal } => Some(normal),
@@ -130,58 +140,48 @@ impl World {
         Ok(Self {
             origin,
             bvh,
+            classes: Self::classify(&forms, &materials),
             forms,
             objects,
             instances,
-            transmissive: materials.iter().any(|material| material.whitted.transmission != Color::BLACK),
+            transmissive: materials.iter().any(|material| !material.whitted.transmission.is_gray(0.0)),
             has_gaps: !alphas.is_empty()
-                || has_media && materials.iter().any(|material| material.kind == MaterialKind::Interface),
+                || has_media
+                    && materials.iter().any(|material| matches!(material.kind, MaterialKind::Interface)),
             has_media,
             radius,
             catcher_irradiance: catcher.map(|n| catcher::irradiance(&lights, &textures, n)),
             materials,
             alphas,
             media,
-            sides,
+            medium_interfaces,
             vertex_data,
-            textures,
             environments: (0..lights.len() as u32).filter(is_environment).collect(),
             lights,
             light_choice,
-            ambient,
+            ambient: textures.spectrum_texture(Color::Value(ambient), SpectrumType::Illuminant),
+            textures,
             names,
         })
     }
 }
 
-/// The colours of a scene's materials, lights and media that are the same everywhere.
-fn constants(scene: &Scene) -> Vec<[f32; 3]> {
-    let in_objects = scene.objects.iter().flat_map(|object| &object.shapes);
-    let emissions = scene.shapes.iter().chain(in_objects).filter_map(|shape| shape.emission);
-    let of_lights = scene.lights.iter().flat_map(|light| match &light.kind {
-        LightKind::Point { intensity, .. }
-        | LightKind::Distant { intensity, .. }
-        | LightKind::Spot { intensity, .. }
-        | LightKind::Goniometric { intensity, .. }
-        | LightKind::Environment { sky: Sky::Constant(intensity), .. } => vec![*intensity],
-        LightKind::Environment { sky: Sky::Gradient { zenith, horizon, nadir }, .. } => {
-            [zenith, horizon, nadir].map(|rgb| Color::Value(*rgb)).to_vec()
+/// By material: whether it matters which way u runs over the surface; of a mixture, for any of its parts.
+fn grains(materials: &[lookfrom_scene::material::Material]) -> Vec<bool> {
+    let mut grains: Vec<bool> = materials.iter().map(|material| material.has_grain()).collect();
+    let mut has_changed = true;
+    while has_changed {
+        has_changed = false;
+        for (index, material) in materials.iter().enumerate() {
+            if let WrittenKind::Mix { materials: parts, .. } = &material.kind
+                && !grains[index]
+                && parts.iter().any(|part| grains[part.index()])
+            {
+                (grains[index], has_changed) = (true, true);
+            }
         }
-        _ => Vec::new(),
-    });
-    let colors = scene.materials.iter().flat_map(|material| material.kind.colors());
-    let colors = colors
-        .chain(emissions.map(|emission| emission.radiance))
-        .chain(of_lights)
-        .chain(scene.media.iter().map(|medium| medium.absorption));
-    let values = colors.filter_map(|color| match color {
-        Color::Value(rgb) => Some(rgb),
-        _ => None,
-    });
-    let mut values: Vec<[f32; 3]> = values.collect();
-    values.sort_by_key(|rgb| rgb.map(f32::to_bits));
-    values.dedup();
-    values
+    }
+    grains
 }
 
 /// The tree over forms in their order, then instances.

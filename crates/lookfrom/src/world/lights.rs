@@ -12,7 +12,7 @@ use crate::light::{
     Environment, Glow, Goniometric, Layout, Light, Opening, Portal, Projection, Sky, SkyImage,
 };
 use crate::math;
-use crate::texture::{TexturePoint, Textures, Usage};
+use crate::texture::{SpectrumTexture, SpectrumType, TexturePoint, Textures};
 use crate::warp;
 
 /// A world's lights, while they are gathered.
@@ -51,33 +51,37 @@ impl<'a> Lights<'a> {
             // By the luminance of the colour: of a curve it is 1 by now.
             let luminance = match color {
                 Color::Curve(_) if !amount.absolute => 1.0,
-                _ => self.mean_over_places(color, math::luminance),
+                _ => self.mean_over_places(&self.illuminant(color), math::luminance),
             };
             let whole = per_unit * luminance;
             scale = if whole > 0.0 { scale * total / whole } else { 0.0 };
         }
-        Glow { color, scale }
+        Glow { color: self.illuminant(color), scale }
+    }
+
+    pub(super) fn illuminant(&self, color: Color) -> SpectrumTexture {
+        self.textures.spectrum_texture(color, SpectrumType::Illuminant)
     }
 
     /// The greatest of three primaries of a glow, in the mean over its texture.
     pub(super) fn brightness_of(&self, glow: &Glow) -> f32 {
-        glow.scale * self.mean_over_places(glow.color, |rgb| rgb.into_iter().fold(0.0, f32::max))
+        glow.scale * self.mean_over_places(&glow.color, |rgb| rgb.into_iter().fold(0.0, f32::max))
     }
 
     /// The mean of a measure of a colour over a grid of texture coordinates.
-    fn mean_over_places(&self, color: Color, measure: impl Fn([f32; 3]) -> f32) -> f32 {
+    fn mean_over_places(&self, color: &SpectrumTexture, measure: impl Fn([f32; 3]) -> f32) -> f32 {
         const SIDE: u32 = 16;
         let at = |uv: [f32; 2]| {
             let point = TexturePoint { uv: uv.into(), ..TexturePoint::NOWHERE };
-            measure(self.textures.rgb(color, Usage::Illuminant, &point))
+            measure(self.textures.rgb(color, &point))
         };
-        match color {
-            Color::Texture(_) => {
+        match color.varies() {
+            true => {
                 let places = (0..SIDE * SIDE).map(|k| [k % SIDE, k / SIDE]);
                 let sum: f32 = places.map(|place| at(place.map(|i| (i as f32 + 0.5) / SIDE as f32))).sum();
                 sum / (SIDE * SIDE) as f32
             }
-            _ => at([0.5; 2]),
+            false => at([0.5; 2]),
         }
     }
 
@@ -202,8 +206,8 @@ impl<'a> Lights<'a> {
                 // Onto a surface that looks up: the integral of ((1 − y) horizon + y zenith) y.
                 let upward = std::array::from_fn(|c| (horizon[c] + 2.0 * zenith[c]) / 3.0);
                 let scale = self.glow(Color::Value(upward), amount, PI).scale;
-                let [zenith, horizon, nadir] =
-                    [zenith, horizon, nadir].map(|rgb| Glow { color: Color::Value(*rgb), scale });
+                let [zenith, horizon, nadir] = [zenith, horizon, nadir]
+                    .map(|rgb| Glow { color: self.illuminant(Color::Value(*rgb)), scale });
                 return (Sky::Gradient { zenith, horizon, nadir }, self.brightness_of(&horizon));
             }
             WrittenSky::Image { image, scale, world_from_light } => {

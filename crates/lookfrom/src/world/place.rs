@@ -9,8 +9,7 @@ use std::f32::consts::PI;
 use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec3};
-use lookfrom_scene::material::{Color, MaterialKind, Scalar};
-use lookfrom_scene::medium::Sides;
+use lookfrom_scene::material::{Color, MaterialKind};
 use lookfrom_scene::scene::Scene;
 use lookfrom_scene::shape::{Emission, Geometry, Shape, Sphere};
 use lookfrom_scene::{Error, Location, Result, Warning};
@@ -18,7 +17,9 @@ use lookfrom_scene::{Error, Location, Result, Warning};
 use super::Instance;
 use super::lights::Lights;
 use crate::light::{AreaLight, Glow, Light, LightForm, QuadricLight};
+use crate::material::{InteriorStack, MediumInterface};
 use crate::shape::{Disk, Disks, Form, Look, Mesh, Quadric, QuadricKind, Quadrics, SphereLook, Spheres};
+use crate::texture::FloatTexture;
 
 /// From axes with the poles on z to axes with the poles on y: a rotation.
 const Y_FROM_Z: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);
@@ -78,12 +79,14 @@ pub(super) struct Compiler<'a> {
     pub(super) lights: Lights<'a>,
     /// Names by shape number.
     pub(super) shapes: Vec<String>,
-    /// Whether any material has a grain or a relief.
-    pub(super) wants_derivatives: bool,
+    /// By material: whether it has a grain or a relief.
+    pub(super) grains: Vec<bool>,
+    /// Whether an instance gives the object that is being placed a material with a grain or a relief.
+    pub(super) has_instance_grain: bool,
     /// Parts of surfaces that are there.
-    pub(super) alphas: Vec<Scalar>,
+    pub(super) alphas: Vec<FloatTexture>,
     /// What they say is on their sides.
-    pub(super) sides: Vec<Sides>,
+    pub(super) medium_interfaces: Vec<MediumInterface>,
     /// Meshes with further texture coordinates or opacities.
     pub(super) vertex_data: Vec<Arc<Mesh>>,
 }
@@ -121,14 +124,16 @@ impl Compiler<'_> {
             Geometry::Mesh(id) => !self.scene.meshes[id.index()].opacities.is_empty(),
             _ => false,
         };
-        let alpha =
-            shape.alpha.filter(|alpha| !self.lights.textures.is_one(*alpha, has_opacities)).map(|alpha| {
-                self.alphas.push(alpha);
-                self.alphas.len() as u32 - 1
-            });
-        let sides = shape.sides.filter(|_| self.scene.render.media).map(|sides| {
-            self.sides.push(sides);
-            self.sides.len() as u32 - 1
+        let alpha = shape.alpha.map(FloatTexture::from);
+        let alpha = alpha.filter(|alpha| !self.lights.textures.is_one(*alpha, has_opacities)).map(|alpha| {
+            self.alphas.push(alpha);
+            self.alphas.len() as u32 - 1
+        });
+        let sides = shape.sides.filter(|_| self.scene.render.media);
+        let medium_interface = sides.map(|sides| {
+            let [inside, outside] = [sides.inside, sides.outside].map(InteriorStack::in_space);
+            self.medium_interfaces.push(MediumInterface { inside, outside });
+            self.medium_interfaces.len() as u32 - 1
         });
         let material = material.unwrap_or(shape.material.0);
         // Of a body that light goes through, the back is seen from within.
@@ -137,8 +142,15 @@ impl Compiler<'_> {
             Some(MaterialKind::Principled(look)) if look.is_solid
         );
         let single_sided = shape.single_sided && !is_body;
-        let look =
-            Look { material, light: None, shape: number, alpha, sides, vertex_data: None, single_sided };
+        let look = Look {
+            material,
+            light: None,
+            shape: number,
+            alpha,
+            medium_interface,
+            vertex_data: None,
+            single_sided,
+        };
         let placing = Placing { shape, matrix: &matrix, look };
         match &shape.geometry {
             Geometry::Sphere(sphere) => self.spheres(placing, &[*sphere], Y_FROM_Z, group),
@@ -274,14 +286,14 @@ impl Compiler<'_> {
         }
         let form = form()?;
         let coat = match self.scene.materials.get(look.material as usize).map(|material| &material.kind) {
-            Some(MaterialKind::Principled(look)) => Some(look.clearcoat),
+            Some(MaterialKind::Principled(look)) => Some(FloatTexture::from(look.clearcoat)),
             _ => None,
         };
         let mut light = AreaLight {
-            radiance: Glow { color: radiance, scale: 1.0 },
-            alpha: shape.alpha,
+            radiance: Glow { color: self.lights.illuminant(radiance), scale: 1.0 },
+            alpha: shape.alpha.map(FloatTexture::from),
             two_sided,
-            coat: coat.filter(|amount| *amount != Scalar::Value(0.0)),
+            coat: coat.filter(|amount| !amount.is(0.0)),
             form,
         };
         // what white radiance of 1 sends out
@@ -297,6 +309,12 @@ impl Compiler<'_> {
     /// The index that the next light will have.
     fn next_light(&self) -> u32 {
         self.lights.lights.len() as u32
+    }
+
+    /// Whether it matters which way u runs over a shape.
+    fn has_grain(&self, placing: Placing) -> bool {
+        let of_shape = self.grains.get(placing.look.material as usize).copied();
+        self.has_instance_grain || of_shape.unwrap_or(false)
     }
 
     fn warn(&mut self, at: &Location, message: &str) {

@@ -7,7 +7,6 @@ mod asked;
 use std::f32::consts::FRAC_1_PI;
 
 use lookfrom_bvh::{Hit, Left, NONE, Point, Ray};
-use lookfrom_scene::material::{Color, MaterialKind, Relief};
 use lookfrom_simd::{Simd, Work, f32x8, f64x8, prelude::*, u32x8, u64x8};
 
 use super::{Departure, PathTracer, power_heuristic, purpose};
@@ -19,7 +18,7 @@ use crate::integrator::{Bounce, Event, Next, Numbers, Path, Probe, Shadow, Term}
 use crate::light::Target;
 use crate::material::Shading;
 use crate::sampler::eight::{PixelSamplers, mix};
-use crate::shape::{Form, Mesh};
+use crate::shape::Mesh;
 use crate::spectrum::Spectrum;
 use crate::surface::Surface;
 use crate::texture::{Lanes, TexturePoint};
@@ -56,20 +55,8 @@ impl<'a> Plain<'a> {
         {
             return None;
         }
-        let Form::Mesh(mesh) = &world.forms[hit.geometry as usize] else { return None };
-        let look = &mesh.look;
-        let is_flat = mesh.normals.is_empty() && !mesh.wants_derivatives;
-        let is_plain = look.light.is_none() && look.alpha.is_none() && look.sides.is_none();
-        if !is_flat || !is_plain || look.single_sided {
-            return None;
-        }
-        let material = &world.materials[look.material as usize];
-        let (MaterialKind::Diffuse { reflectance: color @ Color::Value(_) }, Relief::None) =
-            (&material.kind, &material.relief)
-        else {
-            return None;
-        };
-        let reflectance = world.textures.albedo(*color, &TexturePoint::NOWHERE, lanes);
+        let (mesh, reflectance) = world.flat_diffuse(hit.geometry)?;
+        let reflectance = world.textures.albedo(reflectance, &TexturePoint::NOWHERE, lanes);
         (!reflectance.is_black()).then(|| Self { path, hit, mesh, reflectance, numbers: numbers() })
     }
 }

@@ -28,7 +28,7 @@ const NO_LOOK: Look = Look {
     light: None,
     shape: 0,
     alpha: None,
-    sides: None,
+    medium_interface: None,
     vertex_data: None,
     single_sided: false,
 };

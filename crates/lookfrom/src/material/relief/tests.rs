@@ -28,7 +28,7 @@ fn surface(wo: Vec3, ng: Vec3, ns: Vec3) -> Surface {
         alpha: None,
         vertex_data: None,
         single_sided: false,
-        sides: None,
+        medium_interface: None,
     }
 }
 

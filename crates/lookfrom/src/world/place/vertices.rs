@@ -11,7 +11,7 @@ use super::{Compiler, Group, Placing, inverse, not_invertible};
 use crate::light::{LightForm, MeshLight, PatchLight};
 use crate::math;
 use crate::shape::{Curves, Form, Mesh, Patches, SEGMENTS};
-use crate::texture::{MORE_UV_SETS, Usage};
+use crate::texture::{FloatTexture, MORE_UV_SETS, SpectrumType};
 
 /// A patch is a parallelogram if its fourth corner is off it by less than this part of its distance from the origin (or of
 /// 1, for texture coordinates): the rounding of numbers in f32.
@@ -38,7 +38,7 @@ impl Compiler<'_> {
             tangents: mesh.tangents.iter().map(tangent).collect(),
             more_uvs,
             opacities: mesh.opacities.clone(),
-            wants_derivatives: self.wants_derivatives,
+            wants_derivatives: self.has_grain(placing),
             flip,
             look,
         };
@@ -48,11 +48,14 @@ impl Compiler<'_> {
         let textures = self.lights.textures;
         let light = self.shine(placing, || {
             let light = match shape.emission.map(|emission| emission.radiance) {
-                Some(pattern @ Color::Texture(_)) => MeshLight::patterned(placed.clone(), &|at| {
-                    let brightest =
-                        textures.rgb(pattern, Usage::Illuminant, at).into_iter().fold(0.0, f32::max);
-                    brightest * shape.alpha.map_or(1.0, |alpha| textures.scalar(alpha, at))
-                }),
+                Some(pattern @ Color::Texture(_)) => {
+                    let pattern = textures.spectrum_texture(pattern, SpectrumType::Illuminant);
+                    let alpha = shape.alpha.map(FloatTexture::from);
+                    MeshLight::patterned(placed.clone(), &|at| {
+                        let brightest = textures.rgb(&pattern, at).into_iter().fold(0.0, f32::max);
+                        brightest * alpha.map_or(1.0, |alpha| textures.float(alpha, at))
+                    })
+                }
                 _ => MeshLight::new(placed.clone()),
             };
             light.map(LightForm::Mesh)

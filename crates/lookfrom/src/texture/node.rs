@@ -1,0 +1,167 @@
+//! Textures, compiled: the nodes of a graph whose leaves are constants, curves and pictures.
+
+use glam::Vec3;
+use lookfrom_scene::material::{Color, Scalar};
+use lookfrom_scene::texture::{Channel, Mapping, TexelFilter, TextureKind, Wrap};
+
+use super::input::{FloatTexture, Input};
+
+/// A texture. The parameters mean what those of [`TextureKind`] do.
+#[derive(Clone, Debug)]
+pub(super) enum Node {
+    Image {
+        image: usize,
+        mapping: Mapping,
+        wrap: [Wrap; 2],
+        filter: TexelFilter,
+        channel: Channel,
+        scale: f32,
+        invert: bool,
+    },
+    Checker {
+        even: Input,
+        odd: Input,
+        mapping: Mapping,
+    },
+    Noise {
+        low: Input,
+        high: Input,
+        octaves: u32,
+        mapping: Mapping,
+    },
+    Marble {
+        vein: Input,
+        base: Input,
+        octaves: u32,
+        turbulence: f32,
+        mapping: Mapping,
+    },
+    Scale {
+        color: Input,
+        by: FloatTexture,
+    },
+    Mix {
+        low: Input,
+        high: Input,
+        amount: FloatTexture,
+    },
+    DirectionMix {
+        low: Input,
+        high: Input,
+        direction: Vec3,
+    },
+    Bilinear {
+        corners: [Input; 4],
+        mapping: Mapping,
+    },
+    Dots {
+        inside: Input,
+        outside: Input,
+        mapping: Mapping,
+    },
+    Fbm {
+        octaves: u32,
+        roughness: f32,
+        mapping: Mapping,
+    },
+    Wrinkled {
+        octaves: u32,
+        roughness: f32,
+        mapping: Mapping,
+    },
+    Windy {
+        mapping: Mapping,
+    },
+    PbrtMarble {
+        octaves: u32,
+        roughness: f32,
+        scale: f32,
+        variation: f32,
+        mapping: Mapping,
+    },
+    VertexColor {
+        tint: [f32; 3],
+    },
+    VertexAlpha,
+    Product {
+        a: Input,
+        b: Input,
+    },
+    Threshold {
+        value: FloatTexture,
+        edge: f32,
+    },
+}
+
+impl Node {
+    /// Every texture of a scene, in the same order; `lifts` where spectra will be asked for.
+    pub(super) fn compile_all(kinds: &[TextureKind], lifts: bool) -> Vec<Self> {
+        (0..kinds.len())
+            .map(|index| match scaled_picture(kinds, index) {
+                Some(picture) => Self::compile(&picture, lifts),
+                None => Self::compile(&kinds[index], lifts),
+            })
+            .collect()
+    }
+
+    fn compile(kind: &TextureKind, lifts: bool) -> Self {
+        let input = |color: Color| Input::new(color, lifts);
+        match *kind {
+            TextureKind::Image { image, mapping, wrap, filter, channel, scale, invert } => {
+                Self::Image { image: image.index(), mapping, wrap, filter, channel, scale, invert }
+            }
+            TextureKind::Checker { even, odd, mapping } => {
+                Self::Checker { even: input(even), odd: input(odd), mapping }
+            }
+            TextureKind::Noise { low, high, octaves, mapping } => {
+                Self::Noise { low: input(low), high: input(high), octaves, mapping }
+            }
+            TextureKind::Marble { vein, base, octaves, turbulence, mapping } => {
+                Self::Marble { vein: input(vein), base: input(base), octaves, turbulence, mapping }
+            }
+            TextureKind::Scale { color, by } => Self::Scale { color: input(color), by: by.into() },
+            TextureKind::Mix { low, high, amount } => {
+                Self::Mix { low: input(low), high: input(high), amount: amount.into() }
+            }
+            TextureKind::DirectionMix { low, high, direction } => {
+                Self::DirectionMix { low: input(low), high: input(high), direction }
+            }
+            TextureKind::Bilinear { corners, mapping } => {
+                Self::Bilinear { corners: corners.map(input), mapping }
+            }
+            TextureKind::Dots { inside, outside, mapping } => {
+                Self::Dots { inside: input(inside), outside: input(outside), mapping }
+            }
+            TextureKind::Fbm { octaves, roughness, mapping } => Self::Fbm { octaves, roughness, mapping },
+            TextureKind::Wrinkled { octaves, roughness, mapping } => {
+                Self::Wrinkled { octaves, roughness, mapping }
+            }
+            TextureKind::Windy { mapping } => Self::Windy { mapping },
+            TextureKind::PbrtMarble { octaves, roughness, scale, variation, mapping } => {
+                Self::PbrtMarble { octaves, roughness, scale, variation, mapping }
+            }
+            TextureKind::VertexColor { tint } => Self::VertexColor { tint },
+            TextureKind::VertexAlpha => Self::VertexAlpha,
+            TextureKind::Product { a, b } => Self::Product { a: input(a), b: input(b) },
+            TextureKind::Threshold { value, edge } => Self::Threshold { value: value.into(), edge },
+        }
+    }
+}
+
+/// What a picture scaled by constants is: a picture of another scale, as in pbrt-v4, where an albedo beyond 1 is clamped (and
+/// a picture inverted) after that scale. `None` for any other texture.
+fn scaled_picture(kinds: &[TextureKind], index: usize) -> Option<TextureKind> {
+    let mut factor = 1.0;
+    let mut kind = &kinds[index];
+    while let TextureKind::Scale { color: Color::Texture(id), by: Scalar::Value(by) } = kind {
+        factor *= by;
+        kind = &kinds[id.index()];
+    }
+    let mut picture = kind.clone();
+    match &mut picture {
+        TextureKind::Image { scale, .. } if factor != 1.0 => *scale *= factor,
+        TextureKind::Image { .. } => {}
+        _ => return None,
+    }
+    Some(picture)
+}
