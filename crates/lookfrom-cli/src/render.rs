@@ -9,7 +9,7 @@ use lookfrom::session::{Options, Session};
 use lookfrom_scene::Inputs;
 use lookfrom_scene::image::Image;
 
-use crate::args::{Overrides, RenderArguments};
+use crate::args::RenderArguments;
 use crate::exit::{self, DONE, Failure, INTERRUPTED, answer, say};
 use crate::output::Target;
 use crate::prepare::{self, prepare};
@@ -76,7 +76,7 @@ fn pictures(target: &Target, arguments: &RenderArguments) -> Vec<Target> {
     }
 }
 
-/// Renders all pictures of one scene.
+/// Renders all pictures of one scene, which is read once, and says what was done; gives the exit code.
 fn render_all(
     path: &Path,
     target: &Target,
@@ -86,55 +86,40 @@ fn render_all(
 ) -> Result<u8, Failure> {
     let targets = pictures(target, arguments);
     let start = arguments.overrides.model.turn.unwrap_or(0.0);
-    for number in 0..targets.len() {
-        // Each picture is made as if it were the only one, so that it can be made, and inspected, alone.
-        let mut overrides = arguments.overrides.clone();
-        if let Some(count) = arguments.turntable {
-            overrides.model.turn = Some(start + 360.0 * number as f64 / f64::from(count));
-        }
-        match render(path, &targets, number, arguments, &overrides, environment, inputs)? {
-            DONE => {}
-            code => return Ok(code),
-        }
-    }
-    Ok(DONE)
-}
-
-/// Renders picture `number` of a scene and says what was done; gives the exit code.
-fn render(
-    path: &Path,
-    targets: &[Target],
-    number: usize,
-    arguments: &RenderArguments,
-    overrides: &Overrides,
-    environment: Option<&Image>,
-    inputs: &Inputs,
-) -> Result<u8, Failure> {
-    let target = &targets[number];
+    let of_arguments = arguments.overrides.options(&arguments.common, environment);
     let options = Options {
         stop: StopCriteria { time: arguments.time, noise: arguments.noise },
         adaptive: arguments.adaptive,
         fireflies: arguments.fireflies,
         format: Some(target.format()),
-        ..overrides.options(&arguments.common, environment)
+        turn: of_arguments.turn.or(arguments.turntable.map(|_| start)),
+        ..of_arguments
     };
-    let session = prepare(path, &arguments.common, &options, inputs)?;
-    if number == 0 {
-        if !arguments.quiet {
-            exit::say_warnings(session.warnings());
-        }
-        keep_inputs(path, targets, inputs)?;
+    let mut session = prepare(path, &arguments.common, &options, inputs)?;
+    if !arguments.quiet {
+        exit::say_warnings(session.warnings());
     }
-    interrupt::keeping(|| {
-        let summary = render_picture(path, target, &session, arguments, inputs)?;
-        if !arguments.quiet {
-            say(&summary.for_people());
+    keep_inputs(path, &targets, inputs)?;
+    for (number, target) in targets.iter().enumerate() {
+        if number > 0 {
+            let degrees = start + 360.0 * number as f64 / targets.len() as f64;
+            session.set_turn(degrees).map_err(exit::in_scene(path))?;
         }
-        if arguments.json {
-            answer(&summary.as_json())?;
+        let code = interrupt::keeping(|| -> Result<u8, Failure> {
+            let summary = render_picture(path, target, &session, arguments, inputs)?;
+            if !arguments.quiet {
+                say(&summary.for_people());
+            }
+            if arguments.json {
+                answer(&summary.as_json())?;
+            }
+            Ok(if summary.cancelled { INTERRUPTED } else { DONE })
+        })?;
+        if code != DONE {
+            return Ok(code);
         }
-        Ok(if summary.cancelled { INTERRUPTED } else { DONE })
-    })
+    }
+    Ok(DONE)
 }
 
 /// Refuses pictures in the place of files that were read, and a scene that reads a picture of this call.

@@ -14,7 +14,6 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use lookfrom_bvh::{Hit, Left, Ray};
-use lookfrom_scene::scene::Origin;
 use lookfrom_scene::settings::{
     Background, ColorMode, Crop, ImageSettings, RenderSettings, Sensor as SensorSettings,
 };
@@ -35,6 +34,7 @@ use crate::view::View;
 use crate::world::World;
 
 use first_hit::FirstHit;
+pub(crate) use outlook::Subject;
 use transport::Transport;
 
 pub use driver::{FEWEST_SAMPLES, Progress, Rendered, StopCriteria, StopReason, TileDone};
@@ -175,11 +175,15 @@ impl Renderer {
     /// As [`View::of_scene`], [`World::compile`] and [`Renderer::new`].
     pub fn of_scene(scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
-        let at = scene.camera.as_ref().map(|camera| camera.at.clone()).unwrap_or_default();
-        let (bounds, is_model) = (scene.bounds(), scene.origin != Origin::Scene);
+        let subject = Subject::of_scene(&scene);
         let renderer = Self::new(Arc::new(World::compile(scene, warnings)?), view, settings)?;
-        outlook::check(&renderer, bounds, &at, is_model, warnings);
+        renderer.check_view(&subject, warnings);
         Ok(renderer)
+    }
+
+    /// Warns of a camera that sees nothing of what it should.
+    pub(crate) fn check_view(&self, subject: &Subject, warnings: &mut Vec<Warning>) {
+        outlook::check(self, subject, warnings);
     }
 
     /// The same with an integrator of one's own in place of the one that the settings name.
@@ -198,6 +202,14 @@ impl Renderer {
             true => Self { integrator: self.integrator.clone(), is_plugged_in: true, ..other },
             false => other,
         })
+    }
+
+    /// Another world, or the same one with other lights, as a view sees it.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn with_world(&self, world: Arc<World>, view: View) -> Result<Self> {
+        Self { world, ..self.clone() }.with_view(view)
     }
 
     /// The same view of the same world, computed otherwise: by the integrator that the settings name.

@@ -20,28 +20,33 @@ mod layers;
 mod options;
 mod prepare;
 mod running;
+mod source;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use glam::DMat3;
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::contents::Contents;
 use lookfrom_scene::count::Counts;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
+use lookfrom_scene::studio::Turntable;
 use lookfrom_scene::{Disk, Error, Files, Location, Memory, Result, Scene, Sources, Warning, load};
 
 use crate::film::Picture;
 use crate::integrator::Integrator;
-use crate::render::{Progress, Renderer, StopCriteria};
+use crate::render::{Progress, Renderer, StopCriteria, Subject};
 use crate::view::View;
 use crate::world::World;
 
 pub use encode::Format;
 pub use finish::Finished;
 pub use options::{ADAPTIVE_NOISE, Fireflies, MOST_SAMPLES, OPTIONS, Options};
+use prepare::Prepared;
 pub use running::Running;
+use source::Source;
 
 /// A scene that is ready to be rendered, and to be rendered again from elsewhere or with other settings.
 ///
@@ -51,12 +56,32 @@ pub struct Session {
     name: String,
     renderer: Renderer,
     camera: Camera,
+    /// Where the scene can be read again.
+    source: Source,
+    /// What turns it, where the options ask for that.
+    turntable: Option<Turning>,
     stop: StopCriteria,
     fireflies: Fireflies,
     threads: Option<usize>,
     format: Option<Format>,
     info: SceneInfo,
     warnings: Vec<Warning>,
+}
+
+/// What a scene is turned by.
+#[derive(Clone, Debug)]
+struct Turning {
+    turntable: Turntable,
+    /// At 0 degrees.
+    camera: Camera,
+    world: Arc<World>,
+    degrees: f64,
+}
+
+impl Turning {
+    fn rotation(&self) -> DMat3 {
+        DMat3::from_mat4(self.turntable.rotation(self.degrees))
+    }
 }
 
 /// What a session found in its file, and what it took to get it ready.
@@ -82,7 +107,8 @@ impl Session {
     /// # Errors
     /// What the file's reader finds, what [`World::compile`] finds, and `Request` where the options do not suit the scene.
     pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Self> {
-        Self::read(path.as_ref(), &Disk, options)
+        let path = path.as_ref();
+        Self::read_from(Source::File(path.to_owned(), Arc::new(options.clone())), path, &Disk, options)
     }
 
     /// A session of a scene or model file in memory, which is self-contained. The extension of `name` says its format.
@@ -91,7 +117,9 @@ impl Session {
     /// As [`Session::open`].
     pub fn from_bytes(name: &str, bytes: Vec<u8>, options: &Options) -> Result<Self> {
         let path = PathBuf::from(name);
-        Self::read(&path, &Memory([(path.clone(), bytes)].into()), options)
+        let files = Arc::new(Memory([(path.clone(), bytes)].into()));
+        let source = Source::Bytes(path.clone(), files.clone(), Arc::new(options.clone()));
+        Self::read_from(source, &path, &*files, options)
     }
 
     /// A session of a scene or model file, with all that it refers to, read through `files`.
@@ -99,10 +127,14 @@ impl Session {
     /// # Errors
     /// As [`Session::open`].
     pub fn read(path: &Path, files: &dyn Files, options: &Options) -> Result<Self> {
+        Self::read_from(Source::Elsewhere, path, files, options)
+    }
+
+    fn read_from(source: Source, path: &Path, files: &dyn Files, options: &Options) -> Result<Self> {
         let started = Instant::now();
         let mut sources = Sources { choice: options.import.clone(), ..Sources::new(files) };
         let scene = load::scene(path, &mut sources)?;
-        Self::prepare(scene, path, sources.warnings, started, options)
+        Self::prepare(scene, path, source, sources.warnings, started, options)
     }
 
     /// A session of a scene that was made or read elsewhere.
@@ -110,12 +142,13 @@ impl Session {
     /// # Errors
     /// As [`Session::open`].
     pub fn of_scene(scene: Scene, options: &Options) -> Result<Self> {
-        Self::prepare(scene, Path::new(""), Vec::new(), Instant::now(), options)
+        Self::prepare(scene, Path::new(""), Source::Elsewhere, Vec::new(), Instant::now(), options)
     }
 
     fn prepare(
         mut scene: Scene,
         path: &Path,
+        source: Source,
         mut warnings: Vec<Warning>,
         started: Instant,
         options: &Options,
@@ -125,23 +158,40 @@ impl Session {
         let (counts, bounds) = (Counts::of(&scene), scene.bounds());
         let contents = std::mem::take(&mut scene.contents);
         let noise = options.stop.noise.or(options.adaptive.then_some(ADAPTIVE_NOISE));
-        let added = prepare::prepare(&mut scene, path, options, &mut warnings)?;
+        let Prepared { added, turntable } = prepare::prepare(&mut scene, path, options, &mut warnings)?;
         if options.format.is_some_and(|format| !format.has_layers()) {
             scene.image.layers = Layers::None;
         }
         let camera = scene.camera.clone().unwrap_or_default();
-        let renderer = Renderer::of_scene(scene, &mut warnings).map_err(in_file(path))?;
-        Ok(Self {
+        let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
+        let subject = Subject::of_scene(&scene);
+        let world = Arc::new(World::compile(scene, &mut warnings).map_err(in_file(path))?);
+        let turntable = turntable.map(|turntable| Turning {
+            turntable,
+            camera: camera.clone(),
+            world: world.clone(),
+            degrees: 0.0,
+        });
+        let renderer = Renderer::new(world, view, settings).map_err(in_file(path))?;
+        let mut session = Self {
             name: path.display().to_string(),
             renderer,
             camera,
+            source,
+            turntable,
             stop: StopCriteria { noise, ..options.stop },
             fireflies: options.fireflies,
             threads: options.threads,
             format: options.format,
             info: SceneInfo { counts, contents, bounds, added, read, build: started.elapsed() },
             warnings,
-        })
+        };
+        if let Some(degrees) = options.turn {
+            session.set_turn(degrees)?;
+        }
+        session.renderer.check_view(&subject, &mut session.warnings);
+        session.info.build = started.elapsed();
+        Ok(session)
     }
 
     /// The file's name as it was given; empty for a scene that was made elsewhere.
@@ -184,14 +234,46 @@ impl Session {
         &self.renderer
     }
 
-    /// Looks at the world from elsewhere; nothing is read or built again.
+    /// Looks at the world from elsewhere. Nothing is read or built again, unless the eye is so far from the origin of render space, and
+    /// so near to something, that the world would not be exact there ([`World::is_precise_from`]): then the scene is read again
+    /// and its world built around that eye.
     ///
     /// # Errors
-    /// `Invalid` for a camera that cannot see; then nothing has changed.
+    /// `Invalid` for a camera that cannot see; `Request` where the world is not exact from there and cannot be read again, since the
+    /// session was made of a scene or through [`Session::read`]. Then nothing has changed.
     pub fn set_camera(&mut self, camera: Camera) -> Result<()> {
         let view = View::new(&camera, self.image().clone())?;
-        self.renderer = self.renderer.with_view(view)?;
+        let eye = view.camera().lookfrom();
+        self.renderer = match self.world().is_precise_from(eye) {
+            true => self.renderer.with_view(view)?,
+            false => {
+                let mut world = self.source.world_around(&camera, self.settings())?;
+                if let Some(turning) = &self.turntable {
+                    world = world.with_surroundings_turned(&turning.rotation());
+                }
+                self.renderer.with_world(Arc::new(world), view)?
+            }
+        };
         self.camera = camera;
+        Ok(())
+    }
+
+    /// Turns the scene on a turntable: the camera of the beginning goes around it by degrees, counter-clockwise as seen from above,
+    /// and pictures of the surroundings with it. No tree is built, nothing is read.
+    ///
+    /// # Errors
+    /// `Request` for a session without a turntable ([`Options::turn`]).
+    pub fn set_turn(&mut self, degrees: f64) -> Result<()> {
+        let Some(turning) = &self.turntable else {
+            let message = "this session has no turntable: ask for one by the option `turn`";
+            return Err(options::unsuitable(message.to_owned()));
+        };
+        let turning = Turning { degrees, ..turning.clone() };
+        let camera = turning.turntable.turned(&turning.camera, degrees);
+        let world = Arc::new(turning.world.with_surroundings_turned(&turning.rotation()));
+        let view = View::new(&camera, self.image().clone())?;
+        self.renderer = self.renderer.with_world(world, view)?;
+        (self.camera, self.turntable) = (camera, Some(turning));
         Ok(())
     }
 

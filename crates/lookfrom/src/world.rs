@@ -1,7 +1,7 @@
 //! What light meets: a scene compiled to flat arrays and integer ids, frozen.
 //!
 //! *Render space* is the world translated so that its origin is the eye of the scene's camera: f32 is finest where the
-//! picture looks closest.
+//! picture looks closest. Views from elsewhere share it as long as they are exact ([`World::is_precise_from`]).
 //! After [`World::compile`] nothing fails but cancellation.
 
 mod catcher;
@@ -9,13 +9,14 @@ mod class;
 mod compile;
 mod lights;
 mod place;
+mod precision;
 mod reflectance;
 
 pub use class::Class;
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Bvh, Hit, Left, NONE, Ray};
 use lookfrom_scene::scene::MediumId;
 
@@ -30,22 +31,24 @@ use crate::texture::{
 };
 
 /// What light meets.
-#[derive(Debug)]
+///
+/// A clone shares geometry and looks; only the lights are its own.
+#[derive(Clone, Debug)]
 pub struct World {
     /// Where the origin of render space lies in the world.
     pub(crate) origin: DVec3,
     /// Everything that rays can meet.
-    pub(crate) bvh: Bvh,
+    pub(crate) bvh: Arc<Bvh>,
     /// What stands in the world once, by the kernel's geometry id.
-    pub(crate) forms: Vec<Form>,
+    pub(crate) forms: Arc<[Form]>,
     /// Objects, which instances repeat: forms by geometry id.
-    pub(crate) objects: Vec<Vec<Form>>,
+    pub(crate) objects: Arc<[Vec<Form>]>,
     /// What stands in the world once, by the kernel's geometry id: its class.
-    pub(crate) classes: Vec<Class>,
+    pub(crate) classes: Arc<[Class]>,
     /// By the kernel's instance id.
-    pub(crate) instances: Vec<Instance>,
+    pub(crate) instances: Arc<[Instance]>,
     /// Looks of surfaces.
-    pub(crate) materials: Vec<Material>,
+    pub(crate) materials: Arc<[Material]>,
     /// Parts of surfaces that are there, see [`Look::alpha`](crate::shape::Look::alpha).
     pub(crate) alphas: Vec<FloatTexture>,
     /// What fills bodies and space.
@@ -59,11 +62,11 @@ pub struct World {
     /// Meshes with further texture coordinates or opacities, see [`Look::vertex_data`](crate::shape::Look::vertex_data).
     pub(crate) vertex_data: Vec<Arc<Mesh>>,
     /// Colours over surfaces.
-    pub(crate) textures: Textures,
+    pub(crate) textures: Arc<Textures>,
     /// Lights to be sampled.
     pub(crate) lights: Vec<Light>,
     /// Which light is asked where only one is.
-    pub(crate) light_choice: LightChoice,
+    pub(crate) light_choice: Arc<LightChoice>,
     /// Whitted's `I_a`.
     pub(crate) ambient: SpectrumTexture,
     /// Indices into `lights` of those that are seen where a ray meets nothing.
@@ -76,7 +79,7 @@ pub struct World {
     /// way, in linear Rec. 709; `None` where there is no such floor.
     pub(crate) catcher_irradiance: Option<[f32; 3]>,
     /// Names of the scene's materials and shapes, for people.
-    pub(crate) names: Names,
+    pub(crate) names: Arc<Names>,
 }
 
 /// Something that light crosses, and that takes light away on the way.
@@ -290,6 +293,21 @@ impl World {
         }
         let length = medium.scale * distance;
         lanes.one() * sigma.map(|sigma| if sigma == 0.0 { 1.0 } else { libm::expf(-sigma * length) })
+    }
+
+    /// The same world with its pictures of the surroundings turned: geometry and looks are shared, no tree is built. `rotation` is of the
+    /// world.
+    #[must_use]
+    pub fn with_surroundings_turned(&self, rotation: &DMat3) -> Self {
+        let turn = |light: &Light| match light {
+            Light::Environment(environment) => {
+                Light::Environment(environment.turned(rotation, &self.textures))
+            }
+            light => light.clone(),
+        };
+        let mut turned = Self { lights: self.lights.iter().map(turn).collect(), ..self.clone() };
+        turned.catcher_irradiance = turned.unoccluded_irradiance();
+        turned
     }
 
     /// Whitted's `I_a`.

@@ -12,7 +12,7 @@ use lookfrom::spectrum::Spectrum;
 use lookfrom::world::World;
 use lookfrom_bvh::Hit;
 use lookfrom_scene::camera::{Camera, View};
-use lookfrom_scene::{Disk, ErrorKind, Sources, load};
+use lookfrom_scene::{Disk, ErrorKind, Files, Memory, Sources, load};
 
 fn own(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name)
@@ -69,6 +69,86 @@ fn a_moved_camera_builds_nothing_and_sees_what_a_new_session_sees() {
     let nowhere = Camera { view: View::Look { lookfrom, lookat: lookfrom, up }, ..moved.camera().clone() };
     assert_eq!(moved.set_camera(nowhere).expect_err("it looks nowhere").kind, ErrorKind::Invalid);
     assert_eq!(film(&moved).picture(), a, "a camera that is refused changes nothing");
+}
+
+/// Files on disk, and how many of them were read.
+struct Counted(Mutex<usize>);
+
+impl Files for Counted {
+    fn read(&self, path: &Path, limit: u64) -> lookfrom_scene::Result<Vec<u8>> {
+        *self.0.lock().expect("a lock") += 1;
+        Disk.read(path, limit)
+    }
+}
+
+#[test]
+fn a_turntable_reads_its_file_once_and_builds_one_tree() {
+    let files = Counted(Mutex::new(0));
+    let options = Options { turn: Some(0.0), floor: true, ..small() };
+    let mut session = Session::read(&own("models/star.ply"), &files, &options).expect("a model");
+    let (bvh, first) = (std::ptr::from_ref(session.world().bvh()), film(&session));
+    for degrees in [90.0, 211.5] {
+        session.set_turn(degrees).expect("a turntable");
+        let options = Options { turn: Some(degrees), ..options.clone() };
+        let alone = Session::open(own("models/star.ply"), &options).expect("a model");
+        assert!(film(&session) == film(&alone), "at {degrees} degrees");
+        assert!(film(&session) != first, "nothing turns");
+    }
+    assert!(std::ptr::eq(bvh, session.world().bvh()) && *files.0.lock().expect("a lock") == 1);
+    session.set_turn(0.0).expect("a turntable");
+    assert!(film(&session) == first);
+
+    let mut plain = Session::open(own("models/star.ply"), &small()).expect("a model");
+    assert_eq!(plain.set_turn(1.0).expect_err("no turntable").kind, ErrorKind::Request);
+}
+
+/// Two unit spheres, a million units apart, the camera before the first.
+const FAR_APART: &str = r#"
+    [camera]
+    lookfrom = [0, 0, 3]
+    lookat = [0, 0, 0]
+    [[light]]
+    type = "distant"
+    from = [1, 1, 1]
+    [materials.wall]
+    diffuse = { type = "checker", size = 0.2 }
+    [[sphere]]
+    material = "wall"
+    center = [0, 0, 0]
+    radius = 1
+    [[sphere]]
+    material = "wall"
+    center = [1000000.03125, 0, 0]
+    radius = 1
+"#;
+
+#[test]
+fn a_camera_far_from_the_origin_gets_a_world_of_its_own() {
+    let bytes = || FAR_APART.as_bytes().to_vec();
+    let mut session = Session::from_bytes("far.toml", bytes(), &small()).expect("a scene");
+    let world = session.world().clone();
+    let center = DVec3::new(1_000_000.031_25, 0.0, 0.0);
+    let (lookfrom, lookat) = (center + DVec3::new(0.0, 0.0, 3.0), center);
+    let camera = |lookfrom| {
+        let view = View::Look { lookfrom, lookat, up: DVec3::Y };
+        Camera { view, ..Camera::default() }
+    };
+    // From afar nothing needs to be exact; from near it does.
+    session.set_camera(camera(center + DVec3::new(0.0, 0.0, 5e4))).expect("a camera");
+    assert!(std::sync::Arc::ptr_eq(&world, session.world()));
+    session.set_camera(camera(lookfrom)).expect("a camera");
+    assert!(session.world().is_precise_from(lookfrom) && !world.is_precise_from(lookfrom));
+    let options = Options { lookfrom: Some(lookfrom), lookat: Some(lookat), ..small() };
+    let anew = Session::from_bytes("far.toml", bytes(), &options).expect("a scene");
+    assert!(film(&session) == film(&anew));
+
+    // What cannot be read again says so, and stays as it is.
+    let scene = Memory([("far.toml".into(), bytes())].into());
+    let mut of_files = Session::read(Path::new("far.toml"), &scene, &small()).expect("a scene");
+    let before = film(&of_files);
+    let error = of_files.set_camera(camera(lookfrom)).expect_err("it is too far");
+    assert_eq!(error.kind, ErrorKind::Request);
+    assert!(film(&of_files) == before);
 }
 
 #[test]

@@ -6,9 +6,9 @@
 use glam::{DMat4, DVec3};
 
 use super::framing::Framing;
-use super::surroundings::{rotation, turn_environments};
+use super::surroundings::rotation;
 use super::{aspect, basis, bounds_of, corners, sane, visit_instance, visit_shape};
-use crate::camera::{Target, View};
+use crate::camera::{Camera, Target, View};
 use crate::material::MaterialKind;
 use crate::scene::{Bounds, Instance, Origin, Scene};
 use crate::shape::{Geometry, Shape};
@@ -64,24 +64,26 @@ impl Turntable {
         scene.camera = Some(framing.camera());
     }
 
-    /// Takes the camera around the axis by degrees, against the clock as seen from above, and all pictures of the surroundings
-    /// with it: as if everything else turned the other way.
-    pub fn turn(&self, scene: &mut Scene, degrees: f64) {
-        let [_, up, _] = self.basis;
+    /// Where a camera is after going around the axis by degrees, counter-clockwise as seen from above.
+    pub fn turned(&self, camera: &Camera, degrees: f64) -> Camera {
         let orbit = DMat4::from_translation(self.pivot)
-            * rotation(up, degrees)
+            * self.rotation(degrees)
             * DMat4::from_translation(-self.pivot);
-        if let Some(camera) = &mut scene.camera {
-            camera.view = match camera.view {
-                View::Look { lookfrom, lookat, up } => View::Look {
-                    lookfrom: orbit.transform_point3(lookfrom),
-                    lookat: orbit.transform_point3(lookat),
-                    up: orbit.transform_vector3(up),
-                },
-                View::Matrix(matrix) => View::Matrix(orbit * matrix),
-            };
-        }
-        turn_environments(scene, Some(up), degrees);
+        let view = match camera.view {
+            View::Look { lookfrom, lookat, up } => View::Look {
+                lookfrom: orbit.transform_point3(lookfrom),
+                lookat: orbit.transform_point3(lookat),
+                up: orbit.transform_vector3(up),
+            },
+            View::Matrix(matrix) => View::Matrix(orbit * matrix),
+        };
+        Camera { view, ..camera.clone() }
+    }
+
+    /// The rotation about the direction of the axis by degrees, counter-clockwise as seen from above: what pictures of the
+    /// surroundings are turned by along with the camera, as if everything else turned the other way.
+    pub fn rotation(&self, degrees: f64) -> DMat4 {
+        rotation(self.basis[1], degrees)
     }
 }
 

@@ -219,7 +219,7 @@ fn length_without_end(inspection: &Inspection) -> f64 {
 
 fn draw_scene(out: &mut String, world: &World, side: &SideView, place: &impl Fn(DVec2) -> DVec2, scale: f64) {
     out.push_str("<g fill=\"#00000008\" stroke=\"#9a9a9a\" stroke-width=\"0.8\">\n");
-    for form in &world.forms {
+    for form in &*world.forms {
         match form {
             Form::Spheres(spheres) if spheres.spheres.len() <= MOST_TRIANGLES => {
                 for sphere in &spheres.spheres {

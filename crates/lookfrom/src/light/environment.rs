@@ -1,11 +1,12 @@
 //! Light from infinitely far: a colour, a gradient or a picture all around, perhaps seen through an opening only.
 
 use std::f32::consts::PI;
+use std::sync::Arc;
 
-use glam::{DVec3, Mat3, Vec3};
+use glam::{DMat3, DVec3, Mat3, Vec3};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
-use super::portal::Portal;
+use super::portal::{Opening, Portal};
 use super::{Coverage, Glow, LightSample, Reference, Target};
 use crate::distribution::Piecewise2D;
 use crate::spectrum::Spectrum;
@@ -53,10 +54,10 @@ pub struct SkyImage {
     /// Columns: the light's axes in the world; a rotation, perhaps mirrored.
     pub world_from_light: Mat3,
     /// By the light of each part of the picture.
-    pub complete: Piecewise2D,
+    pub complete: Arc<Piecewise2D>,
     /// By how much brighter than the mean each part is (Karlík et al. 2019): where materials are sampled too, dim
     /// directions need no samples of their own.
-    pub compensated: Piecewise2D,
+    pub compensated: Arc<Piecewise2D>,
 }
 
 /// How the sphere of directions is laid out in a picture.
@@ -92,6 +93,15 @@ impl Environment {
                 sky.radiance(rgb, lanes)
             }
         }
+    }
+
+    /// The same with its picture, if it is one, turned by a rotation of the world; openings stay where they are.
+    pub(crate) fn turned(&self, rotation: &DMat3, textures: &Textures) -> Self {
+        let Sky::Image(sky) = &self.sky else { return self.clone() };
+        let world_from_light = (*rotation * sky.world_from_light.as_dmat3()).as_mat3();
+        let sky = SkyImage { world_from_light, ..(**sky).clone() };
+        let portal = self.portal.as_ref().map(|portal| Box::new(sky.through(portal.opening(), textures)));
+        Self { sky: Sky::Image(Box::new(sky)), portal, illuminates: self.illuminates }
     }
 
     /// What arrives of it on a surface with the unit normal `n` that nothing is in the way of: the integral of radiance
@@ -195,6 +205,13 @@ impl SkyImage {
             }
             Layout::Octahedral => texture::look_up(image, uv, [Wrap::Clamp; 2], TexelFilter::Nearest),
         }
+    }
+
+    /// What of it is seen through an opening.
+    pub(crate) fn through(&self, opening: Opening, textures: &Textures) -> Portal {
+        let picture = textures.image(self.image);
+        let size = [picture.width, picture.height];
+        Portal::of_picture(opening, size, |direction| self.blended(textures, direction))
     }
 
     /// The picture's colour in a unit direction, blended between the middles of texels.

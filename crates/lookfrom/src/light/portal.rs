@@ -69,6 +69,11 @@ impl Portal {
         Self { opening, choice, picture: Some(picture) }
     }
 
+    /// The rectangle.
+    pub(crate) fn opening(&self) -> Opening {
+        self.opening
+    }
+
     /// Whether one looks out through it.
     pub fn is_seen(&self, from: DVec3, direction: Vec3) -> bool {
         self.place(from, direction).is_some()

@@ -6,8 +6,8 @@
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
-use lookfrom_scene::scene::Bounds;
-use lookfrom_scene::{Location, Warning};
+use lookfrom_scene::scene::{Bounds, Origin};
+use lookfrom_scene::{Location, Scene, Warning};
 
 use super::Renderer;
 use crate::light::{Coverage, Light, Reference, Target};
@@ -26,15 +26,27 @@ const AROUND: u32 = 8;
 /// The share of rays that has to agree.
 const NEARLY_ALL: f64 = 0.9;
 
-/// Warns where the picture would be the background alone, or the inside of something. `bounds` are those of the scene in the
-/// world, `at` is where the camera was written; all parts of a model (`is_model`) are taken for one body.
-pub(super) fn check(
-    renderer: &Renderer,
+/// What a camera should see.
+#[derive(Clone, Debug)]
+pub(crate) struct Subject {
+    /// The box around the scene, in the world.
     bounds: Bounds,
-    at: &Location,
+    /// Where the camera was written.
+    at: Location,
+    /// Whether all parts of the scene are one body.
     is_model: bool,
-    warnings: &mut Vec<Warning>,
-) {
+}
+
+impl Subject {
+    pub(crate) fn of_scene(scene: &Scene) -> Self {
+        let at = scene.camera.as_ref().map(|camera| camera.at.clone()).unwrap_or_default();
+        Self { bounds: scene.bounds(), at, is_model: scene.origin != Origin::Scene }
+    }
+}
+
+/// Warns where the picture would be the background alone, or the inside of something.
+pub(super) fn check(renderer: &Renderer, subject: &Subject, warnings: &mut Vec<Warning>) {
+    let &Subject { bounds, ref at, is_model } = subject;
     if bounds.is_empty() {
         return;
     }

@@ -105,7 +105,7 @@ pub const MOST_SAMPLES: u32 = 1 << 24;
 pub const OPTIONS: &str = "the options";
 
 /// What was asked does not suit the scene.
-fn unsuitable(message: String) -> Error {
+pub(super) fn unsuitable(message: String) -> Error {
     Error::new(ErrorKind::Request, &Location::default(), message)
 }
 

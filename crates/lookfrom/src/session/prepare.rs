@@ -9,7 +9,15 @@ use lookfrom_scene::{CameraChoice, Choice, Location, Result, Scene, Warning, stu
 
 use super::options::{MOST_SAMPLES, Options};
 
-/// Applies options to a scene, and decides what both leave open. Gives what was added to show it.
+/// What else became of a scene that was prepared.
+pub(super) struct Prepared {
+    /// What was added to show it.
+    pub(super) added: Vec<&'static str>,
+    /// What turns it, where that is asked for; the scene itself is not turned yet.
+    pub(super) turntable: Option<Turntable>,
+}
+
+/// Applies options to a scene, and decides what both leave open.
 ///
 /// # Errors
 /// `Request` where the options do not suit the scene.
@@ -18,7 +26,7 @@ pub(super) fn prepare(
     file: &Path,
     options: &Options,
     warnings: &mut Vec<Warning>,
-) -> Result<Vec<&'static str>> {
+) -> Result<Prepared> {
     let mut warn = |message: &str| {
         warnings.push(Warning::new(&Location::file(file), message));
     };
@@ -44,9 +52,9 @@ pub(super) fn prepare(
     let lights = scene.lights.len();
     let up = options.up;
     // The camera comes first: inside a room it needs other light.
-    let turn = options.turn.map(|degrees| (Turntable::new(scene, up, options.lookat), degrees));
-    match &turn {
-        Some((turntable, _)) => turntable.frame(scene),
+    let turntable = options.turn.map(|_| Turntable::new(scene, up, options.lookat));
+    match &turntable {
+        Some(turntable) => turntable.frame(scene),
         None => studio::frame(scene, up),
     }
     options.apply_to_camera(scene)?;
@@ -69,14 +77,11 @@ pub(super) fn prepare(
     if let Some(degrees) = options.rotate_environment {
         studio::turn_environments(scene, up, degrees);
     }
-    if let Some((turntable, degrees)) = turn {
-        turntable.turn(scene, degrees);
-    }
     if options.floor {
         studio::add_floor(scene, up);
         added.push("floor");
     }
-    Ok(added)
+    Ok(Prepared { added, turntable })
 }
 
 /// Decides samples and denoising where nobody says otherwise.

@@ -19,7 +19,7 @@ use crate::texture::{Lanes, SpectrumType, Textures, spectrum_of};
 const LEAST_REFLECTANCE: f32 = 1e-3;
 
 /// What arrives from infinitely far on a surface with the unit normal `n`.
-pub(super) fn irradiance(lights: &[Light], textures: &Textures, n: Vec3) -> [f32; 3] {
+fn irradiance(lights: &[Light], textures: &Textures, n: Vec3) -> [f32; 3] {
     lights.iter().fold([0.0; 3], |sum, light| {
         let add = match light {
             Light::Environment(environment) if environment.illuminates => environment.irradiance(textures, n),
@@ -33,6 +33,15 @@ pub(super) fn irradiance(lights: &[Light], textures: &Textures, n: Vec3) -> [f32
 }
 
 impl World {
+    /// What arrives from infinitely far on the shadow catcher where nothing is in the way; `None` where there is none.
+    pub(super) fn unoccluded_irradiance(&self) -> Option<[f32; 3]> {
+        let normal = self.materials.iter().find_map(|material| match material.kind {
+            MaterialKind::ShadowCatcher { normal } => Some(normal),
+            _ => None,
+        });
+        normal.map(|n| irradiance(&self.lights, &self.textures, n))
+    }
+
     /// Whether a surface is a floor that is seen only by the shadows on it.
     pub(crate) fn is_catcher(&self, surface: &Surface) -> bool {
         self.catcher_irradiance.is_some()

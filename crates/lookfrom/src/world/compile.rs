@@ -10,7 +10,6 @@ use lookfrom_scene::scene::{MaterialId, Scene};
 use lookfrom_scene::settings::Integrator as Kind;
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
-use super::catcher;
 use super::lights::Lights;
 use super::place::{Compiler, Group};
 use super::{Instance, Medium, Names, World, reflectance};
@@ -132,37 +131,35 @@ impl World {
             materials.push(material);
             names.materials.push(written.name);
         }
-        let catcher = materials.iter().find_map(|material| match material.kind {
-            MaterialKind::ShadowCatcher { normal } => Some(normal),
-            _ => None,
-        });
         let is_environment = |index: &u32| matches!(lights[*index as usize], Light::Environment(_));
-        Ok(Self {
+        let mut world = Self {
             origin,
-            bvh,
-            classes: Self::classify(&forms, &materials),
-            forms,
-            objects,
-            instances,
+            bvh: Arc::new(bvh),
+            classes: Self::classify(&forms, &materials).into(),
+            forms: forms.into(),
+            objects: objects.into(),
+            instances: instances.into(),
             transmissive: materials.iter().any(|material| !material.whitted.transmission.is_gray(0.0)),
             has_gaps: !alphas.is_empty()
                 || has_media
                     && materials.iter().any(|material| matches!(material.kind, MaterialKind::Interface)),
             has_media,
             radius,
-            catcher_irradiance: catcher.map(|n| catcher::irradiance(&lights, &textures, n)),
-            materials,
+            catcher_irradiance: None,
+            materials: materials.into(),
             alphas,
             media,
             medium_interfaces,
             vertex_data,
             environments: (0..lights.len() as u32).filter(is_environment).collect(),
             lights,
-            light_choice,
+            light_choice: Arc::new(light_choice),
             ambient: textures.spectrum_texture(Color::Value(ambient), SpectrumType::Illuminant),
-            textures,
-            names,
-        })
+            textures: Arc::new(textures),
+            names: Arc::new(names),
+        };
+        world.catcher_irradiance = world.unoccluded_irradiance();
+        Ok(world)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Lights that are not shapes: from what was written to what can be sampled.
 
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Mat3, Vec3};
 use lookfrom_scene::image::Image;
@@ -190,10 +191,10 @@ impl<'a> Lights<'a> {
     }
 
     fn portal(&self, opening: Opening, sky: &Sky) -> Portal {
-        let Sky::Image(sky) = sky else { return Portal::plain(opening) };
-        let picture = self.textures.image(sky.image);
-        let size = [picture.width, picture.height];
-        Portal::of_picture(opening, size, |direction| sky.blended(self.textures, direction))
+        match sky {
+            Sky::Image(sky) => sky.through(opening, self.textures),
+            _ => Portal::plain(opening),
+        }
     }
 
     fn sky(&self, sky: &WrittenSky, amount: &Amount, has_portal: bool) -> (Sky, f32) {
@@ -240,8 +241,8 @@ impl<'a> Lights<'a> {
             scale,
             layout,
             world_from_light: Mat3::from_mat4(world_from_light.as_mat4()),
-            complete: choice(&|brightness| brightness),
-            compensated: choice(&|brightness| (brightness - average as f32).max(0.0)),
+            complete: Arc::new(choice(&|brightness| brightness)),
+            compensated: Arc::new(choice(&|brightness| (brightness - average as f32).max(0.0))),
         };
         (Sky::Image(Box::new(sky)), brightness)
     }

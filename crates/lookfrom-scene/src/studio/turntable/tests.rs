@@ -59,7 +59,8 @@ fn nothing_is_cut_at_any_angle_and_the_size_stays() {
                 for step in 0..36 {
                     scene.camera = None;
                     turntable.frame(&mut scene);
-                    turntable.turn(&mut scene, 10.0 * f64::from(step));
+                    scene.camera =
+                        scene.camera.as_ref().map(|camera| turntable.turned(camera, 10.0 * f64::from(step)));
                     for point in projected(&scene) {
                         let largest = point[0].abs().max(point[1].abs());
                         assert!(largest <= FILL + 1e-9, "{model:?}, up {up}, step {step}: {point:?}");
@@ -89,7 +90,7 @@ fn a_scene_turns_around_what_its_camera_looks_at() {
     scene.camera = Some(Camera { view, ..Camera::default() });
     let turntable = Turntable::new(&scene, None, None);
     turntable.frame(&mut scene);
-    turntable.turn(&mut scene, 90.0);
+    scene.camera = scene.camera.as_ref().map(|camera| turntable.turned(camera, 90.0));
     let View::Look { lookfrom, lookat: after, .. } = scene.camera.as_ref().unwrap().view else { panic!() };
     assert!(after.distance(lookat) < 1e-12, "{after}");
     assert!(lookfrom.distance(DVec3::new(8.0, 3.0, -0.5)) < 1e-12, "{lookfrom}");
@@ -157,7 +158,7 @@ fn the_turned_camera_keeps_its_distance_and_comes_back() {
     };
     let before = places(&scene);
     for _ in 0..3 {
-        turntable.turn(&mut scene, 120.0);
+        scene.camera = scene.camera.as_ref().map(|camera| turntable.turned(camera, 120.0));
         let now = places(&scene);
         assert!((now.0.z - before.0.z).abs() < 1e-9 && now.0.is_finite());
         assert!((now.0.distance(now.1) - before.0.distance(before.1)).abs() < 1e-9);

@@ -1,0 +1,49 @@
+//! Where a session's scene came from, and its world built again around another eye.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use lookfrom_scene::camera::Camera;
+use lookfrom_scene::settings::RenderSettings;
+use lookfrom_scene::{Disk, Files, Memory, Result, Sources, load};
+
+use super::{Options, options, prepare};
+use crate::world::World;
+
+/// Where a scene came from, with the options that it was prepared with.
+#[derive(Clone, Debug)]
+pub(super) enum Source {
+    /// A file on disk.
+    File(PathBuf, Arc<Options>),
+    /// A file in memory, by its name.
+    Bytes(PathBuf, Arc<Memory>, Arc<Options>),
+    /// Somewhere that only the caller knows.
+    Elsewhere,
+}
+
+impl Source {
+    /// The same world around the eye of another camera.
+    ///
+    /// # Errors
+    /// As [`Session::open`](super::Session::open); `Request` where the scene cannot be read again.
+    pub(super) fn world_around(&self, camera: &Camera, settings: &RenderSettings) -> Result<World> {
+        let (path, files, options): (&Path, &dyn Files, &Options) = match self {
+            Self::File(path, options) => (path, &Disk, options),
+            Self::Bytes(path, files, options) => (path, &**files, options),
+            Self::Elsewhere => {
+                return Err(options::unsuitable(
+                    "the camera is too far from where the session began, and too near to something, for this world to be \
+                     exact there, and its scene cannot be read again: make a new session with this camera"
+                        .to_owned(),
+                ));
+            }
+        };
+        let mut sources = Sources { choice: options.import.clone(), ..Sources::new(files) };
+        let mut scene = load::scene(path, &mut sources)?;
+        // What there is to warn of was said when the session began.
+        prepare::prepare(&mut scene, path, options, &mut Vec::new())?;
+        scene.camera = Some(camera.clone());
+        scene.render = settings.clone();
+        World::compile(scene, &mut Vec::new())
+    }
+}
