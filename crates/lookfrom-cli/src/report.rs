@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Duration;
 
-use lookfrom::film::Address;
+use lookfrom::film::SampleId;
 use lookfrom::render::Rays;
 use lookfrom::session::{Finished, Session};
 use lookfrom_scene::WarningKind;
@@ -82,9 +82,9 @@ impl From<Rays> for RayCounts {
     }
 }
 
-impl From<Address> for DroppedAddress {
-    fn from(address: Address) -> Self {
-        Self { x: address.x, y: address.y, sample: address.sample }
+impl From<SampleId> for DroppedAddress {
+    fn from(id: SampleId) -> Self {
+        Self { x: id.pixel[0], y: id.pixel[1], sample: id.sample }
     }
 }
 

@@ -15,9 +15,9 @@ pub mod fresnel;
 pub mod henyey_greenstein;
 pub mod layered;
 pub mod lobes;
+mod local_scattering;
 pub mod microfacet;
 pub mod principled;
-mod toward;
 pub mod whitted;
 
 use glam::Vec3;
@@ -26,13 +26,13 @@ use crate::spectrum::Spectrum;
 use conductor::Conductor;
 use dielectric::{Dielectric, ThinDielectric};
 use diffuse::{Diffuse, DiffuseTransmission};
-use layered::{Base, Coat, Layered};
+use layered::{Base, CoatLayer, Layered};
 use lobes::Lobes;
 use microfacet::TrowbridgeReitz;
 use principled::Principled;
 use whitted::Whitted;
 
-pub use toward::Toward;
+pub use local_scattering::LocalScattering;
 
 /// What travels from `wo` into the scene: radiance comes the other way on paths from the camera, importance on paths
 /// from lights. Only refraction asks.
@@ -152,12 +152,17 @@ impl Bsdf {
     }
 
     /// pbrt's `coateddiffuse`.
-    pub fn coated_diffuse(reflectance: Spectrum, coat: &Coat) -> Self {
+    pub fn coated_diffuse(reflectance: Spectrum, coat: &CoatLayer) -> Self {
         Self::CoatedDiffuse(Layered::new(Diffuse::new(reflectance), coat))
     }
 
     /// pbrt's `coatedconductor` by index and extinction of the metal in air: both are divided by the coat's index.
-    pub fn coated_conductor(eta: Spectrum, k: Spectrum, roughness: TrowbridgeReitz, coat: &Coat) -> Self {
+    pub fn coated_conductor(
+        eta: Spectrum,
+        k: Spectrum,
+        roughness: TrowbridgeReitz,
+        coat: &CoatLayer,
+    ) -> Self {
         let coat_eta = fresnel::valid_eta(coat.eta);
         let base = Conductor::new(eta / coat_eta, k / coat_eta, roughness);
         Self::CoatedConductor(Layered::new(base, coat))
@@ -167,7 +172,7 @@ impl Bsdf {
     pub fn coated_conductor_of_reflectance(
         reflectance: Spectrum,
         roughness: TrowbridgeReitz,
-        coat: &Coat,
+        coat: &CoatLayer,
     ) -> Self {
         let (eta, k) = fresnel::conductor_of_reflectance(reflectance);
         Self::coated_conductor(eta, k, roughness, coat)

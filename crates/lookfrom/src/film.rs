@@ -21,6 +21,7 @@ use self::channels::ChannelSums;
 use lookfrom_scene::settings::{Background, Crop, ImageSettings, Layers};
 use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
+use std::cmp::Ordering;
 use std::ops::Range;
 
 /// Films have at most this many pixels: 2²⁸, which take 28 GiB.
@@ -54,18 +55,29 @@ pub struct FilmTile {
     /// Sums of their squares, in multiples of 2⁻⁴⁸: as many as there are pixels, or none.
     alpha_squares: Vec<u128>,
     dropped: u64,
-    first_dropped: Option<Address>,
+    first_dropped: Option<SampleId>,
 }
 
 /// Which sample of which pixel. The order is that of reading: row, column, sample.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Address {
-    /// Row, from the top.
-    pub y: u32,
-    /// Column, from the left.
-    pub x: u32,
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SampleId {
+    /// Column and row from the top left.
+    pub pixel: [u32; 2],
     /// Number of the sample in its pixel.
     pub sample: u32,
+}
+
+impl Ord for SampleId {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let in_order = |id: &Self| (id.pixel[1], id.pixel[0], id.sample);
+        in_order(self).cmp(&in_order(other))
+    }
+}
+
+impl PartialOrd for SampleId {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
 }
 
 /// Linear light, row by row from the top left.
@@ -261,7 +273,7 @@ impl Film {
     }
 
     /// The least address of a dropped sample, which replays it: the same whatever the order of the work.
-    pub fn first_dropped(&self) -> Option<Address> {
+    pub fn first_dropped(&self) -> Option<SampleId> {
         self.tile.first_dropped
     }
 
@@ -382,7 +394,7 @@ impl FilmTile {
     pub fn add_with_alpha(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3], alpha: f32) {
         let index = self.index_inside(x, y);
         if !alpha.is_finite() || !rgb.iter().all(|light| light.is_finite()) {
-            self.drop_samples(1, Some(Address { y, x, sample }));
+            self.drop_samples(1, Some(SampleId { pixel: [x, y], sample }));
             return;
         }
         let pixel = &mut self.pixels[index];
@@ -448,7 +460,7 @@ impl FilmTile {
         self.drop_samples(other.dropped, other.first_dropped);
     }
 
-    fn drop_samples(&mut self, count: u64, first: Option<Address>) {
+    fn drop_samples(&mut self, count: u64, first: Option<SampleId>) {
         self.dropped = self.dropped.saturating_add(count);
         self.first_dropped = self.first_dropped.into_iter().chain(first).min();
     }

@@ -8,15 +8,15 @@ mod camera;
 mod candidate;
 mod report;
 mod scatter;
-mod story;
 mod svg;
 mod text;
+mod trace_log;
 
 use crate::integrator::Event;
 use crate::render::{Renderer, SampleId};
 use crate::texture::Lanes;
 
-use story::Story;
+use trace_log::TraceLogBuilder;
 
 pub use candidate::{Candidate, Number, Test};
 pub use report::{
@@ -40,9 +40,9 @@ pub fn inspect(renderer: &Renderer, id: SampleId) -> Inspection {
         }),
     };
 
-    let mut story = Story::new(renderer, traced.lanes);
-    events.iter().for_each(|event| story.hear(event));
-    let told = story.end();
+    let mut log = TraceLogBuilder::new(renderer, traced.lanes);
+    events.iter().for_each(|event| log.record(event));
+    let told = log.end();
     let film = renderer.rgb(told.sum * traced.weight, &traced.lanes);
     Inspection {
         pixel: id.pixel,

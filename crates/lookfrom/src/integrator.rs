@@ -20,11 +20,11 @@ use lookfrom_bvh::{Hit, Left, Ray};
 use lookfrom_scene::settings::Background;
 
 use crate::hash;
-use crate::light::Reference;
-use crate::material::InteriorStack;
+use crate::interaction::SurfaceInteraction;
+use crate::interior_stack::InteriorStack;
+use crate::light::LightSampleContext;
 use crate::sampler::PixelSampler;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::texture::Lanes;
 use crate::world::World;
 
@@ -32,10 +32,10 @@ pub use background::Alpha;
 pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
 pub use first_hit::FirstHit;
 pub use occlusion::AmbientOcclusion;
-pub use path::{Departure, PathTracer, Wisdom};
+pub use path::{LightSampling, PathTracer, PreviousVertex};
 pub use raycast::Raycast;
-pub use shadow::Passing;
 pub use shadow::Shadow;
+pub use shadow::ShadowTransparency;
 pub(crate) use shadow::resolve as resolve_shadows;
 pub use whitted::Whitted;
 
@@ -50,18 +50,18 @@ pub trait Integrator: std::fmt::Debug + Send + Sync {
     fn name(&self) -> &'static str;
 
     /// What lets shadow rays pass.
-    fn passing(&self) -> Passing {
-        Passing::Gaps
+    fn shadow_transparency(&self) -> ShadowTransparency {
+        ShadowTransparency::AlphaTested
     }
 
-    /// Adds to `next` what follows from `path` having met `hit`.
+    /// Adds to `output` what follows from `path` having met `hit`.
     fn step<P: Probe>(
         &self,
         world: &World,
-        numbers: &Numbers,
+        stream: &SampleStream,
         path: &Path,
         hit: &Hit,
-        next: &mut Next<'_, P>,
+        output: &mut StepOutput<'_, P>,
     );
 
     /// [`Integrator::step`] for all paths of a batch and their hits. What is done for one path does not depend on others;
@@ -69,14 +69,14 @@ pub trait Integrator: std::fmt::Debug + Send + Sync {
     fn step_all<P: Probe>(
         &self,
         world: &World,
-        numbers: impl Fn(&Path) -> Numbers,
+        stream: impl Fn(&Path) -> SampleStream,
         paths: &[Path],
         hits: &[Hit],
-        next: &mut Next<'_, P>,
+        output: &mut StepOutput<'_, P>,
     ) {
         for (path, hit) in paths.iter().zip(hits) {
-            next.probe.notice(|| Event::Met { path: *path, hit: *hit });
-            self.step(world, &numbers(path), path, hit, next);
+            output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
+            self.step(world, &stream(path), path, hit, output);
         }
     }
 }
@@ -96,9 +96,9 @@ pub struct Path {
     /// refracted one 2n + 1; along a path the next ray of n is n + 1.
     pub address: u64,
     /// What it travels in.
-    pub media: InteriorStack,
+    pub interior: InteriorStack,
     /// What it remembers of the surface that it left.
-    pub departure: Departure,
+    pub previous: PreviousVertex,
 }
 
 impl Path {
@@ -106,15 +106,15 @@ impl Path {
     pub const ROOT: u64 = 1;
 
     /// Where it left from, as lights are asked there.
-    pub(crate) fn reference(&self) -> Reference {
-        Reference { point: self.departure.point.as_dvec3(), n: self.departure.n }
+    pub(crate) fn light_context(&self) -> LightSampleContext {
+        LightSampleContext { point: self.previous.point.as_dvec3(), n: self.previous.n }
     }
 
     /// Whether it goes through a surface as if that were not there: by its alpha, where that is a matter of chance for
     /// `u ∈ [0, 1)`, or on its way from the camera because it met the back of what has only a front.
-    fn goes_through(&self, world: &World, surface: &Surface, u: f32) -> bool {
-        let is_back = surface.single_sided && !surface.front && !self.departure.blurred;
-        is_back || !world.is_there(surface, u)
+    fn goes_through(&self, world: &World, surface: &SurfaceInteraction, u: f32) -> bool {
+        let is_back = surface.single_sided && !surface.front && !self.previous.blurred;
+        is_back || !world.passes_alpha_test(surface, u)
     }
 
     /// The same path after what it is inside of took its part of the light, on the way to `hit` or, where nothing is met,
@@ -124,21 +124,21 @@ impl Path {
             true => Vec3::from_array(self.ray.direction).length() * hit.t,
             false => f32::INFINITY,
         };
-        Self { beta: self.beta * world.transmittance(self.media, length, lanes), ..*self }
+        Self { beta: self.beta * world.transmittance(self.interior, length, lanes), ..*self }
     }
 
     /// The same path behind a surface that is not there.
-    fn passed(&self, surface: &Surface) -> Self {
+    fn passed(&self, surface: &SurfaceInteraction) -> Self {
         let direction = Vec3::from_array(self.ray.direction);
         let ray = Ray::new(surface.origin(direction), self.ray.direction);
-        let departure = Departure { left: surface.left, ..self.departure };
-        Self { ray, address: self.address + 1, departure, ..*self }
+        let previous = PreviousVertex { left: surface.left, ..self.previous };
+        Self { ray, address: self.address + 1, previous, ..*self }
     }
 }
 
 /// Random numbers for one ray: a pure function of pixel, sample, seed and the ray's place in its tree.
 #[derive(Clone, Copy, Debug)]
-pub struct Numbers {
+pub struct SampleStream {
     /// Where they come from: the pixel's.
     pub sampler: PixelSampler,
     /// Which sample of the pixel.
@@ -147,21 +147,21 @@ pub struct Numbers {
     pub address: u64,
 }
 
-impl Numbers {
+impl SampleStream {
     /// A number in `[0, 1)` for whether a surface is there, for those who have no purposes of their own.
-    fn presence(&self, world: &World, surface: &Surface) -> f32 {
-        if world.is_chancy(surface) { self.two(u32::MAX)[0] } else { 0.0 }
+    fn presence(&self, world: &World, surface: &SurfaceInteraction) -> f32 {
+        if world.is_stochastic(surface) { self.two(u32::MAX)[0] } else { 0.0 }
     }
 
     /// Two numbers in `[0, 1)` for one purpose at this ray.
-    pub fn two(&self, purpose: u32) -> [f32; 2] {
-        self.sampler.two(self.sample, hash::pair(self.address, u64::from(purpose)) as u32)
+    pub fn two(&self, dimension: u32) -> [f32; 2] {
+        self.sampler.two(self.sample, hash::pair(self.address, u64::from(dimension)) as u32)
     }
 }
 
 /// The samples of a batch under way.
 #[derive(Debug, Default)]
-pub struct Samples {
+pub struct Queues {
     /// Light gathered so far, by slot.
     pub radiance: Vec<Spectrum>,
     /// What the lanes mean, by slot.
@@ -178,7 +178,7 @@ pub struct Samples {
     blocked: Vec<bool>,
 }
 
-impl Samples {
+impl Queues {
     /// Forgets all samples.
     pub fn clear(&mut self) {
         self.radiance.clear();
@@ -198,19 +198,19 @@ impl Samples {
 
 /// What a step leaves behind, and who listens.
 #[derive(Debug)]
-pub struct Next<'a, P: Probe> {
+pub struct StepOutput<'a, P: Probe> {
     /// The samples that steps add to.
-    pub samples: Samples,
+    pub queues: Queues,
     /// What the camera sees where nothing stands.
     pub background: Background,
     /// Who listens.
     pub probe: &'a mut P,
 }
 
-impl<P: Probe> Next<'_, P> {
+impl<P: Probe> StepOutput<'_, P> {
     /// What the lanes of a path mean.
     fn lanes(&self, path: &Path) -> Lanes {
-        self.samples.lanes[path.slot as usize]
+        self.queues.lanes[path.slot as usize]
     }
 
     /// Adds light to a path's sample.
@@ -220,7 +220,7 @@ impl<P: Probe> Next<'_, P> {
 
     pub(crate) fn add_to(&mut self, slot: u32, address: u64, term: Term, value: Spectrum) {
         if !value.is_black() {
-            self.samples.radiance[slot as usize] += value;
+            self.queues.radiance[slot as usize] += value;
             self.probe.notice(|| Event::Add { address, term, value });
         }
     }

@@ -18,14 +18,14 @@ use glam::{DVec3, Vec3};
 use lookfrom_bvh::Point;
 use lookfrom_scene::light::Falloff;
 
+use crate::interaction::SurfaceInteraction;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::texture::{Lanes, SpectrumTexture, TexturePoint, Textures};
 use cone::Cone;
-use tree::Bundle;
+use tree::LightBounds;
 
 pub(crate) use area::LightTriangle;
-pub use area::{AreaLight, Extent, LightForm, LightPoint, MeshLight, PatchLight, QuadricLight};
+pub use area::{AreaLight, EmitterBounds, LightPoint, LightShape, MeshLight, PatchLight, QuadricLight};
 pub use choice::LightChoice;
 pub use environment::{Environment, Layout, Sky, SkyImage};
 pub use picture::{Goniometric, Projection};
@@ -39,7 +39,7 @@ pub enum Light {
         /// Where.
         position: DVec3,
         /// W/sr.
-        intensity: Glow,
+        intensity: EmissionSpectrum,
         /// How it fades.
         falloff: Falloff,
     },
@@ -48,7 +48,7 @@ pub enum Light {
         /// Toward the light, unit length.
         toward: Vec3,
         /// W/m² on a surface that faces it.
-        irradiance: Glow,
+        irradiance: EmissionSpectrum,
     },
     /// From a point into a cone.
     Spot {
@@ -57,7 +57,7 @@ pub enum Light {
         /// The axis, away from the light, unit length.
         axis: Vec3,
         /// W/sr on the axis.
-        intensity: Glow,
+        intensity: EmissionSpectrum,
         /// Cosine of the angle beyond which it is dark.
         cos_outer: f32,
         /// Cosine of the angle up to which it is full.
@@ -77,14 +77,14 @@ pub enum Light {
 
 /// The colour of a light and how much there is of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Glow {
+pub struct EmissionSpectrum {
     /// Of the type [`SpectrumType::Illuminant`](crate::texture::SpectrumType::Illuminant).
     pub color: SpectrumTexture,
     /// Multiplies it.
     pub scale: f32,
 }
 
-impl Glow {
+impl EmissionSpectrum {
     /// The light at a point, in radiometric units.
     #[inline]
     pub fn at(&self, textures: &Textures, point: &TexturePoint, lanes: &Lanes) -> Spectrum {
@@ -99,7 +99,7 @@ impl Glow {
 
 /// Where light arrives.
 #[derive(Clone, Copy, Debug)]
-pub struct Reference {
+pub struct LightSampleContext {
     /// In render space.
     pub point: DVec3,
     /// The unit normal that the light is weighed with.
@@ -132,11 +132,11 @@ pub enum Target {
 
 /// Whether lights are sampled alone or beside materials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coverage {
+pub enum IncompletePdf {
     /// Every direction from which light comes may be chosen.
-    Complete,
+    Forbidden,
     /// Directions of even, dim light are left to the sampling of materials.
-    Incomplete,
+    Allowed,
 }
 
 impl Light {
@@ -151,10 +151,10 @@ impl Light {
     }
 
     /// Whether a sampler that samples materials as well needs to ask it.
-    fn is_asked(&self) -> bool {
+    fn is_sampled(&self) -> bool {
         match self {
             Self::Environment(environment) => environment.illuminates && environment.is_uneven(),
-            Self::Area(light) => light.is_asked(),
+            Self::Area(light) => light.is_sampled(),
             _ => true,
         }
     }
@@ -163,10 +163,10 @@ impl Light {
     pub fn sample(
         &self,
         textures: &Textures,
-        at: &Reference,
+        at: &LightSampleContext,
         u: [f32; 2],
         lanes: &Lanes,
-        coverage: Coverage,
+        incomplete_pdf: IncompletePdf,
     ) -> Option<LightSample> {
         let from = at.point;
         match self {
@@ -191,16 +191,22 @@ impl Light {
             Self::Projection(projection) => projection.sample(textures, from, lanes),
             Self::Goniometric(goniometric) => goniometric.sample(textures, from, lanes),
             Self::Area(light) => light.sample(textures, from, u, lanes),
-            Self::Environment(environment) => environment.sample(textures, at, u, lanes, coverage),
+            Self::Environment(environment) => environment.sample(textures, at, u, lanes, incomplete_pdf),
         }
     }
 
     /// The density over solid angle with which [`Light::sample`] chooses a unit direction at a place, in which a ray met
     /// this light: at `surface`, or nowhere for an environment.
-    pub fn pdf(&self, at: &Reference, wi: Vec3, surface: Option<&Surface>, coverage: Coverage) -> f32 {
+    pub fn pdf(
+        &self,
+        at: &LightSampleContext,
+        wi: Vec3,
+        surface: Option<&SurfaceInteraction>,
+        incomplete_pdf: IncompletePdf,
+    ) -> f32 {
         match (self, surface) {
             (Self::Area(light), Some(surface)) => light.pdf(at.point, surface, wi),
-            (Self::Environment(environment), None) => environment.pdf(at, wi, coverage),
+            (Self::Environment(environment), None) => environment.pdf(at, wi, incomplete_pdf),
             _ => 0.0,
         }
     }
@@ -219,8 +225,8 @@ impl Light {
     }
 
     /// Where it stands and how much it sends out: `power`, in any unit; `None` for lights infinitely far.
-    fn bundle(&self, power: f32) -> Option<Bundle> {
-        let at_point = |position: &DVec3, normals: Cone, rim: f32| Bundle {
+    fn bounds(&self, power: f32) -> Option<LightBounds> {
+        let at_point = |position: &DVec3, normals: Cone, rim: f32| LightBounds {
             min: position.as_vec3(),
             max: position.as_vec3(),
             normals,
@@ -247,8 +253,8 @@ impl Light {
                 at_point(position, Cone { axis: *axis, cos }, rim)
             }
             Self::Area(light) => {
-                let extent = light.extent();
-                Bundle {
+                let extent = light.emitter_bounds();
+                LightBounds {
                     min: extent.min.as_vec3(),
                     max: extent.max.as_vec3(),
                     normals: Cone { axis: extent.axis, cos: extent.cos_normals },

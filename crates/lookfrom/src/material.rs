@@ -6,30 +6,30 @@
 
 mod albedo;
 mod approximate;
+mod bump;
 mod compile;
 mod interior;
 mod kind;
 mod principled;
-mod relief;
 mod whitted;
 
 use glam::{DVec3, Vec3};
 use lookfrom_scene::scene::CurveId;
 
-use crate::bsdf::layered::Coat as CoatBsdf;
+use crate::bsdf::layered::CoatLayer;
 use crate::bsdf::lobes::Lobes;
 use crate::bsdf::whitted::Whitted as WhittedBsdf;
 use crate::bsdf::{self, Bsdf, BsdfSample, Mode};
+use crate::interaction::SurfaceInteraction;
+use crate::interior_stack::InteriorStack;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::texture::{FloatTexture, Lanes, SpectrumTexture, TexturePoint, Textures};
 use crate::warp;
 
 pub use albedo::albedo;
 pub(crate) use compile::Compiler;
-pub use interior::{InteriorStack, MediumInterface};
 pub use kind::{
-    Anisotropy, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled, Relief, Roughness, Whitted,
+    Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled, Roughness, Whitted,
 };
 pub use whitted::{Branches, Coefficients};
 
@@ -39,7 +39,7 @@ pub struct Material {
     /// What it is.
     pub kind: MaterialKind,
     /// What bends the shading normal.
-    pub relief: Relief,
+    pub bump_mapping: BumpMapping,
     /// Index into the world's media: what fills a body of this material, where it says so itself.
     pub medium: Option<u32>,
     /// The nearest thing in Whitted's model, for integrators that know no other.
@@ -75,14 +75,14 @@ impl Frame {
 
     /// With the first axis along a direction.
     fn along(&self, direction: Vec3) -> Self {
-        relief::around(self.n, direction)
+        bump::around(self.n, direction)
     }
 }
 
 impl Shading {
-    /// A matte surface without a relief.
-    pub fn matte(surface: &Surface, reflectance: Spectrum) -> Self {
-        Self { bsdf: Bsdf::diffuse(reflectance), frame: relief::plain(surface), ng: surface.ng.as_vec3() }
+    /// A matte surface without bump mapping.
+    pub fn matte(surface: &SurfaceInteraction, reflectance: Spectrum) -> Self {
+        Self { bsdf: Bsdf::diffuse(reflectance), frame: bump::plain(surface), ng: surface.ng.as_vec3() }
     }
 
     /// A diffuse surface in an orthonormal frame whose third axis is the shading normal.
@@ -109,22 +109,22 @@ impl Shading {
 
     /// Lets `ask` ask what it does toward a unit direction of render space.
     #[inline]
-    pub fn toward<R>(&self, wo: Vec3, ask: impl FnOnce(&Toward<'_>) -> R) -> R {
-        self.bsdf.toward(self.frame.local(wo), Mode::Radiance, Lobes::ALL, |bsdf| {
-            ask(&Toward { shading: self, wo, bsdf })
+    pub fn scattering<R>(&self, wo: Vec3, ask: impl FnOnce(&Scattering<'_>) -> R) -> R {
+        self.bsdf.scattering(self.frame.local(wo), Mode::Radiance, Lobes::ALL, |bsdf| {
+            ask(&Scattering { shading: self, wo, bsdf })
         })
     }
 }
 
 /// What a surface does with light that leaves along ω_o. All directions are of unit length and in render space.
-pub struct Toward<'a> {
+pub struct Scattering<'a> {
     /// The surface's.
     pub shading: &'a Shading,
     wo: Vec3,
-    bsdf: &'a bsdf::Toward<'a>,
+    bsdf: &'a bsdf::LocalScattering<'a>,
 }
 
-impl Toward<'_> {
+impl Scattering<'_> {
     /// The scattering function for light from `wi`, without a cosine, and where it is not black the density over solid
     /// angle with which [`Toward::sample`] chooses `wi`.
     pub fn f_and_pdf(&self, wi: Vec3) -> (Spectrum, f32) {
@@ -157,22 +157,22 @@ impl Toward<'_> {
 
 /// What comes to a surface, as far as what it does with light depends on that.
 #[derive(Debug)]
-pub struct Arrival<'a> {
+pub struct ShadingContext<'a> {
     /// What the lanes mean. Where wavelengths go different ways, only the first is left.
     pub lanes: &'a mut Lanes,
     /// The path's share of the sample. In RGB mode, where colours go different ways, one of those in it is left, at the
     /// weight of all.
-    pub share: &'a mut Spectrum,
+    pub throughput: &'a mut Spectrum,
     /// What light comes through.
-    pub media: InteriorStack,
-    /// Chance, in [0, 1): which of mixed materials there is, which colour is left. Used where [`Material::is_chancy`].
+    pub interior: InteriorStack,
+    /// Chance, in [0, 1): which of mixed materials there is, which colour is left. Used where [`Material::is_stochastic`].
     pub u: f32,
 }
 
 impl Material {
     /// Whether it takes chance to tell what it does with light.
     #[inline]
-    pub fn is_chancy(&self) -> bool {
+    pub fn is_stochastic(&self) -> bool {
         match &self.kind {
             MaterialKind::Mix { .. } => true,
             MaterialKind::Principled(look) => principled::disperses(look),
@@ -181,10 +181,10 @@ impl Material {
     }
 
     /// The frame it is shaded in.
-    fn frame(&self, textures: &Textures, surface: &Surface, point: &TexturePoint) -> Frame {
+    fn frame(&self, textures: &Textures, surface: &SurfaceInteraction, point: &TexturePoint) -> Frame {
         match self.kind {
-            MaterialKind::Principled(_) => relief::valid_frame(&self.relief, textures, surface, point),
-            _ => relief::frame(&self.relief, textures, surface, point),
+            MaterialKind::Principled(_) => bump::valid_frame(&self.bump_mapping, textures, surface, point),
+            _ => bump::frame(&self.bump_mapping, textures, surface, point),
         }
     }
 
@@ -204,11 +204,11 @@ impl Material {
 pub fn shading(
     materials: &[Material],
     textures: &Textures,
-    surface: &Surface,
+    surface: &SurfaceInteraction,
     point: &TexturePoint,
-    arrival: Arrival<'_>,
+    arrival: ShadingContext<'_>,
 ) -> Option<Shading> {
-    let Arrival { lanes, share, media, mut u } = arrival;
+    let ShadingContext { lanes, throughput, interior, mut u } = arrival;
     let mut index = surface.material;
     let mut material = &materials[index as usize];
     while let MaterialKind::Mix { materials: [first, second], amount } = &material.kind {
@@ -218,7 +218,7 @@ pub fn shading(
         index = *chosen;
         material = &materials[index as usize];
     }
-    let mut at = At { materials, textures, point, lanes, share, media, u };
+    let mut at = Evaluator { materials, textures, point, lanes, throughput, interior, u };
     let ng = surface.ng.as_vec3();
     if let MaterialKind::Principled(look) = &material.kind {
         let frame = material.frame(textures, surface, point);
@@ -230,29 +230,34 @@ pub fn shading(
 }
 
 /// The normal that a material is shaded with, to the outside, of unit length: that of [`shading`], of mixed materials the first's.
-pub fn normal(materials: &[Material], textures: &Textures, surface: &Surface, point: &TexturePoint) -> Vec3 {
+pub fn normal(
+    materials: &[Material],
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    point: &TexturePoint,
+) -> Vec3 {
     let mut material = &materials[surface.material as usize];
     while let MaterialKind::Mix { materials: [first, _], .. } = &material.kind {
         material = &materials[*first as usize];
     }
-    match material.relief {
-        Relief::None => surface.ns,
+    match material.bump_mapping {
+        BumpMapping::None => surface.ns,
         _ => material.frame(textures, surface, point).n,
     }
 }
 
 /// Where a material is asked.
-struct At<'a> {
+struct Evaluator<'a> {
     materials: &'a [Material],
     textures: &'a Textures,
     point: &'a TexturePoint,
     lanes: &'a mut Lanes,
-    share: &'a mut Spectrum,
-    media: InteriorStack,
+    throughput: &'a mut Spectrum,
+    interior: InteriorStack,
     u: f32,
 }
 
-impl At<'_> {
+impl Evaluator<'_> {
     fn bsdf(&mut self, material: &Material) -> Option<Bsdf> {
         Some(match &material.kind {
             MaterialKind::Whitted(whitted) => {
@@ -334,9 +339,9 @@ impl At<'_> {
         }
     }
 
-    fn coat(&mut self, coat: &Coat) -> CoatBsdf {
+    fn coat(&mut self, coat: &Coat) -> CoatLayer {
         let eta = self.ior(&coat.eta);
-        CoatBsdf {
+        CoatLayer {
             eta,
             roughness: coat.roughness.at(self.textures, self.point),
             thickness: self.float(coat.thickness),

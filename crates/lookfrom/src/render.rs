@@ -4,9 +4,9 @@
 //! machine, with any number of threads. Everything else ([`Renderer::render`], the inspector, a session) only decides which
 //! tiles and samples are rendered.
 
+mod camera_warnings;
 mod driver;
 mod first_hit;
-mod outlook;
 mod transport;
 
 use std::ops::Range;
@@ -22,9 +22,10 @@ use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 use crate::camera::CameraRay;
 use crate::color::{Sensor, Wavelengths};
 use crate::film::FilmTile;
+pub use crate::film::SampleId;
 use crate::filter::Filter;
 use crate::integrator::{
-    Alpha, Departure, Event, Integrator, Next, Numbers, Path, Probe, Samples, resolve_shadows,
+    Alpha, Event, Integrator, Path, PreviousVertex, Probe, Queues, SampleStream, StepOutput, resolve_shadows,
 };
 use crate::math;
 use crate::sampler::Sampler;
@@ -33,8 +34,8 @@ use crate::texture::Lanes;
 use crate::view::View;
 use crate::world::World;
 
+pub(crate) use camera_warnings::Subject;
 use first_hit::FirstHit;
-pub(crate) use outlook::Subject;
 use transport::Transport;
 
 pub use driver::{FEWEST_SAMPLES, Progress, Rendered, StopCriteria, StopReason, TileDone};
@@ -60,15 +61,6 @@ pub struct Renderer {
     filter: Filter,
     sampler: Sampler,
     sensor: Sensor,
-}
-
-/// Which sample of which pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SampleId {
-    /// Column and row from the top left.
-    pub pixel: [u32; 2],
-    /// Number of the sample in its pixel.
-    pub sample: u32,
 }
 
 /// How many rays were traced.
@@ -124,7 +116,7 @@ struct StartNumbers {
 #[derive(Debug, Default)]
 struct Batch {
     numbers: StartNumbers,
-    samples: Samples,
+    queues: Queues,
     weights: Vec<f32>,
     paths: Vec<Path>,
     rays: Vec<Ray>,
@@ -183,7 +175,7 @@ impl Renderer {
 
     /// Warns of a camera that sees nothing of what it should.
     pub(crate) fn check_view(&self, subject: &Subject, warnings: &mut Vec<Warning>) {
-        outlook::check(self, subject, warnings);
+        camera_warnings::check(self, subject, warnings);
     }
 
     /// The same with an integrator of one's own in place of the one that the settings name.
@@ -286,9 +278,10 @@ impl Renderer {
         batch: &mut Batch,
     ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
-        let Batch { numbers: start, samples, weights, paths, rays, left, hits, first_hits, traced } = batch;
-        let mut next = Next { samples: std::mem::take(samples), background: self.image().background, probe };
-        next.samples.clear();
+        let Batch { numbers: start, queues, weights, paths, rays, left, hits, first_hits, traced } = batch;
+        let mut output =
+            StepOutput { queues: std::mem::take(queues), background: self.image().background, probe };
+        output.queues.clear();
 
         // Start: a ray from the camera for each sample.
         let around_camera = self.world.space_of(self.view.medium);
@@ -299,48 +292,48 @@ impl Renderer {
             let (ray, weight) = self.camera_ray_by(*id, start.filter[slot], lens);
             weights.push(weight);
             let lanes = start.wavelengths.get(slot).map_or(Lanes::Rgb, |u| lanes_by(*u));
-            next.samples.start(lanes);
-            next.samples.paths.push(Path {
+            output.queues.start(lanes);
+            output.queues.paths.push(Path {
                 ray: self.kernel_ray(&ray),
                 beta: lanes.one(),
                 slot: slot as u32,
                 depth: 0,
                 address: Path::ROOT,
-                media: around_camera,
-                departure: Departure::default(),
+                interior: around_camera,
+                previous: PreviousVertex::default(),
             });
         }
 
-        while !next.samples.paths.is_empty() {
+        while !output.queues.paths.is_empty() {
             // Hit: the nearest surface for every ray of the batch.
-            std::mem::swap(paths, &mut next.samples.paths);
-            next.samples.paths.clear();
+            std::mem::swap(paths, &mut output.queues.paths);
+            output.queues.paths.clear();
             rays.clear();
             rays.extend(paths.iter().map(|path| path.ray));
             hits.clear();
             hits.resize(rays.len(), Hit::MISS);
             left.clear();
-            left.extend(paths.iter().map(|path| path.departure.left));
+            left.extend(paths.iter().map(|path| path.previous.left));
             self.world.bvh.closest_hits_leaving(rays, left, hits);
             first_hit::note(first_hits, paths, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.
             let numbers = |path: &Path| {
                 let SampleId { pixel, sample } = ids[path.slot as usize];
-                Numbers { sampler: self.sampler.of_pixel(pixel), sample, address: path.address }
+                SampleStream { sampler: self.sampler.of_pixel(pixel), sample, address: path.address }
             };
-            integrator.step_all(&self.world, numbers, paths, hits, &mut next);
+            integrator.step_all(&self.world, numbers, paths, hits, &mut output);
 
             // Occluded: what arrives of the lights.
-            rays_traced.shadow += resolve_shadows(&self.world, integrator.passing(), &mut next);
-            rays_traced.secondary += next.samples.paths.len() as u64;
+            rays_traced.shadow += resolve_shadows(&self.world, integrator.shadow_transparency(), &mut output);
+            rays_traced.secondary += output.queues.paths.len() as u64;
         }
 
-        *samples = next.samples;
+        *queues = output.queues;
         traced.clear();
         for (slot, &weight) in weights.iter().enumerate() {
-            let (radiance, lanes) = (samples.radiance[slot], samples.lanes[slot]);
-            let (rgb, alpha) = self.with_alpha(radiance, weight, &lanes, samples.alpha[slot]);
+            let (radiance, lanes) = (queues.radiance[slot], queues.lanes[slot]);
+            let (rgb, alpha) = self.with_alpha(radiance, weight, &lanes, queues.alpha[slot]);
             traced.push(Traced { rgb, radiance, lanes, weight, alpha });
         }
         rays_traced
@@ -356,8 +349,8 @@ impl Renderer {
     /// Draws the numbers that the camera's rays of a batch ask for.
     fn prepare_start(&self, ids: &[SampleId], numbers: &mut StartNumbers) {
         let StartNumbers { filter, lens, wavelengths } = numbers;
-        let draw = |is_asked: bool, dimension: u32, numbers: &mut Vec<[f32; 2]>| {
-            let count = if is_asked { ids.len() } else { 0 };
+        let draw = |is_sampled: bool, dimension: u32, numbers: &mut Vec<[f32; 2]>| {
+            let count = if is_sampled { ids.len() } else { 0 };
             self.sampler.two_of_each(count, |k| (ids[k].pixel, ids[k].sample), dimension, numbers);
         };
         draw(true, FILTER_DIMENSION, filter);

@@ -5,14 +5,14 @@
 //! pictures are not filtered beyond bilinear, squares have sharp edges and noise has all its octaves.
 //!
 //! `input`: what materials and lights hold; `node`: the textures themselves; `mapping`: where in a pattern; `picture`, `pattern`: what
-//! is there; `reading`: what that becomes.
+//! is there; `evaluation`: what that becomes.
 
+mod evaluation;
 mod input;
 mod mapping;
 mod node;
 mod pattern;
 mod picture;
-mod reading;
 
 use std::f32::consts::PI;
 
@@ -29,11 +29,11 @@ pub use self::input::{FloatTexture, SpectrumTexture, SpectrumType};
 pub use self::mapping::sphere_uv;
 pub use self::picture::look_up;
 
+use self::evaluation::{Evaluation, FloatEvaluation, RgbEvaluation, SpectralEvaluation};
 use self::input::Input;
 use self::node::Node;
 use self::picture::look_up_channel;
-use self::reading::{Lifted, Number, Reading, Rgb};
-use crate::color::{Dense, Wavelengths};
+use crate::color::{DenselySampledSpectrum, Wavelengths};
 use crate::noise::{self, perlin};
 use crate::spectrum::Spectrum;
 
@@ -53,13 +53,13 @@ pub struct Textures {
     images: Vec<Image>,
     curves: Vec<Measured>,
     /// Whether constants are lifted to spectra when they are compiled.
-    lifts: bool,
+    uplifts: bool,
 }
 
 /// A curve, and what it is in RGB mode.
 #[derive(Clone, Debug)]
 struct Measured {
-    dense: Dense,
+    dense: DenselySampledSpectrum,
     /// As a reflectance or an index of refraction.
     reflectance: [f32; 3],
     /// As light.
@@ -101,8 +101,10 @@ impl Lanes {
 #[inline]
 pub fn spectrum_of(rgb: [f32; 3], spectrum_type: SpectrumType, lanes: &Lanes) -> Spectrum {
     match lanes {
-        Lanes::Rgb => Rgb(spectrum_type).color(rgb),
-        Lanes::Spectral(wavelengths) => Lifted { spectrum_type, lambda: &wavelengths.lambda }.color(rgb),
+        Lanes::Rgb => RgbEvaluation(spectrum_type).color(rgb),
+        Lanes::Spectral(wavelengths) => {
+            SpectralEvaluation { spectrum_type, lambda: &wavelengths.lambda }.color(rgb)
+        }
     }
 }
 
@@ -123,17 +125,17 @@ impl Textures {
     /// be rendered in: constants are made ready for it.
     pub fn new(kinds: &[TextureKind], images: Vec<Image>, curves: Vec<Curve>, color: ColorMode) -> Self {
         let measured = |curve: Curve| {
-            let dense = Dense::from(&curve);
+            let dense = DenselySampledSpectrum::from(&curve);
             Measured { reflectance: dense.to_rgb_reflectance(), emission: dense.to_rgb(), dense }
         };
         let curves = curves.into_iter().map(measured).collect();
-        let lifts = color == ColorMode::Spectral;
-        Self { nodes: Node::compile_all(kinds, lifts), images, curves, lifts }
+        let uplifts = color == ColorMode::Spectral;
+        Self { nodes: Node::compile_all(kinds, uplifts), images, curves, uplifts }
     }
 
     /// A written colour, compiled for what it is used for.
     pub fn spectrum_texture(&self, color: Color, spectrum_type: SpectrumType) -> SpectrumTexture {
-        SpectrumTexture::new(Input::new(color, self.lifts), spectrum_type, &self.curves)
+        SpectrumTexture::new(Input::new(color, self.uplifts), spectrum_type, &self.curves)
     }
 
     /// A picture by its index.
@@ -142,7 +144,7 @@ impl Textures {
     }
 
     /// A curve by its id.
-    pub fn curve(&self, id: CurveId) -> &Dense {
+    pub fn curve(&self, id: CurveId) -> &DenselySampledSpectrum {
         &self.curves[id.index()].dense
     }
 
@@ -166,9 +168,10 @@ impl Textures {
     fn spectrum_of_any(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
         let SpectrumTexture { input, spectrum_type, .. } = texture;
         match lanes {
-            Lanes::Rgb => self.read(input, at, &Rgb(*spectrum_type)),
+            Lanes::Rgb => self.read(input, at, &RgbEvaluation(*spectrum_type)),
             Lanes::Spectral(wavelengths) => {
-                let lifted = Lifted { spectrum_type: *spectrum_type, lambda: &wavelengths.lambda };
+                let lifted =
+                    SpectralEvaluation { spectrum_type: *spectrum_type, lambda: &wavelengths.lambda };
                 self.read(input, at, &lifted)
             }
         }
@@ -176,7 +179,7 @@ impl Textures {
 
     /// The colour at a point, in linear Rec. 709.
     pub fn rgb(&self, texture: &SpectrumTexture, at: &TexturePoint) -> [f32; 3] {
-        self.read(&texture.input, at, &Rgb(texture.spectrum_type)).rgb()
+        self.read(&texture.input, at, &RgbEvaluation(texture.spectrum_type)).rgb()
     }
 
     /// The number at a point. A picture's is the mean of its channels; its first channel, where the nearest texel is asked
@@ -185,7 +188,7 @@ impl Textures {
     pub fn float(&self, texture: FloatTexture, at: &TexturePoint) -> f32 {
         match texture {
             FloatTexture::Constant(value) => value,
-            FloatTexture::Texture(id) => self.texture(id, at, &Number),
+            FloatTexture::Texture(id) => self.texture(id, at, &FloatEvaluation),
         }
     }
 
@@ -210,17 +213,17 @@ impl Textures {
         }
     }
 
-    fn read<R: Reading>(&self, input: &Input, at: &TexturePoint, reading: &R) -> R::Value {
+    fn read<R: Evaluation>(&self, input: &Input, at: &TexturePoint, evaluation: &R) -> R::Value {
         match input {
-            Input::Constant(constant) => reading.constant(constant),
-            Input::Curve(id) => reading.curve(&self.curves[id.index()]),
-            Input::Texture(id) => self.texture(*id, at, reading),
+            Input::Constant(constant) => evaluation.constant(constant),
+            Input::Curve(id) => evaluation.curve(&self.curves[id.index()]),
+            Input::Texture(id) => self.texture(*id, at, evaluation),
         }
     }
 
     // Most colours are the same everywhere: what asks for them stays short.
     #[inline(never)]
-    fn texture<R: Reading>(&self, id: TextureId, at: &TexturePoint, reading: &R) -> R::Value {
+    fn texture<R: Evaluation>(&self, id: TextureId, at: &TexturePoint, evaluation: &R) -> R::Value {
         let space = |mapping| mapping::coordinates(mapping, at).as_vec3();
         match &self.nodes[id.index()] {
             Node::Image { image, mapping, wrap, filter, channel, scale, invert } => {
@@ -232,75 +235,77 @@ impl Textures {
                     Channel::Rgb => look_up(image, st, *wrap, *filter),
                     channel => [look_up_channel(image, *channel, st, *wrap, *filter); 3],
                 };
-                reading.texel(rgb.map(|c| scale * c), *invert, *filter)
+                evaluation.texel(rgb.map(|c| scale * c), *invert, *filter)
             }
             Node::Checker { even, odd, mapping } => {
                 let is_even = pattern::is_even(mapping::off_border(mapping, at));
-                self.read(if is_even { even } else { odd }, at, reading)
+                self.read(if is_even { even } else { odd }, at, evaluation)
             }
             Node::Noise { low, high, octaves, mapping } => {
                 let amount = 0.5 + 0.5 * noise::fbm(mapping::off_border(mapping, at).as_vec3(), *octaves);
-                self.blend(low, high, amount.clamp(0.0, 1.0), at, reading)
+                self.blend(low, high, amount.clamp(0.0, 1.0), at, evaluation)
             }
             Node::Marble { vein, base, octaves, turbulence, mapping } => {
                 let p = mapping::off_border(mapping, at).as_vec3();
                 let wave = libm::sinf(PI * (p.x + turbulence * noise::turbulence(p, *octaves))).abs();
-                self.blend(vein, base, wave.sqrt().clamp(0.0, 1.0), at, reading)
+                self.blend(vein, base, wave.sqrt().clamp(0.0, 1.0), at, evaluation)
             }
             Node::Scale { color, by } => match self.float(*by, at) {
-                0.0 => reading.number(0.0),
-                by => self.read(color, at, reading) * by,
+                0.0 => evaluation.number(0.0),
+                by => self.read(color, at, evaluation) * by,
             },
-            Node::Mix { low, high, amount } => self.blend(low, high, self.float(*amount, at), at, reading),
+            Node::Mix { low, high, amount } => self.blend(low, high, self.float(*amount, at), at, evaluation),
             Node::DirectionMix { low, high, direction } => {
-                self.blend(low, high, at.n.dot(*direction).abs(), at, reading)
+                self.blend(low, high, at.n.dot(*direction).abs(), at, evaluation)
             }
             Node::Bilinear { corners, mapping } => {
                 let Vec3 { x: u, y: v, .. } = space(mapping);
                 let [c00, c01, c10, c11]: [R::Value; 4] =
-                    std::array::from_fn(|k| self.read(&corners[k], at, reading));
+                    std::array::from_fn(|k| self.read(&corners[k], at, evaluation));
                 c00 * ((1.0 - u) * (1.0 - v)) + c01 * ((1.0 - u) * v) + c10 * (u * (1.0 - v)) + c11 * (u * v)
             }
             Node::Dots { inside, outside, mapping } => {
                 let is_inside = pattern::is_in_dot(space(mapping).truncate());
-                self.read(if is_inside { inside } else { outside }, at, reading)
+                self.read(if is_inside { inside } else { outside }, at, evaluation)
             }
             Node::Fbm { octaves, roughness, mapping } => {
-                reading.number(perlin::fbm(space(mapping), *roughness, *octaves))
+                evaluation.number(perlin::fbm(space(mapping), *roughness, *octaves))
             }
             Node::Wrinkled { octaves, roughness, mapping } => {
-                reading.number(perlin::turbulence(space(mapping), *roughness, *octaves))
+                evaluation.number(perlin::turbulence(space(mapping), *roughness, *octaves))
             }
-            Node::Windy { mapping } => reading.number(pattern::windy(space(mapping))),
+            Node::Windy { mapping } => evaluation.number(pattern::windy(space(mapping))),
             Node::PbrtMarble { octaves, roughness, scale, variation, mapping } => {
                 let p = space(mapping) * *scale;
-                reading.reflectance(pattern::marble(p, *roughness, *octaves, *variation))
+                evaluation.reflectance(pattern::marble(p, *roughness, *octaves, *variation))
             }
-            Node::VertexColor { tint } => reading.color(std::array::from_fn(|c| at.color[c] * tint[c])),
-            Node::VertexAlpha => reading.number(at.opacity),
-            Node::Product { a, b } => self.read(a, at, reading) * self.read(b, at, &reading.of_factor()),
+            Node::VertexColor { tint } => evaluation.color(std::array::from_fn(|c| at.color[c] * tint[c])),
+            Node::VertexAlpha => evaluation.number(at.opacity),
+            Node::Product { a, b } => {
+                self.read(a, at, evaluation) * self.read(b, at, &evaluation.of_factor())
+            }
             Node::Threshold { value, edge } => {
-                reading.number(if self.float(*value, at) >= *edge { 1.0 } else { 0.0 })
+                evaluation.number(if self.float(*value, at) >= *edge { 1.0 } else { 0.0 })
             }
         }
     }
 
     /// From `low` at 0 to `high` at 1; what does not count is not looked at.
-    fn blend<R: Reading>(
+    fn blend<R: Evaluation>(
         &self,
         low: &Input,
         high: &Input,
         amount: f32,
         at: &TexturePoint,
-        reading: &R,
+        evaluation: &R,
     ) -> R::Value {
         if amount == 0.0 {
-            return self.read(low, at, reading);
+            return self.read(low, at, evaluation);
         }
         if amount == 1.0 {
-            return self.read(high, at, reading);
+            return self.read(high, at, evaluation);
         }
-        self.read(low, at, reading) * (1.0 - amount) + self.read(high, at, reading) * amount
+        self.read(low, at, evaluation) * (1.0 - amount) + self.read(high, at, evaluation) * amount
     }
 }
 

@@ -20,12 +20,13 @@ use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Bvh, Hit, Left, NONE, Ray};
 use lookfrom_scene::scene::MediumId;
 
-use crate::light::{Coverage, Light, LightChoice, Reference};
-use crate::material::{self, Arrival, InteriorStack, Material, MaterialKind, MediumInterface, Shading};
+use crate::interaction::SurfaceInteraction;
+use crate::interior_stack::{InteriorStack, MediumInterface};
+use crate::light::{IncompletePdf, Light, LightChoice, LightSampleContext};
+use crate::material::{self, Material, MaterialKind, Shading, ShadingContext};
 use crate::math;
-use crate::shape::{Form, FormPoint, Mesh, VertexData};
+use crate::primitive::{Mesh, Primitives, SurfacePoint, VertexData};
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::texture::{
     FloatTexture, Lanes, SpectrumTexture, SpectrumType, TexturePoint, Textures, spectrum_of,
 };
@@ -40,16 +41,16 @@ pub struct World {
     /// Everything that rays can meet.
     pub(crate) bvh: Arc<Bvh>,
     /// What stands in the world once, by the kernel's geometry id.
-    pub(crate) forms: Arc<[Form]>,
+    pub(crate) primitives: Arc<[Primitives]>,
     /// Objects, which instances repeat: forms by geometry id.
-    pub(crate) objects: Arc<[Vec<Form>]>,
+    pub(crate) objects: Arc<[Vec<Primitives>]>,
     /// What stands in the world once, by the kernel's geometry id: its class.
     pub(crate) classes: Arc<[Class]>,
     /// By the kernel's instance id.
     pub(crate) instances: Arc<[Instance]>,
     /// Looks of surfaces.
     pub(crate) materials: Arc<[Material]>,
-    /// Parts of surfaces that are there, see [`Look::alpha`](crate::shape::Look::alpha).
+    /// Parts of surfaces that are there, see [`MaterialBinding::alpha`](crate::primitive::MaterialBinding::alpha).
     pub(crate) alphas: Vec<FloatTexture>,
     /// What fills bodies and space.
     pub(crate) media: Vec<Medium>,
@@ -57,9 +58,9 @@ pub struct World {
     pub(crate) has_media: bool,
     /// Half the diagonal of the box around everything that is placed.
     pub(crate) radius: f32,
-    /// What surfaces say is on their sides, see [`Look::medium_interface`](crate::shape::Look::medium_interface).
+    /// What surfaces say is on their sides, see [`MaterialBinding::medium_interface`](crate::primitive::MaterialBinding::medium_interface).
     pub(crate) medium_interfaces: Vec<MediumInterface>,
-    /// Meshes with further texture coordinates or opacities, see [`Look::vertex_data`](crate::shape::Look::vertex_data).
+    /// Meshes with further texture coordinates or opacities, see [`MaterialBinding::vertex_data`](crate::primitive::MaterialBinding::vertex_data).
     pub(crate) vertex_data: Vec<Arc<Mesh>>,
     /// Colours over surfaces.
     pub(crate) textures: Arc<Textures>,
@@ -142,27 +143,28 @@ impl World {
     }
 
     /// The form that a hit belongs to and its instance, where it is in one.
-    pub fn form(&self, hit: &Hit) -> (&Form, Option<&Instance>) {
+    pub fn primitives(&self, hit: &Hit) -> (&Primitives, Option<&Instance>) {
         if hit.instance == NONE {
-            return (&self.forms[hit.geometry as usize], None);
+            return (&self.primitives[hit.geometry as usize], None);
         }
         let instance = &self.instances[hit.instance as usize];
         (&self.objects[instance.object as usize][hit.geometry as usize], Some(instance))
     }
 
     /// The surface that `ray` met.
-    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
         let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-        let of_form = match self.form(hit) {
-            (form, None) => form.point(hit, origin, direction),
-            (form, Some(instance)) => {
+        let at_primitive = match self.primitives(hit) {
+            (primitives, None) => primitives.point(hit, origin, direction),
+            (primitives, Some(instance)) => {
                 let (origin, direction) = instance.in_object(origin, direction);
-                instance.place(form.point(hit, origin, direction))
+                instance.place(primitives.point(hit, origin, direction))
             }
         };
         let wo = -direction.normalize();
-        let FormPoint { point, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, color, look } = of_form;
-        Surface {
+        let SurfacePoint { point, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, color, binding } =
+            at_primitive;
+        SurfaceInteraction {
             point,
             ng,
             ns: ns.as_vec3(),
@@ -174,13 +176,13 @@ impl World {
             color,
             wo: wo.as_vec3(),
             front: ng.dot(wo) > 0.0,
-            material: look.material,
-            light: look.light,
-            single_sided: look.single_sided,
-            vertex_data: look.vertex_data,
-            alpha: look.alpha.map(|index| self.alphas[index as usize]),
-            medium_interface: look.medium_interface.map(|index| self.medium_interfaces[index as usize]),
-            shape: look.shape,
+            material: binding.material,
+            light: binding.light,
+            single_sided: binding.single_sided,
+            vertex_data: binding.vertex_data,
+            alpha: binding.alpha.map(|index| self.alphas[index as usize]),
+            medium_interface: binding.medium_interface.map(|index| self.medium_interfaces[index as usize]),
+            shape: binding.shape,
             primitive: hit.primitive,
             left: Left::of(hit),
             on_primitive: Vec2::new(hit.u, hit.v),
@@ -188,7 +190,7 @@ impl World {
     }
 
     /// What a texture may depend on at a surface.
-    pub fn texture_point(&self, surface: &Surface) -> TexturePoint {
+    pub fn texture_point(&self, surface: &SurfaceInteraction) -> TexturePoint {
         let world = self.origin + DVec3::from_array(surface.point.position);
         let point = TexturePoint {
             uv: surface.uv,
@@ -205,22 +207,22 @@ impl World {
     }
 
     /// Whether a surface is where a ray met it: by its alpha, where that is a matter of chance for `u ∈ [0, 1)`.
-    pub fn is_there(&self, surface: &Surface, u: f32) -> bool {
+    pub fn passes_alpha_test(&self, surface: &SurfaceInteraction, u: f32) -> bool {
         surface.alpha.is_none_or(|alpha| u < self.textures.float(alpha, &self.texture_point(surface)))
     }
 
     /// Whether chance has a say in what a surface is: by its alpha, or by its material.
-    pub fn is_chancy(&self, surface: &Surface) -> bool {
-        self.materials[surface.material as usize].is_chancy() || surface.alpha.is_some()
+    pub fn is_stochastic(&self, surface: &SurfaceInteraction) -> bool {
+        self.materials[surface.material as usize].is_stochastic() || surface.alpha.is_some()
     }
 
     /// Whether a surface is only the border of a medium.
-    pub fn is_interface(&self, surface: &Surface) -> bool {
+    pub fn is_interface(&self, surface: &SurfaceInteraction) -> bool {
         matches!(self.materials[surface.material as usize].kind, MaterialKind::Interface)
     }
 
     /// What a surface does with light: see [`material::shading`].
-    pub fn shading(&self, surface: &Surface, arrival: Arrival<'_>) -> Option<Shading> {
+    pub fn shading(&self, surface: &SurfaceInteraction, arrival: ShadingContext<'_>) -> Option<Shading> {
         if self.is_catcher(surface) {
             return Some(Shading::matte(surface, self.catcher_reflectance(surface, arrival.lanes)));
         }
@@ -229,7 +231,7 @@ impl World {
     }
 
     /// Radiance that a surface gives off toward `wo`.
-    pub fn emitted(&self, surface: &Surface, lanes: &Lanes) -> Spectrum {
+    pub fn emitted(&self, surface: &SurfaceInteraction, lanes: &Lanes) -> Spectrum {
         match surface.light.map(|index| &self.lights[index as usize]) {
             Some(Light::Area(light)) => {
                 let cos = || surface.ns.dot(surface.wo);
@@ -240,7 +242,7 @@ impl World {
     }
 
     /// Radiance that a surface is seen with, whatever the light, which no one asks for: `None` for all but unlit materials.
-    pub fn unlit(&self, surface: &Surface, lanes: &Lanes) -> Option<Spectrum> {
+    pub fn unlit(&self, surface: &SurfaceInteraction, lanes: &Lanes) -> Option<Spectrum> {
         let MaterialKind::Unlit { color, .. } = &self.materials[surface.material as usize].kind else {
             return None;
         };
@@ -265,12 +267,18 @@ impl World {
 
     /// The density over solid angle with which asking one light from a place finds `light` in the unit direction `wi`, in
     /// which a ray met it at `surface` (nowhere for an environment).
-    pub fn light_pdf(&self, light: u32, at: &Reference, wi: Vec3, surface: Option<&Surface>) -> f32 {
+    pub fn light_pdf(
+        &self,
+        light: u32,
+        at: &LightSampleContext,
+        wi: Vec3,
+        surface: Option<&SurfaceInteraction>,
+    ) -> f32 {
         let probability = self.light_choice.probability(at, light);
         if probability == 0.0 {
             return 0.0;
         }
-        probability * self.lights[light as usize].pdf(at, wi, surface, Coverage::Incomplete)
+        probability * self.lights[light as usize].pdf(at, wi, surface, IncompletePdf::Allowed)
     }
 
     /// What is left of light after `distance` in what it is inside of (Beer's law). After an infinite one nothing is left in
@@ -329,12 +337,12 @@ impl Instance {
     }
 
     /// A point of the object, in render space.
-    fn place(&self, of_object: FormPoint) -> FormPoint {
+    fn place(&self, of_object: SurfacePoint) -> SurfacePoint {
         let vector = |v: DVec3| self.render_from_object.transform_vector3(v);
         let normal = |n: DVec3| math::transform_normal(&self.object_from_render, n).normalize();
-        let mut look = of_object.look;
-        look.material = self.material.unwrap_or(look.material);
-        FormPoint {
+        let mut binding = of_object.binding;
+        binding.material = self.material.unwrap_or(binding.material);
+        SurfacePoint {
             point: of_object.point.transformed(&math::affine(&self.render_from_object)),
             ng: normal(of_object.ng),
             ns: normal(of_object.ns),
@@ -342,7 +350,7 @@ impl Instance {
             dpdv: vector(of_object.dpdv),
             shading_dpdu: vector(of_object.shading_dpdu),
             shading_dpdv: vector(of_object.shading_dpdv),
-            look,
+            binding,
             ..of_object
         }
     }

@@ -175,7 +175,7 @@ fn areas_and_extents() {
         let map = random.map(1.0);
         let lit = world(shining(geometry.clone(), map, false, false), meshes);
         let light = light(&lit);
-        let extent = light.extent();
+        let extent = light.emitter_bounds();
         let size = (extent.max - extent.min).length();
         let mut points = 0;
         for _ in 0..20_000 {

@@ -4,7 +4,9 @@ mod support;
 
 use lookfrom::film::FilmTile;
 use lookfrom::inspect::{inspect, svg};
-use lookfrom::integrator::{Integrator as Transport, Next, Numbers, Path, PathTracer, Probe, Wisdom};
+use lookfrom::integrator::{
+    Integrator as Transport, LightSampling, Path, PathTracer, Probe, SampleStream, StepOutput,
+};
 use lookfrom::render::SampleId;
 use lookfrom::world::World;
 use lookfrom_bvh::Hit;
@@ -176,12 +178,12 @@ impl Transport for OneByOne {
     fn step<P: Probe>(
         &self,
         world: &World,
-        numbers: &Numbers,
+        stream: &SampleStream,
         path: &Path,
         hit: &Hit,
-        next: &mut Next<'_, P>,
+        output: &mut StepOutput<'_, P>,
     ) {
-        self.0.step(world, numbers, path, hit, next);
+        self.0.step(world, stream, path, hit, output);
     }
 }
 
@@ -210,7 +212,8 @@ fn steps_eight_at_once_are_steps_one_by_one() {
             let pixels = (0..40).flat_map(|y| (0..48).map(move |x| [x, y]));
             let ids: Vec<SampleId> = pixels.map(|pixel| SampleId { pixel, sample: 1 }).collect();
             let (in_lanes, rays) = renderer.trace(&ids);
-            let tracer = PathTracer { depth: 7, regularize: false, wisdom: Wisdom::Combined };
+            let tracer =
+                PathTracer { depth: 7, regularize: false, light_sampling: LightSampling::MultipleImportance };
             let scalar = renderer.clone().with_integrator(OneByOne(tracer));
             let (one_by_one, same_rays) = scalar.trace(&ids);
             assert_eq!(rays, same_rays);

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use lookfrom::film::Film;
 use lookfrom::glam::DVec3;
-use lookfrom::integrator::{Integrator, Next, Numbers, Path as LightPath, Probe, Term};
+use lookfrom::integrator::{Integrator, Path as LightPath, Probe, SampleStream, StepOutput, Term};
 use lookfrom::render::{Progress, StopReason, TileDone};
 use lookfrom::session::{Format, Options, Session};
 use lookfrom::spectrum::Spectrum;
@@ -193,9 +193,16 @@ impl Integrator for Silhouette {
         "silhouette"
     }
 
-    fn step<P: Probe>(&self, _: &World, _: &Numbers, path: &LightPath, hit: &Hit, next: &mut Next<'_, P>) {
+    fn step<P: Probe>(
+        &self,
+        _: &World,
+        _: &SampleStream,
+        path: &LightPath,
+        hit: &Hit,
+        output: &mut StepOutput<'_, P>,
+    ) {
         if hit.is_hit() {
-            next.add(path, Term::View, Spectrum::from_rgb([1.0; 3]));
+            output.add(path, Term::View, Spectrum::from_rgb([1.0; 3]));
         }
     }
 }

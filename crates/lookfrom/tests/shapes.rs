@@ -5,7 +5,7 @@ mod support;
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec3};
-use lookfrom::surface::Surface;
+use lookfrom::interaction::SurfaceInteraction;
 use lookfrom_bvh::Ray;
 use lookfrom_scene::material::Scalar;
 use lookfrom_scene::scene::MeshId;
@@ -136,7 +136,7 @@ fn rays_that_leave_a_hair_start_outside_of_it() {
 }
 
 /// Leaves a surface on a side, not too flat.
-fn leaving(random: &mut Random, surface: &Surface, scale: f64) -> (Ray, f64) {
+fn leaving(random: &mut Random, surface: &SurfaceInteraction, scale: f64) -> (Ray, f64) {
     loop {
         let direction = random.direction();
         if direction.dot(surface.ng).abs() > 0.05 {

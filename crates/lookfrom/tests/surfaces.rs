@@ -151,7 +151,7 @@ fn triangles_of_a_pattern_are_asked_where_it_shines() {
         Color::Texture(picture_of(scene, spot(16), Channel::Rgb, Mapping::UV))
     }));
     let Light::Area(lamp) = &world.lights()[0] else { panic!("{:?}", world.lights()[0]) };
-    assert!(lamp.is_asked() && (lamp.mean_of_pattern().unwrap() * 256.0 - 1.0).abs() < 1e-3);
+    assert!(lamp.is_sampled() && (lamp.mean_of_pattern().unwrap() * 256.0 - 1.0).abs() < 1e-3);
     for k in 0..256 {
         let u = [(k % 16) as f32 / 16.0, (k / 16) as f32 / 16.0];
         let point = lamp.sample_point(DVec3::ZERO, u).expect("a point");
@@ -159,7 +159,7 @@ fn triangles_of_a_pattern_are_asked_where_it_shines() {
         assert!((point.uv * 16.0 - Vec2::new(11.5, 11.5)).abs().max_element() < 0.501, "{:?}", point.uv);
     }
     // The box around what is asked is small.
-    let extent = lamp.extent();
+    let extent = lamp.emitter_bounds();
     assert!((extent.max - extent.min).max_element() < 0.2, "{extent:?}");
 
     // What shines nowhere is not asked.
@@ -167,8 +167,8 @@ fn triangles_of_a_pattern_are_asked_where_it_shines() {
     let world =
         compiled(under_lamp(4, |scene| Color::Texture(picture_of(scene, dark, Channel::Rgb, Mapping::UV))));
     let Light::Area(lamp) = &world.lights()[0] else { panic!("{:?}", world.lights()[0]) };
-    assert!(!lamp.is_asked() && lamp.sample_point(DVec3::ZERO, [0.5; 2]).is_none());
-    let at = lookfrom::light::Reference { point: DVec3::ZERO, n: Vec3::Z };
+    assert!(!lamp.is_sampled() && lamp.sample_point(DVec3::ZERO, [0.5; 2]).is_none());
+    let at = lookfrom::light::LightSampleContext { point: DVec3::ZERO, n: Vec3::Z };
     assert!(world.light_choice().sample(&at, 0.5).is_none());
 }
 
@@ -246,7 +246,12 @@ fn the_camera_sees_through_backs_but_light_does_not() {
 }
 
 /// The surface that a ray downward at (0.3, z = 0.4) meets, in a scene of one mesh.
-fn met(mesh: &Mesh, place: DMat4, as_instance: bool, reverse: bool) -> lookfrom::surface::Surface {
+fn met(
+    mesh: &Mesh,
+    place: DMat4,
+    as_instance: bool,
+    reverse: bool,
+) -> lookfrom::interaction::SurfaceInteraction {
     let mut scene = scene();
     let kind = MaterialKind::Conductor {
         metal: lookfrom_scene::material::Metal::Reflectance(Color::gray(0.5)),

@@ -41,7 +41,7 @@ pub trait Base: Copy {
 
 /// What lies on the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coat {
+pub struct CoatLayer {
     /// Index of refraction over outside; 0 counts as 1.
     pub eta: f32,
     /// How rough the boundary is.
@@ -58,7 +58,7 @@ pub struct Coat {
     pub samples: u16,
 }
 
-impl Default for Coat {
+impl Default for CoatLayer {
     /// pbrt's defaults.
     fn default() -> Self {
         Self {
@@ -151,7 +151,7 @@ fn useful(sample: Option<BsdfSample>) -> Option<BsdfSample> {
 
 impl<B: Base> Layered<B> {
     /// A coat on a base; the base's indices are those over the coat's.
-    pub fn new(base: B, coat: &Coat) -> Self {
+    pub fn new(base: B, coat: &CoatLayer) -> Self {
         Self {
             coat: Dielectric::new(coat.eta, coat.roughness),
             base,

@@ -254,7 +254,7 @@ impl Principled {
     }
 
     pub(super) fn pdf(&self, wo: Vec3, wi: Vec3, lobes: Lobes) -> f32 {
-        self.toward(wo, lobes).map_or(0.0, |toward| toward.pdf(wo, wi))
+        self.scattering(wo, lobes).map_or(0.0, |scattering| scattering.pdf(wo, wi))
     }
 
     pub(super) fn sample(
@@ -265,12 +265,12 @@ impl Principled {
         mode: Mode,
         lobes: Lobes,
     ) -> Option<BsdfSample> {
-        self.toward(wo, lobes)?.sample(wo, uc, u, mode)
+        self.scattering(wo, lobes)?.sample(wo, uc, u, mode)
     }
 
     /// What is known of it toward a direction; `None` for a grazing one.
-    pub(super) fn toward(&self, wo: Vec3, lobes: Lobes) -> Option<Toward> {
-        (!is_grazing(wo)).then(|| Toward::new(View::new(self, wo), lobes))
+    pub(super) fn scattering(&self, wo: Vec3, lobes: Lobes) -> Option<LocalScattering> {
+        (!is_grazing(wo)).then(|| LocalScattering::new(View::new(self, wo), lobes))
     }
 
     pub(super) fn lobes(&self) -> Lobes {
@@ -311,13 +311,13 @@ impl Principled {
 }
 
 /// A surface toward a direction ω_o, with the choice between its lobes.
-pub(super) struct Toward {
+pub(super) struct LocalScattering {
     view: View,
     choice: Option<Choice>,
     lobes: Lobes,
 }
 
-impl Toward {
+impl LocalScattering {
     fn new(view: View, lobes: Lobes) -> Self {
         Self { choice: view.choice(lobes), view, lobes }
     }

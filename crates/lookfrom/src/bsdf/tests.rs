@@ -458,7 +458,7 @@ fn numbers_of_any_size_never_become_nan() {
         let lanes = |seed| Spectrum(std::array::from_fn(|lane| any_size(seed + lane as u64, trial, 60)));
         let small = |seed| any_size(seed, trial, 12);
         let roughness = rough(small(21), small(22));
-        let coat = Coat {
+        let coat = CoatLayer {
             eta: if trial.is_multiple_of(3) { size(31) } else { 1.5 },
             roughness: rough(small(32), small(33)),
             thickness: size(34),

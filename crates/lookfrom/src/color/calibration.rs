@@ -9,7 +9,7 @@ use lookfrom_scene::spectrum::observer::{self, SAMPLES};
 use lookfrom_scene::spectrum::space::{self, Matrix};
 use lookfrom_scene::spectrum::swatches;
 
-use super::dense::{Dense, standard_illuminant};
+use super::densely_sampled::{DenselySampledSpectrum, standard_illuminant};
 use super::rgb_from_xyz;
 
 /// Three functions of the wavelength.
@@ -19,12 +19,14 @@ type Functions = [[f32; SAMPLES]; 3];
 /// of the same luminance. A black body so cold that it tells nothing of colours is replaced by [`Settings::DAYLIGHT`].
 pub(super) fn xyz_from_camera(responses: &Functions, kelvin: f32) -> Matrix {
     let solved = |kelvin: f32| {
-        let (white, daylight) = (Dense::from(&daylight(kelvin)), standard_illuminant());
+        let (white, daylight) = (DenselySampledSpectrum::from(&daylight(kelvin)), standard_illuminant());
         let observer = observer::matching();
-        let lit = |light: &Dense, functions: &Functions| -> Vec<[f64; 3]> {
-            swatches().map(|swatch| measured(&Dense::from(&swatch), light, functions)).collect()
+        let lit = |light: &DenselySampledSpectrum, functions: &Functions| -> Vec<[f64; 3]> {
+            swatches()
+                .map(|swatch| measured(&DenselySampledSpectrum::from(&swatch), light, functions))
+                .collect()
         };
-        let luminance = |light: &Dense| f64::from(light.y_integral());
+        let luminance = |light: &DenselySampledSpectrum| f64::from(light.y_integral());
         // Both sides in shares of the luminance of their light.
         let seen = lit(&white, responses).into_iter().map(|rgb| rgb.map(|value| value / luminance(&white)));
         let meant =
@@ -41,7 +43,7 @@ pub(super) fn xyz_from_camera(responses: &Functions, kelvin: f32) -> Matrix {
 pub(super) fn rgb_by_camera(responses: &Functions, rgb_from_camera: &Matrix) -> Matrix {
     let daylight = standard_illuminant();
     least_squares(swatches().map(|swatch| {
-        let swatch = Dense::from(&swatch);
+        let swatch = DenselySampledSpectrum::from(&swatch);
         let of = |functions: &Functions| {
             measured(&swatch, daylight, functions).map(|sum| sum / observer::Y_INTEGRAL)
         };
@@ -51,7 +53,11 @@ pub(super) fn rgb_by_camera(responses: &Functions, rgb_from_camera: &Matrix) -> 
 }
 
 /// The integrals of a reflectance times a light, weighed by three functions.
-fn measured(reflectance: &Dense, light: &Dense, functions: &Functions) -> [f64; 3] {
+fn measured(
+    reflectance: &DenselySampledSpectrum,
+    light: &DenselySampledSpectrum,
+    functions: &Functions,
+) -> [f64; 3] {
     functions.each_ref().map(|function| {
         let products = function.iter().zip(reflectance.samples()).zip(light.samples());
         products.map(|((&f, &share), &light)| f64::from(f) * f64::from(share) * f64::from(light)).sum()

@@ -10,7 +10,7 @@ use lookfrom_scene::spectrum::daylight::daylight;
 use lookfrom_scene::spectrum::observer::{self, SAMPLES};
 use lookfrom_scene::spectrum::space::{self, Matrix};
 
-use super::dense::{Dense, nearest};
+use super::densely_sampled::{DenselySampledSpectrum, nearest};
 use super::{Wavelengths, calibration, matrices};
 use crate::spectrum::Spectrum;
 
@@ -39,7 +39,8 @@ impl Sensor {
         let scaled = |matrix: &Matrix| matrix.map(|row| row.map(|value| value * imaging_ratio));
         let (functions, xyz_from_channels) = match settings.camera {
             Some(camera) => {
-                let responses = camera.responses().map(|response| *Dense::from(&response).samples());
+                let responses =
+                    camera.responses().map(|response| *DenselySampledSpectrum::from(&response).samples());
                 let kelvin = settings.white_balance.unwrap_or(Settings::DAYLIGHT);
                 let matrix = calibration::xyz_from_camera(&responses, kelvin);
                 (responses, Some(matrix))

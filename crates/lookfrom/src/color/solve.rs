@@ -27,7 +27,7 @@ struct Step {
 }
 
 impl Measure {
-    /// Whole nm and the white of D65 itself, as [`super::Dense`] measures colours.
+    /// Whole nm and the white of D65 itself, as [`super::DenselySampledSpectrum`] measures colours.
     pub(super) fn exact() -> &'static Self {
         static EXACT: OnceLock<Measure> = OnceLock::new();
         EXACT.get_or_init(|| {

@@ -13,7 +13,7 @@ use super::*;
 fn color_of(at: impl Fn(&[f32; 4]) -> Spectrum) -> [f32; 3] {
     let light = standard_illuminant().samples();
     let lit = std::array::from_fn(|i| at(&[360.0 + i as f32; 4]).0[0] * light[i]);
-    Dense::from_samples(lit).to_rgb()
+    DenselySampledSpectrum::from_samples(lit).to_rgb()
 }
 
 /// The greatest difference of two colours.
@@ -184,7 +184,7 @@ fn colors_have_the_same_bits_everywhere() {
         feed(&Sigmoid::exact_from_rgb(rgb).at(&wavelengths.lambda).0);
         feed(&sensor.rgb(light, &wavelengths));
     }
-    let lamp = Dense::from(&Curve::Blackbody { kelvin: 3000.0 });
+    let lamp = DenselySampledSpectrum::from(&Curve::Blackbody { kelvin: 3000.0 });
     feed(lamp.samples());
     assert_eq!(hash, 0x74be_0dcf_1dd3_239a, "{hash:#018x}");
 }
@@ -256,7 +256,7 @@ fn estimates_have_the_colors_of_the_light_as_their_mean() {
 
 #[test]
 fn curves_are_sampled_at_the_nearest_nm() {
-    let dense = Dense::from_samples(std::array::from_fn(|i| 360.0 + i as f32));
+    let dense = DenselySampledSpectrum::from_samples(std::array::from_fn(|i| 360.0 + i as f32));
     assert_eq!(dense.at(&[360.0, 500.49, 500.5, 830.4]).0, [360.0, 500.0, 501.0, 830.0]);
     assert_eq!(dense.at(&[359.4, 830.5, f32::NAN, -1e30]).0, [0.0; 4]);
     assert_eq!(dense.max(), 830.0);
@@ -265,10 +265,10 @@ fn curves_are_sampled_at_the_nearest_nm() {
 
 #[test]
 fn colors_of_curves_in_rgb_mode() {
-    let dense = |name: &str| Dense::from(&named(name).unwrap());
+    let dense = |name: &str| DenselySampledSpectrum::from(&named(name).unwrap());
     assert!(far(dense("stdillum-D65").to_rgb(), [1.0; 3]) < 1e-6);
     assert!((dense("stdillum-A").y_integral() - 106.856895).abs() < 1e-3);
-    assert!(far(Dense::from(&Curve::Constant(0.3)).to_rgb_reflectance(), [0.3; 3]) < 1e-6);
+    assert!(far(DenselySampledSpectrum::from(&Curve::Constant(0.3)).to_rgb_reflectance(), [0.3; 3]) < 1e-6);
     // Gold as a sketch: little refraction and much absorption of red
     let (eta, k) = (dense("metal-Au-eta").to_rgb_reflectance(), dense("metal-Au-k").to_rgb_reflectance());
     assert!(far(eta, [0.08, 0.40, 1.56]) < 0.01 && far(k, [3.39, 2.50, 1.77]) < 0.01, "{eta:?} {k:?}");

@@ -167,7 +167,7 @@ fn the_first_dropped_sample_is_the_least_not_the_earliest() {
     film.add(0, 3, 0, [f32::NAN; 3]);
     film.add(0, 0, 0, [1.0; 3]);
     assert_eq!(film.dropped(), 4);
-    assert_eq!(film.first_dropped(), Some(Address { y: 2, x: 1, sample: 4 }));
+    assert_eq!(film.first_dropped(), Some(SampleId { pixel: [1, 2], sample: 4 }));
     assert_eq!((film.samples(1, 2), film.samples(0, 0)), (0, 1));
 }
 

@@ -8,7 +8,7 @@ use lookfrom_bvh::reference::{Cramer, Quadratic, Rejection, Root, cramer, sphere
 use lookfrom_bvh::{Hit, NONE, Procedural, Ray, Watch};
 use serde::Serialize;
 
-use crate::shape::{Form, Mesh};
+use crate::primitive::{Mesh, Primitives};
 use crate::world::World;
 
 /// A ray that looks at more primitives than this has only so many reported.
@@ -97,7 +97,7 @@ fn candidate(
     [instance, geometry, primitive]: [u32; 3],
     nearest: &Hit,
 ) -> Candidate {
-    let (form, placed) = world.form(&Hit { instance, geometry, primitive, ..Hit::MISS });
+    let (primitives, placed) = world.primitives(&Hit { instance, geometry, primitive, ..Hit::MISS });
     // In an instance the test happens in the object's space, with the same t.
     let ray = match placed {
         None => *ray,
@@ -108,30 +108,30 @@ fn candidate(
         }
     };
     let index = primitive as usize;
-    let (kind, shape, test, outcome) = match form {
-        Form::Mesh(mesh) => {
+    let (kind, shape, test, outcome) = match primitives {
+        Primitives::Mesh(mesh) => {
             let (test, outcome) = triangle_test(mesh, index, &ray);
-            ("triangle", mesh.look.shape, test, outcome)
+            ("triangle", mesh.binding.shape, test, outcome)
         }
-        Form::Spheres(spheres) => {
-            let shape = spheres.looks[spheres.look_of[index] as usize].look.shape;
+        Primitives::Spheres(spheres) => {
+            let shape = spheres.bindings[spheres.binding_of[index] as usize].binding.shape;
             let (test, outcome) = sphere_test(&spheres.spheres[index], &ray);
             ("sphere", shape, test, outcome)
         }
-        Form::Disks(disks) => {
-            ("disk", disks.looks[index].shape, Test::Other, procedural_test(disks, primitive, &ray))
+        Primitives::Disks(disks) => {
+            ("disk", disks.bindings[index].shape, Test::Other, procedural_test(disks, primitive, &ray))
         }
-        Form::Quadrics(quadrics) => {
+        Primitives::Quadrics(quadrics) => {
             let outcome = procedural_test(&**quadrics, primitive, &ray);
-            ("quadric", quadrics.looks[index].shape, Test::Other, outcome)
+            ("quadric", quadrics.bindings[index].shape, Test::Other, outcome)
         }
-        Form::Patches(patches) => {
+        Primitives::Patches(patches) => {
             let outcome = procedural_test(&**patches, primitive, &ray);
-            ("patch", patches.look.shape, Test::Other, outcome)
+            ("patch", patches.binding.shape, Test::Other, outcome)
         }
-        Form::Curves(curves) => {
+        Primitives::Curves(curves) => {
             let outcome = procedural_test(&**curves, primitive, &ray);
-            ("curve segment", curves.look.shape, Test::Other, outcome)
+            ("curve segment", curves.binding.shape, Test::Other, outcome)
         }
     };
     let within = if instance == NONE { String::new() } else { format!(" in instance {instance}") };
@@ -151,9 +151,9 @@ fn candidate(
     }
 }
 
-fn procedural_test(form: &impl Procedural, primitive: u32, ray: &Ray) -> String {
-    let hit = form.intersect(primitive, ray);
-    hit.map_or("rejected: outside of the form or of the range of t".to_owned(), |_| "hit".into())
+fn procedural_test(primitives: &impl Procedural, primitive: u32, ray: &Ray) -> String {
+    let hit = primitives.intersect(primitive, ray);
+    hit.map_or("rejected: outside of the primitives or of the range of t".to_owned(), |_| "hit".into())
 }
 
 fn triangle_test(mesh: &Mesh, index: usize, ray: &Ray) -> (Test, String) {

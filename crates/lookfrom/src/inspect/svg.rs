@@ -7,8 +7,8 @@ use glam::{DVec2, DVec3, Vec3};
 
 use super::{Inspection, RayReport};
 use crate::camera::Camera;
+use crate::primitive::Primitives;
 use crate::render::Renderer;
-use crate::shape::Form;
 use crate::world::World;
 
 /// Width of the drawing in its own units; the height follows from the scene.
@@ -219,9 +219,9 @@ fn length_without_end(inspection: &Inspection) -> f64 {
 
 fn draw_scene(out: &mut String, world: &World, side: &SideView, place: &impl Fn(DVec2) -> DVec2, scale: f64) {
     out.push_str("<g fill=\"#00000008\" stroke=\"#9a9a9a\" stroke-width=\"0.8\">\n");
-    for form in &*world.forms {
-        match form {
-            Form::Spheres(spheres) if spheres.spheres.len() <= MOST_TRIANGLES => {
+    for primitives in &*world.primitives {
+        match primitives {
+            Primitives::Spheres(spheres) if spheres.spheres.len() <= MOST_TRIANGLES => {
                 for sphere in &spheres.spheres {
                     let center = world.origin + Vec3::from_array(sphere.center).as_dvec3();
                     let c = place(side.project(center));
@@ -229,7 +229,7 @@ fn draw_scene(out: &mut String, world: &World, side: &SideView, place: &impl Fn(
                     let _ = writeln!(out, "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{radius:.1}\"/>", c.x, c.y);
                 }
             }
-            Form::Mesh(mesh) => {
+            Primitives::Mesh(mesh) => {
                 let every = mesh.triangles.len().div_ceil(MOST_TRIANGLES).max(1);
                 for index in (0..mesh.triangles.len()).step_by(every) {
                     let points = mesh.corners(index).map(|corner| {
@@ -239,7 +239,11 @@ fn draw_scene(out: &mut String, world: &World, side: &SideView, place: &impl Fn(
                     let _ = writeln!(out, "<polygon points=\"{}\"/>", points.join(" "));
                 }
             }
-            Form::Spheres(_) | Form::Disks(_) | Form::Quadrics(_) | Form::Patches(_) | Form::Curves(_) => {}
+            Primitives::Spheres(_)
+            | Primitives::Disks(_)
+            | Primitives::Quadrics(_)
+            | Primitives::Patches(_)
+            | Primitives::Curves(_) => {}
         }
     }
     out.push_str("</g>\n");

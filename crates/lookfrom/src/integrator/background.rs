@@ -5,7 +5,7 @@
 
 use lookfrom_scene::settings::Background;
 
-use super::{Next, Path, Probe};
+use super::{Path, Probe, StepOutput};
 
 /// What a sample hides of a background of the view's own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,13 +19,13 @@ pub enum Alpha {
     Shadow,
 }
 
-impl<P: Probe> Next<'_, P> {
+impl<P: Probe> StepOutput<'_, P> {
     /// For a path that met nothing: whether it shows the view's own background instead of the environment, and so is done. Its
     /// sample is transparent then.
     pub fn shows_background(&mut self, path: &Path) -> bool {
         let shows = path.depth == 0 && self.background != Background::Environment;
         if shows {
-            self.samples.alpha[path.slot as usize] = Alpha::Transparent;
+            self.queues.alpha[path.slot as usize] = Alpha::Transparent;
         }
         shows
     }

@@ -2,31 +2,31 @@
 
 use glam::DVec3;
 
-use crate::integrator::{Event, Next, Numbers, Path, Probe, Shadow, Term};
-use crate::light::{Coverage, Reference};
+use crate::integrator::{Event, Path, Probe, SampleStream, Shadow, StepOutput, Term};
+use crate::interaction::SurfaceInteraction;
+use crate::light::{IncompletePdf, LightSampleContext};
 use crate::material::Coefficients;
-use crate::surface::Surface;
 use crate::world::World;
 
 /// Adds what the surface shines and `k_a I_a`, and asks every light for `k_d (N·L) I_j + k_s (N·H)ⁿ I_j`.
 pub(super) fn local_light<P: Probe>(
     world: &World,
-    numbers: &Numbers,
+    stream: &SampleStream,
     path: &Path,
-    surface: &Surface,
-    next: &mut Next<'_, P>,
+    surface: &SurfaceInteraction,
+    output: &mut StepOutput<'_, P>,
 ) -> Coefficients {
-    let lanes = next.lanes(path);
+    let lanes = output.lanes(path);
     let material = &world.materials[surface.material as usize].whitted;
     let coefficients = Coefficients::at(material, &world.textures, &world.texture_point(surface), &lanes);
-    next.probe.notice(|| Event::Surface {
+    output.probe.notice(|| Event::Surface {
         address: path.address,
         surface: Box::new(*surface),
         coefficients: Some(Box::new(coefficients)),
     });
-    let shines = world.emitted(surface, &lanes) + world.unlit(surface, &lanes).unwrap_or_default();
-    next.add(path, Term::Emission, path.beta * shines);
-    next.add(path, Term::Ambient, path.beta * coefficients.ambient * world.ambient(&lanes));
+    let emits = world.emitted(surface, &lanes) + world.unlit(surface, &lanes).unwrap_or_default();
+    output.add(path, Term::Emission, path.beta * emits);
+    output.add(path, Term::Ambient, path.beta * coefficients.ambient * world.ambient(&lanes));
     if !coefficients.is_lit() {
         return coefficients;
     }
@@ -34,20 +34,26 @@ pub(super) fn local_light<P: Probe>(
     let ng = surface.ng_facing();
     for (index, light) in world.lights.iter().enumerate() {
         let index = index as u32;
-        let at = Reference { point: DVec3::from_array(surface.point.position), n };
-        let u = numbers.two(index);
-        let sample = light.sample(&world.textures, &at, u, &lanes, Coverage::Complete);
+        let at = LightSampleContext { point: DVec3::from_array(surface.point.position), n };
+        let u = stream.two(index);
+        let sample = light.sample(&world.textures, &at, u, &lanes, IncompletePdf::Forbidden);
         // What shines from behind the surface does not light its front, whatever the smoothed normal says.
         let sample = sample.filter(|sample| ng.dot(sample.wi) > 0.0);
         let (diffuse, specular) =
             sample.map(|sample| coefficients.lit(n, surface.wo, sample.wi)).unwrap_or_default();
-        next.probe.notice(|| Event::Asked { address: path.address, light: index, sample, diffuse, specular });
+        output.probe.notice(|| Event::LocalLight {
+            address: path.address,
+            light: index,
+            sample,
+            diffuse,
+            specular,
+        });
         let Some(sample) = sample else { continue };
         // I_j of the notes is radiance over π: see `light`.
         let arriving = sample.li / (std::f32::consts::PI * sample.pdf);
         let contribution = path.beta * (diffuse + specular) * arriving;
         if !contribution.is_black() {
-            next.samples.shadows.push(Shadow::new(world, path, surface, &sample, index, contribution));
+            output.queues.shadows.push(Shadow::new(world, path, surface, &sample, index, contribution));
         }
     }
     coefficients

@@ -5,9 +5,9 @@ use lookfrom_bvh::Hit;
 
 use crate::bsdf::BsdfSample;
 use crate::integrator::{Path, Shadow};
+use crate::interaction::SurfaceInteraction;
 use crate::material::Shading;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 
 /// Why light is added.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +55,7 @@ pub enum Cut {
 #[derive(Clone, Debug)]
 pub enum Event {
     /// A path met `hit` (or nothing).
-    Met {
+    Hit {
         /// The path.
         path: Path,
         /// What it met.
@@ -66,12 +66,12 @@ pub enum Event {
         /// Of the path.
         address: u64,
         /// The place.
-        surface: Box<Surface>,
+        surface: Box<SurfaceInteraction>,
         /// The look, where the integrator asks for it.
         coefficients: Option<Box<crate::material::Coefficients>>,
     },
     /// A light was asked.
-    Asked {
+    LocalLight {
         /// Of the path.
         address: u64,
         /// Which.
@@ -88,7 +88,7 @@ pub enum Event {
         /// Of the path.
         address: u64,
         /// The place.
-        surface: Box<Surface>,
+        surface: Box<SurfaceInteraction>,
         /// What it does with light.
         shading: Box<Shading>,
         /// The path's share here, after what was absorbed on the way.
@@ -110,7 +110,7 @@ pub enum Event {
         beta: Spectrum,
     },
     /// One light of many was asked in vain.
-    AskedInVain {
+    LightSampleFailed {
         /// Of the path.
         address: u64,
         /// Which.
@@ -121,7 +121,7 @@ pub enum Event {
         sample: Option<crate::light::LightSample>,
     },
     /// One light of many was asked.
-    AskedOne {
+    LightSampled {
         /// Of the path.
         address: u64,
         /// Which.

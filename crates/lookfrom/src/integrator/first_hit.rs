@@ -4,9 +4,9 @@ use glam::{DVec3, Vec3};
 use lookfrom_bvh::Hit;
 
 use crate::hash;
-use crate::integrator::{Event, Integrator, Next, Numbers, Path, Probe, Term};
+use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, StepOutput, Term};
+use crate::interaction::SurfaceInteraction;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::world::World;
 
 /// The quantity of the first hit that is shown in place of light; black where nothing is hit.
@@ -40,28 +40,35 @@ impl Integrator for FirstHit {
         }
     }
 
-    fn step<P: Probe>(&self, world: &World, _: &Numbers, path: &Path, hit: &Hit, next: &mut Next<'_, P>) {
+    fn step<P: Probe>(
+        &self,
+        world: &World,
+        _: &SampleStream,
+        path: &Path,
+        hit: &Hit,
+        output: &mut StepOutput<'_, P>,
+    ) {
         if !hit.is_hit() {
-            next.shows_background(path);
+            output.shows_background(path);
             return;
         }
         let surface = world.surface(&path.ray, hit);
         // What is more clear than not is not shown.
         if path.goes_through(world, &surface, 0.5) {
-            next.samples.paths.push(path.passed(&surface));
+            output.queues.paths.push(path.passed(&surface));
             return;
         }
-        next.probe.notice(|| Event::Surface {
+        output.probe.notice(|| Event::Surface {
             address: path.address,
             surface: Box::new(surface),
             coefficients: None,
         });
-        next.add(path, Term::View, path.beta * Spectrum::from_rgb(self.color(&surface)));
+        output.add(path, Term::View, path.beta * Spectrum::from_rgb(self.color(&surface)));
     }
 }
 
 impl FirstHit {
-    fn color(self, surface: &Surface) -> [f32; 3] {
+    fn color(self, surface: &SurfaceInteraction) -> [f32; 3] {
         match self {
             Self::Normals => (0.5 + 0.5 * surface.ns).to_array(),
             Self::Depth { eye, forward } => {

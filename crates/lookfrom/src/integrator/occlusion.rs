@@ -3,8 +3,8 @@
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
 
-use crate::integrator::{Integrator, Next, Numbers, Path, Probe, Shadow, Term};
-use crate::material::InteriorStack;
+use crate::integrator::{Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
+use crate::interior_stack::InteriorStack;
 use crate::warp;
 use crate::world::World;
 
@@ -25,23 +25,23 @@ impl Integrator for AmbientOcclusion {
     fn step<P: Probe>(
         &self,
         world: &World,
-        numbers: &Numbers,
+        stream: &SampleStream,
         path: &Path,
         hit: &Hit,
-        next: &mut Next<'_, P>,
+        output: &mut StepOutput<'_, P>,
     ) {
         if !hit.is_hit() {
-            next.shows_background(path);
+            output.shows_background(path);
             return;
         }
         let surface = world.surface(&path.ray, hit);
-        let [presence, _] = numbers.two(0);
+        let [presence, _] = stream.two(0);
         if path.goes_through(world, &surface, presence) || world.is_interface(&surface) {
-            next.samples.paths.push(path.passed(&surface));
+            output.queues.paths.push(path.passed(&surface));
             return;
         }
         let n = surface.ng_facing();
-        let u = numbers.two(1);
+        let u = stream.two(1);
         // What of a uniform sky is seen: the mean of visibility, weighed by the cosine over π.
         let (wi, weight) = if self.cosine {
             (warp::cosine_hemisphere(u, n), 1.0)
@@ -52,9 +52,9 @@ impl Integrator for AmbientOcclusion {
         };
         let wi = Vec3::normalize(wi);
         let ray = Ray { t_max: self.distance, ..Ray::new(surface.origin(wi), wi.to_array()) };
-        let white = world.light_of([1.0; 3], &next.lanes(path));
+        let white = world.light_of([1.0; 3], &output.lanes(path));
         let contribution = path.beta * white * weight;
-        next.samples.shadows.push(Shadow {
+        output.queues.shadows.push(Shadow {
             ray,
             left: surface.left,
             contribution,
@@ -62,7 +62,7 @@ impl Integrator for AmbientOcclusion {
             address: path.address,
             term: Term::Unoccluded,
             // Whether something is near does not depend on what fills the space between.
-            media: InteriorStack::default(),
+            interior: InteriorStack::default(),
         });
     }
 }

@@ -10,19 +10,19 @@ use glam::{DVec3, Vec3};
 use lookfrom_bvh::{Hit, Left, Ray};
 use lookfrom_simd::{at_level, level};
 
-use eight::{Plain, Steps};
+use eight::{FlatDiffuseHit, Steps};
 
 use crate::bsdf::BsdfSample;
 use crate::eight::LANES;
-use crate::integrator::{Bounce, Event, Integrator, Next, Numbers, Path, Probe, Shadow, Term};
-use crate::light::{Coverage, Reference};
-use crate::material::{Arrival, Toward};
+use crate::integrator::{Bounce, Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
+use crate::interaction::SurfaceInteraction;
+use crate::light::{IncompletePdf, LightSampleContext};
+use crate::material::{Scattering, ShadingContext};
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::world::World;
 
 /// Purposes of random numbers at a surface.
-mod purpose {
+mod dimension {
     /// Whether the surface is there; which of two mixed materials is, which colour goes on.
     pub(super) const PRESENCE: u32 = 0;
     /// Which light, which lobe.
@@ -41,11 +41,11 @@ const SAFE_BOUNCES: u32 = 4;
 
 /// How much of what is known about light is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wisdom {
+pub enum LightSampling {
     /// Lights and materials are sampled together.
-    Combined,
+    MultipleImportance,
     /// Lights are asked, and found by chance only where nothing else can: pbrt's `simplepath`.
-    Separate,
+    NextEventEstimation,
     /// Nothing is asked; directions are uniform all around: pbrt's `randomwalk`.
     None,
 }
@@ -58,12 +58,12 @@ pub struct PathTracer {
     /// Whether sharp lobes are blurred after the first bounce that is not sharp.
     pub regularize: bool,
     /// What is used of what is known.
-    pub wisdom: Wisdom,
+    pub light_sampling: LightSampling,
 }
 
 /// What a path remembers of the surface that it left.
 #[derive(Clone, Copy, Debug)]
-pub struct Departure {
+pub struct PreviousVertex {
     /// Density over solid angle of the direction that it took; infinite where that was the only one, or from the camera.
     pub pdf: f32,
     /// The triangle there.
@@ -80,7 +80,7 @@ pub struct Departure {
     pub is_catcher: bool,
 }
 
-impl Default for Departure {
+impl Default for PreviousVertex {
     fn default() -> Self {
         Self {
             pdf: f32::INFINITY,
@@ -96,98 +96,101 @@ impl Default for Departure {
 
 impl Integrator for PathTracer {
     fn name(&self) -> &'static str {
-        match self.wisdom {
-            Wisdom::Combined => "path",
-            Wisdom::Separate => "simple_path",
-            Wisdom::None => "random_walk",
+        match self.light_sampling {
+            LightSampling::MultipleImportance => "path",
+            LightSampling::NextEventEstimation => "simple_path",
+            LightSampling::None => "random_walk",
         }
     }
 
     fn step_all<P: Probe>(
         &self,
         world: &World,
-        numbers: impl Fn(&Path) -> Numbers,
+        stream: impl Fn(&Path) -> SampleStream,
         paths: &[Path],
         hits: &[Hit],
-        next: &mut Next<'_, P>,
+        output: &mut StepOutput<'_, P>,
     ) {
-        let in_lanes = self.wisdom == Wisdom::Combined;
-        let mut waiting: Vec<Plain<'_>> = Vec::with_capacity(LANES);
+        let in_lanes = self.light_sampling == LightSampling::MultipleImportance;
+        let mut waiting: Vec<FlatDiffuseHit<'_>> = Vec::with_capacity(LANES);
         for (path, hit) in paths.iter().zip(hits) {
-            let lanes = next.lanes(path);
-            let plain =
-                if in_lanes { Plain::of(self, world, path, hit, &lanes, || numbers(path)) } else { None };
-            next.probe.notice(|| Event::Met { path: *path, hit: *hit });
+            let lanes = output.lanes(path);
+            let plain = if in_lanes {
+                FlatDiffuseHit::of(self, world, path, hit, &lanes, || stream(path))
+            } else {
+                None
+            };
+            output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
             let Some(plain) = plain else {
-                self.step(world, &numbers(path), path, hit, next);
+                self.step(world, &stream(path), path, hit, output);
                 continue;
             };
             waiting.push(plain);
             if waiting.len() == LANES {
-                self.step_plain(world, &waiting, next);
+                self.step_plain(world, &waiting, output);
                 waiting.clear();
             }
         }
-        self.step_plain(world, &waiting, next);
+        self.step_plain(world, &waiting, output);
     }
 
     fn step<P: Probe>(
         &self,
         world: &World,
-        numbers: &Numbers,
+        stream: &SampleStream,
         path: &Path,
         hit: &Hit,
-        next: &mut Next<'_, P>,
+        output: &mut StepOutput<'_, P>,
     ) {
-        let path = &self.leave_catcher(world, path, next);
+        let path = &self.leave_catcher(world, path, output);
 
         // Absorb on the way.
-        let mut path = path.absorbed(world, hit, &next.lanes(path));
+        let mut path = path.absorbed(world, hit, &output.lanes(path));
 
         // A path that leaves the scene sees the sky.
         if !hit.is_hit() {
-            if !next.shows_background(&path) {
-                self.add_sky(world, &path, next);
+            if !output.shows_background(&path) {
+                self.add_sky(world, &path, output);
             }
             return;
         }
         let surface = world.surface(&path.ray, hit);
 
         // Light passes where the surface is not there.
-        let [presence, u] = match world.is_chancy(&surface) {
-            true => numbers.two(purpose::PRESENCE),
+        let [presence, u] = match world.is_stochastic(&surface) {
+            true => stream.two(dimension::PRESENCE),
             false => [0.0; 2],
         };
         if path.goes_through(world, &surface, presence) {
-            next.samples.paths.push(path.passed(&surface));
+            output.queues.paths.push(path.passed(&surface));
             return;
         }
 
         // A shadow catcher shows what is behind it, less the light that is blocked.
         let is_catcher = path.depth == 0 && world.is_catcher(&surface);
         if is_catcher {
-            self.show_behind(world, &mut path, next);
+            self.show_behind(world, &mut path, output);
         }
 
         // Add what the surface itself shines.
-        self.add_emission(world, &path, &surface, next);
-        if let Some(radiance) = world.unlit(&surface, &next.lanes(&path)) {
-            next.add(&path, Term::Emission, path.beta * radiance);
+        self.add_emission(world, &path, &surface, output);
+        if let Some(radiance) = world.unlit(&surface, &output.lanes(&path)) {
+            output.add(&path, Term::Emission, path.beta * radiance);
         }
 
         // What it does with light; dispersion leaves one wavelength, or one colour.
-        let lanes = &mut next.samples.lanes[path.slot as usize];
-        let arrival = Arrival { lanes, share: &mut path.beta, media: path.media, u };
+        let lanes = &mut output.queues.lanes[path.slot as usize];
+        let arrival = ShadingContext { lanes, throughput: &mut path.beta, interior: path.interior, u };
         let Some(mut shading) = world.shading(&surface, arrival) else {
             let direction = Vec3::from_array(path.ray.direction);
-            let media = path.media.leaving(&world.materials, &surface, direction, true);
-            next.samples.paths.push(Path { media, ..path.passed(&surface) });
+            let interior = path.interior.leaving(&world.materials, &surface, direction, true);
+            output.queues.paths.push(Path { interior, ..path.passed(&surface) });
             return;
         };
-        if self.regularize && path.departure.blurred {
+        if self.regularize && path.previous.blurred {
             shading.bsdf.regularize();
         }
-        next.probe.notice(|| Event::Shaded {
+        output.probe.notice(|| Event::Shaded {
             address: path.address,
             surface: Box::new(surface),
             shading: Box::new(shading),
@@ -197,25 +200,30 @@ impl Integrator for PathTracer {
             return;
         }
 
-        let at = Scattering { path: &path, surface: &surface, is_catcher };
-        shading.toward(surface.wo, |toward| self.scatter(world, numbers, at, toward, next));
+        let at = Vertex { path: &path, surface: &surface, is_catcher };
+        shading.scattering(surface.wo, |scattering| self.scatter(world, stream, at, scattering, output));
     }
 }
 
 /// A path at a surface.
 #[derive(Clone, Copy)]
-struct Scattering<'a> {
+struct Vertex<'a> {
     path: &'a Path,
-    surface: &'a Surface,
+    surface: &'a SurfaceInteraction,
     is_catcher: bool,
 }
 
 impl PathTracer {
     /// Steps of paths that met the commonest surfaces, eight at a time.
-    fn step_plain<P: Probe>(&self, world: &World, plain: &[Plain<'_>], next: &mut Next<'_, P>) {
+    fn step_plain<P: Probe>(
+        &self,
+        world: &World,
+        plain: &[FlatDiffuseHit<'_>],
+        output: &mut StepOutput<'_, P>,
+    ) {
         let Some(last) = plain.last() else { return };
-        let eight: [Plain<'_>; LANES] = std::array::from_fn(|lane| *plain.get(lane).unwrap_or(last));
-        let steps = Steps { tracer: self, world, plain: &eight, count: plain.len(), next };
+        let eight: [FlatDiffuseHit<'_>; LANES] = std::array::from_fn(|lane| *plain.get(lane).unwrap_or(last));
+        let steps = Steps { tracer: self, world, plain: &eight, count: plain.len(), output };
         at_level(level(), steps);
     }
 
@@ -223,87 +231,93 @@ impl PathTracer {
     fn scatter<P: Probe>(
         &self,
         world: &World,
-        numbers: &Numbers,
-        at: Scattering<'_>,
-        toward: &Toward<'_>,
-        next: &mut Next<'_, P>,
+        stream: &SampleStream,
+        at: Vertex<'_>,
+        scattering: &Scattering<'_>,
+        output: &mut StepOutput<'_, P>,
     ) {
-        let Scattering { path, surface, is_catcher } = at;
-        let shading = toward.shading;
+        let Vertex { path, surface, is_catcher } = at;
+        let shading = scattering.shading;
 
         // Ask one light.
-        let [which_light, which_lobe] = numbers.two(purpose::CHOICE);
-        if self.wisdom != Wisdom::None && shading.bsdf.lobes().is_non_specular() {
-            let u = numbers.two(purpose::LIGHT);
-            self.ask_light(world, at, toward, which_light, u, next);
+        let [which_light, which_lobe] = stream.two(dimension::CHOICE);
+        if self.light_sampling != LightSampling::None && shading.bsdf.lobes().is_non_specular() {
+            let u = stream.two(dimension::LIGHT);
+            self.sample_light(world, at, scattering, which_light, u, output);
         }
 
         // Go on in one direction.
-        let u = numbers.two(purpose::DIRECTION);
-        let Some(sample) = self.direction(toward, which_lobe, u) else { return };
+        let u = stream.two(dimension::DIRECTION);
+        let Some(sample) = self.direction(scattering, which_lobe, u) else { return };
         let wi = sample.wi;
         let cos = shading.cos(wi).abs();
         let beta = path.beta * sample.f * (cos / sample.pdf);
         let is_sharp = sample.lobe.is_specular();
         let pdf = match (is_sharp, sample.pdf_is_proportional) {
             (true, _) => f32::INFINITY,
-            (false, true) => toward.pdf(wi),
+            (false, true) => scattering.pdf(wi),
             (false, false) => sample.pdf,
         };
         let transmitted = sample.lobe.is_transmission();
-        let eta_scale = path.departure.eta_scale * if transmitted { sample.eta * sample.eta } else { 1.0 };
+        let eta_scale = path.previous.eta_scale * if transmitted { sample.eta * sample.eta } else { 1.0 };
 
         // End paths that carry little, by chance.
         let depth = path.depth + 1;
-        let (survival, survives) = self.roulette(numbers, beta, eta_scale, depth);
-        next.probe.notice(|| Event::Bounced {
+        let (survival, survives) = self.roulette(stream, beta, eta_scale, depth);
+        output.probe.notice(|| Event::Bounced {
             address: path.address,
             bounce: Box::new(Bounce { wi, cos, sample, beta, survival, survives }),
         });
         if !survives || beta.is_black() {
             return;
         }
-        let media = path.media.leaving(&world.materials, surface, wi, transmitted);
-        next.samples.paths.push(Path {
+        let interior = path.interior.leaving(&world.materials, surface, wi, transmitted);
+        output.queues.paths.push(Path {
             ray: Ray::new(surface.origin(wi), wi.to_array()),
             beta: beta / survival,
             slot: path.slot,
             depth,
             address: path.address + 1,
-            media,
-            departure: Departure {
+            interior,
+            previous: PreviousVertex {
                 pdf,
                 left: surface.left,
                 point: DVec3::from_array(surface.point.position).as_vec3(),
                 n: shading.n(),
                 eta_scale,
-                blurred: path.departure.blurred || !is_sharp,
+                blurred: path.previous.blurred || !is_sharp,
                 is_catcher,
             },
         });
     }
 
-    fn add_sky<P: Probe>(&self, world: &World, path: &Path, next: &mut Next<'_, P>) {
+    fn add_sky<P: Probe>(&self, world: &World, path: &Path, output: &mut StepOutput<'_, P>) {
         let direction = Vec3::from_array(path.ray.direction).normalize();
         for &index in &world.environments {
             // Some skies are only seen: by the camera, in mirrors and through glass.
-            if path.departure.blurred && !world.lights[index as usize].illuminates() {
+            if path.previous.blurred && !world.lights[index as usize].illuminates() {
                 continue;
             }
-            let radiance = world.sky_of(index, &path.ray, &next.lanes(path));
-            let pdf = || world.light_pdf(index, &path.reference(), direction, None);
-            self.add_found(path, index, radiance, pdf, next);
+            let radiance = world.sky_of(index, &path.ray, &output.lanes(path));
+            let pdf = || world.light_pdf(index, &path.light_context(), direction, None);
+            self.add_found(path, index, radiance, pdf, output);
         }
     }
 
-    fn add_emission<P: Probe>(&self, world: &World, path: &Path, surface: &Surface, next: &mut Next<'_, P>) {
+    fn add_emission<P: Probe>(
+        &self,
+        world: &World,
+        path: &Path,
+        surface: &SurfaceInteraction,
+        output: &mut StepOutput<'_, P>,
+    ) {
         let Some(light) = surface.light else { return };
-        let radiance = world.emitted(surface, &next.lanes(path));
+        let radiance = world.emitted(surface, &output.lanes(path));
         if radiance.is_black() {
             return;
         }
-        let pdf = || world.light_pdf(light, &path.reference(), -surface.wo, Some(surface));
-        self.add_found(path, light, radiance, pdf, next);
+        let pdf = || world.light_pdf(light, &path.light_context(), -surface.wo, Some(surface));
+        self.add_found(path, light, radiance, pdf, output);
     }
 
     /// Adds light that the direction of a path found, which asking the lights finds with density `light_pdf`.
@@ -313,11 +327,11 @@ impl PathTracer {
         light: u32,
         radiance: Spectrum,
         light_pdf: impl Fn() -> f32,
-        next: &mut Next<'_, P>,
+        output: &mut StepOutput<'_, P>,
     ) {
         let weight = self.weight_of_found(path, &light_pdf);
         let address = path.address;
-        next.probe.notice(|| Event::Found {
+        output.probe.notice(|| Event::Found {
             address,
             light,
             radiance,
@@ -325,53 +339,56 @@ impl PathTracer {
             weight,
             beta: path.beta,
         });
-        next.add(path, Term::Found { light, weight }, path.beta * radiance * weight);
+        output.add(path, Term::Found { light, weight }, path.beta * radiance * weight);
     }
 
     /// The weight of light that the direction of a path found, which asking the lights finds with density `light_pdf`.
     fn weight_of_found(&self, path: &Path, light_pdf: impl FnOnce() -> f32) -> f32 {
-        match self.wisdom {
-            _ if path.departure.pdf.is_infinite() => 1.0,
-            Wisdom::Combined => power_heuristic(path.departure.pdf, light_pdf()),
+        match self.light_sampling {
+            _ if path.previous.pdf.is_infinite() => 1.0,
+            LightSampling::MultipleImportance => power_heuristic(path.previous.pdf, light_pdf()),
             // What is asked is found already.
-            Wisdom::Separate if light_pdf() > 0.0 => 0.0,
-            Wisdom::Separate | Wisdom::None => 1.0,
+            LightSampling::NextEventEstimation if light_pdf() > 0.0 => 0.0,
+            LightSampling::NextEventEstimation | LightSampling::None => 1.0,
         }
     }
 
-    fn ask_light<P: Probe>(
+    fn sample_light<P: Probe>(
         &self,
         world: &World,
-        at: Scattering<'_>,
-        toward: &Toward<'_>,
+        at: Vertex<'_>,
+        scattering: &Scattering<'_>,
         which: f32,
         u: [f32; 2],
-        next: &mut Next<'_, P>,
+        output: &mut StepOutput<'_, P>,
     ) {
-        let Scattering { path, surface, is_catcher } = at;
-        let from = Reference { point: DVec3::from_array(surface.point.position), n: toward.shading.n() };
+        let Vertex { path, surface, is_catcher } = at;
+        let from = LightSampleContext {
+            point: DVec3::from_array(surface.point.position),
+            n: scattering.shading.n(),
+        };
         let Some((index, probability)) = world.light_choice.sample(&from, which) else { return };
         let light = &world.lights[index as usize];
-        let sample = light.sample(&world.textures, &from, u, &next.lanes(path), Coverage::Incomplete);
+        let sample = light.sample(&world.textures, &from, u, &output.lanes(path), IncompletePdf::Allowed);
         let in_vain =
-            |sample| Event::AskedInVain { address: path.address, light: index, probability, sample };
+            |sample| Event::LightSampleFailed { address: path.address, light: index, probability, sample };
         let Some(sample) = sample else {
-            next.probe.notice(|| in_vain(None));
+            output.probe.notice(|| in_vain(None));
             return;
         };
-        let (f, bsdf_pdf) = toward.f_and_pdf(sample.wi);
-        let f = f * toward.shading.cos(sample.wi).abs();
+        let (f, bsdf_pdf) = scattering.f_and_pdf(sample.wi);
+        let f = f * scattering.shading.cos(sample.wi).abs();
         if f.is_black() {
-            next.probe.notice(|| in_vain(Some(sample)));
+            output.probe.notice(|| in_vain(Some(sample)));
             return;
         }
         let light_pdf = probability * sample.pdf;
-        let (weight, bsdf_pdf) = match (self.wisdom, light.is_delta()) {
-            (Wisdom::Combined, false) => (power_heuristic(light_pdf, bsdf_pdf), bsdf_pdf),
+        let (weight, bsdf_pdf) = match (self.light_sampling, light.is_delta()) {
+            (LightSampling::MultipleImportance, false) => (power_heuristic(light_pdf, bsdf_pdf), bsdf_pdf),
             _ => (1.0, 0.0),
         };
         let contribution = path.beta * f * sample.li * (weight / light_pdf);
-        next.probe.notice(|| Event::AskedOne {
+        output.probe.notice(|| Event::LightSampled {
             address: path.address,
             light: index,
             sample,
@@ -381,29 +398,32 @@ impl PathTracer {
             f,
         });
         if !contribution.is_black() {
-            next.samples.shadows.push(Shadow::new(world, path, surface, &sample, index, contribution));
+            output.queues.shadows.push(Shadow::new(world, path, surface, &sample, index, contribution));
             if is_catcher {
-                self.expect_light(light, path, contribution, next);
+                self.expect_light(light, path, contribution, output);
             }
         }
     }
 
-    fn direction(&self, toward: &Toward<'_>, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
-        if self.wisdom == Wisdom::None {
-            return Some(toward.uniform(u));
+    fn direction(&self, scattering: &Scattering<'_>, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
+        if self.light_sampling == LightSampling::None {
+            return Some(scattering.uniform(u));
         }
-        let sample = toward.sample(lobe, u)?;
+        let sample = scattering.sample(lobe, u)?;
         (sample.pdf > 0.0).then_some(sample)
     }
 
     /// The probability with which a path goes on after its `depth`-th bounce, and whether it does.
-    fn roulette(&self, numbers: &Numbers, beta: Spectrum, eta_scale: f32, depth: u32) -> (f32, bool) {
-        let share = beta.max_lane() * eta_scale;
-        if self.wisdom != Wisdom::Combined || depth <= SAFE_BOUNCES || share >= 1.0 {
+    fn roulette(&self, stream: &SampleStream, beta: Spectrum, eta_scale: f32, depth: u32) -> (f32, bool) {
+        let survival = beta.max_lane() * eta_scale;
+        if self.light_sampling != LightSampling::MultipleImportance
+            || depth <= SAFE_BOUNCES
+            || survival >= 1.0
+        {
             return (1.0, true);
         }
-        let [u, _] = numbers.two(purpose::ROULETTE);
-        (share, u < share)
+        let [u, _] = stream.two(dimension::ROULETTE);
+        (survival, u < survival)
     }
 }
 

@@ -3,7 +3,7 @@
 use lookfrom_bvh::Hit;
 
 use crate::integrator::direct::local_light;
-use crate::integrator::{Integrator, Next, Numbers, Passing, Path, Probe, Term};
+use crate::integrator::{Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput, Term};
 use crate::world::World;
 
 /// Ray casting.
@@ -18,30 +18,30 @@ impl Integrator for Raycast {
         "raycast"
     }
 
-    fn passing(&self) -> Passing {
-        Passing::of_whitted(self.transparent_shadows)
+    fn shadow_transparency(&self) -> ShadowTransparency {
+        ShadowTransparency::of_whitted(self.transparent_shadows)
     }
 
     fn step<P: Probe>(
         &self,
         world: &World,
-        numbers: &Numbers,
+        stream: &SampleStream,
         path: &Path,
         hit: &Hit,
-        next: &mut Next<'_, P>,
+        output: &mut StepOutput<'_, P>,
     ) {
-        let path = &path.absorbed(world, hit, &next.lanes(path));
+        let path = &path.absorbed(world, hit, &output.lanes(path));
         if !hit.is_hit() {
-            if !next.shows_background(path) {
-                next.add(path, Term::Sky, path.beta * world.sky(&path.ray, &next.lanes(path)));
+            if !output.shows_background(path) {
+                output.add(path, Term::Sky, path.beta * world.sky(&path.ray, &output.lanes(path)));
             }
             return;
         }
         let surface = world.surface(&path.ray, hit);
-        if path.goes_through(world, &surface, numbers.presence(world, &surface)) {
-            next.samples.paths.push(path.passed(&surface));
+        if path.goes_through(world, &surface, stream.presence(world, &surface)) {
+            output.queues.paths.push(path.passed(&surface));
             return;
         }
-        local_light(world, numbers, path, &surface, next);
+        local_light(world, stream, path, &surface, output);
     }
 }

@@ -8,11 +8,12 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, Left, Point, Ray};
 
 use crate::hash;
-use crate::integrator::{Event, Next, Path, Probe, Samples, Term};
+use crate::integrator::{Event, Path, Probe, Queues, StepOutput, Term};
+use crate::interaction::SurfaceInteraction;
+use crate::interior_stack::InteriorStack;
 use crate::light::{LightSample, Target};
-use crate::material::{Coefficients, InteriorStack};
+use crate::material::Coefficients;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::texture::Lanes;
 use crate::world::World;
 
@@ -35,14 +36,14 @@ pub struct Shadow {
     /// Why it is added.
     pub term: Term,
     /// What it travels in.
-    pub media: InteriorStack,
+    pub interior: InteriorStack,
 }
 
 impl Shadow {
     pub(super) fn new(
         world: &World,
         path: &Path,
-        surface: &Surface,
+        surface: &SurfaceInteraction,
         sample: &LightSample,
         light: u32,
         contribution: Spectrum,
@@ -63,12 +64,12 @@ impl Shadow {
                 toward(origin, guarded.leave(normal.to_array(), back).map(f64::from))
             }
         };
-        let Path { slot, address, media, .. } = *path;
+        let Path { slot, address, interior, .. } = *path;
         // Through the surface of a body it travels in what is behind.
         let crosses = (surface.ng.dot(sample.wi.as_dvec3()) > 0.0) != surface.front;
-        let media = media.leaving(&world.materials, surface, sample.wi, crosses);
+        let interior = interior.leaving(&world.materials, surface, sample.wi, crosses);
         let left = surface.left;
-        Self { ray, left, contribution, slot, address, term: Term::Light(light), media }
+        Self { ray, left, contribution, slot, address, term: Term::Light(light), interior }
     }
 }
 
@@ -81,41 +82,46 @@ pub(super) fn toward(origin: [f32; 3], target: [f64; 3]) -> Ray {
 /// What lets shadow rays pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Passing {
+pub enum ShadowTransparency {
     /// Only where there is no surface: by its alpha, or an interface of media.
-    Gaps,
+    AlphaTested,
     /// Transparent materials as well, straight on, coloured by them (Whitted's model).
     Transparent,
 }
 
-impl Passing {
+impl ShadowTransparency {
     /// Of Whitted's model, where transparent shadows may be asked for.
     pub(super) fn of_whitted(transparent_shadows: bool) -> Self {
-        if transparent_shadows { Self::Transparent } else { Self::Gaps }
+        if transparent_shadows { Self::Transparent } else { Self::AlphaTested }
     }
 }
 
 /// Traces all shadow rays of a batch and adds what arrives, in their order. Gives the number of rays traced.
-pub(crate) fn resolve<P: Probe>(world: &World, passing: Passing, next: &mut Next<'_, P>) -> u64 {
-    let mut samples = std::mem::take(&mut next.samples);
-    let anything_passes = world.has_gaps || passing == Passing::Transparent && world.transmissive;
+pub(crate) fn resolve<P: Probe>(
+    world: &World,
+    shadow_transparency: ShadowTransparency,
+    output: &mut StepOutput<'_, P>,
+) -> u64 {
+    let mut queues = std::mem::take(&mut output.queues);
+    let anything_passes =
+        world.has_gaps || shadow_transparency == ShadowTransparency::Transparent && world.transmissive;
     let traced = if anything_passes {
-        let_through(world, passing, &mut samples, next.probe)
+        let_through(world, shadow_transparency, &mut queues, output.probe)
     } else {
-        block(world, &mut samples, next.probe)
+        block(world, &mut queues, output.probe)
     };
-    next.samples = samples;
-    let mut shadows = std::mem::take(&mut next.samples.shadows);
+    output.queues = queues;
+    let mut shadows = std::mem::take(&mut output.queues.shadows);
     for shadow in shadows.drain(..) {
-        next.add_to(shadow.slot, shadow.address, shadow.term, shadow.contribution);
+        output.add_to(shadow.slot, shadow.address, shadow.term, shadow.contribution);
     }
-    next.samples.shadows = shadows;
+    output.queues.shadows = shadows;
     traced
 }
 
 /// Whatever stands in the way takes all.
-fn block<P: Probe>(world: &World, samples: &mut Samples, probe: &mut P) -> u64 {
-    let Samples { shadows, lanes, rays, left, blocked, .. } = samples;
+fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
+    let Queues { shadows, lanes, rays, left, blocked, .. } = queues;
     rays.clear();
     rays.extend(shadows.iter().map(|shadow| shadow.ray));
     left.clear();
@@ -134,8 +140,13 @@ fn block<P: Probe>(world: &World, samples: &mut Samples, probe: &mut P) -> u64 {
 }
 
 /// What lets light through takes its part; the ray goes on behind it.
-fn let_through<P: Probe>(world: &World, passing: Passing, samples: &mut Samples, probe: &mut P) -> u64 {
-    let Samples { shadows, lanes, .. } = samples;
+fn let_through<P: Probe>(
+    world: &World,
+    shadow_transparency: ShadowTransparency,
+    queues: &mut Queues,
+    probe: &mut P,
+) -> u64 {
+    let Queues { shadows, lanes, .. } = queues;
     let mut traced = 0;
     let mut active: Vec<usize> = (0..shadows.len()).collect();
     for crossings in 0.. {
@@ -151,7 +162,7 @@ fn let_through<P: Probe>(world: &World, passing: Passing, samples: &mut Samples,
             let lanes = &lanes[shadow.slot as usize];
             let passed = match surface.as_ref() {
                 Some(surface) if crossings < MOST_CROSSINGS => {
-                    shadow.passed(world, passing, &hit, surface, lanes)
+                    shadow.passed(world, shadow_transparency, &hit, surface, lanes)
                 }
                 Some(_) => Spectrum::BLACK,
                 None => shadow.reached(world, lanes),
@@ -178,25 +189,27 @@ impl Shadow {
     fn reached(&self, world: &World, lanes: &Lanes) -> Spectrum {
         let length = Vec3::from_array(self.ray.direction).length() * self.ray.t_max;
         // Lights infinitely far shine from twice the scene's radius away, as far as media are concerned, as in pbrt.
-        let is_far = length.is_infinite() && self.media.space().is_some();
-        world.transmittance(self.media, if is_far { 2.0 * world.radius } else { length }, lanes)
+        let is_far = length.is_infinite() && self.interior.space().is_some();
+        world.transmittance(self.interior, if is_far { 2.0 * world.radius } else { length }, lanes)
     }
 
     /// The part of the light that comes through to where the ray met `surface` and through it.
     fn passed(
         &self,
         world: &World,
-        passing: Passing,
+        shadow_transparency: ShadowTransparency,
         hit: &Hit,
-        surface: &Surface,
+        surface: &SurfaceInteraction,
         lanes: &Lanes,
     ) -> Spectrum {
         let length = Vec3::from_array(self.ray.direction).length() * hit.t;
-        let through_medium = world.transmittance(self.media, length, lanes);
-        if !world.is_there(surface, self.number(hit)) || world.has_media && world.is_interface(surface) {
+        let through_medium = world.transmittance(self.interior, length, lanes);
+        if !world.passes_alpha_test(surface, self.number(hit))
+            || world.has_media && world.is_interface(surface)
+        {
             return through_medium;
         }
-        if passing == Passing::Gaps {
+        if shadow_transparency == ShadowTransparency::AlphaTested {
             return Spectrum::BLACK;
         }
         let material = &world.materials[surface.material as usize].whitted;
@@ -213,13 +226,13 @@ impl Shadow {
     }
 
     /// Starts again behind a surface that lets light pass.
-    fn go_on_behind(&mut self, world: &World, hit: &Hit, surface: &Surface) {
+    fn go_on_behind(&mut self, world: &World, hit: &Hit, surface: &SurfaceInteraction) {
         let direction = Vec3::from_array(self.ray.direction);
         self.ray.origin = surface.origin(direction);
         self.left = surface.left;
         self.ray.t_max -= hit.t;
-        if world.is_there(surface, self.number(hit)) {
-            self.media = self.media.leaving(&world.materials, surface, direction, true);
+        if world.passes_alpha_test(surface, self.number(hit)) {
+            self.interior = self.interior.leaving(&world.materials, surface, direction, true);
         }
     }
 }

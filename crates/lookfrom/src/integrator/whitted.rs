@@ -7,9 +7,11 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
 
 use crate::integrator::direct::local_light;
-use crate::integrator::{Branch, Cut, Event, Integrator, Next, Numbers, Passing, Path, Probe, Term};
+use crate::integrator::{
+    Branch, Cut, Event, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput, Term,
+};
+use crate::interaction::SurfaceInteraction;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::world::World;
 
 /// The deepest tree that [`Path::address`] can number.
@@ -31,40 +33,40 @@ impl Integrator for Whitted {
         "whitted"
     }
 
-    fn passing(&self) -> Passing {
-        Passing::of_whitted(self.transparent_shadows)
+    fn shadow_transparency(&self) -> ShadowTransparency {
+        ShadowTransparency::of_whitted(self.transparent_shadows)
     }
 
     fn step<P: Probe>(
         &self,
         world: &World,
-        numbers: &Numbers,
+        stream: &SampleStream,
         path: &Path,
         hit: &Hit,
-        next: &mut Next<'_, P>,
+        output: &mut StepOutput<'_, P>,
     ) {
         // Absorb on the way.
-        let path = &path.absorbed(world, hit, &next.lanes(path));
+        let path = &path.absorbed(world, hit, &output.lanes(path));
 
         // A ray that leaves the scene sees the sky.
         if !hit.is_hit() {
-            if !next.shows_background(path) {
-                next.add(path, Term::Sky, path.beta * world.sky(&path.ray, &next.lanes(path)));
+            if !output.shows_background(path) {
+                output.add(path, Term::Sky, path.beta * world.sky(&path.ray, &output.lanes(path)));
             }
             return;
         }
         let surface = world.surface(&path.ray, hit);
 
         // Light passes where the surface is not there: an only child, straight on.
-        if path.goes_through(world, &surface, numbers.presence(world, &surface)) {
+        if path.goes_through(world, &surface, stream.presence(world, &surface)) {
             if path.address < 1 << DEEPEST {
-                next.samples.paths.push(Path { address: path.address << 1 | 1, ..path.passed(&surface) });
+                output.queues.paths.push(Path { address: path.address << 1 | 1, ..path.passed(&surface) });
             }
             return;
         }
 
         // Shade what is seen: I_a and every light.
-        let coefficients = local_light(world, numbers, path, &surface, next);
+        let coefficients = local_light(world, stream, path, &surface, output);
 
         // Grow the tree: k_r S and k_t T.
         let n = surface.ns_facing();
@@ -73,7 +75,7 @@ impl Integrator for Whitted {
         let refracted = branches.refracted.map(|refracted| (Branch::Refracted, refracted));
         for (branch, (direction, weight)) in [Some(mirrored), refracted].into_iter().flatten() {
             let child = self.child(world, path, &surface, branch, direction, weight);
-            next.probe.notice(|| Event::Grew {
+            output.probe.notice(|| Event::Grew {
                 address: path.address,
                 branch,
                 weight,
@@ -82,7 +84,7 @@ impl Integrator for Whitted {
                 cut: child.err(),
             });
             if let Ok(child) = child {
-                next.samples.paths.push(child);
+                output.queues.paths.push(child);
             }
         }
     }
@@ -94,7 +96,7 @@ impl Whitted {
         &self,
         world: &World,
         path: &Path,
-        surface: &Surface,
+        surface: &SurfaceInteraction,
         branch: Branch,
         direction: Vec3,
         weight: Spectrum,
@@ -118,8 +120,8 @@ impl Whitted {
             slot: path.slot,
             depth: path.depth + 1,
             address: path.address << 1 | last_bit,
-            media: path.media.leaving(&world.materials, surface, direction, crosses),
-            departure: path.departure,
+            interior: path.interior.leaving(&world.materials, surface, direction, crosses),
+            previous: path.previous,
         })
     }
 }

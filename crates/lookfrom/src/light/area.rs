@@ -10,11 +10,11 @@ mod quadric;
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
 
-use super::{Glow, LightSample, Target, toward};
+use super::{EmissionSpectrum, LightSample, Target, toward};
+use crate::interaction::SurfaceInteraction;
 use crate::math;
-use crate::shape::Disk;
+use crate::primitive::Disk;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::texture::{FloatTexture, Lanes, TexturePoint, Textures};
 use crate::warp;
 
@@ -27,7 +27,7 @@ pub use quadric::QuadricLight;
 #[derive(Clone, Debug)]
 pub struct AreaLight {
     /// Emitted radiance.
-    pub radiance: Glow,
+    pub radiance: EmissionSpectrum,
     /// The part of the shape that is there; `None` is all of it.
     pub alpha: Option<FloatTexture>,
     /// Whether both sides shine.
@@ -35,12 +35,12 @@ pub struct AreaLight {
     /// How much of a clear coat is over it; `None` where there is none.
     pub coat: Option<FloatTexture>,
     /// Where it shines from.
-    pub form: LightForm,
+    pub shape: LightShape,
 }
 
 /// The form of a shape that shines.
 #[derive(Clone, Debug)]
-pub enum LightForm {
+pub enum LightShape {
     /// A sphere or ellipsoid, a cylinder, a plate, or a part of one.
     Quadric(Box<QuadricLight>),
     /// A round plate.
@@ -72,7 +72,7 @@ pub struct LightPoint {
 
 /// Where a light is and which way it shines.
 #[derive(Clone, Copy, Debug)]
-pub struct Extent {
+pub struct EmitterBounds {
     /// Box around it, in render space.
     pub min: DVec3,
     /// Box around it, in render space.
@@ -87,14 +87,14 @@ pub struct Extent {
 
 impl AreaLight {
     /// Whether anything of it was found to shine; otherwise only who meets it finds what there is.
-    pub fn is_asked(&self) -> bool {
-        !matches!(&self.form, LightForm::Mesh(light) if !light.is_asked())
+    pub fn is_sampled(&self) -> bool {
+        !matches!(&self.shape, LightShape::Mesh(light) if !light.is_sampled())
     }
 
     /// The mean over the light of the pattern that its form was made for, if it was.
     pub fn mean_of_pattern(&self) -> Option<f32> {
-        match &self.form {
-            LightForm::Mesh(light) => light.brightness(),
+        match &self.shape {
+            LightShape::Mesh(light) => light.brightness(),
             _ => None,
         }
     }
@@ -144,8 +144,8 @@ impl AreaLight {
     /// the number.
     #[inline]
     pub(crate) fn triangle(&self, u0: f32) -> Option<(&LightTriangle, f32, f32)> {
-        match &self.form {
-            LightForm::Mesh(light)
+        match &self.shape {
+            LightShape::Mesh(light)
                 if self.radiance.color.is_constant() && self.alpha.or(self.coat).is_none() =>
             {
                 light.triangle(u0)
@@ -160,8 +160,8 @@ impl AreaLight {
         let is_even = self.alpha.is_none()
             && !self.coat.is_some_and(FloatTexture::varies)
             && !self.radiance.color.varies();
-        match &self.form {
-            LightForm::Mesh(light) if !is_even => {
+        match &self.shape {
+            LightShape::Mesh(light) if !is_even => {
                 light.with_vertices(at, point.primitive, point.on_primitive)
             }
             _ => at,
@@ -170,8 +170,8 @@ impl AreaLight {
 
     /// The normal that its coat is seen with.
     fn shading_normal(&self, point: &LightPoint) -> DVec3 {
-        match &self.form {
-            LightForm::Mesh(light) => light.shading_normal(point.primitive, point.on_primitive),
+        match &self.shape {
+            LightShape::Mesh(light) => light.shading_normal(point.primitive, point.on_primitive),
             _ => point.normal,
         }
     }
@@ -180,60 +180,60 @@ impl AreaLight {
     /// [`Self::pdf`] over solid angle. None where there is none to be seen, or no usable density. It may be hidden
     /// behind other points of the light, or look away.
     pub fn sample_point(&self, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
-        let point = match &self.form {
-            LightForm::Quadric(light) => light.sample(from, u, self.two_sided),
-            LightForm::Disk(disk) => sample_disk(disk, from, u),
-            LightForm::Mesh(light) => light.sample(from, u),
-            LightForm::Patches(light) => light.sample(from, u),
+        let point = match &self.shape {
+            LightShape::Quadric(light) => light.sample(from, u, self.two_sided),
+            LightShape::Disk(disk) => sample_disk(disk, from, u),
+            LightShape::Mesh(light) => light.sample(from, u),
+            LightShape::Patches(light) => light.sample(from, u),
         }?;
         (point.pdf.is_finite() && point.pdf > 0.0).then_some(point)
     }
 
     /// The density over solid angle with which [`Self::sample_point`] would have chosen, seen from a point, the place
     /// of this light that a ray from there into the unit direction `wi` has met. 0 where it has none.
-    pub fn pdf(&self, from: DVec3, surface: &Surface, wi: Vec3) -> f32 {
+    pub fn pdf(&self, from: DVec3, surface: &SurfaceInteraction, wi: Vec3) -> f32 {
         let by_area = |density: f64| {
             let to = DVec3::from_array(surface.point.position) - from;
             (density * to.length_squared() / surface.ng.dot(wi.as_dvec3()).abs()) as f32
         };
         let place = (surface.primitive as usize, surface.on_primitive);
-        let pdf = match &self.form {
-            LightForm::Quadric(light) => match light.pdf_by_direction(from, wi, self.two_sided) {
+        let pdf = match &self.shape {
+            LightShape::Quadric(light) => match light.pdf_by_direction(from, wi, self.two_sided) {
                 Some(pdf) => pdf,
                 None => by_area(light.pdf_by_area(DVec3::from_array(surface.point.position))),
             },
-            LightForm::Disk(disk) => by_area(1.0 / disk_area(disk)),
-            LightForm::Mesh(light) => match light.pdf_by_direction(from, place.0) {
+            LightShape::Disk(disk) => by_area(1.0 / disk_area(disk)),
+            LightShape::Mesh(light) => match light.pdf_by_direction(from, place.0) {
                 Some(pdf) => pdf,
                 None => by_area(light.pdf_by_area(place.0)),
             },
-            LightForm::Patches(light) => by_area(light.pdf_by_area(place)),
+            LightShape::Patches(light) => by_area(light.pdf_by_area(place)),
         };
         if pdf.is_finite() && pdf > 0.0 { pdf } else { 0.0 }
     }
 
     /// Area of (one side of) the light, in render space.
     pub fn area(&self) -> f64 {
-        match &self.form {
-            LightForm::Quadric(light) => light.area(),
-            LightForm::Disk(disk) => disk_area(disk),
-            LightForm::Mesh(light) => light.area(),
-            LightForm::Patches(light) => light.area(),
+        match &self.shape {
+            LightShape::Quadric(light) => light.area(),
+            LightShape::Disk(disk) => disk_area(disk),
+            LightShape::Mesh(light) => light.area(),
+            LightShape::Patches(light) => light.area(),
         }
     }
 
     /// Where it is and which way it shines.
-    pub fn extent(&self) -> Extent {
-        let (bounds, Cone { axis, cos }) = match &self.form {
-            LightForm::Quadric(light) => (light.bounds(), light.normals()),
-            LightForm::Disk(disk) => (disk.bounds(), Cone { axis: disk.normal().normalize(), cos: 1.0 }),
-            LightForm::Mesh(light) => (light.bounds(), light.normals()),
-            LightForm::Patches(light) => (light.bounds(), light.normals()),
+    pub fn emitter_bounds(&self) -> EmitterBounds {
+        let (bounds, Cone { axis, cos }) = match &self.shape {
+            LightShape::Quadric(light) => (light.bounds(), light.normals()),
+            LightShape::Disk(disk) => (disk.bounds(), Cone { axis: disk.normal().normalize(), cos: 1.0 }),
+            LightShape::Mesh(light) => (light.bounds(), light.normals()),
+            LightShape::Patches(light) => (light.bounds(), light.normals()),
         };
         let [min, max] = bounds;
         // Rounding must not make the cone too narrow.
         let cos_normals = (cos as f32 - 1e-6).max(-1.0);
-        Extent { min, max, axis: axis.as_vec3(), cos_normals, two_sided: self.two_sided }
+        EmitterBounds { min, max, axis: axis.as_vec3(), cos_normals, two_sided: self.two_sided }
     }
 }
 

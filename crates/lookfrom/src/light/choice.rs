@@ -6,8 +6,8 @@
 
 use lookfrom_scene::settings::LightSampler as Kind;
 
-use super::tree::{Bundle, Tree};
-use super::{Light, Reference};
+use super::tree::{LightBounds, Tree};
+use super::{Light, LightSampleContext};
 use crate::distribution::Discrete;
 use crate::sampler::ONE_MINUS_EPSILON;
 
@@ -27,7 +27,7 @@ impl LightChoice {
     /// A choice among the lights that need to be asked; `radius` is that of the scene, for the power of lights infinitely
     /// far.
     pub fn new(kind: Kind, lights: &[Light], brightness: &[f32], radius: f32) -> Self {
-        let asked = || (0..).zip(lights).filter(|(_, light)| light.is_asked());
+        let asked = || (0..).zip(lights).filter(|(_, light)| light.is_sampled());
         let power = |index: u32, light: &Light| {
             f64::from(brightness[index as usize]) * light.power_per_brightness(radius)
         };
@@ -36,11 +36,11 @@ impl LightChoice {
         let relative = |power: f64| if power > 0.0 { ((power / greatest) as f32).max(1e-30) } else { 0.0 };
         let mut listed: Vec<u32> = Vec::new();
         let mut powers: Vec<f32> = Vec::new();
-        let mut with_place: Vec<(u32, Bundle)> = Vec::new();
+        let mut with_place: Vec<(u32, LightBounds)> = Vec::new();
         for (index, light) in asked() {
             let power = relative(power(index, light));
-            match light.bundle(power) {
-                Some(bundle) if kind == Kind::Bvh => with_place.push((index, bundle)),
+            match light.bounds(power) {
+                Some(bounds) if kind == Kind::Bvh => with_place.push((index, bounds)),
                 _ => {
                     listed.push(index);
                     powers.push(power);
@@ -56,7 +56,7 @@ impl LightChoice {
     }
 
     /// A light to ask at a place and the probability of it, for `u ∈ [0, 1)`.
-    pub fn sample(&self, at: &Reference, u: f32) -> Option<(u32, f32)> {
+    pub fn sample(&self, at: &LightSampleContext, u: f32) -> Option<(u32, f32)> {
         if let Some(weights) = &self.weights {
             let (place, probability, _) = weights.sample(u);
             return Some((self.listed[place], probability));
@@ -79,7 +79,7 @@ impl LightChoice {
     }
 
     /// The probability with which [`LightChoice::sample`] chooses a light at a place.
-    pub fn probability(&self, at: &Reference, light: u32) -> f32 {
+    pub fn probability(&self, at: &LightSampleContext, light: u32) -> f32 {
         match (self.places[light as usize], &self.weights) {
             (Some(place), Some(weights)) => weights.pdf(place as usize),
             (Some(_), None) => self.share_of_list() / self.listed.len() as f32,

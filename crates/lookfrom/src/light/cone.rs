@@ -1,4 +1,4 @@
-//! A bundle of directions: all within an angle of an axis. What a light tree knows of where its lights look.
+//! A bounds of directions: all within an angle of an axis. What a light tree knows of where its lights look.
 
 use glam::Vec3;
 use std::f32::consts::PI;

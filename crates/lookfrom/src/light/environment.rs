@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3, Mat3, Vec3};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
 use super::portal::{Opening, Portal};
-use super::{Coverage, Glow, LightSample, Reference, Target};
+use super::{EmissionSpectrum, IncompletePdf, LightSample, LightSampleContext, Target};
 use crate::distribution::Piecewise2D;
 use crate::spectrum::Spectrum;
 use crate::texture::{self, Lanes, SpectrumType, Textures};
@@ -28,15 +28,15 @@ pub struct Environment {
 #[derive(Clone, Debug)]
 pub enum Sky {
     /// The same everywhere.
-    Constant(Glow),
+    Constant(EmissionSpectrum),
     /// Linear in the height y of the unit direction.
     Gradient {
         /// At y = 1.
-        zenith: Glow,
+        zenith: EmissionSpectrum,
         /// At y = 0.
-        horizon: Glow,
+        horizon: EmissionSpectrum,
         /// At y = −1.
-        nadir: Glow,
+        nadir: EmissionSpectrum,
     },
     /// A picture.
     Image(Box<SkyImage>),
@@ -81,7 +81,7 @@ impl Environment {
     /// Radiance from a unit direction in which nothing stands, not even a wall with an opening.
     fn color(&self, textures: &Textures, direction: Vec3, lanes: &Lanes) -> Spectrum {
         match &self.sky {
-            Sky::Constant(glow) => glow.even(textures, lanes),
+            Sky::Constant(emission_spectrum) => emission_spectrum.even(textures, lanes),
             Sky::Gradient { zenith, horizon, nadir } => {
                 let y = direction.y.clamp(-1.0, 1.0);
                 let end = if y >= 0.0 { zenith } else { nadir };
@@ -141,26 +141,26 @@ impl Environment {
     pub(super) fn sample(
         &self,
         textures: &Textures,
-        at: &Reference,
+        at: &LightSampleContext,
         u: [f32; 2],
         lanes: &Lanes,
-        coverage: Coverage,
+        incomplete_pdf: IncompletePdf,
     ) -> Option<LightSample> {
         if !self.illuminates {
             return None;
         }
-        let (wi, pdf, li) = match (&self.portal, &self.sky, coverage) {
+        let (wi, pdf, li) = match (&self.portal, &self.sky, incomplete_pdf) {
             (Some(portal), ..) => {
                 let (wi, pdf) = portal.sample(at.point, u)?;
                 (wi, pdf, self.color(textures, wi, lanes))
             }
             (None, Sky::Image(sky), _) => {
-                let (uv, pdf) = sky.choice(coverage).sample(u);
+                let (uv, pdf) = sky.choice(incomplete_pdf).sample(u);
                 let li = sky.radiance(sky.texel(textures, uv), lanes);
                 (sky.direction(uv), pdf * sky.per_solid_angle(uv), li)
             }
-            (None, _, Coverage::Incomplete) => return None,
-            (None, _, Coverage::Complete) => {
+            (None, _, IncompletePdf::Allowed) => return None,
+            (None, _, IncompletePdf::Forbidden) => {
                 let wi = warp::cosine_hemisphere(u, at.n);
                 (wi, warp::cosine_hemisphere_pdf(at.n.dot(wi)), self.color(textures, wi, lanes))
             }
@@ -170,16 +170,16 @@ impl Environment {
     }
 
     /// The density of [`Environment::sample`] over solid angle.
-    pub(super) fn pdf(&self, at: &Reference, wi: Vec3, coverage: Coverage) -> f32 {
-        match (&self.portal, &self.sky, coverage) {
+    pub(super) fn pdf(&self, at: &LightSampleContext, wi: Vec3, incomplete_pdf: IncompletePdf) -> f32 {
+        match (&self.portal, &self.sky, incomplete_pdf) {
             _ if !self.illuminates => 0.0,
             (Some(portal), ..) => finite(portal.pdf(at.point, wi)),
             (None, Sky::Image(sky), _) => {
                 let uv = sky.uv(wi);
-                finite(sky.choice(coverage).pdf(uv) * sky.per_solid_angle(uv))
+                finite(sky.choice(incomplete_pdf).pdf(uv) * sky.per_solid_angle(uv))
             }
-            (None, _, Coverage::Incomplete) => 0.0,
-            (None, _, Coverage::Complete) => warp::cosine_hemisphere_pdf(at.n.dot(wi)),
+            (None, _, IncompletePdf::Allowed) => 0.0,
+            (None, _, IncompletePdf::Forbidden) => warp::cosine_hemisphere_pdf(at.n.dot(wi)),
         }
     }
 }
@@ -189,10 +189,10 @@ fn finite(pdf: f32) -> f32 {
 }
 
 impl SkyImage {
-    fn choice(&self, coverage: Coverage) -> &Piecewise2D {
-        match coverage {
-            Coverage::Complete => &self.complete,
-            Coverage::Incomplete => &self.compensated,
+    fn choice(&self, incomplete_pdf: IncompletePdf) -> &Piecewise2D {
+        match incomplete_pdf {
+            IncompletePdf::Forbidden => &self.complete,
+            IncompletePdf::Allowed => &self.compensated,
         }
     }
 

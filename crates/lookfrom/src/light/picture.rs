@@ -3,7 +3,7 @@
 use glam::{DVec3, Mat3, Vec3};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
-use super::{Glow, LightSample, Target, toward};
+use super::{EmissionSpectrum, LightSample, Target, toward};
 use crate::spectrum::Spectrum;
 use crate::texture::{self, Lanes, SpectrumType, Textures};
 use crate::warp;
@@ -64,7 +64,7 @@ pub struct Goniometric {
     /// Index of the picture in the world: an octahedral square.
     pub image: usize,
     /// W/sr where the picture is 1.
-    pub intensity: Glow,
+    pub intensity: EmissionSpectrum,
 }
 
 impl Goniometric {

@@ -14,7 +14,7 @@ use lookfrom_scene::shape::{Emission, Geometry, Shape, Sphere};
 use lookfrom_scene::spectrum::Curve;
 use rayon::prelude::*;
 
-use super::{Coverage, Light, Reference};
+use super::{IncompletePdf, Light, LightSampleContext};
 use crate::color::Wavelengths;
 use crate::math::luminance;
 use crate::sampler::Sampler;
@@ -115,10 +115,10 @@ fn environments() -> Vec<Around> {
 }
 
 /// A place to be lit at: far from and near to the portal, one near its edge.
-fn places() -> [Reference; 3] {
+fn places() -> [LightSampleContext; 3] {
     let at = |x, y, z| {
         let n = Vec3::new(0.3, -0.9, 0.2).normalize();
-        Reference { point: turn().transform_point3(DVec3::new(x, y, z)), n }
+        LightSampleContext { point: turn().transform_point3(DVec3::new(x, y, z)), n }
     };
     [at(0.0, 0.0, 0.0), at(0.8, -1.2, -1.95), at(1.5, 0.5, 2.0)]
 }
@@ -157,18 +157,24 @@ fn integrals(fine: usize, f: impl Fn(Vec3) -> f64 + Sync) -> Vec<f64> {
 }
 
 /// Directions of a million samples against the density, and what they bring against what arrives.
-fn check_directions(around: &Around, at: &Reference, coverage: Coverage, bound: f64, what: &str) {
+fn check_directions(
+    around: &Around,
+    at: &LightSampleContext,
+    incomplete_pdf: IncompletePdf,
+    bound: f64,
+    what: &str,
+) {
     const N: u32 = 1_000_000;
     let Around { world, has_portal, by_cosine, .. } = around;
     let light = &world.lights[0];
     let Light::Environment(sky) = light else { panic!("a sky") };
     let radiance =
         |d: Vec3| f64::from(luminance(sky.radiance(&world.textures, at.point, d, &Lanes::Rgb).rgb()));
-    let pdf = |wi| f64::from(light.pdf(at, wi, None, coverage));
+    let pdf = |wi| f64::from(light.pdf(at, wi, None, incomplete_pdf));
     let mut counts = vec![0; CELLS[0] * CELLS[1]];
     let (mut chosen, mut differ, mut arriving) = (0, 0, 0.0);
     for i in 0..N {
-        let sample = light.sample(&world.textures, at, random(i), &Lanes::Rgb, coverage);
+        let sample = light.sample(&world.textures, at, random(i), &Lanes::Rgb, incomplete_pdf);
         let Some(sample) = sample else { continue };
         chosen += 1;
         counts[cell(sample.wi)] += 1;
@@ -187,7 +193,7 @@ fn check_directions(around: &Around, at: &Reference, coverage: Coverage, bound: 
     // Black directions are no samples.
     let bright = |wi| if radiance(wi) > 0.0 { pdf(wi) } else { 0.0 };
     // Where few texels are chosen, their borders weigh more.
-    let fine = if coverage == Coverage::Incomplete { 96 } else { 30 };
+    let fine = if incomplete_pdf == IncompletePdf::Allowed { 96 } else { 30 };
     let expected = integrals(fine, bright).into_iter().map(|share| share * f64::from(N));
     // Cells that are hardly cut by what is bright are known too roughly.
     let (counts, expected): (Vec<u64>, Vec<f64>) =
@@ -200,7 +206,7 @@ fn check_directions(around: &Around, at: &Reference, coverage: Coverage, bound: 
     assert!(deviate < bound, "{what}: {deviate} instead of {bound}");
 
     // All that arrives is found.
-    if coverage == Coverage::Complete || *has_portal {
+    if incomplete_pdf == IncompletePdf::Forbidden || *has_portal {
         let seen = |d: Vec3| if *by_cosine && at.n.dot(d) <= 0.0 { 0.0 } else { radiance(d) };
         let ratio = arriving / f64::from(N) / integrals(24, seen).iter().sum::<f64>();
         assert!((ratio - 1.0).abs() < 0.01, "{what}: {ratio}");
@@ -215,13 +221,14 @@ fn directions_to_environments_are_as_dense_as_they_say() {
         // Without a portal all places are one; and portals to what is no picture all choose alike.
         let count = if around.has_portal && around.name != "gradient" { 3 } else { 1 };
         for (place, at) in places().iter().enumerate().take(count) {
-            for coverage in [Coverage::Complete, Coverage::Incomplete] {
+            for incomplete_pdf in [IncompletePdf::Forbidden, IncompletePdf::Allowed] {
                 // Portals do not ask which one it is; what is chosen by the cosine is left to materials.
-                if coverage == Coverage::Incomplete && (around.by_cosine || around.has_portal) {
+                if incomplete_pdf == IncompletePdf::Allowed && (around.by_cosine || around.has_portal) {
                     continue;
                 }
-                let what = format!("{}, portal {}, {coverage:?}, {place}", around.name, around.has_portal);
-                check_directions(around, at, coverage, bound, &what);
+                let what =
+                    format!("{}, portal {}, {incomplete_pdf:?}, {place}", around.name, around.has_portal);
+                check_directions(around, at, incomplete_pdf, bound, &what);
                 checked += 1;
             }
         }
@@ -239,12 +246,12 @@ fn portals_are_sampled_in_all_wavelengths() {
         let mut bright = 0;
         for i in 0..1000 {
             let textures = &around.world.textures;
-            let sample = light.sample(textures, &at, random(i), &lanes, Coverage::Incomplete);
+            let sample = light.sample(textures, &at, random(i), &lanes, IncompletePdf::Allowed);
             let Some(sample) = sample else { continue };
             bright += 1;
             assert_eq!(
-                light.pdf(&at, sample.wi, None, Coverage::Complete),
-                light.pdf(&at, sample.wi, None, Coverage::Incomplete)
+                light.pdf(&at, sample.wi, None, IncompletePdf::Forbidden),
+                light.pdf(&at, sample.wi, None, IncompletePdf::Allowed)
             );
             assert!(sample.li.0.iter().all(|lane| lane.is_finite() && *lane >= 0.0));
             let seen = sky.radiance(textures, at.point, sample.wi, &lanes);
@@ -286,8 +293,9 @@ fn placed(amount: Amount) -> Vec<(LightKind, Amount)> {
 /// Luminance of the light that arrives at a distance of 1 from the light's place in a direction from it.
 fn intensity(world: &World, light: usize, direction: Vec3) -> f64 {
     let point = DVec3::new(1.0, 2.0, 3.0) + direction.as_dvec3().normalize();
-    let at = Reference { point, n: -direction };
-    let sample = world.lights[light].sample(&world.textures, &at, [0.5; 2], &Lanes::Rgb, Coverage::Complete);
+    let at = LightSampleContext { point, n: -direction };
+    let sample =
+        world.lights[light].sample(&world.textures, &at, [0.5; 2], &Lanes::Rgb, IncompletePdf::Forbidden);
     sample.map_or(0.0, |sample| f64::from(luminance(sample.li.rgb())))
 }
 
@@ -325,9 +333,9 @@ fn illuminances_are_what_is_asked() {
     }
     let distant = LightKind::Distant { direction: DVec3::NEG_Y, intensity: Color::Value([0.2, 0.5, 3.0]) };
     let world = world_of(vec![(distant, total(12.0))], vec![], vec![]);
-    let at = Reference { point: DVec3::ZERO, n: Vec3::Y };
+    let at = LightSampleContext { point: DVec3::ZERO, n: Vec3::Y };
     let sample = world.lights[0]
-        .sample(&world.textures, &at, [0.5; 2], &Lanes::Rgb, Coverage::Complete)
+        .sample(&world.textures, &at, [0.5; 2], &Lanes::Rgb, IncompletePdf::Forbidden)
         .expect("light from above");
     assert!((luminance(sample.li.rgb()) - 12.0).abs() < 1e-3 && sample.wi.dot(Vec3::Y) > 0.9999);
 }
@@ -442,7 +450,7 @@ fn nothing_black_has_any_power() {
         let name = &world.names.lights[index];
         for i in 0..20 {
             if let Some(sample) =
-                light.sample(&world.textures, &at, random(i), &Lanes::Rgb, Coverage::Complete)
+                light.sample(&world.textures, &at, random(i), &Lanes::Rgb, IncompletePdf::Forbidden)
             {
                 assert!(sample.li.is_black(), "{name}: {:?}", sample.li);
             }
@@ -503,10 +511,12 @@ fn lights_are_chosen_as_often_as_they_say() {
             assert!(deviate < bound, "{kind:?}, {place}: {deviate}, {counts:?} {expected:?}");
             // Whoever can be sampled is chosen sometimes.
             for (index, light) in world.lights.iter().enumerate() {
-                let shines = (0..50).any(|i| {
-                    light.sample(&world.textures, at, random(i), &Lanes::Rgb, Coverage::Incomplete).is_some()
+                let emits = (0..50).any(|i| {
+                    light
+                        .sample(&world.textures, at, random(i), &Lanes::Rgb, IncompletePdf::Allowed)
+                        .is_some()
                 });
-                assert!(!shines || expected[index] > 0.0, "{kind:?}: {}", world.names.lights[index]);
+                assert!(!emits || expected[index] > 0.0, "{kind:?}: {}", world.names.lights[index]);
             }
         }
     }

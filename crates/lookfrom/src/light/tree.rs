@@ -13,7 +13,7 @@ const BUCKETS: usize = 12;
 
 /// Where a light stands, where it looks and how much it sends out.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bundle {
+pub(super) struct LightBounds {
     /// Least corner, in render space.
     pub(super) min: Vec3,
     /// Greatest corner.
@@ -50,7 +50,7 @@ enum Link {
     Second(u32),
 }
 
-/// Of a bundle, what its importance is computed from.
+/// Of a bounds, what its importance is computed from.
 #[derive(Clone, Copy, Debug)]
 struct Sight {
     center: Vec3,
@@ -66,11 +66,12 @@ struct Sight {
 
 impl Tree {
     /// A tree over lights with their numbers, of `count` lights in the world. Lights without power are left out.
-    pub(super) fn new(lights: &[(u32, Bundle)], count: usize) -> Self {
-        let mut lights: Vec<(u32, Bundle)> = lights.iter().copied().filter(|(_, b)| b.power > 0.0).collect();
+    pub(super) fn new(lights: &[(u32, LightBounds)], count: usize) -> Self {
+        let mut lights: Vec<(u32, LightBounds)> =
+            lights.iter().copied().filter(|(_, b)| b.power > 0.0).collect();
         let mut tree = Self { nodes: Vec::new(), ways: vec![None; count] };
-        if let Some((light, bundle)) = lights.first() {
-            let placeholder = Node { sight: bundle.sight(), link: Link::Light(*light) };
+        if let Some((light, bounds)) = lights.first() {
+            let placeholder = Node { sight: bounds.sight(), link: Link::Light(*light) };
             tree.nodes = vec![placeholder; 2 * lights.len() - 1];
             build(&mut tree.nodes, 0, &mut lights, 0);
             tree.find_ways(0, 0, 0);
@@ -159,13 +160,13 @@ impl Tree {
     }
 }
 
-/// Fills `nodes`, the first of which is number `first` of the tree, with one over the lights; gives their bundle.
-fn build(nodes: &mut [Node], first: u32, lights: &mut [(u32, Bundle)], depth: u32) -> Bundle {
+/// Fills `nodes`, the first of which is number `first` of the tree, with one over the lights; gives their bounds.
+fn build(nodes: &mut [Node], first: u32, lights: &mut [(u32, LightBounds)], depth: u32) -> LightBounds {
     /// So many lights are worth a task of their own.
     const PARALLEL: usize = 2048;
-    if let [(light, bundle)] = *lights {
-        nodes[0] = Node { sight: bundle.sight(), link: Link::Light(light) };
-        return bundle;
+    if let [(light, bounds)] = *lights {
+        nodes[0] = Node { sight: bounds.sight(), link: Link::Light(light) };
+        return bounds;
     }
     // Below 32 turns the tree is halved, so that 64 bits are enough for 2³² lights.
     let middle = if depth < 32 { divide(lights) } else { lights.len() / 2 };
@@ -177,12 +178,12 @@ fn build(nodes: &mut [Node], first: u32, lights: &mut [(u32, Bundle)], depth: u3
     let mut build_left = || build(of_left, first + 1, left, depth + 1);
     let mut build_right = || build(of_right, second, right, depth + 1);
     let (a, b) = if is_large { rayon::join(build_left, build_right) } else { (build_left(), build_right()) };
-    let bundle = a.union(&b);
-    root[0] = Node { sight: bundle.sight(), link: Link::Second(second) };
-    bundle
+    let bounds = a.union(&b);
+    root[0] = Node { sight: bounds.sight(), link: Link::Second(second) };
+    bounds
 }
 
-impl Bundle {
+impl LightBounds {
     fn union(&self, other: &Self) -> Self {
         Self {
             min: self.min.min(other.min),
@@ -211,7 +212,7 @@ impl Bundle {
         }
     }
 
-    /// Surface area × solid angle of the normals with their emission: how much is lost by asking for one of the bundle.
+    /// Surface area × solid angle of the normals with their emission: how much is lost by asking for one of the bounds.
     fn cost(&self) -> f32 {
         let theta_o = angle(self.normals.cos);
         let theta_e = angle(self.cos_emission);
@@ -230,7 +231,7 @@ impl Bundle {
 }
 
 impl Sight {
-    /// An upper bound, up to the variation of distance within the bundle, of what arrives at `p` with normal `n`. Finite,
+    /// An upper bound, up to the variation of distance within the bounds, of what arrives at `p` with normal `n`. Finite,
     /// and positive where anything may arrive.
     #[inline]
     fn importance(&self, p: Vec3, n: Vec3) -> f32 {
@@ -284,29 +285,29 @@ fn angle_less((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f
 }
 
 /// Orders the lights so that they are best divided at the given place: neither 0 nor their number.
-fn divide(lights: &mut [(u32, Bundle)]) -> usize {
+fn divide(lights: &mut [(u32, LightBounds)]) -> usize {
     if lights.len() == 2 {
         return 1;
     }
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    for (_, bundle) in lights.iter() {
-        (low, high) = (low.min(bundle.center()), high.max(bundle.center()));
+    for (_, bounds) in lights.iter() {
+        (low, high) = (low.min(bounds.center()), high.max(bounds.center()));
     }
     let extent = high - low;
-    let bucket_of = |bundle: &Bundle, axis: usize| {
-        let place = (bundle.center()[axis] - low[axis]) / extent[axis];
+    let bucket_of = |bounds: &LightBounds, axis: usize| {
+        let place = (bounds.center()[axis] - low[axis]) / extent[axis];
         ((place * BUCKETS as f32) as usize).min(BUCKETS - 1)
     };
     let mut best: Option<(f32, usize, usize)> = None;
     for axis in (0..3).filter(|&axis| extent[axis] > 0.0) {
-        let mut buckets: [Option<Bundle>; BUCKETS] = [None; BUCKETS];
-        for (_, bundle) in lights.iter() {
-            let bucket = &mut buckets[bucket_of(bundle, axis)];
-            *bucket = Some(bucket.map_or(*bundle, |sum| sum.union(bundle)));
+        let mut buckets: [Option<LightBounds>; BUCKETS] = [None; BUCKETS];
+        for (_, bounds) in lights.iter() {
+            let bucket = &mut buckets[bucket_of(bounds, axis)];
+            *bucket = Some(bucket.map_or(*bounds, |sum| sum.union(bounds)));
         }
         // Cost of what is below each place to divide at, and then of what is above.
         let mut below = [None; BUCKETS];
-        let mut sum: Option<Bundle> = None;
+        let mut sum: Option<LightBounds> = None;
         for at in 1..BUCKETS {
             if let Some(bucket) = &buckets[at - 1] {
                 let union = sum.map_or(*bucket, |sum| sum.union(bucket));
@@ -316,7 +317,7 @@ fn divide(lights: &mut [(u32, Bundle)]) -> usize {
         }
         // Thin boxes are dear along their thin sides.
         let stretch = extent.max_element() / extent[axis];
-        let mut sum: Option<Bundle> = None;
+        let mut sum: Option<LightBounds> = None;
         for at in (1..BUCKETS).rev() {
             if let Some(bucket) = &buckets[at] {
                 sum = Some(sum.map_or(*bucket, |sum| sum.union(bucket)));
@@ -330,11 +331,11 @@ fn divide(lights: &mut [(u32, Bundle)]) -> usize {
         }
     }
     let Some((_, axis, at)) = best else { return lights.len() / 2 };
-    partition(lights, |bundle| bucket_of(bundle, axis) < at)
+    partition(lights, |bounds| bucket_of(bounds, axis) < at)
 }
 
 /// Puts those that are to come first there, and gives their number.
-fn partition(lights: &mut [(u32, Bundle)], comes_first: impl Fn(&Bundle) -> bool) -> usize {
+fn partition(lights: &mut [(u32, LightBounds)], comes_first: impl Fn(&LightBounds) -> bool) -> usize {
     let mut middle = 0;
     for index in 0..lights.len() {
         if comes_first(&lights[index].1) {
@@ -349,7 +350,7 @@ fn partition(lights: &mut [(u32, Bundle)], comes_first: impl Fn(&Bundle) -> bool
 mod tests {
     use super::*;
 
-    fn bundles(count: u32) -> Vec<(u32, Bundle)> {
+    fn bundles(count: u32) -> Vec<(u32, LightBounds)> {
         let mut seed = 7_u32;
         let mut next = || {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -358,7 +359,7 @@ mod tests {
         (0..count)
             .map(|light| {
                 let min = Vec3::new(next(), next(), next()) * 10.0;
-                let bundle = Bundle {
+                let bounds = LightBounds {
                     min,
                     max: min + Vec3::new(next(), next(), next()),
                     normals: Cone { axis: crate::warp::uniform_sphere([next(), next()]), cos: 1.0 - next() },
@@ -366,7 +367,7 @@ mod tests {
                     two_sided: light % 3 == 0,
                     power: 0.1 + next(),
                 };
-                (light, bundle)
+                (light, bounds)
             })
             .collect()
     }
@@ -412,7 +413,7 @@ mod tests {
 
     #[test]
     fn near_lights_are_chosen_more_often() {
-        let at = |x: f32| Bundle {
+        let at = |x: f32| LightBounds {
             min: Vec3::new(x, 3.0, 0.0),
             max: Vec3::new(x, 3.0, 0.0),
             normals: Cone::ALL,
@@ -427,7 +428,7 @@ mod tests {
     #[test]
     fn a_thousand_lights_in_one_place_are_no_trouble() {
         let one = bundles(1)[0].1;
-        let lights: Vec<(u32, Bundle)> = (0..1000).map(|light| (light, one)).collect();
+        let lights: Vec<(u32, LightBounds)> = (0..1000).map(|light| (light, one)).collect();
         let tree = Tree::new(&lights, 1000);
         let p = one.center() + one.normals.axis * 3.0;
         assert!((tree.probability(p, Vec3::Y, 500) - 1e-3).abs() < 1e-4);
@@ -435,7 +436,7 @@ mod tests {
 
     #[test]
     fn at_lights_and_far_away_all_numbers_are_finite() {
-        let point = |x: f32, power: f32| Bundle {
+        let point = |x: f32, power: f32| LightBounds {
             min: Vec3::X * x,
             max: Vec3::X * x,
             normals: Cone::ALL,
@@ -465,31 +466,41 @@ mod tests {
         let lights = bundles(60);
         let tree = Tree::new(&lights, 60);
         for _ in 0..20_000 {
-            let (light, bundle) = lights[(next() * 60.0) as usize];
+            let (light, bounds) = lights[(next() * 60.0) as usize];
             // a normal in the cone, and a direction that it shines in
-            let (s, t) = crate::warp::orthonormal_basis(bundle.normals.axis);
-            let local = crate::warp::uniform_cone([next(), next()], 1.0 - bundle.normals.cos);
-            let mut normal = s * local.x + t * local.y + bundle.normals.axis * local.z;
-            if bundle.two_sided && next() < 0.5 {
+            let (s, t) = crate::warp::orthonormal_basis(bounds.normals.axis);
+            let local = crate::warp::uniform_cone([next(), next()], 1.0 - bounds.normals.cos);
+            let mut normal = s * local.x + t * local.y + bounds.normals.axis * local.z;
+            if bounds.two_sided && next() < 0.5 {
                 normal = -normal;
             }
             let direction = crate::warp::cosine_hemisphere([next(), next()], normal);
-            let from = bundle.min + (bundle.max - bundle.min) * Vec3::new(next(), next(), next());
+            let from = bounds.min + (bounds.max - bounds.min) * Vec3::new(next(), next(), next());
             let p = from + direction * libm::exp2f(20.0 * next() - 10.0);
             if direction.dot(normal) > 1e-3 {
                 let probability = tree.probability(p, crate::warp::uniform_sphere([next(), next()]), light);
-                assert!(probability > 0.0, "{p} {bundle:?}");
+                assert!(probability > 0.0, "{p} {bounds:?}");
             }
         }
     }
 
     #[test]
     fn a_row_of_lights_is_divided_well() {
-        let lights: Vec<(u32, Bundle)> = (0..1024)
+        let lights: Vec<(u32, LightBounds)> = (0..1024)
             .map(|light| {
                 let at = Vec3::X * light as f32;
                 let normals = Cone { axis: Vec3::Y, cos: 1.0 };
-                (light, Bundle { min: at, max: at, normals, cos_emission: 0.0, two_sided: false, power: 1.0 })
+                (
+                    light,
+                    LightBounds {
+                        min: at,
+                        max: at,
+                        normals,
+                        cos_emission: 0.0,
+                        two_sided: false,
+                        power: 1.0,
+                    },
+                )
             })
             .collect();
         let tree = Tree::new(&lights, 1024);

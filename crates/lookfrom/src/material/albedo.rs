@@ -5,15 +5,15 @@
 
 use super::{Material, MaterialKind, Metal};
 use crate::bsdf::fresnel;
+use crate::interaction::SurfaceInteraction;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::texture::{SpectrumTexture, TexturePoint, Textures};
 
 /// Linear Rec. 709, at least 0; white where a surface has no colour of its own.
 pub fn albedo(
     materials: &[Material],
     textures: &Textures,
-    surface: &Surface,
+    surface: &SurfaceInteraction,
     point: &TexturePoint,
 ) -> [f32; 3] {
     let index = surface.material as usize;

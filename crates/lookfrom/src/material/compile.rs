@@ -4,7 +4,7 @@ use lookfrom_scene::material as written;
 use lookfrom_scene::material::{Color, Scalar};
 use lookfrom_scene::scene::TextureId;
 
-use super::kind::{Anisotropy, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled, Relief};
+use super::kind::{Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled};
 use super::kind::{Roughness, Whitted};
 use super::{Material, approximate};
 use crate::bsdf::microfacet::TrowbridgeReitz;
@@ -27,7 +27,7 @@ impl<'a> Compiler<'a> {
         let whitted = approximate::in_whitteds_model(&material.kind, &self.whitted, self.textures);
         let compiled = Material {
             kind: self.kind(&material.kind),
-            relief: self.relief(&material.relief),
+            bump_mapping: self.bump_mapping(&material.relief),
             medium: None,
             whitted: self.whitted(&whitted),
         };
@@ -122,12 +122,12 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn relief(&self, relief: &written::Relief) -> Relief {
-        match relief {
-            written::Relief::None => Relief::None,
-            written::Relief::Bump(height) => Relief::Bump((*height).into()),
-            written::Relief::NormalMap(image) => Relief::NormalMap(image.index()),
-            written::Relief::NormalTexture(map) => Relief::NormalTexture(self.normals(map)),
+    fn bump_mapping(&self, written: &written::Relief) -> BumpMapping {
+        match written {
+            written::Relief::None => BumpMapping::None,
+            written::Relief::Bump(height) => BumpMapping::Bump((*height).into()),
+            written::Relief::NormalMap(image) => BumpMapping::NormalMap(image.index()),
+            written::Relief::NormalTexture(map) => BumpMapping::NormalTexture(self.normals(map)),
         }
     }
 

@@ -177,7 +177,7 @@ pub struct Coat {
 
 /// What turns or bends the shading normal.
 #[derive(Clone, Copy, Debug)]
-pub enum Relief {
+pub enum BumpMapping {
     /// Nothing.
     None,
     /// Heights along the normal, in the shape's unit of length.

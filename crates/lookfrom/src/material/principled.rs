@@ -9,14 +9,14 @@
 
 use glam::Vec3;
 
-use super::kind::Principled as Look;
-use super::{At, Frame, MaterialKind, relief};
+use super::kind::Principled as PrincipledMaterial;
+use super::{Evaluator, Frame, MaterialKind, bump};
 use crate::bsdf::Bsdf;
 use crate::bsdf::microfacet::TrowbridgeReitz;
 use crate::bsdf::principled::film::Film;
 use crate::bsdf::principled::{Parameters, Principled};
+use crate::interaction::SurfaceInteraction;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::texture::{Lanes, SpectrumTexture};
 
 /// What a dielectric of an index mirrors straight on; an index of 0 is infinite.
@@ -30,12 +30,12 @@ fn straight(ior: f32) -> f32 {
 
 /// Whether colours go different ways in a body.
 #[inline]
-pub(super) fn disperses(look: &Look) -> bool {
+pub(super) fn disperses(look: &PrincipledMaterial) -> bool {
     look.dispersion > 0.0 && look.is_solid && look.ior > 1.0
 }
 
 /// The index of refraction for the one wavelength or colour that is left; the written one where more are.
-fn index_of(look: &Look, lanes: &Lanes, share: Spectrum) -> f32 {
+fn index_of(look: &PrincipledMaterial, lanes: &Lanes, share: Spectrum) -> f32 {
     // Twenty times n_F − n_C.
     let spread = (look.ior - 1.0) * look.dispersion;
     match lanes {
@@ -52,13 +52,13 @@ fn index_of(look: &Look, lanes: &Lanes, share: Spectrum) -> f32 {
     }
 }
 
-impl At<'_> {
+impl Evaluator<'_> {
     /// The scattering function, and the frame turned to where brushed metal's grain runs.
     pub(super) fn principled(
         &mut self,
-        look: &Look,
+        look: &PrincipledMaterial,
         material: u32,
-        surface: &Surface,
+        surface: &SurfaceInteraction,
         mut frame: Frame,
     ) -> (Bsdf, Frame) {
         let share = |at: &Self, texture| at.float(texture).clamp(0.0, 1.0);
@@ -84,7 +84,7 @@ impl At<'_> {
             along = across + (1.0 - across) * strength * strength;
             let [sin, cos] = grain.sin_cos;
             let [x, y] = direction;
-            let [s, t] = relief::tangents(surface);
+            let [s, t] = bump::tangents(surface);
             frame = frame.along((x * cos - y * sin) * s + (x * sin + y * cos) * t);
         }
 
@@ -98,8 +98,8 @@ impl At<'_> {
         let mut clearcoat_normal = Vec3::Z;
         if clearcoat > 0.0 {
             let bent =
-                look.clearcoat_normal.map(|map| relief::mapped(&map, self.textures, surface, self.point));
-            clearcoat_normal = frame.local(relief::valid(bent.unwrap_or(surface.ns), surface));
+                look.clearcoat_normal.map(|map| bump::mapped(&map, self.textures, surface, self.point));
+            clearcoat_normal = frame.local(bump::valid(bent.unwrap_or(surface.ns), surface));
         }
         let coat_alpha = alpha(share(self, look.clearcoat_roughness));
         let (sheen_color, sheen_greatest) = match &look.sheen_color {
@@ -148,28 +148,30 @@ impl At<'_> {
 
     /// The index of refraction; one that differs by wavelength leaves only the first, one that differs by colour only one,
     /// where light passes.
-    fn index(&mut self, look: &Look, passing: f32) -> f32 {
+    fn index(&mut self, look: &PrincipledMaterial, passing: f32) -> f32 {
         if !disperses(look) || !(passing > 0.0) {
             return look.ior;
         }
         match self.lanes {
             Lanes::Spectral(wavelengths) => wavelengths.terminate_secondary(),
-            Lanes::Rgb => self.share.leave_one(self.u),
+            Lanes::Rgb => self.throughput.leave_one(self.u),
         }
-        index_of(look, self.lanes, *self.share)
+        index_of(look, self.lanes, *self.throughput)
     }
 
     /// The index of refraction on the other side of a surface of a material; `None` where that is hidden, since something
     /// that was entered later is on both of its sides.
-    fn around(&self, look: &Look, material: u32, front: bool) -> Option<f32> {
+    fn around(&self, look: &PrincipledMaterial, material: u32, front: bool) -> Option<f32> {
         let leaves = look.is_solid && !front;
-        if leaves && self.media.hides(material) {
+        if leaves && self.interior.hides(material) {
             return None;
         }
-        let outside = if leaves { self.media.left(material) } else { self.media };
+        let outside = if leaves { self.interior.left(material) } else { self.interior };
         let around = outside.material().map(|index| &self.materials[index as usize].kind);
         Some(match around {
-            Some(MaterialKind::Principled(body)) if body.ior > 0.0 => index_of(body, self.lanes, *self.share),
+            Some(MaterialKind::Principled(body)) if body.ior > 0.0 => {
+                index_of(body, self.lanes, *self.throughput)
+            }
             _ => 1.0,
         })
     }

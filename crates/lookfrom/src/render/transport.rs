@@ -8,7 +8,7 @@ use lookfrom_scene::settings::{Integrator as Kind, RenderSettings};
 use super::{Batch, Rays, Renderer, SampleId};
 use crate::camera::Camera;
 use crate::integrator::{
-    AmbientOcclusion, Event, FirstHit, Integrator, PathTracer, Raycast, Whitted, Wisdom,
+    AmbientOcclusion, Event, FirstHit, Integrator, LightSampling, PathTracer, Raycast, Whitted,
 };
 
 /// What a renderer asks of an [`Integrator`], whichever it is.
@@ -65,13 +65,13 @@ pub(super) fn of_settings(settings: &RenderSettings, camera: &Camera, eye: DVec3
         occlusion_distance,
         ..
     } = settings;
-    let path = |wisdom| Arc::new(PathTracer { depth, regularize, wisdom });
+    let path = |light_sampling| Arc::new(PathTracer { depth, regularize, light_sampling });
     match integrator {
         Kind::Raycast => Arc::new(Raycast { transparent_shadows }),
         Kind::Whitted => Arc::new(Whitted { depth, min_contribution, transparent_shadows }),
-        Kind::Path => path(Wisdom::Combined),
-        Kind::SimplePath => path(Wisdom::Separate),
-        Kind::RandomWalk => path(Wisdom::None),
+        Kind::Path => path(LightSampling::MultipleImportance),
+        Kind::SimplePath => path(LightSampling::NextEventEstimation),
+        Kind::RandomWalk => path(LightSampling::None),
         Kind::AmbientOcclusion { cosine } => {
             Arc::new(AmbientOcclusion { cosine, distance: occlusion_distance })
         }

@@ -6,8 +6,8 @@
 use lookfrom_scene::material::{Color, Scalar};
 use lookfrom_scene::scene::{CurveId, TextureId};
 
-use super::reading::{Rgb, within};
-use super::{Measured, Reading};
+use super::evaluation::{RgbEvaluation, within};
+use super::{Evaluation, Measured};
 use crate::color::{Sigmoid, Unbounded};
 use crate::spectrum::Spectrum;
 
@@ -55,12 +55,12 @@ pub(super) enum Input {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Constant {
     pub(super) rgb: [f32; 3],
-    pub(super) lifts: Option<Lifts>,
+    pub(super) uplifts: Option<Uplifts>,
 }
 
 /// Spectra of a colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Lifts {
+pub(super) struct Uplifts {
     pub(super) albedo: Sigmoid,
     pub(super) unbounded: Unbounded,
 }
@@ -68,16 +68,16 @@ pub(super) struct Lifts {
 impl SpectrumTexture {
     /// Nothing.
     pub const BLACK: Self = Self {
-        input: Input::Constant(Constant { rgb: [0.0; 3], lifts: None }),
+        input: Input::Constant(Constant { rgb: [0.0; 3], uplifts: None }),
         spectrum_type: SpectrumType::Unbounded,
         rgb: Spectrum::BLACK,
     };
 
     pub(super) fn new(input: Input, spectrum_type: SpectrumType, curves: &[Measured]) -> Self {
-        let reading = Rgb(spectrum_type);
+        let evaluation = RgbEvaluation(spectrum_type);
         let rgb = match input {
-            Input::Constant(constant) => reading.constant(&constant),
-            Input::Curve(id) => reading.curve(&curves[id.index()]),
+            Input::Constant(constant) => evaluation.constant(&constant),
+            Input::Curve(id) => evaluation.curve(&curves[id.index()]),
             Input::Texture(_) => Spectrum::BLACK,
         };
         Self { input, spectrum_type, rgb }
@@ -126,12 +126,12 @@ impl From<Scalar> for FloatTexture {
 }
 
 impl Input {
-    /// A written colour; `lifts` where spectra will be asked for.
-    pub(super) fn new(written: Color, lifts: bool) -> Self {
+    /// A written colour; `uplifts` where spectra will be asked for.
+    pub(super) fn new(written: Color, uplifts: bool) -> Self {
         match written {
             Color::Value(rgb) => Self::Constant(Constant {
                 rgb,
-                lifts: lifts.then(|| Lifts {
+                uplifts: uplifts.then(|| Uplifts {
                     albedo: Sigmoid::from_rgb(within(SpectrumType::Albedo, rgb)),
                     unbounded: Unbounded::from_rgb(within(SpectrumType::Unbounded, rgb)),
                 }),

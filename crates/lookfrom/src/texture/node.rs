@@ -94,18 +94,18 @@ pub(super) enum Node {
 }
 
 impl Node {
-    /// Every texture of a scene, in the same order; `lifts` where spectra will be asked for.
-    pub(super) fn compile_all(kinds: &[TextureKind], lifts: bool) -> Vec<Self> {
+    /// Every texture of a scene, in the same order; `uplifts` where spectra will be asked for.
+    pub(super) fn compile_all(kinds: &[TextureKind], uplifts: bool) -> Vec<Self> {
         (0..kinds.len())
             .map(|index| match scaled_picture(kinds, index) {
-                Some(picture) => Self::compile(&picture, lifts),
-                None => Self::compile(&kinds[index], lifts),
+                Some(picture) => Self::compile(&picture, uplifts),
+                None => Self::compile(&kinds[index], uplifts),
             })
             .collect()
     }
 
-    fn compile(kind: &TextureKind, lifts: bool) -> Self {
-        let input = |color: Color| Input::new(color, lifts);
+    fn compile(kind: &TextureKind, uplifts: bool) -> Self {
+        let input = |color: Color| Input::new(color, uplifts);
         match *kind {
             TextureKind::Image { image, mapping, wrap, filter, channel, scale, invert } => {
                 Self::Image { image: image.index(), mapping, wrap, filter, channel, scale, invert }

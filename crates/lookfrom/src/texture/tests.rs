@@ -244,7 +244,7 @@ fn spectra_seen_in_daylight_have_their_colors() {
         let here = at((i as f32 + 0.5) / 27.0, 0.5);
         let dense = |usage| {
             let values = curve_of(Color::Texture(FIRST), usage, &here);
-            Dense::from_samples(std::array::from_fn(|i| values[i]))
+            DenselySampledSpectrum::from_samples(std::array::from_fn(|i| values[i]))
         };
         let found = [
             dense(SpectrumType::Albedo).to_rgb_reflectance(),

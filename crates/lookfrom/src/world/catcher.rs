@@ -9,10 +9,10 @@ use glam::Vec3;
 use lookfrom_bvh::Ray;
 
 use super::World;
+use crate::interaction::SurfaceInteraction;
 use crate::light::Light;
 use crate::material::MaterialKind;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::texture::{Lanes, SpectrumType, Textures, spectrum_of};
 
 /// The least reflectance that is reckoned with: what the camera sees of a darker floor is multiplied later.
@@ -43,13 +43,13 @@ impl World {
     }
 
     /// Whether a surface is a floor that is seen only by the shadows on it.
-    pub(crate) fn is_catcher(&self, surface: &Surface) -> bool {
+    pub(crate) fn is_catcher(&self, surface: &SurfaceInteraction) -> bool {
         self.catcher_irradiance.is_some()
             && matches!(self.materials[surface.material as usize].kind, MaterialKind::ShadowCatcher { .. })
     }
 
     /// The floor's reflectance: that with which it looks like the environment behind it, as far as matter can.
-    pub(super) fn catcher_reflectance(&self, surface: &Surface, lanes: &Lanes) -> Spectrum {
+    pub(super) fn catcher_reflectance(&self, surface: &SurfaceInteraction, lanes: &Lanes) -> Spectrum {
         self.reflectance_seen_along(-surface.wo, lanes)
     }
 

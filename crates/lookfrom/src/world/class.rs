@@ -1,15 +1,15 @@
 //! Classes of geometries: what their hits need, known when the world is compiled.
 
 use super::World;
-use crate::material::{MaterialKind, Relief};
-use crate::shape::{Form, Mesh};
+use crate::material::{BumpMapping, MaterialKind};
+use crate::primitive::{Mesh, Primitives};
 use crate::texture::SpectrumTexture;
 
 /// What all hits on a geometry (outside of instances) have in common, which steps are sorted by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Class {
-    /// Flat triangles of a diffuse material of one colour, without emission, alpha, relief or media of their own.
+    /// Flat triangles of a diffuse material of one colour, without emission, alpha, bump mapping or media of their own.
     FlatDiffuse,
     /// Anything else.
     General,
@@ -17,23 +17,23 @@ pub enum Class {
 
 impl World {
     /// The class of each geometry, of which the materials are compiled.
-    pub(super) fn classify(forms: &[Form], materials: &[crate::material::Material]) -> Vec<Class> {
-        let class = |form: &Form| {
-            let Form::Mesh(mesh) = form else { return Class::General };
-            let look = &mesh.look;
+    pub(super) fn classify(primitives: &[Primitives], materials: &[crate::material::Material]) -> Vec<Class> {
+        let class = |primitives: &Primitives| {
+            let Primitives::Mesh(mesh) = primitives else { return Class::General };
+            let binding = &mesh.binding;
             let is_flat = mesh.normals.is_empty() && !mesh.wants_derivatives;
-            let is_plain = look.light.is_none()
-                && look.alpha.is_none()
-                && look.medium_interface.is_none()
-                && !look.single_sided;
-            let material = &materials[look.material as usize];
-            let is_even = match (&material.kind, &material.relief) {
-                (MaterialKind::Diffuse { reflectance }, Relief::None) => reflectance.is_constant(),
+            let is_plain = binding.light.is_none()
+                && binding.alpha.is_none()
+                && binding.medium_interface.is_none()
+                && !binding.single_sided;
+            let material = &materials[binding.material as usize];
+            let is_even = match (&material.kind, &material.bump_mapping) {
+                (MaterialKind::Diffuse { reflectance }, BumpMapping::None) => reflectance.is_constant(),
                 _ => false,
             };
             if is_flat && is_plain && is_even { Class::FlatDiffuse } else { Class::General }
         };
-        forms.iter().map(class).collect()
+        primitives.iter().map(class).collect()
     }
 
     /// The mesh and the reflectance of a geometry of the class [`Class::FlatDiffuse`]; `None` for others.
@@ -42,8 +42,8 @@ impl World {
         if self.classes[geometry as usize] != Class::FlatDiffuse {
             return None;
         }
-        let Form::Mesh(mesh) = &self.forms[geometry as usize] else { return None };
-        match &self.materials[mesh.look.material as usize].kind {
+        let Primitives::Mesh(mesh) = &self.primitives[geometry as usize] else { return None };
+        match &self.materials[mesh.binding.material as usize].kind {
             MaterialKind::Diffuse { reflectance } => Some((mesh, reflectance)),
             _ => None,
         }

@@ -13,10 +13,11 @@ use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 use super::lights::Lights;
 use super::place::{Compiler, Group};
 use super::{Instance, Medium, Names, World, reflectance};
+use crate::interior_stack::InteriorStack;
 use crate::light::{Light, LightChoice};
-use crate::material::{self, InteriorStack, Material, MaterialKind};
+use crate::material::{self, Material, MaterialKind};
 use crate::math;
-use crate::shape::Form;
+use crate::primitive::Primitives;
 use crate::texture::{SpectrumType, Textures};
 
 impl World {
@@ -105,12 +106,14 @@ impl World {
         }
 
         // Build the trees: of the objects, and of the world over them.
-        let objects: Vec<Vec<Form>> = in_objects.into_iter().map(Group::into_forms).collect();
-        let trees =
-            objects.iter().map(|forms| tree(forms, &[], &[]).map(Arc::new)).collect::<Result<Vec<_>>>()?;
+        let objects: Vec<Vec<Primitives>> = in_objects.into_iter().map(Group::into_primitives).collect();
+        let trees = objects
+            .iter()
+            .map(|primitives| tree(primitives, &[], &[]).map(Arc::new))
+            .collect::<Result<Vec<_>>>()?;
         let instances = std::mem::take(&mut in_world.instances);
-        let forms = in_world.into_forms();
-        let bvh = tree(&forms, &instances, &trees)?;
+        let primitives = in_world.into_primitives();
+        let bvh = tree(&primitives, &instances, &trees)?;
 
         let mut names = Names { shapes, lights: light_names, ..Names::default() };
         let mut materials: Vec<Material> = Vec::new();
@@ -135,8 +138,8 @@ impl World {
         let mut world = Self {
             origin,
             bvh: Arc::new(bvh),
-            classes: Self::classify(&forms, &materials).into(),
-            forms: forms.into(),
+            classes: Self::classify(&primitives, &materials).into(),
+            primitives: primitives.into(),
             objects: objects.into(),
             instances: instances.into(),
             transmissive: materials.iter().any(|material| !material.whitted.transmission.is_gray(0.0)),
@@ -182,26 +185,26 @@ fn grains(materials: &[lookfrom_scene::material::Material]) -> Vec<bool> {
 }
 
 /// The tree over forms in their order, then instances.
-fn tree(forms: &[Form], instances: &[Instance], objects: &[Arc<Bvh>]) -> Result<Bvh> {
+fn tree(primitives: &[Primitives], instances: &[Instance], objects: &[Arc<Bvh>]) -> Result<Bvh> {
     let mut builder = Builder::new();
-    for form in forms {
-        match form {
-            Form::Mesh(mesh) => {
+    for primitives in primitives {
+        match primitives {
+            Primitives::Mesh(mesh) => {
                 builder.triangles(Triangles { positions: &mesh.positions, indices: &mesh.triangles });
             }
-            Form::Spheres(spheres) => {
+            Primitives::Spheres(spheres) => {
                 builder.spheres(&spheres.spheres);
             }
-            Form::Disks(disks) => {
+            Primitives::Disks(disks) => {
                 builder.procedural(Arc::new(disks.clone()));
             }
-            Form::Quadrics(quadrics) => {
+            Primitives::Quadrics(quadrics) => {
                 builder.procedural(quadrics.clone());
             }
-            Form::Patches(patches) => {
+            Primitives::Patches(patches) => {
                 builder.procedural(patches.clone());
             }
-            Form::Curves(curves) => {
+            Primitives::Curves(curves) => {
                 builder.procedural(curves.clone());
             }
         }

@@ -10,7 +10,7 @@ use lookfrom_scene::material::Color;
 
 use crate::distribution::Piecewise2D;
 use crate::light::{
-    Environment, Glow, Goniometric, Layout, Light, Opening, Portal, Projection, Sky, SkyImage,
+    EmissionSpectrum, Environment, Goniometric, Layout, Light, Opening, Portal, Projection, Sky, SkyImage,
 };
 use crate::math;
 use crate::texture::{SpectrumTexture, SpectrumType, TexturePoint, Textures};
@@ -41,7 +41,7 @@ impl<'a> Lights<'a> {
 
     /// The glow of a colour in some amount; `per_unit` is what the light comes to as a whole if its colour is white of
     /// luminance 1.
-    pub(super) fn glow(&self, color: Color, amount: &Amount, per_unit: f32) -> Glow {
+    pub(super) fn emission_spectrum(&self, color: Color, amount: &Amount, per_unit: f32) -> EmissionSpectrum {
         let mut scale = amount.scale;
         // Other colours have luminance 1 where they are white; a curve is as bright as its numbers.
         if let (Color::Curve(curve), false) = (color, amount.absolute) {
@@ -57,7 +57,7 @@ impl<'a> Lights<'a> {
             let whole = per_unit * luminance;
             scale = if whole > 0.0 { scale * total / whole } else { 0.0 };
         }
-        Glow { color: self.illuminant(color), scale }
+        EmissionSpectrum { color: self.illuminant(color), scale }
     }
 
     pub(super) fn illuminant(&self, color: Color) -> SpectrumTexture {
@@ -65,8 +65,9 @@ impl<'a> Lights<'a> {
     }
 
     /// The greatest of three primaries of a glow, in the mean over its texture.
-    pub(super) fn brightness_of(&self, glow: &Glow) -> f32 {
-        glow.scale * self.mean_over_places(&glow.color, |rgb| rgb.into_iter().fold(0.0, f32::max))
+    pub(super) fn brightness_of(&self, emission_spectrum: &EmissionSpectrum) -> f32 {
+        emission_spectrum.scale
+            * self.mean_over_places(&emission_spectrum.color, |rgb| rgb.into_iter().fold(0.0, f32::max))
     }
 
     /// The mean of a measure of a colour over a grid of texture coordinates.
@@ -91,9 +92,13 @@ impl<'a> Lights<'a> {
         let amount = &written.amount;
         // Written intensities are those of Whitted's I_j: π times as much in radiometric units, but where the whole is
         // given.
-        let whitted = |glow: Glow| Glow {
-            scale: if amount.total.is_some() { glow.scale } else { glow.scale * PI },
-            ..glow
+        let whitted = |emission_spectrum: EmissionSpectrum| EmissionSpectrum {
+            scale: if amount.total.is_some() {
+                emission_spectrum.scale
+            } else {
+                emission_spectrum.scale * PI
+            },
+            ..emission_spectrum
         };
         let (kind, light, brightness) = match &written.kind {
             LightKind::Ambient { color } => {
@@ -101,13 +106,13 @@ impl<'a> Lights<'a> {
                 return;
             }
             LightKind::Point { position, intensity, falloff } => {
-                let intensity = whitted(self.glow(*intensity, amount, 4.0 * PI));
+                let intensity = whitted(self.emission_spectrum(*intensity, amount, 4.0 * PI));
                 let position = *position - origin;
                 let brightness = self.brightness_of(&intensity);
                 ("point light", Light::Point { position, intensity, falloff: *falloff }, brightness)
             }
             LightKind::Distant { direction, intensity } => {
-                let irradiance = whitted(self.glow(*intensity, amount, 1.0));
+                let irradiance = whitted(self.emission_spectrum(*intensity, amount, 1.0));
                 let brightness = self.brightness_of(&irradiance);
                 let toward = -direction.normalize().as_vec3();
                 ("distant light", Light::Distant { toward, irradiance }, brightness)
@@ -116,7 +121,7 @@ impl<'a> Lights<'a> {
                 let cos_outer = libm::cos(cone_angle.to_radians()) as f32;
                 let cos_inner = libm::cos(inner_angle.to_radians()) as f32;
                 let per_unit = 2.0 * PI * ((1.0 - cos_inner) + 0.5 * (cos_inner - cos_outer));
-                let intensity = whitted(self.glow(*intensity, amount, per_unit));
+                let intensity = whitted(self.emission_spectrum(*intensity, amount, per_unit));
                 let brightness = self.brightness_of(&intensity);
                 let light = Light::Spot {
                     position: *position - origin,
@@ -130,7 +135,7 @@ impl<'a> Lights<'a> {
             }
             LightKind::Projection { image, intensity, fov, world_from_light } => {
                 let light = self.projection(image.index(), *fov, world_from_light, origin);
-                let white = self.glow(Color::gray(*intensity), amount, self.power_of(&light));
+                let white = self.emission_spectrum(Color::gray(*intensity), amount, self.power_of(&light));
                 let scale = whitted(white).scale * intensity;
                 let light = Projection { scale, ..light };
                 let brightness = scale * mean(self.textures.image(image.index()));
@@ -138,7 +143,7 @@ impl<'a> Lights<'a> {
             }
             LightKind::Goniometric { intensity, image, world_from_light } => {
                 let mean = mean(self.textures.image(image.index()));
-                let intensity = whitted(self.glow(*intensity, amount, 4.0 * PI * mean));
+                let intensity = whitted(self.emission_spectrum(*intensity, amount, 4.0 * PI * mean));
                 let brightness = self.brightness_of(&intensity) * mean;
                 let light = Goniometric {
                     position: world_from_light.w_axis.truncate() - origin,
@@ -200,15 +205,15 @@ impl<'a> Lights<'a> {
     fn sky(&self, sky: &WrittenSky, amount: &Amount, has_portal: bool) -> (Sky, f32) {
         let (image, scale, world_from_light, layout) = match sky {
             WrittenSky::Constant(color) => {
-                let glow = self.glow(*color, amount, PI);
-                return (Sky::Constant(glow), self.brightness_of(&glow));
+                let emission_spectrum = self.emission_spectrum(*color, amount, PI);
+                return (Sky::Constant(emission_spectrum), self.brightness_of(&emission_spectrum));
             }
             WrittenSky::Gradient { zenith, horizon, nadir } => {
                 // Onto a surface that looks up: the integral of ((1 − y) horizon + y zenith) y.
                 let upward = std::array::from_fn(|c| (horizon[c] + 2.0 * zenith[c]) / 3.0);
-                let scale = self.glow(Color::Value(upward), amount, PI).scale;
+                let scale = self.emission_spectrum(Color::Value(upward), amount, PI).scale;
                 let [zenith, horizon, nadir] = [zenith, horizon, nadir]
-                    .map(|rgb| Glow { color: self.illuminant(Color::Value(*rgb)), scale });
+                    .map(|rgb| EmissionSpectrum { color: self.illuminant(Color::Value(*rgb)), scale });
                 return (Sky::Gradient { zenith, horizon, nadir }, self.brightness_of(&horizon));
             }
             WrittenSky::Image { image, scale, world_from_light } => {
@@ -219,7 +224,8 @@ impl<'a> Lights<'a> {
             }
         };
         let picture = self.textures.image(image);
-        let factor = self.glow(Color::gray(1.0), amount, illuminance(picture, *scale, layout)).scale;
+        let factor =
+            self.emission_spectrum(Color::gray(1.0), amount, illuminance(picture, *scale, layout)).scale;
         let weights = weights(picture, layout);
         let solid_angles = weights.iter().map(|&(_, area)| f64::from(area)).sum::<f64>();
         let average =

@@ -16,9 +16,11 @@ use lookfrom_scene::{Error, Location, Result, Warning};
 
 use super::Instance;
 use super::lights::Lights;
-use crate::light::{AreaLight, Glow, Light, LightForm, QuadricLight};
-use crate::material::{InteriorStack, MediumInterface};
-use crate::shape::{Disk, Disks, Form, Look, Mesh, Quadric, QuadricKind, Quadrics, SphereLook, Spheres};
+use crate::interior_stack::{InteriorStack, MediumInterface};
+use crate::light::{AreaLight, EmissionSpectrum, Light, LightShape, QuadricLight};
+use crate::primitive::{
+    Disk, Disks, MaterialBinding, Mesh, Primitives, Quadric, QuadricKind, Quadrics, SphereBinding, Spheres,
+};
 use crate::texture::FloatTexture;
 
 /// From axes with the poles on z to axes with the poles on y: a rotation.
@@ -28,7 +30,7 @@ const Y_FROM_Z: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);
 #[derive(Default)]
 pub(super) struct Group {
     /// Meshes, patches and curves: one form a shape.
-    own: Vec<Form>,
+    own: Vec<Primitives>,
     spheres: Spheres,
     disks: Disks,
     quadrics: Quadrics,
@@ -38,18 +40,18 @@ pub(super) struct Group {
 
 impl Group {
     /// The forms in the order of their geometry ids.
-    pub(super) fn into_forms(self) -> Vec<Form> {
-        let mut forms = self.own;
+    pub(super) fn into_primitives(self) -> Vec<Primitives> {
+        let mut primitives = self.own;
         if !self.spheres.spheres.is_empty() {
-            forms.push(Form::Spheres(self.spheres));
+            primitives.push(Primitives::Spheres(self.spheres));
         }
         if !self.disks.disks.is_empty() {
-            forms.push(Form::Disks(self.disks));
+            primitives.push(Primitives::Disks(self.disks));
         }
         if !self.quadrics.quadrics.is_empty() {
-            forms.push(Form::Quadrics(Arc::new(self.quadrics)));
+            primitives.push(Primitives::Quadrics(Arc::new(self.quadrics)));
         }
-        forms
+        primitives
     }
 }
 
@@ -79,9 +81,9 @@ pub(super) struct Compiler<'a> {
     pub(super) lights: Lights<'a>,
     /// Names by shape number.
     pub(super) shapes: Vec<String>,
-    /// By material: whether it has a grain or a relief.
+    /// By material: whether it has a grain or bump mapping.
     pub(super) grains: Vec<bool>,
-    /// Whether an instance gives the object that is being placed a material with a grain or a relief.
+    /// Whether an instance gives the object that is being placed a material with a grain or bump mapping.
     pub(super) has_instance_grain: bool,
     /// Parts of surfaces that are there.
     pub(super) alphas: Vec<FloatTexture>,
@@ -97,7 +99,7 @@ struct Placing<'a> {
     shape: &'a Shape,
     /// From the shape's space to the group's.
     matrix: &'a DMat4,
-    look: Look,
+    binding: MaterialBinding,
 }
 
 impl Placing<'_> {
@@ -139,10 +141,10 @@ impl Compiler<'_> {
         // Of a body that light goes through, the back is seen from within.
         let is_body = matches!(
             self.scene.materials.get(material as usize).map(|material| &material.kind),
-            Some(MaterialKind::Principled(look)) if look.is_solid
+            Some(MaterialKind::Principled(principled)) if principled.is_solid
         );
         let single_sided = shape.single_sided && !is_body;
-        let look = Look {
+        let binding = MaterialBinding {
             material,
             light: None,
             shape: number,
@@ -151,7 +153,7 @@ impl Compiler<'_> {
             vertex_data: None,
             single_sided,
         };
-        let placing = Placing { shape, matrix: &matrix, look };
+        let placing = Placing { shape, matrix: &matrix, binding };
         match &shape.geometry {
             Geometry::Sphere(sphere) => self.spheres(placing, &[*sphere], Y_FROM_Z, group),
             Geometry::Spheres(spheres) => self.spheres(placing, spheres, Y_FROM_Z, group),
@@ -210,7 +212,7 @@ impl Compiler<'_> {
         pole: DMat3,
         group: &mut Group,
     ) -> Result<()> {
-        let Placing { shape, matrix, look } = placing;
+        let Placing { shape, matrix, binding } = placing;
         let linear = DMat3::from_mat4(*matrix);
         let Some(scale) = even_scale(&linear) else {
             // Unevenly scaled, they are ellipsoids.
@@ -222,32 +224,40 @@ impl Compiler<'_> {
             return Ok(());
         };
         let render_from_z = orthonormal(&linear) * pole;
-        let first_look = group.spheres.looks.len() as u32;
+        let first_binding = group.spheres.bindings.len() as u32;
         let flip = shape.reverse_orientation;
-        let sphere_look =
-            SphereLook { look, object_from_form: (Y_FROM_Z * render_from_z.transpose()).as_mat3(), flip };
-        group.spheres.looks.push(sphere_look);
+        let sphere_binding = SphereBinding {
+            binding,
+            object_from_sphere: (Y_FROM_Z * render_from_z.transpose()).as_mat3(),
+            flip,
+        };
+        group.spheres.bindings.push(sphere_binding);
         for sphere in spheres {
             let center = matrix.transform_point3(sphere.center).as_vec3();
             let radius = (sphere.radius * scale) as f32;
-            let light = self.shine(placing, || {
+            let light = self.area_light(placing, || {
                 let kind = whole_sphere(f64::from(radius));
                 let own = DMat4::from_translation(center.as_dvec3()) * DMat4::from_mat3(render_from_z);
-                Some(LightForm::Quadric(Box::new(QuadricLight::new(Quadric::new(kind, 360.0, &own, flip)?)?)))
+                Some(LightShape::Quadric(Box::new(QuadricLight::new(Quadric::new(
+                    kind, 360.0, &own, flip,
+                )?)?)))
             });
-            let mut own_look = first_look;
+            let mut own_binding = first_binding;
             if light.is_some() {
-                own_look = group.spheres.looks.len() as u32;
-                group.spheres.looks.push(SphereLook { look: Look { light, ..look }, ..sphere_look });
+                own_binding = group.spheres.bindings.len() as u32;
+                group
+                    .spheres
+                    .bindings
+                    .push(SphereBinding { binding: MaterialBinding { light, ..binding }, ..sphere_binding });
             }
             group.spheres.spheres.push(lookfrom_bvh::Sphere { center: center.to_array(), radius });
-            group.spheres.look_of.push(own_look);
+            group.spheres.binding_of.push(own_binding);
         }
         Ok(())
     }
 
     fn disk(&mut self, placing: Placing, [center, normal]: [DVec3; 2], radius: f64, group: &mut Group) {
-        let Placing { shape, matrix, look } = placing;
+        let Placing { shape, matrix, binding } = placing;
         let (axis_u, axis_v) = normal.normalize().any_orthonormal_pair();
         let disk = Disk {
             center: matrix.transform_point3(center),
@@ -255,9 +265,9 @@ impl Compiler<'_> {
             axis_v: matrix.transform_vector3(radius * axis_v),
             flip: placing.mirrors() != shape.reverse_orientation,
         };
-        let light = self.shine(placing, || Some(LightForm::Disk(disk)));
+        let light = self.area_light(placing, || Some(LightShape::Disk(disk)));
         group.disks.disks.push(disk);
-        group.disks.looks.push(Look { light, ..look });
+        group.disks.bindings.push(MaterialBinding { light, ..binding });
     }
 
     fn quadric(
@@ -267,38 +277,43 @@ impl Compiler<'_> {
         phi_max: f64,
         group: &mut Group,
     ) -> Result<()> {
-        let Placing { shape, matrix, look } = placing;
+        let Placing { shape, matrix, binding } = placing;
         let quadric = Quadric::new(kind, phi_max, matrix, shape.reverse_orientation)
             .ok_or_else(|| not_invertible(&shape.at))?;
-        let light = self
-            .shine(placing, || QuadricLight::new(quadric).map(|light| LightForm::Quadric(Box::new(light))));
+        let light = self.area_light(placing, || {
+            QuadricLight::new(quadric).map(|light| LightShape::Quadric(Box::new(light)))
+        });
         group.quadrics.quadrics.push(quadric);
-        group.quadrics.looks.push(Look { light, ..look });
+        group.quadrics.bindings.push(MaterialBinding { light, ..binding });
         Ok(())
     }
 
     /// The light of a shape that shines, made from its form.
-    fn shine(&mut self, placing: Placing, form: impl FnOnce() -> Option<LightForm>) -> Option<u32> {
-        let Placing { shape, look, .. } = placing;
+    fn area_light(
+        &mut self,
+        placing: Placing,
+        shape_of_light: impl FnOnce() -> Option<LightShape>,
+    ) -> Option<u32> {
+        let Placing { shape, binding, .. } = placing;
         let Emission { radiance, amount, two_sided } = shape.emission?;
         if radiance == Color::BLACK {
             return None;
         }
-        let form = form()?;
-        let coat = match self.scene.materials.get(look.material as usize).map(|material| &material.kind) {
-            Some(MaterialKind::Principled(look)) => Some(FloatTexture::from(look.clearcoat)),
+        let shape_of_light = shape_of_light()?;
+        let coat = match self.scene.materials.get(binding.material as usize).map(|material| &material.kind) {
+            Some(MaterialKind::Principled(principled)) => Some(FloatTexture::from(principled.clearcoat)),
             _ => None,
         };
         let mut light = AreaLight {
-            radiance: Glow { color: self.lights.illuminant(radiance), scale: 1.0 },
+            radiance: EmissionSpectrum { color: self.lights.illuminant(radiance), scale: 1.0 },
             alpha: shape.alpha.map(FloatTexture::from),
             two_sided,
             coat: coat.filter(|amount| !amount.is(0.0)),
-            form,
+            shape: shape_of_light,
         };
         // what white radiance of 1 sends out
         let sides = if two_sided { 2.0 } else { 1.0 };
-        light.radiance = self.lights.glow(radiance, &amount, sides * PI * light.area() as f32);
+        light.radiance = self.lights.emission_spectrum(radiance, &amount, sides * PI * light.area() as f32);
         let brightness = match light.mean_of_pattern() {
             Some(mean) => light.radiance.scale * mean,
             None => self.lights.brightness_of(&light.radiance),
@@ -313,7 +328,7 @@ impl Compiler<'_> {
 
     /// Whether it matters which way u runs over a shape.
     fn has_grain(&self, placing: Placing) -> bool {
-        let of_shape = self.grains.get(placing.look.material as usize).copied();
+        let of_shape = self.grains.get(placing.binding.material as usize).copied();
         self.has_instance_grain || of_shape.unwrap_or(false)
     }
 

@@ -89,7 +89,7 @@ fn a_smooth_coat_on_lambert_is_a_geometric_series() {
     for (reflectance, max_depth, theta) in
         [(1.0, 10, 30.0), (1.0, 2, 0.0), (1.0, 9, 70.0), (0.5, 4, 60.0), (1.0, 200, 40.0)]
     {
-        let coat = Coat { thickness: 0.0, max_depth, ..Coat::default() };
+        let coat = CoatLayer { thickness: 0.0, max_depth, ..CoatLayer::default() };
         let bsdf = Bsdf::coated_diffuse(grey(reflectance), &coat);
         let wo = direction(theta, 15.0);
         let mirrored = f64::from(fresnel::dielectric(wo.z, 1.5));
@@ -120,7 +120,7 @@ fn a_smooth_coat_on_lambert_is_a_geometric_series() {
 #[test]
 fn the_slab_absorbs_on_each_crossing() {
     // An index of 1 leaves Lambert under an absorber: ρ e^(−d/cos θ_o) e^(−d/cos θ_i) / π.
-    let coat = Coat { eta: 1.0, thickness: 0.3, ..Coat::default() };
+    let coat = CoatLayer { eta: 1.0, thickness: 0.3, ..CoatLayer::default() };
     let bsdf = Bsdf::coated_diffuse(grey(0.8), &coat);
     let (wo, wi) = (direction(50.0, 0.0), direction(20.0, 100.0));
     let expected = 0.8 * (-0.3_f32 / wo.z - 0.3 / wi.z).exp() * FRAC_1_PI;
@@ -131,14 +131,14 @@ fn the_slab_absorbs_on_each_crossing() {
 #[test]
 fn single_scattering_in_the_slab_has_a_formula() {
     // No boundary, black base, one step: p Λ cos / (cos_o + cos_i) (1 − e^(−d (1/cos_o + 1/cos_i))) / (cos_o cos_i).
-    let coat = Coat {
+    let coat = CoatLayer {
         eta: 1.0,
         thickness: 0.7,
         albedo: grey(0.6),
         g: 0.4,
         max_depth: 1,
         samples: 1,
-        ..Coat::default()
+        ..CoatLayer::default()
     };
     let bsdf = Bsdf::coated_diffuse(Spectrum::BLACK, &coat);
     let (wo, wi) = (direction(50.0, 0.0), direction(20.0, 100.0));
@@ -157,11 +157,11 @@ fn single_scattering_in_the_slab_has_a_formula() {
 
 /// Coats and bases of all kinds, deep enough that nothing is cut off.
 fn deep() -> Vec<(&'static str, Bsdf)> {
-    let coat = Coat { max_depth: 300, ..Coat::default() };
-    let rough = Coat { roughness: TrowbridgeReitz::new(0.4, 0.4), ..coat };
-    let brushed = Coat { roughness: TrowbridgeReitz::new(0.2, 0.6), ..coat };
-    let milky = |coat| Coat { albedo: grey(0.8), thickness: 0.4, g: 0.3, ..coat };
-    let metal = |alpha, coat: &Coat| {
+    let coat = CoatLayer { max_depth: 300, ..CoatLayer::default() };
+    let rough = CoatLayer { roughness: TrowbridgeReitz::new(0.4, 0.4), ..coat };
+    let brushed = CoatLayer { roughness: TrowbridgeReitz::new(0.2, 0.6), ..coat };
+    let milky = |coat| CoatLayer { albedo: grey(0.8), thickness: 0.4, g: 0.3, ..coat };
+    let metal = |alpha, coat: &CoatLayer| {
         let roughness = TrowbridgeReitz::new(alpha, alpha);
         Bsdf::coated_conductor(grey(0.3), grey(3.0), roughness, coat)
     };
@@ -176,7 +176,7 @@ fn deep() -> Vec<(&'static str, Bsdf)> {
         ("rough on rough metal", metal(0.4, &rough)),
         ("smooth milk on smooth metal", metal(0.0, &milky(coat))),
         ("rough milk on rough metal", metal(0.4, &milky(rough))),
-        ("four walks", Bsdf::coated_diffuse(grey(0.9), &Coat { samples: 4, ..rough })),
+        ("four walks", Bsdf::coated_diffuse(grey(0.9), &CoatLayer { samples: 4, ..rough })),
     ]
 }
 
@@ -251,7 +251,8 @@ fn radiance_and_importance_are_scattered_alike() {
     let (wo, wi) = (direction(60.0, 30.0), direction(25.0, 170.0));
     let close = |a: f32, b: f32| (a - b).abs() <= 1e-4 * a.max(b);
     for roughness in [TrowbridgeReitz::SMOOTH, TrowbridgeReitz::new(0.3, 0.3)] {
-        let bsdf = Bsdf::coated_diffuse(grey(0.9), &Coat { roughness, max_depth: 4, ..Coat::default() });
+        let bsdf =
+            Bsdf::coated_diffuse(grey(0.9), &CoatLayer { roughness, max_depth: 4, ..CoatLayer::default() });
         let f = |mode| bsdf.f(wo, wi, mode).0[0];
         assert!(close(f(Mode::Radiance), f(Mode::Importance)), "{roughness:?}");
         let weight = |mode, index| {
@@ -303,7 +304,7 @@ fn lobes_are_named_as_in_pbrt() {
     assert_eq!(lobes[5], reflection | specular | Lobes::GLOSSY);
     assert_eq!(lobes[8], reflection | specular | Lobes::DIFFUSE);
     let mirror = TrowbridgeReitz::SMOOTH;
-    let mut bsdf = Bsdf::coated_conductor(grey(0.3), grey(3.0), mirror, &Coat::default());
+    let mut bsdf = Bsdf::coated_conductor(grey(0.3), grey(3.0), mirror, &CoatLayer::default());
     assert_eq!(bsdf.lobes(), reflection | specular);
     assert!(bsdf.f(Vec3::Z, direction(10.0, 0.0), Mode::Radiance).is_black());
     bsdf.regularize();

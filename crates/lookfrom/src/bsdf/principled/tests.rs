@@ -3,7 +3,7 @@
 use super::*;
 use crate::bsdf::tests::{direction, number, numbers};
 use crate::bsdf::{Bsdf, fresnel};
-use crate::color::Dense;
+use crate::color::DenselySampledSpectrum;
 
 fn grey(value: f32) -> Spectrum {
     Spectrum([value; 4])
@@ -333,8 +333,10 @@ fn a_film_is_airys_sum_and_the_eye_sees_its_integral() {
                 }
                 // In RGB mode: the integral, of an equal-energy light made white.
                 let seen = Film { wavelengths: None, ..film }.fresnel(cos, grey(f0)).rgb();
-                let expected = Dense::from_samples(std::array::from_fn(|k| airy(360.0 + k as f64) as f32))
-                    .to_rgb_reflectance();
+                let expected = DenselySampledSpectrum::from_samples(std::array::from_fn(|k| {
+                    airy(360.0 + k as f64) as f32
+                }))
+                .to_rgb_reflectance();
                 for (got, expected) in seen.into_iter().zip(expected) {
                     assert!(
                         (got - expected).abs() < 0.12,

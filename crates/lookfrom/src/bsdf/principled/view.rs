@@ -420,8 +420,8 @@ impl View {
         } else {
             across(math::reflect(wo, wm))
         };
-        let is_there = (wi.z > 0.0) == reflects;
-        let wi = if !is_there && surface.is_rough_body() { across(wi) } else { wi };
+        let passes_alpha_test = (wi.z > 0.0) == reflects;
+        let wi = if !passes_alpha_test && surface.is_rough_body() { across(wi) } else { wi };
         (!is_grazing(wi) && (wi.z > 0.0) == reflects).then_some(wi)
     }
 

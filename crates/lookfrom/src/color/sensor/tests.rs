@@ -19,7 +19,7 @@ fn far(a: [f32; 3], b: [f32; 3]) -> f32 {
 }
 
 /// What a sensor makes of a light, over all wavelengths.
-fn seen(sensor: &Sensor, light: &Dense) -> [f32; 3] {
+fn seen(sensor: &Sensor, light: &DenselySampledSpectrum) -> [f32; 3] {
     let count = 20_000;
     let mut rgb = [0.0; 3];
     for u in (0..count).map(|i| (i as f32 + 0.5) / count as f32) {
@@ -35,7 +35,7 @@ fn seen(sensor: &Sensor, light: &Dense) -> [f32; 3] {
 fn sensors_balance_and_expose() {
     for kelvin in [2856.0, 5000.0, 6500.0, 12_000.0] {
         let sensor = balanced(2.0, Some(kelvin));
-        let light = Dense::from(&daylight(kelvin));
+        let light = DenselySampledSpectrum::from(&daylight(kelvin));
         let light = light.scaled(1.0 / light.to_xyz()[1]);
         assert!(far(seen(&sensor, &light), [2.0; 3]) < 5e-3, "{kelvin}: {:?}", seen(&sensor, &light));
         // A colour of RGB mode goes the same way.
@@ -70,7 +70,7 @@ fn cameras_are_calibrated_as_pbrts() {
         ),
     ] {
         let responses = CameraSensor::named(name).expect("a camera").responses();
-        let responses = responses.map(|response| *Dense::from(&response).samples());
+        let responses = responses.map(|response| *DenselySampledSpectrum::from(&response).samples());
         let found = calibration::xyz_from_camera(&responses, kelvin);
         for (found, expected) in found.as_flattened().iter().zip(expected.as_flattened()) {
             assert!((found - expected).abs() < 2e-5, "{name}: {found} ≠ {expected}");
@@ -79,22 +79,24 @@ fn cameras_are_calibrated_as_pbrts() {
 }
 
 /// As [`seen`], without chance: at each nm in four lanes.
-fn integrated(sensor: &Sensor, light: &Dense) -> [f32; 3] {
+fn integrated(sensor: &Sensor, light: &DenselySampledSpectrum) -> [f32; 3] {
     let at = |i: usize, channel: usize| f64::from(4.0 * sensor.responses[i][channel] * light.samples()[i]);
     [0, 1, 2].map(|channel| (0..SAMPLES).map(|i| at(i, channel)).sum::<f64>() as f32)
 }
 
 #[test]
 fn cameras_show_the_swatches_as_the_eye_sees_them() {
-    let lit = |swatch: &Curve, light: &Dense| {
-        let swatch = Dense::from(swatch);
-        Dense::from_samples(std::array::from_fn(|i| swatch.samples()[i] * light.samples()[i]))
+    let lit = |swatch: &Curve, light: &DenselySampledSpectrum| {
+        let swatch = DenselySampledSpectrum::from(swatch);
+        DenselySampledSpectrum::from_samples(std::array::from_fn(|i| {
+            swatch.samples()[i] * light.samples()[i]
+        }))
     };
     for (name, kelvin) in
         CameraSensor::all().map(CameraSensor::name).zip([3200.0, 5000.0, 6500.0, 9000.0].into_iter().cycle())
     {
         let sensor = camera(name, Some(kelvin));
-        let light = Dense::from(&daylight(kelvin));
+        let light = DenselySampledSpectrum::from(&daylight(kelvin));
         let light = light.scaled(1.0 / light.to_xyz()[1]);
         let mut error = 0.0;
         for swatch in swatches() {

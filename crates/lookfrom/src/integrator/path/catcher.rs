@@ -8,8 +8,8 @@
 use glam::Vec3;
 use lookfrom_scene::settings::Background;
 
-use super::{PathTracer, Wisdom, power_heuristic};
-use crate::integrator::{Alpha, Next, Path, Probe, Term};
+use super::{LightSampling, PathTracer, power_heuristic};
+use crate::integrator::{Alpha, Path, Probe, StepOutput, Term};
 use crate::light::Light;
 use crate::spectrum::Spectrum;
 use crate::texture::Lanes;
@@ -18,16 +18,21 @@ use crate::world::World;
 impl PathTracer {
     /// Shows the background to a path from the camera that met a shadow catcher, and weighs the light that the path gathers
     /// from there on.
-    pub(super) fn show_behind<P: Probe>(&self, world: &World, path: &mut Path, next: &mut Next<'_, P>) {
-        let lanes = next.lanes(path);
-        next.samples.alpha[path.slot as usize] = Alpha::Shadow;
-        let behind = match next.background {
+    pub(super) fn show_behind<P: Probe>(
+        &self,
+        world: &World,
+        path: &mut Path,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let lanes = output.lanes(path);
+        output.queues.alpha[path.slot as usize] = Alpha::Shadow;
+        let behind = match output.background {
             Background::Environment => world.sky(&path.ray, &lanes),
             // White: the light of the sample is the part that shadows leave.
             Background::Color(_) | Background::Transparent => world.light_of([1.0; 3], &lanes),
         };
         if self.has_control_variate() {
-            next.add(path, Term::Sky, path.beta * behind);
+            output.add(path, Term::Sky, path.beta * behind);
         }
         path.beta *= world.catcher_correction(Vec3::from_array(path.ray.direction), behind, &lanes);
     }
@@ -38,37 +43,42 @@ impl PathTracer {
         light: &Light,
         path: &Path,
         contribution: Spectrum,
-        next: &mut Next<'_, P>,
+        output: &mut StepOutput<'_, P>,
     ) {
         let is_far = matches!(light, Light::Environment(_) | Light::Distant { .. });
         if is_far && self.has_control_variate() {
-            next.add(path, Term::Sky, contribution * -1.0);
+            output.add(path, Term::Sky, contribution * -1.0);
         }
     }
 
     /// Subtracts what a path that leaves a catcher finds if nothing is in the way. The path forgets where it comes from.
-    pub(super) fn leave_catcher<P: Probe>(&self, world: &World, path: &Path, next: &mut Next<'_, P>) -> Path {
+    pub(super) fn leave_catcher<P: Probe>(
+        &self,
+        world: &World,
+        path: &Path,
+        output: &mut StepOutput<'_, P>,
+    ) -> Path {
         let mut path = *path;
-        if std::mem::take(&mut path.departure.is_catcher) && self.has_control_variate() {
-            let expected = sky_found(world, &path, &next.lanes(&path));
-            next.add(&path, Term::Sky, expected * -1.0);
+        if std::mem::take(&mut path.previous.is_catcher) && self.has_control_variate() {
+            let expected = sky_found(world, &path, &output.lanes(&path));
+            output.add(&path, Term::Sky, expected * -1.0);
         }
         path
     }
 
     fn has_control_variate(&self) -> bool {
-        self.wisdom == Wisdom::Combined
+        self.light_sampling == LightSampling::MultipleImportance
     }
 }
 
 /// What a path adds if it meets nothing.
 fn sky_found(world: &World, path: &Path, lanes: &Lanes) -> Spectrum {
     let direction = Vec3::from_array(path.ray.direction).normalize();
-    let at = path.reference();
+    let at = path.light_context();
     let lit = world.environments.iter().filter(|&&index| world.lights[index as usize].illuminates());
     lit.fold(Spectrum::BLACK, |sum, &index| {
         let light_pdf = world.light_pdf(index, &at, direction, None);
-        let weight = power_heuristic(path.departure.pdf, light_pdf);
+        let weight = power_heuristic(path.previous.pdf, light_pdf);
         sum + path.beta * world.sky_of(index, &path.ray, lanes) * weight
     })
 }

@@ -2,41 +2,41 @@
 //! of [`PathTracer::step`](crate::integrator::Integrator::step) for them, bit for bit: each operation is its, in its order, eight
 //! times side by side. Which light is asked, and what cannot go side by side, is in `asked`.
 
-mod asked;
+mod light_samples;
 
 use std::f32::consts::FRAC_1_PI;
 
 use lookfrom_bvh::{Hit, Left, NONE, Point, Ray};
 use lookfrom_simd::{Simd, Work, f32x8, f64x8, prelude::*, u32x8, u64x8};
 
-use super::{Departure, PathTracer, power_heuristic, purpose};
+use super::{PathTracer, PreviousVertex, dimension, power_heuristic};
 use crate::bsdf::BsdfSample;
 use crate::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, orthonormal_bases};
 use crate::hash::GOLDEN;
 use crate::integrator::shadow;
-use crate::integrator::{Bounce, Event, Next, Numbers, Path, Probe, Shadow, Term};
+use crate::integrator::{Bounce, Event, Path, Probe, SampleStream, Shadow, StepOutput, Term};
+use crate::interaction::SurfaceInteraction;
 use crate::light::Target;
 use crate::material::Shading;
+use crate::primitive::Mesh;
 use crate::sampler::eight::{PixelSamplers, mix};
-use crate::shape::Mesh;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::texture::{Lanes, TexturePoint};
 use crate::warp;
 use crate::world::World;
-use asked::Asked;
+use light_samples::LightSamples;
 
 /// A path that met a surface of the commonest kind.
 #[derive(Clone, Copy)]
-pub(super) struct Plain<'a> {
+pub(super) struct FlatDiffuseHit<'a> {
     path: &'a Path,
     hit: &'a Hit,
     mesh: &'a Mesh,
     reflectance: Spectrum,
-    numbers: Numbers,
+    stream: SampleStream,
 }
 
-impl<'a> Plain<'a> {
+impl<'a> FlatDiffuseHit<'a> {
     /// The path, if it met such a surface and is to go on from there.
     #[inline]
     pub(super) fn of(
@@ -45,19 +45,19 @@ impl<'a> Plain<'a> {
         path: &'a Path,
         hit: &'a Hit,
         lanes: &Lanes,
-        numbers: impl FnOnce() -> Numbers,
+        stream: impl FnOnce() -> SampleStream,
     ) -> Option<Self> {
         if !hit.is_hit()
             || hit.instance != NONE
             || path.depth >= tracer.depth
-            || !path.media.is_empty()
-            || path.departure.is_catcher
+            || !path.interior.is_empty()
+            || path.previous.is_catcher
         {
             return None;
         }
         let (mesh, reflectance) = world.flat_diffuse(hit.geometry)?;
         let reflectance = world.textures.albedo(reflectance, &TexturePoint::NOWHERE, lanes);
-        (!reflectance.is_black()).then(|| Self { path, hit, mesh, reflectance, numbers: numbers() })
+        (!reflectance.is_black()).then(|| Self { path, hit, mesh, reflectance, stream: stream() })
     }
 }
 
@@ -66,9 +66,9 @@ pub(super) struct Steps<'a, 'b, 'c, P: Probe> {
     pub(super) tracer: &'a PathTracer,
     pub(super) world: &'a World,
     /// As many as are to be stepped; the others repeat one of them.
-    pub(super) plain: &'a [Plain<'a>; LANES],
+    pub(super) plain: &'a [FlatDiffuseHit<'a>; LANES],
     pub(super) count: usize,
-    pub(super) next: &'b mut Next<'c, P>,
+    pub(super) output: &'b mut StepOutput<'c, P>,
 }
 
 impl<P: Probe> Work for Steps<'_, '_, '_, P> {
@@ -76,30 +76,30 @@ impl<P: Probe> Work for Steps<'_, '_, '_, P> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { tracer, world, plain, count, next } = self;
+        let Self { tracer, world, plain, count, output } = self;
         let surfaces = Surfaces::new(simd, plain);
-        let numbers = RandomNumbers::new(simd, plain);
+        let stream = SampleStreams::new(simd, plain);
 
         for (lane, plain) in plain.iter().enumerate().take(count) {
-            next.probe.notice(|| surfaces.shaded(lane, world, plain));
+            output.probe.notice(|| surfaces.shaded(lane, world, plain));
         }
 
         // Ask one light.
-        let asked = Asked::new(simd, world, plain, &surfaces, &numbers, &next.samples.lanes);
-        let cos = asked.wi.dot(surfaces.n);
+        let light_samples = LightSamples::new(simd, world, plain, &surfaces, &stream, &output.queues.lanes);
+        let cos = light_samples.wi.dot(surfaces.n);
         let same_side = surfaces.same_side(simd, cos);
         let facing: [f32; LANES] = same_side.select(cos.abs(), f32x8::splat(simd, 0.0)).into();
-        let origins = surfaces.points.leave(simd, surfaces.ng, asked.wi.widen());
-        let ends = asked.ends(simd, &origins);
+        let origins = surfaces.points.leave(simd, surfaces.ng, light_samples.wi.widen());
+        let ends = light_samples.ends(simd, &origins);
         for lane in 0..count {
-            let Plain { path, reflectance, .. } = &plain[lane];
-            let Some(sample) = &asked.samples[lane] else {
-                next.probe.notice_some(|| asked.in_vain(lane, path.address));
+            let FlatDiffuseHit { path, reflectance, .. } = &plain[lane];
+            let Some(sample) = &light_samples.samples[lane] else {
+                output.probe.notice_some(|| light_samples.in_vain(lane, path.address));
                 continue;
             };
             let cos = facing[lane];
             if cos == 0.0 {
-                next.probe.notice_some(|| asked.in_vain(lane, path.address));
+                output.probe.notice_some(|| light_samples.in_vain(lane, path.address));
                 continue;
             }
             let f = *reflectance * FRAC_1_PI * cos;
@@ -108,14 +108,14 @@ impl<P: Probe> Work for Steps<'_, '_, '_, P> {
             let weight = if sample.is_delta { 1.0 } else { power_heuristic(light_pdf, bsdf_pdf) };
             let contribution = path.beta * f * sample.li * (weight / light_pdf);
             if f.is_black() {
-                next.probe.notice_some(|| asked.in_vain(lane, path.address));
+                output.probe.notice_some(|| light_samples.in_vain(lane, path.address));
                 continue;
             }
-            next.probe.notice(|| Event::AskedOne {
+            output.probe.notice(|| Event::LightSampled {
                 address: path.address,
                 light: sample.light,
                 probability: sample.probability,
-                sample: asked.light_sample(lane, sample),
+                sample: light_samples.light_sample(lane, sample),
                 f,
                 bsdf_pdf: if sample.is_delta { 0.0 } else { bsdf_pdf },
                 weight,
@@ -125,24 +125,24 @@ impl<P: Probe> Work for Steps<'_, '_, '_, P> {
             }
             let origin = origins.lane(lane);
             let ray = match sample.target {
-                Target::Infinity => Ray::new(origin, asked.wi.lane(lane)),
+                Target::Infinity => Ray::new(origin, light_samples.wi.lane(lane)),
                 Target::Point(position) => shadow::toward(origin, position.to_array()),
                 Target::Surface(..) => Ray { t_max: 1.0, ..Ray::new(origin, ends.lane(lane)) },
             };
-            let Path { slot, address, media, .. } = **path;
-            next.samples.shadows.push(Shadow {
+            let Path { slot, address, interior, .. } = **path;
+            output.queues.shadows.push(Shadow {
                 ray,
                 left: Left::of(plain[lane].hit),
                 contribution,
                 slot,
                 address,
                 term: Term::Light(sample.light),
-                media,
+                interior,
             });
         }
 
         // Go on in one direction.
-        let local = surfaces.cosine_directions(simd, numbers.two(simd, purpose::DIRECTION));
+        let local = surfaces.cosine_directions(simd, stream.two(simd, dimension::DIRECTION));
         let pdf = local.0[2].abs().max(0.0) * FRAC_1_PI;
         let wi = surfaces.to_render(simd, local);
         let cos = wi.dot(surfaces.n).abs();
@@ -152,7 +152,7 @@ impl<P: Probe> Work for Steps<'_, '_, '_, P> {
         let (side, height): ([f32; LANES], [f32; LANES]) = (surfaces.wo_z.into(), local.0[2].into());
         let points = surfaces.points.position.narrow();
         for lane in 0..count {
-            let Plain { path, reflectance, numbers, .. } = &plain[lane];
+            let FlatDiffuseHit { path, reflectance, stream, .. } = &plain[lane];
             let f = *reflectance * FRAC_1_PI;
             let is_grazing = |z: f32| !(z.abs() > 1e-12);
             let is_useful = pdf[lane] > 0.0 && f.0.into_iter().all(f32::is_finite);
@@ -160,10 +160,10 @@ impl<P: Probe> Work for Steps<'_, '_, '_, P> {
                 continue;
             }
             let beta = path.beta * f * factor[lane];
-            let eta_scale = path.departure.eta_scale;
+            let eta_scale = path.previous.eta_scale;
             let depth = path.depth + 1;
-            let (survival, survives) = tracer.roulette(numbers, beta, eta_scale, depth);
-            next.probe.notice(|| {
+            let (survival, survives) = tracer.roulette(stream, beta, eta_scale, depth);
+            output.probe.notice(|| {
                 let wi = wi.lane(lane).into();
                 let sample = BsdfSample::diffuse(wi, f, pdf[lane]);
                 let bounce = Bounce { wi, cos: cos[lane], sample, beta, survival, survives };
@@ -172,14 +172,14 @@ impl<P: Probe> Work for Steps<'_, '_, '_, P> {
             if !survives || beta.is_black() {
                 continue;
             }
-            next.samples.paths.push(Path {
+            output.queues.paths.push(Path {
                 ray: Ray::new(origins.lane(lane), wi.lane(lane)),
                 beta: beta / survival,
                 slot: path.slot,
                 depth,
                 address: path.address + 1,
-                media: path.media,
-                departure: Departure {
+                interior: path.interior,
+                previous: PreviousVertex {
                     pdf: pdf[lane],
                     left: Left::of(plain[lane].hit),
                     point: points.lane(lane).into(),
@@ -207,7 +207,7 @@ struct Surfaces<S: Simd> {
 
 impl<S: Simd> Surfaces<S> {
     #[inline(always)]
-    fn new(simd: S, plain: &[Plain<'_>; LANES]) -> Self {
+    fn new(simd: S, plain: &[FlatDiffuseHit<'_>; LANES]) -> Self {
         let corners = by_lane!(lane => plain[lane].mesh.corners(plain[lane].hit.primitive as usize));
         let corners = by_axis!(k => Vectors::<Narrow<S>>::of_rows(simd, &by_lane!(lane => corners[lane][k])));
         let u = f32x8::load_array(simd, by_lane!(lane => plain[lane].hit.u));
@@ -225,15 +225,15 @@ impl<S: Simd> Surfaces<S> {
     }
 
     /// What one of them is, for who listens.
-    fn shaded(&self, lane: usize, world: &World, plain: &Plain<'_>) -> Event {
-        let Plain { path, hit, reflectance, .. } = plain;
+    fn shaded(&self, lane: usize, world: &World, plain: &FlatDiffuseHit<'_>) -> Event {
+        let FlatDiffuseHit { path, hit, reflectance, .. } = plain;
         let [n, s, t] = [self.n, self.s, self.t].map(|axis| axis.lane(lane).into());
         let ng = by_axis!(i => self.ng.0[i][lane]).into();
         let point = Point {
             position: by_axis!(i => self.points.position.0[i][lane]),
             error: by_axis!(i => self.points.error.0[i][lane]),
         };
-        let surface = Surface { point, ng, ns: n, ..world.surface(&path.ray, hit) };
+        let surface = SurfaceInteraction { point, ng, ns: n, ..world.surface(&path.ray, hit) };
         Event::Shaded {
             address: path.address,
             shading: Box::new(Shading::diffuse(*reflectance, [s, t, n], surface.ng)),
@@ -268,28 +268,28 @@ impl<S: Simd> Surfaces<S> {
     }
 }
 
-/// The twin of [`Numbers`].
-struct RandomNumbers<S: Simd> {
+/// The twin of [`SampleStream`].
+struct SampleStreams<S: Simd> {
     samplers: PixelSamplers<S>,
     sample: u32x8<S>,
     /// Of the address, before the purpose.
     mixed: u64x8<S>,
 }
 
-impl<S: Simd> RandomNumbers<S> {
+impl<S: Simd> SampleStreams<S> {
     #[inline(always)]
-    fn new(simd: S, plain: &[Plain<'_>; LANES]) -> Self {
-        let address = u64x8::load_array(simd, by_lane!(lane => plain[lane].numbers.address));
+    fn new(simd: S, plain: &[FlatDiffuseHit<'_>; LANES]) -> Self {
+        let address = u64x8::load_array(simd, by_lane!(lane => plain[lane].stream.address));
         Self {
-            samplers: PixelSamplers::new(simd, &by_lane!(lane => plain[lane].numbers.sampler)),
-            sample: u32x8::load_array(simd, by_lane!(lane => plain[lane].numbers.sample)),
+            samplers: PixelSamplers::new(simd, &by_lane!(lane => plain[lane].stream.sampler)),
+            sample: u32x8::load_array(simd, by_lane!(lane => plain[lane].stream.sample)),
             mixed: mix(address + GOLDEN),
         }
     }
 
     #[inline(always)]
-    fn two(&self, simd: S, purpose: u32) -> [Narrow<S>; 2] {
-        let dimension = mix(self.mixed ^ u64::from(purpose)) & u64::from(u32::MAX);
+    fn two(&self, simd: S, dimension: u32) -> [Narrow<S>; 2] {
+        let dimension = mix(self.mixed ^ u64::from(dimension)) & u64::from(u32::MAX);
         self.samplers.two(simd, self.sample, dimension)
     }
 }

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::{Cone, LightPoint, seen};
 use crate::distribution::Discrete;
 use crate::light::toward;
-use crate::shape::{Mesh, VertexData};
+use crate::primitive::{Mesh, VertexData};
 use crate::texture::TexturePoint;
 use crate::warp;
 
@@ -79,14 +79,18 @@ impl MeshLight {
     }
 
     /// A mesh that shines by a pattern whose brightness at a point is `glow`. None for one without area.
-    pub fn patterned(mesh: Arc<Mesh>, glow: &(dyn Fn(&TexturePoint) -> f32 + Sync)) -> Option<Self> {
+    pub fn patterned(
+        mesh: Arc<Mesh>,
+        emission_spectrum: &(dyn Fn(&TexturePoint) -> f32 + Sync),
+    ) -> Option<Self> {
         let area = area(&mesh)?;
         let count = mesh.triangles.len();
         let places = (PLACES / count).clamp(*PLACES_OF_TRIANGLE.start(), *PLACES_OF_TRIANGLE.end());
         let places: Vec<Vec2> = (0..places).map(|k| spread(k, places)).collect();
         let power = |index: usize| {
             let own = mesh.area(index);
-            let sum: f64 = places.iter().map(|place| brightness(&mesh, index, *place, glow)).sum();
+            let sum: f64 =
+                places.iter().map(|place| brightness(&mesh, index, *place, emission_spectrum)).sum();
             if own.is_finite() { own / area * sum / places.len() as f64 } else { 0.0 }
         };
         let powers: Vec<f64> = (0..count).into_par_iter().map(power).collect();
@@ -101,7 +105,7 @@ impl MeshLight {
     }
 
     /// Whether any place was found that shines.
-    pub(super) fn is_asked(&self) -> bool {
+    pub(super) fn is_sampled(&self) -> bool {
         !self.triangles.is_empty()
     }
 
@@ -224,11 +228,16 @@ fn spread(k: usize, count: usize) -> Vec2 {
 }
 
 /// How bright a pattern is at a point of a triangle.
-fn brightness(mesh: &Mesh, index: usize, place: Vec2, glow: &(dyn Fn(&TexturePoint) -> f32 + Sync)) -> f64 {
+fn brightness(
+    mesh: &Mesh,
+    index: usize,
+    place: Vec2,
+    emission_spectrum: &(dyn Fn(&TexturePoint) -> f32 + Sync),
+) -> f64 {
     let uvs = mesh.corner_uvs(index);
     let uv = (1.0 - place.x - place.y) * uvs[0] + place.x * uvs[1] + place.y * uvs[2];
     let at = with_vertices(mesh, TexturePoint { uv, ..TexturePoint::NOWHERE }, index, place);
-    f64::from(glow(&at).max(0.0))
+    f64::from(emission_spectrum(&at).max(0.0))
 }
 
 fn with_vertices(mesh: &Mesh, at: TexturePoint, index: usize, place: Vec2) -> TexturePoint {

@@ -9,7 +9,7 @@ use glam::{DVec3, Vec2};
 
 use super::{Cone, LightPoint, seen};
 use crate::distribution::Discrete;
-use crate::shape::Patches;
+use crate::primitive::Patches;
 
 /// Cells along u and v by which the area of a patch is summed.
 const CELLS: u32 = 16;

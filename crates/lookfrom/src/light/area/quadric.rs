@@ -10,7 +10,7 @@ use glam::{DVec3, Vec2, Vec3};
 
 use super::{Cone, LightPoint, seen};
 use crate::light::toward;
-use crate::shape::{Look, Quadric, QuadricKind};
+use crate::primitive::{MaterialBinding, Quadric, QuadricKind};
 use crate::warp;
 
 /// Inside, with room for points on the sphere itself: those that an inward light on it shines on.
@@ -23,7 +23,7 @@ const NEAREST: f64 = 1e-5;
 const CELLS: u32 = 64;
 
 /// Nobody's: a light's point needs none.
-const NO_LOOK: Look = Look {
+const NO_LOOK: MaterialBinding = MaterialBinding {
     material: 0,
     light: None,
     shape: 0,

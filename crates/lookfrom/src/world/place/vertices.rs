@@ -8,9 +8,9 @@ use lookfrom_scene::shape::{Mesh as WrittenMesh, Patches as WrittenPatches, Stra
 use lookfrom_scene::{Error, ErrorKind, Result};
 
 use super::{Compiler, Group, Placing, inverse, not_invertible};
-use crate::light::{LightForm, MeshLight, PatchLight};
+use crate::light::{LightShape, MeshLight, PatchLight};
 use crate::math;
-use crate::shape::{Curves, Form, Mesh, Patches, SEGMENTS};
+use crate::primitive::{Curves, Mesh, Patches, Primitives, SEGMENTS};
 use crate::texture::{FloatTexture, MORE_UV_SETS, SpectrumType};
 
 /// A patch is a parallelogram if its fourth corner is off it by less than this part of its distance from the origin (or of
@@ -19,7 +19,7 @@ const FLATNESS: f32 = 4.0 * f32::EPSILON;
 
 impl Compiler<'_> {
     pub(super) fn mesh(&mut self, placing: Placing, mesh: &WrittenMesh, group: &mut Group) -> Result<()> {
-        let Placing { shape, matrix, look } = placing;
+        let Placing { shape, matrix, binding } = placing;
         countable(placing, mesh.positions.len().max(mesh.triangles.len()))?;
         // What was outside before a mirror is outside after it: there the frame of tangent, normal and v is another.
         let flip = placing.mirrors() != shape.reverse_orientation;
@@ -40,13 +40,13 @@ impl Compiler<'_> {
             opacities: mesh.opacities.clone(),
             wants_derivatives: self.has_grain(placing),
             flip,
-            look,
+            binding,
         };
-        placed.look.vertex_data = placed.has_vertex_data().then_some(self.vertex_data.len() as u32);
-        placed.look.light = Some(self.next_light());
+        placed.binding.vertex_data = placed.has_vertex_data().then_some(self.vertex_data.len() as u32);
+        placed.binding.light = Some(self.next_light());
         let mut placed = Arc::new(placed);
         let textures = self.lights.textures;
-        let light = self.shine(placing, || {
+        let light = self.area_light(placing, || {
             let light = match shape.emission.map(|emission| emission.radiance) {
                 Some(pattern @ Color::Texture(_)) => {
                     let pattern = textures.spectrum_texture(pattern, SpectrumType::Illuminant);
@@ -58,15 +58,15 @@ impl Compiler<'_> {
                 }
                 _ => MeshLight::new(placed.clone()),
             };
-            light.map(LightForm::Mesh)
+            light.map(LightShape::Mesh)
         });
         if light.is_none() {
-            Arc::make_mut(&mut placed).look.light = None;
+            Arc::make_mut(&mut placed).binding.light = None;
         }
         if placed.has_vertex_data() {
             self.vertex_data.push(placed.clone());
         }
-        group.own.push(Form::Mesh(placed));
+        group.own.push(Primitives::Mesh(placed));
         Ok(())
     }
 
@@ -76,7 +76,7 @@ impl Compiler<'_> {
         patches: &WrittenPatches,
         group: &mut Group,
     ) -> Result<()> {
-        let Placing { shape, matrix, look } = placing;
+        let Placing { shape, matrix, binding } = placing;
         countable(placing, patches.positions.len().max(patches.patches.len()))?;
         if let Some(mesh) = parallelograms(patches) {
             return self.mesh(placing, &mesh, group);
@@ -87,27 +87,27 @@ impl Compiler<'_> {
             normals: normals(placing, &patches.normals)?,
             uvs: patches.uvs.clone(),
             flip: placing.mirrors() != shape.reverse_orientation,
-            look,
+            binding,
         };
-        placed.look.light = Some(self.next_light());
+        placed.binding.light = Some(self.next_light());
         let mut placed = Arc::new(placed);
-        let light = self.shine(placing, || PatchLight::new(placed.clone()).map(LightForm::Patches));
+        let light = self.area_light(placing, || PatchLight::new(placed.clone()).map(LightShape::Patches));
         if light.is_none() {
-            Arc::make_mut(&mut placed).look.light = None;
+            Arc::make_mut(&mut placed).binding.light = None;
         }
-        group.own.push(Form::Patches(placed));
+        group.own.push(Primitives::Patches(placed));
         Ok(())
     }
 
     pub(super) fn curves(&mut self, placing: Placing, strands: &[Strand], group: &mut Group) -> Result<()> {
-        let Placing { shape, matrix, look } = placing;
+        let Placing { shape, matrix, binding } = placing;
         countable(placing, strands.len().saturating_mul(SEGMENTS as usize))?;
         if shape.emission.is_some() {
             self.warn(&shape.at, "curves cannot shine; their emission is left out");
         }
-        let curves = Curves::new(strands, math::affine(matrix), shape.reverse_orientation, look)
+        let curves = Curves::new(strands, math::affine(matrix), shape.reverse_orientation, binding)
             .ok_or_else(|| not_invertible(&shape.at))?;
-        group.own.push(Form::Curves(Arc::new(curves)));
+        group.own.push(Primitives::Curves(Arc::new(curves)));
         Ok(())
     }
 }

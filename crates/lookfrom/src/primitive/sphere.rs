@@ -4,7 +4,7 @@ use glam::{DVec3, Mat3, Vec3};
 use lookfrom_bvh::Point;
 
 use super::quadric::sphere_derivatives;
-use super::{FormPoint, Look};
+use super::{MaterialBinding, SurfacePoint};
 use crate::texture;
 
 /// Spheres of many shapes.
@@ -13,31 +13,32 @@ pub struct Spheres {
     /// As the kernel has them.
     pub spheres: Vec<lookfrom_bvh::Sphere>,
     /// For each sphere, an index into `looks`.
-    pub look_of: Vec<u32>,
+    pub binding_of: Vec<u32>,
     /// Whose, and which way it is turned.
-    pub looks: Vec<SphereLook>,
+    pub bindings: Vec<SphereBinding>,
 }
 
 /// What spheres of one shape share.
 #[derive(Clone, Copy, Debug)]
-pub struct SphereLook {
+pub struct SphereBinding {
     /// Whose.
-    pub look: Look,
+    pub binding: MaterialBinding,
     /// The rotation (or mirror) to the shape's own axes, where its poles are on y.
-    pub object_from_form: Mat3,
+    pub object_from_sphere: Mat3,
     /// Whether the outside is the side of the centre.
     pub flip: bool,
 }
 
 impl Spheres {
     /// The point of a sphere nearest to one that is on it but for errors.
-    pub(super) fn point(&self, index: usize, near: DVec3) -> FormPoint {
+    pub(super) fn point(&self, index: usize, near: DVec3) -> SurfacePoint {
         let sphere = self.spheres[index];
-        let SphereLook { look, object_from_form, flip } = self.looks[self.look_of[index] as usize];
+        let SphereBinding { binding, object_from_sphere, flip } =
+            self.bindings[self.binding_of[index] as usize];
         let center = Vec3::from_array(sphere.center).as_dvec3();
         let point = Point::on_sphere(sphere.center, sphere.radius, near.to_array());
         let outward = (DVec3::from_array(point.position) - center).normalize();
-        let own = object_from_form * outward.as_vec3();
+        let own = object_from_sphere * outward.as_vec3();
         let uv = texture::sphere_uv(own);
 
         // The derivatives have their poles on z.
@@ -45,8 +46,8 @@ impl Spheres {
             f64::from(sphere.radius) * DVec3::new(f64::from(own.x), f64::from(-own.z), f64::from(own.y));
         let full = [-std::f64::consts::PI, 2.0 * std::f64::consts::PI];
         let [dpdu, dpdv] = sphere_derivatives(on_z, f64::from(sphere.radius), full)
-            .map(|d| object_from_form.as_dmat3().transpose() * DVec3::new(d.x, d.z, -d.y));
+            .map(|d| object_from_sphere.as_dmat3().transpose() * DVec3::new(d.x, d.z, -d.y));
         let ng = if flip { -outward } else { outward };
-        FormPoint::plain(point, ng, uv, [dpdu, dpdv], look)
+        SurfacePoint::plain(point, ng, uv, [dpdu, dpdv], binding)
     }
 }

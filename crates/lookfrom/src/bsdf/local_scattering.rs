@@ -10,20 +10,26 @@ use super::{Bsdf, BsdfSample, Lobes, Mode, Principled, principled};
 use crate::spectrum::Spectrum;
 
 /// See the file's head.
-pub struct Toward<'a> {
+pub struct LocalScattering<'a> {
     bsdf: &'a Bsdf,
     wo: Vec3,
     mode: Mode,
     lobes: Lobes,
     /// Of a principled surface, unless `wo` is grazing.
-    principled: Option<&'a principled::Toward>,
+    principled: Option<&'a principled::LocalScattering>,
 }
 
 impl Bsdf {
     /// Lets `ask` ask what this does toward the unit direction `wo`, where [`Bsdf::sample`] may choose among `lobes`.
     #[inline]
-    pub fn toward<R>(&self, wo: Vec3, mode: Mode, lobes: Lobes, ask: impl FnOnce(&Toward<'_>) -> R) -> R {
-        let plain = Toward { bsdf: self, wo, mode, lobes, principled: None };
+    pub fn scattering<R>(
+        &self,
+        wo: Vec3,
+        mode: Mode,
+        lobes: Lobes,
+        ask: impl FnOnce(&LocalScattering<'_>) -> R,
+    ) -> R {
+        let plain = LocalScattering { bsdf: self, wo, mode, lobes, principled: None };
         match self {
             Self::Principled(look) => principled_toward(look, &plain, ask),
             _ => ask(&plain),
@@ -33,12 +39,16 @@ impl Bsdf {
 
 /// Apart, so that other surfaces need no room for what is known here.
 #[inline(never)]
-fn principled_toward<R>(look: &Principled, plain: &Toward<'_>, ask: impl FnOnce(&Toward<'_>) -> R) -> R {
-    let principled = look.toward(plain.wo, plain.lobes);
-    ask(&Toward { principled: principled.as_ref(), ..*plain })
+fn principled_toward<R>(
+    look: &Principled,
+    plain: &LocalScattering<'_>,
+    ask: impl FnOnce(&LocalScattering<'_>) -> R,
+) -> R {
+    let principled = look.scattering(plain.wo, plain.lobes);
+    ask(&LocalScattering { principled: principled.as_ref(), ..*plain })
 }
 
-impl Toward<'_> {
+impl LocalScattering<'_> {
     /// [`Bsdf::f`] and [`Bsdf::pdf`]; the density is 0 where the function is black, whatever it would be.
     #[inline]
     pub fn f_and_pdf(&self, wi: Vec3) -> (Spectrum, f32) {

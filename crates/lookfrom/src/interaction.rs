@@ -5,12 +5,12 @@
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Left, Point};
 
-use crate::material::MediumInterface;
+use crate::interior_stack::MediumInterface;
 use crate::texture::FloatTexture;
 
 /// A point of a surface, seen from a direction.
 #[derive(Clone, Copy, Debug)]
-pub struct Surface {
+pub struct SurfaceInteraction {
     /// Where, in f64, with its error bound.
     pub point: Point,
     /// Geometric normal to the outside, unit length.
@@ -23,7 +23,7 @@ pub struct Surface {
     pub dpdu: Vec3,
     /// By the second one.
     pub dpdv: Vec3,
-    /// Those of the smoothed surface, for relief and brushed metal: where there is smoothing, across `ns` and with
+    /// Those of the smoothed surface, for bump mapping and brushed metal: where there is smoothing, across `ns` and with
     /// the mesh's tangents in place of `dpdu` where it has some.
     pub shading_dpdu: Vec3,
     /// By the second one. Where the mesh has tangents, with it and `ns` this is the tangent frame that normal maps mean:
@@ -57,7 +57,7 @@ pub struct Surface {
     pub on_primitive: Vec2,
 }
 
-impl Surface {
+impl SurfaceInteraction {
     /// The geometric normal on the side of `wo`.
     pub fn ng_facing(&self) -> Vec3 {
         let n = self.ng.as_vec3();

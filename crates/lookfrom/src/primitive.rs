@@ -2,7 +2,7 @@
 //!
 //! Each kind of form has a file of its own. Positions are in the space of the group that the form belongs to: render
 //! space, or the space of an instanced object. `∂p/∂u` and `∂p/∂v` follow pbrt-v4 for each kind, since brushed metal
-//! and relief depend on them; the outside is the side of `∂p/∂u × ∂p/∂v` after the shape's transform, turned over by
+//! and bump mapping depend on them; the outside is the side of `∂p/∂u × ∂p/∂v` after the shape's transform, turned over by
 //! `reverse_orientation` and, once more, by a mirror: what was outside before a mirror is outside after it.
 
 mod curve;
@@ -22,11 +22,11 @@ pub use disk::{Disk, Disks};
 pub use mesh::{Mesh, VertexData};
 pub use patch::Patches;
 pub use quadric::{Quadric, QuadricKind, Quadrics};
-pub use sphere::{SphereLook, Spheres};
+pub use sphere::{SphereBinding, Spheres};
 
 /// Whose surface it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Look {
+pub struct MaterialBinding {
     /// Index into the world's materials.
     pub material: u32,
     /// Index into the world's lights, where the surface shines.
@@ -45,7 +45,7 @@ pub struct Look {
 
 /// The primitives that share a geometry id of the kernel.
 #[derive(Clone, Debug)]
-pub enum Form {
+pub enum Primitives {
     /// Triangles of one shape.
     Mesh(Arc<Mesh>),
     /// Spheres of many shapes.
@@ -62,7 +62,7 @@ pub enum Form {
 
 /// A point of a form.
 #[derive(Clone, Copy, Debug)]
-pub struct FormPoint {
+pub struct SurfacePoint {
     /// Where, with its error bound.
     pub point: Point,
     /// Geometric normal to the outside, unit length.
@@ -75,7 +75,7 @@ pub struct FormPoint {
     pub dpdu: DVec3,
     /// By the second one.
     pub dpdv: DVec3,
-    /// Those of the smoothed surface: what relief is raised on, and what brushed metal is brushed along. Across `ns`
+    /// Those of the smoothed surface: what bumps are raised on, and what brushed metal is brushed along. Across `ns`
     /// where there is smoothing, otherwise the same as `dpdu`.
     pub shading_dpdu: DVec3,
     /// By the second one. Where the mesh has tangents or normals it is across both: along `ns × shading_dpdu`, or against
@@ -84,12 +84,12 @@ pub struct FormPoint {
     /// The mesh's own linear colour; white where it has none.
     pub color: [f32; 3],
     /// Whose.
-    pub look: Look,
+    pub binding: MaterialBinding,
 }
 
-impl FormPoint {
+impl SurfacePoint {
     /// A point without smoothing and without a colour of its own.
-    fn plain(point: Point, ng: DVec3, uv: Vec2, [dpdu, dpdv]: [DVec3; 2], look: Look) -> Self {
+    fn plain(point: Point, ng: DVec3, uv: Vec2, [dpdu, dpdv]: [DVec3; 2], binding: MaterialBinding) -> Self {
         Self {
             point,
             ng,
@@ -100,14 +100,14 @@ impl FormPoint {
             shading_dpdu: dpdu,
             shading_dpdv: dpdv,
             color: [1.0; 3],
-            look,
+            binding,
         }
     }
 }
 
-impl Form {
+impl Primitives {
     /// The point that `hit` means for a ray from `origin` into `direction` (the one that was traced, in this form's space).
-    pub fn point(&self, hit: &Hit, origin: DVec3, direction: DVec3) -> FormPoint {
+    pub fn point(&self, hit: &Hit, origin: DVec3, direction: DVec3) -> SurfacePoint {
         let index = hit.primitive as usize;
         let near = origin + f64::from(hit.t) * direction;
         match self {

@@ -6,8 +6,8 @@ use crate::math;
 use glam::{DVec3, Vec2};
 use lookfrom_bvh::{Left, Point};
 
-fn surface(wo: Vec3, ng: Vec3, ns: Vec3) -> Surface {
-    Surface {
+fn surface(wo: Vec3, ng: Vec3, ns: Vec3) -> SurfaceInteraction {
+    SurfaceInteraction {
         point: Point { position: [0.0; 3], error: [0.0; 3] },
         ng: ng.as_dvec3(),
         ns,

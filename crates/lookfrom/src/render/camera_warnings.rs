@@ -10,9 +10,9 @@ use lookfrom_scene::scene::{Bounds, Origin};
 use lookfrom_scene::{Location, Scene, Warning};
 
 use super::Renderer;
-use crate::light::{Coverage, Light, Reference, Target};
+use crate::interaction::SurfaceInteraction;
+use crate::light::{IncompletePdf, Light, LightSampleContext, Target};
 use crate::material::MaterialKind;
-use crate::surface::Surface;
 use crate::texture::Lanes;
 use crate::warp;
 use crate::world::World;
@@ -78,7 +78,7 @@ pub(super) fn check(renderer: &Renderer, subject: &Subject, warnings: &mut Vec<W
 }
 
 /// What rays through a grid over the picture meet first.
-fn seen(renderer: &Renderer, side: u32) -> Vec<Option<Surface>> {
+fn seen(renderer: &Renderer, side: u32) -> Vec<Option<SurfaceInteraction>> {
     let (world, camera) = (renderer.world(), renderer.view().camera());
     let [width, height] = camera.size.map(f64::from);
     let middle = |cell: u32| (f64::from(cell) + 0.5) / f64::from(side);
@@ -88,19 +88,24 @@ fn seen(renderer: &Renderer, side: u32) -> Vec<Option<Surface>> {
         let ray = renderer.kernel_ray(&camera.ray(place, [0.5; 2]));
         world.bvh.all_hits(&ray, &mut hits);
         // The camera's rays pass these.
-        let is_passed =
-            |surface: &Surface| surface.single_sided && !surface.front || world.is_interface(surface);
+        let is_passed = |surface: &SurfaceInteraction| {
+            surface.single_sided && !surface.front || world.is_interface(surface)
+        };
         hits.iter().map(|hit| world.surface(&ray, hit)).find(|surface| !is_passed(surface))
     };
     (0..side * side).map(&mut first).collect()
 }
 
 /// The number of a shape that is closed around the eye and fills the picture.
-fn body_around_the_eye(renderer: &Renderer, seen: &[Option<Surface>], is_model: bool) -> Option<u32> {
+fn body_around_the_eye(
+    renderer: &Renderer,
+    seen: &[Option<SurfaceInteraction>],
+    is_model: bool,
+) -> Option<u32> {
     let (world, eye) = (renderer.world(), renderer.eye.as_vec3().to_array());
     let backs = || seen.iter().flatten().filter(|surface| !surface.front && is_opaque(world, surface));
     let shape = backs().next()?.shape;
-    let is_part = |surface: &Surface| is_model || surface.shape == shape;
+    let is_part = |surface: &SurfaceInteraction| is_model || surface.shape == shape;
     if !is_nearly_all(backs().filter(|surface| is_part(surface)).count(), seen.len()) {
         return None;
     }
@@ -113,7 +118,7 @@ fn body_around_the_eye(renderer: &Renderer, seen: &[Option<Surface>], is_model: 
         let ray = Ray::new(eye, direction.to_array());
         world.bvh.all_hits(&ray, &mut hits);
         let surfaces = hits.iter().map(|hit| world.surface(&ray, hit));
-        let crossed: Vec<Surface> =
+        let crossed: Vec<SurfaceInteraction> =
             surfaces.filter(|surface| is_part(surface) && is_opaque(world, surface)).collect();
         crossed.len() % 2 == 1 && !crossed[0].front
     };
@@ -126,7 +131,7 @@ fn is_nearly_all(count: usize, of: usize) -> bool {
 }
 
 /// Whether nothing is seen through a surface, and it does not shine.
-fn is_opaque(world: &World, surface: &Surface) -> bool {
+fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
     surface.alpha.is_none()
         && surface.light.is_none()
         && !surface.single_sided
@@ -151,12 +156,12 @@ fn is_opaque(world: &World, surface: &Surface) -> bool {
 /// Whether a lamp elsewhere than at the eye is seen from there.
 fn is_lit_from_within(renderer: &Renderer) -> bool {
     let (world, origin) = (renderer.world(), renderer.eye);
-    let eye = Reference { point: origin, n: Vec3::Z };
+    let eye = LightSampleContext { point: origin, n: Vec3::Z };
     (0..).zip(&world.lights).any(|(index, light)| {
         if matches!(light, Light::Distant { .. } | Light::Environment(_)) {
             return false;
         }
-        let sample = light.sample(&world.textures, &eye, [0.5; 2], &Lanes::Rgb, Coverage::Complete);
+        let sample = light.sample(&world.textures, &eye, [0.5; 2], &Lanes::Rgb, IncompletePdf::Forbidden);
         let Some(sample) = sample else { return false };
         match sample.target {
             Target::Point(place) => {

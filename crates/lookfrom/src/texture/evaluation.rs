@@ -7,13 +7,13 @@ use std::ops::{Add, Mul};
 
 use lookfrom_scene::texture::TexelFilter;
 
-use super::input::{Constant, Lifts};
+use super::input::{Constant, Uplifts};
 use super::{Measured, SpectrumType};
 use crate::color::{Sigmoid, Unbounded, standard_illuminant};
 use crate::spectrum::Spectrum;
 
 /// A way to read leaves.
-pub(super) trait Reading {
+pub(super) trait Evaluation {
     /// What they become.
     type Value: Copy + Add<Output = Self::Value> + Mul<Output = Self::Value> + Mul<f32, Output = Self::Value>;
 
@@ -46,9 +46,9 @@ pub(super) trait Reading {
 }
 
 /// As one number.
-pub(super) struct Number;
+pub(super) struct FloatEvaluation;
 
-impl Reading for Number {
+impl Evaluation for FloatEvaluation {
     type Value = f32;
 
     fn of_factor(&self) -> Self {
@@ -87,9 +87,9 @@ fn mean([r, g, b]: [f32; 3]) -> f32 {
 }
 
 /// As linear Rec. 709, for what they are used for.
-pub(super) struct Rgb(pub SpectrumType);
+pub(super) struct RgbEvaluation(pub SpectrumType);
 
-impl Reading for Rgb {
+impl Evaluation for RgbEvaluation {
     type Value = Spectrum;
 
     fn of_factor(&self) -> Self {
@@ -112,23 +112,23 @@ impl Reading for Rgb {
 }
 
 /// As values at four wavelengths in nm, for what they are used for.
-pub(super) struct Lifted<'a> {
+pub(super) struct SpectralEvaluation<'a> {
     pub(super) spectrum_type: SpectrumType,
     pub(super) lambda: &'a [f32; 4],
 }
 
-impl Lifted<'_> {
-    fn lift(&self, rgb: [f32; 3], lifts: Option<&Lifts>) -> Spectrum {
+impl SpectralEvaluation<'_> {
+    fn lift(&self, rgb: [f32; 3], uplifts: Option<&Uplifts>) -> Spectrum {
         let rgb = within(self.spectrum_type, rgb);
         // A grey is the same at all wavelengths, which needs no table.
         let is_gray = rgb[0] == rgb[1] && rgb[1] == rgb[2];
         let values = match self.spectrum_type {
             _ if is_gray => Spectrum([rgb[0]; 4]),
             SpectrumType::Albedo => {
-                lifts.map_or_else(|| Sigmoid::from_rgb(rgb), |lifts| lifts.albedo).at(self.lambda)
+                uplifts.map_or_else(|| Sigmoid::from_rgb(rgb), |uplifts| uplifts.albedo).at(self.lambda)
             }
             SpectrumType::Unbounded | SpectrumType::Illuminant => {
-                lifts.map_or_else(|| Unbounded::from_rgb(rgb), |lifts| lifts.unbounded).at(self.lambda)
+                uplifts.map_or_else(|| Unbounded::from_rgb(rgb), |uplifts| uplifts.unbounded).at(self.lambda)
             }
         };
         if self.spectrum_type == SpectrumType::Illuminant && !values.is_black() {
@@ -139,11 +139,11 @@ impl Lifted<'_> {
     }
 }
 
-impl Reading for Lifted<'_> {
+impl Evaluation for SpectralEvaluation<'_> {
     type Value = Spectrum;
 
     fn of_factor(&self) -> Self {
-        Lifted { spectrum_type: of_factor(self.spectrum_type), ..*self }
+        SpectralEvaluation { spectrum_type: of_factor(self.spectrum_type), ..*self }
     }
 
     fn color(&self, rgb: [f32; 3]) -> Spectrum {
@@ -151,11 +151,11 @@ impl Reading for Lifted<'_> {
     }
 
     fn constant(&self, constant: &Constant) -> Spectrum {
-        self.lift(constant.rgb, constant.lifts.as_ref())
+        self.lift(constant.rgb, constant.uplifts.as_ref())
     }
 
     fn reflectance(&self, rgb: [f32; 3]) -> Spectrum {
-        Lifted { spectrum_type: SpectrumType::Albedo, ..*self }.color(rgb)
+        SpectralEvaluation { spectrum_type: SpectrumType::Albedo, ..*self }.color(rgb)
     }
 
     fn curve(&self, curve: &Measured) -> Spectrum {

@@ -10,15 +10,15 @@ use crate::spectrum::Spectrum;
 
 /// A curve sampled at each nm from 360 to 830, where the nearest sample counts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Dense(Box<[f32; SAMPLES]>);
+pub struct DenselySampledSpectrum(Box<[f32; SAMPLES]>);
 
-impl From<&Curve> for Dense {
+impl From<&Curve> for DenselySampledSpectrum {
     fn from(curve: &Curve) -> Self {
         Self::from_samples(std::array::from_fn(|i| curve.at((SHORTEST as usize + i) as f32)))
     }
 }
 
-impl Dense {
+impl DenselySampledSpectrum {
     /// The values at 360, 361, … 830 nm.
     pub fn from_samples(samples: [f32; SAMPLES]) -> Self {
         Self(Box::new(samples))
@@ -84,7 +84,7 @@ pub(super) fn nearest(nm: f32) -> Option<usize> {
 }
 
 /// D65 with Y = 1: the white of Rec. 709, whose RGB is (1, 1, 1).
-pub fn standard_illuminant() -> &'static Dense {
-    static D65: OnceLock<Dense> = OnceLock::new();
-    D65.get_or_init(|| Dense::from(&named("stdillum-D65").expect("a curve of our own")))
+pub fn standard_illuminant() -> &'static DenselySampledSpectrum {
+    static D65: OnceLock<DenselySampledSpectrum> = OnceLock::new();
+    D65.get_or_init(|| DenselySampledSpectrum::from(&named("stdillum-D65").expect("a curve of our own")))
 }

@@ -1,4 +1,4 @@
-//! Eight lights asked at once: the twin of `PathTracer::ask_light` up to the shadow ray.
+//! Eight lights asked at once: the twin of `PathTracer::sample_light` up to the shadow ray.
 //!
 //! Points of triangles of one colour, chosen by area, go side by side; all else is asked one by one and takes its lane.
 
@@ -6,17 +6,17 @@ use glam::DVec3;
 use lookfrom_bvh::Point;
 use lookfrom_simd::{Simd, f32x8, f64x8, prelude::*};
 
-use super::{Plain, RandomNumbers, Surfaces, purpose};
+use super::{FlatDiffuseHit, SampleStreams, Surfaces, dimension};
 use crate::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, narrow};
 use crate::integrator::Event;
-use crate::light::{Coverage, Light, LightSample, LightTriangle, Reference, Target};
+use crate::light::{IncompletePdf, Light, LightSample, LightSampleContext, LightTriangle, Target};
 use crate::spectrum::Spectrum;
 use crate::texture::Lanes;
 use crate::world::World;
 
 /// What a light answered, in one lane.
 #[derive(Clone, Copy)]
-pub(super) struct Answer {
+pub(super) struct LaneSample {
     pub(super) light: u32,
     pub(super) probability: f32,
     pub(super) pdf: f32,
@@ -26,36 +26,36 @@ pub(super) struct Answer {
 }
 
 /// What lights answered.
-pub(super) struct Asked<S: Simd> {
+pub(super) struct LightSamples<S: Simd> {
     /// Which light each asks, and the probability of having chosen it.
     choice: [Option<(u32, f32)>; LANES],
-    pub(super) samples: [Option<Answer>; LANES],
+    pub(super) samples: [Option<LaneSample>; LANES],
     pub(super) wi: Vectors<Narrow<S>>,
     /// Where on the lights, of those that are surfaces, and their normals.
     points: Points<S>,
     normal: Vectors<Wide<S>>,
 }
 
-impl<S: Simd> Asked<S> {
+impl<S: Simd> LightSamples<S> {
     #[inline(always)]
     pub(super) fn new(
         simd: S,
         world: &World,
-        plain: &[Plain<'_>; LANES],
+        plain: &[FlatDiffuseHit<'_>; LANES],
         surfaces: &Surfaces<S>,
-        numbers: &RandomNumbers<S>,
+        stream: &SampleStreams<S>,
         lanes: &[Lanes],
     ) -> Self {
-        let [u0, u1] = numbers.two(simd, purpose::LIGHT);
+        let [u0, u1] = stream.two(simd, dimension::LIGHT);
         let from: [[f64; LANES]; 3] = by_axis!(i => surfaces.points.position.0[i].into());
-        let at = by_lane!(lane => Reference {
+        let at = by_lane!(lane => LightSampleContext {
             point: DVec3::from_array(by_axis!(i => from[i][lane])),
             n: surfaces.n.lane(lane).into(),
         });
         let choice = match world.light_choice.only() {
             Some(light) => [Some((light, 1.0)); LANES],
             None => {
-                let [which, _] = numbers.two(simd, purpose::CHOICE);
+                let [which, _] = stream.two(simd, dimension::CHOICE);
                 by_lane!(lane => world.light_choice.sample(&at[lane], which[lane]))
             }
         };
@@ -100,12 +100,12 @@ impl<S: Simd> Asked<S> {
             if let (Some(_), Light::Area(area_light)) = (&triangle[lane], light)
                 && by_direction & 1 << lane == 0
             {
-                let shines = cos[lane] < 0.0 || area_light.two_sided;
+                let emits = cos[lane] < 0.0 || area_light.two_sided;
                 let usable = near[lane] > 0.0 && pdf[lane].is_finite() && pdf[lane] > 0.0;
-                if shines && usable {
+                if emits && usable {
                     let li = area_light.radiance.even(&world.textures, lanes);
                     let target = Target::Surface(Point { position: [0.0; 3], error: [0.0; 3] }, DVec3::ZERO);
-                    samples[lane] = Some(Answer {
+                    samples[lane] = Some(LaneSample {
                         light: index,
                         probability,
                         pdf: pdf[lane],
@@ -117,7 +117,7 @@ impl<S: Simd> Asked<S> {
                 continue;
             }
             let Some(sample) =
-                light.sample(&world.textures, &at[lane], [u0[lane], u1[lane]], lanes, Coverage::Incomplete)
+                light.sample(&world.textures, &at[lane], [u0[lane], u1[lane]], lanes, IncompletePdf::Allowed)
             else {
                 continue;
             };
@@ -127,7 +127,7 @@ impl<S: Simd> Asked<S> {
             }
             let LightSample { pdf, li, target, .. } = sample;
             samples[lane] =
-                Some(Answer { light: index, probability, pdf, li, is_delta: light.is_delta(), target });
+                Some(LaneSample { light: index, probability, pdf, li, is_delta: light.is_delta(), target });
         }
 
         // Those that were asked one by one take their lanes.
@@ -145,7 +145,7 @@ impl<S: Simd> Asked<S> {
     }
 
     /// What was asked of the light of a lane, for who listens.
-    pub(super) fn light_sample(&self, lane: usize, answer: &Answer) -> LightSample {
+    pub(super) fn light_sample(&self, lane: usize, answer: &LaneSample) -> LightSample {
         let target = match answer.target {
             Target::Surface(..) => {
                 let position = by_axis!(i => self.points.position.0[i][lane]);
@@ -161,7 +161,7 @@ impl<S: Simd> Asked<S> {
     pub(super) fn in_vain(&self, lane: usize, address: u64) -> Option<Event> {
         let (light, probability) = self.choice[lane]?;
         let sample = self.samples[lane].as_ref().map(|answer| self.light_sample(lane, answer));
-        Some(Event::AskedInVain { address, light, probability, sample })
+        Some(Event::LightSampleFailed { address, light, probability, sample })
     }
 
     /// The directions of shadow rays, from their origins to just before the lights' surfaces: the twin of [`crate::integrator::Shadow::new`].

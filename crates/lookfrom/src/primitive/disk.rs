@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Point, Procedural, ProceduralHit, Ray};
 
-use super::{FormPoint, Look};
+use super::{MaterialBinding, SurfacePoint};
 
 /// A round plate, perhaps sheared to an ellipse: `center + x·axis_u + y·axis_v`, `x² + y² ≤ 1`.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +24,7 @@ pub struct Disks {
     /// The plates.
     pub disks: Vec<Disk>,
     /// Whose.
-    pub looks: Vec<Look>,
+    pub bindings: Vec<MaterialBinding>,
 }
 
 impl Disk {
@@ -59,13 +59,19 @@ impl Disk {
 
 impl Disks {
     /// The point of a plate nearest to one that is on it but for errors.
-    pub(super) fn point(&self, index: usize, near: DVec3) -> FormPoint {
+    pub(super) fn point(&self, index: usize, near: DVec3) -> SurfacePoint {
         let disk = &self.disks[index];
         let [x, y] = disk.coordinates(near);
         let on_disk = Vec2::new(x as f32, y as f32);
         let uv = 0.5 + 0.5 * on_disk;
         let derivatives = [2.0 * disk.axis_u, 2.0 * disk.axis_v];
-        FormPoint::plain(disk.at(on_disk), disk.normal().normalize(), uv, derivatives, self.looks[index])
+        SurfacePoint::plain(
+            disk.at(on_disk),
+            disk.normal().normalize(),
+            uv,
+            derivatives,
+            self.bindings[index],
+        )
     }
 }
 

@@ -8,8 +8,8 @@
 use glam::Vec3;
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
-use super::{Frame, NormalTexture, Relief};
-use crate::surface::Surface;
+use super::{BumpMapping, Frame, NormalTexture};
+use crate::interaction::SurfaceInteraction;
 use crate::texture::{self, FloatTexture, TexturePoint, Textures};
 use crate::warp;
 
@@ -17,53 +17,68 @@ use crate::warp;
 const STEP: f32 = 0.0005;
 
 /// The frame of the shading normal as it is.
-pub(super) fn plain(surface: &Surface) -> Frame {
+pub(super) fn plain(surface: &SurfaceInteraction) -> Frame {
     around(surface.ns, surface.shading_dpdu)
 }
 
 /// The shading frame at a surface: its normal on the side of the geometric one, its first axis along ∂p/∂u.
-pub(super) fn frame(relief: &Relief, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Frame {
-    let bent = bent(relief, textures, surface, at);
+pub(super) fn frame(
+    bump_mapping: &BumpMapping,
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    at: &TexturePoint,
+) -> Frame {
+    let bent = bent(bump_mapping, textures, surface, at);
     let side = if bent.dot(surface.ng.as_vec3()) < 0.0 { -bent } else { bent };
     around(side, surface.shading_dpdu)
 }
 
 /// The same for glTF's material, with a normal that is [`valid`].
 pub(super) fn valid_frame(
-    relief: &Relief,
+    bump_mapping: &BumpMapping,
     textures: &Textures,
-    surface: &Surface,
+    surface: &SurfaceInteraction,
     at: &TexturePoint,
 ) -> Frame {
-    around(valid(bent(relief, textures, surface, at), surface), surface.shading_dpdu)
+    around(valid(bent(bump_mapping, textures, surface, at), surface), surface.shading_dpdu)
 }
 
 /// The normal, of unit length.
-fn bent(relief: &Relief, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Vec3 {
+fn bent(
+    bump_mapping: &BumpMapping,
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    at: &TexturePoint,
+) -> Vec3 {
     let plain = || plain(surface);
-    let bent = match relief {
-        Relief::None => return surface.ns,
-        Relief::NormalMap(image) => {
+    let bent = match bump_mapping {
+        BumpMapping::None => return surface.ns,
+        BumpMapping::NormalMap(image) => {
             let st = [at.uv.x, 1.0 - at.uv.y];
             let texel =
                 texture::look_up(textures.image(*image), st, [Wrap::Repeat; 2], TexelFilter::Bilinear);
             let local = Vec3::from_array(texel.map(|c| 2.0 * c - 1.0)).normalize_or(Vec3::Z);
             plain().render(local)
         }
-        Relief::NormalTexture(map) => return mapped(map, textures, surface, at),
-        Relief::Bump(height) => bumped(*height, textures, surface, at),
+        BumpMapping::NormalTexture(map) => return mapped(map, textures, surface, at),
+        BumpMapping::Bump(height) => bumped(*height, textures, surface, at),
     };
     bent.normalize_or(surface.ns)
 }
 
 /// The directions of u and v at a surface, across its shading normal and each other, of unit length.
-pub(super) fn tangents(surface: &Surface) -> [Vec3; 2] {
+pub(super) fn tangents(surface: &SurfaceInteraction) -> [Vec3; 2] {
     let Frame { s, t, .. } = around(surface.ns, surface.shading_dpdu);
     [s, if t.dot(surface.shading_dpdv) < 0.0 { -t } else { t }]
 }
 
 /// The normal that a texture says, of unit length.
-pub(super) fn mapped(map: &NormalTexture, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Vec3 {
+pub(super) fn mapped(
+    map: &NormalTexture,
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    at: &TexturePoint,
+) -> Vec3 {
     let texel = textures.rgb(&map.texture, at);
     let [x, y, z] = texel.map(|c| 2.0 * c - 1.0);
     let [s, t] = tangents(surface);
@@ -76,7 +91,7 @@ pub(super) fn mapped(map: &NormalTexture, textures: &Textures, surface: &Surface
 /// mirrored direction then has the height `x sin 2θ + z cos 2θ` over the surface, where `wo` has x along t and z along g:
 /// a wave in 2θ of amplitude `A = √(x² + z²)`, which begins at z and falls to a height h at `2θ = atan2(x, z) + acos(h / A)`.
 /// That is as far as `n` may lean.
-pub(super) fn valid(n: Vec3, surface: &Surface) -> Vec3 {
+pub(super) fn valid(n: Vec3, surface: &SurfaceInteraction) -> Vec3 {
     let facing = if surface.front { 1.0 } else { -1.0 };
     let (n, g, wo) = (facing * n, surface.ng_facing(), surface.wo);
     let z = wo.dot(g);
@@ -104,7 +119,12 @@ pub(super) fn valid(n: Vec3, surface: &Surface) -> Vec3 {
 }
 
 /// The normal of the surface moved along its shading normal; not of unit length.
-fn bumped(height: FloatTexture, textures: &Textures, surface: &Surface, at: &TexturePoint) -> Vec3 {
+fn bumped(
+    height: FloatTexture,
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    at: &TexturePoint,
+) -> Vec3 {
     let n = surface.ns;
     let here = textures.float(height, at);
     let [dpdu, dpdv] =

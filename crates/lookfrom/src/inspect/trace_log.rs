@@ -16,16 +16,16 @@ use super::report::{
 };
 use super::scatter::{self, AnswerReport, AskedReport, BounceReport, FoundReport};
 use crate::integrator::{Bounce, Branch, Cut, Event, Path, Shadow, Term};
+use crate::interaction::SurfaceInteraction;
 use crate::light::LightSample;
 use crate::material::{Coefficients, Shading};
 use crate::render::Renderer;
 use crate::spectrum::Spectrum;
-use crate::surface::Surface;
 use crate::texture::Lanes;
 use crate::world::World;
 
 /// What has been heard so far.
-pub(super) struct Story<'a> {
+pub(super) struct TraceLogBuilder<'a> {
     renderer: &'a Renderer,
     world: &'a World,
     /// What the lanes mean in the end.
@@ -39,7 +39,7 @@ pub(super) struct Story<'a> {
 }
 
 /// What was heard in all.
-pub(super) struct Told {
+pub(super) struct TraceLog {
     pub(super) rays: Vec<RayReport>,
     pub(super) additions: Vec<Addition>,
     pub(super) sum: Spectrum,
@@ -52,7 +52,7 @@ fn is_path(integrator: Integrator) -> bool {
     matches!(integrator, Path | SimplePath | RandomWalk | AmbientOcclusion { .. })
 }
 
-impl<'a> Story<'a> {
+impl<'a> TraceLogBuilder<'a> {
     /// Nothing yet.
     pub(super) fn new(renderer: &'a Renderer, lanes: Lanes) -> Self {
         Self {
@@ -67,9 +67,9 @@ impl<'a> Story<'a> {
     }
 
     /// One thing more. What is said of a ray comes after the ray itself.
-    pub(super) fn hear(&mut self, event: &Event) {
+    pub(super) fn record(&mut self, event: &Event) {
         match event {
-            Event::Met { path, hit } => {
+            Event::Hit { path, hit } => {
                 let ray = self.ray(path, hit);
                 self.rays.insert(path.address, ray);
             }
@@ -79,7 +79,7 @@ impl<'a> Story<'a> {
                     met.coefficients = report;
                 }
             }
-            Event::Asked { address, light, sample, diffuse, specular } => {
+            Event::LocalLight { address, light, sample, diffuse, specular } => {
                 let report = self.light(*light, sample.as_ref(), *diffuse, *specular);
                 self.at(*address, |ray| ray.lights.push(report));
             }
@@ -101,13 +101,13 @@ impl<'a> Story<'a> {
                     ray.found.push(report);
                 });
             }
-            Event::AskedInVain { address, light, probability, sample } => {
+            Event::LightSampleFailed { address, light, probability, sample } => {
                 let answer = sample
                     .as_ref()
                     .map(|sample| self.answer(*probability, sample, Spectrum::BLACK, None, 1.0));
                 self.asked(*address, *light, *probability, answer);
             }
-            Event::AskedOne { address, light, probability, sample, f, bsdf_pdf, weight } => {
+            Event::LightSampled { address, light, probability, sample, f, bsdf_pdf, weight } => {
                 let is_weighed = self.renderer.settings().integrator == Integrator::Path
                     && !self.world.lights[*light as usize].is_delta();
                 let answer = self.answer(*probability, sample, *f, is_weighed.then_some(*bsdf_pdf), *weight);
@@ -141,7 +141,7 @@ impl<'a> Story<'a> {
     }
 
     /// All of it: the sums are drawn.
-    pub(super) fn end(mut self) -> Told {
+    pub(super) fn end(mut self) -> TraceLog {
         let is_path = is_path(self.renderer.settings().integrator);
         if is_path {
             self.end_paths();
@@ -166,7 +166,12 @@ impl<'a> Story<'a> {
             });
         }
         let radiance = self.amount(self.sum);
-        Told { rays: self.rays.into_values().collect(), additions: self.additions, sum: self.sum, radiance }
+        TraceLog {
+            rays: self.rays.into_values().collect(),
+            additions: self.additions,
+            sum: self.sum,
+            radiance,
+        }
     }
 
     /// What is known of a path only when the next ray is, or when there is none.
@@ -228,7 +233,7 @@ impl<'a> Story<'a> {
             (_, 0) => "mirrored",
             _ => "refracted",
         };
-        let pdf = path.departure.pdf;
+        let pdf = path.previous.pdf;
         let surface = hit.is_hit().then(|| self.world.surface(&path.ray, hit));
         RayReport {
             address: path.address,
@@ -417,7 +422,7 @@ impl<'a> Story<'a> {
     }
 }
 
-fn met_report(world: &World, hit: &Hit, surface: &Surface) -> MetReport {
+fn met_report(world: &World, hit: &Hit, surface: &SurfaceInteraction) -> MetReport {
     MetReport {
         shape: world.names.shapes[surface.shape as usize].clone(),
         primitive: hit.primitive,

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Affine, Point, Procedural, ProceduralHit, Ray};
 use lookfrom_scene::shape::{Profile, Strand};
 
-use super::{FormPoint, Look};
+use super::{MaterialBinding, SurfacePoint};
 
 /// In how many pieces each strand comes to the kernel: tighter boxes.
 pub const SEGMENTS: u32 = 8;
@@ -29,7 +29,7 @@ pub struct Curves {
     object_from_render: Affine,
     reverse: bool,
     /// Whose.
-    pub look: Look,
+    pub binding: MaterialBinding,
 }
 
 /// Four control points of a cubic Bézier curve.
@@ -37,10 +37,15 @@ type Controls = [DVec3; 4];
 
 impl Curves {
     /// Puts strands into their place. None where the map has no inverse.
-    pub fn new(strands: &[Strand], render_from_object: Affine, reverse: bool, look: Look) -> Option<Self> {
+    pub fn new(
+        strands: &[Strand],
+        render_from_object: Affine,
+        reverse: bool,
+        binding: MaterialBinding,
+    ) -> Option<Self> {
         let inverse = render_from_object.inverse()?;
         let object_from_render = Affine { translation: [0.0; 3], ..inverse };
-        Some(Self { strands: strands.to_vec(), render_from_object, object_from_render, reverse, look })
+        Some(Self { strands: strands.to_vec(), render_from_object, object_from_render, reverse, binding })
     }
 
     /// Of a primitive: its strand, and where on it it begins and ends.
@@ -60,7 +65,13 @@ impl Curves {
     }
 
     /// The point at u along and v across a strand that a ray met near a point.
-    pub(super) fn point(&self, index: usize, [u, v]: [f32; 2], near: DVec3, direction: DVec3) -> FormPoint {
+    pub(super) fn point(
+        &self,
+        index: usize,
+        [u, v]: [f32; 2],
+        near: DVec3,
+        direction: DVec3,
+    ) -> SurfacePoint {
         let (strand, _) = self.segment(index as u32);
         let along = f64::from(u);
         let direction = self.vector_in_object(direction).normalize();
@@ -87,7 +98,7 @@ impl Curves {
         let error = near.abs() * f64::from(f32::EPSILON) + width * DVec3::from_array(rows);
         let point = Point { position: near.to_array(), error: error.to_array() };
         let derivatives = [dpdu, dpdv].map(|d| self.vector_in_render(d));
-        FormPoint::plain(point, ng, Vec2::new(u, v), derivatives, self.look)
+        SurfacePoint::plain(point, ng, Vec2::new(u, v), derivatives, self.binding)
     }
 }
 

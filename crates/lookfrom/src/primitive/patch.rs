@@ -7,7 +7,7 @@
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Point, Procedural, ProceduralHit, Ray};
 
-use super::{FormPoint, Look};
+use super::{MaterialBinding, SurfacePoint};
 
 /// Unit of rounding of f64, 2⁻⁵³.
 const UNIT: f64 = 0.5 * f64::EPSILON;
@@ -32,7 +32,7 @@ pub struct Patches {
     /// Whether the outside is the side of `∂p/∂v × ∂p/∂u`: after a mirror, or a reversal, but not both.
     pub flip: bool,
     /// Whose.
-    pub look: Look,
+    pub binding: MaterialBinding,
 }
 
 /// The four corners of a patch, as what they blend.
@@ -95,7 +95,7 @@ impl Patches {
     }
 
     /// The point at (u, v) of a patch.
-    pub fn point(&self, index: usize, u: f32, v: f32) -> FormPoint {
+    pub fn point(&self, index: usize, u: f32, v: f32) -> SurfacePoint {
         let (patch_u, patch_v) = (u, v);
         let (u, v) = (f64::from(u), f64::from(v));
         let corners = self.corners(index);
@@ -129,7 +129,7 @@ impl Patches {
         }
 
         let ng = self.normal(index, u, v);
-        let mut of_patch = FormPoint::plain(point, ng, uv, [dpdu, dpdv], self.look);
+        let mut of_patch = SurfacePoint::plain(point, ng, uv, [dpdu, dpdv], self.binding);
         if let Some(ns) = self.smooth(index, u, v) {
             // The derivatives turn with the normal.
             let turned = |d: DVec3| turn(d, ng, ns);

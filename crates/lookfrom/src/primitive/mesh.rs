@@ -6,7 +6,7 @@
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use lookfrom_bvh::Point;
 
-use super::{FormPoint, Look};
+use super::{MaterialBinding, SurfacePoint};
 use crate::texture::MORE_UV_SETS;
 use crate::warp;
 
@@ -35,10 +35,10 @@ pub struct Mesh {
     /// Whether the outside is where the triangles run clockwise: after a mirror, or a reversal, but not both.
     pub flip: bool,
     /// Whose.
-    pub look: Look,
+    pub binding: MaterialBinding,
 }
 
-/// What few meshes say of their points: apart from [`FormPoint`], which is computed for every hit.
+/// What few meshes say of their points: apart from [`SurfacePoint`], which is computed for every hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VertexData {
     /// Texture coordinates of further sets; (0, 0) where there is none.
@@ -103,7 +103,7 @@ impl Mesh {
     }
 
     /// The point with weight `u` of a triangle's second corner and `v` of its third.
-    pub fn point(&self, index: usize, u: f32, v: f32) -> FormPoint {
+    pub fn point(&self, index: usize, u: f32, v: f32) -> SurfacePoint {
         let corners = self.corners(index);
         let [p0, p1, p2] = corners;
         let (point, across) = Point::on_triangle_with_normal(p0, p1, p2, u, v);
@@ -129,8 +129,8 @@ impl Mesh {
         let color = self.color(index, u, v);
         if !self.wants_derivatives {
             let none = DVec3::ZERO;
-            let look = self.look;
-            return FormPoint {
+            let binding = self.binding;
+            return SurfacePoint {
                 point,
                 ng,
                 ns,
@@ -140,7 +140,7 @@ impl Mesh {
                 shading_dpdu: none,
                 shading_dpdv: none,
                 color,
-                look,
+                binding,
             };
         }
         let corners = corners.map(|p| Vec3::from_array(p).as_dvec3());
@@ -159,7 +159,18 @@ impl Mesh {
                 (shading_dpdu, shading_dpdv) = (s.as_dvec3(), t.as_dvec3());
             }
         }
-        FormPoint { point, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, color, look: self.look }
+        SurfacePoint {
+            point,
+            ng,
+            ns,
+            uv,
+            dpdu,
+            dpdv,
+            shading_dpdu,
+            shading_dpdv,
+            color,
+            binding: self.binding,
+        }
     }
 }
 

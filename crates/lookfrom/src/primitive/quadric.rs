@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Affine, Point, Procedural, ProceduralHit, Ray};
 
-use super::{FormPoint, Look};
+use super::{MaterialBinding, SurfacePoint};
 use crate::math;
 use crate::warp;
 
@@ -68,7 +68,7 @@ pub struct Quadrics {
     /// In their places.
     pub quadrics: Vec<Quadric>,
     /// Whose.
-    pub looks: Vec<Look>,
+    pub bindings: Vec<MaterialBinding>,
 }
 
 impl Quadric {
@@ -247,7 +247,7 @@ impl Quadric {
     }
 
     /// The point of the surface that is `on_surface` in the quadric's own space.
-    pub fn point(&self, on_surface: DVec3, look: Look) -> FormPoint {
+    pub fn point(&self, on_surface: DVec3, binding: MaterialBinding) -> SurfacePoint {
         let p = self.refined(on_surface);
         let phi = angle(p);
         let u = if self.phi_max > 0.0 { phi / self.phi_max } else { 0.0 };
@@ -283,7 +283,7 @@ impl Quadric {
         let bend = self.bend(&point, normal.length());
         point.error = point.error.map(|error| error + bend);
         let ng = normal.normalize() * if self.reverse { -1.0 } else { 1.0 };
-        FormPoint::plain(point, ng, uv, derivatives.map(|d| self.vector_in_render(d)), look)
+        SurfacePoint::plain(point, ng, uv, derivatives.map(|d| self.vector_in_render(d)), binding)
     }
 
     /// How far the surface bends away from its tangent plane over the distance that rounding to f32 may move the origin of
@@ -302,9 +302,9 @@ impl Quadric {
 
 impl Quadrics {
     /// The point of a quadric nearest to one that is on it but for errors.
-    pub(super) fn point(&self, index: usize, near: DVec3) -> FormPoint {
+    pub(super) fn point(&self, index: usize, near: DVec3) -> SurfacePoint {
         let quadric = &self.quadrics[index];
-        quadric.point(quadric.point_in_object(near), self.looks[index])
+        quadric.point(quadric.point_in_object(near), self.bindings[index])
     }
 }
 
