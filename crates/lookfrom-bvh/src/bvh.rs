@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::aabb::Aabb;
-use crate::dispatch::at_level;
+use crate::dispatch::dispatch;
 use crate::filter::TriangleBlock;
 use crate::instance::Instance;
 use crate::masks::Masks;
@@ -11,11 +11,11 @@ use crate::node::Node;
 use crate::packet::{OccludedMany, TraceMany};
 use crate::procedural::Procedural;
 use crate::query::{All, Any, Closest};
-use crate::ray::{Hit, Left, Ray};
+use crate::ray::{Hit, OriginPrimitive, Ray};
 use crate::sphere::Sphere;
 use crate::traverse::Trace;
 use crate::validate::{Invalid, Statistics};
-use crate::watch::Watch;
+use crate::watch::Observer;
 use lookfrom_simd::{Level, level};
 
 /// Rays (or points) that one thread answers before it looks for others' work.
@@ -192,9 +192,9 @@ impl Bvh {
     /// # let mut builder = Builder::new();
     /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
     /// # let bvh = builder.build()?;
-    /// # use lookfrom_bvh::Watch;
+    /// # use lookfrom_bvh::Observer;
     /// struct Candidates(u32);
-    /// impl Watch for Candidates {
+    /// impl Observer for Candidates {
     ///     fn candidate(&mut self, _: u32, _: u32, _: u32) {
     ///         self.0 += 1;
     ///     }
@@ -204,7 +204,7 @@ impl Bvh {
     /// assert_eq!((hit.t, candidates.0), (2.0, 1));
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
-    pub fn closest_hit_watched(&self, ray: &Ray, watch: &mut impl Watch) -> Hit {
+    pub fn closest_hit_watched(&self, ray: &Ray, watch: &mut impl Observer) -> Hit {
         Trace { bvh: self, ray, ask: Closest::new, watch }.go().hit
     }
 
@@ -216,7 +216,7 @@ impl Bvh {
     /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
     /// # let bvh = builder.build()?;
     /// let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
-    /// assert!(bvh.occluded(&ray) && !bvh.occluded(&ray.until(2.0)));
+    /// assert!(bvh.occluded(&ray) && !bvh.occluded(&ray.with_t_max(2.0)));
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn occluded(&self, ray: &Ray) -> bool {
@@ -265,7 +265,7 @@ impl Bvh {
     /// that is true the answers are the same, sooner.
     ///
     /// ```
-    /// # use lookfrom_bvh::{Builder, Hit, Left, Ray, Triangles};
+    /// # use lookfrom_bvh::{Builder, Hit, OriginPrimitive, Ray, Triangles};
     /// # let mut builder = Builder::new();
     /// # let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     /// # builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
@@ -273,14 +273,14 @@ impl Bvh {
     /// let hit = bvh.closest_hit(&Ray::new([0.2, 0.2, 1.0], [0.0, 0.0, -1.0]));
     /// let mirrored = Ray::new([0.2, 0.2, 0.0_f32.next_up()], [0.0, 0.0, 1.0]);
     /// let mut hits = [hit];
-    /// bvh.closest_hits_leaving(&[mirrored], &[Left::of(&hit)], &mut hits);
+    /// bvh.closest_hits_leaving(&[mirrored], &[OriginPrimitive::of(&hit)], &mut hits);
     /// assert_eq!(hits, [Hit::MISS]);
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
-    pub fn closest_hits_leaving(&self, rays: &[Ray], left: &[Left], hits: &mut [Hit]) {
+    pub fn closest_hits_leaving(&self, rays: &[Ray], left: &[OriginPrimitive], hits: &mut [Hit]) {
         for_batches(rays, hits, |first, rays, hits| {
             let left = left.get(first..).unwrap_or_default();
-            at_level(self.level, TraceMany { bvh: self, rays, left, hits });
+            dispatch(self.level, TraceMany { bvh: self, rays, left, hits });
         });
     }
 
@@ -305,22 +305,22 @@ impl Bvh {
     /// [`Self::occluded_many`] for rays that leave triangles, as [`Self::closest_hits_leaving`].
     ///
     /// ```
-    /// # use lookfrom_bvh::{Builder, Hit, Left, Ray, Triangles};
+    /// # use lookfrom_bvh::{Builder, Hit, OriginPrimitive, Ray, Triangles};
     /// # let mut builder = Builder::new();
     /// # let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     /// # builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
     /// # let bvh = builder.build()?;
-    /// let left = Left { geometry: 0, primitive: 0 };
+    /// let left = OriginPrimitive { geometry: 0, primitive: 0 };
     /// let mut occluded = [true];
     /// let ray = Ray::new([0.2, 0.2, 0.0_f32.next_up()], [0.0, 0.0, 1.0]);
     /// bvh.occluded_many_leaving(&[ray], &[left], &mut occluded);
     /// assert_eq!(occluded, [false]);
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
-    pub fn occluded_many_leaving(&self, rays: &[Ray], left: &[Left], occluded: &mut [bool]) {
+    pub fn occluded_many_leaving(&self, rays: &[Ray], left: &[OriginPrimitive], occluded: &mut [bool]) {
         for_batches(rays, occluded, |first, rays, occluded| {
             let left = left.get(first..).unwrap_or_default();
-            at_level(self.level, OccludedMany { bvh: self, rays, left, occluded });
+            dispatch(self.level, OccludedMany { bvh: self, rays, left, occluded });
         });
     }
 }

@@ -22,12 +22,12 @@ const ROOM: f64 = 9.536_743_164_062_5e-7;
 /// origin or direction that f32 would round to infinity (or to a zero direction) hits nothing.
 ///
 /// ```
-/// use lookfrom_bvh::Ray64;
-/// let ray = Ray64 { t_max: 10.0, ..Ray64::new([0.1, 0.2, 0.3], [0.0, 0.0, 1.0]) };
+/// use lookfrom_bvh::RayF64;
+/// let ray = RayF64 { t_max: 10.0, ..RayF64::new([0.1, 0.2, 0.3], [0.0, 0.0, 1.0]) };
 /// assert_eq!((ray.t_min, ray.t_max), (0.0, 10.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray64 {
+pub struct RayF64 {
     /// Where `t` is zero.
     pub origin: [f64; 3],
     /// Hits need `t > t_min`. May be negative.
@@ -38,18 +38,18 @@ pub struct Ray64 {
     pub t_max: f64,
 }
 
-impl Ray64 {
+impl RayF64 {
     /// The ray with `t` in (0, ∞).
     ///
     /// ```
-    /// assert_eq!(lookfrom_bvh::Ray64::new([0.0; 3], [1.0, 0.0, 0.0]).t_max, f64::INFINITY);
+    /// assert_eq!(lookfrom_bvh::RayF64::new([0.0; 3], [1.0, 0.0, 0.0]).t_max, f64::INFINITY);
     /// ```
     pub const fn new(origin: [f64; 3], direction: [f64; 3]) -> Self {
         Self { origin, t_min: 0.0, direction, t_max: f64::INFINITY }
     }
 }
 
-impl From<Ray> for Ray64 {
+impl From<Ray> for RayF64 {
     fn from(ray: Ray) -> Self {
         let Ray { origin, t_min, direction, t_max } = ray;
         Self {
@@ -61,13 +61,13 @@ impl From<Ray> for Ray64 {
     }
 }
 
-/// Where a [`Ray64`] meets a primitive, or [`Hit64::MISS`].
+/// Where a [`RayF64`] meets a primitive, or [`HitF64::MISS`].
 ///
 /// ```
-/// assert!(!lookfrom_bvh::Hit64::MISS.is_hit());
+/// assert!(!lookfrom_bvh::HitF64::MISS.is_hit());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit64 {
+pub struct HitF64 {
     /// The ray's parameter: the hit is at `origin + t · direction`. Infinite for a miss.
     pub t: f64,
     /// Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural: what it says, in f32.
@@ -82,11 +82,11 @@ pub struct Hit64 {
     pub instance: u32,
 }
 
-impl Hit64 {
+impl HitF64 {
     /// Nothing was hit.
     ///
     /// ```
-    /// assert_eq!(lookfrom_bvh::Hit64::MISS.t, f64::INFINITY);
+    /// assert_eq!(lookfrom_bvh::HitF64::MISS.t, f64::INFINITY);
     /// ```
     pub const MISS: Self =
         Self { t: f64::INFINITY, u: 0.0, v: 0.0, primitive: NONE, geometry: NONE, instance: NONE };
@@ -94,8 +94,8 @@ impl Hit64 {
     /// Whether something was hit.
     ///
     /// ```
-    /// use lookfrom_bvh::Hit64;
-    /// assert!(Hit64 { primitive: 0, ..Hit64::MISS }.is_hit());
+    /// use lookfrom_bvh::HitF64;
+    /// assert!(HitF64 { primitive: 0, ..HitF64::MISS }.is_hit());
     /// ```
     pub const fn is_hit(&self) -> bool {
         self.primitive != NONE
@@ -112,24 +112,24 @@ impl Hit64 {
 }
 
 impl Bvh {
-    /// The hit with the least t in the ray's range; ties are decided as by [`Self::closest_hit`]. [`Hit64::MISS`] where
+    /// The hit with the least t in the ray's range; ties are decided as by [`Self::closest_hit`]. [`HitF64::MISS`] where
     /// there is none.
     ///
     /// `t` is right to about 10⁻¹⁵ of sizes and distances, `u` and `v` to about 10⁻¹⁰ (less where a triangle is seen nearly
     /// edge on); procedural shapes are asked in f32. Some times slower than `closest_hit`.
     ///
     /// ```
-    /// use lookfrom_bvh::{Builder, Ray64, Triangles};
+    /// use lookfrom_bvh::{Builder, RayF64, Triangles};
     /// let mut builder = Builder::new();
     /// let positions = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
     /// builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
     /// let bvh = builder.build()?;
-    /// let hit = bvh.closest_hit_f64(&Ray64::new([0.1, 0.2, 1.0 - 1e-12], [0.0, 0.0, 1e-12]));
+    /// let hit = bvh.closest_hit_f64(&RayF64::new([0.1, 0.2, 1.0 - 1e-12], [0.0, 0.0, 1e-12]));
     /// assert!((hit.t - 1.0).abs() < 1e-4 && (hit.u - 0.1).abs() < 1e-15 && (hit.v - 0.2).abs() < 1e-15);
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
-    pub fn closest_hit_f64(&self, ray: &Ray64) -> Hit64 {
-        let mut closest = Hit64::MISS;
+    pub fn closest_hit_f64(&self, ray: &RayF64) -> HitF64 {
+        let mut closest = HitF64::MISS;
         self.walk_all(ray, |hit| {
             if hit.precedes(&closest) {
                 closest = hit;
@@ -142,16 +142,16 @@ impl Bvh {
     /// Whether anything is hit in the ray's range.
     ///
     /// ```
-    /// use lookfrom_bvh::{Builder, Ray64, Sphere};
+    /// use lookfrom_bvh::{Builder, RayF64, Sphere};
     /// let mut builder = Builder::new();
     /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
     /// let bvh = builder.build()?;
-    /// let ray = Ray64::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
-    /// assert!(bvh.occluded_f64(&Ray64 { t_max: 2.0 + 1e-15, ..ray }));
-    /// assert!(!bvh.occluded_f64(&Ray64 { t_max: 2.0, ..ray }));
+    /// let ray = RayF64::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    /// assert!(bvh.occluded_f64(&RayF64 { t_max: 2.0 + 1e-15, ..ray }));
+    /// assert!(!bvh.occluded_f64(&RayF64 { t_max: 2.0, ..ray }));
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
-    pub fn occluded_f64(&self, ray: &Ray64) -> bool {
+    pub fn occluded_f64(&self, ray: &RayF64) -> bool {
         let mut found = false;
         self.walk_all(ray, |_| {
             found = true;
@@ -164,15 +164,15 @@ impl Bvh {
     /// at most one hit, a sphere two, a procedural shape one (its nearest).
     ///
     /// ```
-    /// use lookfrom_bvh::{Builder, Ray64, Sphere};
+    /// use lookfrom_bvh::{Builder, RayF64, Sphere};
     /// let mut builder = Builder::new();
     /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
     /// let mut hits = Vec::new();
-    /// builder.build()?.all_hits_f64(&Ray64::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]), &mut hits);
+    /// builder.build()?.all_hits_f64(&RayF64::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]), &mut hits);
     /// assert_eq!(hits.iter().map(|hit| hit.t).collect::<Vec<_>>(), [2.0, 4.0]);
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
-    pub fn all_hits_f64(&self, ray: &Ray64, hits: &mut Vec<Hit64>) {
+    pub fn all_hits_f64(&self, ray: &RayF64, hits: &mut Vec<HitF64>) {
         hits.clear();
         self.walk_all(ray, |hit| {
             hits.push(hit);
@@ -185,7 +185,7 @@ impl Bvh {
     }
 
     /// Tells of hits in the ray's range until none are left up to the t that `tell` returned last.
-    fn walk_all(&self, ray: &Ray64, mut tell: impl FnMut(Hit64) -> f64) {
+    fn walk_all(&self, ray: &RayF64, mut tell: impl FnMut(HitF64) -> f64) {
         let exact = Exact { origin: ray.origin, direction: ray.direction, t_min: ray.t_min };
         if ray.t_min < ray.t_max && !self.nodes.is_empty() && is_usable(&exact) {
             let mut walk = Walk { outer: self, ray, end: ray.t_max, tell: &mut tell };
@@ -198,10 +198,10 @@ impl Bvh {
 struct Walk<'a> {
     outer: &'a Bvh,
     /// In the world.
-    ray: &'a Ray64,
+    ray: &'a RayF64,
     /// Hits beyond this are not wanted.
     end: f64,
-    tell: &'a mut dyn FnMut(Hit64) -> f64,
+    tell: &'a mut dyn FnMut(HitF64) -> f64,
 }
 
 impl Walk<'_> {
@@ -225,7 +225,7 @@ impl Walk<'_> {
     /// Tells of a hit that is in range.
     fn hear(&mut self, [t, u, v]: [f64; 3], (geometry, primitive): (u32, u32), instance: u32) {
         if t > self.ray.t_min && t < self.ray.t_max {
-            self.end = (self.tell)(Hit64 { t, u, v, primitive, geometry, instance });
+            self.end = (self.tell)(HitF64 { t, u, v, primitive, geometry, instance });
         }
     }
 

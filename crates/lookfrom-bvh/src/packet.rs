@@ -12,21 +12,21 @@ use crate::filter::{LARGEST_FILTERED, SeenBlock, Sifted, TriangleLanes};
 use crate::group::{GROUPS, Group, LANES, NO_BLOCK, RAYS, least};
 use crate::node::{Child, Content};
 use crate::query::{Any, Closest};
-use crate::ray::{Hit, Left, NONE, Ray};
+use crate::ray::{Hit, NONE, OriginPrimitive, Ray};
 use crate::traverse::{Answer, cross_surely, decide, trace};
 use crate::waiting::{Stack, Waiting, with_stack};
-use lookfrom_simd::{Chosen, Simd, Work, i32x8, prelude::*};
+use lookfrom_simd::{Kernel, LaneMask, Simd, i32x8, prelude::*};
 
 /// The closest hits of rays, in their order; as many as there are places for.
 pub(crate) struct TraceMany<'a> {
     pub(crate) bvh: &'a Bvh,
     pub(crate) rays: &'a [Ray],
     /// What the first of them leave.
-    pub(crate) left: &'a [Left],
+    pub(crate) left: &'a [OriginPrimitive],
     pub(crate) hits: &'a mut [Hit],
 }
 
-impl Work for TraceMany<'_> {
+impl Kernel for TraceMany<'_> {
     type Output = ();
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
@@ -50,11 +50,11 @@ pub(crate) struct OccludedMany<'a> {
     pub(crate) bvh: &'a Bvh,
     pub(crate) rays: &'a [Ray],
     /// What the first of them leave.
-    pub(crate) left: &'a [Left],
+    pub(crate) left: &'a [OriginPrimitive],
     pub(crate) occluded: &'a mut [bool],
 }
 
-impl Work for OccludedMany<'_> {
+impl Kernel for OccludedMany<'_> {
     type Output = ();
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
@@ -83,7 +83,7 @@ impl Work for OccludedMany<'_> {
 fn occlude_singly<S: Simd>(
     simd: S,
     bvh: &Bvh,
-    (rays, left): (&[Ray], &[Left]),
+    (rays, left): (&[Ray], &[OriginPrimitive]),
     occluded: &mut [bool],
     stack: &mut Stack,
 ) {
@@ -91,7 +91,7 @@ fn occlude_singly<S: Simd>(
         #[inline(always)]
         || {
             for (number, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
-                let left = left.get(number).copied().unwrap_or(Left::NOTHING);
+                let left = left.get(number).copied().unwrap_or(OriginPrimitive::NONE);
                 *occluded = trace(simd, bvh, ray, |ray| Any::leaving(ray, left), (), stack).found;
             }
         },
@@ -102,7 +102,7 @@ fn occlude_singly<S: Simd>(
 fn trace_singly<S: Simd>(
     simd: S,
     bvh: &Bvh,
-    (rays, left): (&[Ray], &[Left]),
+    (rays, left): (&[Ray], &[OriginPrimitive]),
     hits: &mut [Hit],
     stack: &mut Stack,
 ) {
@@ -110,7 +110,7 @@ fn trace_singly<S: Simd>(
         #[inline(always)]
         || {
             for (number, (ray, hit)) in rays.iter().zip(hits).enumerate() {
-                let left = left.get(number).copied().unwrap_or(Left::NOTHING);
+                let left = left.get(number).copied().unwrap_or(OriginPrimitive::NONE);
                 *hit = trace(simd, bvh, ray, |ray| Closest::leaving(ray, left), (), stack).hit;
             }
         },
@@ -247,10 +247,10 @@ impl<S: Simd> Packet<'_, S> {
             let open = sifted.kept.0 & !sifted.surely_hit.0 & rays;
             let unclear = unclear.to_bitmask() as u32 & rays;
             if open | unclear != 0 {
-                for lane in Chosen(open) {
+                for lane in LaneMask(open) {
                     self.decide((number, of), index, lane);
                 }
-                for lane in Chosen(unclear) {
+                for lane in LaneMask(unclear) {
                     self.decide((blocks[lane] as usize, lanes[lane] as usize), index, lane);
                 }
             }

@@ -1,6 +1,6 @@
 //! What can be asked of a ray: the closest hit, whether there is any, all of them.
 
-use crate::ray::{Hit, Left, Ray};
+use crate::ray::{Hit, OriginPrimitive, Ray};
 
 /// What is asked.
 pub(crate) trait Query {
@@ -51,7 +51,7 @@ pub(crate) trait Query {
 pub(crate) struct Closest {
     t_max: f32,
     end: f32,
-    left: Left,
+    left: OriginPrimitive,
     pub(crate) hit: Hit,
 }
 
@@ -65,12 +65,12 @@ impl Closest {
     #[inline(always)]
     pub(crate) fn after(ray: &Ray, hit: Hit) -> Self {
         let end = if hit.t < ray.t_max { hit.t } else { ray.t_max };
-        Self { t_max: ray.t_max, end, left: Left::NOTHING, hit }
+        Self { t_max: ray.t_max, end, left: OriginPrimitive::NONE, hit }
     }
 
     /// The query of a ray that leaves something.
     #[inline(always)]
-    pub(crate) fn leaving(ray: &Ray, left: Left) -> Self {
+    pub(crate) fn leaving(ray: &Ray, left: OriginPrimitive) -> Self {
         Self { left, ..Self::new(ray) }
     }
 }
@@ -102,19 +102,19 @@ impl Query for Closest {
 /// Whether there is a hit.
 pub(crate) struct Any {
     t_max: f32,
-    left: Left,
+    left: OriginPrimitive,
     pub(crate) found: bool,
 }
 
 impl Any {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
-        Self::leaving(ray, Left::NOTHING)
+        Self::leaving(ray, OriginPrimitive::NONE)
     }
 
     /// The query of a ray that leaves something.
     #[inline(always)]
-    pub(crate) fn leaving(ray: &Ray, left: Left) -> Self {
+    pub(crate) fn leaving(ray: &Ray, left: OriginPrimitive) -> Self {
         Self { t_max: ray.t_max, left, found: false }
     }
 }

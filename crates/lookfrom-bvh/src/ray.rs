@@ -17,7 +17,7 @@ pub const NONE: u32 = u32::MAX;
 ///
 /// ```
 /// use lookfrom_bvh::Ray;
-/// let ray = Ray { t_min: 0.5, ..Ray::new([0.0; 3], [0.0, 0.0, -2.0]).until(1.0) };
+/// let ray = Ray { t_min: 0.5, ..Ray::new([0.0; 3], [0.0, 0.0, -2.0]).with_t_max(1.0) };
 /// assert_eq!((ray.t_min, ray.t_max), (0.5, 1.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,9 +48,9 @@ impl Ray {
     ///
     /// ```
     /// use lookfrom_bvh::Ray;
-    /// assert_eq!(Ray::new([0.0; 3], [0.0, 0.0, -2.0]).until(4.0).t_max, 4.0);
+    /// assert_eq!(Ray::new([0.0; 3], [0.0, 0.0, -2.0]).with_t_max(4.0).t_max, 4.0);
     /// ```
-    pub const fn until(self, t_max: f32) -> Self {
+    pub const fn with_t_max(self, t_max: f32) -> Self {
         Self { t_max, ..self }
     }
 }
@@ -59,39 +59,39 @@ impl Ray {
 /// it again, and need not find that out.
 ///
 /// ```
-/// use lookfrom_bvh::{Hit, Left};
+/// use lookfrom_bvh::{Hit, OriginPrimitive};
 /// let hit = Hit { t: 1.0, geometry: 2, primitive: 7, ..Hit::MISS };
-/// assert_eq!(Left::of(&hit), Left { geometry: 2, primitive: 7 });
+/// assert_eq!(OriginPrimitive::of(&hit), OriginPrimitive { geometry: 2, primitive: 7 });
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Left {
+pub struct OriginPrimitive {
     /// Its geometry; [`NONE`] for rays that leave nothing.
     pub geometry: u32,
     /// Its number there.
     pub primitive: u32,
 }
 
-impl Left {
+impl OriginPrimitive {
     /// The ray starts anywhere.
     ///
     /// ```
-    /// use lookfrom_bvh::{Left, NONE};
-    /// assert_eq!(Left::NOTHING.geometry, NONE);
+    /// use lookfrom_bvh::{OriginPrimitive, NONE};
+    /// assert_eq!(OriginPrimitive::NONE.geometry, NONE);
     /// ```
-    pub const NOTHING: Self = Self { geometry: NONE, primitive: NONE };
+    pub const NONE: Self = Self { geometry: NONE, primitive: NONE };
 
     /// What a ray leaves that starts at this hit: nothing, for one in an instance.
     ///
     /// ```
-    /// use lookfrom_bvh::{Hit, Left};
+    /// use lookfrom_bvh::{Hit, OriginPrimitive};
     /// let hit = Hit { t: 1.0, geometry: 2, primitive: 7, instance: 3, ..Hit::MISS };
-    /// assert_eq!(Left::of(&hit), Left::NOTHING);
+    /// assert_eq!(OriginPrimitive::of(&hit), OriginPrimitive::NONE);
     /// ```
     pub const fn of(hit: &Hit) -> Self {
         if hit.instance == NONE {
             Self { geometry: hit.geometry, primitive: hit.primitive }
         } else {
-            Self::NOTHING
+            Self::NONE
         }
     }
 

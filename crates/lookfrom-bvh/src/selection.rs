@@ -10,8 +10,8 @@ use crate::query::{All, Any, Closest, Query};
 use crate::ray::{Hit, Ray};
 use crate::traverse::Trace;
 use crate::triangle;
-use crate::watch::Watch;
-use lookfrom_simd::Chosen;
+use crate::watch::Observer;
+use lookfrom_simd::LaneMask;
 
 /// Which faces of surfaces rays hit.
 ///
@@ -119,7 +119,7 @@ impl Bvh {
 
 impl Selected<'_> {
     #[inline(always)]
-    fn ask<Q: Query>(&self, ray: &Ray, ask: impl FnOnce(&Ray) -> Q, watch: impl Watch) -> Q {
+    fn ask<Q: Query>(&self, ray: &Ray, ask: impl FnOnce(&Ray) -> Q, watch: impl Observer) -> Q {
         let &Self { bvh, selection } = self;
         let ask = |ray: &Ray| Only { query: ask(ray), selection, outer: bvh, masks: &bvh.masks };
         Trace { bvh, ray, ask, watch }.go().query
@@ -143,12 +143,12 @@ impl Selected<'_> {
     /// [`Bvh::closest_hit_watched`] among what is selected. Primitives that are not are among the candidates.
     ///
     /// ```
-    /// # use lookfrom_bvh::{Builder, Ray, Selection, Sphere, Watch};
+    /// # use lookfrom_bvh::{Builder, Ray, Selection, Sphere, Observer};
     /// # let mut builder = Builder::new();
     /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
     /// # let bvh = builder.build()?;
     /// struct Nodes(u32);
-    /// impl Watch for Nodes {
+    /// impl Observer for Nodes {
     ///     fn node(&mut self, _: u32, _: u32) {
     ///         self.0 += 1;
     ///     }
@@ -159,7 +159,7 @@ impl Selected<'_> {
     /// assert_eq!(nodes.0, 1);
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
-    pub fn closest_hit_watched(&self, ray: &Ray, watch: &mut impl Watch) -> Hit {
+    pub fn closest_hit_watched(&self, ray: &Ray, watch: &mut impl Observer) -> Hit {
         self.ask(ray, Closest::new, watch).hit
     }
 
@@ -285,7 +285,7 @@ impl<Q: Query> Query for Only<'_, Q> {
 
 /// Those of some lanes that a query is about. Not those that are missed: there the faces may be wrong.
 #[inline(never)]
-pub(crate) fn shown<Q: Query>(query: &Q, block: &TriangleBlock, ray: &Exact, lanes: Chosen) -> u32 {
+pub(crate) fn shown<Q: Query>(query: &Q, block: &TriangleBlock, ray: &Exact, lanes: LaneMask) -> u32 {
     let is_shown = |&lane: &usize| {
         let (geometry, primitive) = block.ids(lane);
         let is_front = || triangle::is_front(ray, &block.corners(lane));

@@ -1,6 +1,6 @@
 //! The one loop: which primitives does a ray meet?
 //!
-//! Generic over what is asked ([`Query`]: the closest hit, any hit, all hits) and over who watches ([`Watch`]). Children are
+//! Generic over what is asked ([`Query`]: the closest hit, any hit, all hits) and over who watches ([`Observer`]). Children are
 //! visited from near to far; what lies beyond the query's current end is skipped. The order of visits never shows in
 //! a result: ends are compared with room for errors (see `node`), and ties are decided by ids (see `Hit`).
 
@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::Bvh;
 use crate::bvh::{Leaf, SphereItem};
-use crate::dispatch::at_level;
+use crate::dispatch::dispatch;
 use crate::exact::Exact;
 use crate::filter::{Sieve, TriangleBlock};
 use crate::instance::Instance;
@@ -19,9 +19,9 @@ use crate::ray::{Hit, NONE, Ray};
 use crate::selection::shown;
 use crate::triangle::Crossing;
 use crate::waiting::{Stack, Waiting, with_stack};
-use crate::watch::Watch;
+use crate::watch::Observer;
 use crate::{sphere, triangle};
-use lookfrom_simd::{Chosen, Simd, Work};
+use lookfrom_simd::{Kernel, LaneMask, Simd};
 
 /// Traces one ray at the best level that there is, and gives back the query. `ask` makes it: inside of the code for the level, so
 /// that it may live in registers.
@@ -32,14 +32,14 @@ pub(crate) struct Trace<'a, F, W> {
     pub(crate) watch: W,
 }
 
-impl<Q: Query, F: FnOnce(&Ray) -> Q, W: Watch> Trace<'_, F, W> {
+impl<Q: Query, F: FnOnce(&Ray) -> Q, W: Observer> Trace<'_, F, W> {
     #[inline(always)]
     pub(crate) fn go(self) -> Q {
-        at_level(self.bvh.level, self)
+        dispatch(self.bvh.level, self)
     }
 }
 
-impl<Q: Query, F: FnOnce(&Ray) -> Q, W: Watch> Work for Trace<'_, F, W> {
+impl<Q: Query, F: FnOnce(&Ray) -> Q, W: Observer> Kernel for Trace<'_, F, W> {
     type Output = Q;
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Q {
@@ -53,7 +53,7 @@ impl<Q: Query, F: FnOnce(&Ray) -> Q, W: Watch> Work for Trace<'_, F, W> {
 
 /// Traces a ray in the world.
 #[inline(always)]
-pub(crate) fn trace<S: Simd, Q: Query, W: Watch>(
+pub(crate) fn trace<S: Simd, Q: Query, W: Observer>(
     simd: S,
     bvh: &Bvh,
     ray: &Ray,
@@ -81,7 +81,7 @@ pub(crate) fn trace<S: Simd, Q: Query, W: Watch>(
 ///
 /// Not inlined, so that the loop over the outer tree keeps its registers; compiled for the level again inside.
 #[inline(never)]
-fn trace_any<S: Simd, Q: Query, W: Watch>(
+fn trace_any<S: Simd, Q: Query, W: Observer>(
     simd: S,
     bvh: &Bvh,
     exact: &Exact,
@@ -98,7 +98,7 @@ fn trace_any<S: Simd, Q: Query, W: Watch>(
 }
 
 /// Takes a ray into instances.
-fn instances<S: Simd, Q: Query, W: Watch>(
+fn instances<S: Simd, Q: Query, W: Observer>(
     simd: S,
     bvh: &Bvh,
     mut range: Range<usize>,
@@ -126,7 +126,7 @@ fn instances<S: Simd, Q: Query, W: Watch>(
 
 /// Traces a ray through one tree that is not empty.
 #[inline(always)]
-fn traverse<S: Simd, Q: Query, W: Watch>(
+fn traverse<S: Simd, Q: Query, W: Observer>(
     simd: S,
     bvh: &Bvh,
     ray: &Prepared,
@@ -187,7 +187,7 @@ pub(crate) struct Answer<Q, W> {
 }
 
 #[inline(always)]
-fn triangles<'a, S: Simd, Q: Query, W: Watch>(
+fn triangles<'a, S: Simd, Q: Query, W: Observer>(
     simd: S,
     block: &'a TriangleBlock,
     sieve: &Sieve<S>,
@@ -208,7 +208,7 @@ fn triangles<'a, S: Simd, Q: Query, W: Watch>(
         sifted.kept.0 &= shown;
         sifted.surely_hit.0 &= shown;
     }
-    if Q::ANY_HIT && sifted.surely_hit != Chosen(0) {
+    if Q::ANY_HIT && sifted.surely_hit != LaneMask(0) {
         let (geometry, primitive) = block.ids(sifted.surely_hit.0.trailing_zeros() as usize);
         return answer.query.accept(Hit { t: exact().t_min, geometry, primitive, ..Hit::MISS });
     }
@@ -247,7 +247,7 @@ struct Undecided<'a> {
 /// Decides whether and where a triangle is hit, and tells.
 #[cold]
 #[inline(never)]
-pub(crate) fn decide<Q: Query, W: Watch>(
+pub(crate) fn decide<Q: Query, W: Observer>(
     block: &TriangleBlock,
     lane: usize,
     ray: &Exact,
@@ -261,7 +261,7 @@ pub(crate) fn decide<Q: Query, W: Watch>(
 ///
 /// Not inlined: compiled for AVX-512, its scattered loads become vectors of 512 bits, which slow down all that is around them.
 #[inline(never)]
-pub(crate) fn cross_surely<Q: Query, W: Watch>(
+pub(crate) fn cross_surely<Q: Query, W: Observer>(
     block: &TriangleBlock,
     lane: usize,
     exact: impl Fn() -> Exact,
@@ -272,7 +272,7 @@ pub(crate) fn cross_surely<Q: Query, W: Watch>(
 
 /// Tells where a triangle is hit.
 #[inline(always)]
-fn tell<Q: Query, W: Watch>(
+fn tell<Q: Query, W: Observer>(
     crossing: Crossing,
     block: &TriangleBlock,
     lane: usize,
@@ -285,7 +285,7 @@ fn tell<Q: Query, W: Watch>(
 
 /// Tests what is not a triangle.
 #[inline(never)]
-fn other_leaf<S: Simd, Q: Query, W: Watch>(
+fn other_leaf<S: Simd, Q: Query, W: Observer>(
     simd: S,
     bvh: &Bvh,
     leaf: &Leaf,
@@ -301,7 +301,7 @@ fn other_leaf<S: Simd, Q: Query, W: Watch>(
     }
 }
 
-fn spheres<Q: Query, W: Watch>(spheres: &[SphereItem], ray: &Exact, answer: &mut Answer<Q, W>) -> bool {
+fn spheres<Q: Query, W: Observer>(spheres: &[SphereItem], ray: &Exact, answer: &mut Answer<Q, W>) -> bool {
     for item in spheres {
         let (geometry, primitive, instance) = (item.geometry, item.primitive, answer.instance);
         answer.watch.candidate(instance, geometry, primitive);
@@ -322,7 +322,7 @@ fn spheres<Q: Query, W: Watch>(spheres: &[SphereItem], ray: &Exact, answer: &mut
     false
 }
 
-fn procedurals<Q: Query, W: Watch>(
+fn procedurals<Q: Query, W: Observer>(
     bvh: &Bvh,
     range: Range<usize>,
     ray: &Exact,

@@ -3,12 +3,12 @@
 /// Listens while a ray is traced. Every method does nothing unless written; `()` listens to nothing and costs nothing.
 ///
 /// ```
-/// use lookfrom_bvh::{Builder, Ray, Sphere, Watch};
+/// use lookfrom_bvh::{Builder, Ray, Sphere, Observer};
 ///
 /// /// Counts nodes.
 /// struct Nodes(u32);
 ///
-/// impl Watch for Nodes {
+/// impl Observer for Nodes {
 ///     fn node(&mut self, _instance: u32, _node: u32) {
 ///         self.0 += 1;
 ///     }
@@ -21,7 +21,7 @@
 /// assert_eq!(nodes.0, 1);
 /// # Ok::<(), lookfrom_bvh::BuildError>(())
 /// ```
-pub trait Watch {
+pub trait Observer {
     /// Whether [`Self::candidate`] is to be called at all.
     const LISTENS: bool = true;
 
@@ -36,11 +36,11 @@ pub trait Watch {
     }
 }
 
-impl Watch for () {
+impl Observer for () {
     const LISTENS: bool = false;
 }
 
-impl<W: Watch> Watch for &mut W {
+impl<W: Observer> Observer for &mut W {
     const LISTENS: bool = W::LISTENS;
 
     fn node(&mut self, instance: u32, node: u32) {

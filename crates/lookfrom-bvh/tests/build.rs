@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use lookfrom_bvh::{Aabb, Affine, BuildError, Builder, Bvh, Hit, Quality, Ray, Sphere, Triangles, Watch};
+use lookfrom_bvh::{Aabb, Affine, BuildError, Builder, Bvh, Hit, Observer, Quality, Ray, Sphere, Triangles};
 
 #[path = "../src/testing.rs"]
 mod testing;
@@ -244,7 +244,7 @@ fn watchers_see_what_is_visited() {
         nodes: Vec<(u32, u32)>,
         candidates: Vec<(u32, u32, u32)>,
     }
-    impl Watch for Count {
+    impl Observer for Count {
         fn node(&mut self, instance: u32, node: u32) {
             self.nodes.push((instance, node));
         }

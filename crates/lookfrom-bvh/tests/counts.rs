@@ -4,7 +4,7 @@
 #[path = "../src/testing.rs"]
 mod testing;
 
-use lookfrom_bvh::{Builder, Quality, Ray, Triangles, Watch};
+use lookfrom_bvh::{Builder, Observer, Quality, Ray, Triangles};
 use testing::Random;
 
 #[derive(Default)]
@@ -13,7 +13,7 @@ struct Counts {
     triangles: u64,
 }
 
-impl Watch for Counts {
+impl Observer for Counts {
     fn node(&mut self, _instance: u32, _node: u32) {
         self.nodes += 1;
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use lookfrom_bvh::{
-    Affine, Builder, Bvh, Hit, Hit64, NONE, Quality, Ray, Ray64, Sphere, Triangles, reference,
+    Affine, Builder, Bvh, Hit, HitF64, NONE, Quality, Ray, RayF64, Sphere, Triangles, reference,
 };
 
 mod shapes;
@@ -58,11 +58,11 @@ fn placed(bvh: Bvh, maps: &[Affine]) -> Bvh {
     builder.build().unwrap()
 }
 
-fn ids(hit: &Hit64) -> (u32, u32, u32) {
+fn ids(hit: &HitF64) -> (u32, u32, u32) {
     (hit.instance, hit.geometry, hit.primitive)
 }
 
-fn rounded(hit: &Hit64) -> Hit {
+fn rounded(hit: &HitF64) -> Hit {
     let [t, u, v] = [hit.t, hit.u, hit.v].map(|x| x as f32);
     Hit { t, u, v, primitive: hit.primitive, geometry: hit.geometry, instance: hit.instance }
 }
@@ -133,7 +133,7 @@ fn rays_that_are_numbers_of_f32_get_the_same_answers() {
             if closest64.is_hit() && at_an_end {
                 continue;
             }
-            assert_eq!(closest64, all64.first().copied().unwrap_or(Hit64::MISS), "{ray:?}");
+            assert_eq!(closest64, all64.first().copied().unwrap_or(HitF64::MISS), "{ray:?}");
             assert_eq!(closest.t, closest64.t as f32);
             if closest != rounded(&closest64) {
                 assert!(closest64.is_hit() && all.contains(&rounded(&closest64)), "{ray:?}");
@@ -172,7 +172,7 @@ fn rays_in_f64_agree_with_the_reference() {
             };
             let (a, b) = (fine(&mut random, center, 8.0 * size), fine(&mut random, center, 2.0 * size));
             let d = [0, 1, 2].map(|i| (b[i] - a[i]) / 3.0);
-            bvh.all_hits_f64(&Ray64::new(a, d), &mut found);
+            bvh.all_hits_f64(&RayF64::new(a, d), &mut found);
             let expected = reference::all(&shapes, a, d, 0.0, f64::INFINITY);
             // The nearest of each, as the reference gives them.
             found.sort_by_key(|hit| hit.geometry);
@@ -204,11 +204,11 @@ fn finer_than_f32() {
     let hit = bvh.closest_hit_f64(&ray.into());
     assert_eq!((ids(&hit), hit.t), ((NONE, 0, 1), 100.0));
     assert_eq!(bvh.closest_hit(&ray).primitive, 0, "a tie in f32");
-    assert!(!bvh.occluded_f64(&Ray64 { t_max: 100.0, ..ray.into() }));
-    assert!(bvh.occluded_f64(&Ray64 { t_max: 100.000_000_000_001, ..ray.into() }));
+    assert!(!bvh.occluded_f64(&RayF64 { t_max: 100.0, ..ray.into() }));
+    assert!(bvh.occluded_f64(&RayF64 { t_max: 100.000_000_000_001, ..ray.into() }));
     // Between the two.
-    let between = Ray64 { t_min: 100.0 + 1e-9, t_max: 100.0 + 1e-7, ..ray.into() };
-    assert_eq!(bvh.closest_hit_f64(&between), Hit64::MISS);
+    let between = RayF64 { t_min: 100.0 + 1e-9, t_max: 100.0 + 1e-7, ..ray.into() };
+    assert_eq!(bvh.closest_hit_f64(&between), HitF64::MISS);
 }
 
 #[test]
@@ -216,20 +216,20 @@ fn what_cannot_be_traced_misses() {
     let mut builder = Builder::new();
     builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
     let bvh = builder.build().unwrap();
-    let good = Ray64::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    let good = RayF64::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
     assert!(bvh.occluded_f64(&good));
     for bad in [
-        Ray64 { origin: [f64::NAN, 0.0, 3.0], ..good },
-        Ray64 { origin: [0.0, 0.0, 1e300], ..good },
-        Ray64 { direction: [0.0, -0.0, 0.0], ..good },
-        Ray64 { direction: [0.0, 0.0, -1e-60], ..good },
-        Ray64 { direction: [0.0, f64::INFINITY, -1.0], ..good },
-        Ray64 { t_max: f64::NAN, ..good },
-        Ray64 { t_min: 2.0, t_max: 1.0, ..good },
+        RayF64 { origin: [f64::NAN, 0.0, 3.0], ..good },
+        RayF64 { origin: [0.0, 0.0, 1e300], ..good },
+        RayF64 { direction: [0.0, -0.0, 0.0], ..good },
+        RayF64 { direction: [0.0, 0.0, -1e-60], ..good },
+        RayF64 { direction: [0.0, f64::INFINITY, -1.0], ..good },
+        RayF64 { t_max: f64::NAN, ..good },
+        RayF64 { t_min: 2.0, t_max: 1.0, ..good },
     ] {
         assert!(!bvh.occluded_f64(&bad) && !bvh.closest_hit_f64(&bad).is_hit(), "{bad:?}");
     }
-    assert_eq!(Bvh::default().closest_hit_f64(&good), Hit64::MISS);
+    assert_eq!(Bvh::default().closest_hit_f64(&good), HitF64::MISS);
     let scene = placed(bvh, &[Affine { translation: [0.5, 0.0, 0.0], ..Affine::IDENTITY }]);
     assert_eq!(ids(&scene.closest_hit_f64(&good)), (0, 0, 0));
 }

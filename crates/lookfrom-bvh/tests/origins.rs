@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use lookfrom_bvh::{Affine, Builder, Bvh, Hit, Left, Point, Ray, Sphere, Triangles};
+use lookfrom_bvh::{Affine, Builder, Bvh, Hit, OriginPrimitive, Point, Ray, Sphere, Triangles};
 
 #[path = "../src/testing.rs"]
 mod testing;
@@ -266,7 +266,7 @@ fn saying_what_rays_leave_changes_no_answer() {
                 let (point, normal) = Point::on_triangle_with_normal(p0, p1, p2, hit.u, hit.v);
                 let direction = leaving(&mut random, normal);
                 rays.push(Ray::new(point.origin(normal, direction), direction));
-                left.push(Left::of(&hit));
+                left.push(OriginPrimitive::of(&hit));
             }
         }
         let (mut plain, mut told) = (vec![Hit::MISS; rays.len()], vec![Hit::MISS; rays.len()]);

@@ -15,7 +15,7 @@ mod shadow;
 mod whitted;
 
 use glam::Vec3;
-use lookfrom_bvh::{Hit, Left, Ray};
+use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 
 use crate::hash;
 use crate::light::Reference;
@@ -188,7 +188,7 @@ pub struct Samples {
     pub shadows: Vec<Shadow>,
     /// The rays of `shadows`, what they leave, and whether they are blocked: memory.
     rays: Vec<Ray>,
-    left: Vec<Left>,
+    left: Vec<OriginPrimitive>,
     blocked: Vec<bool>,
 }
 

@@ -15,7 +15,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec3;
-use lookfrom_bvh::{Hit, Left, Ray};
+use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_scene::scene::Origin;
 use lookfrom_scene::settings::{ColorMode, Crop, ImageSettings, RenderSettings, Sensor as SensorSettings};
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
@@ -129,7 +129,7 @@ struct Batch {
     weights: Vec<f32>,
     paths: Vec<Path>,
     rays: Vec<Ray>,
-    left: Vec<Left>,
+    left: Vec<OriginPrimitive>,
     hits: Vec<Hit>,
     met: Vec<Met>,
     /// What the camera's rays met, by slot; only where it is asked for.

@@ -3,7 +3,7 @@
 //! Everything is in render space (see `world`).
 
 use glam::{DVec3, Vec2, Vec3};
-use lookfrom_bvh::{Left, Point};
+use lookfrom_bvh::{OriginPrimitive, Point};
 use lookfrom_scene::material::Scalar;
 use lookfrom_scene::medium::Sides;
 
@@ -51,7 +51,7 @@ pub struct Surface {
     /// Which primitive of its form: of a mesh, the triangle.
     pub primitive: u32,
     /// The triangle, as the kernel is told that rays leave it.
-    pub left: Left,
+    pub left: OriginPrimitive,
     /// The kernel's u and v: where on the primitive.
     pub on_primitive: Vec2,
 }

@@ -13,7 +13,7 @@ mod reflectance;
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
-use lookfrom_bvh::{Bvh, Hit, Left, NONE, Ray};
+use lookfrom_bvh::{Bvh, Hit, NONE, OriginPrimitive, Ray};
 use lookfrom_scene::material::{Color, MaterialKind, Scalar};
 use lookfrom_scene::medium::{Medium, Sides};
 use lookfrom_scene::scene::MediumId;
@@ -165,7 +165,7 @@ impl World {
             sides: look.sides.map(|index| self.sides[index as usize]),
             shape: look.shape,
             primitive: hit.primitive,
-            left: Left::of(hit),
+            left: OriginPrimitive::of(hit),
             on_primitive: Vec2::new(hit.u, hit.v),
         }
     }

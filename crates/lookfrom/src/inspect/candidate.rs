@@ -5,7 +5,7 @@
 
 use glam::Vec3;
 use lookfrom_bvh::reference::{Cramer, Quadratic, Rejection, Root, cramer, sphere};
-use lookfrom_bvh::{Hit, NONE, Procedural, Ray, Watch};
+use lookfrom_bvh::{Hit, NONE, Observer, Procedural, Ray};
 use serde::Serialize;
 
 use crate::shape::{Form, Mesh};
@@ -82,7 +82,7 @@ pub(super) fn candidates(world: &World, ray: &Ray, nearest: &Hit) -> Vec<Candida
 /// Listens to the kernel.
 struct Tested(Vec<[u32; 3]>);
 
-impl Watch for Tested {
+impl Observer for Tested {
     fn candidate(&mut self, instance: u32, geometry: u32, primitive: u32) {
         let ids = [instance, geometry, primitive];
         if self.0.len() < MOST_CANDIDATES && !self.0.contains(&ids) {

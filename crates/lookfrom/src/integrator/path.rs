@@ -6,8 +6,8 @@
 mod eight;
 
 use glam::{DVec3, Vec3};
-use lookfrom_bvh::{Hit, Left, Ray};
-use lookfrom_simd::{at_level, level};
+use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
+use lookfrom_simd::{dispatch, level};
 
 use eight::{Plain, Steps};
 
@@ -68,7 +68,7 @@ pub struct Departure {
     /// Density over solid angle of the direction that it took; infinite where that was the only one, or from the camera.
     pub pdf: f32,
     /// The triangle there.
-    pub left: Left,
+    pub left: OriginPrimitive,
     /// Where, in render space.
     pub point: Vec3,
     /// Shading normal there.
@@ -83,7 +83,7 @@ impl Default for Departure {
     fn default() -> Self {
         Self {
             pdf: f32::INFINITY,
-            left: Left::NOTHING,
+            left: OriginPrimitive::NONE,
             point: Vec3::ZERO,
             n: Vec3::Z,
             eta_scale: 1.0,
@@ -199,7 +199,7 @@ impl PathTracer {
         let Some(last) = plain.last() else { return };
         let eight: [Plain<'_>; LANES] = std::array::from_fn(|lane| *plain.get(lane).unwrap_or(last));
         let steps = Steps { tracer: self, world, plain: &eight, count: plain.len(), samples: next };
-        at_level(level(), steps);
+        dispatch(level(), steps);
     }
 
     /// What light does at a surface: from one lamp, and from one direction.

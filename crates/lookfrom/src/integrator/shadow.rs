@@ -5,7 +5,7 @@
 //! most renderers of this kind since Whitted's.
 
 use glam::Vec3;
-use lookfrom_bvh::{Hit, Left, Point, Ray};
+use lookfrom_bvh::{Hit, OriginPrimitive, Point, Ray};
 
 use crate::hash;
 use crate::integrator::{Event, Next, Path, Probe, Samples, Term};
@@ -25,7 +25,7 @@ pub struct Shadow {
     /// From the surface; `t = 1` is the light, unless that is infinitely far.
     pub ray: Ray,
     /// The triangle that it leaves.
-    pub left: Left,
+    pub left: OriginPrimitive,
     /// What is added to the sample if the light is reached.
     pub contribution: Spectrum,
     /// Which sample of the batch.

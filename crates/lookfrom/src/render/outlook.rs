@@ -151,7 +151,8 @@ fn is_lit_from_within(renderer: &Renderer) -> bool {
         match sample.target {
             Target::Point(place) => {
                 let way = (place - origin).as_vec3().to_array();
-                place != origin && !world.bvh.occluded(&Ray::new(origin.as_vec3().to_array(), way).until(1.0))
+                place != origin
+                    && !world.bvh.occluded(&Ray::new(origin.as_vec3().to_array(), way).with_t_max(1.0))
             }
             Target::Surface(..) => {
                 let ray = Ray::new(origin.as_vec3().to_array(), sample.wi.to_array());

@@ -6,9 +6,9 @@ mod asked;
 
 use std::f32::consts::FRAC_1_PI;
 
-use lookfrom_bvh::{Hit, Left, NONE, Ray};
+use lookfrom_bvh::{Hit, NONE, OriginPrimitive, Ray};
 use lookfrom_scene::material::{Color, MaterialKind, Relief};
-use lookfrom_simd::{Simd, Work, f32x8, f64x8, prelude::*, u32x8, u64x8};
+use lookfrom_simd::{Kernel, Simd, f32x8, f64x8, prelude::*, u32x8, u64x8};
 
 use super::{Departure, PathTracer, power_heuristic, purpose};
 use crate::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, orthonormal_bases};
@@ -76,7 +76,7 @@ pub(super) struct Steps<'a, 'b> {
     pub(super) samples: &'b mut Samples,
 }
 
-impl Work for Steps<'_, '_> {
+impl Kernel for Steps<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -117,7 +117,7 @@ impl Work for Steps<'_, '_> {
             let Path { slot, address, media, .. } = **path;
             samples.shadows.push(Shadow {
                 ray,
-                left: Left::of(plain[lane].hit),
+                left: OriginPrimitive::of(plain[lane].hit),
                 contribution,
                 slot,
                 address,
@@ -160,7 +160,7 @@ impl Work for Steps<'_, '_> {
                 media: path.media,
                 departure: Departure {
                     pdf: pdf[lane],
-                    left: Left::of(plain[lane].hit),
+                    left: OriginPrimitive::of(plain[lane].hit),
                     point: points.lane(lane).into(),
                     n: surfaces.n.lane(lane).into(),
                     eta_scale,
