@@ -263,7 +263,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         if way == Way::Closest {
             let mut counts = Counts::default();
             for ray in &rays {
-                bvh.closest_hit_watched(ray, &mut counts);
+                bvh.query().observer(&mut counts).closest_hit(ray);
             }
             let per_ray = |count: u64| count as f64 / rays.len() as f64;
             eprintln!(

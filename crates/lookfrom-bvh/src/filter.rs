@@ -56,9 +56,16 @@ pub(crate) struct Sifted<S: Simd> {
     distance_room: Lanes<S>,
     size: Lanes<S>,
     size_room: Lanes<S>,
+    determinant: Lanes<S>,
 }
 
 impl<S: Simd> Sifted<S> {
+    /// Of those that are surely hit, the triangles whose front the ray looks at.
+    #[inline(always)]
+    pub(crate) fn looks_at_front(&self) -> mask32x8<S> {
+        self.determinant.simd_lt(0.0)
+    }
+
     /// Between which scaled t each of those that are surely hit is surely hit.
     #[inline(always)]
     pub(crate) fn between(&self) -> [Lanes<S>; 2] {
@@ -313,6 +320,7 @@ impl<S: Simd> Found<S> {
             distance_room,
             size,
             size_room,
+            determinant,
         }
     }
 }

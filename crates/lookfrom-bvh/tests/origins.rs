@@ -271,11 +271,11 @@ fn saying_what_rays_leave_changes_no_answer() {
         }
         let (mut plain, mut told) = (vec![Hit::MISS; rays.len()], vec![Hit::MISS; rays.len()]);
         bvh.closest_hits(&rays, &mut plain);
-        bvh.closest_hits_leaving(&rays, &left, &mut told);
+        bvh.query().origins(&left).closest_hits(&rays, &mut told);
         assert_eq!(plain, told);
         let (mut any, mut any_told) = (vec![false; rays.len()], vec![false; rays.len()]);
         bvh.occluded_many(&rays, &mut any);
-        bvh.occluded_many_leaving(&rays, &left, &mut any_told);
+        bvh.query().origins(&left).occluded_many(&rays, &mut any_told);
         assert_eq!(any, any_told);
         for (ray, any) in rays.iter().zip(&any) {
             assert_eq!(bvh.occluded(ray), *any);

@@ -316,7 +316,7 @@ impl Renderer {
             hits.resize(rays.len(), Hit::MISS);
             left.clear();
             left.extend(paths.iter().map(|path| path.departure.left));
-            self.world.bvh.closest_hits_leaving(rays, left, hits);
+            self.world.bvh.query().origins(left).closest_hits(rays, hits);
             guide::note_firsts(firsts, paths, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.

@@ -75,7 +75,7 @@ fn matching_bits(approximate: f32, exact: f64) -> u32 {
 /// Every primitive that the kernel tests `ray` against, in its order.
 pub(super) fn candidates(world: &World, ray: &Ray, nearest: &Hit) -> Vec<Candidate> {
     let mut tested = Tested(Vec::new());
-    world.bvh.closest_hit_watched(ray, &mut tested);
+    world.bvh.query().observer(&mut tested).closest_hit(ray);
     tested.0.into_iter().map(|ids| candidate(world, ray, ids, nearest)).collect()
 }
 

@@ -122,7 +122,7 @@ fn block<P: Probe>(world: &World, samples: &mut Samples, probe: &mut P) -> u64 {
     left.extend(shadows.iter().map(|shadow| shadow.left));
     blocked.clear();
     blocked.resize(rays.len(), false);
-    world.bvh.occluded_many_leaving(rays, left, blocked);
+    world.bvh.query().origins(left).occluded_many(rays, blocked);
     for (shadow, blocked) in shadows.iter_mut().zip(&*blocked) {
         let lanes = &lanes[shadow.slot as usize];
         let passed = if *blocked { Spectrum::BLACK } else { shadow.reached(world, lanes) };
@@ -140,8 +140,9 @@ fn let_through<P: Probe>(world: &World, passing: Passing, samples: &mut Samples,
     let mut active: Vec<usize> = (0..shadows.len()).collect();
     for crossings in 0.. {
         let rays: Vec<Ray> = active.iter().map(|&index| shadows[index].ray).collect();
+        let origins: Vec<OriginPrimitive> = active.iter().map(|&index| shadows[index].left).collect();
         let mut hits = vec![Hit::MISS; rays.len()];
-        world.bvh.closest_hits(&rays, &mut hits);
+        world.bvh.query().origins(&origins).closest_hits(&rays, &mut hits);
         traced += rays.len() as u64;
         let mut hits = hits.into_iter();
         active.retain(|&index| {

@@ -74,7 +74,7 @@ fn seen(renderer: &Renderer, side: u32) -> Vec<Option<Surface>> {
     let mut first = |cell: u32| {
         let place = [width * middle(cell % side), height * middle(cell / side)];
         let ray = renderer.kernel_ray(&camera.ray(place, [0.5; 2]));
-        world.bvh.all_hits(&ray, &mut hits);
+        world.bvh.query().all_hits(&ray, &mut hits);
         // The camera's rays pass these.
         let is_passed =
             |surface: &Surface| surface.single_sided && !surface.front || world.is_interface(surface);
@@ -99,7 +99,7 @@ fn body_around_the_eye(renderer: &Renderer, seen: &[Option<Surface>], is_model: 
         let place = |cell: u32| (cell as f32 + 0.37) / AROUND as f32;
         let direction = warp::octahedral_direction([place(cell % AROUND), place(cell / AROUND)]);
         let ray = Ray::new(eye, direction.to_array());
-        world.bvh.all_hits(&ray, &mut hits);
+        world.bvh.query().all_hits(&ray, &mut hits);
         let surfaces = hits.iter().map(|hit| world.surface(&ray, hit));
         let crossed: Vec<Surface> =
             surfaces.filter(|surface| is_part(surface) && is_opaque(world, surface)).collect();
