@@ -33,7 +33,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     for pair in rays.as_chunks::<2>().0 {
         let ray = Ray::new(pair[0], pair[1]);
         let mut all = Vec::new();
-        trees[0].all_hits(&ray, &mut all);
+        trees[0].query().all_hits(&ray, &mut all);
         if !is_tame {
             trees.iter().for_each(|tree| _ = (tree.closest_hit(&ray), tree.occluded(&ray)));
             continue;
@@ -44,7 +44,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
             assert_eq!(tree.closest_hit(&ray), nearest, "the nearest of all hits");
             assert_eq!(tree.occluded(&ray), nearest.is_hit());
             let mut same = Vec::new();
-            tree.all_hits(&ray, &mut same);
+            tree.query().all_hits(&ray, &mut same);
             assert_eq!(same, all, "whatever the tree");
         }
     }

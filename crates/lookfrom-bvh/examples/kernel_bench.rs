@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-use lookfrom_bvh::{Builder, Bvh, Hit, NONE, Quality, Ray, Triangles, Watch};
+use lookfrom_bvh::{Builder, Bvh, Hit, NONE, Observer, Quality, Ray, Triangles};
 
 /// Rays that are dealt to a thread at once.
 const CHUNK: usize = 4096;
@@ -162,7 +162,7 @@ struct Counts {
     triangles: u64,
 }
 
-impl Watch for Counts {
+impl Observer for Counts {
     fn node(&mut self, _instance: u32, _node: u32) {
         self.nodes += 1;
     }
@@ -263,7 +263,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         if way == Way::Closest {
             let mut counts = Counts::default();
             for ray in &rays {
-                bvh.closest_hit_watched(ray, &mut counts);
+                bvh.query().observer(&mut counts).closest_hit(ray);
             }
             let per_ray = |count: u64| count as f64 / rays.len() as f64;
             eprintln!(

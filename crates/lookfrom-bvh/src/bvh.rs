@@ -1,28 +1,24 @@
-//! The tree itself, and the doors to it.
+//! The tree, and the plain questions to it. `query` has all others.
 
 use std::sync::Arc;
 
 use crate::aabb::Aabb;
-use crate::dispatch::at_level;
 use crate::filter::TriangleBlock;
 use crate::instance::Instance;
 use crate::masks::Masks;
 use crate::node::Node;
-use crate::packet::{OccludedMany, TraceMany};
 use crate::procedural::Procedural;
-use crate::query::{All, Any, Closest};
-use crate::ray::{Hit, Left, Ray};
+use crate::query::Settings;
+use crate::ray::{Hit, Ray};
 use crate::sphere::Sphere;
-use crate::traverse::Trace;
 use crate::validate::{Invalid, Statistics};
-use crate::watch::Watch;
+use crate::{batch, single};
 use lookfrom_simd::{Level, level};
 
-/// Rays (or points) that one thread answers before it looks for others' work.
-#[cfg(feature = "parallel")]
-const BATCH: usize = 4096;
-
 /// Geometry that rays can be traced against. Made by a [`Builder`](crate::Builder); frozen, and shared between threads.
+///
+/// The plain questions are methods: the closest hit, occlusion, and both for batches of [`Ray`]s. [`Self::query`] asks all
+/// others: all hits, masks and faces, origin primitives, observers, rays in f64.
 ///
 /// ```
 /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -39,6 +35,8 @@ pub struct Bvh {
     pub(crate) triangles: Vec<TriangleBlock>,
     /// Those that hold no triangles.
     pub(crate) leaves: Vec<Leaf>,
+    /// The boxes of these, as nodes have them.
+    pub(crate) leaf_bounds: Vec<Aabb>,
     pub(crate) spheres: Vec<SphereItem>,
     pub(crate) procedurals: Vec<ProceduralItem>,
     pub(crate) procedural_shapes: Vec<Arc<dyn Procedural>>,
@@ -83,6 +81,7 @@ impl Default for Bvh {
             nodes: Vec::new(),
             triangles: Vec::new(),
             leaves: Vec::new(),
+            leaf_bounds: Vec::new(),
             spheres: Vec::new(),
             procedurals: Vec::new(),
             procedural_shapes: Vec::new(),
@@ -131,6 +130,7 @@ impl Bvh {
             + size_of_val(&*self.nodes)
             + size_of_val(&*self.triangles)
             + size_of_val(&*self.leaves)
+            + size_of_val(&*self.leaf_bounds)
             + size_of_val(&*self.spheres)
             + size_of_val(&*self.procedurals)
             + size_of_val(&*self.procedural_shapes)
@@ -169,8 +169,8 @@ impl Bvh {
         crate::validate::validate(self)
     }
 
-    /// The hit with the least t in the ray's range; of several at equal t the one with the lowest ids, where geometry
-    /// outside of instances comes first, then by instance, geometry and primitive. [`Hit::MISS`] where there is none.
+    /// The hit with the least t in the ray's range, or [`Hit::MISS`]. Of several hits at equal t it is the one with the lowest
+    /// ids: geometry outside of instances comes first, then by instance, geometry and primitive.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Hit, Ray, Sphere};
@@ -182,30 +182,7 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn closest_hit(&self, ray: &Ray) -> Hit {
-        Trace { bvh: self, ray, ask: Closest::new, watch: () }.go().hit
-    }
-
-    /// [`Self::closest_hit`], while someone watches. The answer is the same.
-    ///
-    /// ```
-    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
-    /// # let mut builder = Builder::new();
-    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
-    /// # let bvh = builder.build()?;
-    /// # use lookfrom_bvh::Watch;
-    /// struct Candidates(u32);
-    /// impl Watch for Candidates {
-    ///     fn candidate(&mut self, _: u32, _: u32, _: u32) {
-    ///         self.0 += 1;
-    ///     }
-    /// }
-    /// let mut candidates = Candidates(0);
-    /// let hit = bvh.closest_hit_watched(&Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]), &mut candidates);
-    /// assert_eq!((hit.t, candidates.0), (2.0, 1));
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn closest_hit_watched(&self, ray: &Ray, watch: &mut impl Watch) -> Hit {
-        Trace { bvh: self, ray, ask: Closest::new, watch }.go().hit
+        single::closest_hit_of_everything(self, ray)
     }
 
     /// Whether anything is hit in the ray's range.
@@ -216,35 +193,15 @@ impl Bvh {
     /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
     /// # let bvh = builder.build()?;
     /// let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
-    /// assert!(bvh.occluded(&ray) && !bvh.occluded(&ray.until(2.0)));
+    /// assert!(bvh.occluded(&ray) && !bvh.occluded(&ray.with_t_max(2.0)));
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn occluded(&self, ray: &Ray) -> bool {
-        Trace { bvh: self, ray, ask: Any::new, watch: () }.go().found
+        single::occluded_by_everything(self, ray)
     }
 
-    /// Replaces the content of `hits` by all hits in the ray's range, sorted by t and then as [`Self::closest_hit`]
-    /// decides ties. A triangle gives at most one hit, a sphere two, a procedural shape one (its nearest).
-    ///
-    /// ```
-    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
-    /// # let mut builder = Builder::new();
-    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
-    /// # let bvh = builder.build()?;
-    /// let mut hits = Vec::new();
-    /// bvh.all_hits(&Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]), &mut hits);
-    /// assert_eq!(hits.iter().map(|hit| hit.t).collect::<Vec<_>>(), [2.0, 4.0]);
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn all_hits(&self, ray: &Ray, hits: &mut Vec<Hit>) {
-        hits.clear();
-        let room = std::mem::take(hits);
-        *hits = Trace { bvh: self, ray, ask: move |ray: &Ray| All::new(ray, room), watch: () }.go().hits;
-        sort(hits);
-    }
-
-    /// [`Self::closest_hit`] for each ray, on several threads where there are many. The two slices should be equally
-    /// long; what one has more than the other is left alone.
+    /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent rays are traced in packets. The two
+    /// slices should be equally long; the surplus of the longer one is left alone.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Hit, Ray, Sphere};
@@ -258,34 +215,10 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
-        self.closest_hits_leaving(rays, &[], hits);
+        batch::closest_hits(&Settings::new(self), rays, hits);
     }
 
-    /// [`Self::closest_hits`] of rays that leave triangles, which a third slice tells (rays beyond its end leave none). Where
-    /// that is true the answers are the same, sooner.
-    ///
-    /// ```
-    /// # use lookfrom_bvh::{Builder, Hit, Left, Ray, Triangles};
-    /// # let mut builder = Builder::new();
-    /// # let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    /// # builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
-    /// # let bvh = builder.build()?;
-    /// let hit = bvh.closest_hit(&Ray::new([0.2, 0.2, 1.0], [0.0, 0.0, -1.0]));
-    /// let mirrored = Ray::new([0.2, 0.2, 0.0_f32.next_up()], [0.0, 0.0, 1.0]);
-    /// let mut hits = [hit];
-    /// bvh.closest_hits_leaving(&[mirrored], &[Left::of(&hit)], &mut hits);
-    /// assert_eq!(hits, [Hit::MISS]);
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn closest_hits_leaving(&self, rays: &[Ray], left: &[Left], hits: &mut [Hit]) {
-        for_batches(rays, hits, |first, rays, hits| {
-            let left = left.get(first..).unwrap_or_default();
-            at_level(self.level, TraceMany { bvh: self, rays, left, hits });
-        });
-    }
-
-    /// [`Self::occluded`] for each ray, on several threads where there are many. The two slices should be equally
-    /// long; what one has more than the other is left alone.
+    /// [`Self::occluded`] for each ray, as [`Self::closest_hits`].
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -299,64 +232,6 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn occluded_many(&self, rays: &[Ray], occluded: &mut [bool]) {
-        self.occluded_many_leaving(rays, &[], occluded);
+        batch::occluded_many(&Settings::new(self), rays, occluded);
     }
-
-    /// [`Self::occluded_many`] for rays that leave triangles, as [`Self::closest_hits_leaving`].
-    ///
-    /// ```
-    /// # use lookfrom_bvh::{Builder, Hit, Left, Ray, Triangles};
-    /// # let mut builder = Builder::new();
-    /// # let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    /// # builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
-    /// # let bvh = builder.build()?;
-    /// let left = Left { geometry: 0, primitive: 0 };
-    /// let mut occluded = [true];
-    /// let ray = Ray::new([0.2, 0.2, 0.0_f32.next_up()], [0.0, 0.0, 1.0]);
-    /// bvh.occluded_many_leaving(&[ray], &[left], &mut occluded);
-    /// assert_eq!(occluded, [false]);
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn occluded_many_leaving(&self, rays: &[Ray], left: &[Left], occluded: &mut [bool]) {
-        for_batches(rays, occluded, |first, rays, occluded| {
-            let left = left.get(first..).unwrap_or_default();
-            at_level(self.level, OccludedMany { bvh: self, rays, left, occluded });
-        });
-    }
-}
-
-/// Sorts hits by t and then as ties are decided.
-pub(crate) fn sort(hits: &mut [Hit]) {
-    // A zero is a zero, whatever its sign.
-    hits.sort_unstable_by(|a, b| (a.t + 0.0).total_cmp(&(b.t + 0.0)).then_with(|| a.rank().cmp(&b.rank())));
-}
-
-/// Answers each question in its place, batch by batch on several threads where there are many.
-pub(crate) fn for_each<Q: Sync, A: Send>(
-    questions: &[Q],
-    answers: &mut [A],
-    answer: impl Fn(&Q, &mut A) + Sync,
-) {
-    for_batches(questions, answers, |_, questions, answers| {
-        questions.iter().zip(answers).for_each(|(question, place)| answer(question, place));
-    });
-}
-
-/// The same, batch by batch, with the number of its first question.
-fn for_batches<Q: Sync, A: Send>(
-    questions: &[Q],
-    answers: &mut [A],
-    answer: impl Fn(usize, &[Q], &mut [A]) + Sync,
-) {
-    #[cfg(feature = "parallel")]
-    if questions.len() > BATCH {
-        use rayon::prelude::*;
-        questions
-            .par_chunks(BATCH)
-            .zip(answers.par_chunks_mut(BATCH))
-            .enumerate()
-            .for_each(|(batch, (questions, answers))| answer(batch * BATCH, questions, answers));
-        return;
-    }
-    answer(0, questions, answers);
 }

@@ -11,7 +11,8 @@ use std::collections::BinaryHeap;
 use crate::Bvh;
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
 use crate::affine::Affine;
-use crate::bvh::{Leaf, for_each};
+use crate::batch::for_each;
+use crate::bvh::Leaf;
 use crate::ellipsoid::nearest_on_ellipsoid;
 use crate::node::{Child, Content, WIDTH};
 use crate::ray::NONE;
@@ -108,7 +109,7 @@ impl Bvh {
         max_distance: f32,
         nearest: &mut [Option<ClosestPoint>],
     ) {
-        for_each(points, nearest, |&point, nearest| *nearest = self.closest_point(point, max_distance));
+        for_each(points, nearest, |_, &point, nearest| *nearest = self.closest_point(point, max_distance));
     }
 
     /// Whether [`Self::closest_point`] would find any: stops at the first primitive that is near enough.
@@ -138,7 +139,7 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn are_near(&self, points: &[[f32; 3]], max_distance: f32, near: &mut [bool]) {
-        for_each(points, near, |&point, near| *near = self.is_near(point, max_distance));
+        for_each(points, near, |_, &point, near| *near = self.is_near(point, max_distance));
     }
 
     fn search_points(&self, point: [f32; 3], max_distance: f32, any: bool) -> Option<ClosestPoint> {

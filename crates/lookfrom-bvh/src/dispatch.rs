@@ -1,15 +1,15 @@
 //! SIMD dispatch of the kernel: `lookfrom_simd`'s, and in unit tests the scalar level as well.
 
-use lookfrom_simd::{Level, Work};
+use lookfrom_simd::{Kernel, Level};
 
-/// [`lookfrom_simd::at_level`].
+/// [`lookfrom_simd::dispatch`].
 #[inline(always)]
-pub(crate) fn at_level<W: Work>(level: Level, work: W) -> W::Output {
+pub(crate) fn dispatch<W: Kernel>(level: Level, work: W) -> W::Output {
     #[cfg(test)]
     if level.is_fallback() {
         return work.run(fearless_simd::Fallback::new());
     }
-    lookfrom_simd::at_level(level, work)
+    lookfrom_simd::dispatch(level, work)
 }
 
 /// Every level that this machine has.

@@ -6,7 +6,7 @@
 use crate::aabb::Aabb;
 use crate::prepared::{self, Prepared};
 use crate::ray::NONE;
-use lookfrom_simd::{Chosen, Simd, f32x8, mask32x8, prelude::*};
+use lookfrom_simd::{LaneMask, Simd, f32x8, mask32x8, prelude::*};
 
 /// Triangles in a block.
 pub(crate) const BLOCK: usize = 8;
@@ -47,18 +47,25 @@ const UNUSED: f32 = -1.0;
 /// What the filter says of a block.
 pub(crate) struct Sifted<S: Simd> {
     /// Those that are not surely missed: they are to be decided.
-    pub(crate) kept: Chosen,
+    pub(crate) kept: LaneMask,
     /// Those of which the decision is known: a hit in the ray's range.
-    pub(crate) surely_hit: Chosen,
+    pub(crate) surely_hit: LaneMask,
     /// The same as a mask.
     pub(crate) sure: mask32x8<S>,
     distance: Lanes<S>,
     distance_room: Lanes<S>,
     size: Lanes<S>,
     size_room: Lanes<S>,
+    determinant: Lanes<S>,
 }
 
 impl<S: Simd> Sifted<S> {
+    /// Of those that are surely hit, the triangles whose front the ray looks at.
+    #[inline(always)]
+    pub(crate) fn looks_at_front(&self) -> mask32x8<S> {
+        self.determinant.simd_lt(0.0)
+    }
+
     /// Between which scaled t each of those that are surely hit is surely hit.
     #[inline(always)]
     pub(crate) fn between(&self) -> [Lanes<S>; 2] {
@@ -306,13 +313,14 @@ impl<S: Simd> Found<S> {
         let sure = inside & in_range & size.simd_gt(size_room) & !unused;
         let lanes = (1 << BLOCK) - 1;
         Sifted {
-            kept: Chosen(!excluded.to_bitmask() as u32 & lanes),
-            surely_hit: Chosen(sure.to_bitmask() as u32 & lanes),
+            kept: LaneMask(!excluded.to_bitmask() as u32 & lanes),
+            surely_hit: LaneMask(sure.to_bitmask() as u32 & lanes),
             sure,
             distance,
             distance_room,
             size,
             size_room,
+            determinant,
         }
     }
 }
@@ -395,18 +403,18 @@ impl SeenBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dispatch::{at_level, levels};
+    use crate::dispatch::{dispatch, levels};
     use crate::exact::Exact;
     use crate::ray::Ray;
     use crate::triangle::decide;
-    use lookfrom_simd::Work;
+    use lookfrom_simd::Kernel;
 
     struct Filter<'a>(&'a TriangleBlock, &'a Prepared);
 
-    impl Work for Filter<'_> {
-        type Output = (Chosen, Chosen, [f32; 2]);
+    impl Kernel for Filter<'_> {
+        type Output = (LaneMask, LaneMask, [f32; 2]);
         #[inline(always)]
-        fn run<S: Simd>(self, simd: S) -> (Chosen, Chosen, [f32; 2]) {
+        fn run<S: Simd>(self, simd: S) -> (LaneMask, LaneMask, [f32; 2]) {
             let sifted = self.0.filter(simd, &Sieve::new(simd, self.1), f32::INFINITY);
             let [first, last] = sifted.between();
             (sifted.kept, sifted.surely_hit, [first[0], last[0]])
@@ -437,7 +445,7 @@ mod tests {
             let Some(shadow) = Prepared::new(fearless_simd::Fallback::new(), &exact, 0.0) else { continue };
             let block = TriangleBlock::new(&[(corners, 0, 0)]);
             let (chosen, surely_hit, [first, last]) =
-                at_level(levels[all % levels.len()], Filter(&block, &shadow));
+                dispatch(levels[all % levels.len()], Filter(&block, &shadow));
             let keep = chosen.count();
             all += 1;
             kept += keep;
@@ -446,7 +454,7 @@ mod tests {
                 hits += 1;
                 assert_eq!(keep, 1, "{corners:?} {ray:?}");
             }
-            if surely_hit != Chosen(0) {
+            if surely_hit != LaneMask(0) {
                 sure += 1;
                 let t = f64::from(hit.unwrap().t) * f64::from(shadow.shadow.scale);
                 assert!(f64::from(first) < t && t < f64::from(last), "{corners:?} {ray:?}");

@@ -2,9 +2,10 @@
 
 use crate::aabb::Aabb;
 use crate::filter::{self, Sieve};
+use crate::origin_primitive::OriginPrimitive;
 use crate::prepared::{self, FAR, LARGEST_RECIPROCAL, SHORT};
-use crate::ray::Ray;
-use lookfrom_simd::{Simd, f32x8, i32x8, prelude::*};
+use crate::ray::{NONE, Ray};
+use lookfrom_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
 
 /// Rays in a group.
 pub(crate) const LANES: usize = 8;
@@ -37,6 +38,8 @@ pub(crate) struct Group<S: Simd> {
     /// That hit's block and its lane in it.
     pub(crate) block: i32x8<S>,
     pub(crate) lane: i32x8<S>,
+    /// Geometry and primitive of the triangles outside of instances that the rays start on.
+    origin_ids: [i32x8<S>; 2],
 }
 
 impl<S: Simd> Group<S> {
@@ -58,6 +61,7 @@ impl<S: Simd> Group<S> {
             last: zero,
             block: number,
             lane: number,
+            origin_ids: [number; 2],
         }
     }
 
@@ -112,7 +116,35 @@ impl<S: Simd> Group<S> {
             last: none,
             block: i32x8::splat(simd, NO_BLOCK),
             lane: i32x8::splat(simd, 0),
+            origin_ids: [i32x8::splat(simd, NONE as i32); 2],
         }
+    }
+
+    /// Takes the origin primitives of the rays, lane by lane.
+    #[inline(always)]
+    pub(crate) fn set_origins(&mut self, simd: S, origin: impl Fn(usize) -> OriginPrimitive) {
+        let mut ids = [[NONE as i32; LANES]; 2];
+        for lane in 0..LANES {
+            let OriginPrimitive { instance, geometry, primitive } = origin(lane);
+            if instance == NONE {
+                (ids[0][lane], ids[1][lane]) = (geometry as i32, primitive as i32);
+            }
+        }
+        self.origin_ids = [i32x8::load_array(simd, ids[0]), i32x8::load_array(simd, ids[1])];
+    }
+
+    /// The rays that start on a triangle outside of instances.
+    #[inline(always)]
+    pub(crate) fn start_on(&self, simd: S, geometry: u32, primitive: u32) -> mask32x8<S> {
+        let [geometries, primitives] = self.origin_ids;
+        geometries.simd_eq(i32x8::splat(simd, geometry as i32))
+            & primitives.simd_eq(i32x8::splat(simd, primitive as i32))
+    }
+
+    /// Ends rays for good: they meet no box any more.
+    #[inline(always)]
+    pub(crate) fn retire(&mut self, simd: S, rays: mask32x8<S>) {
+        self.end = rays.select(f32x8::splat(simd, f32::NEG_INFINITY), self.end);
     }
 
     /// Ends a ray at a hit, with the same room as [`Self::new`] gives it, unless it ends sooner.

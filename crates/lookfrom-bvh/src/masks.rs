@@ -1,6 +1,6 @@
 //! Which rays see which geometry: the masks of a tree.
 //!
-//! Kept aside from the primitives, since most trees have none. What asks about them is in `selection`.
+//! Kept aside from the primitives, since most trees have none. `visibility` applies them.
 
 /// Masks by id. What has none is seen by every ray.
 #[derive(Clone, Debug, Default)]

@@ -172,14 +172,14 @@ impl Node {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dispatch::{at_level, levels};
+    use crate::dispatch::{dispatch, levels};
     use crate::exact::Exact;
     use crate::ray::Ray;
-    use lookfrom_simd::Work;
+    use lookfrom_simd::Kernel;
 
     struct Enter<'a>(&'a Node, &'a Ray);
 
-    impl Work for Enter<'_> {
+    impl Kernel for Enter<'_> {
         type Output = u32;
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> u32 {
@@ -191,7 +191,7 @@ mod tests {
     fn enters(bounds: &Aabb, ray: &Ray) -> bool {
         let mut node = Node::EMPTY;
         node.place(3, bounds, Child::triangles(7));
-        let entered = levels().into_iter().map(|level| at_level(level, Enter(&node, ray)));
+        let entered = levels().into_iter().map(|level| dispatch(level, Enter(&node, ray)));
         let entered: Vec<u32> = entered.collect();
         assert!(entered.iter().all(|&all| all == entered[0]), "every level says the same: {entered:?}");
         assert!(entered[0] & !8 == 0, "an empty child is never entered: {entered:?}");
@@ -243,8 +243,8 @@ mod tests {
         let bounds = Aabb { min: [-1.0; 3], max: [1.0; 3] };
         let ray = Ray::new([0.0, 0.0, -5.0], [0.0, 0.0, 1.0]);
         assert!(enters(&bounds, &ray));
-        assert!(enters(&bounds, &ray.until(4.0)), "touching counts");
-        assert!(!enters(&bounds, &ray.until(3.9)));
+        assert!(enters(&bounds, &ray.with_t_max(4.0)), "touching counts");
+        assert!(!enters(&bounds, &ray.with_t_max(3.9)));
         assert!(!enters(&bounds, &Ray { t_min: 6.1, ..ray }));
         let behind = Ray { t_min: -6.0, t_max: -4.0, ..Ray::new([0.0, 0.0, 5.0], [0.0, 0.0, 1.0]) };
         assert!(enters(&bounds, &behind), "negative t");

@@ -1,171 +1,407 @@
-//! What can be asked of a ray: the closest hit, whether there is any, all of them.
+//! The builder of queries: a tree, the part of it that rays see, and an observer; then the question.
 
-use crate::ray::{Hit, Left, Ray};
+use crate::Bvh;
+use crate::observer::Observer;
+use crate::origin_primitive::OriginPrimitive;
+use crate::ray::{Hit, Ray};
+use crate::ray_f64::{HitF64, RayF64};
+use crate::visibility::Faces;
+use crate::{batch, single, traverse_f64};
 
-/// What is asked.
-pub(crate) trait Query {
-    /// Whether near children are to be visited before far ones.
-    const NEAREST_FIRST: bool;
-
-    /// Whether any hit will do, wherever in the ray's range it is.
-    const ANY_HIT: bool;
-
-    /// Whether the query is about a part of the geometry, so that the methods below `accept` are to be asked.
-    const SELECTS: bool = false;
-
-    /// No hit beyond this t is wanted; one at it may be.
-    fn end(&self) -> f32;
-
-    /// Hears of a hit beyond the ray's `t_min`. Returns true where no more are wanted.
-    fn accept(&mut self, hit: Hit) -> bool;
-
-    /// Whether a triangle outside of instances is the one that the ray leaves, which it does not meet again.
-    fn leaves(&self, (geometry, primitive): (u32, u32)) -> bool {
-        let _ = (geometry, primitive);
-        false
-    }
-
-    /// The ray is about to enter an instance, named by its place in the outer tree's list. False where it is not to.
-    fn enter_instance(&mut self, place: usize) -> bool {
-        let _ = place;
-        true
-    }
-
-    /// The ray is in the outer tree again.
-    fn leave_instance(&mut self) {}
-
-    /// Whether the query is about a primitive of the tree that the ray is in.
-    fn shows(&self, geometry: u32, primitive: u32) -> bool {
-        let _ = (geometry, primitive);
-        true
-    }
-
-    /// Whether the query is about the face that the ray looks at.
-    fn shows_face(&self, is_front: impl FnOnce() -> bool) -> bool {
-        let _ = is_front;
-        true
-    }
+/// What rays see of a tree.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings<'a> {
+    pub(crate) bvh: &'a Bvh,
+    /// None where masks do not count.
+    pub(crate) mask: Option<u32>,
+    pub(crate) faces: Faces,
+    /// That of the rays for which `origins` has none.
+    pub(crate) origin: OriginPrimitive,
+    pub(crate) origins: &'a [OriginPrimitive],
 }
 
-/// The hit with the least t; of several, that of the lowest rank.
-pub(crate) struct Closest {
-    t_max: f32,
-    end: f32,
-    left: Left,
-    pub(crate) hit: Hit,
+/// The visibility that settings need: see [`crate::visibility`].
+pub(crate) enum Needs {
+    Everything,
+    ExceptOrigin,
+    Masked,
 }
 
-impl Closest {
-    #[inline(always)]
-    pub(crate) fn new(ray: &Ray) -> Self {
-        Self::after(ray, Hit::MISS)
+impl<'a> Settings<'a> {
+    /// Everything.
+    pub(crate) const fn new(bvh: &'a Bvh) -> Self {
+        Self { bvh, mask: None, faces: Faces::Both, origin: OriginPrimitive::NONE, origins: &[] }
     }
 
-    /// The query that has heard of a hit.
-    #[inline(always)]
-    pub(crate) fn after(ray: &Ray, hit: Hit) -> Self {
-        let end = if hit.t < ray.t_max { hit.t } else { ray.t_max };
-        Self { t_max: ray.t_max, end, left: Left::NOTHING, hit }
-    }
-
-    /// The query of a ray that leaves something.
-    #[inline(always)]
-    pub(crate) fn leaving(ray: &Ray, left: Left) -> Self {
-        Self { left, ..Self::new(ray) }
-    }
-}
-
-impl Query for Closest {
-    const NEAREST_FIRST: bool = true;
-    const ANY_HIT: bool = false;
-
-    #[inline(always)]
-    fn end(&self) -> f32 {
-        self.end
-    }
-
-    #[inline(always)]
-    fn leaves(&self, triangle: (u32, u32)) -> bool {
-        self.left.is(triangle)
-    }
-
-    #[inline(always)]
-    fn accept(&mut self, hit: Hit) -> bool {
-        if hit.t < self.t_max && hit.precedes(&self.hit) {
-            self.hit = hit;
-            self.end = hit.t;
+    pub(crate) fn needs(&self) -> Needs {
+        if self.mask.is_some() || self.faces != Faces::Both {
+            Needs::Masked
+        } else if self.origins.is_empty() && self.origin == OriginPrimitive::NONE {
+            Needs::Everything
+        } else {
+            Needs::ExceptOrigin
         }
-        false
+    }
+
+    /// The origin primitive of the ray with a number.
+    #[inline(always)]
+    pub(crate) fn origin_of(&self, number: usize) -> OriginPrimitive {
+        self.origins.get(number).copied().unwrap_or(self.origin)
+    }
+
+    /// The same for rays that begin with the number `first`.
+    pub(crate) fn from(self, first: usize) -> Self {
+        Self { origins: self.origins.get(first..).unwrap_or_default(), ..self }
     }
 }
 
-/// Whether there is a hit.
-pub(crate) struct Any {
-    t_max: f32,
-    left: Left,
-    pub(crate) found: bool,
+/// A question to a [`Bvh`] in the making; made by [`Bvh::query`].
+///
+/// A query begins with everything. Methods that are named like a thing narrow it and give it back; methods that are named
+/// like a question trace rays, either [`Ray`]s or [`RayF64`]s. A query is small and `Copy` (but for one with an observer), so it
+/// can be made once and asked often.
+///
+/// ```
+/// use lookfrom_bvh::{Builder, Faces, Hit, HitF64, OriginPrimitive, Ray, RayF64, Triangles};
+/// let mut builder = Builder::new();
+/// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let wall = builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
+/// builder.geometry_mask(wall, 0b01);
+/// let bvh = builder.build()?;
+///
+/// // From where the corners are seen counter-clockwise.
+/// let ray = Ray::new([0.25, 0.25, 1.0], [0.0, 0.0, -1.0]);
+/// let hit = bvh.query().mask(0b01).faces(Faces::Front).closest_hit(&ray);
+/// assert_eq!(hit, bvh.closest_hit(&ray));
+/// assert_eq!(bvh.query().mask(0b10).closest_hit(&ray), Hit::MISS);
+/// assert_eq!(bvh.query().faces(Faces::Back).closest_hit(&RayF64::from(ray)), HitF64::MISS);
+/// assert!(!bvh.query().origin(OriginPrimitive::of(&hit)).occluded(&ray));
+/// # Ok::<(), lookfrom_bvh::BuildError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+#[must_use = "a query does nothing until it is asked"]
+pub struct Query<'a, O = ()> {
+    settings: Settings<'a>,
+    observer: O,
 }
 
-impl Any {
-    #[inline(always)]
-    pub(crate) fn new(ray: &Ray) -> Self {
-        Self::leaving(ray, Left::NOTHING)
-    }
-
-    /// The query of a ray that leaves something.
-    #[inline(always)]
-    pub(crate) fn leaving(ray: &Ray, left: Left) -> Self {
-        Self { t_max: ray.t_max, left, found: false }
-    }
-}
-
-impl Query for Any {
-    const NEAREST_FIRST: bool = true;
-    const ANY_HIT: bool = true;
-
-    #[inline(always)]
-    fn end(&self) -> f32 {
-        self.t_max
-    }
-
-    #[inline(always)]
-    fn leaves(&self, triangle: (u32, u32)) -> bool {
-        self.left.is(triangle)
-    }
-
-    #[inline(always)]
-    fn accept(&mut self, hit: Hit) -> bool {
-        self.found |= hit.t < self.t_max;
-        self.found
-    }
-}
-
-/// Every hit, in no order.
-pub(crate) struct All {
-    t_max: f32,
-    pub(crate) hits: Vec<Hit>,
-}
-
-impl All {
-    pub(crate) fn new(ray: &Ray, hits: Vec<Hit>) -> Self {
-        Self { t_max: ray.t_max, hits }
+impl Bvh {
+    /// A query about everything: see [`Query`].
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    /// assert_eq!(bvh.query().closest_hit(&ray), bvh.closest_hit(&ray));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub const fn query(&self) -> Query<'_> {
+        Query { settings: Settings::new(self), observer: () }
     }
 }
 
-impl Query for All {
-    const NEAREST_FIRST: bool = false;
-    const ANY_HIT: bool = false;
-
-    #[inline(always)]
-    fn end(&self) -> f32 {
-        self.t_max
+impl<'a, O> Query<'a, O> {
+    /// Only primitives that have a bit in common with `mask`: in their own mask, in their geometry's and in their instance's
+    /// (see [`Builder::geometry_mask`](crate::Builder::geometry_mask)). A primitive that was given no mask has all bits. A
+    /// query without a mask is about everything, whatever its mask.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// let mut builder = Builder::new();
+    /// let ball = builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// builder.geometry_mask(ball, 0b10);
+    /// let bvh = builder.build()?;
+    /// let ray = Ray::new([0.0; 3], [0.0, 0.0, 1.0]);
+    /// assert!(bvh.query().mask(0b11).occluded(&ray) && !bvh.query().mask(0b01).occluded(&ray));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn mask(mut self, mask: u32) -> Self {
+        self.settings.mask = Some(mask);
+        self
     }
 
-    #[inline(always)]
-    fn accept(&mut self, hit: Hit) -> bool {
-        if hit.t < self.t_max {
-            self.hits.push(hit);
+    /// Only surfaces that rays meet from this side.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Faces, Ray, Sphere};
+    /// let mut builder = Builder::new();
+    /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let bvh = builder.build()?;
+    /// let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    /// assert_eq!(bvh.query().faces(Faces::Back).closest_hit(&ray).t, 4.0);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn faces(mut self, faces: Faces) -> Self {
+        self.settings.faces = faces;
+        self
+    }
+
+    /// Excludes the triangle that the rays start on: they do not hit it again. See [`OriginPrimitive`].
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Hit, OriginPrimitive, Ray, Triangles};
+    /// # let mut builder = Builder::new();
+    /// # let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// # builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
+    /// # let bvh = builder.build()?;
+    /// let hit = bvh.closest_hit(&Ray::new([0.2, 0.2, 1.0], [0.0, 0.0, -1.0]));
+    /// let mirrored = Ray::new([0.2, 0.2, 0.0], [0.0, 0.0, 1.0]);
+    /// assert_eq!(bvh.query().origin(OriginPrimitive::of(&hit)).closest_hit(&mirrored), Hit::MISS);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn origin(mut self, origin: OriginPrimitive) -> Self {
+        self.settings.origin = origin;
+        self
+    }
+
+    /// Excludes for each ray of a batch the triangle that it starts on, in the order of the rays. Rays beyond the end of
+    /// the slice have that of [`Self::origin`]. A single ray is a batch of one.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Hit, OriginPrimitive, Ray, Triangles};
+    /// # let mut builder = Builder::new();
+    /// # let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// # builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
+    /// # let bvh = builder.build()?;
+    /// let ray = Ray::new([0.2, 0.2, 1.0], [0.0, 0.0, -1.0]);
+    /// let wall = OriginPrimitive::of(&bvh.closest_hit(&ray));
+    /// let mut occluded = [true, false];
+    /// bvh.query().origins(&[wall, OriginPrimitive::NONE]).occluded_many(&[ray, ray], &mut occluded);
+    /// assert_eq!(occluded, [false, true]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn origins(mut self, origins: &'a [OriginPrimitive]) -> Self {
+        self.settings.origins = origins;
+        self
+    }
+
+    /// Tells an observer of every node and candidate. The answers are the same. Batches are traced ray by ray, in order,
+    /// on this thread. Primitives that the query does not see are among the candidates.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Observer, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// struct Candidates(u32);
+    /// impl Observer for Candidates {
+    ///     fn candidate(&mut self, _: u32, _: u32, _: u32) {
+    ///         self.0 += 1;
+    ///     }
+    /// }
+    /// let mut candidates = Candidates(0);
+    /// let hit = bvh.query().observer(&mut candidates).closest_hit(&Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]));
+    /// assert_eq!((hit.t, candidates.0), (2.0, 1));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn observer<W: Observer>(self, observer: &mut W) -> Query<'a, &mut W> {
+        Query { settings: self.settings, observer }
+    }
+}
+
+impl<O: Observer> Query<'_, O> {
+    /// The hit with the least t in the ray's range, or a miss. Of several hits at equal t it is the one with the lowest ids:
+    /// geometry outside of instances comes first, then by instance, geometry and primitive.
+    ///
+    /// For a [`RayF64`] `t` is right to about 10⁻¹⁵ of sizes and distances, `u` and `v` to about 10⁻¹⁰ (less where a triangle
+    /// is seen nearly edge on); procedural shapes are asked in f32. It takes some times longer than a [`Ray`].
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, RayF64, Triangles};
+    /// let mut builder = Builder::new();
+    /// let positions = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
+    /// builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
+    /// let bvh = builder.build()?;
+    /// let hit = bvh.query().closest_hit(&RayF64::new([0.1, 0.2, 1.0 - 1e-12], [0.0, 0.0, 1e-12]));
+    /// assert!((hit.t - 1.0).abs() < 1e-4 && (hit.u - 0.1).abs() < 1e-15 && (hit.v - 0.2).abs() < 1e-15);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn closest_hit<R: TraceRay>(mut self, ray: &R) -> R::Hit {
+        R::closest_hit(&self.settings, ray, &mut self.observer)
+    }
+
+    /// Whether there is a hit in the ray's range.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, RayF64, Sphere};
+    /// let mut builder = Builder::new();
+    /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let bvh = builder.build()?;
+    /// let ray = RayF64::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    /// assert!(bvh.query().occluded(&RayF64 { t_max: 2.0 + 1e-15, ..ray }));
+    /// assert!(!bvh.query().occluded(&RayF64 { t_max: 2.0, ..ray }));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn occluded<R: TraceRay>(mut self, ray: &R) -> bool {
+        R::occluded(&self.settings, ray, &mut self.observer)
+    }
+
+    /// Replaces the content of `hits` by all hits in the ray's range, sorted by t and then as [`Self::closest_hit`]
+    /// decides ties. A triangle gives at most one hit, a sphere two, a procedural shape one (its nearest).
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Faces, Ray, Sphere};
+    /// let mut builder = Builder::new();
+    /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let bvh = builder.build()?;
+    /// let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    /// let mut hits = Vec::new();
+    /// bvh.query().all_hits(&ray, &mut hits);
+    /// assert_eq!(hits.iter().map(|hit| hit.t).collect::<Vec<_>>(), [2.0, 4.0]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn all_hits<R: TraceRay>(mut self, ray: &R, hits: &mut Vec<R::Hit>) {
+        hits.clear();
+        R::all_hits(&self.settings, ray, hits, &mut self.observer);
+    }
+
+    /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent [`Ray`]s are traced in packets. The
+    /// two slices should be equally long; the surplus of the longer one is left alone.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Faces, Hit, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// let rays = [3.0, -3.0].map(|z| Ray::new([0.0, 0.0, z], [0.0, 0.0, -1.0]));
+    /// let mut hits = [Hit::MISS; 2];
+    /// bvh.query().faces(Faces::Front).closest_hits(&rays, &mut hits);
+    /// assert_eq!(hits.map(|hit| hit.is_hit()), [true, false]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn closest_hits<R: TraceRay>(mut self, rays: &[R], hits: &mut [R::Hit]) {
+        if O::LISTENS {
+            for (number, (ray, hit)) in rays.iter().zip(hits).enumerate() {
+                *hit = R::closest_hit(&self.settings.from(number), ray, &mut self.observer);
+            }
+        } else {
+            R::closest_hits(&self.settings, rays, hits);
         }
-        false
+    }
+
+    /// [`Self::occluded`] for each ray, as [`Self::closest_hits`].
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Faces, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// let rays = [3.0, 0.0].map(|z| Ray::new([0.0, 0.0, z], [0.0, 0.0, -1.0]));
+    /// let mut occluded = [false; 2];
+    /// bvh.query().faces(Faces::Front).occluded_many(&rays, &mut occluded);
+    /// assert_eq!(occluded, [true, false]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn occluded_many<R: TraceRay>(mut self, rays: &[R], occluded: &mut [bool]) {
+        if O::LISTENS {
+            for (number, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
+                *occluded = R::occluded(&self.settings.from(number), ray, &mut self.observer);
+            }
+        } else {
+            R::occluded_many(&self.settings, rays, occluded);
+        }
+    }
+}
+
+/// A type of ray that queries trace: [`Ray`] or [`RayF64`]. There are no others.
+///
+/// ```
+/// use lookfrom_bvh::{Bvh, TraceRay};
+/// /// How many hits a ray has, in either precision.
+/// fn count<R: TraceRay>(bvh: &Bvh, ray: &R) -> usize {
+///     let mut hits = Vec::new();
+///     bvh.query().all_hits(ray, &mut hits);
+///     hits.len()
+/// }
+/// # assert_eq!(count(&Bvh::default(), &lookfrom_bvh::Ray::new([0.0; 3], [1.0; 3])), 0);
+/// ```
+pub trait TraceRay: sealed::Trace {}
+
+impl TraceRay for Ray {}
+
+impl TraceRay for RayF64 {}
+
+mod sealed {
+    use super::Settings;
+    use crate::observer::Observer;
+
+    /// The questions about a type of ray.
+    pub trait Trace: Copy + Sync + Sized {
+        /// A hit in the same precision.
+        type Hit: Copy + Send;
+
+        fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> Self::Hit;
+        fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool;
+        /// Adds the hits to `hits`, which is empty.
+        fn all_hits<O: Observer>(
+            settings: &Settings<'_>,
+            ray: &Self,
+            hits: &mut Vec<Self::Hit>,
+            observer: &mut O,
+        );
+        fn closest_hits(settings: &Settings<'_>, rays: &[Self], hits: &mut [Self::Hit]);
+        fn occluded_many(settings: &Settings<'_>, rays: &[Self], occluded: &mut [bool]);
+    }
+}
+
+impl sealed::Trace for Ray {
+    type Hit = Hit;
+
+    fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> Hit {
+        if O::LISTENS {
+            single::observed_closest_hit(settings, ray, observer)
+        } else {
+            single::closest_hit(settings, ray)
+        }
+    }
+
+    fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool {
+        if O::LISTENS {
+            single::observed_occluded(settings, ray, observer)
+        } else {
+            single::occluded(settings, ray)
+        }
+    }
+
+    fn all_hits<O: Observer>(settings: &Settings<'_>, ray: &Self, hits: &mut Vec<Hit>, observer: &mut O) {
+        if O::LISTENS {
+            single::observed_all_hits(settings, ray, hits, observer);
+        } else {
+            single::all_hits(settings, ray, hits);
+        }
+    }
+
+    fn closest_hits(settings: &Settings<'_>, rays: &[Self], hits: &mut [Hit]) {
+        batch::closest_hits(settings, rays, hits);
+    }
+
+    fn occluded_many(settings: &Settings<'_>, rays: &[Self], occluded: &mut [bool]) {
+        batch::occluded_many(settings, rays, occluded);
+    }
+}
+
+impl sealed::Trace for RayF64 {
+    type Hit = HitF64;
+
+    fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> HitF64 {
+        traverse_f64::closest_hit(settings, ray, observer)
+    }
+
+    fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool {
+        traverse_f64::occluded(settings, ray, observer)
+    }
+
+    fn all_hits<O: Observer>(settings: &Settings<'_>, ray: &Self, hits: &mut Vec<HitF64>, observer: &mut O) {
+        traverse_f64::all_hits(settings, ray, hits, observer);
+    }
+
+    fn closest_hits(settings: &Settings<'_>, rays: &[Self], hits: &mut [HitF64]) {
+        traverse_f64::closest_hits(settings, rays, hits);
+    }
+
+    fn occluded_many(settings: &Settings<'_>, rays: &[Self], occluded: &mut [bool]) {
+        traverse_f64::occluded_many(settings, rays, occluded);
     }
 }

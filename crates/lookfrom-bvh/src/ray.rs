@@ -1,6 +1,6 @@
-//! What is asked of a tree, and what it answers.
+//! Rays and hits in single precision: plain data with the layout of C.
 //!
-//! Rays and hits are plain data in single precision. How a ray is made ready for the tests is in `prepared`.
+//! `prepared` makes a ray ready for the tests.
 
 /// "None" where an id is expected: the id of what was not hit.
 ///
@@ -15,12 +15,15 @@ pub const NONE: u32 = u32::MAX;
 /// The direction may have any length but zero; `t` counts in its lengths. A ray with a NaN, an infinite origin or
 /// direction, a zero direction or an empty range hits nothing.
 ///
+/// The layout is that of C: `origin` at byte 0, `t_min` at 12, `direction` at 16, `t_max` at 28; 32 bytes in all.
+///
 /// ```
 /// use lookfrom_bvh::Ray;
-/// let ray = Ray { t_min: 0.5, ..Ray::new([0.0; 3], [0.0, 0.0, -2.0]).until(1.0) };
+/// let ray = Ray { t_min: 0.5, ..Ray::new([0.0; 3], [0.0, 0.0, -2.0]).with_t_max(1.0) };
 /// assert_eq!((ray.t_min, ray.t_max), (0.5, 1.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Ray {
     /// Where `t` is zero.
     pub origin: [f32; 3],
@@ -48,60 +51,17 @@ impl Ray {
     ///
     /// ```
     /// use lookfrom_bvh::Ray;
-    /// assert_eq!(Ray::new([0.0; 3], [0.0, 0.0, -2.0]).until(4.0).t_max, 4.0);
+    /// assert_eq!(Ray::new([0.0; 3], [0.0, 0.0, -2.0]).with_t_max(4.0).t_max, 4.0);
     /// ```
-    pub const fn until(self, t_max: f32) -> Self {
+    pub const fn with_t_max(self, t_max: f32) -> Self {
         Self { t_max, ..self }
     }
 }
 
-/// The triangle that a ray leaves: one that starts at [`Point::leave`](crate::Point::leave) of a hit on it does not meet
-/// it again, and need not find that out.
+/// The point where a ray meets a primitive, or [`Hit::MISS`].
 ///
-/// ```
-/// use lookfrom_bvh::{Hit, Left};
-/// let hit = Hit { t: 1.0, geometry: 2, primitive: 7, ..Hit::MISS };
-/// assert_eq!(Left::of(&hit), Left { geometry: 2, primitive: 7 });
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Left {
-    /// Its geometry; [`NONE`] for rays that leave nothing.
-    pub geometry: u32,
-    /// Its number there.
-    pub primitive: u32,
-}
-
-impl Left {
-    /// The ray starts anywhere.
-    ///
-    /// ```
-    /// use lookfrom_bvh::{Left, NONE};
-    /// assert_eq!(Left::NOTHING.geometry, NONE);
-    /// ```
-    pub const NOTHING: Self = Self { geometry: NONE, primitive: NONE };
-
-    /// What a ray leaves that starts at this hit: nothing, for one in an instance.
-    ///
-    /// ```
-    /// use lookfrom_bvh::{Hit, Left};
-    /// let hit = Hit { t: 1.0, geometry: 2, primitive: 7, instance: 3, ..Hit::MISS };
-    /// assert_eq!(Left::of(&hit), Left::NOTHING);
-    /// ```
-    pub const fn of(hit: &Hit) -> Self {
-        if hit.instance == NONE {
-            Self { geometry: hit.geometry, primitive: hit.primitive }
-        } else {
-            Self::NOTHING
-        }
-    }
-
-    #[inline(always)]
-    pub(crate) fn is(self, (geometry, primitive): (u32, u32)) -> bool {
-        self.primitive == primitive && self.geometry == geometry
-    }
-}
-
-/// Where a ray meets a primitive, or [`Hit::MISS`].
+/// The layout is that of C: `t` at byte 0, `u` at 4, `v` at 8, `primitive` at 12, `geometry` at 16, `instance` at 20; 24 bytes
+/// in all.
 ///
 /// ```
 /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -113,6 +73,7 @@ impl Left {
 /// # Ok::<(), lookfrom_bvh::BuildError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Hit {
     /// The ray's parameter: the hit is at `origin + t · direction`. Infinite for a miss.
     pub t: f32,
@@ -156,5 +117,22 @@ impl Hit {
     /// Whether this hit comes before another: nearer, or as near and of lower rank.
     pub(crate) fn precedes(&self, other: &Self) -> bool {
         self.t < other.t || (self.t == other.t && self.rank() < other.rank())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::mem::{align_of, offset_of};
+
+    #[test]
+    fn the_layout_is_as_documented() {
+        assert_eq!((size_of::<Ray>(), align_of::<Ray>()), (32, 4));
+        let ray = [offset_of!(Ray, origin), offset_of!(Ray, t_min), offset_of!(Ray, direction)];
+        assert_eq!((ray, offset_of!(Ray, t_max)), ([0, 12, 16], 28));
+        assert_eq!((size_of::<Hit>(), align_of::<Hit>()), (24, 4));
+        let point = [offset_of!(Hit, t), offset_of!(Hit, u), offset_of!(Hit, v)];
+        let ids = [offset_of!(Hit, primitive), offset_of!(Hit, geometry), offset_of!(Hit, instance)];
+        assert_eq!((point, ids), ([0, 4, 8], [12, 16, 20]));
     }
 }

@@ -213,6 +213,9 @@ impl Bvh {
                 },
             };
             self.nodes[number].place(slot, &padded, child);
+            if let Content::Leaf(leaf) = child.content() {
+                self.leaf_bounds[leaf] = padded;
+            }
             all[0].unite(&exact);
             all[1].unite(&padded);
         }

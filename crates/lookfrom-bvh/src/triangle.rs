@@ -69,7 +69,7 @@ pub(crate) fn cross_surely(ray: &Exact, corners: &[[f32; 3]; 3]) -> Crossing {
 /// Whether the ray looks at the front of a triangle that it meets: the face from which its corners are seen
 /// counter-clockwise. Signs are those of the decision, so a closed mesh is left through as many backs as it is entered
 /// through fronts.
-pub(crate) fn is_front(ray: &Exact, corners: &[[f32; 3]; 3]) -> bool {
+pub(crate) fn is_front<T: Rounded>(ray: &Exact<T>, corners: &[[f32; 3]; 3]) -> bool {
     let Sheared { edges: [u, v, w], along, .. } = Sheared::new(ray, corners);
     (u + v + w > 0.0) == (along > 0.0)
 }

@@ -190,7 +190,12 @@ impl Check<'_> {
             let inside = match content {
                 Content::Node(child) => self.node(child)?,
                 Content::Triangles(block) => self.triangles(block)?,
-                Content::Leaf(leaf) => self.leaf(leaf)?,
+                Content::Leaf(leaf) => {
+                    if bvh.leaf_bounds.get(leaf) != Some(&bounds) {
+                        return Err(Invalid(format!("leaf {leaf}: its box is not that of node {number}")));
+                    }
+                    self.leaf(leaf)?
+                }
             };
             // (Boxes are a little larger than the largest coordinate there may be.)
             let is_finite = bounds.min.iter().chain(&bounds.max).all(|x| x.is_finite());

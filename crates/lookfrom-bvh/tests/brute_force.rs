@@ -133,7 +133,7 @@ fn a_tree_answers_as_its_primitives_one_by_one() {
             let ray = random_ray(&mut random, scale);
             expected.clear();
             for (geometry, primitive, tree) in &single {
-                tree.all_hits(&ray, &mut one);
+                tree.query().all_hits(&ray, &mut one);
                 assert!(one.iter().all(|hit| ray.t_min < hit.t && hit.t < ray.t_max));
                 expected.extend(one.iter().map(|hit| Hit {
                     geometry: *geometry,
@@ -149,7 +149,7 @@ fn a_tree_answers_as_its_primitives_one_by_one() {
             hit_rays += usize::from(closest.is_hit());
             ties += usize::from(expected.len() > 1 && expected[0].t == expected[1].t);
             for tree in &trees {
-                tree.all_hits(&ray, &mut found);
+                tree.query().all_hits(&ray, &mut found);
                 assert_eq!(found, expected, "{ray:?}");
                 assert_eq!(tree.closest_hit(&ray), closest, "{ray:?}");
                 assert_eq!(tree.occluded(&ray), closest.is_hit(), "{ray:?}");
@@ -176,7 +176,7 @@ fn whole_numbers_agree_exactly_with_cramers_rule() {
         for _ in 0..200 {
             let origin = [0; 3].map(|_| random.below(17) as f32 - 8.0);
             let direction = [0; 3].map(|_| random.below(9) as f32 - 4.0);
-            bvh.all_hits(&Ray::new(origin, direction), &mut found);
+            bvh.query().all_hits(&Ray::new(origin, direction), &mut found);
             let mut expected = Vec::new();
             for (primitive, triangle) in corners.iter().enumerate() {
                 let [p0, p1, p2] = triangle.map(|p| p.map(f64::from));
@@ -219,7 +219,7 @@ fn random_exponents_agree_with_the_reference_in_double_precision() {
         builder.spheres(&[Sphere { center, radius: 0.5 * size }]);
         let bvh = builder.build().unwrap();
         let mut found = Vec::new();
-        bvh.all_hits(&Ray::new(origin, direction), &mut found);
+        bvh.query().all_hits(&Ray::new(origin, direction), &mut found);
 
         // A margin for what rounding decides.
         let rule = reference::cramer(a, d, p0, p1, p2);

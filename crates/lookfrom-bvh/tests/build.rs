@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use lookfrom_bvh::{Aabb, Affine, BuildError, Builder, Bvh, Hit, Quality, Ray, Sphere, Triangles, Watch};
+use lookfrom_bvh::{Aabb, Affine, BuildError, Builder, Bvh, Hit, Observer, Quality, Ray, Sphere, Triangles};
 
 #[path = "../src/testing.rs"]
 mod testing;
@@ -98,7 +98,7 @@ fn a_million_triangles_in_one_place() {
     let hit = bvh.closest_hit(&Ray::new([0.2, 0.2, 1.0], [0.0, 0.0, -1.0]));
     assert_eq!((hit.t, hit.primitive), (1.0, 0), "the first of them wins the tie");
     let mut hits = Vec::new();
-    bvh.all_hits(&Ray::new([0.2, 0.2, 1.0], [0.0, 0.0, -1.0]), &mut hits);
+    bvh.query().all_hits(&Ray::new([0.2, 0.2, 1.0], [0.0, 0.0, -1.0]), &mut hits);
     assert!(hits.len() == 1_000_000 && hits.iter().enumerate().all(|(i, hit)| hit.primitive == i as u32));
 }
 
@@ -244,7 +244,7 @@ fn watchers_see_what_is_visited() {
         nodes: Vec<(u32, u32)>,
         candidates: Vec<(u32, u32, u32)>,
     }
-    impl Watch for Count {
+    impl Observer for Count {
         fn node(&mut self, instance: u32, node: u32) {
             self.nodes.push((instance, node));
         }
@@ -260,7 +260,7 @@ fn watchers_see_what_is_visited() {
     let scene = scene.build().unwrap();
     let mut count = Count::default();
     let ray = Ray::new([0.0, 0.0, 9.0], [0.0, 0.0, -1.0]);
-    let hit = scene.closest_hit_watched(&ray, &mut count);
+    let hit = scene.query().observer(&mut count).closest_hit(&ray);
     assert_eq!(hit, scene.closest_hit(&ray));
     assert_eq!(count.nodes, [(u32::MAX, 0), (0, 0)]);
     assert!(count.candidates.contains(&(0, 1, 1)), "{:?}", count.candidates);

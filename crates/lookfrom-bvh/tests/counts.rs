@@ -4,7 +4,7 @@
 #[path = "../src/testing.rs"]
 mod testing;
 
-use lookfrom_bvh::{Builder, Quality, Ray, Triangles, Watch};
+use lookfrom_bvh::{Builder, Observer, Quality, Ray, Triangles};
 use testing::Random;
 
 #[derive(Default)]
@@ -13,7 +13,7 @@ struct Counts {
     triangles: u64,
 }
 
-impl Watch for Counts {
+impl Observer for Counts {
     fn node(&mut self, _instance: u32, _node: u32) {
         self.nodes += 1;
     }
@@ -66,7 +66,7 @@ fn visits((positions, indices): &Mesh, quality: Quality) -> (f64, f64) {
     for _ in 0..rays {
         let [from, to] = [[0.5, 0.5, 1.5], [0.5, 0.5, -0.5]].map(|center| random.near(center, 0.5));
         let ray = Ray::new(from, [0, 1, 2].map(|axis| to[axis] - from[axis]));
-        bvh.closest_hit_watched(&ray, &mut counts);
+        bvh.query().observer(&mut counts).closest_hit(&ray);
     }
     (counts.nodes as f64 / f64::from(rays), counts.triangles as f64 / f64::from(rays))
 }

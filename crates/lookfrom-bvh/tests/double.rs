@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use lookfrom_bvh::{
-    Affine, Builder, Bvh, Hit, Hit64, NONE, Quality, Ray, Ray64, Sphere, Triangles, reference,
+    Affine, Builder, Bvh, Hit, HitF64, NONE, Quality, Ray, RayF64, Sphere, Triangles, reference,
 };
 
 mod shapes;
@@ -58,11 +58,11 @@ fn placed(bvh: Bvh, maps: &[Affine]) -> Bvh {
     builder.build().unwrap()
 }
 
-fn ids(hit: &Hit64) -> (u32, u32, u32) {
+fn ids(hit: &HitF64) -> (u32, u32, u32) {
     (hit.instance, hit.geometry, hit.primitive)
 }
 
-fn rounded(hit: &Hit64) -> Hit {
+fn rounded(hit: &HitF64) -> Hit {
     let [t, u, v] = [hit.t, hit.u, hit.v].map(|x| x as f32);
     Hit { t, u, v, primitive: hit.primitive, geometry: hit.geometry, instance: hit.instance }
 }
@@ -97,7 +97,7 @@ fn rays_that_are_numbers_of_f32_get_the_same_answers() {
             bvh = placed(bvh, &maps);
         }
         let whole = random.unit() < 0.5;
-        let (mut all, mut all64) = (Vec::new(), Vec::new());
+        let (mut all, mut all64) = (Vec::new(), Vec::<HitF64>::new());
         for _ in 0..200 {
             let bounds = bvh.bounds();
             let target = [0, 1, 2].map(|i| bounds.min[i] + random.unit() * (bounds.max[i] - bounds.min[i]));
@@ -117,8 +117,8 @@ fn rays_that_are_numbers_of_f32_get_the_same_answers() {
                 2 => ray.t_min = random.size(-2, 0) / stretch,
                 _ => {}
             }
-            bvh.all_hits(&ray, &mut all);
-            bvh.all_hits_f64(&ray.into(), &mut all64);
+            bvh.query().all_hits(&ray, &mut all);
+            bvh.query().all_hits(&RayF64::from(ray), &mut all64);
             assert!(all64.is_sorted_by(|a, b| a.t <= b.t));
             // What f32 rounds to an end of the range is not in it.
             all64.retain(|hit| hit.t as f32 > ray.t_min && (hit.t as f32) < ray.t_max);
@@ -127,13 +127,13 @@ fn rays_that_are_numbers_of_f32_get_the_same_answers() {
             expected.dedup_by(|a, b| a == b && a.geometry == 1);
             assert_eq!(all, expected, "{ray:?}");
 
-            let (closest, closest64) = (bvh.closest_hit(&ray), bvh.closest_hit_f64(&ray.into()));
-            assert_eq!(bvh.occluded_f64(&ray.into()), closest64.is_hit());
+            let (closest, closest64) = (bvh.closest_hit(&ray), bvh.query().closest_hit(&RayF64::from(ray)));
+            assert_eq!(bvh.query().occluded(&RayF64::from(ray)), closest64.is_hit());
             let at_an_end = !(closest64.t as f32 > ray.t_min && (closest64.t as f32) < ray.t_max);
             if closest64.is_hit() && at_an_end {
                 continue;
             }
-            assert_eq!(closest64, all64.first().copied().unwrap_or(Hit64::MISS), "{ray:?}");
+            assert_eq!(closest64, all64.first().copied().unwrap_or(HitF64::MISS), "{ray:?}");
             assert_eq!(closest.t, closest64.t as f32);
             if closest != rounded(&closest64) {
                 assert!(closest64.is_hit() && all.contains(&rounded(&closest64)), "{ray:?}");
@@ -172,7 +172,7 @@ fn rays_in_f64_agree_with_the_reference() {
             };
             let (a, b) = (fine(&mut random, center, 8.0 * size), fine(&mut random, center, 2.0 * size));
             let d = [0, 1, 2].map(|i| (b[i] - a[i]) / 3.0);
-            bvh.all_hits_f64(&Ray64::new(a, d), &mut found);
+            bvh.query().all_hits(&RayF64::new(a, d), &mut found);
             let expected = reference::all(&shapes, a, d, 0.0, f64::INFINITY);
             // The nearest of each, as the reference gives them.
             found.sort_by_key(|hit| hit.geometry);
@@ -201,14 +201,14 @@ fn finer_than_f32() {
     builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2], [3, 4, 5]] });
     let bvh = builder.build().unwrap();
     let ray = Ray::new([0.0, 0.0, -100.0], [0.0, 0.0, 1.0]);
-    let hit = bvh.closest_hit_f64(&ray.into());
+    let hit = bvh.query().closest_hit(&RayF64::from(ray));
     assert_eq!((ids(&hit), hit.t), ((NONE, 0, 1), 100.0));
     assert_eq!(bvh.closest_hit(&ray).primitive, 0, "a tie in f32");
-    assert!(!bvh.occluded_f64(&Ray64 { t_max: 100.0, ..ray.into() }));
-    assert!(bvh.occluded_f64(&Ray64 { t_max: 100.000_000_000_001, ..ray.into() }));
+    assert!(!bvh.query().occluded(&RayF64 { t_max: 100.0, ..ray.into() }));
+    assert!(bvh.query().occluded(&RayF64 { t_max: 100.000_000_000_001, ..ray.into() }));
     // Between the two.
-    let between = Ray64 { t_min: 100.0 + 1e-9, t_max: 100.0 + 1e-7, ..ray.into() };
-    assert_eq!(bvh.closest_hit_f64(&between), Hit64::MISS);
+    let between = RayF64 { t_min: 100.0 + 1e-9, t_max: 100.0 + 1e-7, ..ray.into() };
+    assert_eq!(bvh.query().closest_hit(&between), HitF64::MISS);
 }
 
 #[test]
@@ -216,20 +216,20 @@ fn what_cannot_be_traced_misses() {
     let mut builder = Builder::new();
     builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
     let bvh = builder.build().unwrap();
-    let good = Ray64::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
-    assert!(bvh.occluded_f64(&good));
+    let good = RayF64::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    assert!(bvh.query().occluded(&good));
     for bad in [
-        Ray64 { origin: [f64::NAN, 0.0, 3.0], ..good },
-        Ray64 { origin: [0.0, 0.0, 1e300], ..good },
-        Ray64 { direction: [0.0, -0.0, 0.0], ..good },
-        Ray64 { direction: [0.0, 0.0, -1e-60], ..good },
-        Ray64 { direction: [0.0, f64::INFINITY, -1.0], ..good },
-        Ray64 { t_max: f64::NAN, ..good },
-        Ray64 { t_min: 2.0, t_max: 1.0, ..good },
+        RayF64 { origin: [f64::NAN, 0.0, 3.0], ..good },
+        RayF64 { origin: [0.0, 0.0, 1e300], ..good },
+        RayF64 { direction: [0.0, -0.0, 0.0], ..good },
+        RayF64 { direction: [0.0, 0.0, -1e-60], ..good },
+        RayF64 { direction: [0.0, f64::INFINITY, -1.0], ..good },
+        RayF64 { t_max: f64::NAN, ..good },
+        RayF64 { t_min: 2.0, t_max: 1.0, ..good },
     ] {
-        assert!(!bvh.occluded_f64(&bad) && !bvh.closest_hit_f64(&bad).is_hit(), "{bad:?}");
+        assert!(!bvh.query().occluded(&bad) && !bvh.query().closest_hit(&bad).is_hit(), "{bad:?}");
     }
-    assert_eq!(Bvh::default().closest_hit_f64(&good), Hit64::MISS);
+    assert_eq!(Bvh::default().query().closest_hit(&good), HitF64::MISS);
     let scene = placed(bvh, &[Affine { translation: [0.5, 0.0, 0.0], ..Affine::IDENTITY }]);
-    assert_eq!(ids(&scene.closest_hit_f64(&good)), (0, 0, 0));
+    assert_eq!(ids(&scene.query().closest_hit(&good)), (0, 0, 0));
 }

@@ -36,7 +36,7 @@ fn disagreements(corners: &[Corners], spheres: &[Sphere], rays: &[Ray]) -> usize
                 None => (0, number),
                 Some(sphere) => (1, sphere),
             };
-            bvh.all_hits(ray, &mut some);
+            bvh.query().all_hits(ray, &mut some);
             all.extend(some.iter().map(|hit| Hit { geometry: ids.0, primitive: ids.1 as u32, ..*hit }));
         }
         all.sort_by(|a, b| {
@@ -46,7 +46,7 @@ fn disagreements(corners: &[Corners], spheres: &[Sphere], rays: &[Ray]) -> usize
         });
         let nearest = all.first().copied().unwrap_or(Hit::MISS);
         for bvh in &trees {
-            bvh.all_hits(ray, &mut some);
+            bvh.query().all_hits(ray, &mut some);
             let same =
                 some == all && bvh.closest_hit(ray) == nearest && bvh.occluded(ray) == nearest.is_hit();
             wrong += usize::from(!same);

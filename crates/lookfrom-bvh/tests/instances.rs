@@ -93,7 +93,7 @@ fn ties_go_to_the_lowest_ids_with_instances_last() {
     let mut hits = Vec::new();
     let scene = twice.build().unwrap();
     assert_eq!(ids(&scene.closest_hit(&ray)), (0, 0, 0));
-    scene.all_hits(&ray, &mut hits);
+    scene.query().all_hits(&ray, &mut hits);
     let expected: Vec<_> = (0..8).map(|i| (i / 4, i / 2 % 2, i % 2)).collect();
     assert_eq!(hits.iter().map(ids).collect::<Vec<_>>(), expected);
 

@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use lookfrom_bvh::{Affine, Builder, Bvh, Hit, Left, Point, Ray, Sphere, Triangles};
+use lookfrom_bvh::{Affine, Builder, Bvh, Hit, OriginPrimitive, Point, Ray, Sphere, Triangles};
 
 #[path = "../src/testing.rs"]
 mod testing;
@@ -266,16 +266,16 @@ fn saying_what_rays_leave_changes_no_answer() {
                 let (point, normal) = Point::on_triangle_with_normal(p0, p1, p2, hit.u, hit.v);
                 let direction = leaving(&mut random, normal);
                 rays.push(Ray::new(point.origin(normal, direction), direction));
-                left.push(Left::of(&hit));
+                left.push(OriginPrimitive::of(&hit));
             }
         }
         let (mut plain, mut told) = (vec![Hit::MISS; rays.len()], vec![Hit::MISS; rays.len()]);
         bvh.closest_hits(&rays, &mut plain);
-        bvh.closest_hits_leaving(&rays, &left, &mut told);
+        bvh.query().origins(&left).closest_hits(&rays, &mut told);
         assert_eq!(plain, told);
         let (mut any, mut any_told) = (vec![false; rays.len()], vec![false; rays.len()]);
         bvh.occluded_many(&rays, &mut any);
-        bvh.occluded_many_leaving(&rays, &left, &mut any_told);
+        bvh.query().origins(&left).occluded_many(&rays, &mut any_told);
         assert_eq!(any, any_told);
         for (ray, any) in rays.iter().zip(&any) {
             assert_eq!(bvh.occluded(ray), *any);

@@ -57,7 +57,7 @@ impl Scene {
 fn answers(bvh: &Bvh, rays: &[Ray]) -> (Vec<Hit>, Vec<bool>, Vec<Vec<Hit>>) {
     let all = |ray: &Ray| {
         let mut hits = Vec::new();
-        bvh.all_hits(ray, &mut hits);
+        bvh.query().all_hits(ray, &mut hits);
         hits
     };
     (

@@ -3,13 +3,26 @@
 use std::sync::Arc;
 
 use lookfrom_bvh::{
-    Aabb, Affine, BuildError, Builder, Bvh, Faces, Hit, NONE, Procedural, ProceduralHit, Ray, Selection,
+    Aabb, Affine, BuildError, Builder, Bvh, Faces, Hit, NONE, Procedural, ProceduralHit, Query, Ray, RayF64,
     Sphere, Triangles,
 };
 
 #[path = "../src/testing.rs"]
 mod testing;
 use testing::Random;
+
+/// A mask and faces.
+#[derive(Clone, Copy, Debug)]
+struct Selection {
+    mask: u32,
+    faces: Faces,
+}
+
+impl Selection {
+    fn of(self, bvh: &Bvh) -> Query<'_> {
+        bvh.query().mask(self.mask).faces(self.faces)
+    }
+}
 
 type Corners = [[f32; 3]; 3];
 
@@ -156,7 +169,7 @@ fn random_ray(random: &mut Random) -> Ray {
 
 /// All questions agree with the hits that are expected; returns how many of those there are.
 fn check(bvh: &Bvh, selection: Selection, ray: &Ray, expected: &[Hit]) -> usize {
-    let selected = bvh.select(selection);
+    let selected = selection.of(bvh);
     let mut found = vec![Hit::MISS];
     selected.all_hits(ray, &mut found);
     assert_eq!(found, expected, "{selection:?} {ray:?}");
@@ -167,7 +180,29 @@ fn check(bvh: &Bvh, selection: Selection, ray: &Ray, expected: &[Hit]) -> usize 
     selected.closest_hits(&[*ray], &mut hits);
     selected.occluded_many(&[*ray], &mut occluded);
     assert_eq!((hits[0], occluded[0]), (closest, closest.is_hit()));
+    check_f64(&selected, ray, expected);
     expected.len()
+}
+
+/// The same ray in f64 has the same hits, rounded: but for both roots of a sphere that are one in f32, and but for hits that f32
+/// rounds to an end of the range.
+fn check_f64(selected: &Query<'_>, ray: &Ray, expected: &[Hit]) {
+    let fine = RayF64::from(*ray);
+    let mut found = Vec::new();
+    selected.all_hits(&fine, &mut found);
+    let closest = found.first().copied();
+    let sorted = |mut hits: Vec<(u32, u32, u32, u32)>| {
+        hits.sort_unstable();
+        hits.dedup();
+        hits
+    };
+    let in_range = found.iter().filter(|hit| hit.t as f32 > ray.t_min && (hit.t as f32) < ray.t_max);
+    let rounded =
+        in_range.map(|hit| (hit.instance, hit.geometry, hit.primitive, (hit.t as f32).to_bits())).collect();
+    let expected = expected.iter().map(|hit| (hit.instance, hit.geometry, hit.primitive, hit.t.to_bits()));
+    assert_eq!(sorted(rounded), sorted(expected.collect()), "{selected:?} {ray:?}");
+    assert_eq!(selected.occluded(&fine), closest.is_some());
+    assert_eq!(Some(selected.closest_hit(&fine)).filter(|hit| hit.is_hit()), closest);
 }
 
 #[test]
@@ -180,7 +215,7 @@ fn what_is_selected_is_seen() {
         let mut all = Vec::new();
         for _ in 0..400 {
             let (ray, selection) = (random_ray(&mut random), random_selection(&mut random));
-            bvh.all_hits(&ray, &mut all);
+            bvh.query().all_hits(&ray, &mut all);
             let [origin, direction] = [ray.origin, ray.direction].map(|x| x.map(f64::from));
             if selection.faces != Faces::Both && all.iter().any(|hit| told.doubtful(hit, origin, direction)) {
                 continue;
@@ -226,7 +261,7 @@ fn instances_have_masks_and_keep_their_objects_faces() {
         let mut all = Vec::new();
         for _ in 0..300 {
             let (ray, selection) = (random_ray(&mut random), random_selection(&mut random));
-            scene.all_hits(&ray, &mut all);
+            scene.query().all_hits(&ray, &mut all);
             let in_object = |hit: &Hit| {
                 let back = placed[hit.instance as usize].0.inverse().unwrap();
                 (back.point(ray.origin.map(f64::from)), back.vector(ray.direction.map(f64::from)))
@@ -281,13 +316,13 @@ fn what_is_hidden_ends_no_ray() {
         let bvh = builder.build().unwrap();
         let ray = Ray::new([0.1 * size, 0.0, 3.0 * size], [0.0, 0.0, -random.size(-8, 8)]);
         for (mask, primitive) in [(0b01, 0), (0b10, 1), (0b11, 1)] {
-            let selected = bvh.select(Selection { mask, faces: Faces::Front });
+            let selected = bvh.query().mask(mask).faces(Faces::Front);
             assert_eq!(selected.closest_hit(&ray).primitive, primitive);
             assert!(selected.occluded(&ray));
-            let behind = bvh.select(Selection { mask, faces: Faces::Back });
+            let behind = bvh.query().mask(mask).faces(Faces::Back);
             assert_eq!((behind.closest_hit(&ray), behind.occluded(&ray)), (Hit::MISS, false));
         }
-        let nothing = bvh.select(Selection { mask: 0b100, faces: Faces::Both });
+        let nothing = bvh.query().mask(0b100);
         assert_eq!((nothing.closest_hit(&ray), nothing.occluded(&ray)), (Hit::MISS, false));
     }
 }
@@ -309,8 +344,7 @@ fn closed_meshes_are_left_through_backs_and_entered_through_fronts() {
         let mut builder = Builder::new();
         builder.triangles(Triangles { positions: &positions, indices: &indices });
         let bvh = builder.build().unwrap();
-        let [fronts, backs] =
-            [Faces::Front, Faces::Back].map(|faces| bvh.select(Selection { faces, ..Selection::ALL }));
+        let [fronts, backs] = [Faces::Front, Faces::Back].map(|faces| bvh.query().faces(faces));
         let [a, b] = [random.below(6), random.below(6)].map(|i| positions[i as usize]);
         let s = if random.below(2) == 0 { 0.0 } else { random.unit() };
         let target =

@@ -219,7 +219,7 @@ fn no_ray_slips_through_a_seam() {
                 let Some((ray, hit_by)) = mesh.ray_through_a_seam(&mut random) else { continue };
                 all += 1;
                 let hit = bvh.closest_hit(&ray);
-                if !(hit.t <= hit_by) || !bvh.occluded(&ray.until(hit_by.next_up())) {
+                if !(hit.t <= hit_by) || !bvh.occluded(&ray.with_t_max(hit_by.next_up())) {
                     slipped += 1;
                     println!("{ray:?} should hit by {hit_by}: {hit:?}");
                 }

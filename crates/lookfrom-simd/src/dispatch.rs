@@ -5,9 +5,9 @@ use fearless_simd::{Level, Simd};
 /// What is to be done at a level that is known only when the program runs.
 ///
 /// ```
-/// use lookfrom_simd::{Level, Simd, Work, at_level, f32x8, prelude::*};
+/// use lookfrom_simd::{Level, Simd, Kernel, dispatch, f32x8, prelude::*};
 /// struct Twice([f32; 8]);
-/// impl Work for Twice {
+/// impl Kernel for Twice {
 ///     type Output = [f32; 8];
 ///     #[inline(always)]
 ///     fn run<S: Simd>(self, simd: S) -> [f32; 8] {
@@ -15,9 +15,9 @@ use fearless_simd::{Level, Simd};
 ///         (x + x).into()
 ///     }
 /// }
-/// assert_eq!(at_level(Level::new(), Twice([1.5; 8])), [3.0; 8]);
+/// assert_eq!(dispatch(Level::new(), Twice([1.5; 8])), [3.0; 8]);
 /// ```
-pub trait Work {
+pub trait Kernel {
     /// What comes of it.
     type Output;
 
@@ -25,12 +25,12 @@ pub trait Work {
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
-/// Does the work with the instructions of a level: see [`Work`].
+/// Does the work with the instructions of a level: see [`Kernel`].
 ///
 /// AVX-512 has twice the registers, which is what it is used for: vectors stay 256 bits long. SSE4.2 is left aside, since it lacks
 /// what matters as SSE2 does. On x86-64 there is no scalar level.
 #[inline(always)]
-pub fn at_level<W: Work>(level: Level, work: W) -> W::Output {
+pub fn dispatch<W: Kernel>(level: Level, work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     {
         if let Some(simd) = level.as_avx512() {

@@ -275,7 +275,7 @@ pub(crate) fn orthonormal_bases<S: Simd>(simd: S, n: Vectors<Narrow<S>>) -> [Vec
 mod tests {
     use glam::Vec3;
     use lookfrom_bvh::Point;
-    use lookfrom_simd::{Level, Work, at_level};
+    use lookfrom_simd::{Kernel, Level, dispatch};
 
     use super::*;
     use crate::{hash, warp};
@@ -299,7 +299,7 @@ mod tests {
 
     struct Ask<'a>(&'a [Question; LANES]);
 
-    impl Work for Ask<'_> {
+    impl Kernel for Ask<'_> {
         type Output = [Answer; LANES];
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
@@ -365,7 +365,7 @@ mod tests {
                 Question { corners, on, direction: [0.0; 3].map(|_: f32| real(-20, 20)) }
             });
             for &level in &levels {
-                let answers = at_level(level, Ask(&questions));
+                let answers = dispatch(level, Ask(&questions));
                 for (question, answer) in questions.iter().zip(answers) {
                     let expected = one_by_one(question);
                     // Of a triangle without area nothing is known; bits of its NaN do not matter.

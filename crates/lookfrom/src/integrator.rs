@@ -16,7 +16,7 @@ mod shadow;
 mod whitted;
 
 use glam::Vec3;
-use lookfrom_bvh::{Hit, Left, Ray};
+use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_scene::settings::Background;
 
 use crate::hash;
@@ -131,7 +131,7 @@ impl Path {
     fn passed(&self, surface: &SurfaceInteraction) -> Self {
         let direction = Vec3::from_array(self.ray.direction);
         let ray = Ray::new(surface.origin(direction), self.ray.direction);
-        let previous = PreviousVertex { left: surface.left, ..self.previous };
+        let previous = PreviousVertex { origin_primitive: surface.origin_primitive, ..self.previous };
         Self { ray, address: self.address + 1, previous, ..*self }
     }
 }
@@ -174,7 +174,7 @@ pub struct Queues {
     pub shadows: Vec<Shadow>,
     /// The rays of `shadows`, what they leave, and whether they are blocked: memory.
     rays: Vec<Ray>,
-    left: Vec<Left>,
+    origin_primitives: Vec<OriginPrimitive>,
     blocked: Vec<bool>,
 }
 

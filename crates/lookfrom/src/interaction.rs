@@ -3,7 +3,7 @@
 //! Everything is in render space (see `world`).
 
 use glam::{DVec3, Vec2, Vec3};
-use lookfrom_bvh::{Left, Point};
+use lookfrom_bvh::{OriginPrimitive, Point};
 
 use crate::interior_stack::MediumInterface;
 use crate::texture::FloatTexture;
@@ -52,7 +52,7 @@ pub struct SurfaceInteraction {
     /// Which primitive of its form: of a mesh, the triangle.
     pub primitive: u32,
     /// The triangle, as the kernel is told that rays leave it.
-    pub left: Left,
+    pub origin_primitive: OriginPrimitive,
     /// The kernel's u and v: where on the primitive.
     pub on_primitive: Vec2,
 }

@@ -13,7 +13,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec3;
-use lookfrom_bvh::{Hit, Left, Ray};
+use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_scene::settings::{
     Background, ColorMode, Crop, ImageSettings, RenderSettings, Sensor as SensorSettings,
 };
@@ -120,7 +120,7 @@ struct Batch {
     weights: Vec<f32>,
     paths: Vec<Path>,
     rays: Vec<Ray>,
-    left: Vec<Left>,
+    origin_primitives: Vec<OriginPrimitive>,
     hits: Vec<Hit>,
     /// What the camera's rays met, by slot; only where it is asked for.
     first_hits: Vec<FirstHit>,
@@ -278,7 +278,17 @@ impl Renderer {
         batch: &mut Batch,
     ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
-        let Batch { numbers: start, queues, weights, paths, rays, left, hits, first_hits, traced } = batch;
+        let Batch {
+            numbers: start,
+            queues,
+            weights,
+            paths,
+            rays,
+            origin_primitives,
+            hits,
+            first_hits,
+            traced,
+        } = batch;
         let mut output =
             StepOutput { queues: std::mem::take(queues), background: self.image().background, probe };
         output.queues.clear();
@@ -312,9 +322,9 @@ impl Renderer {
             rays.extend(paths.iter().map(|path| path.ray));
             hits.clear();
             hits.resize(rays.len(), Hit::MISS);
-            left.clear();
-            left.extend(paths.iter().map(|path| path.previous.left));
-            self.world.bvh.closest_hits_leaving(rays, left, hits);
+            origin_primitives.clear();
+            origin_primitives.extend(paths.iter().map(|path| path.previous.origin_primitive));
+            self.world.bvh.query().origins(origin_primitives).closest_hits(rays, hits);
             first_hit::note(first_hits, paths, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.

@@ -17,7 +17,7 @@ pub use class::Class;
 use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
-use lookfrom_bvh::{Bvh, Hit, Left, NONE, Ray};
+use lookfrom_bvh::{Bvh, Hit, NONE, OriginPrimitive, Ray};
 use lookfrom_scene::scene::MediumId;
 
 use crate::interaction::SurfaceInteraction;
@@ -184,7 +184,7 @@ impl World {
             medium_interface: binding.medium_interface.map(|index| self.medium_interfaces[index as usize]),
             shape: binding.shape,
             primitive: hit.primitive,
-            left: Left::of(hit),
+            origin_primitive: OriginPrimitive::of(hit),
             on_primitive: Vec2::new(hit.u, hit.v),
         }
     }

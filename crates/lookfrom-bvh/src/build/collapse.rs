@@ -102,6 +102,7 @@ impl Collapse<'_> {
             }
         };
         bvh.leaves.push(leaf);
+        bvh.leaf_bounds.push(node.bounds);
         Child::leaf(bvh.leaves.len() - 1)
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::aabb::Aabb;
 use crate::filter::BLOCK;
-use lookfrom_simd::{Simd, Work, f32x4, f32x8, prelude::*, u32x4};
+use lookfrom_simd::{Kernel, Simd, f32x4, f32x8, prelude::*, u32x4};
 
 use super::reference::{Covered, Reference};
 
@@ -24,7 +24,7 @@ pub(super) struct Cut<'a> {
     pub(super) bins: usize,
 }
 
-impl Work for Cut<'_> {
+impl Kernel for Cut<'_> {
     type Output = Option<(usize, [Covered; 2])>;
 
     #[inline(always)]
@@ -209,7 +209,7 @@ impl<S: Simd> Side<S> {
 mod tests {
     use super::*;
     use crate::build::primitives::Kind;
-    use crate::dispatch::{at_level, levels};
+    use crate::dispatch::{dispatch, levels};
     use crate::testing::Random;
 
     /// The cheapest cut, plainly: the least cost, and the references on its two sides.
@@ -266,7 +266,7 @@ mod tests {
             let expected = reference_cut(&references, &covered.centers, bins);
             for level in levels() {
                 let mut sorted = references.clone();
-                let cut = at_level(level, Cut { references: &mut sorted, centers: &covered.centers, bins });
+                let cut = dispatch(level, Cut { references: &mut sorted, centers: &covered.centers, bins });
                 let Some((middle, sides)) = cut else {
                     assert!(expected.is_none());
                     none += 1;

@@ -3,18 +3,18 @@
 use super::{BuildError, Builder};
 
 impl Builder {
-    /// Gives a geometry a mask, in place of all bits. Rays with a mask of their own ([`Selection`](crate::Selection)) see
+    /// Gives a geometry a mask, in place of all bits. Rays with a mask of their own ([`Query::mask`](crate::Query::mask)) see
     /// it where the two have a bit in common. A number that no geometry has makes [`Self::build`] fail.
     ///
     /// ```
-    /// use lookfrom_bvh::{Builder, Ray, Selection, Sphere};
+    /// use lookfrom_bvh::{Builder, Ray, Sphere};
     /// let mut builder = Builder::new();
     /// let glass = builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
     /// builder.geometry_mask(glass, 0b10);
     /// let bvh = builder.build()?;
     /// let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
-    /// assert!(bvh.select(Selection { mask: 0b110, ..Selection::ALL }).occluded(&ray));
-    /// assert!(!bvh.select(Selection { mask: 0b101, ..Selection::ALL }).occluded(&ray));
+    /// assert!(bvh.query().mask(0b110).occluded(&ray));
+    /// assert!(!bvh.query().mask(0b101).occluded(&ray));
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn geometry_mask(&mut self, geometry: u32, mask: u32) -> &mut Self {
@@ -28,14 +28,14 @@ impl Builder {
     /// has a bit in common with each of the two. Too many or too few of them make [`Self::build`] fail.
     ///
     /// ```
-    /// use lookfrom_bvh::{Builder, Ray, Selection, Sphere};
+    /// use lookfrom_bvh::{Builder, Ray, Sphere};
     /// let mut builder = Builder::new();
     /// let [near, far] = [2.0, -2.0].map(|z| Sphere { center: [0.0, 0.0, z], radius: 1.0 });
     /// let balls = builder.spheres(&[near, far]);
     /// builder.primitive_masks(balls, &[0b01, 0b11]);
     /// let bvh = builder.build()?;
     /// let ray = Ray::new([0.0, 0.0, 5.0], [0.0, 0.0, -1.0]);
-    /// let seen = |mask| bvh.select(Selection { mask, ..Selection::ALL }).closest_hit(&ray).primitive;
+    /// let seen = |mask| bvh.query().mask(mask).closest_hit(&ray).primitive;
     /// assert_eq!((seen(0b01), seen(0b10)), (0, 1));
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
@@ -57,7 +57,7 @@ impl Builder {
     /// the instance's and with those of the geometry inside. A number that no instance has makes [`Self::build`] fail.
     ///
     /// ```
-    /// use lookfrom_bvh::{Affine, Builder, Ray, Selection, Sphere};
+    /// use lookfrom_bvh::{Affine, Builder, Ray, Sphere};
     /// use std::sync::Arc;
     /// let mut ball = Builder::new();
     /// ball.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
@@ -66,7 +66,7 @@ impl Builder {
     /// scene.instance_mask(instance, 0b10);
     /// let scene = scene.build()?;
     /// let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
-    /// assert!(!scene.select(Selection { mask: 0b01, ..Selection::ALL }).occluded(&ray));
+    /// assert!(!scene.query().mask(0b01).occluded(&ray));
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn instance_mask(&mut self, instance: u32, mask: u32) -> &mut Self {

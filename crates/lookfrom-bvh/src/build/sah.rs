@@ -5,7 +5,7 @@
 //! The tree is the same for any number of threads and any instructions.
 
 use crate::aabb::Aabb;
-use crate::dispatch::at_level;
+use crate::dispatch::dispatch;
 use lookfrom_simd::Level;
 
 use super::Quality;
@@ -77,7 +77,7 @@ impl Task {
         let cut = (depth < HEURISTIC_DEPTH)
             .then(|| {
                 let bins = self.bins.min(count.max(4));
-                at_level(self.level, Cut { references: &mut *references, centers: &covered.centers, bins })
+                dispatch(self.level, Cut { references: &mut *references, centers: &covered.centers, bins })
             })
             .flatten();
         let (middle, [left_covered, right_covered]) =

@@ -1,7 +1,7 @@
 //! The filter's inner loop: for every offset between two pixels, a whole block of pixels at once, so that the machine's vectors
 //! have something to do. The slow twin, which goes pixel by pixel, is in the tests.
 
-use lookfrom_simd::{Simd, Work, at_level, level};
+use lookfrom_simd::{Kernel, Simd, dispatch, level};
 use rayon::prelude::*;
 
 use super::planes::{BORDER, Planes};
@@ -37,7 +37,7 @@ impl<const N: usize> Planes<N> {
             for left in (0..width).step_by(COLUMNS) {
                 let block = Block { planes: self, left, top: band * ROWS, rows: changes.len() / width };
                 if block.is_noisy() {
-                    at_level(level, Filter { block, changes: &mut *changes });
+                    dispatch(level, Filter { block, changes: &mut *changes });
                 }
             }
         });
@@ -95,7 +95,7 @@ fn row<const LENGTH: usize>(plane: &[f32], start: usize) -> &[f32; LENGTH] {
     plane[start..start + LENGTH].first_chunk().expect("a slice of this length")
 }
 
-impl<const N: usize> Work for Filter<'_, N> {
+impl<const N: usize> Kernel for Filter<'_, N> {
     type Output = ();
 
     #[inline(always)]

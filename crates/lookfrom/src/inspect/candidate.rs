@@ -5,7 +5,7 @@
 
 use glam::Vec3;
 use lookfrom_bvh::reference::{Cramer, Quadratic, Rejection, Root, cramer, sphere};
-use lookfrom_bvh::{Hit, NONE, Procedural, Ray, Watch};
+use lookfrom_bvh::{Hit, NONE, Observer, Procedural, Ray};
 use serde::Serialize;
 
 use crate::primitive::{Mesh, Primitives};
@@ -75,14 +75,14 @@ fn matching_bits(approximate: f32, exact: f64) -> u32 {
 /// Every primitive that the kernel tests `ray` against, in its order.
 pub(super) fn candidates(world: &World, ray: &Ray, nearest: &Hit) -> Vec<Candidate> {
     let mut tested = Tested(Vec::new());
-    world.bvh.closest_hit_watched(ray, &mut tested);
+    world.bvh.query().observer(&mut tested).closest_hit(ray);
     tested.0.into_iter().map(|ids| candidate(world, ray, ids, nearest)).collect()
 }
 
 /// Listens to the kernel.
 struct Tested(Vec<[u32; 3]>);
 
-impl Watch for Tested {
+impl Observer for Tested {
     fn candidate(&mut self, instance: u32, geometry: u32, primitive: u32) {
         let ids = [instance, geometry, primitive];
         if self.0.len() < MOST_CANDIDATES && !self.0.contains(&ids) {

@@ -56,7 +56,7 @@ impl Integrator for AmbientOcclusion {
         let contribution = path.beta * white * weight;
         output.queues.shadows.push(Shadow {
             ray,
-            left: surface.left,
+            origin_primitive: surface.origin_primitive,
             contribution,
             slot: path.slot,
             address: path.address,

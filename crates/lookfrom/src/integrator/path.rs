@@ -7,8 +7,8 @@ mod catcher;
 mod eight;
 
 use glam::{DVec3, Vec3};
-use lookfrom_bvh::{Hit, Left, Ray};
-use lookfrom_simd::{at_level, level};
+use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
+use lookfrom_simd::{dispatch, level};
 
 use eight::{FlatDiffuseHit, Steps};
 
@@ -67,7 +67,7 @@ pub struct PreviousVertex {
     /// Density over solid angle of the direction that it took; infinite where that was the only one, or from the camera.
     pub pdf: f32,
     /// The triangle there.
-    pub left: Left,
+    pub origin_primitive: OriginPrimitive,
     /// Where, in render space.
     pub point: Vec3,
     /// Shading normal there.
@@ -84,7 +84,7 @@ impl Default for PreviousVertex {
     fn default() -> Self {
         Self {
             pdf: f32::INFINITY,
-            left: Left::NOTHING,
+            origin_primitive: OriginPrimitive::NONE,
             point: Vec3::ZERO,
             n: Vec3::Z,
             eta_scale: 1.0,
@@ -224,7 +224,7 @@ impl PathTracer {
         let Some(last) = plain.last() else { return };
         let eight: [FlatDiffuseHit<'_>; LANES] = std::array::from_fn(|lane| *plain.get(lane).unwrap_or(last));
         let steps = Steps { tracer: self, world, plain: &eight, count: plain.len(), output };
-        at_level(level(), steps);
+        dispatch(level(), steps);
     }
 
     /// What light does at a surface: from one lamp, and from one direction.
@@ -281,7 +281,7 @@ impl PathTracer {
             interior,
             previous: PreviousVertex {
                 pdf,
-                left: surface.left,
+                origin_primitive: surface.origin_primitive,
                 point: DVec3::from_array(surface.point.position).as_vec3(),
                 n: shading.n(),
                 eta_scale,

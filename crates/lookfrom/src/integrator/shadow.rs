@@ -5,7 +5,7 @@
 //! most renderers of this kind since Whitted's.
 
 use glam::Vec3;
-use lookfrom_bvh::{Hit, Left, Point, Ray};
+use lookfrom_bvh::{Hit, OriginPrimitive, Point, Ray};
 
 use crate::hash;
 use crate::integrator::{Event, Path, Probe, Queues, StepOutput, Term};
@@ -26,7 +26,7 @@ pub struct Shadow {
     /// From the surface; `t = 1` is the light, unless that is infinitely far.
     pub ray: Ray,
     /// The triangle that it leaves.
-    pub left: Left,
+    pub origin_primitive: OriginPrimitive,
     /// What is added to the sample if the light is reached.
     pub contribution: Spectrum,
     /// Which sample of the batch.
@@ -68,8 +68,8 @@ impl Shadow {
         // Through the surface of a body it travels in what is behind.
         let crosses = (surface.ng.dot(sample.wi.as_dvec3()) > 0.0) != surface.front;
         let interior = interior.leaving(&world.materials, surface, sample.wi, crosses);
-        let left = surface.left;
-        Self { ray, left, contribution, slot, address, term: Term::Light(light), interior }
+        let origin_primitive = surface.origin_primitive;
+        Self { ray, origin_primitive, contribution, slot, address, term: Term::Light(light), interior }
     }
 }
 
@@ -121,14 +121,14 @@ pub(crate) fn resolve<P: Probe>(
 
 /// Whatever stands in the way takes all.
 fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
-    let Queues { shadows, lanes, rays, left, blocked, .. } = queues;
+    let Queues { shadows, lanes, rays, origin_primitives, blocked, .. } = queues;
     rays.clear();
     rays.extend(shadows.iter().map(|shadow| shadow.ray));
-    left.clear();
-    left.extend(shadows.iter().map(|shadow| shadow.left));
+    origin_primitives.clear();
+    origin_primitives.extend(shadows.iter().map(|shadow| shadow.origin_primitive));
     blocked.clear();
     blocked.resize(rays.len(), false);
-    world.bvh.occluded_many_leaving(rays, left, blocked);
+    world.bvh.query().origins(origin_primitives).occluded_many(rays, blocked);
     for (shadow, blocked) in shadows.iter_mut().zip(&*blocked) {
         let lanes = &lanes[shadow.slot as usize];
         let passed = if *blocked { Spectrum::BLACK } else { shadow.reached(world, lanes) };
@@ -151,8 +151,10 @@ fn let_through<P: Probe>(
     let mut active: Vec<usize> = (0..shadows.len()).collect();
     for crossings in 0.. {
         let rays: Vec<Ray> = active.iter().map(|&index| shadows[index].ray).collect();
+        let origins: Vec<OriginPrimitive> =
+            active.iter().map(|&index| shadows[index].origin_primitive).collect();
         let mut hits = vec![Hit::MISS; rays.len()];
-        world.bvh.closest_hits(&rays, &mut hits);
+        world.bvh.query().origins(&origins).closest_hits(&rays, &mut hits);
         traced += rays.len() as u64;
         let mut hits = hits.into_iter();
         active.retain(|&index| {
@@ -229,7 +231,7 @@ impl Shadow {
     fn go_on_behind(&mut self, world: &World, hit: &Hit, surface: &SurfaceInteraction) {
         let direction = Vec3::from_array(self.ray.direction);
         self.ray.origin = surface.origin(direction);
-        self.left = surface.left;
+        self.origin_primitive = surface.origin_primitive;
         self.ray.t_max -= hit.t;
         if world.passes_alpha_test(surface, self.number(hit)) {
             self.interior = self.interior.leaving(&world.materials, surface, direction, true);

@@ -86,7 +86,7 @@ fn seen(renderer: &Renderer, side: u32) -> Vec<Option<SurfaceInteraction>> {
     let mut first = |cell: u32| {
         let place = [width * middle(cell % side), height * middle(cell / side)];
         let ray = renderer.kernel_ray(&camera.ray(place, [0.5; 2]));
-        world.bvh.all_hits(&ray, &mut hits);
+        world.bvh.query().all_hits(&ray, &mut hits);
         // The camera's rays pass these.
         let is_passed = |surface: &SurfaceInteraction| {
             surface.single_sided && !surface.front || world.is_interface(surface)
@@ -116,7 +116,7 @@ fn body_around_the_eye(
         let place = |cell: u32| (cell as f32 + 0.37) / AROUND as f32;
         let direction = warp::octahedral_direction([place(cell % AROUND), place(cell / AROUND)]);
         let ray = Ray::new(eye, direction.to_array());
-        world.bvh.all_hits(&ray, &mut hits);
+        world.bvh.query().all_hits(&ray, &mut hits);
         let surfaces = hits.iter().map(|hit| world.surface(&ray, hit));
         let crossed: Vec<SurfaceInteraction> =
             surfaces.filter(|surface| is_part(surface) && is_opaque(world, surface)).collect();
@@ -166,7 +166,8 @@ fn is_lit_from_within(renderer: &Renderer) -> bool {
         match sample.target {
             Target::Point(place) => {
                 let way = (place - origin).as_vec3().to_array();
-                place != origin && !world.bvh.occluded(&Ray::new(origin.as_vec3().to_array(), way).until(1.0))
+                place != origin
+                    && !world.bvh.occluded(&Ray::new(origin.as_vec3().to_array(), way).with_t_max(1.0))
             }
             Target::Surface(..) => {
                 let ray = Ray::new(origin.as_vec3().to_array(), sample.wi.to_array());

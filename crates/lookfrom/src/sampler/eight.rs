@@ -1,7 +1,7 @@
 //! Random numbers of eight samples at once, one in each lane: the twin of [`PixelSampler`], bit for bit.
 
 use lookfrom_scene::settings::Sampler as Kind;
-use lookfrom_simd::{Simd, Work, at_level, f32x8, level, prelude::*, u32x8, u64x8};
+use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, prelude::*, u32x8, u64x8};
 
 use super::{PixelSampler, Sampler};
 use crate::eight::{LANES, by_lane};
@@ -55,7 +55,7 @@ impl Sampler {
         numbers: &mut Vec<[f32; 2]>,
     ) {
         numbers.resize(count, [0.0; 2]);
-        at_level(level(), Each { sampler: self, address, dimension, numbers });
+        dispatch(level(), Each { sampler: self, address, dimension, numbers });
     }
 }
 
@@ -66,7 +66,7 @@ struct Each<'a, F> {
     numbers: &'a mut [[f32; 2]],
 }
 
-impl<F: Fn(usize) -> ([u32; 2], u32)> Work for Each<'_, F> {
+impl<F: Fn(usize) -> ([u32; 2], u32)> Kernel for Each<'_, F> {
     type Output = ();
 
     #[inline(always)]
@@ -148,7 +148,7 @@ mod tests {
 
     struct Two<'a>(&'a [PixelSampler; LANES], [u32; LANES], [u32; LANES]);
 
-    impl Work for Two<'_> {
+    impl Kernel for Two<'_> {
         type Output = [[f32; LANES]; 2];
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
@@ -183,7 +183,7 @@ mod tests {
                 let samplers = std::array::from_fn(|lane| sampler.of_pixel([number(lane, 0), lane as u32]));
                 let samples = std::array::from_fn(|lane| number(lane, 1) >> (round % 32));
                 let dimensions = std::array::from_fn(|lane| number(lane, 2));
-                let [a, b] = at_level(level(), Two(&samplers, samples, dimensions));
+                let [a, b] = dispatch(level(), Two(&samplers, samples, dimensions));
                 for lane in 0..LANES {
                     let expected = samplers[lane].two(samples[lane], dimensions[lane]);
                     assert_eq!([a[lane], b[lane]], expected);

@@ -6,8 +6,8 @@ mod light_samples;
 
 use std::f32::consts::FRAC_1_PI;
 
-use lookfrom_bvh::{Hit, Left, NONE, Point, Ray};
-use lookfrom_simd::{Simd, Work, f32x8, f64x8, prelude::*, u32x8, u64x8};
+use lookfrom_bvh::{Hit, NONE, OriginPrimitive, Point, Ray};
+use lookfrom_simd::{Kernel, Simd, f32x8, f64x8, prelude::*, u32x8, u64x8};
 
 use super::{PathTracer, PreviousVertex, dimension, power_heuristic};
 use crate::bsdf::BsdfSample;
@@ -71,7 +71,7 @@ pub(super) struct Steps<'a, 'b, 'c, P: Probe> {
     pub(super) output: &'b mut StepOutput<'c, P>,
 }
 
-impl<P: Probe> Work for Steps<'_, '_, '_, P> {
+impl<P: Probe> Kernel for Steps<'_, '_, '_, P> {
     type Output = ();
 
     #[inline(always)]
@@ -132,7 +132,7 @@ impl<P: Probe> Work for Steps<'_, '_, '_, P> {
             let Path { slot, address, interior, .. } = **path;
             output.queues.shadows.push(Shadow {
                 ray,
-                left: Left::of(plain[lane].hit),
+                origin_primitive: OriginPrimitive::of(plain[lane].hit),
                 contribution,
                 slot,
                 address,
@@ -181,7 +181,7 @@ impl<P: Probe> Work for Steps<'_, '_, '_, P> {
                 interior: path.interior,
                 previous: PreviousVertex {
                     pdf: pdf[lane],
-                    left: Left::of(plain[lane].hit),
+                    origin_primitive: OriginPrimitive::of(plain[lane].hit),
                     point: points.lane(lane).into(),
                     n: surfaces.n.lane(lane).into(),
                     eta_scale,

@@ -4,7 +4,7 @@ use super::*;
 use crate::hash;
 use crate::math;
 use glam::{DVec3, Vec2};
-use lookfrom_bvh::{Left, Point};
+use lookfrom_bvh::{OriginPrimitive, Point};
 
 fn surface(wo: Vec3, ng: Vec3, ns: Vec3) -> SurfaceInteraction {
     SurfaceInteraction {
@@ -23,7 +23,7 @@ fn surface(wo: Vec3, ng: Vec3, ns: Vec3) -> SurfaceInteraction {
         light: None,
         shape: 0,
         primitive: 0,
-        left: Left::NOTHING,
+        origin_primitive: OriginPrimitive::NONE,
         on_primitive: Vec2::ZERO,
         alpha: None,
         vertex_data: None,

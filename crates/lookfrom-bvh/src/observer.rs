@@ -1,14 +1,15 @@
-//! Who listens while a ray is traced: counters, explainers, or nobody.
+//! Observers of a traversal: counters, explanations, or none.
 
-/// Listens while a ray is traced. Every method does nothing unless written; `()` listens to nothing and costs nothing.
+/// Hears of the nodes and candidates of a traversal. Every method does nothing unless written; `()` hears nothing and costs
+/// nothing.
 ///
 /// ```
-/// use lookfrom_bvh::{Builder, Ray, Sphere, Watch};
+/// use lookfrom_bvh::{Builder, Ray, Sphere, Observer};
 ///
 /// /// Counts nodes.
 /// struct Nodes(u32);
 ///
-/// impl Watch for Nodes {
+/// impl Observer for Nodes {
 ///     fn node(&mut self, _instance: u32, _node: u32) {
 ///         self.0 += 1;
 ///     }
@@ -17,12 +18,12 @@
 /// let mut builder = Builder::new();
 /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
 /// let mut nodes = Nodes(0);
-/// builder.build()?.closest_hit_watched(&Ray::new([0.0; 3], [0.0, 0.0, 1.0]), &mut nodes);
+/// builder.build()?.query().observer(&mut nodes).closest_hit(&Ray::new([0.0; 3], [0.0, 0.0, 1.0]));
 /// assert_eq!(nodes.0, 1);
 /// # Ok::<(), lookfrom_bvh::BuildError>(())
 /// ```
-pub trait Watch {
-    /// Whether [`Self::candidate`] is to be called at all.
+pub trait Observer {
+    /// Whether the methods are to be called at all.
     const LISTENS: bool = true;
 
     /// The ray visits a node of a tree; `instance` is [`NONE`](crate::NONE) in the outer tree.
@@ -36,11 +37,11 @@ pub trait Watch {
     }
 }
 
-impl Watch for () {
+impl Observer for () {
     const LISTENS: bool = false;
 }
 
-impl<W: Watch> Watch for &mut W {
+impl<W: Observer> Observer for &mut W {
     const LISTENS: bool = W::LISTENS;
 
     fn node(&mut self, instance: u32, node: u32) {

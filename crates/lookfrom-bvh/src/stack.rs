@@ -2,8 +2,8 @@
 
 use std::cell::Cell;
 
+use crate::collector::Collector;
 use crate::node::{Child, Entered, LARGEST_DEPTH, Node, WIDTH};
-use crate::query::Query;
 use lookfrom_simd::Simd;
 
 /// A child that waits for its visit: where the ray enters it (f32 bits) above what it is. Positive distances are ordered
@@ -86,7 +86,7 @@ impl Waiting<'_> {
     /// Pushes the children that were entered but one, the nearest last, and returns that one, which is nearer. There is
     /// one at least.
     #[inline(always)]
-    pub(crate) fn push_all_but_nearest<S: Simd, Q: Query>(
+    pub(crate) fn push_all_but_nearest<S: Simd, C: Collector>(
         &mut self,
         node: &Node,
         entered: &Entered<S>,
@@ -98,12 +98,12 @@ impl Waiting<'_> {
         }
         let second = next(node, entered, &mut children);
         let (mut nearest, farther) =
-            if Q::NEAREST_FIRST { (first.min(second), first.max(second)) } else { (first, second) };
+            if C::NEAREST_FIRST { (first.min(second), first.max(second)) } else { (first, second) };
         let bottom = self.height;
         self.push(farther);
         while children != 0 {
             let mut waits = next(node, entered, &mut children);
-            if Q::NEAREST_FIRST {
+            if C::NEAREST_FIRST {
                 (nearest, waits) = (nearest.min(waits), nearest.max(waits));
                 // Insert: what is farther stays below.
                 let mut place = self.height;

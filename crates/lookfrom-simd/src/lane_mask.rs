@@ -3,13 +3,13 @@
 /// The numbers of the lanes that were chosen, from the least; bit i stands for lane i.
 ///
 /// ```
-/// use lookfrom_simd::Chosen;
-/// assert_eq!(Chosen(0b101).collect::<Vec<_>>(), [0, 2]);
+/// use lookfrom_simd::LaneMask;
+/// assert_eq!(LaneMask(0b101).collect::<Vec<_>>(), [0, 2]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Chosen(pub u32);
+pub struct LaneMask(pub u32);
 
-impl Iterator for Chosen {
+impl Iterator for LaneMask {
     type Item = usize;
     #[inline(always)]
     fn next(&mut self) -> Option<usize> {
@@ -25,7 +25,7 @@ mod tests {
 
     #[test]
     fn chosen_lanes_come_in_order() {
-        assert_eq!(Chosen(0b1010_0110).collect::<Vec<_>>(), [1, 2, 5, 7]);
-        assert_eq!(Chosen(0).next(), None);
+        assert_eq!(LaneMask(0b1010_0110).collect::<Vec<_>>(), [1, 2, 5, 7]);
+        assert_eq!(LaneMask(0).next(), None);
     }
 }

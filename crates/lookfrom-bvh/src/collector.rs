@@ -1,0 +1,158 @@
+//! The questions about a ray: its closest hit, whether there is any hit, all of its hits.
+
+use crate::ray::{Hit, Ray};
+
+/// The state of a question: hits come in, and an end beyond which no more are wanted goes out.
+pub(crate) trait Collector {
+    /// Whether near children are to be visited before far ones.
+    const NEAREST_FIRST: bool;
+
+    /// Whether any hit will do, wherever in the ray's range it is.
+    const ANY_HIT: bool;
+
+    /// No hit beyond this t is wanted; one at it may be.
+    fn end(&self) -> f32;
+
+    /// Takes a hit beyond the ray's `t_min`. Returns true where no more are wanted.
+    fn commit(&mut self, hit: Hit) -> bool;
+}
+
+/// A question that a packet asks: its state is taken up ray by ray.
+pub(crate) trait PacketCollector: Collector {
+    /// The state of a ray whose closest hit so far is `hit`, and of which no hit beyond `end` is wanted.
+    fn resume(ray: &Ray, hit: Hit, end: f32) -> Self;
+
+    /// The closest hit so far.
+    fn hit(&self) -> Hit;
+
+    /// Whether there was any hit.
+    fn found(&self) -> bool;
+}
+
+/// The hit with the least t; of several, that of the lowest rank.
+pub(crate) struct ClosestHit {
+    t_max: f32,
+    end: f32,
+    pub(crate) hit: Hit,
+}
+
+impl ClosestHit {
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray) -> Self {
+        Self { t_max: ray.t_max, end: ray.t_max, hit: Hit::MISS }
+    }
+}
+
+impl Collector for ClosestHit {
+    const NEAREST_FIRST: bool = true;
+    const ANY_HIT: bool = false;
+
+    #[inline(always)]
+    fn end(&self) -> f32 {
+        self.end
+    }
+
+    #[inline(always)]
+    fn commit(&mut self, hit: Hit) -> bool {
+        if hit.t < self.t_max && hit.precedes(&self.hit) {
+            self.hit = hit;
+            self.end = if hit.t < self.end { hit.t } else { self.end };
+        }
+        false
+    }
+}
+
+impl PacketCollector for ClosestHit {
+    #[inline(always)]
+    fn resume(ray: &Ray, hit: Hit, end: f32) -> Self {
+        let end = if end < ray.t_max { end } else { ray.t_max };
+        Self { t_max: ray.t_max, end: if hit.t < end { hit.t } else { end }, hit }
+    }
+
+    #[inline(always)]
+    fn hit(&self) -> Hit {
+        self.hit
+    }
+
+    #[inline(always)]
+    fn found(&self) -> bool {
+        self.hit.is_hit()
+    }
+}
+
+/// Whether there is a hit.
+pub(crate) struct AnyHit {
+    t_max: f32,
+    pub(crate) found: bool,
+}
+
+impl AnyHit {
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray) -> Self {
+        Self { t_max: ray.t_max, found: false }
+    }
+}
+
+impl Collector for AnyHit {
+    const NEAREST_FIRST: bool = true;
+    const ANY_HIT: bool = true;
+
+    #[inline(always)]
+    fn end(&self) -> f32 {
+        self.t_max
+    }
+
+    #[inline(always)]
+    fn commit(&mut self, hit: Hit) -> bool {
+        self.found |= hit.t < self.t_max;
+        self.found
+    }
+}
+
+impl PacketCollector for AnyHit {
+    #[inline(always)]
+    fn resume(ray: &Ray, _: Hit, _: f32) -> Self {
+        Self::new(ray)
+    }
+
+    #[inline(always)]
+    fn hit(&self) -> Hit {
+        Hit::MISS
+    }
+
+    #[inline(always)]
+    fn found(&self) -> bool {
+        self.found
+    }
+}
+
+/// Every hit, in no order.
+pub(crate) struct AllHits {
+    t_max: f32,
+    pub(crate) hits: Vec<Hit>,
+}
+
+impl AllHits {
+    /// `hits` is empty.
+    pub(crate) fn new(ray: &Ray, hits: Vec<Hit>) -> Self {
+        Self { t_max: ray.t_max, hits }
+    }
+}
+
+impl Collector for AllHits {
+    const NEAREST_FIRST: bool = false;
+    const ANY_HIT: bool = false;
+
+    #[inline(always)]
+    fn end(&self) -> f32 {
+        self.t_max
+    }
+
+    #[inline(always)]
+    fn commit(&mut self, hit: Hit) -> bool {
+        if hit.t < self.t_max {
+            self.hits.push(hit);
+        }
+        false
+    }
+}

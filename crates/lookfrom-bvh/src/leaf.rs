@@ -1,0 +1,121 @@
+//! Leaves without triangles: spheres, procedural shapes, instances.
+
+use std::ops::Range;
+
+use crate::Bvh;
+use crate::bvh::{Leaf, SphereItem};
+use crate::collector::Collector;
+use crate::exact::Exact;
+use crate::instance::Instance;
+use crate::observer::Observer;
+use crate::ray::{Hit, NONE, Ray};
+use crate::sphere;
+use crate::stack::Waiting;
+use crate::traverse::{TraversalState, trace_any};
+use crate::visibility::Visibility;
+use lookfrom_simd::Simd;
+
+/// Tests the primitives of a leaf without triangles.
+#[inline(never)]
+pub(crate) fn other_leaf<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+    simd: S,
+    bvh: &Bvh,
+    leaf: &Leaf,
+    ray: &Exact,
+    state: &mut TraversalState<C, V, O>,
+    waiting: &mut Waiting<'_>,
+) -> bool {
+    let range = |first: u32, count: u32| first as usize..(first + count) as usize;
+    match *leaf {
+        Leaf::Spheres { first, count } => spheres(&bvh.spheres[range(first, count)], ray, state),
+        Leaf::Procedurals { first, count } => procedurals(bvh, range(first, count), ray, state),
+        Leaf::Instances { first, count } => instances(simd, bvh, range(first, count), ray, state, waiting),
+    }
+}
+
+fn spheres<'a, C: Collector, V: Visibility<'a>, O: Observer>(
+    spheres: &[SphereItem],
+    ray: &Exact,
+    state: &mut TraversalState<C, V, O>,
+) -> bool {
+    for item in spheres {
+        let (geometry, primitive, instance) = (item.geometry, item.primitive, state.instance);
+        state.observer.candidate(instance, geometry, primitive);
+        if V::SELECTS && !state.visibility.shows(geometry, primitive) {
+            continue;
+        }
+        let Some([t1, t2]) = sphere::decide(ray, &item.shape) else { continue };
+        let roots = if t1 < t2 { &[t1, t2][..] } else { &[t1][..] };
+        for (root, &t) in roots.iter().enumerate() {
+            if t > ray.t_min
+                && (!V::SELECTS || state.visibility.faces().shows(|| root == 0))
+                && state.collector.commit(Hit { t, u: 0.0, v: 0.0, primitive, geometry, instance })
+            {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+fn procedurals<'a, C: Collector, V: Visibility<'a>, O: Observer>(
+    bvh: &Bvh,
+    range: Range<usize>,
+    ray: &Exact,
+    state: &mut TraversalState<C, V, O>,
+) -> bool {
+    for item in &bvh.procedurals[range] {
+        let (geometry, primitive, instance) = (item.geometry, item.primitive, state.instance);
+        state.observer.candidate(instance, geometry, primitive);
+        if V::SELECTS && !state.visibility.shows(geometry, primitive) {
+            continue;
+        }
+        // Ask one step beyond the end: a hit at the same t may win the tie.
+        let t_max = state.collector.end().next_up();
+        let [origin, direction] = [ray.origin, ray.direction].map(|x| x.map(|x| x as f32));
+        let asked = Ray { origin, t_min: ray.t_min, direction, t_max };
+        let Some(found) = bvh.procedural_shapes[item.shape as usize].intersect(primitive, &asked) else {
+            continue;
+        };
+        if found.t > ray.t_min
+            && state.collector.commit(Hit {
+                t: found.t,
+                u: found.u,
+                v: found.v,
+                primitive,
+                geometry,
+                instance,
+            })
+        {
+            return true;
+        }
+    }
+    false
+}
+
+/// Takes a ray into instances.
+fn instances<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+    simd: S,
+    bvh: &Bvh,
+    mut range: Range<usize>,
+    exact: &Exact,
+    state: &mut TraversalState<C, V, O>,
+    waiting: &mut Waiting<'_>,
+) -> bool {
+    range.any(|place| {
+        if V::SELECTS && !state.visibility.enter_instance(place) {
+            return false;
+        }
+        let Instance { bvh, id, world_from_object, object_from_world } = &bvh.instances[place];
+        let inside = exact.in_object(world_from_object, object_from_world);
+        let Waiting { stack, height, .. } = waiting;
+        state.instance = *id;
+        let stop =
+            trace_any(simd, bvh, &inside, state, &mut Waiting { stack, bottom: *height, height: *height });
+        state.instance = NONE;
+        if V::SELECTS {
+            state.visibility.leave_instance();
+        }
+        stop
+    })
+}

@@ -1,0 +1,121 @@
+//! Questions about single rays in single precision: one site of compiled code for each question and level.
+
+use crate::Bvh;
+use crate::batch;
+use crate::collector::{AllHits, AnyHit, ClosestHit, Collector};
+use crate::dispatch::dispatch;
+use crate::observer::Observer;
+use crate::query::{Needs, Settings};
+use crate::ray::{Hit, Ray};
+use crate::stack::with_stack;
+use crate::traverse::trace;
+use crate::visibility::{Everything, Masked, Visibility};
+use lookfrom_simd::{Kernel, Simd};
+
+/// Traces one ray at the best level that there is, and gives back the collector. `ask` makes it: inside of the code for the level,
+/// so that it may live in registers.
+struct Trace<'a, F, V, O> {
+    bvh: &'a Bvh,
+    ray: &'a Ray,
+    ask: F,
+    visibility: V,
+    observer: O,
+}
+
+impl<'a, C: Collector, F: FnOnce(&Ray) -> C, V: Visibility<'a>, O: Observer> Kernel for Trace<'a, F, V, O> {
+    type Output = C;
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> C {
+        let Self { bvh, ray, ask, visibility, observer } = self;
+        with_stack(
+            #[inline(always)]
+            |stack| trace(simd, bvh, ray, ask, visibility, observer, stack),
+        )
+    }
+}
+
+#[inline(always)]
+fn ask_everything<C: Collector>(bvh: &Bvh, ray: &Ray, ask: impl FnOnce(&Ray) -> C) -> C {
+    dispatch(bvh.level, Trace { bvh, ray, ask, visibility: Everything, observer: () })
+}
+
+/// The general case, with whatever the settings need.
+#[inline(always)]
+fn ask<C: Collector>(
+    settings: &Settings<'_>,
+    ray: &Ray,
+    ask: impl FnOnce(&Ray) -> C,
+    observer: impl Observer,
+) -> C {
+    let bvh = settings.bvh;
+    dispatch(bvh.level, Trace { bvh, ray, ask, visibility: Masked::of(settings, 0), observer })
+}
+
+/// The closest hit among everything.
+pub(crate) fn closest_hit_of_everything(bvh: &Bvh, ray: &Ray) -> Hit {
+    ask_everything(bvh, ray, ClosestHit::new).hit
+}
+
+/// Whether anything is hit.
+pub(crate) fn occluded_by_everything(bvh: &Bvh, ray: &Ray) -> bool {
+    ask_everything(bvh, ray, AnyHit::new).found
+}
+
+/// The closest hit.
+pub(crate) fn closest_hit(settings: &Settings<'_>, ray: &Ray) -> Hit {
+    if let Needs::Everything = settings.needs() {
+        return closest_hit_of_everything(settings.bvh, ray);
+    }
+    let mut hit = [Hit::MISS];
+    batch::closest_hits(settings, &[*ray], &mut hit);
+    hit[0]
+}
+
+/// Whether there is a hit.
+pub(crate) fn occluded(settings: &Settings<'_>, ray: &Ray) -> bool {
+    if let Needs::Everything = settings.needs() {
+        return occluded_by_everything(settings.bvh, ray);
+    }
+    let mut occluded = [false];
+    batch::occluded_many(settings, &[*ray], &mut occluded);
+    occluded[0]
+}
+
+/// All hits, sorted. `hits` is empty.
+pub(crate) fn all_hits(settings: &Settings<'_>, ray: &Ray, hits: &mut Vec<Hit>) {
+    let room = std::mem::take(hits);
+    let all = move |ray: &Ray| AllHits::new(ray, room);
+    *hits = match settings.needs() {
+        Needs::Everything => ask_everything(settings.bvh, ray, all).hits,
+        _ => ask(settings, ray, all, ()).hits,
+    };
+    sort(hits);
+}
+
+/// The closest hit, while an observer listens.
+pub(crate) fn observed_closest_hit(settings: &Settings<'_>, ray: &Ray, observer: &mut impl Observer) -> Hit {
+    ask(settings, ray, ClosestHit::new, observer).hit
+}
+
+/// Whether there is a hit, while an observer listens.
+pub(crate) fn observed_occluded(settings: &Settings<'_>, ray: &Ray, observer: &mut impl Observer) -> bool {
+    ask(settings, ray, AnyHit::new, observer).found
+}
+
+/// All hits, sorted, while an observer listens. `hits` is empty.
+pub(crate) fn observed_all_hits(
+    settings: &Settings<'_>,
+    ray: &Ray,
+    hits: &mut Vec<Hit>,
+    observer: &mut impl Observer,
+) {
+    let room = std::mem::take(hits);
+    *hits = ask(settings, ray, move |ray: &Ray| AllHits::new(ray, room), observer).hits;
+    sort(hits);
+}
+
+/// Sorts hits by t and then as ties are decided.
+fn sort(hits: &mut [Hit]) {
+    // A zero is a zero, whatever its sign.
+    hits.sort_unstable_by(|a, b| (a.t + 0.0).total_cmp(&(b.t + 0.0)).then_with(|| a.rank().cmp(&b.rank())));
+}

@@ -1,0 +1,238 @@
+//! The traversal of rays in double precision.
+//!
+//! Plain scalar code over the same nodes, and the same exact tests, whose f64 is not rounded here. So for rays that are numbers of
+//! f32 the answers are those of single precision, but finer: hits that are equal in f32 are told apart.
+
+use crate::Bvh;
+use crate::aabb::Aabb;
+use crate::batch::for_each;
+use crate::bvh::Leaf;
+use crate::exact::Exact;
+use crate::node::{Child, Content, Node, WIDTH};
+use crate::observer::Observer;
+use crate::query::Settings;
+use crate::ray::{NONE, Ray};
+use crate::ray_f64::{HitF64, RayF64};
+use crate::vector::{round_down, round_up};
+use crate::visibility::{Masked, Visibility};
+use crate::{sphere, triangle};
+
+/// Room for rounding in distances along a ray, relative, 2⁻²⁰: that of the rays in f32, since the exact tests may use it all.
+const ROOM: f64 = 9.536_743_164_062_5e-7;
+
+/// The closest hit.
+pub(crate) fn closest_hit(settings: &Settings<'_>, ray: &RayF64, observer: &mut impl Observer) -> HitF64 {
+    let mut closest = HitF64::MISS;
+    traverse(settings, ray, observer, |hit| {
+        if hit.precedes(&closest) {
+            closest = hit;
+        }
+        closest.t
+    });
+    closest
+}
+
+/// Whether there is a hit.
+pub(crate) fn occluded(settings: &Settings<'_>, ray: &RayF64, observer: &mut impl Observer) -> bool {
+    let mut found = false;
+    traverse(settings, ray, observer, |_| {
+        found = true;
+        f64::NEG_INFINITY
+    });
+    found
+}
+
+/// Adds all hits to `hits`, which is empty, and sorts them by t and then as ties are decided.
+pub(crate) fn all_hits(
+    settings: &Settings<'_>,
+    ray: &RayF64,
+    hits: &mut Vec<HitF64>,
+    observer: &mut impl Observer,
+) {
+    traverse(settings, ray, observer, |hit| {
+        hits.push(hit);
+        f64::INFINITY
+    });
+    // A zero is a zero, whatever its sign.
+    hits.sort_unstable_by(|a, b| (a.t + 0.0).total_cmp(&(b.t + 0.0)).then_with(|| a.rank().cmp(&b.rank())));
+}
+
+/// The closest hit of each ray.
+pub(crate) fn closest_hits(settings: &Settings<'_>, rays: &[RayF64], hits: &mut [HitF64]) {
+    for_each(rays, hits, |number, ray, hit| *hit = closest_hit(&settings.from(number), ray, &mut ()));
+}
+
+/// Whether each ray has a hit.
+pub(crate) fn occluded_many(settings: &Settings<'_>, rays: &[RayF64], occluded: &mut [bool]) {
+    for_each(rays, occluded, |number, ray, occluded| {
+        *occluded = self::occluded(&settings.from(number), ray, &mut ());
+    });
+}
+
+/// Commits hits in the ray's range until none are left up to the t that `commit` returned last.
+fn traverse(
+    settings: &Settings<'_>,
+    ray: &RayF64,
+    observer: &mut impl Observer,
+    mut commit: impl FnMut(HitF64) -> f64,
+) {
+    let bvh = settings.bvh;
+    let exact = Exact { origin: ray.origin, direction: ray.direction, t_min: ray.t_min };
+    if ray.t_min < ray.t_max && !bvh.nodes.is_empty() && is_usable(&exact) {
+        let visibility = Masked::of(settings, 0);
+        let mut traversal =
+            Traversal { outer: bvh, ray, end: ray.t_max, visibility, observer, commit: &mut commit };
+        traversal.node(bvh, &exact, NONE, 0);
+    }
+}
+
+/// A ray on its way.
+struct Traversal<'a, O> {
+    outer: &'a Bvh,
+    /// In the world.
+    ray: &'a RayF64,
+    /// Hits beyond this are not wanted.
+    end: f64,
+    visibility: Masked<'a>,
+    observer: &'a mut O,
+    commit: &'a mut dyn FnMut(HitF64) -> f64,
+}
+
+impl<O: Observer> Traversal<'_, O> {
+    /// Visits a node of a tree, in whose space the ray is, and all below it.
+    fn node(&mut self, bvh: &Bvh, ray: &Exact<f64>, instance: u32, number: usize) {
+        self.observer.node(instance, number as u32);
+        let (mut entered, count) = enter(&bvh.nodes[number], ray, self.ray.t_min);
+        let entered = &mut entered[..count];
+        entered.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for &(near, child) in entered.iter() {
+            if near - near.abs() * ROOM > self.end {
+                continue;
+            }
+            match child.content() {
+                Content::Node(below) => self.node(bvh, ray, instance, below),
+                Content::Triangles(block) => self.triangles(bvh, ray, instance, block),
+                Content::Leaf(leaf) => self.leaf(bvh, ray, instance, bvh.leaves[leaf]),
+            }
+        }
+    }
+
+    /// Commits a hit if it is in range.
+    fn report(&mut self, [t, u, v]: [f64; 3], (geometry, primitive): (u32, u32), instance: u32) {
+        if t > self.ray.t_min && t < self.ray.t_max {
+            self.end = (self.commit)(HitF64 { t, u, v, primitive, geometry, instance });
+        }
+    }
+
+    /// Whether a primitive is to be tested, which the observer hears of in any case.
+    fn is_candidate(&mut self, instance: u32, (geometry, primitive): (u32, u32)) -> bool {
+        self.observer.candidate(instance, geometry, primitive);
+        self.visibility.shows(geometry, primitive)
+    }
+
+    fn triangles(&mut self, bvh: &Bvh, ray: &Exact<f64>, instance: u32, block: usize) {
+        let block = &bvh.triangles[block];
+        for lane in 0..block.count() {
+            let (ids, corners) = (block.ids(lane), block.corners(lane));
+            if self.is_candidate(instance, ids)
+                && !self.visibility.is_origin(instance, ids)
+                && let Some(met) = triangle::decide(ray, &corners, block.extent(lane))
+                && self.visibility.faces().shows(|| triangle::is_front(ray, &corners))
+            {
+                self.report([met.t, met.u, met.v], ids, instance);
+            }
+        }
+    }
+
+    fn leaf(&mut self, bvh: &Bvh, ray: &Exact<f64>, instance: u32, leaf: Leaf) {
+        let range = |first: u32, count: u32| first as usize..(first + count) as usize;
+        match leaf {
+            Leaf::Spheres { first, count } => {
+                for item in &bvh.spheres[range(first, count)] {
+                    let ids = (item.geometry, item.primitive);
+                    if !self.is_candidate(instance, ids) {
+                        continue;
+                    }
+                    let Some([t1, t2]) = sphere::decide(ray, &item.shape) else { continue };
+                    let faces = self.visibility.faces();
+                    if faces.shows(|| true) {
+                        self.report([t1, 0.0, 0.0], ids, instance);
+                    }
+                    if t1 < t2 && faces.shows(|| false) {
+                        self.report([t2, 0.0, 0.0], ids, instance);
+                    }
+                }
+            }
+            Leaf::Procedurals { first, count } => {
+                for item in &bvh.procedurals[range(first, count)] {
+                    let ids = (item.geometry, item.primitive);
+                    if !self.is_candidate(instance, ids) {
+                        continue;
+                    }
+                    let [origin, direction] = [ray.origin, ray.direction].map(|x| x.map(|x| x as f32));
+                    // Ask one step beyond the end: a hit at the same t may win the tie.
+                    let (t_min, t_max) =
+                        (round_down(self.ray.t_min), round_up(self.end.min(self.ray.t_max)).next_up());
+                    let asked = Ray { origin, t_min, direction, t_max };
+                    let shapes = &bvh.procedural_shapes[item.shape as usize];
+                    if let Some(found) = shapes.intersect(item.primitive, &asked) {
+                        self.report([found.t, found.u, found.v].map(f64::from), ids, instance);
+                    }
+                }
+            }
+            Leaf::Instances { first, count } => {
+                let outer = self.outer;
+                for place in range(first, count) {
+                    let inside = &outer.instances[place];
+                    let inner = ray.in_object(&inside.world_from_object, &inside.object_from_world);
+                    if is_usable(&inner) && self.visibility.enter_instance(place) {
+                        self.node(&inside.bvh, &inner, inside.id, 0);
+                        self.visibility.leave_instance();
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Whether a ray can hit anything: its origin and direction, rounded to f32, are finite, and its direction is not zero.
+fn is_usable(ray: &Exact<f64>) -> bool {
+    let finite = ray.origin.iter().chain(&ray.direction).all(|&x| (x as f32).is_finite());
+    finite && ray.direction.iter().any(|&x| x as f32 != 0.0)
+}
+
+/// The children of a node that a line meets after `t_min`, and where it enters them.
+fn enter(node: &Node, ray: &Exact<f64>, t_min: f64) -> ([(f64, Child); WIDTH], usize) {
+    let mut entered = [(0.0, Child::ROOT); WIDTH];
+    let mut count = 0;
+    for slot in 0..WIDTH {
+        let bounds = node.child_bounds(slot);
+        let [near, far] = slabs(&bounds, ray);
+        if !bounds.is_empty()
+            && near - near.abs() * ROOM <= far + far.abs() * ROOM
+            && far + far.abs() * ROOM >= t_min
+        {
+            entered[count] = (near, node.child(slot));
+            count += 1;
+        }
+    }
+    (entered, count)
+}
+
+/// Between which t a line is in a box; the first is beyond the second where it never is.
+fn slabs(bounds: &Aabb, ray: &Exact<f64>) -> [f64; 2] {
+    let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
+    for axis in 0..3 {
+        let [low, high] = [bounds.min[axis], bounds.max[axis]].map(|x| f64::from(x) - ray.origin[axis]);
+        if ray.direction[axis] == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return [f64::INFINITY, f64::NEG_INFINITY];
+            }
+            continue;
+        }
+        let [a, b] = [low / ray.direction[axis], high / ray.direction[axis]];
+        near = near.max(a.min(b));
+        far = far.min(a.max(b));
+    }
+    [near, far]
+}
