@@ -273,11 +273,7 @@ fn relief_and_grain_bring_tangents() {
 
 /// The vertices of a file of the corpus, in the world; `None` where the corpus is not there.
 fn corpus(name: &str, animation: Option<&str>, at: f64) -> Option<Vec<DVec3>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus").join(name);
-    if !path.exists() {
-        println!("skipped: there is no {}", path.display());
-        return None;
-    }
+    let path = lookfrom_test_data::shared(&format!("corpus/{name}"))?;
     let mut sources = Sources::new(&Disk);
     sources.choice = Choice { animation: animation.map(str::to_owned), at, ..Choice::default() };
     let scene = gltf::read(&path, &mut sources).unwrap_or_else(|error| panic!("{error}"));

@@ -83,9 +83,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
 /// Each crate of the workspace and the crates of the workspace that it may use. Rows may name only rows above them.
 const CRATES: &[(&str, &[&str])] = &[
     ("lookfrom-simd", &[]),
+    ("lookfrom-test-data", &[]),
     ("lookfrom-bvh", &["lookfrom-simd"]),
-    ("lookfrom-scene", &[]),
-    ("lookfrom", &["lookfrom-bvh", "lookfrom-scene", "lookfrom-simd"]),
+    ("lookfrom-scene", &["lookfrom-test-data"]),
+    ("lookfrom", &["lookfrom-bvh", "lookfrom-scene", "lookfrom-simd", "lookfrom-test-data"]),
     ("lookfrom-cli", &["lookfrom", "lookfrom-scene"]),
 ];
 

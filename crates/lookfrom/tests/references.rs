@@ -1,4 +1,4 @@
-//! Scenes of other people against pictures by pbrt-v4, where the shared folder is there.
+//! Scenes of other people against pictures by pbrt-v4, which are test data (`LOOKFROM_SHARED`).
 //!
 //! At few samples the variance of a single pixel is badly known, so means over the picture and over blocks are compared;
 //! `lookfrom compare` does the test by pixels, at many samples.
@@ -48,11 +48,7 @@ fn picture(scene: &Path) -> Sampled {
 
 #[test]
 fn pictures_are_pbrts() {
-    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
-    if !shared.join("reference").is_dir() {
-        println!("skipped: there is no {}", shared.display());
-        return;
-    }
+    let Some(shared) = lookfrom_test_data::shared("") else { return };
     for (scene, name, samples) in SCENES {
         let ours = picture(&shared.join(format!("scenes/{scene}.pbrt")));
         let file = read_exr(&shared.join(format!("reference/{name}.exr")), &mut Sources::new(&Disk));
@@ -96,11 +92,7 @@ fn alike(scene: &Path, reference: &Path) -> [f64; 2] {
 
 #[test]
 fn normals_are_pbrts() {
-    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
-    if !shared.join("reference").is_dir() {
-        println!("skipped: there is no {}", shared.display());
-        return;
-    }
+    let Some(shared) = lookfrom_test_data::shared("") else { return };
     // That of the sensor has no `Ns`.
     for (scene, name, _) in SCENES.iter().filter(|(_, name, _)| *name != "cornell-sensor") {
         let reference = shared.join(format!("reference/{name}.exr"));

@@ -203,11 +203,7 @@ fn spd_errors_say_where() {
 
 #[test]
 fn the_shared_gold_is_ours() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes/killeroos/spds");
-    if !folder.exists() {
-        println!("skipped: {} is not here", folder.display());
-        return;
-    }
+    let Some(folder) = lookfrom_test_data::shared("scenes/killeroos/spds") else { return };
     for (file, name) in [("Au.eta.spd", "metal-Au-eta"), ("Au.k.spd", "metal-Au-k")] {
         let read = read_spd(&folder.join(file), &mut Sources::new(&crate::Disk)).unwrap();
         let named = named(name).unwrap();
