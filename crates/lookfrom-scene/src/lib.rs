@@ -19,6 +19,7 @@ pub mod medium;
 pub mod model;
 pub mod obj;
 mod packed;
+mod parallel;
 pub mod pbrt;
 pub mod ply;
 pub mod scene;

@@ -2,6 +2,7 @@
 
 pub mod bsdf;
 pub mod camera;
+mod clock;
 pub mod color;
 pub mod denoise;
 pub mod develop;
@@ -16,6 +17,7 @@ pub mod light;
 pub mod material;
 pub mod math;
 pub mod noise;
+mod parallel;
 pub mod render;
 pub mod sampler;
 pub mod session;

@@ -23,7 +23,7 @@ mod running;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::contents::Contents;
@@ -32,6 +32,7 @@ use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
 use lookfrom_scene::{Disk, Error, Files, Location, Memory, Result, Scene, Sources, Warning, load};
 
+use crate::clock::Stopwatch;
 use crate::film::Picture;
 use crate::integrator::Integrator;
 use crate::render::{Progress, Renderer, StopCriteria};
@@ -99,7 +100,7 @@ impl Session {
     /// # Errors
     /// As [`Session::open`].
     pub fn read(path: &Path, files: &dyn Files, options: &Options) -> Result<Self> {
-        let started = Instant::now();
+        let started = Stopwatch::start();
         let mut sources = Sources { choice: options.import.clone(), ..Sources::new(files) };
         let scene = load::scene(path, &mut sources)?;
         Self::prepare(scene, path, sources.warnings, started, options)
@@ -110,18 +111,18 @@ impl Session {
     /// # Errors
     /// As [`Session::open`].
     pub fn of_scene(scene: Scene, options: &Options) -> Result<Self> {
-        Self::prepare(scene, Path::new(""), Vec::new(), Instant::now(), options)
+        Self::prepare(scene, Path::new(""), Vec::new(), Stopwatch::start(), options)
     }
 
     fn prepare(
         mut scene: Scene,
         path: &Path,
         mut warnings: Vec<Warning>,
-        started: Instant,
+        started: Stopwatch,
         options: &Options,
     ) -> Result<Self> {
         let read = started.elapsed();
-        let started = Instant::now();
+        let started = Stopwatch::start();
         let (counts, bounds) = (Counts::of(&scene), scene.bounds());
         let contents = std::mem::take(&mut scene.contents);
         let noise = options.stop.noise.or(options.adaptive.then_some(ADAPTIVE_NOISE));

@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 
 /// Each module of this crate and the modules it may use. Rows may name only rows above them, so that there is no circle.
 const MAY_USE: &[(&str, &[&str])] = &[
+    ("clock", &[]),
+    ("parallel", &[]),
     ("hash", &[]),
     ("math", &[]),
     ("spectrum", &[]),
@@ -18,7 +20,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("color", &["math", "spectrum"]),
     ("bsdf", &["hash", "math", "spectrum", "warp"]),
     ("film", &["spectrum"]),
-    ("denoise", &["film"]),
+    ("denoise", &["film", "parallel"]),
     ("develop", &["film"]),
     ("sampler", &["eight", "hash"]),
     ("noise", &["hash"]),
@@ -28,7 +30,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("texture", &["color", "hash", "noise", "spectrum"]),
     ("material", &["bsdf", "math", "spectrum", "surface", "texture", "warp"]),
     ("shape", &["math", "surface", "texture", "warp"]),
-    ("light", &["distribution", "math", "sampler", "shape", "spectrum", "surface", "texture", "warp"]),
+    (
+        "light",
+        &["distribution", "math", "parallel", "sampler", "shape", "spectrum", "surface", "texture", "warp"],
+    ),
     (
         "world",
         &["distribution", "light", "material", "math", "shape", "spectrum", "surface", "texture", "warp"],
@@ -45,6 +50,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "render",
         &[
             "camera",
+            "clock",
             "color",
             "film",
             "filter",
@@ -52,6 +58,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "light",
             "material",
             "math",
+            "parallel",
             "sampler",
             "spectrum",
             "surface",
@@ -77,7 +84,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "world",
         ],
     ),
-    ("session", &["color", "denoise", "develop", "film", "integrator", "render", "view", "world"]),
+    ("session", &["clock", "color", "denoise", "develop", "film", "integrator", "render", "view", "world"]),
 ];
 
 /// Each crate of the workspace and the crates of the workspace that it may use. Rows may name only rows above them.

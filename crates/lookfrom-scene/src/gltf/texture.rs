@@ -7,8 +7,6 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use rayon::prelude::*;
-
 use super::file::Document;
 use super::json::{Sampler, Texture as TextureEntry, TextureInfo, Whole};
 use super::uri::Uri;
@@ -16,6 +14,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::files::Sources;
 use crate::image::{self, Encoding, Image};
 use crate::material::{Color, Scalar};
+use crate::parallel;
 use crate::scene::{ImageId, Scene, TextureId};
 use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
 
@@ -178,7 +177,7 @@ impl<'d> Textures<'d> {
             });
             (id, image, sources.warnings)
         };
-        let decoded: Vec<_> = pictures.into_iter().collect::<Vec<_>>().into_par_iter().map(read).collect();
+        let decoded: Vec<_> = parallel::map(pictures.into_iter().collect(), read);
         for (id, image, warnings) in decoded {
             scene.images[id.index()] = image;
             sources.warnings.extend(warnings);

@@ -2,14 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
-
 use super::Reader;
 use super::lexer::{Lexer, Token};
 use super::text::{Place, Text};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Sources;
 use crate::packed;
+use crate::parallel;
 use crate::ply;
 use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Mesh};
@@ -111,12 +110,12 @@ impl Reader<'_, '_> {
         let models: Vec<(PathBuf, Model)> = std::mem::take(&mut self.models).into_iter().collect();
         let (files, limits) = (self.sources.files, self.sources.limits);
         let paths: Vec<&PathBuf> = models.iter().map(|(path, _)| path).collect();
-        let read = |path: &&PathBuf| {
+        let read = |path: &PathBuf| {
             let mut sources = Sources { limits, ..Sources::new(files) };
             let mesh = mesh(path, &mut sources);
             (mesh, sources.warnings)
         };
-        let contents: Vec<_> = paths.par_iter().map(read).collect();
+        let contents: Vec<_> = parallel::map(paths, read);
         for ((path, model), (mesh, warnings)) in models.iter().zip(contents) {
             self.sources.warnings.extend(warnings);
             match mesh {
