@@ -2,7 +2,7 @@
 
 use crate::camera::Projection;
 
-/// What a [`Choice`](crate::Choice) chooses from, in the order of its numbers. Only glTF files have such things.
+/// What a [`ImportOptions`](crate::ImportOptions) chooses from, in the order of its numbers. Only glTF files have such things.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contents {
     /// The names of the scenes.

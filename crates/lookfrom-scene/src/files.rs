@@ -144,7 +144,7 @@ impl Files for Memory {
 }
 
 /// What every reader is handed: where bytes come from, how many are allowed, and where warnings go.
-pub struct Sources<'a> {
+pub struct LoadContext<'a> {
     /// Where bytes come from.
     pub files: &'a dyn Files,
     /// How much may be asked for.
@@ -152,12 +152,12 @@ pub struct Sources<'a> {
     /// What could be survived so far.
     pub warnings: Vec<Warning>,
     /// What is asked of files that hold several things.
-    pub choice: Choice,
+    pub import: ImportOptions,
 }
 
 /// What is asked of a file that holds several things.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Choice {
+pub struct ImportOptions {
     /// The animation, by name or number from 0, in whose pose the model stands; `None` is the pose of rest, or, where
     /// `at` is not 0, the first animation.
     pub animation: Option<String>,
@@ -183,10 +183,10 @@ pub enum CameraChoice {
     None,
 }
 
-impl<'a> Sources<'a> {
-    /// Sources over `files` with the default limits.
+impl<'a> LoadContext<'a> {
+    /// LoadContext over `files` with the default limits.
     pub fn new(files: &'a dyn Files) -> Self {
-        Self { files, limits: Limits::default(), warnings: Vec::new(), choice: Choice::default() }
+        Self { files, limits: Limits::default(), warnings: Vec::new(), import: ImportOptions::default() }
     }
 
     /// The whole content of a file within the limits.

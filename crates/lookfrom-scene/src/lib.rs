@@ -34,7 +34,7 @@ pub mod toml;
 pub mod warning;
 
 pub use error::{Error, ErrorKind, Location, Result};
-pub use files::{CameraChoice, Choice, Disk, Files, Limits, Memory, Sources};
+pub use files::{CameraChoice, Disk, Files, ImportOptions, Limits, LoadContext, Memory};
 pub use inputs::Inputs;
 pub use scene::Scene;
 pub use warning::{Warning, WarningGroup, WarningKind};

@@ -20,12 +20,12 @@ pub struct Light {
     /// What kind of light.
     pub kind: LightKind,
     /// How much of it.
-    pub amount: Amount,
+    pub power: Power,
 }
 
 /// How much light there is of a colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Amount {
+pub struct Power {
     /// Multiplies the colour.
     pub scale: f32,
     /// What the light comes to as a whole before `scale`: the illuminance on a surface that faces it for distant lights
@@ -37,12 +37,12 @@ pub struct Amount {
     pub absolute: bool,
 }
 
-impl Amount {
+impl Power {
     /// As much as the colour says.
     pub const AS_WRITTEN: Self = Self { scale: 1.0, total: None, absolute: false };
 }
 
-impl Default for Amount {
+impl Default for Power {
     fn default() -> Self {
         Self::AS_WRITTEN
     }

@@ -39,7 +39,7 @@ use self::missing::Missing;
 use self::state::{Opened, Options, State};
 use self::text::Place;
 use crate::error::{Error, Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::material::{Color, Material, MaterialKind};
 use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
 use crate::settings::ColorMode;
@@ -52,13 +52,13 @@ use crate::settings::ColorMode;
 /// say what cannot be (a scene of pbrt-v3 among them), `Limit` where something is too large or nests too deep, and
 /// whatever goes wrong in the files that are named. Files that are not there are told of all at once, as
 /// [`Error::more`].
-pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
+pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut scene = Scene::default();
     scene.render.color = ColorMode::Spectral;
     let gray = MaterialKind::Diffuse { reflectance: Color::gray(0.5) };
     scene.materials.push(Material::new("default", Location::file(path), gray));
     let mut reader = Reader {
-        sources,
+        context,
         scene,
         folder: path.parent().unwrap_or(Path::new("")).to_owned(),
         open: Vec::new(),
@@ -87,7 +87,7 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         return Err(error);
     }
     let mut scene = reader.scene;
-    scene.is_whole = true;
+    scene.is_complete = true;
     Ok(scene)
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn is_pbrt(bytes: &[u8]) -> bool {
 
 /// A scene on its way from files.
 struct Reader<'s, 'f> {
-    sources: &'s mut Sources<'f>,
+    context: &'s mut LoadContext<'f>,
     scene: Scene,
     /// Where the file that was asked for lies.
     folder: PathBuf,
@@ -165,7 +165,7 @@ impl Reader<'_, '_> {
     /// Warns of something the first time only.
     fn warn_once(&mut self, what: &str, place: &Place, message: impl std::fmt::Display) {
         if self.warned.insert(what.to_owned()) {
-            self.sources.warn(&place.location(), message.to_string());
+            self.context.warn(&place.location(), message.to_string());
         }
     }
 

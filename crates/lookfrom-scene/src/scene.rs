@@ -51,9 +51,9 @@ ids! {
 pub struct Scene {
     /// Whether the file says all that there is, so that no light is added to show it: a scene of pbrt without lights is
     /// black.
-    pub is_whole: bool,
+    pub is_complete: bool,
     /// What kind of file it was read from.
-    pub origin: Origin,
+    pub source_format: SourceFormat,
     /// What can be chosen in the file.
     pub contents: Contents,
     /// The eye; `None` where the file names none: then the scene is framed by its bounds.
@@ -86,7 +86,7 @@ pub struct Scene {
 
 /// What kind of file a scene was read from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Origin {
+pub enum SourceFormat {
     /// A scene of ours or of pbrt, or no file.
     #[default]
     Scene,

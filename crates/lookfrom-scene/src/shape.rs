@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 
 use crate::error::Location;
-use crate::light::Amount;
+use crate::light::Power;
 use crate::material::{Color, Scalar};
 use crate::medium::Sides;
 use crate::scene::{Bounds, MaterialId, MeshId};
@@ -59,7 +59,7 @@ pub struct Emission {
     /// Emitted radiance.
     pub radiance: Color,
     /// How much of it.
-    pub amount: Amount,
+    pub power: Power,
     /// Whether both sides shine; otherwise the side that the normal points to.
     pub two_sided: bool,
 }
@@ -67,7 +67,7 @@ pub struct Emission {
 impl Emission {
     /// As much as the colour says.
     pub fn new(radiance: Color, two_sided: bool) -> Self {
-        Self { radiance, amount: Amount::AS_WRITTEN, two_sided }
+        Self { radiance, power: Power::AS_WRITTEN, two_sided }
     }
 }
 

@@ -14,7 +14,7 @@ use glam::DVec3;
 
 use crate::camera::{Camera, View};
 use crate::error::Location;
-use crate::light::{Amount, Falloff, Light, LightKind, Sky};
+use crate::light::{Falloff, Light, LightKind, Power, Sky};
 use crate::material::{Color, Whitted};
 use crate::model::surface::push_material;
 use crate::scene::{Bounds, Instance, Scene};
@@ -56,23 +56,23 @@ const DENOISED_SAMPLES: u32 = 16;
 const SMALL_DENOISED_SAMPLES: u32 = 6;
 const SMALL_DENOISED_PIXELS: u64 = 512 * 512;
 
-/// Adds a camera that frames the scene's bounds, if there is none. `up` as in [`furnish`].
+/// Adds a camera that frames the scene's bounds, if there is none. `up` as in [`add_lights_and_camera`].
 pub fn frame(scene: &mut Scene, up: Option<DVec3>) {
-    Stage::of(scene, up).add_camera(scene);
+    StudioFrame::of(scene, up).add_camera(scene);
 }
 
 /// Adds what the scene lacks: a camera that frames its bounds, if there is none, and light, if there are neither lights
 /// nor shapes that shine. `up` is the direction (of any length) that is up; without it, the camera's, or else y.
-pub fn furnish(scene: &mut Scene, up: Option<DVec3>) {
-    let stage = Stage::of(scene, up);
+pub fn add_lights_and_camera(scene: &mut Scene, up: Option<DVec3>) {
+    let stage = StudioFrame::of(scene, up);
     stage.add_camera(scene);
     stage.add_light(scene);
 }
 
 /// Adds what a model lacks: a camera that frames its bounds, if there is none, and a studio around it, if there are no
-/// lights; where the eye is inside, a lamp at the eye as well. `up` as in [`furnish`].
-pub fn furnish_model(scene: &mut Scene, up: Option<DVec3>) {
-    let stage = Stage::of(scene, up);
+/// lights; where the eye is inside, a lamp at the eye as well. `up` as in [`add_lights_and_camera`].
+pub fn add_studio_and_camera(scene: &mut Scene, up: Option<DVec3>) {
+    let stage = StudioFrame::of(scene, up);
     stage.add_camera(scene);
     if scene.lights.is_empty() {
         stage.add_studio(scene);
@@ -119,7 +119,7 @@ fn add(scene: &mut Scene, name: &str, kind: LightKind) {
         name: Some(name.to_owned()),
         at: Location::default(),
         kind,
-        amount: Amount::AS_WRITTEN,
+        power: Power::AS_WRITTEN,
     });
 }
 
@@ -129,12 +129,12 @@ fn add_lamp(scene: &mut Scene, position: DVec3) {
 }
 
 /// The bounds to show, and what is right, up and towards the viewer there: unit vectors.
-struct Stage {
+struct StudioFrame {
     bounds: Bounds,
     basis: [DVec3; 3],
 }
 
-impl Stage {
+impl StudioFrame {
     fn of(scene: &Scene, up: Option<DVec3>) -> Self {
         let of_camera = || {
             Some(match scene.camera.as_ref()?.view {
@@ -160,7 +160,7 @@ impl Stage {
     fn add_light(&self, scene: &mut Scene) {
         let is_backdrop =
             |light: &Light| matches!(light.kind, LightKind::Environment { illuminates: false, .. });
-        if scene.is_whole || shines(scene) || !scene.lights.iter().all(is_backdrop) {
+        if scene.is_complete || shines(scene) || !scene.lights.iter().all(is_backdrop) {
             return;
         }
         let fill = if scene.lights.is_empty() {
@@ -371,7 +371,7 @@ mod tests {
             world_from_object: DMat4::from_scale(DVec3::splat(1e6)),
             ..Shape::new(Location::default(), mesh, crate::scene::MaterialId(0))
         });
-        Stage::of(&scene, None).add_camera(&mut scene);
+        StudioFrame::of(&scene, None).add_camera(&mut scene);
         let camera = scene.camera.as_ref().unwrap();
         let most = scene.meshes[0].positions.iter().fold(0.0_f64, |most, position| {
             let [x, y, _] = project(camera, 4.0 / 3.0, 1e6 * position.as_dvec3());
@@ -388,11 +388,11 @@ mod tests {
             name: None,
             at: Location::default(),
             kind: light,
-            amount: Amount::AS_WRITTEN,
+            power: Power::AS_WRITTEN,
         });
         let camera = Camera { distance: 7.0, ..Camera::default() };
         scene.camera = Some(camera);
-        furnish(&mut scene, None);
+        add_lights_and_camera(&mut scene, None);
         assert_eq!((scene.lights.len(), scene.shapes.len()), (1, 0));
         assert_eq!(scene.camera.unwrap().distance, 7.0);
     }
@@ -400,7 +400,7 @@ mod tests {
     #[test]
     fn the_key_light_shines_on_the_model_from_the_upper_left_of_the_camera() {
         let mut scene = Scene::default();
-        furnish(&mut scene, None);
+        add_lights_and_camera(&mut scene, None);
         let key = &scene.shapes[0];
         let Geometry::Quad { corner, edge_u, edge_v } = key.geometry else { panic!("not a quad") };
         let middle = corner + 0.5 * (edge_u + edge_v);
@@ -424,7 +424,7 @@ mod tests {
         let lights_with_eye_at = |z: f64| {
             let view = View::Look { lookfrom: DVec3::new(0.0, 0.0, z), lookat: DVec3::ONE, up: DVec3::Y };
             let mut scene = Scene { camera: Some(Camera { view, ..Camera::default() }), ..room() };
-            furnish(&mut scene, None);
+            add_lights_and_camera(&mut scene, None);
             (scene.lights.len(), scene.shapes.len())
         };
         // inside: the fill, light from everywhere and a lamp; outside: the fill and a key light that is a shape

@@ -8,10 +8,10 @@
 mod camera;
 mod chain;
 mod color;
+mod composite;
 mod curve;
-mod directed;
+mod directional;
 mod document;
-mod form;
 mod import;
 mod light;
 mod mapping;
@@ -20,17 +20,17 @@ mod mesh;
 mod model;
 mod object;
 mod physical;
-mod place;
 mod principled;
-mod round;
+mod quadric;
 mod settings;
 mod shape;
 mod sky;
-mod strip;
+mod spectrum;
 mod synonyms;
 mod syntax;
 mod table;
 mod texture;
+mod transform;
 mod value;
 mod vocabulary;
 
@@ -47,7 +47,7 @@ use self::table::{SCENE, Table};
 use self::value::Value;
 use self::vocabulary::TOP;
 use crate::error::{Error, Location, Result};
-use crate::files::{Choice, Sources};
+use crate::files::{ImportOptions, LoadContext};
 use crate::load::Model;
 use crate::material::MaterialKind;
 use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
@@ -64,9 +64,9 @@ pub use self::vocabulary::vocabulary;
 /// With the line and column of all that is wrong, as far as one run can find it: `Syntax` where the text is no TOML, `Invalid` where a
 /// key, a type, a number or a name is not what it can be, `Limit` where something is too large or nests too deep, and
 /// whatever goes wrong in the files that it names.
-pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
+pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut reader = Reader {
-        sources,
+        context,
         scene: Scene::default(),
         scene_file: Location::file(path),
         materials: BTreeMap::new(),
@@ -106,7 +106,7 @@ const MOST_COMPARED: usize = 1000;
 
 /// A scene on its way from files, and the names that were given so far.
 struct Reader<'s, 'f> {
-    sources: &'s mut Sources<'f>,
+    context: &'s mut LoadContext<'f>,
     scene: Scene,
     /// The file that was asked for.
     scene_file: Location,
@@ -118,7 +118,7 @@ struct Reader<'s, 'f> {
     /// By what they are in words.
     curves: BTreeMap<String, CurveId>,
     /// By file, and what is asked of it.
-    models: Vec<((PathBuf, Choice), Model)>,
+    models: Vec<((PathBuf, ImportOptions), Model)>,
     /// The light of the materials that shine.
     glows: BTreeMap<MaterialId, Emission>,
     /// The material "default", where it was needed but no file has written it (yet).
@@ -146,7 +146,7 @@ impl Reader<'_, '_> {
     /// Reads a file; what is wrong in its tables is noted.
     fn file(&mut self, path: &Path) -> Result<()> {
         let whole = Location::file(path);
-        let bytes = self.sources.read(path)?;
+        let bytes = self.context.read(path)?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let valid = error.utf8_error().valid_up_to();
             let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
@@ -231,7 +231,7 @@ impl Reader<'_, '_> {
             return Ok(id);
         }
         let read = if is_data { image::read_data } else { image::read };
-        let image = read(&key.0, self.sources).map_err(|error| value.blame(error))?;
+        let image = read(&key.0, self.context).map_err(|error| value.blame(error))?;
         let id = ImageId(self.scene.images.len() as u32);
         self.scene.images.push(image);
         self.images.insert(key, id);
@@ -239,14 +239,14 @@ impl Reader<'_, '_> {
     }
 
     /// What stands in a model file; each file is read once for each choice of what is in it.
-    fn model(&mut self, value: Value<'_>, choice: &Choice) -> Result<Model> {
+    fn model(&mut self, value: Value<'_>, choice: &ImportOptions) -> Result<Model> {
         let path = self.resolve(value, "the name of a model file")?;
         if let Some((_, model)) = self.models.iter().find(|(key, _)| (&key.0, &key.1) == (&path, choice)) {
             return Ok(model.clone());
         }
-        let before = std::mem::replace(&mut self.sources.choice, choice.clone());
-        let model = load::model(&path, self.sources, &mut self.scene);
-        self.sources.choice = before;
+        let before = std::mem::replace(&mut self.context.import, choice.clone());
+        let model = load::model(&path, self.context, &mut self.scene);
+        self.context.import = before;
         let model = model.map_err(|error| value.blame(error))?;
         self.models.push(((path, choice.clone()), model.clone()));
         Ok(model)

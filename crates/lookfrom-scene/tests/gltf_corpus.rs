@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Disk, Sources, load};
+use lookfrom_scene::{Disk, LoadContext, load};
 
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
@@ -29,8 +29,8 @@ fn corpus(name: &str) -> Vec<PathBuf> {
 }
 
 fn read(path: &Path) -> Result<(), String> {
-    let mut sources = Sources::new(&Disk);
-    let scene = load::scene(path, &mut sources);
+    let mut context = LoadContext::new(&Disk);
+    let scene = load::scene(path, &mut context);
     let scene = scene.map_err(|error| error.to_string())?;
     for mesh in &scene.meshes {
         let count = mesh.positions.len();

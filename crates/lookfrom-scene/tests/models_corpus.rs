@@ -6,7 +6,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 use lookfrom_scene::shape::Geometry;
-use lookfrom_scene::{Disk, Scene, Sources, model};
+use lookfrom_scene::{Disk, LoadContext, Scene, model};
 
 /// What each file holds: triangles, points, parts.
 const EXPECTED: &[(&str, usize, usize, usize)] = &[
@@ -65,10 +65,10 @@ fn the_corpus_is_read() {
 }
 
 fn counts(path: &Path) -> Result<(usize, usize, usize), String> {
-    let mut sources = Sources::new(&Disk);
+    let mut context = LoadContext::new(&Disk);
     let mut scene = Scene::default();
-    let parts = model::read(path, &mut sources, &mut scene);
-    for warning in &sources.warnings {
+    let parts = model::read(path, &mut context, &mut scene);
+    for warning in &context.warnings {
         println!("    {warning}");
     }
     let parts = parts.map_err(|error| error.to_string())?;

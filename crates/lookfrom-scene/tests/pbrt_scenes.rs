@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use lookfrom_scene::settings::{Integrator, Sampler};
 use lookfrom_scene::shape::Geometry;
-use lookfrom_scene::{Disk, Scene, Sources, load};
+use lookfrom_scene::{Disk, LoadContext, Scene, load};
 
 /// All files below a folder that end in `.pbrt` and begin a world.
 fn scenes(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -23,9 +23,9 @@ fn scenes(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 fn read(path: &Path) -> (Scene, Vec<String>) {
-    let mut sources = Sources::new(&Disk);
-    let scene = load::scene(path, &mut sources).unwrap_or_else(|error| panic!("{error}"));
-    (scene, sources.warnings.iter().map(ToString::to_string).collect())
+    let mut context = LoadContext::new(&Disk);
+    let scene = load::scene(path, &mut context).unwrap_or_else(|error| panic!("{error}"));
+    (scene, context.warnings.iter().map(ToString::to_string).collect())
 }
 
 #[test]

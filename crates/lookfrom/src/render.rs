@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use lookfrom_bvh::{Hit, Left, Ray};
-use lookfrom_scene::scene::Origin;
+use lookfrom_scene::scene::SourceFormat;
 use lookfrom_scene::settings::{ColorMode, Crop, ImageSettings, RenderSettings, Sensor as SensorSettings};
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 
@@ -179,7 +179,7 @@ impl Renderer {
     pub fn of_scene(scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
         let at = scene.camera.as_ref().map(|camera| camera.at.clone()).unwrap_or_default();
-        let (bounds, is_model) = (scene.bounds(), scene.origin != Origin::Scene);
+        let (bounds, is_model) = (scene.bounds(), scene.source_format != SourceFormat::Scene);
         let renderer = Self::new(Arc::new(World::compile(scene, warnings)?), view, settings)?;
         outlook::check(&renderer, bounds, &at, is_model, warnings);
         Ok(renderer)

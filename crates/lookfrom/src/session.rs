@@ -30,7 +30,7 @@ use lookfrom_scene::contents::Contents;
 use lookfrom_scene::count::Counts;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
-use lookfrom_scene::{Disk, Error, Files, Location, Memory, Result, Scene, Sources, Warning, load};
+use lookfrom_scene::{Disk, Error, Files, LoadContext, Location, Memory, Result, Scene, Warning, load};
 
 use crate::clock::Stopwatch;
 use crate::film::Picture;
@@ -101,9 +101,9 @@ impl Session {
     /// As [`Session::open`].
     pub fn read(path: &Path, files: &dyn Files, options: &Options) -> Result<Self> {
         let started = Stopwatch::start();
-        let mut sources = Sources { choice: options.import.clone(), ..Sources::new(files) };
-        let scene = load::scene(path, &mut sources)?;
-        Self::prepare(scene, path, sources.warnings, started, options)
+        let mut context = LoadContext { import: options.import.clone(), ..LoadContext::new(files) };
+        let scene = load::scene(path, &mut context)?;
+        Self::prepare(scene, path, context.warnings, started, options)
     }
 
     /// A session of a scene that was made or read elsewhere.

@@ -9,7 +9,7 @@ use lookfrom::render::Renderer;
 use lookfrom_scene::image::compare::{Sampled, compare};
 use lookfrom_scene::image::read_exr;
 use lookfrom_scene::settings::Layers;
-use lookfrom_scene::{Disk, Sources, load};
+use lookfrom_scene::{Disk, LoadContext, load};
 
 const SAMPLES: u32 = 16;
 
@@ -26,12 +26,12 @@ const SCENES: &[(&str, &str, u64)] = &[
 
 /// Our picture of a scene with the variance of each pixel's samples.
 fn picture(scene: &Path) -> Sampled {
-    let mut sources = Sources::new(&Disk);
-    let mut scene = load::scene(scene, &mut sources).unwrap_or_else(|error| panic!("{error}"));
+    let mut context = LoadContext::new(&Disk);
+    let mut scene = load::scene(scene, &mut context).unwrap_or_else(|error| panic!("{error}"));
     scene.render.samples = SAMPLES;
     // A camera's noise is known in its own channels where there are layers.
     scene.image.layers = Layers::Geometry;
-    let renderer = Renderer::of_scene(scene, &mut sources.warnings).unwrap_or_else(|error| panic!("{error}"));
+    let renderer = Renderer::of_scene(scene, &mut context.warnings).unwrap_or_else(|error| panic!("{error}"));
     let film = renderer.render(None, &()).expect("a picture").film;
     assert_eq!(film.dropped(), 0, "samples that are not finite, the first at {:?}", film.first_dropped());
     let channels = |(x, y)| film.channel_variance(x, y).unwrap_or_else(|| film.variance(x, y));
@@ -51,7 +51,7 @@ fn pictures_are_pbrts() {
     let Some(shared) = lookfrom_test_data::shared("") else { return };
     for (scene, name, samples) in SCENES {
         let ours = picture(&shared.join(format!("scenes/{scene}.pbrt")));
-        let file = read_exr(&shared.join(format!("reference/{name}.exr")), &mut Sources::new(&Disk));
+        let file = read_exr(&shared.join(format!("reference/{name}.exr")), &mut LoadContext::new(&Disk));
         let theirs = Sampled::new(&file.expect("a picture"), Some(*samples)).expect("a picture of RGB");
         let found = compare(&ours, &theirs).expect("pictures of one size");
         let noise = found.noise.as_ref().expect("variances on both sides");
@@ -66,11 +66,11 @@ fn pictures_are_pbrts() {
 
 /// Which part of the pixels has nearly the normal (`N`, `Ns`) of pbrt's picture.
 fn alike(scene: &Path, reference: &Path) -> [f64; 2] {
-    let theirs = read_exr(reference, &mut Sources::new(&Disk)).expect("a picture");
-    let mut sources = Sources::new(&Disk);
-    let mut scene = load::scene(scene, &mut sources).unwrap_or_else(|error| panic!("{error}"));
+    let theirs = read_exr(reference, &mut LoadContext::new(&Disk)).expect("a picture");
+    let mut context = LoadContext::new(&Disk);
+    let mut scene = load::scene(scene, &mut context).unwrap_or_else(|error| panic!("{error}"));
     (scene.render.samples, scene.render.depth, scene.image.layers) = (SAMPLES, 0, Layers::Geometry);
-    let renderer = Renderer::of_scene(scene, &mut sources.warnings).unwrap_or_else(|error| panic!("{error}"));
+    let renderer = Renderer::of_scene(scene, &mut context.warnings).unwrap_or_else(|error| panic!("{error}"));
     let film = renderer.render(None, &()).expect("a picture").film;
     let places = || (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
     let ours: Vec<_> = places().map(|(x, y)| film.features(x, y).unwrap_or_default()).collect();

@@ -19,7 +19,7 @@ use super::pose::{self, Pose};
 use super::skin::Skin;
 use crate::contents::Contents;
 use crate::error::{Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::light::Light;
 use crate::load;
 use crate::scene::{Instance, MeshId, Object, ObjectId, Scene};
@@ -85,11 +85,11 @@ fn size(aspect: f64, most: u32) -> (u32, u32) {
 }
 
 /// Reads everything; pictures are decoded last, side by side.
-pub(super) fn model(document: &Document, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Model> {
-    let Pose { local, weights } = pose::pose(document, sources)?;
-    let tree = Tree::new(document, &local, sources)?;
+pub(super) fn model(document: &Document, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Model> {
+    let Pose { local, weights } = pose::pose(document, context)?;
+    let tree = Tree::new(document, &local, context)?;
     let cameras = Cameras::new(document, &tree)?;
-    let variant = match (&sources.choice.variant, &document.root.extensions.variants) {
+    let variant = match (&context.import.variant, &document.root.extensions.variants) {
         (None, _) => None,
         (Some(name), variants) => {
             let variants = variants.as_ref().map_or(&[][..], |variants| &variants.variants);
@@ -107,18 +107,18 @@ pub(super) fn model(document: &Document, sources: &mut Sources<'_>, scene: &mut 
             shapes: Vec::new(),
             objects: Vec::new(),
             instances: Vec::new(),
-            eye: camera::eye(&cameras, &tree, sources)?,
-            lights: light::lights(document, &tree, sources)?,
+            eye: camera::eye(&cameras, &tree, context)?,
+            lights: light::lights(document, &tree, context)?,
             contents: contents(document, &tree, &cameras),
         },
-        sources,
+        context,
         scene,
     };
     builder.nodes(&tree)?;
     let Builder { looks, model, .. } = builder;
-    looks.decode(sources, scene);
+    looks.decode(context, scene);
     if model.shapes.is_empty() && model.instances.is_empty() {
-        sources
+        context
             .warn(&document.at(""), "there is nothing to see: the scene has no triangles, lines or points");
     }
     Ok(model)
@@ -143,7 +143,7 @@ struct Form {
 
 struct Builder<'b, 'd, 'f> {
     document: &'d Document,
-    sources: &'b mut Sources<'f>,
+    context: &'b mut LoadContext<'f>,
     scene: &'b mut Scene,
     looks: Looks<'d>,
     /// Of each mesh that was needed.
@@ -253,7 +253,7 @@ impl Builder<'_, '_, '_> {
         pointer: &str,
     ) -> Result<Option<Piece>> {
         let document = self.document;
-        let Some(mut vertices) = mesh::vertices(document, primitive, pointer, self.sources)? else {
+        let Some(mut vertices) = mesh::vertices(document, primitive, pointer, self.context)? else {
             return Ok(None);
         };
         if !primitive.targets.is_empty() {
@@ -266,10 +266,10 @@ impl Builder<'_, '_, '_> {
         }
         let brought = vertices.brought();
         let (material, asked) = self.material(primitive, pointer);
-        let look = self.looks.look(material, &asked, brought, self.sources, self.scene)?;
+        let look = self.looks.look(material, &asked, brought, self.context, self.scene)?;
         vertices.grain = look.grain;
         let geometry =
-            mesh::geometry(document, primitive, vertices, name, pointer, self.sources, self.scene)?;
+            mesh::geometry(document, primitive, vertices, name, pointer, self.context, self.scene)?;
         Ok(geometry.map(|geometry| Piece {
             pointer: document.at(pointer),
             geometry,

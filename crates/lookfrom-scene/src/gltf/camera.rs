@@ -11,7 +11,7 @@ use super::node::Tree;
 use crate::camera::{Camera, Projection, View};
 use crate::contents::CameraEntry;
 use crate::error::Result;
-use crate::files::{CameraChoice, Sources};
+use crate::files::{CameraChoice, LoadContext};
 
 /// A camera of the file, and width over height of the picture that it is meant for, where it says so.
 pub(super) struct Eye {
@@ -81,18 +81,18 @@ impl<'d> Cameras<'d> {
 ///
 /// # Errors
 /// Where the one that is asked for is not there, or none of its numbers can be.
-pub(super) fn eye(cameras: &Cameras<'_>, tree: &Tree, sources: &mut Sources<'_>) -> Result<Option<Eye>> {
+pub(super) fn eye(cameras: &Cameras<'_>, tree: &Tree, context: &mut LoadContext<'_>) -> Result<Option<Eye>> {
     let document = cameras.document;
-    let chosen = cameras.chosen(&sources.choice.camera)?;
+    let chosen = cameras.chosen(&context.import.camera)?;
     let Some((node, index)) = chosen else { return Ok(None) };
     let pointer = format!("/cameras/{index}");
     let at = document.at(&pointer);
     let Some((projection, aspect)) = projection(&document.root.cameras[index]) else {
-        sources.warn(&at, "the camera's numbers cannot be; the scene is framed without it");
+        context.warn(&at, "the camera's numbers cannot be; the scene is framed without it");
         return Ok(None);
     };
     let Some(matrix) = world_from_camera(&tree.world_from_node[node]) else {
-        sources.warn(&at, "the camera's node has no size; the scene is framed without it");
+        context.warn(&at, "the camera's node has no size; the scene is framed without it");
         return Ok(None);
     };
     let camera = Camera { at, view: View::Matrix(matrix), projection, ..Camera::default() };

@@ -12,7 +12,7 @@ use super::json::{self, Root, Whole};
 use super::meshopt::{self, Layout};
 use super::uri::{self, Uri};
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::{Limits, Sources};
+use crate::files::{Limits, LoadContext};
 use crate::model::surface::beside;
 
 /// The first bytes of a GLB container.
@@ -71,16 +71,16 @@ impl Document {
     ///
     /// # Errors
     /// `Syntax` where it is no glTF, `Unsupported` where it is of another version.
-    pub(crate) fn open(content: Vec<u8>, path: &Path, sources: &mut Sources<'_>) -> Result<Self> {
+    pub(crate) fn open(content: Vec<u8>, path: &Path, context: &mut LoadContext<'_>) -> Result<Self> {
         let at = Location::file(path);
         let (what, (json, binary)) = match content.starts_with(MAGIC) {
-            true => ("the JSON of the GLB container", chunks(&content, &at, sources)?),
+            true => ("the JSON of the GLB container", chunks(&content, &at, context)?),
             false => ("the file", (0..content.len(), None)),
         };
-        let root = parse(&content[json], what, &at, sources)?;
-        check_version(&root, &at, sources)?;
+        let root = parse(&content[json], what, &at, context)?;
+        check_version(&root, &at, context)?;
         let decoded = root.buffer_views.iter().map(|_| OnceLock::new()).collect();
-        let limits = sources.limits;
+        let limits = context.limits;
         let compressed = Compressed::new(&root);
         let mut document = Self {
             root,
@@ -94,7 +94,7 @@ impl Document {
             values: AtomicU64::new(0),
             zeros: AtomicU64::new(0),
         };
-        document.read_buffers(binary.as_ref(), sources);
+        document.read_buffers(binary.as_ref(), context);
         Ok(document)
     }
 
@@ -226,7 +226,7 @@ impl Document {
         })
     }
 
-    fn read_buffers(&mut self, binary: Option<&Range<usize>>, sources: &mut Sources<'_>) {
+    fn read_buffers(&mut self, binary: Option<&Range<usize>>, context: &mut LoadContext<'_>) {
         let mut files: BTreeMap<PathBuf, Arc<Vec<u8>>> = BTreeMap::new();
         let mut buffers = Vec::with_capacity(self.root.buffers.len());
         for (index, buffer) in self.root.buffers.iter().enumerate() {
@@ -237,7 +237,7 @@ impl Document {
                     self.invalid(&place, "the buffer has no `uri`, and there is no binary chunk for it")
                         .hint("the file is cut off or was written wrongly: export it again"),
                 ),
-                (Some(uri), _) => match self.fetch(uri, &place, &mut files, sources) {
+                (Some(uri), _) => match self.fetch(uri, &place, &mut files, context) {
                     Ok(bytes) => Bytes::Own(bytes),
                     Err(error) => Bytes::Missing(error),
                 },
@@ -249,7 +249,7 @@ impl Document {
             };
             if (length as u64) < buffer.byte_length.0 {
                 let expected = buffer.byte_length.0;
-                sources
+                context
                     .notice(&self.at(&place), format!("{expected} bytes are announced, {length} are there"));
             }
             buffers.push(bytes);
@@ -262,14 +262,14 @@ impl Document {
         uri: &str,
         place: &str,
         files: &mut BTreeMap<PathBuf, Arc<Vec<u8>>>,
-        sources: &Sources<'_>,
+        context: &LoadContext<'_>,
     ) -> Result<Arc<Vec<u8>>> {
         match self.uri(uri, &format!("{place}/uri"))? {
             Uri::Data(bytes) => Ok(Arc::new(bytes)),
             Uri::Names(names) => {
                 let (path, bytes) = self.first_of(&names, place, |path| match files.get(path) {
                     Some(bytes) => Ok(bytes.clone()),
-                    None => sources.read(path).map(Arc::new),
+                    None => context.read(path).map(Arc::new),
                 })?;
                 files.insert(path, bytes.clone());
                 Ok(bytes)
@@ -314,7 +314,7 @@ impl Document {
 fn chunks(
     content: &[u8],
     at: &Location,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
 ) -> Result<(Range<usize>, Option<Range<usize>>)> {
     let bad = |message: String| {
         Error::syntax(at, message)
@@ -329,7 +329,7 @@ fn chunks(
         return Err(unsupported(at, &format!("version {version} of the GLB container")));
     }
     if length as usize != content.len() {
-        sources
+        context
             .notice(at, format!("the GLB header announces {length} bytes; the file has {}", content.len()));
     }
 
@@ -352,7 +352,7 @@ fn chunks(
             }
             BINARY_CHUNK if binary.is_none() => binary = Some(first..end),
             JSON_CHUNK | BINARY_CHUNK => {
-                sources.warn(at, "the GLB container has a chunk twice: the first one counts");
+                context.warn(at, "the GLB container has a chunk twice: the first one counts");
             }
             // Chunks of other kinds are for others.
             _ => {}
@@ -366,11 +366,11 @@ fn chunks(
 }
 
 /// The JSON in bytes, which are called `what`.
-fn parse(bytes: &[u8], what: &str, at: &Location, sources: &mut Sources<'_>) -> Result<Root> {
+fn parse(bytes: &[u8], what: &str, at: &Location, context: &mut LoadContext<'_>) -> Result<Root> {
     let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     let text = String::from_utf8_lossy(bytes);
     if matches!(text, std::borrow::Cow::Owned(_)) {
-        sources.notice(at, "the JSON is not UTF-8; what is not is taken as �");
+        context.notice(at, "the JSON is not UTF-8; what is not is taken as �");
     }
     let text = text.trim_end_matches(['\0', ' ', '\n', '\r', '\t']);
     if text.is_empty() {
@@ -405,7 +405,7 @@ fn instead_of_json(text: &str) -> &'static str {
     }
 }
 
-fn check_version(root: &Root, at: &Location, sources: &mut Sources<'_>) -> Result<()> {
+fn check_version(root: &Root, at: &Location, context: &mut LoadContext<'_>) -> Result<()> {
     let (asked, pointer) = match &root.asset.min_version {
         Some(version) => (version, "/asset/minVersion"),
         None => (&root.asset.version, "/asset/version"),
@@ -414,7 +414,7 @@ fn check_version(root: &Root, at: &Location, sources: &mut Sources<'_>) -> Resul
     match (numbers.next().flatten(), numbers.next().flatten()) {
         (Some(2), Some(minor)) => {
             if minor > 0 && root.asset.min_version.is_some() {
-                sources.warn(&at.pointer(pointer), format!("glTF {asked} is read as if it were glTF 2.0"));
+                context.warn(&at.pointer(pointer), format!("glTF {asked} is read as if it were glTF 2.0"));
             }
             Ok(())
         }

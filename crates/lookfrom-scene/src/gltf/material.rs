@@ -12,7 +12,7 @@ use super::file::Document;
 use super::json::{self, TextureInfo, Whole};
 use super::texture::{Meaning, Textures, Use};
 use crate::error::Result;
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::material::{Anisotropy, Color, Material, MaterialKind, NormalTexture, Principled, Relief, Scalar};
 use crate::scene::{MaterialId, Scene};
 use crate::shape::Emission;
@@ -50,8 +50,8 @@ impl<'d> Looks<'d> {
     }
 
     /// Decodes the pictures of all looks.
-    pub(super) fn decode(self, sources: &mut Sources<'_>, scene: &mut Scene) {
-        self.textures.decode(sources, scene);
+    pub(super) fn decode(self, context: &mut LoadContext<'_>, scene: &mut Scene) {
+        self.textures.decode(context, scene);
     }
 
     /// The look of a primitive with this material; without one, glTF's default.
@@ -63,7 +63,7 @@ impl<'d> Looks<'d> {
         material: Option<Whole>,
         asked: &str,
         brought: Brought,
-        sources: &mut Sources<'_>,
+        context: &mut LoadContext<'_>,
         scene: &mut Scene,
     ) -> Result<Look> {
         let key = (material.map(Whole::index), brought);
@@ -79,7 +79,7 @@ impl<'d> Looks<'d> {
             None => (&default, "/materials".to_owned()),
         };
         let mut reader =
-            Reader { document: self.document, textures: &mut self.textures, sources, scene, pointer };
+            Reader { document: self.document, textures: &mut self.textures, context, scene, pointer };
         let look = reader.look(entry, brought)?;
         self.known.insert(key, look);
         Ok(look)
@@ -90,7 +90,7 @@ impl<'d> Looks<'d> {
 struct Reader<'r, 'd, 'f> {
     document: &'d Document,
     textures: &'r mut Textures<'d>,
-    sources: &'r mut Sources<'f>,
+    context: &'r mut LoadContext<'f>,
     scene: &'r mut Scene,
     /// The material's.
     pointer: String,
@@ -269,7 +269,7 @@ impl Reader<'_, '_, '_> {
             let at = self.document.at(&format!("{}{place}", self.pointer));
             let message =
                 format!("the factor is [{r}, {g}, {b}]; expected 0 to 1: what is above 1 is taken as 1");
-            self.sources.warn(&at, message);
+            self.context.warn(&at, message);
         }
         factor.map(|factor| unit(Some(factor), 1.0))
     }
@@ -280,7 +280,7 @@ impl Reader<'_, '_, '_> {
             ior if ior >= 1.0 => ior.min(1e6) as f32,
             ior => {
                 let at = self.document.at(&format!("{}/extensions/KHR_materials_ior/ior", self.pointer));
-                self.sources.warn(&at, format!("the index of refraction {ior} cannot be; 1.5 is taken"));
+                self.context.warn(&at, format!("the index of refraction {ior} cannot be; 1.5 is taken"));
                 1.5
             }
         }
@@ -332,7 +332,7 @@ impl Reader<'_, '_, '_> {
         if mode != "MASK" && mode != "BLEND" {
             if mode != "OPAQUE" {
                 let at = self.document.at(&format!("{}/alphaMode", self.pointer));
-                self.sources.warn(&at, format!("the mode {mode:?} is not known; the material is opaque"));
+                self.context.warn(&at, format!("the mode {mode:?} is not known; the material is opaque"));
             }
             return Ok(None);
         }

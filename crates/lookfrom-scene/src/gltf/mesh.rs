@@ -9,7 +9,7 @@ use super::json::{Primitive, Whole};
 use super::material::Brought;
 use super::tangents;
 use crate::error::Result;
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::model::polygon::has_area;
 use crate::scene::{Bounds, MeshId, Scene};
 use crate::shape::{Geometry, Mesh, Profile, Sphere, Strand};
@@ -76,13 +76,13 @@ pub(crate) fn vertices(
     document: &Document,
     primitive: &Primitive,
     pointer: &str,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
 ) -> Result<Option<Vertices>> {
     let place = |name: &str| format!("{pointer}/attributes/{name}");
     let find = |name: &str| primitive.attributes.get(name).copied();
     let Some(positions) = find("POSITION") else {
         let at = document.at(&format!("{pointer}/attributes"));
-        sources.warn(&at, "the primitive has no POSITION and is left out");
+        context.warn(&at, "the primitive has no POSITION and is left out");
         return Ok(None);
     };
     let positions: Vec<Vec3> = points(document.vectors(positions, &place("POSITION"))?);
@@ -186,7 +186,7 @@ pub(crate) fn geometry(
     mut vertices: Vertices,
     name: &str,
     pointer: &str,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Result<Option<Geometry>> {
     let mode = primitive.mode.unwrap_or(Whole(4));
@@ -251,7 +251,7 @@ pub(crate) fn geometry(
             Topology::Lines | Topology::LineLoop | Topology::LineStrip => "line",
             Topology::Triangles | Topology::TriangleStrip | Topology::TriangleFan => "triangle",
         };
-        sources.warnings.push(Warning::new(&at, what).of(left_out as u64, noun));
+        context.warnings.push(Warning::new(&at, what).of(left_out as u64, noun));
     }
     Ok(geometry)
 }

@@ -6,7 +6,7 @@ use super::choose::choose;
 use super::file::Document;
 use super::json::Node;
 use crate::error::Result;
-use crate::files::Sources;
+use crate::files::LoadContext;
 
 /// The hierarchy of a file's nodes.
 pub(crate) struct Tree {
@@ -51,7 +51,7 @@ impl Tree {
     ///
     /// # Errors
     /// Where a node is its own ancestor, where a child or a node of the scene is not there, or the scene that is asked for.
-    pub(crate) fn new(document: &Document, local: &[DMat4], sources: &mut Sources<'_>) -> Result<Self> {
+    pub(crate) fn new(document: &Document, local: &[DMat4], context: &mut LoadContext<'_>) -> Result<Self> {
         let nodes = &document.root.nodes;
         let mut parents: Vec<Option<usize>> = vec![None; nodes.len()];
         for (index, node) in nodes.iter().enumerate() {
@@ -63,7 +63,7 @@ impl Tree {
                     Some(Some(first)) => {
                         let message =
                             format!("node {} is already a child of node {first}, and stays there", child.0);
-                        sources.warn(&document.at(&pointer()), message);
+                        context.warn(&document.at(&pointer()), message);
                     }
                     None => {
                         document.one_of(nodes, child, "node", &pointer())?;
@@ -91,7 +91,7 @@ impl Tree {
         }
 
         // Those of the scene.
-        let (scene, mut waiting) = Self::roots(document, &parents, sources)?;
+        let (scene, mut waiting) = Self::roots(document, &parents, context)?;
         waiting.reverse();
         let mut shown = Vec::new();
         let mut is_shown = vec![false; nodes.len()];
@@ -104,7 +104,7 @@ impl Tree {
                 } else {
                     let message =
                         "the node is too far away or too large to be computed with, and is left out";
-                    sources.warn(&document.at(&format!("/nodes/{node}")), message);
+                    context.warn(&document.at(&format!("/nodes/{node}")), message);
                 }
                 let children = nodes[node].children.iter().rev().map(|child| child.index());
                 waiting.extend(children.filter(|&child| is_child(node, child)));
@@ -117,10 +117,10 @@ impl Tree {
     fn roots(
         document: &Document,
         parents: &[Option<usize>],
-        sources: &Sources<'_>,
+        context: &LoadContext<'_>,
     ) -> Result<(Option<usize>, Vec<usize>)> {
         let root = &document.root;
-        let scene = match (&sources.choice.scene, root.scene) {
+        let scene = match (&context.import.scene, root.scene) {
             (Some(name), _) => {
                 let names = root.scenes.iter().map(|scene| scene.name.as_deref());
                 choose(document, "scene", "/scenes", name, names)?

@@ -1,6 +1,6 @@
 //! How do a file's nodes stand at one moment of one of its animations, or at rest (specification, §3.11)?
 //!
-//! [`Sources::choice`] says which. Channels that extensions bring (`KHR_animation_pointer`) are passed over with a
+//! [`LoadContext::import`] says which. Channels that extensions bring (`KHR_animation_pointer`) are passed over with a
 //! warning.
 
 use glam::{DMat4, DVec3, DVec4};
@@ -11,7 +11,7 @@ use super::json::{AnimationSampler, Node, Whole};
 use super::node::placed;
 use super::track::{Interpolation, Track};
 use crate::error::Result;
-use crate::files::Sources;
+use crate::files::LoadContext;
 
 /// How nodes stand.
 pub(crate) struct Pose {
@@ -52,39 +52,39 @@ impl Placement {
 ///
 /// # Errors
 /// Where there is no such animation, or what it names is not there.
-pub(crate) fn pose(document: &Document, sources: &mut Sources<'_>) -> Result<Pose> {
+pub(crate) fn pose(document: &Document, context: &mut LoadContext<'_>) -> Result<Pose> {
     let nodes = &document.root.nodes;
     let mut pose = Pose {
         local: nodes.iter().map(Node::at_rest).collect(),
         weights: nodes.iter().map(|node| node.weights.clone()).collect(),
     };
-    if let Some(animation) = chosen(document, sources)? {
-        animate(document, animation, &mut pose, sources)?;
+    if let Some(animation) = chosen(document, context)? {
+        animate(document, animation, &mut pose, context)?;
     }
     Ok(pose)
 }
 
 /// The number of the animation that is asked for.
-fn chosen(document: &Document, sources: &mut Sources<'_>) -> Result<Option<usize>> {
+fn chosen(document: &Document, context: &mut LoadContext<'_>) -> Result<Option<usize>> {
     let animations = &document.root.animations;
-    match &sources.choice.animation {
+    match &context.import.animation {
         Some(name) => {
             let names = animations.iter().map(|animation| animation.name.as_deref());
             choose(document, "animation", "/animations", name, names).map(Some)
         }
-        None if sources.choice.at == 0.0 => Ok(None),
+        None if context.import.at == 0.0 => Ok(None),
         None if animations.is_empty() => {
-            sources.warn(&document.at(""), "a time is given, but the file has no animations: it is at rest");
+            context.warn(&document.at(""), "a time is given, but the file has no animations: it is at rest");
             Ok(None)
         }
         None => Ok(Some(0)),
     }
 }
 
-fn animate(document: &Document, index: usize, pose: &mut Pose, sources: &mut Sources<'_>) -> Result<()> {
+fn animate(document: &Document, index: usize, pose: &mut Pose, context: &mut LoadContext<'_>) -> Result<()> {
     let root = &document.root;
     let animation = &root.animations[index];
-    let time = sources.choice.at;
+    let time = context.import.at;
     let mut placements: Vec<Option<Placement>> = vec![None; root.nodes.len()];
     for (place, channel) in animation.channels.iter().enumerate() {
         let pointer = format!("/animations/{index}/channels/{place}");
@@ -98,7 +98,7 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, sources: &mut Sou
         let Some(target) = channel.target.node else {
             // Channels of `KHR_animation_pointer` may be many; that it is not known is said once.
             if channel.target.path != "pointer" {
-                sources.warn(&document.at(&pointer), "the channel moves no node and is passed over");
+                context.warn(&document.at(&pointer), "the channel moves no node and is passed over");
             }
             continue;
         };
@@ -110,12 +110,12 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, sources: &mut Sou
             "weights" => None,
             path => {
                 let message = format!("the channel moves {path:?}, which is not known, and is passed over");
-                sources.warn(&document.at(&pointer), message);
+                context.warn(&document.at(&pointer), message);
                 continue;
             }
         };
         let Some(numbers) = sample(document, sampler, width, time, &asked)? else {
-            sources.warn(
+            context.warn(
                 &document.at(&pointer),
                 "the channel says nothing that is a number, and is passed over",
             );

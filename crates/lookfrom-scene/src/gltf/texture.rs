@@ -11,7 +11,7 @@ use super::file::Document;
 use super::json::{Sampler, Texture as TextureEntry, TextureInfo, Whole};
 use super::uri::Uri;
 use crate::error::{Error, ErrorKind, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::image::{self, Encoding, Image};
 use crate::material::{Color, Scalar};
 use crate::parallel;
@@ -154,17 +154,17 @@ impl<'d> Textures<'d> {
     }
 
     /// Decodes the pictures that were asked for. One that cannot be is white, with a warning.
-    pub(super) fn decode(self, sources: &mut Sources<'_>, scene: &mut Scene) {
+    pub(super) fn decode(self, context: &mut LoadContext<'_>, scene: &mut Scene) {
         let Self { document, pictures, instead, .. } = self;
-        let (files, limits) = (sources.files, sources.limits);
+        let (files, limits) = (context.files, context.limits);
         let texels = AtomicU64::new(0);
         let read = |((index, meaning), id): ((usize, Meaning), ImageId)| {
-            let mut sources = Sources { limits, ..Sources::new(files) };
+            let mut context = LoadContext { limits, ..LoadContext::new(files) };
             let image =
-                picture(document, index, meaning, &texels, &mut sources).or_else(|error| {
+                picture(document, index, meaning, &texels, &mut context).or_else(|error| {
                     match instead.get(&index) {
                         Some(&plain) => {
-                            picture(document, plain, meaning, &texels, &mut sources).map_err(|_| error)
+                            picture(document, plain, meaning, &texels, &mut context).map_err(|_| error)
                         }
                         None => Err(error),
                     }
@@ -172,15 +172,15 @@ impl<'d> Textures<'d> {
             let image = image.unwrap_or_else(|error| {
                 let message =
                     format!("the picture cannot be used, and white is in its place: {}", error.message);
-                sources.warn(&error.at, message);
+                context.warn(&error.at, message);
                 blank(document, index, meaning)
             });
-            (id, image, sources.warnings)
+            (id, image, context.warnings)
         };
         let decoded: Vec<_> = parallel::map(pictures.into_iter().collect(), read);
         for (id, image, warnings) in decoded {
             scene.images[id.index()] = image;
-            sources.warnings.extend(warnings);
+            context.warnings.extend(warnings);
         }
     }
 }
@@ -230,11 +230,11 @@ fn picture(
     index: usize,
     meaning: Meaning,
     texels: &AtomicU64,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
 ) -> Result<Image> {
     let entry = &document.root.images[index];
     let pointer = format!("/images/{index}");
-    let most = sources.limits.texels.saturating_mul(PICTURES_OF_MOST_TEXELS);
+    let most = context.limits.texels.saturating_mul(PICTURES_OF_MOST_TEXELS);
     if texels.load(Ordering::Relaxed) > most {
         let message = format!("the pictures of this file have more than {most} texels together");
         return Err(Error::new(ErrorKind::Limit, &document.at(&pointer), message));
@@ -242,13 +242,13 @@ fn picture(
     let image = match (&entry.uri, entry.buffer_view) {
         (None, Some(view)) => {
             let view = document.view(view, &format!("{pointer}/bufferView"))?;
-            decoded(view.bytes, &pointer, meaning, document, sources)?
+            decoded(view.bytes, &pointer, meaning, document, context)?
         }
         (Some(uri), _) => match document.uri(uri, &format!("{pointer}/uri"))? {
-            Uri::Data(bytes) => decoded(&bytes, &pointer, meaning, document, sources)?,
+            Uri::Data(bytes) => decoded(&bytes, &pointer, meaning, document, context)?,
             Uri::Names(names) => {
-                let (_, bytes) = document.first_of(&names, &pointer, |path| sources.read(path))?;
-                decoded(&bytes, &pointer, meaning, document, sources)?
+                let (_, bytes) = document.first_of(&names, &pointer, |path| context.read(path))?;
+                decoded(&bytes, &pointer, meaning, document, context)?
             }
         },
         (None, None) => {
@@ -264,10 +264,10 @@ fn decoded(
     pointer: &str,
     meaning: Meaning,
     document: &Document,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
 ) -> Result<Image> {
     let encoding = if meaning == Meaning::Color { Encoding::Srgb } else { Encoding::Linear };
-    image::decode(bytes, &document.at(pointer).to_string(), encoding, sources)
+    image::decode(bytes, &document.at(pointer).to_string(), encoding, context)
 }
 
 /// What is in the place of a picture that cannot be used.

@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 use super::surface::push_material;
 use super::tally::Tally;
 use crate::error::Location;
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::material::{Color, Whitted};
 use crate::scene::Scene;
 use crate::shape::{Geometry, Part, Sphere};
@@ -29,12 +29,12 @@ pub(crate) fn cloud(
     positions: &[Vec3],
     colors: &[[f32; 3]],
     file: &Location,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Vec<Part> {
     let mut dropped = Tally::default();
     dropped.add_many(positions.iter().filter(|point| !point.is_finite()).count() as u64, 0);
-    dropped.warn("point", "left out: a coordinate is infinite or not a number", file, sources);
+    dropped.warn("point", "left out: a coordinate is infinite or not a number", file, context);
     let finite = positions.iter().zip(0..).filter(|(point, _)| point.is_finite());
     let finite: Vec<(DVec3, usize)> = finite.map(|(point, index)| (point.as_dvec3(), index)).collect();
     if finite.is_empty() {

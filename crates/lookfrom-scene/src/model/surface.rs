@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::{Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::image::{self, Image};
 use crate::material::{Color, Material, MaterialKind, Whitted};
 use crate::scene::{ImageId, MaterialId, Scene, TextureId};
@@ -24,9 +24,9 @@ pub(crate) fn base_name(name: &str) -> &str {
 ///
 /// # Errors
 /// Those of the first try.
-pub(crate) fn read_image(path: &Path, name: &str, sources: &mut Sources<'_>) -> Result<Image> {
-    image::read(&beside(path, name), sources)
-        .or_else(|error| image::read(&beside(path, base_name(name)), sources).map_err(|_| error))
+pub(crate) fn read_image(path: &Path, name: &str, context: &mut LoadContext<'_>) -> Result<Image> {
+    image::read(&beside(path, name), context)
+        .or_else(|error| image::read(&beside(path, base_name(name)), context).map_err(|_| error))
 }
 
 /// A picture over uv, bilinear.

@@ -1,7 +1,7 @@
 //! How often did something survivable happen, and where first? One warning tells of all.
 
 use crate::error::Location;
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::warning::{Warning, WarningKind};
 
 /// Counts one kind of mishap.
@@ -31,19 +31,19 @@ impl Tally {
     }
 
     /// Warns where there were any: "3 triangles `what`".
-    pub(crate) fn warn(self, noun: &str, what: &str, file: &Location, sources: &mut Sources<'_>) {
-        self.tell(WarningKind::Warning, noun, what, file, sources);
+    pub(crate) fn warn(self, noun: &str, what: &str, file: &Location, context: &mut LoadContext<'_>) {
+        self.tell(WarningKind::Warning, noun, what, file, context);
     }
 
     /// The same of something harmless: the picture is the one that was meant.
-    pub(crate) fn notice(self, noun: &str, what: &str, file: &Location, sources: &mut Sources<'_>) {
-        self.tell(WarningKind::Notice, noun, what, file, sources);
+    pub(crate) fn notice(self, noun: &str, what: &str, file: &Location, context: &mut LoadContext<'_>) {
+        self.tell(WarningKind::Notice, noun, what, file, context);
     }
 
-    fn tell(self, kind: WarningKind, noun: &str, what: &str, file: &Location, sources: &mut Sources<'_>) {
+    fn tell(self, kind: WarningKind, noun: &str, what: &str, file: &Location, context: &mut LoadContext<'_>) {
         if self.count > 0 {
             let warning = Warning { kind, ..Warning::new(&file.at(self.first, 0), what) };
-            sources.warnings.push(warning.of(self.count, noun));
+            context.warnings.push(warning.of(self.count, noun));
         }
     }
 }

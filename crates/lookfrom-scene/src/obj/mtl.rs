@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::error::Location;
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::model::number::parse_f32;
 use crate::model::scan::{Scanner, shown};
 use crate::model::tally::Tally;
@@ -65,7 +65,7 @@ pub struct Map {
 }
 
 /// Reads the materials of a library in the order of the file; `path` is for messages.
-pub fn parse(bytes: &[u8], path: &Path, sources: &mut Sources<'_>) -> Vec<MtlMaterial> {
+pub fn parse(bytes: &[u8], path: &Path, context: &mut LoadContext<'_>) -> Vec<MtlMaterial> {
     let file = Location::file(path);
     let text = text::utf8(bytes);
     let mut scanner = Scanner::joining_lines(&text);
@@ -91,15 +91,15 @@ pub fn parse(bytes: &[u8], path: &Path, sources: &mut Sources<'_>) -> Vec<MtlMat
             break;
         }
     }
-    unreadable.warn("line", "ignored: the values are not what the keyword expects", &file, sources);
-    orphans.warn("line", "before the first `newmtl` ignored", &file, sources);
+    unreadable.warn("line", "ignored: the values are not what the keyword expects", &file, context);
+    orphans.warn("line", "before the first `newmtl` ignored", &file, context);
     for (name, tally) in ignored {
         let noun = format!("`{name}` statement");
         let what = "ignored: not supported";
         match name {
             // It is about a picture that `refl` names.
-            "sharpness" => tally.notice(&noun, what, &file, sources),
-            _ => tally.warn(&noun, what, &file, sources),
+            "sharpness" => tally.notice(&noun, what, &file, context),
+            _ => tally.warn(&noun, what, &file, context),
         }
     }
     materials

@@ -27,7 +27,7 @@ impl Reader<'_, '_> {
             "realistic" => {
                 let message =
                     "lens systems are not traced yet: a \"perspective\" camera takes the place of it";
-                self.sources.warn(&parameters.place.location(), message);
+                self.context.warn(&parameters.place.location(), message);
                 parameters.ignore(&["lensfile", "aperturediameter", "focusdistance", "aperture"]);
                 Projection::Perspective { fov: 50.0 }
             }

@@ -69,7 +69,7 @@ impl Reader<'_, '_> {
             b"Shape" => {
                 let (kind, parameters) = self.world_entity(word, place, lexer, 0)?;
                 self.shape(&kind, &parameters)?;
-                parameters.finish(self.sources);
+                parameters.finish(self.context);
             }
             b"AttributeBegin" => {
                 self.in_world_only(word, place)?;
@@ -128,7 +128,7 @@ impl Reader<'_, '_> {
                             "there is no coordinate system {name:?}: nothing is changed{}",
                             hint.unwrap_or_default()
                         );
-                        self.sources.warn(&place.location(), message);
+                        self.context.warn(&place.location(), message);
                     }
                 }
             }
@@ -142,7 +142,7 @@ impl Reader<'_, '_> {
             b"Material" => {
                 let (kind, parameters) = self.entity(word, place, lexer, Some(2))?;
                 self.state.material = self.material(&kind, &parameters)?;
-                parameters.finish(self.sources);
+                parameters.finish(self.context);
             }
             b"MakeNamedMaterial" => self.make_named_material(place, lexer)?,
             b"NamedMaterial" => {
@@ -154,17 +154,17 @@ impl Reader<'_, '_> {
             b"LightSource" => {
                 let (kind, parameters) = self.world_entity(word, place, lexer, 1)?;
                 self.light(&kind, &parameters)?;
-                parameters.finish(self.sources);
+                parameters.finish(self.context);
             }
             b"AreaLightSource" => {
                 let (kind, parameters) = self.world_entity(word, place, lexer, 1)?;
                 self.state.emission = Some(self.area_light(&kind, &parameters)?);
-                parameters.finish(self.sources);
+                parameters.finish(self.context);
             }
             b"MakeNamedMedium" => {
                 let (name, parameters) = self.entity(word, place, lexer, Some(3))?;
                 self.make_medium(name, &parameters)?;
-                parameters.finish(self.sources);
+                parameters.finish(self.context);
             }
             b"MediumInterface" => self.medium_interface(lexer)?,
 
@@ -399,7 +399,7 @@ impl Reader<'_, '_> {
                 return Err(Self::unknown(&place, "object", &name, self.objects.keys().map(String::as_str)));
             };
             if !transform::is_invertible(&matrix) {
-                self.sources.warn(&place.location(), "left out: its transform flattens it to nothing");
+                self.context.warn(&place.location(), "left out: its transform flattens it to nothing");
                 continue;
             }
             let at = place.location();
@@ -441,7 +441,7 @@ impl Reader<'_, '_> {
         }
         let entities = [options.film, options.filter, options.sampler, options.integrator];
         let entities = entities.into_iter().chain([options.camera.map(|(entity, _)| entity)]).flatten();
-        entities.for_each(|entity| entity.parameters.finish(self.sources));
+        entities.for_each(|entity| entity.parameters.finish(self.context));
         Ok(())
     }
 }

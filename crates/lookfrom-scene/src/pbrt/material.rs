@@ -64,7 +64,7 @@ impl Reader<'_, '_> {
         if let Some(named) = self.materials.get_mut(&name) {
             named.is_made = true;
         }
-        parameters.finish(self.sources);
+        parameters.finish(self.context);
         Ok(())
     }
 
@@ -110,7 +110,7 @@ impl Reader<'_, '_> {
             "mix" => self.mix(p)?,
             "interface" => MaterialKind::Interface,
             "" | "none" => {
-                self.sources
+                self.context
                     .notice(&p.place.location(), "a material that is nothing is called \"interface\"");
                 MaterialKind::Interface
             }
@@ -137,7 +137,7 @@ impl Reader<'_, '_> {
         let Some(name) = p.string("normalmap")? else { return Ok(bump.map_or(Relief::None, Relief::Bump)) };
         if bump.is_some() {
             let message = "the material has a \"normalmap\" and a \"displacement\": only the first is used";
-            self.sources.warn(&p.place.location(), message);
+            self.context.warn(&p.place.location(), message);
         }
         let place = p.find("normalmap", &[Kind::String])?.map_or(&p.place, |parameter| &parameter.place);
         let image: ImageId = self.picture(name, "linear", place)?;

@@ -117,9 +117,9 @@ impl Reader<'_, '_> {
                 let message = format!(
                     "the integrator {integrator:?} knows no media, as in pbrt: light passes them as a vacuum; \"volpath\" knows them"
                 );
-                self.sources.warn(&place.location(), message);
+                self.context.warn(&place.location(), message);
             }
-            None if self.scene.render.media => self.sources.warnings.extend(named.warning.take()),
+            None if self.scene.render.media => self.context.warnings.extend(named.warning.take()),
             None => {}
         }
     }

@@ -14,7 +14,7 @@ use super::spectra::Space;
 use super::text::Place;
 use super::version3;
 use crate::error::{Error, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::suggest::nearest;
 
 /// The types that parameters have.
@@ -456,7 +456,7 @@ impl Parameters {
     }
 
     /// Warns of parameters that nobody has asked for.
-    pub(super) fn finish(&self, sources: &mut Sources<'_>) {
+    pub(super) fn finish(&self, context: &mut LoadContext<'_>) {
         for parameter in self.own.iter().filter(|parameter| !parameter.used.get()) {
             let asked = self.asked.borrow();
             let mut names: Vec<&str> = asked.clone();
@@ -477,7 +477,7 @@ impl Parameters {
                 parameter.kind.word(),
                 parameter.name
             );
-            sources.warn(&parameter.place.location(), message);
+            context.warn(&parameter.place.location(), message);
         }
     }
 }

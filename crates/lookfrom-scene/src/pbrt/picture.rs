@@ -16,7 +16,7 @@ impl Reader<'_, '_> {
             return Ok(id);
         }
         let opacity =
-            with_encoding(encoding, place, |encoding| image::read_opacity(&key.0, self.sources, encoding));
+            with_encoding(encoding, place, |encoding| image::read_opacity(&key.0, self.context, encoding));
         let opacity = self.or_blank(opacity, &key.0, place, Some(blank(name)))?;
         let Some(opacity) = opacity else { return self.picture(name, encoding, place) };
         Ok(self.push_picture(key, opacity))
@@ -35,7 +35,7 @@ impl Reader<'_, '_> {
             return Ok(id);
         }
         let image =
-            with_encoding(encoding, place, |encoding| image::read_encoded(&path, self.sources, encoding));
+            with_encoding(encoding, place, |encoding| image::read_encoded(&path, self.context, encoding));
         let image = self.or_blank(image, &path, place, blank(name))?;
         Ok(self.push_picture(key, image))
     }

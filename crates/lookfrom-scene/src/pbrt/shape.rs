@@ -26,7 +26,7 @@ impl Reader<'_, '_> {
         let Some(geometry) = geometry else { return Ok(()) };
         let matrix = self.state.matrix;
         if !transform::is_invertible(&matrix) {
-            self.sources.warn(&p.place.location(), "left out: its transform flattens it to nothing");
+            self.context.warn(&p.place.location(), "left out: its transform flattens it to nothing");
             return Ok(());
         }
         let mut emission = self.state.emission;

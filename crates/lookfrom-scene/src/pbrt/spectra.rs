@@ -123,7 +123,7 @@ impl Reader<'_, '_> {
             Some(curve) => curve,
             None => {
                 let path = self.resolve(name);
-                match spectrum::read_spd(&path, self.sources) {
+                match spectrum::read_spd(&path, self.context) {
                     Err(error) if error.kind == ErrorKind::Io => {
                         let file = path.display();
                         let error = place.invalid(format!(

@@ -121,7 +121,7 @@ impl Reader<'_, '_> {
             }
         };
         self.textures.insert(key, NamedTexture { color, first: name_place, is_made: true });
-        parameters.finish(self.sources);
+        parameters.finish(self.context);
         Ok(())
     }
 

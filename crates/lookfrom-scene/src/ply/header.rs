@@ -1,7 +1,7 @@
 //! What does a PLY file say of itself? Its format, its elements and their properties, and the pictures it uses.
 
 use crate::error::{Error, Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::model::scan::{Scanner, shown};
 use crate::model::tally::Tally;
 
@@ -102,7 +102,7 @@ impl Element {
 ///
 /// # Errors
 /// `Syntax` at line and column.
-pub(super) fn parse(bytes: &[u8], file: &Location, sources: &mut Sources<'_>) -> Result<Header> {
+pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>) -> Result<Header> {
     let mut scanner = Scanner::new(bytes);
     if scanner.word() != b"ply" {
         return Err(Error::syntax(&file.at(1, 1), "not a PLY file: it does not start with `ply`"));
@@ -153,7 +153,7 @@ pub(super) fn parse(bytes: &[u8], file: &Location, sources: &mut Sources<'_>) ->
             _ => strays.add(scanner.line()),
         }
     }
-    strays.warn("line", "of the header ignored: unknown keyword", file, sources);
+    strays.warn("line", "of the header ignored: unknown keyword", file, context);
     let Some(format) = format else {
         return Err(Error::syntax(&file.at(scanner.line(), 0), "the header has no `format` line"));
     };

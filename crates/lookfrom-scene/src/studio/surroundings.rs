@@ -7,7 +7,7 @@
 
 use glam::{DMat4, DVec3};
 
-use super::Stage;
+use super::StudioFrame;
 use crate::error::Location;
 use crate::image::Image;
 use crate::light::{LightKind, Sky};
@@ -52,7 +52,7 @@ const FADE: f64 = 0.12;
 /// Radius of the floor in radii of the bounds: beyond the upper edge of the picture.
 const FLOOR_RADIUS: f64 = 60.0;
 
-impl Stage {
+impl StudioFrame {
     /// Adds the studio, turned to the viewer whom models look at.
     pub(super) fn add_studio(&self, scene: &mut Scene) {
         let image = push_image(scene, studio());
@@ -67,19 +67,19 @@ impl Stage {
     }
 }
 
-/// Lets a picture in latitude and longitude, +y up, take the place of all environments. `up` as in [`super::furnish`].
+/// Lets a picture in latitude and longitude, +y up, take the place of all environments. `up` as in [`super::add_lights_and_camera`].
 pub fn surround(scene: &mut Scene, picture: Image, up: Option<DVec3>) {
     scene.lights.retain(|light| !matches!(light.kind, LightKind::Environment { .. }));
-    let world_from_light = Stage::of(scene, up).world_from_light();
+    let world_from_light = StudioFrame::of(scene, up).world_from_light();
     let image = push_image(scene, picture);
     let sky = Sky::Image { image, scale: [1.0; 3], world_from_light };
     super::add(scene, "environment", LightKind::Environment { sky, portal: None, illuminates: true });
 }
 
 /// Turns pictures of the surroundings around what is up, by degrees against the clock as seen from above. `up` as in
-/// [`super::furnish`].
+/// [`super::add_lights_and_camera`].
 pub fn turn_environments(scene: &mut Scene, up: Option<DVec3>, degrees: f64) {
-    let turn = rotation(Stage::of(scene, up).basis[1], degrees);
+    let turn = rotation(StudioFrame::of(scene, up).basis[1], degrees);
     for light in &mut scene.lights {
         if let LightKind::Environment { sky, .. } = &mut light.kind
             && let Sky::Image { world_from_light, .. } | Sky::Octahedral { world_from_light, .. } = sky
@@ -97,9 +97,9 @@ pub(super) fn rotation(axis: DVec3, degrees: f64) -> DMat4 {
 }
 
 /// Adds a large floor under everything, which is seen only by the shadows on it ([`MaterialKind::ShadowCatcher`]). `up` as
-/// in [`super::furnish`].
+/// in [`super::add_lights_and_camera`].
 pub fn add_floor(scene: &mut Scene, up: Option<DVec3>) {
-    let Stage { bounds, basis: [_, up, _] } = Stage::of(scene, up);
+    let StudioFrame { bounds, basis: [_, up, _] } = StudioFrame::of(scene, up);
     // What is in objects stands in the world as well: the lowest corner of the box along `up`.
     let Bounds { min, max } = bounds;
     let lowest = DVec3::select(up.cmpge(DVec3::ZERO), min, max).dot(up);
@@ -207,7 +207,7 @@ mod tests {
     #[test]
     fn environments_turn_around_what_is_up() {
         let mut scene = Scene::default();
-        Stage::of(&scene, Some(DVec3::Z)).add_studio(&mut scene);
+        StudioFrame::of(&scene, Some(DVec3::Z)).add_studio(&mut scene);
         let middle = |scene: &Scene| match &scene.lights[0].kind {
             LightKind::Environment { sky: Sky::Image { world_from_light, .. }, .. } => {
                 [-DVec3::Z, DVec3::Y].map(|v| world_from_light.transform_vector3(v))

@@ -10,7 +10,7 @@ use super::surroundings::{rotation, turn_environments};
 use super::{aspect, basis, bounds_of, corners, sane, visit_instance, visit_shape};
 use crate::camera::{Target, View};
 use crate::material::MaterialKind;
-use crate::scene::{Bounds, Instance, Origin, Scene};
+use crate::scene::{Bounds, Instance, Scene, SourceFormat};
 use crate::shape::{Geometry, Shape};
 
 /// How many times larger than the solid things a flat one may be before it is a backdrop or a floor without end: its radius over
@@ -39,7 +39,9 @@ impl Turntable {
         });
         let of_matrix = || match scene.camera.as_ref()?.view {
             // The format says what is up.
-            View::Matrix(matrix) if scene.origin != Origin::Gltf => Some(matrix.y_axis.truncate()),
+            View::Matrix(matrix) if scene.source_format != SourceFormat::Gltf => {
+                Some(matrix.y_axis.truncate())
+            }
             _ => None,
         };
         let up = up.or(target.map(|target| target.up)).or_else(of_matrix);
@@ -170,7 +172,7 @@ fn visible(scene: &Scene) -> Vec<Item<'_>> {
 
 /// Whether a shape is a lamp or only the border of a medium. In a model what glows is a part of it.
 fn is_hidden(scene: &Scene, shape: &Shape) -> bool {
-    let is_lamp = scene.origin == Origin::Scene && shape.emission.is_some();
+    let is_lamp = scene.source_format == SourceFormat::Scene && shape.emission.is_some();
     let material = scene.materials.get(shape.material.index());
     is_lamp || material.is_some_and(|material| matches!(material.kind, MaterialKind::Interface))
 }

@@ -2,8 +2,8 @@
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
 
-use super::place::scale_rotate_translate;
 use super::table::Table;
+use super::transform::scale_rotate_translate;
 use super::value::Value;
 use crate::error::Result;
 use crate::texture::Mapping;

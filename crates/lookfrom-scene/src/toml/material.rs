@@ -1,7 +1,7 @@
 //! `[materials]`: how surfaces look, and the light they give off.
 
 use super::color::plain_color;
-use super::light::amount;
+use super::light::power;
 use super::table::{Kinds, Table};
 use super::value::Value;
 use super::{Reader, chain, principled};
@@ -156,7 +156,7 @@ impl Reader<'_, '_> {
     /// Warns of a key that changes nothing without another.
     pub(super) fn ineffective(&mut self, table: &Table<'_>, key: &str, without: &str) {
         let at = table.find(key).map_or_else(|| table.at(), Value::at);
-        self.sources.warn(&at, format!("`{key}` has no effect without {without}"));
+        self.context.warn(&at, format!("`{key}` has no effect without {without}"));
     }
 
     fn relief(&mut self, table: &Table<'_>) -> Relief {
@@ -181,9 +181,9 @@ impl Reader<'_, '_> {
             return None;
         }
         let radiance = table.or("emission", (Color::gray(1.0), 1.0), |value| self.light_color(value, true));
-        let amount = amount(table, "power", radiance.1);
+        let power = power(table, "power", radiance.1);
         let two_sided = table.or("two_sided", false, Value::boolean);
-        Some(Emission { radiance: radiance.0, amount, two_sided })
+        Some(Emission { radiance: radiance.0, power, two_sided })
     }
 
     pub(super) fn add_material(&mut self, material: Material) -> MaterialId {

@@ -268,7 +268,7 @@ impl Compiler<'_> {
     /// The light of a shape that shines, made from its form.
     fn shine(&mut self, placing: Placing, form: impl FnOnce() -> Option<LightForm>) -> Option<u32> {
         let Placing { shape, look, .. } = placing;
-        let Emission { radiance, amount, two_sided } = shape.emission?;
+        let Emission { radiance, power, two_sided } = shape.emission?;
         if radiance == Color::BLACK {
             return None;
         }
@@ -286,7 +286,7 @@ impl Compiler<'_> {
         };
         // what white radiance of 1 sends out
         let sides = if two_sided { 2.0 } else { 1.0 };
-        light.radiance = self.lights.glow(radiance, &amount, sides * PI * light.area() as f32);
+        light.radiance = self.lights.glow(radiance, &power, sides * PI * light.area() as f32);
         let brightness = match light.mean_of_pattern() {
             Some(mean) => light.radiance.scale * mean,
             None => self.lights.brightness_of(&light.radiance),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::*;
-use crate::files::{Memory, Sources};
+use crate::files::{LoadContext, Memory};
 use crate::shape::Geometry;
 
 fn hex(text: &str) -> Vec<u8> {
@@ -198,7 +198,7 @@ fn a_view_of_a_file_is_unpacked() {
     let read = |filter: &str| {
         let json = json.replace("FILTER", filter).into_bytes();
         let files = Memory([("a.gltf".into(), json), ("b".into(), bytes.clone())].into());
-        crate::gltf::read(Path::new("a.gltf"), &mut Sources::new(&files))
+        crate::gltf::read(Path::new("a.gltf"), &mut LoadContext::new(&files))
     };
     let scene = read("NONE").unwrap();
     let Geometry::Spheres(points) = &scene.shapes[0].geometry else { panic!("no points") };

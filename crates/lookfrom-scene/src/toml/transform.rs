@@ -14,7 +14,7 @@ pub(super) const STEPS: &[&str] = &["scale", "rotate", "translate", "matrix"];
 pub(super) const ROTATION: &[&str] = &["axis", "angle"];
 
 /// The matrix from a thing's own space to the one it is placed in: affine, finite and invertible.
-pub(super) fn place(table: &Table<'_>) -> DMat4 {
+pub(super) fn world_from_object(table: &Table<'_>) -> DMat4 {
     if !table.has("transform") {
         return scale_rotate_translate(table);
     }
