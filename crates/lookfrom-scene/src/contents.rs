@@ -1,4 +1,4 @@
-//! What a file holds of which a picture shows one at a time.
+//! The animations, material variants, cameras and scenes of a file, from which one of each is selected.
 
 use crate::camera::Projection;
 

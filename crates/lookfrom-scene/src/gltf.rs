@@ -1,4 +1,4 @@
-//! How does a glTF 2.0 file become a scene? (Khronos, "glTF 2.0 Specification", 2021; ISO/IEC 12113:2022.)
+//! Reader for glTF 2.0 files (Khronos, "glTF 2.0 Specification", 2021; ISO/IEC 12113:2022).
 //!
 //! `json` says what stands in the file, `file` and `uri` which bytes belong to it, `accessor` how bytes become vectors.
 //! `node` places things, `mesh` gives them form, `material` and `texture` a look; `camera` and `light` do what their

@@ -1,4 +1,4 @@
-//! Which files were read, and for whom: so that nothing is written over what something was made from.
+//! A record of the files that were read for each scene, so that no output overwrites an input.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -7,16 +7,16 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use crate::error::Result;
 use crate::files::{FileId, Files};
 
-/// A file that was asked for.
+/// A requested file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Input {
-    /// Its path, as it was asked for.
+    /// Its path, as it was requested.
     pub path: PathBuf,
-    /// Who asked first: a scene, by the name that its file was given, or whatever else reads.
+    /// The first reader: a scene, by the name of its file, or another input.
     pub reader: String,
 }
 
-/// All files that were asked for, and the files that were written meanwhile.
+/// All requested files, and the files that were written meanwhile.
 #[derive(Debug, Default)]
 pub struct Inputs(Mutex<Register>);
 
@@ -24,7 +24,7 @@ pub struct Inputs(Mutex<Register>);
 struct Register {
     read: HashMap<FileId, Input>,
     written: HashSet<FileId>,
-    /// What was read though it had been written before.
+    /// Files that were read after they had been written.
     own_outputs: Vec<Input>,
 }
 
@@ -55,7 +55,7 @@ impl Inputs {
         self.register().written.extend(paths);
     }
 
-    /// What `reader` asked for of that which was written before.
+    /// The files read by `reader` that had been written before.
     pub fn own_output(&self, reader: &str) -> Option<Input> {
         self.register().own_outputs.iter().find(|input| input.reader == reader).cloned()
     }

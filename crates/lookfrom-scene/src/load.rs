@@ -1,4 +1,4 @@
-//! Which reader a file is for, by its extension and else by how it begins.
+//! Selection of the reader of a file, by its extension, or else by its first bytes.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ const CLAY: f32 = 0.8;
 
 /// Reads a scene in our own format (`.toml`), one of pbrt-v4 (`.pbrt`), a glTF file (`.gltf`, `.glb`), or a model file,
 /// whose parts stand in the scene where the file has them and wear a matte grey "default" where the file gives them no
-/// material. A file's cameras count as [`LoadContext::import`] says.
+/// material. [`LoadContext::import`] selects the camera of a file.
 ///
 /// # Errors
 /// `Unsupported` where the format is not known, and what the reader of the format finds.
@@ -73,16 +73,16 @@ fn extension(path: &Path) -> String {
     path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-/// What a file brings to another scene, besides what it put into the scene already.
+/// The parts of a merged file that were not added to the scene already.
 #[derive(Clone, Default)]
 pub(crate) struct Model {
     pub(crate) parts: Vec<Part>,
-    /// Of the file's, the one that is meant.
+    /// The selected camera of the file.
     pub(crate) camera: Option<Camera>,
     pub(crate) lights: Vec<Light>,
 }
 
-/// What stands in a model file; its materials join the scene.
+/// The parts of a model file; its materials are added to the scene.
 pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Model> {
     let unsupported = |message: String| {
         Error::new(ErrorKind::Unsupported, &Location::file(path), message)
@@ -103,7 +103,7 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
     Ok(Model { parts, ..Model::default() })
 }
 
-/// Parts as shapes that stand where the file has them.
+/// Parts as shapes with the transforms of the file.
 pub(crate) fn shapes(parts: Vec<Part>, at: &Location, default: MaterialId) -> Vec<Shape> {
     parts
         .into_iter()

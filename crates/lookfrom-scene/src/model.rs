@@ -1,6 +1,6 @@
-//! Which reader reads a model file?
+//! Model files: selection of the reader, and the parts that readers share.
 //!
-//! By the ending of its name, and by its content where the name says nothing or something else. Models in formats
+//! The reader is selected by the extension, or by the content where the extension is absent or wrong. Models in formats
 //! without a camera and lights are shown in [`crate::studio`].
 
 pub(crate) mod number;
@@ -70,7 +70,7 @@ fn by_name(path: &Path) -> Option<Format> {
     }
 }
 
-/// What can be known for certain.
+/// A format that the first bytes identify with certainty.
 fn by_content(bytes: &[u8]) -> Option<Format> {
     if matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r' | b' ', ..]) {
         Some(Format::Ply)

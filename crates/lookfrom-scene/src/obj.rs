@@ -1,4 +1,4 @@
-//! How does a Wavefront OBJ file become meshes and materials?
+//! Reader for Wavefront OBJ files, to meshes and materials.
 //!
 //! `statement` reads the text, `build` makes one mesh for each material of it, [`mtl`] reads material libraries and
 //! `look` turns their materials into the scene's. The format: Wavefront, "Object Files (.obj)", Advanced Visualizer

@@ -1,4 +1,4 @@
-//! Files packed by gzip (RFC 1952): scenes of pbrt and models, read as if they were not packed.
+//! Decompression of gzip files (RFC 1952): models and scenes of pbrt may be compressed.
 
 use std::ffi::OsString;
 use std::io::Read;

@@ -1,5 +1,4 @@
-//! Scenes of pbrt-v4 (Pharr, Jakob & Humphreys 2023): its file format becomes a [`Scene`], or an error that points at
-//! what is wrong.
+//! Reader for scenes of pbrt-v4 (Pharr, Jakob & Humphreys 2023). Errors have the location of the wrong value.
 //!
 //! `text` and `lexer` know bytes and words, `params` the typed parameters, `directive` what each directive does to the
 //! `state`; beside them a file for each part of the vocabulary. What pbrt knows and this program does not render is
@@ -50,7 +49,7 @@ use crate::settings::ColorMode;
 /// # Errors
 /// With line and column: `Syntax` where words are not those of the format, `Invalid` where they
 /// say what cannot be (a scene of pbrt-v3 among them), `Limit` where something is too large or nests too deep, and
-/// whatever goes wrong in the files that are named. Files that are not there are told of all at once, as
+/// whatever goes wrong in the files that are named. Files that do not exist are told of all at once, as
 /// [`Error::more`].
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut scene = Scene::default();
@@ -105,20 +104,20 @@ pub(crate) fn is_pbrt(bytes: &[u8]) -> bool {
 struct Reader<'s, 'f> {
     context: &'s mut LoadContext<'f>,
     scene: Scene,
-    /// Where the file that was asked for lies.
+    /// The folder of the main file.
     folder: PathBuf,
     /// The files that are being read: each is included by the one before.
     open: Vec<PathBuf>,
-    /// How many files were included.
+    /// The number of included files.
     included: u32,
-    /// What holds for the next shape.
+    /// The current graphics state.
     state: State,
-    /// What was begun and has to be ended.
+    /// Open blocks.
     stack: Vec<Opened>,
     coordinate_systems: BTreeMap<String, DMat4>,
     /// Whether `WorldBegin` was there.
     in_world: bool,
-    /// What was said before `WorldBegin`.
+    /// Settings before `WorldBegin`.
     options: Options,
     materials: BTreeMap<String, NamedMaterial>,
     /// By name and whether they give numbers.
@@ -134,7 +133,7 @@ struct Reader<'s, 'f> {
     /// Pictures by path and by what was done to their values.
     images: BTreeMap<(PathBuf, String), ImageId>,
     models: BTreeMap<PathBuf, Model>,
-    /// What was warned of already.
+    /// Warnings that were given already.
     warned: BTreeSet<String>,
     /// By name.
     media: BTreeMap<String, NamedMedium>,
@@ -147,7 +146,7 @@ struct Reader<'s, 'f> {
 /// A material that was made or mentioned.
 struct NamedMaterial {
     id: MaterialId,
-    /// Where it was mentioned first.
+    /// The location of the first mention.
     first: Place,
     is_made: bool,
 }
@@ -156,7 +155,7 @@ struct NamedMaterial {
 struct NamedTexture {
     /// A value where it is the same everywhere.
     color: Color,
-    /// Where it was mentioned first.
+    /// The location of the first mention.
     first: Place,
     is_made: bool,
 }
@@ -190,7 +189,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// What can only be done when everything is known. Models are read whatever is wrong, to find all that are missing.
+    /// Steps that need the whole scene. Models are read even after errors, so that all missing files are found.
     fn finish(&mut self, path: &Path) -> Result<()> {
         let result = self.finish_without_models(path);
         self.read_models().and(result)

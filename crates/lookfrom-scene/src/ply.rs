@@ -1,4 +1,4 @@
-//! How does a PLY file become a mesh or a cloud of points?
+//! Reader and writer for PLY files: meshes and point clouds.
 //!
 //! `header` reads what the file says of itself, `body` (by way of `values`) what it holds, `build` makes the mesh,
 //! [`write`](fn@write) writes one. The format: Turk 1994, "The PLY Polygon File Format"; names of properties as programs have

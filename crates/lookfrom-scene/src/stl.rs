@@ -1,4 +1,4 @@
-//! How does an STL file become meshes?
+//! Reader for STL files.
 //!
 //! Triangles without shared vertices, in text or binary (3D Systems, "StereoLithography Interface Specification",
 //! 1989). Vertices with the same bits are made one. The normals of facets are ignored: they are often wrong, and flat
@@ -251,7 +251,7 @@ fn read_text(
             b"vertex" => points.push(vertex(&mut scanner, file)?),
             b"endloop" => {
                 if points.len() < 3 {
-                    let message = format!("a facet with {} vertices: expected three", points.len());
+                    let message = format!("a facet with {} vertices, expected 3", points.len());
                     return Err(Error::syntax(&scanner.at(file), message));
                 }
                 let line = scanner.line();

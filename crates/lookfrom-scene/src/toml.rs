@@ -1,5 +1,4 @@
-//! Our own scene format: what `docs/guide/scene-format.md` describes becomes a [`Scene`], or an error that points at
-//! the line that is wrong.
+//! Reader for our own scene format (`docs/guide/scene-format.md`). Errors have the location of the wrong value.
 //!
 //! This file reads files and joins what they import. Beside it: `document`, `table` and `value` (what is there, with its
 //! place; what is wrong is noted there), `syntax` (texts that are no TOML), `synonyms` (what others call it), and a decoder
@@ -101,25 +100,25 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The most names that are compared with one that stands for nothing.
+/// The maximum number of names that are compared with an unknown one.
 const MOST_COMPARED: usize = 1000;
 
-/// A scene on its way from files, and the names that were given so far.
+/// The state of a load: the scene so far, and the names defined so far.
 struct Reader<'s, 'f> {
     context: &'s mut LoadContext<'f>,
     scene: Scene,
-    /// The file that was asked for.
+    /// The main file.
     scene_file: Location,
     materials: BTreeMap<String, MaterialId>,
     textures: BTreeMap<String, TextureId>,
     objects: BTreeMap<String, ObjectId>,
     /// By file, and whether it holds numbers rather than colours.
     images: BTreeMap<(PathBuf, bool), ImageId>,
-    /// By what they are in words.
+    /// By their description.
     curves: BTreeMap<String, CurveId>,
-    /// By file, and what is asked of it.
+    /// By file and import options.
     models: Vec<((PathBuf, ImportOptions), Model)>,
-    /// The light of the materials that shine.
+    /// Emission of materials.
     glows: BTreeMap<MaterialId, Emission>,
     /// The material "default", where it was needed but no file has written it (yet).
     unwritten_default: Option<MaterialId>,
@@ -134,16 +133,16 @@ struct Reader<'s, 'f> {
     flake_spheres: u64,
     has_image: bool,
     has_render: bool,
-    /// Whether the `[render]` that counts says which integrator.
+    /// Whether the effective `[render]` names an integrator.
     names_integrator: bool,
-    /// Whether all could be read that gives names. Else a name that stands for nothing may be one of the others.
+    /// Whether all definitions of names could be read. Otherwise an unknown name may be one of the others.
     knows_all_names: bool,
     /// Errors of the files that have been read.
     errors: Vec<Error>,
 }
 
 impl Reader<'_, '_> {
-    /// Reads a file; what is wrong in its tables is noted.
+    /// Reads a file; errors in its tables are recorded.
     fn file(&mut self, path: &Path) -> Result<()> {
         let whole = Location::file(path);
         let bytes = self.context.read(path)?;
@@ -238,7 +237,7 @@ impl Reader<'_, '_> {
         Ok(id)
     }
 
-    /// What stands in a model file; each file is read once for each choice of what is in it.
+    /// The content of a model file; each file is read once for each set of import options.
     fn model(&mut self, value: Value<'_>, choice: &ImportOptions) -> Result<Model> {
         let path = self.resolve(value, "the name of a model file")?;
         if let Some((_, model)) = self.models.iter().find(|(key, _)| (&key.0, &key.1) == (&path, choice)) {
@@ -262,7 +261,7 @@ impl Reader<'_, '_> {
         Ok(folder.join(name))
     }
 
-    /// What a name stands for, or the error that it stands for nothing.
+    /// The item of a name, or the error that the name is unknown.
     fn named<Id: Copy>(
         &self,
         known: &BTreeMap<String, Id>,

@@ -272,8 +272,8 @@ fn what_is_not_rendered_is_warned_of_once() {
     let expected = [
         "a.pbrt:1:1: the integrator \"bdpt\" is not there: \"volpath\" computes the same light in its place",
         "a.pbrt:2:1: the medium \"fog\" only absorbs: what it would scatter is not rendered yet",
-        "a.pbrt:3:1: hair is not shaded as hair yet: \"diffuse\" takes the place of it",
-        "a.pbrt:3:33: light under surfaces is not followed yet: \"coateddiffuse\" takes the place of \"subsurface\"",
+        "a.pbrt:3:1: the hair material is not rendered yet: \"diffuse\" takes the place of it",
+        "a.pbrt:3:33: subsurface scattering is not rendered yet: \"coateddiffuse\" takes the place of \"subsurface\"",
         "a.pbrt:4:16: Shape \"sphere\" has no parameter \"float raduis\"; did you mean \"radius\"?",
     ];
     assert_eq!(warnings, expected);

@@ -1,4 +1,4 @@
-//! How do a file's nodes, meshes, looks, camera and lights become one model?
+//! Assembly of a scene from a file's nodes, meshes, materials, camera and lights.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -29,7 +29,7 @@ use crate::shape::{Geometry, Part, Shape};
 /// slower.
 const MOST_REPEATED_TRIANGLES: usize = 1 << 18;
 
-/// What a file says, on its way into a scene that has its meshes, looks and pictures already.
+/// The state of the assembly of a scene that has its meshes, materials and images already.
 pub(super) struct Model {
     shapes: Vec<Shape>,
     objects: Vec<Object>,
@@ -130,7 +130,7 @@ struct Piece {
     pointer: Location,
     geometry: Geometry,
     look: Look,
-    /// Where it stands, whatever its node says, if joints hold it.
+    /// The world transform of a skinned mesh, which replaces that of its node.
     world_from_skinned: Option<DMat4>,
 }
 
@@ -148,7 +148,7 @@ struct Builder<'b, 'd, 'f> {
     looks: Looks<'d>,
     /// Of each mesh that was needed.
     pieces: BTreeMap<Form, Vec<Piece>>,
-    /// How much of their meshes' morph targets nodes have, where they do not leave it to the mesh.
+    /// Morph weights of nodes that override those of the mesh.
     weights: Vec<Option<Vec<f64>>>,
     variant: Option<usize>,
     model: Model,
@@ -213,7 +213,7 @@ impl Builder<'_, '_, '_> {
         Ok(())
     }
 
-    /// Which form of which mesh a node has.
+    /// The mesh of a node, with its morph weights and skin.
     fn form(&self, node: usize) -> Option<Form> {
         let root = &self.document.root;
         let index = root.nodes[node].mesh?.index();
@@ -225,7 +225,7 @@ impl Builder<'_, '_, '_> {
         Some(Form { mesh: index, node: is_own.then_some(node) })
     }
 
-    /// What a mesh is made of; each form is read once.
+    /// The parts of a mesh; each posed mesh is built once.
     fn mesh(&mut self, form: Form, skin: Option<&Skin>, asked: &str) -> Result<Vec<Piece>> {
         let mesh =
             self.document.one_of(&self.document.root.meshes, Whole(form.mesh as u64), "mesh", asked)?;

@@ -1,4 +1,4 @@
-//! Which camera looks at the scene, and how (specification, §3.10)?
+//! Selection of the camera, and its projection (specification, §3.10).
 //!
 //! Near and far planes cut nothing off: rays need none.
 
@@ -30,7 +30,7 @@ impl<'d> Cameras<'d> {
     /// Those of the nodes that are shown.
     ///
     /// # Errors
-    /// Where a node names a camera that is not there.
+    /// If a node names a camera that does not exist.
     pub(super) fn new(document: &'d Document, tree: &Tree) -> Result<Self> {
         let mut placed = Vec::new();
         for &node in &tree.shown {
@@ -43,7 +43,7 @@ impl<'d> Cameras<'d> {
         Ok(Self { document, placed })
     }
 
-    /// What they are called, and their projections.
+    /// Their names and projections.
     pub(super) fn entries(&self) -> Vec<CameraEntry> {
         let entry = |&(node, index): &(usize, usize)| {
             let camera = &self.document.root.cameras[index];
@@ -56,10 +56,10 @@ impl<'d> Cameras<'d> {
         self.placed.iter().map(entry).collect()
     }
 
-    /// The one that is asked for, or else the first.
+    /// The requested camera, or else the first.
     ///
     /// # Errors
-    /// Where the one that is asked for is not there.
+    /// If the one that is requested does not exist.
     fn chosen(&self, choice: &CameraChoice) -> Result<Option<(usize, usize)>> {
         let root = &self.document.root;
         Ok(match choice {
@@ -77,10 +77,10 @@ impl<'d> Cameras<'d> {
     }
 }
 
-/// The camera that is asked for, or else the first of the scene.
+/// The requested camera, or else the first of the scene.
 ///
 /// # Errors
-/// Where the one that is asked for is not there, or none of its numbers can be.
+/// If the one that is requested does not exist, or none of its numbers can be.
 pub(super) fn eye(cameras: &Cameras<'_>, tree: &Tree, context: &mut LoadContext<'_>) -> Result<Option<Eye>> {
     let document = cameras.document;
     let chosen = cameras.chosen(&context.import.camera)?;

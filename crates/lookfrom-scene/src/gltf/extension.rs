@@ -1,4 +1,4 @@
-//! Which extensions are known, and what is said of the others?
+//! The list of supported extensions, and warnings and errors for others.
 
 use super::file::Document;
 use crate::files::LoadContext;

@@ -1,5 +1,5 @@
-//! Which bytes belong to a glTF file: the JSON, by itself or in a GLB container, and the buffers, in the container, in
-//! other files or in the JSON (specification, §2.7, §3.6.1, §4).
+//! A glTF document and its bytes: the JSON, by itself or in a GLB container, and the buffers in the container, in other
+//! files or in the JSON (specification, §2.7, §3.6.1, §4).
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -20,35 +20,35 @@ pub(super) const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: u32 = 0x4E4F_534A;
 const BINARY_CHUNK: u32 = 0x004E_4942;
 
-/// How many values of attributes and indices one element of [`Limits::elements`] may have: a vertex has several.
+/// The number of attribute and index values that one element of [`Limits::elements`] may have: a vertex has several.
 const VALUES_AN_ELEMENT: u64 = 8;
 
-/// How many elements of accessors without bytes behind them, which are zeros, a file may have in all: a file of a few
+/// The maximum number of elements of accessors without a buffer view, which are zeros, in a file: a file of a few
 /// bytes could ask for all memory otherwise.
 const MOST_ZEROS: u64 = 1 << 26;
 
 /// A file with its buffers.
 pub(crate) struct Document {
-    /// What the JSON says.
+    /// The parsed JSON.
     pub(crate) root: Root,
-    /// Where it came from.
+    /// The path of the file.
     pub(crate) path: PathBuf,
-    /// How much may be asked for.
+    /// The limits.
     pub(crate) limits: Limits,
     at: Location,
     content: Vec<u8>,
     buffers: Vec<Bytes>,
-    /// What compressed views become, once one of them has been asked for.
+    /// Decompressed buffer views, filled at the first request.
     decoded: Vec<OnceLock<Result<Vec<u8>>>>,
-    /// What compressed meshes become.
+    /// Decoded Draco meshes.
     pub(super) compressed: Compressed,
-    /// How many values of accessors were read so far.
+    /// The number of accessor values read so far.
     values: AtomicU64,
-    /// How many of them have no bytes behind them.
+    /// The number of those without bytes in a buffer.
     zeros: AtomicU64,
 }
 
-/// Where a buffer's bytes are.
+/// The location of a buffer's bytes.
 enum Bytes {
     /// A part of the container.
     Chunk(Range<usize>),
@@ -103,7 +103,7 @@ impl Document {
         self.at.pointer(pointer)
     }
 
-    /// What is said at a place in the JSON cannot be.
+    /// An error of kind `Invalid` at a place in the JSON.
     pub(crate) fn invalid(&self, pointer: &str, message: impl Into<String>) -> Error {
         Error::invalid(&self.at(pointer), message)
     }
@@ -164,7 +164,7 @@ impl Document {
     /// The bytes of a view; `asked` is the pointer of what uses it.
     ///
     /// # Errors
-    /// Where the view, or its buffer, is not there or too short, or where it cannot be unpacked.
+    /// If the view, or its buffer, does not exist or too short, or if it cannot be unpacked.
     pub(crate) fn view(&self, index: Whole, asked: &str) -> Result<View<'_>> {
         let view = self.one_of(&self.root.buffer_views, index, "buffer view", asked)?;
         let stride = view.byte_stride.map(Whole::index);
@@ -277,7 +277,7 @@ impl Document {
         }
     }
 
-    /// What a `uri` stands for.
+    /// The content of a `uri`.
     ///
     /// # Errors
     /// `Syntax` where its data is broken, `Unsupported` where it is an address in the net.
@@ -285,7 +285,7 @@ impl Document {
         uri::read(uri, &self.at(asked))
     }
 
-    /// What comes of the first of these names, relative to this file, that can be read.
+    /// The result for the first of these names, relative to this file, that can be read.
     ///
     /// # Errors
     /// That of the first one, which says in addition where it was asked for.
@@ -394,7 +394,7 @@ fn parse(bytes: &[u8], what: &str, at: &Location, context: &mut LoadContext<'_>)
     })
 }
 
-/// What to do where something else than JSON was found.
+/// The hint for a file that is not JSON.
 fn instead_of_json(text: &str) -> &'static str {
     if text.starts_with("version https://git-lfs") {
         "this is a pointer of Git LFS, not the model: `git lfs pull` brings the model"

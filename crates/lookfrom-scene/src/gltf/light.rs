@@ -1,4 +1,4 @@
-//! What do the lamps of `KHR_lights_punctual` come to here?
+//! Punctual lights (`KHR_lights_punctual`).
 //!
 //! Their units are photometric: candela, and lux of the sun. A radiance of 1 is a luminance of 1 cd/m², so no efficacy
 //! of 683 lm/W appears. Under an illuminance E a white diffuse surface has the radiance E/π, which is what our
@@ -14,10 +14,10 @@ use crate::files::LoadContext;
 use crate::light::{Falloff, Light, LightKind, Power};
 use crate::material::Color;
 
-/// The lamps of the scene.
+/// The punctual lights of the scene.
 ///
 /// # Errors
-/// Where a node has a light that is not there.
+/// If a node has a light that does not exist.
 pub(super) fn lights(document: &Document, tree: &Tree, context: &mut LoadContext<'_>) -> Result<Vec<Light>> {
     let known = document.root.extensions.lights.as_ref().map_or(&[][..], |lights| &lights.lights);
     let mut lights = Vec::new();
@@ -32,7 +32,7 @@ pub(super) fn lights(document: &Document, tree: &Tree, context: &mut LoadContext
                 lights.push(Light { name, at, kind, power: Power::AS_WRITTEN });
             }
             None => {
-                context.warn(&at, format!("a light {:?} whose numbers cannot be is left out", light.kind));
+                context.warn(&at, format!("a light {:?} with invalid values is left out", light.kind));
             }
         }
     }

@@ -1,4 +1,4 @@
-//! What do glTF's materials come to in our vocabulary (specification, §3.9, and the extensions `KHR_materials_…`)?
+//! Conversion of materials (specification, §3.9, and the extensions `KHR_materials_…`).
 //!
 //! Each becomes a [`Principled`] look, or an unlit one, and besides: the light that the surface gives off, the part of it
 //! that is there, and whether its back is seen. Numbers outside what their extension allows are clamped. Occlusion
@@ -18,7 +18,7 @@ use crate::scene::{MaterialId, Scene};
 use crate::shape::Emission;
 use crate::texture::{Channel, TextureKind};
 
-/// How a primitive looks.
+/// The material of a primitive.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
     pub(super) material: MaterialId,
@@ -30,7 +30,7 @@ pub(super) struct Look {
     pub(super) grain: Option<u32>,
 }
 
-/// What a primitive brings to its look.
+/// The vertex attributes of a primitive that its material can use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Brought {
     pub(super) colors: bool,
@@ -57,7 +57,7 @@ impl<'d> Looks<'d> {
     /// The look of a primitive with this material; without one, glTF's default.
     ///
     /// # Errors
-    /// Where the material, or a texture of it, is not there.
+    /// If the material, or a texture of it, does not exist.
     pub(super) fn look(
         &mut self,
         material: Option<Whole>,
@@ -202,7 +202,7 @@ impl Reader<'_, '_, '_> {
         Ok(look)
     }
 
-    /// What lies over the body, and what a highlight is drawn out by.
+    /// Clearcoat, sheen and anisotropy.
     fn layers(&mut self, extensions: &json::MaterialExtensions, look: &mut Principled) -> Result<()> {
         if let Some(own) = &extensions.clearcoat {
             let place = "/extensions/KHR_materials_clearcoat/clearcoatTexture";
@@ -326,7 +326,7 @@ impl Reader<'_, '_, '_> {
         Ok(Some(Emission::new(radiance, two_sided)))
     }
 
-    /// How much of the surface is there.
+    /// The alpha of the surface.
     fn alpha(&mut self, entry: &json::Material, base: Scalar, brought: Brought) -> Result<Option<Scalar>> {
         let mode = entry.alpha_mode.as_deref().unwrap_or("OPAQUE");
         if mode != "MASK" && mode != "BLEND" {

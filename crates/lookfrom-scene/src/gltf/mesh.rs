@@ -1,4 +1,4 @@
-//! What form does a primitive have: triangles, or thin spheres and wires for points and lines (specification, §3.7)?
+//! Geometry of mesh primitives: triangles, or thin spheres and wires for points and lines (specification, §3.7).
 
 mod topology;
 
@@ -34,7 +34,7 @@ pub(crate) struct Vertices {
     pub(crate) colors: Vec<[f32; 3]>,
     /// None, or one a vertex.
     pub(crate) opacities: Vec<f32>,
-    /// Which vertices are used, in which order; `None` is all of them as they stand.
+    /// The vertex indices; `None` is all vertices in order.
     pub(crate) indices: Option<Vec<u32>>,
     /// Whether they are those of a compressed mesh: three for each triangle, even where the mode says strips, as the
     /// extension allows without saying how.
@@ -44,7 +44,7 @@ pub(crate) struct Vertices {
 }
 
 impl Vertices {
-    /// What it brings to its look.
+    /// The vertex attributes that its material can use.
     pub(super) fn brought(&self) -> Brought {
         Brought {
             colors: !self.colors.is_empty(),
@@ -71,7 +71,7 @@ impl Vertices {
 /// Reads the attributes and indices of a primitive at `pointer`. `None`, with a warning, where it has no positions.
 ///
 /// # Errors
-/// Where an accessor cannot be read, or is no such attribute.
+/// If an accessor cannot be read, or is no such attribute.
 pub(crate) fn vertices(
     document: &Document,
     primitive: &Primitive,
@@ -175,11 +175,11 @@ fn colors(
     check_count(document, vertices.colors.len(), count, pointer)
 }
 
-/// What a primitive becomes: triangles as a mesh of the scene, points and lines as what they are. `None`, with a warning
+/// The geometry of a primitive: triangles as a mesh of the scene, points as spheres, lines as curves. `None`, with a warning
 /// where something is odd, if nothing is left.
 ///
 /// # Errors
-/// Where an index is beyond the vertices, or the mode is not known.
+/// If an index is beyond the vertices, or the mode is not known.
 pub(crate) fn geometry(
     document: &Document,
     primitive: &Primitive,

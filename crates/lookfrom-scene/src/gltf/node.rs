@@ -1,4 +1,4 @@
-//! Where do the nodes of the scene stand (specification, §3.5)?
+//! Node hierarchy and world transforms (specification, §3.5).
 
 use glam::{DMat4, DQuat, DVec3, DVec4};
 
@@ -10,7 +10,7 @@ use crate::files::LoadContext;
 
 /// The hierarchy of a file's nodes.
 pub(crate) struct Tree {
-    /// Where each node stands; those that cannot be reached too.
+    /// The world transform of each node, including unreachable ones.
     pub(crate) world_from_node: Vec<DMat4>,
     /// The nodes of the scene, parents before their children.
     pub(crate) shown: Vec<usize>,
@@ -50,7 +50,7 @@ impl Tree {
     /// The tree that the nodes make with these transforms, one for each.
     ///
     /// # Errors
-    /// Where a node is its own ancestor, where a child or a node of the scene is not there, or the scene that is asked for.
+    /// If a node is its own ancestor, if a child or a node of the scene does not exist, or the scene that is requested.
     pub(crate) fn new(document: &Document, local: &[DMat4], context: &mut LoadContext<'_>) -> Result<Self> {
         let nodes = &document.root.nodes;
         let mut parents: Vec<Option<usize>> = vec![None; nodes.len()];

@@ -1,6 +1,6 @@
-//! How do a file's nodes stand at one moment of one of its animations, or at rest (specification, §3.11)?
+//! Node transforms and morph weights at one time of an animation, or at rest (specification, §3.11).
 //!
-//! [`LoadContext::import`] says which. Channels that extensions bring (`KHR_animation_pointer`) are passed over with a
+//! [`LoadContext::import`] selects the animation and the time. Channels that extensions bring (`KHR_animation_pointer`) are passed over with a
 //! warning.
 
 use glam::{DMat4, DVec3, DVec4};
@@ -13,7 +13,7 @@ use super::track::{Interpolation, Track};
 use crate::error::Result;
 use crate::files::LoadContext;
 
-/// How nodes stand.
+/// The pose of all nodes.
 pub(crate) struct Pose {
     /// The transform of each node within its parent.
     pub(crate) local: Vec<DMat4>,
@@ -21,7 +21,7 @@ pub(crate) struct Pose {
     pub(crate) weights: Vec<Option<Vec<f64>>>,
 }
 
-/// Where a node stands in its parent, by parts.
+/// The local transform of a node: translation, rotation and scale.
 #[derive(Clone, Copy)]
 struct Placement {
     translation: DVec3,
@@ -48,10 +48,10 @@ impl Placement {
     }
 }
 
-/// The pose that is asked for.
+/// The requested pose.
 ///
 /// # Errors
-/// Where there is no such animation, or what it names is not there.
+/// If there is no such animation, or what it names does not exist.
 pub(crate) fn pose(document: &Document, context: &mut LoadContext<'_>) -> Result<Pose> {
     let nodes = &document.root.nodes;
     let mut pose = Pose {
@@ -64,7 +64,7 @@ pub(crate) fn pose(document: &Document, context: &mut LoadContext<'_>) -> Result
     Ok(pose)
 }
 
-/// The number of the animation that is asked for.
+/// The number of the requested animation.
 fn chosen(document: &Document, context: &mut LoadContext<'_>) -> Result<Option<usize>> {
     let animations = &document.root.animations;
     match &context.import.animation {
@@ -143,7 +143,7 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, context: &mut Loa
     Ok(())
 }
 
-/// What a sampler says: so many numbers, or for `None` one for each morph target. `None` where any is not finite.
+/// The value of a sampler with this number of components; `None` stands for one for each morph target. The result is `None` where a component is not finite.
 fn sample(
     document: &Document,
     sampler: &AnimationSampler,

@@ -1,5 +1,5 @@
-//! Which picture, which part of it and which numbers of it does a material mean by a texture (specification, §3.8;
-//! `KHR_texture_transform`, `EXT_texture_webp`, `KHR_texture_basisu`)?
+//! Textures: image, sampler, channels and transform (specification, §3.8; `KHR_texture_transform`, `EXT_texture_webp`,
+//! `KHR_texture_basisu`).
 //!
 //! In glTF v runs down from the picture's upper edge, here it runs up: meshes have 1 − v, and [`mapping`] says of that
 //! what the file says of v. Only pictures that are used are decoded, once for colours and once for numbers, side by side.
@@ -18,10 +18,10 @@ use crate::parallel;
 use crate::scene::{ImageId, Scene, TextureId};
 use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
 
-/// How many pictures' worth of [`crate::Limits::texels`] one file may have in all.
+/// The number of images of [`crate::Limits::texels`] one file may have in all.
 const PICTURES_OF_MOST_TEXELS: u64 = 4;
 
-/// What the numbers of a picture stand for.
+/// The role of an image: colours or data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Meaning {
     /// Colours by the sRGB curve; opacity is linear.
@@ -35,7 +35,7 @@ pub(super) enum Meaning {
 /// A texture with all that it needs, and where it is used.
 #[derive(Clone, Copy)]
 pub(super) struct Use<'a> {
-    /// What the file says.
+    /// The JSON of the file.
     pub(super) info: Option<&'a TextureInfo>,
     /// The pointer of that.
     pub(super) pointer: &'a str,
@@ -65,7 +65,7 @@ impl<'d> Textures<'d> {
     /// A colour: a factor, times a texture where there is one.
     ///
     /// # Errors
-    /// Where the texture, its sampler or its image is not in the file.
+    /// If the texture, its sampler or its image is not in the file.
     pub(super) fn color(&mut self, factor: [f32; 3], texture: Use<'_>, scene: &mut Scene) -> Result<Color> {
         let [r, g, b] = factor;
         let is_gray = r == g && g == b;
@@ -153,7 +153,7 @@ impl<'d> Textures<'d> {
         TextureId(scene.textures.len() as u32 - 1)
     }
 
-    /// Decodes the pictures that were asked for. One that cannot be is white, with a warning.
+    /// Decodes the pictures that were requested. One that cannot be is white, with a warning.
     pub(super) fn decode(self, context: &mut LoadContext<'_>, scene: &mut Scene) {
         let Self { document, pictures, instead, .. } = self;
         let (files, limits) = (context.files, context.limits);
@@ -270,7 +270,7 @@ fn decoded(
     image::decode(bytes, &document.at(pointer).to_string(), encoding, context)
 }
 
-/// What is in the place of a picture that cannot be used.
+/// The placeholder of a picture that cannot be used.
 fn blank(document: &Document, index: usize, meaning: Meaning) -> Image {
     let name = document.at(&format!("/images/{index}")).to_string();
     let texel = if meaning == Meaning::Normal { [0.5, 0.5, 1.0] } else { [1.0; 3] };

@@ -1,4 +1,4 @@
-//! OpenEXR: pictures of any number of named channels of light as it is (the format: openexr.com, "File Layout").
+//! OpenEXR files with any number of named channels of linear values (the format: openexr.com, "File Layout").
 //!
 //! Reading is left to crate `exr`. Writing is done here, because that crate writes text attributes in a random order,
 //! and the same picture shall be the same bytes.
@@ -16,7 +16,7 @@ use super::write::check;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, LoadContext};
 
-/// What an OpenEXR file starts with.
+/// The signature of an OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// Rows that are compressed together.

@@ -1,5 +1,5 @@
-//! How the bytes of a picture become linear colours. What a file is, its content says; its extension is asked only
-//! where the content has no mark (TGA). Of an animation the first picture is read.
+//! Image readers, to linear colours. The format is recognised by the content; the extension counts only where the content
+//! has no signature (TGA). Of an animation the first picture is read.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -11,7 +11,7 @@ use super::{Encoding, Image, ktx2, openexr};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, LoadContext};
 
-/// What can be read, for messages.
+/// The names of the readable formats, for messages.
 const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, KTX2";
 
 /// Reads a picture of colours: 8- and 16-bit formats are taken to be sRGB and become linear, formats of floating-point
@@ -123,7 +123,7 @@ pub fn read_opacity(
     Ok(Some(Image::from_bytes(name, width, height, texels, encoding)))
 }
 
-/// Checks a header's claim before memory is asked for.
+/// Checks a header's claim before memory is allocated.
 pub(super) fn check_size(width: u64, height: u64, at: &Location, limits: &Limits) -> Result<()> {
     if width == 0 || height == 0 {
         return Err(Error::invalid(at, format!("a picture of {width}×{height} has no texels")));

@@ -1,4 +1,4 @@
-//! How is a cloud of points shown?
+//! Point clouds as spheres.
 //!
 //! As spheres whose radius follows from how near the points lie to one another. Spheres of one part have one look, so
 //! coloured clouds are parted by colour.
@@ -18,7 +18,7 @@ use crate::shape::{Geometry, Part, Sphere};
 /// Steps of each primary by which coloured points are parted.
 const COLOR_STEPS: f32 = 8.0;
 
-/// How many points are asked for their nearest neighbour.
+/// The number of points whose nearest neighbour is searched.
 const SAMPLES: usize = 256;
 
 /// Radius of the spheres, in distances to the nearest neighbour: neighbours overlap a little, surfaces look closed.

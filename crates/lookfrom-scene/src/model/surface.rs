@@ -1,4 +1,4 @@
-//! How do the pictures and looks of a model get into a scene?
+//! Images and materials of models, added to a scene.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ pub(crate) fn beside(path: &Path, name: &str) -> PathBuf {
     path.parent().unwrap_or(Path::new("")).join(name.trim_start_matches("./"))
 }
 
-/// What follows the last `/` of a name.
+/// The part of a name after the last `/`.
 pub(crate) fn base_name(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
@@ -23,7 +23,7 @@ pub(crate) fn base_name(name: &str) -> &str {
 /// like to write the folders of their own machine.
 ///
 /// # Errors
-/// Those of the first try.
+/// The error of the first name.
 pub(crate) fn read_image(path: &Path, name: &str, context: &mut LoadContext<'_>) -> Result<Image> {
     image::read(&beside(path, name), context)
         .or_else(|error| image::read(&beside(path, base_name(name)), context).map_err(|_| error))

@@ -1,10 +1,10 @@
-//! How often did something survivable happen, and where first? One warning tells of all.
+//! Counted warnings: one warning for all occurrences, with the location of the first.
 
 use crate::error::Location;
 use crate::files::LoadContext;
 use crate::warning::{Warning, WarningKind};
 
-/// Counts one kind of mishap.
+/// A counter for one kind of warning.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Tally {
     count: u64,
@@ -25,7 +25,7 @@ impl Tally {
         self.count += count;
     }
 
-    /// How many.
+    /// The count.
     pub(crate) fn count(self) -> u64 {
         self.count
     }
@@ -35,7 +35,7 @@ impl Tally {
         self.tell(WarningKind::Warning, noun, what, file, context);
     }
 
-    /// The same of something harmless: the picture is the one that was meant.
+    /// As a note: the picture is the intended one.
     pub(crate) fn notice(self, noun: &str, what: &str, file: &Location, context: &mut LoadContext<'_>) {
         self.tell(WarningKind::Notice, noun, what, file, context);
     }

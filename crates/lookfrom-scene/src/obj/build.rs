@@ -1,4 +1,4 @@
-//! How do faces with separate indices for position, texture coordinates and normal become meshes?
+//! Meshes of faces with separate indices for position, texture coordinates and normal.
 //!
 //! One mesh for each material: polygons cut into triangles, corners with equal indices made one vertex, and normals
 //! made where smoothing groups ask for them: facet normals weighted by the angle at the corner (Thürmer & Wüthrich
@@ -17,18 +17,18 @@ use crate::shape::Mesh;
 /// All pieces of a file.
 pub(super) struct Meshes {
     pub(super) pieces: Vec<Piece>,
-    /// Where and how material libraries are named.
+    /// The locations and names of material libraries.
     pub(super) libraries: Vec<(Location, Vec<u8>)>,
 }
 
-/// What has one material.
+/// The faces of one material.
 pub(super) struct Piece {
     pub(super) material: Option<Vec<u8>>,
     pub(super) object: Option<String>,
     pub(super) mesh: Mesh,
 }
 
-/// What could not be used.
+/// The items that could not be used.
 #[derive(Default)]
 struct Tallies {
     not_finite: Tally,

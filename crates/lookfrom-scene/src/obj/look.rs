@@ -1,4 +1,4 @@
-//! What do the materials of an OBJ file look like?
+//! Conversion of MTL materials.
 //!
 //! From MTL to Whitted's model. Colours are taken to be linear. Only materials that are used are made, and only their
 //! pictures are read. Ambient light is answered with the diffuse colour: `Ka` is rarely meant.
@@ -44,13 +44,13 @@ pub(super) struct Looks {
     missing_name: String,
 }
 
-/// How one piece looks.
+/// The material of one part.
 pub(super) struct Look {
     pub(super) material: Option<MaterialId>,
     pub(super) emission: Option<Emission>,
 }
 
-/// How many names of libraries are looked for, and how long a library may be: more is no model but an attack.
+/// Limits on the number of library names and on the length of a library, against hostile files.
 const MOST_LIBRARIES: usize = 64;
 const LIBRARY_BYTES: u64 = 1 << 26;
 

@@ -1,4 +1,4 @@
-//! What does an MTL file say?
+//! Parser for MTL files.
 //!
 //! Materials as they are written (Wavefront, "MTL material format", Advanced Visualizer manual, appendix B2, and the
 //! extensions of Clara.io for physically based ones). What they mean is left to the file beside this one, `look`.
@@ -19,7 +19,7 @@ use crate::model::text;
 pub struct MtlMaterial {
     /// The bytes after `newmtl`, without blanks at their ends.
     pub name: Vec<u8>,
-    /// Where it begins.
+    /// The location of its first byte.
     pub at: Location,
     /// `Kd`, `Ks`, `Ke` and `Tf`: finite, not negative.
     pub diffuse: Option<[f32; 3]>,
@@ -52,7 +52,7 @@ pub struct MtlMaterial {
 /// A picture over the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
-    /// Where it is named.
+    /// The location of its name.
     pub at: Location,
     /// The file as it is written, with `/` between folders.
     pub file: String,

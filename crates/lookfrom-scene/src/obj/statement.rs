@@ -1,4 +1,4 @@
-//! What does an OBJ file say, statement by statement?
+//! Parser for the statements of OBJ files.
 //!
 //! One pass over the text (Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1). What it leaves
 //! to others: triangles and normals ([`super::build`]), materials ([`super::mtl`]).
@@ -26,7 +26,7 @@ pub(super) struct Corner {
 
 /// A polygon.
 pub(super) struct Face {
-    /// How many corners it has: ≥ 3.
+    /// The number of its corners: ≥ 3.
     pub(super) corners: u32,
     pub(super) line: u32,
     /// The smoothing group; 0 is flat.
@@ -54,7 +54,7 @@ pub(super) struct Statements {
     pub(super) uvs: Vec<Vec2>,
     pub(super) normals: Vec<Vec3>,
     pub(super) groups: Vec<Group>,
-    /// Where and how `mtllib` names material libraries.
+    /// The locations and names of the material libraries of `mtllib`.
     pub(super) libraries: Vec<(Location, Vec<u8>)>,
 }
 

@@ -1,4 +1,4 @@
-//! What does each directive do?
+//! Execution of directives.
 
 use std::rc::Rc;
 
@@ -16,7 +16,7 @@ use crate::scene::{Instance, MaterialId, Object, ObjectId};
 use crate::spectrum::space;
 use crate::suggest::nearest;
 
-/// How deep attributes may nest.
+/// The maximum nesting depth of attributes.
 const DEEPEST: usize = 1 << 16;
 
 const DIRECTIVES: &[&str] = &[
@@ -176,7 +176,7 @@ impl Reader<'_, '_> {
                 let start = lexer.here();
                 let name = lexer.string("a quoted name of an object")?;
                 if self.object.is_some() {
-                    let error = place.invalid("an ObjectInstance cannot stand in an object");
+                    let error = place.invalid("an ObjectInstance cannot be in an object");
                     return Err(error.hint("end the object with ObjectEnd before it"));
                 }
                 self.instances.push((name, lexer.place(start), self.state.matrix));
@@ -355,7 +355,7 @@ impl Reader<'_, '_> {
             self.options.look = None;
         }
         if self.state.at_start != self.state.at_end {
-            let message = "motion is not rendered yet: everything stands where it is at the start";
+            let message = "motion blur is not rendered yet: transforms are those of the start time";
             self.warn_once("motion", place, message);
         }
     }
@@ -376,9 +376,7 @@ impl Reader<'_, '_> {
         let start = lexer.here();
         let name = lexer.string("a quoted name of an object")?;
         if self.object.is_some() {
-            return Err(place
-                .invalid("an object cannot stand in an object")
-                .hint("write ObjectEnd before it"));
+            return Err(place.invalid("objects cannot be nested").hint("write ObjectEnd before it"));
         }
         if let Some(id) = self.objects.get(&name) {
             let before = &self.scene.objects[id.index()].at;

@@ -1,4 +1,4 @@
-//! How do the files that a scene names get read: included ones at once, models side by side when all are known?
+//! Files named by a scene: includes are read at once, models in parallel when all are known.
 
 use std::path::{Path, PathBuf};
 
@@ -13,12 +13,12 @@ use crate::ply;
 use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Mesh};
 
-/// How many files may be included: small files that include one another twice would have no end.
+/// The maximum number of includes: small files that include one another twice would not end.
 const MOST_INCLUDED: u32 = 1 << 17;
 
 /// A model file that shapes wait for.
 pub(super) struct Model {
-    /// Where it was named first.
+    /// The location of the first mention.
     place: Place,
     /// Stands in for what the file will hold.
     pub(super) mesh: MeshId,
@@ -76,7 +76,7 @@ impl Reader<'_, '_> {
             let message = format!("more files are included than the limit of {MOST_INCLUDED}");
             return Err(place
                 .error(ErrorKind::Limit, message)
-                .hint("files may include one another in circles"));
+                .hint("files may include one another in cycles"));
         }
         match self.file(&path) {
             // This file's own: what it names in turn has been noted.

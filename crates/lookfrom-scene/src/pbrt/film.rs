@@ -1,4 +1,4 @@
-//! How large is the picture, what is weighed into a pixel, and how does light become colour?
+//! The `Film` and `PixelFilter` directives: resolution, reconstruction filter and sensor.
 
 use super::Reader;
 use super::params::{Kind, Parameters};
@@ -34,7 +34,7 @@ impl Reader<'_, '_> {
             "rgb" => {}
             "gbuffer" => image.layers = Layers::Geometry,
             "spectral" => {
-                let message = "a film of many wavelengths is not written yet: it is taken as \"rgb\"";
+                let message = "spectral films are not written yet: the film is taken as \"rgb\"";
                 self.context.warn(&parameters.place.location(), message);
                 parameters.ignore(&["nbuckets", "lambdamin", "lambdamax"]);
             }

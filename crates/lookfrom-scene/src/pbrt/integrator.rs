@@ -1,4 +1,4 @@
-//! How is light computed, and with which random numbers?
+//! The `Integrator` and `Sampler` directives.
 
 use super::Reader;
 use super::lexer::{Lexer, Token};
@@ -29,7 +29,7 @@ const INTEGRATORS: &[&str] = &[
     "volpath",
 ];
 
-/// What can be said of the whole program, and whether it would change the picture.
+/// Options of the whole program, and whether they would change the picture.
 const OPTIONS: &[(&str, bool)] = &[
     ("disablepixeljitter", true),
     ("disabletexturefiltering", false),

@@ -1,4 +1,4 @@
-//! What are the words of a pbrt scene file?
+//! Lexer for pbrt scene files.
 //!
 //! Words, quoted strings and brackets, divided by white space and by comments from `#` to the end of the line. Words
 //! are slices of the file; long lists of numbers go straight into their buffers, on several threads where they are
@@ -20,7 +20,7 @@ const LONG_LIST: usize = 1 << 18;
 pub(super) enum Token<'a> {
     /// A directive, a number, `true`.
     Word(&'a [u8]),
-    /// What stands between quotation marks, escapes as they were written.
+    /// The text between quotation marks, with escapes unresolved.
     Quoted(&'a [u8]),
     /// `[`
     Open,
@@ -174,7 +174,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// What a quoted string that starts at `start` says.
+    /// The text of the quoted string that starts at `start`.
     pub(super) fn unescape(&self, raw: &'a [u8], start: usize) -> Result<Cow<'a, str>> {
         if !raw.contains(&b'\\') {
             return Ok(String::from_utf8_lossy(raw));

@@ -1,4 +1,4 @@
-//! Which light shines, and how brightly?
+//! The `LightSource` and `AreaLightSource` directives.
 //!
 //! pbrt's point lights have intensities in W/sr and its distant lights irradiances, ours Whitted's `I_j`: π times less.
 //! A `power` or `illuminance` is in the same units on both sides, but pbrt multiplies it by the brightness of an rgb
@@ -175,7 +175,7 @@ fn power(p: &Parameters, total: &'static str, color: Color, unit: f32) -> Result
     })
 }
 
-/// Where a light stands and where it looks, in the world.
+/// The position and direction of a light, in the world.
 fn from_to(p: &Parameters, matrix: &DMat4) -> Result<(DVec3, DVec3)> {
     let from = p.vector("from", Kind::Point3, DVec3::ZERO)?;
     let to = p.vector("to", Kind::Point3, DVec3::Z)?;

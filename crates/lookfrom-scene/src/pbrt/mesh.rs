@@ -1,4 +1,4 @@
-//! Which triangles and patches does a mesh have?
+//! Triangle and bilinear meshes.
 
 use std::sync::Arc;
 

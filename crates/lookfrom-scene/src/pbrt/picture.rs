@@ -1,4 +1,4 @@
-//! Which picture does a file hold, and how are its values to be taken?
+//! Image files of textures and lights, with their encoding.
 
 use std::path::{Path, PathBuf};
 
@@ -56,12 +56,12 @@ impl Reader<'_, '_> {
     }
 }
 
-/// What stands for a picture that is missing until all is read.
+/// The placeholder of a missing picture, until all is read.
 fn blank(name: &str) -> Image {
     Image::from_linear(name, 1, 1, vec![[1.0; 3]])
 }
 
-/// What `read` makes of the encoding of that name.
+/// The result of `read` for the encoding of that name.
 fn with_encoding<T>(
     encoding: &str,
     place: &Place,

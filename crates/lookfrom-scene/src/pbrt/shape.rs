@@ -1,4 +1,4 @@
-//! Which form does a shape have?
+//! The `Shape` directive.
 
 use super::params::Parameters;
 use super::{Reader, transform};
@@ -31,7 +31,7 @@ impl Reader<'_, '_> {
         }
         let mut emission = self.state.emission;
         if emission.is_some() && self.object.is_some() {
-            let message = "shapes in an object do not shine: an object can be in many places";
+            let message = "shapes in an object do not emit light: an object can have many instances";
             self.warn_once("light in object", &p.place, message);
             emission = None;
         }

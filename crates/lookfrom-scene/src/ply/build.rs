@@ -1,4 +1,4 @@
-//! How do the values of a PLY file become a mesh?
+//! Meshes and point clouds of PLY elements.
 
 use std::path::Path;
 

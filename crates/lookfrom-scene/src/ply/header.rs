@@ -1,11 +1,11 @@
-//! What does a PLY file say of itself? Its format, its elements and their properties, and the pictures it uses.
+//! Parser for PLY headers: format, elements, properties and textures.
 
 use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
 use crate::model::scan::{Scanner, shown};
 use crate::model::tally::Tally;
 
-/// How values are written.
+/// The format of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Ascii,
@@ -42,7 +42,7 @@ pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
-    /// Where it is declared.
+    /// The location of its declaration.
     pub(super) at: Location,
 }
 

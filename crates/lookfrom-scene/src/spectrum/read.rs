@@ -1,4 +1,4 @@
-//! What does an `.spd` file say?
+//! Reader for `.spd` files.
 //!
 //! Pairs of a wavelength in nm and a value, separated by white space; `#` begins a comment to the end of the line.
 

@@ -1,5 +1,5 @@
-//! What surrounds a model that comes without light: a photographer's studio, computed, not painted; or a picture of
-//! somewhere else; and a floor that is seen only by the shadows on it.
+//! Environments for models without lights: a procedural photographer's studio, or an environment map; and a shadow-catcher
+//! floor.
 //!
 //! The studio is a backdrop that grows darker downward, with lamps behind soft boxes: a large key light at the upper left of
 //! the camera, one overhead, and two upright strips, at the right and behind at the left, that draw edges on whatever
@@ -29,7 +29,7 @@ const BACKDROP: [(f64, [f64; 3]); 5] = [
     (1.0, [0.18, 0.185, 0.195]),
 ];
 
-/// A lamp behind a rectangle of cloth.
+/// A softbox: a rectangle that emits.
 struct SoftBox {
     /// From the model, in parts of right, up and towards the camera; any length.
     toward: [f64; 3],
@@ -67,7 +67,7 @@ impl StudioFrame {
     }
 }
 
-/// Lets a picture in latitude and longitude, +y up, take the place of all environments. `up` as in [`super::add_lights_and_camera`].
+/// Replaces all environment lights by an equirectangular environment map with +y up. `up` as in [`super::add_lights_and_camera`].
 pub fn surround(scene: &mut Scene, picture: Image, up: Option<DVec3>) {
     scene.lights.retain(|light| !matches!(light.kind, LightKind::Environment { .. }));
     let world_from_light = StudioFrame::of(scene, up).world_from_light();
@@ -76,7 +76,7 @@ pub fn surround(scene: &mut Scene, picture: Image, up: Option<DVec3>) {
     super::add(scene, "environment", LightKind::Environment { sky, portal: None, illuminates: true });
 }
 
-/// Turns pictures of the surroundings around what is up, by degrees against the clock as seen from above. `up` as in
+/// Rotates environment maps around the up vector, by degrees counter-clockwise as seen from above. `up` as in
 /// [`super::add_lights_and_camera`].
 pub fn turn_environments(scene: &mut Scene, up: Option<DVec3>, degrees: f64) {
     let turn = rotation(StudioFrame::of(scene, up).basis[1], degrees);
@@ -96,7 +96,7 @@ pub(super) fn rotation(axis: DVec3, degrees: f64) -> DMat4 {
     DMat4::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z), DMat4::IDENTITY.w_axis)
 }
 
-/// Adds a large floor under everything, which is seen only by the shadows on it ([`MaterialKind::ShadowCatcher`]). `up` as
+/// Adds a large shadow-catcher floor under everything ([`MaterialKind::ShadowCatcher`]). `up` as
 /// in [`super::add_lights_and_camera`].
 pub fn add_floor(scene: &mut Scene, up: Option<DVec3>) {
     let StudioFrame { bounds, basis: [_, up, _] } = StudioFrame::of(scene, up);
@@ -135,7 +135,7 @@ fn studio() -> Image {
     Image::from_linear("studio", WIDTH, HEIGHT, texels)
 }
 
-/// What comes from a unit direction in the studio.
+/// The studio's radiance from a unit direction.
 fn radiance(direction: DVec3, frames: &[[DVec3; 3]; 4]) -> [f64; 3] {
     // The backdrop.
     let above = BACKDROP[1..].iter().position(|(y, _)| direction.y <= *y).unwrap_or(BACKDROP.len() - 2);

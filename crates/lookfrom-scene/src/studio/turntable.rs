@@ -13,7 +13,7 @@ use crate::material::MaterialKind;
 use crate::scene::{Bounds, Instance, Scene, SourceFormat};
 use crate::shape::{Geometry, Shape};
 
-/// How many times larger than the solid things a flat one may be before it is a backdrop or a floor without end: its radius over
+/// The ratio of sizes from which a flat thing counts as a backdrop or an endless floor: its radius over
 /// that of their bounds.
 const LARGEST_FLAT: f64 = 3.0;
 /// The thickness of a flat mesh as a share of its extent.
@@ -66,8 +66,8 @@ impl Turntable {
         scene.camera = Some(framing.camera());
     }
 
-    /// Takes the camera around the axis by degrees, against the clock as seen from above, and all pictures of the surroundings
-    /// with it: as if everything else turned the other way.
+    /// Orbits the camera around the axis by degrees, counter-clockwise as seen from above, together with all environment maps:
+    /// as if everything else turned the other way.
     pub fn turn(&self, scene: &mut Scene, degrees: f64) {
         let [_, up, _] = self.basis;
         let orbit = DMat4::from_translation(self.pivot)
@@ -87,7 +87,7 @@ impl Turntable {
     }
 }
 
-/// Something that stands in the world.
+/// An item of the world.
 #[derive(Clone, Copy)]
 enum Item<'a> {
     Shape(&'a Shape),
@@ -145,7 +145,7 @@ fn bounds(scene: &Scene, items: &[Item<'_>]) -> Bounds {
     items.iter().map(|item| item.bounds(scene)).fold(Bounds::EMPTY, Bounds::union)
 }
 
-/// What the picture is about. In a scene where nothing is left, everything is.
+/// The subject of the picture. In a scene where nothing is left, everything is.
 fn visible(scene: &Scene) -> Vec<Item<'_>> {
     let shapes = scene.shapes.iter().map(Item::Shape);
     let all: Vec<Item<'_>> = shapes.chain(scene.instances.iter().map(Item::Instance)).collect();
@@ -170,14 +170,14 @@ fn visible(scene: &Scene) -> Vec<Item<'_>> {
     solids.iter().copied().chain(small).collect()
 }
 
-/// Whether a shape is a lamp or only the border of a medium. In a model what glows is a part of it.
+/// Whether a shape is an area light or only the boundary of a medium. In a model, emissive shapes are parts of it.
 fn is_hidden(scene: &Scene, shape: &Shape) -> bool {
     let is_lamp = scene.source_format == SourceFormat::Scene && shape.emission.is_some();
     let material = scene.materials.get(shape.material.index());
     is_lamp || material.is_some_and(|material| matches!(material.kind, MaterialKind::Interface))
 }
 
-/// Whether an item is a sphere around the eye: a sky that is painted on a dome.
+/// Whether an item is a sphere around the camera: a sky dome.
 fn surrounds_the_eye(scene: &Scene, item: &Item<'_>) -> bool {
     let Item::Shape(Shape { geometry: Geometry::Sphere(_) | Geometry::PartialSphere { .. }, .. }) = item
     else {

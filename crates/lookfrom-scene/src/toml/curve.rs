@@ -1,4 +1,4 @@
-//! `[[patch]]` and `[[curve]]`: surfaces that are blended from their control points.
+//! `[[patch]]` and `[[curve]]`: bilinear patches and cubic curves.
 
 use std::sync::Arc;
 

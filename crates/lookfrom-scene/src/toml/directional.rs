@@ -1,4 +1,4 @@
-//! Lights from a point that differ by direction: a cone, a picture that is thrown, a picture of brightness.
+//! Point lights that depend on direction: spot, projection and goniometric lights.
 
 use glam::{DMat4, DVec3};
 

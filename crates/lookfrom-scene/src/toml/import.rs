@@ -1,4 +1,4 @@
-//! `import`: other scenes and models join this one.
+//! `import`: other scenes and models, merged into this one.
 
 use std::path::{Component, Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! `[[light]]`: lights, and lamps that are shapes.
+//! `[[light]]`: light sources, and area lights with a shape of their own.
 
 use glam::{DMat4, DVec3};
 
@@ -60,7 +60,7 @@ pub(super) const KEYS: Kinds = &[
 /// The words for how light fades with distance.
 pub(super) const FALLOFFS: &[(&str, Falloff)] =
     &[("none", Falloff::None), ("linear", Falloff::Linear), ("quadratic", Falloff::Quadratic)];
-/// What every light may have.
+/// Keys of all lights.
 pub(super) const COMMON: &[&str] = &["type", "name"];
 
 impl Reader<'_, '_> {
@@ -136,7 +136,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// How much light: as the key `total` says, or else as the colour, times `scale`, says.
+/// The power: that of the key `total`, or else that of the colour, times `scale`.
 pub(super) fn power(table: &Table<'_>, total: &str, scale: f32) -> Power {
     let total = table.or(total, None, |value| {
         value.single_where("a number of at least 0", |total| total >= 0.0).map(Some)
@@ -191,17 +191,17 @@ fn distant_direction(table: &Table<'_>) -> Result<DVec3> {
     }
 }
 
-/// Where a light stands.
+/// The position of a light.
 pub(super) fn position(table: &Table<'_>) -> DVec3 {
     table.need("position", "[0, 5, 0]", DVec3::ZERO, Value::vector)
 }
 
-/// Where a light at `position` shines to.
+/// The direction of a light at `position`.
 pub(super) fn aim(table: &Table<'_>, position: DVec3) -> DVec3 {
     facing(table, ["target", "direction"], position, "add `target = [0, 0, 0]`")
 }
 
-/// Where something at a point faces: to another point, or in a direction.
+/// The direction from a point to a target point, or a given direction.
 fn facing(table: &Table<'_>, [target, direction]: [&str; 2], from: DVec3, remedy: &str) -> DVec3 {
     let is_placed = table.sound(&["position", "center"]).is_ok();
     if let Some(value) = table.one_of(&[target, direction]) {

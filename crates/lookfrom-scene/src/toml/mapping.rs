@@ -1,4 +1,4 @@
-//! Where patterns and pictures live: on the surface, in space, or thrown onto it.
+//! Texture mappings: by surface coordinates, in space, or projected.
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
 
@@ -15,7 +15,7 @@ pub(super) const KEYS: &[&str] =
 /// The words for `space`.
 pub(super) const SPACES: [&str; 5] = ["uv", "world", "spherical", "cylindrical", "planar"];
 
-/// Where it lives, in the default `space` unless another is named.
+/// The mapping, in the default `space` unless another is named.
 pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
     let words = SPACES.map(|word| (word, word));
     let space = table.find("space").map_or(Ok(default), |value| value.choice(&words))?;

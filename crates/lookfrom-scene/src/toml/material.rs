@@ -1,4 +1,4 @@
-//! `[materials]`: how surfaces look, and the light they give off.
+//! `[materials]`: materials and their emission.
 
 use super::color::plain_color;
 use super::light::power;
@@ -59,10 +59,10 @@ pub(super) const KEYS: Kinds = &[
     ("mix", &["materials", "amount"]),
     ("interface", &[]),
 ];
-/// What every material may have.
+/// Keys of all materials.
 pub(super) const COMMON: &[&str] = &["type", "emission", "power", "two_sided"];
 
-/// What a shape without a material wears.
+/// The default material of shapes.
 pub(super) const DEFAULT: &str = "default";
 
 impl chain::Made for Material {
@@ -199,7 +199,7 @@ impl Reader<'_, '_> {
         self.named(&self.materials, "material", value, name)
     }
 
-    /// What a shape without a material wears: grey with a slight highlight, unless a file says otherwise.
+    /// The material of shapes that name none: grey with a slight highlight, unless a file defines another.
     pub(super) fn default_material(&mut self) -> MaterialId {
         if let Some(&id) = self.materials.get(DEFAULT) {
             return id;
@@ -209,7 +209,7 @@ impl Reader<'_, '_> {
         id
     }
 
-    /// What a lamp wears: it only shines.
+    /// The black material of area lights, which only emit.
     pub(super) fn black_material(&mut self) -> MaterialId {
         if let Some(id) = self.black {
             return id;

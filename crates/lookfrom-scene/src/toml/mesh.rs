@@ -1,4 +1,4 @@
-//! `[[mesh]]`: vertices and triangles in the scene itself; and the meshes of other shapes.
+//! `[[mesh]]` with vertices and triangles in the scene file; and the meshes of other shapes.
 
 use glam::Vec2;
 

@@ -1,4 +1,4 @@
-//! `[[mesh]]` with a `file`: which of the things in a model file are meant, and where they stand.
+//! `[[mesh]]` with a `file`: import options and placement of a model file.
 
 use glam::{DMat4, DVec4};
 
@@ -55,7 +55,7 @@ impl Reader<'_, '_> {
         Ok(model.parts)
     }
 
-    /// What is asked of the file, and whether its camera is.
+    /// The import options of the file, and whether its camera is requested.
     fn choice(&self, table: &Table<'_>) -> (ImportOptions, bool) {
         let name = |key: &str, otherwise: &Option<String>| {
             table.or(key, otherwise.clone(), |value| Ok(Some(value.text("a name")?.to_owned())))

@@ -1,4 +1,4 @@
-//! Round shapes: spheres, whole or cut, disks, cylinders, and the sphereflake.
+//! Quadrics: full and partial spheres, disks and cylinders; and the sphereflake.
 
 use std::sync::Arc;
 

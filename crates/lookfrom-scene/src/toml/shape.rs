@@ -1,4 +1,4 @@
-//! `[[sphere]]`, `[[mesh]]` and the other shapes: what all of them may have, and the flat ones.
+//! `[[sphere]]`, `[[mesh]]` and the other shapes: their common keys, and flat shapes.
 
 use glam::{DMat4, DVec3, Vec3};
 
@@ -38,7 +38,7 @@ pub(super) const KEYS: Kinds = &[
     ("curve", &["points", "width", "profile", "normals"]),
     ("sphereflake", &["center", "radius", "depth"]),
 ];
-/// What every shape may have.
+/// Keys of all shapes.
 pub(super) const COMMON: &[&str] =
     &["name", "material", "emission", "power", "two_sided", "alpha", "reverse_orientation"];
 /// The keys of `[[instance]]`.

@@ -1,4 +1,4 @@
-//! `[[light]]` of type "environment": the sky all around.
+//! `[[light]]` of type "environment": infinite area lights.
 
 use glam::{DMat4, DVec3, DVec4};
 

@@ -1,4 +1,4 @@
-//! Values by wavelength: black bodies, tables, `.spd` files, and what is known by name.
+//! Spectral values: black bodies, tables, `.spd` files, and named spectra.
 
 use super::Reader;
 use super::settings::kelvin;

@@ -1,4 +1,4 @@
-//! Where things stand: `scale`, `rotate`, `translate` in this order, or a list `transform` of such steps in any order.
+//! Transforms: `scale`, `rotate`, `translate` in this order, or a list `transform` of such steps in any order.
 
 use glam::{DMat4, DVec3, DVec4};
 
@@ -70,7 +70,9 @@ fn scale(value: Value<'_>) -> Result<DMat4> {
         DVec3::from_array(value.numbers(expected)?)
     };
     if factors.cmpeq(DVec3::ZERO).any() {
-        return Err(value.error("`scale` by 0 leaves nothing").hint(format!("give {expected}")));
+        return Err(value
+            .error("`scale` is 0: the transform is not invertible")
+            .hint(format!("give {expected}")));
     }
     Ok(DMat4::from_scale(factors))
 }
@@ -121,6 +123,6 @@ fn invertible(matrix: DMat4, value: Value<'_>) -> Result<DMat4> {
         return Ok(matrix);
     }
     Err(value
-        .error(format!("`{}` cannot be undone: the determinant is {determinant}", value.key()))
+        .error(format!("`{}` is not invertible: the determinant is {determinant}", value.key()))
         .hint("no scale may be 0 or too small or large to compute with, and the rows of a matrix must be independent"))
 }

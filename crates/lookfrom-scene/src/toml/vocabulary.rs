@@ -1,4 +1,4 @@
-//! Which tables and keys are there? Gathered from the decoders, for documentation, editors and tests.
+//! The list of all tables and keys of the format, for documentation, editors and tests.
 
 use super::table::Kinds;
 use super::{camera, light, mapping, material, settings, shape, spectrum, texture, transform};
@@ -42,7 +42,7 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
     tables
 }
 
-/// Where one of a few words is chosen, and which.
+/// The keys with enumerated values, and these values.
 #[cfg(test)]
 pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
     use super::sky;

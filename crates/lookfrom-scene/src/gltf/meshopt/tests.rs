@@ -90,7 +90,7 @@ fn indices_are_what_was_written() {
     assert_eq!(run(&hex(SEQUENCE), 12, 2, Mode::Indices).unwrap(), words);
 }
 
-/// What goes into a filter, and what meshoptimizer makes of it.
+/// Inputs of filters, and the outputs of meshoptimizer.
 const FILTERED: &[(Filter, usize, &str, &str)] = &[
     (Filter::Octahedral, 4, "00007f7f7f7f7f8136497f7fad5c7f00", "00007f7f000081814c66007fc44cae00"),
     (

@@ -25,7 +25,7 @@ fn boxes(source_format: SourceFormat, of: &[[[f32; 3]; 2]]) -> Scene {
     scene
 }
 
-/// Where the vertices fall in the picture: x and y in [−1, 1].
+/// The projections of the vertices: x and y in [−1, 1].
 fn projected(scene: &Scene) -> Vec<[f64; 2]> {
     let camera = scene.camera.as_ref().unwrap();
     let View::Look { lookfrom, lookat, up } = camera.view else { panic!("not a lookat") };
