@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 
 use lookfrom_scene::files::{Limits, Memory};
 use lookfrom_scene::shape::{Geometry, Mesh, Part};
-use lookfrom_scene::{Result, Scene, Sources};
+use lookfrom_scene::{Result, Scene, LoadContext};
 
 /// A reader of models.
-pub type Reader = fn(&Path, &mut Sources<'_>, &mut Scene) -> Result<Vec<Part>>;
+pub type Reader = fn(&Path, &mut LoadContext<'_>, &mut Scene) -> Result<Vec<Part>>;
 
 /// Limits that keep a single run short.
 pub fn limits() -> Limits {
@@ -26,10 +26,10 @@ pub fn limits() -> Limits {
 pub fn read_model(files: &[(&str, &[u8])], reader: Reader) {
     let contents = files.iter().map(|(name, content)| (PathBuf::from(name), content.to_vec())).collect();
     let memory = Memory(contents);
-    let mut sources = Sources::new(&memory);
-    sources.limits = limits();
+    let mut context = LoadContext::new(&memory);
+    context.limits = limits();
     let mut scene = Scene::default();
-    if let Ok(parts) = reader(Path::new(files[0].0), &mut sources, &mut scene) {
+    if let Ok(parts) = reader(Path::new(files[0].0), &mut context, &mut scene) {
         parts.iter().for_each(|part| check(part, &scene));
     }
 }

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Memory, Sources, gltf};
+use lookfrom_scene::{Memory, LoadContext, gltf};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let files = Memory([(PathBuf::from("a.glb"), bytes.to_vec())].into());
-    let mut sources = Sources::new(&files);
-    sources.limits = lookfrom_fuzz::limits();
-    if let Ok(scene) = gltf::read(Path::new("a.glb"), &mut sources) {
+    let mut context = LoadContext::new(&files);
+    context.limits = lookfrom_fuzz::limits();
+    if let Ok(scene) = gltf::read(Path::new("a.glb"), &mut context) {
         scene.meshes.iter().for_each(lookfrom_fuzz::check_mesh);
     }
 });

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Memory, Sources, pbrt};
+use lookfrom_scene::{Memory, LoadContext, pbrt};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let files = Memory([(PathBuf::from("a.pbrt"), bytes.to_vec())].into());
-    let mut sources = Sources::new(&files);
-    sources.limits = lookfrom_fuzz::limits();
-    let _ = pbrt::read(Path::new("a.pbrt"), &mut sources);
+    let mut context = LoadContext::new(&files);
+    context.limits = lookfrom_fuzz::limits();
+    let _ = pbrt::read(Path::new("a.pbrt"), &mut context);
 });

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Memory, Sources, toml};
+use lookfrom_scene::{Memory, LoadContext, toml};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let files = Memory([(PathBuf::from("a.toml"), bytes.to_vec())].into());
-    let mut sources = Sources::new(&files);
-    sources.limits = lookfrom_fuzz::limits();
-    let _ = toml::read(Path::new("a.toml"), &mut sources);
+    let mut context = LoadContext::new(&files);
+    context.limits = lookfrom_fuzz::limits();
+    let _ = toml::read(Path::new("a.toml"), &mut context);
 });

@@ -9,7 +9,7 @@ use lookfrom_scene::image::{self, Channels};
 use lookfrom_scene::settings::Sensor;
 use lookfrom_scene::spectrum::CameraSensor;
 use lookfrom_scene::spectrum::space::XYZ_FROM_RGB;
-use lookfrom_scene::{Disk, Inputs, Sources};
+use lookfrom_scene::{Disk, Inputs, LoadContext};
 use serde::Serialize;
 
 use crate::args::CompareArguments;
@@ -165,18 +165,18 @@ fn passes(verdict: &Verdict, arguments: &CompareArguments) -> bool {
 /// A picture of any format, which joins `inputs`; only an EXR knows its noise.
 pub(crate) fn read(path: &Path, samples: Option<u64>, inputs: &Inputs) -> Result<Sampled, Failure> {
     let files = inputs.record(&Disk, "the comparison");
-    let mut sources = Sources::new(&files);
+    let mut context = LoadContext::new(&files);
     let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
     let file = if is_exr {
-        image::read_exr(path, &mut sources)?
+        image::read_exr(path, &mut context)?
     } else {
-        let picture = image::read(path, &mut sources)?;
+        let picture = image::read(path, &mut context)?;
         let channel = |index: usize| picture.texels().map(|texel| texel[index]).collect();
         let channels = ["R", "G", "B"].map(str::to_owned).into_iter().zip([0, 1, 2].map(channel)).collect();
         let (width, height) = (picture.width, picture.height);
         Channels { width, height, channels, attributes: Vec::new() }
     };
-    exit::say_warnings(&sources.warnings);
+    exit::say_warnings(&context.warnings);
     Sampled::new(&file, samples).map_err(exit::in_scene(path))
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use lookfrom::session::{Options, Session};
 use lookfrom_scene::image::{self, Image};
-use lookfrom_scene::{Disk, Inputs, Sources, load};
+use lookfrom_scene::{Disk, Inputs, LoadContext, load};
 
 use crate::args::{Common, Overrides};
 use crate::exit::{self, Failure};
@@ -35,7 +35,7 @@ pub(crate) fn prepare(
 pub(crate) fn environment(overrides: &Overrides, inputs: &Inputs) -> Result<Option<Image>, Failure> {
     let Some(path) = &overrides.model.environment else { return Ok(None) };
     let files = inputs.record(&Disk, "--environment");
-    Ok(Some(image::read(path, &mut Sources::new(&files))?))
+    Ok(Some(image::read(path, &mut LoadContext::new(&files))?))
 }
 
 /// Reads scenes for nothing but the files that they read, which join `inputs`. What is wrong with them is told when they are
@@ -43,7 +43,10 @@ pub(crate) fn environment(overrides: &Overrides, inputs: &Inputs) -> Result<Opti
 pub(crate) fn read_ahead(scenes: &[PathBuf], overrides: &Overrides, inputs: &Inputs) {
     for scene in scenes {
         let files = inputs.record(&Disk, scene.display().to_string());
-        let _ = load::scene(scene, &mut Sources { choice: overrides.model.choice(), ..Sources::new(&files) });
+        let _ = load::scene(
+            scene,
+            &mut LoadContext { import: overrides.model.choice(), ..LoadContext::new(&files) },
+        );
     }
 }
 

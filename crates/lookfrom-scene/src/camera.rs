@@ -1,41 +1,41 @@
-//! The eye, in the words of the lecture notes: `lookfrom`, `lookat`, `up`, `θ`. Crate `lookfrom` turns it into matrices.
+//! Camera parameters, with the names of the lecture notes: `lookfrom`, `lookat`, `up`, `θ`. Crate `lookfrom` makes matrices of them.
 
 use glam::{DMat4, DVec3};
 
 use crate::error::Location;
 use crate::scene::MediumId;
 
-/// The eye as it was written. Whether it can see is checked when it is turned into matrices.
+/// A camera description. It is validated when its matrices are made.
 #[derive(Clone, Debug)]
 pub struct Camera {
-    /// Where it was written.
+    /// The location in the file.
     pub at: Location,
-    /// Where it stands and looks.
+    /// Position and orientation.
     pub view: View,
-    /// What a [`View::Matrix`] looks at, where the file says so.
+    /// The target of a [`View::Matrix`], where the file has one.
     pub target: Option<Target>,
-    /// How space is flattened.
+    /// The projection.
     pub projection: Projection,
     /// A lens that blurs what is not in focus; `None` is a pinhole.
     pub lens: Option<Lens>,
-    /// Which part of the image plane the picture shows; `None` is what the projection says, around the axis.
+    /// The screen window; `None` is that of the projection, around the axis.
     pub window: Option<Window>,
     /// `d`, the distance of the image plane: > 0. Only the `t` that is shown to people depends on it.
     pub distance: f64,
-    /// What fills the space that it stands in; `None` is a vacuum.
+    /// The medium around the camera; `None` is a vacuum.
     pub medium: Option<MediumId>,
 }
 
-/// Where the eye stands and looks.
+/// Position and orientation of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum View {
     /// As in the notes.
     Look {
-        /// The eye.
+        /// The position of the camera.
         lookfrom: DVec3,
-        /// What it looks at.
+        /// The point at the centre of the view.
         lookat: DVec3,
-        /// What is up for it; any length, any angle to the view but parallel.
+        /// The up vector; any length, any angle to the view but parallel.
         up: DVec3,
     },
     /// From another format: camera space has x to the *left*, y up, z forward, as the notes' `u v w`; any invertible
@@ -44,7 +44,7 @@ pub enum View {
 }
 
 impl View {
-    /// Where the eye is.
+    /// The position of the camera.
     pub fn lookfrom(&self) -> DVec3 {
         match self {
             Self::Look { lookfrom, .. } => *lookfrom,
@@ -53,12 +53,12 @@ impl View {
     }
 }
 
-/// What an eye looks at. The picture does not depend on it; a camera that goes around goes around this.
+/// The target of a camera. The picture does not depend on it; a turntable orbits around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
     /// The point, in the world.
     pub lookat: DVec3,
-    /// What is up, in the world; any length.
+    /// The up vector, in the world; any length.
     pub up: DVec3,
 }
 
@@ -69,15 +69,15 @@ impl Target {
     }
 }
 
-/// How space is flattened.
+/// The projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
-    /// Rays fan out from the eye.
+    /// Perspective projection.
     Perspective {
         /// θ, the *vertical* field of view in degrees, in (0, 180).
         fov: f64,
     },
-    /// Rays are parallel.
+    /// Orthographic projection.
     Orthographic {
         /// The height of the picture in the world: > 0.
         height: f64,

@@ -1,8 +1,8 @@
-//! What a file holds of which a picture shows one at a time.
+//! The animations, material variants, cameras and scenes of a file, from which one of each is selected.
 
 use crate::camera::Projection;
 
-/// What a [`Choice`](crate::Choice) chooses from, in the order of its numbers. Only glTF files have such things.
+/// What a [`ImportOptions`](crate::ImportOptions) chooses from, in the order of its numbers. Only glTF files have such things.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contents {
     /// The names of the scenes.

@@ -1,4 +1,4 @@
-//! How much there is in a scene as it was written.
+//! Counts of shapes, triangles, lights and other parts of a scene.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::light::LightKind;
 use crate::scene::Scene;
 use crate::shape::Geometry;
 
-/// How much there is in a scene. What is in an object counts once, however often it is repeated.
+/// Counts of a scene's contents. Shapes of an object count once, whatever the number of its instances.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Counts {
     /// Shapes by kind; those that are not there are left out.

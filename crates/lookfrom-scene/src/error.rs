@@ -1,4 +1,4 @@
-//! What can be wrong with what is on disk, where, and what to do about it.
+//! Errors of readers, with location, message and hint.
 //!
 //! Every reader returns [`Error`] for what stops it and collects [`Warning`](crate::Warning)s for what can be survived. Nothing here prints.
 
@@ -48,33 +48,34 @@ impl fmt::Display for Location {
     }
 }
 
-/// Whose fault it is.
+/// The category of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ErrorKind {
     /// The file could not be read or written.
     Io,
     /// The bytes are not what the format allows.
     Syntax,
-    /// The format is right, but what it says cannot be (an index out of range, a radius of zero).
+    /// The syntax is right, but a value is not meaningful (an index out of range, a radius of zero).
     Invalid,
     /// Valid, but this program does not know it.
     Unsupported,
     /// Larger or deeper than the stated limits allow.
     Limit,
-    /// What is asked of a scene, besides what its file says, does not suit it.
+    /// Options given besides the file do not suit the scene.
     Request,
 }
 
-/// What was found, what was expected, where, and what to do.
+/// An error: what was found and expected, its location, and a hint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error {
-    /// Whose fault it is.
+    /// The category of an error.
     pub kind: ErrorKind,
-    /// Where.
+    /// The location.
     pub at: Location,
     /// What was found and what was expected.
     pub message: String,
-    /// What to do about it, where that is known.
+    /// A remedy, where one is known.
     pub hint: Option<String>,
     /// Further errors found in the same run.
     pub more: Vec<Error>,
@@ -94,7 +95,7 @@ impl Error {
         Self::new(ErrorKind::Syntax, at, message)
     }
 
-    /// What is said cannot be.
+    /// An error of kind [`ErrorKind::Invalid`]: a value that the format allows is not meaningful.
     pub fn invalid(at: &Location, message: impl Into<String>) -> Self {
         Self::new(ErrorKind::Invalid, at, message)
     }

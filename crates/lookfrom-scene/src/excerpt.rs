@@ -1,4 +1,4 @@
-//! The line of a text file that a [`Location`] points at, with the columns to mark, for whoever shows errors to people.
+//! The line of a text file at a [`Location`], with the columns to mark, for the display of errors.
 //!
 //! Readers keep no text in their errors: the line is read again when somebody looks. So every location of every text format
 //! has one, also those that are found long after reading.

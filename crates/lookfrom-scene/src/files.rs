@@ -1,5 +1,5 @@
-//! The one door to outside bytes: the disk, or memory in tests and other doors, always within stated limits. What goes
-//! through it is remembered where [`Inputs`](crate::inputs::Inputs) keep the door.
+//! File access within limits: a disk, or memory for tests and embedders. Nothing else opens a file.
+//! [`Inputs`](crate::inputs::Inputs) wraps it and records the files that were read.
 
 use std::collections::HashMap;
 use std::io::{ErrorKind as IoKind, Read};
@@ -8,12 +8,12 @@ use std::path::{Component, Path, PathBuf};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::warning::Warning;
 
-/// How much a scene may ask for. Scene files are hostile input; a limit met is an [`ErrorKind::Limit`].
+/// Limits on the resources of a scene. Scene files are untrusted input; exceeding a limit is an [`ErrorKind::Limit`].
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Bytes of one file.
     pub file_bytes: u64,
-    /// How deep files may import one another.
+    /// The maximum depth of nested imports.
     pub import_depth: u32,
     /// Triangles, vertices or spheres of one file.
     pub elements: u64,
@@ -27,7 +27,7 @@ impl Default for Limits {
     }
 }
 
-/// Where bytes come from.
+/// File access.
 pub trait Files: Sync {
     /// The whole content of a file of at most `limit` bytes.
     ///
@@ -35,7 +35,7 @@ pub trait Files: Sync {
     /// `Io` when it cannot be read, `Limit` when it is longer than `limit`.
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>>;
 
-    /// Which file a path leads to, whether it exists or not: two paths with an identity in common lead to the same file.
+    /// The identities of the file at a path, whether it exists or not: two paths with a common identity lead to the same file.
     /// Without an implementation of its own, a file is its path.
     fn identities(&self, path: &Path) -> Vec<FileId> {
         vec![FileId::Path(path.to_owned())]
@@ -44,6 +44,7 @@ pub trait Files: Sync {
 
 /// An identity of a file. A file may have several.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum FileId {
     /// The path, on a disk absolute and with all links resolved.
     Path(PathBuf),
@@ -56,7 +57,7 @@ pub enum FileId {
     },
 }
 
-/// What is read, in bytes, of something that does not say how long it is.
+/// The maximum number of bytes read from a stream of unknown length.
 const MOST_OF_A_STREAM: u64 = 1 << 30;
 
 /// The file system.
@@ -131,7 +132,7 @@ fn too_long(at: &Location, limit: u64) -> Error {
         .hint("divide the file, or raise `Limits::file_bytes`")
 }
 
-/// Files in memory, by path: for tests and for doors without a disk.
+/// Files in memory, by path: for tests and for embedders without a disk.
 #[derive(Clone, Debug, Default)]
 pub struct Memory(pub HashMap<PathBuf, Vec<u8>>);
 
@@ -143,25 +144,25 @@ impl Files for Memory {
     }
 }
 
-/// What every reader is handed: where bytes come from, how many are allowed, and where warnings go.
-pub struct Sources<'a> {
-    /// Where bytes come from.
+/// The context of a load: file access, limits, import options and warnings.
+pub struct LoadContext<'a> {
+    /// File access.
     pub files: &'a dyn Files,
-    /// How much may be asked for.
+    /// The limits.
     pub limits: Limits,
-    /// What could be survived so far.
+    /// The warnings so far.
     pub warnings: Vec<Warning>,
-    /// What is asked of files that hold several things.
-    pub choice: Choice,
+    /// Import options for files with several animations, variants, scenes or cameras.
+    pub import: ImportOptions,
 }
 
-/// What is asked of a file that holds several things.
+/// Import options: the animation, material variant, scene and camera of a file that has several.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Choice {
+pub struct ImportOptions {
     /// The animation, by name or number from 0, in whose pose the model stands; `None` is the pose of rest, or, where
     /// `at` is not 0, the first animation.
     pub animation: Option<String>,
-    /// When, in seconds from its beginning.
+    /// The time in seconds from its beginning.
     pub at: f64,
     /// The variant of its materials, by name or number from 0.
     pub variant: Option<String>,
@@ -171,22 +172,23 @@ pub struct Choice {
     pub camera: CameraChoice,
 }
 
-/// Which of a file's cameras is meant.
+/// The selection of one of a file's cameras.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CameraChoice {
     /// The first of the scene, where there is one.
     #[default]
     First,
     /// The one of this name, or of this number from 0.
     Named(String),
-    /// None of them: the scene is framed as if its file had no camera, whatever its format.
+    /// No camera of the file: the scene is framed automatically, whatever its format.
     None,
 }
 
-impl<'a> Sources<'a> {
-    /// Sources over `files` with the default limits.
+impl<'a> LoadContext<'a> {
+    /// A context over `files` with the default limits.
     pub fn new(files: &'a dyn Files) -> Self {
-        Self { files, limits: Limits::default(), warnings: Vec::new(), choice: Choice::default() }
+        Self { files, limits: Limits::default(), warnings: Vec::new(), import: ImportOptions::default() }
     }
 
     /// The whole content of a file within the limits.
@@ -197,12 +199,12 @@ impl<'a> Sources<'a> {
         self.files.read(path, self.limits.file_bytes)
     }
 
-    /// Notes something that can be survived, after which the picture may differ from what was meant.
+    /// Adds a warning: reading continues, but the picture may differ from the intended one.
     pub fn warn(&mut self, at: &Location, message: impl Into<String>) {
         self.warnings.push(Warning::new(at, message));
     }
 
-    /// Notes something harmless: the picture is the one that was meant.
+    /// Adds a note: a harmless warning, the picture is the intended one.
     pub fn notice(&mut self, at: &Location, message: impl Into<String>) {
         self.warnings.push(Warning::notice(at, message));
     }

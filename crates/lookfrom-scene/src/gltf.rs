@@ -1,4 +1,4 @@
-//! How does a glTF 2.0 file become a scene? (Khronos, "glTF 2.0 Specification", 2021; ISO/IEC 12113:2022.)
+//! Reader for glTF 2.0 files (Khronos, "glTF 2.0 Specification", 2021; ISO/IEC 12113:2022).
 //!
 //! `json` says what stands in the file, `file` and `uri` which bytes belong to it, `accessor` how bytes become vectors.
 //! `node` places things, `mesh` gives them form, `material` and `texture` a look; `camera` and `light` do what their
@@ -32,22 +32,22 @@ use std::path::Path;
 use self::build::Model;
 use self::file::Document;
 use crate::error::Result;
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::load;
 use crate::scene::Scene;
 use crate::studio;
 
 /// Reads a glTF file (`.gltf` or `.glb`) as a scene: path traced, developed by Khronos' tone map, seen by the file's
-/// camera where it has one. [`Sources::choice`] says which scene, camera, animation and variant are meant.
+/// camera where it has one. [`LoadContext::import`] says which scene, camera, animation and variant are meant.
 ///
 /// # Errors
 /// `Io` and `Limit` where it cannot be read, `Syntax` where it is no glTF, `Unsupported` where it is not of version 2,
 /// `Invalid` where what it says cannot be.
-pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
-    let content = sources.read(path)?;
+pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
+    let content = context.read(path)?;
     let (image, render) = studio::settings_for_models();
     let mut scene = Scene { image, render, ..Scene::default() };
-    let model = document_model(content, path, sources, &mut scene)?;
+    let model = document_model(content, path, context, &mut scene)?;
     model.into_scene(&mut scene);
     Ok(scene)
 }
@@ -57,9 +57,9 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
 ///
 /// # Errors
 /// As [`read`].
-pub(crate) fn model(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<load::Model> {
-    let content = sources.read(path)?;
-    Ok(document_model(content, path, sources, scene)?.into_parts())
+pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<load::Model> {
+    let content = context.read(path)?;
+    Ok(document_model(content, path, context, scene)?.into_parts())
 }
 
 /// Whether a file's content is that of a glTF file: the mark of a GLB container, or JSON that speaks of an asset.
@@ -74,10 +74,10 @@ pub fn is_gltf(content: &[u8]) -> bool {
 fn document_model(
     content: Vec<u8>,
     path: &Path,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Result<Model> {
-    let document = Document::open(content, path, sources)?;
-    extension::warn(&document, sources);
-    build::model(&document, sources, scene)
+    let document = Document::open(content, path, context)?;
+    extension::warn(&document, context);
+    build::model(&document, context, scene)
 }

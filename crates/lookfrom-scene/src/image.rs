@@ -1,4 +1,4 @@
-//! A decoded picture, how it is read from a file, how one is written, and how two differ.
+//! Decoded images; their readers, writers and comparison.
 
 mod basis;
 pub mod compare;

@@ -1,4 +1,4 @@
-//! Which files were read, and for whom: so that nothing is written over what something was made from.
+//! A record of the files that were read for each scene, so that no output overwrites an input.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -7,16 +7,16 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use crate::error::Result;
 use crate::files::{FileId, Files};
 
-/// A file that was asked for.
+/// A requested file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Input {
-    /// Its path, as it was asked for.
+    /// Its path, as it was requested.
     pub path: PathBuf,
-    /// Who asked first: a scene, by the name that its file was given, or whatever else reads.
+    /// The first reader: a scene, by the name of its file, or another input.
     pub reader: String,
 }
 
-/// All files that were asked for, and the files that were written meanwhile.
+/// All requested files, and the files that were written meanwhile.
 #[derive(Debug, Default)]
 pub struct Inputs(Mutex<Register>);
 
@@ -24,7 +24,7 @@ pub struct Inputs(Mutex<Register>);
 struct Register {
     read: HashMap<FileId, Input>,
     written: HashSet<FileId>,
-    /// What was read though it had been written before.
+    /// Files that were read after they had been written.
     own_outputs: Vec<Input>,
 }
 
@@ -55,7 +55,7 @@ impl Inputs {
         self.register().written.extend(paths);
     }
 
-    /// What `reader` asked for of that which was written before.
+    /// The files read by `reader` that had been written before.
     pub fn own_output(&self, reader: &str) -> Option<Input> {
         self.register().own_outputs.iter().find(|input| input.reader == reader).cloned()
     }
@@ -99,7 +99,7 @@ impl Files for Recorded<'_> {
 mod tests {
     use super::*;
     use crate::files::Memory;
-    use crate::{Disk, Sources};
+    use crate::{Disk, LoadContext};
 
     #[test]
     fn what_is_asked_for_is_on_record_with_the_first_who_asked() {
@@ -107,9 +107,9 @@ mod tests {
         let inputs = Inputs::default();
         for reader in ["first", "second"] {
             let files = inputs.record(&memory, reader);
-            let sources = Sources::new(&files);
-            assert_eq!(sources.read(Path::new("a")).expect("it is there"), [1]);
-            assert!(sources.read(Path::new("missing")).is_err());
+            let context = LoadContext::new(&files);
+            assert_eq!(context.read(Path::new("a")).expect("it is there"), [1]);
+            assert!(context.read(Path::new("missing")).is_err());
         }
         let reader = |path: &str| inputs.at(Path::new(path), &memory).map(|input| input.reader);
         assert_eq!((reader("a"), reader("missing")), (Some("first".into()), Some("first".into())));
@@ -122,7 +122,7 @@ mod tests {
         let inputs = Inputs::default();
         let read = |path: &str, reader: &str| {
             // Nothing is there, which does not matter.
-            let _ = Sources::new(&inputs.record(&memory, reader)).read(Path::new(path));
+            let _ = LoadContext::new(&inputs.record(&memory, reader)).read(Path::new(path));
         };
         read("p", "before");
         inputs.note_output(Path::new("p"), &memory);
@@ -151,7 +151,7 @@ mod tests {
     fn a_number_that_was_given_to_another_file_is_no_identity() {
         let files = Numbers(Mutex::new([("a".into(), 1), ("hard".into(), 1)].into()));
         let inputs = Inputs::default();
-        assert!(Sources::new(&inputs.record(&files, "scene")).read(Path::new("a")).is_ok());
+        assert!(LoadContext::new(&inputs.record(&files, "scene")).read(Path::new("a")).is_ok());
         assert!(inputs.at(Path::new("hard"), &files).is_some());
         // `a` is replaced by an editor, and its old number goes to what is written then.
         *files.0.lock().expect("nobody panics") = [("a".into(), 2), ("p".into(), 1)].into();

@@ -19,6 +19,7 @@ pub mod medium;
 pub mod model;
 pub mod obj;
 mod packed;
+mod parallel;
 pub mod pbrt;
 pub mod ply;
 pub mod scene;
@@ -33,7 +34,7 @@ pub mod toml;
 pub mod warning;
 
 pub use error::{Error, ErrorKind, Location, Result};
-pub use files::{CameraChoice, Choice, Disk, Files, Limits, Memory, Sources};
+pub use files::{CameraChoice, Disk, Files, ImportOptions, Limits, LoadContext, Memory};
 pub use inputs::Inputs;
 pub use scene::Scene;
 pub use warning::{Warning, WarningGroup, WarningKind};

@@ -1,4 +1,4 @@
-//! Lights that are not shapes. (A shape shines by `Shape::emission`.)
+//! Light sources other than shapes. (Area lights are shapes with `Shape::emission`.)
 //!
 //! Intensities have the meaning of Whitted's `I_j`: a white diffuse surface that faces the light is seen with that
 //! radiance (for a light with fall-off: from a distance of 1). In radiometric units a point light of intensity `I`
@@ -15,20 +15,20 @@ use crate::scene::ImageId;
 pub struct Light {
     /// Its name, where one was given.
     pub name: Option<String>,
-    /// Where it was written.
+    /// The location in the file.
     pub at: Location,
-    /// What kind of light.
+    /// The kind of light.
     pub kind: LightKind,
-    /// How much of it.
-    pub amount: Amount,
+    /// The power.
+    pub power: Power,
 }
 
-/// How much light there is of a colour.
+/// The power of a light: a scale of its colour, or a total.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Amount {
+pub struct Power {
     /// Multiplies the colour.
     pub scale: f32,
-    /// What the light comes to as a whole before `scale`: the illuminance on a surface that faces it for distant lights
+    /// The total before `scale`: the illuminance on a surface that faces it for distant lights
     /// and environments, else the power of all that is sent out, both in units whose white light of radiance 1 has
     /// luminance 1. `None` leaves the colour as bright as it is written.
     pub total: Option<f32>,
@@ -37,12 +37,12 @@ pub struct Amount {
     pub absolute: bool,
 }
 
-impl Amount {
+impl Power {
     /// As much as the colour says.
     pub const AS_WRITTEN: Self = Self { scale: 1.0, total: None, absolute: false };
 }
 
-impl Default for Amount {
+impl Default for Power {
     fn default() -> Self {
         Self::AS_WRITTEN
     }
@@ -58,25 +58,25 @@ pub enum LightKind {
     },
     /// From a point, the same to all sides.
     Point {
-        /// Where.
+        /// The location.
         position: DVec3,
         /// `I_j` at a distance of 1.
         intensity: Color,
-        /// How it fades.
+        /// The falloff with distance.
         falloff: Falloff,
     },
     /// From infinitely far.
     Distant {
-        /// Where the light goes *to*; any length but zero.
+        /// The direction *to* which the light travels; any length but zero.
         direction: DVec3,
         /// `I_j`.
         intensity: Color,
     },
     /// From a point into a cone.
     Spot {
-        /// Where.
+        /// The location.
         position: DVec3,
-        /// Where the axis goes to; any length but zero.
+        /// The direction of the axis; any length but zero.
         direction: DVec3,
         /// `I_j` on the axis at a distance of 1.
         intensity: Color,
@@ -84,7 +84,7 @@ pub enum LightKind {
         cone_angle: f64,
         /// Half-angle up to which it is full, in degrees, in [0, cone_angle]; a smooth step lies between.
         inner_angle: f64,
-        /// How it fades.
+        /// The falloff with distance.
         falloff: Falloff,
     },
     /// From a point, a picture thrown into a rectangle.
@@ -104,7 +104,7 @@ pub enum LightKind {
         intensity: Color,
         /// By direction, in the octahedral equal-area square of [`Sky::Octahedral`]; only brightness counts.
         image: ImageId,
-        /// How the light's space is placed in the world.
+        /// The transform from the light's space to the world.
         world_from_light: DMat4,
     },
     /// From all around, infinitely far.
@@ -127,7 +127,7 @@ pub fn is_rectangle([a, b, c, d]: &[DVec3; 4]) -> bool {
     is_parallelogram && is_right && u.cross(v).length_squared() > 0.0 && u.cross(v).is_finite()
 }
 
-/// How light fades with the distance r from its source.
+/// The falloff of light with the distance r from its source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Falloff {
     /// Not at all, as in Whitted 1980.
@@ -160,7 +160,7 @@ pub enum Sky {
         image: ImageId,
         /// Multiplies it.
         scale: [f32; 3],
-        /// How the light's space is turned in the world: a rotation.
+        /// The transform from the light's space to the world: a rotation.
         world_from_light: DMat4,
     },
     /// A square picture over the sphere of directions folded to an octahedron, of equal area (Clarberg 2008), as pbrt-v4
@@ -170,7 +170,7 @@ pub enum Sky {
         image: ImageId,
         /// Multiplies it.
         scale: [f32; 3],
-        /// How the light's space is placed in the world: turned, mirrored.
+        /// The transform from the light's space to the world: a rotation or reflection.
         world_from_light: DMat4,
     },
 }

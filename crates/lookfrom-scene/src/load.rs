@@ -1,13 +1,13 @@
-//! Which reader a file is for, by its extension and else by how it begins.
+//! Selection of the reader of a file, by its extension, or else by its first bytes.
 
 use std::path::Path;
 
 use crate::camera::Camera;
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::{CameraChoice, Sources};
+use crate::files::{CameraChoice, LoadContext};
 use crate::light::Light;
 use crate::material::{Color, Material, MaterialKind};
-use crate::scene::{MaterialId, Origin, Scene};
+use crate::scene::{MaterialId, Scene, SourceFormat};
 use crate::shape::{Part, Shape};
 use crate::{gltf, model, packed, pbrt, studio, toml};
 
@@ -16,31 +16,31 @@ const CLAY: f32 = 0.8;
 
 /// Reads a scene in our own format (`.toml`), one of pbrt-v4 (`.pbrt`), a glTF file (`.gltf`, `.glb`), or a model file,
 /// whose parts stand in the scene where the file has them and wear a matte grey "default" where the file gives them no
-/// material. A file's cameras count as [`Sources::choice`] says.
+/// material. [`LoadContext::import`] selects the camera of a file.
 ///
 /// # Errors
 /// `Unsupported` where the format is not known, and what the reader of the format finds.
-pub fn scene(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
-    let mut scene = whole(path, sources)?;
-    if sources.choice.camera == CameraChoice::None {
+pub fn scene(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
+    let mut scene = whole(path, context)?;
+    if context.import.camera == CameraChoice::None {
         scene.camera = None;
     }
     Ok(scene)
 }
 
-fn whole(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
+fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     if is_toml(path) {
-        return toml::read(path, sources);
+        return toml::read(path, context);
     }
-    if is_pbrt(path, sources) {
-        return pbrt::read(path, sources);
+    if is_pbrt(path, context) {
+        return pbrt::read(path, context);
     }
-    if is_gltf(path, sources) {
-        return Ok(Scene { origin: Origin::Gltf, ..gltf::read(path, sources)? });
+    if is_gltf(path, context) {
+        return Ok(Scene { source_format: SourceFormat::Gltf, ..gltf::read(path, context)? });
     }
     let (image, render) = studio::settings_for_models();
-    let mut scene = Scene { origin: Origin::Model, image, render, ..Scene::default() };
-    let parts = model(path, sources, &mut scene)?.parts;
+    let mut scene = Scene { source_format: SourceFormat::Model, image, render, ..Scene::default() };
+    let parts = model(path, context, &mut scene)?.parts;
     let default = MaterialId(scene.materials.len() as u32);
     let clay = MaterialKind::Diffuse { reflectance: Color::gray(CLAY) };
     scene.materials.push(Material::new("default", Location::default(), clay));
@@ -54,36 +54,36 @@ pub(crate) fn is_toml(path: &Path) -> bool {
 }
 
 /// Whether a file is a scene of pbrt, by its name (`.pbrt`, `.pbrt.gz`), or by its content where that says nothing.
-fn is_pbrt(path: &Path, sources: &Sources<'_>) -> bool {
+fn is_pbrt(path: &Path, context: &LoadContext<'_>) -> bool {
     let is_other = model::is_model(path) || GLTF.contains(&&*extension(path));
     extension(&packed::unpacked_name(path)) == "pbrt"
-        || (!is_other && packed::read(path, sources).is_ok_and(|bytes| pbrt::is_pbrt(&bytes)))
+        || (!is_other && packed::read(path, context).is_ok_and(|bytes| pbrt::is_pbrt(&bytes)))
 }
 
 /// The endings of names of glTF files.
 const GLTF: &[&str] = &["gltf", "glb"];
 
 /// Whether a file is a glTF file, by its name, or by its content where that says nothing.
-pub(crate) fn is_gltf(path: &Path, sources: &Sources<'_>) -> bool {
+pub(crate) fn is_gltf(path: &Path, context: &LoadContext<'_>) -> bool {
     GLTF.contains(&&*extension(path))
-        || (!model::is_model(path) && sources.read(path).is_ok_and(|bytes| gltf::is_gltf(&bytes)))
+        || (!model::is_model(path) && context.read(path).is_ok_and(|bytes| gltf::is_gltf(&bytes)))
 }
 
 fn extension(path: &Path) -> String {
     path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-/// What a file brings to another scene, besides what it put into the scene already.
+/// The parts of a merged file that were not added to the scene already.
 #[derive(Clone, Default)]
 pub(crate) struct Model {
     pub(crate) parts: Vec<Part>,
-    /// Of the file's, the one that is meant.
+    /// The selected camera of the file.
     pub(crate) camera: Option<Camera>,
     pub(crate) lights: Vec<Light>,
 }
 
-/// What stands in a model file; its materials join the scene.
-pub(crate) fn model(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Model> {
+/// The parts of a model file; its materials are added to the scene.
+pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Model> {
     let unsupported = |message: String| {
         Error::new(ErrorKind::Unsupported, &Location::file(path), message)
             .hint("scenes are .toml or .pbrt files, models .gltf, .glb, .obj, .ply or .stl")
@@ -91,10 +91,10 @@ pub(crate) fn model(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -
     if extension(&packed::unpacked_name(path)) == "pbrt" {
         return Err(unsupported("a scene of pbrt cannot be a part of another scene".to_owned()));
     }
-    if is_gltf(path, sources) {
-        return gltf::model(path, sources, scene);
+    if is_gltf(path, context) {
+        return gltf::model(path, context, scene);
     }
-    let parts = model::read(path, sources, scene).map_err(|error| match error.kind {
+    let parts = model::read(path, context, scene).map_err(|error| match error.kind {
         ErrorKind::Unsupported if !model::is_model(path) => {
             unsupported("a file of a kind that is not known, by its name and by its content".to_owned())
         }
@@ -103,7 +103,7 @@ pub(crate) fn model(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -
     Ok(Model { parts, ..Model::default() })
 }
 
-/// Parts as shapes that stand where the file has them.
+/// Parts as shapes with the transforms of the file.
 pub(crate) fn shapes(parts: Vec<Part>, at: &Location, default: MaterialId) -> Vec<Shape> {
     parts
         .into_iter()

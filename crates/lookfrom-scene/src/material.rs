@@ -1,4 +1,4 @@
-//! How surfaces look.
+//! Materials: reflectance, transmission and emission of surfaces, and the values that textures may vary.
 
 use glam::Vec3;
 
@@ -39,7 +39,7 @@ pub enum Scalar {
 pub struct Material {
     /// The name that shapes use.
     pub name: String,
-    /// Where it was written.
+    /// The location in the file.
     pub at: Location,
     /// What kind of look.
     pub kind: MaterialKind,

@@ -1,4 +1,4 @@
-//! What fills the space between surfaces.
+//! Participating media.
 
 use crate::error::Location;
 use crate::material::Color;
@@ -9,7 +9,7 @@ use crate::scene::MediumId;
 pub struct Medium {
     /// The name that interfaces use.
     pub name: String,
-    /// Where it was written.
+    /// The location in the file.
     pub at: Location,
     /// The part of light that is lost per unit of length, for short lengths: e^(−absorption · length) is left.
     pub absorption: Color,

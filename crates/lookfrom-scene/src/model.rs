@@ -1,6 +1,6 @@
-//! Which reader reads a model file?
+//! Model files: selection of the reader, and the parts that readers share.
 //!
-//! By the ending of its name, and by its content where the name says nothing or something else. Models in formats
+//! The reader is selected by the extension, or by the content where the extension is absent or wrong. Models in formats
 //! without a camera and lights are shown in [`crate::studio`].
 
 pub(crate) mod number;
@@ -15,7 +15,7 @@ pub(crate) mod weld;
 use std::path::Path;
 
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::scene::Scene;
 use crate::shape::Part;
 use crate::{obj, packed, ply, stl};
@@ -38,8 +38,8 @@ pub fn is_model(path: &Path) -> bool {
 ///
 /// # Errors
 /// `Unsupported` where neither name nor content is that of a model; otherwise those of the format's reader.
-pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    let bytes = packed::read(path, sources)?;
+pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
+    let bytes = packed::read(path, context)?;
     let file = Location::file(path);
     if bytes.is_empty() {
         return Err(Error::syntax(&file, "the file is empty"));
@@ -47,9 +47,9 @@ pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result
     let format =
         by_content(&bytes).or(by_name(path)).or_else(|| looks_like_obj(&bytes).then_some(Format::Obj));
     match format {
-        Some(Format::Obj) => obj::from_bytes(&bytes, path, sources, scene),
-        Some(Format::Ply) => ply::from_bytes(&bytes, path, sources, scene),
-        Some(Format::Stl) => stl::from_bytes(&bytes, path, sources, scene),
+        Some(Format::Obj) => obj::from_bytes(&bytes, path, context, scene),
+        Some(Format::Ply) => ply::from_bytes(&bytes, path, context, scene),
+        Some(Format::Stl) => stl::from_bytes(&bytes, path, context, scene),
         None => Err(Error::new(
             ErrorKind::Unsupported,
             &file,
@@ -70,7 +70,7 @@ fn by_name(path: &Path) -> Option<Format> {
     }
 }
 
-/// What can be known for certain.
+/// A format that the first bytes identify with certainty.
 fn by_content(bytes: &[u8]) -> Option<Format> {
     if matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r' | b' ', ..]) {
         Some(Format::Ply)

@@ -1,4 +1,4 @@
-//! How does a Wavefront OBJ file become meshes and materials?
+//! Reader for Wavefront OBJ files, to meshes and materials.
 //!
 //! `statement` reads the text, `build` makes one mesh for each material of it, [`mtl`] reads material libraries and
 //! `look` turns their materials into the scene's. The format: Wavefront, "Object Files (.obj)", Advanced Visualizer
@@ -12,7 +12,7 @@ mod statement;
 use std::path::Path;
 
 use crate::error::{Error, Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::image::linear_from_srgb;
 use crate::model::{points, text};
 use crate::packed;
@@ -24,8 +24,8 @@ use crate::shape::{Geometry, Part};
 ///
 /// # Errors
 /// `Io`, `Limit`, `Syntax` and `Invalid`, at line and column. After an error the scene may hold pieces of the file.
-pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    from_bytes(&packed::read(path, sources)?, path, sources, scene)
+pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
+    from_bytes(&packed::read(path, context)?, path, context, scene)
 }
 
 /// The same for the content of a file; `path` is where it came from, for messages and for the files it names.
@@ -35,26 +35,26 @@ pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result
 pub fn from_bytes(
     bytes: &[u8],
     path: &Path,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Result<Vec<Part>> {
     let file = Location::file(path);
     let text = text::utf8(bytes);
-    let statements = statement::parse(&text, &file, sources)?;
+    let statements = statement::parse(&text, &file, context)?;
     drop(text);
     if statements.positions.is_empty() {
         return Err(Error::syntax(&file, "no vertices: there is no line that starts with `v`")
             .hint("check that this is a Wavefront OBJ file and that it is whole"));
     }
     if statements.groups.iter().all(|group| group.faces.is_empty()) {
-        return Ok(points::cloud(&statements.positions, &statements.colors, &file, sources, scene));
+        return Ok(points::cloud(&statements.positions, &statements.colors, &file, context, scene));
     }
     let colored = !statements.colors.is_empty();
-    let meshes = build::meshes(statements, &file, sources)?;
-    let mut looks = look::Looks::read(&meshes.libraries, path, sources);
+    let meshes = build::meshes(statements, &file, context)?;
+    let mut looks = look::Looks::read(&meshes.libraries, path, context);
     let mut parts = Vec::new();
     for piece in meshes.pieces {
-        let look = looks.look(piece.material.as_deref(), colored, &file, sources, scene);
+        let look = looks.look(piece.material.as_deref(), colored, &file, context, scene);
         let mesh = MeshId(scene.meshes.len() as u32);
         let name = piece.material.map(|name| String::from_utf8_lossy(&name).into_owned());
         parts.push(Part {
@@ -64,7 +64,7 @@ pub fn from_bytes(
         });
         scene.meshes.push(piece.mesh);
     }
-    looks.warn(&file, sources);
+    looks.warn(&file, context);
     Ok(parts)
 }
 

@@ -1,11 +1,11 @@
-//! Files packed by gzip (RFC 1952): scenes of pbrt and models, read as if they were not packed.
+//! Decompression of gzip files (RFC 1952): models and scenes of pbrt may be compressed.
 
 use std::ffi::OsString;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::{Limits, Sources};
+use crate::files::{Limits, LoadContext};
 
 /// The extension of packed files.
 const EXTENSION: &str = "gz";
@@ -28,15 +28,15 @@ pub(crate) fn unpacked_name(path: &Path) -> PathBuf {
 ///
 /// # Errors
 /// `Io` where neither can be read, `Syntax` where the packed bytes are damaged, `Limit` where they or the unpacked ones are too many.
-pub(crate) fn read(path: &Path, sources: &Sources<'_>) -> Result<Vec<u8>> {
-    let (bytes, path) = match sources.read(path) {
+pub(crate) fn read(path: &Path, context: &LoadContext<'_>) -> Result<Vec<u8>> {
+    let (bytes, path) = match context.read(path) {
         Ok(bytes) => (bytes, path.to_owned()),
         Err(error) if error.kind == ErrorKind::Io && unpacked_name(path) == path => {
             let mut packed = OsString::from(path);
             packed.push(".");
             packed.push(EXTENSION);
             let packed = PathBuf::from(packed);
-            match sources.read(&packed) {
+            match context.read(&packed) {
                 Ok(bytes) => (bytes, packed),
                 Err(other) if other.kind == ErrorKind::Io => return Err(error),
                 Err(other) => return Err(other),
@@ -44,7 +44,7 @@ pub(crate) fn read(path: &Path, sources: &Sources<'_>) -> Result<Vec<u8>> {
         }
         Err(error) => return Err(error),
     };
-    unpacked(bytes, &path, &sources.limits)
+    unpacked(bytes, &path, &context.limits)
 }
 
 /// The same bytes, or what they hold where they are packed.

@@ -1,5 +1,4 @@
-//! Scenes of pbrt-v4 (Pharr, Jakob & Humphreys 2023): its file format becomes a [`Scene`], or an error that points at
-//! what is wrong.
+//! Reader for scenes of pbrt-v4 (Pharr, Jakob & Humphreys 2023). Errors have the location of the wrong value.
 //!
 //! `text` and `lexer` know bytes and words, `params` the typed parameters, `directive` what each directive does to the
 //! `state`; beside them a file for each part of the vocabulary. What pbrt knows and this program does not render is
@@ -39,7 +38,7 @@ use self::missing::Missing;
 use self::state::{Opened, Options, State};
 use self::text::Place;
 use crate::error::{Error, Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::material::{Color, Material, MaterialKind};
 use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
 use crate::settings::ColorMode;
@@ -50,15 +49,15 @@ use crate::settings::ColorMode;
 /// # Errors
 /// With line and column: `Syntax` where words are not those of the format, `Invalid` where they
 /// say what cannot be (a scene of pbrt-v3 among them), `Limit` where something is too large or nests too deep, and
-/// whatever goes wrong in the files that are named. Files that are not there are told of all at once, as
+/// whatever goes wrong in the files that are named. Files that do not exist are told of all at once, as
 /// [`Error::more`].
-pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
+pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut scene = Scene::default();
     scene.render.color = ColorMode::Spectral;
     let gray = MaterialKind::Diffuse { reflectance: Color::gray(0.5) };
     scene.materials.push(Material::new("default", Location::file(path), gray));
     let mut reader = Reader {
-        sources,
+        context,
         scene,
         folder: path.parent().unwrap_or(Path::new("")).to_owned(),
         open: Vec::new(),
@@ -87,7 +86,7 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
         return Err(error);
     }
     let mut scene = reader.scene;
-    scene.is_whole = true;
+    scene.is_complete = true;
     Ok(scene)
 }
 
@@ -103,22 +102,22 @@ pub(crate) fn is_pbrt(bytes: &[u8]) -> bool {
 
 /// A scene on its way from files.
 struct Reader<'s, 'f> {
-    sources: &'s mut Sources<'f>,
+    context: &'s mut LoadContext<'f>,
     scene: Scene,
-    /// Where the file that was asked for lies.
+    /// The folder of the main file.
     folder: PathBuf,
     /// The files that are being read: each is included by the one before.
     open: Vec<PathBuf>,
-    /// How many files were included.
+    /// The number of included files.
     included: u32,
-    /// What holds for the next shape.
+    /// The current graphics state.
     state: State,
-    /// What was begun and has to be ended.
+    /// Open blocks.
     stack: Vec<Opened>,
     coordinate_systems: BTreeMap<String, DMat4>,
     /// Whether `WorldBegin` was there.
     in_world: bool,
-    /// What was said before `WorldBegin`.
+    /// Settings before `WorldBegin`.
     options: Options,
     materials: BTreeMap<String, NamedMaterial>,
     /// By name and whether they give numbers.
@@ -134,7 +133,7 @@ struct Reader<'s, 'f> {
     /// Pictures by path and by what was done to their values.
     images: BTreeMap<(PathBuf, String), ImageId>,
     models: BTreeMap<PathBuf, Model>,
-    /// What was warned of already.
+    /// Warnings that were given already.
     warned: BTreeSet<String>,
     /// By name.
     media: BTreeMap<String, NamedMedium>,
@@ -147,7 +146,7 @@ struct Reader<'s, 'f> {
 /// A material that was made or mentioned.
 struct NamedMaterial {
     id: MaterialId,
-    /// Where it was mentioned first.
+    /// The location of the first mention.
     first: Place,
     is_made: bool,
 }
@@ -156,7 +155,7 @@ struct NamedMaterial {
 struct NamedTexture {
     /// A value where it is the same everywhere.
     color: Color,
-    /// Where it was mentioned first.
+    /// The location of the first mention.
     first: Place,
     is_made: bool,
 }
@@ -165,7 +164,7 @@ impl Reader<'_, '_> {
     /// Warns of something the first time only.
     fn warn_once(&mut self, what: &str, place: &Place, message: impl std::fmt::Display) {
         if self.warned.insert(what.to_owned()) {
-            self.sources.warn(&place.location(), message.to_string());
+            self.context.warn(&place.location(), message.to_string());
         }
     }
 
@@ -190,7 +189,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// What can only be done when everything is known. Models are read whatever is wrong, to find all that are missing.
+    /// Steps that need the whole scene. Models are read even after errors, so that all missing files are found.
     fn finish(&mut self, path: &Path) -> Result<()> {
         let result = self.finish_without_models(path);
         self.read_models().and(result)

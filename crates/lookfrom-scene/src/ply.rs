@@ -1,4 +1,4 @@
-//! How does a PLY file become a mesh or a cloud of points?
+//! Reader and writer for PLY files: meshes and point clouds.
 //!
 //! `header` reads what the file says of itself, `body` (by way of `values`) what it holds, `build` makes the mesh,
 //! [`write`](fn@write) writes one. The format: Turk 1994, "The PLY Polygon File Format"; names of properties as programs have
@@ -14,7 +14,7 @@ use std::path::Path;
 
 pub use self::write::write;
 use crate::error::{Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::packed;
 use crate::scene::Scene;
 use crate::shape::Part;
@@ -25,8 +25,8 @@ use crate::shape::Part;
 /// # Errors
 /// `Io`, `Limit`, `Syntax` and `Invalid`; at line and column, or at a byte in what is binary. After an error the scene
 /// may hold pieces of the file.
-pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    from_bytes(&packed::read(path, sources)?, path, sources, scene)
+pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
+    from_bytes(&packed::read(path, context)?, path, context, scene)
 }
 
 /// The same for the content of a file; `path` is where it came from, for messages and for the files it names.
@@ -36,11 +36,11 @@ pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result
 pub fn from_bytes(
     bytes: &[u8],
     path: &Path,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Result<Vec<Part>> {
     let file = Location::file(path);
-    let header = header::parse(bytes, &file, sources)?;
-    let content = body::read(&bytes[header.length..], &header, &file, &sources.limits)?;
-    build::parts(content, &header, path, sources, scene)
+    let header = header::parse(bytes, &file, context)?;
+    let content = body::read(&bytes[header.length..], &header, &file, &context.limits)?;
+    build::parts(content, &header, path, context, scene)
 }

@@ -1,5 +1,5 @@
-//! A scene as it was written: plain data in arenas, with names and places kept. Light meets its compiled form, the
-//! `World` of crate `lookfrom`; nothing here is fast, everything is editable.
+//! The scene description: plain, editable data in arenas, with names and source locations. Crate `lookfrom` compiles it to a
+//! `World` for rendering.
 //!
 //! Units: the scene's own length; angles in degrees; colours are linear Rec. 709 (sRGB primaries), unbounded above.
 
@@ -51,22 +51,22 @@ ids! {
 pub struct Scene {
     /// Whether the file says all that there is, so that no light is added to show it: a scene of pbrt without lights is
     /// black.
-    pub is_whole: bool,
-    /// What kind of file it was read from.
-    pub origin: Origin,
-    /// What can be chosen in the file.
+    pub is_complete: bool,
+    /// The format of the file that it was read from.
+    pub source_format: SourceFormat,
+    /// The animations, variants, cameras and scenes of the file.
     pub contents: Contents,
-    /// The eye; `None` where the file names none: then the scene is framed by its bounds.
+    /// The camera; `None` where the file has none: then the scene is framed by its bounds.
     pub camera: Option<Camera>,
     /// Size, filter and development of the picture.
     pub image: ImageSettings,
-    /// How light is computed.
+    /// The integrator and its settings.
     pub render: RenderSettings,
     /// Surfaces' looks.
     pub materials: Vec<Material>,
     /// Colour over surfaces.
     pub textures: Vec<Texture>,
-    /// What fills space.
+    /// Participating media.
     pub media: Vec<Medium>,
     /// Values by wavelength, shared by whatever has a colour.
     pub curves: Vec<Curve>,
@@ -74,19 +74,20 @@ pub struct Scene {
     pub images: Vec<Image>,
     /// Triangles, shared by shapes.
     pub meshes: Vec<Mesh>,
-    /// What stands in the world once.
+    /// Shapes of the world outside objects.
     pub shapes: Vec<Shape>,
     /// Groups of shapes that instances repeat.
     pub objects: Vec<Object>,
     /// Repetitions of objects.
     pub instances: Vec<Instance>,
-    /// Lights that are not shapes; shapes shine by [`Shape::emission`].
+    /// Lights that are not shapes; area lights are shapes with [`Shape::emission`].
     pub lights: Vec<Light>,
 }
 
-/// What kind of file a scene was read from.
+/// The format of the file that a scene was read from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Origin {
+#[non_exhaustive]
+pub enum SourceFormat {
     /// A scene of ours or of pbrt, or no file.
     #[default]
     Scene,
@@ -99,9 +100,9 @@ pub enum Origin {
 /// A named group of shapes, invisible until an [`Instance`] places it.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// The name that instances use.
+    /// The name that instances refer to.
     pub name: String,
-    /// Where it was written.
+    /// The location in the file.
     pub at: Location,
     /// Its shapes; their `world_from_object` leads to the space of this group.
     pub shapes: Vec<Shape>,
@@ -110,9 +111,9 @@ pub struct Object {
 /// One repetition of an object.
 #[derive(Clone, Debug)]
 pub struct Instance {
-    /// Where it was written.
+    /// The location in the file.
     pub at: Location,
-    /// What is repeated.
+    /// The object that is instanced.
     pub object: ObjectId,
     /// From the object's space to the world: any invertible affine matrix, mirrors included.
     pub world_from_object: DMat4,

@@ -1,4 +1,4 @@
-//! Settings of the picture and of the computation, with their defaults.
+//! Settings of the image and of the integrator, with their defaults.
 
 use crate::image::srgb_from_linear;
 
@@ -13,23 +13,23 @@ pub struct ImageSettings {
     pub height: u32,
     /// Only this part is computed; the picture keeps its full size.
     pub crop: Option<Crop>,
-    /// How a pixel weighs the light around it.
+    /// The pixel reconstruction filter.
     pub filter: Filter,
     /// In stops: the picture is multiplied by 2^exposure before the tone map.
     pub exposure: f32,
-    /// How linear light becomes the 0…1 of an 8-bit picture.
+    /// The tone mapping from linear light to [0, 1].
     pub tonemap: Tonemap,
-    /// What light is turned into colour by.
+    /// The sensor.
     pub sensor: Sensor,
-    /// Which layers an EXR gets besides the picture.
+    /// The AOVs of an EXR besides the picture.
     pub layers: Layers,
-    /// What the camera sees where nothing stands.
+    /// The background of the picture where the camera sees no surface.
     pub background: Background,
     /// Whether noise is filtered out of the picture.
     pub denoise: bool,
 }
 
-/// What the camera sees where nothing stands; light is the same for all of them.
+/// The background of the picture where the camera sees no surface; illumination is the same for all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Background {
     /// The environments.
@@ -55,7 +55,7 @@ impl std::fmt::Display for Background {
     }
 }
 
-/// What turns light into colour.
+/// The sensor that converts light to colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
     /// The camera whose spectral responses it has; `None` is the CIE 1931 standard observer.
@@ -89,7 +89,7 @@ impl Default for Sensor {
     }
 }
 
-/// Which layers an EXR gets besides the picture.
+/// The AOVs of an EXR besides the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layers {
     /// None.
@@ -129,7 +129,7 @@ pub struct Crop {
     pub y1: u32,
 }
 
-/// How a pixel weighs the light around its centre. Radii are in pixels.
+/// The pixel reconstruction filter. Radii are in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filter {
     /// All the same. Half a pixel is the pixel itself.
@@ -196,7 +196,7 @@ impl Default for Filter {
     }
 }
 
-/// How linear light becomes the 0…1 of an 8-bit picture, before the sRGB curve.
+/// The tone mapping from linear light to [0, 1], before the sRGB curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tonemap {
     /// Cut at 1.
@@ -231,30 +231,30 @@ impl Tonemap {
     }
 }
 
-/// How light is computed.
+/// The integrator and its settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderSettings {
-    /// Which computation.
+    /// The integrator.
     pub integrator: Integrator,
     /// Samples a pixel: ≥ 1.
     pub samples: u32,
-    /// How many times a ray may be mirrored, refracted or scattered.
+    /// The maximum path depth: the number of reflections, refractions and scatterings.
     pub depth: u32,
     /// A branch of the tree whose share of the pixel falls below this is cut off (Whitted's adaptive depth control).
     pub min_contribution: f32,
-    /// Which random numbers.
+    /// The sample sequence.
     pub sampler: Sampler,
     /// Another seed, other noise.
     pub seed: u64,
     /// Whether light goes straight through transparent things to what they would shadow, coloured by them.
     pub transparent_shadows: bool,
-    /// What the four lanes of light mean.
+    /// The meaning of the four lanes of a spectrum: RGB or wavelengths.
     pub color: ColorMode,
-    /// How a light is chosen where one of many is asked.
+    /// The light sampler: the choice of one light of many.
     pub light_sampler: LightSampler,
     /// Whether the path tracer blurs what it sees after the first diffuse bounce: less noise, slightly wrong.
     pub regularize: bool,
-    /// How far ambient occlusion looks.
+    /// The maximum distance of ambient occlusion.
     pub occlusion_distance: f32,
     /// Whether what fills space counts: the media on the sides of surfaces ([`Sides`](crate::medium::Sides)) and around
     /// the camera. Without them interfaces stop shadow rays, but no others, as in pbrt's integrators that know no media.
@@ -262,7 +262,7 @@ pub struct RenderSettings {
     pub media: bool,
 }
 
-/// What the four lanes of light mean.
+/// The meaning of the four lanes of a spectrum: RGB or wavelengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorMode {
     /// Linear Rec. 709.
@@ -282,7 +282,7 @@ impl ColorMode {
     }
 }
 
-/// How a light is chosen where one of many is asked.
+/// The light sampler: the choice of one light of many.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightSampler {
     /// All the same.
@@ -338,7 +338,7 @@ pub enum Integrator {
     SimplePath,
     /// Directions all around at each hit: a check of both.
     RandomWalk,
-    /// How much of the sky a white surface would see.
+    /// Ambient occlusion.
     AmbientOcclusion {
         /// Whether directions are chosen by the cosine.
         cosine: bool,
@@ -383,7 +383,7 @@ impl Integrator {
     }
 }
 
-/// Where random numbers come from.
+/// The sample sequence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampler {
     /// Owen-scrambled Sobol' points.

@@ -1,11 +1,11 @@
-//! What stands in a scene: spheres, quads, disks and triangle meshes, each with a place, a material and perhaps a glow.
+//! Shapes: quadrics, quads, patches, curves and triangle meshes, each with a transform, a material and perhaps emission.
 
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 
 use crate::error::Location;
-use crate::light::Amount;
+use crate::light::Power;
 use crate::material::{Color, Scalar};
 use crate::medium::Sides;
 use crate::scene::{Bounds, MaterialId, MeshId};
@@ -15,7 +15,7 @@ use crate::scene::{Bounds, MaterialId, MeshId};
 pub struct Shape {
     /// Its name, where one was given.
     pub name: Option<String>,
-    /// Where it was written.
+    /// The location in the file.
     pub at: Location,
     /// Its form, in its own space.
     pub geometry: Geometry,
@@ -25,9 +25,9 @@ pub struct Shape {
     pub emission: Option<Emission>,
     /// The part of it that is there: light passes where chance says that it is not. `None` is all of it.
     pub alpha: Option<Scalar>,
-    /// What fills space on both sides, where the surface says so; otherwise what was there goes on.
+    /// The media on both sides, where the surface is a medium interface; otherwise the medium continues.
     pub sides: Option<Sides>,
-    /// Whether outside and inside change places.
+    /// Whether the orientation is reversed.
     pub reverse_orientation: bool,
     /// Whether rays from the camera pass its back faces, as if they were not there.
     pub single_sided: bool,
@@ -58,8 +58,8 @@ impl Shape {
 pub struct Emission {
     /// Emitted radiance.
     pub radiance: Color,
-    /// How much of it.
-    pub amount: Amount,
+    /// The power.
+    pub power: Power,
     /// Whether both sides shine; otherwise the side that the normal points to.
     pub two_sided: bool,
 }
@@ -67,7 +67,7 @@ pub struct Emission {
 impl Emission {
     /// As much as the colour says.
     pub fn new(radiance: Color, two_sided: bool) -> Self {
-        Self { radiance, amount: Amount::AS_WRITTEN, two_sided }
+        Self { radiance, power: Power::AS_WRITTEN, two_sided }
     }
 }
 
@@ -80,7 +80,7 @@ pub enum Geometry {
     Spheres(Arc<[Sphere]>),
     /// The parallelogram `corner + s·edge_u + t·edge_v`, `s, t ∈ [0, 1]`, uv = (s, t), normal along `edge_u × edge_v`.
     Quad {
-        /// Where s = t = 0.
+        /// The corner s = t = 0.
         corner: DVec3,
         /// Along s.
         edge_u: DVec3,
@@ -153,11 +153,11 @@ pub struct Strand {
     pub points: [Vec3; 4],
     /// At the beginning and at the end: > 0.
     pub width: [f32; 2],
-    /// How it is drawn out sideways.
+    /// The cross-section.
     pub profile: Profile,
 }
 
-/// How a curve is drawn out sideways.
+/// The cross-section of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Profile {
     /// A band that turns to whoever looks.
@@ -202,7 +202,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// How many sets of texture coordinates materials can use.
+    /// The number of sets of texture coordinates that materials can use.
     pub const MOST_UV_SETS: usize = 4;
 }
 
@@ -221,7 +221,7 @@ pub struct Part {
     pub alpha: Option<Scalar>,
     /// Whether rays from the camera pass its back faces.
     pub single_sided: bool,
-    /// Where the file places it: any invertible affine matrix.
+    /// The transform of the file: any invertible affine matrix.
     pub world_from_object: DMat4,
 }
 

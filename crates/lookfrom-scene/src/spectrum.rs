@@ -1,4 +1,4 @@
-//! How much of something is there at each wavelength?
+//! Spectral distributions.
 //!
 //! A [`Curve`] is a spectrum as a file states it: a constant, a table, a black body. Measured ones have names
 //! ([`named()`]), or are read from `.spd` files ([`read_spd`]). Beside them: the standard observer, which weighs

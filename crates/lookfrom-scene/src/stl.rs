@@ -1,4 +1,4 @@
-//! How does an STL file become meshes?
+//! Reader for STL files.
 //!
 //! Triangles without shared vertices, in text or binary (3D Systems, "StereoLithography Interface Specification",
 //! 1989). Vertices with the same bits are made one. The normals of facets are ignored: they are often wrong, and flat
@@ -10,7 +10,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::{Limits, Sources};
+use crate::files::{Limits, LoadContext};
 use crate::image::linear_from_srgb;
 use crate::model::number::parse_f32;
 use crate::model::polygon::{Triangulator, has_area};
@@ -34,8 +34,8 @@ const NO_COLOR: u32 = u32::MAX;
 ///
 /// # Errors
 /// `Io`, `Limit` and `Syntax`; at line and column, or at a byte in what is binary.
-pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    from_bytes(&packed::read(path, sources)?, path, sources, scene)
+pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
+    from_bytes(&packed::read(path, context)?, path, context, scene)
 }
 
 /// The same for the content of a file; `path` is where it came from, for messages.
@@ -45,23 +45,23 @@ pub fn read(path: &Path, sources: &mut Sources<'_>, scene: &mut Scene) -> Result
 pub fn from_bytes(
     bytes: &[u8],
     path: &Path,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Result<Vec<Part>> {
     let file = Location::file(path);
-    let mut triangles = Triangles::new(&sources.limits);
+    let mut triangles = Triangles::new(&context.limits);
     let solids = if is_text(bytes) {
-        read_text(&text::utf8(bytes), &file, &mut triangles, sources)?
+        read_text(&text::utf8(bytes), &file, &mut triangles, context)?
     } else {
-        vec![(None, read_binary(bytes, &file, &mut triangles, sources)?)]
+        vec![(None, read_binary(bytes, &file, &mut triangles, context)?)]
     };
     triangles.not_finite.warn(
         "triangle",
         "left out: a coordinate is infinite or not a number",
         &file,
-        sources,
+        context,
     );
-    triangles.flat.notice("triangle", "left out: without area", &file, sources);
+    triangles.flat.notice("triangle", "left out: without area", &file, context);
     let mut parts = Vec::new();
     for (name, mut mesh) in solids {
         if mesh.triangles.is_empty() {
@@ -74,7 +74,7 @@ pub fn from_bytes(
         scene.meshes.push(mesh);
     }
     if parts.is_empty() {
-        sources.warn(&file, "there are no triangles");
+        context.warn(&file, "there are no triangles");
     }
     Ok(parts)
 }
@@ -161,7 +161,7 @@ fn read_binary(
     bytes: &[u8],
     file: &Location,
     triangles: &mut Triangles,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
 ) -> Result<Mesh> {
     let Some(claimed) = claimed_triangles(bytes) else {
         let message = format!("{} bytes are too few for an STL file", bytes.len());
@@ -172,7 +172,7 @@ fn read_binary(
     let is_whole = body.len().is_multiple_of(TRIANGLE);
     let count = if claimed == 0 && is_whole && there > 0 {
         // Some programs do not know the number when they start to write.
-        sources.notice(file, format!("the header says that there are no triangles; all {there} are read"));
+        context.notice(file, format!("the header says that there are no triangles; all {there} are read"));
         there
     } else {
         claimed
@@ -190,7 +190,7 @@ fn read_binary(
     if rest > 0 {
         let message = format!("{rest} bytes after the last triangle are ignored");
         // Triangles may be among them; less than one is padding.
-        if rest >= TRIANGLE { sources.warn(file, message) } else { sources.notice(file, message) }
+        if rest >= TRIANGLE { context.warn(file, message) } else { context.notice(file, message) }
     }
     let header = &bytes[..HEADER - 4];
     let magics = header.windows(6).position(|window| window == b"COLOR=");
@@ -218,7 +218,7 @@ fn read_text(
     text: &[u8],
     file: &Location,
     triangles: &mut Triangles,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
 ) -> Result<Vec<Solid>> {
     let mut scanner = Scanner::new(text);
     let mut triangulator = Triangulator::new();
@@ -251,7 +251,7 @@ fn read_text(
             b"vertex" => points.push(vertex(&mut scanner, file)?),
             b"endloop" => {
                 if points.len() < 3 {
-                    let message = format!("a facet with {} vertices: expected three", points.len());
+                    let message = format!("a facet with {} vertices, expected 3", points.len());
                     return Err(Error::syntax(&scanner.at(file), message));
                 }
                 let line = scanner.line();
@@ -289,7 +289,7 @@ fn read_text(
             .hint("the file may be cut off"));
     }
     if is_open {
-        sources.warn(&file.at(scanner.line(), 0), "`endsolid` is missing: the file may be cut off");
+        context.warn(&file.at(scanner.line(), 0), "`endsolid` is missing: the file may be cut off");
         solids.push((name.take(), triangles.take_mesh()));
     }
     Ok(solids)

@@ -1,6 +1,4 @@
-//! What does a model need to be shown? A camera that frames it, and light.
-//!
-//! Model files often have neither, and scenes may leave them out. Everything is proportional to the bounds, so that a
+//! Automatic framing and lighting of scenes and models without a camera or lights. Everything is proportional to the bounds, so that a
 //! model of any size makes the same picture: a three-quarter view from slightly above. Models stand in a studio, which
 //! `surroundings` builds; scenes without light get a lamp: a large soft key light from the upper left of the camera, and
 //! a fill from all around.
@@ -14,7 +12,7 @@ use glam::DVec3;
 
 use crate::camera::{Camera, View};
 use crate::error::Location;
-use crate::light::{Amount, Falloff, Light, LightKind, Sky};
+use crate::light::{Falloff, Light, LightKind, Power, Sky};
 use crate::material::{Color, Whitted};
 use crate::model::surface::push_material;
 use crate::scene::{Bounds, Instance, Scene};
@@ -37,17 +35,17 @@ const TO_KEY: [f64; 3] = [-0.62, 0.85, 0.5];
 /// Distance of the key light, in radii of the bounds, and half the length of its sides as a part of that: soft shadows.
 const KEY_DISTANCE: f64 = 6.0;
 const KEY_HALF_SIZE: f64 = 0.16;
-/// What a white surface that faces the key light sends back; with the fill it stays below 1.
+/// The radiance of a white surface that faces the key light; with the fill it stays below 1.
 const KEY: f64 = 0.62;
 const FILL_ZENITH: [f32; 3] = [0.40, 0.43, 0.48];
 const FILL_HORIZON: [f32; 3] = [0.30, 0.31, 0.33];
 const FILL_NADIR: [f32; 3] = [0.17, 0.165, 0.16];
-/// In a room: light from everywhere, and from a lamp at the eye.
+/// Lighting inside a closed room: ambient light, and a point light at the camera.
 const ROOM: f32 = 0.3;
 const LAMP: f32 = 0.55;
-/// Samples a pixel of a picture of a model that is not denoised.
+/// Samples per pixel of a picture of a model that is not denoised.
 pub const MODEL_SAMPLES: u32 = 64;
-/// The same of one so small that nobody looks at single pixels.
+/// Samples per pixel of a picture of thumbnail size.
 const THUMBNAIL_SAMPLES: u32 = 8;
 /// The most pixels of a thumbnail.
 const THUMBNAIL_PIXELS: u64 = 256 * 256;
@@ -56,23 +54,23 @@ const DENOISED_SAMPLES: u32 = 16;
 const SMALL_DENOISED_SAMPLES: u32 = 6;
 const SMALL_DENOISED_PIXELS: u64 = 512 * 512;
 
-/// Adds a camera that frames the scene's bounds, if there is none. `up` as in [`furnish`].
+/// Adds a camera that frames the scene's bounds, if there is none. `up` as in [`add_lights_and_camera`].
 pub fn frame(scene: &mut Scene, up: Option<DVec3>) {
-    Stage::of(scene, up).add_camera(scene);
+    StudioFrame::of(scene, up).add_camera(scene);
 }
 
 /// Adds what the scene lacks: a camera that frames its bounds, if there is none, and light, if there are neither lights
-/// nor shapes that shine. `up` is the direction (of any length) that is up; without it, the camera's, or else y.
-pub fn furnish(scene: &mut Scene, up: Option<DVec3>) {
-    let stage = Stage::of(scene, up);
+/// nor emissive shapes. `up` is the direction (of any length) that is up; without it, the camera's, or else y.
+pub fn add_lights_and_camera(scene: &mut Scene, up: Option<DVec3>) {
+    let stage = StudioFrame::of(scene, up);
     stage.add_camera(scene);
     stage.add_light(scene);
 }
 
 /// Adds what a model lacks: a camera that frames its bounds, if there is none, and a studio around it, if there are no
-/// lights; where the eye is inside, a lamp at the eye as well. `up` as in [`furnish`].
-pub fn furnish_model(scene: &mut Scene, up: Option<DVec3>) {
-    let stage = Stage::of(scene, up);
+/// lights; where the camera is inside, a point light at the camera as well. `up` as in [`add_lights_and_camera`].
+pub fn add_studio_and_camera(scene: &mut Scene, up: Option<DVec3>) {
+    let stage = StudioFrame::of(scene, up);
     stage.add_camera(scene);
     if scene.lights.is_empty() {
         stage.add_studio(scene);
@@ -82,13 +80,13 @@ pub fn furnish_model(scene: &mut Scene, up: Option<DVec3>) {
     }
 }
 
-/// Whether any shape gives off light.
+/// Whether any shape has emission.
 pub fn shines(scene: &Scene) -> bool {
     let in_objects = scene.objects.iter().flat_map(|object| &object.shapes);
     scene.shapes.iter().chain(in_objects).any(|shape| shape.emission.is_some())
 }
 
-/// How pictures of models are made where nobody says otherwise: path traced, and shown by Khronos' PBR Neutral.
+/// Default settings for pictures of models: path tracing, and Khronos' PBR Neutral tone mapping.
 pub fn settings_for_models() -> (ImageSettings, RenderSettings) {
     let image = ImageSettings { tonemap: Tonemap::PbrNeutral, ..ImageSettings::default() };
     let samples = samples_for_models(&image);
@@ -96,7 +94,7 @@ pub fn settings_for_models() -> (ImageSettings, RenderSettings) {
     (image, render)
 }
 
-/// How many samples a pixel a picture of a model gets where nobody says otherwise.
+/// Default samples per pixel for pictures of models.
 pub fn samples_for_models(image: &ImageSettings) -> u32 {
     let pixels = u64::from(image.width) * u64::from(image.height);
     if image.denoise {
@@ -119,7 +117,7 @@ fn add(scene: &mut Scene, name: &str, kind: LightKind) {
         name: Some(name.to_owned()),
         at: Location::default(),
         kind,
-        amount: Amount::AS_WRITTEN,
+        power: Power::AS_WRITTEN,
     });
 }
 
@@ -128,13 +126,13 @@ fn add_lamp(scene: &mut Scene, position: DVec3) {
     add(scene, "lamp", LightKind::Point { position, intensity, falloff: Falloff::None });
 }
 
-/// The bounds to show, and what is right, up and towards the viewer there: unit vectors.
-struct Stage {
+/// The bounds to frame, and unit vectors to the right, up and towards the camera.
+struct StudioFrame {
     bounds: Bounds,
     basis: [DVec3; 3],
 }
 
-impl Stage {
+impl StudioFrame {
     fn of(scene: &Scene, up: Option<DVec3>) -> Self {
         let of_camera = || {
             Some(match scene.camera.as_ref()?.view {
@@ -160,7 +158,7 @@ impl Stage {
     fn add_light(&self, scene: &mut Scene) {
         let is_backdrop =
             |light: &Light| matches!(light.kind, LightKind::Environment { illuminates: false, .. });
-        if scene.is_whole || shines(scene) || !scene.lights.iter().all(is_backdrop) {
+        if scene.is_complete || shines(scene) || !scene.lights.iter().all(is_backdrop) {
             return;
         }
         let fill = if scene.lights.is_empty() {
@@ -182,7 +180,7 @@ impl Stage {
         }
     }
 
-    /// The eye, where it stands inside the bounds, as in a room, which no light from outside may reach.
+    /// The position of the camera if it is inside the bounds, as in a room that no light from outside may reach.
     fn eye_inside(&self, scene: &Scene) -> Option<DVec3> {
         let eye = match scene.camera.as_ref()?.view {
             View::Look { lookfrom, .. } => lookfrom,
@@ -230,7 +228,7 @@ fn aspect(scene: &Scene) -> f64 {
     f64::from(scene.image.width) / f64::from(scene.image.height)
 }
 
-/// Shows all that stands in the world: the vertices of meshes, the corners of boxes around other things.
+/// Includes the whole world in the framing: vertices of meshes, corners of the bounding boxes of other shapes.
 fn visit(scene: &Scene, see: &mut dyn FnMut(DVec3)) {
     for shape in &scene.shapes {
         visit_shape(scene, shape, see);
@@ -308,7 +306,7 @@ mod tests {
     use glam::DMat4;
     use proptest::prelude::*;
 
-    /// Where a point falls in the picture: x and y in [−1, 1], and its depth.
+    /// The projection of a point: x and y in [−1, 1], and its depth.
     fn project(camera: &Camera, aspect: f64, p: DVec3) -> [f64; 3] {
         let View::Look { lookfrom, lookat, up } = camera.view else { panic!("not a lookat") };
         let w = (lookat - lookfrom).normalize();
@@ -371,7 +369,7 @@ mod tests {
             world_from_object: DMat4::from_scale(DVec3::splat(1e6)),
             ..Shape::new(Location::default(), mesh, crate::scene::MaterialId(0))
         });
-        Stage::of(&scene, None).add_camera(&mut scene);
+        StudioFrame::of(&scene, None).add_camera(&mut scene);
         let camera = scene.camera.as_ref().unwrap();
         let most = scene.meshes[0].positions.iter().fold(0.0_f64, |most, position| {
             let [x, y, _] = project(camera, 4.0 / 3.0, 1e6 * position.as_dvec3());
@@ -388,11 +386,11 @@ mod tests {
             name: None,
             at: Location::default(),
             kind: light,
-            amount: Amount::AS_WRITTEN,
+            power: Power::AS_WRITTEN,
         });
         let camera = Camera { distance: 7.0, ..Camera::default() };
         scene.camera = Some(camera);
-        furnish(&mut scene, None);
+        add_lights_and_camera(&mut scene, None);
         assert_eq!((scene.lights.len(), scene.shapes.len()), (1, 0));
         assert_eq!(scene.camera.unwrap().distance, 7.0);
     }
@@ -400,7 +398,7 @@ mod tests {
     #[test]
     fn the_key_light_shines_on_the_model_from_the_upper_left_of_the_camera() {
         let mut scene = Scene::default();
-        furnish(&mut scene, None);
+        add_lights_and_camera(&mut scene, None);
         let key = &scene.shapes[0];
         let Geometry::Quad { corner, edge_u, edge_v } = key.geometry else { panic!("not a quad") };
         let middle = corner + 0.5 * (edge_u + edge_v);
@@ -424,7 +422,7 @@ mod tests {
         let lights_with_eye_at = |z: f64| {
             let view = View::Look { lookfrom: DVec3::new(0.0, 0.0, z), lookat: DVec3::ONE, up: DVec3::Y };
             let mut scene = Scene { camera: Some(Camera { view, ..Camera::default() }), ..room() };
-            furnish(&mut scene, None);
+            add_lights_and_camera(&mut scene, None);
             (scene.lights.len(), scene.shapes.len())
         };
         // inside: the fill, light from everywhere and a lamp; outside: the fill and a key light that is a shape

@@ -1,4 +1,4 @@
-//! What was probably meant by a word that is not known: the nearest of those that are (Damerau 1964, Levenshtein 1965).
+//! Suggestions for unknown words: the known word of the smallest edit distance (Damerau 1964, Levenshtein 1965).
 
 /// The candidate that is the fewest edits away, if that is near enough to be a slip of the hand; the first in the
 /// alphabet among equals.
@@ -16,7 +16,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, candidate)| candidate)
 }
 
-/// How many characters must be put in, left out, replaced or swapped with their neighbour.
+/// The edit distance: insertions, deletions, replacements and swaps of neighbours.
 fn distance(word: &[char], candidate: &str) -> usize {
     let candidate: Vec<char> = candidate.chars().flat_map(char::to_lowercase).collect();
     let columns = candidate.len() + 1;

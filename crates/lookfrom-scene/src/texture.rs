@@ -1,4 +1,4 @@
-//! Colour over surfaces: pictures and patterns.
+//! Textures: images and procedural patterns, their mappings and sampling.
 
 use glam::{DMat4, Vec3};
 
@@ -11,9 +11,9 @@ use crate::scene::ImageId;
 pub struct Texture {
     /// The name that materials use.
     pub name: String,
-    /// Where it was written.
+    /// The location in the file.
     pub at: Location,
-    /// What kind of texture.
+    /// The kind of texture.
     pub kind: TextureKind,
 }
 
@@ -24,37 +24,37 @@ pub enum TextureKind {
     Image {
         /// The picture.
         image: ImageId,
-        /// Where it lives; its x and y are s and t of the picture.
+        /// The mapping; its x and y are s and t of the picture.
         mapping: Mapping,
-        /// What lies beyond the left and right, and beyond the upper and lower edges.
+        /// The wrap modes beyond the left and right, and beyond the upper and lower edges.
         wrap: [Wrap; 2],
         /// Between the texels.
         filter: TexelFilter,
-        /// Which channels are meant.
+        /// The channels that are read.
         channel: Channel,
         /// Multiplies it.
         scale: f32,
-        /// Whether 1 − value is meant (after `scale`).
+        /// Whether the value is inverted to 1 − value (after `scale`).
         invert: bool,
     },
     /// Squares over uv, or cubes in space, of two colours.
     Checker {
-        /// Where the sum of the whole parts is even.
+        /// The value where the sum of the integer parts is even.
         even: Color,
-        /// Where it is odd.
+        /// The value where it is odd.
         odd: Color,
-        /// Where the pattern lives.
+        /// The mapping.
         mapping: Mapping,
     },
     /// Perlin noise of several octaves, between two colours.
     Noise {
-        /// Where the noise is least.
+        /// The value where the noise is least.
         low: Color,
-        /// Where it is greatest.
+        /// The value where it is greatest.
         high: Color,
         /// Number of octaves: 1 to 16.
         octaves: u32,
-        /// Where the pattern lives.
+        /// The mapping.
         mapping: Mapping,
     },
     /// Veins: a sine along x, moved by turbulence (Perlin 1985), between two colours.
@@ -65,14 +65,14 @@ pub enum TextureKind {
         base: Color,
         /// Number of octaves: 1 to 16.
         octaves: u32,
-        /// How far the turbulence moves the veins.
+        /// The displacement of the veins by turbulence.
         turbulence: f32,
-        /// Where the pattern lives.
+        /// The mapping.
         mapping: Mapping,
     },
     /// A texture, more or less.
     Scale {
-        /// What is scaled.
+        /// The texture that is scaled.
         color: Color,
         /// By how much.
         by: Scalar,
@@ -83,14 +83,14 @@ pub enum TextureKind {
         low: Color,
         /// At 1.
         high: Color,
-        /// Where between, not clamped.
+        /// The interpolation parameter, not clamped.
         amount: Scalar,
     },
     /// Between two colours, by how much the geometric normal looks along a direction of the world.
     DirectionMix {
-        /// Where the normal stands across.
+        /// The value where the normal is perpendicular to the direction.
         low: Color,
-        /// Where it looks along the direction, or against it.
+        /// The value where the normal is parallel to the direction.
         high: Color,
         /// Of unit length.
         direction: Vec3,
@@ -99,7 +99,7 @@ pub enum TextureKind {
     Bilinear {
         /// At (0,0), (0,1), (1,0), (1,1).
         corners: [Color; 4],
-        /// Where the pattern lives.
+        /// The mapping.
         mapping: Mapping,
     },
     /// Round dots in some cells of a grid over uv.
@@ -108,43 +108,43 @@ pub enum TextureKind {
         inside: Color,
         /// Around them.
         outside: Color,
-        /// Where the pattern lives.
+        /// The mapping.
         mapping: Mapping,
     },
     /// pbrt's `fbm`: Perlin noise of several octaves, as a number around 0.
     Fbm {
         /// Number of octaves: 1 to 16.
         octaves: u32,
-        /// How much of the amplitude is left from octave to octave.
+        /// The persistence: the ratio of amplitudes of successive octaves.
         roughness: f32,
-        /// Where the pattern lives.
+        /// The mapping.
         mapping: Mapping,
     },
     /// pbrt's `wrinkled`: the same of absolute values.
     Wrinkled {
         /// Number of octaves: 1 to 16.
         octaves: u32,
-        /// How much of the amplitude is left from octave to octave.
+        /// The persistence: the ratio of amplitudes of successive octaves.
         roughness: f32,
-        /// Where the pattern lives.
+        /// The mapping.
         mapping: Mapping,
     },
     /// pbrt's `windy`: waves on water, by two noises.
     Windy {
-        /// Where the pattern lives.
+        /// The mapping.
         mapping: Mapping,
     },
     /// pbrt's `marble`: its own palette of colours along noisy veins.
     PbrtMarble {
         /// Number of octaves: 1 to 16.
         octaves: u32,
-        /// How much of the amplitude is left from octave to octave.
+        /// The persistence: the ratio of amplitudes of successive octaves.
         roughness: f32,
         /// Multiplies places before the noise.
         scale: f32,
-        /// How far the noise moves the veins.
+        /// The displacement of the veins by noise.
         variation: f32,
-        /// Where the pattern lives.
+        /// The mapping.
         mapping: Mapping,
     },
     /// The mesh's own colours, white where it has none.
@@ -170,7 +170,7 @@ pub enum TextureKind {
     },
 }
 
-/// Which channels of a picture are meant.
+/// The channels of a picture that a texture reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Channel {
     /// The colour.
@@ -201,7 +201,7 @@ impl TextureKind {
         }
     }
 
-    /// What the texture is made of: its colours, and its numbers' textures as colours.
+    /// The textures and colours that this texture uses; textures of numbers are given as colours.
     pub fn parts(&self) -> Vec<Color> {
         let scalar = |scalar: &Scalar| match *scalar {
             Scalar::Value(value) => Color::gray(value),
@@ -229,7 +229,7 @@ impl TextureKind {
     }
 }
 
-/// Where a pattern lives.
+/// The mapping of a pattern: from a surface point to texture coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mapping {
     /// On the surface: uv times `scale` plus `offset`.
@@ -241,7 +241,7 @@ pub enum Mapping {
     },
     /// On the surface: a set of texture coordinates (0 is the first), turned, scaled and moved.
     Affine {
-        /// Which set; one that the mesh does not have is (0, 0) everywhere.
+        /// The set of texture coordinates; one that the mesh does not have is (0, 0) everywhere.
         set: u32,
         /// Rows: s and t are these, dotted with (u, v, 1).
         matrix: [[f32; 3]; 2],
@@ -277,7 +277,7 @@ impl Mapping {
     pub const UV: Self = Self::Uv { scale: [1.0; 2], offset: [0.0; 2] };
 }
 
-/// What lies beyond the edges of a picture.
+/// The wrap mode beyond the edges of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
     /// The picture again.
@@ -291,7 +291,7 @@ pub enum Wrap {
     Black,
 }
 
-/// What is between the texels.
+/// The interpolation between texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TexelFilter {
     /// A blend of the four around.

@@ -1,5 +1,4 @@
-//! Our own scene format: what `docs/guide/scene-format.md` describes becomes a [`Scene`], or an error that points at
-//! the line that is wrong.
+//! Reader for our own scene format (`docs/guide/scene-format.md`). Errors have the location of the wrong value.
 //!
 //! This file reads files and joins what they import. Beside it: `document`, `table` and `value` (what is there, with its
 //! place; what is wrong is noted there), `syntax` (texts that are no TOML), `synonyms` (what others call it), and a decoder
@@ -8,10 +7,10 @@
 mod camera;
 mod chain;
 mod color;
+mod composite;
 mod curve;
-mod directed;
+mod directional;
 mod document;
-mod form;
 mod import;
 mod light;
 mod mapping;
@@ -20,17 +19,17 @@ mod mesh;
 mod model;
 mod object;
 mod physical;
-mod place;
 mod principled;
-mod round;
+mod quadric;
 mod settings;
 mod shape;
 mod sky;
-mod strip;
+mod spectrum;
 mod synonyms;
 mod syntax;
 mod table;
 mod texture;
+mod transform;
 mod value;
 mod vocabulary;
 
@@ -47,7 +46,7 @@ use self::table::{SCENE, Table};
 use self::value::Value;
 use self::vocabulary::TOP;
 use crate::error::{Error, Location, Result};
-use crate::files::{Choice, Sources};
+use crate::files::{ImportOptions, LoadContext};
 use crate::load::Model;
 use crate::material::MaterialKind;
 use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
@@ -64,9 +63,9 @@ pub use self::vocabulary::vocabulary;
 /// With the line and column of all that is wrong, as far as one run can find it: `Syntax` where the text is no TOML, `Invalid` where a
 /// key, a type, a number or a name is not what it can be, `Limit` where something is too large or nests too deep, and
 /// whatever goes wrong in the files that it names.
-pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
+pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut reader = Reader {
-        sources,
+        context,
         scene: Scene::default(),
         scene_file: Location::file(path),
         materials: BTreeMap::new(),
@@ -101,25 +100,25 @@ pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The most names that are compared with one that stands for nothing.
+/// The maximum number of names that are compared with an unknown one.
 const MOST_COMPARED: usize = 1000;
 
-/// A scene on its way from files, and the names that were given so far.
+/// The state of a load: the scene so far, and the names defined so far.
 struct Reader<'s, 'f> {
-    sources: &'s mut Sources<'f>,
+    context: &'s mut LoadContext<'f>,
     scene: Scene,
-    /// The file that was asked for.
+    /// The main file.
     scene_file: Location,
     materials: BTreeMap<String, MaterialId>,
     textures: BTreeMap<String, TextureId>,
     objects: BTreeMap<String, ObjectId>,
     /// By file, and whether it holds numbers rather than colours.
     images: BTreeMap<(PathBuf, bool), ImageId>,
-    /// By what they are in words.
+    /// By their description.
     curves: BTreeMap<String, CurveId>,
-    /// By file, and what is asked of it.
-    models: Vec<((PathBuf, Choice), Model)>,
-    /// The light of the materials that shine.
+    /// By file and import options.
+    models: Vec<((PathBuf, ImportOptions), Model)>,
+    /// Emission of materials.
     glows: BTreeMap<MaterialId, Emission>,
     /// The material "default", where it was needed but no file has written it (yet).
     unwritten_default: Option<MaterialId>,
@@ -134,19 +133,19 @@ struct Reader<'s, 'f> {
     flake_spheres: u64,
     has_image: bool,
     has_render: bool,
-    /// Whether the `[render]` that counts says which integrator.
+    /// Whether the effective `[render]` names an integrator.
     names_integrator: bool,
-    /// Whether all could be read that gives names. Else a name that stands for nothing may be one of the others.
+    /// Whether all definitions of names could be read. Otherwise an unknown name may be one of the others.
     knows_all_names: bool,
     /// Errors of the files that have been read.
     errors: Vec<Error>,
 }
 
 impl Reader<'_, '_> {
-    /// Reads a file; what is wrong in its tables is noted.
+    /// Reads a file; errors in its tables are recorded.
     fn file(&mut self, path: &Path) -> Result<()> {
         let whole = Location::file(path);
-        let bytes = self.sources.read(path)?;
+        let bytes = self.context.read(path)?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let valid = error.utf8_error().valid_up_to();
             let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
@@ -231,22 +230,22 @@ impl Reader<'_, '_> {
             return Ok(id);
         }
         let read = if is_data { image::read_data } else { image::read };
-        let image = read(&key.0, self.sources).map_err(|error| value.blame(error))?;
+        let image = read(&key.0, self.context).map_err(|error| value.blame(error))?;
         let id = ImageId(self.scene.images.len() as u32);
         self.scene.images.push(image);
         self.images.insert(key, id);
         Ok(id)
     }
 
-    /// What stands in a model file; each file is read once for each choice of what is in it.
-    fn model(&mut self, value: Value<'_>, choice: &Choice) -> Result<Model> {
+    /// The content of a model file; each file is read once for each set of import options.
+    fn model(&mut self, value: Value<'_>, choice: &ImportOptions) -> Result<Model> {
         let path = self.resolve(value, "the name of a model file")?;
         if let Some((_, model)) = self.models.iter().find(|(key, _)| (&key.0, &key.1) == (&path, choice)) {
             return Ok(model.clone());
         }
-        let before = std::mem::replace(&mut self.sources.choice, choice.clone());
-        let model = load::model(&path, self.sources, &mut self.scene);
-        self.sources.choice = before;
+        let before = std::mem::replace(&mut self.context.import, choice.clone());
+        let model = load::model(&path, self.context, &mut self.scene);
+        self.context.import = before;
         let model = model.map_err(|error| value.blame(error))?;
         self.models.push(((path, choice.clone()), model.clone()));
         Ok(model)
@@ -262,7 +261,7 @@ impl Reader<'_, '_> {
         Ok(folder.join(name))
     }
 
-    /// What a name stands for, or the error that it stands for nothing.
+    /// The item of a name, or the error that the name is unknown.
     fn named<Id: Copy>(
         &self,
         known: &BTreeMap<String, Id>,

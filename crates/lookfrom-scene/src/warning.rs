@@ -1,12 +1,13 @@
-//! What could be survived: warnings, how much each means for the picture, and those that say the same as one line.
+//! Warnings, their severity for the picture, and the grouping of equal ones.
 
 use std::collections::HashMap;
 use std::fmt;
 
 use crate::error::Location;
 
-/// What a warning means for the picture.
+/// The severity of a warning for the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
 pub enum WarningKind {
     /// The picture may differ from what was meant.
     Warning,
@@ -17,9 +18,9 @@ pub enum WarningKind {
 /// Something that can be survived: the picture is made all the same.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// What it means for the picture.
+    /// The severity for the picture.
     pub kind: WarningKind,
-    /// Where; of several things in a file, the first.
+    /// The location; of several occurrences in a file, the first.
     pub at: Location,
     /// What was found and what was done instead. Where things were [counted](Self::counted), without their number and noun.
     pub message: String,
@@ -30,9 +31,9 @@ pub struct Warning {
 /// A number of things of one kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counted {
-    /// How many: at least 1.
+    /// The count: at least 1.
     pub count: u64,
-    /// What one of them is called.
+    /// The noun for one of them.
     pub noun: String,
 }
 
@@ -82,7 +83,7 @@ const PLACES: usize = 2;
 pub struct WarningGroup {
     /// The first of them, with the number of things of all.
     pub first: Warning,
-    /// Where the others are.
+    /// The locations of the others.
     pub further: Vec<Location>,
 }
 
@@ -110,7 +111,7 @@ impl WarningGroup {
         groups
     }
 
-    /// What they mean for the picture.
+    /// Their severity for the picture.
     pub fn kind(&self) -> WarningKind {
         self.first.kind
     }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_scene::camera::{Projection, View};
-use lookfrom_scene::files::{CameraChoice, Choice};
+use lookfrom_scene::files::{CameraChoice, ImportOptions};
 use lookfrom_scene::image::encode_png;
 use lookfrom_scene::light::LightKind;
 use lookfrom_scene::material::{Color, MaterialKind, Principled, Relief, Scalar};
@@ -15,7 +15,7 @@ use lookfrom_scene::scene::TextureId;
 use lookfrom_scene::settings::{Integrator, Tonemap};
 use lookfrom_scene::shape::{Geometry, Mesh, Shape};
 use lookfrom_scene::texture::{Channel, Mapping, TexelFilter, TextureKind, Wrap};
-use lookfrom_scene::{Error, Memory, Result, Scene, Sources, load};
+use lookfrom_scene::{Error, LoadContext, Memory, Result, Scene, load};
 use serde_json::{Value, json};
 
 /// A file on its way: the buffer grows as accessors are added.
@@ -83,15 +83,15 @@ impl Model {
     }
 
     fn read(&self, rest: Value) -> Result<(Scene, Vec<String>)> {
-        self.chosen(rest, Choice::default())
+        self.chosen(rest, ImportOptions::default())
     }
 
-    fn chosen(&self, rest: Value, choice: Choice) -> Result<(Scene, Vec<String>)> {
+    fn chosen(&self, rest: Value, choice: ImportOptions) -> Result<(Scene, Vec<String>)> {
         let memory = self.memory(rest);
-        let mut sources = Sources::new(&memory);
-        sources.choice = choice;
-        let scene = load::scene(Path::new("m/a.gltf"), &mut sources)?;
-        Ok((scene, sources.warnings.iter().map(ToString::to_string).collect()))
+        let mut context = LoadContext::new(&memory);
+        context.import = choice;
+        let scene = load::scene(Path::new("m/a.gltf"), &mut context)?;
+        Ok((scene, context.warnings.iter().map(ToString::to_string).collect()))
     }
 
     /// Reads what must read without a warning.
@@ -313,16 +313,16 @@ fn cameras_look_along_minus_z() {
     assert_eq!(matrix.transform_vector3(DVec3::X), DVec3::NEG_X, "left");
     assert_eq!((scene.image.width, scene.image.height), (640, 320));
 
-    let above = Choice { camera: CameraChoice::Named("above".to_owned()), ..Choice::default() };
+    let above = ImportOptions { camera: CameraChoice::Named("above".to_owned()), ..ImportOptions::default() };
     let (scene, _) = model.chosen(root(json!({})), above).expect("it is there");
     assert_eq!(scene.camera.map(|camera| camera.projection), Some(Projection::Orthographic { height: 4.0 }));
     assert_eq!((scene.image.width, scene.image.height), (320, 640));
-    let below = Choice { camera: CameraChoice::Named("below".to_owned()), ..Choice::default() };
+    let below = ImportOptions { camera: CameraChoice::Named("below".to_owned()), ..ImportOptions::default() };
     let error = model.chosen(root(json!({})), below).expect_err("it is not there").to_string();
     assert!(error.contains("\"above\""), "{error}");
 
     // As if the file had none, also for the shape of the picture.
-    let none = Choice { camera: CameraChoice::None, ..Choice::default() };
+    let none = ImportOptions { camera: CameraChoice::None, ..ImportOptions::default() };
     let (scene, warnings) = model.chosen(root(json!({})), none.clone()).expect("it is valid");
     assert!(scene.camera.is_none() && warnings.is_empty(), "{warnings:?}");
     assert_eq!((scene.image.width, scene.image.height), (640, 480));
@@ -330,8 +330,8 @@ fn cameras_look_along_minus_z() {
     assert_eq!(names, [None, Some("above")], "they are there all the same");
     let mut memory = model.memory(root(json!({})));
     memory.0.insert("a.toml".into(), b"import = \"m/a.gltf\"".to_vec());
-    let mut sources = Sources { choice: none, ..Sources::new(&memory) };
-    let scene = load::scene(Path::new("a.toml"), &mut sources).expect("it is valid");
+    let mut context = LoadContext { import: none, ..LoadContext::new(&memory) };
+    let scene = load::scene(Path::new("a.toml"), &mut context).expect("it is valid");
     assert!(scene.camera.is_none());
 }
 
@@ -572,7 +572,7 @@ fn variants_are_chosen() {
         }),
     );
     let worn = |variant: Option<&str>| {
-        let choice = Choice { variant: variant.map(ToOwned::to_owned), ..Choice::default() };
+        let choice = ImportOptions { variant: variant.map(ToOwned::to_owned), ..ImportOptions::default() };
         model.chosen(root.clone(), choice).map(|(scene, _)| scene.materials[0].name.clone())
     };
     assert_eq!(worn(None).expect("valid"), "plain");
@@ -603,7 +603,7 @@ fn instances_are_instances() {
     let mut memory = model.memory(root);
     let toml = "[[mesh]]\nfile = \"m/a.gltf\"\ntranslate = [1, 0, 0]\n";
     memory.0.insert(PathBuf::from("a.toml"), toml.as_bytes().to_vec());
-    let scene = load::scene(Path::new("a.toml"), &mut Sources::new(&memory)).expect("it is valid");
+    let scene = load::scene(Path::new("a.toml"), &mut LoadContext::new(&memory)).expect("it is valid");
     assert_eq!((scene.shapes.len(), scene.instances.len()), (2, 0));
     assert_eq!(scene.shapes[1].world_from_object.transform_point3(DVec3::X), DVec3::new(3.0, 0.0, 10.0));
     assert_eq!(scene.render.integrator, Integrator::Path);
@@ -617,13 +617,13 @@ fn a_container_is_known_by_its_content() {
     root["buffers"] = json!([{"byteLength": model.bytes.len()}]);
     let glb = container(&root, &model.bytes);
     let memory = Memory([(PathBuf::from("a.download"), glb)].into());
-    let scene = load::scene(Path::new("a.download"), &mut Sources::new(&memory)).expect("it is valid");
+    let scene = load::scene(Path::new("a.download"), &mut LoadContext::new(&memory)).expect("it is valid");
     assert_eq!(mesh(&scene, &scene.shapes[0]).positions.len(), 4);
 
     root["buffers"] =
         json!([{"byteLength": model.bytes.len(), "uri": format!("data:;base64,{}", base64(&model.bytes))}]);
     let memory = Memory([(PathBuf::from("a.json"), root.to_string().into_bytes())].into());
-    let scene = load::scene(Path::new("a.json"), &mut Sources::new(&memory)).expect("it is valid");
+    let scene = load::scene(Path::new("a.json"), &mut LoadContext::new(&memory)).expect("it is valid");
     assert_eq!(mesh(&scene, &scene.shapes[0]).positions.len(), 4);
 }
 
@@ -739,7 +739,7 @@ fn a_scene_of_ours_takes_what_it_asks_for() {
     let read = |toml: &str| {
         let mut memory = model.memory(root.clone());
         memory.0.insert(PathBuf::from("a.toml"), toml.as_bytes().to_vec());
-        load::scene(Path::new("a.toml"), &mut Sources::new(&memory))
+        load::scene(Path::new("a.toml"), &mut LoadContext::new(&memory))
     };
     let worn =
         |scene: &Scene, shape: usize| scene.materials[scene.shapes[shape].material.index()].name.clone();
@@ -784,7 +784,7 @@ fn many_triangles_are_read_at_once() {
     let root = one(json!({"attributes": attributes, "indices": indices}), json!({}));
     let memory = model.memory(root);
     let start = std::time::Instant::now();
-    let scene = load::scene(Path::new("m/a.gltf"), &mut Sources::new(&memory)).expect("it is valid");
+    let scene = load::scene(Path::new("m/a.gltf"), &mut LoadContext::new(&memory)).expect("it is valid");
     let elapsed = start.elapsed();
     assert_eq!(mesh(&scene, &scene.shapes[0]).triangles.len(), 99_458);
     println!("99458 triangles in {:.1} ms", elapsed.as_secs_f64() * 1e3);

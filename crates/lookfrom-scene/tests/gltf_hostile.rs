@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use lookfrom_scene::shape::Geometry;
-use lookfrom_scene::{Memory, Scene, Sources, load};
+use lookfrom_scene::{LoadContext, Memory, Scene, load};
 use proptest::prelude::*;
 
 /// A file with something of everything; its buffer is `binary`, in the container.
@@ -67,10 +67,10 @@ fn container(json: &str, binary: &[u8]) -> Vec<u8> {
 /// Reads a file and checks what the types promise; whether it could be read.
 fn read(content: Vec<u8>) -> bool {
     let memory = Memory([(PathBuf::from("a.glb"), content)].into());
-    let mut sources = Sources::new(&memory);
-    sources.limits.elements = 1 << 16;
-    sources.limits.texels = 1 << 16;
-    match load::scene(Path::new("a.glb"), &mut sources) {
+    let mut context = LoadContext::new(&memory);
+    context.limits.elements = 1 << 16;
+    context.limits.texels = 1 << 16;
+    match load::scene(Path::new("a.glb"), &mut context) {
         Ok(scene) => {
             check(&scene);
             true

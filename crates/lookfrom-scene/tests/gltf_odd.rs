@@ -2,22 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::files::Choice;
+use lookfrom_scene::files::ImportOptions;
 use lookfrom_scene::image::encode_png;
 use lookfrom_scene::shape::Geometry;
-use lookfrom_scene::{Disk, Files, Memory, Result, Scene, Sources, load};
+use lookfrom_scene::{Disk, Files, LoadContext, Memory, Result, Scene, load};
 
 type Read = Result<(Scene, Vec<String>)>;
 
-fn read_by(name: &str, files: &dyn Files, choice: Choice) -> Read {
-    let mut sources = Sources { choice, ..Sources::new(files) };
-    let scene = load::scene(Path::new(name), &mut sources)?;
-    Ok((scene, sources.warnings.iter().map(ToString::to_string).collect()))
+fn read_by(name: &str, files: &dyn Files, choice: ImportOptions) -> Read {
+    let mut context = LoadContext { import: choice, ..LoadContext::new(files) };
+    let scene = load::scene(Path::new(name), &mut context)?;
+    Ok((scene, context.warnings.iter().map(ToString::to_string).collect()))
 }
 
 fn read<const N: usize>(files: [(&str, &[u8]); N]) -> Read {
     let memory = Memory(files.map(|(name, content)| (PathBuf::from(name), content.to_vec())).into());
-    read_by(files[0].0, &memory, Choice::default())
+    read_by(files[0].0, &memory, ImportOptions::default())
 }
 
 /// The error of one file.
@@ -144,7 +144,7 @@ fn pointers_of_animations_are_told_of_once() {
         "animations": [{{"samplers": [{{"input": 0, "output": 0}}], "channels": [{channel}, {channel}, {channel}]}}]"#
     ));
     let memory = Memory([(PathBuf::from("a.gltf"), file.into_bytes())].into());
-    let choice = Choice { animation: Some("0".to_owned()), at: 0.5, ..Choice::default() };
+    let choice = ImportOptions { animation: Some("0".to_owned()), at: 0.5, ..ImportOptions::default() };
     let (_, warnings) = read_by("a.gltf", &memory, choice).expect("it is valid");
     assert_eq!(
         warnings,
@@ -159,7 +159,8 @@ fn a_compressed_mesh_is_made_of_triangles_even_where_strips_are_announced() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide/scenes/gltf");
     let path = folder.join("draco-compression.gltf");
     let file = std::fs::read_to_string(&path).expect("the guide has it");
-    let (listed, _) = read_by(&path.display().to_string(), &Disk, Choice::default()).expect("it is valid");
+    let (listed, _) =
+        read_by(&path.display().to_string(), &Disk, ImportOptions::default()).expect("it is valid");
     let strips = file.replace(r#""indices": 5,"#, r#""indices": 5, "mode": 5,"#);
     assert!(strips != file);
     let (announced, _) = read([("a.gltf", strips.as_bytes())]).expect("it is valid");

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use glam::{DVec3, Vec3, Vec4};
-use lookfrom_scene::files::Choice;
-use lookfrom_scene::{Disk, Memory, Result, Scene, Sources, gltf};
+use lookfrom_scene::files::ImportOptions;
+use lookfrom_scene::{Disk, LoadContext, Memory, Result, Scene, gltf};
 use serde_json::{Value, json};
 
 /// Accessors of floats, and of bytes for joints.
@@ -42,10 +42,11 @@ impl Numbers {
         let files =
             [(PathBuf::from("a.gltf"), root.to_string().into_bytes()), ("b".into(), self.bytes.clone())];
         let files = Memory(files.into());
-        let mut sources = Sources::new(&files);
-        sources.choice = Choice { animation: animation.map(str::to_owned), at, ..Choice::default() };
-        let scene = gltf::read(Path::new("a.gltf"), &mut sources)?;
-        Ok((scene, sources.warnings.iter().map(ToString::to_string).collect()))
+        let mut context = LoadContext::new(&files);
+        context.import =
+            ImportOptions { animation: animation.map(str::to_owned), at, ..ImportOptions::default() };
+        let scene = gltf::read(Path::new("a.gltf"), &mut context)?;
+        Ok((scene, context.warnings.iter().map(ToString::to_string).collect()))
     }
 
     /// Where the vertices of the first mesh are in the world, of what must read without a warning.
@@ -273,15 +274,12 @@ fn relief_and_grain_bring_tangents() {
 
 /// The vertices of a file of the corpus, in the world; `None` where the corpus is not there.
 fn corpus(name: &str, animation: Option<&str>, at: f64) -> Option<Vec<DVec3>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus").join(name);
-    if !path.exists() {
-        println!("skipped: there is no {}", path.display());
-        return None;
-    }
-    let mut sources = Sources::new(&Disk);
-    sources.choice = Choice { animation: animation.map(str::to_owned), at, ..Choice::default() };
-    let scene = gltf::read(&path, &mut sources).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(sources.warnings, []);
+    let path = lookfrom_test_data::shared(&format!("corpus/{name}"))?;
+    let mut context = LoadContext::new(&Disk);
+    context.import =
+        ImportOptions { animation: animation.map(str::to_owned), at, ..ImportOptions::default() };
+    let scene = gltf::read(&path, &mut context).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(context.warnings, []);
     let world_from_object = scene.shapes[0].world_from_object;
     Some(scene.meshes[0].positions.iter().map(|p| world_from_object.transform_point3(p.as_dvec3())).collect())
 }

@@ -5,15 +5,15 @@ use std::path::Path;
 
 use ::image::{DynamicImage, ImageFormat, Rgb32FImage, RgbImage, RgbaImage};
 use lookfrom_scene::image::{self, Image};
-use lookfrom_scene::{ErrorKind, Memory, Sources};
+use lookfrom_scene::{ErrorKind, LoadContext, Memory};
 use proptest::prelude::*;
 
 fn read_as(name: &str, bytes: &[u8], texels: Option<u64>) -> lookfrom_scene::Result<(Image, usize)> {
     let mut files = Memory::default();
     files.0.insert(name.into(), bytes.to_vec());
-    let mut sources = Sources::new(&files);
-    sources.limits.texels = texels.unwrap_or(1 << 20);
-    image::read(Path::new(name), &mut sources).map(|image| (image, sources.warnings.len()))
+    let mut context = LoadContext::new(&files);
+    context.limits.texels = texels.unwrap_or(1 << 20);
+    image::read(Path::new(name), &mut context).map(|image| (image, context.warnings.len()))
 }
 
 fn texels_of(image: &Image) -> Vec<[f32; 3]> {
@@ -80,13 +80,13 @@ fn sixteen_bits_and_data_and_alpha() {
 
     let mut files = Memory::default();
     files.0.insert("a.png".into(), bytes.clone());
-    let data = image::read_data(Path::new("a.png"), &mut Sources::new(&files)).expect("data");
+    let data = image::read_data(Path::new("a.png"), &mut LoadContext::new(&files)).expect("data");
     assert_eq!(data.texel(3), [1.0, 0.0, 128.0 / 255.0]);
 
     // From memory, alpha with it: as it is, whatever the curve.
-    let mut sources = Sources::new(&files);
+    let mut context = LoadContext::new(&files);
     let mut decoded = |picture: &DynamicImage, format| {
-        image::decode(&encode(picture, format), "embedded", image::Encoding::Srgb, &mut sources)
+        image::decode(&encode(picture, format), "embedded", image::Encoding::Srgb, &mut context)
             .expect("whole")
     };
     let half = DynamicImage::from(RgbaImage::from_pixel(2, 2, ::image::Rgba([188, 0, 0, 51])));
@@ -98,7 +98,7 @@ fn sixteen_bits_and_data_and_alpha() {
         }
     }
     assert!(!decoded(&DynamicImage::from(gradient()), ImageFormat::Png).has_alpha());
-    let error = image::decode(b"nothing", "/images/3", image::Encoding::Linear, &mut sources).unwrap_err();
+    let error = image::decode(b"nothing", "/images/3", image::Encoding::Linear, &mut context).unwrap_err();
     assert!(error.to_string().starts_with("/images/3: "), "{error}");
 }
 
@@ -125,7 +125,7 @@ fn light_is_kept_as_it_is() {
 
     let mut files = Memory::default();
     files.0.insert("a.exr".into(), exr.clone());
-    let all = image::read_exr(Path::new("a.exr"), &mut Sources::new(&files)).expect("EXR");
+    let all = image::read_exr(Path::new("a.exr"), &mut LoadContext::new(&files)).expect("EXR");
     assert_eq!(all.channel("depth.Z"), Some(depth.as_slice()));
     assert!(all.attributes.contains(&notes[0]), "{:?}", all.attributes);
 

@@ -1,12 +1,12 @@
 //! Real and broken files of other programs: all good ones are read, every bad one gives an error, none a panic.
 //!
-//! The files belong to others and are no part of this repository: where they are not there, nothing is tested.
+//! The files belong to others and are test data outside the repository (`LOOKFROM_SHARED`).
 
 use std::ffi::OsStr;
 use std::path::Path;
 
 use lookfrom_scene::shape::Geometry;
-use lookfrom_scene::{Disk, Scene, Sources, model};
+use lookfrom_scene::{Disk, LoadContext, Scene, model};
 
 /// What each file holds: triangles, points, parts.
 const EXPECTED: &[(&str, usize, usize, usize)] = &[
@@ -43,11 +43,7 @@ const EXPECTED: &[(&str, usize, usize, usize)] = &[
 
 #[test]
 fn the_corpus_is_read() {
-    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus/assimp");
-    if !corpus.is_dir() {
-        println!("skipped: {} is not there", corpus.display());
-        return;
-    }
+    let Some(corpus) = lookfrom_test_data::shared("corpus/assimp") else { return };
     let mut found = Vec::new();
     for folder in ["OBJ", "PLY", "STL"] {
         for entry in std::fs::read_dir(corpus.join(folder)).unwrap() {
@@ -69,10 +65,10 @@ fn the_corpus_is_read() {
 }
 
 fn counts(path: &Path) -> Result<(usize, usize, usize), String> {
-    let mut sources = Sources::new(&Disk);
+    let mut context = LoadContext::new(&Disk);
     let mut scene = Scene::default();
-    let parts = model::read(path, &mut sources, &mut scene);
-    for warning in &sources.warnings {
+    let parts = model::read(path, &mut context, &mut scene);
+    for warning in &context.warnings {
         println!("    {warning}");
     }
     let parts = parts.map_err(|error| error.to_string())?;

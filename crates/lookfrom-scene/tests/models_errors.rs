@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Limits, Memory, Scene, Sources, model};
+use lookfrom_scene::{Limits, LoadContext, Memory, Scene, model};
 
 /// All that is said of a file: its error if there is one, then its warnings.
 fn said(name: &str, content: impl AsRef<[u8]>) -> String {
@@ -11,11 +11,11 @@ fn said(name: &str, content: impl AsRef<[u8]>) -> String {
 
 fn said_within(name: &str, content: impl AsRef<[u8]>, limits: Limits) -> String {
     let files = Memory([(PathBuf::from(name), content.as_ref().to_vec())].into());
-    let mut sources = Sources::new(&files);
-    sources.limits = limits;
-    let result = model::read(Path::new(name), &mut sources, &mut Scene::default());
+    let mut context = LoadContext::new(&files);
+    context.limits = limits;
+    let result = model::read(Path::new(name), &mut context, &mut Scene::default());
     let error = result.err().map(|error| error.to_string());
-    error.into_iter().chain(sources.warnings.iter().map(ToString::to_string)).collect::<Vec<_>>().join("\n")
+    error.into_iter().chain(context.warnings.iter().map(ToString::to_string)).collect::<Vec<_>>().join("\n")
 }
 
 #[test]

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use lookfrom_scene::material::{Color, MaterialKind, Whitted};
 use lookfrom_scene::shape::{Geometry, Mesh, Part};
 use lookfrom_scene::texture::{Mapping, TextureKind, Wrap};
-use lookfrom_scene::{Memory, Scene, Sources, model, ply};
+use lookfrom_scene::{LoadContext, Memory, Scene, model, ply};
 use proptest::prelude::*;
 
 struct Model {
@@ -19,10 +19,10 @@ impl Model {
     fn of(files: &[(&str, &[u8])]) -> Self {
         let contents = files.iter().map(|(name, content)| (PathBuf::from(name), content.to_vec())).collect();
         let files_in_memory = Memory(contents);
-        let mut sources = Sources::new(&files_in_memory);
+        let mut context = LoadContext::new(&files_in_memory);
         let mut scene = Scene::default();
-        let parts = model::read(Path::new(files[0].0), &mut sources, &mut scene).unwrap();
-        Self { scene, parts, warnings: sources.warnings.iter().map(ToString::to_string).collect() }
+        let parts = model::read(Path::new(files[0].0), &mut context, &mut scene).unwrap();
+        Self { scene, parts, warnings: context.warnings.iter().map(ToString::to_string).collect() }
     }
 
     fn mesh(&self, part: usize) -> &Mesh {

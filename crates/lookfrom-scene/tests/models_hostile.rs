@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use lookfrom_scene::shape::{Geometry, Mesh};
-use lookfrom_scene::{Memory, Scene, Sources, model};
+use lookfrom_scene::{LoadContext, Memory, Scene, model};
 use proptest::prelude::*;
 
 const OBJ: &str = "mtllib a.mtl\no thing\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0.5e-1\nv 0 1 -.5\nvt 0 0\nvt 1 1\nvn 0 0 1\ns 1\n\
@@ -62,9 +62,9 @@ fn read(name: &str, content: Vec<u8>) -> Result<(), String> {
         if name == "a.mtl" { (OBJ.as_bytes().to_vec(), content) } else { (content, MTL.as_bytes().to_vec()) };
     let name = if name == "a.mtl" { "a.obj" } else { name };
     let files = Memory([(PathBuf::from(name), obj), (PathBuf::from("a.mtl"), mtl)].into());
-    let mut sources = Sources::new(&files);
+    let mut context = LoadContext::new(&files);
     let mut scene = Scene::default();
-    let parts = model::read(Path::new(name), &mut sources, &mut scene).map_err(|error| error.to_string())?;
+    let parts = model::read(Path::new(name), &mut context, &mut scene).map_err(|error| error.to_string())?;
     for part in &parts {
         assert!(part.material.is_none_or(|material| material.index() < scene.materials.len()));
         match &part.geometry {

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Error, ErrorKind, Limits, Memory, Scene, Sources, load, obj, ply, stl};
+use lookfrom_scene::{Error, ErrorKind, Limits, LoadContext, Memory, Scene, load, obj, ply, stl};
 
 const OBJ: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 const PLY: &[u8] =
@@ -24,7 +24,7 @@ fn memory(files: &[(&str, Vec<u8>)]) -> Memory {
 }
 
 fn read(name: &str, files: &Memory) -> Result<Scene, Error> {
-    load::scene(Path::new(name), &mut Sources::new(files))
+    load::scene(Path::new(name), &mut LoadContext::new(files))
 }
 
 fn triangles(scene: &Scene) -> usize {
@@ -61,10 +61,10 @@ fn packed_files_are_read_wherever_plain_ones_are() {
 #[test]
 fn readers_asked_by_their_name_unpack_too() {
     let files = memory(&[("m.obj.gz", packed(OBJ)), ("m.ply.gz", packed(PLY)), ("m.stl.gz", packed(STL))]);
-    let (sources, scene) = (&mut Sources::new(&files), &mut Scene::default());
-    assert_eq!(obj::read(Path::new("m.obj"), sources, scene).unwrap().len(), 1);
-    assert_eq!(ply::read(Path::new("m.ply.gz"), sources, scene).unwrap().len(), 1);
-    assert_eq!(stl::read(Path::new("m.stl"), sources, scene).unwrap().len(), 1);
+    let (context, scene) = (&mut LoadContext::new(&files), &mut Scene::default());
+    assert_eq!(obj::read(Path::new("m.obj"), context, scene).unwrap().len(), 1);
+    assert_eq!(ply::read(Path::new("m.ply.gz"), context, scene).unwrap().len(), 1);
+    assert_eq!(stl::read(Path::new("m.stl"), context, scene).unwrap().len(), 1);
 }
 
 #[test]
@@ -79,7 +79,8 @@ fn the_unpacked_file_comes_first_and_packed_ones_are_limited() {
     assert_eq!((error.kind, &*error.at.file), (ErrorKind::Limit, "m.obj.gz"), "{error}");
     let files = memory(&[("m.ply.gz", packed(PLY))]);
     let limits = Limits { file_bytes: PLY.len() as u64 - 1, ..Limits::default() };
-    let error = load::scene(Path::new("m.ply"), &mut Sources { limits, ..Sources::new(&files) }).unwrap_err();
+    let error =
+        load::scene(Path::new("m.ply"), &mut LoadContext { limits, ..LoadContext::new(&files) }).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Limit, "{error}");
 
     let error = read("m.ply", &memory(&[])).unwrap_err();

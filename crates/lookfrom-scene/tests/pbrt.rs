@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_scene::camera::{Projection, View, Window};
-use lookfrom_scene::light::{Amount, LightKind, Sky};
+use lookfrom_scene::light::{LightKind, Power, Sky};
 use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Scalar};
 use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::{MaterialId, MediumId, MeshId};
@@ -12,14 +12,14 @@ use lookfrom_scene::settings::{ColorMode, Crop, Filter, Integrator, Layers, Samp
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::{CameraSensor, Curve};
 use lookfrom_scene::texture::{Mapping, TextureKind};
-use lookfrom_scene::{Memory, Scene, Sources, load};
+use lookfrom_scene::{LoadContext, Memory, Scene, load};
 
 fn read_files(files: &[(&str, &str)]) -> (Scene, Vec<String>) {
     let memory =
         Memory(files.iter().map(|(name, text)| (PathBuf::from(name), text.as_bytes().to_vec())).collect());
-    let mut sources = Sources::new(&memory);
-    let scene = load::scene(Path::new(files[0].0), &mut sources).unwrap_or_else(|error| panic!("{error}"));
-    (scene, sources.warnings.iter().map(ToString::to_string).collect())
+    let mut context = LoadContext::new(&memory);
+    let scene = load::scene(Path::new(files[0].0), &mut context).unwrap_or_else(|error| panic!("{error}"));
+    (scene, context.warnings.iter().map(ToString::to_string).collect())
 }
 
 /// A scene without warnings.
@@ -165,17 +165,17 @@ fn lights_are_as_bright_as_pbrts() {
          AreaLightSource \"diffuse\" \"rgb L\" [ 7 7 7 ] \"bool twosided\" true Shape \"sphere\"",
     );
     let pi = std::f32::consts::PI;
-    let amounts: Vec<Amount> = scene.lights.iter().map(|light| light.amount).collect();
-    assert_eq!(amounts[0], Amount { scale: 1.0 / pi, total: None, absolute: false });
-    assert_eq!(amounts[1], Amount { scale: 2.0, total: Some(5.0), absolute: false });
-    assert_eq!(amounts[2].total, Some(8.0));
-    assert!((amounts[2].scale - 0.5).abs() < 1e-6);
+    let powers: Vec<Power> = scene.lights.iter().map(|light| light.power).collect();
+    assert_eq!(powers[0], Power { scale: 1.0 / pi, total: None, absolute: false });
+    assert_eq!(powers[1], Power { scale: 2.0, total: Some(5.0), absolute: false });
+    assert_eq!(powers[2].total, Some(8.0));
+    assert!((powers[2].scale - 0.5).abs() < 1e-6);
     assert!(matches!(scene.lights[1].kind, LightKind::Distant { direction: DVec3::Z, .. }));
     assert!(matches!(&scene.lights[2].kind, LightKind::Environment { sky: Sky::Constant(_), .. }));
     let emission = scene.shapes[0].emission.expect("it shines");
     assert_eq!(
-        (emission.radiance, emission.two_sided, emission.amount),
-        (Color::Value([7.0; 3]), true, Amount::AS_WRITTEN)
+        (emission.radiance, emission.two_sided, emission.power),
+        (Color::Value([7.0; 3]), true, Power::AS_WRITTEN)
     );
 }
 
@@ -272,8 +272,8 @@ fn what_is_not_rendered_is_warned_of_once() {
     let expected = [
         "a.pbrt:1:1: the integrator \"bdpt\" is not there: \"volpath\" computes the same light in its place",
         "a.pbrt:2:1: the medium \"fog\" only absorbs: what it would scatter is not rendered yet",
-        "a.pbrt:3:1: hair is not shaded as hair yet: \"diffuse\" takes the place of it",
-        "a.pbrt:3:33: light under surfaces is not followed yet: \"coateddiffuse\" takes the place of \"subsurface\"",
+        "a.pbrt:3:1: the hair material is not rendered yet: \"diffuse\" takes the place of it",
+        "a.pbrt:3:33: subsurface scattering is not rendered yet: \"coateddiffuse\" takes the place of \"subsurface\"",
         "a.pbrt:4:16: Shape \"sphere\" has no parameter \"float raduis\"; did you mean \"radius\"?",
     ];
     assert_eq!(warnings, expected);
@@ -314,7 +314,8 @@ fn media_are_around_the_camera_and_beside_shapes() {
     }
     let unknown = "MediumInterface \"d\" Camera \"perspective\" WorldBegin";
     let files = Memory([(PathBuf::from("a.pbrt"), unknown.as_bytes().to_vec())].into());
-    let error = load::scene(Path::new("a.pbrt"), &mut Sources::new(&files)).expect_err("an unknown medium");
+    let error =
+        load::scene(Path::new("a.pbrt"), &mut LoadContext::new(&files)).expect_err("an unknown medium");
     assert!(error.to_string().starts_with("a.pbrt:1:21: \"d\" is no medium that is known"), "{error}");
 }
 
@@ -333,7 +334,7 @@ fn textures_of_numbers_prefer_the_opacity_of_a_picture() {
     let text = "WorldBegin Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"a.tga\"\n\
                 Texture \"c\" \"spectrum\" \"imagemap\" \"string filename\" \"a.tga\" Shape \"disk\" \"texture alpha\" \"a\"";
     let memory = Memory([(PathBuf::from("a.pbrt"), text.as_bytes().to_vec()), ("a.tga".into(), tga)].into());
-    let scene = load::scene(Path::new("a.pbrt"), &mut Sources::new(&memory))
+    let scene = load::scene(Path::new("a.pbrt"), &mut LoadContext::new(&memory))
         .unwrap_or_else(|error| panic!("{error}"));
     let alpha = [[1.0; 3], [0.0; 3]];
     assert_eq!((scene.images.len(), scene.images[0].texels().collect::<Vec<_>>()), (2, alpha.to_vec()));

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use lookfrom_scene::excerpt::Excerpts;
-use lookfrom_scene::{Error, Memory, Sources, load};
+use lookfrom_scene::{Error, LoadContext, Memory, load};
 
 /// Each of the errors with the line that it points at.
 fn shown(error: &Error, files: &Memory) -> String {
@@ -20,11 +20,11 @@ fn shown(error: &Error, files: &Memory) -> String {
 /// All that is said of a scene: its error if there is one, and then its warnings.
 fn said(text: &str) -> String {
     let files = Memory([(PathBuf::from("a.pbrt"), text.as_bytes().to_vec())].into());
-    let mut sources = Sources::new(&files);
-    let error = load::scene(Path::new("a.pbrt"), &mut sources).err();
+    let mut context = LoadContext::new(&files);
+    let error = load::scene(Path::new("a.pbrt"), &mut context).err();
     let error = error.map(|error| shown(&error, &files));
     let all: Vec<String> =
-        error.into_iter().chain(sources.warnings.iter().map(ToString::to_string)).collect();
+        error.into_iter().chain(context.warnings.iter().map(ToString::to_string)).collect();
     if all.is_empty() { "nothing".to_owned() } else { all.join("\n") }
 }
 

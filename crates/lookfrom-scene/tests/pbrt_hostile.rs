@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{ErrorKind, Memory, Result, Scene, Sources, load};
+use lookfrom_scene::{ErrorKind, LoadContext, Memory, Result, Scene, load};
 use proptest::prelude::*;
 
 fn read(bytes: &[u8]) -> Result<Scene> {
     let files = Memory([(PathBuf::from("a.pbrt"), bytes.to_vec()), ("b.pbrt".into(), bytes.to_vec())].into());
-    let mut sources = Sources::new(&files);
-    sources.limits.elements = 10_000;
-    sources.limits.texels = 10_000;
-    load::scene(Path::new("a.pbrt"), &mut sources)
+    let mut context = LoadContext::new(&files);
+    context.limits.elements = 10_000;
+    context.limits.texels = 10_000;
+    load::scene(Path::new("a.pbrt"), &mut context)
 }
 
 /// Reads a text as a scene and checks what every reader promises.
@@ -48,7 +48,7 @@ fn includes_of_includes_do_not_multiply_without_end() {
         files.0.insert(format!("{level}.pbrt").into(), text.into_bytes());
     }
     files.0.insert("15.pbrt".into(), Vec::new());
-    let error = load::scene(Path::new("0.pbrt"), &mut Sources::new(&files)).expect_err("too many");
+    let error = load::scene(Path::new("0.pbrt"), &mut LoadContext::new(&files)).expect_err("too many");
     assert_eq!(error.kind, ErrorKind::Limit);
 }
 

@@ -4,20 +4,7 @@ use std::path::{Path, PathBuf};
 
 use lookfrom_scene::settings::{Integrator, Sampler};
 use lookfrom_scene::shape::Geometry;
-use lookfrom_scene::{Disk, Scene, Sources, load};
-
-fn shared() -> Option<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes");
-    if root.is_dir() {
-        return Some(root);
-    }
-    let root = Path::new("/work/shared/scenes").to_owned();
-    if root.is_dir() {
-        return Some(root);
-    }
-    println!("skipped: {} is not there", root.display());
-    None
-}
+use lookfrom_scene::{Disk, LoadContext, Scene, load};
 
 /// All files below a folder that end in `.pbrt` and begin a world.
 fn scenes(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -36,14 +23,14 @@ fn scenes(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 fn read(path: &Path) -> (Scene, Vec<String>) {
-    let mut sources = Sources::new(&Disk);
-    let scene = load::scene(path, &mut sources).unwrap_or_else(|error| panic!("{error}"));
-    (scene, sources.warnings.iter().map(ToString::to_string).collect())
+    let mut context = LoadContext::new(&Disk);
+    let scene = load::scene(path, &mut context).unwrap_or_else(|error| panic!("{error}"));
+    (scene, context.warnings.iter().map(ToString::to_string).collect())
 }
 
 #[test]
 fn every_shared_scene_is_read() {
-    let Some(root) = shared() else { return };
+    let Some(root) = lookfrom_test_data::shared("scenes") else { return };
     let mut paths = Vec::new();
     scenes(&root, &mut paths);
     assert!(paths.len() >= 7, "{paths:?}");
@@ -73,7 +60,7 @@ fn every_shared_scene_is_read() {
 
 #[test]
 fn the_coffee_maker_is_as_it_was_written() {
-    let Some(root) = shared() else { return };
+    let Some(root) = lookfrom_test_data::shared("scenes") else { return };
     let (scene, warnings) = read(&root.join("coffee/scene.pbrt"));
     assert_eq!((scene.image.width, scene.image.height), (200, 250));
     assert_eq!(scene.render.integrator, Integrator::Path);

@@ -9,7 +9,7 @@ use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{Color, MaterialKind, Whitted};
 use lookfrom_scene::shape::Geometry;
 use lookfrom_scene::texture::{Mapping, TextureKind};
-use lookfrom_scene::{Error, ErrorKind, Memory, Result, Scene, Sources, image, load};
+use lookfrom_scene::{Error, ErrorKind, LoadContext, Memory, Result, Scene, image, load};
 
 fn files(texts: &[(&str, &str)]) -> Memory {
     let mut files = Memory::default();
@@ -23,7 +23,7 @@ fn files(texts: &[(&str, &str)]) -> Memory {
 
 fn read_files(texts: &[(&str, &str)]) -> Result<Scene> {
     let files = files(texts);
-    load::scene(Path::new(texts[0].0), &mut Sources::new(&files))
+    load::scene(Path::new(texts[0].0), &mut LoadContext::new(&files))
 }
 
 fn read(text: &str) -> Scene {
@@ -57,7 +57,7 @@ fn errors_say_where_and_what_to_do() {
     for case in cases.by_ref() {
         let (text, _) = case.split_once("\n-----\n").unwrap_or((case, ""));
         let files = files(&[("a.toml", text)]);
-        let error = match load::scene(Path::new("a.toml"), &mut Sources::new(&files)) {
+        let error = match load::scene(Path::new("a.toml"), &mut LoadContext::new(&files)) {
             Ok(_) => "no error".to_owned(),
             Err(error) => shown(&error, &files),
         };
@@ -336,16 +336,16 @@ fn imports_that_never_end_are_errors_that_show_the_chain() {
 #[test]
 fn limits_hold() {
     let mut sources_files = files(&[("a.toml", "[[sphereflake]]\ndepth = 3")]);
-    let mut sources = Sources::new(&sources_files);
-    sources.limits.elements = 819;
-    let error = load::scene(Path::new("a.toml"), &mut sources).unwrap_err();
+    let mut context = LoadContext::new(&sources_files);
+    context.limits.elements = 819;
+    let error = load::scene(Path::new("a.toml"), &mut context).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Limit);
-    sources.limits.elements = 820;
-    assert!(load::scene(Path::new("a.toml"), &mut sources).is_ok());
+    context.limits.elements = 820;
+    assert!(load::scene(Path::new("a.toml"), &mut context).is_ok());
     sources_files.0.insert("a.toml".into(), "[[sphereflake]]\ndepth = 3\n".repeat(2).into_bytes());
-    let mut sources = Sources::new(&sources_files);
-    sources.limits.elements = 820;
-    let error = load::scene(Path::new("a.toml"), &mut sources).unwrap_err();
+    let mut context = LoadContext::new(&sources_files);
+    context.limits.elements = 820;
+    let error = load::scene(Path::new("a.toml"), &mut context).unwrap_err();
     assert_eq!((error.kind, error.at.line), (ErrorKind::Limit, 3));
 
     let chain: String =
@@ -353,12 +353,12 @@ fn limits_hold() {
     sources_files
         .0
         .insert("a.toml".into(), format!("{chain}[textures.t20]\ntype = \"vertex_color\"").into_bytes());
-    let error = load::scene(Path::new("a.toml"), &mut Sources::new(&sources_files)).unwrap_err();
+    let error = load::scene(Path::new("a.toml"), &mut LoadContext::new(&sources_files)).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Limit, "{error}");
 
     let nested = format!("[[sphere]]\nemission = {}1{}", "[".repeat(100_000), "]".repeat(100_000));
     sources_files.0.insert("a.toml".into(), nested.into_bytes());
-    assert!(load::scene(Path::new("a.toml"), &mut Sources::new(&sources_files)).is_err());
+    assert!(load::scene(Path::new("a.toml"), &mut LoadContext::new(&sources_files)).is_err());
 }
 
 #[test]
@@ -384,7 +384,7 @@ fn thousands_of_errors_are_no_burden() {
     for (text, most) in [(many, 1000), (long, 1000), (broken, 20_000)] {
         let started = std::time::Instant::now();
         let files = files(&[("a.toml", &text)]);
-        let error = load::scene(Path::new("a.toml"), &mut Sources::new(&files)).expect_err("errors");
+        let error = load::scene(Path::new("a.toml"), &mut LoadContext::new(&files)).expect_err("errors");
         assert_eq!(error.each().count(), most);
         let mut excerpts = Excerpts::new(&files);
         assert!(error.first_few().0.all(|error| excerpts.of(&error.at).is_some()));

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Disk, Sources, load, toml};
+use lookfrom_scene::{Disk, LoadContext, load, toml};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -28,9 +28,9 @@ fn all_scenes_are_read() {
     let (own, snippets) = (scenes("scenes"), scenes("docs/guide/scenes"));
     assert!(own.len() >= 10 && snippets.len() >= 10);
     for path in own.iter().chain(&snippets) {
-        let mut sources = Sources::new(&Disk);
-        let scene = load::scene(path, &mut sources).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(sources.warnings, [], "{}", path.display());
+        let mut context = LoadContext::new(&Disk);
+        let scene = load::scene(path, &mut context).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(context.warnings, [], "{}", path.display());
         assert!(scene.camera.is_some(), "{} has no camera", path.display());
         assert!(!scene.bounds().is_empty(), "{} is empty", path.display());
     }
@@ -88,7 +88,7 @@ fn the_snippets_of_the_guide_are_read() {
         let needs_names = !own("import") && !own("[materials.") && !own("[textures.") && !own("[[objects.");
         let text = format!("{}{snippet}", if needs_names { "import = \"names.toml\"\n" } else { "" });
         files.0.insert("snippet.toml".into(), text.into_bytes());
-        if let Err(error) = load::scene(Path::new("snippet.toml"), &mut Sources::new(&files)) {
+        if let Err(error) = load::scene(Path::new("snippet.toml"), &mut LoadContext::new(&files)) {
             panic!("snippet {index} of scene-format.md: {error}\nin\n{snippet}");
         }
     }

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use lookfrom_scene::{Memory, Sources, load};
+use lookfrom_scene::{LoadContext, Memory, load};
 use proptest::prelude::*;
 
 /// Reads text as a scene; small limits keep what it may ask for small.
 fn survive(bytes: &[u8]) {
     let mut files = Memory::default();
     files.0.insert("a.toml".into(), bytes.to_vec());
-    let mut sources = Sources::new(&files);
-    sources.limits.elements = 10_000;
-    sources.limits.texels = 10_000;
-    match load::scene(Path::new("a.toml"), &mut sources) {
+    let mut context = LoadContext::new(&files);
+    context.limits.elements = 10_000;
+    context.limits.texels = 10_000;
+    match load::scene(Path::new("a.toml"), &mut context) {
         Ok(scene) => scene.shapes.iter().for_each(|shape| assert!(shape.world_from_object.is_finite())),
         Err(error) => assert!(!error.message.is_empty() && !error.at.file.is_empty()),
     }

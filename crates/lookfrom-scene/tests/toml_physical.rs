@@ -10,7 +10,7 @@ use lookfrom_scene::settings::{ColorMode, Integrator, Layers, LightSampler};
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::{self, CameraSensor, Curve};
 use lookfrom_scene::texture::{Mapping, TextureKind};
-use lookfrom_scene::{Memory, Scene, Sources, image, load};
+use lookfrom_scene::{LoadContext, Memory, Scene, image, load};
 
 fn read_files(texts: &[(&str, &str)]) -> Scene {
     let mut files = Memory::default();
@@ -18,7 +18,7 @@ fn read_files(texts: &[(&str, &str)]) -> Scene {
         files.0.insert(name.into(), text.as_bytes().to_vec());
     }
     files.0.insert("half.png".into(), image::encode_png(1, 1, &[128; 3]).expect("a picture"));
-    let scene = load::scene(Path::new(texts[0].0), &mut Sources::new(&files));
+    let scene = load::scene(Path::new(texts[0].0), &mut LoadContext::new(&files));
     scene.unwrap_or_else(|error| panic!("{error}\nin\n{}", texts[0].1))
 }
 
@@ -236,10 +236,10 @@ emission = { kelvin = 3000, scale = 4 }
         panic!("a point")
     };
     assert_eq!(scene.curves[warm.index()], Curve::Blackbody { kelvin: 3000.0 });
-    assert_eq!((scene.lights[0].amount.scale, scene.lights[0].amount.total), (7.0, None));
-    assert!(!scene.lights[0].amount.absolute);
+    assert_eq!((scene.lights[0].power.scale, scene.lights[0].power.total), (7.0, None));
+    assert!(!scene.lights[0].power.absolute);
     let LightKind::Distant { intensity, .. } = scene.lights[1].kind else { panic!("distant") };
-    assert_eq!((intensity, scene.lights[1].amount.total), (Color::gray(1.0), Some(5.0)));
+    assert_eq!((intensity, scene.lights[1].power.total), (Color::gray(1.0), Some(5.0)));
     let LightKind::Environment { sky: Sky::Constant(Color::Curve(_)), portal: Some(corners), .. } =
         scene.lights[2].kind
     else {
@@ -252,8 +252,8 @@ emission = { kelvin = 3000, scale = 4 }
     // What it comes to as a whole outdoes the brightness; the curve is kept once.
     let emissions: Vec<_> = scene.shapes.iter().map(|shape| shape.emission.expect("it shines")).collect();
     assert!(emissions.iter().all(|emission| emission.radiance == Color::Curve(warm)));
-    let amounts: Vec<_> = emissions.iter().map(|e| (e.amount.scale, e.amount.total)).collect();
-    assert!(amounts.contains(&(1.0, Some(100.0))) && amounts.contains(&(4.0, None)));
+    let powers: Vec<_> = emissions.iter().map(|e| (e.power.scale, e.power.total)).collect();
+    assert!(powers.contains(&(1.0, Some(100.0))) && powers.contains(&(4.0, None)));
 }
 
 #[test]
@@ -420,6 +420,6 @@ fn mixes_of_mixes_come_to_an_end() {
     let text = format!("{chain}[materials.m100000]\n[materials.last]\n");
     let mut files = Memory::default();
     files.0.insert("a.toml".into(), text.into_bytes());
-    let error = load::scene(Path::new("a.toml"), &mut Sources::new(&files)).unwrap_err();
+    let error = load::scene(Path::new("a.toml"), &mut LoadContext::new(&files)).unwrap_err();
     assert_eq!(error.kind, lookfrom_scene::ErrorKind::Limit, "{error}");
 }

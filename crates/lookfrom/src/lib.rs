@@ -2,6 +2,7 @@
 
 pub mod bsdf;
 pub mod camera;
+mod clock;
 pub mod color;
 pub mod denoise;
 pub mod develop;
@@ -18,6 +19,7 @@ pub mod light;
 pub mod material;
 pub mod math;
 pub mod noise;
+mod parallel;
 pub mod primitive;
 pub mod render;
 pub mod sampler;

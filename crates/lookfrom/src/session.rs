@@ -24,7 +24,7 @@ mod source;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::DMat3;
 use lookfrom_scene::camera::Camera;
@@ -33,8 +33,9 @@ use lookfrom_scene::count::Counts;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
 use lookfrom_scene::studio::Turntable;
-use lookfrom_scene::{Disk, Error, Files, Location, Memory, Result, Scene, Sources, Warning, load};
+use lookfrom_scene::{Disk, Error, Files, LoadContext, Location, Memory, Result, Scene, Warning, load};
 
+use crate::clock::Stopwatch;
 use crate::film::Picture;
 use crate::integrator::Integrator;
 use crate::render::{Progress, Renderer, StopCriteria, Subject};
@@ -131,10 +132,10 @@ impl Session {
     }
 
     fn read_from(source: Source, path: &Path, files: &dyn Files, options: &Options) -> Result<Self> {
-        let started = Instant::now();
-        let mut sources = Sources { choice: options.import.clone(), ..Sources::new(files) };
-        let scene = load::scene(path, &mut sources)?;
-        Self::prepare(scene, path, source, sources.warnings, started, options)
+        let started = Stopwatch::start();
+        let mut context = LoadContext { import: options.import.clone(), ..LoadContext::new(files) };
+        let scene = load::scene(path, &mut context)?;
+        Self::prepare(scene, path, source, context.warnings, started, options)
     }
 
     /// A session of a scene that was made or read elsewhere.
@@ -142,7 +143,7 @@ impl Session {
     /// # Errors
     /// As [`Session::open`].
     pub fn of_scene(scene: Scene, options: &Options) -> Result<Self> {
-        Self::prepare(scene, Path::new(""), Source::Elsewhere, Vec::new(), Instant::now(), options)
+        Self::prepare(scene, Path::new(""), Source::Elsewhere, Vec::new(), Stopwatch::start(), options)
     }
 
     fn prepare(
@@ -150,11 +151,11 @@ impl Session {
         path: &Path,
         source: Source,
         mut warnings: Vec<Warning>,
-        started: Instant,
+        started: Stopwatch,
         options: &Options,
     ) -> Result<Self> {
         let read = started.elapsed();
-        let started = Instant::now();
+        let started = Stopwatch::start();
         let (counts, bounds) = (Counts::of(&scene), scene.bounds());
         let contents = std::mem::take(&mut scene.contents);
         let noise = options.stop.noise.or(options.adaptive.then_some(ADAPTIVE_NOISE));

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use lookfrom::render::Renderer;
 use lookfrom_scene::settings::{ColorMode, Filter, Sampler};
-use lookfrom_scene::{Memory, Scene, Sources, load};
+use lookfrom_scene::{LoadContext, Memory, Scene, load};
 
 /// Columns and rows of a picture.
 const SIZE: u32 = 40;
@@ -142,9 +142,9 @@ fn pbrt(ball_is: &str) -> Scene {
 
 fn read<const N: usize>(name: &str, files: [(&str, Vec<u8>); N]) -> Scene {
     let memory = Memory(files.into_iter().map(|(name, bytes)| (PathBuf::from(name), bytes)).collect());
-    let mut sources = Sources::new(&memory);
-    let scene = load::scene(Path::new(name), &mut sources).unwrap_or_else(|error| panic!("{error}"));
-    assert!(sources.warnings.is_empty(), "{:?}", sources.warnings);
+    let mut context = LoadContext::new(&memory);
+    let scene = load::scene(Path::new(name), &mut context).unwrap_or_else(|error| panic!("{error}"));
+    assert!(context.warnings.is_empty(), "{:?}", context.warnings);
     scene
 }
 

@@ -8,7 +8,7 @@ use lookfrom::film::{Film, FilmTile};
 use lookfrom::inspect::{Inspection, RayReport, inspect, svg};
 use lookfrom::render::SampleId;
 use lookfrom_scene::image::Image;
-use lookfrom_scene::light::{Amount, Light, LightKind, Sky};
+use lookfrom_scene::light::{Light, LightKind, Power, Sky};
 use lookfrom_scene::scene::ImageId;
 use lookfrom_scene::settings::{ColorMode, Crop, Integrator};
 use lookfrom_scene::{Location, Scene};
@@ -133,7 +133,7 @@ fn room(integrator: Integrator, color: ColorMode) -> Scene {
         name: Some("sky".into()),
         at: Location::default(),
         kind: LightKind::Environment { sky, portal: None, illuminates: true },
-        amount: Amount::AS_WRITTEN,
+        power: Power::AS_WRITTEN,
     });
     scene.render.integrator = integrator;
     scene.render.color = color;

@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 
 /// Each module of this crate and the modules it may use. Rows may name only rows above them, so that there is no circle.
 const MAY_USE: &[(&str, &[&str])] = &[
+    ("clock", &[]),
+    ("parallel", &[]),
     ("hash", &[]),
     ("math", &[]),
     ("spectrum", &[]),
@@ -17,7 +19,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("color", &["math", "spectrum"]),
     ("bsdf", &["hash", "math", "spectrum", "warp"]),
     ("film", &["spectrum"]),
-    ("denoise", &["film"]),
+    ("denoise", &["film", "parallel"]),
     ("develop", &["film"]),
     ("sampler", &["eight", "hash"]),
     ("noise", &["hash"]),
@@ -31,7 +33,17 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("primitive", &["math", "interaction", "texture", "warp"]),
     (
         "light",
-        &["distribution", "math", "sampler", "primitive", "spectrum", "interaction", "texture", "warp"],
+        &[
+            "distribution",
+            "math",
+            "parallel",
+            "sampler",
+            "primitive",
+            "spectrum",
+            "interaction",
+            "texture",
+            "warp",
+        ],
     ),
     (
         "world",
@@ -72,6 +84,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "render",
         &[
             "camera",
+            "clock",
             "color",
             "film",
             "filter",
@@ -79,6 +92,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "light",
             "material",
             "math",
+            "parallel",
             "sampler",
             "spectrum",
             "interaction",
@@ -104,15 +118,16 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "world",
         ],
     ),
-    ("session", &["color", "denoise", "develop", "film", "integrator", "render", "view", "world"]),
+    ("session", &["clock", "color", "denoise", "develop", "film", "integrator", "render", "view", "world"]),
 ];
 
 /// Each crate of the workspace and the crates of the workspace that it may use. Rows may name only rows above them.
 const CRATES: &[(&str, &[&str])] = &[
     ("lookfrom-simd", &[]),
+    ("lookfrom-test-data", &[]),
     ("lookfrom-bvh", &["lookfrom-simd"]),
-    ("lookfrom-scene", &[]),
-    ("lookfrom", &["lookfrom-bvh", "lookfrom-scene", "lookfrom-simd"]),
+    ("lookfrom-scene", &["lookfrom-test-data"]),
+    ("lookfrom", &["lookfrom-bvh", "lookfrom-scene", "lookfrom-simd", "lookfrom-test-data"]),
     ("lookfrom-cli", &["lookfrom", "lookfrom-scene"]),
 ];
 

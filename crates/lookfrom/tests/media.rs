@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use lookfrom::inspect::inspect;
 use lookfrom::render::SampleId;
 use lookfrom_scene::settings::{ColorMode, Integrator};
-use lookfrom_scene::{Memory, Scene, Sources, load};
+use lookfrom_scene::{LoadContext, Memory, Scene, load};
 use support::Compiled;
 
 /// What the medium takes away per unit of length.
@@ -49,10 +49,10 @@ fn text(integrator: &str, sigma: [f64; 3], before: &str, world: &str) -> String 
 fn read(text: &str) -> (Scene, Vec<String>) {
     let name = PathBuf::from("a.pbrt");
     let files = Memory([(name.clone(), text.as_bytes().to_vec())].into());
-    let mut sources = Sources::new(&files);
-    let mut scene = load::scene(Path::new(&name), &mut sources).unwrap_or_else(|error| panic!("{error}"));
+    let mut context = LoadContext::new(&files);
+    let mut scene = load::scene(Path::new(&name), &mut context).unwrap_or_else(|error| panic!("{error}"));
     scene.render.color = ColorMode::Rgb;
-    (scene, sources.warnings.iter().map(ToString::to_string).collect())
+    (scene, context.warnings.iter().map(ToString::to_string).collect())
 }
 
 fn mean(scene: Scene) -> [f64; 3] {

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 use lookfrom::render::Renderer;
 use lookfrom_scene::camera::{Camera, Projection, View};
-use lookfrom_scene::light::{Amount, Falloff, Light, LightKind, Sky};
+use lookfrom_scene::light::{Falloff, Light, LightKind, Power, Sky};
 use lookfrom_scene::material::{Coat, Color, Ior, Material, MaterialKind, Metal, Roughness, Scalar};
 use lookfrom_scene::scene::{MaterialId, Scene};
 use lookfrom_scene::settings::{ColorMode, Filter, Integrator, LightSampler, Sampler};
@@ -31,7 +31,7 @@ fn scene(kind: MaterialKind, geometry: Geometry) -> Scene {
 }
 
 fn light(kind: LightKind) -> Light {
-    Light { name: None, at: nowhere(), kind, amount: Amount::AS_WRITTEN }
+    Light { name: None, at: nowhere(), kind, power: Power::AS_WRITTEN }
 }
 
 /// The mean over the picture by channel.

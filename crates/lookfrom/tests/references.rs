@@ -1,4 +1,4 @@
-//! Scenes of other people against pictures by pbrt-v4, where the shared folder is there.
+//! Scenes of other people against pictures by pbrt-v4, which are test data (`LOOKFROM_SHARED`).
 //!
 //! At few samples the variance of a single pixel is badly known, so means over the picture and over blocks are compared;
 //! `lookfrom compare` does the test by pixels, at many samples.
@@ -9,7 +9,7 @@ use lookfrom::render::Renderer;
 use lookfrom_scene::image::compare::{Sampled, compare};
 use lookfrom_scene::image::read_exr;
 use lookfrom_scene::settings::Layers;
-use lookfrom_scene::{Disk, Sources, load};
+use lookfrom_scene::{Disk, LoadContext, load};
 
 const SAMPLES: u32 = 16;
 
@@ -26,12 +26,12 @@ const SCENES: &[(&str, &str, u64)] = &[
 
 /// Our picture of a scene with the variance of each pixel's samples.
 fn picture(scene: &Path) -> Sampled {
-    let mut sources = Sources::new(&Disk);
-    let mut scene = load::scene(scene, &mut sources).unwrap_or_else(|error| panic!("{error}"));
+    let mut context = LoadContext::new(&Disk);
+    let mut scene = load::scene(scene, &mut context).unwrap_or_else(|error| panic!("{error}"));
     scene.render.samples = SAMPLES;
     // A camera's noise is known in its own channels where there are layers.
     scene.image.layers = Layers::Geometry;
-    let renderer = Renderer::of_scene(scene, &mut sources.warnings).unwrap_or_else(|error| panic!("{error}"));
+    let renderer = Renderer::of_scene(scene, &mut context.warnings).unwrap_or_else(|error| panic!("{error}"));
     let film = renderer.render(None, &()).expect("a picture").film;
     assert_eq!(film.dropped(), 0, "samples that are not finite, the first at {:?}", film.first_dropped());
     let channels = |(x, y)| film.channel_variance(x, y).unwrap_or_else(|| film.variance(x, y));
@@ -48,14 +48,10 @@ fn picture(scene: &Path) -> Sampled {
 
 #[test]
 fn pictures_are_pbrts() {
-    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
-    if !shared.join("reference").is_dir() {
-        println!("skipped: there is no {}", shared.display());
-        return;
-    }
+    let Some(shared) = lookfrom_test_data::shared("") else { return };
     for (scene, name, samples) in SCENES {
         let ours = picture(&shared.join(format!("scenes/{scene}.pbrt")));
-        let file = read_exr(&shared.join(format!("reference/{name}.exr")), &mut Sources::new(&Disk));
+        let file = read_exr(&shared.join(format!("reference/{name}.exr")), &mut LoadContext::new(&Disk));
         let theirs = Sampled::new(&file.expect("a picture"), Some(*samples)).expect("a picture of RGB");
         let found = compare(&ours, &theirs).expect("pictures of one size");
         let noise = found.noise.as_ref().expect("variances on both sides");
@@ -70,11 +66,11 @@ fn pictures_are_pbrts() {
 
 /// Which part of the pixels has nearly the normal (`N`, `Ns`) of pbrt's picture.
 fn alike(scene: &Path, reference: &Path) -> [f64; 2] {
-    let theirs = read_exr(reference, &mut Sources::new(&Disk)).expect("a picture");
-    let mut sources = Sources::new(&Disk);
-    let mut scene = load::scene(scene, &mut sources).unwrap_or_else(|error| panic!("{error}"));
+    let theirs = read_exr(reference, &mut LoadContext::new(&Disk)).expect("a picture");
+    let mut context = LoadContext::new(&Disk);
+    let mut scene = load::scene(scene, &mut context).unwrap_or_else(|error| panic!("{error}"));
     (scene.render.samples, scene.render.depth, scene.image.layers) = (SAMPLES, 0, Layers::Geometry);
-    let renderer = Renderer::of_scene(scene, &mut sources.warnings).unwrap_or_else(|error| panic!("{error}"));
+    let renderer = Renderer::of_scene(scene, &mut context.warnings).unwrap_or_else(|error| panic!("{error}"));
     let film = renderer.render(None, &()).expect("a picture").film;
     let places = || (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
     let ours: Vec<_> = places().map(|(x, y)| film.aovs(x, y).unwrap_or_default()).collect();
@@ -96,11 +92,7 @@ fn alike(scene: &Path, reference: &Path) -> [f64; 2] {
 
 #[test]
 fn normals_are_pbrts() {
-    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
-    if !shared.join("reference").is_dir() {
-        println!("skipped: there is no {}", shared.display());
-        return;
-    }
+    let Some(shared) = lookfrom_test_data::shared("") else { return };
     // That of the sensor has no `Ns`.
     for (scene, name, _) in SCENES.iter().filter(|(_, name, _)| *name != "cornell-sensor") {
         let reference = shared.join(format!("reference/{name}.exr"));

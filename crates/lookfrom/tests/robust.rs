@@ -6,7 +6,7 @@ mod support;
 use lookfrom::film::Picture;
 use lookfrom::world::World;
 use lookfrom_scene::settings::Integrator;
-use lookfrom_scene::{Memory, Sources, image};
+use lookfrom_scene::{LoadContext, Memory, image};
 use support::{Compiled, close, own_scene, scene};
 
 /// Glass, a mirror, an instance with a shear, a disk and a mesh over a floor, all times `scale` and moved by `offset`.
@@ -142,8 +142,8 @@ fn under_sky(texels: &[[f32; 3]], rest: &str) -> lookfrom::film::Film {
     );
     let sky = image::encode_pfm(16, 8, texels).expect("a small picture");
     let files = Memory([("s.toml".into(), toml.into_bytes()), ("sky.pfm".into(), sky)].into());
-    let mut sources = Sources::new(&files);
-    let scene = lookfrom_scene::load::scene("s.toml".as_ref(), &mut sources)
+    let mut context = LoadContext::new(&files);
+    let scene = lookfrom_scene::load::scene("s.toml".as_ref(), &mut context)
         .unwrap_or_else(|error| panic!("{error}"));
     Compiled::new(scene).film()
 }

@@ -12,7 +12,7 @@ use lookfrom::spectrum::Spectrum;
 use lookfrom::world::World;
 use lookfrom_bvh::Hit;
 use lookfrom_scene::camera::{Camera, View};
-use lookfrom_scene::{Disk, ErrorKind, Files, Memory, Sources, load};
+use lookfrom_scene::{Disk, ErrorKind, Files, LoadContext, Memory, load};
 
 fn own(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name)
@@ -32,7 +32,7 @@ fn every_way_in_makes_the_same_picture() {
     let opened = Session::open(&path, &small()).expect("a model");
     let bytes = std::fs::read(&path).expect("a file");
     let from_bytes = Session::from_bytes("star.ply", bytes, &small()).expect("a model");
-    let scene = load::scene(&path, &mut Sources::new(&Disk)).expect("a model");
+    let scene = load::scene(&path, &mut LoadContext::new(&Disk)).expect("a model");
     let of_scene = Session::of_scene(scene, &small()).expect("a model");
     let film = film(&opened);
     for other in [&from_bytes, &of_scene, &opened.clone()] {

@@ -8,7 +8,7 @@ use lookfrom::world::World;
 use lookfrom_bvh::Ray;
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::image::{Encoding, Image};
-use lookfrom_scene::light::{Amount, Falloff, Light as WrittenLight, LightKind};
+use lookfrom_scene::light::{Falloff, Light as WrittenLight, LightKind, Power};
 use lookfrom_scene::material::{Color, Material, MaterialKind, Scalar};
 use lookfrom_scene::scene::{ImageId, Instance, MaterialId, MeshId, Object, ObjectId, Scene, TextureId};
 use lookfrom_scene::settings::{ColorMode, Integrator};
@@ -189,7 +189,7 @@ fn lit_floor(integrator: Integrator, between: impl FnOnce(&mut Scene) -> Option<
         intensity: Color::gray(10.0),
         falloff: Falloff::Quadratic,
     };
-    scene.lights.push(WrittenLight { name: None, at: nowhere(), kind, amount: Amount::AS_WRITTEN });
+    scene.lights.push(WrittenLight { name: None, at: nowhere(), kind, power: Power::AS_WRITTEN });
     mean(scene)
 }
 

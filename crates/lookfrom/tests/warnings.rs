@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use lookfrom::render::Renderer;
-use lookfrom_scene::{Memory, Sources, image, load};
+use lookfrom_scene::{LoadContext, Memory, image, load};
 
 /// The warnings of reading and compiling the first of some files.
 fn warnings_of(files: &[(&str, String)]) -> Vec<String> {
@@ -12,9 +12,9 @@ fn warnings_of(files: &[(&str, String)]) -> Vec<String> {
     let mut memory = Memory(files.collect());
     let name = if memory.0.contains_key(Path::new("a.obj")) { "a.obj" } else { "a.toml" };
     memory.0.insert("white.png".into(), image::encode_png(1, 1, &[255; 3]).expect("a picture"));
-    let mut sources = Sources::new(&memory);
-    let scene = load::scene(Path::new(name), &mut sources).unwrap_or_else(|error| panic!("{error}"));
-    let mut warnings = sources.warnings;
+    let mut context = LoadContext::new(&memory);
+    let scene = load::scene(Path::new(name), &mut context).unwrap_or_else(|error| panic!("{error}"));
+    let mut warnings = context.warnings;
     Renderer::of_scene(scene, &mut warnings).unwrap_or_else(|error| panic!("{error}"));
     warnings.iter().map(ToString::to_string).collect()
 }
@@ -90,8 +90,8 @@ fn all_parts_of_a_model_are_one_body() {
     let model =
         "usemtl a\nv -4 -1 4\nv 4 -1 4\nv 0 -1 -4\nv 0 5 0\nf 1 3 2\nf 1 2 4\nusemtl b\nf 2 3 4\nf 3 1 4\n";
     let memory = Memory([(PathBuf::from("a.obj"), model.as_bytes().to_vec())].into());
-    let mut sources = Sources::new(&memory);
-    let scene = load::scene(Path::new("a.obj"), &mut sources).unwrap();
+    let mut context = LoadContext::new(&memory);
+    let scene = load::scene(Path::new("a.obj"), &mut context).unwrap();
     let warnings = |lookfrom: [f64; 3]| {
         let mut scene = scene.clone();
         let view = lookfrom_scene::camera::View::Look {
@@ -101,7 +101,7 @@ fn all_parts_of_a_model_are_one_body() {
         };
         scene.camera = Some(lookfrom_scene::camera::Camera { view, ..Default::default() });
         // The lamp that the studio hangs up at the eye is none of a room.
-        lookfrom_scene::studio::furnish_model(&mut scene, None);
+        lookfrom_scene::studio::add_studio_and_camera(&mut scene, None);
         let mut warnings = Vec::new();
         Renderer::of_scene(scene, &mut warnings).unwrap();
         warnings.iter().map(ToString::to_string).collect::<Vec<_>>()

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lookfrom_scene::settings::Background;
-use lookfrom_scene::{CameraChoice, Choice};
+use lookfrom_scene::{CameraChoice, ImportOptions};
 
 use crate::values;
 
@@ -65,8 +65,8 @@ pub(crate) struct ModelArguments {
 
 impl ModelArguments {
     /// What is asked of files that hold several things.
-    pub(crate) fn choice(&self) -> Choice {
-        Choice {
+    pub(crate) fn choice(&self) -> ImportOptions {
+        ImportOptions {
             animation: self.animation.clone(),
             at: self.at.unwrap_or(0.0),
             variant: self.variant.clone(),

@@ -1,12 +1,12 @@
 //! `--denoise`: who gets it, and whether pictures say so.
 
 use lookfrom_scene::image::{self, Channels};
-use lookfrom_scene::{Disk, Sources};
+use lookfrom_scene::{Disk, LoadContext};
 
 use super::stage::Stage;
 
 fn exr(stage: &Stage, file: &str) -> Channels {
-    image::read_exr(&stage.path(file), &mut Sources::new(&Disk)).unwrap()
+    image::read_exr(&stage.path(file), &mut LoadContext::new(&Disk)).unwrap()
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use lookfrom_scene::{Disk, Sources, image};
+use lookfrom_scene::{Disk, LoadContext, image};
 
 use super::stage::{SCENE, Stage};
 
@@ -80,7 +80,7 @@ fn fireflies_are_spread_only_on_demand() {
     stage.done("render noisy.toml -q -o median.pfm --fireflies median");
     assert!(stage.bytes("off.pfm") == stage.bytes("off2.pfm"));
     let [off, median] = ["off.pfm", "median.pfm"].map(|file| {
-        let picture = image::read(&stage.path(file), &mut Sources::new(&Disk)).unwrap();
+        let picture = image::read(&stage.path(file), &mut LoadContext::new(&Disk)).unwrap();
         picture.texels().flatten().map(f64::from).sum::<f64>()
     });
     assert!((off - median).abs() < 1e-4 * off, "{off} {median}");

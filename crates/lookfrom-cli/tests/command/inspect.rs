@@ -1,7 +1,7 @@
 //! `lookfrom inspect`: the answer belongs to the picture that was rendered.
 
 use lookfrom_scene::image;
-use lookfrom_scene::{Disk, Sources};
+use lookfrom_scene::{Disk, LoadContext};
 
 use super::stage::Stage;
 
@@ -11,7 +11,7 @@ fn what_is_inspected_is_what_is_rendered() {
     for light in ["", "--integrator path", "--integrator path --color spectral"] {
         let options = format!("--samples 1 --width 20 --seed 3 --lookfrom -1,1,5 {light}");
         stage.done(&format!("render scene.toml -q -o p.exr {options}"));
-        let picture = image::read(&stage.path("p.exr"), &mut Sources::new(&Disk)).unwrap();
+        let picture = image::read(&stage.path("p.exr"), &mut LoadContext::new(&Disk)).unwrap();
         for [x, y] in [[0, 0], [11, 6], [3, 14], [19, 9]] {
             let inspection = &stage.json_document(&format!("inspect scene.toml {x} {y} --json {options}"));
             assert_eq!(inspection["pixel"], serde_json::json!([x, y]));

@@ -1,11 +1,11 @@
 //! Layers beside the picture in an EXR.
 
-use lookfrom_scene::{Disk, Sources, image};
+use lookfrom_scene::{Disk, LoadContext, image};
 
 use super::stage::Stage;
 
 fn names(stage: &Stage, file: &str) -> Vec<String> {
-    let found = image::read_exr(&stage.path(file), &mut Sources::new(&Disk)).unwrap();
+    let found = image::read_exr(&stage.path(file), &mut LoadContext::new(&Disk)).unwrap();
     found.channels.into_iter().map(|(name, _)| name).collect()
 }
 
@@ -20,7 +20,7 @@ fn layers_have_the_names_of_pbrts() {
         assert!(found.iter().any(|of_file| of_file == name), "{name} is not in {found:?}");
     }
     // The picture is the same, and its variance is that of soft edges: nothing in most places.
-    let read = |file: &str| image::read_exr(&stage.path(file), &mut Sources::new(&Disk)).unwrap();
+    let read = |file: &str| image::read_exr(&stage.path(file), &mut LoadContext::new(&Disk)).unwrap();
     let (plain, layers) = (read("plain.exr"), read("layers.exr"));
     // What the variances are of is said: here of X, Y and Z.
     let says =
@@ -36,7 +36,7 @@ fn layers_have_the_names_of_pbrts() {
 
 /// Unit vectors of a layer, pixel by pixel; those of pixels in which nothing is are left out.
 fn normals(stage: &Stage, file: &str, layer: &str) -> Vec<[f32; 3]> {
-    let found = image::read_exr(&stage.path(file), &mut Sources::new(&Disk)).unwrap();
+    let found = image::read_exr(&stage.path(file), &mut LoadContext::new(&Disk)).unwrap();
     let [x, y, z] = ["X", "Y", "Z"].map(|axis| found.channel(&format!("{layer}.{axis}")).unwrap());
     let all = x.iter().zip(y).zip(z).map(|((&x, &y), &z)| [x, y, z]);
     let normals: Vec<[f32; 3]> = all.filter(|normal| *normal != [0.0; 3]).collect();
@@ -84,7 +84,7 @@ fn normals_look_to_the_viewer_and_have_bumps() {
 fn what_light_is_and_how_lights_are_chosen_is_in_the_header() {
     let stage = Stage::new("color");
     stage.done("render scene.toml -q -o p.exr --color rgb --light-sampler power");
-    let found = image::read_exr(&stage.path("p.exr"), &mut Sources::new(&Disk)).unwrap().attributes;
+    let found = image::read_exr(&stage.path("p.exr"), &mut LoadContext::new(&Disk)).unwrap().attributes;
     for (name, text) in [("color", "rgb"), ("light_sampler", "power"), ("regularize", "false")] {
         assert!(found.contains(&(name.to_owned(), text.to_owned())), "{name}: {found:?}");
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use lookfrom_scene::image::{self, Image, encode_hdr};
-use lookfrom_scene::{Disk, Sources};
+use lookfrom_scene::{Disk, LoadContext};
 
 use super::stage::Stage;
 
@@ -11,11 +11,11 @@ use super::stage::Stage;
 const PLATE: &str = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 4 3 2 1\n";
 
 fn picture(path: &Path) -> Image {
-    image::read(path, &mut Sources::new(&Disk)).unwrap_or_else(|error| panic!("{error}"))
+    image::read(path, &mut LoadContext::new(&Disk)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn channel(stage: &Stage, file: &str, name: &str) -> Vec<f32> {
-    let found = image::read_exr(&stage.path(file), &mut Sources::new(&Disk)).unwrap();
+    let found = image::read_exr(&stage.path(file), &mut LoadContext::new(&Disk)).unwrap();
     found.channel(name).unwrap_or_else(|| panic!("{file} has no channel {name}")).to_vec()
 }
 

@@ -76,8 +76,8 @@ fn pinned_pictures_are_the_same_at_every_level_and_on_any_number_of_threads() {
 
 /// The values of all channels of the picture, without the header, which names the version and the path.
 fn pixels(stage: &Stage) -> Vec<u8> {
-    use lookfrom_scene::{Disk, Sources, image};
-    let channels = image::read_exr(&stage.path("p.exr"), &mut Sources::new(&Disk)).unwrap();
+    use lookfrom_scene::{Disk, LoadContext, image};
+    let channels = image::read_exr(&stage.path("p.exr"), &mut LoadContext::new(&Disk)).unwrap();
     let values = channels.channels.iter().flat_map(|(name, values)| {
         name.bytes().chain(values.iter().flat_map(|value| value.to_bits().to_le_bytes())).collect::<Vec<_>>()
     });

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use lookfrom_scene::image::{self, Image};
-use lookfrom_scene::{Disk, Sources};
+use lookfrom_scene::{Disk, LoadContext};
 
 use super::stage::Stage;
 
@@ -12,7 +12,7 @@ fn colors(path: &Path) -> Vec<[f32; 3]> {
 }
 
 fn picture(path: &Path) -> Image {
-    image::read(path, &mut Sources::new(&Disk)).unwrap_or_else(|error| panic!("{error}"))
+    image::read(path, &mut LoadContext::new(&Disk)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn size(stage: &Stage, name: &str) -> (u32, u32) {
@@ -21,7 +21,7 @@ fn size(stage: &Stage, name: &str) -> (u32, u32) {
 }
 
 fn attribute(stage: &Stage, file: &str, name: &str) -> Option<String> {
-    let found = image::read_exr(&stage.path(file), &mut Sources::new(&Disk)).unwrap();
+    let found = image::read_exr(&stage.path(file), &mut LoadContext::new(&Disk)).unwrap();
     found.attributes.into_iter().find(|(found, _)| found == name).map(|(_, text)| text)
 }
 

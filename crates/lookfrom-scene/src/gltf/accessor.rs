@@ -1,6 +1,6 @@
-//! How do bytes become vectors of numbers: component types, normalisation, strides, sparse values (specification, §3.6.2)?
+//! Accessors: component types, normalisation, strides and sparse values (specification, §3.6.2).
 //!
-//! Everything is checked against the buffers and the limits before memory is asked for.
+//! Everything is checked against the buffers and the limits before memory is allocated.
 
 use super::draco::{self, Role};
 use super::file::Document;
@@ -50,7 +50,7 @@ trait Component: Copy {
     fn read(bytes: &[u8]) -> Self;
     /// As it is.
     fn number(self) -> f32;
-    /// What it means where it is normalised: 0 … 1 or −1 … 1.
+    /// The normalised value: 0 … 1 or −1 … 1.
     fn fraction(self) -> f32;
     /// As an index.
     fn whole(self) -> u32;
@@ -87,7 +87,7 @@ components! {
     f32: 4, |number| number;
 }
 
-/// What a component is read as.
+/// The target type of a component.
 trait Value: Copy + Default {
     fn of<C: Component>(component: C, normalized: bool) -> Self;
 }
@@ -104,7 +104,7 @@ impl Value for u32 {
     }
 }
 
-/// How many numbers an element has, and how many of them a column.
+/// The number of components of an element, and of its columns.
 fn shape_of(kind: &str) -> Option<(usize, usize)> {
     Some(match kind {
         "SCALAR" => (1, 1),
@@ -118,7 +118,7 @@ fn shape_of(kind: &str) -> Option<(usize, usize)> {
     })
 }
 
-/// How the numbers of an element lie in its bytes.
+/// The layout of an element's components in its bytes.
 #[derive(Clone, Copy)]
 struct Layout {
     component: ComponentType,
@@ -166,10 +166,10 @@ impl Layout {
 }
 
 impl Document {
-    /// How many numbers each element of an accessor has, and how many elements there are.
+    /// The number of components of an accessor's elements, and the number of its elements.
     ///
     /// # Errors
-    /// Where there is no such accessor, or it has no known type.
+    /// If there is no such accessor, or it has no known type.
     pub(crate) fn shape(&self, index: Whole, asked: &str) -> Result<(usize, usize)> {
         let accessor = self.one_of(&self.root.accessors, index, "accessor", asked)?;
         let (numbers, _) = shape_of(&accessor.kind)
@@ -181,7 +181,7 @@ impl Document {
     /// They may be infinite or not a number. `asked` is the pointer of what uses them.
     ///
     /// # Errors
-    /// Where the accessor has vectors of another size, where it, its view or its buffer is not there or too short, or
+    /// If the accessor has vectors of another size, if it, its view or its buffer does not exist or too short, or
     /// where there are too many.
     pub(crate) fn vectors<const N: usize>(&self, index: Whole, asked: &str) -> Result<Vec<[f32; N]>> {
         self.elements(index, asked)
@@ -264,7 +264,7 @@ impl Document {
         Ok(elements)
     }
 
-    /// What stands in one part of a compressed mesh: as much as the mesh has, whatever the accessor counts.
+    /// The values of one attribute of a compressed mesh: all of the mesh, whatever the count of the accessor.
     fn part_of<V: Value, const N: usize>(
         &self,
         mesh: &draco::Decoded,
@@ -328,7 +328,7 @@ impl Document {
         Ok(layout.read(bytes, stride, count))
     }
 
-    /// Which elements a sparse accessor replaces: all below `count`.
+    /// The indices that a sparse accessor replaces: all below `count`.
     fn sparse_indices(&self, sparse: &json::Sparse, count: usize, asked: &str) -> Result<Vec<u32>> {
         let component = match ComponentType::of(sparse.indices.component_type) {
             Some(component) if component.is_unsigned() => component,

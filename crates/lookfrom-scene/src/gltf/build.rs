@@ -1,4 +1,4 @@
-//! How do a file's nodes, meshes, looks, camera and lights become one model?
+//! Assembly of a scene from a file's nodes, meshes, materials, camera and lights.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -19,7 +19,7 @@ use super::pose::{self, Pose};
 use super::skin::Skin;
 use crate::contents::Contents;
 use crate::error::{Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::light::Light;
 use crate::load;
 use crate::scene::{Instance, MeshId, Object, ObjectId, Scene};
@@ -29,7 +29,7 @@ use crate::shape::{Geometry, Part, Shape};
 /// slower.
 const MOST_REPEATED_TRIANGLES: usize = 1 << 18;
 
-/// What a file says, on its way into a scene that has its meshes, looks and pictures already.
+/// The state of the assembly of a scene that has its meshes, materials and images already.
 pub(super) struct Model {
     shapes: Vec<Shape>,
     objects: Vec<Object>,
@@ -85,11 +85,11 @@ fn size(aspect: f64, most: u32) -> (u32, u32) {
 }
 
 /// Reads everything; pictures are decoded last, side by side.
-pub(super) fn model(document: &Document, sources: &mut Sources<'_>, scene: &mut Scene) -> Result<Model> {
-    let Pose { local, weights } = pose::pose(document, sources)?;
-    let tree = Tree::new(document, &local, sources)?;
+pub(super) fn model(document: &Document, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Model> {
+    let Pose { local, weights } = pose::pose(document, context)?;
+    let tree = Tree::new(document, &local, context)?;
     let cameras = Cameras::new(document, &tree)?;
-    let variant = match (&sources.choice.variant, &document.root.extensions.variants) {
+    let variant = match (&context.import.variant, &document.root.extensions.variants) {
         (None, _) => None,
         (Some(name), variants) => {
             let variants = variants.as_ref().map_or(&[][..], |variants| &variants.variants);
@@ -107,18 +107,18 @@ pub(super) fn model(document: &Document, sources: &mut Sources<'_>, scene: &mut 
             shapes: Vec::new(),
             objects: Vec::new(),
             instances: Vec::new(),
-            eye: camera::eye(&cameras, &tree, sources)?,
-            lights: light::lights(document, &tree, sources)?,
+            eye: camera::eye(&cameras, &tree, context)?,
+            lights: light::lights(document, &tree, context)?,
             contents: contents(document, &tree, &cameras),
         },
-        sources,
+        context,
         scene,
     };
     builder.nodes(&tree)?;
     let Builder { looks, model, .. } = builder;
-    looks.decode(sources, scene);
+    looks.decode(context, scene);
     if model.shapes.is_empty() && model.instances.is_empty() {
-        sources
+        context
             .warn(&document.at(""), "there is nothing to see: the scene has no triangles, lines or points");
     }
     Ok(model)
@@ -130,7 +130,7 @@ struct Piece {
     pointer: Location,
     geometry: Geometry,
     look: Look,
-    /// Where it stands, whatever its node says, if joints hold it.
+    /// The world transform of a skinned mesh, which replaces that of its node.
     world_from_skinned: Option<DMat4>,
 }
 
@@ -143,12 +143,12 @@ struct Form {
 
 struct Builder<'b, 'd, 'f> {
     document: &'d Document,
-    sources: &'b mut Sources<'f>,
+    context: &'b mut LoadContext<'f>,
     scene: &'b mut Scene,
     looks: Looks<'d>,
     /// Of each mesh that was needed.
     pieces: BTreeMap<Form, Vec<Piece>>,
-    /// How much of their meshes' morph targets nodes have, where they do not leave it to the mesh.
+    /// Morph weights of nodes that override those of the mesh.
     weights: Vec<Option<Vec<f64>>>,
     variant: Option<usize>,
     model: Model,
@@ -213,7 +213,7 @@ impl Builder<'_, '_, '_> {
         Ok(())
     }
 
-    /// Which form of which mesh a node has.
+    /// The mesh of a node, with its morph weights and skin.
     fn form(&self, node: usize) -> Option<Form> {
         let root = &self.document.root;
         let index = root.nodes[node].mesh?.index();
@@ -225,7 +225,7 @@ impl Builder<'_, '_, '_> {
         Some(Form { mesh: index, node: is_own.then_some(node) })
     }
 
-    /// What a mesh is made of; each form is read once.
+    /// The parts of a mesh; each posed mesh is built once.
     fn mesh(&mut self, form: Form, skin: Option<&Skin>, asked: &str) -> Result<Vec<Piece>> {
         let mesh =
             self.document.one_of(&self.document.root.meshes, Whole(form.mesh as u64), "mesh", asked)?;
@@ -253,7 +253,7 @@ impl Builder<'_, '_, '_> {
         pointer: &str,
     ) -> Result<Option<Piece>> {
         let document = self.document;
-        let Some(mut vertices) = mesh::vertices(document, primitive, pointer, self.sources)? else {
+        let Some(mut vertices) = mesh::vertices(document, primitive, pointer, self.context)? else {
             return Ok(None);
         };
         if !primitive.targets.is_empty() {
@@ -266,10 +266,10 @@ impl Builder<'_, '_, '_> {
         }
         let brought = vertices.brought();
         let (material, asked) = self.material(primitive, pointer);
-        let look = self.looks.look(material, &asked, brought, self.sources, self.scene)?;
+        let look = self.looks.look(material, &asked, brought, self.context, self.scene)?;
         vertices.grain = look.grain;
         let geometry =
-            mesh::geometry(document, primitive, vertices, name, pointer, self.sources, self.scene)?;
+            mesh::geometry(document, primitive, vertices, name, pointer, self.context, self.scene)?;
         Ok(geometry.map(|geometry| Piece {
             pointer: document.at(pointer),
             geometry,

@@ -1,4 +1,4 @@
-//! Which camera looks at the scene, and how (specification, §3.10)?
+//! Selection of the camera, and its projection (specification, §3.10).
 //!
 //! Near and far planes cut nothing off: rays need none.
 
@@ -11,7 +11,7 @@ use super::node::Tree;
 use crate::camera::{Camera, Projection, View};
 use crate::contents::CameraEntry;
 use crate::error::Result;
-use crate::files::{CameraChoice, Sources};
+use crate::files::{CameraChoice, LoadContext};
 
 /// A camera of the file, and width over height of the picture that it is meant for, where it says so.
 pub(super) struct Eye {
@@ -30,7 +30,7 @@ impl<'d> Cameras<'d> {
     /// Those of the nodes that are shown.
     ///
     /// # Errors
-    /// Where a node names a camera that is not there.
+    /// If a node names a camera that does not exist.
     pub(super) fn new(document: &'d Document, tree: &Tree) -> Result<Self> {
         let mut placed = Vec::new();
         for &node in &tree.shown {
@@ -43,7 +43,7 @@ impl<'d> Cameras<'d> {
         Ok(Self { document, placed })
     }
 
-    /// What they are called, and their projections.
+    /// Their names and projections.
     pub(super) fn entries(&self) -> Vec<CameraEntry> {
         let entry = |&(node, index): &(usize, usize)| {
             let camera = &self.document.root.cameras[index];
@@ -56,10 +56,10 @@ impl<'d> Cameras<'d> {
         self.placed.iter().map(entry).collect()
     }
 
-    /// The one that is asked for, or else the first.
+    /// The requested camera, or else the first.
     ///
     /// # Errors
-    /// Where the one that is asked for is not there.
+    /// If the one that is requested does not exist.
     fn chosen(&self, choice: &CameraChoice) -> Result<Option<(usize, usize)>> {
         let root = &self.document.root;
         Ok(match choice {
@@ -77,22 +77,22 @@ impl<'d> Cameras<'d> {
     }
 }
 
-/// The camera that is asked for, or else the first of the scene.
+/// The requested camera, or else the first of the scene.
 ///
 /// # Errors
-/// Where the one that is asked for is not there, or none of its numbers can be.
-pub(super) fn eye(cameras: &Cameras<'_>, tree: &Tree, sources: &mut Sources<'_>) -> Result<Option<Eye>> {
+/// If the one that is requested does not exist, or none of its numbers can be.
+pub(super) fn eye(cameras: &Cameras<'_>, tree: &Tree, context: &mut LoadContext<'_>) -> Result<Option<Eye>> {
     let document = cameras.document;
-    let chosen = cameras.chosen(&sources.choice.camera)?;
+    let chosen = cameras.chosen(&context.import.camera)?;
     let Some((node, index)) = chosen else { return Ok(None) };
     let pointer = format!("/cameras/{index}");
     let at = document.at(&pointer);
     let Some((projection, aspect)) = projection(&document.root.cameras[index]) else {
-        sources.warn(&at, "the camera's numbers cannot be; the scene is framed without it");
+        context.warn(&at, "the camera's numbers cannot be; the scene is framed without it");
         return Ok(None);
     };
     let Some(matrix) = world_from_camera(&tree.world_from_node[node]) else {
-        sources.warn(&at, "the camera's node has no size; the scene is framed without it");
+        context.warn(&at, "the camera's node has no size; the scene is framed without it");
         return Ok(None);
     };
     let camera = Camera { at, view: View::Matrix(matrix), projection, ..Camera::default() };

@@ -1,13 +1,13 @@
-//! Which of several things does a person mean by a name or a number?
+//! Selection of an animation, variant, camera or scene by its name or number.
 
 use super::file::Document;
 use crate::error::Result;
 use crate::suggest::nearest;
 
-/// The index of what is meant: what has this name, else, where it is a number, what has this number from 0.
+/// The index of the item with this name, or else, where it is a number, of the item with this number from 0.
 ///
 /// # Errors
-/// Where nothing is meant; it says what there is.
+/// If nothing is meant; it says what there is.
 pub(crate) fn choose<'a>(
     document: &Document,
     what: &str,

@@ -1,4 +1,4 @@
-//! Lists of what [`choose`](super::choose) chooses from.
+//! Lists of the animations, variants, cameras and scenes from which [`choose`](super::choose) selects.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use crate::contents::{AnimationEntry, Contents};
 /// Keys of animations that are looked at: to tell how long animations are is not worth more.
 const MOST_KEYS: u64 = 1 << 22;
 
-/// What the file holds. What is wrong with animations that nobody asked for is no error.
+/// The content of the file. Faults in animations that are not requested are not errors.
 pub(super) fn contents(document: &Document, tree: &Tree, cameras: &Cameras<'_>) -> Contents {
     let root = &document.root;
     let variants = root.extensions.variants.as_ref().map_or(&[][..], |variants| &variants.variants);
@@ -29,7 +29,7 @@ pub(super) fn contents(document: &Document, tree: &Tree, cameras: &Cameras<'_>) 
     }
 }
 
-/// How long animations are; channels often share their keys.
+/// Durations of animations; channels often share their keyframes.
 struct Clock<'d> {
     document: &'d Document,
     /// By accessor.

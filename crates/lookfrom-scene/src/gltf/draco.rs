@@ -1,4 +1,4 @@
-//! What do meshes compressed by Draco hold (`KHR_draco_mesh_compression`)?
+//! Meshes compressed by Draco (`KHR_draco_mesh_compression`).
 //!
 //! The crate `draco-core` decodes the stream, within limits; which accessor stands for which part of it, `accessor` asks
 //! here. Without the feature `draco` such meshes are read only where a file has them uncompressed, too.
@@ -15,7 +15,7 @@ use crate::files::Limits;
 pub(crate) struct Decoded {
     /// Three for each triangle, each below `vertices`.
     pub(crate) indices: Vec<u32>,
-    /// How many there are.
+    /// The count.
     pub(crate) vertices: usize,
     /// By the number that the extension's JSON gives them.
     pub(crate) attributes: BTreeMap<u64, Attribute>,
@@ -24,15 +24,15 @@ pub(crate) struct Decoded {
 /// Numbers of vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Attribute {
-    /// How many a vertex.
+    /// The number of components per vertex.
     pub(crate) width: usize,
-    /// Whole numbers as they are.
+    /// Values as `f64`, integers not normalised.
     pub(crate) numbers: Vec<f32>,
-    /// What stands for 1 where whole numbers are fractions; `None` for numbers that are not whole.
+    /// The divisor of normalised integers; `None` for floating-point components.
     pub(crate) one: Option<f32>,
 }
 
-/// What an accessor stands for.
+/// The part of a compressed mesh that an accessor refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
     /// The corners of triangles.
@@ -41,12 +41,12 @@ pub(crate) enum Role {
     Attribute(u64),
 }
 
-/// Which accessors of a file stand for parts of compressed meshes.
+/// The accessors of a file that refer to compressed meshes.
 #[derive(Debug)]
 pub(crate) struct Compressed {
     /// By accessor: the buffer view of the stream, and which part of it.
     roles: BTreeMap<usize, (Whole, Role)>,
-    /// By buffer view, once it has been asked for.
+    /// By buffer view, after the first request.
     decoded: Vec<OnceLock<Result<Decoded>>>,
 }
 
@@ -75,13 +75,13 @@ impl Compressed {
         self.roles.get(&accessor.index()).copied()
     }
 
-    /// What a buffer view of the file holds, decoded once.
+    /// The decoded mesh of a buffer view.
     ///
     /// # Errors
     /// Those of `decode`.
     ///
     /// # Panics
-    /// Where the file has no such view.
+    /// If the file has no such view.
     pub(crate) fn get_or_decode(
         &self,
         view: Whole,

@@ -1,7 +1,7 @@
-//! Which extensions are known, and what is said of the others?
+//! The list of supported extensions, and warnings and errors for others.
 
 use super::file::Document;
-use crate::files::Sources;
+use crate::files::LoadContext;
 
 /// Extensions that are read.
 const READ: &[&str] = &[
@@ -47,7 +47,7 @@ fn is_known(name: &str) -> bool {
 }
 
 /// Warns of extensions that are not known.
-pub(super) fn warn(document: &Document, sources: &mut Sources<'_>) {
+pub(super) fn warn(document: &Document, context: &mut LoadContext<'_>) {
     let root = &document.root;
     for (index, name) in root.extensions_required.iter().enumerate().filter(|(_, name)| !is_known(name)) {
         let at = document.at(&format!("/extensionsRequired/{index}"));
@@ -55,12 +55,12 @@ pub(super) fn warn(document: &Document, sources: &mut Sources<'_>) {
             "the file requires the extension {name}, which is not known: it is read as well as can be, and may look \
              wrong"
         );
-        sources.warn(&at, message);
+        context.warn(&at, message);
     }
     for (index, name) in root.extensions_used.iter().enumerate() {
         if !is_known(name) && !root.extensions_required.contains(name) {
             let at = document.at(&format!("/extensionsUsed/{index}"));
-            sources.warn(&at, format!("the extension {name} is not known and is passed over"));
+            context.warn(&at, format!("the extension {name} is not known and is passed over"));
         }
     }
 }

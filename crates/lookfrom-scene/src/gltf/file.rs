@@ -1,5 +1,5 @@
-//! Which bytes belong to a glTF file: the JSON, by itself or in a GLB container, and the buffers, in the container, in
-//! other files or in the JSON (specification, §2.7, §3.6.1, §4).
+//! A glTF document and its bytes: the JSON, by itself or in a GLB container, and the buffers in the container, in other
+//! files or in the JSON (specification, §2.7, §3.6.1, §4).
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -12,7 +12,7 @@ use super::json::{self, Root, Whole};
 use super::meshopt::{self, Layout};
 use super::uri::{self, Uri};
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::{Limits, Sources};
+use crate::files::{Limits, LoadContext};
 use crate::model::surface::beside;
 
 /// The first bytes of a GLB container.
@@ -20,35 +20,35 @@ pub(super) const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: u32 = 0x4E4F_534A;
 const BINARY_CHUNK: u32 = 0x004E_4942;
 
-/// How many values of attributes and indices one element of [`Limits::elements`] may have: a vertex has several.
+/// The number of attribute and index values that one element of [`Limits::elements`] may have: a vertex has several.
 const VALUES_AN_ELEMENT: u64 = 8;
 
-/// How many elements of accessors without bytes behind them, which are zeros, a file may have in all: a file of a few
+/// The maximum number of elements of accessors without a buffer view, which are zeros, in a file: a file of a few
 /// bytes could ask for all memory otherwise.
 const MOST_ZEROS: u64 = 1 << 26;
 
 /// A file with its buffers.
 pub(crate) struct Document {
-    /// What the JSON says.
+    /// The parsed JSON.
     pub(crate) root: Root,
-    /// Where it came from.
+    /// The path of the file.
     pub(crate) path: PathBuf,
-    /// How much may be asked for.
+    /// The limits.
     pub(crate) limits: Limits,
     at: Location,
     content: Vec<u8>,
     buffers: Vec<Bytes>,
-    /// What compressed views become, once one of them has been asked for.
+    /// Decompressed buffer views, filled at the first request.
     decoded: Vec<OnceLock<Result<Vec<u8>>>>,
-    /// What compressed meshes become.
+    /// Decoded Draco meshes.
     pub(super) compressed: Compressed,
-    /// How many values of accessors were read so far.
+    /// The number of accessor values read so far.
     values: AtomicU64,
-    /// How many of them have no bytes behind them.
+    /// The number of those without bytes in a buffer.
     zeros: AtomicU64,
 }
 
-/// Where a buffer's bytes are.
+/// The location of a buffer's bytes.
 enum Bytes {
     /// A part of the container.
     Chunk(Range<usize>),
@@ -71,16 +71,16 @@ impl Document {
     ///
     /// # Errors
     /// `Syntax` where it is no glTF, `Unsupported` where it is of another version.
-    pub(crate) fn open(content: Vec<u8>, path: &Path, sources: &mut Sources<'_>) -> Result<Self> {
+    pub(crate) fn open(content: Vec<u8>, path: &Path, context: &mut LoadContext<'_>) -> Result<Self> {
         let at = Location::file(path);
         let (what, (json, binary)) = match content.starts_with(MAGIC) {
-            true => ("the JSON of the GLB container", chunks(&content, &at, sources)?),
+            true => ("the JSON of the GLB container", chunks(&content, &at, context)?),
             false => ("the file", (0..content.len(), None)),
         };
-        let root = parse(&content[json], what, &at, sources)?;
-        check_version(&root, &at, sources)?;
+        let root = parse(&content[json], what, &at, context)?;
+        check_version(&root, &at, context)?;
         let decoded = root.buffer_views.iter().map(|_| OnceLock::new()).collect();
-        let limits = sources.limits;
+        let limits = context.limits;
         let compressed = Compressed::new(&root);
         let mut document = Self {
             root,
@@ -94,7 +94,7 @@ impl Document {
             values: AtomicU64::new(0),
             zeros: AtomicU64::new(0),
         };
-        document.read_buffers(binary.as_ref(), sources);
+        document.read_buffers(binary.as_ref(), context);
         Ok(document)
     }
 
@@ -103,7 +103,7 @@ impl Document {
         self.at.pointer(pointer)
     }
 
-    /// What is said at a place in the JSON cannot be.
+    /// An error of kind `Invalid` at a place in the JSON.
     pub(crate) fn invalid(&self, pointer: &str, message: impl Into<String>) -> Error {
         Error::invalid(&self.at(pointer), message)
     }
@@ -164,7 +164,7 @@ impl Document {
     /// The bytes of a view; `asked` is the pointer of what uses it.
     ///
     /// # Errors
-    /// Where the view, or its buffer, is not there or too short, or where it cannot be unpacked.
+    /// If the view, or its buffer, does not exist or too short, or if it cannot be unpacked.
     pub(crate) fn view(&self, index: Whole, asked: &str) -> Result<View<'_>> {
         let view = self.one_of(&self.root.buffer_views, index, "buffer view", asked)?;
         let stride = view.byte_stride.map(Whole::index);
@@ -226,7 +226,7 @@ impl Document {
         })
     }
 
-    fn read_buffers(&mut self, binary: Option<&Range<usize>>, sources: &mut Sources<'_>) {
+    fn read_buffers(&mut self, binary: Option<&Range<usize>>, context: &mut LoadContext<'_>) {
         let mut files: BTreeMap<PathBuf, Arc<Vec<u8>>> = BTreeMap::new();
         let mut buffers = Vec::with_capacity(self.root.buffers.len());
         for (index, buffer) in self.root.buffers.iter().enumerate() {
@@ -237,7 +237,7 @@ impl Document {
                     self.invalid(&place, "the buffer has no `uri`, and there is no binary chunk for it")
                         .hint("the file is cut off or was written wrongly: export it again"),
                 ),
-                (Some(uri), _) => match self.fetch(uri, &place, &mut files, sources) {
+                (Some(uri), _) => match self.fetch(uri, &place, &mut files, context) {
                     Ok(bytes) => Bytes::Own(bytes),
                     Err(error) => Bytes::Missing(error),
                 },
@@ -249,7 +249,7 @@ impl Document {
             };
             if (length as u64) < buffer.byte_length.0 {
                 let expected = buffer.byte_length.0;
-                sources
+                context
                     .notice(&self.at(&place), format!("{expected} bytes are announced, {length} are there"));
             }
             buffers.push(bytes);
@@ -262,14 +262,14 @@ impl Document {
         uri: &str,
         place: &str,
         files: &mut BTreeMap<PathBuf, Arc<Vec<u8>>>,
-        sources: &Sources<'_>,
+        context: &LoadContext<'_>,
     ) -> Result<Arc<Vec<u8>>> {
         match self.uri(uri, &format!("{place}/uri"))? {
             Uri::Data(bytes) => Ok(Arc::new(bytes)),
             Uri::Names(names) => {
                 let (path, bytes) = self.first_of(&names, place, |path| match files.get(path) {
                     Some(bytes) => Ok(bytes.clone()),
-                    None => sources.read(path).map(Arc::new),
+                    None => context.read(path).map(Arc::new),
                 })?;
                 files.insert(path, bytes.clone());
                 Ok(bytes)
@@ -277,7 +277,7 @@ impl Document {
         }
     }
 
-    /// What a `uri` stands for.
+    /// The content of a `uri`.
     ///
     /// # Errors
     /// `Syntax` where its data is broken, `Unsupported` where it is an address in the net.
@@ -285,7 +285,7 @@ impl Document {
         uri::read(uri, &self.at(asked))
     }
 
-    /// What comes of the first of these names, relative to this file, that can be read.
+    /// The result for the first of these names, relative to this file, that can be read.
     ///
     /// # Errors
     /// That of the first one, which says in addition where it was asked for.
@@ -314,7 +314,7 @@ impl Document {
 fn chunks(
     content: &[u8],
     at: &Location,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
 ) -> Result<(Range<usize>, Option<Range<usize>>)> {
     let bad = |message: String| {
         Error::syntax(at, message)
@@ -329,7 +329,7 @@ fn chunks(
         return Err(unsupported(at, &format!("version {version} of the GLB container")));
     }
     if length as usize != content.len() {
-        sources
+        context
             .notice(at, format!("the GLB header announces {length} bytes; the file has {}", content.len()));
     }
 
@@ -352,7 +352,7 @@ fn chunks(
             }
             BINARY_CHUNK if binary.is_none() => binary = Some(first..end),
             JSON_CHUNK | BINARY_CHUNK => {
-                sources.warn(at, "the GLB container has a chunk twice: the first one counts");
+                context.warn(at, "the GLB container has a chunk twice: the first one counts");
             }
             // Chunks of other kinds are for others.
             _ => {}
@@ -366,11 +366,11 @@ fn chunks(
 }
 
 /// The JSON in bytes, which are called `what`.
-fn parse(bytes: &[u8], what: &str, at: &Location, sources: &mut Sources<'_>) -> Result<Root> {
+fn parse(bytes: &[u8], what: &str, at: &Location, context: &mut LoadContext<'_>) -> Result<Root> {
     let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     let text = String::from_utf8_lossy(bytes);
     if matches!(text, std::borrow::Cow::Owned(_)) {
-        sources.notice(at, "the JSON is not UTF-8; what is not is taken as �");
+        context.notice(at, "the JSON is not UTF-8; what is not is taken as �");
     }
     let text = text.trim_end_matches(['\0', ' ', '\n', '\r', '\t']);
     if text.is_empty() {
@@ -394,7 +394,7 @@ fn parse(bytes: &[u8], what: &str, at: &Location, sources: &mut Sources<'_>) -> 
     })
 }
 
-/// What to do where something else than JSON was found.
+/// The hint for a file that is not JSON.
 fn instead_of_json(text: &str) -> &'static str {
     if text.starts_with("version https://git-lfs") {
         "this is a pointer of Git LFS, not the model: `git lfs pull` brings the model"
@@ -405,7 +405,7 @@ fn instead_of_json(text: &str) -> &'static str {
     }
 }
 
-fn check_version(root: &Root, at: &Location, sources: &mut Sources<'_>) -> Result<()> {
+fn check_version(root: &Root, at: &Location, context: &mut LoadContext<'_>) -> Result<()> {
     let (asked, pointer) = match &root.asset.min_version {
         Some(version) => (version, "/asset/minVersion"),
         None => (&root.asset.version, "/asset/version"),
@@ -414,7 +414,7 @@ fn check_version(root: &Root, at: &Location, sources: &mut Sources<'_>) -> Resul
     match (numbers.next().flatten(), numbers.next().flatten()) {
         (Some(2), Some(minor)) => {
             if minor > 0 && root.asset.min_version.is_some() {
-                sources.warn(&at.pointer(pointer), format!("glTF {asked} is read as if it were glTF 2.0"));
+                context.warn(&at.pointer(pointer), format!("glTF {asked} is read as if it were glTF 2.0"));
             }
             Ok(())
         }

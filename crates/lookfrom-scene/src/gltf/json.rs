@@ -1,5 +1,5 @@
-//! What a glTF file's JSON says, word for word: one structure for each object of the specification (Khronos 2021, §5) and
-//! of its extensions. What is not read here is not looked at. Meaning, defaults that depend on others and checks are left
+//! Structures of the JSON of a glTF file, one for each object of the specification (Khronos 2021, §5) and of its
+//! extensions. Other properties are ignored. Meaning, defaults that depend on others and checks are left
 //! to the files beside this one.
 
 use std::collections::BTreeMap;
@@ -100,7 +100,7 @@ pub(crate) struct Root {
     pub(crate) extensions: RootExtensions,
 }
 
-/// Which version it is written for.
+/// The versions of the format.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(crate) struct Asset {
@@ -434,7 +434,7 @@ pub(crate) struct Volume {
     pub(crate) attenuation_color: Option<[f64; 3]>,
 }
 
-/// How a material uses a texture.
+/// A texture reference of a material.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(crate) struct TextureInfo {
@@ -613,13 +613,13 @@ pub(crate) struct AnimationSampler {
 
 /// Why a text is no glTF.
 pub(super) struct Wrong {
-    /// What was found and expected.
+    /// The message.
     pub(super) message: String,
-    /// Where, as a JSON pointer, if the text is JSON.
+    /// The location as a JSON pointer, if the text is JSON.
     pub(super) pointer: Option<String>,
-    /// Where in the text, from 1.
+    /// The line, from 1.
     pub(super) line: u32,
-    /// Where in the line, from 1.
+    /// The column, from 1.
     pub(super) column: u32,
 }
 

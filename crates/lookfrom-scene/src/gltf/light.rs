@@ -1,4 +1,4 @@
-//! What do the lamps of `KHR_lights_punctual` come to here?
+//! Punctual lights (`KHR_lights_punctual`).
 //!
 //! Their units are photometric: candela, and lux of the sun. A radiance of 1 is a luminance of 1 cd/m², so no efficacy
 //! of 683 lm/W appears. Under an illuminance E a white diffuse surface has the radiance E/π, which is what our
@@ -10,15 +10,15 @@ use super::file::Document;
 use super::json;
 use super::node::Tree;
 use crate::error::Result;
-use crate::files::Sources;
-use crate::light::{Amount, Falloff, Light, LightKind};
+use crate::files::LoadContext;
+use crate::light::{Falloff, Light, LightKind, Power};
 use crate::material::Color;
 
-/// The lamps of the scene.
+/// The punctual lights of the scene.
 ///
 /// # Errors
-/// Where a node has a light that is not there.
-pub(super) fn lights(document: &Document, tree: &Tree, sources: &mut Sources<'_>) -> Result<Vec<Light>> {
+/// If a node has a light that does not exist.
+pub(super) fn lights(document: &Document, tree: &Tree, context: &mut LoadContext<'_>) -> Result<Vec<Light>> {
     let known = document.root.extensions.lights.as_ref().map_or(&[][..], |lights| &lights.lights);
     let mut lights = Vec::new();
     for &node in &tree.shown {
@@ -29,10 +29,10 @@ pub(super) fn lights(document: &Document, tree: &Tree, sources: &mut Sources<'_>
         match kind(light, &tree.world_from_node[node]) {
             Some(kind) => {
                 let name = light.name.clone().or_else(|| document.root.nodes[node].name.clone());
-                lights.push(Light { name, at, kind, amount: Amount::AS_WRITTEN });
+                lights.push(Light { name, at, kind, power: Power::AS_WRITTEN });
             }
             None => {
-                sources.warn(&at, format!("a light {:?} whose numbers cannot be is left out", light.kind));
+                context.warn(&at, format!("a light {:?} with invalid values is left out", light.kind));
             }
         }
     }

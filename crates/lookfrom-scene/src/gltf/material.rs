@@ -1,4 +1,4 @@
-//! What do glTF's materials come to in our vocabulary (specification, §3.9, and the extensions `KHR_materials_…`)?
+//! Conversion of materials (specification, §3.9, and the extensions `KHR_materials_…`).
 //!
 //! Each becomes a [`Principled`] look, or an unlit one, and besides: the light that the surface gives off, the part of it
 //! that is there, and whether its back is seen. Numbers outside what their extension allows are clamped. Occlusion
@@ -12,13 +12,13 @@ use super::file::Document;
 use super::json::{self, TextureInfo, Whole};
 use super::texture::{Meaning, Textures, Use};
 use crate::error::Result;
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::material::{Anisotropy, Color, Material, MaterialKind, NormalTexture, Principled, Relief, Scalar};
 use crate::scene::{MaterialId, Scene};
 use crate::shape::Emission;
 use crate::texture::{Channel, TextureKind};
 
-/// How a primitive looks.
+/// The material of a primitive.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
     pub(super) material: MaterialId,
@@ -30,7 +30,7 @@ pub(super) struct Look {
     pub(super) grain: Option<u32>,
 }
 
-/// What a primitive brings to its look.
+/// The vertex attributes of a primitive that its material can use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Brought {
     pub(super) colors: bool,
@@ -50,20 +50,20 @@ impl<'d> Looks<'d> {
     }
 
     /// Decodes the pictures of all looks.
-    pub(super) fn decode(self, sources: &mut Sources<'_>, scene: &mut Scene) {
-        self.textures.decode(sources, scene);
+    pub(super) fn decode(self, context: &mut LoadContext<'_>, scene: &mut Scene) {
+        self.textures.decode(context, scene);
     }
 
     /// The look of a primitive with this material; without one, glTF's default.
     ///
     /// # Errors
-    /// Where the material, or a texture of it, is not there.
+    /// If the material, or a texture of it, does not exist.
     pub(super) fn look(
         &mut self,
         material: Option<Whole>,
         asked: &str,
         brought: Brought,
-        sources: &mut Sources<'_>,
+        context: &mut LoadContext<'_>,
         scene: &mut Scene,
     ) -> Result<Look> {
         let key = (material.map(Whole::index), brought);
@@ -79,7 +79,7 @@ impl<'d> Looks<'d> {
             None => (&default, "/materials".to_owned()),
         };
         let mut reader =
-            Reader { document: self.document, textures: &mut self.textures, sources, scene, pointer };
+            Reader { document: self.document, textures: &mut self.textures, context, scene, pointer };
         let look = reader.look(entry, brought)?;
         self.known.insert(key, look);
         Ok(look)
@@ -90,7 +90,7 @@ impl<'d> Looks<'d> {
 struct Reader<'r, 'd, 'f> {
     document: &'d Document,
     textures: &'r mut Textures<'d>,
-    sources: &'r mut Sources<'f>,
+    context: &'r mut LoadContext<'f>,
     scene: &'r mut Scene,
     /// The material's.
     pointer: String,
@@ -202,7 +202,7 @@ impl Reader<'_, '_, '_> {
         Ok(look)
     }
 
-    /// What lies over the body, and what a highlight is drawn out by.
+    /// Clearcoat, sheen and anisotropy.
     fn layers(&mut self, extensions: &json::MaterialExtensions, look: &mut Principled) -> Result<()> {
         if let Some(own) = &extensions.clearcoat {
             let place = "/extensions/KHR_materials_clearcoat/clearcoatTexture";
@@ -269,7 +269,7 @@ impl Reader<'_, '_, '_> {
             let at = self.document.at(&format!("{}{place}", self.pointer));
             let message =
                 format!("the factor is [{r}, {g}, {b}]; expected 0 to 1: what is above 1 is taken as 1");
-            self.sources.warn(&at, message);
+            self.context.warn(&at, message);
         }
         factor.map(|factor| unit(Some(factor), 1.0))
     }
@@ -280,7 +280,7 @@ impl Reader<'_, '_, '_> {
             ior if ior >= 1.0 => ior.min(1e6) as f32,
             ior => {
                 let at = self.document.at(&format!("{}/extensions/KHR_materials_ior/ior", self.pointer));
-                self.sources.warn(&at, format!("the index of refraction {ior} cannot be; 1.5 is taken"));
+                self.context.warn(&at, format!("the index of refraction {ior} cannot be; 1.5 is taken"));
                 1.5
             }
         }
@@ -326,13 +326,13 @@ impl Reader<'_, '_, '_> {
         Ok(Some(Emission::new(radiance, two_sided)))
     }
 
-    /// How much of the surface is there.
+    /// The alpha of the surface.
     fn alpha(&mut self, entry: &json::Material, base: Scalar, brought: Brought) -> Result<Option<Scalar>> {
         let mode = entry.alpha_mode.as_deref().unwrap_or("OPAQUE");
         if mode != "MASK" && mode != "BLEND" {
             if mode != "OPAQUE" {
                 let at = self.document.at(&format!("{}/alphaMode", self.pointer));
-                self.sources.warn(&at, format!("the mode {mode:?} is not known; the material is opaque"));
+                self.context.warn(&at, format!("the mode {mode:?} is not known; the material is opaque"));
             }
             return Ok(None);
         }

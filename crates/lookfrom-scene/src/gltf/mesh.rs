@@ -1,4 +1,4 @@
-//! What form does a primitive have: triangles, or thin spheres and wires for points and lines (specification, §3.7)?
+//! Geometry of mesh primitives: triangles, or thin spheres and wires for points and lines (specification, §3.7).
 
 mod topology;
 
@@ -9,7 +9,7 @@ use super::json::{Primitive, Whole};
 use super::material::Brought;
 use super::tangents;
 use crate::error::Result;
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::model::polygon::has_area;
 use crate::scene::{Bounds, MeshId, Scene};
 use crate::shape::{Geometry, Mesh, Profile, Sphere, Strand};
@@ -34,7 +34,7 @@ pub(crate) struct Vertices {
     pub(crate) colors: Vec<[f32; 3]>,
     /// None, or one a vertex.
     pub(crate) opacities: Vec<f32>,
-    /// Which vertices are used, in which order; `None` is all of them as they stand.
+    /// The vertex indices; `None` is all vertices in order.
     pub(crate) indices: Option<Vec<u32>>,
     /// Whether they are those of a compressed mesh: three for each triangle, even where the mode says strips, as the
     /// extension allows without saying how.
@@ -44,7 +44,7 @@ pub(crate) struct Vertices {
 }
 
 impl Vertices {
-    /// What it brings to its look.
+    /// The vertex attributes that its material can use.
     pub(super) fn brought(&self) -> Brought {
         Brought {
             colors: !self.colors.is_empty(),
@@ -71,18 +71,18 @@ impl Vertices {
 /// Reads the attributes and indices of a primitive at `pointer`. `None`, with a warning, where it has no positions.
 ///
 /// # Errors
-/// Where an accessor cannot be read, or is no such attribute.
+/// If an accessor cannot be read, or is no such attribute.
 pub(crate) fn vertices(
     document: &Document,
     primitive: &Primitive,
     pointer: &str,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
 ) -> Result<Option<Vertices>> {
     let place = |name: &str| format!("{pointer}/attributes/{name}");
     let find = |name: &str| primitive.attributes.get(name).copied();
     let Some(positions) = find("POSITION") else {
         let at = document.at(&format!("{pointer}/attributes"));
-        sources.warn(&at, "the primitive has no POSITION and is left out");
+        context.warn(&at, "the primitive has no POSITION and is left out");
         return Ok(None);
     };
     let positions: Vec<Vec3> = points(document.vectors(positions, &place("POSITION"))?);
@@ -175,18 +175,18 @@ fn colors(
     check_count(document, vertices.colors.len(), count, pointer)
 }
 
-/// What a primitive becomes: triangles as a mesh of the scene, points and lines as what they are. `None`, with a warning
+/// The geometry of a primitive: triangles as a mesh of the scene, points as spheres, lines as curves. `None`, with a warning
 /// where something is odd, if nothing is left.
 ///
 /// # Errors
-/// Where an index is beyond the vertices, or the mode is not known.
+/// If an index is beyond the vertices, or the mode is not known.
 pub(crate) fn geometry(
     document: &Document,
     primitive: &Primitive,
     mut vertices: Vertices,
     name: &str,
     pointer: &str,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Result<Option<Geometry>> {
     let mode = primitive.mode.unwrap_or(Whole(4));
@@ -251,7 +251,7 @@ pub(crate) fn geometry(
             Topology::Lines | Topology::LineLoop | Topology::LineStrip => "line",
             Topology::Triangles | Topology::TriangleStrip | Topology::TriangleFan => "triangle",
         };
-        sources.warnings.push(Warning::new(&at, what).of(left_out as u64, noun));
+        context.warnings.push(Warning::new(&at, what).of(left_out as u64, noun));
     }
     Ok(geometry)
 }

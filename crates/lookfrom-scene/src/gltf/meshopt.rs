@@ -1,4 +1,4 @@
-//! What bytes does a compressed buffer view stand for (`EXT_meshopt_compression`, `KHR_meshopt_compression`)?
+//! Decoder for compressed buffer views (`EXT_meshopt_compression`, `KHR_meshopt_compression`).
 //!
 //! Written from the specifications' appendices (Kapoulkine 2016–2026). Streams are hostile input: every read is checked,
 //! and the result grows only as far as the stream has been understood. What the bytes mean is the accessors' matter.
@@ -11,7 +11,7 @@ use super::json;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Limits;
 
-/// How a stream is laid out.
+/// The compression mode of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mode {
     /// Elements of any kind, as differences of bytes.
@@ -22,7 +22,7 @@ pub(crate) enum Mode {
     Indices,
 }
 
-/// What is done with decoded elements.
+/// The filter applied to decoded elements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Filter {
     /// Nothing.
@@ -38,21 +38,21 @@ pub(crate) enum Filter {
     Color,
 }
 
-/// What the extension's JSON says of a buffer view.
+/// The extension's properties of a buffer view.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
     /// Elements.
     pub(crate) count: u64,
     /// Bytes of each.
     pub(crate) stride: u64,
-    /// How the stream is laid out.
+    /// The compression mode.
     pub(crate) mode: Mode,
     /// What follows.
     pub(crate) filter: Filter,
 }
 
 impl Layout {
-    /// What the JSON's words mean.
+    /// The mode and filter of the JSON's names.
     ///
     /// # Errors
     /// `Unsupported` for a mode or filter that is not known.

@@ -1,4 +1,4 @@
-//! What form has a mesh of which there is so much of each morph target (specification, §3.7.2.2)?
+//! Morph targets: vertices displaced by weighted sums (specification, §3.7.2.2).
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::error::Result;
 /// displacements of what the primitive does not have.
 ///
 /// # Errors
-/// Where displacements cannot be read, or are not one a vertex.
+/// If displacements cannot be read, or are not one a vertex.
 pub(super) fn morph(
     document: &Document,
     targets: &[BTreeMap<String, Whole>],

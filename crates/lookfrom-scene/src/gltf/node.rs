@@ -1,4 +1,4 @@
-//! Where do the nodes of the scene stand (specification, §3.5)?
+//! Node hierarchy and world transforms (specification, §3.5).
 
 use glam::{DMat4, DQuat, DVec3, DVec4};
 
@@ -6,11 +6,11 @@ use super::choose::choose;
 use super::file::Document;
 use super::json::Node;
 use crate::error::Result;
-use crate::files::Sources;
+use crate::files::LoadContext;
 
 /// The hierarchy of a file's nodes.
 pub(crate) struct Tree {
-    /// Where each node stands; those that cannot be reached too.
+    /// The world transform of each node, including unreachable ones.
     pub(crate) world_from_node: Vec<DMat4>,
     /// The nodes of the scene, parents before their children.
     pub(crate) shown: Vec<usize>,
@@ -50,8 +50,8 @@ impl Tree {
     /// The tree that the nodes make with these transforms, one for each.
     ///
     /// # Errors
-    /// Where a node is its own ancestor, where a child or a node of the scene is not there, or the scene that is asked for.
-    pub(crate) fn new(document: &Document, local: &[DMat4], sources: &mut Sources<'_>) -> Result<Self> {
+    /// If a node is its own ancestor, if a child or a node of the scene does not exist, or the scene that is requested.
+    pub(crate) fn new(document: &Document, local: &[DMat4], context: &mut LoadContext<'_>) -> Result<Self> {
         let nodes = &document.root.nodes;
         let mut parents: Vec<Option<usize>> = vec![None; nodes.len()];
         for (index, node) in nodes.iter().enumerate() {
@@ -63,7 +63,7 @@ impl Tree {
                     Some(Some(first)) => {
                         let message =
                             format!("node {} is already a child of node {first}, and stays there", child.0);
-                        sources.warn(&document.at(&pointer()), message);
+                        context.warn(&document.at(&pointer()), message);
                     }
                     None => {
                         document.one_of(nodes, child, "node", &pointer())?;
@@ -91,7 +91,7 @@ impl Tree {
         }
 
         // Those of the scene.
-        let (scene, mut waiting) = Self::roots(document, &parents, sources)?;
+        let (scene, mut waiting) = Self::roots(document, &parents, context)?;
         waiting.reverse();
         let mut shown = Vec::new();
         let mut is_shown = vec![false; nodes.len()];
@@ -104,7 +104,7 @@ impl Tree {
                 } else {
                     let message =
                         "the node is too far away or too large to be computed with, and is left out";
-                    sources.warn(&document.at(&format!("/nodes/{node}")), message);
+                    context.warn(&document.at(&format!("/nodes/{node}")), message);
                 }
                 let children = nodes[node].children.iter().rev().map(|child| child.index());
                 waiting.extend(children.filter(|&child| is_child(node, child)));
@@ -117,10 +117,10 @@ impl Tree {
     fn roots(
         document: &Document,
         parents: &[Option<usize>],
-        sources: &Sources<'_>,
+        context: &LoadContext<'_>,
     ) -> Result<(Option<usize>, Vec<usize>)> {
         let root = &document.root;
-        let scene = match (&sources.choice.scene, root.scene) {
+        let scene = match (&context.import.scene, root.scene) {
             (Some(name), _) => {
                 let names = root.scenes.iter().map(|scene| scene.name.as_deref());
                 choose(document, "scene", "/scenes", name, names)?

@@ -1,6 +1,6 @@
-//! How do a file's nodes stand at one moment of one of its animations, or at rest (specification, §3.11)?
+//! Node transforms and morph weights at one time of an animation, or at rest (specification, §3.11).
 //!
-//! [`Sources::choice`] says which. Channels that extensions bring (`KHR_animation_pointer`) are passed over with a
+//! [`LoadContext::import`] selects the animation and the time. Channels that extensions bring (`KHR_animation_pointer`) are passed over with a
 //! warning.
 
 use glam::{DMat4, DVec3, DVec4};
@@ -11,9 +11,9 @@ use super::json::{AnimationSampler, Node, Whole};
 use super::node::placed;
 use super::track::{Interpolation, Track};
 use crate::error::Result;
-use crate::files::Sources;
+use crate::files::LoadContext;
 
-/// How nodes stand.
+/// The pose of all nodes.
 pub(crate) struct Pose {
     /// The transform of each node within its parent.
     pub(crate) local: Vec<DMat4>,
@@ -21,7 +21,7 @@ pub(crate) struct Pose {
     pub(crate) weights: Vec<Option<Vec<f64>>>,
 }
 
-/// Where a node stands in its parent, by parts.
+/// The local transform of a node: translation, rotation and scale.
 #[derive(Clone, Copy)]
 struct Placement {
     translation: DVec3,
@@ -48,43 +48,43 @@ impl Placement {
     }
 }
 
-/// The pose that is asked for.
+/// The requested pose.
 ///
 /// # Errors
-/// Where there is no such animation, or what it names is not there.
-pub(crate) fn pose(document: &Document, sources: &mut Sources<'_>) -> Result<Pose> {
+/// If there is no such animation, or what it names does not exist.
+pub(crate) fn pose(document: &Document, context: &mut LoadContext<'_>) -> Result<Pose> {
     let nodes = &document.root.nodes;
     let mut pose = Pose {
         local: nodes.iter().map(Node::at_rest).collect(),
         weights: nodes.iter().map(|node| node.weights.clone()).collect(),
     };
-    if let Some(animation) = chosen(document, sources)? {
-        animate(document, animation, &mut pose, sources)?;
+    if let Some(animation) = chosen(document, context)? {
+        animate(document, animation, &mut pose, context)?;
     }
     Ok(pose)
 }
 
-/// The number of the animation that is asked for.
-fn chosen(document: &Document, sources: &mut Sources<'_>) -> Result<Option<usize>> {
+/// The number of the requested animation.
+fn chosen(document: &Document, context: &mut LoadContext<'_>) -> Result<Option<usize>> {
     let animations = &document.root.animations;
-    match &sources.choice.animation {
+    match &context.import.animation {
         Some(name) => {
             let names = animations.iter().map(|animation| animation.name.as_deref());
             choose(document, "animation", "/animations", name, names).map(Some)
         }
-        None if sources.choice.at == 0.0 => Ok(None),
+        None if context.import.at == 0.0 => Ok(None),
         None if animations.is_empty() => {
-            sources.warn(&document.at(""), "a time is given, but the file has no animations: it is at rest");
+            context.warn(&document.at(""), "a time is given, but the file has no animations: it is at rest");
             Ok(None)
         }
         None => Ok(Some(0)),
     }
 }
 
-fn animate(document: &Document, index: usize, pose: &mut Pose, sources: &mut Sources<'_>) -> Result<()> {
+fn animate(document: &Document, index: usize, pose: &mut Pose, context: &mut LoadContext<'_>) -> Result<()> {
     let root = &document.root;
     let animation = &root.animations[index];
-    let time = sources.choice.at;
+    let time = context.import.at;
     let mut placements: Vec<Option<Placement>> = vec![None; root.nodes.len()];
     for (place, channel) in animation.channels.iter().enumerate() {
         let pointer = format!("/animations/{index}/channels/{place}");
@@ -98,7 +98,7 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, sources: &mut Sou
         let Some(target) = channel.target.node else {
             // Channels of `KHR_animation_pointer` may be many; that it is not known is said once.
             if channel.target.path != "pointer" {
-                sources.warn(&document.at(&pointer), "the channel moves no node and is passed over");
+                context.warn(&document.at(&pointer), "the channel moves no node and is passed over");
             }
             continue;
         };
@@ -110,12 +110,12 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, sources: &mut Sou
             "weights" => None,
             path => {
                 let message = format!("the channel moves {path:?}, which is not known, and is passed over");
-                sources.warn(&document.at(&pointer), message);
+                context.warn(&document.at(&pointer), message);
                 continue;
             }
         };
         let Some(numbers) = sample(document, sampler, width, time, &asked)? else {
-            sources.warn(
+            context.warn(
                 &document.at(&pointer),
                 "the channel says nothing that is a number, and is passed over",
             );
@@ -143,7 +143,7 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, sources: &mut Sou
     Ok(())
 }
 
-/// What a sampler says: so many numbers, or for `None` one for each morph target. `None` where any is not finite.
+/// The value of a sampler with this number of components; `None` stands for one for each morph target. The result is `None` where a component is not finite.
 fn sample(
     document: &Document,
     sampler: &AnimationSampler,

@@ -1,4 +1,4 @@
-//! Where do joints take the vertices of a mesh (specification, §3.7.3)?
+//! Linear blend skinning (specification, §3.7.3).
 //!
 //! Joints are nodes anywhere in the tree, and stand for the node of the mesh, whose own transform does not count: so a
 //! skinned mesh is already in the world.
@@ -11,7 +11,7 @@ use super::mesh::Vertices;
 use super::node::Tree;
 use crate::error::Result;
 
-/// What the joints of a skin do.
+/// The joint matrices of a skin.
 #[derive(Clone, Debug)]
 pub(super) struct Skin {
     /// Of each joint: from where vertices were bound to it.
@@ -20,7 +20,7 @@ pub(super) struct Skin {
     pub(super) world_from_skinned: DMat4,
 }
 
-/// How much of which joints moves a vertex.
+/// The joints of a vertex and their weights.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Influence {
     pub(super) joints: [u32; 4],
@@ -31,7 +31,7 @@ impl Skin {
     /// The skin of this number in a tree of nodes.
     ///
     /// # Errors
-    /// Where the skin, its joints or its matrices are not there.
+    /// If the skin, its joints or its matrices do not exist.
     pub(super) fn new(document: &Document, index: Whole, asked: &str, tree: &Tree) -> Result<Self> {
         let skin = document.one_of(&document.root.skins, index, "skin", asked)?;
         let pointer = format!("/skins/{}", index.0);
@@ -73,7 +73,7 @@ impl Skin {
     /// other mesh.
     ///
     /// # Errors
-    /// Where joints or weights cannot be read, are not one a vertex, or where there is no such joint.
+    /// If joints or weights cannot be read, are not one a vertex, or if there is no such joint.
     pub(super) fn bend(
         &self,
         document: &Document,

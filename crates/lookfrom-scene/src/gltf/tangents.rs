@@ -1,4 +1,4 @@
-//! Which way do u and v run over a mesh whose file does not say (specification, §3.7.2.1; Mikkelsen 2008)?
+//! Tangents of meshes whose file has none, by MikkTSpace (specification, §3.7.2.1; Mikkelsen 2008).
 //!
 //! The crate `bevy_mikktspace` gives the tangents that normal maps are baked with. They belong to corners of triangles,
 //! so vertices where they differ, as at the seams of mirrored texture coordinates, become several.

@@ -1,5 +1,5 @@
-//! Which picture, which part of it and which numbers of it does a material mean by a texture (specification, §3.8;
-//! `KHR_texture_transform`, `EXT_texture_webp`, `KHR_texture_basisu`)?
+//! Textures: image, sampler, channels and transform (specification, §3.8; `KHR_texture_transform`, `EXT_texture_webp`,
+//! `KHR_texture_basisu`).
 //!
 //! In glTF v runs down from the picture's upper edge, here it runs up: meshes have 1 − v, and [`mapping`] says of that
 //! what the file says of v. Only pictures that are used are decoded, once for colours and once for numbers, side by side.
@@ -7,22 +7,21 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use rayon::prelude::*;
-
 use super::file::Document;
 use super::json::{Sampler, Texture as TextureEntry, TextureInfo, Whole};
 use super::uri::Uri;
 use crate::error::{Error, ErrorKind, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::image::{self, Encoding, Image};
 use crate::material::{Color, Scalar};
+use crate::parallel;
 use crate::scene::{ImageId, Scene, TextureId};
 use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
 
-/// How many pictures' worth of [`crate::Limits::texels`] one file may have in all.
+/// The number of images of [`crate::Limits::texels`] one file may have in all.
 const PICTURES_OF_MOST_TEXELS: u64 = 4;
 
-/// What the numbers of a picture stand for.
+/// The role of an image: colours or data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Meaning {
     /// Colours by the sRGB curve; opacity is linear.
@@ -36,7 +35,7 @@ pub(super) enum Meaning {
 /// A texture with all that it needs, and where it is used.
 #[derive(Clone, Copy)]
 pub(super) struct Use<'a> {
-    /// What the file says.
+    /// The JSON of the file.
     pub(super) info: Option<&'a TextureInfo>,
     /// The pointer of that.
     pub(super) pointer: &'a str,
@@ -66,7 +65,7 @@ impl<'d> Textures<'d> {
     /// A colour: a factor, times a texture where there is one.
     ///
     /// # Errors
-    /// Where the texture, its sampler or its image is not in the file.
+    /// If the texture, its sampler or its image is not in the file.
     pub(super) fn color(&mut self, factor: [f32; 3], texture: Use<'_>, scene: &mut Scene) -> Result<Color> {
         let [r, g, b] = factor;
         let is_gray = r == g && g == b;
@@ -154,18 +153,18 @@ impl<'d> Textures<'d> {
         TextureId(scene.textures.len() as u32 - 1)
     }
 
-    /// Decodes the pictures that were asked for. One that cannot be is white, with a warning.
-    pub(super) fn decode(self, sources: &mut Sources<'_>, scene: &mut Scene) {
+    /// Decodes the pictures that were requested. One that cannot be is white, with a warning.
+    pub(super) fn decode(self, context: &mut LoadContext<'_>, scene: &mut Scene) {
         let Self { document, pictures, instead, .. } = self;
-        let (files, limits) = (sources.files, sources.limits);
+        let (files, limits) = (context.files, context.limits);
         let texels = AtomicU64::new(0);
         let read = |((index, meaning), id): ((usize, Meaning), ImageId)| {
-            let mut sources = Sources { limits, ..Sources::new(files) };
+            let mut context = LoadContext { limits, ..LoadContext::new(files) };
             let image =
-                picture(document, index, meaning, &texels, &mut sources).or_else(|error| {
+                picture(document, index, meaning, &texels, &mut context).or_else(|error| {
                     match instead.get(&index) {
                         Some(&plain) => {
-                            picture(document, plain, meaning, &texels, &mut sources).map_err(|_| error)
+                            picture(document, plain, meaning, &texels, &mut context).map_err(|_| error)
                         }
                         None => Err(error),
                     }
@@ -173,15 +172,15 @@ impl<'d> Textures<'d> {
             let image = image.unwrap_or_else(|error| {
                 let message =
                     format!("the picture cannot be used, and white is in its place: {}", error.message);
-                sources.warn(&error.at, message);
+                context.warn(&error.at, message);
                 blank(document, index, meaning)
             });
-            (id, image, sources.warnings)
+            (id, image, context.warnings)
         };
-        let decoded: Vec<_> = pictures.into_iter().collect::<Vec<_>>().into_par_iter().map(read).collect();
+        let decoded: Vec<_> = parallel::map(pictures.into_iter().collect(), read);
         for (id, image, warnings) in decoded {
             scene.images[id.index()] = image;
-            sources.warnings.extend(warnings);
+            context.warnings.extend(warnings);
         }
     }
 }
@@ -231,11 +230,11 @@ fn picture(
     index: usize,
     meaning: Meaning,
     texels: &AtomicU64,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
 ) -> Result<Image> {
     let entry = &document.root.images[index];
     let pointer = format!("/images/{index}");
-    let most = sources.limits.texels.saturating_mul(PICTURES_OF_MOST_TEXELS);
+    let most = context.limits.texels.saturating_mul(PICTURES_OF_MOST_TEXELS);
     if texels.load(Ordering::Relaxed) > most {
         let message = format!("the pictures of this file have more than {most} texels together");
         return Err(Error::new(ErrorKind::Limit, &document.at(&pointer), message));
@@ -243,13 +242,13 @@ fn picture(
     let image = match (&entry.uri, entry.buffer_view) {
         (None, Some(view)) => {
             let view = document.view(view, &format!("{pointer}/bufferView"))?;
-            decoded(view.bytes, &pointer, meaning, document, sources)?
+            decoded(view.bytes, &pointer, meaning, document, context)?
         }
         (Some(uri), _) => match document.uri(uri, &format!("{pointer}/uri"))? {
-            Uri::Data(bytes) => decoded(&bytes, &pointer, meaning, document, sources)?,
+            Uri::Data(bytes) => decoded(&bytes, &pointer, meaning, document, context)?,
             Uri::Names(names) => {
-                let (_, bytes) = document.first_of(&names, &pointer, |path| sources.read(path))?;
-                decoded(&bytes, &pointer, meaning, document, sources)?
+                let (_, bytes) = document.first_of(&names, &pointer, |path| context.read(path))?;
+                decoded(&bytes, &pointer, meaning, document, context)?
             }
         },
         (None, None) => {
@@ -265,13 +264,13 @@ fn decoded(
     pointer: &str,
     meaning: Meaning,
     document: &Document,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
 ) -> Result<Image> {
     let encoding = if meaning == Meaning::Color { Encoding::Srgb } else { Encoding::Linear };
-    image::decode(bytes, &document.at(pointer).to_string(), encoding, sources)
+    image::decode(bytes, &document.at(pointer).to_string(), encoding, context)
 }
 
-/// What is in the place of a picture that cannot be used.
+/// The placeholder of a picture that cannot be used.
 fn blank(document: &Document, index: usize, meaning: Meaning) -> Image {
     let name = document.at(&format!("/images/{index}")).to_string();
     let texel = if meaning == Meaning::Normal { [0.5, 0.5, 1.0] } else { [1.0; 3] };

@@ -1,8 +1,8 @@
-//! What does an animation's sampler say at a moment (specification, §3.11 and appendix C)?
+//! Animation samplers: interpolation between keyframes (specification, §3.11 and appendix C).
 
 use glam::{DQuat, DVec4};
 
-/// How values lie between two keys.
+/// The interpolation between two keyframes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Interpolation {
     /// On a straight line, or a great circle for rotations.
@@ -38,7 +38,7 @@ pub(super) struct Track<'a> {
     pub(super) values: &'a [f32],
     /// Numbers of an element.
     pub(super) width: usize,
-    /// What is between keys.
+    /// The interpolation.
     pub(super) interpolation: Interpolation,
 }
 

@@ -1,9 +1,8 @@
-//! What does a `uri` stand for: bytes of its own (`data:`, RFC 2397) or a file beside this one, with a name in which
-//! characters may be written in hexadecimal (RFC 3986)?
+//! URIs: embedded bytes (`data:`, RFC 2397), or the percent-encoded path of another file (RFC 3986).
 
 use crate::error::{Error, ErrorKind, Location, Result};
 
-/// What a `uri` stands for.
+/// The content of a `uri`.
 pub(crate) enum Uri {
     /// Its own bytes.
     Data(Vec<u8>),
@@ -87,7 +86,7 @@ const NONE: u8 = 255;
 /// To be passed over: white space and what fills up the end.
 const SKIP: u8 = 254;
 
-/// What each byte means as a digit of base 64 (RFC 4648, both alphabets).
+/// The value of each byte as a base64 digit (RFC 4648, both alphabets).
 const DIGITS: [u8; 256] = {
     let mut digits = [NONE; 256];
     let alphabet = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -1,5 +1,4 @@
-//! Pictures of Basis Universal as they stand in KTX 2 files: ETC1S behind BasisLZ, and UASTC, to bytes of red, green, blue and
-//! opacity.
+//! Decoders for the Basis Universal formats of KTX 2 files, ETC1S in BasisLZ and UASTC, to 8-bit RGBA.
 //!
 //! Whatever bytes there are, the answer is texels or a [`Damage`]: codes and indices are looked up with `get`, numbers of bits are
 //! those of tables here. Khronos, "KTX File Format Specification", version 2.0 (2021), sections on BasisLZ; Binomial, "UASTC LDR
@@ -13,7 +12,7 @@ mod uastc;
 pub(super) use self::etc1s::etc1s;
 pub(super) use self::uastc::{BLOCK, uastc};
 
-/// What of a file is not as its format asks.
+/// The kind of damage of a file.
 pub(super) type Damage = &'static str;
 
 /// Columns and rows.

@@ -1,4 +1,4 @@
-//! Are two pictures of the same thing the same but for noise, and how far apart are they?
+//! Comparison of two images: error metrics, and z-tests against their measured variance.
 //!
 //! Means and errors in numbers; and where both pictures know their variance (channels `Variance.R G B`: of *one* sample, as pbrt's
 //! `gbuffer` film writes them and ours does), a z-test of each pixel and of each block of pixels: the difference in shares of
@@ -50,30 +50,30 @@ pub struct Sampled {
     pub width: usize,
     /// Linear Rec. 709, row by row; all finite.
     pub pixels: Vec<[f32; 3]>,
-    /// How many values were not finite; they are 0 in `pixels`.
+    /// The number of values that were not finite; they are 0 in `pixels`.
     pub not_finite: usize,
     /// The variances of the pixels (not of one sample) in three channels.
     pub variances: Option<Vec<[f64; 3]>>,
-    /// What gives the channels that the variances are of from linear Rec. 709; `None` where that is not known.
+    /// The matrix from linear Rec. 709 to the channels of the variances; `None` where it is not known.
     pub channels_from_rgb: Option<Matrix>,
 }
 
-/// What two pictures have to do with each other. Channels are red, green, blue.
+/// The result of a comparison of two pictures. Channels are red, green, blue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// The mean of the picture and of the reference, by channel.
     pub means: [[f64; 3]; 2],
-    /// How much greater the picture's means are than the reference's, in shares of these.
+    /// The difference of the means relative to the reference's means.
     pub relative: [f64; 3],
     /// Root of the mean squared difference.
     pub rmse: f64,
     /// Mean squared difference in shares of the reference's square plus 0.01.
     pub relative_mse: f64,
-    /// What noise explains, where both know their variance, and in the same channels.
+    /// The z-tests, where both pictures have variances in the same channels.
     pub noise: Option<NoiseTest>,
 }
 
-/// How much of the differences noise explains, in the channels of the variances: X, Y and Z, or those of a camera.
+/// The z-tests, in the channels of the variances: X, Y and Z, or those of a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseTest {
     /// The share of pixels of which all three differ by at most [`MOST_STANDARD_ERRORS`].

@@ -1,14 +1,14 @@
-//! How do the whole numbers of a picture stand for light or for other numbers?
+//! Transfer functions from integer samples to light or other values.
 
 use std::fmt;
 use std::sync::{Arc, LazyLock};
 
 use super::linear_from_srgb;
 
-/// What each byte of a picture stands for.
+/// The decoded value of each byte value.
 pub(super) type Table = Arc<[f32; 256]>;
 
-/// How whole numbers, over 0…1, become what is meant.
+/// The transfer function from integers, scaled to [0, 1], to values.
 #[derive(Clone, Copy)]
 pub enum Encoding<'a> {
     /// By the sRGB curve: colours.
@@ -20,7 +20,7 @@ pub enum Encoding<'a> {
 }
 
 impl Encoding<'_> {
-    /// The number that is meant.
+    /// The identity: integers, scaled to [0, 1].
     pub fn decode(self, encoded: f32) -> f32 {
         match self {
             Self::Srgb => linear_from_srgb(encoded),

@@ -1,4 +1,4 @@
-//! How different do two pictures look to someone who flips between them? LDR-ꟻLIP.
+//! LDR-ꟻLIP: the difference of two images as perceived by an observer who alternates between them.
 //!
 //! Colours are blurred as the eye blurs them at the distance of the screen, and compared in a space of about equal steps;
 //! edges and points are found in both pictures, and where one has what the other has not, the difference of colour is made
@@ -22,7 +22,7 @@ const NEAR_ERROR: f64 = 0.95;
 /// The width of an edge in degrees.
 const EDGE_WIDTH: f64 = 0.082;
 
-/// What the eye resolves of light, of red–green and of blue–yellow: sums of a·√(π/b)·exp(−π²x²/b), x in degrees.
+/// Contrast sensitivity of the eye for luminance, red–green and blue–yellow: sums of a·√(π/b)·exp(−π²x²/b), x in degrees.
 const SENSITIVITIES: [[(f64, f64); 2]; 3] =
     [[(1.0, 0.0047), (0.0, 1e-5)], [(1.0, 0.0053), (0.0, 1e-5)], [(34.1, 0.04), (13.5, 0.025)]];
 
@@ -162,7 +162,7 @@ fn perceived(colors: &[Color], width: usize, pixels_per_degree: f64) -> Vec<Colo
         .collect()
 }
 
-/// How much of an edge and of a point there is at each pixel.
+/// Edge and point feature strength at each pixel.
 fn features(light: &[f64], width: usize, pixels_per_degree: f64) -> Vec<[f64; 2]> {
     // A Gaussian as wide as an edge, its first derivative and its second, each with parts above and below 0 that weigh 1.
     let deviation = 0.5 * EDGE_WIDTH * pixels_per_degree;

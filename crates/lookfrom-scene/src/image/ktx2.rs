@@ -1,5 +1,5 @@
-//! What does a KTX 2.0 file show: Basis Universal's formats (ETC1S, UASTC), and bytes as they are (Khronos, "KTX File
-//! Format Specification", version 2.0, 2021)?
+//! Reader for KTX 2.0 files, in Basis Universal formats (ETC1S, UASTC) and uncompressed (Khronos, "KTX File Format
+//! Specification", version 2.0, 2021).
 //!
 //! Only the first picture is read, without its smaller versions. Whether its bytes are colours by the sRGB curve, those
 //! who use it know. `basis` unpacks Basis Universal's formats; other formats of graphics cards (BC7, ASTC …) are not read.
@@ -19,7 +19,7 @@ const HEADER: usize = 80;
 
 const NOT_WHOLE: &str = "check that the file is whole; writing it again may repair it";
 
-/// How the bytes of the first level are packed.
+/// The supercompression of the first level.
 const PLAIN: u32 = 0;
 const BASIS_LZ: u32 = 1;
 const ZSTANDARD: u32 = 2;
@@ -38,17 +38,17 @@ pub(super) struct Pixels {
     pub(super) texels: Vec<[u8; 4]>,
 }
 
-/// What a file says of itself.
+/// The header of a file.
 struct Header {
     /// Vulkan's number of the format; 0 where Basis Universal is meant.
     format: u32,
     width: u32,
     height: u32,
     packing: u32,
-    /// How many pictures there are: levels, layers, faces.
+    /// The numbers of levels, layers and faces.
     images: usize,
     descriptor: std::ops::Range<usize>,
-    /// What all pictures share.
+    /// The global data of all pictures.
     shared: std::ops::Range<usize>,
     /// Of the first level.
     level: std::ops::Range<usize>,

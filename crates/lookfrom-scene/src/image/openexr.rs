@@ -1,4 +1,4 @@
-//! OpenEXR: pictures of any number of named channels of light as it is (the format: openexr.com, "File Layout").
+//! OpenEXR files with any number of named channels of linear values (the format: openexr.com, "File Layout").
 //!
 //! Reading is left to crate `exr`. Writing is done here, because that crate writes text attributes in a random order,
 //! and the same picture shall be the same bytes.
@@ -14,9 +14,9 @@ use ::exr::prelude::{ReadChannels, ReadLayers, read as exr_read};
 use super::read::{Floats, check_size};
 use super::write::check;
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::{Limits, Sources};
+use crate::files::{Limits, LoadContext};
 
-/// What an OpenEXR file starts with.
+/// The signature of an OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// Rows that are compressed together.
@@ -50,9 +50,9 @@ impl Channels {
 ///
 /// # Errors
 /// As [`super::read()`].
-pub fn read_exr(path: &Path, sources: &mut Sources<'_>) -> Result<Channels> {
-    let bytes = sources.read(path)?;
-    decode_channels(&bytes, &Location::file(path), &sources.limits)
+pub fn read_exr(path: &Path, context: &mut LoadContext<'_>) -> Result<Channels> {
+    let bytes = context.read(path)?;
+    decode_channels(&bytes, &Location::file(path), &context.limits)
 }
 
 /// The colours of an OpenEXR file: R, G, B where they are, else Y.

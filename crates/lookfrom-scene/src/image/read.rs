@@ -1,5 +1,5 @@
-//! How the bytes of a picture become linear colours. What a file is, its content says; its extension is asked only
-//! where the content has no mark (TGA). Of an animation the first picture is read.
+//! Image readers, to linear colours. The format is recognised by the content; the extension counts only where the content
+//! has no signature (TGA). Of an animation the first picture is read.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -9,9 +9,9 @@ use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
 use super::{Encoding, Image, ktx2, openexr};
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::{Limits, Sources};
+use crate::files::{Limits, LoadContext};
 
-/// What can be read, for messages.
+/// The names of the readable formats, for messages.
 const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, KTX2";
 
 /// Reads a picture of colours: 8- and 16-bit formats are taken to be sRGB and become linear, formats of floating-point
@@ -21,34 +21,39 @@ const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, K
 /// `Io` where the file cannot be read; `Syntax` where its bytes are no whole picture; `Unsupported` where its format
 /// is not known; `Limit` where it has more texels than [`Limits::texels`], which its header is asked before anything is
 /// decoded.
-pub fn read(path: &Path, sources: &mut Sources<'_>) -> Result<Image> {
-    read_encoded(path, sources, Encoding::Srgb)
+pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Image> {
+    read_encoded(path, context, Encoding::Srgb)
 }
 
 /// Reads a picture of numbers (bumps, weights): as [`read`], but 8- and 16-bit values are taken as they are, over 0…1.
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_data(path: &Path, sources: &mut Sources<'_>) -> Result<Image> {
-    read_encoded(path, sources, Encoding::Linear)
+pub fn read_data(path: &Path, context: &mut LoadContext<'_>) -> Result<Image> {
+    read_encoded(path, context, Encoding::Linear)
 }
 
 /// Reads a picture of whatever: as [`read`], but `encoding` takes the 0…1 of 8- and 16-bit values to what is meant.
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_encoded(path: &Path, sources: &mut Sources<'_>, encoding: Encoding<'_>) -> Result<Image> {
-    let bytes = sources.read(path)?;
-    decode(&bytes, &path.display().to_string(), encoding, sources)
+pub fn read_encoded(path: &Path, context: &mut LoadContext<'_>, encoding: Encoding<'_>) -> Result<Image> {
+    let bytes = context.read(path)?;
+    decode(&bytes, &path.display().to_string(), encoding, context)
 }
 
 /// The picture that bytes hold, as [`read_encoded`] has it from a file. `name` becomes its own, and stands in messages.
 ///
 /// # Errors
 /// As [`read`], without `Io`.
-pub fn decode(bytes: &[u8], name: &str, encoding: Encoding<'_>, sources: &mut Sources<'_>) -> Result<Image> {
+pub fn decode(
+    bytes: &[u8],
+    name: &str,
+    encoding: Encoding<'_>,
+    context: &mut LoadContext<'_>,
+) -> Result<Image> {
     let at = Location::file(Path::new(name));
-    let limits = sources.limits;
+    let limits = context.limits;
     // Formats that the crate `image` does not read are told by their first bytes.
     if bytes.starts_with(&ktx2::MAGIC) {
         let ktx2::Pixels { width, height, texels } = ktx2::decode(bytes, &at, &limits)?;
@@ -77,7 +82,7 @@ pub fn decode(bytes: &[u8], name: &str, encoding: Encoding<'_>, sources: &mut So
         }
     }
     if bad > 0 {
-        sources.warn(&at, format!("{bad} values are not finite numbers; each is taken as 0"));
+        context.warn(&at, format!("{bad} values are not finite numbers; each is taken as 0"));
     }
     Ok(Image::from_linear_and_alpha(name, width, height, texels, alpha))
 }
@@ -87,13 +92,17 @@ pub fn decode(bytes: &[u8], name: &str, encoding: Encoding<'_>, sources: &mut So
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_opacity(path: &Path, sources: &mut Sources<'_>, encoding: Encoding<'_>) -> Result<Option<Image>> {
+pub fn read_opacity(
+    path: &Path,
+    context: &mut LoadContext<'_>,
+    encoding: Encoding<'_>,
+) -> Result<Option<Image>> {
     let at = Location::file(path);
-    let bytes = sources.read(path)?;
+    let bytes = context.read(path)?;
     if bytes.starts_with(&openexr::MAGIC) || bytes.starts_with(&ktx2::MAGIC) || is_pfm(&bytes) {
         return Ok(None);
     }
-    let picture = decode_common(&bytes, path, &at, &sources.limits)?;
+    let picture = decode_common(&bytes, path, &at, &context.limits)?;
     if !picture.color().has_alpha() {
         return Ok(None);
     }
@@ -114,7 +123,7 @@ pub fn read_opacity(path: &Path, sources: &mut Sources<'_>, encoding: Encoding<'
     Ok(Some(Image::from_bytes(name, width, height, texels, encoding)))
 }
 
-/// Checks a header's claim before memory is asked for.
+/// Checks a header's claim before memory is allocated.
 pub(super) fn check_size(width: u64, height: u64, at: &Location, limits: &Limits) -> Result<()> {
     if width == 0 || height == 0 {
         return Err(Error::invalid(at, format!("a picture of {width}×{height} has no texels")));

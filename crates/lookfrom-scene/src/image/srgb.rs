@@ -1,4 +1,4 @@
-//! The curve between light and the numbers of 8- and 16-bit pictures: sRGB (IEC 61966-2-1, 1999).
+//! The sRGB transfer function (IEC 61966-2-1, 1999).
 
 /// Linear light from an sRGB-encoded value; both nominally in [0, 1].
 pub fn linear_from_srgb(encoded: f32) -> f32 {

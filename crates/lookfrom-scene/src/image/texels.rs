@@ -1,4 +1,4 @@
-//! A picture in memory: what is written in bytes stays bytes, four to a texel; what is finer is 32-bit numbers.
+//! Texel storage: 8-bit images stay bytes, four to a texel; others are 32-bit floats.
 //!
 //! A table of 256 numbers says what bytes stand for, so that a byte gives exactly the number that decoding the whole
 //! picture beforehand would.
@@ -81,7 +81,7 @@ impl Image {
         Self { name: name.into(), width, height, texels, has_alpha }
     }
 
-    /// How many texels there are.
+    /// The number of texels.
     pub fn len(&self) -> usize {
         match &self.texels {
             Texels::Bytes { texels, .. } => texels.len(),
@@ -89,7 +89,7 @@ impl Image {
         }
     }
 
-    /// Whether there are none.
+    /// Whether the image has no texels.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -1,4 +1,4 @@
-//! How pictures are written: 8-bit PNG and PPM, and HDR and PFM for light as it is. EXR is beside, in `openexr`.
+//! Image writers: 8-bit PNG and PPM, and HDR and PFM for linear light. EXR is in `openexr`.
 
 use std::io::Cursor;
 

@@ -1,4 +1,4 @@
-//! Which number does a word spell?
+//! Parser for decimal numbers.
 //!
 //! Exactly the nearest one, as the standard library finds it, but faster for the short decimals that models are full
 //! of (Clinger 1990: a product or quotient of two exact doubles is rounded once). Odd spellings that other programs
@@ -10,7 +10,7 @@ const POWERS: [f64; 23] = [
     1e19, 1e20, 1e21, 1e22,
 ];
 
-/// The single that is nearest to what the word spells; infinite where it is too large.
+/// The `f32` nearest to the decimal number; infinite where it is too large.
 pub(crate) fn parse_f32(word: &[u8]) -> Option<f32> {
     if let Some(double) = short_decimal(word) {
         let magnitude = double.abs();
@@ -23,7 +23,7 @@ pub(crate) fn parse_f32(word: &[u8]) -> Option<f32> {
     slow(word)
 }
 
-/// The double that is nearest to what the word spells; infinite where it is too large.
+/// The `f64` nearest to the decimal number; infinite where it is too large.
 pub(crate) fn parse_f64(word: &[u8]) -> Option<f64> {
     short_decimal(word).or_else(|| slow(word))
 }
@@ -80,7 +80,7 @@ fn short_decimal(word: &[u8]) -> Option<f64> {
     Some(if negative { -magnitude } else { magnitude })
 }
 
-/// What the standard library makes of it, or of it with its oddities mended.
+/// The result of the standard library's parser, after odd spellings are normalised.
 fn slow<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     let text = std::str::from_utf8(word).ok()?;
     if let Ok(number) = text.parse() {

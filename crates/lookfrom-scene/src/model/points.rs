@@ -1,4 +1,4 @@
-//! How is a cloud of points shown?
+//! Point clouds as spheres.
 //!
 //! As spheres whose radius follows from how near the points lie to one another. Spheres of one part have one look, so
 //! coloured clouds are parted by colour.
@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 use super::surface::push_material;
 use super::tally::Tally;
 use crate::error::Location;
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::material::{Color, Whitted};
 use crate::scene::Scene;
 use crate::shape::{Geometry, Part, Sphere};
@@ -18,7 +18,7 @@ use crate::shape::{Geometry, Part, Sphere};
 /// Steps of each primary by which coloured points are parted.
 const COLOR_STEPS: f32 = 8.0;
 
-/// How many points are asked for their nearest neighbour.
+/// The number of points whose nearest neighbour is searched.
 const SAMPLES: usize = 256;
 
 /// Radius of the spheres, in distances to the nearest neighbour: neighbours overlap a little, surfaces look closed.
@@ -29,12 +29,12 @@ pub(crate) fn cloud(
     positions: &[Vec3],
     colors: &[[f32; 3]],
     file: &Location,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Vec<Part> {
     let mut dropped = Tally::default();
     dropped.add_many(positions.iter().filter(|point| !point.is_finite()).count() as u64, 0);
-    dropped.warn("point", "left out: a coordinate is infinite or not a number", file, sources);
+    dropped.warn("point", "left out: a coordinate is infinite or not a number", file, context);
     let finite = positions.iter().zip(0..).filter(|(point, _)| point.is_finite());
     let finite: Vec<(DVec3, usize)> = finite.map(|(point, index)| (point.as_dvec3(), index)).collect();
     if finite.is_empty() {

@@ -1,4 +1,4 @@
-//! Which triangles make up a polygon?
+//! Triangulation of polygons.
 //!
 //! A fan where that is right, otherwise ears are cut off one after the other (Meisters 1975). Polygons in space are
 //! looked at along their mean normal (Newell's, in Sutherland, Sproull, Schumacker 1974). No vertex is left out, so
@@ -11,18 +11,18 @@ pub(crate) struct Triangulator {
     flat: Vec<DVec2>,
     /// The corners that are left.
     left: Vec<u32>,
-    /// How many more corner tests may be made: ears cost the square of the number of corners, and a file must not be
+    /// The budget of corner tests: ear clipping costs the square of the number of corners, and a file must not be
     /// able to ask for hours.
     tests_left: u64,
 }
 
 impl Triangulator {
-    /// As generous as a few seconds allow.
+    /// The default budget: a few seconds.
     pub(crate) fn new() -> Self {
         Self { flat: Vec::new(), left: Vec::new(), tests_left: 1 << 30 }
     }
 
-    /// Whether some polygon was too costly and was cut into a mere fan.
+    /// Whether a polygon exceeded the budget and became a fan.
     pub(crate) fn gave_up(&self) -> bool {
         self.tests_left == 0
     }

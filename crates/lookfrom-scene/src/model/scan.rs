@@ -1,4 +1,4 @@
-//! Which words stand on which line of a text file?
+//! Scanner for line-oriented text formats.
 //!
 //! A cursor over bytes for line-oriented formats. It knows line ends of all kinds (LF, CR LF, CR) and the places of
 //! words; what words mean is left to the readers of the formats.
@@ -33,7 +33,7 @@ impl<'a> Scanner<'a> {
         self.line
     }
 
-    /// How many bytes lie before the cursor.
+    /// The number of bytes before the cursor.
     pub(crate) fn position(&self) -> usize {
         self.position
     }
@@ -70,7 +70,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// What is left of this line, without blanks at its ends; the cursor stays on the line.
+    /// The rest of this line, without blanks at its ends; the cursor stays on the line.
     pub(crate) fn rest_of_line(&mut self) -> &'a [u8] {
         self.skip_blanks();
         self.word_start = self.position;
@@ -109,7 +109,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// How many bytes the line end at `position` has; 0 where there is none.
+    /// The length in bytes of the line end at `position`; 0 where there is none.
     fn line_end(&self, position: usize) -> usize {
         match self.bytes.get(position) {
             Some(b'\n') => 1,

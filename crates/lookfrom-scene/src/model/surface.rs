@@ -1,9 +1,9 @@
-//! How do the pictures and looks of a model get into a scene?
+//! Images and materials of models, added to a scene.
 
 use std::path::{Path, PathBuf};
 
 use crate::error::{Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::image::{self, Image};
 use crate::material::{Color, Material, MaterialKind, Whitted};
 use crate::scene::{ImageId, MaterialId, Scene, TextureId};
@@ -14,7 +14,7 @@ pub(crate) fn beside(path: &Path, name: &str) -> PathBuf {
     path.parent().unwrap_or(Path::new("")).join(name.trim_start_matches("./"))
 }
 
-/// What follows the last `/` of a name.
+/// The part of a name after the last `/`.
 pub(crate) fn base_name(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
@@ -23,10 +23,10 @@ pub(crate) fn base_name(name: &str) -> &str {
 /// like to write the folders of their own machine.
 ///
 /// # Errors
-/// Those of the first try.
-pub(crate) fn read_image(path: &Path, name: &str, sources: &mut Sources<'_>) -> Result<Image> {
-    image::read(&beside(path, name), sources)
-        .or_else(|error| image::read(&beside(path, base_name(name)), sources).map_err(|_| error))
+/// The error of the first name.
+pub(crate) fn read_image(path: &Path, name: &str, context: &mut LoadContext<'_>) -> Result<Image> {
+    image::read(&beside(path, name), context)
+        .or_else(|error| image::read(&beside(path, base_name(name)), context).map_err(|_| error))
 }
 
 /// A picture over uv, bilinear.

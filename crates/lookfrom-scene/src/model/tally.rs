@@ -1,10 +1,10 @@
-//! How often did something survivable happen, and where first? One warning tells of all.
+//! Counted warnings: one warning for all occurrences, with the location of the first.
 
 use crate::error::Location;
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::warning::{Warning, WarningKind};
 
-/// Counts one kind of mishap.
+/// A counter for one kind of warning.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Tally {
     count: u64,
@@ -25,25 +25,25 @@ impl Tally {
         self.count += count;
     }
 
-    /// How many.
+    /// The count.
     pub(crate) fn count(self) -> u64 {
         self.count
     }
 
     /// Warns where there were any: "3 triangles `what`".
-    pub(crate) fn warn(self, noun: &str, what: &str, file: &Location, sources: &mut Sources<'_>) {
-        self.tell(WarningKind::Warning, noun, what, file, sources);
+    pub(crate) fn warn(self, noun: &str, what: &str, file: &Location, context: &mut LoadContext<'_>) {
+        self.tell(WarningKind::Warning, noun, what, file, context);
     }
 
-    /// The same of something harmless: the picture is the one that was meant.
-    pub(crate) fn notice(self, noun: &str, what: &str, file: &Location, sources: &mut Sources<'_>) {
-        self.tell(WarningKind::Notice, noun, what, file, sources);
+    /// As a note: the picture is the intended one.
+    pub(crate) fn notice(self, noun: &str, what: &str, file: &Location, context: &mut LoadContext<'_>) {
+        self.tell(WarningKind::Notice, noun, what, file, context);
     }
 
-    fn tell(self, kind: WarningKind, noun: &str, what: &str, file: &Location, sources: &mut Sources<'_>) {
+    fn tell(self, kind: WarningKind, noun: &str, what: &str, file: &Location, context: &mut LoadContext<'_>) {
         if self.count > 0 {
             let warning = Warning { kind, ..Warning::new(&file.at(self.first, 0), what) };
-            sources.warnings.push(warning.of(self.count, noun));
+            context.warnings.push(warning.of(self.count, noun));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! In which encoding is a text?
+//! Text encodings.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! Which tuples of numbers have been seen before, and as the how-manieth?
+//! Vertex deduplication: equal tuples get one id.
 //!
 //! An open hash table from tuples to ids in the order of first appearance. The secret of its hash changes from run
 //! to run, so that no file can be built to make it slow; ids do not depend on it.

@@ -1,4 +1,4 @@
-//! How do faces with separate indices for position, texture coordinates and normal become meshes?
+//! Meshes of faces with separate indices for position, texture coordinates and normal.
 //!
 //! One mesh for each material: polygons cut into triangles, corners with equal indices made one vertex, and normals
 //! made where smoothing groups ask for them: facet normals weighted by the angle at the corner (Thürmer & Wüthrich
@@ -8,7 +8,7 @@ use glam::{DVec3, Vec2, Vec3};
 
 use super::statement::{Corner, Group, NONE, Statements};
 use crate::error::{Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::model::polygon::{Triangulator, has_area};
 use crate::model::tally::Tally;
 use crate::model::weld::Weld;
@@ -17,18 +17,18 @@ use crate::shape::Mesh;
 /// All pieces of a file.
 pub(super) struct Meshes {
     pub(super) pieces: Vec<Piece>,
-    /// Where and how material libraries are named.
+    /// The locations and names of material libraries.
     pub(super) libraries: Vec<(Location, Vec<u8>)>,
 }
 
-/// What has one material.
+/// The faces of one material.
 pub(super) struct Piece {
     pub(super) material: Option<Vec<u8>>,
     pub(super) object: Option<String>,
     pub(super) mesh: Mesh,
 }
 
-/// What could not be used.
+/// The items that could not be used.
 #[derive(Default)]
 struct Tallies {
     not_finite: Tally,
@@ -40,7 +40,7 @@ struct Tallies {
 pub(super) fn meshes(
     mut statements: Statements,
     file: &Location,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
 ) -> Result<Meshes> {
     let mut tallies = Tallies::default();
     let mut triangulator = Triangulator::new();
@@ -54,11 +54,11 @@ pub(super) fn meshes(
             pieces.push(Piece { material: group.material.take(), object: group.object.take(), mesh });
         }
     }
-    tallies.not_finite.warn("face", "left out: a coordinate is infinite or not a number", file, sources);
-    tallies.flat.notice("triangle", "left out: without area", file, sources);
-    tallies.values.warn("normal or texture coordinate", "ignored: infinite or not a number", file, sources);
+    tallies.not_finite.warn("face", "left out: a coordinate is infinite or not a number", file, context);
+    tallies.flat.notice("triangle", "left out: without area", file, context);
+    tallies.values.warn("normal or texture coordinate", "ignored: infinite or not a number", file, context);
     if triangulator.gave_up() {
-        sources.warn(
+        context.warn(
             file,
             "concave polygons with very many corners: some were cut without care for their shape",
         );

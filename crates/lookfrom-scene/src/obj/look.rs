@@ -1,4 +1,4 @@
-//! What do the materials of an OBJ file look like?
+//! Conversion of MTL materials.
 //!
 //! From MTL to Whitted's model. Colours are taken to be linear. Only materials that are used are made, and only their
 //! pictures are read. Ambient light is answered with the diffuse colour: `Ka` is rarely meant.
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use super::mtl::{self, Map, MtlMaterial, shown_name};
 use crate::error::{Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::image::Image;
 use crate::material::{Color, Whitted};
 use crate::model::surface::{
@@ -44,13 +44,13 @@ pub(super) struct Looks {
     missing_name: String,
 }
 
-/// How one piece looks.
+/// The material of one part.
 pub(super) struct Look {
     pub(super) material: Option<MaterialId>,
     pub(super) emission: Option<Emission>,
 }
 
-/// How many names of libraries are looked for, and how long a library may be: more is no model but an attack.
+/// Limits on the number of library names and on the length of a library, against hostile files.
 const MOST_LIBRARIES: usize = 64;
 const LIBRARY_BYTES: u64 = 1 << 26;
 
@@ -59,7 +59,11 @@ const WHITE: [f32; 3] = [1.0; 3];
 
 impl Looks {
     /// Reads the material libraries that the file at `path` names. Those that cannot be read are warned of.
-    pub(super) fn read(libraries: &[(Location, Vec<u8>)], path: &Path, sources: &mut Sources<'_>) -> Self {
+    pub(super) fn read(
+        libraries: &[(Location, Vec<u8>)],
+        path: &Path,
+        context: &mut LoadContext<'_>,
+    ) -> Self {
         let mut looks = Self {
             materials: Vec::new(),
             by_name: HashMap::new(),
@@ -70,42 +74,42 @@ impl Looks {
             missing_name: String::new(),
         };
         if let Some((at, _)) = libraries.get(MOST_LIBRARIES) {
-            sources.warn(at, format!("only the first {MOST_LIBRARIES} material libraries are read"));
+            context.warn(at, format!("only the first {MOST_LIBRARIES} material libraries are read"));
         }
         for (at, names) in libraries.iter().take(MOST_LIBRARIES) {
             let names = String::from_utf8_lossy(names).replace('\\', "/");
             let whole = names.trim_matches('"');
             // The whole line is one name with blanks, or it is several names.
-            let Err(error) = looks.read_library(whole, path, sources) else { continue };
+            let Err(error) = looks.read_library(whole, path, context) else { continue };
             let words: Vec<&str> = names.split_whitespace().take(MOST_LIBRARIES).collect();
             let mut missing = vec![(whole, error)];
             if words.len() > 1 {
-                let tried = words.iter().map(|name| (*name, looks.read_library(name, path, sources)));
+                let tried = words.iter().map(|name| (*name, looks.read_library(name, path, context)));
                 missing = tried.filter_map(|(name, result)| Some((name, result.err()?))).collect();
             }
             // Libraries are renamed along with their models, but not in them.
             let same_stem = packed::unpacked_name(path).with_extension("mtl");
-            let is_replaced = missing.len() == words.len() && looks.read_at(&same_stem, sources).is_ok();
+            let is_replaced = missing.len() == words.len() && looks.read_at(&same_stem, context).is_ok();
             for (name, error) in missing {
                 let instead = if is_replaced {
                     format!("; {} is used instead", same_stem.display())
                 } else {
                     String::new()
                 };
-                sources.warn(at, format!("material library `{name}`: {}{instead}", error.message));
+                context.warn(at, format!("material library `{name}`: {}{instead}", error.message));
             }
         }
         looks
     }
 
-    fn read_library(&mut self, name: &str, path: &Path, sources: &mut Sources<'_>) -> Result<()> {
-        self.read_at(&beside(path, name), sources)
-            .or_else(|error| self.read_at(&beside(path, base_name(name)), sources).map_err(|_| error))
+    fn read_library(&mut self, name: &str, path: &Path, context: &mut LoadContext<'_>) -> Result<()> {
+        self.read_at(&beside(path, name), context)
+            .or_else(|error| self.read_at(&beside(path, base_name(name)), context).map_err(|_| error))
     }
 
-    fn read_at(&mut self, library: &Path, sources: &mut Sources<'_>) -> Result<()> {
-        let bytes = sources.files.read(library, LIBRARY_BYTES.min(sources.limits.file_bytes))?;
-        for material in mtl::parse(&bytes, library, sources) {
+    fn read_at(&mut self, library: &Path, context: &mut LoadContext<'_>) -> Result<()> {
+        let bytes = context.files.read(library, LIBRARY_BYTES.min(context.limits.file_bytes))?;
+        for material in mtl::parse(&bytes, library, context) {
             // The first of a name counts.
             if let Entry::Vacant(entry) = self.by_name.entry(material.name.clone()) {
                 entry.insert(self.materials.len());
@@ -121,7 +125,7 @@ impl Looks {
         name: Option<&[u8]>,
         colored: bool,
         file: &Location,
-        sources: &mut Sources<'_>,
+        context: &mut LoadContext<'_>,
         scene: &mut Scene,
     ) -> Look {
         let index = name.and_then(|name| self.by_name.get(name).copied());
@@ -136,17 +140,17 @@ impl Looks {
             return Look { material, emission: None };
         };
         let (written, library) = self.materials[index].clone();
-        self.translate(&written, &library, colored, sources, scene)
+        self.translate(&written, &library, colored, context, scene)
     }
 
     /// Warns of materials that no library defines. Without any library names are only names.
-    pub(super) fn warn(&self, file: &Location, sources: &mut Sources<'_>) {
+    pub(super) fn warn(&self, file: &Location, context: &mut LoadContext<'_>) {
         if !self.names_libraries {
             return;
         }
         let what =
             format!("not defined in any library, such as `{}`: the default is used", self.missing_name);
-        self.missing.warn("material", &what, file, sources);
+        self.missing.warn("material", &what, file, context);
     }
 
     fn translate(
@@ -154,7 +158,7 @@ impl Looks {
         written: &MtlMaterial,
         library: &Path,
         colored: bool,
-        sources: &mut Sources<'_>,
+        context: &mut LoadContext<'_>,
         scene: &mut Scene,
     ) -> Look {
         let name = shown_name(&written.name);
@@ -178,14 +182,14 @@ impl Looks {
                     "material `{name}` multiplies `{file}` by [{r}, {g}, {b}], and colours of surfaces go from 0 to 1: \
                      the surface gives off more light than arrives"
                 );
-                sources.warn(&written.at, message);
+                context.warn(&written.at, message);
             }
         }
         let mut color = |constant: [f32; 3], map: Option<&Map>, scale: f32, scene: &mut Scene| {
             let constant = constant.map(|value| value * scale);
             let picture = map.filter(|_| scale > 0.0).and_then(|map| {
                 let tint = if constant == BLACK { [scale; 3] } else { constant };
-                self.texture(map, tint, library, sources, scene)
+                self.texture(map, tint, library, context, scene)
             });
             picture.unwrap_or(Color::Value(constant))
         };
@@ -249,18 +253,18 @@ impl Looks {
         map: &Map,
         tint: [f32; 3],
         library: &Path,
-        sources: &mut Sources<'_>,
+        context: &mut LoadContext<'_>,
         scene: &mut Scene,
     ) -> Option<Color> {
         let key = (beside(library, &map.file), tint.map(f32::to_bits));
         let image = match self.images.get(&key) {
             Some(image) => *image,
             None => {
-                let image = match self.read_tinted(&map.file, tint, library, sources) {
+                let image = match self.read_tinted(&map.file, tint, library, context) {
                     Ok(image) => Some(push_image(scene, image)),
                     Err(why) => {
                         let message = format!("texture `{}`: {why}; the constant colour is used", map.file);
-                        sources.warn(&map.at, message);
+                        context.warn(&map.at, message);
                         None
                     }
                 };
@@ -280,15 +284,15 @@ impl Looks {
         name: &str,
         tint: [f32; 3],
         library: &Path,
-        sources: &mut Sources<'_>,
+        context: &mut LoadContext<'_>,
     ) -> std::result::Result<Image, String> {
-        let left = sources.limits.texels.saturating_sub(self.texels);
-        let limit = sources.limits.texels;
+        let left = context.limits.texels.saturating_sub(self.texels);
+        let limit = context.limits.texels;
         let too_many = || format!("the pictures of this model have more than {limit} texels");
         if left == 0 {
             return Err(too_many());
         }
-        let image = read_image(library, name, sources).map_err(|error| error.message)?;
+        let image = read_image(library, name, context).map_err(|error| error.message)?;
         if image.len() as u64 > left {
             return Err(too_many());
         }

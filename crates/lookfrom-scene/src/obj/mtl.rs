@@ -1,4 +1,4 @@
-//! What does an MTL file say?
+//! Parser for MTL files.
 //!
 //! Materials as they are written (Wavefront, "MTL material format", Advanced Visualizer manual, appendix B2, and the
 //! extensions of Clara.io for physically based ones). What they mean is left to the file beside this one, `look`.
@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::error::Location;
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::model::number::parse_f32;
 use crate::model::scan::{Scanner, shown};
 use crate::model::tally::Tally;
@@ -19,7 +19,7 @@ use crate::model::text;
 pub struct MtlMaterial {
     /// The bytes after `newmtl`, without blanks at their ends.
     pub name: Vec<u8>,
-    /// Where it begins.
+    /// The location of its first byte.
     pub at: Location,
     /// `Kd`, `Ks`, `Ke` and `Tf`: finite, not negative.
     pub diffuse: Option<[f32; 3]>,
@@ -52,7 +52,7 @@ pub struct MtlMaterial {
 /// A picture over the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
-    /// Where it is named.
+    /// The location of its name.
     pub at: Location,
     /// The file as it is written, with `/` between folders.
     pub file: String,
@@ -65,7 +65,7 @@ pub struct Map {
 }
 
 /// Reads the materials of a library in the order of the file; `path` is for messages.
-pub fn parse(bytes: &[u8], path: &Path, sources: &mut Sources<'_>) -> Vec<MtlMaterial> {
+pub fn parse(bytes: &[u8], path: &Path, context: &mut LoadContext<'_>) -> Vec<MtlMaterial> {
     let file = Location::file(path);
     let text = text::utf8(bytes);
     let mut scanner = Scanner::joining_lines(&text);
@@ -91,15 +91,15 @@ pub fn parse(bytes: &[u8], path: &Path, sources: &mut Sources<'_>) -> Vec<MtlMat
             break;
         }
     }
-    unreadable.warn("line", "ignored: the values are not what the keyword expects", &file, sources);
-    orphans.warn("line", "before the first `newmtl` ignored", &file, sources);
+    unreadable.warn("line", "ignored: the values are not what the keyword expects", &file, context);
+    orphans.warn("line", "before the first `newmtl` ignored", &file, context);
     for (name, tally) in ignored {
         let noun = format!("`{name}` statement");
         let what = "ignored: not supported";
         match name {
             // It is about a picture that `refl` names.
-            "sharpness" => tally.notice(&noun, what, &file, sources),
-            _ => tally.warn(&noun, what, &file, sources),
+            "sharpness" => tally.notice(&noun, what, &file, context),
+            _ => tally.warn(&noun, what, &file, context),
         }
     }
     materials

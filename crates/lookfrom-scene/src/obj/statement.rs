@@ -1,4 +1,4 @@
-//! What does an OBJ file say, statement by statement?
+//! Parser for the statements of OBJ files.
 //!
 //! One pass over the text (Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1). What it leaves
 //! to others: triangles and normals ([`super::build`]), materials ([`super::mtl`]).
@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use glam::{Vec2, Vec3};
 
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::model::number::parse_f32;
 use crate::model::scan::{Scanner, shown};
 use crate::model::tally::Tally;
@@ -26,7 +26,7 @@ pub(super) struct Corner {
 
 /// A polygon.
 pub(super) struct Face {
-    /// How many corners it has: ≥ 3.
+    /// The number of its corners: ≥ 3.
     pub(super) corners: u32,
     pub(super) line: u32,
     /// The smoothing group; 0 is flat.
@@ -54,7 +54,7 @@ pub(super) struct Statements {
     pub(super) uvs: Vec<Vec2>,
     pub(super) normals: Vec<Vec3>,
     pub(super) groups: Vec<Group>,
-    /// Where and how `mtllib` names material libraries.
+    /// The locations and names of the material libraries of `mtllib`.
     pub(super) libraries: Vec<(Location, Vec<u8>)>,
 }
 
@@ -87,13 +87,13 @@ struct Parser<'a> {
 ///
 /// # Errors
 /// `Syntax` for numbers that are none, `Invalid` for indices out of range, `Limit` for too many elements.
-pub(super) fn parse(text: &[u8], file: &Location, sources: &mut Sources<'_>) -> Result<Statements> {
+pub(super) fn parse(text: &[u8], file: &Location, context: &mut LoadContext<'_>) -> Result<Statements> {
     let largest = || Largest { count: 0, at: file.clone(), written: String::new() };
     let mut parser = Parser {
         file,
         scanner: Scanner::joining_lines(text),
         // Indices must fit 32 bits besides.
-        elements: sources.limits.elements.min(u64::from(u32::MAX) / 4) as usize,
+        elements: context.limits.elements.min(u64::from(u32::MAX) / 4) as usize,
         statements: Statements::default(),
         group_of_material: HashMap::new(),
         group: 0,
@@ -115,7 +115,7 @@ pub(super) fn parse(text: &[u8], file: &Location, sources: &mut Sources<'_>) -> 
         }
     }
     parser.check_indices()?;
-    parser.warn(sources);
+    parser.warn(context);
     Ok(parser.statements)
 }
 
@@ -319,20 +319,20 @@ impl Parser<'_> {
         Ok(())
     }
 
-    fn warn(&self, sources: &mut Sources<'_>) {
+    fn warn(&self, context: &mut LoadContext<'_>) {
         let file = self.file;
         if self.statements.groups.iter().any(|group| !group.faces.is_empty()) {
-            self.loose.warn("point or line element", "left out: only faces are drawn", file, sources);
+            self.loose.warn("point or line element", "left out: only faces are drawn", file, context);
         }
-        self.thin.notice("face", "left out: fewer than three corners", file, sources);
-        self.curves.warn("curve or surface", "left out: free-form geometry is not supported", file, sources);
+        self.thin.notice("face", "left out: fewer than three corners", file, context);
+        self.curves.warn("curve or surface", "left out: free-form geometry is not supported", file, context);
         self.calls.warn(
             "`call` or `csh` statement",
             "ignored: no other files or programs are run",
             file,
-            sources,
+            context,
         );
         let what = format!("with an unknown keyword ignored, such as `{}`", self.unknown_name);
-        self.unknown.warn("line", &what, file, sources);
+        self.unknown.warn("line", &what, file, context);
     }
 }

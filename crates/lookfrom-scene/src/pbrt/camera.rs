@@ -1,4 +1,4 @@
-//! Where does the camera stand, and how does it flatten space?
+//! The `Camera` directive: position and projection.
 
 use glam::{DMat4, DVec3};
 
@@ -25,9 +25,8 @@ impl Reader<'_, '_> {
         let projection = match &**kind {
             "perspective" => Projection::Perspective { fov: field_of_view(parameters)? },
             "realistic" => {
-                let message =
-                    "lens systems are not traced yet: a \"perspective\" camera takes the place of it";
-                self.sources.warn(&parameters.place.location(), message);
+                let message = "realistic cameras (lens systems) are not rendered yet: a \"perspective\" camera takes the place of it";
+                self.context.warn(&parameters.place.location(), message);
                 parameters.ignore(&["lensfile", "aperturediameter", "focusdistance", "aperture"]);
                 Projection::Perspective { fov: 50.0 }
             }

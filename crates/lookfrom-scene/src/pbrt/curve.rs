@@ -1,4 +1,4 @@
-//! Which cubic Bézier curves make a shape "curve"?
+//! The shape "curve", as cubic Bézier curves.
 
 use glam::Vec3;
 

@@ -1,4 +1,4 @@
-//! What does each directive do?
+//! Execution of directives.
 
 use std::rc::Rc;
 
@@ -16,7 +16,7 @@ use crate::scene::{Instance, MaterialId, Object, ObjectId};
 use crate::spectrum::space;
 use crate::suggest::nearest;
 
-/// How deep attributes may nest.
+/// The maximum nesting depth of attributes.
 const DEEPEST: usize = 1 << 16;
 
 const DIRECTIVES: &[&str] = &[
@@ -69,7 +69,7 @@ impl Reader<'_, '_> {
             b"Shape" => {
                 let (kind, parameters) = self.world_entity(word, place, lexer, 0)?;
                 self.shape(&kind, &parameters)?;
-                parameters.finish(self.sources);
+                parameters.finish(self.context);
             }
             b"AttributeBegin" => {
                 self.in_world_only(word, place)?;
@@ -128,7 +128,7 @@ impl Reader<'_, '_> {
                             "there is no coordinate system {name:?}: nothing is changed{}",
                             hint.unwrap_or_default()
                         );
-                        self.sources.warn(&place.location(), message);
+                        self.context.warn(&place.location(), message);
                     }
                 }
             }
@@ -142,7 +142,7 @@ impl Reader<'_, '_> {
             b"Material" => {
                 let (kind, parameters) = self.entity(word, place, lexer, Some(2))?;
                 self.state.material = self.material(&kind, &parameters)?;
-                parameters.finish(self.sources);
+                parameters.finish(self.context);
             }
             b"MakeNamedMaterial" => self.make_named_material(place, lexer)?,
             b"NamedMaterial" => {
@@ -154,17 +154,17 @@ impl Reader<'_, '_> {
             b"LightSource" => {
                 let (kind, parameters) = self.world_entity(word, place, lexer, 1)?;
                 self.light(&kind, &parameters)?;
-                parameters.finish(self.sources);
+                parameters.finish(self.context);
             }
             b"AreaLightSource" => {
                 let (kind, parameters) = self.world_entity(word, place, lexer, 1)?;
                 self.state.emission = Some(self.area_light(&kind, &parameters)?);
-                parameters.finish(self.sources);
+                parameters.finish(self.context);
             }
             b"MakeNamedMedium" => {
                 let (name, parameters) = self.entity(word, place, lexer, Some(3))?;
                 self.make_medium(name, &parameters)?;
-                parameters.finish(self.sources);
+                parameters.finish(self.context);
             }
             b"MediumInterface" => self.medium_interface(lexer)?,
 
@@ -176,7 +176,7 @@ impl Reader<'_, '_> {
                 let start = lexer.here();
                 let name = lexer.string("a quoted name of an object")?;
                 if self.object.is_some() {
-                    let error = place.invalid("an ObjectInstance cannot stand in an object");
+                    let error = place.invalid("an ObjectInstance cannot be in an object");
                     return Err(error.hint("end the object with ObjectEnd before it"));
                 }
                 self.instances.push((name, lexer.place(start), self.state.matrix));
@@ -355,7 +355,7 @@ impl Reader<'_, '_> {
             self.options.look = None;
         }
         if self.state.at_start != self.state.at_end {
-            let message = "motion is not rendered yet: everything stands where it is at the start";
+            let message = "motion blur is not rendered yet: transforms are those of the start time";
             self.warn_once("motion", place, message);
         }
     }
@@ -376,9 +376,7 @@ impl Reader<'_, '_> {
         let start = lexer.here();
         let name = lexer.string("a quoted name of an object")?;
         if self.object.is_some() {
-            return Err(place
-                .invalid("an object cannot stand in an object")
-                .hint("write ObjectEnd before it"));
+            return Err(place.invalid("objects cannot be nested").hint("write ObjectEnd before it"));
         }
         if let Some(id) = self.objects.get(&name) {
             let before = &self.scene.objects[id.index()].at;
@@ -399,7 +397,7 @@ impl Reader<'_, '_> {
                 return Err(Self::unknown(&place, "object", &name, self.objects.keys().map(String::as_str)));
             };
             if !transform::is_invertible(&matrix) {
-                self.sources.warn(&place.location(), "left out: its transform flattens it to nothing");
+                self.context.warn(&place.location(), "left out: its transform flattens it to nothing");
                 continue;
             }
             let at = place.location();
@@ -441,7 +439,7 @@ impl Reader<'_, '_> {
         }
         let entities = [options.film, options.filter, options.sampler, options.integrator];
         let entities = entities.into_iter().chain([options.camera.map(|(entity, _)| entity)]).flatten();
-        entities.for_each(|entity| entity.parameters.finish(self.sources));
+        entities.for_each(|entity| entity.parameters.finish(self.context));
         Ok(())
     }
 }

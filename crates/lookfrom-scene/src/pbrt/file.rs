@@ -1,25 +1,24 @@
-//! How do the files that a scene names get read: included ones at once, models side by side when all are known?
+//! Files named by a scene: includes are read at once, models in parallel when all are known.
 
 use std::path::{Path, PathBuf};
-
-use rayon::prelude::*;
 
 use super::Reader;
 use super::lexer::{Lexer, Token};
 use super::text::{Place, Text};
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::packed;
+use crate::parallel;
 use crate::ply;
 use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Mesh};
 
-/// How many files may be included: small files that include one another twice would have no end.
+/// The maximum number of includes: small files that include one another twice would not end.
 const MOST_INCLUDED: u32 = 1 << 17;
 
 /// A model file that shapes wait for.
 pub(super) struct Model {
-    /// Where it was named first.
+    /// The location of the first mention.
     place: Place,
     /// Stands in for what the file will hold.
     pub(super) mesh: MeshId,
@@ -28,7 +27,7 @@ pub(super) struct Model {
 impl Reader<'_, '_> {
     /// Reads a scene file, the first or an included one.
     pub(super) fn file(&mut self, path: &Path) -> Result<()> {
-        let bytes = packed::read(path, self.sources)?;
+        let bytes = packed::read(path, self.context)?;
         let whole = Location::file(path);
         if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
             return Err(Error::syntax(&whole, "the text is UTF-16").hint("save it as UTF-8"));
@@ -56,7 +55,7 @@ impl Reader<'_, '_> {
         let mut path = self.resolve(name);
         if let Some(local) = self.resolve_locally(name)
             && local != path
-            && matches!(packed::read(&path, self.sources), Err(error) if error.kind == ErrorKind::Io)
+            && matches!(packed::read(&path, self.context), Err(error) if error.kind == ErrorKind::Io)
         {
             path = local;
         }
@@ -66,7 +65,7 @@ impl Reader<'_, '_> {
             let error = place.invalid(format!("this file includes itself: {}", chain.join(" → ")));
             return Err(error.hint("take one of these Includes out"));
         }
-        let limit = self.sources.limits.import_depth;
+        let limit = self.context.limits.import_depth;
         if self.open.len() as u64 > u64::from(limit) {
             let error =
                 place.error(ErrorKind::Limit, format!("includes nest deeper than the limit of {limit}"));
@@ -77,7 +76,7 @@ impl Reader<'_, '_> {
             let message = format!("more files are included than the limit of {MOST_INCLUDED}");
             return Err(place
                 .error(ErrorKind::Limit, message)
-                .hint("files may include one another in circles"));
+                .hint("files may include one another in cycles"));
         }
         match self.file(&path) {
             // This file's own: what it names in turn has been noted.
@@ -109,16 +108,16 @@ impl Reader<'_, '_> {
     /// Reads all model files, several at once; meshes, warnings and errors come in the order of the files' names.
     pub(super) fn read_models(&mut self) -> Result<()> {
         let models: Vec<(PathBuf, Model)> = std::mem::take(&mut self.models).into_iter().collect();
-        let (files, limits) = (self.sources.files, self.sources.limits);
+        let (files, limits) = (self.context.files, self.context.limits);
         let paths: Vec<&PathBuf> = models.iter().map(|(path, _)| path).collect();
-        let read = |path: &&PathBuf| {
-            let mut sources = Sources { limits, ..Sources::new(files) };
-            let mesh = mesh(path, &mut sources);
-            (mesh, sources.warnings)
+        let read = |path: &PathBuf| {
+            let mut context = LoadContext { limits, ..LoadContext::new(files) };
+            let mesh = mesh(path, &mut context);
+            (mesh, context.warnings)
         };
-        let contents: Vec<_> = paths.par_iter().map(read).collect();
+        let contents: Vec<_> = parallel::map(paths, read);
         for ((path, model), (mesh, warnings)) in models.iter().zip(contents) {
-            self.sources.warnings.extend(warnings);
+            self.context.warnings.extend(warnings);
             match mesh {
                 Ok(mesh) => self.scene.meshes[model.mesh.index()] = mesh,
                 Err(error) => self.missing.add(path, model.place.blame(error))?,
@@ -129,13 +128,13 @@ impl Reader<'_, '_> {
 }
 
 /// The mesh in a PLY file, packed or not.
-fn mesh(path: &Path, sources: &mut Sources<'_>) -> Result<Mesh> {
-    let bytes = packed::read(path, sources)?;
+fn mesh(path: &Path, context: &mut LoadContext<'_>) -> Result<Mesh> {
+    let bytes = packed::read(path, context)?;
     let mut alone = Scene::default();
-    let parts = ply::from_bytes(&bytes, path, sources, &mut alone)?;
+    let parts = ply::from_bytes(&bytes, path, context, &mut alone)?;
     if parts.iter().any(|part| !matches!(part.geometry, Geometry::Mesh(_))) {
         let at = Location::file(path);
-        sources.warn(&at, "there are points but no faces: nothing of it is shown");
+        context.warn(&at, "there are points but no faces: nothing of it is shown");
     }
     let mut mesh = alone.meshes.into_iter().next().unwrap_or_default();
     // A material of its own is what would use them.

@@ -1,4 +1,4 @@
-//! How large is the picture, what is weighed into a pixel, and how does light become colour?
+//! The `Film` and `PixelFilter` directives: resolution, reconstruction filter and sensor.
 
 use super::Reader;
 use super::params::{Kind, Parameters};
@@ -34,8 +34,8 @@ impl Reader<'_, '_> {
             "rgb" => {}
             "gbuffer" => image.layers = Layers::Geometry,
             "spectral" => {
-                let message = "a film of many wavelengths is not written yet: it is taken as \"rgb\"";
-                self.sources.warn(&parameters.place.location(), message);
+                let message = "spectral films are not written yet: the film is taken as \"rgb\"";
+                self.context.warn(&parameters.place.location(), message);
                 parameters.ignore(&["nbuckets", "lambdamin", "lambdamax"]);
             }
             _ => return Err(Self::unknown(&parameters.place, "film", kind, ["rgb", "gbuffer", "spectral"])),
@@ -52,7 +52,7 @@ impl Reader<'_, '_> {
                 "pictures are written in sRGB's primaries (Rec. 709), not in those of {}",
                 parameters.space
             );
-            self.sources.warn(&parameters.place.location(), message);
+            self.context.warn(&parameters.place.location(), message);
         }
         Ok(())
     }
@@ -100,7 +100,7 @@ impl Reader<'_, '_> {
         if radius != other {
             let message =
                 format!("a filter of {radius} × {other} pixels is taken as one of {radius} × {radius}");
-            self.sources.warn(&parameters.place.location(), message);
+            self.context.warn(&parameters.place.location(), message);
         }
         self.scene.image.filter = match &**kind {
             "box" => Filter::Box { radius },
@@ -114,7 +114,7 @@ impl Reader<'_, '_> {
             _ => {
                 parameters.ignore(&["tau"]);
                 let message = "the filter \"sinc\" is not there yet: Mitchell's takes its place";
-                self.sources.warn(&parameters.place.location(), message);
+                self.context.warn(&parameters.place.location(), message);
                 Filter::Mitchell { radius: radius.min(2.0), b: 1.0 / 3.0, c: 1.0 / 3.0 }
             }
         };

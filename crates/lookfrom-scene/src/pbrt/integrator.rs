@@ -1,4 +1,4 @@
-//! How is light computed, and with which random numbers?
+//! The `Integrator` and `Sampler` directives.
 
 use super::Reader;
 use super::lexer::{Lexer, Token};
@@ -29,7 +29,7 @@ const INTEGRATORS: &[&str] = &[
     "volpath",
 ];
 
-/// What can be said of the whole program, and whether it would change the picture.
+/// Options of the whole program, and whether they would change the picture.
 const OPTIONS: &[(&str, bool)] = &[
     ("disablepixeljitter", true),
     ("disabletexturefiltering", false),
@@ -88,7 +88,7 @@ impl Reader<'_, '_> {
                     if !parameters.boolean(name, true)? {
                         let message =
                             format!("\"bool {name}\" false: both ways of sampling are used all the same");
-                        self.sources.notice(&parameters.place.location(), message);
+                        self.context.notice(&parameters.place.location(), message);
                     }
                 }
                 Integrator::SimplePath
@@ -108,7 +108,7 @@ impl Reader<'_, '_> {
                 let message = format!(
                     "the integrator {kind:?} is not there: {other:?} computes the same light in its place"
                 );
-                self.sources.notice(&parameters.place.location(), message);
+                self.context.notice(&parameters.place.location(), message);
                 let theirs = [
                     "samplelights",
                     "samplebsdf",
@@ -175,7 +175,7 @@ impl Reader<'_, '_> {
             }
             (_, Some(Token::Word(b"true"))) if matters => {
                 let message = format!("the option {name:?} makes no difference here");
-                self.sources.warn(&place.location(), message);
+                self.context.warn(&place.location(), message);
             }
             _ => {}
         }

@@ -1,4 +1,4 @@
-//! What are the words of a pbrt scene file?
+//! Lexer for pbrt scene files.
 //!
 //! Words, quoted strings and brackets, divided by white space and by comments from `#` to the end of the line. Words
 //! are slices of the file; long lists of numbers go straight into their buffers, on several threads where they are
@@ -7,11 +7,10 @@
 use std::borrow::Cow;
 use std::rc::Rc;
 
-use rayon::prelude::*;
-
 use super::text::{Place, Text};
 use crate::error::{Error, Result};
 use crate::model::number::{parse_f32, parse_f64};
+use crate::parallel;
 
 /// A list of numbers longer than this, in bytes, is divided among threads.
 const LONG_LIST: usize = 1 << 18;
@@ -21,7 +20,7 @@ const LONG_LIST: usize = 1 << 18;
 pub(super) enum Token<'a> {
     /// A directive, a number, `true`.
     Word(&'a [u8]),
-    /// What stands between quotation marks, escapes as they were written.
+    /// The text between quotation marks, with escapes unresolved.
     Quoted(&'a [u8]),
     /// `[`
     Open,
@@ -134,7 +133,7 @@ impl<'a> Lexer<'a> {
         let end = rest.iter().position(|byte| matches!(byte, b']' | b'#' | b'"')).unwrap_or(rest.len());
         if end > LONG_LIST && rest[end..].first() == Some(&b']') {
             // What is wrong is found once more below, where its place is known.
-            if let Some(values) = parallel(&rest[..end], parse) {
+            if let Some(values) = in_pieces(&rest[..end], parse) {
                 self.next += end + 1;
                 return Ok(values);
             }
@@ -175,7 +174,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// What a quoted string that starts at `start` says.
+    /// The text of the quoted string that starts at `start`.
     pub(super) fn unescape(&self, raw: &'a [u8], start: usize) -> Result<Cow<'a, str>> {
         if !raw.contains(&b'\\') {
             return Ok(String::from_utf8_lossy(raw));
@@ -248,8 +247,8 @@ pub(super) fn parse_integer(word: &[u8]) -> Option<i32> {
 }
 
 /// Numbers and white space and nothing else, in pieces that are cut at white space.
-fn parallel<T: Send>(list: &[u8], parse: fn(&[u8]) -> Option<T>) -> Option<Vec<T>> {
-    let pieces = 4 * rayon::current_num_threads();
+fn in_pieces<T: Send>(list: &[u8], parse: fn(&[u8]) -> Option<T>) -> Option<Vec<T>> {
+    let pieces = 4 * parallel::threads();
     let mut cuts = vec![0];
     for piece in 1..pieces {
         let from = (list.len() / pieces * piece).max(cuts[cuts.len() - 1]);
@@ -264,7 +263,7 @@ fn parallel<T: Send>(list: &[u8], parse: fn(&[u8]) -> Option<T>) -> Option<Vec<T
     if list.contains(&b'[') {
         return None;
     }
-    let parts: Vec<Option<Vec<T>>> = cuts.par_windows(2).map(read).collect();
+    let parts: Vec<Option<Vec<T>>> = parallel::map(cuts.windows(2).collect(), read);
     let parts: Vec<Vec<T>> = parts.into_iter().collect::<Option<_>>()?;
     let mut values = Vec::with_capacity(parts.iter().map(Vec::len).sum());
     parts.into_iter().for_each(|part| values.extend(part));

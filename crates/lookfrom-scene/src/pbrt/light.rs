@@ -1,4 +1,4 @@
-//! Which light shines, and how brightly?
+//! The `LightSource` and `AreaLightSource` directives.
 //!
 //! pbrt's point lights have intensities in W/sr and its distant lights irradiances, ours Whitted's `I_j`: π times less.
 //! A `power` or `illuminance` is in the same units on both sides, but pbrt multiplies it by the brightness of an rgb
@@ -13,7 +13,7 @@ use super::spectra::brightness;
 use super::text::Place;
 use super::{Reader, transform};
 use crate::error::Result;
-use crate::light::{Amount, Falloff, Light, LightKind, Sky, is_rectangle};
+use crate::light::{Falloff, Light, LightKind, Power, Sky, is_rectangle};
 use crate::material::Color;
 use crate::scene::ImageId;
 use crate::shape::Emission;
@@ -31,12 +31,12 @@ impl Reader<'_, '_> {
                 .place
                 .invalid("the transform in force here flattens space: a light cannot stand in it"));
         }
-        let (kind, amount) = match kind {
+        let (kind, power) = match kind {
             "point" => {
                 let intensity = self.light_color(p, "I")?.unwrap_or(WHITE);
                 let position = matrix.transform_point3(p.vector("from", Kind::Point3, DVec3::ZERO)?);
                 let kind = LightKind::Point { position, intensity, falloff: Falloff::Quadratic };
-                (kind, amount(p, "power", intensity, PI)?)
+                (kind, power(p, "power", intensity, PI)?)
             }
             "spot" => {
                 let intensity = self.light_color(p, "I")?.unwrap_or(WHITE);
@@ -52,19 +52,19 @@ impl Reader<'_, '_> {
                     inner_angle: (cone - delta).max(0.0).into(),
                     falloff: Falloff::Quadratic,
                 };
-                (kind, amount(p, "power", intensity, PI)?)
+                (kind, power(p, "power", intensity, PI)?)
             }
             "distant" => {
                 let intensity = self.light_color(p, "L")?.unwrap_or(WHITE);
                 let (_, direction) = from_to(p, &matrix)?;
-                (LightKind::Distant { direction, intensity }, amount(p, "illuminance", intensity, PI)?)
+                (LightKind::Distant { direction, intensity }, power(p, "illuminance", intensity, PI)?)
             }
             "projection" => {
                 let image = self.light_picture(p, false)?;
                 let fov =
                     p.float_where("fov", 90.0, "an angle between 0 and 180", |a| a > 0.0 && a < 180.0)?;
                 let kind = LightKind::Projection { image, intensity: 1.0, fov, world_from_light: matrix };
-                (kind, amount(p, "power", WHITE, PI)?)
+                (kind, power(p, "power", WHITE, PI)?)
             }
             "goniometric" => {
                 let intensity = self.light_color(p, "I")?.unwrap_or(WHITE);
@@ -72,16 +72,16 @@ impl Reader<'_, '_> {
                 // The middle of the picture is the light's y axis, but z of an octahedral square.
                 let swapped = DMat4::from_cols(DVec4::X, DVec4::Z, DVec4::Y, DVec4::W);
                 let kind = LightKind::Goniometric { intensity, image, world_from_light: matrix * swapped };
-                (kind, amount(p, "power", intensity, PI)?)
+                (kind, power(p, "power", intensity, PI)?)
             }
             "infinite" => self.infinite(p, matrix)?,
             _ => return Err(Self::unknown(&p.place, "light", kind, KINDS.iter().copied())),
         };
-        self.scene.lights.push(Light { name: None, at: p.place.location(), kind, amount });
+        self.scene.lights.push(Light { name: None, at: p.place.location(), kind, power });
         Ok(())
     }
 
-    fn infinite(&mut self, p: &Parameters, world_from_light: DMat4) -> Result<(LightKind, Amount)> {
+    fn infinite(&mut self, p: &Parameters, world_from_light: DMat4) -> Result<(LightKind, Power)> {
         let written = self.light_color(p, "L")?;
         // A portal stands in the world, whatever the transform.
         let portal = p.vectors("portal", Kind::Point3)?;
@@ -107,12 +107,12 @@ impl Reader<'_, '_> {
                 (Sky::Constant(color), color)
             }
         };
-        let mut amount = amount(p, "illuminance", color, 1.0)?;
-        if let (Some(total), Sky::Octahedral { .. }) = (&mut amount.total, &sky) {
+        let mut power = power(p, "illuminance", color, 1.0)?;
+        if let (Some(total), Sky::Octahedral { .. }) = (&mut power.total, &sky) {
             // pbrt-v4 takes a texel's share of the hemisphere for that of the sphere: its pictures give twice as much.
             *total *= 2.0;
         }
-        Ok((LightKind::Environment { sky, portal, illuminates: true }, amount))
+        Ok((LightKind::Environment { sky, portal, illuminates: true }, power))
     }
 
     /// The picture of a light: one over all directions has to be square.
@@ -156,26 +156,26 @@ impl Reader<'_, '_> {
         };
         Ok(Emission {
             radiance,
-            amount: amount(p, "power", radiance, 1.0)?,
+            power: power(p, "power", radiance, 1.0)?,
             two_sided: p.boolean("twosided", false)?,
         })
     }
 }
 
 /// How much light there is; `unit` is how many of pbrt's units make one of ours where no total is written.
-fn amount(p: &Parameters, total: &'static str, color: Color, unit: f32) -> Result<Amount> {
+fn power(p: &Parameters, total: &'static str, color: Color, unit: f32) -> Result<Power> {
     let scale = p.float_where("scale", 1.0, "a number of at least 0", |scale| scale >= 0.0)?;
     let total = p.float_or_none(total)?.filter(|&total| total > 0.0);
     Ok(match total {
         // A black light stays black.
         Some(total) if brightness(color) > 0.0 => {
-            Amount { scale: scale * brightness(color), total: Some(total), absolute: false }
+            Power { scale: scale * brightness(color), total: Some(total), absolute: false }
         }
-        _ => Amount { scale: scale / unit, total: None, absolute: false },
+        _ => Power { scale: scale / unit, total: None, absolute: false },
     })
 }
 
-/// Where a light stands and where it looks, in the world.
+/// The position and direction of a light, in the world.
 fn from_to(p: &Parameters, matrix: &DMat4) -> Result<(DVec3, DVec3)> {
     let from = p.vector("from", Kind::Point3, DVec3::ZERO)?;
     let to = p.vector("to", Kind::Point3, DVec3::Z)?;

@@ -1,4 +1,4 @@
-//! Which smooth surface does a coarse mesh stand for (Loop 1987)?
+//! Loop subdivision surfaces (Loop 1987).
 //!
 //! Each level divides every triangle into four and moves the vertices; at last they are put where infinitely many
 //! levels would put them, with the normals of that limit (Hoppe et al. 1994). Edges with one face are borders, which
@@ -186,7 +186,7 @@ impl Surface {
         Self::with_neighbours(positions, faces, neighbours)
     }
 
-    /// Where infinitely many levels would put a vertex.
+    /// The limit position of a vertex.
     fn limit(&self, vertex: usize, ring: &[u32]) -> Vec3 {
         let valence = ring.len();
         let gamma = if valence == 0 { 0.0 } else { 1.0 / (valence as f32 + 3.0 / (8.0 * beta(valence))) };

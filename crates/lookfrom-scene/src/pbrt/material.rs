@@ -1,4 +1,4 @@
-//! How does a material look?
+//! The `Material` and `MakeNamedMaterial` directives.
 
 use super::lexer::Lexer;
 use super::params::{Kind, Parameters};
@@ -64,7 +64,7 @@ impl Reader<'_, '_> {
         if let Some(named) = self.materials.get_mut(&name) {
             named.is_made = true;
         }
-        parameters.finish(self.sources);
+        parameters.finish(self.context);
         Ok(())
     }
 
@@ -110,8 +110,8 @@ impl Reader<'_, '_> {
             "mix" => self.mix(p)?,
             "interface" => MaterialKind::Interface,
             "" | "none" => {
-                self.sources
-                    .notice(&p.place.location(), "a material that is nothing is called \"interface\"");
+                self.context
+                    .notice(&p.place.location(), "a material without a surface is called \"interface\"");
                 MaterialKind::Interface
             }
             "subsurface" => self.subsurface(p)?,
@@ -137,7 +137,7 @@ impl Reader<'_, '_> {
         let Some(name) = p.string("normalmap")? else { return Ok(bump.map_or(Relief::None, Relief::Bump)) };
         if bump.is_some() {
             let message = "the material has a \"normalmap\" and a \"displacement\": only the first is used";
-            self.sources.warn(&p.place.location(), message);
+            self.context.warn(&p.place.location(), message);
         }
         let place = p.find("normalmap", &[Kind::String])?.map_or(&p.place, |parameter| &parameter.place);
         let image: ImageId = self.picture(name, "linear", place)?;
@@ -233,7 +233,7 @@ impl Reader<'_, '_> {
     /// A coat over the colour that so many walks under the surface would give.
     fn subsurface(&mut self, p: &Parameters) -> Result<MaterialKind> {
         let message =
-            "light under surfaces is not followed yet: \"coateddiffuse\" takes the place of \"subsurface\"";
+            "subsurface scattering is not rendered yet: \"coateddiffuse\" takes the place of \"subsurface\"";
         self.warn_once("subsurface", &p.place, message);
         p.ignore(&["name", "mfp", "scale", "sigma_a", "sigma_s", "g"]);
         let reflectance = self.color(p, "reflectance", Color::Value([0.83, 0.79, 0.75]), Reflectance)?;
@@ -251,7 +251,7 @@ impl Reader<'_, '_> {
     }
 
     fn hair(&mut self, p: &Parameters) -> Result<MaterialKind> {
-        let message = "hair is not shaded as hair yet: \"diffuse\" takes the place of it";
+        let message = "the hair material is not rendered yet: \"diffuse\" takes the place of it";
         self.warn_once("hair", &p.place, message);
         p.ignore(&["sigma_a", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"]);
         let color = self.color_or_none(p, "reflectance", Reflectance)?;

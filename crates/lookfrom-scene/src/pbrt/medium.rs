@@ -1,4 +1,4 @@
-//! What fills space: media that absorb are rendered, what they would scatter is not.
+//! The `MakeNamedMedium` directive. Absorption of homogeneous media is rendered, scattering is not.
 
 use std::rc::Rc;
 
@@ -25,7 +25,7 @@ const KNOWING: &[&str] = &["volpath", "simplevolpath", "bdpt", "mlt"];
 pub(super) struct NamedMedium {
     /// `None` for one that is not rendered.
     id: Option<MediumId>,
-    /// What of it is not rendered, to be told when it is used.
+    /// Its properties that are not rendered, for a warning when it is used.
     warning: Option<Warning>,
 }
 
@@ -80,7 +80,7 @@ impl Reader<'_, '_> {
         self.without_media = (!self.scene.render.media).then(|| (integrator.to_owned(), place.clone()));
     }
 
-    /// What the next shape has on its sides.
+    /// The media of the next shape's sides.
     pub(super) fn sides(&mut self, place: &Place) -> Result<Option<Sides>> {
         let Some(names) = self.state.media.clone() else { return Ok(None) };
         let [inside, outside] = [self.medium(&names[0], place)?, self.medium(&names[1], place)?];
@@ -117,9 +117,9 @@ impl Reader<'_, '_> {
                 let message = format!(
                     "the integrator {integrator:?} knows no media, as in pbrt: light passes them as a vacuum; \"volpath\" knows them"
                 );
-                self.sources.warn(&place.location(), message);
+                self.context.warn(&place.location(), message);
             }
-            None if self.scene.render.media => self.sources.warnings.extend(named.warning.take()),
+            None if self.scene.render.media => self.context.warnings.extend(named.warning.take()),
             None => {}
         }
     }

@@ -1,4 +1,4 @@
-//! Which triangles and patches does a mesh have?
+//! Triangle and bilinear meshes.
 
 use std::sync::Arc;
 
@@ -80,7 +80,7 @@ impl Reader<'_, '_> {
         let triangles = faces::<3>(p, positions.len())?;
         // Each level makes four of one.
         let count = (triangles.len() as u64) << (2 * levels);
-        let limit = self.sources.limits.elements.min(MOST_SUBDIVIDED);
+        let limit = self.context.limits.elements.min(MOST_SUBDIVIDED);
         if count > limit {
             let message =
                 format!("{count} triangles after {levels} levels are more than the limit of {limit}");
@@ -110,7 +110,7 @@ impl Reader<'_, '_> {
         }
         let message =
             format!("{:?} has {} values for {count} vertices: they are left out", name, values.len());
-        self.sources.warn(&p.place.location(), message);
+        self.context.warn(&p.place.location(), message);
         Vec::new()
     }
 }

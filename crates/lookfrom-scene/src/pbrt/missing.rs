@@ -1,4 +1,4 @@
-//! Files that a scene names and that are not there: reading goes on without them, and tells of all of them at the end.
+//! Missing files: reading continues without them, and one error at the end lists all.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 /// After so many, reading stops.
 const MOST_MISSING: usize = 1000;
 
-/// What is missing so far.
+/// The missing files so far.
 #[derive(Default)]
 pub(super) struct Missing {
     /// In the order in which they were found.

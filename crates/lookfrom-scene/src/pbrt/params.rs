@@ -1,7 +1,7 @@
-//! What parameters does a directive have, and are they what it understands?
+//! Parameter lists of directives.
 //!
 //! A parameter is `"type name"` with a value or a list of values. A name that is there with a type that does not fit
-//! is an error that says what fits; a name that nobody asks for is warned of.
+//! is an error that says what fits; a name that no directive reads is warned of.
 
 use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
@@ -14,7 +14,7 @@ use super::spectra::Space;
 use super::text::Place;
 use super::version3;
 use crate::error::{Error, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::suggest::nearest;
 
 /// The types that parameters have.
@@ -59,7 +59,7 @@ impl Kind {
         KINDS.iter().find(|entry| entry.1 == self).map_or("", |entry| entry.0)
     }
 
-    /// How many numbers make one value.
+    /// The number of components of a value.
     fn numbers(self) -> usize {
         match self {
             Self::Point2 | Self::Vector2 => 2,
@@ -69,7 +69,7 @@ impl Kind {
     }
 }
 
-/// What a parameter is given.
+/// The value of a parameter.
 #[derive(Debug)]
 pub(super) enum Values {
     Integers(Vec<i32>),
@@ -95,7 +95,7 @@ pub(super) struct Parameter {
     pub(super) name: String,
     pub(super) place: Place,
     pub(super) values: Values,
-    /// What its rgb values mean, where that was fixed when it was written (in `Attribute`).
+    /// The colour space of its rgb values, where that was fixed at its definition (in `Attribute`).
     pub(super) space: Cell<Option<Space>>,
     used: Cell<bool>,
 }
@@ -252,11 +252,11 @@ fn values(lexer: &mut Lexer<'_>, kind: Kind) -> Result<Values> {
 
 /// The parameters of one directive, and what `Attribute` directives before it add.
 pub(super) struct Parameters {
-    /// What has them, for messages: `Shape "sphere"`.
+    /// The directive that has them, for messages: `Shape "sphere"`.
     pub(super) title: String,
-    /// Where that was written.
+    /// The location of that.
     pub(super) place: Place,
-    /// What rgb values mean.
+    /// The colour space of rgb values.
     pub(super) space: Space,
     own: Vec<Parameter>,
     inherited: Inherited,
@@ -455,8 +455,8 @@ impl Parameters {
         self.own
     }
 
-    /// Warns of parameters that nobody has asked for.
-    pub(super) fn finish(&self, sources: &mut Sources<'_>) {
+    /// Warns of parameters that no directive reads.
+    pub(super) fn finish(&self, context: &mut LoadContext<'_>) {
         for parameter in self.own.iter().filter(|parameter| !parameter.used.get()) {
             let asked = self.asked.borrow();
             let mut names: Vec<&str> = asked.clone();
@@ -477,7 +477,7 @@ impl Parameters {
                 parameter.kind.word(),
                 parameter.name
             );
-            sources.warn(&parameter.place.location(), message);
+            context.warn(&parameter.place.location(), message);
         }
     }
 }

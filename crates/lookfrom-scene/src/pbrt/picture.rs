@@ -1,4 +1,4 @@
-//! Which picture does a file hold, and how are its values to be taken?
+//! Image files of textures and lights, with their encoding.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ impl Reader<'_, '_> {
             return Ok(id);
         }
         let opacity =
-            with_encoding(encoding, place, |encoding| image::read_opacity(&key.0, self.sources, encoding));
+            with_encoding(encoding, place, |encoding| image::read_opacity(&key.0, self.context, encoding));
         let opacity = self.or_blank(opacity, &key.0, place, Some(blank(name)))?;
         let Some(opacity) = opacity else { return self.picture(name, encoding, place) };
         Ok(self.push_picture(key, opacity))
@@ -35,7 +35,7 @@ impl Reader<'_, '_> {
             return Ok(id);
         }
         let image =
-            with_encoding(encoding, place, |encoding| image::read_encoded(&path, self.sources, encoding));
+            with_encoding(encoding, place, |encoding| image::read_encoded(&path, self.context, encoding));
         let image = self.or_blank(image, &path, place, blank(name))?;
         Ok(self.push_picture(key, image))
     }
@@ -56,12 +56,12 @@ impl Reader<'_, '_> {
     }
 }
 
-/// What stands for a picture that is missing until all is read.
+/// The placeholder of a missing picture, until all is read.
 fn blank(name: &str) -> Image {
     Image::from_linear(name, 1, 1, vec![[1.0; 3]])
 }
 
-/// What `read` makes of the encoding of that name.
+/// The result of `read` for the encoding of that name.
 fn with_encoding<T>(
     encoding: &str,
     place: &Place,

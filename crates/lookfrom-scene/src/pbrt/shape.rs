@@ -1,4 +1,4 @@
-//! Which form does a shape have?
+//! The `Shape` directive.
 
 use super::params::Parameters;
 use super::{Reader, transform};
@@ -26,12 +26,12 @@ impl Reader<'_, '_> {
         let Some(geometry) = geometry else { return Ok(()) };
         let matrix = self.state.matrix;
         if !transform::is_invertible(&matrix) {
-            self.sources.warn(&p.place.location(), "left out: its transform flattens it to nothing");
+            self.context.warn(&p.place.location(), "left out: its transform flattens it to nothing");
             return Ok(());
         }
         let mut emission = self.state.emission;
         if emission.is_some() && self.object.is_some() {
-            let message = "shapes in an object do not shine: an object can be in many places";
+            let message = "shapes in an object do not emit light: an object can have many instances";
             self.warn_once("light in object", &p.place, message);
             emission = None;
         }

@@ -1,4 +1,4 @@
-//! Which colour does a parameter stand for?
+//! Colours and spectra of parameters.
 //!
 //! `rgb` values are brought from the scene's colour space to linear Rec. 709; `spectrum` values (inline, from a file, or
 //! measured ones with names) and `blackbody` values become curves by wavelength.
@@ -18,7 +18,7 @@ pub(super) type Space = &'static str;
 /// The space of the scenes that name none.
 pub(super) const SRGB: Space = "srgb";
 
-/// What a colour is the colour of.
+/// The role of a colour: albedo, illuminant or unbounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Meaning {
     /// A part of light, in [0, 1].
@@ -123,7 +123,7 @@ impl Reader<'_, '_> {
             Some(curve) => curve,
             None => {
                 let path = self.resolve(name);
-                match spectrum::read_spd(&path, self.sources) {
+                match spectrum::read_spd(&path, self.context) {
                     Err(error) if error.kind == ErrorKind::Io => {
                         let file = path.display();
                         let error = place.invalid(format!(

@@ -1,4 +1,4 @@
-//! What holds for the next shape, light or material, and what was said before the world began.
+//! The graphics state, and the settings before `WorldBegin`.
 
 use std::rc::Rc;
 
@@ -11,10 +11,10 @@ use crate::camera::Target;
 use crate::scene::MaterialId;
 use crate::shape::Emission;
 
-/// What `Attribute` sets parameters for, in the order of [`State::attributes`].
+/// The targets of `Attribute`, in the order of [`State::attributes`].
 pub(super) const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
 
-/// What holds for the next shape.
+/// The current graphics state.
 #[derive(Clone)]
 pub(super) struct State {
     /// From the space that directives speak in to the world (before `WorldBegin`: from the world to the camera's space).
@@ -48,13 +48,13 @@ impl Default for State {
     }
 }
 
-/// What has to be ended.
+/// The kind of block.
 pub(super) struct Opened {
     /// `Attribute`, `Transform` or `Object`.
     pub(super) word: &'static str,
-    /// Where it was begun.
+    /// The location of its beginning.
     pub(super) place: Place,
-    /// What holds again at its end.
+    /// The graphics state that is restored at its end.
     pub(super) state: State,
 }
 
@@ -65,7 +65,7 @@ pub(super) struct Entity {
     pub(super) parameters: Parameters,
 }
 
-/// What was said before `WorldBegin`.
+/// Settings before `WorldBegin`.
 #[derive(Default)]
 pub(super) struct Options {
     /// What the last `LookAt` looks at and what is up for it, by the transforms so far: in the camera's space.
@@ -74,7 +74,7 @@ pub(super) struct Options {
     pub(super) camera: Option<(Entity, DMat4)>,
     /// The name of the medium around the camera; empty is a vacuum.
     pub(super) camera_medium: String,
-    /// What it looks at.
+    /// The point at the centre of the view.
     pub(super) target: Option<Target>,
     pub(super) film: Option<Entity>,
     pub(super) filter: Option<Entity>,

@@ -1,4 +1,4 @@
-//! Where is a byte of a scene file?
+//! Line and column of a byte of a scene file.
 //!
 //! Lines are counted only when somebody asks, and onwards from where they were last counted: a large file is not
 //! searched for line ends before it is read, nor again for every shape.
@@ -74,7 +74,7 @@ impl Place {
         self.error(ErrorKind::Syntax, message)
     }
 
-    /// What is said here cannot be.
+    /// An error of kind `Invalid` at this place.
     pub(super) fn invalid(&self, message: impl std::fmt::Display) -> Error {
         self.error(ErrorKind::Invalid, message)
     }

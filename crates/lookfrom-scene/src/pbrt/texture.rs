@@ -1,4 +1,4 @@
-//! What does a texture show, and where does its pattern live?
+//! The `Texture` directive, and texture mappings.
 
 use glam::DVec3;
 
@@ -121,7 +121,7 @@ impl Reader<'_, '_> {
             }
         };
         self.textures.insert(key, NamedTexture { color, first: name_place, is_made: true });
-        parameters.finish(self.sources);
+        parameters.finish(self.context);
         Ok(())
     }
 
@@ -213,7 +213,7 @@ impl Reader<'_, '_> {
                 return Err(error.hint(format!("write {there:?} between the name and {kind:?}")));
             }
             "ptex" => {
-                let message = "Ptex is not read: gray takes the place of such textures";
+                let message = "Ptex is not read: such textures are gray";
                 self.warn_once("ptex", &p.place, message);
                 p.ignore(&["filename", "encoding", "scale"]);
                 uniform(Color::gray(0.5))

@@ -1,4 +1,4 @@
-//! Which matrix does a directive multiply onto the one that is in force?
+//! Transform directives, which multiply onto the current transformation matrix.
 //!
 //! Matrices map columns; a file's sixteen numbers are columns one after another. In doubles, where pbrt has singles.
 

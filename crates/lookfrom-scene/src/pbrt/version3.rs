@@ -1,4 +1,4 @@
-//! Is this a scene of pbrt-v3, and what has to be changed?
+//! Detection of pbrt-v3 scenes, with hints for conversion.
 //!
 //! Version 4 renamed most of the language. One clear error at the first thing that only version 3 has is worth more
 //! than one for every line after it.

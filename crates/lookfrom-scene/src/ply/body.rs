@@ -1,7 +1,7 @@
-//! Which values does a PLY file hold?
+//! Parser for the elements of PLY files.
 //!
 //! Vertices and faces; other elements and properties are passed over. A header may lie: what it claims is compared
-//! with the bytes that are there before memory is asked for.
+//! with the bytes that are there before memory is allocated.
 
 use glam::{Vec2, Vec3};
 
@@ -12,7 +12,7 @@ use crate::files::Limits;
 use crate::image::linear_from_srgb;
 use crate::model::scan::shown;
 
-/// What is understood of a file.
+/// The supported content of a file.
 #[derive(Default)]
 pub(super) struct Content {
     /// As they are written: not necessarily finite.

@@ -1,4 +1,4 @@
-//! How do the values of a PLY file become a mesh?
+//! Meshes and point clouds of PLY elements.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use super::body::Content;
 use super::header::Header;
 use crate::error::{Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::material::Whitted;
 use crate::model::points;
 use crate::model::polygon::{Triangulator, has_area};
@@ -25,33 +25,33 @@ pub(super) fn parts(
     mut content: Content,
     header: &Header,
     path: &Path,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Result<Vec<Part>> {
     let file = Location::file(path);
     let mut thin = Tally::default();
     thin.add_many(content.thin.0, content.thin.1);
-    thin.notice("face", "left out: fewer than three corners", &file, sources);
+    thin.notice("face", "left out: fewer than three corners", &file, context);
     if content.positions.is_empty() {
-        sources.warn(&file, "there are no vertices");
+        context.warn(&file, "there are no vertices");
         return Ok(Vec::new());
     }
     if content.faces.is_empty() {
-        return Ok(points::cloud(&content.positions, &content.colors, &file, sources, scene));
+        return Ok(points::cloud(&content.positions, &content.colors, &file, context, scene));
     }
-    make_values_finite(&mut content, &file, sources);
-    let mut mesh = mesh(content, &file, sources);
+    make_values_finite(&mut content, &file, context);
+    let mut mesh = mesh(content, &file, context);
     if mesh.triangles.is_empty() {
         return Ok(Vec::new());
     }
     mesh.name = file.file.to_string();
-    let material = material(&mesh, header, path, sources, scene);
+    let material = material(&mesh, header, path, context, scene);
     let geometry = Geometry::Mesh(MeshId(scene.meshes.len() as u32));
     scene.meshes.push(mesh);
     Ok(vec![Part { material, ..Part::new(None, geometry) }])
 }
 
-fn make_values_finite(content: &mut Content, file: &Location, sources: &mut Sources<'_>) {
+fn make_values_finite(content: &mut Content, file: &Location, context: &mut LoadContext<'_>) {
     let mut tally = Tally::default();
     for normal in content.normals.iter_mut().filter(|normal| !normal.is_finite()) {
         *normal = Vec3::ZERO;
@@ -61,10 +61,10 @@ fn make_values_finite(content: &mut Content, file: &Location, sources: &mut Sour
         *uv = Vec2::ZERO;
         tally.add(0);
     }
-    tally.warn("normal or texture coordinate", "ignored: infinite or not a number", file, sources);
+    tally.warn("normal or texture coordinate", "ignored: infinite or not a number", file, context);
 }
 
-fn mesh(content: Content, file: &Location, sources: &mut Sources<'_>) -> Mesh {
+fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> Mesh {
     let Content { mut positions, normals, uvs, colors, faces, corners, corner_uvs, .. } = content;
     let mut triangulator = Triangulator::new();
     let (mut not_finite, mut flat) = (Tally::default(), Tally::default());
@@ -91,10 +91,10 @@ fn mesh(content: Content, file: &Location, sources: &mut Sources<'_>) -> Mesh {
         }
         start = end;
     }
-    not_finite.warn("face", "left out: a coordinate is infinite or not a number", file, sources);
-    flat.notice("triangle", "left out: without area", file, sources);
+    not_finite.warn("face", "left out: a coordinate is infinite or not a number", file, context);
+    flat.notice("triangle", "left out: without area", file, context);
     if triangulator.gave_up() {
-        sources.warn(
+        context.warn(
             file,
             "concave polygons with very many corners: some were cut without care for their shape",
         );
@@ -137,23 +137,23 @@ fn material(
     mesh: &Mesh,
     header: &Header,
     path: &Path,
-    sources: &mut Sources<'_>,
+    context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Option<MaterialId> {
     let at = Location::file(path);
     if let (Some(name), false) = (header.textures.first(), mesh.uvs.is_empty()) {
         if header.textures.len() > 1 {
-            sources
+            context
                 .warn(&at, format!("{} textures are named: only the first is used", header.textures.len()));
         }
-        match read_image(path, name, sources) {
+        match read_image(path, name, context) {
             Ok(image) => {
                 let image = push_image(scene, image);
                 let kind = picture(image, [1.0; 2], [0.0; 2], Wrap::Repeat);
                 let diffuse = push_texture(scene, name, &at, kind);
                 return Some(push_material(scene, name, &at, Whitted { diffuse, ..Whitted::default() }));
             }
-            Err(error) => sources.warn(&at, format!("texture `{name}`: {}; it is left out", error.message)),
+            Err(error) => context.warn(&at, format!("texture `{name}`: {}; it is left out", error.message)),
         }
     }
     (!mesh.colors.is_empty()).then(|| push_vertex_colors(scene, &at))

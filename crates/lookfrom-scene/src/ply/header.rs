@@ -1,11 +1,11 @@
-//! What does a PLY file say of itself? Its format, its elements and their properties, and the pictures it uses.
+//! Parser for PLY headers: format, elements, properties and textures.
 
 use crate::error::{Error, Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::model::scan::{Scanner, shown};
 use crate::model::tally::Tally;
 
-/// How values are written.
+/// The format of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Ascii,
@@ -42,7 +42,7 @@ pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
-    /// Where it is declared.
+    /// The location of its declaration.
     pub(super) at: Location,
 }
 
@@ -102,7 +102,7 @@ impl Element {
 ///
 /// # Errors
 /// `Syntax` at line and column.
-pub(super) fn parse(bytes: &[u8], file: &Location, sources: &mut Sources<'_>) -> Result<Header> {
+pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>) -> Result<Header> {
     let mut scanner = Scanner::new(bytes);
     if scanner.word() != b"ply" {
         return Err(Error::syntax(&file.at(1, 1), "not a PLY file: it does not start with `ply`"));
@@ -153,7 +153,7 @@ pub(super) fn parse(bytes: &[u8], file: &Location, sources: &mut Sources<'_>) ->
             _ => strays.add(scanner.line()),
         }
     }
-    strays.warn("line", "of the header ignored: unknown keyword", file, sources);
+    strays.warn("line", "of the header ignored: unknown keyword", file, context);
     let Some(format) = format else {
         return Err(Error::syntax(&file.at(scanner.line(), 0), "the header has no `format` line"));
     };

@@ -1,4 +1,4 @@
-//! Which number is the next value of a PLY file? In text or binary, of either byte order.
+//! Values of PLY files: ASCII, and binary of either byte order.
 
 use super::header::{Format, Header, Scalar};
 use crate::error::{Error, ErrorKind, Location, Result};
@@ -26,12 +26,12 @@ impl<'a> Reader<'a> {
         Self { file, bytes, format: header.format, position: 0, scanner, header_bytes, header_lines }
     }
 
-    /// How many bytes after the header have been read.
+    /// The number of bytes read after the header.
     pub(super) fn position(&self) -> usize {
         if self.format == Format::Ascii { self.scanner.position() } else { self.position }
     }
 
-    /// How many bytes are left.
+    /// The number of remaining bytes.
     pub(super) fn left(&self) -> usize {
         self.bytes.len() - self.position()
     }

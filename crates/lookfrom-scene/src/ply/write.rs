@@ -1,4 +1,4 @@
-//! How is a mesh written as PLY?
+//! Writer for PLY meshes.
 
 use std::fmt::Write;
 

@@ -1,7 +1,7 @@
 //! Spectral responses of digital cameras, and the reflectances by which cameras are calibrated.
 //!
-//! The numbers are in `sensors.txt` and `swatches.txt`, which name their sources. What a sensor makes of light is left to the
-//! crate `lookfrom`.
+//! The numbers are in `sensors.txt` and `swatches.txt`, which name their sources. Crate `lookfrom` applies the sensors to
+//! light.
 
 use super::Curve;
 

@@ -1,4 +1,4 @@
-//! What is the spectrum of daylight of a given temperature?
+//! Spectra of daylight by correlated colour temperature.
 //!
 //! The CIE's series D (CIE 15; Judd, MacAdam, Wyszecki 1964): a chromaticity on the daylight locus, and the mixture of
 //! three measured components that has it.

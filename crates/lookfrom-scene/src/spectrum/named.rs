@@ -1,4 +1,4 @@
-//! Which measured curves have names?
+//! Measured spectra by name.
 //!
 //! Those of pbrt-v4, so that its scenes can name them: indices of refraction and absorption of metals, glasses, and
 //! standard illuminants. Illuminants are scaled so that their luminance Y is 1. A table that ends within the visible

@@ -1,4 +1,4 @@
-//! How does the eye weigh wavelengths?
+//! Colour matching functions.
 //!
 //! The CIE 1931 standard observer, at each nm from 360 to 830. XYZ values are divided by the integral of y, so that the
 //! constant 1 has the luminance 1, as in pbrt-v4.

@@ -1,4 +1,4 @@
-//! What does an `.spd` file say?
+//! Reader for `.spd` files.
 //!
 //! Pairs of a wavelength in nm and a value, separated by white space; `#` begins a comment to the end of the line.
 
@@ -6,19 +6,19 @@ use std::path::Path;
 
 use super::Curve;
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::Sources;
+use crate::files::LoadContext;
 use crate::model::number::parse_f32;
 use crate::model::text;
 
 /// Reads a table of wavelengths and values.
 ///
 /// # Errors
-/// `Io` and `Limit` as [`Sources::read`], and more entries than [`crate::Limits::elements`]; `Syntax` for a word that is
+/// `Io` and `Limit` as [`LoadContext::read`], and more entries than [`crate::Limits::elements`]; `Syntax` for a word that is
 /// no number or a wavelength without a value; `Invalid` for wavelengths that do not rise, for numbers that are not
 /// finite, and for a file without entries.
-pub fn read_spd(path: &Path, sources: &mut Sources<'_>) -> Result<Curve> {
+pub fn read_spd(path: &Path, context: &mut LoadContext<'_>) -> Result<Curve> {
     const HINT: &str = "each line is a wavelength in nm and a value, like `550 0.25`";
-    let bytes = sources.read(path)?;
+    let bytes = context.read(path)?;
     let file = Location::file(path);
     let text = text::utf8(&bytes);
     let (mut wavelengths, mut values) = (Vec::new(), Vec::new());
@@ -45,8 +45,8 @@ pub fn read_spd(path: &Path, sources: &mut Sources<'_>) -> Result<Curve> {
                 pending = Some(number);
                 continue;
             };
-            if wavelengths.len() as u64 >= sources.limits.elements {
-                let message = format!("more than the limit of {} entries", sources.limits.elements);
+            if wavelengths.len() as u64 >= context.limits.elements {
+                let message = format!("more than the limit of {} entries", context.limits.elements);
                 return Err(Error::new(ErrorKind::Limit, &at(), message).hint("raise `Limits::elements`"));
             }
             wavelengths.push(wavelength);

@@ -1,4 +1,4 @@
-//! Which light do the three numbers of an RGB colour space stand for?
+//! RGB colour spaces and their matrices.
 //!
 //! A space is given by the chromaticities of its primaries and by its white, which is the colour of an illuminant's
 //! spectrum rather than a rounded chromaticity, as in pbrt-v4. Vectors are columns; matrices are lists of rows.

@@ -2,11 +2,11 @@ use std::path::Path;
 
 use super::*;
 use crate::error::ErrorKind;
-use crate::files::{Memory, Sources};
+use crate::files::{LoadContext, Memory};
 
 fn read(text: &str) -> crate::Result<Curve> {
     let files = Memory([("a.spd".into(), text.as_bytes().to_vec())].into());
-    read_spd(Path::new("a.spd"), &mut Sources::new(&files))
+    read_spd(Path::new("a.spd"), &mut LoadContext::new(&files))
 }
 
 #[test]
@@ -195,21 +195,17 @@ fn spd_errors_say_where() {
         assert!(error.message.contains(says) && error.hint.is_some(), "{error}");
     }
     let files = Memory([("a.spd".into(), b"400 1 500 2 600 3".to_vec())].into());
-    let mut sources = Sources::new(&files);
-    sources.limits.elements = 2;
-    assert_eq!(read_spd(Path::new("a.spd"), &mut sources).unwrap_err().kind, ErrorKind::Limit);
-    assert_eq!(read_spd(Path::new("b.spd"), &mut sources).unwrap_err().kind, ErrorKind::Io);
+    let mut context = LoadContext::new(&files);
+    context.limits.elements = 2;
+    assert_eq!(read_spd(Path::new("a.spd"), &mut context).unwrap_err().kind, ErrorKind::Limit);
+    assert_eq!(read_spd(Path::new("b.spd"), &mut context).unwrap_err().kind, ErrorKind::Io);
 }
 
 #[test]
 fn the_shared_gold_is_ours() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes/killeroos/spds");
-    if !folder.exists() {
-        println!("skipped: {} is not here", folder.display());
-        return;
-    }
+    let Some(folder) = lookfrom_test_data::shared("scenes/killeroos/spds") else { return };
     for (file, name) in [("Au.eta.spd", "metal-Au-eta"), ("Au.k.spd", "metal-Au-k")] {
-        let read = read_spd(&folder.join(file), &mut Sources::new(&crate::Disk)).unwrap();
+        let read = read_spd(&folder.join(file), &mut LoadContext::new(&crate::Disk)).unwrap();
         let named = named(name).unwrap();
         for nm in 360..=830 {
             assert!((read.at(nm as f32) - named.at(nm as f32)).abs() < 1e-5, "{file} at {nm}");

@@ -1,4 +1,4 @@
-//! A perspective camera that frames a set of points, and points that turn around an axis.
+//! Fit of a perspective camera to points, and to circles on which points turn around an axis.
 //!
 //! A point is inside the right edge of the picture where x − eye.x ≤ k (z − eye.z), and so on for the four edges: each edge is
 //! a plane whose offset grows with a linear function of the point. Opposite edges together bound eye.z; halfway between them
@@ -9,16 +9,16 @@ use glam::DVec3;
 use super::{FILL, FOV, TAN_HALF_FOV, TO_CAMERA};
 use crate::camera::{Camera, Projection, View};
 
-/// The four edges of a picture, moved outward by each point that it has to show.
+/// The four frustum planes of a camera, moved outward by each included point.
 pub(super) struct Framing {
     /// The origin of the offsets.
     center: DVec3,
-    /// What is up in the world: of unit length.
+    /// The up vector in the world, of unit length.
     vertical: DVec3,
     forward: DVec3,
     /// Right and up in the picture.
     axes: [DVec3; 2],
-    /// How the picture's half width and half height grow with the depth.
+    /// The tangents of half the horizontal and vertical fields of view.
     slopes: [f64; 2],
     /// For each axis of the picture, the greatest offset of its upper and of its lower edge.
     edges: [[f64; 2]; 2],
@@ -42,7 +42,7 @@ impl Framing {
         }
     }
 
-    /// Makes the picture show a point.
+    /// Includes a point.
     pub(super) fn include(&mut self, point: DVec3) {
         let offset = point - self.center;
         for (axis, along) in self.axes.map(|axis| offset.dot(axis)).into_iter().enumerate() {
@@ -52,7 +52,7 @@ impl Framing {
         }
     }
 
-    /// Makes the picture show all places of a point that turns around the vertical through the centre.
+    /// Includes the circle of a point that turns around the vertical through the centre.
     pub(super) fn include_turning(&mut self, point: DVec3) {
         let offset = point - self.center;
         let height = offset.dot(self.vertical);

@@ -1,5 +1,5 @@
-//! What surrounds a model that comes without light: a photographer's studio, computed, not painted; or a picture of
-//! somewhere else; and a floor that is seen only by the shadows on it.
+//! Environments for models without lights: a procedural photographer's studio, or an environment map; and a shadow-catcher
+//! floor.
 //!
 //! The studio is a backdrop that grows darker downward, with lamps behind soft boxes: a large key light at the upper left of
 //! the camera, one overhead, and two upright strips, at the right and behind at the left, that draw edges on whatever
@@ -7,7 +7,7 @@
 
 use glam::{DMat4, DVec3};
 
-use super::Stage;
+use super::StudioFrame;
 use crate::error::Location;
 use crate::image::Image;
 use crate::light::{LightKind, Sky};
@@ -29,7 +29,7 @@ const BACKDROP: [(f64, [f64; 3]); 5] = [
     (1.0, [0.18, 0.185, 0.195]),
 ];
 
-/// A lamp behind a rectangle of cloth.
+/// A softbox: a rectangle that emits.
 struct SoftBox {
     /// From the model, in parts of right, up and towards the camera; any length.
     toward: [f64; 3],
@@ -52,7 +52,7 @@ const FADE: f64 = 0.12;
 /// Radius of the floor in radii of the bounds: beyond the upper edge of the picture.
 const FLOOR_RADIUS: f64 = 60.0;
 
-impl Stage {
+impl StudioFrame {
     /// Adds the studio, turned to the viewer whom models look at.
     pub(super) fn add_studio(&self, scene: &mut Scene) {
         let image = push_image(scene, studio());
@@ -67,19 +67,19 @@ impl Stage {
     }
 }
 
-/// Lets a picture in latitude and longitude, +y up, take the place of all environments. `up` as in [`super::furnish`].
+/// Replaces all environment lights by an equirectangular environment map with +y up. `up` as in [`super::add_lights_and_camera`].
 pub fn surround(scene: &mut Scene, picture: Image, up: Option<DVec3>) {
     scene.lights.retain(|light| !matches!(light.kind, LightKind::Environment { .. }));
-    let world_from_light = Stage::of(scene, up).world_from_light();
+    let world_from_light = StudioFrame::of(scene, up).world_from_light();
     let image = push_image(scene, picture);
     let sky = Sky::Image { image, scale: [1.0; 3], world_from_light };
     super::add(scene, "environment", LightKind::Environment { sky, portal: None, illuminates: true });
 }
 
-/// Turns pictures of the surroundings around what is up, by degrees against the clock as seen from above. `up` as in
-/// [`super::furnish`].
+/// Rotates environment maps around the up vector, by degrees counter-clockwise as seen from above. `up` as in
+/// [`super::add_lights_and_camera`].
 pub fn turn_environments(scene: &mut Scene, up: Option<DVec3>, degrees: f64) {
-    let turn = rotation(Stage::of(scene, up).basis[1], degrees);
+    let turn = rotation(StudioFrame::of(scene, up).basis[1], degrees);
     for light in &mut scene.lights {
         if let LightKind::Environment { sky, .. } = &mut light.kind
             && let Sky::Image { world_from_light, .. } | Sky::Octahedral { world_from_light, .. } = sky
@@ -96,10 +96,10 @@ pub(super) fn rotation(axis: DVec3, degrees: f64) -> DMat4 {
     DMat4::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z), DMat4::IDENTITY.w_axis)
 }
 
-/// Adds a large floor under everything, which is seen only by the shadows on it ([`MaterialKind::ShadowCatcher`]). `up` as
-/// in [`super::furnish`].
+/// Adds a large shadow-catcher floor under everything ([`MaterialKind::ShadowCatcher`]). `up` as
+/// in [`super::add_lights_and_camera`].
 pub fn add_floor(scene: &mut Scene, up: Option<DVec3>) {
-    let Stage { bounds, basis: [_, up, _] } = Stage::of(scene, up);
+    let StudioFrame { bounds, basis: [_, up, _] } = StudioFrame::of(scene, up);
     // What is in objects stands in the world as well: the lowest corner of the box along `up`.
     let Bounds { min, max } = bounds;
     let lowest = DVec3::select(up.cmpge(DVec3::ZERO), min, max).dot(up);
@@ -135,7 +135,7 @@ fn studio() -> Image {
     Image::from_linear("studio", WIDTH, HEIGHT, texels)
 }
 
-/// What comes from a unit direction in the studio.
+/// The studio's radiance from a unit direction.
 fn radiance(direction: DVec3, frames: &[[DVec3; 3]; 4]) -> [f64; 3] {
     // The backdrop.
     let above = BACKDROP[1..].iter().position(|(y, _)| direction.y <= *y).unwrap_or(BACKDROP.len() - 2);
@@ -207,7 +207,7 @@ mod tests {
     #[test]
     fn environments_turn_around_what_is_up() {
         let mut scene = Scene::default();
-        Stage::of(&scene, Some(DVec3::Z)).add_studio(&mut scene);
+        StudioFrame::of(&scene, Some(DVec3::Z)).add_studio(&mut scene);
         let middle = |scene: &Scene| match &scene.lights[0].kind {
             LightKind::Environment { sky: Sky::Image { world_from_light, .. }, .. } => {
                 [-DVec3::Z, DVec3::Y].map(|v| world_from_light.transform_vector3(v))

@@ -10,10 +10,10 @@ use super::surroundings::rotation;
 use super::{aspect, basis, bounds_of, corners, sane, visit_instance, visit_shape};
 use crate::camera::{Camera, Target, View};
 use crate::material::MaterialKind;
-use crate::scene::{Bounds, Instance, Origin, Scene};
+use crate::scene::{Bounds, Instance, Scene, SourceFormat};
 use crate::shape::{Geometry, Shape};
 
-/// How many times larger than the solid things a flat one may be before it is a backdrop or a floor without end: its radius over
+/// The ratio of sizes from which a flat thing counts as a backdrop or an endless floor: its radius over
 /// that of their bounds.
 const LARGEST_FLAT: f64 = 3.0;
 /// The thickness of a flat mesh as a share of its extent.
@@ -39,7 +39,9 @@ impl Turntable {
         });
         let of_matrix = || match scene.camera.as_ref()?.view {
             // The format says what is up.
-            View::Matrix(matrix) if scene.origin != Origin::Gltf => Some(matrix.y_axis.truncate()),
+            View::Matrix(matrix) if scene.source_format != SourceFormat::Gltf => {
+                Some(matrix.y_axis.truncate())
+            }
             _ => None,
         };
         let up = up.or(target.map(|target| target.up)).or_else(of_matrix);
@@ -87,7 +89,7 @@ impl Turntable {
     }
 }
 
-/// Something that stands in the world.
+/// An item of the world.
 #[derive(Clone, Copy)]
 enum Item<'a> {
     Shape(&'a Shape),
@@ -145,7 +147,7 @@ fn bounds(scene: &Scene, items: &[Item<'_>]) -> Bounds {
     items.iter().map(|item| item.bounds(scene)).fold(Bounds::EMPTY, Bounds::union)
 }
 
-/// What the picture is about. In a scene where nothing is left, everything is.
+/// The subject of the picture. In a scene where nothing is left, everything is.
 fn visible(scene: &Scene) -> Vec<Item<'_>> {
     let shapes = scene.shapes.iter().map(Item::Shape);
     let all: Vec<Item<'_>> = shapes.chain(scene.instances.iter().map(Item::Instance)).collect();
@@ -170,14 +172,14 @@ fn visible(scene: &Scene) -> Vec<Item<'_>> {
     solids.iter().copied().chain(small).collect()
 }
 
-/// Whether a shape is a lamp or only the border of a medium. In a model what glows is a part of it.
+/// Whether a shape is an area light or only the boundary of a medium. In a model, emissive shapes are parts of it.
 fn is_hidden(scene: &Scene, shape: &Shape) -> bool {
-    let is_lamp = scene.origin == Origin::Scene && shape.emission.is_some();
+    let is_lamp = scene.source_format == SourceFormat::Scene && shape.emission.is_some();
     let material = scene.materials.get(shape.material.index());
     is_lamp || material.is_some_and(|material| matches!(material.kind, MaterialKind::Interface))
 }
 
-/// Whether an item is a sphere around the eye: a sky that is painted on a dome.
+/// Whether an item is a sphere around the camera: a sky dome.
 fn surrounds_the_eye(scene: &Scene, item: &Item<'_>) -> bool {
     let Item::Shape(Shape { geometry: Geometry::Sphere(_) | Geometry::PartialSphere { .. }, .. }) = item
     else {

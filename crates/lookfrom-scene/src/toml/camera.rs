@@ -1,4 +1,4 @@
-//! `[camera]`: where the eye stands and how it flattens space.
+//! `[camera]`: position, orientation, projection and lens.
 
 use glam::DVec3;
 
@@ -101,7 +101,7 @@ fn projection(table: &Table<'_>) -> Projection {
         value.note(error.hint(match (word, key) {
             ("perspective", _) => "give `fov` here, or the picture's `height` in [image]",
             ("orthographic", _) => "give `height`, the height of the picture in the world",
-            _ => "it sees all around, and everything sharp: leave it out",
+            _ => "a panoramic camera has no lens: leave it out",
         }));
     }
     match word {
@@ -139,7 +139,7 @@ fn window(value: Value<'_>) -> Result<Window> {
     Ok(Window { x: side("x"), y: side("y") })
 }
 
-/// Where everything is sharp.
+/// The focus distance.
 enum Focus {
     /// So far along the view axis.
     Distance(f64),
@@ -150,7 +150,7 @@ enum Focus {
 fn focus(table: &Table<'_>) -> Option<Focus> {
     let value = table.one_of(&["focus_distance", "focus"])?;
     if !table.has("aperture") && !table.means(&["aperture"]) {
-        let message = format!("`{}` needs an `aperture`: without one everything is sharp", value.key());
+        let message = format!("`{}` needs an `aperture`: without one the camera is a pinhole", value.key());
         value.note(value.error(message).hint("add `aperture = 0.05`, the radius of the lens"));
     }
     match value.key() {

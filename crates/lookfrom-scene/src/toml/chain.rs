@@ -1,22 +1,22 @@
-//! Do things that are made of one another come to an end? A texture or a mix that uses itself, through any number of
-//! steps, is an error, and so is a chain of too many.
+//! Detection of cycles: a texture or a mix that uses itself, directly or through others, is an error, and so is a chain
+//! that is too deep.
 
 use std::collections::BTreeMap;
 
 use crate::error::{Error, ErrorKind, Location, Result};
 
-/// How deep things may use one another.
+/// The maximum depth of a chain.
 const DEEPEST: usize = 16;
 
 /// Things that may be made of others of their kind.
 pub(super) trait Made {
-    /// What one of them is called in messages.
+    /// The noun for one of them in messages.
     const WHAT: &'static str;
-    /// What to do about one that uses itself.
+    /// The remedy for one that uses itself.
     const REMEDY: &'static str;
     /// The name that it has.
     fn name(&self) -> &str;
-    /// Where it was written.
+    /// The location in the file.
     fn at(&self) -> &Location;
     /// The indices of those that it is made of.
     fn parts(&self) -> Vec<usize>;
@@ -45,7 +45,7 @@ struct Search<'a, T> {
 }
 
 impl<T: Made> Search<'_, T> {
-    /// How many things deep this one is.
+    /// The depth of this one in the chain.
     fn height(&mut self, index: usize) -> Result<usize> {
         if let Some(&height) = self.heights.get(&index) {
             return Ok(height);

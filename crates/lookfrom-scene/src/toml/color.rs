@@ -1,4 +1,4 @@
-//! Colours and numbers that may vary: numbers, `[r, g, b]`, `"#rrggbb"`, curves, names of textures, textures in place.
+//! Colours and numbers that may be textured: numbers, `[r, g, b]`, `"#rrggbb"`, curves, names of textures, textures in place.
 
 use super::Reader;
 use super::table::Table;
@@ -95,7 +95,7 @@ impl Reader<'_, '_> {
             let curve = self.curve(value, &["scale"])?;
             if luminance(&self.scene.curves[curve.index()]) < DARKEST {
                 return Err(value
-                    .error(format!("`{}` is a light that nobody sees", value.key()))
+                    .error(format!("`{}` emits no visible light", value.key()))
                     .hint("give it values above 0 between 400 and 700 nm"));
             }
             return Ok((Color::Curve(curve), table.or("scale", 1.0, primary)));

@@ -1,176 +1,115 @@
-//! Values by wavelength: black bodies, tables, `.spd` files, and what is known by name.
+//! `[[patch]]` and `[[curve]]`: bilinear patches and cubic curves.
 
-use super::Reader;
-use super::settings::kelvin;
+use std::sync::Arc;
+
+use glam::{DVec3, Vec2, Vec3};
+
+use super::mesh::too_many;
+use super::shape::point;
+use super::table::Table;
 use super::value::Value;
-use crate::error::{Error, ErrorKind, Result};
-use crate::material::{Color, Ior};
-use crate::scene::CurveId;
-use crate::spectrum::{self, Curve};
+use crate::error::Result;
+use crate::shape::{Geometry, Patches, Profile, Strand};
 
-/// The keys of a colour by wavelength; lights also have `scale`.
-pub(super) const KEYS: &[&str] = &["kelvin", "curve", "spd", "illuminant"];
-
-/// Names of metals, besides their symbols.
-const METALS: &[(&str, &str)] = &[
-    ("silver", "Ag"),
-    ("aluminium", "Al"),
-    ("aluminum", "Al"),
-    ("gold", "Au"),
-    ("copper", "Cu"),
-    ("brass", "CuZn"),
-];
-
-impl Reader<'_, '_> {
-    /// A table of one of [`KEYS`], and perhaps of `others`.
-    pub(super) fn curve(&mut self, value: Value<'_>, others: &[&'static str]) -> Result<CurveId> {
-        let table = value.table("a colour by wavelength")?;
-        let Some(one) = table.one_of(KEYS) else {
-            return Err(value.error(format!("`{}` is a table without a `type`: no texture", value.key())).hint(
-                "add `type = \"checker\"` or another; a colour by wavelength has `kelvin`, `curve`, `spd` or `illuminant`",
-            ));
-        };
-        table.allow(&[KEYS, others]);
-        match one.key() {
-            "kelvin" => {
-                let kelvin = kelvin(one)?;
-                Ok(self.keep_curve(format!("kelvin {kelvin}"), Curve::Blackbody { kelvin }))
-            }
-            "curve" => {
-                let curve = inline(one, self.sources.limits.elements)?;
-                Ok(self.add_curve(curve))
-            }
-            "spd" => self.spd(one),
-            _ => {
-                let short =
-                    |name: &'static str| name.strip_prefix("stdillum-").or(name.strip_prefix("illum-"));
-                let words: Vec<(&str, &'static str)> =
-                    spectrum::names().filter_map(|name| Some((short(name)?, name))).collect();
-                let name = one.choice(&words)?;
-                Ok(self.known_curve(name))
-            }
-        }
+/// A bilinear patch between four corners.
+pub(super) fn patch(table: &Table<'_>) -> Result<Geometry> {
+    let example = "[[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1]]";
+    let corners = table.need("corners", example, [Vec3::ZERO; 4], |value| {
+        four(value, "four points, at (u, v) = (0, 0), (1, 0), (0, 1), (1, 1)", point)
+    });
+    let normals = table.maybe("normals", |value| four(value, "four normals, one for each corner", point));
+    let uvs = table.maybe("uvs", |value| {
+        let pair = |value: Value<'_>| value.singles("two numbers, [u, v]").map(Vec2::from_array);
+        four(value, "four pairs [u, v], one for each corner", pair)
+    });
+    table.sound(&["corners"])?;
+    let [a, b, c, d] = corners.map(Vec3::as_dvec3);
+    let is_flat_at = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p) == DVec3::ZERO;
+    if is_flat_at(a, b, c) && is_flat_at(d, b, c) {
+        let message = "the patch has no area: its corners lie on a line";
+        return Err(table.error_at("corners", message).hint("move one of them"));
     }
-
-    /// An index of refraction: a number, a curve, or the name of a glass.
-    pub(super) fn ior(&mut self, value: Value<'_>) -> Result<Ior> {
-        if value.is_table() {
-            let id = self.curve(value, &[])?;
-            return self.optical(value, id).map(Ior::Curve);
-        }
-        if value.as_text().is_some() {
-            let glasses: Vec<(&str, &'static str)> =
-                spectrum::names().filter_map(|name| Some((name.strip_prefix("glass-")?, name))).collect();
-            let name = value.choice(&glasses)?;
-            return Ok(Ior::Curve(self.known_curve(name)));
-        }
-        let expected = "a number greater than 0, the name of a glass such as \"BK7\", or a curve";
-        value.single_where(expected, |eta| eta > 0.0).map(Ior::Value)
-    }
-
-    /// η and k of a metal by its name.
-    pub(super) fn metal(&mut self, value: Value<'_>) -> Result<[Color; 2]> {
-        let symbol = |name: &'static str| name.strip_prefix("metal-")?.strip_suffix("-eta");
-        let symbols = spectrum::names().filter_map(symbol).map(|symbol| (symbol, symbol));
-        let words: Vec<(&str, &str)> = symbols.chain(METALS.iter().copied()).collect();
-        let symbol = value.choice(&words)?;
-        Ok(["eta", "k"].map(|part| Color::Curve(self.known_curve(&format!("metal-{symbol}-{part}")))))
-    }
-
-    /// η or k of a metal: a colour whose curve goes on beyond its ends.
-    pub(super) fn optical_color(&mut self, value: Value<'_>) -> Result<Color> {
-        match self.color(value)? {
-            Color::Curve(id) if value.key() == "eta" => self.optical(value, id).map(Color::Curve),
-            Color::Curve(id) => Ok(Color::Curve(self.extended(id))),
-            color => Ok(color),
-        }
-    }
-
-    /// An index of refraction, which is never 0, and goes on beyond the ends of its table.
-    fn optical(&mut self, value: Value<'_>, id: CurveId) -> Result<CurveId> {
-        let is_usable = match &self.scene.curves[id.index()] {
-            Curve::Tabulated { values, .. } => values.iter().all(|&eta| eta > 0.0),
-            _ => false,
-        };
-        if !is_usable {
-            return Err(value
-                .error(format!(
-                    "`{}` is no index of refraction: it has to be above 0 everywhere",
-                    value.key()
-                ))
-                .hint("give a number, or a curve of numbers such as 1.5"));
-        }
-        Ok(self.extended(id))
-    }
-
-    /// The same curve with its first and last values up to the ends of what is seen.
-    fn extended(&mut self, id: CurveId) -> CurveId {
-        match &self.scene.curves[id.index()] {
-            curve @ Curve::Tabulated { .. } => {
-                let extended = curve.clone().extended();
-                self.keep_curve(format!("extended {}", id.0), extended)
-            }
-            _ => id,
-        }
-    }
-
-    /// A file; each is read once.
-    fn spd(&mut self, value: Value<'_>) -> Result<CurveId> {
-        let path = self.resolve(value, "the name of an .spd file")?;
-        let name = format!("spd {}", path.display());
-        if let Some(&id) = self.curves.get(&name) {
-            return Ok(id);
-        }
-        let curve = spectrum::read_spd(&path, self.sources).map_err(|error| value.blame(error))?;
-        Ok(self.keep_curve(name, curve))
-    }
-
-    /// One of [`spectrum::names`].
-    fn known_curve(&mut self, name: &str) -> CurveId {
-        match self.curves.get(name) {
-            Some(&id) => id,
-            None => self.keep_curve(name.to_owned(), spectrum::named(name).unwrap_or(Curve::Constant(1.0))),
-        }
-    }
-
-    fn keep_curve(&mut self, name: String, curve: Curve) -> CurveId {
-        if let Some(&id) = self.curves.get(&name) {
-            return id;
-        }
-        let id = self.add_curve(curve);
-        self.curves.insert(name, id);
-        id
-    }
-
-    fn add_curve(&mut self, curve: Curve) -> CurveId {
-        self.scene.curves.push(curve);
-        CurveId(self.scene.curves.len() as u32 - 1)
-    }
+    Ok(Geometry::Bilinear(Arc::new(Patches {
+        positions: corners.to_vec(),
+        patches: vec![[0, 1, 2, 3]],
+        normals: normals.map_or(Vec::new(), |normals| normals.to_vec()),
+        uvs: uvs.map_or(Vec::new(), |uvs| uvs.to_vec()),
+    })))
 }
 
-/// `[[nm, value], …]`.
-fn inline(value: Value<'_>, limit: u64) -> Result<Curve> {
-    let expected = "a list of wavelengths and values, such as [[400, 0.1], [700, 0.8]]";
-    let items = value.list(expected)?;
-    let count = items.len() as u64;
-    if count > limit {
-        let error = value.error(format!("{count} entries are more than the limit of {limit}"));
-        return Err(Error { kind: ErrorKind::Limit, ..error }.hint("use fewer, or raise `Limits::elements`"));
-    }
-    if count < 2 {
-        return Err(value.wrong(expected));
-    }
-    let (mut wavelengths, mut values) = (Vec::new(), Vec::new());
-    for item in items {
-        let [nm, entry] = item.list_of("a wavelength in nm and a value")?;
-        let nm_value = nm.single_where("a wavelength in nm, greater than 0", |nm| nm > 0.0)?;
-        if let Some(&before) = wavelengths.last().filter(|&&before| nm_value <= before) {
-            return Err(nm
-                .error(format!("the wavelength {nm_value} does not lie above the one before, {before}"))
-                .hint("sort the entries by wavelength, each once"));
+fn four<T>(value: Value<'_>, expected: &str, decode: impl Fn(Value<'_>) -> Result<T>) -> Result<[T; 4]> {
+    let [a, b, c, d] = value.list_of(expected)?;
+    Ok([decode(a)?, decode(b)?, decode(c)?, decode(d)?])
+}
+
+/// Cubic Bézier curves, each beginning where the one before ends.
+pub(super) fn curve(table: &Table<'_>, limit: u64) -> Result<Geometry> {
+    let is_round = table.or("profile", false, |value| {
+        value.choice(&[("flat", false), ("cylinder", true), ("ribbon", false)])
+    });
+    let example = "[[0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 2, 0]]";
+    let points = table.need("points", example, Vec::new(), |value| {
+        let expected = "4, 7, 10, … points: each curve has two between its ends";
+        let items = value.list(expected)?;
+        let count = items.len();
+        if count as u64 > limit {
+            return Err(too_many(table, count as u64, limit));
         }
-        wavelengths.push(nm_value);
-        values.push(entry.single_where("a number of at least 0", |value| value >= 0.0)?);
+        if count < 4 || count % 3 != 1 {
+            return Err(value.wrong(expected).hint("curves that follow one another share an end"));
+        }
+        items.map(point).collect::<Result<Vec<Vec3>>>()
+    });
+    table.sound(&["points"])?;
+    let joints = points.len() / 3 + 1;
+    let widths = table.need("width", "0.1", Vec::new(), |value| widths(value, joints));
+    table.sound(&["profile"])?;
+    let normals = ribbon(table, joints)?;
+    table.sound(&["width"])?;
+    let strands = (0..joints - 1).map(|i| Strand {
+        points: [0, 1, 2, 3].map(|j| points[3 * i + j]),
+        width: [widths[i], widths[i + 1]],
+        profile: match &normals {
+            Some(normals) => Profile::Ribbon([normals[i], normals[i + 1]]),
+            None if is_round => Profile::Cylinder,
+            None => Profile::Flat,
+        },
+    });
+    Ok(Geometry::Curves(strands.collect()))
+}
+
+/// One width for all, or one for each joint.
+fn widths(value: Value<'_>, joints: usize) -> Result<Vec<f32>> {
+    let width = |value: Value<'_>| value.single_where("a number greater than 0", |width| width > 0.0);
+    if value.is_number() {
+        return Ok(vec![width(value)?; joints]);
     }
-    Ok(Curve::Tabulated { wavelengths, values })
+    let expected = format!("a number, or a list of {joints}, one for each end of a curve");
+    let items = value.list(&expected)?;
+    if items.len() != joints {
+        return Err(value.wrong(&expected));
+    }
+    items.map(width).collect()
+}
+
+/// The unit normals of a ribbon at its joints; nothing for other profiles.
+fn ribbon(table: &Table<'_>, joints: usize) -> Result<Option<Vec<Vec3>>> {
+    let is_ribbon = table.find("profile").and_then(Value::as_text) == Some("ribbon");
+    let expected = format!("a list of {joints} vectors, one for each end of a curve");
+    match (table.find("normals"), is_ribbon) {
+        (None, false) => Ok(None),
+        (Some(value), false) => Err(value
+            .error("`normals` are for ribbons")
+            .hint("leave them out, or add `profile = \"ribbon\"`")),
+        (None, true) => Err(table
+            .error("`normals` are missing: they say how the ribbon stands")
+            .hint(format!("add `normals`, {expected}"))),
+        (Some(value), true) => {
+            let items = value.list(&expected)?;
+            if items.len() != joints {
+                return Err(value.wrong(&expected));
+            }
+            items.map(|item| Ok(item.direction()?.normalize().as_vec3())).collect::<Result<_>>().map(Some)
+        }
+    }
 }

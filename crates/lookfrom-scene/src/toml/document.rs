@@ -1,5 +1,5 @@
-//! The text of a scene, places in it, and the errors that were noted: where one thing is wrong, reading goes on with a
-//! stand-in, and what was read is thrown away in the end.
+//! The text of a scene, locations in it, and error recovery: after an error, reading continues with a placeholder value, and
+//! the scene is discarded in the end.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -9,12 +9,12 @@ use crate::error::{Error, Location};
 /// The most errors that are noted of one file.
 const MOST_ERRORS: usize = 1000;
 
-/// A file's text, with what is needed to name places in it, and the errors that were noted so far.
+/// A file's text, its line starts, and the errors recorded so far.
 pub(super) struct Document {
     whole: Location,
     text: String,
     line_starts: Vec<usize>,
-    /// By the byte that they are about, and what they say: each once.
+    /// By byte offset and message: each once.
     errors: RefCell<BTreeMap<(usize, String), Error>>,
 }
 
@@ -25,19 +25,19 @@ impl Document {
         Self { whole, text, line_starts, errors: RefCell::default() }
     }
 
-    /// Notes an error that is about what begins at a byte; reading goes on.
+    /// Records an error at a byte offset; reading continues.
     pub(super) fn note(&self, offset: usize, error: Error) {
         if !self.is_full() && !error.is_untold() {
             self.errors.borrow_mut().entry((offset, error.message.clone())).or_insert(error);
         }
     }
 
-    /// Whether an error was noted that is about what begins at a byte.
+    /// Whether an error was recorded at a byte offset.
     pub(super) fn is_noted(&self, offset: usize) -> bool {
         self.errors.borrow().range((offset, String::new())..).next().is_some_and(|((at, _), _)| *at == offset)
     }
 
-    /// How many errors were noted.
+    /// The number of recorded errors.
     pub(super) fn count(&self) -> usize {
         self.errors.borrow().len()
     }
@@ -71,7 +71,7 @@ impl Document {
 }
 
 impl Error {
-    /// An error that is not told, for it follows from another that is.
+    /// An error that is not reported, since it follows from a reported one.
     pub(super) fn untold() -> Self {
         Self::invalid(&Location::default(), "")
     }

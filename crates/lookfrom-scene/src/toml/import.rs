@@ -1,4 +1,4 @@
-//! `import`: other scenes and models join this one.
+//! `import`: other scenes and models, merged into this one.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -33,10 +33,10 @@ impl Reader<'_, '_> {
                 .error(format!("this file imports itself: {}", chain(&self.open[start..])))
                 .hint("take one of these imports out"));
         }
-        if self.open.len() as u64 > u64::from(self.sources.limits.import_depth) {
+        if self.open.len() as u64 > u64::from(self.context.limits.import_depth) {
             let message = format!(
                 "imports nest deeper than the limit of {}: {}",
-                self.sources.limits.import_depth,
+                self.context.limits.import_depth,
                 chain(&self.open)
             );
             return Err(Error { kind: ErrorKind::Limit, ..value.error(message) }
@@ -50,7 +50,7 @@ impl Reader<'_, '_> {
             return self.import_scene(&path).map_err(|error| value.blame(error));
         }
         let first = self.scene.materials.len();
-        let choice = self.sources.choice.clone();
+        let choice = self.context.import.clone();
         let model = self.model(value, &choice)?;
         for (index, material) in self.scene.materials.iter().enumerate().skip(first) {
             self.materials.entry(material.name.clone()).or_insert(MaterialId(index as u32));

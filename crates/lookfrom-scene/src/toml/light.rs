@@ -1,14 +1,14 @@
-//! `[[light]]`: lights, and lamps that are shapes.
+//! `[[light]]`: light sources, and area lights with a shape of their own.
 
 use glam::{DMat4, DVec3};
 
 use super::Reader;
-use super::form::tangents;
-use super::place::{about, rotate};
+use super::composite::tangents;
 use super::table::{Kinds, Table};
+use super::transform::{about, rotate};
 use super::value::Value;
 use crate::error::{Error, Result};
-use crate::light::{Amount, Falloff, Light, LightKind};
+use crate::light::{Falloff, Light, LightKind, Power};
 use crate::material::Color;
 use crate::shape::{Emission, Geometry, Shape, Sphere};
 
@@ -60,7 +60,7 @@ pub(super) const KEYS: Kinds = &[
 /// The words for how light fades with distance.
 pub(super) const FALLOFFS: &[(&str, Falloff)] =
     &[("none", Falloff::None), ("linear", Falloff::Linear), ("quadratic", Falloff::Quadratic)];
-/// What every light may have.
+/// Keys of all lights.
 pub(super) const COMMON: &[&str] = &["type", "name"];
 
 impl Reader<'_, '_> {
@@ -74,19 +74,19 @@ impl Reader<'_, '_> {
 
     fn light(&mut self, word: &str, table: &Table<'_>) -> Result<()> {
         let name = name(table);
-        let (kind, amount) = match word {
+        let (kind, power) = match word {
             "ambient" => {
                 let color = table.need("color", "0.1", [1.0; 3], |value| self.light_rgb(value));
-                (LightKind::Ambient { color }, Amount::AS_WRITTEN)
+                (LightKind::Ambient { color }, Power::AS_WRITTEN)
             }
             "point" => {
-                let (intensity, amount) = self.intensity(table, "power");
-                (LightKind::Point { position: position(table), intensity, falloff: falloff(table) }, amount)
+                let (intensity, power) = self.intensity(table, "power");
+                (LightKind::Point { position: position(table), intensity, falloff: falloff(table) }, power)
             }
             "distant" => {
-                let (intensity, amount) = self.intensity(table, "illuminance");
+                let (intensity, power) = self.intensity(table, "illuminance");
                 let direction = distant_direction(table)?;
-                (LightKind::Distant { direction, intensity }, amount)
+                (LightKind::Distant { direction, intensity }, power)
             }
             "spot" => self.spot(table)?,
             "projection" => self.projection(table)?,
@@ -94,7 +94,7 @@ impl Reader<'_, '_> {
             "environment" => self.environment(table)?,
             _ => return self.read_lamp(word, table, name),
         };
-        self.scene.lights.push(Light { name, at: table.at(), kind, amount });
+        self.scene.lights.push(Light { name, at: table.at(), kind, power });
         Ok(())
     }
 
@@ -104,7 +104,7 @@ impl Reader<'_, '_> {
             None if table.has("power") || table.means(&["power"]) => (Color::gray(1.0), 1.0),
             _ => table.need("radiance", "10", (Color::BLACK, 1.0), |value| self.light_color(value, true)),
         };
-        let amount = amount(table, "power", scale);
+        let power = power(table, "power", scale);
         let two_sided = table.or("two_sided", false, Value::boolean);
         let center = || table.need("center", "[0, 5, 0]", DVec3::ZERO, Value::vector);
         let radius = || table.need("radius", "1", 1.0, Value::positive);
@@ -119,7 +119,7 @@ impl Reader<'_, '_> {
         };
         let shape = Shape {
             name,
-            emission: Some(Emission { radiance, amount, two_sided }),
+            emission: Some(Emission { radiance, power, two_sided }),
             ..Shape::new(table.at(), geometry, self.black_material())
         };
         self.scene.shapes.push(shape);
@@ -127,23 +127,23 @@ impl Reader<'_, '_> {
     }
 
     /// `intensity` and how much of it; `total` is the key that may say so instead.
-    pub(super) fn intensity(&mut self, table: &Table<'_>, total: &str) -> (Color, Amount) {
+    pub(super) fn intensity(&mut self, table: &Table<'_>, total: &str) -> (Color, Power) {
         let (color, scale) = match table.find("intensity") {
             None if table.has(total) || table.means(&[total]) => (Color::gray(1.0), 1.0),
             _ => table.need("intensity", "1", (Color::BLACK, 1.0), |value| self.light_color(value, false)),
         };
-        (color, amount(table, total, scale))
+        (color, power(table, total, scale))
     }
 }
 
-/// How much light: as the key `total` says, or else as the colour, times `scale`, says.
-pub(super) fn amount(table: &Table<'_>, total: &str, scale: f32) -> Amount {
+/// The power: that of the key `total`, or else that of the colour, times `scale`.
+pub(super) fn power(table: &Table<'_>, total: &str, scale: f32) -> Power {
     let total = table.or(total, None, |value| {
         value.single_where("a number of at least 0", |total| total >= 0.0).map(Some)
     });
     // What it comes to is then known, whatever the colour's brightness.
     let scale = if total.is_some() { 1.0 } else { scale };
-    Amount { scale, total, absolute: false }
+    Power { scale, total, absolute: false }
 }
 
 /// `rotate`: degrees about y, or as for shapes.
@@ -191,17 +191,17 @@ fn distant_direction(table: &Table<'_>) -> Result<DVec3> {
     }
 }
 
-/// Where a light stands.
+/// The position of a light.
 pub(super) fn position(table: &Table<'_>) -> DVec3 {
     table.need("position", "[0, 5, 0]", DVec3::ZERO, Value::vector)
 }
 
-/// Where a light at `position` shines to.
+/// The direction of a light at `position`.
 pub(super) fn aim(table: &Table<'_>, position: DVec3) -> DVec3 {
     facing(table, ["target", "direction"], position, "add `target = [0, 0, 0]`")
 }
 
-/// Where something at a point faces: to another point, or in a direction.
+/// The direction from a point to a target point, or a given direction.
 fn facing(table: &Table<'_>, [target, direction]: [&str; 2], from: DVec3, remedy: &str) -> DVec3 {
     let is_placed = table.sound(&["position", "center"]).is_ok();
     if let Some(value) = table.one_of(&[target, direction]) {

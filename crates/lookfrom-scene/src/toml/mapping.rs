@@ -1,9 +1,9 @@
-//! Where patterns and pictures live: on the surface, in space, or thrown onto it.
+//! Texture mappings: by surface coordinates, in space, or projected.
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
 
-use super::place::scale_rotate_translate;
 use super::table::Table;
+use super::transform::scale_rotate_translate;
 use super::value::Value;
 use crate::error::Result;
 use crate::texture::Mapping;
@@ -15,7 +15,7 @@ pub(super) const KEYS: &[&str] =
 /// The words for `space`.
 pub(super) const SPACES: [&str; 5] = ["uv", "world", "spherical", "cylindrical", "planar"];
 
-/// Where it lives, in the default `space` unless another is named.
+/// The mapping, in the default `space` unless another is named.
 pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
     let words = SPACES.map(|word| (word, word));
     let space = table.find("space").map_or(Ok(default), |value| value.choice(&words))?;

@@ -1,7 +1,7 @@
-//! `[materials]`: how surfaces look, and the light they give off.
+//! `[materials]`: materials and their emission.
 
 use super::color::plain_color;
-use super::light::amount;
+use super::light::power;
 use super::table::{Kinds, Table};
 use super::value::Value;
 use super::{Reader, chain, principled};
@@ -59,10 +59,10 @@ pub(super) const KEYS: Kinds = &[
     ("mix", &["materials", "amount"]),
     ("interface", &[]),
 ];
-/// What every material may have.
+/// Keys of all materials.
 pub(super) const COMMON: &[&str] = &["type", "emission", "power", "two_sided"];
 
-/// What a shape without a material wears.
+/// The default material of shapes.
 pub(super) const DEFAULT: &str = "default";
 
 impl chain::Made for Material {
@@ -156,7 +156,7 @@ impl Reader<'_, '_> {
     /// Warns of a key that changes nothing without another.
     pub(super) fn ineffective(&mut self, table: &Table<'_>, key: &str, without: &str) {
         let at = table.find(key).map_or_else(|| table.at(), Value::at);
-        self.sources.warn(&at, format!("`{key}` has no effect without {without}"));
+        self.context.warn(&at, format!("`{key}` has no effect without {without}"));
     }
 
     fn relief(&mut self, table: &Table<'_>) -> Relief {
@@ -181,9 +181,9 @@ impl Reader<'_, '_> {
             return None;
         }
         let radiance = table.or("emission", (Color::gray(1.0), 1.0), |value| self.light_color(value, true));
-        let amount = amount(table, "power", radiance.1);
+        let power = power(table, "power", radiance.1);
         let two_sided = table.or("two_sided", false, Value::boolean);
-        Some(Emission { radiance: radiance.0, amount, two_sided })
+        Some(Emission { radiance: radiance.0, power, two_sided })
     }
 
     pub(super) fn add_material(&mut self, material: Material) -> MaterialId {
@@ -199,7 +199,7 @@ impl Reader<'_, '_> {
         self.named(&self.materials, "material", value, name)
     }
 
-    /// What a shape without a material wears: grey with a slight highlight, unless a file says otherwise.
+    /// The material of shapes that name none: grey with a slight highlight, unless a file defines another.
     pub(super) fn default_material(&mut self) -> MaterialId {
         if let Some(&id) = self.materials.get(DEFAULT) {
             return id;
@@ -209,7 +209,7 @@ impl Reader<'_, '_> {
         id
     }
 
-    /// What a lamp wears: it only shines.
+    /// The black material of area lights, which only emit.
     pub(super) fn black_material(&mut self) -> MaterialId {
         if let Some(id) = self.black {
             return id;

@@ -1,4 +1,4 @@
-//! `[[mesh]]`: vertices and triangles in the scene itself; and the meshes of other shapes.
+//! `[[mesh]]` with vertices and triangles in the scene file; and the meshes of other shapes.
 
 use glam::Vec2;
 
@@ -63,8 +63,8 @@ impl Reader<'_, '_> {
                 .hint("give three vertices for each triangle"));
         }
         let count = mesh.positions.len().max(mesh.triangles.len()) as u64;
-        if count > self.sources.limits.elements {
-            return Err(too_many(table, count, self.sources.limits.elements));
+        if count > self.context.limits.elements {
+            return Err(too_many(table, count, self.context.limits.elements));
         }
         Ok(mesh)
     }

@@ -1,14 +1,14 @@
-//! `[[mesh]]` with a `file`: which of the things in a model file are meant, and where they stand.
+//! `[[mesh]]` with a `file`: import options and placement of a model file.
 
 use glam::{DMat4, DVec4};
 
 use super::shape::COMMON;
 use super::table::Table;
 use super::value::Value;
-use super::{Reader, place};
+use super::{Reader, transform};
 use crate::camera::{Camera, Projection, View};
 use crate::error::Result;
-use crate::files::{CameraChoice, Choice};
+use crate::files::{CameraChoice, ImportOptions};
 use crate::light::{Light, LightKind};
 use crate::load;
 use crate::shape::Part;
@@ -29,10 +29,10 @@ impl Reader<'_, '_> {
         if let Some(triangles) = table.find("triangles").filter(|_| !table.has("positions")) {
             triangles.note(triangles.error("`triangles` needs `positions`, not `file`"));
         }
-        table.allow(&[&["file", "positions", "triangles"], CHOICE, COMMON, place::KEYS]);
+        table.allow(&[&["file", "positions", "triangles"], CHOICE, COMMON, transform::KEYS]);
         let path = self.resolve(file, "the name of a model file")?;
         if let Some(key) = CHOICE.iter().find_map(|key| table.find(key))
-            && !load::is_gltf(&path, self.sources)
+            && !load::is_gltf(&path, self.context)
         {
             return Err(key.error(format!("`{}` is for glTF files, which hold several things", key.key())));
         }
@@ -55,13 +55,13 @@ impl Reader<'_, '_> {
         Ok(model.parts)
     }
 
-    /// What is asked of the file, and whether its camera is.
-    fn choice(&self, table: &Table<'_>) -> (Choice, bool) {
+    /// The import options of the file, and whether its camera is requested.
+    fn choice(&self, table: &Table<'_>) -> (ImportOptions, bool) {
         let name = |key: &str, otherwise: &Option<String>| {
             table.or(key, otherwise.clone(), |value| Ok(Some(value.text("a name")?.to_owned())))
         };
-        let asked = &self.sources.choice;
-        let mut choice = Choice {
+        let asked = &self.context.import;
+        let mut choice = ImportOptions {
             animation: name("animation", &asked.animation),
             at: table.or("at", asked.at, Value::number),
             variant: name("variant", &asked.variant),

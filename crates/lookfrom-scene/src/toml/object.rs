@@ -3,7 +3,7 @@
 use super::shape::{INSTANCE, kinds};
 use super::table::Table;
 use super::value::Value;
-use super::{Reader, place};
+use super::{Reader, transform};
 use crate::scene::{Instance, Object, ObjectId};
 use crate::shape::Shape;
 
@@ -41,7 +41,7 @@ impl Reader<'_, '_> {
 
     /// One `[[instance]]`.
     pub(super) fn read_instance(&mut self, table: &Table<'_>) {
-        table.allow(&[INSTANCE, place::KEYS]);
+        table.allow(&[INSTANCE, transform::KEYS]);
         let object = table.need("object", "\"the name of an object\"", None, |value| {
             let name = value.text("the name of an object")?;
             self.named(&self.objects, "object", value, name).map(Some)
@@ -49,9 +49,9 @@ impl Reader<'_, '_> {
         let material = table.maybe("material", |value| self.material_named(value));
         if material.is_some_and(|id| self.glows.contains_key(&id)) {
             let message = "the emission of an instance's material is ignored: its shapes keep theirs";
-            self.sources.warn(&table.at(), message);
+            self.context.warn(&table.at(), message);
         }
-        let world_from_object = place::place(table);
+        let world_from_object = transform::world_from_object(table);
         if let Some(object) = object {
             self.scene.instances.push(Instance { at: table.at(), object, world_from_object, material });
         }

@@ -1,4 +1,4 @@
-//! Materials that physics knows: their types besides Whitted's.
+//! Physically based materials: the types besides Whitted's.
 //!
 //! A roughness is written as people perceive it, from 0 to 1: the spread of slopes α of the microfacet model is its square
 //! (Burley 2012). It becomes α here, also where it comes from a texture.

@@ -1,4 +1,4 @@
-//! glTF's material in our words: the parameters of its metallic-roughness model and of the extensions.
+//! The material "principled": the parameters of glTF's metallic-roughness model and its extensions.
 
 use super::Reader;
 use super::color::plain_color;

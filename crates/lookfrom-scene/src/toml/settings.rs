@@ -1,4 +1,4 @@
-//! `[image]` and `[render]`: what is asked of the picture and of the computation.
+//! `[image]` and `[render]`: settings of the image and of the integrator.
 
 use super::table::Table;
 use super::value::Value;
@@ -147,7 +147,7 @@ fn filter(value: Value<'_>) -> Result<Filter> {
     Ok(chosen)
 }
 
-/// How light is computed.
+/// The integrator and its settings.
 pub(super) fn render(table: &Table<'_>) -> RenderSettings {
     table.allow(&[RENDER]);
     let default = RenderSettings::default();

@@ -1,10 +1,10 @@
-//! `[[sphere]]`, `[[mesh]]` and the other shapes: what all of them may have, and the flat ones.
+//! `[[sphere]]`, `[[mesh]]` and the other shapes: their common keys, and flat shapes.
 
 use glam::{DMat4, DVec3, Vec3};
 
 use super::table::{Kinds, Table};
 use super::value::Value;
-use super::{Reader, form, light, place, round, strip};
+use super::{Reader, composite, curve, light, quadric, transform};
 use crate::error::Result;
 use crate::shape::{Geometry, Part, Shape};
 
@@ -38,7 +38,7 @@ pub(super) const KEYS: Kinds = &[
     ("curve", &["points", "width", "profile", "normals"]),
     ("sphereflake", &["center", "radius", "depth"]),
 ];
-/// What every shape may have.
+/// Keys of all shapes.
 pub(super) const COMMON: &[&str] =
     &["name", "material", "emission", "power", "two_sided", "alpha", "reverse_orientation"];
 /// The keys of `[[instance]]`.
@@ -56,7 +56,7 @@ impl Reader<'_, '_> {
         for &(kind, keys) in KEYS {
             let Some(value) = table.find(kind) else { continue };
             for table in value.tables() {
-                table.allow(&[keys, COMMON, place::KEYS]);
+                table.allow(&[keys, COMMON, transform::KEYS]);
                 if let Err(error) = self.shape(kind, &table, &mut shapes) {
                     table.note(error);
                 }
@@ -71,7 +71,7 @@ impl Reader<'_, '_> {
         let alpha = table.find("alpha").map(|_| self.share_or(table, "alpha", 1.0));
         let reverse_orientation = table.or("reverse_orientation", false, Value::boolean);
         let name = light::name(table);
-        let mut world_from_object = place::place(table);
+        let mut world_from_object = transform::world_from_object(table);
         let parts = match (kind, table.find("file")) {
             ("mesh", Some(file)) => self.model_parts(table, file, &world_from_object)?,
             _ => {
@@ -106,18 +106,18 @@ impl Reader<'_, '_> {
     /// A form and where its own space lies.
     fn geometry(&mut self, kind: &str, table: &Table<'_>) -> Result<(Geometry, DMat4)> {
         let geometry = match kind {
-            "sphere" => return round::sphere_or_part(table),
-            "disk" => return round::disk(table),
-            "cylinder" => return round::cylinder(table),
+            "sphere" => return quadric::sphere_or_part(table),
+            "disk" => return quadric::disk(table),
+            "cylinder" => return quadric::cylinder(table),
             "quad" => quad(table)?,
             "sphereflake" => self.sphereflake(table)?,
-            "patch" => strip::patch(table)?,
-            "curve" => strip::curve(table, self.sources.limits.elements)?,
+            "patch" => curve::patch(table)?,
+            "curve" => curve::curve(table, self.context.limits.elements)?,
             "plane" => {
                 let point = table.or("point", DVec3::ZERO, Value::vector);
                 let normal = table.or("normal", DVec3::Y, Value::direction);
                 let size = table.or("size", 1000.0, Value::positive);
-                self.mesh(table, form::plane(point, normal, size))?
+                self.mesh(table, composite::plane(point, normal, size))?
             }
             "box" => {
                 let min = table.need("min", "[-1, -1, -1]", DVec3::NEG_ONE, Value::vector);
@@ -128,7 +128,7 @@ impl Reader<'_, '_> {
                         .error_at("max", format!("`max` {max} is not beyond `min` {min} along every axis"))
                         .hint("a box without thickness is a quad"));
                 }
-                self.mesh(table, form::cuboid(min, max))?
+                self.mesh(table, composite::cuboid(min, max))?
             }
             "triangle" => {
                 let example = "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
@@ -136,7 +136,7 @@ impl Reader<'_, '_> {
                     let [a, b, c] = value.list_of("three points")?;
                     Ok([point(a)?, point(b)?, point(c)?])
                 });
-                let mut mesh = form::triangle(vertices);
+                let mut mesh = composite::triangle(vertices);
                 self.vertex_data(table, &mut mesh);
                 table.sound(&["vertices"])?;
                 let [a, b, c] = [0, 1, 2].map(|i| mesh.positions[i].as_dvec3());

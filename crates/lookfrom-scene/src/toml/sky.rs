@@ -1,13 +1,13 @@
-//! `[[light]]` of type "environment": the sky all around.
+//! `[[light]]` of type "environment": infinite area lights.
 
 use glam::{DMat4, DVec3, DVec4};
 
 use super::Reader;
-use super::light::{COMMON, amount, turned};
+use super::light::{COMMON, power, turned};
 use super::table::Table;
 use super::value::Value;
 use crate::error::{Error, Result};
-use crate::light::{Amount, LightKind, Sky, is_rectangle};
+use crate::light::{LightKind, Power, Sky, is_rectangle};
 use crate::scene::ImageId;
 
 /// Its keys, besides those of its colours.
@@ -17,12 +17,12 @@ const ALWAYS: &[&str] = &["illuminance", "portal", "illuminates"];
 pub(super) const LAYOUTS: &[(&str, bool)] = &[("latitude_longitude", false), ("octahedral", true)];
 
 impl Reader<'_, '_> {
-    pub(super) fn environment(&mut self, table: &Table<'_>) -> Result<(LightKind, Amount)> {
+    pub(super) fn environment(&mut self, table: &Table<'_>) -> Result<(LightKind, Power)> {
         let portal = table.maybe("portal", portal);
         let illuminates = table.or("illuminates", true, Value::boolean);
         let (sky, scale) = self.sky(table)?;
         let kind = LightKind::Environment { sky, portal, illuminates };
-        Ok((kind, amount(table, "illuminance", scale)))
+        Ok((kind, power(table, "illuminance", scale)))
     }
 
     fn sky(&mut self, table: &Table<'_>) -> Result<(Sky, f32)> {

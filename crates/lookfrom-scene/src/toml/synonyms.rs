@@ -1,7 +1,6 @@
-//! Words that other renderers, file formats and textbooks use, and ours for the same thing.
+//! Synonyms: words of other renderers, file formats and textbooks, and our words for them.
 //!
-//! A word leads to several of ours, for it depends on the table which of them there is: what is suggested is always one that
-//! the table in question has.
+//! A word may have several synonyms. The table in question decides between them: a suggestion is always a key of that table.
 
 mod choices;
 mod keys;
@@ -11,7 +10,7 @@ mod tests;
 use self::choices::CHOICES;
 use self::keys::KEYS;
 
-/// Our keys, of those that a table knows, for a word that it does not know; empty where there are none.
+/// The synonyms of an unknown word among the keys of a table; empty where there are none.
 pub(super) fn keys(word: &str, known: &[&'static str]) -> &'static [&'static str] {
     let word = plain(word);
     KEYS.iter()
@@ -22,7 +21,7 @@ pub(super) fn keys(word: &str, known: &[&'static str]) -> &'static [&'static str
         .unwrap_or_default()
 }
 
-/// What to choose, of what can be chosen, in place of a word that cannot: as the end of a sentence.
+/// A suggestion of valid values in place of an unknown word, as the end of a sentence.
 pub(super) fn choice(word: &str, known: &[&str]) -> Option<String> {
     let word = plain(word);
     CHOICES.iter().filter(|(words, ..)| words.contains(&&*word)).find_map(|(_, ours, besides)| {
@@ -41,7 +40,7 @@ pub(super) fn choice(word: &str, known: &[&str]) -> Option<String> {
     })
 }
 
-/// A word however it is joined: `pixelSamples`, `pixel_samples` and `pixel-samples` are one.
+/// A word in normal form: `pixelSamples`, `pixel_samples` and `pixel-samples` are equal.
 fn plain(word: &str) -> String {
     word.chars().filter(|c| !"_- ".contains(*c)).take(40).flat_map(char::to_lowercase).collect()
 }

@@ -1,4 +1,4 @@
-//! Where is a text no TOML, and which parts of it can be read all the same?
+//! Recovery from syntax errors of TOML.
 //!
 //! A parser that goes on after an error (a bracket that is not closed) takes what follows for what it is not. Headers of
 //! tables, at the beginnings of lines, are where it surely can begin again: each section between two headers is parsed by
@@ -9,20 +9,20 @@ use ::toml::de::{DeTable, Error as TomlError};
 use super::document::Document;
 use crate::error::Error;
 
-/// What the parser says of a key that is given twice, after which it is not confused.
+/// The parser's message for a duplicate key, after which its results are still valid.
 const TWICE: &str = "duplicate key";
 
-/// What can be read of a text that is no TOML as a whole.
+/// The sections of a text with syntax errors that can be read.
 pub(super) struct Readable {
     /// The text without the sections that are no TOML, which are blank; nothing where the others do not go together either.
     pub(super) text: String,
-    /// What is wrong with those.
+    /// Errors of the other sections.
     pub(super) errors: Vec<Error>,
     /// Whether none of them gives names to things.
     pub(super) has_all_names: bool,
 }
 
-/// What can be read of a text that is no TOML as a whole.
+/// The sections of a text with syntax errors that can be read.
 pub(super) fn readable(document: &Document) -> Readable {
     let (mut errors, mut sound, mut has_all_names) = (Vec::new(), String::new(), true);
     for section in sections(document.text()) {

@@ -1,4 +1,4 @@
-//! A TOML table: keys that must be there, may be there, or are unknown.
+//! A TOML table: required, optional and unknown keys.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -12,14 +12,14 @@ use super::vocabulary::SETTINGS;
 use crate::error::{Error, Location, Result};
 use crate::suggest::nearest;
 
-/// What the outermost table is called in messages.
+/// The name of the outermost table in messages.
 pub(super) const SCENE: &str = "a scene";
 
 /// The types of a thing, and the keys of each.
 pub(super) type Kinds = &'static [(&'static str, &'static [&'static str])];
 
-/// A table whose keys are looked up by name. What is wrong is noted and something else taken in its place, so that one run
-/// finds all errors; what was read is of use only where none was noted.
+/// A table whose keys are looked up by name. Errors are recorded and a placeholder takes the place of the value, so that one run
+/// finds all errors; the result is valid only if none was recorded.
 pub(super) struct Table<'a> {
     document: &'a Document,
     offset: usize,
@@ -27,7 +27,7 @@ pub(super) struct Table<'a> {
     map: &'a DeTable<'a>,
     /// The keys whose values were found to be wrong, or missing, so far.
     wrong: RefCell<BTreeSet<String>>,
-    /// The keys that are probably meant by those that are not known.
+    /// The keys that are suggested for unknown ones.
     meant: RefCell<Vec<&'static str>>,
 }
 
@@ -57,7 +57,7 @@ impl<'a> Table<'a> {
         self.document.note(self.offset, error);
     }
 
-    /// Nothing, unless one of these values was found to be wrong: what they come to together is then no error to be told.
+    /// An error of the combination of these values, suppressed where one of them has an error of its own.
     pub(super) fn sound(&self, keys: &[&str]) -> Result<()> {
         let is_wrong = keys.iter().any(|&key| self.wrong.borrow().contains(key));
         if is_wrong { Err(Error::untold()) } else { Ok(()) }
@@ -80,7 +80,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Refuses every key that is in none of the groups: a slip of the hand must not pass in silence.
+    /// Rejects every key that is in none of the groups: a misspelt key must not be ignored.
     pub(super) fn allow(&self, groups: &[&[&'static str]]) {
         let known = groups.concat();
         for key in self.map.keys().filter(|key| !known.contains(&key.get_ref().as_ref())) {
@@ -92,7 +92,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// What was probably meant by a word that is not one of the known keys, as a question.
+    /// A suggestion for an unknown key, as a question.
     fn suggestion(&self, word: &str, known: &[&'static str]) -> Option<String> {
         let ask = |keys: &[&'static str]| {
             self.assume(keys);
@@ -117,7 +117,7 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// Remembers that these keys are probably meant.
+    /// Records these keys as suggestions.
     pub(super) fn assume(&self, keys: &[&'static str]) {
         self.are_wrong(keys);
         self.meant.borrow_mut().extend(keys);
@@ -131,7 +131,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The type that is asked for, or else the default one. Refuses every key that it does not have, and says so if another
+    /// The type that is requested, or else the default one. Refuses every key that it does not have, and says so if another
     /// type has it. `None` where it is no type: the error is noted.
     pub(super) fn kind(
         &self,

@@ -1,4 +1,4 @@
-//! `[textures]`: pictures and patterns.
+//! `[textures]`: images and procedural patterns.
 
 use glam::DVec3;
 

@@ -1,5 +1,4 @@
-//! A TOML value with its place: what it is, whether it is what was expected, and an error that points at it where it
-//! is not. What the keys mean is left to the decoders beside.
+//! A TOML value with its location, and checks of its type and range. The decoders beside this file interpret it.
 
 use ::toml::Spanned;
 use ::toml::de::DeValue;
@@ -33,7 +32,7 @@ impl<'a> Value<'a> {
         self.document.note(self.item.span().start, error);
     }
 
-    /// What was decoded of this value, or a stand-in where that failed: the error is noted.
+    /// The decoded value, or a placeholder where decoding failed: the error is recorded.
     pub(super) fn noting<T>(self, result: Result<T>, stand_in: T) -> T {
         result.unwrap_or_else(|error| {
             self.note(error);
@@ -51,7 +50,7 @@ impl<'a> Value<'a> {
         self.error(format!("`{}` is {}; expected {expected}", self.key, self.found()))
     }
 
-    /// A file that cannot be opened or is of no known kind is this value's fault; what is wrong inside a file is not.
+    /// Assigns to this value the error of a file that cannot be opened or recognised; errors inside a file keep their location.
     pub(super) fn blame(self, mut error: Error) -> Error {
         error.more = std::mem::take(&mut error.more).into_iter().map(|error| self.blame(error)).collect();
         if error.at.line > 0 || !matches!(error.kind, ErrorKind::Io | ErrorKind::Unsupported) {

@@ -1,7 +1,7 @@
-//! Which tables and keys are there? Gathered from the decoders, for documentation, editors and tests.
+//! The list of all tables and keys of the format, for documentation, editors and tests.
 
 use super::table::Kinds;
-use super::{camera, curve, light, mapping, material, place, settings, shape, texture};
+use super::{camera, light, mapping, material, settings, shape, spectrum, texture, transform};
 
 /// The keys of a file besides the kinds of shapes.
 pub(super) const TOP: &[&str] =
@@ -20,14 +20,14 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
         ("[image]".to_owned(), settings::IMAGE.to_vec()),
         ("filter".to_owned(), settings::FILTER.to_vec()),
         ("[render]".to_owned(), settings::RENDER.to_vec()),
-        ("a colour by wavelength".to_owned(), [curve::KEYS, &["scale"]].concat()),
+        ("a colour by wavelength".to_owned(), [spectrum::KEYS, &["scale"]].concat()),
         ("[objects.NAME]".to_owned(), shape::kinds()),
-        ("[[instance]]".to_owned(), [shape::INSTANCE, place::KEYS].concat()),
-        ("transform".to_owned(), place::STEPS.to_vec()),
-        ("rotate".to_owned(), place::ROTATION.to_vec()),
+        ("[[instance]]".to_owned(), [shape::INSTANCE, transform::KEYS].concat()),
+        ("transform".to_owned(), transform::STEPS.to_vec()),
+        ("rotate".to_owned(), transform::ROTATION.to_vec()),
     ];
     for &(kind, keys) in shape::KEYS {
-        tables.push((format!("[[{kind}]]"), [keys, shape::COMMON, place::KEYS].concat()));
+        tables.push((format!("[[{kind}]]"), [keys, shape::COMMON, transform::KEYS].concat()));
     }
     for &(kind, keys) in material::KEYS {
         tables.push((format!("[materials.NAME] {kind}"), [material::COMMON, keys].concat()));
@@ -42,7 +42,7 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
     tables
 }
 
-/// Where one of a few words is chosen, and which.
+/// The keys with enumerated values, and these values.
 #[cfg(test)]
 pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
     use super::sky;

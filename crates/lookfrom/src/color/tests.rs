@@ -1,9 +1,7 @@
-use std::path::Path;
-
 use lookfrom_scene::image::read_exr;
 use lookfrom_scene::settings::Sensor as Settings;
 use lookfrom_scene::spectrum::{Curve, named};
-use lookfrom_scene::{Disk, Sources};
+use lookfrom_scene::{Disk, LoadContext};
 use proptest::prelude::*;
 
 use super::table::Table;
@@ -84,12 +82,8 @@ fn the_table_agrees_with_the_published_one() {
 
 #[test]
 fn the_walls_of_the_cornell_box_are_those_of_pbrt() {
-    let path = Path::new("/work/shared/reference/cornell-box.exr");
-    if !path.exists() {
-        println!("skipped: {} is not here", path.display());
-        return;
-    }
-    let picture = read_exr(path, &mut Sources::new(&Disk)).unwrap();
+    let Some(path) = lookfrom_test_data::shared("reference/cornell-box.exr") else { return };
+    let picture = read_exr(&path, &mut LoadContext::new(&Disk)).unwrap();
     // The mean of all pixels that are nearly of a colour; pbrt's albedo is seen under D65.
     let mean = |layer: &str, near: [f32; 3]| {
         let channels = ["R", "G", "B"].map(|name| picture.channel(&format!("{layer}{name}")).unwrap());

@@ -2,11 +2,11 @@
 //! have something to do. The slow twin, which goes pixel by pixel, is in the tests.
 
 use lookfrom_simd::{Kernel, Simd, dispatch, level};
-use rayon::prelude::*;
 
 use super::planes::{BORDER, Planes};
 use super::{PATCH, RADIUS};
 use crate::film::Picture;
+use crate::parallel;
 
 /// How much patches may differ, in standard deviations of their difference, before the weight is `exp(−1)`: squared.
 const TOLERANCE: f32 = 0.42;
@@ -32,7 +32,7 @@ impl<const N: usize> Planes<N> {
             return;
         }
         let mut changes = vec![[0.0; N]; width * self.height()];
-        changes.par_chunks_mut(width * ROWS).enumerate().for_each(|(band, changes)| {
+        parallel::for_chunks_mut(&mut changes, width * ROWS, |band, changes| {
             let level = level();
             for left in (0..width).step_by(COLUMNS) {
                 let block = Block { planes: self, left, top: band * ROWS, rows: changes.len() / width };

@@ -3,11 +3,11 @@
 
 use lookfrom_scene::settings::Crop;
 use lookfrom_scene::spectrum::space::xyz_of_rec709;
-use rayon::prelude::*;
 
 use super::filter::COLUMNS;
 use super::{PATCH, RADIUS};
 use crate::film::{Aovs, DenoiserFeatures, Film, Picture};
+use crate::parallel;
 
 /// The width of the border.
 pub(super) const BORDER: usize = RADIUS + PATCH;
@@ -66,13 +66,10 @@ impl<const N: usize> Planes<N> {
         // Alpha counts as much as light of the picture's mean does.
         let mean = film.mean_luminance().abs() as f32;
         let alpha_divisor = if mean > 0.0 { 1.0 / mean } else { 1.0 };
-        let known: Vec<Known<N>> = (0..height)
-            .into_par_iter()
-            .flat_map_iter(|row| {
-                let y = area.y0 + row as u32;
-                (area.x0..area.x1).map(move |x| known(film, picture, [x, y], alpha_divisor))
-            })
-            .collect();
+        let known: Vec<Known<N>> = parallel::collect(width * height, |index| {
+            let [x, y] = [index % width, index / width].map(|offset| offset as u32);
+            known(film, picture, [area.x0 + x, area.y0 + y], alpha_divisor)
+        });
         let known = Grid { pixels: &known, width, height };
 
         let spread = |of: &(dyn Fn(usize, usize) -> f32 + Sync)| known.bordered(of);
@@ -189,8 +186,7 @@ impl<const N: usize> Grid<'_, N> {
     }
 
     fn each(&self, of: impl Fn(usize, usize) -> f32 + Sync) -> Vec<f32> {
-        let rows = (0..self.height).into_par_iter();
-        rows.flat_map_iter(|y| (0..self.width).map(move |x| (x, y))).map(|(x, y)| of(x, y)).collect()
+        parallel::collect(self.pixels.len(), |index| of(index % self.width, index / self.width))
     }
 
     /// A plane with a border that repeats what is nearest.
@@ -200,7 +196,7 @@ impl<const N: usize> Grid<'_, N> {
         if self.pixels.is_empty() {
             return plane;
         }
-        plane.par_chunks_mut(stride).enumerate().for_each(|(row, values)| {
+        parallel::for_chunks_mut(&mut plane, stride, |row, values| {
             let y = row.saturating_sub(BORDER).min(self.height - 1);
             for (x, value) in values[BORDER..BORDER + self.width].iter_mut().enumerate() {
                 *value = of(x, y);

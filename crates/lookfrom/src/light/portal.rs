@@ -9,9 +9,9 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 use lookfrom_scene::image::Image;
-use rayon::prelude::*;
 
 use crate::distribution::{Window, Windowed2D};
+use crate::parallel;
 
 /// How many cells a side are told apart where the colours are no picture.
 const SIDE: usize = 64;
@@ -51,7 +51,7 @@ impl Portal {
     pub fn of_picture(opening: Opening, size: [u32; 2], color: impl Fn(Vec3) -> [f32; 3] + Sync) -> Self {
         let [width, height] = size.map(|size| size as usize);
         let mut texels = vec![[0.0; 3]; width * height];
-        texels.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        parallel::for_chunks_mut(&mut texels, width, |y, row| {
             let v = (y as f64 + 0.5) / height as f64;
             for (x, texel) in row.iter_mut().enumerate() {
                 *texel = color(opening.direction([(x as f64 + 0.5) / width as f64, v]));

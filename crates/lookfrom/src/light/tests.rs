@@ -6,7 +6,7 @@ use std::f64::consts::PI as PI64;
 use glam::{DMat4, DQuat, DVec3, Vec3};
 use lookfrom_scene::Location;
 use lookfrom_scene::image::Image;
-use lookfrom_scene::light::{Amount, Falloff, Light as Written, LightKind, Sky};
+use lookfrom_scene::light::{Falloff, Light as Written, LightKind, Power, Sky};
 use lookfrom_scene::material::{Color, Material, MaterialKind};
 use lookfrom_scene::scene::{CurveId, ImageId, MaterialId, Scene};
 use lookfrom_scene::settings::{LightSampler, Sampler as SamplerKind};
@@ -31,19 +31,19 @@ fn random(i: u32) -> [f32; 2] {
 }
 
 /// A world of nothing but these lights.
-fn world_of(lights: Vec<(LightKind, Amount)>, images: Vec<Image>, curves: Vec<Curve>) -> World {
+fn world_of(lights: Vec<(LightKind, Power)>, images: Vec<Image>, curves: Vec<Curve>) -> World {
     let mut scene = Scene { images, curves, ..Scene::default() };
     let view = lookfrom_scene::camera::View::Look { lookfrom: EYE, lookat: EYE + DVec3::X, up: DVec3::Y };
     scene.camera = Some(lookfrom_scene::camera::Camera { view, ..Default::default() });
     scene.lights = lights
         .into_iter()
-        .map(|(kind, amount)| Written { name: None, at: Location::default(), kind, amount })
+        .map(|(kind, power)| Written { name: None, at: Location::default(), kind, power })
         .collect();
     World::compile(scene, &mut Vec::new()).expect("a good scene")
 }
 
-fn total(total: f32) -> Amount {
-    Amount { total: Some(total), ..Amount::AS_WRITTEN }
+fn total(total: f32) -> Power {
+    Power { total: Some(total), ..Power::AS_WRITTEN }
 }
 
 /// A picture of light of any exponent, some of it black.
@@ -107,7 +107,7 @@ fn environments() -> Vec<Around> {
     ];
     let around = |(name, sky): &(&'static str, Sky), has_portal: bool| {
         let kind = environment(sky.clone(), has_portal.then(window));
-        let world = world_of(vec![(kind, Amount::AS_WRITTEN)], pictures(), vec![]);
+        let world = world_of(vec![(kind, Power::AS_WRITTEN)], pictures(), vec![]);
         let is_picture = matches!(sky, Sky::Image { .. } | Sky::Octahedral { .. });
         Around { name, world, has_portal, by_cosine: !has_portal && !is_picture }
     };
@@ -262,7 +262,7 @@ fn portals_are_sampled_in_all_wavelengths() {
 }
 
 /// Lights with a place, of each kind, with what makes them as bright as they are.
-fn placed(amount: Amount) -> Vec<(LightKind, Amount)> {
+fn placed(power: Power) -> Vec<(LightKind, Power)> {
     let here = EYE + DVec3::new(1.0, 2.0, 3.0);
     let world_from_light = DMat4::from_translation(here) * turn();
     let intensity = Color::Value([0.5, 0.4, 0.2]);
@@ -286,7 +286,7 @@ fn placed(amount: Amount) -> Vec<(LightKind, Amount)> {
         LightKind::Goniometric { intensity, image: ImageId(1), world_from_light },
     ]
     .into_iter()
-    .map(|kind| (kind, amount))
+    .map(|kind| (kind, power))
     .collect()
 }
 
@@ -342,7 +342,7 @@ fn illuminances_are_what_is_asked() {
 
 #[test]
 fn spots_fade_by_a_cubic_of_the_cosine() {
-    let world = world_of(placed(Amount::AS_WRITTEN), vec![picture(1, 1, 1); 3], vec![]);
+    let world = world_of(placed(Power::AS_WRITTEN), vec![picture(1, 1, 1); 3], vec![]);
     let axis = Vec3::new(0.5, -2.0, 1.0).normalize();
     let across = warp::orthonormal_basis(axis).0;
     let at_cos = |cos: f32| intensity(&world, 1, axis * cos + across * (1.0 - cos * cos).sqrt());
@@ -370,7 +370,7 @@ fn projections_stand_upright() {
     for (width, height) in [(4, 2), (2, 2), (2, 6)] {
         let world_from_light = DMat4::from_translation(EYE + DVec3::new(1.0, 2.0, 3.0)) * turn();
         let kind = LightKind::Projection { image: ImageId(0), intensity: 1.0, fov: 60.0, world_from_light };
-        let world = world_of(vec![(kind, Amount::AS_WRITTEN)], vec![corners(width, height)], vec![]);
+        let world = world_of(vec![(kind, Power::AS_WRITTEN)], vec![corners(width, height)], vec![]);
         // The shorter side is seen under the angle.
         let short = libm::tanf(30.0_f32.to_radians()) / width.min(height) as f32;
         let [right, up] = [width, height].map(|texels| short * (texels - 1) as f32);
@@ -392,7 +392,7 @@ fn goniometric_lights_are_as_bright_by_direction_as_their_picture() {
     let world_from_light = DMat4::from_translation(EYE + DVec3::new(1.0, 2.0, 3.0)) * turn();
     let image = picture(5, 5, 4);
     let kind = LightKind::Goniometric { intensity: Color::gray(2.0), image: ImageId(0), world_from_light };
-    let world = world_of(vec![(kind, Amount::AS_WRITTEN)], vec![image.clone()], vec![]);
+    let world = world_of(vec![(kind, Power::AS_WRITTEN)], vec![image.clone()], vec![]);
     for (index, texel) in image.texels().enumerate() {
         let place = [index % 5, index / 5].map(|i| (i as f32 + 0.4) / 5.0);
         let direction = turn().transform_vector3(warp::octahedral_direction(place).as_dvec3());
@@ -412,9 +412,9 @@ fn curves_have_luminance_1_unless_they_are_absolute() {
     ];
     for curve in 0..curves.len() as u32 {
         let sky = || environment(Sky::Constant(Color::Curve(CurveId(curve))), None);
-        let absolute = Amount { absolute: true, ..Amount::AS_WRITTEN };
-        let scaled = Amount { scale: 3.0, ..Amount::AS_WRITTEN };
-        let lights = [Amount::AS_WRITTEN, scaled, absolute, total(5.0)].map(|amount| (sky(), amount));
+        let absolute = Power { absolute: true, ..Power::AS_WRITTEN };
+        let scaled = Power { scale: 3.0, ..Power::AS_WRITTEN };
+        let lights = [Power::AS_WRITTEN, scaled, absolute, total(5.0)].map(|power| (sky(), power));
         let world = world_of(lights.into(), vec![], curves.clone());
         let y = world.textures.curve(CurveId(curve)).to_xyz()[1];
         for (light, expected) in world.lights.iter().zip([1.0, 3.0, y, 5.0 / PI]) {
@@ -467,15 +467,14 @@ fn many(light_sampler: LightSampler) -> World {
     scene.render.light_sampler = light_sampler;
     let view = lookfrom_scene::camera::View::Look { lookfrom: EYE, lookat: EYE + DVec3::X, up: DVec3::Y };
     scene.camera = Some(lookfrom_scene::camera::Camera { view, ..Default::default() });
-    let mut lights = placed(Amount::AS_WRITTEN);
-    lights.push((environment(octahedral(), None), Amount::AS_WRITTEN));
-    lights.push((environment(gradient(), None), Amount::AS_WRITTEN));
-    lights.push((environment(gradient(), Some(window())), Amount::AS_WRITTEN));
-    lights
-        .push((LightKind::Distant { direction: DVec3::Y, intensity: Color::gray(0.1) }, Amount::AS_WRITTEN));
+    let mut lights = placed(Power::AS_WRITTEN);
+    lights.push((environment(octahedral(), None), Power::AS_WRITTEN));
+    lights.push((environment(gradient(), None), Power::AS_WRITTEN));
+    lights.push((environment(gradient(), Some(window())), Power::AS_WRITTEN));
+    lights.push((LightKind::Distant { direction: DVec3::Y, intensity: Color::gray(0.1) }, Power::AS_WRITTEN));
     scene.lights = lights
         .into_iter()
-        .map(|(kind, amount)| Written { name: None, at: Location::default(), kind, amount })
+        .map(|(kind, power)| Written { name: None, at: Location::default(), kind, power })
         .collect();
     let kind = MaterialKind::Diffuse { reflectance: Color::gray(0.5) };
     scene.materials.push(Material::new("grey", Location::default(), kind));

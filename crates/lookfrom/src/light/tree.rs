@@ -6,6 +6,7 @@
 use glam::Vec3;
 
 use super::cone::{Cone, angle};
+use crate::parallel;
 use crate::sampler::ONE_MINUS_EPSILON;
 
 /// How many parts of an axis are tried as places to divide at.
@@ -177,7 +178,8 @@ fn build(nodes: &mut [Node], first: u32, lights: &mut [(u32, LightBounds)], dept
     let second = first + 2 * middle as u32;
     let mut build_left = || build(of_left, first + 1, left, depth + 1);
     let mut build_right = || build(of_right, second, right, depth + 1);
-    let (a, b) = if is_large { rayon::join(build_left, build_right) } else { (build_left(), build_right()) };
+    let (a, b) =
+        if is_large { parallel::join(build_left, build_right) } else { (build_left(), build_right()) };
     let bounds = a.union(&b);
     root[0] = Node { sight: bounds.sight(), link: Link::Second(second) };
     bounds

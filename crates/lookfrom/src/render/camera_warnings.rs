@@ -6,7 +6,7 @@
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
-use lookfrom_scene::scene::{Bounds, Origin};
+use lookfrom_scene::scene::{Bounds, SourceFormat};
 use lookfrom_scene::{Location, Scene, Warning};
 
 use super::Renderer;
@@ -40,7 +40,7 @@ pub(crate) struct Subject {
 impl Subject {
     pub(crate) fn of_scene(scene: &Scene) -> Self {
         let at = scene.camera.as_ref().map(|camera| camera.at.clone()).unwrap_or_default();
-        Self { bounds: scene.bounds(), at, is_model: scene.origin != Origin::Scene }
+        Self { bounds: scene.bounds(), at, is_model: scene.source_format != SourceFormat::Scene }
     }
 }
 

@@ -10,14 +10,15 @@
 use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use lookfrom_scene::Result;
 use lookfrom_scene::settings::Crop;
-use lookfrom_scene::{Error, ErrorKind, Location, Result};
-use rayon::prelude::*;
 
 use super::{Rays, Renderer};
+use crate::clock::Stopwatch;
 use crate::film::{Film, FilmTile, Picture};
+use crate::parallel;
 
 /// Pixels on the side of a tile. One sample of each pixel of a tile is a batch.
 const TILE: u32 = 32;
@@ -31,7 +32,8 @@ pub const FEWEST_SAMPLES: u32 = 16;
 /// When a render ends, besides its number of samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StopCriteria {
-    /// Stop after the pass over the picture that reaches this time. At least one sample of each pixel is taken.
+    /// Stop after the pass over the picture that reaches this time. At least one sample of each pixel is taken. Never
+    /// reached on wasm32-unknown-unknown, which has no clock.
     pub time: Option<Duration>,
     /// Give no more samples to a tile whose [relative error](Film::relative_error) is at most this, and stop when
     /// there is none left.
@@ -119,7 +121,8 @@ pub struct Rendered {
 }
 
 impl Renderer {
-    /// Renders the whole picture with all its samples on `threads` threads (all that there are for `None`).
+    /// Renders the whole picture with all its samples on `threads` threads (all that there are for `None`). Without the
+    /// feature `parallel` it renders on the caller's thread.
     ///
     /// The samples of a pixel are taken in passes of 1, 1, 2, 4 … over the whole picture, so that a render that is stopped
     /// leaves a whole picture behind. The film is the same for any number of threads.
@@ -141,9 +144,6 @@ impl Renderer {
         progress: &dyn Progress,
     ) -> Result<Rendered> {
         let film = Film::for_image(self.image())?;
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
-        let pool =
-            pool.map_err(|error| Error::new(ErrorKind::Limit, &Location::default(), error.to_string()))?;
         let mut tiles = tiles(film.area());
         let all: u64 = tiles.iter().map(area).sum();
         let work = Work {
@@ -153,7 +153,7 @@ impl Renderer {
             done: AtomicU64::new(0),
             total: AtomicU64::new(all * u64::from(self.settings.samples)),
         };
-        let (samples, reason) = pool.install(|| work.rounds(&mut tiles, stop))?;
+        let (samples, reason) = parallel::on_threads(threads, || work.rounds(&mut tiles, stop))??;
         let (film, rays) = work.film.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
         let error = film.relative_error(film.area(), film.mean_luminance());
         Ok(Rendered { film, rays, reason, samples, samples_taken: work.done.into_inner(), error })
@@ -173,7 +173,7 @@ impl Work<'_> {
     /// Takes samples until a criterion is met; tiles that have enough leave `tiles`. Returns the samples of the others' pixels
     /// and why it ended.
     fn rounds(&self, tiles: &mut Vec<Crop>, stop: &StopCriteria) -> Result<(u32, StopReason)> {
-        let started = Instant::now();
+        let started = Stopwatch::start();
         let mut samples = 0;
         for round in rounds(self.renderer.settings.samples) {
             while samples < round.end {
@@ -204,33 +204,32 @@ impl Work<'_> {
 
     /// Adds samples to every pixel of the tiles; false if it was broken off.
     fn pass(&self, tiles: &[Crop], samples: Range<u32>) -> Result<bool> {
-        let whole: Vec<bool> = tiles
-            .par_iter()
-            .map(|tile_area| -> Result<bool> {
-                if self.progress.cancelled() {
-                    return Ok(false);
-                }
-                let mut tile = FilmTile::for_image(*tile_area, self.renderer.image())?;
-                let rays = self.renderer.render_tile(samples.clone(), &mut tile);
-                let wants_pixels = self.progress.wants_pixels();
-                let (rays, picture) = {
-                    let mut guard = self.film.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                    guard.0.add_tile(&tile);
-                    guard.1 += rays;
-                    (guard.1.total(), wants_pixels.then(|| guard.0.picture_of(*tile_area)))
-                };
-                let of_tile = area(tile_area) * u64::from(samples.end - samples.start);
-                self.progress.tile(TileDone {
-                    area: *tile_area,
-                    samples: samples.clone(),
-                    done: self.done.fetch_add(of_tile, Ordering::Relaxed) + of_tile,
-                    total: self.total.load(Ordering::Relaxed),
-                    rays,
-                    picture,
-                });
-                Ok(true)
-            })
-            .collect::<Result<_>>()?;
+        let whole = parallel::collect(tiles.len(), |index| -> Result<bool> {
+            let tile_area = &tiles[index];
+            if self.progress.cancelled() {
+                return Ok(false);
+            }
+            let mut tile = FilmTile::for_image(*tile_area, self.renderer.image())?;
+            let rays = self.renderer.render_tile(samples.clone(), &mut tile);
+            let wants_pixels = self.progress.wants_pixels();
+            let (rays, picture) = {
+                let mut guard = self.film.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                guard.0.add_tile(&tile);
+                guard.1 += rays;
+                (guard.1.total(), wants_pixels.then(|| guard.0.picture_of(*tile_area)))
+            };
+            let of_tile = area(tile_area) * u64::from(samples.end - samples.start);
+            self.progress.tile(TileDone {
+                area: *tile_area,
+                samples: samples.clone(),
+                done: self.done.fetch_add(of_tile, Ordering::Relaxed) + of_tile,
+                total: self.total.load(Ordering::Relaxed),
+                rays,
+                picture,
+            });
+            Ok(true)
+        });
+        let whole = whole.into_iter().collect::<Result<Vec<bool>>>()?;
         Ok(whole.into_iter().all(|whole| whole))
     }
 

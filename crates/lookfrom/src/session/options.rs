@@ -10,7 +10,7 @@ use lookfrom_scene::settings::{
     Background, ColorMode, Crop, Filter, ImageSettings, Integrator, Layers, LightSampler, RenderSettings,
     Sampler, Tonemap,
 };
-use lookfrom_scene::{Choice, Error, ErrorKind, Location, Result, Scene};
+use lookfrom_scene::{Error, ErrorKind, ImportOptions, Location, Result, Scene};
 
 use super::Format;
 use crate::film::MOST_PIXELS;
@@ -70,7 +70,7 @@ pub struct Options {
     /// Turns the camera around the model, in degrees, counter-clockwise as seen from above, and the environments with it.
     pub turn: Option<f64>,
     /// Which of several animations, variants, scenes and cameras of a file is meant.
-    pub import: Choice,
+    pub import: ImportOptions,
     /// When the render ends, besides the number of samples. Without `samples`, there is no other limit.
     pub stop: StopCriteria,
     /// Gives tiles that are clean enough no more samples ([`ADAPTIVE_NOISE`], where `stop` says nothing of noise), with the number

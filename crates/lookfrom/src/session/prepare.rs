@@ -3,9 +3,9 @@
 
 use std::path::Path;
 
-use lookfrom_scene::scene::Origin;
+use lookfrom_scene::scene::SourceFormat;
 use lookfrom_scene::studio::Turntable;
-use lookfrom_scene::{CameraChoice, Choice, Location, Result, Scene, Warning, studio};
+use lookfrom_scene::{CameraChoice, ImportOptions, Location, Result, Scene, Warning, studio};
 
 use super::options::{MOST_SAMPLES, Options};
 
@@ -31,7 +31,7 @@ pub(super) fn prepare(
         warnings.push(Warning::new(&Location::file(file), message));
     };
     options.apply_to_settings(&mut scene.image, &mut scene.render)?;
-    let origin = scene.origin;
+    let origin = scene.source_format;
     decide_settings(scene, options);
     if scene.bounds().is_empty() {
         warn("nothing stands in this scene: the picture shows the background alone");
@@ -41,7 +41,7 @@ pub(super) fn prepare(
     if of_gltf.camera == CameraChoice::None {
         of_gltf.camera = CameraChoice::First;
     }
-    if of_gltf != Choice::default() && origin != Origin::Gltf {
+    if of_gltf != ImportOptions::default() && origin != SourceFormat::Gltf {
         warn("--animation, --at, --variant, --scene and --camera choose from a glTF file; this file is none");
     }
     if options.floor && !scene.render.integrator.is_path_traced() {
@@ -62,10 +62,10 @@ pub(super) fn prepare(
         studio::surround(scene, environment.clone(), up);
     }
     // What glows in a glTF file is seldom meant to light it alone.
-    if origin == Origin::Gltf || origin == Origin::Model && !studio::shines(scene) {
-        studio::furnish_model(scene, up);
+    if origin == SourceFormat::Gltf || origin == SourceFormat::Model && !studio::shines(scene) {
+        studio::add_studio_and_camera(scene, up);
     } else {
-        studio::furnish(scene, up);
+        studio::add_lights_and_camera(scene, up);
     }
     let mut added = Vec::new();
     if !had_camera {
@@ -86,7 +86,7 @@ pub(super) fn prepare(
 
 /// Decides samples and denoising where nobody says otherwise.
 fn decide_settings(scene: &mut Scene, options: &Options) {
-    let is_model = scene.origin != Origin::Scene;
+    let is_model = scene.source_format != SourceFormat::Scene;
     if is_model {
         // Models are denoised until somebody says otherwise.
         scene.image.denoise = options.denoise.unwrap_or(scene.render.integrator.is_path_traced());

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::settings::RenderSettings;
-use lookfrom_scene::{Disk, Files, Memory, Result, Sources, load};
+use lookfrom_scene::{Disk, Files, LoadContext, Memory, Result, load};
 
 use super::{Options, options, prepare};
 use crate::world::World;
@@ -38,8 +38,8 @@ impl Source {
                 ));
             }
         };
-        let mut sources = Sources { choice: options.import.clone(), ..Sources::new(files) };
-        let mut scene = load::scene(path, &mut sources)?;
+        let mut context = LoadContext { import: options.import.clone(), ..LoadContext::new(files) };
+        let mut scene = load::scene(path, &mut context)?;
         // What there is to warn of was said when the session began.
         prepare::prepare(&mut scene, path, options, &mut Vec::new())?;
         scene.camera = Some(camera.clone());

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Mat3, Vec3};
 use lookfrom_scene::image::Image;
-use lookfrom_scene::light::{Amount, Light as Written, LightKind, Sky as WrittenSky};
+use lookfrom_scene::light::{Light as Written, LightKind, Power, Sky as WrittenSky};
 use lookfrom_scene::material::Color;
 
 use crate::distribution::Piecewise2D;
@@ -39,19 +39,19 @@ impl<'a> Lights<'a> {
         self.lights.len() as u32 - 1
     }
 
-    /// The glow of a colour in some amount; `per_unit` is what the light comes to as a whole if its colour is white of
+    /// The glow of a colour in some power; `per_unit` is what the light comes to as a whole if its colour is white of
     /// luminance 1.
-    pub(super) fn emission_spectrum(&self, color: Color, amount: &Amount, per_unit: f32) -> EmissionSpectrum {
-        let mut scale = amount.scale;
+    pub(super) fn emission_spectrum(&self, color: Color, power: &Power, per_unit: f32) -> EmissionSpectrum {
+        let mut scale = power.scale;
         // Other colours have luminance 1 where they are white; a curve is as bright as its numbers.
-        if let (Color::Curve(curve), false) = (color, amount.absolute) {
+        if let (Color::Curve(curve), false) = (color, power.absolute) {
             let luminance = self.textures.curve(curve).to_xyz()[1];
             scale = if luminance > 0.0 { scale / luminance } else { 0.0 };
         }
-        if let Some(total) = amount.total {
+        if let Some(total) = power.total {
             // By the luminance of the colour: of a curve it is 1 by now.
             let luminance = match color {
-                Color::Curve(_) if !amount.absolute => 1.0,
+                Color::Curve(_) if !power.absolute => 1.0,
                 _ => self.mean_over_places(&self.illuminant(color), math::luminance),
             };
             let whole = per_unit * luminance;
@@ -89,15 +89,11 @@ impl<'a> Lights<'a> {
 
     /// Adds a light as it was written; `origin` is where render space begins in the world.
     pub(super) fn add(&mut self, written: &Written, origin: DVec3) {
-        let amount = &written.amount;
+        let power = &written.power;
         // Written intensities are those of Whitted's I_j: π times as much in radiometric units, but where the whole is
         // given.
         let whitted = |emission_spectrum: EmissionSpectrum| EmissionSpectrum {
-            scale: if amount.total.is_some() {
-                emission_spectrum.scale
-            } else {
-                emission_spectrum.scale * PI
-            },
+            scale: if power.total.is_some() { emission_spectrum.scale } else { emission_spectrum.scale * PI },
             ..emission_spectrum
         };
         let (kind, light, brightness) = match &written.kind {
@@ -106,13 +102,13 @@ impl<'a> Lights<'a> {
                 return;
             }
             LightKind::Point { position, intensity, falloff } => {
-                let intensity = whitted(self.emission_spectrum(*intensity, amount, 4.0 * PI));
+                let intensity = whitted(self.emission_spectrum(*intensity, power, 4.0 * PI));
                 let position = *position - origin;
                 let brightness = self.brightness_of(&intensity);
                 ("point light", Light::Point { position, intensity, falloff: *falloff }, brightness)
             }
             LightKind::Distant { direction, intensity } => {
-                let irradiance = whitted(self.emission_spectrum(*intensity, amount, 1.0));
+                let irradiance = whitted(self.emission_spectrum(*intensity, power, 1.0));
                 let brightness = self.brightness_of(&irradiance);
                 let toward = -direction.normalize().as_vec3();
                 ("distant light", Light::Distant { toward, irradiance }, brightness)
@@ -121,7 +117,7 @@ impl<'a> Lights<'a> {
                 let cos_outer = libm::cos(cone_angle.to_radians()) as f32;
                 let cos_inner = libm::cos(inner_angle.to_radians()) as f32;
                 let per_unit = 2.0 * PI * ((1.0 - cos_inner) + 0.5 * (cos_inner - cos_outer));
-                let intensity = whitted(self.emission_spectrum(*intensity, amount, per_unit));
+                let intensity = whitted(self.emission_spectrum(*intensity, power, per_unit));
                 let brightness = self.brightness_of(&intensity);
                 let light = Light::Spot {
                     position: *position - origin,
@@ -135,7 +131,7 @@ impl<'a> Lights<'a> {
             }
             LightKind::Projection { image, intensity, fov, world_from_light } => {
                 let light = self.projection(image.index(), *fov, world_from_light, origin);
-                let white = self.emission_spectrum(Color::gray(*intensity), amount, self.power_of(&light));
+                let white = self.emission_spectrum(Color::gray(*intensity), power, self.power_of(&light));
                 let scale = whitted(white).scale * intensity;
                 let light = Projection { scale, ..light };
                 let brightness = scale * mean(self.textures.image(image.index()));
@@ -143,7 +139,7 @@ impl<'a> Lights<'a> {
             }
             LightKind::Goniometric { intensity, image, world_from_light } => {
                 let mean = mean(self.textures.image(image.index()));
-                let intensity = whitted(self.emission_spectrum(*intensity, amount, 4.0 * PI * mean));
+                let intensity = whitted(self.emission_spectrum(*intensity, power, 4.0 * PI * mean));
                 let brightness = self.brightness_of(&intensity) * mean;
                 let light = Goniometric {
                     position: world_from_light.w_axis.truncate() - origin,
@@ -154,7 +150,7 @@ impl<'a> Lights<'a> {
                 ("goniometric light", Light::Goniometric(light), brightness)
             }
             LightKind::Environment { sky, portal, illuminates } => {
-                let (sky, brightness) = self.sky(sky, amount, portal.is_some());
+                let (sky, brightness) = self.sky(sky, power, portal.is_some());
                 let portal = portal.map(|corners| {
                     let opening = Opening::new(corners.map(|corner| corner - origin));
                     Box::new(self.portal(opening, &sky))
@@ -202,16 +198,16 @@ impl<'a> Lights<'a> {
         }
     }
 
-    fn sky(&self, sky: &WrittenSky, amount: &Amount, has_portal: bool) -> (Sky, f32) {
+    fn sky(&self, sky: &WrittenSky, power: &Power, has_portal: bool) -> (Sky, f32) {
         let (image, scale, world_from_light, layout) = match sky {
             WrittenSky::Constant(color) => {
-                let emission_spectrum = self.emission_spectrum(*color, amount, PI);
+                let emission_spectrum = self.emission_spectrum(*color, power, PI);
                 return (Sky::Constant(emission_spectrum), self.brightness_of(&emission_spectrum));
             }
             WrittenSky::Gradient { zenith, horizon, nadir } => {
                 // Onto a surface that looks up: the integral of ((1 − y) horizon + y zenith) y.
                 let upward = std::array::from_fn(|c| (horizon[c] + 2.0 * zenith[c]) / 3.0);
-                let scale = self.emission_spectrum(Color::Value(upward), amount, PI).scale;
+                let scale = self.emission_spectrum(Color::Value(upward), power, PI).scale;
                 let [zenith, horizon, nadir] = [zenith, horizon, nadir]
                     .map(|rgb| EmissionSpectrum { color: self.illuminant(Color::Value(*rgb)), scale });
                 return (Sky::Gradient { zenith, horizon, nadir }, self.brightness_of(&horizon));
@@ -225,7 +221,7 @@ impl<'a> Lights<'a> {
         };
         let picture = self.textures.image(image);
         let factor =
-            self.emission_spectrum(Color::gray(1.0), amount, illuminance(picture, *scale, layout)).scale;
+            self.emission_spectrum(Color::gray(1.0), power, illuminance(picture, *scale, layout)).scale;
         let weights = weights(picture, layout);
         let solid_angles = weights.iter().map(|&(_, area)| f64::from(area)).sum::<f64>();
         let average =

@@ -295,7 +295,7 @@ impl Compiler<'_> {
         shape_of_light: impl FnOnce() -> Option<LightShape>,
     ) -> Option<u32> {
         let Placing { shape, binding, .. } = placing;
-        let Emission { radiance, amount, two_sided } = shape.emission?;
+        let Emission { radiance, power, two_sided } = shape.emission?;
         if radiance == Color::BLACK {
             return None;
         }
@@ -313,7 +313,7 @@ impl Compiler<'_> {
         };
         // what white radiance of 1 sends out
         let sides = if two_sided { 2.0 } else { 1.0 };
-        light.radiance = self.lights.emission_spectrum(radiance, &amount, sides * PI * light.area() as f32);
+        light.radiance = self.lights.emission_spectrum(radiance, &power, sides * PI * light.area() as f32);
         let brightness = match light.mean_of_pattern() {
             Some(mean) => light.radiance.scale * mean,
             None => self.lights.brightness_of(&light.radiance),

@@ -11,13 +11,14 @@ use lookfrom::film::Film;
 use lookfrom::render::{Rendered, Renderer};
 use lookfrom::view::View;
 use lookfrom::world::World;
-use lookfrom_scene::{Memory, Scene, Sources};
+use lookfrom_scene::{LoadContext, Memory, Scene};
 
 /// The scene that a TOML text means.
 pub(crate) fn scene(toml: &str) -> Scene {
     let name = PathBuf::from("test.toml");
     let files = Memory([(name.clone(), toml.as_bytes().to_vec())].into());
-    lookfrom_scene::load::scene(&name, &mut Sources::new(&files)).unwrap_or_else(|error| panic!("{error}"))
+    lookfrom_scene::load::scene(&name, &mut LoadContext::new(&files))
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Settings of a small path-traced picture in TOML; what follows adds to `[render]`.
@@ -32,8 +33,8 @@ pub(crate) const SMALL: &str = r#"
 /// A scene from the repository's `scenes/`.
 pub(crate) fn own_scene(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
-    let mut sources = Sources::new(&lookfrom_scene::Disk);
-    lookfrom_scene::load::scene(&path, &mut sources).unwrap_or_else(|error| panic!("{error}"))
+    let mut context = LoadContext::new(&lookfrom_scene::Disk);
+    lookfrom_scene::load::scene(&path, &mut context).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A scene with the settings that its frame needs.

@@ -1,4 +1,4 @@
-//! What do the materials of `KHR_materials_pbrSpecularGlossiness` come to?
+//! Conversion of specular-glossiness materials (`KHR_materials_pbrSpecularGlossiness`).
 //!
 //! A dielectric whose index of refraction is 0, which stands for infinite, mirrors by Schlick's formula exactly its
 //! specular colour: that is how `KHR_materials_specular` converts them. Roughness is 1 − glossiness.

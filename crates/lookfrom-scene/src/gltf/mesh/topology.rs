@@ -1,9 +1,9 @@
-//! Which vertices make up a triangle or a line (specification, §3.7.2.1)?
+//! Topology types: the vertices of each point, line or triangle (specification, §3.7.2.1).
 
 use super::Order;
 use crate::gltf::json::Whole;
 
-/// How vertices are joined.
+/// The topology type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Topology {
     Points,

@@ -10,7 +10,7 @@ const WIDTHS_OF_VERSION_0: [u32; 4] = [0, 2, 4, 8];
 /// The same, by the two control bits of a byte position; the other two controls have no header.
 const WIDTHS_OF_VERSION_1: [[u32; 4]; 2] = [[0, 1, 2, 4], [1, 2, 4, 8]];
 
-/// How differences become four bytes of an element.
+/// The encoding of deltas of four bytes of an element.
 #[derive(Clone, Copy)]
 enum Channel {
     Bytes,

@@ -1,4 +1,4 @@
-//! What decoded elements become: vectors, quaternions, floats and colours out of fewer bits.
+//! Filters after decoding: vectors, quaternions, floats and colours stored in fewer bits.
 
 use super::Filter;
 

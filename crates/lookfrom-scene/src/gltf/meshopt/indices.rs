@@ -19,10 +19,10 @@ impl<T: Copy> Recent<T> {
     }
 }
 
-/// What stands where nothing has been seen yet; no vertex has this index.
+/// The placeholder of an empty history entry; no vertex has this index.
 const NOTHING: u32 = u32::MAX;
 
-/// Where the next index comes from, in half a byte: 0 is a new vertex, 15 a number in the stream, else a recent vertex.
+/// The source of the next index, in half a byte: 0 is a new vertex, 15 a number in the stream, else a recent vertex.
 struct Vertices<'a> {
     stream: Stream<'a>,
     recent: Recent<u32>,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::*;
-use crate::files::{Memory, Sources};
+use crate::files::{LoadContext, Memory};
 use crate::shape::Geometry;
 
 fn hex(text: &str) -> Vec<u8> {
@@ -90,7 +90,7 @@ fn indices_are_what_was_written() {
     assert_eq!(run(&hex(SEQUENCE), 12, 2, Mode::Indices).unwrap(), words);
 }
 
-/// What goes into a filter, and what meshoptimizer makes of it.
+/// Inputs of filters, and the outputs of meshoptimizer.
 const FILTERED: &[(Filter, usize, &str, &str)] = &[
     (Filter::Octahedral, 4, "00007f7f7f7f7f8136497f7fad5c7f00", "00007f7f000081814c66007fc44cae00"),
     (
@@ -198,7 +198,7 @@ fn a_view_of_a_file_is_unpacked() {
     let read = |filter: &str| {
         let json = json.replace("FILTER", filter).into_bytes();
         let files = Memory([("a.gltf".into(), json), ("b".into(), bytes.clone())].into());
-        crate::gltf::read(Path::new("a.gltf"), &mut Sources::new(&files))
+        crate::gltf::read(Path::new("a.gltf"), &mut LoadContext::new(&files))
     };
     let scene = read("NONE").unwrap();
     let Geometry::Spheres(points) = &scene.shapes[0].geometry else { panic!("no points") };

@@ -1,10 +1,9 @@
-//! What BasisLZ keeps for all slices of a file: the two ends of a block's colours and the choices of its texels, each by a number,
-//! and the codes that blocks are written in.
+//! Global data of BasisLZ: codebooks of endpoints and selectors, and the Huffman tables of the slices.
 
 use super::Damage;
 use super::huffman::{Bits, Code};
 
-/// What is added to a block's colour for each of the four choices, by its intensity (ETC1).
+/// The modifiers of a block's colour for each of the four selectors, by its intensity (ETC1).
 const MODIFIERS: [[i32; 4]; 8] = [
     [-8, -2, 2, 8],
     [-17, -5, 5, 17],
@@ -34,7 +33,7 @@ impl Endpoint {
     }
 }
 
-/// What all slices share.
+/// The data that all slices share.
 pub(super) struct Codebook {
     pub(super) endpoints: Vec<Endpoint>,
     /// A byte for each row of a block, two bits for each texel, the leftmost in the least.
@@ -44,15 +43,15 @@ pub(super) struct Codebook {
 
 /// The codes that slices are written in.
 pub(super) struct Codes {
-    /// Where the endpoints of four blocks come from.
+    /// The endpoint predictors of four blocks.
     pub(super) predictors: Code,
-    /// How far an endpoint's number is from the one before.
+    /// The delta of an endpoint index from the one before.
     pub(super) endpoints: Code,
     /// Numbers of selectors, places in the list of recent ones, and a run of the first of these.
     pub(super) selectors: Code,
     /// Lengths of such runs.
     pub(super) runs: Code,
-    /// How many selectors are recent: > 0.
+    /// The length of the selector history: > 0.
     pub(super) recent: usize,
 }
 
@@ -60,7 +59,7 @@ impl Codebook {
     /// Reads what all slices share, from a file's supercompression global data; `images` is the number of its pictures.
     ///
     /// # Errors
-    /// Where it is not whole.
+    /// If it is not whole.
     pub(super) fn read(global: &[u8], images: usize) -> Result<Self, Damage> {
         let short = "what its slices share is cut off";
         let number = |offset: usize, bytes: usize| {

@@ -16,7 +16,7 @@ const LONG_RUN: u32 = 63;
 /// The picture of the first image of a file: `global` is what its images share, `level` the first level, `images` their number.
 ///
 /// # Errors
-/// Where it is damaged.
+/// If it is damaged.
 pub(in crate::image) fn etc1s(
     global: &[u8],
     level: &[u8],
@@ -66,7 +66,7 @@ fn block(endpoint: Endpoint, choices: [u8; 4]) -> [Texel; 16] {
 /// Selectors that were used lately, those that are used again nearer to the front.
 struct Recent {
     selectors: Vec<u32>,
-    /// Where the next new one goes, in the second half.
+    /// The index of the next insertion, in the second half.
     next: usize,
 }
 
@@ -158,9 +158,9 @@ impl Codebook {
 /// Selectors of a slice, block after block.
 struct Selectors {
     recent: Recent,
-    /// How many of the next blocks have the first of the recent ones.
+    /// The remaining run length of the first selector of the history.
     run: u32,
-    /// How many blocks there are.
+    /// The number of blocks.
     blocks: u64,
 }
 

@@ -1,4 +1,4 @@
-//! Bits from the least of each byte on, and the canonical Huffman codes (Huffman 1952) that are written in them.
+//! Canonical Huffman codes (Huffman 1952) in a bit stream, least significant bit first.
 
 use super::Damage;
 
@@ -104,7 +104,7 @@ impl Code {
     /// Reads a code; `None` where it has no symbols.
     ///
     /// # Errors
-    /// Where there is no such code.
+    /// If there is no such code.
     pub(super) fn read(bits: &mut Bits<'_>) -> Result<Option<Self>, Damage> {
         let count = bits.take(14) as usize;
         if count == 0 {
@@ -138,7 +138,7 @@ impl Code {
     /// The next symbol.
     ///
     /// # Errors
-    /// Where the bits are no code.
+    /// If the bits are no code.
     pub(super) fn symbol(&self, bits: &mut Bits<'_>) -> Result<u32, Damage> {
         let index = bits.peek() & ((1 << self.longest) - 1);
         match self.table.get(index as usize) {

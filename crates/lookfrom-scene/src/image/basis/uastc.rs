@@ -20,7 +20,7 @@ impl Bits {
     }
 }
 
-/// Which channel has weights of its own.
+/// The channel of the second weight plane (dual plane).
 #[derive(Clone, Copy, PartialEq)]
 enum Second {
     None,
@@ -29,7 +29,7 @@ enum Second {
     Opacity,
 }
 
-/// How a mode's blocks are laid out.
+/// The block layout of a mode.
 struct Mode {
     /// The bits that a block of it begins with, and how many.
     prefix: (u32, u32),
@@ -90,7 +90,7 @@ const MODES: [Mode; 18] = {
 /// The picture in a level's blocks.
 ///
 /// # Errors
-/// Where there are too few, or one is of no mode.
+/// If there are too few, or one is of no mode.
 pub(in crate::image) fn uastc(level: &[u8], size: Size) -> Result<Vec<Texel>, Damage> {
     let [columns, rows] = blocks(size);
     let written = level.as_chunks::<BLOCK>().0;

@@ -6,10 +6,10 @@ use crate::error::Location;
 use crate::material::Color;
 use crate::scene::{MaterialId, MeshId};
 use crate::shape::{Emission, Mesh, Sphere};
-use crate::studio::{FILL, TAN_HALF_FOV, furnish_model};
+use crate::studio::{FILL, TAN_HALF_FOV, add_studio_and_camera};
 
 /// A scene of boxes, from corner to corner, as one mesh.
-fn boxes(origin: Origin, of: &[[[f32; 3]; 2]]) -> Scene {
+fn boxes(source_format: SourceFormat, of: &[[[f32; 3]; 2]]) -> Scene {
     let mut mesh = Mesh::default();
     for [min, max] in of {
         let first = mesh.positions.len() as u32;
@@ -19,13 +19,13 @@ fn boxes(origin: Origin, of: &[[[f32; 3]; 2]]) -> Scene {
         }
         mesh.triangles.extend([[0, 1, 2], [3, 4, 5], [5, 6, 7]].map(|t| t.map(|vertex| first + vertex)));
     }
-    let mut scene = Scene { origin, ..Scene::default() };
+    let mut scene = Scene { source_format, ..Scene::default() };
     scene.meshes.push(mesh);
     scene.shapes.push(Shape::new(Location::default(), Geometry::Mesh(MeshId(0)), MaterialId(0)));
     scene
 }
 
-/// Where the vertices fall in the picture: x and y in [−1, 1].
+/// The projections of the vertices: x and y in [−1, 1].
 fn projected(scene: &Scene) -> Vec<[f64; 2]> {
     let camera = scene.camera.as_ref().unwrap();
     let View::Look { lookfrom, lookat, up } = camera.view else { panic!("not a lookat") };
@@ -52,7 +52,7 @@ fn nothing_is_cut_at_any_angle_and_the_size_stays() {
     for model in [long, tall, deep, angle] {
         for up in [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::Y, DVec3::new(1.0, 2.0, -1.0)] {
             for [width, height] in [[512, 512], [900, 300], [200, 700]] {
-                let mut scene = boxes(Origin::Model, &model);
+                let mut scene = boxes(SourceFormat::Model, &model);
                 (scene.image.width, scene.image.height) = (width, height);
                 let turntable = Turntable::new(&scene, Some(up), None);
                 let (mut most, mut distances) = (0.0_f64, Vec::new());
@@ -79,7 +79,7 @@ fn nothing_is_cut_at_any_angle_and_the_size_stays() {
 
 #[test]
 fn a_scene_turns_around_what_its_camera_looks_at() {
-    let mut scene = boxes(Origin::Scene, &[[[-1.0; 3], [1.0; 3]]]);
+    let mut scene = boxes(SourceFormat::Scene, &[[[-1.0; 3], [1.0; 3]]]);
     let lamp = Geometry::Sphere(Sphere { center: DVec3::new(400.0, 900.0, 0.0), radius: 20.0 });
     scene.shapes.push(Shape {
         emission: Some(Emission::new(Color::gray(1.0), false)),
@@ -105,7 +105,7 @@ fn a_scene_turns_around_what_its_camera_looks_at() {
 #[test]
 fn lamps_domes_and_floors_without_end_do_not_move_the_axis() {
     let shape = |geometry| Shape::new(Location::default(), geometry, MaterialId(0));
-    let mut scene = boxes(Origin::Scene, &[[[1.0; 3], [3.0; 3]]]);
+    let mut scene = boxes(SourceFormat::Scene, &[[[1.0; 3], [3.0; 3]]]);
     let matrix = DMat4::from_translation(DVec3::new(0.0, 2.0, 9.0));
     scene.camera = Some(Camera { view: View::Matrix(matrix), ..Camera::default() });
     let floor = Geometry::Quad {
@@ -135,7 +135,7 @@ fn lamps_domes_and_floors_without_end_do_not_move_the_axis() {
     scene.shapes[1].geometry =
         Geometry::Quad { corner: DVec3::new(-1.0, 0.0, 1.0), edge_u: 4.0 * DVec3::X, edge_v: 2.0 * DVec3::Z };
     assert_eq!(middle(&scene), DVec3::new(1.0, 1.5, 2.0));
-    scene.origin = Origin::Model;
+    scene.source_format = SourceFormat::Model;
     assert_eq!(middle(&scene), DVec3::new(1.0, 10.5, 1.0));
 
     // Where there is nothing but a floor and a lamp, the floor counts; where there are only lamps, they do.
@@ -151,7 +151,7 @@ fn the_turned_camera_keeps_its_distance_and_comes_back() {
     let mut scene = Scene::default();
     let turntable = Turntable::new(&scene, Some(DVec3::Z), None);
     turntable.frame(&mut scene);
-    furnish_model(&mut scene, Some(DVec3::Z));
+    add_studio_and_camera(&mut scene, Some(DVec3::Z));
     let places = |scene: &Scene| match scene.camera.as_ref().unwrap().view {
         View::Look { lookfrom, lookat, .. } => (lookfrom, lookat),
         View::Matrix(_) => panic!("not a lookat"),

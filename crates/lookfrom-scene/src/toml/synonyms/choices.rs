@@ -1,4 +1,4 @@
-//! Words that others use for types and what else is chosen by a word.
+//! Synonyms of types and other enumerated values.
 
 /// Words for types and other choices, and ours: those of them that can be chosen. What there is to say besides comes last.
 pub(super) const CHOICES: &[(&[&str], &[&str], &str)] = &[

@@ -1,4 +1,4 @@
-//! Words that others use for keys.
+//! Synonyms of keys.
 
 /// Words for keys, without `_` and in lower case, and the keys that may be meant: the first of these groups of which the table
 /// has all.

@@ -9,11 +9,11 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
-use rayon::prelude::*;
 
 use super::{Cone, LightPoint, seen};
 use crate::distribution::Discrete;
 use crate::light::toward;
+use crate::parallel;
 use crate::primitive::{Mesh, VertexData};
 use crate::texture::TexturePoint;
 use crate::warp;
@@ -72,7 +72,7 @@ impl MeshLight {
     /// A mesh that shines alike everywhere. None for one without area.
     pub fn new(mesh: Arc<Mesh>) -> Option<Self> {
         let area = area(&mesh)?;
-        let triangles = triangles(&mesh, (0..mesh.triangles.len()).into_par_iter());
+        let triangles = triangles(&mesh, mesh.triangles.len(), |index| index);
         // In parts of the whole, which no unit of length makes vanish.
         let weights: Vec<f32> = triangles.iter().map(|triangle| (triangle.area / area) as f32).collect();
         Some(Self { choice: Discrete::new(&weights), asked: None, mesh, triangles, area, brightness: None })
@@ -93,11 +93,11 @@ impl MeshLight {
                 places.iter().map(|place| brightness(&mesh, index, *place, emission_spectrum)).sum();
             if own.is_finite() { own / area * sum / places.len() as f64 } else { 0.0 }
         };
-        let powers: Vec<f64> = (0..count).into_par_iter().map(power).collect();
+        let powers: Vec<f64> = parallel::collect(count, power);
         let mean: f64 = powers.iter().sum();
         let asked: Vec<u32> = (0..count as u32).filter(|&index| powers[index as usize] > 0.0).collect();
         let weights: Vec<f32> = asked.iter().map(|&index| (powers[index as usize] / mean) as f32).collect();
-        let triangles = triangles(&mesh, asked.par_iter().map(|&index| index as usize));
+        let triangles = triangles(&mesh, asked.len(), |rank| asked[rank] as usize);
         // Of nothing there is no choice: `sample` does not come to it.
         let choice = Discrete::new(if weights.is_empty() { &[1.0] } else { &weights });
         let asked = (asked.len() < count).then_some(asked);
@@ -215,8 +215,8 @@ fn area(mesh: &Mesh) -> Option<f64> {
     (area > 0.0 && area.is_finite()).then_some(area)
 }
 
-fn triangles(mesh: &Mesh, indices: impl IndexedParallelIterator<Item = usize>) -> Vec<Triangle> {
-    indices.map(|index| Triangle::new(mesh, index)).collect()
+fn triangles(mesh: &Mesh, count: usize, index: impl Fn(usize) -> usize + Sync + Send) -> Vec<Triangle> {
+    parallel::collect(count, |rank| Triangle::new(mesh, index(rank)))
 }
 
 /// Place number `k` of `count` that are spread evenly over a triangle (Hammersley's points).

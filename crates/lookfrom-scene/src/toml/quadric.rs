@@ -1,4 +1,4 @@
-//! Round shapes: spheres, whole or cut, disks, cylinders, and the sphereflake.
+//! Quadrics: full and partial spheres, disks and cylinders; and the sphereflake.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3};
 use super::mesh::too_many;
 use super::table::Table;
 use super::value::Value;
-use super::{Reader, form};
+use super::{Reader, composite};
 use crate::error::Result;
 use crate::shape::{Geometry, Sphere};
 
@@ -20,11 +20,11 @@ impl Reader<'_, '_> {
         let depth = table.or("depth", 4, |value| value.integer(0, DEEPEST_FLAKE)) as u32;
         table.sound(&["center", "radius", "depth"])?;
         // All of them together: a few lines of text must not fill the memory.
-        self.flake_spheres = self.flake_spheres.saturating_add(form::sphereflake_count(depth));
-        if self.flake_spheres > self.sources.limits.elements {
-            return Err(too_many(table, self.flake_spheres, self.sources.limits.elements));
+        self.flake_spheres = self.flake_spheres.saturating_add(composite::sphereflake_count(depth));
+        if self.flake_spheres > self.context.limits.elements {
+            return Err(too_many(table, self.flake_spheres, self.context.limits.elements));
         }
-        let spheres = form::sphereflake(center, radius, depth);
+        let spheres = composite::sphereflake(center, radius, depth);
         if spheres.iter().all(|sphere| sphere.radius.is_normal() && sphere.center.is_finite()) {
             return Ok(Geometry::Spheres(Arc::from(spheres)));
         }
@@ -108,6 +108,6 @@ fn phi_max(table: &Table<'_>) -> f64 {
 
 /// The space with its origin at a point and z along a unit vector.
 fn along(origin: DVec3, z: DVec3) -> DMat4 {
-    let (x, y) = form::tangents(z);
+    let (x, y) = composite::tangents(z);
     DMat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), origin.extend(1.0))
 }

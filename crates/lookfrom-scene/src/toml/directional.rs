@@ -1,23 +1,23 @@
-//! Lights from a point that differ by direction: a cone, a picture that is thrown, a picture of brightness.
+//! Point lights that depend on direction: spot, projection and goniometric lights.
 
 use glam::{DMat4, DVec3};
 
 use super::Reader;
-use super::light::{aim, amount, falloff, position, turned};
+use super::light::{aim, falloff, position, power, turned};
 use super::sky::up_from_pole;
 use super::table::Table;
 use super::value::Value;
 use crate::error::Result;
-use crate::light::{Amount, LightKind};
+use crate::light::{LightKind, Power};
 use crate::scene::ImageId;
 
 impl Reader<'_, '_> {
     /// Into a cone.
-    pub(super) fn spot(&mut self, table: &Table<'_>) -> Result<(LightKind, Amount)> {
+    pub(super) fn spot(&mut self, table: &Table<'_>) -> Result<(LightKind, Power)> {
         let position = position(table);
         let direction = aim(table, position);
         let expected = "degrees, more than 0 and at most 180";
-        let (intensity, amount) = self.intensity(table, "power");
+        let (intensity, power) = self.intensity(table, "power");
         let falloff = falloff(table);
         let cone_angle = table.or("cone_angle", 30.0, |value| {
             value.number_where(expected, |angle| angle > 0.0 && angle <= 180.0)
@@ -26,11 +26,11 @@ impl Reader<'_, '_> {
         let inner_angle = table.or("inner_angle", 0.8 * cone_angle, |value| {
             value.number_where("degrees from 0 to `cone_angle`", |angle| (0.0..=cone_angle).contains(&angle))
         });
-        Ok((LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, falloff }, amount))
+        Ok((LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, falloff }, power))
     }
 
     /// A picture that is thrown.
-    pub(super) fn projection(&mut self, table: &Table<'_>) -> Result<(LightKind, Amount)> {
+    pub(super) fn projection(&mut self, table: &Table<'_>) -> Result<(LightKind, Power)> {
         let position = position(table);
         let forward = aim(table, position).normalize();
         let up = table.maybe("up", Value::direction);
@@ -39,7 +39,7 @@ impl Reader<'_, '_> {
         let intensity = table.or("intensity", 1.0, |value| {
             value.single_where("a number of at least 0: the picture has the colours", |number| number >= 0.0)
         });
-        let amount = amount(table, "power", 1.0);
+        let power = power(table, "power", 1.0);
         let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.image(value));
         table.sound(&["position", "target", "direction", "up"])?;
         let up = match up {
@@ -62,15 +62,15 @@ impl Reader<'_, '_> {
             forward.extend(0.0),
             position.extend(1.0),
         );
-        Ok((LightKind::Projection { image, intensity, fov, world_from_light }, amount))
+        Ok((LightKind::Projection { image, intensity, fov, world_from_light }, power))
     }
 
     /// Brightness by direction.
-    pub(super) fn goniometric(&mut self, table: &Table<'_>) -> (LightKind, Amount) {
+    pub(super) fn goniometric(&mut self, table: &Table<'_>) -> (LightKind, Power) {
         let position = position(table);
         let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.octahedral_image(value));
-        let (intensity, amount) = self.intensity(table, "power");
+        let (intensity, power) = self.intensity(table, "power");
         let world_from_light = DMat4::from_translation(position) * turned(table) * up_from_pole();
-        (LightKind::Goniometric { intensity, image, world_from_light }, amount)
+        (LightKind::Goniometric { intensity, image, world_from_light }, power)
     }
 }

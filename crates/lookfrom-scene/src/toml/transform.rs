@@ -1,4 +1,4 @@
-//! Where things stand: `scale`, `rotate`, `translate` in this order, or a list `transform` of such steps in any order.
+//! Transforms: `scale`, `rotate`, `translate` in this order, or a list `transform` of such steps in any order.
 
 use glam::{DMat4, DVec3, DVec4};
 
@@ -14,7 +14,7 @@ pub(super) const STEPS: &[&str] = &["scale", "rotate", "translate", "matrix"];
 pub(super) const ROTATION: &[&str] = &["axis", "angle"];
 
 /// The matrix from a thing's own space to the one it is placed in: affine, finite and invertible.
-pub(super) fn place(table: &Table<'_>) -> DMat4 {
+pub(super) fn world_from_object(table: &Table<'_>) -> DMat4 {
     if !table.has("transform") {
         return scale_rotate_translate(table);
     }
@@ -70,7 +70,9 @@ fn scale(value: Value<'_>) -> Result<DMat4> {
         DVec3::from_array(value.numbers(expected)?)
     };
     if factors.cmpeq(DVec3::ZERO).any() {
-        return Err(value.error("`scale` by 0 leaves nothing").hint(format!("give {expected}")));
+        return Err(value
+            .error("`scale` is 0: the transform is not invertible")
+            .hint(format!("give {expected}")));
     }
     Ok(DMat4::from_scale(factors))
 }
@@ -121,6 +123,6 @@ fn invertible(matrix: DMat4, value: Value<'_>) -> Result<DMat4> {
         return Ok(matrix);
     }
     Err(value
-        .error(format!("`{}` cannot be undone: the determinant is {determinant}", value.key()))
+        .error(format!("`{}` is not invertible: the determinant is {determinant}", value.key()))
         .hint("no scale may be 0 or too small or large to compute with, and the rows of a matrix must be independent"))
 }

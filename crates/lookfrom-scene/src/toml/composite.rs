@@ -1,4 +1,4 @@
-//! Forms made of others: a plane, a box, and the sphereflake.
+//! Shapes composed of others: planes, boxes and the sphereflake.
 
 use glam::{DVec3, Vec2, Vec3};
 

@@ -1,0 +1,176 @@
+//! Spectral values: black bodies, tables, `.spd` files, and named spectra.
+
+use super::Reader;
+use super::settings::kelvin;
+use super::value::Value;
+use crate::error::{Error, ErrorKind, Result};
+use crate::material::{Color, Ior};
+use crate::scene::CurveId;
+use crate::spectrum::{self, Curve};
+
+/// The keys of a colour by wavelength; lights also have `scale`.
+pub(super) const KEYS: &[&str] = &["kelvin", "curve", "spd", "illuminant"];
+
+/// Names of metals, besides their symbols.
+const METALS: &[(&str, &str)] = &[
+    ("silver", "Ag"),
+    ("aluminium", "Al"),
+    ("aluminum", "Al"),
+    ("gold", "Au"),
+    ("copper", "Cu"),
+    ("brass", "CuZn"),
+];
+
+impl Reader<'_, '_> {
+    /// A table of one of [`KEYS`], and perhaps of `others`.
+    pub(super) fn curve(&mut self, value: Value<'_>, others: &[&'static str]) -> Result<CurveId> {
+        let table = value.table("a colour by wavelength")?;
+        let Some(one) = table.one_of(KEYS) else {
+            return Err(value.error(format!("`{}` is a table without a `type`: no texture", value.key())).hint(
+                "add `type = \"checker\"` or another; a colour by wavelength has `kelvin`, `curve`, `spd` or `illuminant`",
+            ));
+        };
+        table.allow(&[KEYS, others]);
+        match one.key() {
+            "kelvin" => {
+                let kelvin = kelvin(one)?;
+                Ok(self.keep_curve(format!("kelvin {kelvin}"), Curve::Blackbody { kelvin }))
+            }
+            "curve" => {
+                let curve = inline(one, self.context.limits.elements)?;
+                Ok(self.add_curve(curve))
+            }
+            "spd" => self.spd(one),
+            _ => {
+                let short =
+                    |name: &'static str| name.strip_prefix("stdillum-").or(name.strip_prefix("illum-"));
+                let words: Vec<(&str, &'static str)> =
+                    spectrum::names().filter_map(|name| Some((short(name)?, name))).collect();
+                let name = one.choice(&words)?;
+                Ok(self.known_curve(name))
+            }
+        }
+    }
+
+    /// An index of refraction: a number, a curve, or the name of a glass.
+    pub(super) fn ior(&mut self, value: Value<'_>) -> Result<Ior> {
+        if value.is_table() {
+            let id = self.curve(value, &[])?;
+            return self.optical(value, id).map(Ior::Curve);
+        }
+        if value.as_text().is_some() {
+            let glasses: Vec<(&str, &'static str)> =
+                spectrum::names().filter_map(|name| Some((name.strip_prefix("glass-")?, name))).collect();
+            let name = value.choice(&glasses)?;
+            return Ok(Ior::Curve(self.known_curve(name)));
+        }
+        let expected = "a number greater than 0, the name of a glass such as \"BK7\", or a curve";
+        value.single_where(expected, |eta| eta > 0.0).map(Ior::Value)
+    }
+
+    /// η and k of a metal by its name.
+    pub(super) fn metal(&mut self, value: Value<'_>) -> Result<[Color; 2]> {
+        let symbol = |name: &'static str| name.strip_prefix("metal-")?.strip_suffix("-eta");
+        let symbols = spectrum::names().filter_map(symbol).map(|symbol| (symbol, symbol));
+        let words: Vec<(&str, &str)> = symbols.chain(METALS.iter().copied()).collect();
+        let symbol = value.choice(&words)?;
+        Ok(["eta", "k"].map(|part| Color::Curve(self.known_curve(&format!("metal-{symbol}-{part}")))))
+    }
+
+    /// η or k of a metal: a colour whose curve goes on beyond its ends.
+    pub(super) fn optical_color(&mut self, value: Value<'_>) -> Result<Color> {
+        match self.color(value)? {
+            Color::Curve(id) if value.key() == "eta" => self.optical(value, id).map(Color::Curve),
+            Color::Curve(id) => Ok(Color::Curve(self.extended(id))),
+            color => Ok(color),
+        }
+    }
+
+    /// An index of refraction, which is never 0, and goes on beyond the ends of its table.
+    fn optical(&mut self, value: Value<'_>, id: CurveId) -> Result<CurveId> {
+        let is_usable = match &self.scene.curves[id.index()] {
+            Curve::Tabulated { values, .. } => values.iter().all(|&eta| eta > 0.0),
+            _ => false,
+        };
+        if !is_usable {
+            return Err(value
+                .error(format!(
+                    "`{}` is no index of refraction: it has to be above 0 everywhere",
+                    value.key()
+                ))
+                .hint("give a number, or a curve of numbers such as 1.5"));
+        }
+        Ok(self.extended(id))
+    }
+
+    /// The same curve with its first and last values up to the ends of what is seen.
+    fn extended(&mut self, id: CurveId) -> CurveId {
+        match &self.scene.curves[id.index()] {
+            curve @ Curve::Tabulated { .. } => {
+                let extended = curve.clone().extended();
+                self.keep_curve(format!("extended {}", id.0), extended)
+            }
+            _ => id,
+        }
+    }
+
+    /// A file; each is read once.
+    fn spd(&mut self, value: Value<'_>) -> Result<CurveId> {
+        let path = self.resolve(value, "the name of an .spd file")?;
+        let name = format!("spd {}", path.display());
+        if let Some(&id) = self.curves.get(&name) {
+            return Ok(id);
+        }
+        let curve = spectrum::read_spd(&path, self.context).map_err(|error| value.blame(error))?;
+        Ok(self.keep_curve(name, curve))
+    }
+
+    /// One of [`spectrum::names`].
+    fn known_curve(&mut self, name: &str) -> CurveId {
+        match self.curves.get(name) {
+            Some(&id) => id,
+            None => self.keep_curve(name.to_owned(), spectrum::named(name).unwrap_or(Curve::Constant(1.0))),
+        }
+    }
+
+    fn keep_curve(&mut self, name: String, curve: Curve) -> CurveId {
+        if let Some(&id) = self.curves.get(&name) {
+            return id;
+        }
+        let id = self.add_curve(curve);
+        self.curves.insert(name, id);
+        id
+    }
+
+    fn add_curve(&mut self, curve: Curve) -> CurveId {
+        self.scene.curves.push(curve);
+        CurveId(self.scene.curves.len() as u32 - 1)
+    }
+}
+
+/// `[[nm, value], …]`.
+fn inline(value: Value<'_>, limit: u64) -> Result<Curve> {
+    let expected = "a list of wavelengths and values, such as [[400, 0.1], [700, 0.8]]";
+    let items = value.list(expected)?;
+    let count = items.len() as u64;
+    if count > limit {
+        let error = value.error(format!("{count} entries are more than the limit of {limit}"));
+        return Err(Error { kind: ErrorKind::Limit, ..error }.hint("use fewer, or raise `Limits::elements`"));
+    }
+    if count < 2 {
+        return Err(value.wrong(expected));
+    }
+    let (mut wavelengths, mut values) = (Vec::new(), Vec::new());
+    for item in items {
+        let [nm, entry] = item.list_of("a wavelength in nm and a value")?;
+        let nm_value = nm.single_where("a wavelength in nm, greater than 0", |nm| nm > 0.0)?;
+        if let Some(&before) = wavelengths.last().filter(|&&before| nm_value <= before) {
+            return Err(nm
+                .error(format!("the wavelength {nm_value} does not lie above the one before, {before}"))
+                .hint("sort the entries by wavelength, each once"));
+        }
+        wavelengths.push(nm_value);
+        values.push(entry.single_where("a number of at least 0", |value| value >= 0.0)?);
+    }
+    Ok(Curve::Tabulated { wavelengths, values })
+}
