@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use lookfrom::color;
+use lookfrom::core::color;
 use lookfrom_scene::image::compare::{Comparison, Sampled, channels_of_both, compare};
 use lookfrom_scene::image::flip::{PIXELS_PER_DEGREE, flip};
 use lookfrom_scene::image::{self, Channels};

@@ -5,7 +5,7 @@
 //! variance; any division of the work among threads, tiles, passes or machines ends in the same bytes *by
 //! construction*. What a camera sees first, for layers and denoiser, is in [`aov`]; what its sensor measures, in `channels`; how much
 //! noise there is, in `noise`; what becomes of single samples that outshine a pixel, in `fireflies`. How a picture is shown
-//! is left to [`crate::develop`].
+//! is left to [`crate::post::develop`].
 //!
 //! A pixel takes 112 bytes, and as much more as [`aov`] and `channels` say where they are asked for.
 

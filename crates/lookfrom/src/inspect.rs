@@ -14,7 +14,7 @@ mod trace_log;
 
 use crate::integrator::Event;
 use crate::render::{Renderer, SampleId};
-use crate::texture::Lanes;
+use crate::shading::texture::Lanes;
 
 use trace_log::TraceLogBuilder;
 

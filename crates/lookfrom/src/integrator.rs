@@ -19,13 +19,13 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_scene::settings::Background;
 
-use crate::hash;
-use crate::interaction::SurfaceInteraction;
-use crate::interior_stack::InteriorStack;
+use crate::core::hash;
+use crate::core::sampler::PixelSampler;
+use crate::core::spectrum::Spectrum;
 use crate::light::LightSampleContext;
-use crate::sampler::PixelSampler;
-use crate::spectrum::Spectrum;
-use crate::texture::Lanes;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interior_stack::InteriorStack;
+use crate::shading::texture::Lanes;
 use crate::world::World;
 
 pub use background::Alpha;

@@ -18,9 +18,9 @@ use glam::{DVec3, Vec3};
 use lookfrom_bvh::Point;
 use lookfrom_scene::light::Falloff;
 
-use crate::interaction::SurfaceInteraction;
-use crate::spectrum::Spectrum;
-use crate::texture::{Lanes, SpectrumTexture, TexturePoint, Textures};
+use crate::core::spectrum::Spectrum;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::texture::{Lanes, SpectrumTexture, TexturePoint, Textures};
 use cone::Cone;
 use tree::LightBounds;
 
@@ -78,7 +78,7 @@ pub enum Light {
 /// The colour of a light and how much there is of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmissionSpectrum {
-    /// Of the type [`SpectrumType::Illuminant`](crate::texture::SpectrumType::Illuminant).
+    /// Of the type [`SpectrumType::Illuminant`](crate::shading::texture::SpectrumType::Illuminant).
     pub color: SpectrumTexture,
     /// Multiplies it.
     pub scale: f32,

@@ -19,19 +19,19 @@ use lookfrom_scene::settings::{
 };
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 
-use crate::camera::CameraRay;
-use crate::color::{Sensor, Wavelengths};
+use crate::core::color::{Sensor, Wavelengths};
+use crate::core::filter::Filter;
+use crate::core::math;
+use crate::core::sampler::Sampler;
+use crate::core::spectrum::Spectrum;
 use crate::film::FilmTile;
 pub use crate::film::SampleId;
-use crate::filter::Filter;
 use crate::integrator::{
     Alpha, Event, Integrator, Path, PreviousVertex, Probe, Queues, SampleStream, StepOutput, resolve_shadows,
 };
-use crate::math;
-use crate::sampler::Sampler;
-use crate::spectrum::Spectrum;
-use crate::texture::Lanes;
+use crate::shading::texture::Lanes;
 use crate::view::View;
+use crate::view::camera::CameraRay;
 use crate::world::World;
 
 pub(crate) use camera_warnings::Subject;

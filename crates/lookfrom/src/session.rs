@@ -35,7 +35,7 @@ use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
 use lookfrom_scene::studio::Turntable;
 use lookfrom_scene::{Disk, Error, Files, LoadContext, Location, Memory, Result, Scene, Warning, load};
 
-use crate::clock::Stopwatch;
+use crate::core::clock::Stopwatch;
 use crate::film::Picture;
 use crate::integrator::Integrator;
 use crate::render::{Progress, Renderer, StopCriteria, Subject};

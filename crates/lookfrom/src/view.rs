@@ -1,10 +1,13 @@
 //! A view of a world: the camera, and the picture that it takes.
 
+pub mod camera;
+
+use lookfrom_scene::camera::Camera as Written;
 use lookfrom_scene::scene::MediumId;
 use lookfrom_scene::settings::ImageSettings;
-use lookfrom_scene::{Result, Scene, camera};
+use lookfrom_scene::{Result, Scene};
 
-use crate::camera::Camera;
+use crate::view::camera::Camera;
 
 /// What looks at a [`World`](crate::world::World): a camera made for the size of a picture, and what is asked of the picture. A
 /// world can have any number of views.
@@ -23,7 +26,7 @@ impl View {
     ///
     /// # Errors
     /// `Invalid` for a camera that cannot see, see [`Camera::new`].
-    pub fn new(camera: &camera::Camera, image: ImageSettings) -> Result<Self> {
+    pub fn new(camera: &Written, image: ImageSettings) -> Result<Self> {
         Ok(Self { camera: Camera::new(camera, image.width, image.height)?, medium: camera.medium, image })
     }
 

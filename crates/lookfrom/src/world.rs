@@ -20,14 +20,14 @@ use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Bvh, Hit, NONE, OriginPrimitive, Ray};
 use lookfrom_scene::scene::MediumId;
 
-use crate::interaction::SurfaceInteraction;
-use crate::interior_stack::{InteriorStack, MediumInterface};
+use crate::core::math;
+use crate::core::spectrum::Spectrum;
 use crate::light::{IncompletePdf, Light, LightChoice, LightSampleContext};
-use crate::material::{self, Material, MaterialKind, Shading, ShadingContext};
-use crate::math;
 use crate::primitive::{Mesh, Primitives, SurfacePoint, VertexData};
-use crate::spectrum::Spectrum;
-use crate::texture::{
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interior_stack::{InteriorStack, MediumInterface};
+use crate::shading::material::{self, Material, MaterialKind, Shading, ShadingContext};
+use crate::shading::texture::{
     FloatTexture, Lanes, SpectrumTexture, SpectrumType, TexturePoint, Textures, spectrum_of,
 };
 

@@ -2,8 +2,8 @@
 
 mod support;
 
-use lookfrom::denoise::denoised;
 use lookfrom::film::{Film, Picture};
+use lookfrom::post::denoise::denoised;
 use lookfrom_scene::Scene;
 use lookfrom_scene::settings::{Crop, Integrator};
 use support::{Compiled, own_scene};

@@ -199,7 +199,7 @@ fn a_picture_of_the_surroundings_lights_like_its_integral() {
             use lookfrom_scene::texture::{TexelFilter, Wrap};
             let u = (column as f32 + 0.5) / columns as f32;
             let wrap = [Wrap::Repeat, Wrap::Clamp];
-            let rgb = lookfrom::texture::look_up(&picture, [u, v], wrap, TexelFilter::Bilinear);
+            let rgb = lookfrom::shading::texture::look_up(&picture, [u, v], wrap, TexelFilter::Bilinear);
             let solid_angle = theta.sin() * 2.0 * std::f64::consts::PI.powi(2) / f64::from(columns * rows);
             for (sum, value) in expected.iter_mut().zip(rgb) {
                 *sum += f64::from(value) * theta.cos() * solid_angle / std::f64::consts::PI;

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
+use lookfrom::core::spectrum::Spectrum;
 use lookfrom::film::Film;
 use lookfrom::glam::DVec3;
 use lookfrom::integrator::{Integrator, Path as LightPath, Probe, SampleStream, StepOutput, Term};
 use lookfrom::render::{Progress, StopReason, TileDone};
 use lookfrom::session::{Format, Options, Session};
-use lookfrom::spectrum::Spectrum;
 use lookfrom::world::World;
 use lookfrom_bvh::Hit;
 use lookfrom_scene::camera::{Camera, View};

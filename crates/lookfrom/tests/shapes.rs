@@ -5,7 +5,7 @@ mod support;
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec3};
-use lookfrom::interaction::SurfaceInteraction;
+use lookfrom::shading::interaction::SurfaceInteraction;
 use lookfrom_bvh::Ray;
 use lookfrom_scene::material::Scalar;
 use lookfrom_scene::scene::MeshId;
@@ -300,7 +300,7 @@ fn alpha_comes_with_the_surface() {
     let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
     assert_eq!(
         world.surface(&ray, &world.bvh().closest_hit(&ray)).alpha,
-        Some(lookfrom::texture::FloatTexture::Constant(0.5))
+        Some(lookfrom::shading::texture::FloatTexture::Constant(0.5))
     );
 }
 

@@ -251,7 +251,7 @@ fn met(
     place: DMat4,
     as_instance: bool,
     reverse: bool,
-) -> lookfrom::interaction::SurfaceInteraction {
+) -> lookfrom::shading::interaction::SurfaceInteraction {
     let mut scene = scene();
     let kind = MaterialKind::Conductor {
         metal: lookfrom_scene::material::Metal::Reflectance(Color::gray(0.5)),

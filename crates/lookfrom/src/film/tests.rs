@@ -1,7 +1,7 @@
 //! Is a film the same whatever the order, and are its sums the true ones?
 
 use super::*;
-use crate::hash::mix;
+use crate::core::hash::mix;
 use proptest::prelude::*;
 
 const SIZE: u32 = 4;

@@ -6,12 +6,12 @@
 use serde::Serialize;
 
 use super::report::{Amount, Factor, ShadowReport};
-use crate::bsdf::Bsdf;
-use crate::bsdf::conductor::Conductor;
-use crate::bsdf::lobes::Lobes;
-use crate::bsdf::microfacet::TrowbridgeReitz;
-use crate::material::Shading;
-use crate::spectrum::Spectrum;
+use crate::core::spectrum::Spectrum;
+use crate::shading::bsdf::Bsdf;
+use crate::shading::bsdf::conductor::Conductor;
+use crate::shading::bsdf::lobes::Lobes;
+use crate::shading::bsdf::microfacet::TrowbridgeReitz;
+use crate::shading::material::Shading;
 
 /// A scattering function at a point.
 #[derive(Clone, Debug, Serialize)]

@@ -6,9 +6,9 @@ use std::fmt::Write;
 use glam::{DVec2, DVec3, Vec3};
 
 use super::{Inspection, RayReport};
-use crate::camera::Camera;
 use crate::primitive::Primitives;
 use crate::render::Renderer;
+use crate::view::camera::Camera;
 use crate::world::World;
 
 /// Width of the drawing in its own units; the height follows from the scene.

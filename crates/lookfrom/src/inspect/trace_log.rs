@@ -15,13 +15,13 @@ use super::report::{
     ShadowReport,
 };
 use super::scatter::{self, AnswerReport, AskedReport, BounceReport, FoundReport};
+use crate::core::spectrum::Spectrum;
 use crate::integrator::{Bounce, Branch, Cut, Event, Path, Shadow, Term};
-use crate::interaction::SurfaceInteraction;
 use crate::light::LightSample;
-use crate::material::{Coefficients, Shading};
 use crate::render::Renderer;
-use crate::spectrum::Spectrum;
-use crate::texture::Lanes;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::material::{Coefficients, Shading};
+use crate::shading::texture::Lanes;
 use crate::world::World;
 
 /// What has been heard so far.

@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use crate::integrator::{Event, Path, Probe, SampleStream, Shadow, StepOutput, Term};
-use crate::interaction::SurfaceInteraction;
 use crate::light::{IncompletePdf, LightSampleContext};
-use crate::material::Coefficients;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::material::Coefficients;
 use crate::world::World;
 
 /// Adds what the surface shines and `k_a I_a`, and asks every light for `k_d (N·L) I_j + k_s (N·H)ⁿ I_j`.

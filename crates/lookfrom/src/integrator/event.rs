@@ -3,11 +3,11 @@
 use glam::Vec3;
 use lookfrom_bvh::Hit;
 
-use crate::bsdf::BsdfSample;
+use crate::core::spectrum::Spectrum;
 use crate::integrator::{Path, Shadow};
-use crate::interaction::SurfaceInteraction;
-use crate::material::Shading;
-use crate::spectrum::Spectrum;
+use crate::shading::bsdf::BsdfSample;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::material::Shading;
 
 /// Why light is added.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +68,7 @@ pub enum Event {
         /// The place.
         surface: Box<SurfaceInteraction>,
         /// The look, where the integrator asks for it.
-        coefficients: Option<Box<crate::material::Coefficients>>,
+        coefficients: Option<Box<crate::shading::material::Coefficients>>,
     },
     /// A light was asked.
     LocalLight {

@@ -3,10 +3,10 @@
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::Hit;
 
-use crate::hash;
+use crate::core::hash;
+use crate::core::spectrum::Spectrum;
 use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, StepOutput, Term};
-use crate::interaction::SurfaceInteraction;
-use crate::spectrum::Spectrum;
+use crate::shading::interaction::SurfaceInteraction;
 use crate::world::World;
 
 /// The quantity of the first hit that is shown in place of light; black where nothing is hit.

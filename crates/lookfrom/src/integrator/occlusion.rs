@@ -3,9 +3,9 @@
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
 
+use crate::core::warp;
 use crate::integrator::{Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
-use crate::interior_stack::InteriorStack;
-use crate::warp;
+use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
 
 /// Ambient occlusion.

@@ -12,13 +12,13 @@ use lookfrom_simd::{dispatch, level};
 
 use eight::{FlatDiffuseHit, Steps};
 
-use crate::bsdf::BsdfSample;
-use crate::eight::LANES;
+use crate::core::eight::LANES;
+use crate::core::spectrum::Spectrum;
 use crate::integrator::{Bounce, Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
-use crate::interaction::SurfaceInteraction;
 use crate::light::{IncompletePdf, LightSampleContext};
-use crate::material::{Scattering, ShadingContext};
-use crate::spectrum::Spectrum;
+use crate::shading::bsdf::BsdfSample;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::material::{Scattering, ShadingContext};
 use crate::world::World;
 
 /// Purposes of random numbers at a surface.

@@ -7,14 +7,14 @@
 use glam::Vec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Point, Ray};
 
-use crate::hash;
+use crate::core::hash;
+use crate::core::spectrum::Spectrum;
 use crate::integrator::{Event, Path, Probe, Queues, StepOutput, Term};
-use crate::interaction::SurfaceInteraction;
-use crate::interior_stack::InteriorStack;
 use crate::light::{LightSample, Target};
-use crate::material::Coefficients;
-use crate::spectrum::Spectrum;
-use crate::texture::Lanes;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interior_stack::InteriorStack;
+use crate::shading::material::Coefficients;
+use crate::shading::texture::Lanes;
 use crate::world::World;
 
 /// How many transparent surfaces a shadow ray may cross before it counts as blocked.

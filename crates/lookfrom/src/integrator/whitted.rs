@@ -6,12 +6,12 @@
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
 
+use crate::core::spectrum::Spectrum;
 use crate::integrator::direct::local_light;
 use crate::integrator::{
     Branch, Cut, Event, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput, Term,
 };
-use crate::interaction::SurfaceInteraction;
-use crate::spectrum::Spectrum;
+use crate::shading::interaction::SurfaceInteraction;
 use crate::world::World;
 
 /// The deepest tree that [`Path::address`] can number.

@@ -11,12 +11,12 @@ use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
 
 use super::{EmissionSpectrum, LightSample, Target, toward};
-use crate::interaction::SurfaceInteraction;
-use crate::math;
+use crate::core::math;
+use crate::core::spectrum::Spectrum;
+use crate::core::warp;
 use crate::primitive::Disk;
-use crate::spectrum::Spectrum;
-use crate::texture::{FloatTexture, Lanes, TexturePoint, Textures};
-use crate::warp;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::texture::{FloatTexture, Lanes, TexturePoint, Textures};
 
 pub use mesh::MeshLight;
 pub(crate) use mesh::Triangle as LightTriangle;

@@ -8,8 +8,8 @@ use lookfrom_scene::settings::LightSampler as Kind;
 
 use super::tree::{LightBounds, Tree};
 use super::{Light, LightSampleContext};
-use crate::distribution::Discrete;
-use crate::sampler::ONE_MINUS_EPSILON;
+use crate::core::distribution::Discrete;
+use crate::core::sampler::ONE_MINUS_EPSILON;
 
 /// A way to choose one of many lights.
 #[derive(Clone, Debug)]

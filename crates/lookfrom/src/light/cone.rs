@@ -49,7 +49,7 @@ pub(super) fn angle(cos: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::warp;
+    use crate::core::warp;
 
     #[test]
     fn a_union_holds_both() {

@@ -8,10 +8,10 @@ use lookfrom_scene::texture::{TexelFilter, Wrap};
 
 use super::portal::{Opening, Portal};
 use super::{EmissionSpectrum, IncompletePdf, LightSample, LightSampleContext, Target};
-use crate::distribution::Piecewise2D;
-use crate::spectrum::Spectrum;
-use crate::texture::{self, Lanes, SpectrumType, Textures};
-use crate::warp;
+use crate::core::distribution::Piecewise2D;
+use crate::core::spectrum::Spectrum;
+use crate::core::warp;
+use crate::shading::texture::{self, Lanes, SpectrumType, Textures};
 
 /// Light from infinitely far, all around.
 #[derive(Clone, Debug)]

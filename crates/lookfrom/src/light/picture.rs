@@ -4,9 +4,9 @@ use glam::{DVec3, Mat3, Vec3};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
 use super::{EmissionSpectrum, LightSample, Target, toward};
-use crate::spectrum::Spectrum;
-use crate::texture::{self, Lanes, SpectrumType, Textures};
-use crate::warp;
+use crate::core::spectrum::Spectrum;
+use crate::core::warp;
+use crate::shading::texture::{self, Lanes, SpectrumType, Textures};
 
 /// A picture thrown into a rectangle.
 #[derive(Clone, Debug)]

@@ -10,8 +10,8 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec3};
 use lookfrom_scene::image::Image;
 
-use crate::distribution::{Window, Windowed2D};
-use crate::parallel;
+use crate::core::distribution::{Window, Windowed2D};
+use crate::core::parallel;
 
 /// How many cells a side are told apart where the colours are no picture.
 const SIDE: usize = 64;

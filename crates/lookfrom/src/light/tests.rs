@@ -15,12 +15,12 @@ use lookfrom_scene::spectrum::Curve;
 use rayon::prelude::*;
 
 use super::{IncompletePdf, Light, LightSampleContext};
-use crate::color::Wavelengths;
-use crate::math::luminance;
-use crate::sampler::Sampler;
-use crate::statistics::{chi_square_deviate, corrected_bound};
-use crate::texture::Lanes;
-use crate::warp;
+use crate::core::color::Wavelengths;
+use crate::core::math::luminance;
+use crate::core::sampler::Sampler;
+use crate::core::statistics::{chi_square_deviate, corrected_bound};
+use crate::core::warp;
+use crate::shading::texture::Lanes;
 use crate::world::World;
 
 /// The eye's place, where render space begins: lights are far from the origin of the world.

@@ -6,8 +6,8 @@
 use glam::Vec3;
 
 use super::cone::{Cone, angle};
-use crate::parallel;
-use crate::sampler::ONE_MINUS_EPSILON;
+use crate::core::parallel;
+use crate::core::sampler::ONE_MINUS_EPSILON;
 
 /// How many parts of an axis are tried as places to divide at.
 const BUCKETS: usize = 12;
@@ -364,7 +364,10 @@ mod tests {
                 let bounds = LightBounds {
                     min,
                     max: min + Vec3::new(next(), next(), next()),
-                    normals: Cone { axis: crate::warp::uniform_sphere([next(), next()]), cos: 1.0 - next() },
+                    normals: Cone {
+                        axis: crate::core::warp::uniform_sphere([next(), next()]),
+                        cos: 1.0 - next(),
+                    },
                     cos_emission: 0.0,
                     two_sided: light % 3 == 0,
                     power: 0.1 + next(),
@@ -470,17 +473,18 @@ mod tests {
         for _ in 0..20_000 {
             let (light, bounds) = lights[(next() * 60.0) as usize];
             // a normal in the cone, and a direction that it shines in
-            let (s, t) = crate::warp::orthonormal_basis(bounds.normals.axis);
-            let local = crate::warp::uniform_cone([next(), next()], 1.0 - bounds.normals.cos);
+            let (s, t) = crate::core::warp::orthonormal_basis(bounds.normals.axis);
+            let local = crate::core::warp::uniform_cone([next(), next()], 1.0 - bounds.normals.cos);
             let mut normal = s * local.x + t * local.y + bounds.normals.axis * local.z;
             if bounds.two_sided && next() < 0.5 {
                 normal = -normal;
             }
-            let direction = crate::warp::cosine_hemisphere([next(), next()], normal);
+            let direction = crate::core::warp::cosine_hemisphere([next(), next()], normal);
             let from = bounds.min + (bounds.max - bounds.min) * Vec3::new(next(), next(), next());
             let p = from + direction * libm::exp2f(20.0 * next() - 10.0);
             if direction.dot(normal) > 1e-3 {
-                let probability = tree.probability(p, crate::warp::uniform_sphere([next(), next()]), light);
+                let probability =
+                    tree.probability(p, crate::core::warp::uniform_sphere([next(), next()]), light);
                 assert!(probability > 0.0, "{p} {bounds:?}");
             }
         }

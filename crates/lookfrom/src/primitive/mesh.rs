@@ -7,8 +7,8 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 use lookfrom_bvh::Point;
 
 use super::{MaterialBinding, SurfacePoint};
-use crate::texture::MORE_UV_SETS;
-use crate::warp;
+use crate::core::warp;
+use crate::shading::texture::MORE_UV_SETS;
 
 /// Triangles of one shape.
 #[derive(Clone, Debug)]

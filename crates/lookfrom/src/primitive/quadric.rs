@@ -14,8 +14,8 @@ use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Affine, Point, Procedural, ProceduralHit, Ray};
 
 use super::{MaterialBinding, SurfacePoint};
-use crate::math;
-use crate::warp;
+use crate::core::math;
+use crate::core::warp;
 
 /// Unit of rounding of f64, 2⁻⁵³.
 const UNIT: f64 = 0.5 * f64::EPSILON;

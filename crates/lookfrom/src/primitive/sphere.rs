@@ -5,7 +5,7 @@ use lookfrom_bvh::Point;
 
 use super::quadric::sphere_derivatives;
 use super::{MaterialBinding, SurfacePoint};
-use crate::texture;
+use crate::shading::texture;
 
 /// Spheres of many shapes.
 #[derive(Clone, Debug, Default)]

@@ -10,11 +10,11 @@ use lookfrom_scene::scene::{Bounds, SourceFormat};
 use lookfrom_scene::{Location, Scene, Warning};
 
 use super::Renderer;
-use crate::interaction::SurfaceInteraction;
+use crate::core::warp;
 use crate::light::{IncompletePdf, Light, LightSampleContext, Target};
-use crate::material::MaterialKind;
-use crate::texture::Lanes;
-use crate::warp;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::material::MaterialKind;
+use crate::shading::texture::Lanes;
 use crate::world::World;
 
 /// Camera rays along each side of the picture: at first, and where those meet nothing. Then an odd number: what is small and far is

@@ -16,9 +16,9 @@ use lookfrom_scene::Result;
 use lookfrom_scene::settings::Crop;
 
 use super::{Rays, Renderer};
-use crate::clock::Stopwatch;
+use crate::core::clock::Stopwatch;
+use crate::core::parallel;
 use crate::film::{Film, FilmTile, Picture};
-use crate::parallel;
 
 /// Pixels on the side of a tile. One sample of each pixel of a tile is a batch.
 const TILE: u32 = 32;

@@ -9,7 +9,7 @@ use lookfrom_bvh::{Hit, Ray};
 use super::{Renderer, SampleId};
 use crate::film::{Aovs, FilmTile};
 use crate::integrator::Path;
-use crate::material;
+use crate::shading::material;
 
 /// What the camera's ray of a sample met.
 #[derive(Clone, Copy, Debug)]

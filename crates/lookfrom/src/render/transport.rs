@@ -6,10 +6,10 @@ use glam::DVec3;
 use lookfrom_scene::settings::{Integrator as Kind, RenderSettings};
 
 use super::{Batch, Rays, Renderer, SampleId};
-use crate::camera::Camera;
 use crate::integrator::{
     AmbientOcclusion, Event, FirstHit, Integrator, LightSampling, PathTracer, Raycast, Whitted,
 };
+use crate::view::camera::Camera;
 
 /// What a renderer asks of an [`Integrator`], whichever it is.
 pub(super) trait Transport: std::fmt::Debug + Send + Sync {

@@ -9,8 +9,8 @@ use lookfrom_scene::image::{
 use lookfrom_scene::settings::{Background, ImageSettings};
 
 use super::Finished;
-use crate::develop::{srgb8_before, srgba8};
 use crate::film::Picture;
+use crate::post::develop::{srgb8_before, srgba8};
 
 /// A picture format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,8 +4,8 @@ use lookfrom_scene::settings::ImageSettings;
 
 use super::header::{Taken, header};
 use super::{Fireflies, Session, layers};
-use crate::denoise::denoised;
 use crate::film::Picture;
+use crate::post::denoise::denoised;
 use crate::render::{Rendered, StopReason};
 
 /// A finished picture, ready to be [encoded](Finished::encode).

@@ -7,7 +7,7 @@ use lookfrom_scene::image::compare::{CHANNELS_ATTRIBUTE, channels_text};
 use lookfrom_scene::settings::{Background, Crop, ImageSettings, Layers, Sensor};
 
 use super::Session;
-use crate::color;
+use crate::core::color;
 
 /// How many samples a picture is made of.
 #[derive(Clone, Copy, Debug, Default)]

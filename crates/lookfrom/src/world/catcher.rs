@@ -9,11 +9,11 @@ use glam::Vec3;
 use lookfrom_bvh::Ray;
 
 use super::World;
-use crate::interaction::SurfaceInteraction;
+use crate::core::spectrum::Spectrum;
 use crate::light::Light;
-use crate::material::MaterialKind;
-use crate::spectrum::Spectrum;
-use crate::texture::{Lanes, SpectrumType, Textures, spectrum_of};
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::material::MaterialKind;
+use crate::shading::texture::{Lanes, SpectrumType, Textures, spectrum_of};
 
 /// The least reflectance that is reckoned with: what the camera sees of a darker floor is multiplied later.
 const LEAST_REFLECTANCE: f32 = 1e-3;

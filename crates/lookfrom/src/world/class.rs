@@ -1,9 +1,9 @@
 //! Classes of geometries: what their hits need, known when the world is compiled.
 
 use super::World;
-use crate::material::{BumpMapping, MaterialKind};
 use crate::primitive::{Mesh, Primitives};
-use crate::texture::SpectrumTexture;
+use crate::shading::material::{BumpMapping, MaterialKind};
+use crate::shading::texture::SpectrumTexture;
 
 /// What all hits on a geometry (outside of instances) have in common, which steps are sorted by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +17,10 @@ pub enum Class {
 
 impl World {
     /// The class of each geometry, of which the materials are compiled.
-    pub(super) fn classify(primitives: &[Primitives], materials: &[crate::material::Material]) -> Vec<Class> {
+    pub(super) fn classify(
+        primitives: &[Primitives],
+        materials: &[crate::shading::material::Material],
+    ) -> Vec<Class> {
         let class = |primitives: &Primitives| {
             let Primitives::Mesh(mesh) = primitives else { return Class::General };
             let binding = &mesh.binding;

@@ -13,12 +13,12 @@ use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 use super::lights::Lights;
 use super::place::{Compiler, Group};
 use super::{Instance, Medium, Names, World, reflectance};
-use crate::interior_stack::InteriorStack;
+use crate::core::math;
 use crate::light::{Light, LightChoice};
-use crate::material::{self, Material, MaterialKind};
-use crate::math;
 use crate::primitive::Primitives;
-use crate::texture::{SpectrumType, Textures};
+use crate::shading::interior_stack::InteriorStack;
+use crate::shading::material::{self, Material, MaterialKind};
+use crate::shading::texture::{SpectrumType, Textures};
 
 impl World {
     /// Compiles a scene. What can be survived is added to `warnings`. The origin of render space is the eye of the scene's

@@ -8,13 +8,13 @@ use lookfrom_scene::image::Image;
 use lookfrom_scene::light::{Light as Written, LightKind, Power, Sky as WrittenSky};
 use lookfrom_scene::material::Color;
 
-use crate::distribution::Piecewise2D;
+use crate::core::distribution::Piecewise2D;
+use crate::core::math;
+use crate::core::warp;
 use crate::light::{
     EmissionSpectrum, Environment, Goniometric, Layout, Light, Opening, Portal, Projection, Sky, SkyImage,
 };
-use crate::math;
-use crate::texture::{SpectrumTexture, SpectrumType, TexturePoint, Textures};
-use crate::warp;
+use crate::shading::texture::{SpectrumTexture, SpectrumType, TexturePoint, Textures};
 
 /// A world's lights, while they are gathered.
 pub(super) struct Lights<'a> {

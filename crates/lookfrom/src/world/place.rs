@@ -16,12 +16,12 @@ use lookfrom_scene::{Error, Location, Result, Warning};
 
 use super::Instance;
 use super::lights::Lights;
-use crate::interior_stack::{InteriorStack, MediumInterface};
 use crate::light::{AreaLight, EmissionSpectrum, Light, LightShape, QuadricLight};
 use crate::primitive::{
     Disk, Disks, MaterialBinding, Mesh, Primitives, Quadric, QuadricKind, Quadrics, SphereBinding, Spheres,
 };
-use crate::texture::FloatTexture;
+use crate::shading::interior_stack::{InteriorStack, MediumInterface};
+use crate::shading::texture::FloatTexture;
 
 /// From axes with the poles on z to axes with the poles on y: a rotation.
 const Y_FROM_Z: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);

@@ -9,10 +9,10 @@ use glam::Vec3;
 use lookfrom_scene::settings::Background;
 
 use super::{LightSampling, PathTracer, power_heuristic};
+use crate::core::spectrum::Spectrum;
 use crate::integrator::{Alpha, Path, Probe, StepOutput, Term};
 use crate::light::Light;
-use crate::spectrum::Spectrum;
-use crate::texture::Lanes;
+use crate::shading::texture::Lanes;
 use crate::world::World;
 
 impl PathTracer {

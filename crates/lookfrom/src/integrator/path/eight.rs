@@ -10,19 +10,19 @@ use lookfrom_bvh::{Hit, NONE, OriginPrimitive, Point, Ray};
 use lookfrom_simd::{Kernel, Simd, f32x8, f64x8, prelude::*, u32x8, u64x8};
 
 use super::{PathTracer, PreviousVertex, dimension, power_heuristic};
-use crate::bsdf::BsdfSample;
-use crate::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, orthonormal_bases};
-use crate::hash::GOLDEN;
+use crate::core::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, orthonormal_bases};
+use crate::core::hash::GOLDEN;
+use crate::core::sampler::eight::{PixelSamplers, mix};
+use crate::core::spectrum::Spectrum;
+use crate::core::warp;
 use crate::integrator::shadow;
 use crate::integrator::{Bounce, Event, Path, Probe, SampleStream, Shadow, StepOutput, Term};
-use crate::interaction::SurfaceInteraction;
 use crate::light::Target;
-use crate::material::Shading;
 use crate::primitive::Mesh;
-use crate::sampler::eight::{PixelSamplers, mix};
-use crate::spectrum::Spectrum;
-use crate::texture::{Lanes, TexturePoint};
-use crate::warp;
+use crate::shading::bsdf::BsdfSample;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::material::Shading;
+use crate::shading::texture::{Lanes, TexturePoint};
 use crate::world::World;
 use light_samples::LightSamples;
 

@@ -11,12 +11,12 @@ use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
 
 use super::{Cone, LightPoint, seen};
-use crate::distribution::Discrete;
+use crate::core::distribution::Discrete;
+use crate::core::parallel;
+use crate::core::warp;
 use crate::light::toward;
-use crate::parallel;
 use crate::primitive::{Mesh, VertexData};
-use crate::texture::TexturePoint;
-use crate::warp;
+use crate::shading::texture::TexturePoint;
 
 /// Solid angles in which triangles are chosen from by direction.
 const BY_DIRECTION: std::ops::RangeInclusive<f64> = 3e-4..=6.22;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec2};
 
 use super::{Cone, LightPoint, seen};
-use crate::distribution::Discrete;
+use crate::core::distribution::Discrete;
 use crate::primitive::Patches;
 
 /// Cells along u and v by which the area of a patch is summed.

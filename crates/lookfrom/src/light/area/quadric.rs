@@ -9,9 +9,9 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::{Cone, LightPoint, seen};
+use crate::core::warp;
 use crate::light::toward;
 use crate::primitive::{MaterialBinding, Quadric, QuadricKind};
-use crate::warp;
 
 /// Inside, with room for points on the sphere itself: those that an inward light on it shines on.
 const ON_SPHERE: f64 = 1e-6;

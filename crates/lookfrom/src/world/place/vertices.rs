@@ -8,10 +8,10 @@ use lookfrom_scene::shape::{Mesh as WrittenMesh, Patches as WrittenPatches, Stra
 use lookfrom_scene::{Error, ErrorKind, Result};
 
 use super::{Compiler, Group, Placing, inverse, not_invertible};
+use crate::core::math;
 use crate::light::{LightShape, MeshLight, PatchLight};
-use crate::math;
 use crate::primitive::{Curves, Mesh, Patches, Primitives, SEGMENTS};
-use crate::texture::{FloatTexture, MORE_UV_SETS, SpectrumType};
+use crate::shading::texture::{FloatTexture, MORE_UV_SETS, SpectrumType};
 
 /// A patch is a parallelogram if its fourth corner is off it by less than this part of its distance from the origin (or of
 /// 1, for texture coordinates): the rounding of numbers in f32.

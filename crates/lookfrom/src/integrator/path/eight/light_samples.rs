@@ -7,11 +7,11 @@ use lookfrom_bvh::Point;
 use lookfrom_simd::{Simd, f32x8, f64x8, prelude::*};
 
 use super::{FlatDiffuseHit, SampleStreams, Surfaces, dimension};
-use crate::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, narrow};
+use crate::core::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane, narrow};
+use crate::core::spectrum::Spectrum;
 use crate::integrator::Event;
 use crate::light::{IncompletePdf, Light, LightSample, LightSampleContext, LightTriangle, Target};
-use crate::spectrum::Spectrum;
-use crate::texture::Lanes;
+use crate::shading::texture::Lanes;
 use crate::world::World;
 
 /// What a light answered, in one lane.
@@ -178,7 +178,7 @@ impl<S: Simd> LightSamples<S> {
     }
 }
 
-/// The twin of [`crate::warp::uniform_triangle`]: β and γ.
+/// The twin of [`crate::core::warp::uniform_triangle`]: β and γ.
 #[inline(always)]
 fn uniform_triangles<S: Simd>(simd: S, u: Narrow<S>, v: Narrow<S>) -> [Narrow<S>; 2] {
     let (half, one) = (f32x8::splat(simd, 0.5), f32x8::splat(simd, 1.0));

@@ -1,0 +1,90 @@
+//! What is a measured curve at four wavelengths, fast?
+
+use std::sync::OnceLock;
+
+use lookfrom_scene::spectrum::observer::{self, SAMPLES};
+use lookfrom_scene::spectrum::{Curve, SHORTEST, named};
+
+use super::rgb_from_xyz;
+use crate::core::spectrum::Spectrum;
+
+/// A curve sampled at each nm from 360 to 830, where the nearest sample counts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DenselySampledSpectrum(Box<[f32; SAMPLES]>);
+
+impl From<&Curve> for DenselySampledSpectrum {
+    fn from(curve: &Curve) -> Self {
+        Self::from_samples(std::array::from_fn(|i| curve.at((SHORTEST as usize + i) as f32)))
+    }
+}
+
+impl DenselySampledSpectrum {
+    /// The values at 360, 361, … 830 nm.
+    pub fn from_samples(samples: [f32; SAMPLES]) -> Self {
+        Self(Box::new(samples))
+    }
+
+    /// The values at 360, 361, … 830 nm.
+    pub fn samples(&self) -> &[f32; SAMPLES] {
+        &self.0
+    }
+
+    /// The value at each wavelength in nm; 0 outside 360 … 830.
+    pub fn at(&self, lambda: &[f32; 4]) -> Spectrum {
+        let at = |nm: f32| nearest(nm).map_or(0.0, |i| self.0[i]);
+        Spectrum([at(lambda[0]), at(lambda[1]), at(lambda[2]), at(lambda[3])])
+    }
+
+    /// The same curve times a factor.
+    pub fn scaled(&self, factor: f32) -> Self {
+        Self(Box::new(self.0.map(|value| value * factor)))
+    }
+
+    /// The greatest value.
+    pub fn max(&self) -> f32 {
+        self.0.iter().copied().fold(f32::NEG_INFINITY, f32::max)
+    }
+
+    /// The integral over the wavelengths in nm, weighed by the luminous efficiency y: what pbrt-v4 divides the light of
+    /// spectra by. Light of luminance 1 has [`observer::Y_INTEGRAL`]; divide by that for Y.
+    pub fn y_integral(&self) -> f32 {
+        self.integral(1) as f32
+    }
+
+    /// The colour of light with this spectrum; the constant 1 has Y = 1.
+    pub fn to_xyz(&self) -> [f32; 3] {
+        [0, 1, 2].map(|i| (self.integral(i) / observer::Y_INTEGRAL) as f32)
+    }
+
+    /// Linear Rec. 709 of light with this spectrum, which is what an emission is in RGB mode. Saturated light has negative
+    /// components.
+    pub fn to_rgb(&self) -> [f32; 3] {
+        rgb_from_xyz(self.to_xyz())
+    }
+
+    /// What this curve as a reflectance (or transmittance, or index of refraction) is in RGB mode: the colour of daylight D65
+    /// times the curve, so that a constant c gives (c, c, c); never negative.
+    pub fn to_rgb_reflectance(&self) -> [f32; 3] {
+        let daylight = standard_illuminant();
+        let lit = Self::from_samples(std::array::from_fn(|i| self.0[i] * daylight.0[i]));
+        lit.to_rgb().map(|value| value.max(0.0))
+    }
+
+    fn integral(&self, function: usize) -> f64 {
+        let function = &observer::matching()[function];
+        function.iter().zip(self.0.iter()).map(|(&f, &value)| f64::from(f) * f64::from(value)).sum()
+    }
+}
+
+/// The number of the sample that is nearest to a wavelength in nm, if it lies within.
+pub(super) fn nearest(nm: f32) -> Option<usize> {
+    // What is below 0 or not a number becomes 0, which is outside, too.
+    let i = ((nm + 0.5) as u32).wrapping_sub(SHORTEST) as usize;
+    (i < SAMPLES).then_some(i)
+}
+
+/// D65 with Y = 1: the white of Rec. 709, whose RGB is (1, 1, 1).
+pub fn standard_illuminant() -> &'static DenselySampledSpectrum {
+    static D65: OnceLock<DenselySampledSpectrum> = OnceLock::new();
+    D65.get_or_init(|| DenselySampledSpectrum::from(&named("stdillum-D65").expect("a curve of our own")))
+}

@@ -1,0 +1,111 @@
+//! What a film sees of light: the sensor's channels, exposure and white balance.
+//!
+//! pbrt-v4's `PixelSensor`. The standard observer measures X, Y and Z and is balanced by von Kries's scaling of Bradford's
+//! responses. A camera measures its own red, green and blue, and a matrix makes XYZ of them ([`super::calibration`]).
+
+use std::sync::Arc;
+
+use lookfrom_scene::settings::Sensor as Settings;
+use lookfrom_scene::spectrum::daylight::daylight;
+use lookfrom_scene::spectrum::observer::{self, SAMPLES};
+use lookfrom_scene::spectrum::space::{self, Matrix};
+
+use super::densely_sampled::{DenselySampledSpectrum, nearest};
+use super::{Wavelengths, calibration, matrices};
+use crate::core::spectrum::Spectrum;
+
+/// The standard observer or a camera, with exposure and white balance. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Sensor {
+    /// At each nm, what light of density 1 in one of four lanes adds to red, green, blue.
+    responses: Arc<[[f32; 3]; SAMPLES]>,
+    /// What becomes of a colour that is RGB already.
+    balanced_from_rgb: [[f32; 3]; 3],
+    channels_from_rgb: Matrix,
+    measures_xyz: bool,
+}
+
+impl Default for Sensor {
+    fn default() -> Self {
+        Self::new(&Settings::default())
+    }
+}
+
+impl Sensor {
+    /// The sensor of a picture's settings. Its limit of brightness is left to [`crate::render`].
+    pub fn new(settings: &Settings) -> Self {
+        let (xyz_from_rgb, rgb_from_xyz) = matrices();
+        let imaging_ratio = f64::from(settings.imaging_ratio);
+        let scaled = |matrix: &Matrix| matrix.map(|row| row.map(|value| value * imaging_ratio));
+        let (functions, xyz_from_channels) = match settings.camera {
+            Some(camera) => {
+                let responses =
+                    camera.responses().map(|response| *DenselySampledSpectrum::from(&response).samples());
+                let kelvin = settings.white_balance.unwrap_or(Settings::DAYLIGHT);
+                let matrix = calibration::xyz_from_camera(&responses, kelvin);
+                (responses, Some(matrix))
+            }
+            None => (*observer::matching(), settings.white_balance.and_then(balance)),
+        };
+        let rgb_from_channels =
+            xyz_from_channels.map_or(*rgb_from_xyz, |matrix| space::product(rgb_from_xyz, &matrix));
+        let exposed = scaled(&rgb_from_channels);
+        let per_lane = 1.0 / (4.0 * observer::Y_INTEGRAL);
+        let response = |i: usize| {
+            let channels = functions.each_ref().map(|function| f64::from(function[i]) * per_lane);
+            space::apply(&exposed, channels).map(|value| value as f32)
+        };
+        let balanced = match settings.camera {
+            Some(_) => scaled(&calibration::rgb_by_camera(&functions, &rgb_from_channels)),
+            None => space::product(&exposed, xyz_from_rgb),
+        };
+        Self {
+            responses: Arc::new(std::array::from_fn(response)),
+            balanced_from_rgb: balanced.map(|row| row.map(|value| value as f32)),
+            channels_from_rgb: space::inverse(&rgb_from_channels),
+            measures_xyz: settings.measures_xyz(),
+        }
+    }
+
+    /// Linear Rec. 709 of a sample's radiance: an estimate whose mean is the colour. D65 of luminance 1 is (1, 1, 1).
+    pub fn rgb(&self, radiance: Spectrum, wavelengths: &Wavelengths) -> [f32; 3] {
+        let weighted = wavelengths.weighted(radiance);
+        let mut rgb = [0.0; 3];
+        for (nm, light) in wavelengths.lambda.into_iter().zip(weighted.0) {
+            let Some(i) = nearest(nm) else { continue };
+            for (sum, response) in rgb.iter_mut().zip(self.responses[i]) {
+                *sum += response * light;
+            }
+        }
+        rgb
+    }
+
+    /// What a colour of RGB mode looks like after exposure and white balance. For a camera, whose response to a colour depends
+    /// on its spectrum, the least squares over the swatches of a ColorChecker in daylight.
+    pub fn balanced(&self, [r, g, b]: [f32; 3]) -> [f32; 3] {
+        self.balanced_from_rgb.map(|[x, y, z]| x * r + y * g + z * b)
+    }
+
+    /// What gives the channels that a film knows the variance of, from linear Rec. 709: those of [`Sensor::channels`], where X, Y and
+    /// Z are by [`space::XYZ_FROM_RGB`].
+    pub fn variance_from_rgb(&self) -> &Matrix {
+        if self.measures_xyz { &space::XYZ_FROM_RGB } else { &self.channels_from_rgb }
+    }
+
+    /// The values of the sensor's channels, before white balance, of a colour that it made: the camera's red, green and blue, or X,
+    /// Y and Z. The standard observer sees light of luminance 1 as Y = 1.
+    pub fn channels(&self, rgb: [f32; 3]) -> [f32; 3] {
+        space::apply(&self.channels_from_rgb, rgb.map(f64::from)).map(|value| value as f32)
+    }
+}
+
+/// What makes daylight of that temperature, in kelvin, as white as D65; `None` for a black body too cold to be seen, which
+/// has no colour to balance.
+fn balance(kelvin: f32) -> Option<Matrix> {
+    let from = observer::xyz(&daylight(kelvin));
+    let to = space::apply(&matrices().0, [1.0; 3]);
+    from.iter().all(|value| *value > 0.0).then(|| space::adapted(from, to))
+}
+
+#[cfg(test)]
+mod tests;

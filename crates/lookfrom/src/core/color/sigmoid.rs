@@ -1,0 +1,107 @@
+//! Which smooth spectrum has this RGB colour?
+//!
+//! A sigmoid of a quadratic polynomial of the wavelength is smooth, stays within [0, 1], and can have almost every colour a
+//! surface can have (Jakob and Hanika 2019). Colours that are the same in red, green and blue are constants.
+
+use super::solve::{Measure, solve};
+use super::table::Table;
+use crate::core::spectrum::Spectrum;
+
+/// A smooth spectrum within [0, 1]: s(a t² + b t + c) with s(x) = ½ + x / (2 √(1 + x²)) and t = (λ − 595 nm) / 235 nm.
+///
+/// pbrt-v4 has the same functions as polynomials of λ itself; the shorter t keeps the digits of single precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sigmoid(pub [f32; 3]);
+
+/// Where t is 0, and how far from there to where it is ±1, in nm.
+pub(super) const MIDDLE: f32 = 595.0;
+/// See [`MIDDLE`].
+pub(super) const REACH: f32 = 235.0;
+
+/// Beyond this the sigmoid is exactly 0 or 1 and its square is still finite.
+const FLAT: f32 = 1e18;
+
+impl Sigmoid {
+    /// The same value v at all wavelengths, v within [0, 1].
+    pub fn constant(v: f32) -> Self {
+        Self([0.0, 0.0, ((v - 0.5) / (v * (1.0 - v)).sqrt()).clamp(-FLAT, FLAT)])
+    }
+
+    /// The values at wavelengths in nm.
+    pub fn at(&self, lambda: &[f32; 4]) -> Spectrum {
+        let Self([a, b, c]) = *self;
+        Spectrum(lambda.map(|nm| {
+            let t = (nm - MIDDLE) * (1.0 / REACH);
+            let x = (a * t + b) * t + c;
+            0.5 + 0.5 * x / (1.0 + x * x).sqrt()
+        }))
+    }
+
+    /// The spectrum whose colour under D65 is nearly `rgb`, by a table, for textures. Components are clamped to [0, 1]; what
+    /// is not a number counts as 0.
+    pub fn from_rgb(rgb: [f32; 3]) -> Self {
+        let rgb = clamped(rgb);
+        if let Some(grey) = grey(rgb) {
+            return Self::constant(grey);
+        }
+        Self(Table::shared().coefficients(rgb))
+    }
+
+    /// The spectrum whose colour under D65 is `rgb` up to rounding, for the constants of a scene; clamped like
+    /// [`Sigmoid::from_rgb`].
+    pub fn exact_from_rgb(rgb: [f32; 3]) -> Self {
+        let rgb = clamped(rgb);
+        if let Some(grey) = grey(rgb) {
+            return Self::constant(grey);
+        }
+        Self(solve(Measure::exact(), rgb.map(f64::from)).map(|coefficient| coefficient as f32))
+    }
+}
+
+/// Each component within [0, 1]; what is not a number counts as 0.
+fn clamped(rgb: [f32; 3]) -> [f32; 3] {
+    rgb.map(|component| if component > 0.0 { component.min(1.0) } else { 0.0 })
+}
+
+/// The value of a colour without hue. What is so dark that its spectrum would be rounded to 0 is black.
+fn grey([r, g, b]: [f32; 3]) -> Option<f32> {
+    if r.max(g).max(b) < 1e-9 {
+        return Some(0.0);
+    }
+    (r == g && g == b).then_some(r)
+}
+
+/// A spectrum that may exceed 1: a scale times a smooth spectrum of at most ½.
+///
+/// For indices of refraction and the like. For light, multiply by [`super::standard_illuminant`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unbounded {
+    /// Twice the greatest component.
+    pub scale: f32,
+    /// What the scale is multiplied by.
+    pub sigmoid: Sigmoid,
+}
+
+impl Unbounded {
+    /// The spectrum with the colour `rgb` (under D65), by the table. Negative components and what is not a number count as 0.
+    pub fn from_rgb(rgb: [f32; 3]) -> Self {
+        Self::with(rgb, Sigmoid::from_rgb)
+    }
+
+    /// As [`Unbounded::from_rgb`], but exactly, for the constants of a scene.
+    pub fn exact_from_rgb(rgb: [f32; 3]) -> Self {
+        Self::with(rgb, Sigmoid::exact_from_rgb)
+    }
+
+    fn with(rgb: [f32; 3], lift: fn([f32; 3]) -> Sigmoid) -> Self {
+        let rgb = rgb.map(|component| if component > 0.0 { component.min(f32::MAX / 4.0) } else { 0.0 });
+        let scale = 2.0 * rgb[0].max(rgb[1]).max(rgb[2]);
+        let sigmoid = if scale > 0.0 { lift(rgb.map(|v| v / scale)) } else { Sigmoid::constant(0.0) };
+        Self { scale, sigmoid }
+    }
+
+    /// The values at wavelengths in nm.
+    pub fn at(&self, lambda: &[f32; 4]) -> Spectrum {
+        self.sigmoid.at(lambda) * self.scale
+    }
+}

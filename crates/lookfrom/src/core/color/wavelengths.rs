@@ -1,0 +1,68 @@
+//! Which wavelengths does a sample follow?
+
+use std::sync::OnceLock;
+
+use lookfrom_scene::spectrum::{LONGEST, SHORTEST};
+
+use crate::core::spectrum::Spectrum;
+
+/// Cells of equal probability between the shortest and the longest wavelength; a multiple of four.
+const CELLS: usize = 2048;
+
+/// Where the cells begin, and the end of the last.
+fn ends() -> &'static [f32; CELLS + 1] {
+    static ENDS: OnceLock<[f32; CELLS + 1]> = OnceLock::new();
+    ENDS.get_or_init(|| {
+        let tangent = |nm: u32| libm::tanh(0.0072 * (f64::from(nm) - 538.0));
+        let (low, high) = (tangent(SHORTEST), tangent(LONGEST));
+        std::array::from_fn(|k| {
+            let share = k as f64 / CELLS as f64;
+            (538.0 + libm::atanh(low + share * (high - low)) / 0.0072) as f32
+        })
+    })
+}
+
+/// Four wavelengths of one sample with their densities. After dispersion only the first counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wavelengths {
+    /// In nm, between 360 and 830.
+    pub lambda: [f32; 4],
+    /// With which density each was chosen, per nm; 0 for those that no longer count.
+    pub pdf: [f32; 4],
+}
+
+impl Wavelengths {
+    /// Wavelengths by how well the eye sees them, with a density about ∝ 1 / cosh²(0.0072 (λ − 538)) on 360 … 830 nm
+    /// (Radziszewski, Boryczko, Alda 2009): constant in each of 2048 cells of equal probability. `u` is in [0, 1); the lanes
+    /// are at u, u + ¼, u + ½, u + ¾ modulo 1.
+    pub fn sample_visible(u: f32) -> Self {
+        let ends = ends();
+        let place = u * CELLS as f32;
+        let cell = (place as usize).min(CELLS - 1);
+        let within = place - cell as f32;
+        let lane = |shift: usize| {
+            let cell = (cell + shift * CELLS / 4) % CELLS;
+            let width = ends[cell + 1] - ends[cell];
+            (ends[cell] + within * width, 1.0 / (CELLS as f32 * width))
+        };
+        let lanes = [lane(0), lane(1), lane(2), lane(3)];
+        Self { lambda: lanes.map(|(lambda, _)| lambda), pdf: lanes.map(|(_, pdf)| pdf) }
+    }
+
+    /// Lets only the first wavelength count from here on, at four times its weight. Doing so twice is doing so once.
+    pub fn terminate_secondary(&mut self) {
+        if !self.secondary_terminated() {
+            self.pdf = [self.pdf[0] / 4.0, 0.0, 0.0, 0.0];
+        }
+    }
+
+    /// Whether only the first wavelength counts.
+    pub fn secondary_terminated(&self) -> bool {
+        self.pdf[1..] == [0.0; 3]
+    }
+
+    /// Each lane divided by its density; 0 where that is 0.
+    pub(super) fn weighted(&self, radiance: Spectrum) -> Spectrum {
+        radiance.zip(Spectrum(self.pdf), |l, pdf| if pdf > 0.0 { l / pdf } else { 0.0 })
+    }
+}

@@ -1,0 +1,218 @@
+//! How does a pixel weigh the light around its centre?
+//!
+//! Step 3 on the way of a pixel. The weight is not applied to samples that fall anywhere: places are *chosen* with a
+//! density proportional to the filter, so that a sample touches only its own pixel (filter importance sampling, Ernst,
+//! Stamminger & Greiner 2006). Where a filter is negative, so is the weight. Filters here are products of one curve
+//! along x and y.
+//!
+//! Mitchell & Netravali 1988 (the cubic); Harris 1978 (the four-term window).
+
+use crate::core::sampler::ONE_MINUS_EPSILON;
+use lookfrom_scene::settings::Filter as Shape;
+
+/// Cells of a table from the centre to the radius.
+const CELLS: usize = 1024;
+
+/// Parts that shares are sorted into before a cell is looked for.
+const PARTS: usize = 1024;
+
+/// A pixel filter, made ready for sampling.
+///
+/// Box and triangle are inverted exactly. The others are tabulated: along each axis 1024 cells from the centre to the
+/// radius, of constant density each, with the integral over each cell right to rounding. So no sample lies farther than
+/// radius/1024 pixels from where the exact inverse would put it.
+#[derive(Clone, Debug)]
+pub struct Filter {
+    curve: Curve,
+    radius: f32,
+    /// ∫∫f in pixels².
+    integral: f64,
+    table: Option<Table>,
+}
+
+/// The inverse of |f| along one axis, from the centre outward.
+#[derive(Clone, Debug)]
+struct Table {
+    /// Share of ∫|f| before each cell, and 1 at the end.
+    cumulative: Vec<f32>,
+    /// For each of [`PARTS`] equal parts of 0 … 1, the cell that holds its beginning: where to begin to look.
+    first: Vec<u16>,
+    /// Whether f is negative in the cell.
+    negative: Vec<bool>,
+    /// (∫|f| / ∫f)², for both axes together.
+    weight: f32,
+}
+
+/// A filter along one axis, over −1 … 1 for the radius on either side.
+#[derive(Clone, Copy, Debug)]
+enum Curve {
+    Box,
+    Triangle,
+    /// exp(−steepness x²) less its value at 1.
+    Gaussian {
+        steepness: f64,
+    },
+    Mitchell {
+        b: f64,
+        c: f64,
+    },
+    BlackmanHarris,
+}
+
+impl Filter {
+    /// The filter that was written. A radius that is not positive and finite is taken for ½; a shape that has no
+    /// finite, positive integral (a Gaussian without width, wild coefficients) for the box of the same radius.
+    pub fn new(shape: Shape) -> Self {
+        let (curve, radius) = match shape {
+            Shape::Box { radius } => (Curve::Box, radius),
+            Shape::Triangle { radius } => (Curve::Triangle, radius),
+            Shape::Gaussian { radius, sigma } => {
+                let (r, s) = (f64::from(radius), f64::from(sigma));
+                (Curve::Gaussian { steepness: r * r / (2.0 * s * s) }, radius)
+            }
+            Shape::Mitchell { radius, b, c } => {
+                (Curve::Mitchell { b: f64::from(b), c: f64::from(c) }, radius)
+            }
+            Shape::BlackmanHarris { radius } => (Curve::BlackmanHarris, radius),
+        };
+        let radius = if radius.is_finite() && radius > 0.0 { radius } else { 0.5 };
+        match curve {
+            Curve::Box => Self::without_table(curve, radius, 2.0),
+            Curve::Triangle => Self::without_table(curve, radius, 1.0),
+            _ => match Table::new(curve) {
+                Some((table, integral)) => {
+                    Self { integral: square(f64::from(radius) * integral), curve, radius, table: Some(table) }
+                }
+                None => Self::without_table(Curve::Box, radius, 2.0),
+            },
+        }
+    }
+
+    fn without_table(curve: Curve, radius: f32, integral: f64) -> Self {
+        Self { curve, radius, integral: square(f64::from(radius) * integral), table: None }
+    }
+
+    /// A place for a sample, as an offset in pixels from the centre of the pixel, and the weight of what is seen there.
+    ///
+    /// `u` is in [0, 1)²; each coordinate of the offset grows with its own. Weights are all of one magnitude, negative
+    /// where the filter is, and 1 on the average.
+    pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
+        let [(x, x_sign), (y, y_sign)] = u.map(|u| {
+            // Choose a side, and how far to go on it.
+            let outward = (2.0 * u - 1.0).abs().min(ONE_MINUS_EPSILON);
+            let side = if u < 0.5 { -self.radius } else { self.radius };
+            let (x, sign) = match (&self.table, self.curve) {
+                (Some(table), _) => table.invert(outward),
+                (None, Curve::Triangle) => (1.0 - (1.0 - outward).sqrt(), 1.0),
+                (None, _) => (outward, 1.0),
+            };
+            (side * x, sign)
+        });
+        let magnitude = self.table.as_ref().map_or(1.0, |table| table.weight);
+        ([x, y], x_sign * y_sign * magnitude)
+    }
+
+    /// The filter itself at an offset in pixels from the centre, per pixel²: its integral over the plane is 1.
+    pub fn evaluate(&self, x: f32, y: f32) -> f32 {
+        let along = |x: f32| {
+            let x = (f64::from(x) / f64::from(self.radius)).abs();
+            if x <= 1.0 { self.curve.value(x) } else { 0.0 }
+        };
+        (along(x) * along(y) / self.integral) as f32
+    }
+
+    /// How far from the centre of the pixel samples may lie along each axis, in pixels.
+    pub fn radius(&self) -> f32 {
+        self.radius
+    }
+}
+
+impl Table {
+    /// The table of a curve, and ∫f over −1 … 1. `None` if it has no finite, positive integral.
+    fn new(curve: Curve) -> Option<(Self, f64)> {
+        // Integrate each cell by Simpson's rule on 8 pieces.
+        let cells: Vec<f64> = (0..CELLS).map(|cell| integrate(curve, cell)).collect();
+        let total: f64 = cells.iter().sum();
+        let absolute: f64 = cells.iter().map(|cell| cell.abs()).sum();
+        let weight = square(absolute / total) as f32;
+        if !(total.is_finite() && absolute.is_finite() && total > 0.0 && weight.is_finite()) {
+            return None;
+        }
+        // Sum up the shares; the end is 1, whatever the rounding.
+        let mut sum = 0.0;
+        let mut cumulative = vec![0.0];
+        for cell in &cells {
+            sum += cell.abs();
+            cumulative.push((sum / absolute).min(1.0) as f32);
+        }
+        cumulative[CELLS] = 1.0;
+        let negative = cells.iter().map(|&cell| cell < 0.0).collect();
+        let first = |part: usize| {
+            let share = part as f32 / PARTS as f32;
+            cumulative[1..].partition_point(|&end| end <= share).min(CELLS - 1) as u16
+        };
+        let first = (0..PARTS).map(first).collect();
+        Some((Self { cumulative, first, negative, weight }, 2.0 * total))
+    }
+
+    /// How far out (0 … 1) the given share of |f| reaches, and the sign of f there. `share` is in [0, 1).
+    fn invert(&self, share: f32) -> (f32, f32) {
+        // Find the last cell that begins at or before it: one of positive width in the table.
+        let mut cell = usize::from(self.first[(share * PARTS as f32) as usize]);
+        while cell < CELLS - 1 && self.cumulative[cell + 1] <= share {
+            cell += 1;
+        }
+        let (start, end) = (self.cumulative[cell], self.cumulative[cell + 1]);
+        let place = (cell as f32 + (share - start) / (end - start)) / CELLS as f32;
+        (place, if self.negative[cell] { -1.0 } else { 1.0 })
+    }
+}
+
+fn square(x: f64) -> f64 {
+    x * x
+}
+
+/// ∫f over one cell of the table.
+fn integrate(curve: Curve, cell: usize) -> f64 {
+    const PIECES: usize = 8;
+    let width = 1.0 / (CELLS * PIECES) as f64;
+    let at =
+        |half_pieces: usize| curve.value((cell * PIECES) as f64 * width + half_pieces as f64 * (0.5 * width));
+    let pieces = (0..PIECES).map(|i| at(2 * i) + 4.0 * at(2 * i + 1) + at(2 * i + 2));
+    pieces.sum::<f64>() * width / 6.0
+}
+
+impl Curve {
+    /// The value at 0 ≤ x ≤ 1.
+    fn value(self, x: f64) -> f64 {
+        match self {
+            Self::Box => 1.0,
+            Self::Triangle => 1.0 - x,
+            // exp(−s x²) − exp(−s), without the cancellation.
+            Self::Gaussian { steepness } => {
+                -libm::exp(-steepness * x * x) * libm::expm1(-steepness * (1.0 - x * x))
+            }
+            Self::Mitchell { b, c } => {
+                // The cubic is written for a radius of 2.
+                let x = 2.0 * x;
+                let sixfold = if x <= 1.0 {
+                    ((12.0 - 9.0 * b - 6.0 * c) * x + (-18.0 + 12.0 * b + 6.0 * c)) * x * x + (6.0 - 2.0 * b)
+                } else {
+                    (((-b - 6.0 * c) * x + (6.0 * b + 30.0 * c)) * x + (-12.0 * b - 48.0 * c)) * x
+                        + (8.0 * b + 24.0 * c)
+                };
+                sixfold / 6.0
+            }
+            Self::BlackmanHarris => {
+                let angle = std::f64::consts::PI * x;
+                0.35875
+                    + 0.48829 * libm::cos(angle)
+                    + 0.14128 * libm::cos(2.0 * angle)
+                    + 0.01168 * libm::cos(3.0 * angle)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,195 @@
+//! Do samples and weights together make the filter?
+
+use super::*;
+use crate::core::statistics::chi_square_deviate;
+
+fn all() -> [Shape; 8] {
+    [
+        Shape::Box { radius: 0.5 },
+        Shape::Box { radius: 1.25 },
+        Shape::Triangle { radius: 1.0 },
+        Shape::Gaussian { radius: 1.5, sigma: 0.5 },
+        Shape::Gaussian { radius: 2.0, sigma: 3.0 },
+        Shape::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 },
+        Shape::Mitchell { radius: 1.7, b: 0.0, c: 0.75 },
+        Shape::BlackmanHarris { radius: 1.5 },
+    ]
+}
+
+/// Every x of a fine even grid of u, with the signed weight of one axis.
+fn along_x(filter: &Filter) -> impl Iterator<Item = (f64, f64)> {
+    const N: u32 = 1 << 18;
+    let ([_, _], centre) = filter.sample([0.5, 0.5]);
+    // Weights are squares of those of one axis.
+    let scale = f64::from(centre).sqrt();
+    (0..N).map(move |i| {
+        let u = (f64::from(i) + 0.5) / f64::from(N);
+        let ([x, _], weight) = filter.sample([u as f32, 0.5]);
+        (f64::from(x), f64::from(weight) / scale)
+    })
+}
+
+#[test]
+fn moments_are_those_of_the_filter() {
+    for shape in all() {
+        let filter = Filter::new(shape);
+        let r = f64::from(filter.radius());
+        // Integrate f(x, ·) slowly, by the midpoint rule.
+        const N: u32 = 40_000;
+        let middle = f64::from(filter.evaluate(0.0, 0.0)).sqrt();
+        for power in 0..=6 {
+            let slow: f64 = (0..N)
+                .map(|i| {
+                    let x = ((f64::from(i) + 0.5) / f64::from(N) * 2.0 - 1.0) * r;
+                    f64::from(filter.evaluate(x as f32, 0.0)) / middle * x.powi(power)
+                })
+                .sum::<f64>()
+                * (2.0 * r / f64::from(N));
+            let (mut sum, mut count) = (0.0, 0.0);
+            for (x, weight) in along_x(&filter) {
+                sum += weight * x.powi(power);
+                count += 1.0;
+            }
+            let sampled = sum / count;
+            let tolerance = 2e-4 * r.powi(power).max(1.0);
+            assert!((sampled - slow).abs() < tolerance, "{shape:?} x^{power}: {sampled}, not {slow}");
+        }
+    }
+}
+
+#[test]
+fn weights_average_to_one() {
+    for shape in all() {
+        let filter = Filter::new(shape);
+        const N: u32 = 1024;
+        let at = |i: u32| (i as f32 + 0.5) / N as f32;
+        let sum: f64 = (0..N * N).map(|i| f64::from(filter.sample([at(i % N), at(i / N)]).1)).sum();
+        let mean = sum / f64::from(N * N);
+        assert!((mean - 1.0).abs() < 3e-3, "{shape:?}: {mean}");
+    }
+}
+
+#[test]
+fn samples_follow_the_magnitude_of_the_filter() {
+    const CELLS: usize = 24;
+    const SAMPLES: u32 = 200_000;
+    for shape in all() {
+        let filter = Filter::new(shape);
+        let r = filter.radius();
+        let cell = |x: f32| (((x / r + 1.0) * 0.5 * CELLS as f32) as usize).min(CELLS - 1);
+        // Expect ∫|f| over each cell.
+        const FINE: usize = 480;
+        let mut expected = vec![0.0; CELLS * CELLS];
+        let place = |i: usize| ((i as f32 + 0.5) / FINE as f32 * 2.0 - 1.0) * r;
+        for i in 0..FINE * FINE {
+            let (x, y) = (place(i % FINE), place(i / FINE));
+            expected[cell(y) * CELLS + cell(x)] += f64::from(filter.evaluate(x, y)).abs();
+        }
+        let total: f64 = expected.iter().sum();
+        expected.iter_mut().for_each(|e| *e *= f64::from(SAMPLES) / total);
+        // Count samples, whose weights must have the sign of f.
+        let sampler = crate::core::sampler::Sampler::new(lookfrom_scene::settings::Sampler::Independent, 3);
+        let mut observed = vec![0; CELLS * CELLS];
+        let mut wrong_signs = 0;
+        for i in 0..SAMPLES {
+            let ([x, y], weight) = filter.sample(sampler.two([0, 0], i, 0));
+            assert!(x.abs() <= r && y.abs() <= r);
+            observed[cell(y) * CELLS + cell(x)] += 1;
+            wrong_signs += u32::from(weight * filter.evaluate(x, y) < 0.0);
+        }
+        let deviate = chi_square_deviate(&observed, &expected);
+        assert!(deviate < 4.5, "{shape:?}: {deviate}");
+        // Only a cell of the table that f crosses zero in may err.
+        assert!(wrong_signs < SAMPLES / 1000, "{shape:?}: {wrong_signs}");
+    }
+}
+
+#[test]
+fn tables_agree_with_bisection() {
+    for shape in all() {
+        let filter = Filter::new(shape);
+        let Some(table) = &filter.table else { continue };
+        // Slow twin: running integral of |f| by the midpoint rule, and the first place that reaches a share.
+        const N: u32 = 100_000;
+        let place = |i: u32| (f64::from(i) + 0.5) / f64::from(N);
+        let mut running: Vec<f64> = Vec::new();
+        let mut sum = 0.0;
+        for i in 0..N {
+            sum += filter.curve.value(place(i)).abs();
+            running.push(sum);
+        }
+        for i in 0..1000 {
+            let share = i as f32 / 1000.0;
+            let slow = running.partition_point(|&part| part < f64::from(share) * sum) as f64 / f64::from(N);
+            let (fast, _) = table.invert(share);
+            assert!(
+                (f64::from(fast) - slow).abs() <= 1.0 / CELLS as f64,
+                "{shape:?} at {share}: {fast}, {slow}"
+            );
+        }
+    }
+}
+
+#[test]
+fn mitchell_has_negative_lobes_and_a_bell_has_none() {
+    let weights = |shape| {
+        let filter = Filter::new(shape);
+        [0.01, 0.5].map(|u| filter.sample([u, 0.5]).1)
+    };
+    let [lobe, centre] = weights(Shape::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 });
+    assert!(lobe < -1.0 && centre > 1.0 && lobe == -centre, "{lobe} {centre}");
+    assert_eq!(weights(Shape::BlackmanHarris { radius: 1.5 }), [1.0, 1.0]);
+}
+
+#[test]
+fn known_values() {
+    let mitchell = Filter::new(Shape::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 });
+    // 8/9 at the centre along each axis, 1/18 at a distance of 1; the integral along each axis is 1.
+    assert!((mitchell.evaluate(0.0, 0.0) - 64.0 / 81.0).abs() < 1e-6);
+    assert!((mitchell.evaluate(1.0, 0.0) - 8.0 / 162.0).abs() < 1e-6);
+    assert_eq!(mitchell.evaluate(2.5, 0.0), 0.0);
+    assert_eq!(Filter::new(Shape::Box { radius: 0.5 }).evaluate(0.3, -0.4), 1.0);
+    let tent = Filter::new(Shape::Triangle { radius: 2.0 });
+    assert_eq!(tent.sample([0.5, 0.125]), ([0.0, -1.0], 1.0));
+    let pixel = Filter::new(Shape::Box { radius: 0.5 });
+    assert_eq!(pixel.sample([0.0, 0.75]), ([-0.5 * ONE_MINUS_EPSILON, 0.25], 1.0));
+}
+
+#[test]
+fn nonsense_gives_finite_samples() {
+    let wild = [0.0, -1.0, 1e-45, 1e-20, 1e20, f32::MAX, f32::INFINITY, f32::NAN];
+    for radius in wild {
+        for a in wild {
+            for b in [0.0, -3.0, 1e30, f32::NAN] {
+                let shapes = [
+                    Shape::Box { radius },
+                    Shape::Triangle { radius },
+                    Shape::BlackmanHarris { radius },
+                    Shape::Gaussian { radius, sigma: a },
+                    Shape::Mitchell { radius, b: a, c: b },
+                ];
+                for shape in shapes {
+                    let filter = Filter::new(shape);
+                    for u in [0.0, 0.1, 0.5, ONE_MINUS_EPSILON] {
+                        let ([x, y], weight) = filter.sample([u, 0.3]);
+                        assert!(x.is_finite() && y.is_finite() && weight.is_finite(), "{shape:?} {u}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn bits_are_pinned() {
+    let bits = |shape| {
+        let ([x, y], weight) = Filter::new(shape).sample([0.3, 0.9]);
+        [x, y, weight].map(f32::to_bits)
+    };
+    assert_eq!(bits(Shape::BlackmanHarris { radius: 1.5 }), [0xbe65_e49e, 0x3f0a_674b, 0x3f80_0000]);
+    assert_eq!(
+        bits(Shape::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 }),
+        [0xbe80_b004, 0x3f1a_1f28, 0x3f92_8a09]
+    );
+    assert_eq!(bits(Shape::Gaussian { radius: 1.5, sigma: 0.5 }), [0xbe83_9e3c, 0x3f1f_9f5d, 0x3f80_0000]);
+}

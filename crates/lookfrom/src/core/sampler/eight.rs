@@ -1,0 +1,194 @@
+//! Random numbers of eight samples at once, one in each lane: the twin of [`PixelSampler`], bit for bit.
+
+use lookfrom_scene::settings::Sampler as Kind;
+use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, prelude::*, u32x8, u64x8};
+
+use super::{PixelSampler, Sampler};
+use crate::core::eight::{LANES, by_lane};
+use crate::core::hash::GOLDEN;
+
+/// The numbers of eight pixels (or of the same).
+#[derive(Clone, Copy)]
+pub(crate) struct PixelSamplers<S: Simd> {
+    kind: Kind,
+    keys: u64x8<S>,
+}
+
+impl<S: Simd> PixelSamplers<S> {
+    /// Those of one render.
+    #[inline(always)]
+    pub(crate) fn new(simd: S, samplers: &[PixelSampler; LANES]) -> Self {
+        Self { kind: samplers[0].kind, keys: u64x8::load_array(simd, by_lane!(lane => samplers[lane].key)) }
+    }
+
+    /// As [`PixelSampler::two`], for a sample and a dimension (below 2³²) in each lane.
+    #[inline(always)]
+    pub(crate) fn two(&self, simd: S, sample: u32x8<S>, dimension: u64x8<S>) -> [f32x8<S>; 2] {
+        let pattern = mix(self.keys ^ dimension);
+        match self.kind {
+            Kind::Sobol => {
+                let mirrored = scramble_from_the_low_end(reversed(sample), low_half(pattern));
+                let index = reversed(mirrored);
+                let first = scramble_from_the_low_end(index, low_half(pattern >> 32));
+                let second = scramble_from_the_low_end(pascal(index), low_half(mix(pattern + GOLDEN)));
+                [unit(simd, reversed(first)), unit(simd, reversed(second))]
+            }
+            Kind::Independent => {
+                let number = u64x8::load_array(simd, {
+                    let samples: [u32; LANES] = sample.into();
+                    by_lane!(lane => u64::from(samples[lane]))
+                });
+                let bits = mix(pattern + (number + 1) * GOLDEN);
+                [unit(simd, low_half(bits >> 32)), unit(simd, low_half(bits))]
+            }
+        }
+    }
+}
+
+impl Sampler {
+    /// Puts [`Sampler::two`] of one dimension at each of `count` addresses (pixel and sample) in place of `numbers`.
+    pub(crate) fn two_of_each(
+        &self,
+        count: usize,
+        address: impl Fn(usize) -> ([u32; 2], u32),
+        dimension: u32,
+        numbers: &mut Vec<[f32; 2]>,
+    ) {
+        numbers.resize(count, [0.0; 2]);
+        dispatch(level(), Each { sampler: self, address, dimension, numbers });
+    }
+}
+
+struct Each<'a, F> {
+    sampler: &'a Sampler,
+    address: F,
+    dimension: u32,
+    numbers: &'a mut [[f32; 2]],
+}
+
+impl<F: Fn(usize) -> ([u32; 2], u32)> Kernel for Each<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { sampler, address, dimension, numbers } = self;
+        let count = numbers.len();
+        let dimension = u64x8::splat(simd, u64::from(dimension));
+        for (block, numbers) in numbers.chunks_mut(LANES).enumerate() {
+            let first = block * LANES;
+            // The last ones fill up with the very last.
+            let addresses = by_lane!(lane => address((first + lane).min(count - 1)));
+            let pixels =
+                by_lane!(lane => u64::from(addresses[lane].0[0]) | u64::from(addresses[lane].0[1]) << 32);
+            let keys = mix(u64x8::load_array(simd, pixels) ^ sampler.key);
+            let sample = u32x8::load_array(simd, by_lane!(lane => addresses[lane].1));
+            let [a, b] = PixelSamplers { kind: sampler.kind, keys }.two(simd, sample, dimension);
+            let (a, b): ([f32; LANES], [f32; LANES]) = (a.into(), b.into());
+            for (lane, number) in numbers.iter_mut().enumerate() {
+                *number = [a[lane], b[lane]];
+            }
+        }
+    }
+}
+
+/// The twin of [`crate::core::hash::mix`].
+#[inline(always)]
+pub(crate) fn mix<S: Simd>(mut bits: u64x8<S>) -> u64x8<S> {
+    bits = (bits ^ (bits >> 30)) * 0xbf58_476d_1ce4_e5b9_u64;
+    bits = (bits ^ (bits >> 27)) * 0x94d0_49bb_1331_11eb_u64;
+    bits ^ (bits >> 31)
+}
+
+/// The lower 32 bits.
+#[inline(always)]
+pub(crate) fn low_half<S: Simd>(bits: u64x8<S>) -> u32x8<S> {
+    let (low, high) = bits.split();
+    low.narrow(high)
+}
+
+#[inline(always)]
+fn unit<S: Simd>(simd: S, bits: u32x8<S>) -> f32x8<S> {
+    // Below 2²⁴, so that a signed number holds it too.
+    let number: lookfrom_simd::i32x8<S> = (bits >> 8).bitcast();
+    number.to_float::<f32x8<S>>() * f32x8::splat(simd, 1.0 / 16_777_216.0)
+}
+
+/// The bits in the opposite order.
+#[inline(always)]
+fn reversed<S: Simd>(x: u32x8<S>) -> u32x8<S> {
+    let x = ((x >> 1) & 0x5555_5555_u32) | ((x & 0x5555_5555_u32) << 1);
+    let x = ((x >> 2) & 0x3333_3333_u32) | ((x & 0x3333_3333_u32) << 2);
+    let x = ((x >> 4) & 0x0f0f_0f0f_u32) | ((x & 0x0f0f_0f0f_u32) << 4);
+    let x = ((x >> 8) & 0x00ff_00ff_u32) | ((x & 0x00ff_00ff_u32) << 8);
+    (x >> 16) | (x << 16)
+}
+
+#[inline(always)]
+fn pascal<S: Simd>(mut bits: u32x8<S>) -> u32x8<S> {
+    bits = bits ^ ((bits >> 1) & 0x5555_5555_u32);
+    bits = bits ^ ((bits >> 2) & 0x3333_3333_u32);
+    bits = bits ^ ((bits >> 4) & 0x0f0f_0f0f_u32);
+    bits = bits ^ ((bits >> 8) & 0x00ff_00ff_u32);
+    bits ^ (bits >> 16)
+}
+
+#[inline(always)]
+fn scramble_from_the_low_end<S: Simd>(mut bits: u32x8<S>, seed: u32x8<S>) -> u32x8<S> {
+    bits = bits ^ (bits * 0x3d20_adea_u32);
+    bits += seed;
+    bits *= (seed >> 16) | 1_u32;
+    bits = bits ^ (bits * 0x0552_6c56_u32);
+    bits ^ (bits * 0x53a2_2864_u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::hash;
+
+    struct Two<'a>(&'a [PixelSampler; LANES], [u32; LANES], [u32; LANES]);
+
+    impl Kernel for Two<'_> {
+        type Output = [[f32; LANES]; 2];
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
+            let samplers = PixelSamplers::new(simd, self.0);
+            let dimension = u64x8::load_array(simd, by_lane!(lane => u64::from(self.2[lane])));
+            let [a, b] = samplers.two(simd, u32x8::load_array(simd, self.1), dimension);
+            [a.into(), b.into()]
+        }
+    }
+
+    #[test]
+    fn all_of_a_batch_are_each_on_its_own() {
+        for (kind, count) in [(Kind::Sobol, 29), (Kind::Independent, 16), (Kind::Sobol, 0)] {
+            let sampler = Sampler::new(kind, 3);
+            let address = |k: usize| ([hash::pair(k as u64, 5) as u32, k as u32], 77 * k as u32);
+            let mut numbers = vec![[9.0; 2]];
+            sampler.two_of_each(count, address, 11, &mut numbers);
+            assert_eq!(numbers.len(), count);
+            for (k, &of_batch) in numbers.iter().enumerate() {
+                let (pixel, sample) = address(k);
+                assert_eq!(of_batch, sampler.two(pixel, sample, 11));
+            }
+        }
+    }
+
+    #[test]
+    fn eight_at_once_are_eight_one_by_one() {
+        for kind in [Kind::Sobol, Kind::Independent] {
+            let sampler = Sampler::new(kind, 7);
+            for round in 0..2000_u64 {
+                let number = |lane: usize, of: u64| hash::pair(8 * round + lane as u64, of) as u32;
+                let samplers = std::array::from_fn(|lane| sampler.of_pixel([number(lane, 0), lane as u32]));
+                let samples = std::array::from_fn(|lane| number(lane, 1) >> (round % 32));
+                let dimensions = std::array::from_fn(|lane| number(lane, 2));
+                let [a, b] = dispatch(level(), Two(&samplers, samples, dimensions));
+                for lane in 0..LANES {
+                    let expected = samplers[lane].two(samples[lane], dimensions[lane]);
+                    assert_eq!([a[lane], b[lane]], expected);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! The filter's inner loop: for every offset between two pixels, a whole block of pixels at once, so that the machine's vectors
+//! have something to do. The slow twin, which goes pixel by pixel, is in the tests.
+
+use lookfrom_simd::{Kernel, Simd, dispatch, level};
+
+use super::planes::{BORDER, Planes};
+use super::{PATCH, RADIUS};
+use crate::core::parallel;
+use crate::film::Picture;
+
+/// How much patches may differ, in standard deviations of their difference, before the weight is `exp(−1)`: squared.
+const TOLERANCE: f32 = 0.42;
+
+/// What keeps a quotient of nothing by nothing from being none.
+const LEAST_VARIANCE: f32 = 1e-12;
+
+/// A block of pixels that are filtered together: columns and rows. Its memory stays in the nearest cache.
+pub(super) const COLUMNS: usize = 64;
+const ROWS: usize = 16;
+
+/// A row of a block with the patches' margins.
+const WIDE: usize = COLUMNS + 2 * PATCH;
+/// Rows of a block with the patches' margins.
+const HIGH: usize = ROWS + 2 * PATCH;
+
+impl<const N: usize> Planes<N> {
+    /// Adds to the picture's pixels what the filter changes.
+    pub(super) fn filter_into(&self, picture: &mut Picture) {
+        let Picture { width: columns, pixels, alpha, .. } = picture;
+        let (width, columns) = (self.width(), *columns as usize);
+        if width == 0 || self.height() == 0 {
+            return;
+        }
+        let mut changes = vec![[0.0; N]; width * self.height()];
+        parallel::for_chunks_mut(&mut changes, width * ROWS, |band, changes| {
+            let level = level();
+            for left in (0..width).step_by(COLUMNS) {
+                let block = Block { planes: self, left, top: band * ROWS, rows: changes.len() / width };
+                if block.is_noisy() {
+                    dispatch(level, Filter { block, changes: &mut *changes });
+                }
+            }
+        });
+        for (index, change) in changes.into_iter().enumerate() {
+            let (x, y) = (self.area.x0 as usize + index % width, self.area.y0 as usize + index / width);
+            let place = y * columns + x;
+            let change = self.change(index, change);
+            for c in 0..3 {
+                pixels[place][c] += change[c];
+            }
+            if N == 4 {
+                alpha[place] += change[N - 1];
+            }
+        }
+    }
+}
+
+/// A block of pixels of the planes.
+#[derive(Clone, Copy)]
+struct Block<'a, const N: usize> {
+    planes: &'a Planes<N>,
+    /// The first column and row, of the area.
+    left: usize,
+    top: usize,
+    /// At most [`ROWS`]; there are always [`COLUMNS`] columns, of which the last may lie in the border.
+    rows: usize,
+}
+
+impl<const N: usize> Block<'_, N> {
+    /// Where in the planes the pixel of this row and column of the block's margins is.
+    fn start(&self, row: usize, column: usize) -> usize {
+        (self.top + row + BORDER - PATCH) * self.planes.stride + self.left + column + BORDER - PATCH
+    }
+
+    /// Whether any pixel has noise: without it, nothing is changed.
+    fn is_noisy(&self) -> bool {
+        (0..self.rows).any(|row| {
+            let start = self.start(row + PATCH, PATCH);
+            self.planes.variance[start..start + COLUMNS].iter().any(|&variance| variance > 0.0)
+        })
+    }
+}
+
+/// The filter for one block.
+struct Filter<'a, const N: usize> {
+    block: Block<'a, N>,
+    /// Of the rows of the block, over the whole width.
+    changes: &'a mut [[f32; N]],
+}
+
+/// As many numbers of a plane as a row has.
+#[inline(always)]
+fn row<const LENGTH: usize>(plane: &[f32], start: usize) -> &[f32; LENGTH] {
+    // The planes have a border as wide as the filter looks.
+    plane[start..start + LENGTH].first_chunk().expect("a slice of this length")
+}
+
+impl<const N: usize> Kernel for Filter<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        let Self { block, changes } = self;
+        let Planes { stride, light, variance, compared, trust, place, plane, .. } = block.planes;
+        let mut distances = [[0.0_f32; WIDE]; HIGH];
+        let mut sums_of_rows = [[0.0_f32; COLUMNS]; HIGH];
+        let mut weights = [[1.0_f32; COLUMNS]; ROWS];
+        let mut sums = [[[0.0_f32; COLUMNS]; N]; ROWS];
+
+        for offset in offsets(*stride) {
+            // How far apart the light of the two is, less what noise explains.
+            for y in 0..block.rows + 2 * PATCH {
+                let here = block.start(y, 0);
+                let there = here.wrapping_add_signed(offset);
+                let (p, q) = (lights(light, here), lights(light, there));
+                let (p_variance, q_variance) = (row::<WIDE>(variance, here), row::<WIDE>(variance, there));
+                let distances = &mut distances[y];
+                for x in 0..WIDE {
+                    let mut square = 0.0;
+                    for c in 0..N {
+                        let difference = q[c][x] - p[c][x];
+                        square += difference * difference;
+                    }
+                    distances[x] = distance(square, p_variance[x], q_variance[x]);
+                }
+            }
+            // The mean over the patches: along rows, then along columns.
+            for y in 0..block.rows + 2 * PATCH {
+                // One shift after the other: the other way around the compiler finds no vectors.
+                let sums = &mut sums_of_rows[y];
+                *sums = *row::<COLUMNS>(&distances[y], 0);
+                for next in 1..=2 * PATCH {
+                    let shifted = row::<COLUMNS>(&distances[y], next);
+                    for x in 0..COLUMNS {
+                        sums[x] += shifted[x];
+                    }
+                }
+            }
+            for y in 0..block.rows {
+                let here = block.start(y + PATCH, PATCH);
+                let there = here.wrapping_add_signed(offset);
+                let mut of_light = sums_of_rows[y];
+                for next in 1..=2 * PATCH {
+                    for x in 0..COLUMNS {
+                        of_light[x] += sums_of_rows[y + next][x];
+                    }
+                }
+                // The features.
+                let mut of_features = [0.0_f32; COLUMNS];
+                for feature in compared {
+                    let (p, q) = (row::<COLUMNS>(feature, here), row::<COLUMNS>(feature, there));
+                    for x in 0..COLUMNS {
+                        let difference = q[x] - p[x];
+                        of_features[x] += difference * difference;
+                    }
+                }
+                let mut off_plane = [0.0_f32; COLUMNS];
+                for axis in 0..3 {
+                    let (p, q) = (row::<COLUMNS>(&place[axis], here), row::<COLUMNS>(&place[axis], there));
+                    let n = row::<COLUMNS>(&plane[axis], here);
+                    for x in 0..COLUMNS {
+                        off_plane[x] += (q[x] - p[x]) * n[x];
+                    }
+                }
+                // The weight, and what comes of it.
+                let mut weight = [0.0_f32; COLUMNS];
+                let trust = row::<COLUMNS>(trust, here);
+                for x in 0..COLUMNS {
+                    let of_features = (of_features[x] + off_plane[x] * off_plane[x]) * trust[x];
+                    weight[x] = falloff(of_light[x], of_features);
+                    weights[y][x] += weight[x];
+                }
+                for c in 0..N {
+                    let (p, q) = (row::<COLUMNS>(&light[c], here), row::<COLUMNS>(&light[c], there));
+                    let sums = &mut sums[y][c];
+                    for x in 0..COLUMNS {
+                        sums[x] += weight[x] * (q[x] - p[x]);
+                    }
+                }
+            }
+        }
+
+        let width = block.planes.width();
+        for y in 0..block.rows {
+            for x in 0..COLUMNS.min(width - block.left) {
+                for c in 0..N {
+                    changes[y * width + block.left + x][c] = sums[y][c][x] / weights[y][x];
+                }
+            }
+        }
+    }
+}
+
+/// From a pixel to each of its neighbours in the planes, in the order of reading.
+fn offsets(stride: usize) -> impl Iterator<Item = isize> {
+    let reach = -(RADIUS as isize)..=RADIUS as isize;
+    let all = reach.clone().flat_map(move |y| reach.clone().map(move |x| y * stride as isize + x));
+    all.filter(|&offset| offset != 0)
+}
+
+/// A row of all channels with the patches' margins.
+#[inline(always)]
+fn lights<const N: usize>(light: &[Vec<f32>; N], start: usize) -> [&[f32; WIDE]; N] {
+    std::array::from_fn(|c| row(&light[c], start))
+}
+
+/// How far two pixels are apart whose light differs by this (squared, all channels together): 0 in the mean where only noise
+/// differs.
+#[inline(always)]
+pub(super) fn distance(square: f32, p_variance: f32, q_variance: f32) -> f32 {
+    let less = if p_variance < q_variance { p_variance } else { q_variance };
+    (square - (p_variance + less)) / (LEAST_VARIANCE + TOLERANCE * (p_variance + q_variance))
+}
+
+/// The weight of a neighbour: about `exp(−x)` of the sum of its distances, `of_light` over all pixels of the patches.
+#[inline(always)]
+pub(super) fn falloff(of_light: f32, of_features: f32) -> f32 {
+    const SHARE: f32 = 1.0 / ((2 * PATCH + 1) * (2 * PATCH + 1)) as f32;
+    let mean = of_light * SHARE;
+    let x = of_features + if mean > 0.0 { mean } else { 0.0 };
+    let rest = 1.0 - 0.125 * x;
+    let rest = if rest > 0.0 { rest } else { 0.0 };
+    let square = rest * rest;
+    let fourth = square * square;
+    fourth * fourth
+}

@@ -1,0 +1,275 @@
+//! How much light goes from one direction into another where it meets a surface?
+//!
+//! All scattering functions of the path tracer, as values: no textures, no scene, no shading frame. The frame is local:
+//! z is the shading normal on the outside; `wo` and `wi` are of unit length and both point away from the surface, and
+//! `wo.z < 0` means that it is seen from inside. Lanes are treated alike, whatever they mean. Evaluating textures and
+//! turning directions is left to [`crate::shading::material`] and integrators.
+//!
+//! They mean what pbrt-v4's mean (Pharr, Jakob & Humphreys 2023); where it clamps, so do these constructors. glTF's is in
+//! [`principled`].
+
+pub mod conductor;
+pub mod dielectric;
+pub mod diffuse;
+pub mod fresnel;
+pub mod henyey_greenstein;
+pub mod layered;
+pub mod lobes;
+mod local_scattering;
+pub mod microfacet;
+pub mod principled;
+pub mod whitted;
+
+use glam::Vec3;
+
+use crate::core::spectrum::Spectrum;
+use conductor::Conductor;
+use dielectric::{Dielectric, ThinDielectric};
+use diffuse::{Diffuse, DiffuseTransmission};
+use layered::{Base, CoatLayer, Layered};
+use lobes::Lobes;
+use microfacet::TrowbridgeReitz;
+use principled::Principled;
+use whitted::Whitted;
+
+pub use local_scattering::LocalScattering;
+
+/// What travels from `wo` into the scene: radiance comes the other way on paths from the camera, importance on paths
+/// from lights. Only refraction asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Paths that start at the camera.
+    Radiance,
+    /// Paths that start at lights.
+    Importance,
+}
+
+/// A scattering function at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bsdf {
+    /// Lambert's.
+    Diffuse(Diffuse),
+    /// Lambert's on both sides.
+    DiffuseTransmission(DiffuseTransmission),
+    /// Metal.
+    Conductor(Conductor),
+    /// The boundary of glass.
+    Dielectric(Dielectric),
+    /// A thin pane of glass.
+    ThinDielectric(ThinDielectric),
+    /// Lambert's under a coat.
+    CoatedDiffuse(Layered<Diffuse>),
+    /// Metal under a coat.
+    CoatedConductor(Layered<Conductor>),
+    /// Whitted's model.
+    Whitted(Whitted),
+    /// glTF's.
+    Principled(Principled),
+}
+
+/// A direction chosen by [`Bsdf::sample`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BsdfSample {
+    /// Unit length.
+    pub wi: Vec3,
+    /// Without the cosine. For specular lobes with the factor of the delta function that `pdf` has, too.
+    pub f: Spectrum,
+    /// Density of `wi` over solid angle; for specular lobes the probability of the lobe.
+    pub pdf: f32,
+    /// The one lobe that was sampled: a side and a spread.
+    pub lobe: Lobes,
+    /// The index beyond the boundary over the one before it where light was bent and scaled by 1/η²; else 1.
+    pub eta: f32,
+    /// Whether only `f / pdf` means anything, and the density to weigh against others is [`Bsdf::pdf`].
+    pub pdf_is_proportional: bool,
+}
+
+impl BsdfSample {
+    #[inline]
+    fn new(wi: Vec3, f: Spectrum, pdf: f32, lobe: Lobes) -> Self {
+        Self { wi, f, pdf, lobe, eta: 1.0, pdf_is_proportional: false }
+    }
+
+    /// A direction that a diffuse surface reflects to.
+    pub(crate) fn diffuse(wi: Vec3, f: Spectrum, pdf: f32) -> Self {
+        Self::new(wi, f, pdf, Lobes::REFLECTION | Lobes::DIFFUSE)
+    }
+
+    /// The same, where light would come from there and all is finite.
+    #[inline]
+    fn if_useful(self) -> Option<Self> {
+        let is_useful = self.pdf > 0.0
+            && self.pdf < f32::INFINITY
+            && !is_grazing(self.wi)
+            && !self.f.is_black()
+            && self.f.0.into_iter().all(f32::is_finite);
+        is_useful.then_some(self)
+    }
+}
+
+/// Whether the direction lies in the surface, so nearly that its cosine's square is no use. NaN does.
+#[inline]
+fn is_grazing(w: Vec3) -> bool {
+    !(w.z.abs() > 1e-12)
+}
+
+/// Whether both directions are on one side of the surface, neither grazing.
+#[inline]
+fn same_side(wo: Vec3, wi: Vec3) -> bool {
+    wo.z * wi.z > 0.0 && !is_grazing(wo) && !is_grazing(wi)
+}
+
+impl Bsdf {
+    /// pbrt's `diffuse`.
+    pub fn diffuse(reflectance: Spectrum) -> Self {
+        Self::Diffuse(Diffuse::new(reflectance))
+    }
+
+    /// pbrt's `diffusetransmission`, both already times its `scale`.
+    pub fn diffuse_transmission(reflectance: Spectrum, transmittance: Spectrum) -> Self {
+        Self::DiffuseTransmission(DiffuseTransmission::new(reflectance, transmittance))
+    }
+
+    /// pbrt's `dielectric`.
+    pub fn dielectric(eta: f32, roughness: TrowbridgeReitz) -> Self {
+        Self::Dielectric(Dielectric::new(eta, roughness))
+    }
+
+    /// pbrt's `thindielectric`.
+    pub fn thin_dielectric(eta: f32) -> Self {
+        Self::ThinDielectric(ThinDielectric::new(eta))
+    }
+
+    /// pbrt's `conductor` by index and extinction.
+    pub fn conductor(eta: Spectrum, k: Spectrum, roughness: TrowbridgeReitz) -> Self {
+        Self::Conductor(Conductor::new(eta, k, roughness))
+    }
+
+    /// pbrt's `conductor` by what it reflects straight on.
+    pub fn conductor_of_reflectance(reflectance: Spectrum, roughness: TrowbridgeReitz) -> Self {
+        let (eta, k) = fresnel::conductor_of_reflectance(reflectance);
+        Self::conductor(eta, k, roughness)
+    }
+
+    /// pbrt's `coateddiffuse`.
+    pub fn coated_diffuse(reflectance: Spectrum, coat: &CoatLayer) -> Self {
+        Self::CoatedDiffuse(Layered::new(Diffuse::new(reflectance), coat))
+    }
+
+    /// pbrt's `coatedconductor` by index and extinction of the metal in air: both are divided by the coat's index.
+    pub fn coated_conductor(
+        eta: Spectrum,
+        k: Spectrum,
+        roughness: TrowbridgeReitz,
+        coat: &CoatLayer,
+    ) -> Self {
+        let coat_eta = fresnel::valid_eta(coat.eta);
+        let base = Conductor::new(eta / coat_eta, k / coat_eta, roughness);
+        Self::CoatedConductor(Layered::new(base, coat))
+    }
+
+    /// pbrt's `coatedconductor` by what the metal would reflect straight on without a coat.
+    pub fn coated_conductor_of_reflectance(
+        reflectance: Spectrum,
+        roughness: TrowbridgeReitz,
+        coat: &CoatLayer,
+    ) -> Self {
+        let (eta, k) = fresnel::conductor_of_reflectance(reflectance);
+        Self::coated_conductor(eta, k, roughness, coat)
+    }
+
+    /// The part of the light from `wi` that leaves along `wo`, per solid angle and without the cosine of `wi`. Black for
+    /// specular lobes and grazing directions.
+    #[inline]
+    pub fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
+        match self {
+            Self::Diffuse(bsdf) => bsdf.f(wo, wi),
+            Self::DiffuseTransmission(bsdf) => bsdf.f(wo, wi),
+            Self::Conductor(bsdf) => bsdf.f(wo, wi),
+            Self::Dielectric(bsdf) => bsdf.f(wo, wi, mode),
+            Self::ThinDielectric(_) => Spectrum::BLACK,
+            Self::CoatedDiffuse(bsdf) => bsdf.f(wo, wi, mode),
+            Self::CoatedConductor(bsdf) => bsdf.f(wo, wi, mode),
+            Self::Whitted(bsdf) => bsdf.f(wo, wi),
+            Self::Principled(bsdf) => bsdf.f(wo, wi, mode),
+        }
+    }
+
+    /// Density over solid angle with which [`Self::sample`] chooses `wi`, given the same `lobes`. Specular lobes count
+    /// as nothing; layered surfaces give an estimate.
+    #[inline]
+    pub fn pdf(&self, wo: Vec3, wi: Vec3, mode: Mode, lobes: Lobes) -> f32 {
+        if !self.lobes().intersects(sides(lobes)) {
+            return 0.0;
+        }
+        match self {
+            Self::Diffuse(bsdf) => Base::pdf(bsdf, wo, wi),
+            Self::DiffuseTransmission(bsdf) => bsdf.pdf(wo, wi, lobes),
+            Self::Conductor(bsdf) => Base::pdf(bsdf, wo, wi),
+            Self::Dielectric(bsdf) => bsdf.pdf(wo, wi, lobes),
+            Self::ThinDielectric(_) => 0.0,
+            Self::CoatedDiffuse(bsdf) => bsdf.pdf(wo, wi, mode),
+            Self::CoatedConductor(bsdf) => bsdf.pdf(wo, wi, mode),
+            Self::Whitted(bsdf) => bsdf.pdf(wo, wi, lobes),
+            Self::Principled(bsdf) => bsdf.pdf(wo, wi, lobes),
+        }
+    }
+
+    /// Chooses a direction about as dense as `f |cos θ_i|`, by three numbers in [0, 1). Of `lobes` only the sides
+    /// (reflection, transmission) choose. `None` where no light would come; what is `Some` has `pdf > 0` and is finite.
+    #[inline]
+    pub fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
+        if is_grazing(wo) || !self.lobes().intersects(sides(lobes)) {
+            return None;
+        }
+        match self {
+            Self::Diffuse(bsdf) => Base::sample(bsdf, wo, u),
+            Self::DiffuseTransmission(bsdf) => bsdf.sample(wo, uc, u, lobes),
+            Self::Conductor(bsdf) => Base::sample(bsdf, wo, u),
+            Self::Dielectric(bsdf) => bsdf.sample(wo, uc, u, mode, lobes),
+            Self::ThinDielectric(bsdf) => bsdf.sample(wo, uc, lobes),
+            Self::CoatedDiffuse(bsdf) => bsdf.sample(wo, uc, u, mode),
+            Self::CoatedConductor(bsdf) => bsdf.sample(wo, uc, u, mode),
+            Self::Whitted(bsdf) => bsdf.sample(wo, uc, u, lobes),
+            Self::Principled(bsdf) => bsdf.sample(wo, uc, u, mode, lobes),
+        }?
+        .if_useful()
+    }
+
+    /// The kinds of scattering it has.
+    #[inline]
+    pub fn lobes(&self) -> Lobes {
+        match self {
+            Self::Diffuse(bsdf) => Base::lobes(bsdf),
+            Self::DiffuseTransmission(bsdf) => bsdf.lobes(),
+            Self::Conductor(bsdf) => Base::lobes(bsdf),
+            Self::Dielectric(bsdf) => bsdf.lobes(),
+            Self::ThinDielectric(bsdf) => bsdf.lobes(),
+            Self::CoatedDiffuse(bsdf) => bsdf.lobes(),
+            Self::CoatedConductor(bsdf) => bsdf.lobes(),
+            Self::Whitted(bsdf) => bsdf.lobes(),
+            Self::Principled(bsdf) => bsdf.lobes(),
+        }
+    }
+
+    /// Makes what is nearly specular rougher, for the later bounces of a path: less noise for a little blur.
+    pub fn regularize(&mut self) {
+        match self {
+            Self::Conductor(bsdf) => Base::regularize(bsdf),
+            Self::Dielectric(bsdf) => bsdf.regularize(),
+            Self::CoatedDiffuse(bsdf) => bsdf.regularize(),
+            Self::CoatedConductor(bsdf) => bsdf.regularize(),
+            Self::Principled(bsdf) => bsdf.regularize(),
+            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::ThinDielectric(_) | Self::Whitted(_) => {}
+        }
+    }
+}
+
+/// The sides that a set names.
+#[inline]
+fn sides(lobes: Lobes) -> Lobes {
+    lobes.intersection(Lobes::REFLECTION | Lobes::TRANSMISSION)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,312 @@
+//! Do walks add up to what a coat does? Where formulas end, `sample` and `f` check one another.
+
+use super::*;
+use crate::shading::bsdf::Bsdf;
+use crate::shading::bsdf::tests::{direction, number, numbers};
+use crate::shading::bsdf::{diffuse::cosine_direction, fresnel};
+
+/// A mean and its standard error.
+#[derive(Clone, Copy, Debug)]
+struct Estimate {
+    mean: f64,
+    error: f64,
+}
+
+fn estimate(n: u64, value: impl Fn(u64) -> f64) -> Estimate {
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for index in 0..n {
+        let value = value(index);
+        sum += value;
+        squares += value * value;
+    }
+    let mean = sum / n as f64;
+    Estimate { mean, error: ((squares / n as f64 - mean * mean).max(0.0) / n as f64).sqrt() }
+}
+
+impl Estimate {
+    /// How many standard errors lie between the two.
+    fn distance(self, other: Self) -> f64 {
+        (self.mean - other.mean).abs() / self.error.hypot(other.error).max(1e-9)
+    }
+}
+
+/// ∫ f |cos θ_i| over all directions, by cosine-weighted ones.
+fn integral_of_f(f: impl Fn(Vec3, Vec3) -> Spectrum, wo: Vec3, n: u64, seed: u64) -> Estimate {
+    estimate(n, |index| {
+        let (_, u) = numbers(seed, index);
+        let wi = cosine_direction(u, wo.z);
+        f64::from(f(wo, wi).0[0]) * std::f64::consts::PI
+    })
+}
+
+/// `f` with the two ways of leaving weighed as they should be, where pbrt's weights do not add up to one.
+fn unbiased_f(bsdf: &Bsdf, wo: Vec3, wi: Vec3) -> Spectrum {
+    fn of<B: Base>(layered: &Layered<B>, wo: Vec3, wi: Vec3) -> Spectrum {
+        let mut random = Random::new(Purpose::Value, wo, wi.to_array());
+        let exit_density = |w| layered.coat.pdf(wi, w, Lobes::TRANSMISSION);
+        let walk = layered.walk([wo, wi], Mode::Radiance, &mut random, exit_density);
+        layered.coat.f(wo, wi, Mode::Radiance) + walk.unwrap_or(Spectrum::BLACK)
+    }
+    let (wo, wi) = if wo.z < 0.0 { (-wo, -wi) } else { (wo, wi) };
+    match bsdf {
+        Bsdf::CoatedDiffuse(layered) => of(layered, wo, wi),
+        Bsdf::CoatedConductor(layered) => of(layered, wo, wi),
+        _ => panic!("not layered"),
+    }
+}
+
+/// The same by `sample`, of what is (not) specular.
+fn mean_weight(bsdf: &Bsdf, wo: Vec3, n: u64, seed: u64, specular: bool) -> Estimate {
+    estimate(n, |index| {
+        let (uc, u) = numbers(seed, index);
+        let sample = bsdf.sample(wo, uc, u, Mode::Radiance, Lobes::ALL);
+        let sample = sample.filter(|sample| sample.lobe.is_specular() == specular);
+        sample.map_or(0.0, |s| f64::from(s.f.0[0] * s.wi.z.abs() / s.pdf))
+    })
+}
+
+/// The part of evenly spread light inside that a smooth boundary sends back.
+fn internal_reflection(eta: f64) -> f64 {
+    let n = 20_000;
+    let sum: f64 = (0..n)
+        .map(|i| {
+            let cos2 = (f64::from(i) + 0.5) / f64::from(n);
+            f64::from(fresnel::dielectric(-(cos2.sqrt() as f32), eta as f32))
+        })
+        .sum();
+    sum / f64::from(n)
+}
+
+fn grey(value: f32) -> Spectrum {
+    Spectrum([value; 4])
+}
+
+#[test]
+fn a_smooth_coat_on_lambert_is_a_geometric_series() {
+    let inside = internal_reflection(1.5);
+    // A known number: 0.596 for η = 1.5.
+    assert!((inside - 0.596).abs() < 1e-3, "{inside}");
+    for (reflectance, max_depth, theta) in
+        [(1.0, 10, 30.0), (1.0, 2, 0.0), (1.0, 9, 70.0), (0.5, 4, 60.0), (1.0, 200, 40.0)]
+    {
+        let coat = CoatLayer { thickness: 0.0, max_depth, ..CoatLayer::default() };
+        let bsdf = Bsdf::coated_diffuse(grey(reflectance), &coat);
+        let wo = direction(theta, 15.0);
+        let mirrored = f64::from(fresnel::dielectric(wo.z, 1.5));
+        let series = |reflections: i32| {
+            let ratio = f64::from(reflectance) * inside;
+            let sum = (1.0 - ratio.powi(reflections)) / (1.0 - ratio);
+            (1.0 - mirrored) * f64::from(reflectance) * sum * (1.0 - inside)
+        };
+        // `f` joins the base with the way out at each second step, the first included; `sample` must also step out.
+        let f = integral_of_f(|wo, wi| bsdf.f(wo, wi, Mode::Radiance), wo, 200_000, 1);
+        let expected = Estimate { mean: series(i32::from(max_depth.div_ceil(2))), error: 1e-4 };
+        assert!(f.distance(expected) < 4.5, "{coat:?} {theta}: f {f:?}, series {expected:?}");
+        let sampled = mean_weight(&bsdf, wo, 200_000, 2, false);
+        let expected = Estimate { mean: series(i32::from(max_depth) / 2), error: 1e-4 };
+        assert!(
+            sampled.distance(expected) < 4.5,
+            "{coat:?} {theta}: sample {sampled:?}, series {expected:?}"
+        );
+        let specular = mean_weight(&bsdf, wo, 200_000, 3, true);
+        assert!(specular.distance(Estimate { mean: mirrored, error: 1e-5 }) < 4.5, "{specular:?} {mirrored}");
+        // Nothing is lost but what the cut-off drops.
+        if max_depth == 200 {
+            assert!((f.mean + mirrored - 1.0).abs() < 4.5 * f.error + 1e-3);
+        }
+    }
+}
+
+#[test]
+fn the_slab_absorbs_on_each_crossing() {
+    // An index of 1 leaves Lambert under an absorber: ρ e^(−d/cos θ_o) e^(−d/cos θ_i) / π.
+    let coat = CoatLayer { eta: 1.0, thickness: 0.3, ..CoatLayer::default() };
+    let bsdf = Bsdf::coated_diffuse(grey(0.8), &coat);
+    let (wo, wi) = (direction(50.0, 0.0), direction(20.0, 100.0));
+    let expected = 0.8 * (-0.3_f32 / wo.z - 0.3 / wi.z).exp() * FRAC_1_PI;
+    let f = bsdf.f(wo, wi, Mode::Radiance).0[0];
+    assert!((f / expected - 1.0).abs() < 1e-4, "{f} {expected}");
+}
+
+#[test]
+fn single_scattering_in_the_slab_has_a_formula() {
+    // No boundary, black base, one step: p Λ cos / (cos_o + cos_i) (1 − e^(−d (1/cos_o + 1/cos_i))) / (cos_o cos_i).
+    let coat = CoatLayer {
+        eta: 1.0,
+        thickness: 0.7,
+        albedo: grey(0.6),
+        g: 0.4,
+        max_depth: 1,
+        samples: 1,
+        ..CoatLayer::default()
+    };
+    let bsdf = Bsdf::coated_diffuse(Spectrum::BLACK, &coat);
+    let (wo, wi) = (direction(50.0, 0.0), direction(20.0, 100.0));
+    let phase = HenyeyGreenstein::new(0.4).p(wo, wi);
+    let crossing = 0.7 * (1.0 / wo.z + 1.0 / wi.z);
+    let expected = f64::from(0.6 * phase * (1.0 - (-crossing).exp()) / (wo.z + wi.z));
+    // The function is one estimate a pair of directions: jitter them.
+    let f = estimate(200_000, |index| {
+        let jitter = |k: u64| 1e-5 * (number(5, index * 6 + k) - 0.5);
+        let wo = (wo + Vec3::new(jitter(0), jitter(1), jitter(2))).normalize();
+        let wi = (wi + Vec3::new(jitter(3), jitter(4), jitter(5))).normalize();
+        f64::from(bsdf.f(wo, wi, Mode::Radiance).0[0])
+    });
+    assert!(f.distance(Estimate { mean: expected, error: 1e-5 }) < 4.5, "{f:?} {expected}");
+}
+
+/// Coats and bases of all kinds, deep enough that nothing is cut off.
+fn deep() -> Vec<(&'static str, Bsdf)> {
+    let coat = CoatLayer { max_depth: 300, ..CoatLayer::default() };
+    let rough = CoatLayer { roughness: TrowbridgeReitz::new(0.4, 0.4), ..coat };
+    let brushed = CoatLayer { roughness: TrowbridgeReitz::new(0.2, 0.6), ..coat };
+    let milky = |coat| CoatLayer { albedo: grey(0.8), thickness: 0.4, g: 0.3, ..coat };
+    let metal = |alpha, coat: &CoatLayer| {
+        let roughness = TrowbridgeReitz::new(alpha, alpha);
+        Bsdf::coated_conductor(grey(0.3), grey(3.0), roughness, coat)
+    };
+    vec![
+        ("smooth on white", Bsdf::coated_diffuse(grey(0.9), &coat)),
+        ("rough on white", Bsdf::coated_diffuse(grey(0.9), &rough)),
+        ("brushed on white", Bsdf::coated_diffuse(grey(0.9), &brushed)),
+        ("smooth milk on white", Bsdf::coated_diffuse(grey(0.5), &milky(coat))),
+        ("rough milk on white", Bsdf::coated_diffuse(grey(0.5), &milky(rough))),
+        ("smooth on rough metal", metal(0.4, &coat)),
+        ("rough on smooth metal", metal(0.0, &rough)),
+        ("rough on rough metal", metal(0.4, &rough)),
+        ("smooth milk on smooth metal", metal(0.0, &milky(coat))),
+        ("rough milk on rough metal", metal(0.4, &milky(rough))),
+        ("four walks", Bsdf::coated_diffuse(grey(0.9), &CoatLayer { samples: 4, ..rough })),
+    ]
+}
+
+#[test]
+fn samples_add_up_to_the_integral_of_f() {
+    const N: u64 = 100_000;
+    for (name, bsdf) in deep() {
+        for (view, wo) in
+            [direction(10.0, 30.0), direction(65.0, 200.0), direction(130.0, 80.0)].into_iter().enumerate()
+        {
+            let f = integral_of_f(|wo, wi| unbiased_f(&bsdf, wo, wi), wo, N, 10 + view as u64);
+            let sampled = mean_weight(&bsdf, wo, N, 20 + view as u64, false);
+            if name == "smooth milk on smooth metal" {
+                // From a particle by a mirror through a smooth coat: only `sample` finds such ways, as in pbrt.
+                assert!(f.mean < sampled.mean, "{name} {wo}: f {f:?}, sample {sampled:?}");
+            } else {
+                assert!(f.distance(sampled) < 4.5, "{name} {wo}: f {f:?}, sample {sampled:?}");
+            }
+            let specular = mean_weight(&bsdf, wo, N / 4, 30 + view as u64, true);
+            let all = sampled.mean + specular.mean;
+            assert!(all < 1.0 + 4.5 * sampled.error.hypot(specular.error), "{name} {wo}: {all}");
+            assert!(f.mean > 0.05, "{name}: nothing to compare");
+        }
+    }
+}
+
+#[test]
+fn ways_out_are_weighed_as_in_pbrt() {
+    // pbrt's weights of the two ways out of a rough coat add up to a little more than one. Pictures are compared with
+    // pbrt's, so `f` must keep that; smooth coats have one way out.
+    let wo = direction(10.0, 30.0);
+    for (name, bsdf) in deep() {
+        let kept = integral_of_f(|wo, wi| bsdf.f(wo, wi, Mode::Radiance), wo, 100_000, 60);
+        let unbiased = integral_of_f(|wo, wi| unbiased_f(&bsdf, wo, wi), wo, 100_000, 61);
+        match name {
+            "rough on white" => {
+                assert!((1.06..1.11).contains(&(kept.mean / unbiased.mean)), "{kept:?} {unbiased:?}");
+            }
+            "smooth on white" | "smooth milk on white" | "rough on smooth metal" => {
+                assert!(kept.distance(unbiased) < 4.5, "{name}: {kept:?} {unbiased:?}");
+            }
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn light_goes_both_ways_on_average() {
+    let (wo, wi) = (direction(60.0, 30.0), direction(25.0, 170.0));
+    for (name, bsdf) in deep() {
+        let mean = |seed: u64, swap: bool| {
+            estimate(60_000, |index| {
+                let jitter = |k: u64| 1e-4 * (number(seed, index * 6 + k) - 0.5);
+                let wo = (wo + Vec3::new(jitter(0), jitter(1), jitter(2))).normalize();
+                let wi = (wi + Vec3::new(jitter(3), jitter(4), jitter(5))).normalize();
+                let (wo, wi) = if swap { (wi, wo) } else { (wo, wi) };
+                f64::from(unbiased_f(&bsdf, wo, wi).0[0])
+            })
+        };
+        let (there, back) = (mean(40, false), mean(41, true));
+        assert!(there.distance(back) < 4.5, "{name}: {there:?} {back:?}");
+        // And the other side looks the same.
+        let below = bsdf.f(-wo, -wi, Mode::Radiance);
+        assert_eq!(below, bsdf.f(wo, wi, Mode::Radiance), "{name}");
+        assert!(bsdf.f(wo, -wi, Mode::Radiance).is_black(), "{name}");
+    }
+}
+
+#[test]
+fn radiance_and_importance_are_scattered_alike() {
+    // What 1/η² takes on the way in, η² gives on the way out; shallow, as chances to give up depend on what is carried.
+    let (wo, wi) = (direction(60.0, 30.0), direction(25.0, 170.0));
+    let close = |a: f32, b: f32| (a - b).abs() <= 1e-4 * a.max(b);
+    for roughness in [TrowbridgeReitz::SMOOTH, TrowbridgeReitz::new(0.3, 0.3)] {
+        let bsdf =
+            Bsdf::coated_diffuse(grey(0.9), &CoatLayer { roughness, max_depth: 4, ..CoatLayer::default() });
+        let f = |mode| bsdf.f(wo, wi, mode).0[0];
+        assert!(close(f(Mode::Radiance), f(Mode::Importance)), "{roughness:?}");
+        let weight = |mode, index| {
+            let (uc, u) = numbers(70, index);
+            bsdf.sample(wo, uc, u, mode, Lobes::ALL).map(|s| s.f.0[0] * s.wi.z.abs() / s.pdf)
+        };
+        for index in 0..200 {
+            match (weight(Mode::Radiance, index), weight(Mode::Importance, index)) {
+                (Some(a), Some(b)) => assert!(close(a, b), "{roughness:?}: {a} {b}"),
+                (a, b) => assert_eq!(a, b),
+            }
+        }
+    }
+}
+
+#[test]
+fn values_are_functions_of_their_arguments() {
+    let bsdf = deep()[4].1;
+    let (wo, wi) = (direction(60.0, 30.0), direction(25.0, 170.0));
+    let sample = || bsdf.sample(wo, 0.99, [0.3, 0.4], Mode::Radiance, Lobes::ALL);
+    assert_eq!(sample(), sample());
+    assert_eq!(bsdf.f(wo, wi, Mode::Radiance), bsdf.f(wo, wi, Mode::Radiance));
+    assert_eq!(bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL), bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL));
+    assert!(sample().is_none_or(|sample| sample.pdf_is_proportional));
+}
+
+#[test]
+fn the_density_is_never_zero_and_about_normal() {
+    // A tenth is uniform; the rest counts what enters and what the coat mirrors as if each were all, as in pbrt.
+    for (name, bsdf) in deep() {
+        let wo = direction(40.0, 10.0);
+        let total = estimate(50_000, |index| {
+            let (_, u) = numbers(50, index);
+            let wi = crate::core::warp::uniform_sphere(u);
+            let pdf = bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL);
+            assert!(pdf >= 0.1 * 0.079, "{name} {wi}: {pdf}");
+            f64::from(pdf) * 4.0 * std::f64::consts::PI
+        });
+        assert!(total.mean > 0.09 && total.mean < 2.5, "{name}: {total:?}");
+    }
+}
+
+#[test]
+fn lobes_are_named_as_in_pbrt() {
+    let lobes: Vec<_> = deep().into_iter().map(|(_, bsdf)| bsdf.lobes()).collect();
+    let (reflection, specular) = (Lobes::REFLECTION, Lobes::SPECULAR);
+    assert_eq!(lobes[0], reflection | specular | Lobes::DIFFUSE);
+    assert_eq!(lobes[1], reflection | Lobes::DIFFUSE);
+    assert_eq!(lobes[5], reflection | specular | Lobes::GLOSSY);
+    assert_eq!(lobes[8], reflection | specular | Lobes::DIFFUSE);
+    let mirror = TrowbridgeReitz::SMOOTH;
+    let mut bsdf = Bsdf::coated_conductor(grey(0.3), grey(3.0), mirror, &CoatLayer::default());
+    assert_eq!(bsdf.lobes(), reflection | specular);
+    assert!(bsdf.f(Vec3::Z, direction(10.0, 0.0), Mode::Radiance).is_black());
+    bsdf.regularize();
+    assert_eq!(bsdf.lobes(), reflection | Lobes::GLOSSY);
+}

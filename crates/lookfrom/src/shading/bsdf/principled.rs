@@ -1,0 +1,353 @@
+//! glTF's metallic-roughness material with its extensions: metal, glass and matte bodies by parts, under fibres and a clear
+//! coat.
+//!
+//! The layers are those of glTF 2.0's appendix B and of the extensions' texts:
+//!
+//! ```text
+//! coat      a dielectric mirror of index 1.5 with a normal of its own
+//! sheen     fibres (Charlie)
+//! surface   metallic            a mirror, Schlick from the base colour to 1
+//!           1 − metallic        a dielectric mirror over
+//!               1 − transmission    matte, by parts to this side and through
+//!               transmission        straight through a thin sheet, or bent into a body
+//! ```
+//!
+//! What they leave open is done so that nothing is won and, where the texts allow, nothing lost:
+//! - **More than one bounce** between the facets of a rough mirror is a lobe of Kulla & Conty 2017, for metals, dielectrics
+//!   and thin sheets.
+//! - **Bodies of rough glass** have Walter's facets (2007), each as far as it is seen (Heitz 2018). What a facet sends out is
+//!   never hidden by others: it leaves as it is, and what would go to the wrong side leaves as if mirrored at the surface.
+//!   So nothing is lost, whatever the roughness and the index. This is the one lobe that is not reciprocal.
+//! - **Matte under the mirror** gets what the mirror leaves, on the way in and out, divided by the mean: `(1 − E(ω_o))(1 −
+//!   E(ω_i)) / (1 − Ē)`, with E the mirror's albedo (Kelemen & Szirmay-Kalos 2001). It is reciprocal, and white stays white.
+//!   Where the mirror is coloured, its greatest primary is what counts, as `KHR_materials_specular` says.
+//! - **Coat and sheen** take from what lies below the greater of their albedos along the two directions: one factor, as the
+//!   extensions have it, and reciprocal.
+//! - **Glass** has Fresnel's equations in place of Schlick's curve (the same where it is scaled by `specular`), so that it
+//!   is what `dielectric` is.
+//! - **Anisotropic** mirrors have the albedo of isotropic ones of the same √(α_x α_y).
+//!
+//! Both sides look alike, except that a body is inside below. All is a function of its arguments; nothing is estimated by
+//! chance, and the density is exact. Tangents and anisotropy's rotation are left to the local frame, absorption to media.
+
+mod albedo;
+pub mod film;
+mod layers;
+mod sheen;
+mod surface;
+mod view;
+
+use glam::Vec3;
+
+use super::microfacet::TrowbridgeReitz;
+use super::{BsdfSample, Lobes, Mode, fresnel, is_grazing};
+use crate::core::spectrum::Spectrum;
+use film::Film;
+use view::{Choice, View};
+
+/// What a principled surface is made of, in numbers. All shares and colours are within 0 … 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    /// The metal's reflectance straight on; the albedo or tint of the rest.
+    pub base_color: Spectrum,
+    /// The part that is metal.
+    pub metallic: f32,
+    /// Of metal, dielectric and what passes. Its x axis is the local frame's.
+    pub roughness: TrowbridgeReitz,
+    /// Inside over outside; 0 is infinite.
+    pub eta: f32,
+    /// What the dielectric mirrors straight on, times `f90`.
+    pub f0: Spectrum,
+    /// The greatest of it in red, green and blue.
+    pub f0_greatest: f32,
+    /// What it mirrors along the surface: `specular`.
+    pub f90: f32,
+    /// How much of what is not mirrored passes.
+    pub transmission: f32,
+    /// Whether the surface bounds a body.
+    pub is_solid: bool,
+    /// The part of matte light that is let through.
+    pub diffuse_transmission: f32,
+    /// Its colour.
+    pub diffuse_transmission_color: Spectrum,
+    /// How much coat there is.
+    pub clearcoat: f32,
+    /// Of the coat.
+    pub clearcoat_roughness: TrowbridgeReitz,
+    /// The coat's normal in the local frame: of unit length, z > 0.
+    pub clearcoat_normal: Vec3,
+    /// Of the fibres.
+    pub sheen_color: Spectrum,
+    /// The greatest of it in red, green and blue.
+    pub sheen_greatest: f32,
+    /// The square root of the fibres' α.
+    pub sheen_roughness: f32,
+    /// How much of the mirror is under the film.
+    pub iridescence: f32,
+    /// The film.
+    pub film: Film,
+}
+
+impl Default for Parameters {
+    /// A white plastic, smooth, with nothing on it.
+    fn default() -> Self {
+        Self {
+            base_color: Spectrum([1.0; 4]),
+            metallic: 0.0,
+            roughness: TrowbridgeReitz::SMOOTH,
+            eta: 1.5,
+            f0: Spectrum([0.04; 4]),
+            f0_greatest: 0.04,
+            f90: 1.0,
+            transmission: 0.0,
+            is_solid: false,
+            diffuse_transmission: 0.0,
+            diffuse_transmission_color: Spectrum([1.0; 4]),
+            clearcoat: 0.0,
+            clearcoat_roughness: TrowbridgeReitz::SMOOTH,
+            clearcoat_normal: Vec3::Z,
+            sheen_color: Spectrum::BLACK,
+            sheen_greatest: 0.0,
+            sheen_roughness: 0.0,
+            iridescence: 0.0,
+            film: Film { eta: 1.3, thickness: 400.0, wavelengths: None },
+        }
+    }
+}
+
+/// A number of 0 … 1 in two bytes; 0 and 1 are exact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Share(u16);
+
+impl Share {
+    fn new(value: f32) -> Self {
+        // NaN is 0.
+        Self((value.clamp(0.0, 1.0) * 65_535.0 + 0.5) as u16)
+    }
+
+    #[inline]
+    fn value(self) -> f32 {
+        f32::from(self.0) * (1.0 / 65_535.0)
+    }
+}
+
+/// Four of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Shares([Share; 4]);
+
+impl Shares {
+    fn new(lanes: Spectrum) -> Self {
+        Self(lanes.0.map(Share::new))
+    }
+
+    #[inline]
+    fn lanes(self) -> Spectrum {
+        Spectrum(self.0.map(Share::value))
+    }
+
+    fn is_black(self) -> bool {
+        self.0 == [Share(0); 4]
+    }
+}
+
+/// Wavelengths are kept in these parts of a nm.
+const WAVELENGTH_STEPS: f32 = 64.0;
+
+/// glTF's surface. Shares are packed into two bytes each, so that the surfaces that need least memory need not carry more.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Principled {
+    base_color: Shares,
+    f0: Shares,
+    sheen_color: Shares,
+    diffuse_transmission_color: Shares,
+    /// In 64ths of a nm; 0 in RGB mode.
+    wavelengths: [u16; 4],
+    pub(crate) roughness: TrowbridgeReitz,
+    pub(crate) eta: f32,
+    f0_greatest: f32,
+    coat_alpha: f32,
+    coat_normal: [f32; 2],
+    film_eta: f32,
+    film_thickness: f32,
+    metallic: Share,
+    f90: Share,
+    transmission: Share,
+    diffuse_transmission: Share,
+    coat: Share,
+    sheen_greatest: Share,
+    sheen_roughness: Share,
+    iridescence: Share,
+    is_solid: bool,
+}
+
+impl Principled {
+    /// Everything is clamped to where it means something; NaN counts as 0.
+    pub fn new(parameters: &Parameters) -> Self {
+        let p = parameters;
+        let finite = |value: f32, greatest: f32| if value > 0.0 { value.min(greatest) } else { 0.0 };
+        let normal = p.clearcoat_normal;
+        let is_usable = normal.is_normalized() && normal.z > 0.0;
+        Self {
+            base_color: Shares::new(p.base_color),
+            f0: Shares::new(p.f0),
+            sheen_color: Shares::new(p.sheen_color),
+            diffuse_transmission_color: Shares::new(p.diffuse_transmission_color),
+            wavelengths: p
+                .film
+                .wavelengths
+                .map_or([0; 4], |lambda| lambda.map(|nm| (nm * WAVELENGTH_STEPS + 0.5) as u16)),
+            roughness: p.roughness,
+            eta: if p.eta > 0.0 { fresnel::valid_eta(p.eta) } else { 0.0 },
+            f0_greatest: finite(p.f0_greatest, 1.0),
+            coat_alpha: p.clearcoat_roughness.alpha_x,
+            coat_normal: if is_usable { [normal.x, normal.y] } else { [0.0; 2] },
+            film_eta: finite(p.film.eta, 1e3).max(1.0),
+            film_thickness: finite(p.film.thickness, 1e6),
+            metallic: Share::new(p.metallic),
+            f90: Share::new(p.f90),
+            transmission: Share::new(p.transmission),
+            diffuse_transmission: Share::new(p.diffuse_transmission),
+            coat: Share::new(p.clearcoat),
+            sheen_greatest: Share::new(p.sheen_greatest),
+            sheen_roughness: Share::new(p.sheen_roughness),
+            iridescence: Share::new(p.iridescence),
+            is_solid: p.is_solid,
+        }
+    }
+
+    /// What it is made of, as far as it is kept.
+    pub fn parameters(&self) -> Parameters {
+        let [x, y] = self.coat_normal;
+        let is_spectral = self.wavelengths != [0; 4];
+        Parameters {
+            base_color: self.base_color.lanes(),
+            metallic: self.metallic.value(),
+            roughness: self.roughness,
+            eta: self.eta,
+            f0: self.f0.lanes(),
+            f0_greatest: self.f0_greatest,
+            f90: self.f90.value(),
+            transmission: self.transmission.value(),
+            is_solid: self.is_solid,
+            diffuse_transmission: self.diffuse_transmission.value(),
+            diffuse_transmission_color: self.diffuse_transmission_color.lanes(),
+            clearcoat: self.coat.value(),
+            clearcoat_roughness: TrowbridgeReitz { alpha_x: self.coat_alpha, alpha_y: self.coat_alpha },
+            clearcoat_normal: Vec3::new(x, y, (1.0 - x * x - y * y).max(0.0).sqrt()),
+            sheen_color: self.sheen_color.lanes(),
+            sheen_greatest: self.sheen_greatest.value(),
+            sheen_roughness: self.sheen_roughness.value(),
+            iridescence: self.iridescence.value(),
+            film: Film {
+                eta: self.film_eta,
+                thickness: self.film_thickness,
+                wavelengths: is_spectral.then(|| self.wavelengths.map(|w| f32::from(w) / WAVELENGTH_STEPS)),
+            },
+        }
+    }
+
+    pub(super) fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
+        if is_grazing(wo) || is_grazing(wi) {
+            return Spectrum::BLACK;
+        }
+        View::new(self, wo).f(towards(wo, wi), mode)
+    }
+
+    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3, lobes: Lobes) -> f32 {
+        self.scattering(wo, lobes).map_or(0.0, |scattering| scattering.pdf(wo, wi))
+    }
+
+    pub(super) fn sample(
+        &self,
+        wo: Vec3,
+        uc: f32,
+        u: [f32; 2],
+        mode: Mode,
+        lobes: Lobes,
+    ) -> Option<BsdfSample> {
+        self.scattering(wo, lobes)?.sample(wo, uc, u, mode)
+    }
+
+    /// What is known of it toward a direction; `None` for a grazing one.
+    pub(super) fn scattering(&self, wo: Vec3, lobes: Lobes) -> Option<LocalScattering> {
+        (!is_grazing(wo)).then(|| LocalScattering::new(View::new(self, wo), lobes))
+    }
+
+    pub(super) fn lobes(&self) -> Lobes {
+        let of = |roughness: TrowbridgeReitz| match roughness.is_smooth() {
+            true => Lobes::SPECULAR,
+            false => Lobes::GLOSSY,
+        };
+        let p = self.parameters();
+        let mut lobes = Lobes::REFLECTION | of(p.roughness);
+        let is_body = p.metallic < 1.0;
+        if is_body && p.transmission > 0.0 {
+            lobes |= Lobes::TRANSMISSION;
+            if p.is_solid && (self.eta == 1.0 || self.eta == 0.0) {
+                lobes |= Lobes::SPECULAR;
+            }
+        }
+        if is_body && p.transmission < 1.0 {
+            lobes |= Lobes::DIFFUSE;
+            if p.diffuse_transmission > 0.0 {
+                lobes |= Lobes::TRANSMISSION;
+            }
+        }
+        if p.clearcoat > 0.0 {
+            lobes |= of(p.clearcoat_roughness);
+        }
+        if !self.sheen_color.is_black() {
+            lobes |= Lobes::GLOSSY;
+        }
+        lobes
+    }
+
+    pub(super) fn regularize(&mut self) {
+        self.roughness.regularize();
+        let mut coat = TrowbridgeReitz { alpha_x: self.coat_alpha, alpha_y: self.coat_alpha };
+        coat.regularize();
+        self.coat_alpha = coat.alpha_x;
+    }
+}
+
+/// A surface toward a direction ω_o, with the choice between its lobes.
+pub(super) struct LocalScattering {
+    view: View,
+    choice: Option<Choice>,
+    lobes: Lobes,
+}
+
+impl LocalScattering {
+    fn new(view: View, lobes: Lobes) -> Self {
+        Self { choice: view.choice(lobes), view, lobes }
+    }
+
+    /// The function, and where it is not black the density.
+    pub(super) fn f_and_pdf(&self, wo: Vec3, wi: Vec3, mode: Mode) -> (Spectrum, f32) {
+        if is_grazing(wi) {
+            return (Spectrum::BLACK, 0.0);
+        }
+        self.view.f_and_pdf(towards(wo, wi), mode, self.choice.as_ref(), self.lobes)
+    }
+
+    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        match &self.choice {
+            Some(choice) if !is_grazing(wi) => self.view.pdf(towards(wo, wi), choice, self.lobes),
+            _ => 0.0,
+        }
+    }
+
+    pub(super) fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode) -> Option<BsdfSample> {
+        let sample = self.view.sample(uc, u, mode, self.choice.as_ref()?, self.lobes)?;
+        Some(BsdfSample { wi: towards(wo, sample.wi), ..sample })
+    }
+}
+
+/// The direction as it is where `wo` is above: mirrored at the surface if `wo` is below.
+#[inline]
+fn towards(wo: Vec3, w: Vec3) -> Vec3 {
+    if wo.z < 0.0 { Vec3::new(w.x, w.y, -w.z) } else { w }
+}
+
+#[cfg(test)]
+pub(in crate::shading::bsdf) mod tests;

@@ -1,0 +1,210 @@
+//! What lies under coat and sheen: a mirror, of metal or over a body that is matte or lets light pass.
+
+use super::albedo::{self, Split};
+use super::{Film, Principled};
+use crate::core::math::schlick;
+use crate::core::spectrum::Spectrum;
+use crate::shading::bsdf::fresnel;
+use crate::shading::bsdf::microfacet::TrowbridgeReitz;
+
+/// The cosine at which a film stands for its mean.
+pub(super) const MEAN_COSINE: f32 = 0.7;
+
+/// What lies under coat and sheen.
+pub(super) struct Surface {
+    pub(super) base: Spectrum,
+    pub(super) f0: Spectrum,
+    pub(super) f0_greatest: f32,
+    pub(super) f90: f32,
+    pub(super) metal: f32,
+    /// Of the whole surface: a matte body, and one that lets pass.
+    pub(super) matte: f32,
+    pub(super) glass: f32,
+    /// Of the matte body.
+    pub(super) leaf: f32,
+    pub(super) leaf_color: Spectrum,
+    pub(super) roughness: TrowbridgeReitz,
+    /// Of an isotropic mirror that sends back as much.
+    pub(super) alpha: f32,
+    /// Inside over outside.
+    pub(super) eta: f32,
+    pub(super) is_solid: bool,
+    pub(super) film: Option<(f32, Film)>,
+    /// What the film makes of the dielectric's mirror about everywhere.
+    pub(super) filmed: Spectrum,
+    /// The mirror's mean albedo, and what it leaves of light from everywhere.
+    pub(super) mean: Split,
+    pub(super) mean_left: Spectrum,
+}
+
+/// What a facet mirrors and lets pass.
+pub(super) struct Facet {
+    pub(super) mirrored: Spectrum,
+    pub(super) passed: Spectrum,
+}
+
+/// The part that leaves a rough mirror after more than one bounce, by Fresnel's mean and the mean albedo of one bounce.
+pub(super) fn multiple(fresnel: f32, mean: f32) -> f32 {
+    fresnel * fresnel * mean / (1.0 - fresnel * (1.0 - mean))
+}
+
+impl Surface {
+    pub(super) fn new(look: &Principled) -> Self {
+        let p = look.parameters();
+        let roughness = p.roughness;
+        let alpha =
+            if roughness.is_smooth() { 0.0 } else { (roughness.alpha_x * roughness.alpha_y).sqrt().min(1.0) };
+        let body = 1.0 - p.metallic;
+        let mut surface = Self {
+            base: p.base_color,
+            f0: p.f0,
+            f0_greatest: p.f0_greatest,
+            f90: p.f90,
+            metal: p.metallic,
+            matte: body * (1.0 - p.transmission),
+            glass: body * p.transmission,
+            leaf: p.diffuse_transmission,
+            leaf_color: p.diffuse_transmission_color,
+            roughness,
+            alpha,
+            eta: p.eta,
+            is_solid: p.is_solid,
+            film: (p.iridescence > 0.0).then_some((p.iridescence, p.film)),
+            mean: if alpha == 0.0 { albedo::SMOOTH_MEAN } else { albedo::mirror_mean(alpha) },
+            filmed: Spectrum::BLACK,
+            mean_left: Spectrum::BLACK,
+        };
+        if let Some((_, film)) = &surface.film
+            && surface.matte > 0.0
+        {
+            surface.filmed = film.fresnel(MEAN_COSINE, surface.f0);
+        }
+        if surface.matte > 0.0 {
+            surface.mean_left = surface.left(MEAN_COSINE, surface.mean);
+        }
+        surface
+    }
+
+    /// With the film over it, what mirrors `f0` straight on.
+    #[inline]
+    pub(super) fn under_film(&self, cos: f32, f0: Spectrum, plain: Spectrum) -> Spectrum {
+        match &self.film {
+            Some((amount, film)) => plain * (1.0 - amount) + film.fresnel(cos, f0) * *amount,
+            None => plain,
+        }
+    }
+
+    /// What the metal mirrors.
+    #[inline]
+    pub(super) fn metal(&self, cos: f32) -> Spectrum {
+        let s = schlick(cos);
+        self.under_film(cos, self.base, self.base.map(|f0| f0 + (1.0 - f0) * s))
+    }
+
+    /// What mirrors over the matte body.
+    #[inline]
+    pub(super) fn lacquer(&self, cos: f32) -> Spectrum {
+        let s = schlick(cos);
+        self.under_film(cos, self.f0, self.f0.map(|f0| f0 + (self.f90 - f0) * s))
+    }
+
+    /// What the lacquer's albedo leaves for the body below.
+    pub(super) fn left(&self, cos: f32, split: Split) -> Spectrum {
+        let hidden = 1.0 - split.all();
+        let mean = self.mean.all();
+        let plain = {
+            let again = multiple(self.f0_greatest + (self.f90 - self.f0_greatest) / 21.0, mean);
+            1.0 - split.of(self.f0_greatest, self.f90) - again * hidden
+        };
+        let plain = plain.max(0.0);
+        match &self.film {
+            None => Spectrum([plain; 4]),
+            Some((amount, film)) => {
+                let here = if cos == MEAN_COSINE { self.filmed } else { film.fresnel(cos, self.f0) };
+                let filmed = here.zip(self.filmed, |here, around| {
+                    (1.0 - here * split.all() - multiple(around, mean) * hidden).max(0.0)
+                });
+                filmed * *amount + Spectrum([plain * (1.0 - amount); 4])
+            }
+        }
+    }
+
+    /// What the glass does at a cosine to a facet, on the side of `wo`.
+    pub(super) fn pane(&self, cos: f32, is_inside: bool) -> Facet {
+        // Between two sides what counts is the angle on that of the lower index: outside, but for what is lighter than what
+        // is around it.
+        let bends = self.is_solid && self.bends();
+        let eta = if bends && self.eta < 1.0 { 1.0 / self.eta } else { self.eta };
+        let cos = if bends && is_inside == (self.eta > 1.0) {
+            let sin2 = eta * eta * (1.0 - cos * cos).max(0.0);
+            if sin2 >= 1.0 {
+                return Facet { mirrored: Spectrum([1.0; 4]), passed: Spectrum::BLACK };
+            }
+            (1.0 - sin2).sqrt()
+        } else {
+            cos
+        };
+        // Fresnel's curve from 0 to 1.
+        let s = if eta == 0.0 {
+            schlick(cos)
+        } else {
+            let straight = ((eta - 1.0) / (eta + 1.0)) * ((eta - 1.0) / (eta + 1.0));
+            (fresnel::dielectric(cos, eta) - straight) / (1.0 - straight).max(1e-6)
+        };
+        let s = s.clamp(0.0, 1.0);
+        let of = |f0: f32| f0 + (self.f90 - f0) * s;
+        let (mirrored, passed) = (self.f0.map(of), 1.0 - of(self.f0_greatest));
+        match &self.film {
+            None => Facet { mirrored, passed: Spectrum([passed; 4]) },
+            Some((amount, film)) => {
+                let filmed = film.fresnel(cos, self.f0);
+                Facet {
+                    mirrored: mirrored * (1.0 - amount) + filmed * *amount,
+                    passed: filmed.map(|f| passed * (1.0 - amount) + (1.0 - f) * amount),
+                }
+            }
+        }
+    }
+
+    /// Whether the index of a body changes directions.
+    #[inline]
+    pub(super) fn bends(&self) -> bool {
+        self.eta != 1.0 && self.eta != 0.0
+    }
+
+    /// Whether what passes has one direction only.
+    #[inline]
+    pub(super) fn passes_sharply(&self) -> bool {
+        self.alpha == 0.0 || (self.is_solid && !self.bends())
+    }
+
+    /// Whether its glass is a body whose facets bend light, each in a direction of its own.
+    #[inline]
+    pub(super) fn is_rough_body(&self) -> bool {
+        self.alpha > 0.0 && self.glass > 0.0 && self.is_solid && self.bends()
+    }
+
+    /// What the metal and the mirror over the matte body do at a cosine, with their weights.
+    pub(super) fn opaque(&self, cos: f32) -> Spectrum {
+        let mut mirrored = Spectrum::BLACK;
+        if self.metal > 0.0 {
+            mirrored += self.metal(cos) * self.metal;
+        }
+        if self.matte > 0.0 {
+            mirrored += self.lacquer(cos) * self.matte;
+        }
+        mirrored
+    }
+
+    /// What a facet does at a cosine, each part with its weight and tint.
+    pub(super) fn facet(&self, cos: f32, is_inside: bool) -> Facet {
+        let mut mirrored = self.opaque(cos);
+        let mut passed = Spectrum::BLACK;
+        if self.glass > 0.0 {
+            let pane = self.pane(cos, is_inside);
+            mirrored += pane.mirrored * self.glass;
+            passed = pane.passed * self.base * self.glass;
+        }
+        Facet { mirrored, passed }
+    }
+}

@@ -1,0 +1,401 @@
+//! Is nothing won or lost, and are the limits what they should be? Densities and reciprocity are tested with all others.
+
+use super::*;
+use crate::core::color::DenselySampledSpectrum;
+use crate::shading::bsdf::tests::{direction, number, numbers};
+use crate::shading::bsdf::{Bsdf, fresnel};
+
+fn grey(value: f32) -> Spectrum {
+    Spectrum([value; 4])
+}
+
+fn rough(alpha: f32) -> TrowbridgeReitz {
+    TrowbridgeReitz::new(alpha, alpha)
+}
+
+fn of(parameters: Parameters) -> Bsdf {
+    Bsdf::Principled(Principled::new(&parameters))
+}
+
+/// What is tested for its density: every lobe alone as far as that goes, and mixtures.
+pub(in crate::shading::bsdf) fn subjects() -> Vec<(&'static str, Bsdf)> {
+    let base = Parameters { base_color: Spectrum([0.8, 0.5, 0.2, 0.3]), ..Parameters::default() };
+    let glass = Parameters { transmission: 1.0, roughness: rough(0.3), ..base };
+    let film = Film { eta: 1.8, thickness: 500.0, wavelengths: None };
+    let sheen = Parameters {
+        sheen_color: Spectrum([0.9, 0.4, 0.2, 0.1]),
+        sheen_greatest: 0.9,
+        sheen_roughness: 0.5,
+        roughness: rough(0.6),
+        ..base
+    };
+    let coat = Parameters { clearcoat: 0.9, clearcoat_roughness: rough(0.1), ..base };
+    let tilted = direction(15.0, 40.0);
+    let all = |name, parameters| (name, of(parameters));
+    vec![
+        all("principled plastic", Parameters { roughness: rough(0.25), ..base }),
+        all("principled smooth plastic", base),
+        all("principled metal", Parameters { metallic: 1.0, roughness: rough(0.4), ..base }),
+        all(
+            "principled brushed metal",
+            Parameters { metallic: 1.0, roughness: TrowbridgeReitz::new(0.6, 0.15), ..base },
+        ),
+        all("principled thin sheet", glass),
+        all("principled body", Parameters { is_solid: true, ..glass }),
+        all("principled body of air", Parameters { is_solid: true, eta: 1.0, ..glass }),
+        all(
+            "principled leaf",
+            Parameters { diffuse_transmission: 0.6, roughness: rough(0.5), f90: 0.5, f0: grey(0.02), ..base },
+        ),
+        all("principled velvet", sheen),
+        all("principled lacquer", Parameters { metallic: 1.0, roughness: rough(0.5), ..coat }),
+        all("principled smooth lacquer", Parameters { clearcoat_roughness: rough(0.0), ..coat }),
+        all(
+            "principled tilted lacquer",
+            Parameters { clearcoat_normal: tilted, roughness: rough(0.4), ..coat },
+        ),
+        all("principled film", Parameters { iridescence: 0.9, film, roughness: rough(0.3), ..base }),
+        all(
+            "principled everything",
+            Parameters {
+                metallic: 0.3,
+                transmission: 0.4,
+                is_solid: true,
+                diffuse_transmission: 0.3,
+                iridescence: 0.5,
+                film,
+                clearcoat: 0.5,
+                clearcoat_roughness: rough(0.2),
+                ..sheen
+            },
+        ),
+    ]
+}
+
+/// The mean weight of what is sampled, with its standard error: the albedo.
+fn albedo(bsdf: &Bsdf, wo: Vec3, lane: usize) -> (f64, f64) {
+    const N: u64 = 20_000;
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for index in 0..N {
+        // Stratified in the choice of lobe.
+        let (uc, u) = numbers(29, index);
+        let uc = (index as f32 + uc) / N as f32;
+        if let Some(s) = bsdf.sample(wo, uc, u, Mode::Importance, Lobes::ALL) {
+            let weight = f64::from(s.f.0[lane] * s.wi.z.abs() / s.pdf);
+            sum += weight;
+            squares += weight * weight;
+        }
+    }
+    let mean = sum / N as f64;
+    (mean, ((squares / N as f64 - mean * mean).max(0.0) / N as f64).sqrt())
+}
+
+const ANGLES: [f32; 6] = [0.0, 30.0, 55.0, 70.0, 80.0, 86.0];
+
+#[test]
+fn white_stays_white_in_a_furnace() {
+    let mut faults = Vec::new();
+    for roughness in [0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0_f32] {
+        let white = Parameters { roughness: rough(roughness * roughness), ..Parameters::default() };
+        let white_mirror = Parameters { f0: grey(0.3), f0_greatest: 0.3, ..white };
+        for (name, parameters) in [
+            ("plastic", white),
+            ("strong plastic", white_mirror),
+            ("metal", Parameters { metallic: 1.0, ..white }),
+            ("half metal", Parameters { metallic: 0.5, ..white }),
+            ("sheet", Parameters { transmission: 1.0, ..white }),
+            ("leaf", Parameters { diffuse_transmission: 0.4, ..white }),
+        ] {
+            let bsdf = of(parameters);
+            for angle in ANGLES {
+                let (mean, error) = albedo(&bsdf, direction(angle, 20.0), 0);
+                if !((mean - 1.0).abs() < 0.005 + 3.0 * error) {
+                    faults.push(format!("{name}, roughness {roughness}, {angle}°: {mean:.4} ± {error:.4}"));
+                }
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn bodies_of_white_glass_keep_all_light() {
+    let mut faults = Vec::new();
+    for roughness in [0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0_f32] {
+        for eta in [0.5, 0.9, 1.01, 1.1, 1.33, 1.5, 2.0_f32] {
+            let straight = ((eta - 1.0) / (eta + 1.0)).powi(2);
+            let glass = Parameters {
+                eta,
+                f0: grey(straight),
+                f0_greatest: straight,
+                transmission: 1.0,
+                is_solid: true,
+                roughness: rough(roughness * roughness),
+                ..Parameters::default()
+            };
+            for (name, parameters) in [
+                ("glass", glass),
+                ("brushed", Parameters { roughness: TrowbridgeReitz::new(0.1, 0.8), ..glass }),
+                ("without a mirror", Parameters { f0: grey(0.0), f0_greatest: 0.0, f90: 0.0, ..glass }),
+            ] {
+                let bsdf = of(parameters);
+                for angle in ANGLES.into_iter().flat_map(|angle| [angle, 180.0 - angle]) {
+                    for index in 0..100 {
+                        // Not in the mean only: whatever is chosen.
+                        let (uc, u) = numbers(37, index);
+                        let sample = bsdf.sample(direction(angle, 20.0), uc, u, Mode::Importance, Lobes::ALL);
+                        let weight = sample.map_or(0.0, |s| s.f.0[0] * s.wi.z.abs() / s.pdf);
+                        if !((weight - 1.0).abs() < 1e-3) {
+                            faults.push(format!(
+                                "{name}, roughness {roughness}, index {eta}, {angle}°: {weight} {sample:?}"
+                            ));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{} faults\n{}", faults.len(), faults.join("\n"));
+}
+
+#[test]
+fn nothing_gives_more_than_it_gets() {
+    let mut faults = Vec::new();
+    for trial in 0..60 {
+        let any = |k: u64| number(100 + k, trial);
+        let often = |k: u64| if any(k) < 0.5 { 0.0 } else { any(k + 20) };
+        let lanes = |k: u64| Spectrum([any(k), 1.0, any(k + 1), any(k + 2)]);
+        let alpha = |k: u64| any(k) * any(k);
+        let eta = 1.0 + 1.5 * any(1);
+        let straight = ((eta - 1.0) / (eta + 1.0)).powi(2);
+        let is_drawn_out = any(2) < 0.3;
+        let parameters = Parameters {
+            base_color: lanes(3),
+            metallic: often(6),
+            roughness: TrowbridgeReitz::new(alpha(7), alpha(if is_drawn_out { 8 } else { 7 })),
+            eta,
+            f0: grey(straight),
+            f0_greatest: straight,
+            transmission: often(9),
+            is_solid: any(10) < 0.5,
+            diffuse_transmission: often(11),
+            diffuse_transmission_color: lanes(12),
+            clearcoat: often(15),
+            clearcoat_roughness: rough(alpha(16)),
+            sheen_color: lanes(40) * 0.999,
+            sheen_greatest: if any(17) < 0.5 { 0.999 } else { 1.0 },
+            sheen_roughness: any(18),
+            iridescence: often(19),
+            film: Film { eta: 1.0 + any(60), thickness: 1000.0 * any(61), wavelengths: None },
+            ..Parameters::default()
+        };
+        let bare = Parameters { sheen_color: Spectrum::BLACK, sheen_greatest: 0.0, ..parameters };
+        for parameters in [parameters, bare] {
+            let bsdf = of(parameters);
+            for angle in [0.0, 60.0, 83.0, 120.0] {
+                let (mean, error) = albedo(&bsdf, direction(angle, 70.0), 1);
+                // The albedo of a film over rough facets is one facet's; that of drawn-out ones, that of even ones.
+                let guess = if is_drawn_out || parameters.iridescence > 0.0 { 0.02 } else { 0.005 };
+                if !(mean < 1.0 + guess + 4.0 * error) {
+                    faults.push(format!("{trial} {angle}°: {mean:.4} ± {error:.4}: {parameters:?}"));
+                }
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{} faults\n{}", faults.len(), faults.join("\n"));
+}
+
+#[test]
+fn limits_are_what_is_there_already() {
+    let close = |a: f32, b: f32, bound: f32| (a - b).abs() <= bound * b.abs().max(1e-2);
+    let mut near = (0, 0);
+    for alpha in [0.0, 0.2] {
+        let glass = of(Parameters {
+            transmission: 1.0,
+            is_solid: true,
+            roughness: rough(alpha),
+            ..Parameters::default()
+        });
+        let pbrt = Bsdf::dielectric(1.5, rough(alpha));
+        for (k, angle) in [0.0, 40.0, 75.0, 110.0, 140.0, 175.0].into_iter().enumerate() {
+            let wo = direction(angle, 30.0);
+            for index in 0..200 {
+                let (uc, u) = numbers(k as u64, index);
+                let mode = Mode::Radiance;
+                let [ours, theirs] = [&glass, &pbrt].map(|bsdf| bsdf.sample(wo, uc, u, mode, Lobes::ALL));
+                let (Some(ours), Some(theirs)) = (ours, theirs) else {
+                    // From inside, a rough one takes its micro-normals in another order.
+                    assert!(
+                        alpha > 0.0 || ours.is_some() == theirs.is_some(),
+                        "{angle}: {ours:?} {theirs:?}"
+                    );
+                    continue;
+                };
+                if ours.lobe != theirs.lobe {
+                    // On the edge between the sides.
+                    assert!((uc - theirs.pdf).abs() < 1e-3 || alpha > 0.0);
+                    continue;
+                }
+                assert!(close(ours.eta, theirs.eta, 1e-5));
+                if !ours.lobe.is_specular() {
+                    // But for the light that pbrt's facets hide, and what they send to the wrong side.
+                    let seen = rough(alpha).g(wo, theirs.wi) / rough(alpha).g1(wo);
+                    let [f, pbrts] = [&glass, &pbrt].map(|bsdf| bsdf.f(wo, theirs.wi, mode).0[0]);
+                    assert!(f * seen > 0.998 * pbrts, "{angle}: {f} {pbrts}");
+                    near.0 += u32::from(close(f * seen, pbrts, 5e-3));
+                    let [pdf, pbrts] = [&glass, &pbrt].map(|bsdf| bsdf.pdf(wo, theirs.wi, mode, Lobes::ALL));
+                    assert!(pdf > 0.998 * pbrts, "{angle}: {pdf} {pbrts}");
+                    near.1 += 1;
+                    continue;
+                }
+                assert!((ours.wi - theirs.wi).length() < 1e-4);
+                let weight = |s: &BsdfSample| s.f.0[0] * s.wi.z.abs() / s.pdf;
+                assert!(close(weight(&ours), weight(&theirs), 1e-3), "{angle}: {ours:?} {theirs:?}");
+                assert!(close(ours.pdf, theirs.pdf, 2e-3), "{angle}: {ours:?} {theirs:?}");
+            }
+        }
+    }
+    assert!(near.1 > 400 && near.0 * 10 > near.1 * 9, "{near:?}");
+    // A metal of Schlick's is near one of the same reflectance, up to what its curve is.
+    let reflectance = Spectrum([0.9, 0.6, 0.3, 0.5]);
+    let metal = of(Parameters {
+        metallic: 1.0,
+        base_color: reflectance,
+        roughness: rough(0.1),
+        ..Parameters::default()
+    });
+    let pbrt = Bsdf::conductor_of_reflectance(reflectance, rough(0.1));
+    for (wo, wi) in
+        [(direction(10.0, 0.0), direction(12.0, 170.0)), (direction(35.0, 0.0), direction(30.0, 175.0))]
+    {
+        let [ours, theirs] = [&metal, &pbrt].map(|bsdf| bsdf.f(wo, wi, Mode::Radiance));
+        for lane in 0..4 {
+            assert!(close(ours.0[lane], theirs.0[lane], 0.02), "{ours:?} {theirs:?}");
+        }
+        let [ours, theirs] = [&metal, &pbrt].map(|bsdf| bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL));
+        assert!(close(ours, theirs, 0.02), "{ours} {theirs}");
+    }
+    // A matte body whose mirror mirrors nothing is Lambert's.
+    let matte = of(Parameters {
+        base_color: reflectance,
+        f0: Spectrum::BLACK,
+        f0_greatest: 0.0,
+        f90: 0.0,
+        roughness: rough(0.5),
+        ..Parameters::default()
+    });
+    let lambert = Bsdf::diffuse(reflectance);
+    for (wo, wi) in
+        [(direction(10.0, 0.0), direction(60.0, 130.0)), (direction(80.0, 0.0), direction(30.0, 10.0))]
+    {
+        let [ours, theirs] = [&matte, &lambert].map(|bsdf| bsdf.f(wo, wi, Mode::Radiance).0[1]);
+        assert!(close(ours, theirs, 1e-3), "{ours} {theirs}");
+    }
+}
+
+#[test]
+fn a_film_is_airys_sum_and_the_eye_sees_its_integral() {
+    for (eta, f0) in [(1.3_f32, 0.04_f32), (1.8, 0.04), (1.33, 0.6), (2.2, 0.9)] {
+        for thickness in [0.0, 150.0, 420.0, 900.0] {
+            for cos in [1.0, 0.7, 0.3_f32] {
+                // Ray by ray: the first, and all that come out after more rounds, as complex amplitudes.
+                let airy = |nm: f64| {
+                    let eta = if thickness > 0.0 { f64::from(eta) } else { 1.0 };
+                    let schlick = |f0: f64, cos: f64| f0 + (1.0 - f0) * (1.0 - cos).powi(5);
+                    let straight = |a: f64, b: f64| ((a - b) / (a + b)).powi(2);
+                    let cos = f64::from(cos);
+                    let inside = (1.0 - (1.0 - cos * cos) / (eta * eta)).sqrt();
+                    let root = (f64::from(f0) + 1e-4).sqrt();
+                    let base = (1.0 + root) / (1.0 - root);
+                    let upper = schlick(straight(eta, 1.0), cos).sqrt();
+                    // Amplitudes: minus where the boundary is to what is denser.
+                    let below =
+                        schlick(straight(base, eta), inside).sqrt() * if base < eta { 1.0 } else { -1.0 };
+                    let phase = std::f64::consts::TAU * 2.0 * eta * f64::from(thickness) * inside / nm;
+                    let (mut re, mut im) = (-upper, 0.0);
+                    let mut amplitude = (1.0 - upper * upper) * below;
+                    for round in 1..200 {
+                        re += amplitude * (phase * f64::from(round)).cos();
+                        im += amplitude * (phase * f64::from(round)).sin();
+                        amplitude *= upper * below;
+                    }
+                    re * re + im * im
+                };
+                let lambda = [450.0, 520.0, 600.0, 680.0];
+                let film = Film { eta, thickness, wavelengths: Some(lambda) };
+                let got = film.fresnel(cos, grey(f0));
+                for (got, nm) in got.0.into_iter().zip(lambda) {
+                    let expected = airy(f64::from(nm));
+                    assert!(
+                        (f64::from(got) - expected).abs() < 4e-3,
+                        "{eta} {f0} {thickness} {cos} {nm}: {got} {expected}"
+                    );
+                }
+                // In RGB mode: the integral, of an equal-energy light made white.
+                let seen = Film { wavelengths: None, ..film }.fresnel(cos, grey(f0)).rgb();
+                let expected = DenselySampledSpectrum::from_samples(std::array::from_fn(|k| {
+                    airy(360.0 + k as f64) as f32
+                }))
+                .to_rgb_reflectance();
+                for (got, expected) in seen.into_iter().zip(expected) {
+                    assert!(
+                        (got - expected).abs() < 0.12,
+                        "{eta} {f0} {thickness} {cos}: {seen:?} {expected}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn tables_agree_with_finer_integration() {
+    let mut worst = [0.0_f64; 2];
+    for trial in 0..24 {
+        let cos = number(31, trial).powi(2).max(0.01);
+        let sin = (1.0 - cos * cos).sqrt();
+        let wo = Vec3::new(sin, 0.0, cos);
+        let roughness = 0.1 + 0.9 * number(32, trial);
+        let alpha = roughness * roughness;
+        let fibres = sheen::Sheen::new(roughness);
+        // By uniform directions, many of them.
+        const N: usize = 250;
+        let mut sums = [0.0_f64; 2];
+        for k in 0..N * N {
+            let u = [((k % N) as f32 + 0.5) / N as f32, ((k / N) as f32 + 0.5) / N as f32];
+            let wi = crate::core::warp::uniform_cone(u, 1.0);
+            sums[0] += f64::from(fibres.f(wo, wi) * wi.z) * std::f64::consts::TAU;
+            let facets = rough(alpha);
+            let wm = facets.sample(wo, u);
+            let mirrored = crate::core::math::reflect(wo, wm);
+            if mirrored.z > 0.0 {
+                sums[1] += f64::from(facets.g(wo, mirrored) / facets.g1(wo));
+            }
+        }
+        let [of_sheen, of_mirror] = sums.map(|sum| sum / (N * N) as f64);
+        let error = [
+            (f64::from(albedo::sheen(cos, roughness)) - of_sheen).abs(),
+            (f64::from(albedo::mirror(cos, alpha).all()) - of_mirror).abs(),
+        ];
+        assert!(error[0] < 0.01, "sheen {cos} {roughness}: {of_sheen} ± {}", error[0]);
+        assert!(error[1] < 0.006, "mirror {cos} {roughness}: {of_mirror} ± {}", error[1]);
+        worst = std::array::from_fn(|k| worst[k].max(error[k]));
+        assert!(of_sheen < 1.001, "sheen {cos} {roughness}: {of_sheen}");
+    }
+    assert!(worst[0] > 0.0);
+}
+
+#[test]
+fn it_is_small_and_keeps_what_it_is_made_of() {
+    assert!(size_of::<Principled>() <= 96, "{}", size_of::<Principled>());
+    let kept = Principled::new(&Parameters::default()).parameters();
+    assert_eq!(kept.base_color, grey(1.0));
+    assert!((kept.f0.0[0] - fresnel::dielectric(1.0, 1.5)).abs() < 1e-5);
+    let film = Film { eta: 1.3, thickness: 400.0, wavelengths: Some([400.0, 500.5, 600.0, 780.25]) };
+    assert_eq!(Principled::new(&Parameters { film, ..Parameters::default() }).parameters().film, film);
+    // Nonsense is no trap.
+    let nonsense =
+        Parameters { metallic: f32::NAN, eta: f32::NAN, base_color: grey(f32::NAN), ..Parameters::default() };
+    let kept = Principled::new(&nonsense).parameters();
+    assert_eq!((kept.metallic, kept.eta, kept.base_color), (0.0, 0.0, grey(0.0)));
+}

@@ -1,0 +1,539 @@
+//! Is each `sample` as dense as its `pdf` says, and do values obey reciprocity, energy and Fresnel?
+
+use super::*;
+use crate::core::hash;
+use crate::core::statistics::{chi_square_deviate, corrected_bound};
+use std::f64::consts::TAU;
+
+/// Numbers in [0, 1), a function of the seed and the index.
+pub(super) fn number(seed: u64, index: u64) -> f32 {
+    (hash::pair(seed, index) >> 40) as f32 / 16_777_216.0
+}
+
+/// Three numbers for the `index`-th sample.
+pub(super) fn numbers(seed: u64, index: u64) -> (f32, [f32; 2]) {
+    let of = |k| number(seed, index * 3 + k);
+    (of(0), [of(1), of(2)])
+}
+
+/// The direction at these angles to the z and x axes.
+pub(super) fn direction(theta_degrees: f32, phi_degrees: f32) -> Vec3 {
+    let (sin_theta, cos_theta) = theta_degrees.to_radians().sin_cos();
+    let (sin_phi, cos_phi) = phi_degrees.to_radians().sin_cos();
+    Vec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta).normalize()
+}
+
+/// A uniform direction of the sphere.
+pub(super) fn uniform_direction(u: [f32; 2]) -> Vec3 {
+    crate::core::warp::uniform_sphere(u)
+}
+
+/// A positive number of any size: its exponent is uniform in ±`size`.
+fn any_size(seed: u64, index: u64, size: i32) -> f32 {
+    let bits = hash::pair(seed, index);
+    let exponent = (bits % (2 * size as u64 + 1)) as i32 - size;
+    2_f32.powi(exponent) * (1.0 + (bits >> 41) as f32 / 8_388_608.0)
+}
+
+fn grey(value: f32) -> Spectrum {
+    Spectrum([value; 4])
+}
+
+fn gold() -> (Spectrum, Spectrum) {
+    (Spectrum([0.143, 0.374, 1.442, 0.2]), Spectrum([3.983, 2.385, 1.603, 3.0]))
+}
+
+fn rough(x: f32, y: f32) -> TrowbridgeReitz {
+    TrowbridgeReitz::new(x, y)
+}
+
+fn whitted() -> Whitted {
+    Whitted {
+        diffuse: Spectrum([0.5, 0.2, 0.1, 0.0]),
+        specular: grey(0.4),
+        shininess: 30.0,
+        mirror: grey(0.1),
+        transmission: grey(0.2),
+        ior: 1.5,
+        fresnel: true,
+    }
+}
+
+/// What has a density, and a name for failures.
+fn with_density() -> Vec<(&'static str, Bsdf)> {
+    let (eta, k) = gold();
+    let of_gold = |x, y| Bsdf::conductor(eta, k, rough(x, y));
+    let mut subjects = vec![
+        ("diffuse", Bsdf::diffuse(Spectrum([0.7, 0.5, 0.3, 0.0]))),
+        ("leaf", Bsdf::diffuse_transmission(grey(0.3), grey(0.6))),
+        ("white metal 0.5", Bsdf::conductor(grey(1.0), grey(1e8), rough(0.5, 0.5))),
+        ("gold 0.1", of_gold(0.1, 0.1)),
+        ("gold 0.4 × 0.1", of_gold(0.4, 0.1)),
+        ("gold 1 × 0.3", of_gold(1.0, 0.3)),
+        ("glass 0.5", Bsdf::dielectric(1.5, rough(0.5, 0.5))),
+        ("glass 0.15", Bsdf::dielectric(1.5, rough(0.15, 0.15))),
+        ("glass 0.3 × 0.6", Bsdf::dielectric(1.5, rough(0.3, 0.6))),
+        ("bubble 0.4", Bsdf::dielectric(1.0 / 1.33, rough(0.4, 0.4))),
+        ("whitted", Bsdf::Whitted(whitted())),
+        ("whitted dull", Bsdf::Whitted(Whitted { shininess: 2.0, fresnel: false, ..whitted() })),
+    ];
+    subjects.extend(principled::tests::subjects());
+    subjects
+}
+
+/// From above, from the side, nearly grazing, and from inside.
+fn views() -> [Vec3; 6] {
+    [
+        Vec3::Z,
+        direction(35.0, 20.0),
+        direction(70.0, 130.0),
+        direction(87.0, 250.0),
+        direction(125.0, 60.0),
+        direction(170.0, 300.0),
+    ]
+}
+
+/// The integral over a cell of the sphere in z and φ, by Gauss's rule of four points, halved where it is not good.
+fn integrate(f: &dyn Fn(Vec3) -> f64, z: [f64; 2], phi: [f64; 2], tolerance: f64, depth: u32) -> f64 {
+    const NODES: [(f64, f64); 4] = [
+        (-0.861_136_311_594_052_6, 0.347_854_845_137_453_8),
+        (-0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
+        (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
+        (0.861_136_311_594_052_6, 0.347_854_845_137_453_8),
+    ];
+    let rule = |z: [f64; 2], phi: [f64; 2]| {
+        let mut sum = 0.0;
+        for (a, weight_a) in NODES {
+            for (b, weight_b) in NODES {
+                let at = 0.5 * (z[0] + z[1] + a * (z[1] - z[0]));
+                let turn = 0.5 * (phi[0] + phi[1] + b * (phi[1] - phi[0]));
+                let sin = (1.0 - at * at).max(0.0).sqrt();
+                let w = Vec3::new((sin * turn.cos()) as f32, (sin * turn.sin()) as f32, at as f32);
+                sum += weight_a * weight_b * f(w);
+            }
+        }
+        0.25 * sum * (z[1] - z[0]) * (phi[1] - phi[0])
+    };
+    let (zm, phim) = (0.5 * (z[0] + z[1]), 0.5 * (phi[0] + phi[1]));
+    let quarters = [
+        ([z[0], zm], [phi[0], phim]),
+        ([z[0], zm], [phim, phi[1]]),
+        ([zm, z[1]], [phi[0], phim]),
+        ([zm, z[1]], [phim, phi[1]]),
+    ];
+    let fine: f64 = quarters.iter().map(|&(z, phi)| rule(z, phi)).sum();
+    if depth == 0 || (fine - rule(z, phi)).abs() < tolerance {
+        return fine;
+    }
+    quarters.iter().map(|&(z, phi)| integrate(f, z, phi, 0.5 * tolerance, depth - 1)).sum()
+}
+
+const ROWS: usize = 24;
+const COLUMNS: usize = 24;
+
+/// The integral over each cell of the sphere: rows in z, columns in φ.
+fn over_cells(f: &dyn Fn(Vec3) -> f64, tolerance: f64) -> Vec<f64> {
+    let z = |row: usize| 1.0 - 2.0 * row as f64 / ROWS as f64;
+    let phi = |column: usize| TAU * column as f64 / COLUMNS as f64;
+    (0..ROWS * COLUMNS)
+        .map(|cell| {
+            let (row, column) = (cell / COLUMNS, cell % COLUMNS);
+            integrate(f, [z(row + 1), z(row)], [phi(column), phi(column + 1)], tolerance, 9)
+        })
+        .collect()
+}
+
+fn cell(w: Vec3) -> usize {
+    let row = (0.5 * (1.0 - f64::from(w.z)) * ROWS as f64) as usize;
+    let turn = f64::from(w.y).atan2(f64::from(w.x)) / TAU;
+    let column = ((if turn < 0.0 { turn + 1.0 } else { turn }) * COLUMNS as f64) as usize;
+    row.min(ROWS - 1) * COLUMNS + column.min(COLUMNS - 1)
+}
+
+#[test]
+fn samples_are_as_dense_as_they_say() {
+    let subjects = with_density();
+    let bound = corrected_bound(subjects.len() * views().len());
+    let mut faults = Vec::new();
+    for (subject, (name, bsdf)) in subjects.iter().enumerate() {
+        // Where many lobes are asked for each value, what can be afforded.
+        let is_costly = name.starts_with("principled");
+        let n: u64 = if is_costly { 300_000 } else { 1_000_000 };
+        for (view, wo) in views().into_iter().enumerate() {
+            if is_costly && (view + subject) % 2 == 1 {
+                continue;
+            }
+            let seed = (subject * 100 + view) as u64;
+            let what = format!("{name} from {wo}");
+            let mut counts = vec![0_u64; ROWS * COLUMNS + 1];
+            let (mut sum, mut squares) = (0.0, 0.0);
+            for index in 0..n {
+                let (uc, u) = numbers(seed, index);
+                let sample = bsdf.sample(wo, uc, u, Mode::Importance, Lobes::ALL);
+                let Some(sample) = sample.filter(|s| !s.lobe.is_specular()) else {
+                    counts[ROWS * COLUMNS] += 1;
+                    continue;
+                };
+                counts[cell(sample.wi)] += 1;
+                let weight = f64::from(sample.f.0[0] * sample.wi.z.abs() / sample.pdf);
+                sum += weight;
+                squares += weight * weight;
+            }
+            // Counts against the density, what has no density in a cell of its own.
+            let pdf = |wi| f64::from(bsdf.pdf(wo, wi, Mode::Importance, Lobes::ALL));
+            let mut expected = over_cells(&pdf, 3e-7);
+            expected.push((1.0 - expected.iter().sum::<f64>()).max(1e-9));
+            expected.iter_mut().for_each(|e| *e *= n as f64);
+            let deviate = chi_square_deviate(&counts, &expected);
+            if !(deviate < bound) {
+                faults.push(format!("{what}: {deviate:.1} standard deviations, {bound:.1} are allowed"));
+            }
+            // The mean weight against the integral of what it estimates.
+            let value = |wi: Vec3| f64::from(bsdf.f(wo, wi, Mode::Importance).0[0] * wi.z.abs());
+            let integral: f64 = over_cells(&value, 3e-7).iter().sum();
+            let mean = sum / n as f64;
+            let error = ((squares / n as f64 - mean * mean).max(0.0) / n as f64).sqrt();
+            if !((mean - integral).abs() < bound * error + 1e-5) {
+                faults.push(format!("{what}: mean weight {mean} ± {error}, integral {integral}"));
+            }
+            if !name.starts_with("whitted") && !(integral < 1.0 + 1e-4) {
+                faults.push(format!("{what}: more light out than in: {integral}"));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn samples_carry_the_values_of_f_and_pdf() {
+    let close = |a: f32, b: f32| (a - b).abs() <= 4e-3 * a.abs().max(b.abs()) + 1e-6;
+    let mut checked = 0;
+    for (name, bsdf) in with_density() {
+        for wo in views() {
+            for lobes in [Lobes::ALL, Lobes::REFLECTION, Lobes::TRANSMISSION] {
+                for mode in [Mode::Radiance, Mode::Importance] {
+                    for index in 0..400 {
+                        let (uc, u) = numbers(3, index);
+                        let Some(sample) = bsdf.sample(wo, uc, u, mode, lobes) else { continue };
+                        assert!(lobes.contains(sides(sample.lobe)), "{name}");
+                        assert!((sample.wi.length() - 1.0).abs() < 1e-5, "{name} {}", sample.wi);
+                        let through = wo.z * sample.wi.z < 0.0;
+                        assert_eq!(through, sample.lobe.is_transmission(), "{name}");
+                        if sample.lobe.is_specular() {
+                            continue;
+                        }
+                        let f = bsdf.f(wo, sample.wi, mode);
+                        let pdf = bsdf.pdf(wo, sample.wi, mode, lobes);
+                        assert!(close(f.0[0], sample.f.0[0]), "{name} {wo} {sample:?}: f = {f:?}");
+                        assert!(close(pdf, sample.pdf), "{name} {wo} {sample:?}: pdf = {pdf}");
+                        checked += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(checked > 50_000, "{checked}");
+}
+
+#[test]
+fn light_goes_both_ways() {
+    let mut non_zero = 0;
+    // Whitted's highlight is not reciprocal, nor is a coat with a normal of its own where cosines are to another, nor rough
+    // glass of a body that keeps all light.
+    let is_not = |name: &str| {
+        name.starts_with("whitted")
+            || name.contains("tilted")
+            || ["principled body", "principled everything"].contains(&name)
+    };
+    for (name, bsdf) in with_density().into_iter().filter(|(name, _)| !is_not(name)) {
+        for index in 0..4000 {
+            let of = |k: u64| uniform_direction([number(5, index * 4 + k), number(5, index * 4 + k + 2)]);
+            let (wo, wi) = (of(0), of(1));
+            let [there, back] = [
+                bsdf.f(wo, wi, Mode::Importance).0[0],
+                // Radiance through a boundary is the adjoint of importance; reflection does not ask.
+                bsdf.f(wi, wo, Mode::Radiance).0[0],
+            ];
+            // Where nearly all is mirrored, what passes is a difference of like numbers.
+            assert!(
+                (there - back).abs() <= 2e-3 * there.max(back) + 1e-5,
+                "{name} {wo} {wi}: {there} {back}"
+            );
+            non_zero += u32::from(there > 0.0);
+        }
+    }
+    assert!(non_zero > 10_000);
+}
+
+#[test]
+fn refraction_scales_radiance_by_the_index_squared() {
+    for roughness in [TrowbridgeReitz::SMOOTH, rough(0.2, 0.2)] {
+        let bsdf = Bsdf::dielectric(1.5, roughness);
+        for (wo, eta) in [(direction(30.0, 10.0), 1.5_f32), (direction(160.0, 10.0), 1.0 / 1.5)] {
+            let sample = |mode| bsdf.sample(wo, 0.999, [0.3, 0.7], mode, Lobes::ALL).unwrap();
+            let (radiance, importance) = (sample(Mode::Radiance), sample(Mode::Importance));
+            assert!(radiance.lobe.is_transmission());
+            assert!((radiance.eta - eta).abs() < 1e-6);
+            let ratio = importance.f.0[0] / radiance.f.0[0];
+            assert!((ratio / (eta * eta) - 1.0).abs() < 1e-5, "{ratio}");
+        }
+    }
+}
+
+#[test]
+fn nothing_is_lost_in_a_white_furnace() {
+    let weight = |s: &BsdfSample| s.f.0[0] * s.wi.z.abs() / s.pdf;
+    for wo in views() {
+        // What reflects everything has weights of one.
+        let white = [
+            Bsdf::diffuse(grey(1.0)),
+            Bsdf::diffuse_transmission(grey(0.4), grey(0.6)),
+            Bsdf::conductor(grey(1.0), grey(1e8), TrowbridgeReitz::SMOOTH),
+            Bsdf::dielectric(1.5, TrowbridgeReitz::SMOOTH),
+            Bsdf::dielectric(0.7, TrowbridgeReitz::SMOOTH),
+            Bsdf::dielectric(1.0, rough(0.3, 0.3)),
+            Bsdf::thin_dielectric(1.5),
+        ];
+        for bsdf in white {
+            for index in 0..100 {
+                let (uc, u) = numbers(7, index);
+                let sample = bsdf.sample(wo, uc, u, Mode::Importance, Lobes::ALL).unwrap();
+                assert!((weight(&sample) - 1.0).abs() < 1e-5, "{bsdf:?} {wo} {sample:?}");
+            }
+        }
+    }
+    // One side asked for alone has the side's part.
+    for bsdf in [Bsdf::dielectric(1.5, TrowbridgeReitz::SMOOTH), Bsdf::thin_dielectric(1.5)] {
+        let part = |side| {
+            let sample = bsdf.sample(direction(60.0, 0.0), 0.5, [0.5; 2], Mode::Importance, side).unwrap();
+            assert_eq!(sample.pdf, 1.0);
+            weight(&sample)
+        };
+        let (r, t) = (part(Lobes::REFLECTION), part(Lobes::TRANSMISSION));
+        assert!(r > 0.08 && r < 0.2 && (r + t - 1.0).abs() < 1e-6, "{r} {t}");
+    }
+}
+
+#[test]
+fn a_pane_reflects_the_sum_of_its_two_sides() {
+    // R' = 2R / (1 + R) for two sides that reflect R each.
+    let wo = direction(50.0, 0.0);
+    let once = f64::from(fresnel::dielectric(wo.z, 1.5));
+    let sample = Bsdf::thin_dielectric(1.5).sample(wo, 0.0, [0.0; 2], Mode::Radiance, Lobes::ALL).unwrap();
+    assert!((f64::from(sample.pdf) - 2.0 * once / (1.0 + once)).abs() < 1e-6);
+    let through = Bsdf::thin_dielectric(1.5).sample(wo, 0.9, [0.0; 2], Mode::Radiance, Lobes::ALL).unwrap();
+    assert_eq!((through.wi, through.eta), (-wo, 1.0));
+}
+
+/// Fresnel's formulas as they stand, in complex numbers of f64.
+fn fresnel_complex(cos: f64, eta: f64, k: f64) -> f64 {
+    type Complex = (f64, f64);
+    let mul = |a: Complex, b: Complex| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
+    let div = |a: Complex, b: Complex| {
+        let n = b.0 * b.0 + b.1 * b.1;
+        ((a.0 * b.0 + a.1 * b.1) / n, (a.1 * b.0 - a.0 * b.1) / n)
+    };
+    let sqrt = |a: Complex| {
+        let r = a.0.hypot(a.1);
+        let re = (0.5 * (r + a.0.abs())).sqrt();
+        let other = if re == 0.0 { 0.0 } else { 0.5 * a.1.abs() / re };
+        if a.0 >= 0.0 { (re, other.copysign(a.1)) } else { (other, re.copysign(a.1)) }
+    };
+    let n: Complex = (eta, k);
+    let sin2_t = div((1.0 - cos * cos, 0.0), mul(n, n));
+    let cos_t = sqrt((1.0 - sin2_t.0, -sin2_t.1));
+    let across = |a: Complex, b: Complex| {
+        let r = div((a.0 - b.0, a.1 - b.1), (a.0 + b.0, a.1 + b.1));
+        r.0 * r.0 + r.1 * r.1
+    };
+    let parallel = across((n.0 * cos, n.1 * cos), cos_t);
+    let perpendicular = across((cos, 0.0), mul(n, cos_t));
+    0.5 * (parallel + perpendicular)
+}
+
+#[test]
+fn metals_mirror_what_complex_numbers_say() {
+    for trial in 0..20_000 {
+        let (eta, k) = (any_size(11, trial, 12), any_size(12, trial, 12));
+        let cos = any_size(13, trial, 20).min(1.0);
+        let got = fresnel::conductor(cos, grey(eta), grey(k)).0[2];
+        let expected = fresnel_complex(f64::from(cos), f64::from(eta), f64::from(k));
+        assert!((f64::from(got) - expected).abs() < 1e-5, "{eta} {k} {cos}: {got} {expected}");
+    }
+}
+
+#[test]
+fn known_reflectances() {
+    // ((η − 1)² + k²) / ((η + 1)² + k²), straight on.
+    let (eta, k) = gold();
+    let straight = fresnel::conductor(1.0, eta, k);
+    for (lane, expected) in [0.9662, 0.8009, 0.3232].into_iter().enumerate() {
+        let (eta, k) = (eta.0[lane], k.0[lane]);
+        let formula = ((eta - 1.0).powi(2) + k * k) / ((eta + 1.0).powi(2) + k * k);
+        assert!((straight.0[lane] - formula).abs() < 1e-5);
+        assert!((formula - expected).abs() < 3e-3, "{formula}");
+    }
+    // All metals mirror all light that grazes them.
+    assert!((fresnel::conductor(0.0, eta, k).0[1] - 1.0).abs() < 1e-6);
+    // A metal of a given reflectance has it.
+    for r in [0.0, 0.02, 0.5, 0.99] {
+        let (eta, k) = fresnel::conductor_of_reflectance(grey(r));
+        assert!((fresnel::conductor(1.0, eta, k).0[0] - r).abs() < 1e-5);
+    }
+    // An unused lane of zeros is no trap.
+    assert!(fresnel::conductor(1.0, Spectrum::BLACK, Spectrum::BLACK).0[3].is_finite());
+    // Glass from inside, straight on and beyond the critical angle.
+    assert!((fresnel::dielectric(-1.0, 1.5) - 0.04).abs() < 1e-6);
+    assert_eq!(fresnel::dielectric(-0.5, 1.5), 1.0);
+}
+
+#[test]
+fn roughness_is_as_in_pbrt() {
+    let lobe = |x, y| Bsdf::conductor(grey(1.0), grey(3.0), rough(x, y)).lobes();
+    assert!(lobe(0.0009, 0.0).is_specular());
+    // One rough direction is enough.
+    assert!(!lobe(0.0011, 0.0).is_specular());
+    assert_eq!(TrowbridgeReitz::from_roughness([0.25, 0.04], true), rough(0.5, 0.2));
+    assert_eq!(TrowbridgeReitz::from_roughness([0.25, 0.04], false), rough(0.25, 0.04));
+    for (before, after) in [(0.0, 0.1), (0.04, 0.1), (0.1, 0.2), (0.2, 0.3), (0.29, 0.3), (0.5, 0.5)] {
+        let mut roughness = rough(before, before);
+        roughness.regularize();
+        assert_eq!(roughness, rough(after, after));
+    }
+    let mut glass = Bsdf::dielectric(1.5, TrowbridgeReitz::SMOOTH);
+    glass.regularize();
+    assert_eq!(glass, Bsdf::dielectric(1.5, rough(0.1, 0.1)));
+}
+
+#[test]
+fn facets_cover_the_surface_and_what_is_seen_of_it() {
+    for roughness in [rough(0.5, 0.5), rough(0.2, 0.7), rough(0.1, 0.1)] {
+        let projected = |wm: Vec3| f64::from(roughness.d(wm) * wm.z.max(0.0));
+        let sum: f64 = over_cells(&projected, 1e-6).iter().sum();
+        assert!((sum - 1.0).abs() < 1e-4, "{sum}");
+        for wo in [direction(20.0, 10.0), direction(75.0, 80.0)] {
+            let seen = |wm: Vec3| {
+                if wm.z <= 0.0 {
+                    return 0.0;
+                }
+                f64::from(roughness.visible_per_cosine(wo, wm) * wo.dot(wm).max(0.0))
+            };
+            let sum: f64 = over_cells(&seen, 1e-6).iter().sum();
+            assert!((sum - 1.0).abs() < 1e-4, "{wo}: {sum}");
+        }
+    }
+}
+
+#[test]
+fn phases_are_normal_and_of_mean_cosine_g() {
+    use henyey_greenstein::HenyeyGreenstein;
+    for g in [-0.7, 0.0, 0.0005, 0.4, 0.9] {
+        let phase = HenyeyGreenstein::new(g);
+        let wo = direction(40.0, 70.0);
+        let sum: f64 = over_cells(&|wi| f64::from(phase.p(wo, wi)), 1e-6).iter().sum();
+        assert!((sum - 1.0).abs() < 1e-4, "{g}: {sum}");
+        let n = 100_000;
+        let mean =
+            (0..n).map(|i| f64::from(-phase.sample(wo, numbers(17, i).1).dot(wo))).sum::<f64>() / n as f64;
+        assert!((mean - f64::from(g)).abs() < 0.01, "{g}: {mean}");
+        let mut counts = vec![0; ROWS * COLUMNS];
+        (0..n).for_each(|i| counts[cell(phase.sample(wo, numbers(19, i).1))] += 1);
+        let expected = over_cells(&|wi| f64::from(phase.p(wo, wi)) * n as f64, 1e-2);
+        assert!(chi_square_deviate(&counts, &expected) < corrected_bound(5), "{g}");
+    }
+}
+
+#[test]
+fn numbers_of_any_size_never_become_nan() {
+    // Directions near the axes, the surface and each other, by components of random exponents.
+    let direction = |seed: u64, trial: u64| {
+        let component = |k: u64| {
+            let sign = if hash::pair(seed + k, trial) >> 50 & 1 == 0 { 1.0 } else { -1.0 };
+            f64::from(sign * any_size(seed + k, trial, 45))
+        };
+        glam::DVec3::new(component(0), component(1), component(2)).normalize().as_vec3()
+    };
+    for trial in 0..60_000 {
+        let size = |seed| any_size(seed, trial, 60);
+        let lanes = |seed| Spectrum(std::array::from_fn(|lane| any_size(seed + lane as u64, trial, 60)));
+        let small = |seed| any_size(seed, trial, 12);
+        let roughness = rough(small(21), small(22));
+        let coat = CoatLayer {
+            eta: if trial.is_multiple_of(3) { size(31) } else { 1.5 },
+            roughness: rough(small(32), small(33)),
+            thickness: size(34),
+            albedo: if trial.is_multiple_of(2) { lanes(35) } else { Spectrum::BLACK },
+            g: 1.0 - 2.0 * number(36, trial),
+            max_depth: 10,
+            samples: 1,
+        };
+        let whitted = Whitted {
+            diffuse: lanes(41),
+            specular: lanes(42),
+            shininess: any_size(43, trial, 20),
+            mirror: lanes(44),
+            transmission: lanes(45),
+            ior: small(46),
+            fresnel: trial.is_multiple_of(2),
+        };
+        let share = |seed| any_size(seed, trial, 20).min(1.0);
+        let look = principled::Parameters {
+            base_color: lanes(80),
+            metallic: share(81),
+            roughness,
+            eta: if trial.is_multiple_of(7) { 0.0 } else { size(82) },
+            f0: lanes(83),
+            f0_greatest: share(84),
+            f90: share(85),
+            transmission: share(86),
+            is_solid: trial.is_multiple_of(2),
+            diffuse_transmission: share(87),
+            clearcoat: share(88),
+            clearcoat_roughness: rough(small(89), small(89)),
+            clearcoat_normal: Vec3 { z: direction(90, trial).z.abs(), ..direction(90, trial) },
+            sheen_color: if trial.is_multiple_of(3) { lanes(91) } else { Spectrum::BLACK },
+            sheen_greatest: share(92),
+            sheen_roughness: share(93),
+            iridescence: if trial.is_multiple_of(5) { share(94) } else { 0.0 },
+            film: principled::film::Film {
+                eta: size(95),
+                thickness: size(96),
+                wavelengths: trial.is_multiple_of(2).then_some([450.0, 500.0, 600.0, 700.0]),
+            },
+            ..principled::Parameters::default()
+        };
+        let (wo, wi) = (direction(50, trial), direction(60, trial));
+        let (uc, u) = numbers(70, trial);
+        let u = if trial.is_multiple_of(5) { [0.0, u[1]] } else { u };
+        let mode = if trial.is_multiple_of(2) { Mode::Radiance } else { Mode::Importance };
+        for bsdf in [
+            Bsdf::diffuse(lanes(71)),
+            Bsdf::diffuse_transmission(lanes(71), lanes(72)),
+            Bsdf::conductor(lanes(73), lanes(74), roughness),
+            Bsdf::dielectric(size(75), roughness),
+            Bsdf::dielectric(1.0 + any_size(76, trial, 24).min(1.0), roughness),
+            Bsdf::thin_dielectric(size(75)),
+            Bsdf::coated_diffuse(lanes(71), &coat),
+            Bsdf::coated_conductor(lanes(73), lanes(74), roughness, &coat),
+            Bsdf::Whitted(whitted),
+            Bsdf::Principled(Principled::new(&look)),
+        ] {
+            let good = |x: f32| x.is_finite() && x >= 0.0;
+            for lobes in [Lobes::ALL, Lobes::REFLECTION, Lobes::TRANSMISSION] {
+                let sample = bsdf.sample(wo, uc, u, mode, lobes);
+                let towards = sample.map_or(wi, |sample| sample.wi);
+                assert!(towards.is_finite(), "{bsdf:?} {wo} {sample:?}");
+                for wi in [wi, towards, -wo, Vec3::new(-wo.x, -wo.y, wo.z)] {
+                    let (f, pdf) = (bsdf.f(wo, wi, mode), bsdf.pdf(wo, wi, mode, lobes));
+                    assert!(f.0.into_iter().all(good), "{bsdf:?} {wo:?} {wi:?}: f = {f:?}");
+                    assert!(good(pdf), "{bsdf:?} {wo:?} {wi:?}: pdf = {pdf}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bsdf_is_small() {
+    assert!(size_of::<Bsdf>() <= 112, "{}", size_of::<Bsdf>());
+}

@@ -1,0 +1,188 @@
+//! Whitted's model as a thing that scatters, so that our own scenes can be path traced.
+//!
+//! `f |cos θ_i| = k_d cos θ_i / π + k_s (N·H)ⁿ / π` on the side of `wo`; `k_r` into the mirrored and `k_t` into the
+//! refracted direction, with the weights of [`crate::shading::material`]. It is what the tree of rays computes, no more: there
+//! is no 1/η² for what passes, and energy and reciprocity are up to whoever chooses the coefficients.
+//!
+//! Whitted 1980, Blinn 1977.
+
+use glam::Vec3;
+use std::f32::consts::{FRAC_1_PI, TAU};
+
+use super::diffuse::cosine_direction;
+use super::{BsdfSample, Lobes, conductor::half_vector, is_grazing, same_side};
+use crate::core::math;
+use crate::core::spectrum::Spectrum;
+use crate::core::warp;
+
+/// Whitted's coefficients without the ambient one, named as there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Whitted {
+    /// `k_d`.
+    pub diffuse: Spectrum,
+    /// `k_s`.
+    pub specular: Spectrum,
+    /// `n`, at least 0.
+    pub shininess: f32,
+    /// `k_r`.
+    pub mirror: Spectrum,
+    /// `k_t`.
+    pub transmission: Spectrum,
+    /// Index of refraction, inside over outside.
+    pub ior: f32,
+    /// Whether the angle decides between mirror and refraction.
+    pub fresnel: bool,
+}
+
+/// How much goes which way, seen from one direction.
+struct Branches {
+    mirror: Spectrum,
+    refracted: Option<(Vec3, Spectrum)>,
+}
+
+/// Probabilities of the four ways on.
+struct Choice {
+    diffuse: f32,
+    glossy: f32,
+    mirror: f32,
+    refraction: f32,
+}
+
+impl Whitted {
+    /// The specular ways on, with their weights.
+    #[inline]
+    fn branches(&self, wo: Vec3) -> Branches {
+        if self.mirror.is_black() && self.transmission.is_black() {
+            return Branches { mirror: Spectrum::BLACK, refracted: None };
+        }
+        let n = Vec3::new(0.0, 0.0, 1.0_f32.copysign(wo.z));
+        let eta = if wo.z > 0.0 { self.ior } else { 1.0 / self.ior };
+        let bent = math::refract(wo, n, eta).filter(|&wi| !is_grazing(wi));
+        let (mirror, transmission) = if self.fresnel {
+            let part = math::fresnel_dielectric(n.dot(wo), eta);
+            (self.mirror.zip(self.transmission, f32::max) * part, self.transmission * (1.0 - part))
+        } else if bent.is_none() {
+            (self.mirror + self.transmission, Spectrum::BLACK)
+        } else {
+            (self.mirror, self.transmission)
+        };
+        let refracted = bent.filter(|_| !transmission.is_black()).map(|wi| (wi.normalize(), transmission));
+        Branches { mirror, refracted }
+    }
+
+    /// Each way by about what it carries, among those that `lobes` allows; `None` where nothing is left.
+    #[inline]
+    fn choice(&self, branches: &Branches, lobes: Lobes) -> Option<Choice> {
+        // The highlight's albedo seen from above: ∫ 4 (N·H)ⁿ⁺¹ / π dω_H = 8 / (n + 2), less what lies below.
+        let highlight = 8.0 / (self.shininess + 4.0);
+        let [diffuse, _] = lobes.allowed([self.diffuse.max_lane(), 0.0]);
+        let [glossy, _] = lobes.allowed([self.specular.max_lane() * highlight, 0.0]);
+        let refracted = branches.refracted.map_or(0.0, |(_, weight)| weight.max_lane());
+        let [mirror, refraction] = lobes.allowed([branches.mirror.max_lane(), refracted]);
+        let sum = diffuse + glossy + mirror + refraction;
+        (sum > 0.0).then(|| Choice {
+            diffuse: diffuse / sum,
+            glossy: glossy / sum,
+            mirror: mirror / sum,
+            refraction: refraction / sum,
+        })
+    }
+
+    #[inline]
+    pub(super) fn f(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        if !same_side(wo, wi) {
+            return Spectrum::BLACK;
+        }
+        let highlight = if self.specular.is_black() {
+            Spectrum::BLACK
+        } else {
+            let cos = half_vector(wo, wi).map_or(0.0, |h| h.z);
+            self.specular * (math::power(cos, self.shininess) / wi.z.abs())
+        };
+        (self.diffuse + highlight) * FRAC_1_PI
+    }
+
+    /// Density of the spread lobes together, given the probabilities of all.
+    #[inline]
+    fn spread_pdf(&self, wo: Vec3, wi: Vec3, choice: &Choice) -> f32 {
+        let mut pdf = choice.diffuse * warp::cosine_hemisphere_pdf(wi.z.abs());
+        if choice.glossy > 0.0
+            && let Some(h) = half_vector(wo, wi)
+        {
+            let of_half = (self.shininess + 1.0) / TAU * math::power(h.z, self.shininess);
+            pdf += choice.glossy * of_half / (4.0 * wo.dot(h).abs().max(f32::MIN_POSITIVE));
+        }
+        pdf
+    }
+
+    #[inline]
+    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3, lobes: Lobes) -> f32 {
+        if !same_side(wo, wi) {
+            return 0.0;
+        }
+        self.choice(&self.branches(wo), lobes).map_or(0.0, |choice| self.spread_pdf(wo, wi, &choice))
+    }
+
+    #[inline]
+    pub(super) fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], lobes: Lobes) -> Option<BsdfSample> {
+        if is_grazing(wo) {
+            return None;
+        }
+        let branches = self.branches(wo);
+        let choice = self.choice(&branches, lobes)?;
+        let spread = choice.diffuse + choice.glossy;
+        if uc < spread {
+            let is_diffuse = uc < choice.diffuse;
+            let wi = if is_diffuse {
+                cosine_direction(u, wo.z)
+            } else {
+                math::reflect(wo, self.sample_half(u, wo.z)).normalize()
+            };
+            if !same_side(wo, wi) {
+                return None;
+            }
+            let lobe = Lobes::REFLECTION | if is_diffuse { Lobes::DIFFUSE } else { Lobes::GLOSSY };
+            return Some(BsdfSample::new(wi, self.f(wo, wi), self.spread_pdf(wo, wi, &choice), lobe));
+        }
+        let specular = |wi: Vec3, weight: Spectrum, probability, side| {
+            BsdfSample::new(wi, weight / wi.z.abs(), probability, side | Lobes::SPECULAR)
+        };
+        if choice.mirror > 0.0 && uc < spread + choice.mirror || choice.refraction == 0.0 {
+            let wi = Vec3::new(-wo.x, -wo.y, wo.z);
+            return Some(specular(wi, branches.mirror, choice.mirror, Lobes::REFLECTION));
+        }
+        let (wi, weight) = branches.refracted?;
+        Some(specular(wi, weight, choice.refraction, Lobes::TRANSMISSION))
+    }
+
+    /// A halfway vector as dense as the n-th power of its cosine, on the side of the sign of `side`.
+    #[inline]
+    fn sample_half(&self, [u, v]: [f32; 2], side: f32) -> Vec3 {
+        // sin²θ = 1 − u^(2/(n+1)), without the subtraction.
+        let exponent = 2.0 / (self.shininess + 1.0) * libm::logf(u);
+        let sin2 = (-libm::expm1f(exponent)).clamp(0.0, 1.0);
+        let (sin_phi, cos_phi) = libm::sincosf(TAU * v);
+        let sin = sin2.sqrt();
+        Vec3::new(sin * cos_phi, sin * sin_phi, (1.0 - sin2).sqrt().copysign(side))
+    }
+
+    pub(super) fn lobes(&self) -> Lobes {
+        let mut lobes = Lobes::NONE;
+        if !self.diffuse.is_black() {
+            lobes |= Lobes::REFLECTION | Lobes::DIFFUSE;
+        }
+        if !self.specular.is_black() {
+            lobes |= Lobes::REFLECTION | Lobes::GLOSSY;
+        }
+        if !self.mirror.is_black() {
+            lobes |= Lobes::REFLECTION | Lobes::SPECULAR;
+        }
+        if !self.transmission.is_black() {
+            lobes |= Lobes::REFLECTION | Lobes::TRANSMISSION | Lobes::SPECULAR;
+        }
+        lobes
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,374 @@
+//! How surfaces look: from a written material to what it does with light at a point.
+//!
+//! [`Shading`] is the scattering function of a material at a point, in the frame of the (perhaps bent) shading normal:
+//! what path tracing asks. [`Coefficients`] are those of Whitted's model, which the older integrators ask of every
+//! material.
+
+mod albedo;
+mod approximate;
+mod bump;
+mod compile;
+mod interior;
+mod kind;
+mod principled;
+mod whitted;
+
+use glam::{DVec3, Vec3};
+use lookfrom_scene::scene::CurveId;
+
+use crate::core::spectrum::Spectrum;
+use crate::core::warp;
+use crate::shading::bsdf::layered::CoatLayer;
+use crate::shading::bsdf::lobes::Lobes;
+use crate::shading::bsdf::whitted::Whitted as WhittedBsdf;
+use crate::shading::bsdf::{self, Bsdf, BsdfSample, Mode};
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interior_stack::InteriorStack;
+use crate::shading::texture::{FloatTexture, Lanes, SpectrumTexture, TexturePoint, Textures};
+
+pub use albedo::albedo;
+pub(crate) use compile::Compiler;
+pub use kind::{
+    Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled, Roughness, Whitted,
+};
+pub use whitted::{Branches, Coefficients};
+
+/// A material of a world.
+#[derive(Clone, Debug)]
+pub struct Material {
+    /// What it is.
+    pub kind: MaterialKind,
+    /// What bends the shading normal.
+    pub bump_mapping: BumpMapping,
+    /// Index into the world's media: what fills a body of this material, where it says so itself.
+    pub medium: Option<u32>,
+    /// The nearest thing in Whitted's model, for integrators that know no other.
+    pub whitted: Whitted,
+}
+
+/// What a surface does with light at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Shading {
+    /// In the local frame.
+    pub bsdf: Bsdf,
+    frame: Frame,
+    /// The geometric normal to the outside, for what must not leak through where the shading normal is another.
+    ng: Vec3,
+}
+
+/// An orthonormal frame of unit vectors in render space.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    s: Vec3,
+    t: Vec3,
+    n: Vec3,
+}
+
+impl Frame {
+    fn local(&self, v: Vec3) -> Vec3 {
+        Vec3::new(v.dot(self.s), v.dot(self.t), v.dot(self.n))
+    }
+
+    fn render(&self, v: Vec3) -> Vec3 {
+        v.x * self.s + v.y * self.t + v.z * self.n
+    }
+
+    /// With the first axis along a direction.
+    fn along(&self, direction: Vec3) -> Self {
+        bump::around(self.n, direction)
+    }
+}
+
+impl Shading {
+    /// A matte surface without bump mapping.
+    pub fn matte(surface: &SurfaceInteraction, reflectance: Spectrum) -> Self {
+        Self { bsdf: Bsdf::diffuse(reflectance), frame: bump::plain(surface), ng: surface.ng.as_vec3() }
+    }
+
+    /// A diffuse surface in an orthonormal frame whose third axis is the shading normal.
+    pub(crate) fn diffuse(reflectance: Spectrum, [s, t, n]: [Vec3; 3], ng: DVec3) -> Self {
+        Self { bsdf: Bsdf::diffuse(reflectance), frame: Frame { s, t, n }, ng: ng.as_vec3() }
+    }
+
+    /// The shading normal to the outside, unit length.
+    pub fn n(&self) -> Vec3 {
+        self.frame.n
+    }
+
+    /// The cosine of a unit direction to the shading normal.
+    pub fn cos(&self, w: Vec3) -> f32 {
+        w.dot(self.frame.n)
+    }
+
+    /// Whether the surface itself has two directions on the sides on which the shading normal has them. pbrt's materials do
+    /// not ask.
+    fn agrees(&self, wo: Vec3, wi: Vec3) -> bool {
+        let on_one_side = |n: Vec3| wo.dot(n) * wi.dot(n) > 0.0;
+        !matches!(self.bsdf, Bsdf::Principled(_)) || on_one_side(self.ng) == on_one_side(self.frame.n)
+    }
+
+    /// Lets `ask` ask what it does toward a unit direction of render space.
+    #[inline]
+    pub fn scattering<R>(&self, wo: Vec3, ask: impl FnOnce(&Scattering<'_>) -> R) -> R {
+        self.bsdf.scattering(self.frame.local(wo), Mode::Radiance, Lobes::ALL, |bsdf| {
+            ask(&Scattering { shading: self, wo, bsdf })
+        })
+    }
+}
+
+/// What a surface does with light that leaves along ω_o. All directions are of unit length and in render space.
+pub struct Scattering<'a> {
+    /// The surface's.
+    pub shading: &'a Shading,
+    wo: Vec3,
+    bsdf: &'a bsdf::LocalScattering<'a>,
+}
+
+impl Scattering<'_> {
+    /// The scattering function for light from `wi`, without a cosine, and where it is not black the density over solid
+    /// angle with which [`Toward::sample`] chooses `wi`.
+    pub fn f_and_pdf(&self, wi: Vec3) -> (Spectrum, f32) {
+        if !self.shading.agrees(self.wo, wi) {
+            return (Spectrum::BLACK, 0.0);
+        }
+        self.bsdf.f_and_pdf(self.shading.frame.local(wi))
+    }
+
+    /// That density alone.
+    pub fn pdf(&self, wi: Vec3) -> f32 {
+        self.bsdf.pdf(self.shading.frame.local(wi))
+    }
+
+    /// A direction by importance.
+    pub fn sample(&self, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
+        let sample = self.bsdf.sample(lobe, u)?;
+        let wi = self.shading.frame.render(sample.wi).normalize();
+        self.shading.agrees(self.wo, wi).then_some(BsdfSample { wi, ..sample })
+    }
+
+    /// A direction all around, whatever the material: for checking what is chosen by importance.
+    pub fn uniform(&self, u: [f32; 2]) -> BsdfSample {
+        let wi = warp::uniform_sphere(u);
+        let lobe = Lobes::REFLECTION.union(Lobes::DIFFUSE);
+        let (f, _) = self.f_and_pdf(wi);
+        BsdfSample { wi, f, pdf: warp::UNIFORM_SPHERE_PDF, lobe, eta: 1.0, pdf_is_proportional: false }
+    }
+}
+
+/// What comes to a surface, as far as what it does with light depends on that.
+#[derive(Debug)]
+pub struct ShadingContext<'a> {
+    /// What the lanes mean. Where wavelengths go different ways, only the first is left.
+    pub lanes: &'a mut Lanes,
+    /// The path's share of the sample. In RGB mode, where colours go different ways, one of those in it is left, at the
+    /// weight of all.
+    pub throughput: &'a mut Spectrum,
+    /// What light comes through.
+    pub interior: InteriorStack,
+    /// Chance, in [0, 1): which of mixed materials there is, which colour is left. Used where [`Material::is_stochastic`].
+    pub u: f32,
+}
+
+impl Material {
+    /// Whether it takes chance to tell what it does with light.
+    #[inline]
+    pub fn is_stochastic(&self) -> bool {
+        match &self.kind {
+            MaterialKind::Mix { .. } => true,
+            MaterialKind::Principled(look) => principled::disperses(look),
+            _ => false,
+        }
+    }
+
+    /// The frame it is shaded in.
+    fn frame(&self, textures: &Textures, surface: &SurfaceInteraction, point: &TexturePoint) -> Frame {
+        match self.kind {
+            MaterialKind::Principled(_) => bump::valid_frame(&self.bump_mapping, textures, surface, point),
+            _ => bump::frame(&self.bump_mapping, textures, surface, point),
+        }
+    }
+
+    /// Whether its shapes are bodies that light goes into.
+    #[inline]
+    pub fn is_body(&self) -> bool {
+        match &self.kind {
+            MaterialKind::Whitted(_) => true,
+            MaterialKind::Principled(look) => look.is_solid,
+            _ => false,
+        }
+    }
+}
+
+/// The scattering function of a material at a surface; `None` for one that is not there (an interface). A mixed material
+/// is one of its parts.
+pub fn shading(
+    materials: &[Material],
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    point: &TexturePoint,
+    arrival: ShadingContext<'_>,
+) -> Option<Shading> {
+    let ShadingContext { lanes, throughput, interior, mut u } = arrival;
+    let mut index = surface.material;
+    let mut material = &materials[index as usize];
+    while let MaterialKind::Mix { materials: [first, second], amount } = &material.kind {
+        let amount = textures.float(*amount, point).clamp(0.0, 1.0);
+        let chosen = if u < amount { second } else { first };
+        u = if u < amount { u / amount } else { (u - amount) / (1.0 - amount) };
+        index = *chosen;
+        material = &materials[index as usize];
+    }
+    let mut at = Evaluator { materials, textures, point, lanes, throughput, interior, u };
+    let ng = surface.ng.as_vec3();
+    if let MaterialKind::Principled(look) = &material.kind {
+        let frame = material.frame(textures, surface, point);
+        let (bsdf, frame) = at.principled(look, index, surface, frame);
+        return Some(Shading { bsdf, frame, ng });
+    }
+    let bsdf = at.bsdf(material)?;
+    Some(Shading { bsdf, frame: material.frame(textures, surface, point), ng })
+}
+
+/// The normal that a material is shaded with, to the outside, of unit length: that of [`shading`], of mixed materials the first's.
+pub fn normal(
+    materials: &[Material],
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    point: &TexturePoint,
+) -> Vec3 {
+    let mut material = &materials[surface.material as usize];
+    while let MaterialKind::Mix { materials: [first, _], .. } = &material.kind {
+        material = &materials[*first as usize];
+    }
+    match material.bump_mapping {
+        BumpMapping::None => surface.ns,
+        _ => material.frame(textures, surface, point).n,
+    }
+}
+
+/// Where a material is asked.
+struct Evaluator<'a> {
+    materials: &'a [Material],
+    textures: &'a Textures,
+    point: &'a TexturePoint,
+    lanes: &'a mut Lanes,
+    throughput: &'a mut Spectrum,
+    interior: InteriorStack,
+    u: f32,
+}
+
+impl Evaluator<'_> {
+    fn bsdf(&mut self, material: &Material) -> Option<Bsdf> {
+        Some(match &material.kind {
+            MaterialKind::Whitted(whitted) => {
+                let k = Coefficients::at(whitted, self.textures, self.point, self.lanes);
+                Bsdf::Whitted(WhittedBsdf {
+                    diffuse: k.diffuse,
+                    specular: k.specular,
+                    shininess: k.shininess,
+                    mirror: k.mirror,
+                    transmission: k.transmission,
+                    ior: k.ior,
+                    fresnel: k.fresnel,
+                })
+            }
+            MaterialKind::Diffuse { reflectance } => Bsdf::diffuse(self.albedo(reflectance)),
+            MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
+                let [reflected, transmitted] = [reflectance, transmittance].map(|color| {
+                    let color = self.textures.spectrum(color, self.point, self.lanes);
+                    (color * *scale).map(|lane| lane.clamp(0.0, 1.0))
+                });
+                Bsdf::diffuse_transmission(reflected, transmitted)
+            }
+            MaterialKind::Conductor { metal, roughness } => {
+                let roughness = roughness.at(self.textures, self.point);
+                match self.metal(metal) {
+                    Constants::Indices(eta, k) => Bsdf::conductor(eta, k, roughness),
+                    Constants::Reflectance(color) => Bsdf::conductor_of_reflectance(color, roughness),
+                }
+            }
+            MaterialKind::Dielectric { eta, roughness } => {
+                Bsdf::dielectric(self.ior(eta), roughness.at(self.textures, self.point))
+            }
+            MaterialKind::ThinDielectric { eta } => Bsdf::thin_dielectric(self.ior(eta)),
+            MaterialKind::CoatedDiffuse { reflectance, coat } => {
+                let coat = self.coat(coat);
+                Bsdf::coated_diffuse(self.albedo(reflectance), &coat)
+            }
+            MaterialKind::CoatedConductor { metal, roughness, coat } => {
+                let (coat, roughness) = (self.coat(coat), roughness.at(self.textures, self.point));
+                match self.metal(metal) {
+                    Constants::Indices(eta, k) => Bsdf::coated_conductor(eta, k, roughness, &coat),
+                    Constants::Reflectance(color) => {
+                        Bsdf::coated_conductor_of_reflectance(color, roughness, &coat)
+                    }
+                }
+            }
+            // It is only seen: see [`unlit`].
+            MaterialKind::Unlit { .. } => Bsdf::diffuse(Spectrum::BLACK),
+            // A mixture has been decided by now, glTF's material needs the surface, and a floor of shadows is the world's to
+            // shade.
+            MaterialKind::Mix { .. }
+            | MaterialKind::Principled(_)
+            | MaterialKind::ShadowCatcher { .. }
+            | MaterialKind::Interface => return None,
+        })
+    }
+
+    fn albedo(&self, color: &SpectrumTexture) -> Spectrum {
+        self.textures.albedo(color, self.point, self.lanes)
+    }
+
+    fn float(&self, texture: FloatTexture) -> f32 {
+        self.textures.float(texture, self.point)
+    }
+
+    fn metal(&self, metal: &Metal) -> Constants {
+        let spectrum = |texture| self.textures.spectrum(texture, self.point, self.lanes);
+        match metal {
+            Metal::Indices { eta, k } => Constants::Indices(spectrum(eta), spectrum(k)),
+            Metal::Reflectance(color) => Constants::Reflectance(spectrum(color)),
+        }
+    }
+
+    /// The index of refraction; one that differs by wavelength leaves only the first.
+    fn ior(&mut self, ior: &Ior) -> f32 {
+        match ior {
+            Ior::Value(eta) => *eta,
+            Ior::Curve(curve) => ior_at(*curve, self.textures, self.lanes),
+        }
+    }
+
+    fn coat(&mut self, coat: &Coat) -> CoatLayer {
+        let eta = self.ior(&coat.eta);
+        CoatLayer {
+            eta,
+            roughness: coat.roughness.at(self.textures, self.point),
+            thickness: self.float(coat.thickness),
+            albedo: self.albedo(&coat.albedo),
+            g: self.float(coat.g).clamp(-1.0, 1.0),
+            max_depth: coat.max_depth,
+            samples: coat.samples,
+        }
+    }
+}
+
+/// The index of refraction of a curve: of the first wavelength, the only one left afterwards; in RGB mode that of sodium's
+/// yellow line.
+fn ior_at(curve: CurveId, textures: &Textures, lanes: &mut Lanes) -> f32 {
+    let nm = match lanes {
+        Lanes::Rgb => [589.3; 4],
+        Lanes::Spectral(wavelengths) => {
+            wavelengths.terminate_secondary();
+            wavelengths.lambda
+        }
+    };
+    let [eta, ..] = textures.curve(curve).at(&nm).0;
+    if eta > 0.0 { eta } else { 1.0 }
+}
+
+/// Optical constants of a metal at a point.
+enum Constants {
+    Indices(Spectrum, Spectrum),
+    Reflectance(Spectrum),
+}

@@ -1,0 +1,57 @@
+//! Albedo as AOVs and the denoiser have it: the one colour that a surface multiplies light by, more or less.
+//!
+//! A look-up of base colours, as Cycles and Open Image Denoise have it, not an integral over directions: what a coat mirrors on top
+//! is left out, glass is white, a metal has its colour straight on.
+
+use super::{Material, MaterialKind, Metal};
+use crate::core::spectrum::Spectrum;
+use crate::shading::bsdf::fresnel;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::texture::{SpectrumTexture, TexturePoint, Textures};
+
+/// Linear Rec. 709, at least 0; white where a surface has no colour of its own.
+pub fn albedo(
+    materials: &[Material],
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    point: &TexturePoint,
+) -> [f32; 3] {
+    let index = surface.material as usize;
+    of_kind(&materials[index].kind, materials, textures, point).rgb().map(|c| c.max(0.0))
+}
+
+fn of_kind(
+    kind: &MaterialKind,
+    materials: &[Material],
+    textures: &Textures,
+    point: &TexturePoint,
+) -> Spectrum {
+    let color = |texture: &SpectrumTexture| Spectrum::from_rgb(textures.rgb(texture, point));
+    match kind {
+        MaterialKind::Whitted(k) => {
+            (color(&k.diffuse) + color(&k.mirror) + color(&k.transmission)).map(|lane| lane.clamp(0.0, 1.0))
+        }
+        MaterialKind::Diffuse { reflectance } | MaterialKind::CoatedDiffuse { reflectance, .. } => {
+            color(reflectance)
+        }
+        MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
+            (color(reflectance) + color(transmittance)) * *scale
+        }
+        MaterialKind::Conductor { metal, .. } | MaterialKind::CoatedConductor { metal, .. } => match metal {
+            Metal::Reflectance(reflectance) => color(reflectance),
+            Metal::Indices { eta, k } => fresnel::conductor(1.0, color(eta), color(k)),
+        },
+        MaterialKind::Mix { materials: parts, amount } => {
+            let [first, second] =
+                parts.map(|part| of_kind(&materials[part as usize].kind, materials, textures, point));
+            let amount = textures.float(*amount, point).clamp(0.0, 1.0);
+            first * (1.0 - amount) + second * amount
+        }
+        MaterialKind::Principled(look) => color(&look.base_color),
+        MaterialKind::Unlit { albedo, .. } => color(albedo),
+        MaterialKind::Dielectric { .. }
+        | MaterialKind::ThinDielectric { .. }
+        | MaterialKind::ShadowCatcher { .. }
+        | MaterialKind::Interface => Spectrum::ONE,
+    }
+}

@@ -1,0 +1,116 @@
+//! What a physical material is in Whitted's model: for ray casting and Whitted's tree, which know no other. A likeness, not
+//! the same.
+
+use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Principled, Roughness, Scalar, Whitted};
+
+use crate::core::spectrum::Spectrum;
+use crate::shading::bsdf::fresnel;
+use crate::shading::texture::{Lanes, SpectrumType, TexturePoint, Textures};
+
+/// What a dielectric coat reflects at most angles.
+const COAT: f32 = 0.04;
+
+/// The nearest thing in Whitted's model. `before` holds those of the materials so far: a mixture is its greater part, if that is
+/// known already.
+pub(super) fn in_whitteds_model(kind: &MaterialKind, before: &[Whitted], textures: &Textures) -> Whitted {
+    let plain = Whitted { diffuse: Color::BLACK, ..Whitted::default() };
+    match kind {
+        MaterialKind::Whitted(whitted) => whitted.clone(),
+        MaterialKind::Diffuse { reflectance } => Whitted { diffuse: *reflectance, ..plain },
+        MaterialKind::DiffuseTransmission { reflectance, .. } => Whitted { diffuse: *reflectance, ..plain },
+        MaterialKind::Conductor { metal, roughness } => metallic(metal, roughness, textures),
+        MaterialKind::Dielectric { eta, .. } => {
+            Whitted { transmission: Color::gray(1.0), fresnel: true, ior: ior(eta, textures), ..plain }
+        }
+        MaterialKind::ThinDielectric { .. } => {
+            Whitted { transmission: Color::gray(1.0 - COAT), mirror: Color::gray(COAT), ior: 1.0, ..plain }
+        }
+        MaterialKind::CoatedDiffuse { reflectance, coat } => {
+            let shininess = shininess(&coat.roughness);
+            let mirror = if shininess > 1e4 { Color::gray(COAT) } else { Color::BLACK };
+            Whitted { diffuse: *reflectance, specular: Color::gray(0.2), shininess, mirror, ..plain }
+        }
+        MaterialKind::CoatedConductor { metal, roughness, .. } => metallic(metal, roughness, textures),
+        MaterialKind::Mix { materials: [first, second], amount } => {
+            let greater = match amount {
+                Scalar::Value(amount) if *amount > 0.5 => second,
+                _ => first,
+            };
+            before.get(greater.index()).cloned().unwrap_or_default()
+        }
+        MaterialKind::Principled(look) => principled(look, textures),
+        // It is seen by its own light.
+        MaterialKind::Unlit { .. } => plain,
+        MaterialKind::ShadowCatcher { .. } => Whitted { diffuse: Color::gray(0.5), ..plain },
+        MaterialKind::Interface => Whitted { transmission: Color::gray(1.0), ior: 1.0, ..plain },
+    }
+}
+
+/// Metal, glass or plastic, whichever it is most; of a texture, the corner's number counts.
+fn principled(look: &Principled, textures: &Textures) -> Whitted {
+    let number = |scalar: Scalar| textures.float(scalar.into(), &TexturePoint::NOWHERE);
+    let roughness = look.roughness;
+    if number(look.metallic) > 0.5 {
+        let roughness = Roughness { u: squared(roughness), v: squared(roughness), remap: false };
+        return metallic(&Metal::Reflectance(look.base_color), &roughness, textures);
+    }
+    let plain = Whitted {
+        diffuse: Color::BLACK,
+        ior: if look.ior > 0.0 { look.ior } else { 1.0 },
+        ..Whitted::default()
+    };
+    if number(look.transmission) > 0.5 {
+        let transmission = look.base_color;
+        return match look.is_solid {
+            true => Whitted { transmission, fresnel: true, absorption: look.absorption, ..plain },
+            false => Whitted { transmission, mirror: Color::gray(COAT), ior: 1.0, ..plain },
+        };
+    }
+    let is_coated = number(look.clearcoat) > 0.5;
+    let above = if is_coated { look.clearcoat_roughness } else { roughness };
+    let shininess = shininess(&Roughness { u: squared(above), v: squared(above), remap: false });
+    let mirror = if shininess > 1e4 { Color::gray(COAT) } else { Color::BLACK };
+    // A broad highlight is a faint one.
+    let specular = Color::gray(0.2 * number(look.specular).min(1.0) * (shininess / 50.0).min(1.0));
+    let absorption = if look.is_solid { look.absorption } else { [0.0; 3] };
+    Whitted { diffuse: look.base_color, specular, shininess, mirror, absorption, ..plain }
+}
+
+/// α of glTF's roughness, where it is a number.
+fn squared(roughness: Scalar) -> Scalar {
+    match roughness {
+        Scalar::Value(value) => Scalar::Value(value * value),
+        texture @ Scalar::Texture(_) => texture,
+    }
+}
+
+fn metallic(metal: &Metal, roughness: &Roughness, textures: &Textures) -> Whitted {
+    let color = match metal {
+        Metal::Reflectance(color) => *color,
+        Metal::Indices { eta, k } => {
+            let of = |color| {
+                let texture = textures.spectrum_texture(color, SpectrumType::Unbounded);
+                Spectrum::from_rgb(textures.rgb(&texture, &TexturePoint::NOWHERE))
+            };
+            Color::Value(fresnel::conductor(1.0, of(*eta), of(*k)).rgb())
+        }
+    };
+    let shininess = shininess(roughness);
+    // A rough metal shows its lights as highlights, a smooth one everything.
+    let (mirror, specular) = if shininess > 200.0 { (color, Color::BLACK) } else { (Color::BLACK, color) };
+    Whitted { diffuse: Color::BLACK, specular, shininess, mirror, ..Whitted::default() }
+}
+
+/// Blinn's exponent of a Trowbridge–Reitz surface: 2/α² − 2.
+fn shininess(roughness: &Roughness) -> f32 {
+    let Scalar::Value(value) = roughness.u else { return 50.0 };
+    let alpha = if roughness.remap { value.max(0.0).sqrt() } else { value }.max(1e-3);
+    (2.0 / (alpha * alpha) - 2.0).max(1.0)
+}
+
+fn ior(ior: &Ior, textures: &Textures) -> f32 {
+    match ior {
+        Ior::Value(eta) => *eta,
+        Ior::Curve(curve) => super::ior_at(*curve, textures, &mut Lanes::Rgb),
+    }
+}

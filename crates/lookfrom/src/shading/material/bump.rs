@@ -1,0 +1,157 @@
+//! Bumps and normal maps: the frame in which a material is shaded.
+//!
+//! pbrt's materials take the normal as it comes. glTF's take one that is [`valid`], so that what they mirror leaves the
+//! surface: neither black where a mirrored direction would lead inside, nor lit through the surface.
+//!
+//! Blinn 1978 (bumps).
+
+use glam::Vec3;
+use lookfrom_scene::texture::{TexelFilter, Wrap};
+
+use super::{BumpMapping, Frame, NormalTexture};
+use crate::core::warp;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::texture::{self, FloatTexture, TexturePoint, Textures};
+
+/// How far in u and v heights are compared, as pbrt-v4 does it where it knows no footprint.
+const STEP: f32 = 0.0005;
+
+/// The frame of the shading normal as it is.
+pub(super) fn plain(surface: &SurfaceInteraction) -> Frame {
+    around(surface.ns, surface.shading_dpdu)
+}
+
+/// The shading frame at a surface: its normal on the side of the geometric one, its first axis along ∂p/∂u.
+pub(super) fn frame(
+    bump_mapping: &BumpMapping,
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    at: &TexturePoint,
+) -> Frame {
+    let bent = bent(bump_mapping, textures, surface, at);
+    let side = if bent.dot(surface.ng.as_vec3()) < 0.0 { -bent } else { bent };
+    around(side, surface.shading_dpdu)
+}
+
+/// The same for glTF's material, with a normal that is [`valid`].
+pub(super) fn valid_frame(
+    bump_mapping: &BumpMapping,
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    at: &TexturePoint,
+) -> Frame {
+    around(valid(bent(bump_mapping, textures, surface, at), surface), surface.shading_dpdu)
+}
+
+/// The normal, of unit length.
+fn bent(
+    bump_mapping: &BumpMapping,
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    at: &TexturePoint,
+) -> Vec3 {
+    let plain = || plain(surface);
+    let bent = match bump_mapping {
+        BumpMapping::None => return surface.ns,
+        BumpMapping::NormalMap(image) => {
+            let st = [at.uv.x, 1.0 - at.uv.y];
+            let texel =
+                texture::look_up(textures.image(*image), st, [Wrap::Repeat; 2], TexelFilter::Bilinear);
+            let local = Vec3::from_array(texel.map(|c| 2.0 * c - 1.0)).normalize_or(Vec3::Z);
+            plain().render(local)
+        }
+        BumpMapping::NormalTexture(map) => return mapped(map, textures, surface, at),
+        BumpMapping::Bump(height) => bumped(*height, textures, surface, at),
+    };
+    bent.normalize_or(surface.ns)
+}
+
+/// The directions of u and v at a surface, across its shading normal and each other, of unit length.
+pub(super) fn tangents(surface: &SurfaceInteraction) -> [Vec3; 2] {
+    let Frame { s, t, .. } = around(surface.ns, surface.shading_dpdu);
+    [s, if t.dot(surface.shading_dpdv) < 0.0 { -t } else { t }]
+}
+
+/// The normal that a texture says, of unit length.
+pub(super) fn mapped(
+    map: &NormalTexture,
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    at: &TexturePoint,
+) -> Vec3 {
+    let texel = textures.rgb(&map.texture, at);
+    let [x, y, z] = texel.map(|c| 2.0 * c - 1.0);
+    let [s, t] = tangents(surface);
+    (map.scale * x * s + map.scale * y * t + z * surface.ns).normalize_or(surface.ns)
+}
+
+/// The normal nearest to `n`, turned toward the geometric one, about which `wo` is mirrored to outside of the surface.
+///
+/// Let the geometric normal on the side of `wo` be g, and t the direction across it to which `n` leans by an angle θ. The
+/// mirrored direction then has the height `x sin 2θ + z cos 2θ` over the surface, where `wo` has x along t and z along g:
+/// a wave in 2θ of amplitude `A = √(x² + z²)`, which begins at z and falls to a height h at `2θ = atan2(x, z) + acos(h / A)`.
+/// That is as far as `n` may lean.
+pub(super) fn valid(n: Vec3, surface: &SurfaceInteraction) -> Vec3 {
+    let facing = if surface.front { 1.0 } else { -1.0 };
+    let (n, g, wo) = (facing * n, surface.ng_facing(), surface.wo);
+    let z = wo.dot(g);
+    // Along the surface a mirrored direction stays nearly so.
+    let least = (0.9 * z).min(0.01);
+    let leans = n.dot(g);
+    if leans > 0.0 && 2.0 * n.dot(wo) * leans - z >= least {
+        return facing * n;
+    }
+    let Some(t) = (n - leans * g).try_normalize() else { return facing * g };
+    let x = wo.dot(t);
+    let amplitude = (x * x + z * z).sqrt();
+    if !(amplitude > 0.0) {
+        return facing * g;
+    }
+    let (height, wave) = (least / amplitude, [x / amplitude, z / amplitude]);
+    let rest = (1.0 - height * height).max(0.0).sqrt();
+    let cos_twice = height * wave[1] - rest * wave[0];
+    let sin_twice = height * wave[0] + rest * wave[1];
+    // Half the angle, by the root that does not cancel.
+    let greater = (0.5 * (1.0 + cos_twice.abs())).sqrt();
+    let smaller = 0.5 * sin_twice / greater;
+    let (cos, sin) = if cos_twice > 0.0 { (greater, smaller) } else { (smaller, greater) };
+    facing * (cos * g + sin * t).normalize_or(g)
+}
+
+/// The normal of the surface moved along its shading normal; not of unit length.
+fn bumped(
+    height: FloatTexture,
+    textures: &Textures,
+    surface: &SurfaceInteraction,
+    at: &TexturePoint,
+) -> Vec3 {
+    let n = surface.ns;
+    let here = textures.float(height, at);
+    let [dpdu, dpdv] =
+        [(surface.shading_dpdu, Vec3::X), (surface.shading_dpdv, Vec3::Y)].map(|(along, uv)| {
+            let moved = TexturePoint {
+                uv: at.uv + STEP * uv.truncate(),
+                world: at.world + (STEP * along).as_dvec3(),
+                ..*at
+            };
+            // in the tangent plane of the shading normal
+            let tangent = along - n * n.dot(along);
+            tangent + n * ((textures.float(height, &moved) - here) / STEP)
+        });
+    let across = dpdu.cross(dpdv);
+    if surface.shading_dpdu.cross(surface.shading_dpdv).dot(n) < 0.0 { -across } else { across }
+}
+
+pub(super) fn around(n: Vec3, dpdu: Vec3) -> Frame {
+    let across = dpdu - n * n.dot(dpdu);
+    match across.try_normalize() {
+        Some(s) => Frame { s, t: n.cross(s), n },
+        None => {
+            let (s, t) = warp::orthonormal_basis(n);
+            Frame { s, t, n }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

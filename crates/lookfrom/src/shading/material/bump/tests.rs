@@ -1,0 +1,62 @@
+//! Is every mirrored direction outside, and is no normal turned that need not be?
+
+use super::*;
+use crate::core::hash;
+use crate::core::math;
+use glam::{DVec3, Vec2};
+use lookfrom_bvh::{OriginPrimitive, Point};
+
+fn surface(wo: Vec3, ng: Vec3, ns: Vec3) -> SurfaceInteraction {
+    SurfaceInteraction {
+        point: Point { position: [0.0; 3], error: [0.0; 3] },
+        ng: ng.as_dvec3(),
+        ns,
+        uv: Vec2::ZERO,
+        dpdu: Vec3::X,
+        dpdv: Vec3::Y,
+        shading_dpdu: Vec3::X,
+        shading_dpdv: Vec3::Y,
+        color: [1.0; 3],
+        wo,
+        front: DVec3::dot(ng.as_dvec3(), wo.as_dvec3()) > 0.0,
+        material: 0,
+        light: None,
+        shape: 0,
+        primitive: 0,
+        origin_primitive: OriginPrimitive::NONE,
+        on_primitive: Vec2::ZERO,
+        alpha: None,
+        vertex_data: None,
+        single_sided: false,
+        medium_interface: None,
+    }
+}
+
+#[test]
+fn mirrored_directions_stay_outside() {
+    let mut kept = 0;
+    for trial in 0..20_000 {
+        let direction = |k: u64| {
+            let number = |j: u64| (hash::pair(k * 8 + j, trial) >> 40) as f32 / 16_777_216.0;
+            warp::uniform_sphere([number(0), number(1)])
+        };
+        let (wo, ng, n) = (direction(1), direction(2), direction(3));
+        let surface = surface(wo, ng, n);
+        let n = if n.dot(ng) < 0.0 && trial % 4 > 0 { -n } else { n };
+        let got = valid(n, &surface);
+        let height = |n: Vec3| math::reflect(wo, n).dot(surface.ng_facing());
+        let least = (0.9 * wo.dot(surface.ng_facing())).min(0.01);
+        assert!(got.is_normalized() && got.dot(ng) > 0.0, "{wo} {ng} {n}: {got}");
+        assert!(height(got) > least - 1e-4, "{wo} {ng} {n}: {got} {}", height(got));
+        assert!(got.dot(if surface.front { wo } else { -wo }) > 0.0);
+        if n.dot(ng) > 0.0 && height(n) >= least {
+            assert_eq!(got, n);
+            kept += 1;
+        } else if wo.dot(surface.ng_facing()) > 0.05 {
+            // It is turned no further than needed: a little on toward n the mirrored direction is too low.
+            let toward = (got + 0.01 * n * if n.dot(ng) > 0.0 { 1.0 } else { 0.0 }).normalize();
+            assert!(n.dot(ng) <= 0.0 || height(toward) < least + 1e-3, "{wo} {ng} {n}: {got}");
+        }
+    }
+    assert!(kept > 2000, "{kept}");
+}

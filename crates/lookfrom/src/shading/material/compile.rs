@@ -1,0 +1,189 @@
+//! From a written material to a compiled one.
+
+use lookfrom_scene::material as written;
+use lookfrom_scene::material::{Color, Scalar};
+use lookfrom_scene::scene::TextureId;
+
+use super::kind::{Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled};
+use super::kind::{Roughness, Whitted};
+use super::{Material, approximate};
+use crate::shading::bsdf::microfacet::TrowbridgeReitz;
+use crate::shading::texture::{SpectrumTexture, SpectrumType, Textures};
+
+/// Compiles materials, of which later ones may mix earlier ones.
+pub(crate) struct Compiler<'a> {
+    textures: &'a Textures,
+    /// By material: its nearest thing in Whitted's model.
+    whitted: Vec<written::Whitted>,
+}
+
+impl<'a> Compiler<'a> {
+    pub(crate) fn new(textures: &'a Textures) -> Self {
+        Self { textures, whitted: Vec::new() }
+    }
+
+    /// The next material; and what absorbs in a body of it per unit of length, by primary, 0 for nothing.
+    pub(crate) fn compile(&mut self, material: &written::Material) -> (Material, [f32; 3]) {
+        let whitted = approximate::in_whitteds_model(&material.kind, &self.whitted, self.textures);
+        let compiled = Material {
+            kind: self.kind(&material.kind),
+            bump_mapping: self.bump_mapping(&material.relief),
+            medium: None,
+            whitted: self.whitted(&whitted),
+        };
+        let absorption = whitted.absorption;
+        self.whitted.push(whitted);
+        (compiled, absorption)
+    }
+
+    fn albedo(&self, color: Color) -> SpectrumTexture {
+        self.textures.spectrum_texture(color, SpectrumType::Albedo)
+    }
+
+    fn unbounded(&self, color: Color) -> SpectrumTexture {
+        self.textures.spectrum_texture(color, SpectrumType::Unbounded)
+    }
+
+    fn kind(&self, kind: &written::MaterialKind) -> MaterialKind {
+        use written::MaterialKind as Written;
+        match kind {
+            Written::Whitted(whitted) => MaterialKind::Whitted(self.whitted(whitted)),
+            Written::Diffuse { reflectance } => {
+                MaterialKind::Diffuse { reflectance: self.albedo(*reflectance) }
+            }
+            Written::DiffuseTransmission { reflectance, transmittance, scale } => {
+                MaterialKind::DiffuseTransmission {
+                    reflectance: self.albedo(*reflectance),
+                    transmittance: self.albedo(*transmittance),
+                    scale: *scale,
+                }
+            }
+            Written::Conductor { metal, roughness } => {
+                MaterialKind::Conductor { metal: self.metal(metal), roughness: rough(roughness) }
+            }
+            Written::Dielectric { eta, roughness } => {
+                MaterialKind::Dielectric { eta: index(*eta), roughness: rough(roughness) }
+            }
+            Written::ThinDielectric { eta } => MaterialKind::ThinDielectric { eta: index(*eta) },
+            Written::CoatedDiffuse { reflectance, coat } => MaterialKind::CoatedDiffuse {
+                reflectance: self.albedo(*reflectance),
+                coat: Box::new(self.coat(coat)),
+            },
+            Written::CoatedConductor { metal, roughness, coat } => MaterialKind::CoatedConductor {
+                metal: self.metal(metal),
+                roughness: rough(roughness),
+                coat: Box::new(self.coat(coat)),
+            },
+            Written::Mix { materials, amount } => {
+                MaterialKind::Mix { materials: materials.map(|id| id.0), amount: (*amount).into() }
+            }
+            Written::Principled(look) => MaterialKind::Principled(Box::new(self.principled(look))),
+            Written::Unlit { color } => MaterialKind::Unlit {
+                color: self.textures.spectrum_texture(*color, SpectrumType::Illuminant),
+                albedo: self.albedo(*color),
+            },
+            Written::ShadowCatcher { normal } => MaterialKind::ShadowCatcher { normal: *normal },
+            Written::Interface => MaterialKind::Interface,
+        }
+    }
+
+    fn whitted(&self, whitted: &written::Whitted) -> Whitted {
+        let written::Whitted { ambient, diffuse, specular, shininess, mirror, transmission, .. } = whitted;
+        Whitted {
+            ambient: ambient.map(|color| self.unbounded(color)),
+            diffuse: self.unbounded(*diffuse),
+            specular: self.unbounded(*specular),
+            shininess: *shininess,
+            mirror: self.unbounded(*mirror),
+            transmission: self.unbounded(*transmission),
+            ior: whitted.ior,
+            fresnel: whitted.fresnel,
+        }
+    }
+
+    fn metal(&self, metal: &written::Metal) -> Metal {
+        match *metal {
+            written::Metal::Indices { eta, k } => {
+                Metal::Indices { eta: self.unbounded(eta), k: self.unbounded(k) }
+            }
+            written::Metal::Reflectance(color) => Metal::Reflectance(self.albedo(color)),
+        }
+    }
+
+    fn coat(&self, coat: &written::Coat) -> Coat {
+        Coat {
+            eta: index(coat.eta),
+            roughness: rough(&coat.roughness),
+            thickness: coat.thickness.into(),
+            albedo: self.albedo(coat.albedo),
+            g: coat.g.into(),
+            max_depth: coat.max_depth.min(u16::MAX.into()) as u16,
+            samples: coat.samples.min(u16::MAX.into()) as u16,
+        }
+    }
+
+    fn bump_mapping(&self, written: &written::Relief) -> BumpMapping {
+        match written {
+            written::Relief::None => BumpMapping::None,
+            written::Relief::Bump(height) => BumpMapping::Bump((*height).into()),
+            written::Relief::NormalMap(image) => BumpMapping::NormalMap(image.index()),
+            written::Relief::NormalTexture(map) => BumpMapping::NormalTexture(self.normals(map)),
+        }
+    }
+
+    fn normals(&self, map: &written::NormalTexture) -> NormalTexture {
+        NormalTexture { texture: self.directions(map.texture), scale: map.scale }
+    }
+
+    /// A texture of directions, read as linear RGB.
+    fn directions(&self, texture: TextureId) -> SpectrumTexture {
+        self.unbounded(Color::Texture(texture))
+    }
+
+    fn principled(&self, look: &written::Principled) -> Principled {
+        let anisotropy = look.anisotropy.map(|grain| Anisotropy {
+            strength: grain.strength,
+            sin_cos: libm::sincosf(grain.rotation).into(),
+            texture: grain.texture.map(|texture| self.directions(texture)),
+        });
+        Principled {
+            base_color: self.albedo(look.base_color),
+            metallic: look.metallic.into(),
+            roughness: look.roughness.into(),
+            anisotropy,
+            ior: look.ior,
+            dispersion: look.dispersion,
+            specular: look.specular.into(),
+            specular_color: self.unbounded(look.specular_color),
+            transmission: look.transmission.into(),
+            is_solid: look.is_solid,
+            diffuse_transmission: look.diffuse_transmission.into(),
+            diffuse_transmission_color: self.albedo(look.diffuse_transmission_color),
+            clearcoat: look.clearcoat.into(),
+            clearcoat_roughness: look.clearcoat_roughness.into(),
+            clearcoat_normal: look.clearcoat_normal.as_ref().map(|map| self.normals(map)),
+            sheen_color: self.unbounded(look.sheen_color),
+            sheen_roughness: look.sheen_roughness.into(),
+            iridescence: look.iridescence.into(),
+            iridescence_ior: look.iridescence_ior,
+            iridescence_thickness: look.iridescence_thickness.into(),
+        }
+    }
+}
+
+fn rough(roughness: &written::Roughness) -> Roughness {
+    let written::Roughness { u, v, remap } = *roughness;
+    match (u, v) {
+        (Scalar::Value(u), Scalar::Value(v)) => {
+            Roughness::Constant(TrowbridgeReitz::from_roughness([u, v], remap))
+        }
+        _ => Roughness::Varying { along: [u.into(), v.into()], remap },
+    }
+}
+
+fn index(ior: written::Ior) -> Ior {
+    match ior {
+        written::Ior::Value(eta) => Ior::Value(eta),
+        written::Ior::Curve(curve) => Ior::Curve(curve),
+    }
+}

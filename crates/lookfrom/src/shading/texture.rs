@@ -1,0 +1,313 @@
+//! Colour over surfaces: from a point of a surface to a spectrum or a number.
+//!
+//! The textures' parameters are those of `lookfrom_scene::texture`; here they only lose their names. What pbrt-v4 has too
+//! (Pharr, Jakob, Humphreys 2023) means here what it means there, but for one thing: there are no ray differentials, so
+//! pictures are not filtered beyond bilinear, squares have sharp edges and noise has all its octaves.
+//!
+//! `input`: what materials and lights hold; `node`: the textures themselves; `mapping`: where in a pattern; `picture`, `pattern`: what
+//! is there; `evaluation`: what that becomes.
+
+mod evaluation;
+mod input;
+mod mapping;
+mod node;
+mod pattern;
+mod picture;
+
+use std::f32::consts::PI;
+
+use glam::{DVec3, Vec2, Vec3};
+use lookfrom_scene::image::Image;
+use lookfrom_scene::material::Color;
+use lookfrom_scene::scene::{CurveId, TextureId};
+use lookfrom_scene::settings::ColorMode;
+use lookfrom_scene::shape::Mesh;
+use lookfrom_scene::spectrum::Curve;
+use lookfrom_scene::texture::{Channel, TextureKind, Wrap};
+
+pub use self::input::{FloatTexture, SpectrumTexture, SpectrumType};
+pub use self::mapping::sphere_uv;
+pub use self::picture::look_up;
+
+use self::evaluation::{Evaluation, FloatEvaluation, RgbEvaluation, SpectralEvaluation};
+use self::input::Input;
+use self::node::Node;
+use self::picture::look_up_channel;
+use crate::core::color::{DenselySampledSpectrum, Wavelengths};
+use crate::core::noise::{self, perlin};
+use crate::core::spectrum::Spectrum;
+
+/// What the four lanes mean for a sample.
+#[derive(Clone, Copy, Debug)]
+pub enum Lanes {
+    /// Linear Rec. 709 and a 0.
+    Rgb,
+    /// Four wavelengths.
+    Spectral(Wavelengths),
+}
+
+/// Every texture, picture and curve of a world.
+#[derive(Clone, Debug, Default)]
+pub struct Textures {
+    nodes: Vec<Node>,
+    images: Vec<Image>,
+    curves: Vec<Measured>,
+    /// Whether constants are lifted to spectra when they are compiled.
+    uplifts: bool,
+}
+
+/// A curve, and what it is in RGB mode.
+#[derive(Clone, Debug)]
+struct Measured {
+    dense: DenselySampledSpectrum,
+    /// As a reflectance or an index of refraction.
+    reflectance: [f32; 3],
+    /// As light.
+    emission: [f32; 3],
+}
+
+/// How many sets of texture coordinates there are besides the first.
+pub const MORE_UV_SETS: usize = Mesh::MOST_UV_SETS - 1;
+
+/// What a texture may depend on.
+#[derive(Clone, Copy, Debug)]
+pub struct TexturePoint {
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Those of further sets.
+    pub more_uvs: [Vec2; MORE_UV_SETS],
+    /// In the world (not render space).
+    pub world: DVec3,
+    /// The mesh's own linear colour.
+    pub color: [f32; 3],
+    /// The mesh's own opacity.
+    pub opacity: f32,
+    /// Normal in the world, of unit length; on which side does not matter. pbrt-v4 takes the geometric one.
+    pub n: Vec3,
+}
+
+impl Lanes {
+    /// The factor that changes nothing.
+    #[inline]
+    pub fn one(&self) -> Spectrum {
+        match self {
+            Self::Rgb => Spectrum::ONE,
+            Self::Spectral(_) => Spectrum([1.0; 4]),
+        }
+    }
+}
+
+/// The spectrum of a colour that is only known when it is asked for, such as a texel's.
+#[inline]
+pub fn spectrum_of(rgb: [f32; 3], spectrum_type: SpectrumType, lanes: &Lanes) -> Spectrum {
+    match lanes {
+        Lanes::Rgb => RgbEvaluation(spectrum_type).color(rgb),
+        Lanes::Spectral(wavelengths) => {
+            SpectralEvaluation { spectrum_type, lambda: &wavelengths.lambda }.color(rgb)
+        }
+    }
+}
+
+impl TexturePoint {
+    /// For colours that are the same everywhere.
+    pub const NOWHERE: Self = Self {
+        uv: Vec2::ZERO,
+        more_uvs: [Vec2::ZERO; MORE_UV_SETS],
+        world: DVec3::ZERO,
+        color: [1.0; 3],
+        opacity: 1.0,
+        n: Vec3::Z,
+    };
+}
+
+impl Textures {
+    /// A scene's textures, pictures and curves, whose ids are then indices here. `color` is the mode that pictures will mostly
+    /// be rendered in: constants are made ready for it.
+    pub fn new(kinds: &[TextureKind], images: Vec<Image>, curves: Vec<Curve>, color: ColorMode) -> Self {
+        let measured = |curve: Curve| {
+            let dense = DenselySampledSpectrum::from(&curve);
+            Measured { reflectance: dense.to_rgb_reflectance(), emission: dense.to_rgb(), dense }
+        };
+        let curves = curves.into_iter().map(measured).collect();
+        let uplifts = color == ColorMode::Spectral;
+        Self { nodes: Node::compile_all(kinds, uplifts), images, curves, uplifts }
+    }
+
+    /// A written colour, compiled for what it is used for.
+    pub fn spectrum_texture(&self, color: Color, spectrum_type: SpectrumType) -> SpectrumTexture {
+        SpectrumTexture::new(Input::new(color, self.uplifts), spectrum_type, &self.curves)
+    }
+
+    /// A picture by its index.
+    pub fn image(&self, index: usize) -> &Image {
+        &self.images[index]
+    }
+
+    /// A curve by its id.
+    pub fn curve(&self, id: CurveId) -> &DenselySampledSpectrum {
+        &self.curves[id.index()].dense
+    }
+
+    /// The spectrum at a point, in the lanes of a sample. Never negative where no texture scales by less than 0 or mixes beyond
+    /// its ends.
+    #[inline(always)]
+    pub fn spectrum(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
+        // What is asked most often needs no call.
+        match lanes {
+            Lanes::Rgb if !texture.varies() => texture.rgb,
+            _ => self.spectrum_of_any(texture, at, lanes),
+        }
+    }
+
+    /// The same for a reflectance: 0 … 1 in every lane.
+    #[inline(always)]
+    pub fn albedo(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
+        self.spectrum(texture, at, lanes).map(|lane| lane.clamp(0.0, 1.0))
+    }
+
+    fn spectrum_of_any(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
+        let SpectrumTexture { input, spectrum_type, .. } = texture;
+        match lanes {
+            Lanes::Rgb => self.read(input, at, &RgbEvaluation(*spectrum_type)),
+            Lanes::Spectral(wavelengths) => {
+                let lifted =
+                    SpectralEvaluation { spectrum_type: *spectrum_type, lambda: &wavelengths.lambda };
+                self.read(input, at, &lifted)
+            }
+        }
+    }
+
+    /// The colour at a point, in linear Rec. 709.
+    pub fn rgb(&self, texture: &SpectrumTexture, at: &TexturePoint) -> [f32; 3] {
+        self.read(&texture.input, at, &RgbEvaluation(texture.spectrum_type)).rgb()
+    }
+
+    /// The number at a point. A picture's is the mean of its channels; its first channel, where the nearest texel is asked
+    /// for.
+    #[inline]
+    pub fn float(&self, texture: FloatTexture, at: &TexturePoint) -> f32 {
+        match texture {
+            FloatTexture::Constant(value) => value,
+            FloatTexture::Texture(id) => self.texture(id, at, &FloatEvaluation),
+        }
+    }
+
+    /// Whether a number is 1 everywhere on a mesh with or without opacities: as far as that can be told without looking at
+    /// texels.
+    pub fn is_one(&self, number: FloatTexture, has_opacities: bool) -> bool {
+        let FloatTexture::Texture(id) = number else { return number.is(1.0) };
+        let is_one = |input: &Input| match input {
+            Input::Constant(constant) => constant.rgb == [1.0; 3],
+            Input::Curve(_) => false,
+            Input::Texture(id) => self.is_one(FloatTexture::Texture(*id), has_opacities),
+        };
+        match &self.nodes[id.index()] {
+            Node::Image { image, wrap, channel: Channel::Alpha, scale, invert: false, .. } => {
+                *scale == 1.0 && !wrap.contains(&Wrap::Black) && !self.images[*image].has_alpha()
+            }
+            Node::VertexAlpha => !has_opacities,
+            Node::Product { a, b } => is_one(a) && is_one(b),
+            Node::Scale { color, by } => is_one(color) && self.is_one(*by, has_opacities),
+            Node::Threshold { value, edge } => *edge <= 1.0 && self.is_one(*value, has_opacities),
+            _ => false,
+        }
+    }
+
+    fn read<R: Evaluation>(&self, input: &Input, at: &TexturePoint, evaluation: &R) -> R::Value {
+        match input {
+            Input::Constant(constant) => evaluation.constant(constant),
+            Input::Curve(id) => evaluation.curve(&self.curves[id.index()]),
+            Input::Texture(id) => self.texture(*id, at, evaluation),
+        }
+    }
+
+    // Most colours are the same everywhere: what asks for them stays short.
+    #[inline(never)]
+    fn texture<R: Evaluation>(&self, id: TextureId, at: &TexturePoint, evaluation: &R) -> R::Value {
+        let space = |mapping| mapping::coordinates(mapping, at).as_vec3();
+        match &self.nodes[id.index()] {
+            Node::Image { image, mapping, wrap, filter, channel, scale, invert } => {
+                let place = space(mapping);
+                // v runs up, rows run down
+                let st = [place.x, 1.0 - place.y];
+                let image = &self.images[*image];
+                let rgb = match channel {
+                    Channel::Rgb => look_up(image, st, *wrap, *filter),
+                    channel => [look_up_channel(image, *channel, st, *wrap, *filter); 3],
+                };
+                evaluation.texel(rgb.map(|c| scale * c), *invert, *filter)
+            }
+            Node::Checker { even, odd, mapping } => {
+                let is_even = pattern::is_even(mapping::off_border(mapping, at));
+                self.read(if is_even { even } else { odd }, at, evaluation)
+            }
+            Node::Noise { low, high, octaves, mapping } => {
+                let amount = 0.5 + 0.5 * noise::fbm(mapping::off_border(mapping, at).as_vec3(), *octaves);
+                self.blend(low, high, amount.clamp(0.0, 1.0), at, evaluation)
+            }
+            Node::Marble { vein, base, octaves, turbulence, mapping } => {
+                let p = mapping::off_border(mapping, at).as_vec3();
+                let wave = libm::sinf(PI * (p.x + turbulence * noise::turbulence(p, *octaves))).abs();
+                self.blend(vein, base, wave.sqrt().clamp(0.0, 1.0), at, evaluation)
+            }
+            Node::Scale { color, by } => match self.float(*by, at) {
+                0.0 => evaluation.number(0.0),
+                by => self.read(color, at, evaluation) * by,
+            },
+            Node::Mix { low, high, amount } => self.blend(low, high, self.float(*amount, at), at, evaluation),
+            Node::DirectionMix { low, high, direction } => {
+                self.blend(low, high, at.n.dot(*direction).abs(), at, evaluation)
+            }
+            Node::Bilinear { corners, mapping } => {
+                let Vec3 { x: u, y: v, .. } = space(mapping);
+                let [c00, c01, c10, c11]: [R::Value; 4] =
+                    std::array::from_fn(|k| self.read(&corners[k], at, evaluation));
+                c00 * ((1.0 - u) * (1.0 - v)) + c01 * ((1.0 - u) * v) + c10 * (u * (1.0 - v)) + c11 * (u * v)
+            }
+            Node::Dots { inside, outside, mapping } => {
+                let is_inside = pattern::is_in_dot(space(mapping).truncate());
+                self.read(if is_inside { inside } else { outside }, at, evaluation)
+            }
+            Node::Fbm { octaves, roughness, mapping } => {
+                evaluation.number(perlin::fbm(space(mapping), *roughness, *octaves))
+            }
+            Node::Wrinkled { octaves, roughness, mapping } => {
+                evaluation.number(perlin::turbulence(space(mapping), *roughness, *octaves))
+            }
+            Node::Windy { mapping } => evaluation.number(pattern::windy(space(mapping))),
+            Node::PbrtMarble { octaves, roughness, scale, variation, mapping } => {
+                let p = space(mapping) * *scale;
+                evaluation.reflectance(pattern::marble(p, *roughness, *octaves, *variation))
+            }
+            Node::VertexColor { tint } => evaluation.color(std::array::from_fn(|c| at.color[c] * tint[c])),
+            Node::VertexAlpha => evaluation.number(at.opacity),
+            Node::Product { a, b } => {
+                self.read(a, at, evaluation) * self.read(b, at, &evaluation.of_factor())
+            }
+            Node::Threshold { value, edge } => {
+                evaluation.number(if self.float(*value, at) >= *edge { 1.0 } else { 0.0 })
+            }
+        }
+    }
+
+    /// From `low` at 0 to `high` at 1; what does not count is not looked at.
+    fn blend<R: Evaluation>(
+        &self,
+        low: &Input,
+        high: &Input,
+        amount: f32,
+        at: &TexturePoint,
+        evaluation: &R,
+    ) -> R::Value {
+        if amount == 0.0 {
+            return self.read(low, at, evaluation);
+        }
+        if amount == 1.0 {
+            return self.read(high, at, evaluation);
+        }
+        self.read(low, at, evaluation) * (1.0 - amount) + self.read(high, at, evaluation) * amount
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,175 @@
+//! What do the values of a texture become: numbers, RGB, or values at four wavelengths?
+//!
+//! Leaves (constants, texels, curves) are read by one of these; what stands between them blends what was read. So in
+//! spectral mode it is spectra that are blended, as in pbrt-v4.
+
+use std::ops::{Add, Mul};
+
+use lookfrom_scene::texture::TexelFilter;
+
+use super::input::{Constant, Uplifts};
+use super::{Measured, SpectrumType};
+use crate::core::color::{Sigmoid, Unbounded, standard_illuminant};
+use crate::core::spectrum::Spectrum;
+
+/// A way to read leaves.
+pub(super) trait Evaluation {
+    /// What they become.
+    type Value: Copy + Add<Output = Self::Value> + Mul<Output = Self::Value> + Mul<f32, Output = Self::Value>;
+
+    /// The way to read what something read this way is multiplied by: of light, only one of two factors is light.
+    fn of_factor(&self) -> Self;
+
+    /// A colour in linear Rec. 709, or a number three times.
+    fn color(&self, rgb: [f32; 3]) -> Self::Value;
+
+    /// A colour that was compiled.
+    fn constant(&self, constant: &Constant) -> Self::Value {
+        self.color(constant.rgb)
+    }
+
+    /// A colour that is a reflectance, whatever the texture is used for.
+    fn reflectance(&self, rgb: [f32; 3]) -> Self::Value;
+
+    /// A pattern's number, which may be negative.
+    fn number(&self, value: f32) -> Self::Value {
+        self.color([value; 3])
+    }
+
+    /// A place of a picture, already scaled; `invert` stands for 1 − value.
+    fn texel(&self, rgb: [f32; 3], invert: bool, _filter: TexelFilter) -> Self::Value {
+        self.color(if invert { rgb.map(|c| 1.0 - c) } else { rgb })
+    }
+
+    /// A curve.
+    fn curve(&self, curve: &Measured) -> Self::Value;
+}
+
+/// As one number.
+pub(super) struct FloatEvaluation;
+
+impl Evaluation for FloatEvaluation {
+    type Value = f32;
+
+    fn of_factor(&self) -> Self {
+        Self
+    }
+
+    fn color(&self, rgb: [f32; 3]) -> f32 {
+        mean(rgb)
+    }
+
+    fn reflectance(&self, rgb: [f32; 3]) -> f32 {
+        mean(rgb)
+    }
+
+    fn number(&self, value: f32) -> f32 {
+        value
+    }
+
+    /// The mean of the channels; but pbrt's nearest texel is the first of them.
+    fn texel(&self, rgb: [f32; 3], invert: bool, filter: TexelFilter) -> f32 {
+        let value = match filter {
+            TexelFilter::Nearest => rgb[0],
+            TexelFilter::Bilinear => mean(rgb),
+        };
+        if invert { (1.0 - value).max(0.0) } else { value }
+    }
+
+    fn curve(&self, curve: &Measured) -> f32 {
+        mean(curve.reflectance)
+    }
+}
+
+/// The mean, and exactly the channel where all are the same.
+fn mean([r, g, b]: [f32; 3]) -> f32 {
+    if r == g && g == b { r } else { (r + g + b) / 3.0 }
+}
+
+/// As linear Rec. 709, for what they are used for.
+pub(super) struct RgbEvaluation(pub SpectrumType);
+
+impl Evaluation for RgbEvaluation {
+    type Value = Spectrum;
+
+    fn of_factor(&self) -> Self {
+        Self(of_factor(self.0))
+    }
+
+    #[inline]
+    fn color(&self, rgb: [f32; 3]) -> Spectrum {
+        Spectrum::from_rgb(within(self.0, rgb))
+    }
+
+    fn reflectance(&self, rgb: [f32; 3]) -> Spectrum {
+        Spectrum::from_rgb(rgb)
+    }
+
+    fn curve(&self, curve: &Measured) -> Spectrum {
+        let rgb = if self.0 == SpectrumType::Illuminant { curve.emission } else { curve.reflectance };
+        Spectrum::from_rgb(within(self.0, rgb))
+    }
+}
+
+/// As values at four wavelengths in nm, for what they are used for.
+pub(super) struct SpectralEvaluation<'a> {
+    pub(super) spectrum_type: SpectrumType,
+    pub(super) lambda: &'a [f32; 4],
+}
+
+impl SpectralEvaluation<'_> {
+    fn lift(&self, rgb: [f32; 3], uplifts: Option<&Uplifts>) -> Spectrum {
+        let rgb = within(self.spectrum_type, rgb);
+        // A grey is the same at all wavelengths, which needs no table.
+        let is_gray = rgb[0] == rgb[1] && rgb[1] == rgb[2];
+        let values = match self.spectrum_type {
+            _ if is_gray => Spectrum([rgb[0]; 4]),
+            SpectrumType::Albedo => {
+                uplifts.map_or_else(|| Sigmoid::from_rgb(rgb), |uplifts| uplifts.albedo).at(self.lambda)
+            }
+            SpectrumType::Unbounded | SpectrumType::Illuminant => {
+                uplifts.map_or_else(|| Unbounded::from_rgb(rgb), |uplifts| uplifts.unbounded).at(self.lambda)
+            }
+        };
+        if self.spectrum_type == SpectrumType::Illuminant && !values.is_black() {
+            values * standard_illuminant().at(self.lambda)
+        } else {
+            values
+        }
+    }
+}
+
+impl Evaluation for SpectralEvaluation<'_> {
+    type Value = Spectrum;
+
+    fn of_factor(&self) -> Self {
+        SpectralEvaluation { spectrum_type: of_factor(self.spectrum_type), ..*self }
+    }
+
+    fn color(&self, rgb: [f32; 3]) -> Spectrum {
+        self.lift(rgb, None)
+    }
+
+    fn constant(&self, constant: &Constant) -> Spectrum {
+        self.lift(constant.rgb, constant.uplifts.as_ref())
+    }
+
+    fn reflectance(&self, rgb: [f32; 3]) -> Spectrum {
+        SpectralEvaluation { spectrum_type: SpectrumType::Albedo, ..*self }.color(rgb)
+    }
+
+    fn curve(&self, curve: &Measured) -> Spectrum {
+        curve.dense.at(self.lambda)
+    }
+}
+
+fn of_factor(spectrum_type: SpectrumType) -> SpectrumType {
+    if spectrum_type == SpectrumType::Illuminant { SpectrumType::Unbounded } else { spectrum_type }
+}
+
+/// Not negative, for an albedo at most 1; 0 for what is not a number.
+#[inline]
+pub(super) fn within(spectrum_type: SpectrumType, rgb: [f32; 3]) -> [f32; 3] {
+    let rgb = rgb.map(|c| c.max(0.0));
+    if spectrum_type == SpectrumType::Albedo { rgb.map(|c| c.min(1.0)) } else { rgb }
+}

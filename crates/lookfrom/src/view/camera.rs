@@ -1,0 +1,372 @@
+//! From a pixel back to the world: `P_world = T4 · R3 · S2 · T1 · P_k`, as the lecture notes have it.
+//!
+//! `P_k = (x_k, y_k, 0, 1)` with `x_k` to the right and `y_k` *up*: the centre of the pixel in column i, row j (from the
+//! top) is `(i + ½, ny − j − ½)`. The four matrices are kept apart, so that each can be shown:
+//!
+//! | matrix | does |
+//! | --- | --- |
+//! | `t1` | moves the image's middle to the axis and the image plane to the distance `d` |
+//! | `s2` | pixels to lengths; x is turned round, since `u` points to the viewer's left |
+//! | `r3` | `[u v w]`: view to world, around the eye |
+//! | `t4` | the eye to its place |
+//!
+//! There is no perspective matrix: every ray starts at the eye and fans out through its pixel, so the division by depth
+//! is in the geometry of the rays.
+//!
+//! Everything here is f64; the ray that leaves is rounded to f32 in *render space*, the world translated to the eye
+//! (see `world`). First station on the way of a pixel.
+
+use glam::{DMat3, DMat4, DVec3, DVec4};
+use lookfrom_scene::camera::{Camera as Written, Lens, Projection, View, Window};
+use lookfrom_scene::{Error, Location, Result};
+
+use crate::core::warp;
+
+/// The eye as matrices.
+#[derive(Clone, Debug)]
+pub struct Camera {
+    /// Translates by `(−nx/2, −ny/2, d)`, for a window that is not around the axis by the pixel that is on it.
+    pub t1: DMat4,
+    /// Scales by `(−w/nx, h/ny, 1)`.
+    pub s2: DMat4,
+    /// `[u v w]` by columns. From another format it may scale, shear and mirror as well.
+    pub r3: DMat4,
+    /// Translates by `lookfrom`.
+    pub t4: DMat4,
+    /// How space is flattened.
+    pub projection: Projection,
+    /// Where there is one, rays start on it.
+    pub lens: Option<Lens>,
+    /// `d`.
+    pub distance: f64,
+    /// `nx`, `ny`.
+    pub size: [u32; 2],
+}
+
+/// A ray through a point of the image, and how it came about.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraRay {
+    /// `P_k`.
+    pub p_k: DVec4,
+    /// `T1 · P_k`.
+    pub after_t1: DVec4,
+    /// `S2 · T1 · P_k`: the point on the image plane in view space.
+    pub after_s2: DVec4,
+    /// `R3 · S2 · T1 · P_k`.
+    pub after_r3: DVec4,
+    /// `P_world`.
+    pub p_world: DVec3,
+    /// `a`, where the ray starts, relative to `lookfrom`: zero for a pinhole.
+    pub a_from_eye: DVec3,
+    /// `b − a`; not of unit length: `t = 1` is the image plane.
+    pub direction: DVec3,
+}
+
+impl Camera {
+    /// The matrices for a picture of `width` × `height` pixels.
+    ///
+    /// # Errors
+    /// `Invalid` for each degenerate camera: `lookfrom = lookat`, `up` zero or parallel to the view, `θ ∉ (0°, 180°)`,
+    /// `d ≤ 0`, no pixels, a lens or a matrix that cannot be, any value that is not finite.
+    pub fn new(written: &Written, width: u32, height: u32) -> Result<Self> {
+        let at = &written.at;
+        if width == 0 || height == 0 {
+            return Err(Error::invalid(
+                at,
+                format!("the picture has {width} × {height} pixels; both must be at least 1"),
+            ));
+        }
+        let d = positive(at, "distance", written.distance)?;
+        // h, the height of the image on the image plane
+        let h = match written.projection {
+            Projection::Perspective { fov } if fov > 0.0 && fov < 180.0 => {
+                2.0 * d * libm::tan(0.5 * fov.to_radians())
+            }
+            Projection::Perspective { fov } => {
+                return Err(Error::invalid(
+                    at,
+                    format!("fov is {fov}°; expected an angle between 0° and 180°"),
+                ));
+            }
+            Projection::Orthographic { height } => positive(at, "height", height)?,
+            // The image plane of the notes is only a name here: 2 × 2.
+            Projection::Equirectangular | Projection::EquirectangularPbrt | Projection::Octahedral => 2.0,
+        };
+        if let Some(Lens { radius, focus_distance }) = written.lens {
+            positive(at, "focus_distance", focus_distance)?;
+            if !(radius >= 0.0 && radius.is_finite()) {
+                return Err(Error::invalid(
+                    at,
+                    format!("the lens radius is {radius}; expected a number ≥ 0"),
+                ));
+            }
+        }
+        let (r3, lookfrom) = match written.view {
+            View::Look { lookfrom, lookat, up } => (view_axes(at, lookfrom, lookat, up)?, lookfrom),
+            View::Matrix(matrix) => {
+                let linear = DMat3::from_mat4(matrix);
+                let determinant = linear.determinant();
+                if !matrix.is_finite() || !determinant.is_normal() {
+                    return Err(Error::invalid(at, "the camera's matrix is not invertible")
+                        .hint("give it three independent axes and finite numbers"));
+                }
+                (linear, matrix.w_axis.truncate())
+            }
+        };
+        let (nx, ny) = (f64::from(width), f64::from(height));
+        let window = written.window.unwrap_or(Window { x: [-nx / ny, nx / ny], y: [-1.0, 1.0] });
+        // the size of a pixel and the pixel on the axis
+        let across = |[low, high]: [f64; 2], pixels: f64| {
+            let size = 0.5 * h * (high - low) / pixels;
+            (size, -0.5 * h * low / size)
+        };
+        let ((pixel_x, axis_x), (pixel_y, axis_y)) = (across(window.x, nx), across(window.y, ny));
+        for (size, axis) in [(pixel_x, axis_x), (pixel_y, axis_y)] {
+            if !(size != 0.0 && size.is_finite() && axis.is_finite()) {
+                return Err(Error::invalid(
+                    at,
+                    format!("the window {window:?} of the image plane has no area"),
+                )
+                .hint("give it a left and a right, a bottom and a top that differ"));
+            }
+        }
+        Ok(Self {
+            t1: DMat4::from_translation(DVec3::new(-axis_x, -axis_y, d)),
+            s2: DMat4::from_scale(DVec3::new(-pixel_x, pixel_y, 1.0)),
+            r3: DMat4::from_mat3(r3),
+            t4: DMat4::from_translation(lookfrom),
+            projection: written.projection,
+            lens: written.lens.filter(|lens| lens.radius > 0.0),
+            distance: d,
+            size: [width, height],
+        })
+    }
+
+    /// The eye in the world.
+    pub fn lookfrom(&self) -> DVec3 {
+        self.t4.w_axis.truncate()
+    }
+
+    /// `w`: where the eye looks, of unit length where the camera was given by `lookat`.
+    pub fn w(&self) -> DVec3 {
+        self.r3.z_axis.truncate()
+    }
+
+    /// `M_vw`, from view space to the world: `T4 · R3`.
+    pub fn world_from_view(&self) -> DMat4 {
+        self.t4 * self.r3
+    }
+
+    /// The ray through the point `(x_k, y_k)` of the image, `y_k` up; `lens` in `[0, 1)²` chooses a point of the lens.
+    #[inline]
+    pub fn ray(&self, [x_k, y_k]: [f64; 2], lens: [f32; 2]) -> CameraRay {
+        let p_k = DVec4::new(x_k, y_k, 0.0, 1.0);
+        let after_t1 = self.t1 * p_k;
+        let after_s2 = self.s2 * after_t1;
+        let after_r3 = self.r3 * after_s2;
+        let p_world = (self.t4 * after_r3).truncate();
+        // in view space: where the ray starts and where it crosses the image plane
+        let image_point = after_s2.truncate();
+        let (start, straight) = match self.projection {
+            Projection::Perspective { .. } => (DVec3::ZERO, image_point),
+            Projection::Orthographic { .. } => (image_point.with_z(0.0), DVec3::Z * image_point.z),
+            Projection::Equirectangular | Projection::EquirectangularPbrt => {
+                let [u, v] = [x_k / f64::from(self.size[0]), y_k / f64::from(self.size[1])];
+                let is_pbrts = self.projection == Projection::EquirectangularPbrt;
+                (DVec3::ZERO, if is_pbrts { equirectangular_pbrt(u, v) } else { equirectangular(u, v) })
+            }
+            Projection::Octahedral => {
+                let square = [x_k / f64::from(self.size[0]), 1.0 - y_k / f64::from(self.size[1])];
+                let direction = warp::octahedral_direction(square.map(|u| u as f32)).as_dvec3();
+                (DVec3::ZERO, DVec3::new(-direction.x, direction.z, direction.y))
+            }
+        };
+        let (a, direction) = match self.lens {
+            None => (start, straight),
+            Some(Lens { radius, focus_distance }) => {
+                // every ray from the lens meets the pinhole's ray in the plane of focus
+                let pinhole = image_point - start;
+                let focus = start + pinhole * (focus_distance / pinhole.z);
+                let on_lens = warp::concentric_disk(lens).as_dvec2() * radius;
+                let a = start + on_lens.extend(0.0);
+                (a, (focus - a) * (self.distance / focus_distance))
+            }
+        };
+        CameraRay {
+            p_k,
+            after_t1,
+            after_s2,
+            after_r3,
+            p_world,
+            a_from_eye: self.r3.transform_vector3(a),
+            direction: self.r3.transform_vector3(direction),
+        }
+    }
+}
+
+/// The direction at `(u, v)` of a picture of everything around, `v` up, in view space: θ = π (1 − v) from the up axis,
+/// φ = 2π (u − ½) from the front toward the viewer's right.
+fn equirectangular(u: f64, v: f64) -> DVec3 {
+    let (theta, phi) = (std::f64::consts::PI * (1.0 - v), std::f64::consts::TAU * (u - 0.5));
+    let sin_theta = libm::sin(theta);
+    DVec3::new(-sin_theta * libm::sin(phi), libm::cos(theta), sin_theta * libm::cos(phi))
+}
+
+/// The same for pbrt's spherical camera: φ = 2π u from the viewer's right toward the front.
+fn equirectangular_pbrt(u: f64, v: f64) -> DVec3 {
+    let (theta, phi) = (std::f64::consts::PI * (1.0 - v), std::f64::consts::TAU * u);
+    let sin_theta = libm::sin(theta);
+    DVec3::new(-sin_theta * libm::cos(phi), libm::cos(theta), sin_theta * libm::sin(phi))
+}
+
+fn positive(at: &Location, name: &str, value: f64) -> Result<f64> {
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Error::invalid(at, format!("{name} is {value}; expected a positive number")))
+    }
+}
+
+/// `[u v w]` with `w` forward, `u = up × w` to the viewer's left, `v = w × u` up.
+fn view_axes(at: &Location, lookfrom: DVec3, lookat: DVec3, up: DVec3) -> Result<DMat3> {
+    for (name, point) in [("lookfrom", lookfrom), ("lookat", lookat), ("up", up)] {
+        if !point.is_finite() {
+            return Err(Error::invalid(at, format!("{name} is {point}; expected finite numbers")));
+        }
+    }
+    let w = (lookat - lookfrom).try_normalize().ok_or_else(|| {
+        Error::invalid(at, format!("lookfrom and lookat are the same point {lookfrom}"))
+            .hint("move one of them: the eye must look somewhere")
+    })?;
+    let up = up.try_normalize().ok_or_else(|| Error::invalid(at, "up is zero").hint("try up = [0, 1, 0]"))?;
+    let u = up.cross(w);
+    // Below this the direction of up × w is rounding noise.
+    if u.length() < 1e-10 {
+        return Err(Error::invalid(at, "up is parallel to the direction of view")
+            .hint("choose another up, or look elsewhere"));
+    }
+    let u = u.normalize();
+    Ok(DMat3::from_cols(u, w.cross(u), w))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn look(lookfrom: [f64; 3], lookat: [f64; 3], up: [f64; 3]) -> Written {
+        Written {
+            view: View::Look { lookfrom: lookfrom.into(), lookat: lookat.into(), up: up.into() },
+            ..Written::default()
+        }
+    }
+
+    #[test]
+    fn the_exercise_of_the_notes() {
+        // d = 1, lookfrom at the origin, lookat = (0, 0, d), up = (0, 1, 0): M_vw is the identity, exactly.
+        let camera = Camera::new(&look([0.0; 3], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]), 640, 480).unwrap();
+        assert_eq!(camera.t4 * camera.r3, DMat4::IDENTITY);
+    }
+
+    #[test]
+    fn the_middle_of_the_image_looks_at_lookat() {
+        let camera =
+            Camera::new(&look([3.0, 1.0, -4.0], [-2.0, 5.0, 7.0], [0.1, 1.0, 0.2]), 300, 200).unwrap();
+        let ray = camera.ray([150.0, 100.0], [0.5; 2]);
+        let toward = DVec3::new(-5.0, 4.0, 11.0).normalize();
+        assert!((ray.direction - toward).length() < 1e-15);
+        assert!((ray.p_world - DVec3::new(3.0, 1.0, -4.0) - toward).length() < 1e-14);
+    }
+
+    #[test]
+    fn theta_is_vertical_and_y_is_up_and_x_is_right() {
+        let mut written = look([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]);
+        written.projection = Projection::Perspective { fov: 90.0 };
+        let camera = Camera::new(&written, 400, 200).unwrap();
+        // Looking along −z with y up, the right of the image is +x: the right-handed world of the notes.
+        let top_right = camera.ray([400.0, 200.0], [0.5; 2]).direction;
+        assert!((top_right - DVec3::new(2.0, 1.0, -1.0)).length() < 1e-14, "{top_right}");
+    }
+
+    #[test]
+    fn t_is_one_on_the_image_plane_whatever_the_lens() {
+        let mut written = look([1.0, 2.0, 3.0], [0.0; 3], [0.0, 1.0, 0.0]);
+        written.distance = 2.5;
+        written.lens = Some(Lens { radius: 0.3, focus_distance: 4.0 });
+        let camera = Camera::new(&written, 64, 48).unwrap();
+        let pinhole = camera.ray([10.0, 40.0], [0.5; 2]);
+        for u in [[0.1, 0.9], [0.7, 0.2], [0.99, 0.01]] {
+            let ray = camera.ray([10.0, 40.0], u);
+            assert!((ray.direction.dot(camera.w()) - 2.5).abs() < 1e-12);
+            assert!(ray.a_from_eye.length() <= 0.3 + 1e-12 && ray.a_from_eye.dot(camera.w()).abs() < 1e-12);
+            let sharp = |ray: &CameraRay| ray.a_from_eye + ray.direction * (4.0 / 2.5);
+            assert!((sharp(&ray) - sharp(&pinhole)).length() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn orthographic_rays_are_parallel() {
+        let mut written = look([0.0, 0.0, 5.0], [0.0; 3], [0.0, 1.0, 0.0]);
+        written.projection = Projection::Orthographic { height: 4.0 };
+        let camera = Camera::new(&written, 200, 100).unwrap();
+        let corner = camera.ray([200.0, 100.0], [0.5; 2]);
+        assert!((corner.a_from_eye - DVec3::new(4.0, 2.0, 0.0)).length() < 1e-14);
+        assert!((corner.direction - DVec3::new(0.0, 0.0, -1.0)).length() < 1e-14);
+    }
+
+    #[test]
+    fn a_mirroring_matrix_makes_a_mirrored_picture() {
+        let plain = Camera::new(&look([0.0; 3], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]), 100, 100).unwrap();
+        let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        let mirrored =
+            Camera::new(&Written { view: View::Matrix(mirror), ..Written::default() }, 100, 100).unwrap();
+        assert_eq!(
+            plain.ray([20.0, 30.0], [0.5; 2]).direction,
+            mirrored.ray([80.0, 30.0], [0.5; 2]).direction
+        );
+    }
+
+    #[test]
+    fn every_degenerate_camera_is_a_clear_error() {
+        let good = || look([0.0, 0.0, 5.0], [0.0; 3], [0.0, 1.0, 0.0]);
+        let of = |written: &Written| Camera::new(written, 10, 10).unwrap_err().to_string();
+        assert!(of(&look([1.0; 3], [1.0; 3], [0.0, 1.0, 0.0])).contains("same point"));
+        assert!(of(&look([0.0; 3], [1.0; 3], [0.0; 3])).contains("up is zero"));
+        assert!(of(&look([0.0; 3], [0.0, 2.0, 0.0], [0.0, 1.0, 0.0])).contains("parallel"));
+        assert!(of(&look([0.0, f64::NAN, 0.0], [1.0; 3], [0.0, 1.0, 0.0])).contains("lookfrom"));
+        for fov in [0.0, -10.0, 180.0, 400.0, f64::NAN, f64::INFINITY] {
+            assert!(of(&Written { projection: Projection::Perspective { fov }, ..good() }).contains("fov"));
+        }
+        for distance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(of(&Written { distance, ..good() }).contains("distance"));
+        }
+        assert!(of(&Written { view: View::Matrix(DMat4::ZERO), ..good() }).contains("invertible"));
+        let lens = Some(Lens { radius: 0.1, focus_distance: 0.0 });
+        assert!(of(&Written { lens, ..good() }).contains("focus_distance"));
+        assert!(Camera::new(&good(), 0, 10).unwrap_err().to_string().contains("0 × 10"));
+        assert!(Camera::new(&good(), 10, 10).is_ok());
+    }
+
+    #[test]
+    fn pictures_of_everything_around_have_their_columns_in_order() {
+        let camera = |projection| {
+            let written = Written { projection, ..look([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]) };
+            Camera::new(&written, 400, 200).unwrap()
+        };
+        let sees = |projection, u: f64, direction: [f64; 3]| {
+            let ray = camera(projection).ray([400.0 * u, 100.0], [0.5; 2]);
+            assert!(
+                ray.direction.distance(direction.into()) < 1e-12,
+                "{projection:?} {u}: {}",
+                ray.direction
+            );
+        };
+        let (left, front, right) = ([-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]);
+        for (u, direction) in [(0.25, left), (0.5, front), (0.75, right), (0.0, [0.0, 0.0, 1.0])] {
+            sees(Projection::Equirectangular, u, direction);
+        }
+        // pbrt-v4's SphericalCamera: (sin θ cos φ, cos θ, sin θ sin φ) with φ = 2π u, x to the right and z forward.
+        for (u, direction) in [(0.0, right), (0.25, front), (0.5, left)] {
+            sees(Projection::EquirectangularPbrt, u, direction);
+        }
+    }
+}
