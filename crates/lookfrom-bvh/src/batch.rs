@@ -4,11 +4,11 @@ use std::marker::PhantomData;
 
 use crate::collector::{AnyHit, ClosestHit};
 use crate::dispatch::dispatch;
-use crate::group::RAYS;
 use crate::origin_primitive::OriginPrimitive;
 use crate::packet::trace_packet;
 use crate::query::{Needs, Settings};
 use crate::ray::{Hit, Ray};
+use crate::ray8::RAYS;
 use crate::stack::{Stack, with_stack};
 use crate::traverse::trace;
 use crate::visibility::{Everything, ExceptOrigin, Masked, Visibility};

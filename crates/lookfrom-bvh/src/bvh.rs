@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::aabb::Aabb;
-use crate::filter::TriangleBlock;
+use crate::conservative::TriangleBlock;
 use crate::instance::Instance;
 use crate::masks::Masks;
 use crate::node::Node;
@@ -50,7 +50,7 @@ pub struct Bvh {
     pub(crate) level: Level,
 }
 
-/// What is in a leaf that holds no triangles: items in the array of their kind.
+/// The content of a leaf without triangles: items in the array of their kind.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Leaf {
     Spheres { first: u32, count: u32 },
@@ -58,7 +58,7 @@ pub(crate) enum Leaf {
     Instances { first: u32, count: u32 },
 }
 
-/// A sphere and what it is called.
+/// A sphere and its ids.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SphereItem {
     pub(crate) shape: Sphere,
@@ -138,7 +138,7 @@ impl Bvh {
             + self.masks.memory()
     }
 
-    /// What the tree consists of, counted when it was built.
+    /// The content of the tree, counted when it was built.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -155,7 +155,7 @@ impl Bvh {
     /// Checks every property that tracing relies on, and counts again. Slow: for tests and for doubts.
     ///
     /// # Errors
-    /// What is wrong, and where: a fault of this library.
+    /// A fault of this library, and its place.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Ray, Sphere};

@@ -1,7 +1,7 @@
-//! Which point of the geometry is nearest to a given one?
+//! Closest-point queries: the point of the geometry that is nearest to a given one.
 //!
 //! Boxes are opened in the order of their distances, until the next is farther than the best point so far. As with rays,
-//! single precision only excludes: each primitive's distance is decided in f64, on its own, so the tree never shows in an
+//! single precision only excludes: each primitive's distance is calculated in f64, on its own, so the tree never shows in an
 //! answer. Primitives of instances are measured in the world, under any map: triangles by their mapped corners, spheres as
 //! the ellipsoids that they become (`ellipsoid`).
 
@@ -90,7 +90,7 @@ impl Bvh {
     }
 
     /// [`Self::closest_point`] for each point, on several threads where there are many. The two slices should be equally
-    /// long; what one has more than the other is left alone.
+    /// long; the surplus of the longer one is left alone.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Sphere};
@@ -127,7 +127,7 @@ impl Bvh {
     }
 
     /// [`Self::is_near`] for each point, on several threads where there are many. The two slices should be equally long;
-    /// what one has more than the other is left alone.
+    /// the surplus of the longer one is left alone.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Sphere};
@@ -147,16 +147,16 @@ impl Bvh {
         if !usable || self.nodes.is_empty() {
             return None;
         }
-        let (point, waiting) = (wide(point), BinaryHeap::new());
-        let mut search = Search { outer: self, point, max_distance, any, best: None, waiting };
-        search.waiting.push(Waiting { distance: 0.0, child: Child::ROOT, place: NONE });
+        let (point, queue) = (wide(point), BinaryHeap::new());
+        let mut search = Search { outer: self, point, max_distance, any, best: None, queue };
+        search.queue.push(QueueEntry { distance: 0.0, child: Child::ROOT, place: NONE });
         search.run();
         search.best
     }
 }
 
 /// A child that is yet to be opened.
-struct Waiting {
+struct QueueEntry {
     /// All in it is at least this far away.
     distance: f64,
     child: Child,
@@ -164,26 +164,26 @@ struct Waiting {
     place: u32,
 }
 
-impl Ord for Waiting {
+impl Ord for QueueEntry {
     /// The nearest is the greatest, which a heap gives first.
     fn cmp(&self, other: &Self) -> Ordering {
         other.distance.total_cmp(&self.distance)
     }
 }
 
-impl PartialOrd for Waiting {
+impl PartialOrd for QueueEntry {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Waiting {
+impl PartialEq for QueueEntry {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl Eq for Waiting {}
+impl Eq for QueueEntry {}
 
 struct Search<'a> {
     outer: &'a Bvh,
@@ -192,12 +192,12 @@ struct Search<'a> {
     /// Whether any point that is near enough will do.
     any: bool,
     best: Option<ClosestPoint>,
-    waiting: BinaryHeap<Waiting>,
+    queue: BinaryHeap<QueueEntry>,
 }
 
 impl Search<'_> {
     fn run(&mut self) {
-        while let Some(Waiting { distance, child, place }) = self.waiting.pop() {
+        while let Some(QueueEntry { distance, child, place }) = self.queue.pop() {
             if distance > self.end() || (self.any && self.best.is_some()) {
                 break;
             }
@@ -217,7 +217,7 @@ impl Search<'_> {
                         }
                         let distance = space.distance_to_box(&bounds);
                         if distance <= self.end() {
-                            self.waiting.push(Waiting { distance, child: node.child(slot), place });
+                            self.queue.push(QueueEntry { distance, child: node.child(slot), place });
                         }
                     }
                 }
@@ -238,8 +238,8 @@ impl Search<'_> {
                     Leaf::Instances { first, count } => {
                         let roots = (first..first + count)
                             .filter(|&place| !self.outer.instances[place as usize].bvh.nodes.is_empty())
-                            .map(|place| Waiting { distance, child: Child::ROOT, place });
-                        self.waiting.extend(roots);
+                            .map(|place| QueueEntry { distance, child: Child::ROOT, place });
+                        self.queue.extend(roots);
                     }
                 },
             }

@@ -4,12 +4,12 @@ use lookfrom_simd::{Kernel, Level};
 
 /// [`lookfrom_simd::dispatch`].
 #[inline(always)]
-pub(crate) fn dispatch<W: Kernel>(level: Level, work: W) -> W::Output {
+pub(crate) fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
     #[cfg(test)]
     if level.is_fallback() {
-        return work.run(fearless_simd::Fallback::new());
+        return kernel.run(fearless_simd::Fallback::new());
     }
-    lookfrom_simd::dispatch(level, work)
+    lookfrom_simd::dispatch(level, kernel)
 }
 
 /// Every level that this machine has.

@@ -1,4 +1,4 @@
-//! Which point of a mapped sphere's surface is nearest? An affine map makes an ellipsoid of a sphere.
+//! The nearest point of an ellipsoid, which an affine map makes of a sphere: Eberly (2013).
 //!
 //! Its axes come from Hestenes (1958), "Inversion of Matrices by Biorthogonalization and Related Results": columns are turned
 //! in pairs until they are orthogonal, which keeps short axes as exact as long ones. The point then solves an equation of one
@@ -81,7 +81,7 @@ fn nearest_in_octant(lengths: [f64; 3], y: [f64; 3]) -> [f64; 3] {
     };
     let (mut low, mut high) = (z[shortest], dot(z, z).sqrt());
     if z[shortest] == 0.0 && sum(0.0) <= 1.0 {
-        // In the middle plane, near the middle: what is missing goes along the shortest axis.
+        // In the middle plane, near the middle: the missing part goes along the shortest axis.
         let mut x = [0, 1, 2].map(|i| if z[i] > 0.0 { ratio[i] * y[i] / excess[i] } else { 0.0 });
         let missing = (0..3).filter(|&i| i != shortest).fold(1.0, |missing, i| {
             let share = x[i] / lengths[i];

@@ -1,19 +1,19 @@
-//! The ray as the decisions see it: in f64, in the world or in an object's space.
+//! The ray of the exact tests: in f64, in the world or in an object's space.
 
 use crate::affine::Affine;
 use crate::ray::Ray;
 use crate::vector::{subtract, wide};
 
-/// A ray for decisions. In an instance it is not rounded to f32.
+/// A ray for exact tests. In an instance it is not rounded to f32.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Exact<T = f32> {
+pub(crate) struct ExactRay<T = f32> {
     pub(crate) origin: [f64; 3],
     pub(crate) direction: [f64; 3],
     /// Hits need a t above this, when it is rounded to the same type.
     pub(crate) t_min: T,
 }
 
-/// What a decision is rounded to: f32, or f64 as it is.
+/// The type that results are rounded to: f32, or f64 as it is.
 pub(crate) trait Rounded: Copy + PartialOrd {
     fn rounded(x: f64) -> Self;
 }
@@ -32,14 +32,14 @@ impl Rounded for f64 {
     }
 }
 
-impl Exact {
+impl ExactRay {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
         Self { origin: wide(ray.origin), direction: wide(ray.direction), t_min: ray.t_min }
     }
 }
 
-impl<T: Rounded> Exact<T> {
+impl<T: Rounded> ExactRay<T> {
     /// The same ray in an object's space; t stays what it is.
     #[inline(always)]
     pub(crate) fn in_object(&self, world_from_object: &Affine, object_from_world: &Affine) -> Self {

@@ -1,4 +1,4 @@
-//! A tree that stands in another one, perhaps many times: two levels, no more.
+//! Instances: a tree inside of another one, perhaps many times. Two levels, no more.
 
 use std::sync::Arc;
 

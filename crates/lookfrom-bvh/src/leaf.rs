@@ -5,12 +5,12 @@ use std::ops::Range;
 use crate::Bvh;
 use crate::bvh::{Leaf, SphereItem};
 use crate::collector::Collector;
-use crate::exact::Exact;
+use crate::exact::ExactRay;
 use crate::instance::Instance;
 use crate::observer::Observer;
 use crate::ray::{Hit, NONE, Ray};
 use crate::sphere;
-use crate::stack::Waiting;
+use crate::stack::TraversalStack;
 use crate::traverse::{TraversalState, trace_any};
 use crate::visibility::Visibility;
 use lookfrom_simd::Simd;
@@ -21,21 +21,21 @@ pub(crate) fn other_leaf<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observ
     simd: S,
     bvh: &Bvh,
     leaf: &Leaf,
-    ray: &Exact,
+    ray: &ExactRay,
     state: &mut TraversalState<C, V, O>,
-    waiting: &mut Waiting<'_>,
+    stack: &mut TraversalStack<'_>,
 ) -> bool {
     let range = |first: u32, count: u32| first as usize..(first + count) as usize;
     match *leaf {
         Leaf::Spheres { first, count } => spheres(&bvh.spheres[range(first, count)], ray, state),
         Leaf::Procedurals { first, count } => procedurals(bvh, range(first, count), ray, state),
-        Leaf::Instances { first, count } => instances(simd, bvh, range(first, count), ray, state, waiting),
+        Leaf::Instances { first, count } => instances(simd, bvh, range(first, count), ray, state, stack),
     }
 }
 
 fn spheres<'a, C: Collector, V: Visibility<'a>, O: Observer>(
     spheres: &[SphereItem],
-    ray: &Exact,
+    ray: &ExactRay,
     state: &mut TraversalState<C, V, O>,
 ) -> bool {
     for item in spheres {
@@ -44,7 +44,7 @@ fn spheres<'a, C: Collector, V: Visibility<'a>, O: Observer>(
         if V::SELECTS && !state.visibility.shows(geometry, primitive) {
             continue;
         }
-        let Some([t1, t2]) = sphere::decide(ray, &item.shape) else { continue };
+        let Some([t1, t2]) = sphere::intersect_exact(ray, &item.shape) else { continue };
         let roots = if t1 < t2 { &[t1, t2][..] } else { &[t1][..] };
         for (root, &t) in roots.iter().enumerate() {
             if t > ray.t_min
@@ -61,7 +61,7 @@ fn spheres<'a, C: Collector, V: Visibility<'a>, O: Observer>(
 fn procedurals<'a, C: Collector, V: Visibility<'a>, O: Observer>(
     bvh: &Bvh,
     range: Range<usize>,
-    ray: &Exact,
+    ray: &ExactRay,
     state: &mut TraversalState<C, V, O>,
 ) -> bool {
     for item in &bvh.procedurals[range] {
@@ -98,9 +98,9 @@ fn instances<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     simd: S,
     bvh: &Bvh,
     mut range: Range<usize>,
-    exact: &Exact,
+    exact: &ExactRay,
     state: &mut TraversalState<C, V, O>,
-    waiting: &mut Waiting<'_>,
+    stack: &mut TraversalStack<'_>,
 ) -> bool {
     range.any(|place| {
         if V::SELECTS && !state.visibility.enter_instance(place) {
@@ -108,10 +108,15 @@ fn instances<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
         }
         let Instance { bvh, id, world_from_object, object_from_world } = &bvh.instances[place];
         let inside = exact.in_object(world_from_object, object_from_world);
-        let Waiting { stack, height, .. } = waiting;
+        let TraversalStack { entries, height, .. } = stack;
         state.instance = *id;
-        let stop =
-            trace_any(simd, bvh, &inside, state, &mut Waiting { stack, bottom: *height, height: *height });
+        let stop = trace_any(
+            simd,
+            bvh,
+            &inside,
+            state,
+            &mut TraversalStack { entries, bottom: *height, height: *height },
+        );
         state.instance = NONE;
         if V::SELECTS {
             state.visibility.leave_instance();

@@ -1,8 +1,8 @@
-//! Which rays see which geometry: the masks of a tree.
+//! The masks of a tree's geometries, primitives and instances.
 //!
 //! Kept aside from the primitives, since most trees have none. `visibility` applies them.
 
-/// Masks by id. What has none is seen by every ray.
+/// Masks by id. Every ray sees a primitive without a mask.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Masks {
     /// By geometry; those beyond the end have all bits.

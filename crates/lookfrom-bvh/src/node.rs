@@ -1,11 +1,11 @@
-//! One node: eight boxes and what is in each, and the test of a ray against the eight at once.
+//! The node of the tree: eight boxes and their children, and the test of a ray against the eight boxes at once.
 //!
 //! Layout, 256 bytes, four cache lines:
 //!
 //! | bytes | content |
 //! | --- | --- |
 //! | 0..192 | `bounds[axis][side][child]`, f32: side 0 the minimum, side 1 the maximum; an empty child has +∞, −∞ |
-//! | 192..224 | `child[child]`, u32: what is there, a [`Child`] |
+//! | 192..224 | `child[child]`, u32: a [`Child`] |
 //! | 224..256 | nothing: a shift finds a node sooner than a product |
 //!
 //! A [`Child`] has its kind in bits 30 and 31 and a number in the others: 0 a node, 2 a block of triangles, 3 another leaf.
@@ -16,7 +16,7 @@
 //! the best one so far is still found and ties do not depend on the tree. Distances are along the scaled direction.
 
 use crate::aabb::Aabb;
-use crate::prepared::Prepared;
+use crate::prepared::PreparedRay;
 use lookfrom_simd::{Simd, f32x8, i32x8, prelude::*};
 
 /// How many children a node has at most.
@@ -25,7 +25,7 @@ pub(crate) const WIDTH: usize = 8;
 /// No tree is deeper.
 pub(crate) const LARGEST_DEPTH: usize = 160;
 
-/// What a child is: a kind and a number, packed.
+/// A child: its kind and its number, packed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Child(pub(crate) u32);
 
@@ -75,7 +75,7 @@ pub(crate) struct Node {
     child: [Child; WIDTH],
 }
 
-/// Which children a ray enters, and where.
+/// The children that a ray enters, and the distances.
 pub(crate) struct Entered<S: Simd> {
     /// Bit i stands for child i.
     pub(crate) children: u32,
@@ -83,7 +83,7 @@ pub(crate) struct Entered<S: Simd> {
     pub(crate) near: f32x8<S>,
 }
 
-/// What the box test needs of a ray, in every lane.
+/// A ray for the box test, in every lane.
 pub(crate) struct Slabs<S: Simd> {
     near_side: [usize; 3],
     near_reciprocal: [f32x8<S>; 3],
@@ -95,7 +95,7 @@ pub(crate) struct Slabs<S: Simd> {
 
 impl<S: Simd> Slabs<S> {
     #[inline(always)]
-    pub(crate) fn new(simd: S, ray: &Prepared) -> Self {
+    pub(crate) fn new(simd: S, ray: &PreparedRay) -> Self {
         Self {
             near_side: ray.near_side,
             near_reciprocal: splat_all(simd, ray.near_reciprocal),
@@ -173,7 +173,7 @@ impl Node {
 mod tests {
     use super::*;
     use crate::dispatch::{dispatch, levels};
-    use crate::exact::Exact;
+    use crate::exact::ExactRay;
     use crate::ray::Ray;
     use lookfrom_simd::Kernel;
 
@@ -183,7 +183,7 @@ mod tests {
         type Output = u32;
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> u32 {
-            let ray = Prepared::new(simd, &Exact::new(self.1), 10.0).unwrap();
+            let ray = PreparedRay::new(simd, &ExactRay::new(self.1), 10.0).unwrap();
             self.0.enter(simd, &Slabs::new(simd, &ray), ray.end(self.1.t_max)).children
         }
     }

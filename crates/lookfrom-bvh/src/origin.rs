@@ -1,8 +1,8 @@
-//! Where does a ray start that leaves a surface, so that it does not meet the surface it left?
+//! Origins of rays that leave a surface without meeting it again: Wächter, Binder (2019), with bounds of errors.
 //!
 //! Not an epsilon away, but just beyond the error of the point it starts from: after Wächter & Binder (2019), "A Fast and
 //! Robust Method for Avoiding Self-Intersection", and the bounds of Pharr, Jakob, Humphreys, Physically Based Rendering.
-//! Points are calculated in f64 here, so their errors are far below the spacing of f32, and what remains is to round
+//! Points are calculated in f64 here, so their errors are far below the spacing of f32. It remains to round
 //! each coordinate to f32 *away* from the surface: a step of about one unit in the last place.
 //!
 //! Why that is enough: a triangle, a sphere seen from outside, and any affine image of them lie on one side of the
@@ -119,7 +119,7 @@ impl Point {
         let position = [0, 1, 2].map(|i| relative[i] + world_from_object.translation[i]);
         let size = self.position.map(f64::abs);
 
-        // What the way back amplifies: |M| |M⁻¹| |position − translation|, and M M⁻¹ − 1.
+        // The amplification on the way back: |M| |M⁻¹| |position − translation|, and M M⁻¹ − 1.
         let inverse = inverse_matrix(matrix).unwrap_or([[0.0; 3]; 3]);
         let way = relative.map(|x| x.abs() * (1.0 + 1e-6));
         let error = [0, 1, 2].map(|i| {

@@ -1,14 +1,14 @@
-//! A ray made ready for the box test and the triangle filter: its shadow in f32, once in the world and once more in each
-//! instance that it enters.
+//! A ray prepared for the box test and the conservative triangle test: in f32, moved and scaled, once in the world and once
+//! more in each instance that it enters.
 //!
-//! These tests only *exclude*, with room for their errors; what is hit is decided with the ray in f64 (see `exact`). Where the
-//! shadow's origin is rounded, the difference is part of the room: the products' and `rounding`.
+//! These tests only *exclude*, with room for their errors; exact tests use the ray in f64 (see `exact`). Where the origin of the
+//! scaled ray is rounded, the difference is part of the room: of the products' and of `rounding`.
 //!
-//! A shadow never starts behind its origin: for a ray with a negative `t_min` it is moved back along the ray. So its distances are
-//! positive, and their bits are in their order.
+//! A scaled ray never starts behind its origin: for a ray with a negative `t_min` the origin is moved back along the ray. So
+//! its distances are positive, and their bits are in their order.
 
-use crate::exact::Exact;
-use crate::filter::{self, LARGEST_FILTERED, SURE_AFTER};
+use crate::conservative::{self, LARGEST_FILTERED, SURE_AFTER};
+use crate::exact::ExactRay;
 use crate::ray::Ray;
 use lookfrom_simd::{Simd, f32x4, prelude::*};
 
@@ -35,15 +35,15 @@ pub(crate) const FAR: f32 = 16_777_216.0;
 /// How large a reciprocal may be for usual origins.
 pub(crate) const LARGEST_RECIPROCAL: f32 = LARGEST_PRODUCT / FAR;
 
-/// The triangle filter's absolute error for usual directions.
-pub(crate) const USUAL_UNDERFLOW: f32 = filter::UNDERFLOW / SHORT;
+/// The conservative triangle test's absolute error for usual directions.
+pub(crate) const USUAL_UNDERFLOW: f32 = conservative::UNDERFLOW / SHORT;
 
 /// Room for rounding in f64 where a start is moved, relative: 2⁻⁴⁸.
 const MOVED_ROOM: f64 = 3.552_713_678_800_501e-15;
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Prepared {
-    pub(crate) shadow: Shadow,
+pub(crate) struct PreparedRay {
+    pub(crate) scaled: ScaledRay,
     /// The first distance, with room.
     pub(crate) t_min: f32,
     /// Box test: 1 / direction, and the same with room for farther faces.
@@ -56,30 +56,30 @@ pub(crate) struct Prepared {
     pub(crate) near_side: [usize; 3],
 }
 
-/// The shadow. Distances along it count from its origin and in lengths of its direction.
+/// The ray in f32. Distances along it count from its origin and in lengths of its direction.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shadow {
+pub(crate) struct ScaledRay {
     pub(crate) origin: [f32; 3],
     /// The ray's, times a power of two where that is very short or long.
     pub(crate) direction: [f32; 3],
     /// The ray's t at the origin: 0, or less.
     start: f32,
-    /// What takes t to distances: the power of two's inverse.
+    /// The factor from t to distances: the power of two's inverse.
     pub(crate) scale: f32,
     /// How large reciprocals may be.
     largest_reciprocal: [f32; 3],
     /// The error of the origin, beyond its rounding to f32.
     moved: f32,
-    /// What the origin's rounding to f32 is relative to; 0 where it is not rounded.
+    /// The magnitude that the origin's rounding to f32 is relative to; 0 where it is not rounded.
     pub(crate) rounding: f32,
-    /// The triangle filter's errors, relative and absolute.
+    /// The conservative triangle test's errors, relative and absolute.
     pub(crate) error: f32,
     pub(crate) underflow: f32,
-    /// The distance before which the filter may be sure of a hit.
+    /// The distance before which the conservative test may be sure of a hit.
     pub(crate) sure_before: f32,
 }
 
-impl Prepared {
+impl PreparedRay {
     /// A usual ray in the world, in which no coordinate is beyond `largest`. None for one that does not start before its origin,
     /// or that has numbers so large or so small that they need care.
     #[inline(always)]
@@ -87,35 +87,35 @@ impl Prepared {
         let &Ray { origin, t_min, direction, .. } = ray;
         is_usual(simd, origin, direction, t_min, largest).then(
             #[inline(always)]
-            || Self::cast(simd, &Shadow::usual(origin, direction, 0.0), direction, t_min),
+            || Self::cast(simd, &ScaledRay::usual(origin, direction, 0.0), direction, t_min),
         )
     }
 
     /// Any ray, in any space in which no coordinate is beyond `largest`. None where it cannot hit anything.
     #[inline(always)]
-    pub(crate) fn new<S: Simd>(simd: S, exact: &Exact, largest: f32) -> Option<Self> {
+    pub(crate) fn new<S: Simd>(simd: S, exact: &ExactRay, largest: f32) -> Option<Self> {
         let origin = exact.origin.map(|x| x as f32);
         let direction = exact.direction.map(|x| x as f32);
-        let shadow = if is_usual(simd, origin, direction, exact.t_min, largest) {
-            Shadow::usual(origin, direction, greatest(origin))
+        let scaled = if is_usual(simd, origin, direction, exact.t_min, largest) {
+            ScaledRay::usual(origin, direction, greatest(origin))
         } else {
-            Shadow::unusual(exact, largest)?
+            ScaledRay::unusual(exact, largest)?
         };
-        Some(Self::cast(simd, &shadow, direction, exact.t_min))
+        Some(Self::cast(simd, &scaled, direction, exact.t_min))
     }
 
     #[inline(always)]
-    fn cast<S: Simd>(simd: S, shadow: &Shadow, direction: [f32; 3], t_min: f32) -> Self {
+    fn cast<S: Simd>(simd: S, scaled: &ScaledRay, direction: [f32; 3], t_min: f32) -> Self {
         // The slabs' constants, three axes at once.
         let lanes = |[x, y, z]: [f32; 3]| f32x4::load_array(simd, [x, y, z, 0.0]);
-        let (o, d) = (lanes(shadow.origin), lanes(shadow.direction));
+        let (o, d) = (lanes(scaled.origin), lanes(scaled.direction));
         let [near_reciprocal, far_reciprocal, near_product, far_product] =
-            slabs(simd, o, d, lanes(shadow.largest_reciprocal), shadow.moved);
+            slabs(simd, o, d, lanes(scaled.largest_reciprocal), scaled.moved);
 
-        let &Shadow { start, scale, .. } = shadow;
+        let &ScaledRay { start, scale, .. } = scaled;
         let first = (t_min - start) - ((t_min.abs() - start) * ROOM + TINY);
         Self {
-            shadow: *shadow,
+            scaled: *scaled,
             t_min: greater(first * scale, 0.0),
             near_reciprocal: first_three(near_reciprocal),
             far_reciprocal: first_three(far_reciprocal),
@@ -128,7 +128,7 @@ impl Prepared {
     /// A ray's end as a distance, with room. 0 or more.
     #[inline(always)]
     pub(crate) fn end(&self, t_max: f32) -> f32 {
-        let Shadow { start, scale, .. } = self.shadow;
+        let ScaledRay { start, scale, .. } = self.scaled;
         greater(((t_max - start) + ((t_max.abs() - start) * ROOM + TINY)) * scale, 0.0)
     }
 }
@@ -161,7 +161,7 @@ fn is_usual<S: Simd>(simd: S, origin: [f32; 3], direction: [f32; 3], t_min: f32,
     in_range.all_true() & (greatest(direction) > SHORT) & (largest < LARGEST_FILTERED) & (t_min >= 0.0)
 }
 
-impl Shadow {
+impl ScaledRay {
     /// `rounding` is 0 where origin and direction are exact.
     #[inline(always)]
     fn usual(origin: [f32; 3], direction: [f32; 3], rounding: f32) -> Self {
@@ -173,17 +173,17 @@ impl Shadow {
             largest_reciprocal: [LARGEST_RECIPROCAL; 3],
             moved: 0.0,
             rounding,
-            error: filter::ERROR * greatest(direction),
+            error: conservative::ERROR * greatest(direction),
             underflow: USUAL_UNDERFLOW,
             sure_before: 1.0 / SURE_AFTER,
         }
     }
 
-    /// The shadow of a ray that starts behind its origin or has numbers out of the usual range. None where one of them is not
+    /// The scaled of a ray that starts behind its origin or has numbers out of the usual range. None where one of them is not
     /// finite, or the direction vanishes.
     #[cold]
     #[inline(never)]
-    fn unusual(exact: &Exact, largest: f32) -> Option<Self> {
+    fn unusual(exact: &ExactRay, largest: f32) -> Option<Self> {
         let widest = |x: [f64; 3]| x.iter().fold(0.0_f64, |widest, x| widest.max(x.abs()));
         let (o, d) = (exact.origin, exact.direction);
         let direction = d.map(|x| x as f32);
@@ -218,8 +218,8 @@ impl Shadow {
             largest_reciprocal: origin.map(|x| LARGEST_PRODUCT / x.abs().max(1.0)),
             moved,
             rounding: farthest + moved,
-            error: if in_range { filter::ERROR * (length * shorten) } else { f32::INFINITY },
-            underflow: filter::UNDERFLOW * 4.0,
+            error: if in_range { conservative::ERROR * (length * shorten) } else { f32::INFINITY },
+            underflow: conservative::UNDERFLOW * 4.0,
             sure_before: if may_be_sure { 1.0 / SURE_AFTER } else { -1.0 },
         })
     }

@@ -3,10 +3,8 @@
 use crate::Bvh;
 use crate::observer::Observer;
 use crate::origin_primitive::OriginPrimitive;
-use crate::ray::{Hit, Ray};
-use crate::ray_f64::{HitF64, RayF64};
+use crate::trace_ray::TraceRay;
 use crate::visibility::Faces;
-use crate::{batch, single, traverse_f64};
 
 /// What rays see of a tree.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +56,7 @@ impl<'a> Settings<'a> {
 /// A question to a [`Bvh`] in the making; made by [`Bvh::query`].
 ///
 /// A query begins with everything. Methods that are named like a thing narrow it and give it back; methods that are named
-/// like a question trace rays, either [`Ray`]s or [`RayF64`]s. A query is small and `Copy` (but for one with an observer), so it
+/// like a question trace rays, either [`Ray`](crate::Ray)s or [`RayF64`](crate::RayF64)s. A query is small and `Copy` (but for one with an observer), so it
 /// can be made once and asked often.
 ///
 /// ```
@@ -205,8 +203,8 @@ impl<O: Observer> Query<'_, O> {
     /// The hit with the least t in the ray's range, or a miss. Of several hits at equal t it is the one with the lowest ids:
     /// geometry outside of instances comes first, then by instance, geometry and primitive.
     ///
-    /// For a [`RayF64`] `t` is right to about 10⁻¹⁵ of sizes and distances, `u` and `v` to about 10⁻¹⁰ (less where a triangle
-    /// is seen nearly edge on); procedural shapes are asked in f32. It takes some times longer than a [`Ray`].
+    /// For a [`RayF64`](crate::RayF64) `t` is right to about 10⁻¹⁵ of sizes and distances, `u` and `v` to about 10⁻¹⁰ (less where a triangle
+    /// is seen nearly edge on); procedural shapes are asked in f32. It takes some times longer than a [`Ray`](crate::Ray).
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, RayF64, Triangles};
@@ -257,7 +255,7 @@ impl<O: Observer> Query<'_, O> {
         R::all_hits(&self.settings, ray, hits, &mut self.observer);
     }
 
-    /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent [`Ray`]s are traced in packets. The
+    /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent [`Ray`](crate::Ray)s are traced in packets. The
     /// two slices should be equally long; the surplus of the longer one is left alone.
     ///
     /// ```
@@ -302,106 +300,5 @@ impl<O: Observer> Query<'_, O> {
         } else {
             R::occluded_many(&self.settings, rays, occluded);
         }
-    }
-}
-
-/// A type of ray that queries trace: [`Ray`] or [`RayF64`]. There are no others.
-///
-/// ```
-/// use lookfrom_bvh::{Bvh, TraceRay};
-/// /// How many hits a ray has, in either precision.
-/// fn count<R: TraceRay>(bvh: &Bvh, ray: &R) -> usize {
-///     let mut hits = Vec::new();
-///     bvh.query().all_hits(ray, &mut hits);
-///     hits.len()
-/// }
-/// # assert_eq!(count(&Bvh::default(), &lookfrom_bvh::Ray::new([0.0; 3], [1.0; 3])), 0);
-/// ```
-pub trait TraceRay: sealed::Trace {}
-
-impl TraceRay for Ray {}
-
-impl TraceRay for RayF64 {}
-
-mod sealed {
-    use super::Settings;
-    use crate::observer::Observer;
-
-    /// The questions about a type of ray.
-    pub trait Trace: Copy + Sync + Sized {
-        /// A hit in the same precision.
-        type Hit: Copy + Send;
-
-        fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> Self::Hit;
-        fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool;
-        /// Adds the hits to `hits`, which is empty.
-        fn all_hits<O: Observer>(
-            settings: &Settings<'_>,
-            ray: &Self,
-            hits: &mut Vec<Self::Hit>,
-            observer: &mut O,
-        );
-        fn closest_hits(settings: &Settings<'_>, rays: &[Self], hits: &mut [Self::Hit]);
-        fn occluded_many(settings: &Settings<'_>, rays: &[Self], occluded: &mut [bool]);
-    }
-}
-
-impl sealed::Trace for Ray {
-    type Hit = Hit;
-
-    fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> Hit {
-        if O::LISTENS {
-            single::observed_closest_hit(settings, ray, observer)
-        } else {
-            single::closest_hit(settings, ray)
-        }
-    }
-
-    fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool {
-        if O::LISTENS {
-            single::observed_occluded(settings, ray, observer)
-        } else {
-            single::occluded(settings, ray)
-        }
-    }
-
-    fn all_hits<O: Observer>(settings: &Settings<'_>, ray: &Self, hits: &mut Vec<Hit>, observer: &mut O) {
-        if O::LISTENS {
-            single::observed_all_hits(settings, ray, hits, observer);
-        } else {
-            single::all_hits(settings, ray, hits);
-        }
-    }
-
-    fn closest_hits(settings: &Settings<'_>, rays: &[Self], hits: &mut [Hit]) {
-        batch::closest_hits(settings, rays, hits);
-    }
-
-    fn occluded_many(settings: &Settings<'_>, rays: &[Self], occluded: &mut [bool]) {
-        batch::occluded_many(settings, rays, occluded);
-    }
-}
-
-impl sealed::Trace for RayF64 {
-    type Hit = HitF64;
-
-    fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> HitF64 {
-        traverse_f64::closest_hit(settings, ray, observer)
-    }
-
-    fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool {
-        traverse_f64::occluded(settings, ray, observer)
-    }
-
-    fn all_hits<O: Observer>(settings: &Settings<'_>, ray: &Self, hits: &mut Vec<HitF64>, observer: &mut O) {
-        traverse_f64::all_hits(settings, ray, hits, observer);
-    }
-
-    fn closest_hits(settings: &Settings<'_>, rays: &[Self], hits: &mut [HitF64]) {
-        traverse_f64::closest_hits(settings, rays, hits);
-    }
-
-    fn occluded_many(settings: &Settings<'_>, rays: &[Self], occluded: &mut [bool]) {
-        traverse_f64::occluded_many(settings, rays, occluded);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! `prepared` makes a ray ready for the tests.
 
-/// "None" where an id is expected: the id of what was not hit.
+/// "None" where an id is expected: the ids of a miss.
 ///
 /// ```
 /// use lookfrom_bvh::{Hit, NONE};
@@ -77,13 +77,13 @@ impl Ray {
 pub struct Hit {
     /// The ray's parameter: the hit is at `origin + t · direction`. Infinite for a miss.
     pub t: f32,
-    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural: what it says.
+    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural: its own.
     pub u: f32,
-    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural: what it says.
+    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural: its own.
     pub v: f32,
     /// Number of the primitive in its geometry.
     pub primitive: u32,
-    /// Number of the geometry in its tree, in the order in which the builder was told.
+    /// Number of the geometry in its tree, in the order of the builder's calls.
     pub geometry: u32,
     /// Number of the instance, [`NONE`] where the geometry is not in an instance.
     pub instance: u32,

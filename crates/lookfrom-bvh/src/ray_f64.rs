@@ -66,13 +66,13 @@ impl From<Ray> for RayF64 {
 pub struct HitF64 {
     /// The ray's parameter: the hit is at `origin + t · direction`. Infinite for a miss.
     pub t: f64,
-    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural: what it says, in f32.
+    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural: its own, in f32.
     pub u: f64,
-    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural: what it says, in f32.
+    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural: its own, in f32.
     pub v: f64,
     /// Number of the primitive in its geometry.
     pub primitive: u32,
-    /// Number of the geometry in its tree, in the order in which the builder was told.
+    /// Number of the geometry in its tree, in the order of the builder's calls.
     pub geometry: u32,
     /// Number of the instance, [`NONE`] where the geometry is not in an instance.
     pub instance: u32,

@@ -1,4 +1,4 @@
-//! The same questions, answered in the simplest way: for tests, and for people who want to see the numbers.
+//! The reference: the same questions in the simplest formulas, for tests and for people who want to see the numbers.
 //!
 //! Generic over f32 and f64, close to the lecture notes in letters and formulas, without a tree and without any of
 //! the kernel's precautions: in f32 its answers may be wrong where the kernel's are right.

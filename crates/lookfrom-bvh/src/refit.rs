@@ -1,6 +1,6 @@
-//! How does a tree follow geometry that moves?
+//! Refitting: a tree follows geometry that moves.
 //!
-//! Its shape stays and its boxes are fitted again, from the leaves up: Wald, Boulos, Shirley (2007), "Ray Tracing Deformable
+//! Its topology stays and its boxes are fitted again, from the leaves up: Wald, Boulos, Shirley (2007), "Ray Tracing Deformable
 //! Scenes Using Dynamic Bounding Volume Hierarchies". Answers are exact after any motion; tracing takes longer the more
 //! neighbours have parted, which [`Statistics::cost`](crate::Statistics::cost) shows, and then a new tree pays.
 
@@ -10,7 +10,7 @@ use crate::Bvh;
 use crate::aabb::Aabb;
 use crate::build::{Triangles, has_area, has_surface};
 use crate::bvh::Leaf;
-use crate::filter::TriangleBlock;
+use crate::conservative::TriangleBlock;
 use crate::instance::Instance;
 use crate::node::{Content, WIDTH};
 use crate::sphere::Sphere;
@@ -88,7 +88,7 @@ impl fmt::Display for RefitError {
 impl std::error::Error for RefitError {}
 
 impl Bvh {
-    /// Moves geometries of this tree and fits its boxes to them. What is not named stays where it is. Of several motions of
+    /// Moves geometries of this tree and fits its boxes to them. Other geometries stay where they are. Of several motions of
     /// one geometry the last counts.
     ///
     /// The answers are those of a new tree. Takes time in proportion to the whole tree, a small part of what building takes.
@@ -136,7 +136,7 @@ impl Bvh {
         let spheres = self.spheres.iter().map(|item| (item.geometry, item.primitive));
         let procedurals = self.procedurals.iter().map(|item| (item.geometry, item.primitive));
 
-        // Strike out what is in the tree; what is of another kind is in it and cannot be.
+        // Strike out the primitives of the tree; those of another kind are in it and cannot be.
         let is_triangles = matches!(moved, Moved::Triangles(_));
         let held = triangles
             .map(|ids| (ids, is_triangles))

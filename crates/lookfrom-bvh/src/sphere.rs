@@ -1,10 +1,10 @@
-//! Does a ray meet a sphere, and where?
+//! The intersection of a ray with a sphere: Haines et al. (2019).
 //!
-//! Wholly in f64: Haines et al. (2019), "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7. With
+//! Wholly in f64: "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7. With
 //! the vector `f` from centre to origin and half the usual linear coefficient, `A t² + 2 B t + C = 0`.
 
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
-use crate::exact::{Exact, Rounded};
+use crate::exact::{ExactRay, Rounded};
 use crate::vector::{dot, subtract, wide};
 
 /// A sphere's surface: rays hit it from both sides.
@@ -45,8 +45,8 @@ impl Sphere {
     }
 }
 
-/// Where the whole line meets the sphere, the smaller t first. None where it passes by.
-pub(crate) fn decide<T: Rounded>(ray: &Exact<T>, sphere: &Sphere) -> Option<[T; 2]> {
+/// Both hits of the whole line with the sphere, the smaller t first. None where it passes by.
+pub(crate) fn intersect_exact<T: Rounded>(ray: &ExactRay<T>, sphere: &Sphere) -> Option<[T; 2]> {
     let f = subtract(ray.origin, wide(sphere.center));
     let d = ray.direction;
     let radius = f64::from(sphere.radius);
@@ -78,7 +78,7 @@ mod tests {
     use crate::ray::Ray;
 
     fn roots(sphere: Sphere, origin: [f32; 3], direction: [f32; 3]) -> Option<[f32; 2]> {
-        decide(&Exact::new(&Ray::new(origin, direction)), &sphere)
+        intersect_exact(&ExactRay::new(&Ray::new(origin, direction)), &sphere)
     }
 
     #[test]

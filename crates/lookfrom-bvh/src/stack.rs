@@ -1,4 +1,4 @@
-//! The children of nodes that wait for their visit, nearest on top.
+//! The traversal stack: children of nodes that are yet to be visited, nearest on top.
 
 use std::cell::Cell;
 
@@ -6,12 +6,12 @@ use crate::collector::Collector;
 use crate::node::{Child, Entered, LARGEST_DEPTH, Node, WIDTH};
 use lookfrom_simd::Simd;
 
-/// A child that waits for its visit: where the ray enters it (f32 bits) above what it is. Positive distances are ordered
-/// as these numbers are; the others only cost time.
+/// A child that is yet to be visited: the distance at which the ray enters it (f32 bits) above the child. Positive distances
+/// are ordered as these numbers are; the others only cost time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Pending(u64);
+pub(crate) struct StackEntry(u64);
 
-impl Pending {
+impl StackEntry {
     const NONE: Self = Self(0);
 
     #[inline(always)]
@@ -30,11 +30,11 @@ impl Pending {
     }
 }
 
-/// How many children may wait: all but one on each level of a tree, and of an instance's. A power of two.
+/// The most entries: all children but one on each level of a tree, and of an instance's. A power of two.
 const STACK: usize = (2 * LARGEST_DEPTH * (WIDTH - 1)).next_power_of_two();
 
-/// Children that wait. Long enough for any tree, so that nothing is allocated on the way.
-pub(crate) type Stack = [Pending; STACK];
+/// Storage for the entries of any tree, so that nothing is allocated on the way.
+pub(crate) type Stack = [StackEntry; STACK];
 
 thread_local! {
     /// The last traversal's stack, kept so that a ray costs no allocation. Taken while in use, so a procedural that
@@ -53,33 +53,33 @@ pub(crate) fn with_stack<R>(work: impl FnOnce(&mut Stack) -> R) -> R {
 
 #[cold]
 fn new_stack() -> Box<Stack> {
-    Box::new([Pending::NONE; STACK])
+    Box::new([StackEntry::NONE; STACK])
 }
 
-/// The children that wait in one tree, above those of the tree around it.
-pub(crate) struct Waiting<'a> {
-    pub(crate) stack: &'a mut Stack,
+/// The entries of one tree, above those of the tree around it.
+pub(crate) struct TraversalStack<'a> {
+    pub(crate) entries: &'a mut Stack,
     pub(crate) bottom: usize,
     pub(crate) height: usize,
 }
 
-impl Waiting<'_> {
+impl TraversalStack<'_> {
     /// The next child that is not beyond the end.
     #[inline(always)]
     pub(crate) fn pop(&mut self, end: f32) -> Option<Child> {
         while self.height > self.bottom {
             self.height -= 1;
-            let pending = self.stack[self.height % STACK];
-            if pending.near() <= end {
-                return Some(pending.child());
+            let entry = self.entries[self.height % STACK];
+            if entry.near() <= end {
+                return Some(entry.child());
             }
         }
         None
     }
 
     #[inline(always)]
-    fn push(&mut self, pending: Pending) {
-        self.stack[self.height % STACK] = pending;
+    fn push(&mut self, entry: StackEntry) {
+        self.entries[self.height % STACK] = entry;
         self.height += 1;
     }
 
@@ -102,19 +102,19 @@ impl Waiting<'_> {
         let bottom = self.height;
         self.push(farther);
         while children != 0 {
-            let mut waits = next(node, entered, &mut children);
+            let mut entry = next(node, entered, &mut children);
             if C::NEAREST_FIRST {
-                (nearest, waits) = (nearest.min(waits), nearest.max(waits));
-                // Insert: what is farther stays below.
+                (nearest, entry) = (nearest.min(entry), nearest.max(entry));
+                // Insert: farther entries stay below.
                 let mut place = self.height;
-                while place > bottom && self.stack[(place - 1) % STACK] < waits {
-                    self.stack[place % STACK] = self.stack[(place - 1) % STACK];
+                while place > bottom && self.entries[(place - 1) % STACK] < entry {
+                    self.entries[place % STACK] = self.entries[(place - 1) % STACK];
                     place -= 1;
                 }
-                self.stack[place % STACK] = waits;
+                self.entries[place % STACK] = entry;
                 self.height += 1;
             } else {
-                self.push(waits);
+                self.push(entry);
             }
         }
         nearest.child()
@@ -123,8 +123,8 @@ impl Waiting<'_> {
 
 /// Takes the first of some children.
 #[inline(always)]
-fn next<S: Simd>(node: &Node, entered: &Entered<S>, children: &mut u32) -> Pending {
+fn next<S: Simd>(node: &Node, entered: &Entered<S>, children: &mut u32) -> StackEntry {
     let slot = children.trailing_zeros() as usize % WIDTH;
     *children &= children.wrapping_sub(1);
-    Pending::new(entered.near[slot], node.child(slot))
+    StackEntry::new(entered.near[slot], node.child(slot))
 }

@@ -7,14 +7,14 @@
 
 use crate::Bvh;
 use crate::collector::Collector;
-use crate::exact::Exact;
-use crate::filter::{Sieve, TriangleBlock};
+use crate::conservative::{RayLanes, TriangleBlock};
+use crate::exact::ExactRay;
 use crate::leaf::other_leaf;
 use crate::node::{Child, Content, Slabs};
 use crate::observer::Observer;
-use crate::prepared::Prepared;
+use crate::prepared::PreparedRay;
 use crate::ray::{Hit, NONE, Ray};
-use crate::stack::{Stack, Waiting};
+use crate::stack::{Stack, TraversalStack};
 use crate::triangle;
 use crate::triangle::Crossing;
 use crate::visibility::{Visibility, shown};
@@ -44,13 +44,13 @@ pub(crate) fn trace<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     if bvh.nodes.is_empty() || !(ray.t_min < ray.t_max) {
         return state.collector;
     }
-    let waiting = &mut Waiting { stack, bottom: 0, height: 0 };
-    if let Some(shadow) = Prepared::usual(simd, ray, bvh.largest) {
+    let stack = &mut TraversalStack { entries: stack, bottom: 0, height: 0 };
+    if let Some(prepared) = PreparedRay::usual(simd, ray, bvh.largest) {
         // Made anew where it is needed: few rays need it, and the black box keeps it from being made for all.
-        let exact = || Exact::new(std::hint::black_box(ray));
-        traverse(simd, bvh, &shadow, exact, &mut state, waiting);
+        let exact = || ExactRay::new(std::hint::black_box(ray));
+        traverse(simd, bvh, &prepared, exact, &mut state, stack);
     } else {
-        trace_any(simd, bvh, &Exact::new(ray), &mut state, waiting);
+        trace_any(simd, bvh, &ExactRay::new(ray), &mut state, stack);
     }
     state.collector
 }
@@ -63,15 +63,15 @@ pub(crate) fn trace<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
 pub(crate) fn trace_any<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     simd: S,
     bvh: &Bvh,
-    exact: &Exact,
+    exact: &ExactRay,
     state: &mut TraversalState<C, V, O>,
-    waiting: &mut Waiting<'_>,
+    stack: &mut TraversalStack<'_>,
 ) -> bool {
     simd.vectorize(
         #[inline(always)]
         || {
-            Prepared::new(simd, exact, bvh.largest)
-                .is_some_and(|shadow| traverse(simd, bvh, &shadow, || *exact, state, waiting))
+            PreparedRay::new(simd, exact, bvh.largest)
+                .is_some_and(|prepared| traverse(simd, bvh, &prepared, || *exact, state, stack))
         },
     )
 }
@@ -81,25 +81,25 @@ pub(crate) fn trace_any<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observe
 fn traverse<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     simd: S,
     bvh: &Bvh,
-    ray: &Prepared,
-    exact: impl Fn() -> Exact + Copy,
+    ray: &PreparedRay,
+    exact: impl Fn() -> ExactRay + Copy,
     state: &mut TraversalState<C, V, O>,
-    waiting: &mut Waiting<'_>,
+    stack: &mut TraversalStack<'_>,
 ) -> bool {
     let slabs = Slabs::new(simd, ray);
     let mut current = Child::ROOT;
     let mut end = ray.end(state.collector.end());
     let mut undecided = None;
     'ray: loop {
-        // Go down, each time to the nearest child that the ray enters; the others wait.
+        // Go down, each time to the nearest child that the ray enters; the others go on the stack.
         while let Content::Node(number) = current.content() {
             state.observer.node(state.instance, number as u32);
             let node = &bvh.nodes[number];
             let entered = node.enter(simd, &slabs, end);
             let next = if entered.children == 0 {
-                waiting.pop(end)
+                stack.pop(end)
             } else {
-                Some(waiting.push_all_but_nearest::<S, C>(node, &entered))
+                Some(stack.push_all_but_nearest::<S, C>(node, &entered))
             };
             match next {
                 Some(child) => current = child,
@@ -107,14 +107,14 @@ fn traverse<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
             }
         }
 
-        // Test what is in a leaf.
+        // Test the primitives of a leaf.
         let stop = match current.content() {
             Content::Triangles(number) => {
                 let block = &bvh.triangles[number];
-                let sieve = Sieve::new(simd, ray);
-                triangles(simd, block, &sieve, exact, &mut end, &mut undecided, state)
+                let ray_lanes = RayLanes::new(simd, ray);
+                triangles(simd, block, &ray_lanes, exact, &mut end, &mut undecided, state)
             }
-            Content::Leaf(number) => other_leaf(simd, bvh, &bvh.leaves[number], &exact(), state, waiting),
+            Content::Leaf(number) => other_leaf(simd, bvh, &bvh.leaves[number], &exact(), state, stack),
             Content::Node(_) => false,
         };
         if stop {
@@ -122,20 +122,20 @@ fn traverse<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
         }
         let decided = ray.end(state.collector.end());
         end = if decided < end { decided } else { end };
-        match waiting.pop(end) {
+        match stack.pop(end) {
             Some(child) => current = child,
             None => break,
         }
     }
-    undecided.is_some_and(|Undecided { block, lane, .. }| cross_surely(block, lane, exact, state))
+    undecided.is_some_and(|Undecided { block, lane, .. }| intersect_sure(block, lane, exact, state))
 }
 
 #[inline(always)]
 fn triangles<'a, 'b, S: Simd, C: Collector, V: Visibility<'b>, O: Observer>(
     simd: S,
     block: &'a TriangleBlock,
-    sieve: &Sieve<S>,
-    exact: impl Fn() -> Exact,
+    ray_lanes: &RayLanes<S>,
+    exact: impl Fn() -> ExactRay,
     end: &mut f32,
     undecided: &mut Option<Undecided<'a>>,
     state: &mut TraversalState<C, V, O>,
@@ -146,45 +146,45 @@ fn triangles<'a, 'b, S: Simd, C: Collector, V: Visibility<'b>, O: Observer>(
             state.observer.candidate(state.instance, geometry, primitive);
         }
     }
-    let mut sifted = block.filter(simd, sieve, *end);
+    let mut tested = block.test_conservatively(simd, ray_lanes, *end);
     if V::SELECTS {
-        let shown = shown(&state.visibility, block, &exact(), sifted.kept);
-        sifted.kept.0 &= shown;
-        sifted.surely_hit.0 &= shown;
+        let shown = shown(&state.visibility, block, &exact(), tested.kept);
+        tested.kept.0 &= shown;
+        tested.surely_hit.0 &= shown;
     }
     if C::ANY_HIT {
         let is_hit = |&lane: &usize| !state.visibility.is_origin(state.instance, block.ids(lane));
-        if let Some(lane) = sifted.surely_hit.into_iter().find(is_hit) {
+        if let Some(lane) = tested.surely_hit.into_iter().find(is_hit) {
             let (geometry, primitive) = block.ids(lane);
             return state.collector.commit(Hit { t: exact().t_min, geometry, primitive, ..Hit::MISS });
         }
     }
-    for lane in sifted.kept {
+    for lane in tested.kept {
         if V::HAS_ORIGIN && state.visibility.is_origin(state.instance, block.ids(lane)) {
             continue;
         }
-        if C::NEAREST_FIRST && !C::ANY_HIT && sifted.surely_hit.0 >> lane & 1 != 0 {
-            // A sure hit ends the ray; it is decided later, if none is surely nearer.
-            let [first, last] = sifted.between();
+        if C::NEAREST_FIRST && !C::ANY_HIT && tested.surely_hit.0 >> lane & 1 != 0 {
+            // A sure hit ends the ray; it is intersected exactly later, if none is surely nearer.
+            let [first, last] = tested.between();
             let (first, last) = (first[lane], last[lane]);
             if let Some(earlier) = undecided {
                 if first > earlier.last {
                     continue;
                 }
                 if last >= earlier.first {
-                    decide(earlier.block, earlier.lane, &exact(), state);
+                    intersect_exact(earlier.block, earlier.lane, &exact(), state);
                 }
             }
             *undecided = Some(Undecided { block, lane, first, last });
             *end = if last < *end { last } else { *end };
-        } else if decide(block, lane, &exact(), state) {
+        } else if intersect_exact(block, lane, &exact(), state) {
             return true;
         }
     }
     false
 }
 
-/// A triangle that is surely hit, between two distances, and waits for its decision.
+/// A triangle that is surely hit, between two distances, and is not yet intersected exactly.
 struct Undecided<'a> {
     block: &'a TriangleBlock,
     lane: usize,
@@ -192,35 +192,35 @@ struct Undecided<'a> {
     last: f32,
 }
 
-/// Decides whether and where a triangle is hit, and tells.
+/// Intersects a triangle exactly and reports a hit.
 #[cold]
 #[inline(never)]
-pub(crate) fn decide<C: Collector, V, O>(
+pub(crate) fn intersect_exact<C: Collector, V, O>(
     block: &TriangleBlock,
     lane: usize,
-    ray: &Exact,
+    ray: &ExactRay,
     state: &mut TraversalState<C, V, O>,
 ) -> bool {
-    triangle::decide(ray, &block.corners(lane), block.extent(lane))
-        .is_some_and(|crossing| tell(crossing, block, lane, state))
+    triangle::intersect_exact(ray, &block.corners(lane), block.extent(lane))
+        .is_some_and(|crossing| report(crossing, block, lane, state))
 }
 
 /// The same for a triangle that is surely hit.
 ///
 /// Not inlined: compiled for AVX-512, its scattered loads become vectors of 512 bits, which slow down all that is around them.
 #[inline(never)]
-pub(crate) fn cross_surely<C: Collector, V, O>(
+pub(crate) fn intersect_sure<C: Collector, V, O>(
     block: &TriangleBlock,
     lane: usize,
-    exact: impl Fn() -> Exact,
+    exact: impl Fn() -> ExactRay,
     state: &mut TraversalState<C, V, O>,
 ) -> bool {
-    tell(triangle::cross_surely(&exact(), &block.corners(lane)), block, lane, state)
+    report(triangle::intersect_sure(&exact(), &block.corners(lane)), block, lane, state)
 }
 
-/// Tells where a triangle is hit.
+/// Reports a hit.
 #[inline(always)]
-pub(crate) fn tell<C: Collector, V, O>(
+pub(crate) fn report<C: Collector, V, O>(
     crossing: Crossing,
     block: &TriangleBlock,
     lane: usize,

@@ -7,7 +7,7 @@ use crate::Bvh;
 use crate::aabb::Aabb;
 use crate::batch::for_each;
 use crate::bvh::Leaf;
-use crate::exact::Exact;
+use crate::exact::ExactRay;
 use crate::node::{Child, Content, Node, WIDTH};
 use crate::observer::Observer;
 use crate::query::Settings;
@@ -77,7 +77,7 @@ fn traverse(
     mut commit: impl FnMut(HitF64) -> f64,
 ) {
     let bvh = settings.bvh;
-    let exact = Exact { origin: ray.origin, direction: ray.direction, t_min: ray.t_min };
+    let exact = ExactRay { origin: ray.origin, direction: ray.direction, t_min: ray.t_min };
     if ray.t_min < ray.t_max && !bvh.nodes.is_empty() && is_usable(&exact) {
         let visibility = Masked::of(settings, 0);
         let mut traversal =
@@ -100,7 +100,7 @@ struct Traversal<'a, O> {
 
 impl<O: Observer> Traversal<'_, O> {
     /// Visits a node of a tree, in whose space the ray is, and all below it.
-    fn node(&mut self, bvh: &Bvh, ray: &Exact<f64>, instance: u32, number: usize) {
+    fn node(&mut self, bvh: &Bvh, ray: &ExactRay<f64>, instance: u32, number: usize) {
         self.observer.node(instance, number as u32);
         let (mut entered, count) = enter(&bvh.nodes[number], ray, self.ray.t_min);
         let entered = &mut entered[..count];
@@ -130,13 +130,13 @@ impl<O: Observer> Traversal<'_, O> {
         self.visibility.shows(geometry, primitive)
     }
 
-    fn triangles(&mut self, bvh: &Bvh, ray: &Exact<f64>, instance: u32, block: usize) {
+    fn triangles(&mut self, bvh: &Bvh, ray: &ExactRay<f64>, instance: u32, block: usize) {
         let block = &bvh.triangles[block];
         for lane in 0..block.count() {
             let (ids, corners) = (block.ids(lane), block.corners(lane));
             if self.is_candidate(instance, ids)
                 && !self.visibility.is_origin(instance, ids)
-                && let Some(met) = triangle::decide(ray, &corners, block.extent(lane))
+                && let Some(met) = triangle::intersect_exact(ray, &corners, block.extent(lane))
                 && self.visibility.faces().shows(|| triangle::is_front(ray, &corners))
             {
                 self.report([met.t, met.u, met.v], ids, instance);
@@ -144,7 +144,7 @@ impl<O: Observer> Traversal<'_, O> {
         }
     }
 
-    fn leaf(&mut self, bvh: &Bvh, ray: &Exact<f64>, instance: u32, leaf: Leaf) {
+    fn leaf(&mut self, bvh: &Bvh, ray: &ExactRay<f64>, instance: u32, leaf: Leaf) {
         let range = |first: u32, count: u32| first as usize..(first + count) as usize;
         match leaf {
             Leaf::Spheres { first, count } => {
@@ -153,7 +153,7 @@ impl<O: Observer> Traversal<'_, O> {
                     if !self.is_candidate(instance, ids) {
                         continue;
                     }
-                    let Some([t1, t2]) = sphere::decide(ray, &item.shape) else { continue };
+                    let Some([t1, t2]) = sphere::intersect_exact(ray, &item.shape) else { continue };
                     let faces = self.visibility.faces();
                     if faces.shows(|| true) {
                         self.report([t1, 0.0, 0.0], ids, instance);
@@ -196,13 +196,13 @@ impl<O: Observer> Traversal<'_, O> {
 }
 
 /// Whether a ray can hit anything: its origin and direction, rounded to f32, are finite, and its direction is not zero.
-fn is_usable(ray: &Exact<f64>) -> bool {
+fn is_usable(ray: &ExactRay<f64>) -> bool {
     let finite = ray.origin.iter().chain(&ray.direction).all(|&x| (x as f32).is_finite());
     finite && ray.direction.iter().any(|&x| x as f32 != 0.0)
 }
 
 /// The children of a node that a line meets after `t_min`, and where it enters them.
-fn enter(node: &Node, ray: &Exact<f64>, t_min: f64) -> ([(f64, Child); WIDTH], usize) {
+fn enter(node: &Node, ray: &ExactRay<f64>, t_min: f64) -> ([(f64, Child); WIDTH], usize) {
     let mut entered = [(0.0, Child::ROOT); WIDTH];
     let mut count = 0;
     for slot in 0..WIDTH {
@@ -220,7 +220,7 @@ fn enter(node: &Node, ray: &Exact<f64>, t_min: f64) -> ([(f64, Child); WIDTH], u
 }
 
 /// Between which t a line is in a box; the first is beyond the second where it never is.
-fn slabs(bounds: &Aabb, ray: &Exact<f64>) -> [f64; 2] {
+fn slabs(bounds: &Aabb, ray: &ExactRay<f64>) -> [f64; 2] {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
         let [low, high] = [bounds.min[axis], bounds.max[axis]].map(|x| f64::from(x) - ray.origin[axis]);

@@ -1,9 +1,10 @@
-//! Does a ray meet a triangle, and where?
+//! The exact intersection of a ray with a triangle: Woop, Benthin, Wald (2013), in f64.
 //!
-//! Two steps. The *filter* (see `filter`) takes eight triangles at once in f32 and excludes those that the ray surely misses. The *decision* takes one triangle in f64 and alone says what is hit, so that the same bits come
-//! out whatever the filter, the tree or the machine.
+//! Every triangle goes through two tests. The conservative test (see `conservative`) takes eight triangles at once in f32 and
+//! excludes those that the ray surely misses. The exact test takes one triangle in f64. It alone determines hits, so the same
+//! bits come out of every tree and every machine.
 //!
-//! The decision is watertight: Woop, Benthin, Wald (2013), "Watertight Ray/Triangle Intersection". Corners are moved to
+//! The exact test is watertight: "Watertight Ray/Triangle Intersection". Corners are moved to
 //! the ray's origin and sheared so that the ray runs along one axis. A corner's two remaining coordinates come out the
 //! same for every triangle that has it, and signs of the edge functions are right for these coordinates: rounding is
 //! monotonous, so a difference of two rounded products has the sign of the exact one or is 0, and then the rounding
@@ -12,7 +13,7 @@
 //! `t` is the plane's, `n·(p0 − o) / n·d`, from differences of f32 values that f64 holds (nearly) exactly: its sign is
 //! right to about 10⁻¹⁵ of the triangle's size, however near the origin is to the plane.
 
-use crate::exact::{Exact, Rounded};
+use crate::exact::{ExactRay, Rounded};
 use crate::vector::{cross, cross_magnitude, dot, subtract, wide};
 
 /// Where a triangle is met: `t`, and the weights of its second and third corner.
@@ -23,12 +24,12 @@ pub(crate) struct Crossing<T = f32> {
     pub(crate) v: T,
 }
 
-/// Decides whether and where a ray meets a triangle, with `t_min < t`. The caller compares t with the ray's end.
+/// The hit of a ray with a triangle, with `t_min < t`. The caller compares t with the ray's end.
 ///
 /// No component of the edges at the first corner is larger than `extent` (but for rounding to f32).
 #[inline(always)]
-pub(crate) fn decide<T: Rounded>(
-    ray: &Exact<T>,
+pub(crate) fn intersect_exact<T: Rounded>(
+    ray: &ExactRay<T>,
     corners: &[[f32; 3]; 3],
     extent: f32,
 ) -> Option<Crossing<T>> {
@@ -58,18 +59,18 @@ fn widest([x, y, z]: [f64; 3]) -> f64 {
     x.abs().max(y.abs()).max(z.abs())
 }
 
-/// Where a ray meets the plane of a triangle, for one that the filter is sure of: all else that [`decide`] looks at is known. Its
-/// determinant is clear: it is the sum of three edge functions that are beyond their error, which is `filter::ERROR` relative to what
-/// [`CLEAR`] is relative to.
+/// The hit with a triangle that the conservative test found surely hit, so that nothing else of [`intersect_exact`] is needed. Its
+/// determinant is clear: it is the sum of three edge functions that are beyond their error, and that error is
+/// `conservative::ERROR` relative to the same product as [`CLEAR`].
 #[inline(always)]
-pub(crate) fn cross_surely(ray: &Exact, corners: &[[f32; 3]; 3]) -> Crossing {
+pub(crate) fn intersect_sure(ray: &ExactRay, corners: &[[f32; 3]; 3]) -> Crossing {
     meet(ray, corners).round()
 }
 
 /// Whether the ray looks at the front of a triangle that it meets: the face from which its corners are seen
-/// counter-clockwise. Signs are those of the decision, so a closed mesh is left through as many backs as it is entered
+/// counter-clockwise. Signs are those of the exact test, so a closed mesh is left through as many backs as it is entered
 /// through fronts.
-pub(crate) fn is_front<T: Rounded>(ray: &Exact<T>, corners: &[[f32; 3]; 3]) -> bool {
+pub(crate) fn is_front<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -> bool {
     let Sheared { edges: [u, v, w], along, .. } = Sheared::new(ray, corners);
     (u + v + w > 0.0) == (along > 0.0)
 }
@@ -93,7 +94,7 @@ impl Meeting {
 
 /// Where a ray meets the plane of a triangle: Cramer's rule, as Möller and Trumbore (1997) arrange it.
 #[inline(always)]
-fn meet<T: Rounded>(ray: &Exact<T>, corners: &[[f32; 3]; 3]) -> Meeting {
+fn meet<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -> Meeting {
     let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
     let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
     let c = subtract(p0, ray.origin);
@@ -114,7 +115,7 @@ struct Sheared {
 
 impl Sheared {
     #[inline(always)]
-    fn new<T: Rounded>(ray: &Exact<T>, corners: &[[f32; 3]; 3]) -> Self {
+    fn new<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -> Self {
         let [kx, ky, kz] = ray.axes();
         let d = ray.direction;
         // Multiplying by the direction's length, in place of dividing by it, keeps whole numbers whole: edges and
@@ -140,7 +141,7 @@ impl Sheared {
     /// The crossing where the ray runs nearly along the triangle's plane. NaN where it is before the ray.
     #[cold]
     #[inline(never)]
-    fn grazing<T: Rounded>(&self, ray: &Exact<T>, corners: &[[f32; 3]; 3]) -> Crossing<T> {
+    fn grazing<T: Rounded>(&self, ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -> Crossing<T> {
         let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
         let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
         let (n, d) = (cross(e1, e2), ray.direction);
@@ -187,7 +188,7 @@ const CLEAR: f64 = 7.629_394_531_25e-6;
 fn edge_function(p: [f64; 3], q: [f64; 3]) -> f64 {
     let [first, second] = [p[0] * q[1], p[1] * q[0]];
     if first == second {
-        // What was rounded away decides.
+        // The parts that were rounded away decide.
         return product_error(p[0], q[1], first) - product_error(p[1], q[0], second);
     }
     first - second
@@ -206,7 +207,7 @@ fn product_error(a: f64, b: f64, product: f64) -> f64 {
 }
 
 /// Moves t into the interval in which the ray is inside the triangle's box.
-fn clamp_to_box<T: Rounded>(ray: &Exact<T>, corners: &[[f32; 3]; 3], t: f64) -> f64 {
+fn clamp_to_box<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3], t: f64) -> f64 {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
         if ray.direction[axis] != 0.0 {
@@ -238,8 +239,8 @@ mod tests {
         let corners = [[-1e6, -1e6, height], [1e6, -1e6, height], [3.0, 1e6, height]];
         for direction in [[0.3, -0.2, 1.0], [0.3, -0.2, 1e-6], [1e3, 0.0, 1e-3]] {
             for (z, above) in [(height, true), (height.next_up(), true), (height.next_down(), false)] {
-                let ray = Exact::new(&Ray::new([0.1, -0.3, z], direction));
-                assert_eq!(decide(&ray, &corners, 4e6).is_none(), above, "{direction:?} from {z}");
+                let ray = ExactRay::new(&Ray::new([0.1, -0.3, z], direction));
+                assert_eq!(intersect_exact(&ray, &corners, 4e6).is_none(), above, "{direction:?} from {z}");
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Is a tree what tracing relies on, and what is it made of?
+//! Validation of a tree, and its statistics.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use crate::aabb::Aabb;
 use crate::bvh::Leaf;
 use crate::node::{Content, LARGEST_DEPTH, Node, WIDTH};
 
-/// What a tree consists of.
+/// The content of a tree.
 ///
 /// ```
 /// # use lookfrom_bvh::{Builder, Sphere};
@@ -64,7 +64,7 @@ impl fmt::Display for Invalid {
 impl std::error::Error for Invalid {}
 
 impl Bvh {
-    /// Counts what is there, and trusts the tree.
+    /// Counts the content, and trusts the tree.
     pub(crate) fn take_statistics(&self) -> Statistics {
         let mut walk = Walk::default();
         if !self.nodes.is_empty() {

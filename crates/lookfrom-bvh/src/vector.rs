@@ -1,4 +1,4 @@
-//! The few operations on three components that the decisions in double precision need.
+//! The few operations on three components that the exact tests need.
 
 #[inline(always)]
 pub(crate) fn wide(a: [f32; 3]) -> [f64; 3] {
@@ -20,7 +20,7 @@ pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The cross product's terms with their signs taken away: what its rounding errors are relative to.
+/// The cross product's terms with their signs taken away: the magnitude that its rounding errors are relative to.
 pub(crate) fn cross_magnitude(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     let [a, b] = [a.map(f64::abs), b.map(f64::abs)];
     [a[1] * b[2] + a[2] * b[1], a[2] * b[0] + a[0] * b[2], a[0] * b[1] + a[1] * b[0]]

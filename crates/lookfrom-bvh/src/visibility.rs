@@ -3,8 +3,8 @@
 //! Each kind of visibility is a type, so that queries about everything are compiled apart and pay nothing.
 
 use crate::Bvh;
-use crate::exact::Exact;
-use crate::filter::TriangleBlock;
+use crate::conservative::TriangleBlock;
+use crate::exact::ExactRay;
 use crate::masks::Masks;
 use crate::origin_primitive::OriginPrimitive;
 use crate::query::Settings;
@@ -185,7 +185,7 @@ impl<'a> Visibility<'a> for Masked<'a> {
 pub(crate) fn shown<'a, V: Visibility<'a>>(
     visibility: &V,
     block: &TriangleBlock,
-    ray: &Exact,
+    ray: &ExactRay,
     lanes: LaneMask,
 ) -> u32 {
     let is_shown = |&lane: &usize| {

@@ -238,7 +238,7 @@ fn the_best_trees_cost_no_more() {
 }
 
 #[test]
-fn watchers_see_what_is_visited() {
+fn observers_hear_of_every_visit() {
     #[derive(Default)]
     struct Count {
         nodes: Vec<(u32, u32)>,

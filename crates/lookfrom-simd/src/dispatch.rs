@@ -1,11 +1,11 @@
-//! Run-time dispatch: generic code, compiled for the instructions of each level, and the level chosen when work starts.
+//! Run-time dispatch: a generic kernel is compiled for the instructions of each level, and the level is chosen when it starts.
 
 use fearless_simd::{Level, Simd};
 
-/// What is to be done at a level that is known only when the program runs.
+/// A computation at a level that is known only when the program runs.
 ///
 /// ```
-/// use lookfrom_simd::{Level, Simd, Kernel, dispatch, f32x8, prelude::*};
+/// use lookfrom_simd::{Kernel, Level, Simd, dispatch, f32x8, prelude::*};
 /// struct Twice([f32; 8]);
 /// impl Kernel for Twice {
 ///     type Output = [f32; 8];
@@ -18,38 +18,38 @@ use fearless_simd::{Level, Simd};
 /// assert_eq!(dispatch(Level::new(), Twice([1.5; 8])), [3.0; 8]);
 /// ```
 pub trait Kernel {
-    /// What comes of it.
+    /// Its result.
     type Output;
 
-    /// Does it. Implementations are `#[inline(always)]`.
+    /// Runs it. Implementations are `#[inline(always)]`.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
-/// Does the work with the instructions of a level: see [`Kernel`].
+/// Runs a kernel with the instructions of a level: see [`Kernel`].
 ///
-/// AVX-512 has twice the registers, which is what it is used for: vectors stay 256 bits long. SSE4.2 is left aside, since it lacks
-/// what matters as SSE2 does. On x86-64 there is no scalar level.
+/// AVX-512 is used for its registers, twice as many; vectors stay 256 bits long. SSE4.2 is left aside, since it brings nothing
+/// over SSE2 here. On x86-64 there is no scalar level.
 #[inline(always)]
-pub fn dispatch<W: Kernel>(level: Level, work: W) -> W::Output {
+pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]
     {
         if let Some(simd) = level.as_avx512() {
             return simd.vectorize(
                 #[inline(always)]
-                move || work.run(simd),
+                move || kernel.run(simd),
             );
         }
         if let Some(simd) = level.as_avx2() {
             return simd.vectorize(
                 #[inline(always)]
-                move || work.run(simd),
+                move || kernel.run(simd),
             );
         }
         if let Some(simd) = level.as_sse2() {
-            return work.run(simd);
+            return kernel.run(simd);
         }
         unreachable!("x86-64 has SSE2")
     }
     #[cfg(not(target_arch = "x86_64"))]
-    fearless_simd::dispatch!(level, simd => work.run(simd))
+    fearless_simd::dispatch!(level, simd => kernel.run(simd))
 }

@@ -1,6 +1,6 @@
-//! Masks of lanes as bits, and the way through those that are set.
+//! Masks of lanes as bits, and iteration over the lanes that are set.
 
-/// The numbers of the lanes that were chosen, from the least; bit i stands for lane i.
+/// A mask of lanes, bit i for lane i. As an iterator it gives the numbers of the lanes that are set, from the least.
 ///
 /// ```
 /// use lookfrom_simd::LaneMask;
@@ -24,7 +24,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn chosen_lanes_come_in_order() {
+    fn lanes_come_in_order() {
         assert_eq!(LaneMask(0b1010_0110).collect::<Vec<_>>(), [1, 2, 5, 7]);
         assert_eq!(LaneMask(0).next(), None);
     }

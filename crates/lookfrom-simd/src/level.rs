@@ -1,4 +1,4 @@
-//! The SIMD level that work is done at: the machine's best, or a lower one for tests and measurements.
+//! The SIMD level of kernels: the machine's best, or a lower one for tests and measurements.
 
 use std::sync::OnceLock;
 

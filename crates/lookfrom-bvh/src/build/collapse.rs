@@ -4,7 +4,7 @@
 
 use crate::Bvh;
 use crate::bvh::{Leaf, ProceduralItem, SphereItem};
-use crate::filter::TriangleBlock;
+use crate::conservative::TriangleBlock;
 use crate::node::{Child, Node};
 
 use super::parallel;

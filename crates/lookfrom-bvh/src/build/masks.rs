@@ -1,4 +1,4 @@
-//! Telling a builder what has which mask.
+//! The builder's methods for masks.
 
 use super::{BuildError, Builder};
 
@@ -53,7 +53,7 @@ impl Builder {
         self
     }
 
-    /// Gives an instance a mask, in place of all bits: a ray sees what is in it where its mask has a bit in common with
+    /// Gives an instance a mask, in place of all bits: a ray sees its content where the ray's mask has a bit in common with
     /// the instance's and with those of the geometry inside. A number that no instance has makes [`Self::build`] fail.
     ///
     /// ```

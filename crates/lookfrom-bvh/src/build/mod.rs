@@ -1,10 +1,9 @@
 //! From geometry to a tree.
 //!
-//! Geometry is copied as it is told, primitives that no ray can meet are left out, `sah` splits the rest in two again and
+//! Geometry is copied as it is added, primitives that no ray can meet are left out, `sah` splits the rest in two again and
 //! again, and `collapse` turns that binary tree into the wide one that rays walk.
 
 mod collapse;
-mod cut;
 mod masks;
 mod parallel;
 mod plan;
@@ -12,6 +11,7 @@ mod primitives;
 mod reference;
 mod reinsert;
 mod sah;
+mod split;
 
 use std::fmt;
 use std::sync::Arc;
@@ -69,7 +69,7 @@ pub enum Quality {
     Best,
 }
 
-/// What a tree cannot be built from.
+/// A reason why a tree cannot be built.
 ///
 /// ```
 /// use lookfrom_bvh::{Builder, BuildError, Triangles};
@@ -87,7 +87,7 @@ pub enum BuildError {
         geometry: u32,
         /// The triangle in it.
         triangle: u32,
-        /// What it names.
+        /// The index that it names.
         index: u32,
         /// How many positions there are.
         positions: usize,
@@ -104,14 +104,14 @@ pub enum BuildError {
     },
     /// A mask is for a geometry that is not there.
     NoSuchGeometry {
-        /// What was named.
+        /// The number that was named.
         geometry: u32,
         /// How many geometries there were then.
         geometries: usize,
     },
     /// A mask is for an instance that is not there.
     NoSuchInstance {
-        /// What was named.
+        /// The number that was named.
         instance: u32,
         /// How many instances there were then.
         instances: usize,

@@ -18,7 +18,7 @@ pub(super) fn join<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> 
     (one(), other())
 }
 
-/// What is made of each number below `count`, in order; `grain` of them at least are one thread's work.
+/// The results of a function for each number below `count`, in order; `grain` of them at least are one thread's work.
 #[cfg(feature = "parallel")]
 pub(super) fn collect<T: Send>(
     count: usize,
@@ -29,13 +29,13 @@ pub(super) fn collect<T: Send>(
     (0..count).into_par_iter().with_min_len(grain).map(make).collect()
 }
 
-/// What is made of each number below `count`, in order.
+/// The results of a function for each number below `count`, in order.
 #[cfg(not(feature = "parallel"))]
 pub(super) fn collect<T>(count: usize, _grain: usize, make: impl Fn(usize) -> T) -> Vec<T> {
     (0..count).map(make).collect()
 }
 
-/// What is made of each few thousand of a slice, in order.
+/// The results of a function for each few thousand items of a slice, in order.
 pub(super) fn chunks<T: Sync, U: Send>(items: &[T], make: impl Fn(&[T]) -> U + Send + Sync) -> Vec<U> {
     let chunk = |number: usize| &items[number * GRAIN..items.len().min((number + 1) * GRAIN)];
     collect(items.len().div_ceil(GRAIN), 1, |number| make(chunk(number)))

@@ -1,4 +1,4 @@
-//! Which binary nodes become the children of wide ones, and which become leaves?
+//! The choice of binary nodes that become children of wide nodes or leaves: Ylitie, Karras, Laine (2017).
 //!
 //! The cheapest choice under the surface area heuristic, by dynamic programming from the leaves up: Ylitie, Karras, Laine
 //! (2017), "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3. `cost[n][i − 1]` is
@@ -13,10 +13,10 @@ use super::sah::Binary;
 /// Places that a child may take.
 const PLACES: usize = WIDTH - 1;
 
-/// What a wide node costs that is visited.
+/// The cost of a visit to a wide node.
 const NODE: f32 = 1.0;
 
-/// What a leaf costs that is visited, measured in nodes.
+/// The cost of a visit to a leaf, measured in nodes.
 const LEAF: f32 = 1.0;
 
 /// The choice for one binary node.
@@ -40,7 +40,7 @@ impl Plan {
         Self(choices)
     }
 
-    /// What rays are expected to visit, in the area of boxes.
+    /// The expected visits of a ray, in the area of boxes.
     pub(super) fn cost(&self) -> f32 {
         self.0.first().map_or(0.0, |root| root.cost[0])
     }

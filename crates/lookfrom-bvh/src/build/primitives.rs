@@ -1,9 +1,9 @@
-//! What goes into a tree: everything that the builder was told, under one number each, and the box of each.
+//! The primitives of a tree: all that were added to the builder, with a number and a box each.
 
 use std::sync::Arc;
 
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
-use crate::filter::BLOCK;
+use crate::conservative::BLOCK;
 use crate::instance::Instance;
 use crate::node::Child;
 use crate::procedural::Procedural;
@@ -14,7 +14,7 @@ use crate::vector::{cross, subtract, wide};
 use super::reference::Reference;
 use super::{BuildError, parallel};
 
-/// What the builder was told.
+/// A geometry that was added to the builder.
 #[derive(Debug)]
 pub(super) enum Geometry {
     /// Three corners a triangle.
@@ -99,7 +99,7 @@ impl<'a> Primitives<'a> {
         }
     }
 
-    /// What is to be sorted, with a padded box; an empty one where no ray can meet the primitive.
+    /// The items to be sorted, with padded boxes; an empty one where no ray can meet the primitive.
     fn reference(&self, number: u32) -> Reference {
         let (geometry, primitive) = self.ids(number);
         let (usable, kind) = match self.geometries.get(geometry as usize) {
@@ -122,7 +122,7 @@ impl<'a> Primitives<'a> {
         references
     }
 
-    /// The box around what is referred to.
+    /// The box around the primitives that are referred to.
     pub(super) fn bounds_of(&self, references: &[Reference]) -> Aabb {
         let chunks = parallel::chunks(references, |references| {
             let mut bounds = Aabb::EMPTY;
@@ -136,7 +136,7 @@ impl<'a> Primitives<'a> {
     }
 }
 
-/// What a primitive is. A leaf holds those of one kind.
+/// The kind of a primitive. A leaf holds primitives of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Triangle,

@@ -1,4 +1,4 @@
-//! A primitive while it is sorted: its box and what it is, in one vector.
+//! A reference to a primitive while the tree is built: its box, its kind and its number, in one vector.
 
 use crate::aabb::Aabb;
 use lookfrom_simd::{Simd, f32x8, prelude::*};
@@ -50,7 +50,7 @@ pub(super) fn fits_a_leaf(references: &[Reference]) -> bool {
     references.len() <= Kind::MOST_IN_A_LEAF && fits(references[0].kind())
 }
 
-/// What some references cover.
+/// The boxes that some references cover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Covered {
     pub(super) bounds: Aabb,

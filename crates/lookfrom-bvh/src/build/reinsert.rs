@@ -2,7 +2,7 @@
 //!
 //! Meister, Bittner (2018), "Parallel Reinsertion for Bounding Volume Hierarchy Optimization": the largest nodes look
 //! for better places, all at once in the tree as it is; then the moves are made, those that gain most first, where they do
-//! not touch what another has changed. The search is branch and bound. The result does not depend on the number of threads.
+//! not touch nodes that another has changed. The search is branch and bound. The result does not depend on the number of threads.
 
 use crate::aabb::Aabb;
 use crate::node::LARGEST_DEPTH;
@@ -93,7 +93,7 @@ impl Spots {
         Self(spots)
     }
 
-    /// What rays are expected to visit: the sum of the inner nodes' areas.
+    /// The expected visits of a ray: the sum of the inner nodes' areas.
     fn cost(&self) -> f64 {
         self.0.iter().filter(|spot| spot.left != NONE).map(|spot| f64::from(spot.area)).sum()
     }
@@ -133,8 +133,8 @@ impl Spots {
         let parent = moved.parent;
         let mut best = Move { node, to: NONE, gain: 0.0 };
 
-        // Go up, and at each step search the subtree on the other side. `saved` is what taking the node out saves on
-        // the way up: its parent, and what its ancestors shrink.
+        // Go up, and at each step search the subtree on the other side. `saved` is the area that taking the node out saves on
+        // the way up: its parent's, and that by which its ancestors shrink.
         let mut saved = self.at(parent).area;
         let mut other = self.sibling(node);
         let mut pivot = parent;
@@ -233,7 +233,7 @@ impl Spots {
     fn binary(&self) -> Option<(Vec<Binary>, Vec<u32>)> {
         let mut tree: Vec<Binary> = Vec::with_capacity(self.0.len());
         let mut order = Vec::with_capacity(self.0.len() / 2 + 1);
-        // What is to be written: a node, its depth, and whose right child it is.
+        // The entries to be written: a node, its depth, and whose right child it is.
         let mut stack = vec![(0_u32, 0_u32, None::<usize>)];
         while let Some((number, depth, right_of)) = stack.pop() {
             if depth as usize > LARGEST_DEPTH {

@@ -1,6 +1,6 @@
 //! Splits primitives in two, again and again, where rays are expected to find the least work.
 //!
-//! Where `cut` finds nothing to separate, or has gone too deep, halves are taken by number, so that depth stays
+//! Where `split` finds nothing to separate, or has gone too deep, halves are taken by number, so that depth stays
 //! below [`HEURISTIC_DEPTH`] + 32 + a few, and the time below that times the number of primitives, whatever the input.
 //! The tree is the same for any number of threads and any instructions.
 
@@ -9,11 +9,11 @@ use crate::dispatch::dispatch;
 use lookfrom_simd::Level;
 
 use super::Quality;
-use super::cut::{Cut, MAX_BINS};
 use super::parallel::{self, join};
 use super::reference::{Covered, Reference, fits_a_leaf};
+use super::split::{MAX_BINS, Split};
 
-/// Levels on which the heuristic decides; below, the median does.
+/// The levels that the heuristic splits; below, the median does.
 const HEURISTIC_DEPTH: u32 = 64;
 
 /// A node of the binary tree. Its left child follows it.
@@ -74,14 +74,14 @@ impl Task {
             return;
         }
 
-        let cut = (depth < HEURISTIC_DEPTH)
+        let split = (depth < HEURISTIC_DEPTH)
             .then(|| {
                 let bins = self.bins.min(count.max(4));
-                dispatch(self.level, Cut { references: &mut *references, centers: &covered.centers, bins })
+                dispatch(self.level, Split { references: &mut *references, centers: &covered.centers, bins })
             })
             .flatten();
         let (middle, [left_covered, right_covered]) =
-            cut.unwrap_or_else(|| halve(references, &covered.centers));
+            split.unwrap_or_else(|| halve(references, &covered.centers));
 
         let (left, right) = references.split_at_mut(middle);
         let second = first + middle as u32;

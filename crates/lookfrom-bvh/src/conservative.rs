@@ -1,10 +1,11 @@
-//! Which triangles does a ray surely miss, and which does it surely hit? Eight at a time, in f32.
+//! The conservative triangle test: Möller, Trumbore (1997) in f32 with bounds of the errors, eight at a time.
 //!
-//! The first of two steps (see `triangle`): what it leaves open is decided in f64. It may be calculated in any way, as long as it
-//! knows its errors. Lanes hold eight triangles and one ray, or, in packets, eight rays and one triangle.
+//! It finds triangles that the ray surely misses and triangles that the ray surely hits; the rest is left to the exact test (see
+//! `triangle`). It may be calculated in any way that has a bound of its errors. Lanes hold eight triangles and one ray, or, in
+//! packets, eight rays and one triangle.
 
 use crate::aabb::Aabb;
-use crate::prepared::{self, Prepared};
+use crate::prepared::{self, PreparedRay};
 use crate::ray::NONE;
 use lookfrom_simd::{LaneMask, Simd, f32x8, mask32x8, prelude::*};
 
@@ -14,7 +15,7 @@ pub(crate) const BLOCK: usize = 8;
 /// As many numbers as a block has triangles.
 type Lanes<S> = f32x8<S>;
 
-/// Errors of the filter's determinants: 160 units of rounding, relative to the longest component of the direction.
+/// Errors of the test's determinants: 160 units of rounding, relative to the longest component of the direction.
 ///
 /// Relative to the largest component e of the edges and c of the way to the first corner: an edge function is a sum of
 /// three products of e and a sum of two products of c and the direction; with one unit for each rounding its error is
@@ -22,10 +23,10 @@ type Lanes<S> = f32x8<S>;
 /// determinant less the other two, below 114 e c + 57 e e. An origin that was rounded adds to c.
 pub(crate) const ERROR: f32 = 160.0 / 16_777_216.0;
 
-/// What underflow may add, relative to the direction where that is longer than 1: some products that are less than this.
+/// The error that underflow may add, relative to the direction where that is longer than 1: some products that are less than this.
 pub(crate) const UNDERFLOW: f32 = 64.0 * f32::MIN_POSITIVE;
 
-/// Beyond this (2⁴⁰) the filter's products may overflow, and it excludes nothing.
+/// Beyond this (2⁴⁰) the test's products may overflow, and it excludes nothing.
 pub(crate) const LARGEST_FILTERED: f32 = 1.099_511_6e12;
 
 /// Eight triangles, component by component. 384 bytes, of which a ray reads 320, five cache lines.
@@ -44,11 +45,11 @@ pub(crate) struct TriangleBlock {
 /// The extent that marks unused lanes.
 const UNUSED: f32 = -1.0;
 
-/// What the filter says of a block.
-pub(crate) struct Sifted<S: Simd> {
-    /// Those that are not surely missed: they are to be decided.
+/// The result of a test of eight lanes.
+pub(crate) struct ConservativeTest<S: Simd> {
+    /// Triangles that are not surely missed.
     pub(crate) kept: LaneMask,
-    /// Those of which the decision is known: a hit in the ray's range.
+    /// Triangles that are surely hit in the ray's range.
     pub(crate) surely_hit: LaneMask,
     /// The same as a mask.
     pub(crate) sure: mask32x8<S>,
@@ -59,14 +60,14 @@ pub(crate) struct Sifted<S: Simd> {
     determinant: Lanes<S>,
 }
 
-impl<S: Simd> Sifted<S> {
-    /// Of those that are surely hit, the triangles whose front the ray looks at.
+impl<S: Simd> ConservativeTest<S> {
+    /// Among the sure hits, those of a front.
     #[inline(always)]
     pub(crate) fn looks_at_front(&self) -> mask32x8<S> {
         self.determinant.simd_lt(0.0)
     }
 
-    /// Between which scaled t each of those that are surely hit is surely hit.
+    /// Bounds of the scaled t of each sure hit, below and above.
     #[inline(always)]
     pub(crate) fn between(&self) -> [Lanes<S>; 2] {
         [
@@ -79,9 +80,9 @@ impl<S: Simd> Sifted<S> {
 /// Scaled distances of sure hits are above this, 2⁻⁶⁰, and below 2⁶⁰.
 pub(crate) const SURE_AFTER: f32 = 8.673_617e-19;
 
-/// What the filter needs of a ray, in every lane.
+/// A ray for the test: one in every lane, or eight.
 #[derive(Clone, Copy)]
-pub(crate) struct Sieve<S: Simd> {
+pub(crate) struct RayLanes<S: Simd> {
     pub(crate) origin: [Lanes<S>; 3],
     pub(crate) direction: [Lanes<S>; 3],
     pub(crate) t_min: Lanes<S>,
@@ -91,17 +92,17 @@ pub(crate) struct Sieve<S: Simd> {
     rounding: Lanes<S>,
 }
 
-impl<S: Simd> Sieve<S> {
+impl<S: Simd> RayLanes<S> {
     #[inline(always)]
-    pub(crate) fn new(simd: S, ray: &Prepared) -> Self {
+    pub(crate) fn new(simd: S, ray: &PreparedRay) -> Self {
         Self {
-            origin: splat_all(simd, ray.shadow.origin),
-            direction: splat_all(simd, ray.shadow.direction),
+            origin: splat_all(simd, ray.scaled.origin),
+            direction: splat_all(simd, ray.scaled.direction),
             t_min: Lanes::splat(simd, ray.t_min),
-            sure_before: Lanes::splat(simd, ray.shadow.sure_before),
-            error: Lanes::splat(simd, ray.shadow.error),
-            underflow: Lanes::splat(simd, ray.shadow.underflow),
-            rounding: Lanes::splat(simd, ray.shadow.rounding),
+            sure_before: Lanes::splat(simd, ray.scaled.sure_before),
+            error: Lanes::splat(simd, ray.scaled.error),
+            underflow: Lanes::splat(simd, ray.scaled.underflow),
+            rounding: Lanes::splat(simd, ray.scaled.rounding),
         }
     }
 
@@ -193,11 +194,16 @@ impl TriangleBlock {
 
     /// Which of the triangles the ray may meet between its `t_min` and an end, and which it surely does.
     #[inline(always)]
-    pub(crate) fn filter<S: Simd>(&self, simd: S, ray: &Sieve<S>, end: f32) -> Sifted<S> {
+    pub(crate) fn test_conservatively<S: Simd>(
+        &self,
+        simd: S,
+        ray: &RayLanes<S>,
+        end: f32,
+    ) -> ConservativeTest<S> {
         let corners =
             [load(simd, &self.corners[0]), load(simd, &self.corners[1]), load(simd, &self.corners[2])];
         let extent = Lanes::load_array_ref(simd, &self.extent);
-        TriangleLanes { corners, extent }.sift(simd, ray, Lanes::splat(simd, end))
+        TriangleLanes { corners, extent }.test_conservatively(simd, ray, Lanes::splat(simd, end))
     }
 
     /// The box around the triangles.
@@ -237,7 +243,12 @@ impl<S: Simd> TriangleLanes<S> {
     ///
     /// Möller, Trumbore (1997), "Fast, Minimum Storage Ray/Triangle Intersection", without the division.
     #[inline(always)]
-    pub(crate) fn sift(&self, simd: S, ray: &Sieve<S>, t_max: Lanes<S>) -> Sifted<S> {
+    pub(crate) fn test_conservatively(
+        &self,
+        simd: S,
+        ray: &RayLanes<S>,
+        t_max: Lanes<S>,
+    ) -> ConservativeTest<S> {
         let ([[ax, ay, az], [bx, by, bz], [gx, gy, gz]], extent) = (self.corners, self.extent);
         let [dx, dy, dz] = ray.direction;
 
@@ -258,7 +269,7 @@ impl<S: Simd> TriangleLanes<S> {
         let v = -ex.mul_add(rx, ey.mul_add(ry, ez * rz));
         let w = determinant - (u + v);
 
-        // Bound their errors: of what holds the direction once, relative to its length.
+        // Bound their errors: those of products with the direction relative to its length.
         let underflow = ray.underflow;
         let relative = extent.mul_add(ray.error, underflow);
         let reach = cx.abs().max(cy.abs()).max(cz.abs()) + ray.rounding;
@@ -268,13 +279,14 @@ impl<S: Simd> TriangleLanes<S> {
         let distance = nx.mul_add(cx, ny.mul_add(cy, nz * cz));
         let distance_error = extent.mul_add(extent.mul_add(ERROR, underflow), underflow) * reach;
         let unused = extent.simd_lt(0.0);
-        let found = Found { edges: [u, v, w], bound, determinant, size_error, distance, distance_error };
-        found.sift(simd, ray, t_max, unused)
+        let determinants =
+            Determinants { edges: [u, v, w], bound, determinant, size_error, distance, distance_error };
+        determinants.test(simd, ray, t_max, unused)
     }
 }
 
-/// What the filter compares: numbers and bounds of their errors.
-struct Found<S: Simd> {
+/// The numbers that the test compares, and bounds of their errors.
+struct Determinants<S: Simd> {
     /// The edge functions.
     edges: [Lanes<S>; 3],
     bound: Lanes<S>,
@@ -286,9 +298,9 @@ struct Found<S: Simd> {
     distance_error: Lanes<S>,
 }
 
-impl<S: Simd> Found<S> {
+impl<S: Simd> Determinants<S> {
     #[inline(always)]
-    fn sift(&self, simd: S, ray: &Sieve<S>, t_max: Lanes<S>, unused: mask32x8<S>) -> Sifted<S> {
+    fn test(&self, simd: S, ray: &RayLanes<S>, t_max: Lanes<S>, unused: mask32x8<S>) -> ConservativeTest<S> {
         let &Self { edges: [u, v, w], bound, determinant, size_error, distance, distance_error } = self;
         // A miss has two edge functions of surely different signs. Comparisons with NaN are false, and exclude nothing.
         let least = u.min(v).min(w);
@@ -303,7 +315,7 @@ impl<S: Simd> Found<S> {
         let out_of_range = size.simd_gt(size_error) & (beyond | before);
         let excluded = outside | out_of_range | unused;
 
-        // A hit is sure where all that is the other way round, with twice the room for what is compared.
+        // A hit is sure where all comparisons are the other way round, with twice the room.
         let inside = least.simd_gt(bound) | most.simd_lt(-bound);
         let (size_room, distance_room) = (size_error + size_error, distance_error + distance_error);
         let first = ray.t_min.max(SURE_AFTER);
@@ -312,7 +324,7 @@ impl<S: Simd> Found<S> {
             & distance.simd_lt(last.mul_sub(size, size_room.mul_add(last, distance_room)));
         let sure = inside & in_range & size.simd_gt(size_room) & !unused;
         let lanes = (1 << BLOCK) - 1;
-        Sifted {
+        ConservativeTest {
             kept: LaneMask(!excluded.to_bitmask() as u32 & lanes),
             surely_hit: LaneMask(sure.to_bitmask() as u32 & lanes),
             sure,
@@ -325,9 +337,9 @@ impl<S: Simd> Found<S> {
     }
 }
 
-/// A block's triangles as they are seen from a point: what is the same for all rays that start there.
+/// The part of the test of a block that is the same for all rays from one point.
 pub(crate) struct SeenBlock {
-    /// `normal[axis][lane]`, and likewise what the direction is multiplied by for the edge functions.
+    /// `normal[axis][lane]`, and likewise the vectors whose dot products with the direction are the edge functions.
     normal: [[f32; BLOCK]; 3],
     u: [[f32; BLOCK]; 3],
     v: [[f32; BLOCK]; 3],
@@ -372,23 +384,23 @@ impl SeenBlock {
         }
     }
 
-    /// [`TriangleLanes::sift`] for one of the triangles and rays from that point; `length` is the longest component of each ray's
+    /// [`TriangleLanes::test_conservatively`] for one of the triangles and rays from that point; `length` is the longest component of each ray's
     /// direction. d·(f × c) takes the place of f·(c × d): the same products, so the same errors.
     #[inline(always)]
-    pub(crate) fn sift<S: Simd>(
+    pub(crate) fn test_conservatively<S: Simd>(
         &self,
         simd: S,
         lane: usize,
-        ray: &Sieve<S>,
+        ray: &RayLanes<S>,
         length: Lanes<S>,
         t_max: Lanes<S>,
-    ) -> Sifted<S> {
+    ) -> ConservativeTest<S> {
         let lane = lane & (BLOCK - 1);
         let [dx, dy, dz] = ray.direction;
         let along = |n: &[[f32; BLOCK]; 3]| dx.mul_add(n[0][lane], dy.mul_add(n[1][lane], dz * n[2][lane]));
         let (determinant, u, v) = (along(&self.normal), along(&self.u), along(&self.v));
         let w = determinant - (u + v);
-        let found = Found {
+        let determinants = Determinants {
             edges: [u, v, w],
             bound: length.mul_add(self.bound[lane], ray.underflow),
             determinant,
@@ -396,7 +408,7 @@ impl SeenBlock {
             distance: Lanes::splat(simd, self.distance[lane]),
             distance_error: Lanes::splat(simd, self.distance_error[lane]),
         };
-        found.sift(simd, ray, t_max, mask32x8::splat(simd, false))
+        determinants.test(simd, ray, t_max, mask32x8::splat(simd, false))
     }
 }
 
@@ -404,25 +416,25 @@ impl SeenBlock {
 mod tests {
     use super::*;
     use crate::dispatch::{dispatch, levels};
-    use crate::exact::Exact;
+    use crate::exact::ExactRay;
     use crate::ray::Ray;
-    use crate::triangle::decide;
+    use crate::triangle::intersect_exact;
     use lookfrom_simd::Kernel;
 
-    struct Filter<'a>(&'a TriangleBlock, &'a Prepared);
+    struct TestBlock<'a>(&'a TriangleBlock, &'a PreparedRay);
 
-    impl Kernel for Filter<'_> {
+    impl Kernel for TestBlock<'_> {
         type Output = (LaneMask, LaneMask, [f32; 2]);
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> (LaneMask, LaneMask, [f32; 2]) {
-            let sifted = self.0.filter(simd, &Sieve::new(simd, self.1), f32::INFINITY);
-            let [first, last] = sifted.between();
-            (sifted.kept, sifted.surely_hit, [first[0], last[0]])
+            let tested = self.0.test_conservatively(simd, &RayLanes::new(simd, self.1), f32::INFINITY);
+            let [first, last] = tested.between();
+            (tested.kept, tested.surely_hit, [first[0], last[0]])
         }
     }
 
     #[test]
-    fn the_filter_keeps_what_is_decided_to_be_hit() {
+    fn exact_hits_are_never_excluded() {
         let mut random = crate::testing::Random::new(7);
         let levels = levels();
         let (mut hits, mut sure, mut kept, mut all) = (0, 0, 0, 0);
@@ -441,22 +453,24 @@ mod tests {
                 false => random.near([0.0; 3], stretch),
             };
             let ray = Ray::new(origin, direction);
-            let exact = Exact::new(&ray);
-            let Some(shadow) = Prepared::new(fearless_simd::Fallback::new(), &exact, 0.0) else { continue };
+            let exact = ExactRay::new(&ray);
+            let Some(prepared) = PreparedRay::new(fearless_simd::Fallback::new(), &exact, 0.0) else {
+                continue;
+            };
             let block = TriangleBlock::new(&[(corners, 0, 0)]);
-            let (chosen, surely_hit, [first, last]) =
-                dispatch(levels[all % levels.len()], Filter(&block, &shadow));
-            let keep = chosen.count();
+            let (tested, surely_hit, [first, last]) =
+                dispatch(levels[all % levels.len()], TestBlock(&block, &prepared));
+            let keep = tested.count();
             all += 1;
             kept += keep;
-            let hit = decide(&exact, &corners, block.extent(0));
+            let hit = intersect_exact(&exact, &corners, block.extent(0));
             if hit.is_some() {
                 hits += 1;
                 assert_eq!(keep, 1, "{corners:?} {ray:?}");
             }
             if surely_hit != LaneMask(0) {
                 sure += 1;
-                let t = f64::from(hit.unwrap().t) * f64::from(shadow.shadow.scale);
+                let t = f64::from(hit.unwrap().t) * f64::from(prepared.scaled.scale);
                 assert!(f64::from(first) < t && t < f64::from(last), "{corners:?} {ray:?}");
             }
         }

@@ -1,10 +1,10 @@
-//! Where to cut a set of primitives in two: the surface area heuristic, and the cut itself.
+//! The split of a set of primitives in two by the surface area heuristic, in bins: Wald (2007).
 //!
 //! Centroids fall into bins on all three axes in one pass: Wald (2007), "On fast Construction of SAH-based Bounding Volume
 //! Hierarchies". Minima and negated maxima lie in one vector, so one instruction unites boxes.
 
 use crate::aabb::Aabb;
-use crate::filter::BLOCK;
+use crate::conservative::BLOCK;
 use lookfrom_simd::{Kernel, Simd, f32x4, f32x8, prelude::*, u32x4};
 
 use super::reference::{Covered, Reference};
@@ -15,27 +15,27 @@ pub(super) const MAX_BINS: usize = 32;
 /// Where these are enough, less is to be cleared.
 const FEW_BINS: usize = 8;
 
-/// Cuts two or more references: sorts those of the left side to the front. Gives their number and what the two sides cover, or
-/// none where no cut between bins separates anything.
-pub(super) struct Cut<'a> {
+/// Splits two or more references: sorts those of the left side to the front. Gives their number and the boxes of the two sides, or
+/// none where no split between bins separates anything.
+pub(super) struct Split<'a> {
     pub(super) references: &'a mut [Reference],
     pub(super) centers: &'a Aabb,
     /// Per axis, at most [`MAX_BINS`].
     pub(super) bins: usize,
 }
 
-impl Kernel for Cut<'_> {
+impl Kernel for Split<'_> {
     type Output = Option<(usize, [Covered; 2])>;
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
-        if self.bins <= FEW_BINS { self.cut::<S, FEW_BINS>(simd) } else { self.cut::<S, MAX_BINS>(simd) }
+        if self.bins <= FEW_BINS { self.split::<S, FEW_BINS>(simd) } else { self.split::<S, MAX_BINS>(simd) }
     }
 }
 
-impl Cut<'_> {
+impl Split<'_> {
     #[inline(always)]
-    fn cut<S: Simd, const BINS: usize>(self, simd: S) -> Option<(usize, [Covered; 2])> {
+    fn split<S: Simd, const BINS: usize>(self, simd: S) -> Option<(usize, [Covered; 2])> {
         let binning = Binning::new(simd, self.centers, self.bins);
         let mut bins = Bins::<S, BINS>::new(simd);
         for reference in &*self.references {
@@ -47,24 +47,24 @@ impl Cut<'_> {
                 bins.counts[bin][axis] += 1;
             }
         }
-        let (axis, cut) = bins.cheapest_cut(simd, self.bins)?;
+        let (axis, split) = bins.cheapest_split(simd, self.bins)?;
 
-        // Move what is left to the front, without a branch, since none could be foreseen.
+        // Move the left side to the front, without a branch, since none could be foreseen.
         let mut centers = [f32x8::splat(simd, f32::INFINITY); 2];
         let mut middle = 0;
         for place in 0..self.references.len() {
             let reference = self.references[place];
             let center = twice_center(reference.lanes(simd));
-            let is_left = usize::from((binning.bins(simd, center)[axis] as usize) < cut);
+            let is_left = usize::from((binning.bins(simd, center)[axis] as usize) < split);
             let center = point(center);
-            // What lies on the other side is moved to infinity.
+            // The centers of the other side are moved to infinity.
             centers[0] = centers[0].min(center + f32x8::splat(simd, [f32::INFINITY, 0.0][is_left]));
             centers[1] = centers[1].min(center + f32x8::splat(simd, [0.0, f32::INFINITY][is_left]));
             self.references[place] = self.references[middle];
             self.references[middle] = reference;
             middle += is_left;
         }
-        Some((middle, bins.covered(axis, cut, self.bins, centers)))
+        Some((middle, bins.covered(axis, split, self.bins, centers)))
     }
 }
 
@@ -116,7 +116,7 @@ impl<S: Simd> Binning<S> {
     }
 }
 
-/// What is in the bins of the three axes.
+/// The content of the bins of the three axes.
 struct Bins<S: Simd, const BINS: usize> {
     boxes: [[f32x8<S>; 3]; BINS],
     counts: [[u32; 4]; BINS],
@@ -128,10 +128,10 @@ impl<S: Simd, const BINS: usize> Bins<S, BINS> {
         Self { boxes: [[f32x8::splat(simd, f32::INFINITY); 3]; BINS], counts: [[0; 4]; BINS] }
     }
 
-    /// The axis of the cheapest cut, and the first bin to its right.
+    /// The axis of the cheapest split, and the first bin to its right.
     #[inline(always)]
-    fn cheapest_cut(&self, simd: S, bins: usize) -> Option<(usize, usize)> {
-        // Sweep from the right: what would lie right of each cut.
+    fn cheapest_split(&self, simd: S, bins: usize) -> Option<(usize, usize)> {
+        // Sweep from the right: the boxes right of each split.
         let nothing = f32x4::splat(simd, f32::INFINITY);
         let mut right = [nothing; BINS];
         let mut side = Side::new(simd);
@@ -153,12 +153,12 @@ impl<S: Simd, const BINS: usize> Bins<S, BINS> {
         (least[axis] < f32::INFINITY).then_some((axis, best[axis] as usize))
     }
 
-    /// What the two sides of a cut cover.
+    /// The boxes of the two sides of a split.
     #[inline(always)]
-    fn covered(&self, axis: usize, cut: usize, bins: usize, centers: [f32x8<S>; 2]) -> [Covered; 2] {
-        let mut sides = [self.boxes[0][axis], self.boxes[cut][axis]];
+    fn covered(&self, axis: usize, split: usize, bins: usize, centers: [f32x8<S>; 2]) -> [Covered; 2] {
+        let mut sides = [self.boxes[0][axis], self.boxes[split][axis]];
         for bin in 1..bins {
-            let side = usize::from(bin >= cut);
+            let side = usize::from(bin >= split);
             sides[side] = sides[side].min(self.boxes[bin][axis]);
         }
         [0, 1].map(
@@ -168,7 +168,7 @@ impl<S: Simd, const BINS: usize> Bins<S, BINS> {
     }
 }
 
-/// What lies on one side of a cut, for each axis along which to cut.
+/// One side of a split, for each axis.
 struct Side<S: Simd> {
     bounds: [f32x8<S>; 3],
     /// Lane by lane.
@@ -192,7 +192,7 @@ impl<S: Simd> Side<S> {
             let (min, negated_max) = self.bounds[axis].split();
             extents[axis] = min + negated_max;
         }
-        // From a vector for each cut to a vector for each dimension. Extents are negated, their products are not.
+        // From a vector for each split to a vector for each dimension. Extents are negated, their products are not.
         let [a, b, c] = extents;
         let (xy_ac, xy_b) = (a.zip_low(c), b.zip_low(b));
         let [x, y] = [xy_ac.zip_low(xy_b), xy_ac.zip_high(xy_b)];
@@ -212,8 +212,12 @@ mod tests {
     use crate::dispatch::{dispatch, levels};
     use crate::testing::Random;
 
-    /// The cheapest cut, plainly: the least cost, and the references on its two sides.
-    fn reference_cut(references: &[Reference], centers: &Aabb, bins: usize) -> Option<(f32, [Vec<u32>; 2])> {
+    /// The cheapest split, plainly: the least cost, and the references on its two sides.
+    fn reference_split(
+        references: &[Reference],
+        centers: &Aabb,
+        bins: usize,
+    ) -> Option<(f32, [Vec<u32>; 2])> {
         let mut best: Option<(f32, [Vec<u32>; 2])> = None;
         for axis in 0..3 {
             let scale = bins as f32 / (centers.max[axis] - centers.min[axis]);
@@ -221,9 +225,9 @@ mod tests {
                 let place = (reference.bounds().twice_center()[axis] - centers.min[axis]) * scale;
                 if scale.is_finite() { (place as usize).min(bins - 1) } else { 0 }
             };
-            for cut in 1..bins {
+            for split in 1..bins {
                 let sides: [Vec<Reference>; 2] = [true, false]
-                    .map(|left| references.iter().copied().filter(|r| (bin(r) < cut) == left).collect());
+                    .map(|left| references.iter().copied().filter(|r| (bin(r) < split) == left).collect());
                 if sides.iter().any(Vec::is_empty) {
                     continue;
                 }
@@ -245,9 +249,9 @@ mod tests {
     }
 
     #[test]
-    fn every_level_cuts_as_the_plain_rule_does() {
+    fn every_level_splits_as_the_plain_rule_does() {
         let mut random = Random::new(3);
-        let (mut cuts, mut none) = (0, 0);
+        let (mut splits, mut none) = (0, 0);
         for round in 0..3000 {
             let count = 2 + random.below(if round % 10 == 0 { 300 } else { 12 });
             let (place, spread) = (random.point_with_exponents(-6, 6), random.size(-6, 6));
@@ -263,11 +267,12 @@ mod tests {
                 .collect();
             let covered = Covered::by(&references);
             let bins = [4, 8, 16, MAX_BINS][random.below(4) as usize];
-            let expected = reference_cut(&references, &covered.centers, bins);
+            let expected = reference_split(&references, &covered.centers, bins);
             for level in levels() {
                 let mut sorted = references.clone();
-                let cut = dispatch(level, Cut { references: &mut sorted, centers: &covered.centers, bins });
-                let Some((middle, sides)) = cut else {
+                let split =
+                    dispatch(level, Split { references: &mut sorted, centers: &covered.centers, bins });
+                let Some((middle, sides)) = split else {
                     assert!(expected.is_none());
                     none += 1;
                     continue;
@@ -278,15 +283,15 @@ mod tests {
                     .iter()
                     .map(|side| Covered::by(side).bounds.half_area() * side.len().div_ceil(BLOCK) as f32)
                     .sum();
-                // The order of a sum may decide between cuts that are equally good.
+                // The order of a sum may decide between splits that are equally good.
                 assert!((cost - least).abs() <= 1e-6 * least, "{cost}, not {least}");
                 if cost == *least {
                     assert_eq!([numbers(left), numbers(right)], *expected);
                 }
                 assert_eq!(sides, [Covered::by(left), Covered::by(right)]);
-                cuts += 1;
+                splits += 1;
             }
         }
-        assert!(cuts > 5000 && none > 0, "{cuts} cuts, none {none} times");
+        assert!(splits > 5000 && none > 0, "{splits} splits, none {none} times");
     }
 }

@@ -1,7 +1,7 @@
 //! Eight rays of a packet, one in each lane.
 
 use crate::aabb::Aabb;
-use crate::filter::{self, Sieve};
+use crate::conservative::{self, RayLanes};
 use crate::origin_primitive::OriginPrimitive;
 use crate::prepared::{self, FAR, LARGEST_RECIPROCAL, SHORT};
 use crate::ray::{NONE, Ray};
@@ -19,11 +19,11 @@ pub(crate) const RAYS: usize = LANES * GROUPS;
 /// The number of no block.
 pub(crate) const NO_BLOCK: i32 = -1;
 
-/// Eight rays, one in each lane.
+/// Eight rays, one in each lane, and their closest hits so far.
 #[derive(Clone, Copy)]
-pub(crate) struct Group<S: Simd> {
-    pub(crate) sieve: Sieve<S>,
-    /// Which of them are usual rays; the others' lanes hold nothing of use.
+pub(crate) struct Ray8<S: Simd> {
+    pub(crate) ray_lanes: RayLanes<S>,
+    /// The lanes of usual rays; the others hold nothing of use.
     pub(crate) usual: u32,
     /// The longest component of their directions.
     pub(crate) length: f32x8<S>,
@@ -32,7 +32,7 @@ pub(crate) struct Group<S: Simd> {
     pub(crate) near_product: [f32x8<S>; 3],
     pub(crate) far_product: [f32x8<S>; 3],
     pub(crate) end: f32x8<S>,
-    /// Between which distances a sure hit lies that waits for its decision; ∞ where there is none.
+    /// Bounds of the distance of a sure hit that is not yet intersected exactly; ∞ where there is none.
     pub(crate) first: f32x8<S>,
     pub(crate) last: f32x8<S>,
     /// That hit's block and its lane in it.
@@ -42,14 +42,14 @@ pub(crate) struct Group<S: Simd> {
     origin_ids: [i32x8<S>; 2],
 }
 
-impl<S: Simd> Group<S> {
+impl<S: Simd> Ray8<S> {
     /// No rays.
     #[inline(always)]
     pub(crate) fn empty(simd: S) -> Self {
         let zero = f32x8::splat(simd, 0.0);
         let (zeros, number) = ([zero; 3], i32x8::splat(simd, NO_BLOCK));
         Self {
-            sieve: Sieve::of_rays(simd, zeros, zeros, zero, zero),
+            ray_lanes: RayLanes::of_rays(simd, zeros, zeros, zero, zero),
             usual: 0,
             length: zero,
             near_reciprocal: zeros,
@@ -105,7 +105,7 @@ impl<S: Simd> Group<S> {
         let none = f32x8::splat(simd, f32::INFINITY);
         Self {
             usual: (usual & finite).to_bitmask() as u32 & 0xff,
-            sieve: Sieve::of_rays(simd, origin, direction, first, length * filter::ERROR),
+            ray_lanes: RayLanes::of_rays(simd, origin, direction, first, length * conservative::ERROR),
             length,
             near_reciprocal: [x[0], y[0], z[0]],
             far_reciprocal: [x[1], y[1], z[1]],
@@ -153,10 +153,10 @@ impl<S: Simd> Group<S> {
         self.end[lane] = smaller(end, self.end[lane]);
     }
 
-    /// Which rays meet a box before their ends.
+    /// The rays that meet a box before their ends.
     #[inline(always)]
     pub(crate) fn meet(&self, bounds: &Aabb) -> u32 {
-        let mut near = self.sieve.t_min;
+        let mut near = self.ray_lanes.t_min;
         let mut far = self.end;
         for axis in 0..3 {
             let [a, b] = [bounds.min[axis], bounds.max[axis]];

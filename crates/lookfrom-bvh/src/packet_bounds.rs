@@ -1,10 +1,10 @@
-//! What holds for all rays of a packet, so that one test of eight boxes serves them all.
+//! Bounds of the rays of a packet, an interval ray: one test of eight boxes serves them all. Boulos, Wald, Shirley (2006).
 
 use crate::aabb::Aabb;
-use crate::group::{GROUPS, Group, RAYS, least};
 use crate::node::{Entered, Node};
 use crate::prepared::{self, SHORT};
 use crate::ray::Ray;
+use crate::ray8::{GROUPS, RAYS, Ray8, least};
 use lookfrom_simd::{Simd, f32x8, i32x8, prelude::*};
 
 /// Directions of a packet differ by at most this part of their length.
@@ -25,8 +25,8 @@ pub(crate) fn seem_alike(rays: &[Ray]) -> bool {
         .all(|&other| (0..3).all(|axis| (rays[other].direction[axis] - first[axis]).abs() < SPREAD * length))
 }
 
-/// What holds for all rays of a packet, for a test of eight boxes at once.
-pub(crate) struct Beam<S: Simd> {
+/// Intervals around the origins and reciprocal directions of all rays of a packet.
+pub(crate) struct PacketBounds<S: Simd> {
     /// The least corner of the box around the origins.
     origin: [f32; 3],
     /// The origin of all rays, where that is one.
@@ -39,18 +39,19 @@ pub(crate) struct Beam<S: Simd> {
     t_min: i32x8<S>,
 }
 
-impl<S: Simd> Beam<S> {
+impl<S: Simd> PacketBounds<S> {
     /// None where the rays are too different to go together, or not usual ones.
     #[inline(always)]
-    pub(crate) fn around(simd: S, groups: &[Group<S>; GROUPS], largest: f32) -> Option<Self> {
+    pub(crate) fn around(simd: S, groups: &[Ray8<S>; GROUPS], largest: f32) -> Option<Self> {
         let mut usual = groups[0].usual;
-        let mut t_min = groups[0].sieve.t_min;
-        let (mut origins, mut directions) = ([groups[0].sieve.origin; 2], [groups[0].sieve.direction; 2]);
+        let mut t_min = groups[0].ray_lanes.t_min;
+        let (mut origins, mut directions) =
+            ([groups[0].ray_lanes.origin; 2], [groups[0].ray_lanes.direction; 2]);
         for group in &groups[1..] {
             usual &= group.usual;
-            t_min = t_min.min(group.sieve.t_min);
+            t_min = t_min.min(group.ray_lanes.t_min);
             for axis in 0..3 {
-                let (o, d) = (group.sieve.origin[axis], group.sieve.direction[axis]);
+                let (o, d) = (group.ray_lanes.origin[axis], group.ray_lanes.direction[axis]);
                 origins[0][axis] = origins[0][axis].min(o);
                 origins[1][axis] = origins[1][axis].max(o);
                 directions[0][axis] = directions[0][axis].min(d);

@@ -1,0 +1,108 @@
+//! The types of rays that queries trace, and the code for each: f32 by SIMD, f64 by the scalar twin.
+
+use crate::observer::Observer;
+use crate::query::Settings;
+use crate::ray::{Hit, Ray};
+use crate::ray_f64::{HitF64, RayF64};
+use crate::{batch, single, traverse_f64};
+
+/// A type of ray that queries trace: [`Ray`], whose `Hit` is [`Hit`], or [`RayF64`], whose `Hit` is [`HitF64`]. There are no others.
+///
+/// ```
+/// use lookfrom_bvh::{Bvh, TraceRay};
+/// /// How many hits a ray has, in either precision.
+/// fn count<R: TraceRay>(bvh: &Bvh, ray: &R) -> usize {
+///     let mut hits = Vec::new();
+///     bvh.query().all_hits(ray, &mut hits);
+///     hits.len()
+/// }
+/// # assert_eq!(count(&Bvh::default(), &lookfrom_bvh::Ray::new([0.0; 3], [1.0; 3])), 0);
+/// ```
+pub trait TraceRay: sealed::Trace {}
+
+impl TraceRay for Ray {}
+
+impl TraceRay for RayF64 {}
+
+mod sealed {
+    use crate::observer::Observer;
+    use crate::query::Settings;
+
+    /// The questions about a type of ray.
+    pub trait Trace: Copy + Sync + Sized {
+        /// A hit in the same precision.
+        type Hit: Copy + Send;
+
+        fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> Self::Hit;
+        fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool;
+        /// Adds the hits to `hits`, which is empty.
+        fn all_hits<O: Observer>(
+            settings: &Settings<'_>,
+            ray: &Self,
+            hits: &mut Vec<Self::Hit>,
+            observer: &mut O,
+        );
+        fn closest_hits(settings: &Settings<'_>, rays: &[Self], hits: &mut [Self::Hit]);
+        fn occluded_many(settings: &Settings<'_>, rays: &[Self], occluded: &mut [bool]);
+    }
+}
+
+impl sealed::Trace for Ray {
+    type Hit = Hit;
+
+    fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> Hit {
+        if O::LISTENS {
+            single::observed_closest_hit(settings, ray, observer)
+        } else {
+            single::closest_hit(settings, ray)
+        }
+    }
+
+    fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool {
+        if O::LISTENS {
+            single::observed_occluded(settings, ray, observer)
+        } else {
+            single::occluded(settings, ray)
+        }
+    }
+
+    fn all_hits<O: Observer>(settings: &Settings<'_>, ray: &Self, hits: &mut Vec<Hit>, observer: &mut O) {
+        if O::LISTENS {
+            single::observed_all_hits(settings, ray, hits, observer);
+        } else {
+            single::all_hits(settings, ray, hits);
+        }
+    }
+
+    fn closest_hits(settings: &Settings<'_>, rays: &[Self], hits: &mut [Hit]) {
+        batch::closest_hits(settings, rays, hits);
+    }
+
+    fn occluded_many(settings: &Settings<'_>, rays: &[Self], occluded: &mut [bool]) {
+        batch::occluded_many(settings, rays, occluded);
+    }
+}
+
+impl sealed::Trace for RayF64 {
+    type Hit = HitF64;
+
+    fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> HitF64 {
+        traverse_f64::closest_hit(settings, ray, observer)
+    }
+
+    fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool {
+        traverse_f64::occluded(settings, ray, observer)
+    }
+
+    fn all_hits<O: Observer>(settings: &Settings<'_>, ray: &Self, hits: &mut Vec<HitF64>, observer: &mut O) {
+        traverse_f64::all_hits(settings, ray, hits, observer);
+    }
+
+    fn closest_hits(settings: &Settings<'_>, rays: &[Self], hits: &mut [HitF64]) {
+        traverse_f64::closest_hits(settings, rays, hits);
+    }
+
+    fn occluded_many(settings: &Settings<'_>, rays: &[Self], occluded: &mut [bool]) {
+        traverse_f64::occluded_many(settings, rays, occluded);
+    }
+}
