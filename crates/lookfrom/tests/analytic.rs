@@ -121,10 +121,14 @@ fn a_pane_of_glass_moves_what_is_behind_it_by_snells_law() {
         radius = 0.05
     ";
     let seen = |x: f32| middle(1, &format!("{pane}center = [{x}, 0, -8]"))[0];
-    // which side depends on the turn: it is one and only one of the two
-    let sides = [seen(shift), seen(-shift)];
-    assert!(sides == [1.0, 0.0] || sides == [0.0, 1.0], "{sides:?} at {shift}");
-    assert_eq!(seen(0.0), 0.0);
+    // Turned by +45° about y, the pane's near face looks to (1, 0, 1)/√2. The ray along (0, 0, −1) is bent towards the
+    // opposite of that normal, thus to −x, and leaves the pane at x = −shift. The sphere's rim is 0.05 from there.
+    let exit = -shift;
+    for (offset, expected) in [(0.0, 1.0), (0.0499, 1.0), (-0.0499, 1.0), (0.0501, 0.0), (-0.0501, 0.0)] {
+        assert_eq!(seen(exit + offset), expected, "{offset} beside {exit}");
+    }
+    // Neither straight on nor to the other side.
+    assert_eq!([seen(0.0), seen(shift)], [0.0; 2]);
 }
 
 #[test]

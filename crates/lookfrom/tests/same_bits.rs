@@ -45,6 +45,27 @@ fn any_number_of_threads() {
 }
 
 #[test]
+fn with_and_without_the_feature_parallel() {
+    // FNV-1a of the bits of all pixels. The gate runs this test with the feature and without it.
+    let hash = |name: &str| {
+        let bytes = Compiled::new(small(name))
+            .film()
+            .picture()
+            .pixels
+            .into_iter()
+            .flatten()
+            .flat_map(f32::to_le_bytes);
+        bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+        })
+    };
+    assert_eq!(
+        ["glass-and-mirror.toml", "soft-shadows.toml"].map(hash),
+        [0x348d_c841_67ed_9180, 0xdacc_0b71_9cbf_9352]
+    );
+}
+
+#[test]
 fn any_split_of_pixels_and_samples() {
     let compiled = Compiled::new(small("glass-and-mirror.toml"));
     let whole = compiled.film();
