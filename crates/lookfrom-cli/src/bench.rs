@@ -1,4 +1,4 @@
-//! `lookfrom bench`: how fast scenes are rendered, and how much noise is left for the time.
+//! `lookfrom bench`: rendering speed, and the noise left per time.
 
 use std::path::Path;
 use std::time::Instant;

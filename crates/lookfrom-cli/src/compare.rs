@@ -1,4 +1,4 @@
-//! `lookfrom compare`: how far pictures are from references. The numbers are the library's; this is who asks and tells.
+//! `lookfrom compare`: differences between pictures and references, as the library computes them.
 
 use std::path::Path;
 

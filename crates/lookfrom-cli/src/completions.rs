@@ -1,4 +1,4 @@
-//! `lookfrom completions`: a script that completes this command in a shell.
+//! `lookfrom completions`: completion scripts for shells.
 
 use std::io::Write;
 

@@ -1,8 +1,8 @@
-//! Errors for a person at a terminal: what is wrong, where, the line that it is about, and what to do.
+//! Diagnostics for a terminal: message, location, source line, help.
 //!
 //! All have one form, which is also that of compilers: `error: …`, then the place as `--> file:line:column`, one word to
 //! search for or to click on, and the line with carets, then `help: …`. What the parser of the command line says looks alike
-//! and ends with the way to `--help`. Colours are those of that parser; who prints takes them out where they are not wanted.
+//! and ends with the way to `--help`. Colours are those of that parser; the printer removes them where they are not wanted.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! How a run ends: what went wrong in words, and the exit code that scripts read.
+//! Failures of a run and their exit codes.
 
 use std::fmt;
 use std::io::{IsTerminal, Write};

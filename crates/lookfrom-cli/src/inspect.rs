@@ -1,4 +1,4 @@
-//! `lookfrom inspect`: all that happens on the way of one sample. The inspection itself is the library's.
+//! `lookfrom inspect`: a report on one sample. The inspection itself is the library's.
 
 use lookfrom::inspect;
 use lookfrom::render::{Renderer, SampleId};

@@ -1,4 +1,4 @@
-//! What pictures are called: by the names of their scenes, and by what was typed after `-o`.
+//! Names of pictures: from the names of their scenes and the pattern after `-o`.
 
 use std::collections::HashMap;
 use std::ffi::{OsStr, OsString};

@@ -1,4 +1,4 @@
-//! What was typed as options of a session.
+//! From command-line arguments to the options of a session.
 
 use lookfrom::session::Options;
 use lookfrom_scene::image::Image;

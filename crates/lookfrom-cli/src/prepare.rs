@@ -1,4 +1,4 @@
-//! From what was typed to a session of the library: the files that are read are remembered, so that none is written over.
+//! Sessions for the command, with every input file on record so that no output overwrites one.
 
 use std::path::{Path, PathBuf};
 

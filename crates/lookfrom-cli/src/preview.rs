@@ -1,4 +1,4 @@
-//! The picture so far, written again and again while it is made, by a thread of its own.
+//! Previews: the picture so far, written repeatedly by a thread of its own.
 
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -21,7 +21,7 @@ pub(crate) struct Preview {
 }
 
 impl Preview {
-    /// Starts the clock. Who writes takes pictures from the receiver until there are no more.
+    /// Starts the clock. The writer takes pictures from the receiver until there are no more.
     pub(crate) fn start(every: Duration, image: &ImageSettings) -> (Self, Receiver<SoFar>) {
         let (sender, receiver) = sync_channel(0);
         let &ImageSettings { width, height, crop, .. } = image;

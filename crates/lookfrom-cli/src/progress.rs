@@ -1,4 +1,4 @@
-//! How far a render is: a bar on stderr where a person looks at it, and the word to the library that it shall stop.
+//! Progress: a bar on stderr, and cancellation.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};

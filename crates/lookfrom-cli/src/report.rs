@@ -1,4 +1,4 @@
-//! What was done, for a person on stderr and for a program as JSON on stdout.
+//! Summaries of a render: text on stderr, JSON on stdout.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -179,7 +179,7 @@ impl Summary {
             }
         };
         if let Dropped { count, first: Some(DroppedAddress { x, y, sample }) } = self.dropped_samples {
-            // Who inspects knows the scene's number of samples, not what the clock made of it.
+            // The inspector knows the scene's number of samples, not what a time limit made of it.
             let of = match self.ended_by {
                 "time" | "noise" => format!(" --samples {samples}"),
                 _ => String::new(),

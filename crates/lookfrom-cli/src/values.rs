@@ -1,4 +1,4 @@
-//! The words of the command line for settings, and back: the same words as in scene files.
+//! Values of command-line options, spelled as in scene files.
 
 use std::fmt::Display;
 use std::str::FromStr;

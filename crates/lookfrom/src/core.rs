@@ -1,4 +1,4 @@
-//! What everything stands on: spectra and colour, random numbers and where they lead, vectors in lanes.
+//! Foundations: spectra and colour, sampling, noise, vectors in lanes.
 
 pub(crate) mod clock;
 pub mod color;

@@ -1,4 +1,4 @@
-//! How does the light of many samples become one colour a pixel, whatever the order it came in?
+//! The film: sums of samples per pixel in fixed point, independent of their order.
 //!
 //! Step 7 on the way of a pixel. Sums of floating-point numbers depend on their order, sums of integers do not. So each
 //! pixel holds three fixed-point sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the

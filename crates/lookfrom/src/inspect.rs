@@ -1,4 +1,4 @@
-//! What happened on the way of one sample: every matrix, every determinant, every root, every ray with its densities.
+//! The inspector: every matrix, determinant, root, ray and density of one sample.
 //!
 //! This is the render itself with a watcher listening: [`inspect`] traces the one sample through [`Renderer::trace`], as a
 //! tile would, and arranges what the watcher heard. What it shows adds up, bit for bit, to what the film received.

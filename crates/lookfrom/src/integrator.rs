@@ -1,4 +1,4 @@
-//! What a ray's hit means for the pixel: the step that every integrator is.
+//! Integrators: from a path and its hit to light, shadow rays and further paths.
 //!
 //! An integrator turns one [`Path`] and its hit into contributions, shadow rays and further paths. Steps run in stages
 //! over batches (see `render`): all paths of a batch are traced, then stepped, then their shadow rays are traced, and the
@@ -86,7 +86,7 @@ pub trait Integrator: std::fmt::Debug + Send + Sync {
 pub struct Path {
     /// In render space; not of unit length: from the camera, `t = 1` is the image plane.
     pub ray: Ray,
-    /// The share of the sample that light along this ray has.
+    /// The path throughput: the factor of light along this ray in the sample.
     pub beta: Spectrum,
     /// Which sample of the batch.
     pub slot: u32,
@@ -105,7 +105,7 @@ impl Path {
     /// The address of the root of the tree.
     pub const ROOT: u64 = 1;
 
-    /// Where it left from, as lights are asked there.
+    /// Where it left from, as lights are sampled there.
     pub(crate) fn light_context(&self) -> LightSampleContext {
         LightSampleContext { point: self.previous.point.as_dvec3(), n: self.previous.n }
     }
@@ -148,12 +148,12 @@ pub struct SampleStream {
 }
 
 impl SampleStream {
-    /// A number in `[0, 1)` for whether a surface is there, for those who have no purposes of their own.
+    /// A number in `[0, 1)` for the alpha test, in a dimension that integrators do not use otherwise.
     fn presence(&self, world: &World, surface: &SurfaceInteraction) -> f32 {
         if world.is_stochastic(surface) { self.two(u32::MAX)[0] } else { 0.0 }
     }
 
-    /// Two numbers in `[0, 1)` for one purpose at this ray.
+    /// Two numbers in `[0, 1)` of one dimension at this ray.
     pub fn two(&self, dimension: u32) -> [f32; 2] {
         self.sampler.two(self.sample, hash::pair(self.address, u64::from(dimension)) as u32)
     }
@@ -196,14 +196,14 @@ impl Queues {
     }
 }
 
-/// What a step leaves behind, and who listens.
+/// The output of a step, and the probe that listens.
 #[derive(Debug)]
 pub struct StepOutput<'a, P: Probe> {
     /// The samples that steps add to.
     pub queues: Queues,
     /// What the camera sees where nothing stands.
     pub background: Background,
-    /// Who listens.
+    /// The listener.
     pub probe: &'a mut P,
 }
 

@@ -1,4 +1,4 @@
-//! Where light comes from: each light can be sampled from a point, and tells how probable a direction was.
+//! Lights: samples as seen from a point, and their densities.
 //!
 //! In radiometric units: a written intensity `I` of a point light is `π I` W/sr here, so that a white diffuse surface
 //! (`k_d / π`) that faces it from a distance of 1 is seen with radiance `I` (the convention of `lookfrom_scene::light`).

@@ -1,4 +1,4 @@
-//! From a film to a picture: noise filtered out, light developed to what a file holds.
+//! Post-processing: from a film to a picture in a file.
 
 pub mod denoise;
 pub mod develop;

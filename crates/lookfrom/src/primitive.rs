@@ -1,4 +1,4 @@
-//! From a hit (ids, t, u, v) to the surface there: each form's point, normals, derivatives and texture coordinates.
+//! Primitives: from a hit (ids, t, u, v) to a point with normals, derivatives and texture coordinates.
 //!
 //! Each kind of form has a file of its own. Positions are in the space of the group that the form belongs to: render
 //! space, or the space of an instanced object. `∂p/∂u` and `∂p/∂v` follow pbrt-v4 for each kind, since brushed metal
@@ -24,12 +24,12 @@ pub use patch::Patches;
 pub use quadric::{Quadric, QuadricKind, Quadrics};
 pub use sphere::{SphereBinding, Spheres};
 
-/// Whose surface it is.
+/// The material, light and other attributes of a primitive's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MaterialBinding {
     /// Index into the world's materials.
     pub material: u32,
-    /// Index into the world's lights, where the surface shines.
+    /// Index into the world's lights, where the surface emits light.
     pub light: Option<u32>,
     /// Which shape of the scene.
     pub shape: u32,
@@ -50,7 +50,7 @@ pub enum Primitives {
     Mesh(Arc<Mesh>),
     /// Spheres of many shapes.
     Spheres(Spheres),
-    /// Round plates of many shapes.
+    /// Round disks of many shapes.
     Disks(Disks),
     /// Ellipsoids, cylinders and parts of them, of many shapes.
     Quadrics(Arc<Quadrics>),
@@ -83,7 +83,7 @@ pub struct SurfacePoint {
     pub shading_dpdv: DVec3,
     /// The mesh's own linear colour; white where it has none.
     pub color: [f32; 3],
-    /// Whose.
+    /// Its attributes.
     pub binding: MaterialBinding,
 }
 

@@ -1,4 +1,4 @@
-//! The way of a pixel: start, hit, step, occluded, add. Which pixels and samples are rendered when is decided in `driver`.
+//! The renderer: start, hit, step, occluded, add. Which pixels and samples are rendered when is decided in `driver`.
 //!
 //! [`Renderer::render_tile`] is pure: the same world, view, settings, pixels and sample numbers give the same bits, on any
 //! machine, with any number of threads. Everything else ([`Renderer::render`], the inspector, a session) only decides which

@@ -1,4 +1,4 @@
-//! One way from a file to a finished picture: what every door calls, and nothing else.
+//! Sessions: the one way from a file to a finished picture, for every door.
 //!
 //! A [`Session`] reads (or is given) a scene, applies [`Options`], decides what both leave open — camera, lights, samples,
 //! denoising, AOVs — and owns the compiled [`World`]. Its picture is rendered with progress and

@@ -1,5 +1,4 @@
-//! Surfaces and light: the point that a ray met, its textures and material, the scattering function there, and what the ray is
-//! inside of.
+//! Shading: surface interactions, textures, materials, BSDFs, interior stacks.
 
 pub mod bsdf;
 pub mod interaction;

@@ -1,4 +1,4 @@
-//! What light meets: a scene compiled to flat arrays and integer ids, frozen.
+//! The world: a scene compiled to flat arrays and integer ids, frozen.
 //!
 //! *Render space* is the world translated so that its origin is the eye of the scene's camera: f32 is finest where the
 //! picture looks closest. Views from elsewhere share it as long as they are exact ([`World::is_precise_from`]).
@@ -66,7 +66,7 @@ pub struct World {
     pub(crate) textures: Arc<Textures>,
     /// Lights to be sampled.
     pub(crate) lights: Vec<Light>,
-    /// Which light is asked where only one is.
+    /// Which light is sampled where only one is.
     pub(crate) light_choice: Arc<LightChoice>,
     /// Whitted's `I_a`.
     pub(crate) ambient: SpectrumTexture,
@@ -265,7 +265,7 @@ impl World {
         }
     }
 
-    /// The density over solid angle with which asking one light from a place finds `light` in the unit direction `wi`, in
+    /// The density over solid angle with which sampling one light from a place finds `light` in the unit direction `wi`, in
     /// which a ray met it at `surface` (nowhere for an environment).
     pub fn light_pdf(
         &self,

@@ -1,4 +1,4 @@
-//! What may be asked of a picture of a model: what surrounds it, and what of the file is meant.
+//! Options for pictures of models: surroundings, framing, and the parts of a file to show.
 //!
 //! The doc comments here are the help texts.
 

@@ -1,4 +1,4 @@
-//! What `info --json` answers: the names are explained in docs/guide/command.md.
+//! The objects of `info --json`, described in docs/guide/command.md.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! How do four wavelengths become a colour, and a colour a spectrum?
+//! Colour: wavelengths to RGB, and RGB to spectra.
 //!
 //! In spectral mode a sample follows four [`Wavelengths`] at once (hero wavelength sampling: Wilkie et al. 2014). Colours
 //! that enter as RGB are lifted to smooth spectra ([`Sigmoid`], [`Unbounded`]: Jakob and Hanika 2019), measured curves are

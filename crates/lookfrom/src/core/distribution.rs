@@ -1,4 +1,4 @@
-//! How is one of many chosen, in proportion to weights?
+//! Piecewise-constant distributions, sampled in proportion to their weights.
 //!
 //! [`Discrete`] chooses an entry of a list, [`Piecewise2D`] a point of the unit square by the brightness of a picture
 //! there, [`Windowed2D`] one of a part of it. All search running sums (inversion), which keeps near numbers near:

@@ -1,4 +1,4 @@
-//! How does a pixel weigh the light around its centre?
+//! Pixel reconstruction filters, sampled by importance.
 //!
 //! Step 3 on the way of a pixel. The weight is not applied to samples that fall anywhere: places are *chosen* with a
 //! density proportional to the filter, so that a sample touches only its own pixel (filter importance sampling, Ernst,

@@ -1,7 +1,7 @@
-//! How is a number turned into one that looks unrelated to it?
+//! Integer hashes.
 //!
 //! The one mixing function behind random numbers ([`crate::core::sampler`]) and lattices ([`crate::core::noise`]). What is mixed,
-//! and in which order, is left to those who call it.
+//! and in which order, is left to the caller.
 //!
 //! Steele, Lea & Flood 2014 (SplitMix), with the multipliers of Stafford's variant 13.
 

@@ -1,7 +1,4 @@
-//! Which pattern is random everywhere, smooth everywhere, and the same every time?
-//!
-//! Gradient noise over three-dimensional space, and its sums over octaves. Colours and veins made of it are left to
-//! textures.
+//! Gradient noise over three-dimensional space, and its sums over octaves.
 //!
 //! Perlin 1985 (gradients on a lattice, turbulence) and 2002 (the quintic fade, gradients along the edges of a cube). A
 //! hash of the lattice point takes the place of Perlin's table, so that the pattern does not repeat every 256 units; noise by

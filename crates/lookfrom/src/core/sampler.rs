@@ -1,4 +1,4 @@
-//! Which random numbers does a sample of a pixel use?
+//! Samplers: the random numbers of a sample, as pure functions of pixel, sample index, dimension and seed.
 //!
 //! Step 3 on the way of a pixel, and all choices after it. A number is a pure function of (seed, pixel, sample,
 //! dimension): nothing is stored, nothing is counted, any thread may ask for any of them in any order, and the answer

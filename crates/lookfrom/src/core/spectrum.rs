@@ -1,4 +1,4 @@
-//! Light as four lanes.
+//! Spectra: light as four lanes.
 //!
 //! In RGB mode the lanes are linear Rec. 709 red, green, blue and an unused fourth that is always 0. All arithmetic of
 //! materials and lights is lane-wise; only where colour enters (textures, light colours) and leaves (the film) does the

@@ -1,4 +1,4 @@
-//! Do these counts look like that density? For tests only.
+//! Chi-square statistics for tests.
 //!
 //! Wilson & Hilferty 1931 turn a chi-square into a normal deviate.
 

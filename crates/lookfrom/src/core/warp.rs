@@ -1,4 +1,4 @@
-//! How do numbers of the unit square become directions and points on shapes?
+//! Warps: from the unit square to directions and to points on shapes.
 //!
 //! Each warp takes `u` in [0, 1)² and keeps near numbers near, so that well-spread samples stay well spread; beside
 //! each stands its density. The disk is the root of all directions: Shirley & Chiu's map has no seam, and Archimedes'

@@ -1,11 +1,11 @@
-//! What becomes of a few samples that outshine their pixel, where that is not wanted?
+//! Firefly suppression: samples that outshine their pixel are spread over its neighbours.
 //!
 //! A path that finds a small bright thing by chance makes its pixel far too bright (a firefly), while its neighbours miss
 //! that light. Cutting it off would darken the picture. Here the excess is spread over the pixels around, so that the sum over
 //! the picture stays what it was: noise is traded for blur where it is worst, and the mean is honest.
 //!
 //! A pixel is a firefly if it is brighter than the median of its eight neighbours by more than three of their standard errors
-//! (their median), and by less than three of its own. What is bright for good (a lamp, a highlight) is so by many of its own
+//! (their median), and by less than three of its own. What is bright for good (a light, a highlight) is so by many of its own
 //! standard errors, and stays. The excess above the median goes in equal parts to the 5 × 5 pixels around.
 
 use super::{Film, Picture};

@@ -1,4 +1,4 @@
-//! How much noise is left in a part of a picture?
+//! Noise estimates of parts of a picture.
 //!
 //! A pixel's *relative error* is the standard error of its luminance over its luminance plus a tenth of the picture's mean:
 //! what is much darker than the rest need not be as clean for its own sake. An area's error is the mean over its pixels. The

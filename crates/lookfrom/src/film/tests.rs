@@ -1,4 +1,4 @@
-//! Is a film the same whatever the order, and are its sums the true ones?
+//! Tests of the film: order independence and exact sums.
 
 use super::*;
 use crate::core::hash::mix;
@@ -329,7 +329,7 @@ fn fireflies_are_spread_and_the_sum_is_kept() {
     for (x, y) in (0..81).map(|i| (i % 9, i / 9)) {
         for sample in 0..16 {
             let grain = 1.0 + 0.1 * (mix(u64::from((y * 9 + x) * 16 + sample)) % 1000) as f32 * 1e-3;
-            // A lamp that is always seen, and one sample that found it by chance.
+            // A light that is always seen, and one sample that found it by chance.
             let lamp = if (x, y) == (7, 7) { 100.0 } else { 0.0 };
             let chance = if (x, y, sample) == (2, 3, 5) { 4000.0 } else { 0.0 };
             film.add(x, y, sample, [grain + lamp + chance, grain + lamp, grain + lamp + 0.5 * chance]);

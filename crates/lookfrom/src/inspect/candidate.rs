@@ -1,4 +1,4 @@
-//! What a ray was tested against, and each number of the test in f32 and f64.
+//! Candidates of an intersection test, with each number of the test in f32 and f64.
 //!
 //! The numbers are those of the kernel's slow twin ([`lookfrom_bvh::reference`]) for the very ray that was traced: the
 //! same inputs, computed once in f32 and once in f64, so that a difference is what the arithmetic lost.

@@ -1,4 +1,4 @@
-//! What an inspection says, as plain data: the JSON form is this, field by field.
+//! The report of an inspection as plain data, which is also its JSON.
 
 use serde::Serialize;
 
@@ -116,7 +116,7 @@ pub struct RayReport {
     pub direction: [f32; 3],
     /// β: the share of the sample that light along it has.
     pub share: Factor,
-    /// The density over solid angle with which its direction was chosen, as it is weighed against asking lights; `None`
+    /// The density over solid angle with which its direction was chosen, as it is weighed against light sampling; `None`
     /// where it was the only one (from the camera and from mirrors) and in Whitted's tree.
     pub pdf: Option<f32>,
     /// Every primitive that was tested, in the order of the tests.
@@ -247,7 +247,7 @@ pub struct BranchReport {
     pub address: u64,
     /// `mirrored` or `refracted`.
     pub kind: &'static str,
-    /// The child's share of its parent.
+    /// The child's weight relative to its parent.
     pub weight: Factor,
     /// The part that Fresnel's equations mirror.
     pub fresnel: Option<f32>,

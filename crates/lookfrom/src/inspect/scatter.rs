@@ -1,6 +1,6 @@
-//! What an inspection says of path tracing: what a surface does with light, and both ways of finding it.
+//! Reports on scattering: BSDFs, light samples and BSDF samples with their weights.
 //!
-//! Densities are over solid angle, per steradian. β is the path's share, p and q are the two densities with which the two
+//! Densities are over solid angle, per steradian. β is the path throughput, p and q are the two densities with which the two
 //! ways find a light.
 
 use serde::Serialize;
@@ -37,7 +37,7 @@ pub struct FoundReport {
     pub light: String,
     /// L: what it sends this way.
     pub radiance: Amount,
-    /// q: the density with which asking lights would have chosen the direction, the choice of the light included; 0 where
+    /// q: the density with which light sampling would have chosen the direction, the choice of the light included; 0 where
     /// it could not. (p is the ray's `pdf`.)
     pub light_pdf: f32,
     /// w: the share that this way of finding the light has; `p² / (p² + q²)` where both can.

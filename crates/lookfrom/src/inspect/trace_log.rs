@@ -1,4 +1,4 @@
-//! What the watcher heard, arranged by rays.
+//! The trace log: events of a sample, arranged by rays.
 //!
 //! Rays form a tree (Whitted's, the child of n is 2n or 2n + 1) or a path (the next ray of n is n + 1): the integrator
 //! decides.

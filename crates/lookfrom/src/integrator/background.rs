@@ -1,4 +1,4 @@
-//! A background in place of the environment, as integrators show it to the camera.
+//! Backgrounds in place of the environment, as integrators show them to the camera.
 //!
 //! The background itself is laid behind the picture when that is developed; samples only say what hides it. Rays that come
 //! straight from the camera (or passed gaps in surfaces) see it; mirrors and glass show the environment.

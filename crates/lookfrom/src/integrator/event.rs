@@ -1,4 +1,4 @@
-//! What happens on the way of a sample, for whoever listens: the inspector, the layers of a picture.
+//! Events of a sample, for probes such as the inspector.
 
 use glam::Vec3;
 use lookfrom_bvh::Hit;
@@ -14,7 +14,7 @@ use crate::shading::material::Shading;
 pub enum Term {
     /// The ray left the scene.
     Sky,
-    /// The surface shines.
+    /// The surface emits light.
     Emission,
     /// `k_a I_a`.
     Ambient,
@@ -91,7 +91,7 @@ pub enum Event {
         surface: Box<SurfaceInteraction>,
         /// What it does with light.
         shading: Box<Shading>,
-        /// The path's share here, after what was absorbed on the way.
+        /// The path throughput here, after what was absorbed on the way.
         beta: Spectrum,
     },
     /// A path's own direction found a light.
@@ -102,11 +102,11 @@ pub enum Event {
         light: u32,
         /// What it sends this way.
         radiance: Spectrum,
-        /// The density with which asking lights would have chosen the direction.
+        /// The density with which light sampling would have chosen the direction.
         light_pdf: f32,
         /// The share that this way of finding the light has.
         weight: f32,
-        /// The path's share there, after what was absorbed on the way.
+        /// The path throughput there, after what was absorbed on the way.
         beta: Spectrum,
     },
     /// One light of many was asked in vain.
@@ -159,7 +159,7 @@ pub enum Event {
         address: u64,
         /// Which way.
         branch: Branch,
-        /// The branch's share of its parent.
+        /// The branch's weight relative to its parent.
         weight: Spectrum,
         /// The part that Fresnel's equations mirror, where they are asked.
         fresnel: Option<f32>,
@@ -188,7 +188,7 @@ pub struct Bounce {
     pub cos: f32,
     /// What the scattering function chose.
     pub sample: BsdfSample,
-    /// The share of the sample that light from there has, before the roulette.
+    /// The path throughput of light from there, before Russian roulette.
     pub beta: Spectrum,
     /// The probability of going on.
     pub survival: f32,
@@ -196,7 +196,7 @@ pub struct Bounce {
     pub survives: bool,
 }
 
-/// Who listens. `()` listens to nothing and compiles to nothing.
+/// A listener to the events of samples. `()` listens to nothing and compiles to nothing.
 pub trait Probe {
     /// Whether it wants to hear anything.
     const LISTENS: bool = true;

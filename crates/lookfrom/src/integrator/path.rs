@@ -1,5 +1,5 @@
 //! Path tracing (Kajiya 1986): from each surface on in one direction, chosen by its material, and at each surface one
-//! light is asked. Both ways of finding light share it by multiple importance sampling (Veach & Guibas 1995, the power
+//! light is sampled. Both ways of finding light share it by multiple importance sampling (Veach & Guibas 1995, the power
 //! heuristic), and paths that carry little are ended by chance (Russian roulette, Arvo & Kirk 1990). The order of
 //! things is pbrt-v4's, so that the same scene converges to the same picture.
 
@@ -172,7 +172,7 @@ impl Integrator for PathTracer {
             self.show_behind(world, &mut path, output);
         }
 
-        // Add what the surface itself shines.
+        // Add what the surface itself emits.
         self.add_emission(world, &path, &surface, output);
         if let Some(radiance) = world.unlit(&surface, &output.lanes(&path)) {
             output.add(&path, Term::Emission, path.beta * radiance);
@@ -227,7 +227,7 @@ impl PathTracer {
         dispatch(level(), steps);
     }
 
-    /// What light does at a surface: from one lamp, and from one direction.
+    /// What light does at a surface: from one light, and from one direction.
     fn scatter<P: Probe>(
         &self,
         world: &World,
@@ -239,7 +239,7 @@ impl PathTracer {
         let Vertex { path, surface, is_catcher } = at;
         let shading = scattering.shading;
 
-        // Ask one light.
+        // Sample one light.
         let [which_light, which_lobe] = stream.two(dimension::CHOICE);
         if self.light_sampling != LightSampling::None && shading.bsdf.lobes().is_non_specular() {
             let u = stream.two(dimension::LIGHT);
@@ -320,7 +320,7 @@ impl PathTracer {
         self.add_found(path, light, radiance, pdf, output);
     }
 
-    /// Adds light that the direction of a path found, which asking the lights finds with density `light_pdf`.
+    /// Adds light that the direction of a path found, which light sampling finds with density `light_pdf`.
     fn add_found<P: Probe>(
         &self,
         path: &Path,
@@ -342,7 +342,7 @@ impl PathTracer {
         output.add(path, Term::Found { light, weight }, path.beta * radiance * weight);
     }
 
-    /// The weight of light that the direction of a path found, which asking the lights finds with density `light_pdf`.
+    /// The weight of light that the direction of a path found, which light sampling finds with density `light_pdf`.
     fn weight_of_found(&self, path: &Path, light_pdf: impl FnOnce() -> f32) -> f32 {
         match self.light_sampling {
             _ if path.previous.pdf.is_infinite() => 1.0,

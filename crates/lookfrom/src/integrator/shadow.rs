@@ -1,4 +1,4 @@
-//! Shadow rays: does anything stand between a surface and a light?
+//! Shadow rays: visibility between a surface and a light.
 //!
 //! In a scene without transparent things the answer is yes or no. With them (and `transparent_shadows`) a shadow ray goes
 //! straight on through what lets light pass, coloured by `k_t` and by absorption on the way; the bending is ignored, as in
@@ -132,7 +132,7 @@ fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
     for (shadow, blocked) in shadows.iter_mut().zip(&*blocked) {
         let lanes = &lanes[shadow.slot as usize];
         let passed = if *blocked { Spectrum::BLACK } else { shadow.reached(world, lanes) };
-        // That something is in the way is enough for the picture; who listens wants to know what.
+        // The picture needs to know only that something is in the way, a probe also what.
         probe.notice(|| Event::Shadow { shadow: *shadow, hit: world.bvh.closest_hit(&shadow.ray), passed });
         shadow.contribution *= passed;
     }
@@ -190,7 +190,7 @@ impl Shadow {
     /// The part of the light that comes through what fills the rest of the way.
     fn reached(&self, world: &World, lanes: &Lanes) -> Spectrum {
         let length = Vec3::from_array(self.ray.direction).length() * self.ray.t_max;
-        // Lights infinitely far shine from twice the scene's radius away, as far as media are concerned, as in pbrt.
+        // Lights infinitely far emit light from twice the scene's radius away, as far as media are concerned, as in pbrt.
         let is_far = length.is_infinite() && self.interior.space().is_some();
         world.transmittance(self.interior, if is_far { 2.0 * world.radius } else { length }, lanes)
     }

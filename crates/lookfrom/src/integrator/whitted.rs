@@ -22,7 +22,7 @@ const DEEPEST: u32 = 62;
 pub struct Whitted {
     /// How many times a ray may be mirrored or refracted; no ray goes on after 62 surfaces.
     pub depth: u32,
-    /// Branches with a smaller share of the pixel are not followed.
+    /// Branches with a smaller throughput are not followed.
     pub min_contribution: f32,
     /// Whether shadow rays pass transparent materials, coloured by them.
     pub transparent_shadows: bool,

@@ -1,4 +1,4 @@
-//! Shapes that shine: how a point of one is chosen as seen from a place, and how dense the choice is.
+//! Area lights: points sampled as seen from a point, and their densities.
 //!
 //! [`AreaLight::sample_point`] and [`AreaLight::pdf`] are of the same density over solid angle, so that light found by
 //! either of two ways can be weighed (multiple importance sampling). How each form is chosen from stands in its file.
@@ -23,27 +23,27 @@ pub(crate) use mesh::Triangle as LightTriangle;
 pub use patch::PatchLight;
 pub use quadric::QuadricLight;
 
-/// A shape that shines.
+/// A area light.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
     /// Emitted radiance.
     pub radiance: EmissionSpectrum,
     /// The part of the shape that is there; `None` is all of it.
     pub alpha: Option<FloatTexture>,
-    /// Whether both sides shine.
+    /// Whether both sides emit light.
     pub two_sided: bool,
     /// How much of a clear coat is over it; `None` where there is none.
     pub coat: Option<FloatTexture>,
-    /// Where it shines from.
+    /// Where it emits light from.
     pub shape: LightShape,
 }
 
-/// The form of a shape that shines.
+/// The form of a shape that emits light.
 #[derive(Clone, Debug)]
 pub enum LightShape {
-    /// A sphere or ellipsoid, a cylinder, a plate, or a part of one.
+    /// A sphere or ellipsoid, a cylinder, a disk, or a part of one.
     Quadric(Box<QuadricLight>),
-    /// A round plate.
+    /// A round disk.
     Disk(Disk),
     /// Triangles.
     Mesh(MeshLight),
@@ -56,7 +56,7 @@ pub enum LightShape {
 pub struct LightPoint {
     /// Where, in render space.
     pub point: Point,
-    /// Geometric normal to the outside, unit length: the side that shines, where only one does.
+    /// Geometric normal to the outside, unit length: the side that emits light, where only one does.
     pub normal: DVec3,
     /// Texture coordinates.
     pub uv: Vec2,
@@ -70,7 +70,7 @@ pub struct LightPoint {
     pub pdf: f32,
 }
 
-/// Where a light is and which way it shines.
+/// Where a light is and which way it emits.
 #[derive(Clone, Copy, Debug)]
 pub struct EmitterBounds {
     /// Box around it, in render space.
@@ -81,12 +81,12 @@ pub struct EmitterBounds {
     pub axis: Vec3,
     /// Cosine of the greatest angle between a normal and the axis; −1 where they point to all sides.
     pub cos_normals: f32,
-    /// Whether both sides shine.
+    /// Whether both sides emit light.
     pub two_sided: bool,
 }
 
 impl AreaLight {
-    /// Whether anything of it was found to shine; otherwise only who meets it finds what there is.
+    /// Whether any of it was found to emit; otherwise only rays that hit it find what there is.
     pub fn is_sampled(&self) -> bool {
         !matches!(&self.shape, LightShape::Mesh(light) if !light.is_sampled())
     }
@@ -140,7 +140,7 @@ impl AreaLight {
         (!li.is_black()).then_some(LightSample { wi, li, pdf, target: Target::Surface(point, normal) })
     }
 
-    /// The triangle that a number chooses, of lights of triangles that shine all alike; its probability, and what is left of
+    /// The triangle that a number chooses, of meshes that emit alike everywhere; its probability, and what is left of
     /// the number.
     #[inline]
     pub(crate) fn triangle(&self, u0: f32) -> Option<(&LightTriangle, f32, f32)> {
@@ -222,7 +222,7 @@ impl AreaLight {
         }
     }
 
-    /// Where it is and which way it shines.
+    /// Where it is and which way it emits.
     pub fn emitter_bounds(&self) -> EmitterBounds {
         let (bounds, Cone { axis, cos }) = match &self.shape {
             LightShape::Quadric(light) => (light.bounds(), light.normals()),

@@ -1,4 +1,4 @@
-//! Which one of a world's lights is asked at a place?
+//! Light samplers: the choice of one light at a point (uniform, by power, by a light tree).
 //!
 //! Lights infinitely far take turns with the tree of those that have a place, each with the same probability, as in
 //! pbrt-v4. Lights that directions sampled from materials find as well (an even sky) need not be asked: they have

@@ -1,4 +1,4 @@
-//! A bounds of directions: all within an angle of an axis. What a light tree knows of where its lights look.
+//! Cones of directions: the orientation bounds of a light tree.
 
 use glam::Vec3;
 use std::f32::consts::PI;

@@ -1,4 +1,4 @@
-//! Light from infinitely far: a colour, a gradient or a picture all around, perhaps seen through an opening only.
+//! Environment lights: a constant, a gradient or a picture, perhaps seen through a portal.
 
 use std::f32::consts::PI;
 use std::sync::Arc;

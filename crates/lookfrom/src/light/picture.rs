@@ -1,4 +1,4 @@
-//! Points that send out a picture: a slide projector, a lamp measured by direction.
+//! Projection and goniometric lights.
 
 use glam::{DVec3, Mat3, Vec3};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
@@ -54,7 +54,7 @@ impl Projection {
     }
 }
 
-/// A lamp that sends out more or less by direction.
+/// A light that sends out more or less by direction.
 #[derive(Clone, Debug)]
 pub struct Goniometric {
     /// Where.

@@ -1,4 +1,4 @@
-//! What of an environment is seen through an opening, and where is it looked for?
+//! Portals: environments sampled through a rectangle (Bitterli, Novák & Jarosz 2015).
 //!
 //! Bitterli, Novák & Jarosz 2015: with two angles about the sides of a rectangle as coordinates (*rectified*), what is seen
 //! through it from any point is a rectangle too, a window of the square. Colours of pictures are taken over into that
@@ -79,13 +79,13 @@ impl Portal {
         self.place(from, direction).is_some()
     }
 
-    /// Where in the square one looks who looks out through it from a point.
+    /// The place in the square of a direction out through it from a point.
     fn place(&self, from: DVec3, direction: Vec3) -> Option<[f64; 2]> {
         let place = self.opening.place(direction.as_dvec3())?;
         self.opening.window(from)?.contains(place).then_some(place)
     }
 
-    /// The texel of the picture, where there is one, that one sees in a direction who looks out through it.
+    /// The texel of the picture, where there is one, in a direction out through it.
     pub(super) fn texel(&self, direction: Vec3) -> Option<[f32; 3]> {
         let picture = self.picture.as_ref()?;
         let place = self.opening.place(direction.as_dvec3())?;
@@ -117,8 +117,8 @@ impl Portal {
 }
 
 impl Opening {
-    /// The rectangle of four corners in render space, one after the other: as one who looks out goes around it against the
-    /// clock. If they make none, nothing is seen through it.
+    /// The rectangle of four corners in render space, one after the other: counter-clockwise as seen when looking
+    /// out. If they make none, nothing is seen through it.
     pub fn new([a, b, c, d]: [DVec3; 4]) -> Self {
         let x = (d - a).normalize_or_zero();
         let z = x.cross(b - a).normalize_or_zero();
@@ -178,7 +178,7 @@ mod tests {
     use super::*;
 
     fn unit() -> Opening {
-        // against the clock for one who looks along −z: from below on the left
+        // counter-clockwise when looking along −z: from below on the left
         Opening::new(
             [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| DVec3::new(x, y, -1.0)),
         )

@@ -1,4 +1,4 @@
-//! Do lights send out what they say, and are directions and lights chosen as often as they say?
+//! Tests of lights: power, densities, and the choice among them.
 
 use std::f32::consts::PI;
 use std::f64::consts::PI as PI64;

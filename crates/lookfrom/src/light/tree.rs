@@ -1,4 +1,4 @@
-//! Many lights, few samples: a tree over lights by which one is chosen in proportion to what it may send to a place.
+//! A light tree: one of many lights, chosen in proportion to its estimated contribution (Conty Estevez & Kulla 2018).
 //!
 //! Conty Estevez & Kulla 2018 (importance of bundles of lights, cost of a division by their orientation); the bounds of
 //! an importance as pbrt-v4 has them.
@@ -472,7 +472,7 @@ mod tests {
         let tree = Tree::new(&lights, 60);
         for _ in 0..20_000 {
             let (light, bounds) = lights[(next() * 60.0) as usize];
-            // a normal in the cone, and a direction that it shines in
+            // a normal in the cone, and a direction that it emits light in
             let (s, t) = crate::core::warp::orthonormal_basis(bounds.normals.axis);
             let local = crate::core::warp::uniform_cone([next(), next()], 1.0 - bounds.normals.cos);
             let mut normal = s * local.x + t * local.y + bounds.normals.axis * local.z;

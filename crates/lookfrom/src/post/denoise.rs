@@ -1,4 +1,4 @@
-//! How does a picture of few samples a pixel become a clean one?
+//! The denoiser: guided non-local means.
 //!
 //! Between the film and [`crate::post::develop`]: light in, light out. Noise of neighbouring pixels is independent, what they show is
 //! not, so each pixel becomes a mean over those around it that show the same. Whether they do is asked three times:

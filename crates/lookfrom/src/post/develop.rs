@@ -1,4 +1,4 @@
-//! How does linear light become the bytes of a picture that screens show?
+//! Development: from linear light to display bytes.
 //!
 //! Step 8 on the way of a pixel, the last: exposure, tone map, the curve of sRGB, eight bits. No dithering, so that
 //! equal light gives equal bytes. How bytes become a file is left to `lookfrom_scene::image`.

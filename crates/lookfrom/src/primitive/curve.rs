@@ -1,4 +1,4 @@
-//! Curves of one shape: hairs and wires that turn to whoever looks, and ribbons.
+//! Curves: hairs and wires that face the ray, and ribbons.
 //!
 //! In a frame whose z axis is the ray, a curve is split until it is nearly straight; where the straight piece passes the
 //! origin closer than half its width, the ray meets it: Nakamaru & Ohno (2002), "Ray Tracing for Curves Primitive", with the
@@ -28,7 +28,7 @@ pub struct Curves {
     /// The linear part of the way back.
     object_from_render: Affine,
     reverse: bool,
-    /// Whose.
+    /// Its attributes.
     pub binding: MaterialBinding,
 }
 

@@ -1,11 +1,11 @@
-//! Round plates of many shapes, perhaps sheared to ellipses.
+//! Disks, perhaps sheared to ellipses.
 
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Point, Procedural, ProceduralHit, Ray};
 
 use super::{MaterialBinding, SurfacePoint};
 
-/// A round plate, perhaps sheared to an ellipse: `center + x·axis_u + y·axis_v`, `x² + y² ≤ 1`.
+/// A round disk, perhaps sheared to an ellipse: `center + x·axis_u + y·axis_v`, `x² + y² ≤ 1`.
 #[derive(Clone, Copy, Debug)]
 pub struct Disk {
     /// Middle.
@@ -18,17 +18,17 @@ pub struct Disk {
     pub flip: bool,
 }
 
-/// Round plates of many shapes.
+/// Round disks of many shapes.
 #[derive(Clone, Debug, Default)]
 pub struct Disks {
-    /// The plates.
+    /// The disks.
     pub disks: Vec<Disk>,
-    /// Whose.
+    /// The attributes of each.
     pub bindings: Vec<MaterialBinding>,
 }
 
 impl Disk {
-    /// The point at `(x, y)` of the plate.
+    /// The point at `(x, y)` of the disk.
     pub fn at(&self, on_disk: Vec2) -> Point {
         let Vec2 { x, y } = on_disk;
         let (u, v) = (f64::from(x) * self.axis_u, f64::from(y) * self.axis_v);
@@ -37,7 +37,7 @@ impl Disk {
         Point { position: (self.center + u + v).to_array(), error: error.to_array() }
     }
 
-    /// To the outside, not of unit length: the plate's area is π times its length.
+    /// To the outside, not of unit length: the disk's area is π times its length.
     pub fn normal(&self) -> DVec3 {
         if self.flip { self.axis_v.cross(self.axis_u) } else { self.axis_u.cross(self.axis_v) }
     }
@@ -48,7 +48,7 @@ impl Disk {
         [self.center - extent, self.center + extent]
     }
 
-    /// `(x, y)` of a point in the plate's plane.
+    /// `(x, y)` of a point in the disk's plane.
     fn coordinates(&self, point: DVec3) -> [f64; 2] {
         let normal = self.axis_u.cross(self.axis_v);
         let q = point - self.center;
@@ -58,7 +58,7 @@ impl Disk {
 }
 
 impl Disks {
-    /// The point of a plate nearest to one that is on it but for errors.
+    /// The point of a disk nearest to one that is on it but for errors.
     pub(super) fn point(&self, index: usize, near: DVec3) -> SurfacePoint {
         let disk = &self.disks[index];
         let [x, y] = disk.coordinates(near);

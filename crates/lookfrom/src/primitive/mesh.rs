@@ -1,4 +1,4 @@
-//! Triangles of one shape: what a mesh says about a point of it.
+//! Triangle meshes.
 //!
 //! Derivatives by texture coordinates are those of the plane through the triangle, as in Pharr, Jakob, Humphreys,
 //! Physically Based Rendering; a mesh's tangents take the place of `∂p/∂u` in shading.
@@ -34,7 +34,7 @@ pub struct Mesh {
     pub wants_derivatives: bool,
     /// Whether the outside is where the triangles run clockwise: after a mirror, or a reversal, but not both.
     pub flip: bool,
-    /// Whose.
+    /// Its attributes.
     pub binding: MaterialBinding,
 }
 
@@ -119,7 +119,7 @@ impl Mesh {
         };
 
         let smooth = (!self.normals.is_empty()).then(|| mix(&self.normals).try_normalize()).flatten();
-        // Who wrote normals knows better than the winding which side is outside.
+        // Written normals, not the winding, decide which side is outside.
         if smooth.is_some_and(|ns| ns.dot(ng) < 0.0) {
             ng = -ng;
         }

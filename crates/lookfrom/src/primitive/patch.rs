@@ -1,4 +1,4 @@
-//! Bilinear patches of one shape: surfaces blended from four corners, flat or saddle-shaped.
+//! Bilinear patches.
 //!
 //! A ray meets the line of constant u that it crosses where a quadratic in u vanishes (Reshetov 2019, "Cool Patches"); here
 //! in f64, and each meeting is then sharpened by Newton's method in (u, v, t), so that on which side of the patch a ray
@@ -31,7 +31,7 @@ pub struct Patches {
     pub uvs: Vec<Vec2>,
     /// Whether the outside is the side of `∂p/∂v × ∂p/∂u`: after a mirror, or a reversal, but not both.
     pub flip: bool,
-    /// Whose.
+    /// Its attributes.
     pub binding: MaterialBinding,
 }
 
@@ -81,7 +81,7 @@ impl Patches {
         let nearby = || self.area_vector(index, 0.001 + 0.998 * u, 0.001 + 0.998 * v).normalize_or(DVec3::Z);
         let n = along.unwrap_or_else(nearby) * if self.flip { -1.0 } else { 1.0 };
         let smooth = self.smooth(index, u, v);
-        // Who wrote normals knows better which side is outside.
+        // Written normals decide which side is outside.
         if smooth.is_some_and(|ns| ns.dot(n) < 0.0) { -n } else { n }
     }
 

@@ -1,4 +1,4 @@
-//! Ellipsoids, elliptic cylinders and plates, and parts of them: spheres, cylinders and disks around the z axis of their
+//! Ellipsoids, elliptic cylinders and disks, and parts of them: spheres, cylinders and disks around the z axis of their
 //! own space, under any affine map.
 //!
 //! A ray is taken to the shape's own space in f64 and met there. A point found is put onto the surface exactly there and
@@ -67,7 +67,7 @@ pub struct Quadric {
 pub struct Quadrics {
     /// In their places.
     pub quadrics: Vec<Quadric>,
-    /// Whose.
+    /// The attributes of each.
     pub bindings: Vec<MaterialBinding>,
 }
 

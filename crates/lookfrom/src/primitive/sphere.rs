@@ -1,4 +1,4 @@
-//! Whole round spheres of many shapes: the kernel has a test of its own for them.
+//! Whole spheres, for which the kernel has a test of its own.
 
 use glam::{DVec3, Mat3, Vec3};
 use lookfrom_bvh::Point;
@@ -14,14 +14,14 @@ pub struct Spheres {
     pub spheres: Vec<lookfrom_bvh::Sphere>,
     /// For each sphere, an index into `looks`.
     pub binding_of: Vec<u32>,
-    /// Whose, and which way it is turned.
+    /// The attributes of a sphere, and its orientation.
     pub bindings: Vec<SphereBinding>,
 }
 
 /// What spheres of one shape share.
 #[derive(Clone, Copy, Debug)]
 pub struct SphereBinding {
-    /// Whose.
+    /// Its attributes.
     pub binding: MaterialBinding,
     /// The rotation (or mirror) to the shape's own axes, where its poles are on y.
     pub object_from_sphere: Mat3,

@@ -1,8 +1,8 @@
-//! Warnings about the camera's place: it sees nothing of the scene, or it stands inside something.
+//! Warnings about the camera: it sees nothing of the scene, or stands inside something.
 //!
 //! Rays decide. A body is around the eye where rays to nearly all sides cross its surface an odd number of times and come to
 //! its back first, and where its back is nearly all that the picture shows. Rooms are not meant: their surfaces look inward,
-//! other things stand in them, or a lamp lights them from within.
+//! other things stand in them, or a light lights them from within.
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
@@ -130,7 +130,7 @@ fn is_nearly_all(count: usize, of: usize) -> bool {
     count as f64 >= NEARLY_ALL * of as f64
 }
 
-/// Whether nothing is seen through a surface, and it does not shine.
+/// Whether nothing is seen through a surface, and it does not emit light.
 fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
     surface.alpha.is_none()
         && surface.light.is_none()
@@ -153,7 +153,7 @@ fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
         }
 }
 
-/// Whether a lamp elsewhere than at the eye is seen from there.
+/// Whether a light elsewhere than at the eye is seen from there.
 fn is_lit_from_within(renderer: &Renderer) -> bool {
     let (world, origin) = (renderer.world(), renderer.eye);
     let eye = LightSampleContext { point: origin, n: Vec3::Z };

@@ -1,4 +1,4 @@
-//! Who renders which tile when: threads, passes over the picture, when there is enough, progress and stopping.
+//! The render driver: threads, passes, tiles, stop criteria, progress.
 //!
 //! Nothing here decides what a sample brings; that is [`Renderer::render_tile`], and the film of a number of samples is the same
 //! for any division of the work. What decides about *numbers* of samples, other than the clock, is only the film at the ends

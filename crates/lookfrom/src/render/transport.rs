@@ -1,4 +1,4 @@
-//! Integrators behind a pointer: one virtual call a batch, and the code of each integrator compiled for who listens.
+//! Integrators behind a pointer: one virtual call a batch.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Picture formats, and a finished picture's bytes in them.
+//! Picture formats and their encoding.
 
 use std::path::Path;
 

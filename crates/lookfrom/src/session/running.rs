@@ -1,4 +1,4 @@
-//! A render in the background: cancelled or waited for from elsewhere.
+//! Renders in the background, which can be cancelled.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

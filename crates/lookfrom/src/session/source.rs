@@ -1,4 +1,4 @@
-//! Where a session's scene came from, and its world built again around another eye.
+//! The source of a session's scene, for building its world again around another camera.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

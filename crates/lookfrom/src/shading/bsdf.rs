@@ -1,4 +1,4 @@
-//! How much light goes from one direction into another where it meets a surface?
+//! BSDFs: scattering functions as values in a local frame.
 //!
 //! All scattering functions of the path tracer, as values: no textures, no scene, no shading frame. The frame is local:
 //! z is the shading normal on the outside; `wo` and `wi` are of unit length and both point away from the surface, and

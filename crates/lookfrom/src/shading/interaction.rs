@@ -1,4 +1,4 @@
-//! What a ray met, computed once after the nearest hit is known: where, which way it faces, which look it has.
+//! Surface interactions: the point that a ray hit, with its normals, derivatives and material.
 //!
 //! Everything is in render space (see `world`).
 
@@ -37,7 +37,7 @@ pub struct SurfaceInteraction {
     pub front: bool,
     /// Index into the world's materials.
     pub material: u32,
-    /// Index into the world's area lights, where the surface shines.
+    /// Index into the world's area lights, where the surface emits light.
     pub light: Option<u32>,
     /// Whether rays from the camera pass its back faces.
     pub single_sided: bool,

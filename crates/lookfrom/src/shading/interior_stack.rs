@@ -1,4 +1,4 @@
-//! What a ray is inside of: bodies (nested dielectrics), and the medium that fills the space around them.
+//! Interior stacks: the nested dielectrics and the medium that a ray is inside of.
 //!
 //! Bodies may be nested or overlap (a drink that reaches a little into its glass): the one that was entered last counts, and
 //! leaving takes a body away wherever it lies. Where it did not lie on top, nothing is to be seen of its surface.

@@ -1,4 +1,4 @@
-//! How surfaces look: from a written material to what it does with light at a point.
+//! Materials: from their parameters at a point to a BSDF in a shading frame.
 //!
 //! [`Shading`] is the scattering function of a material at a point, in the frame of the (perhaps bent) shading normal:
 //! what path tracing asks. [`Coefficients`] are those of Whitted's model, which the older integrators ask of every
@@ -160,7 +160,7 @@ impl Scattering<'_> {
 pub struct ShadingContext<'a> {
     /// What the lanes mean. Where wavelengths go different ways, only the first is left.
     pub lanes: &'a mut Lanes,
-    /// The path's share of the sample. In RGB mode, where colours go different ways, one of those in it is left, at the
+    /// The path throughput. In RGB mode, where colours go different ways, one of those in it is left, at the
     /// weight of all.
     pub throughput: &'a mut Spectrum,
     /// What light comes through.

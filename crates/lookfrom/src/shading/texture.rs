@@ -1,4 +1,4 @@
-//! Colour over surfaces: from a point of a surface to a spectrum or a number.
+//! Textures: from a point of a surface to a spectrum or a number.
 //!
 //! The textures' parameters are those of `lookfrom_scene::texture`; here they only lose their names. What pbrt-v4 has too
 //! (Pharr, Jakob, Humphreys 2023) means here what it means there, but for one thing: there are no ray differentials, so

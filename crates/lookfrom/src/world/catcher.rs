@@ -1,6 +1,6 @@
-//! How bright is a floor that is seen only by the shadows on it?
+//! Shadow catchers: the reflectance with which a floor looks like its background.
 //!
-//! A matte floor of reflectance ρ under the irradiance E shines with ρ E / π to all sides. Let ρ depend on the direction that
+//! A matte floor of reflectance ρ under the irradiance E emits light with ρ E / π to all sides. Let ρ depend on the direction that
 //! the floor is seen from: π B / E₀, where B is what lies behind the floor in that direction and E₀ what arrives where
 //! nothing is in the way. Then the floor is B · E / E₀: exactly the background where no shadow falls. All light that
 //! counts for E₀ comes from infinitely far, so that E₀ is the same all over the floor, and computed once.

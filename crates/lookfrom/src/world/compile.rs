@@ -1,4 +1,4 @@
-//! From a scene to a world: names become indices, transforms are applied, lights are prepared and the trees are built.
+//! Compilation of a scene: names become indices, transforms are applied, lights prepared and trees built.
 
 use std::sync::Arc;
 
@@ -65,7 +65,7 @@ impl World {
         for shape in &scene.shapes {
             compiler.place(shape, &render_from_world, None, &mut in_world)?;
         }
-        // Objects, each with a tree of its own. What shines in them is left to the instances.
+        // Objects, each with a tree of its own. What emits light in them is left to the instances.
         let mut in_objects = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
             let mut group = Group::default();
@@ -84,7 +84,7 @@ impl World {
             let material = written.material.map(|id| id.0);
             let matrix = render_from_world * written.world_from_object;
             let instance = Instance::new(&written.at, written.object.0, matrix, material)?;
-            // Each repetition of something that shines is a light of its own.
+            // Each repetition of something that emits light is a light of its own.
             for shape in object.shapes.iter().filter(|shape| shape.emission.is_some()) {
                 compiler.place(shape, &matrix, material, &mut in_world)?;
             }

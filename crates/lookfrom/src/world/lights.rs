@@ -1,4 +1,4 @@
-//! Lights that are not shapes: from what was written to what can be sampled.
+//! Compilation of lights that are not shapes.
 
 use std::f32::consts::PI;
 use std::sync::Arc;

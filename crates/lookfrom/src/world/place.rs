@@ -1,4 +1,4 @@
-//! From a written shape to the forms and lights of a world: its transform is applied, its place in the arrays chosen.
+//! Placement of shapes: transforms applied, primitives and area lights made.
 //!
 //! What consists of vertices (meshes, patches, curves) becomes a form of its own and is in `place/vertices`; round things
 //! of all shapes are gathered in one form a kind.
@@ -288,7 +288,7 @@ impl Compiler<'_> {
         Ok(())
     }
 
-    /// The light of a shape that shines, made from its form.
+    /// The light of a shape that emits light, made from its form.
     fn area_light(
         &mut self,
         placing: Placing,

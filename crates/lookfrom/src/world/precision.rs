@@ -1,4 +1,4 @@
-//! From where a world is seen exactly: positions are single-precision numbers relative to the origin of render space.
+//! Precision of positions: where a world is as exact as at its origin.
 //!
 //! At a distance D from the origin a position is rounded by up to 2⁻²⁴ D. That is less than a sixteenth of a pixel of a picture
 //! 4,096 pixels wide as long as it is less than 2⁻¹⁶ of the distance to what is seen, so the limit is D / 256.

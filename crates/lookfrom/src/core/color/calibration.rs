@@ -1,4 +1,4 @@
-//! The colours that a camera's sensor stands for: matrices by least squares over the swatches of a ColorChecker.
+//! Calibration of camera sensors: matrices by least squares over the swatches of a ColorChecker.
 //!
 //! As pbrt-v4's `PixelSensor` (after PhysLight: Langlands & Fascione 2020): XYZ is what the standard observer sees of the swatches
 //! in D65 where the camera sees them in the light that shall look white.

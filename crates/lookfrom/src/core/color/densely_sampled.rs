@@ -1,4 +1,4 @@
-//! What is a measured curve at four wavelengths, fast?
+//! Densely sampled spectra: measured curves at 1 nm, looked up by wavelength.
 
 use std::sync::OnceLock;
 

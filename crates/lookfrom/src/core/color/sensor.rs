@@ -1,4 +1,4 @@
-//! What a film sees of light: the sensor's channels, exposure and white balance.
+//! The sensor of a film: its channels, exposure and white balance.
 //!
 //! pbrt-v4's `PixelSensor`. The standard observer measures X, Y and Z and is balanced by von Kries's scaling of Bradford's
 //! responses. A camera measures its own red, green and blue, and a matrix makes XYZ of them ([`super::calibration`]).

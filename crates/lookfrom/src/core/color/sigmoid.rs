@@ -1,4 +1,4 @@
-//! Which smooth spectrum has this RGB colour?
+//! Smooth spectra of RGB colours: sigmoids of a quadratic (Jakob & Hanika 2019).
 //!
 //! A sigmoid of a quadratic polynomial of the wavelength is smooth, stays within [0, 1], and can have almost every colour a
 //! surface can have (Jakob and Hanika 2019). Colours that are the same in red, green and blue are constants.

@@ -1,7 +1,7 @@
-//! Which coefficients give a sigmoid spectrum this colour?
+//! Coefficients of the sigmoid spectrum of a colour, by Newton's method (Jakob & Hanika 2019).
 //!
-//! Newton's method from a guess. Without one: along the straight way from grey, whose solution is known, to the colour, in
-//! steps as long as Newton's method can follow. What a spectrum's colour is, is left to a [`Measure`].
+//! From a guess, or without one along the straight line from grey, whose solution is known, to the colour, in steps as long as
+//! the method can follow. A [`Measure`] gives the colour of a spectrum.
 
 use std::sync::OnceLock;
 

@@ -1,4 +1,4 @@
-//! Which smooth spectrum has nearly this RGB colour, fast?
+//! A table of sigmoid coefficients over RGB (Jakob & Hanika 2019).
 //!
 //! The table of pbrt-v4, coefficients over the lattice of the greatest component and the ratios of the other two to it, 3 × 64³
 //! (Jakob and Hanika 2019), with the same interpolation. Between its nodes colours are off by some 5 · 10⁻⁴, dark saturated

@@ -1,4 +1,4 @@
-//! Which wavelengths does a sample follow?
+//! The sampled wavelengths of a path.
 
 use std::sync::OnceLock;
 

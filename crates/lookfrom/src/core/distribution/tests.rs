@@ -1,4 +1,4 @@
-//! Are choices as frequent as they say?
+//! Tests of discrete and piecewise-constant distributions.
 
 use super::*;
 use crate::core::hash::mix;

@@ -1,4 +1,4 @@
-//! Which point of a part of a picture is chosen, in proportion to its brightness, where the part is another one each time?
+//! Windowed piecewise-constant distributions: sampling a picture within a rectangle that differs for each query.
 //!
 //! A table of sums over all rectangles from the first corner (Crow 1984) gives the sum over any rectangle by four numbers;
 //! columns and then rows are found in it by bisection (Bitterli, Novák & Jarosz 2015, for portals). Which part is asked for

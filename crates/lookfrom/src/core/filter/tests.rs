@@ -1,4 +1,4 @@
-//! Do samples and weights together make the filter?
+//! Tests that filter samples and weights make the filter.
 
 use super::*;
 use crate::core::statistics::chi_square_deviate;

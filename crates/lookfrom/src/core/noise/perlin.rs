@@ -1,4 +1,4 @@
-//! What is Perlin's own noise, by his table, as pbrt-v4 has it?
+//! Perlin noise by his permutation table, as in pbrt-v4.
 //!
 //! It repeats every 256 units, and agrees with the scenes that were made for it; new patterns are better off with the
 //! noise of the parent module.

@@ -1,4 +1,4 @@
-//! Is the noise smooth, bounded, without a mean, and always the same?
+//! Tests of noise: smooth, bounded, without a mean, always the same.
 
 use super::*;
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! Are the numbers nets, independent of each other, and always the same?
+//! Tests of samplers: nets, independence, reproducibility.
 
 use super::*;
 use crate::core::statistics::chi_square_deviate;

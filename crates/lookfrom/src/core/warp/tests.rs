@@ -1,4 +1,4 @@
-//! Are points and directions as dense as they say, and of unit length?
+//! Tests of warps: densities and unit length.
 
 use super::*;
 use crate::core::hash::mix;

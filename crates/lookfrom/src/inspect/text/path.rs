@@ -1,4 +1,4 @@
-//! A path as a person reads it: one ray after the other, each number with the formula that it is part of.
+//! The text report of a path: one ray after the other, each number with its formula.
 
 use std::fmt::{self, Formatter};
 

@@ -1,4 +1,4 @@
-//! Shadow catchers in path tracing: a floor that looks like what is behind it, less the light that is blocked.
+//! Shadow catchers in path tracing: surfaces that show the background, less the light that is blocked.
 //!
 //! Paths that leave the floor estimate how much of the light arrives, and the floor's reflectance is such that all of it would
 //! look like the background (see `world::catcher`). With multiple importance sampling the light that a path's samples would find if

@@ -1,6 +1,6 @@
 //! Eight steps at once, where surfaces are of the commonest kind: flat triangles of a diffuse material of one colour. The twin
 //! of [`PathTracer::step`](crate::integrator::Integrator::step) for them, bit for bit: each operation is its, in its order, eight
-//! times side by side. Which light is asked, and what cannot go side by side, is in `asked`.
+//! times side by side. Which light is sampled, and what cannot go side by side, is in `asked`.
 
 mod light_samples;
 
@@ -84,7 +84,7 @@ impl<P: Probe> Kernel for Steps<'_, '_, '_, P> {
             output.probe.notice(|| surfaces.shaded(lane, world, plain));
         }
 
-        // Ask one light.
+        // Sample one light.
         let light_samples = LightSamples::new(simd, world, plain, &surfaces, &stream, &output.queues.lanes);
         let cos = light_samples.wi.dot(surfaces.n);
         let same_side = surfaces.same_side(simd, cos);
@@ -224,7 +224,7 @@ impl<S: Simd> Surfaces<S> {
         Self { points, ng, n, s, t, wo_z: wo.dot(n) }
     }
 
-    /// What one of them is, for who listens.
+    /// The event of one lane, for a probe.
     fn shaded(&self, lane: usize, world: &World, plain: &FlatDiffuseHit<'_>) -> Event {
         let FlatDiffuseHit { path, hit, reflectance, .. } = plain;
         let [n, s, t] = [self.n, self.s, self.t].map(|axis| axis.lane(lane).into());

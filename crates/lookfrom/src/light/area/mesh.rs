@@ -1,4 +1,4 @@
-//! Triangles as lights: one is chosen by area (and by how much of a pattern shines on it), then a direction uniformly over
+//! Triangles as lights: one is chosen by area (and by the emission of a pattern on it), then a direction uniformly over
 //! the solid angle in which it is seen. Triangles on which no light was found are not asked: a path that meets one finds
 //! what there is.
 //!
@@ -30,7 +30,7 @@ const WORTH_DIRECTION: f64 = 0.06;
 const PLACES: usize = 1 << 20;
 const PLACES_OF_TRIANGLE: std::ops::RangeInclusive<usize> = 8..=4096;
 
-/// A mesh that shines.
+/// A mesh that emits light.
 #[derive(Clone, Debug)]
 pub struct MeshLight {
     mesh: Arc<Mesh>,
@@ -41,7 +41,7 @@ pub struct MeshLight {
     /// Of those, by area and brightness.
     choice: Discrete,
     area: f64,
-    /// Where it shines by a pattern: the mean of its brightness over the area.
+    /// For a textured emitter, the mean of its brightness over the area.
     brightness: Option<f32>,
 }
 
@@ -69,7 +69,7 @@ impl MeshLight {
         triangle.normal.is_some().then_some((triangle, probability, u0))
     }
 
-    /// A mesh that shines alike everywhere. None for one without area.
+    /// A mesh that emits alike everywhere. None for one without area.
     pub fn new(mesh: Arc<Mesh>) -> Option<Self> {
         let area = area(&mesh)?;
         let triangles = triangles(&mesh, mesh.triangles.len(), |index| index);
@@ -78,7 +78,7 @@ impl MeshLight {
         Some(Self { choice: Discrete::new(&weights), asked: None, mesh, triangles, area, brightness: None })
     }
 
-    /// A mesh that shines by a pattern whose brightness at a point is `glow`. None for one without area.
+    /// A mesh with textured emission, whose brightness at a point is `emission_spectrum`. None for one without area.
     pub fn patterned(
         mesh: Arc<Mesh>,
         emission_spectrum: &(dyn Fn(&TexturePoint) -> f32 + Sync),
@@ -104,12 +104,12 @@ impl MeshLight {
         Some(Self { choice, asked, mesh, triangles, area, brightness: Some(mean as f32) })
     }
 
-    /// Whether any place was found that shines.
+    /// Whether any place was found that emits light.
     pub(super) fn is_sampled(&self) -> bool {
         !self.triangles.is_empty()
     }
 
-    /// Where it shines by a pattern: the mean of its brightness over the area.
+    /// For a textured emitter, the mean of its brightness over the area.
     pub(super) fn brightness(&self) -> Option<f32> {
         self.brightness
     }

@@ -1,4 +1,4 @@
-//! Bilinear patches as lights: one is chosen by area, then a point nearly by area.
+//! Bilinear patches as lights: sampled by area.
 //!
 //! A point's u and v have the density that blends the patch's stretch at its four corners (Pharr, Jakob, Humphreys,
 //! Physically Based Rendering); what it lacks of the true stretch stands in the density over area.
@@ -14,7 +14,7 @@ use crate::primitive::Patches;
 /// Cells along u and v by which the area of a patch is summed.
 const CELLS: u32 = 16;
 
-/// Bilinear patches that shine.
+/// Bilinear patches that emit light.
 #[derive(Clone, Debug)]
 pub struct PatchLight {
     patches: Arc<Patches>,

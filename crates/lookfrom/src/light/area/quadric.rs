@@ -1,4 +1,4 @@
-//! Spheres, cylinders, plates and their parts as lights.
+//! Spheres, cylinders, disks and their parts as lights.
 //!
 //! A whole sphere is chosen from over the cone in which it is seen, or, from inside, over all directions: in its own
 //! space, where it is round. A linear map `A` changes solid angle by `|det A| / |A ω|³` (ω of unit length), so ellipsoids are no
@@ -13,7 +13,7 @@ use crate::core::warp;
 use crate::light::toward;
 use crate::primitive::{MaterialBinding, Quadric, QuadricKind};
 
-/// Inside, with room for points on the sphere itself: those that an inward light on it shines on.
+/// Inside, with room for points on the sphere itself: those that an inward light on it emits light on.
 const ON_SPHERE: f64 = 1e-6;
 
 /// Points nearer than this part of the radius to the point that they are to light are that point itself.
@@ -33,7 +33,7 @@ const NO_LOOK: MaterialBinding = MaterialBinding {
     single_sided: false,
 };
 
-/// A quadric that shines.
+/// A quadric that emits light.
 #[derive(Clone, Debug)]
 pub struct QuadricLight {
     quadric: Quadric,

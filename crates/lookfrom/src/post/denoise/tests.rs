@@ -1,4 +1,4 @@
-//! The filter against its slow twin, and what must hold of any picture.
+//! Tests of the denoiser against its slow twin, and of its properties.
 
 use lookfrom_scene::settings::{Background, Crop, ImageSettings};
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! Are the bytes those of the curve?
+//! Tests of exposure, tone maps and encoding.
 
 use super::*;
 use crate::core::hash::mix;

@@ -1,4 +1,4 @@
-//! What should a screen show of light that has no upper end? One function for each tone map, on linear Rec. 709.
+//! Tone maps: one function each, on linear Rec. 709.
 //!
 //! Khronos PBR Neutral (specification of 2024, github.com/KhronosGroup/ToneMapping); ACES 1.0 (the reference and output
 //! transforms for sRGB as Stephen Hill fitted them); AgX (Troy Sobotka 2022; the matrices are those of Blender, in Rec.

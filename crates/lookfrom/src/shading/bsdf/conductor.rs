@@ -1,4 +1,4 @@
-//! Metals, polished or rough: what is not mirrored is swallowed.
+//! Conductors, smooth or rough.
 //!
 //! Cook & Torrance 1982; Walter et al. 2007; Heitz 2014.
 

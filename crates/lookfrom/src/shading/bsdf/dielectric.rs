@@ -1,4 +1,4 @@
-//! Glass and water: a boundary that mirrors and bends, polished or rough, and a thin pane of it.
+//! Dielectrics, smooth or rough, and thin dielectrics.
 //!
 //! Walter et al. 2007; Veach 1997, § 5.2 (why radiance is scaled by 1/η² where it passes, and importance is not).
 

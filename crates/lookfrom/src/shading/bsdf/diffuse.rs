@@ -1,4 +1,4 @@
-//! Surfaces that look alike from everywhere: Lambert's, and a thin leaf that also lets light through.
+//! Diffuse (Lambertian) reflection and transmission.
 //!
 //! Lambert 1760.
 

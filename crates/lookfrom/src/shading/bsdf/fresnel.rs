@@ -1,4 +1,4 @@
-//! How much light does a smooth boundary mirror?
+//! Fresnel reflectance of smooth boundaries.
 //!
 //! Fresnel 1823, for unpolarised light; the form for a complex index of refraction follows Born & Wolf 1959.
 

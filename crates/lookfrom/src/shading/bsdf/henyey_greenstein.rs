@@ -1,4 +1,4 @@
-//! Which way does a small particle send light on?
+//! The phase function of Henyey & Greenstein 1941.
 //!
 //! Henyey & Greenstein 1941. Directions as everywhere here: `wo` and `wi` both point away from the particle, so that
 //! light that goes straight on has `wo·wi = −1`.

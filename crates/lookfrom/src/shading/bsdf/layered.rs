@@ -1,4 +1,4 @@
-//! A clear coat on something opaque: lacquered wood, glazed clay, car paint.
+//! Layered BSDFs: a dielectric coat over an opaque base, by random walks (Guo, Hašan & Zhao 2018).
 //!
 //! Between the coat (a dielectric boundary) and the base lies a slab of `thickness` in units of the mean free path,
 //! which absorbs or scatters. What light does in there has no formula; `f` is one estimate of it by a short random walk

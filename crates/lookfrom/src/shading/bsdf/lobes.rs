@@ -1,4 +1,4 @@
-//! Which kinds of scattering are meant? A small bit set.
+//! Lobes of a BSDF as a bit set.
 
 use std::ops::{BitOr, BitOrAssign};
 

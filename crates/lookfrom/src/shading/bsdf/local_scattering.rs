@@ -1,4 +1,4 @@
-//! A scattering function toward one direction ω_o: what is known once that is, for all that is asked of it there.
+//! A BSDF for one outgoing direction ω_o, with what depends on that alone computed once.
 //!
 //! A path asks three things of a surface with the same ω_o: the function and the density for a light's direction, and a
 //! direction of its own. What glTF's layers do toward ω_o is worked out once for them. The answers are those of

@@ -1,4 +1,4 @@
-//! Which way do the tiny mirrors of a rough surface look, and which of them are seen?
+//! The Trowbridge–Reitz (GGX) microfacet distribution, with visible normals sampled (Heitz 2018).
 //!
 //! The Trowbridge–Reitz (GGX) distribution with two roughnesses, Smith's masking with heights correlated, and sampling
 //! of the normals that `wo` sees. What the mirrors do with light is left to conductors and dielectrics.

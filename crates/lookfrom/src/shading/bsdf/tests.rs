@@ -1,4 +1,4 @@
-//! Is each `sample` as dense as its `pdf` says, and do values obey reciprocity, energy and Fresnel?
+//! Tests of BSDFs: densities, reciprocity, energy, Fresnel.
 
 use super::*;
 use crate::core::hash;

@@ -1,4 +1,4 @@
-//! Whitted's model as a thing that scatters, so that our own scenes can be path traced.
+//! Whitted's model as a BSDF, so that scenes written for it can be path traced.
 //!
 //! `f |cos θ_i| = k_d cos θ_i / π + k_s (N·H)ⁿ / π` on the side of `wo`; `k_r` into the mirrored and `k_t` into the
 //! refracted direction, with the weights of [`crate::shading::material`]. It is what the tree of rays computes, no more: there

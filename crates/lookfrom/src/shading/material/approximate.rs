@@ -1,5 +1,4 @@
-//! What a physical material is in Whitted's model: for ray casting and Whitted's tree, which know no other. A likeness, not
-//! the same.
+//! The nearest equivalent in Whitted's model of a physical material. A likeness, not the same.
 
 use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Principled, Roughness, Scalar, Whitted};
 

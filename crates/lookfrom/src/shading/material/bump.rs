@@ -1,4 +1,4 @@
-//! Bumps and normal maps: the frame in which a material is shaded.
+//! Bump and normal maps: the shading frame.
 //!
 //! pbrt's materials take the normal as it comes. glTF's take one that is [`valid`], so that what they mirror leaves the
 //! surface: neither black where a mirrored direction would lead inside, nor lit through the surface.

@@ -1,4 +1,4 @@
-//! From a written material to a compiled one.
+//! Compilation of materials.
 
 use lookfrom_scene::material as written;
 use lookfrom_scene::material::{Color, Scalar};

@@ -1,4 +1,4 @@
-//! How surfaces change what a ray is inside of, and which medium that is.
+//! Transitions of the interior stack at surfaces, and its medium.
 
 use glam::Vec3;
 

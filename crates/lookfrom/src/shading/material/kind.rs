@@ -1,4 +1,4 @@
-//! Materials, compiled: what [`lookfrom_scene::material`] names, with inputs made for their use and constants folded.
+//! Compiled materials: those of [`lookfrom_scene::material`] with typed inputs and folded constants.
 
 use glam::Vec3;
 use lookfrom_scene::scene::CurveId;

@@ -1,4 +1,4 @@
-//! glTF's material at a point: textures looked up, colours clamped, directions of brushed metal and coat in one frame.
+//! The parameters of glTF's material at a point.
 //!
 //! Dispersion (`KHR_materials_dispersion`) leaves one wavelength alone, with the index that Cauchy's equation has for it by
 //! Abbe's number. In RGB mode it leaves one of red, green and blue: they stand for the Fraunhofer lines C, d and F, which are

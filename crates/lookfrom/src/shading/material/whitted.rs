@@ -1,4 +1,4 @@
-//! Whitted's model at a point, with all textures looked up.
+//! The parameters of Whitted's model at a point.
 //!
 //! Whitted 1980: `I = k_a I_a + k_d Σ (N·L_j) I_j + k_s Σ (N·H_j)ⁿ I_j + k_r S + k_t T`, with Blinn's `H` halfway between
 //! `L` and the eye.

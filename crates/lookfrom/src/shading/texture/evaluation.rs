@@ -1,4 +1,4 @@
-//! What do the values of a texture become: numbers, RGB, or values at four wavelengths?
+//! Texture evaluation: values as numbers, RGB, or spectra at four wavelengths.
 //!
 //! Leaves (constants, texels, curves) are read by one of these; what stands between them blends what was read. So in
 //! spectral mode it is spectra that are blended, as in pbrt-v4.

@@ -1,4 +1,4 @@
-//! Inputs of materials, lights and textures, compiled: a colour or a number that may vary over a surface.
+//! Inputs of materials, lights and textures, compiled.
 //!
 //! pbrt's `SpectrumTexture` and `FloatTexture`. What a scene writes as a colour is compiled for what it is used for; constants are
 //! clamped, and lifted to spectra where the picture is spectral, once.

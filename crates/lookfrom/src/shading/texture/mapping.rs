@@ -1,4 +1,4 @@
-//! Where does a point of a surface lie in a pattern?
+//! Texture mappings.
 
 use std::f32::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Textures, compiled: the nodes of a graph whose leaves are constants, curves and pictures.
+//! Compiled textures: nodes of a graph whose leaves are constants, curves and pictures.
 
 use glam::Vec3;
 use lookfrom_scene::material::{Color, Scalar};

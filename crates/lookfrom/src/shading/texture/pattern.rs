@@ -1,4 +1,4 @@
-//! What are the numbers and colours of the patterns that nobody painted?
+//! Procedural patterns.
 //!
 //! Squares, and pbrt-v4's dots, waves and marble (Pharr, Jakob, Humphreys 2023), which Perlin's noise makes.
 

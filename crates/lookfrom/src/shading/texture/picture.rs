@@ -1,4 +1,4 @@
-//! What is the colour of a picture between its texels and beyond its edges?
+//! Image lookups: filtering and wrapping.
 
 use lookfrom_scene::image::Image;
 use lookfrom_scene::texture::{Channel, TexelFilter, Wrap};

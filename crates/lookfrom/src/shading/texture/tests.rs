@@ -390,7 +390,7 @@ fn channels_are_greys_and_alpha_is_no_color() {
     let textures = textures_of(kinds.to_vec(), vec![image], vec![]);
     let number = |index, at: &TexturePoint| textures.scalar(Scalar::Texture(TextureId(index)), at);
     let green = lookfrom_scene::image::linear_from_srgb(0.2);
-    // In the middle between both texels; nothing of the black above and below shines in at v = 0.5.
+    // In the middle between both texels; nothing of the black above and below emits light in at v = 0.5.
     let found: Vec<f32> = (0..4).map(|index| number(index, &at(0.5, 0.5))).collect();
     assert_eq!(found, [2.0, 2.0 * green, 0.0, 2.0 * (0.5 * 0.4 + 0.5 * 0.8)]);
     let gray = textures.rgb_of(Color::Texture(TextureId(3)), SpectrumType::Unbounded, &at(0.0, 0.5));

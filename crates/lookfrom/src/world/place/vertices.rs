@@ -1,4 +1,4 @@
-//! What consists of vertices: meshes, patches and curves are moved to their place, vertex by vertex.
+//! Placement of meshes, patches and curves.
 
 use std::sync::Arc;
 

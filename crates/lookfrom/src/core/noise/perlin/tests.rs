@@ -1,4 +1,4 @@
-//! Is this the noise of Perlin's table?
+//! Tests of Perlin noise against its table.
 
 use super::*;
 

@@ -1,6 +1,6 @@
-//! Eight lights asked at once: the twin of `PathTracer::sample_light` up to the shadow ray.
+//! Next-event estimation for eight paths at once: the twin of `PathTracer::sample_light` up to the shadow ray.
 //!
-//! Points of triangles of one colour, chosen by area, go side by side; all else is asked one by one and takes its lane.
+//! Points of triangles of one colour, chosen by area, go side by side; all else is sampled one by one and takes its lane.
 
 use glam::DVec3;
 use lookfrom_bvh::Point;
@@ -130,7 +130,7 @@ impl<S: Simd> LightSamples<S> {
                 Some(LaneSample { light: index, probability, pdf, li, is_delta: light.is_delta(), target });
         }
 
-        // Those that were asked one by one take their lanes.
+        // Those that were sampled one by one take their lanes.
         let (mut points, mut normal) = (points, normal);
         for (lane, place) in place.iter().enumerate() {
             if let Some((point, of_light)) = place {
@@ -144,7 +144,7 @@ impl<S: Simd> LightSamples<S> {
         Self { choice, samples, wi: Vectors::<Narrow<S>>::of_rows(simd, &wi), points, normal }
     }
 
-    /// What was asked of the light of a lane, for who listens.
+    /// The light sample of a lane, for a probe.
     pub(super) fn light_sample(&self, lane: usize, answer: &LaneSample) -> LightSample {
         let target = match answer.target {
             Target::Surface(..) => {
@@ -157,7 +157,7 @@ impl<S: Simd> LightSamples<S> {
         LightSample { wi: self.wi.lane(lane).into(), li: answer.li, pdf: answer.pdf, target }
     }
 
-    /// That the light of a lane was asked in vain, for who listens; `None` where there is no light.
+    /// The event of a light sample that brings nothing, for a probe; `None` where there is no light.
     pub(super) fn in_vain(&self, lane: usize, address: u64) -> Option<Event> {
         let (light, probability) = self.choice[lane]?;
         let sample = self.samples[lane].as_ref().map(|answer| self.light_sample(lane, answer));

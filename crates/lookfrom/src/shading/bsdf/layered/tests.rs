@@ -1,4 +1,5 @@
-//! Do walks add up to what a coat does? Where formulas end, `sample` and `f` check one another.
+//! Tests of layered BSDFs: walks against formulas, and `sample` against `f`. Where formulas end, `sample` and `f` check
+//! one another.
 
 use super::*;
 use crate::shading::bsdf::Bsdf;

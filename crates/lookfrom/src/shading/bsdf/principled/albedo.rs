@@ -1,4 +1,4 @@
-//! Which part of the light do rough mirrors and fibres send back, seen from a direction?
+//! Directional albedos of microfacets and sheen, by tables.
 //!
 //! Layers that share light need to know. There is no formula, so small tables are made by integration when they are first
 //! asked for (a few milliseconds, once a process) and read with linear interpolation.

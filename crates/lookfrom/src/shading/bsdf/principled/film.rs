@@ -1,4 +1,4 @@
-//! How does a film as thin as light's wavelength colour what a surface mirrors?
+//! Thin-film iridescence (Belcour & Barla 2017).
 //!
 //! Light that goes back and forth in the film meets itself again, later by the film's optical path. The sum over all ways
 //! (Airy 1833) is a Fourier series in that path: Belcour & Barla 2017. For four wavelengths it is summed in closed form;

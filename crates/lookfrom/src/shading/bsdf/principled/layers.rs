@@ -1,4 +1,4 @@
-//! What lies over a principled surface: fibres, and a clear coat with a normal of its own, seen from a direction.
+//! Sheen and clear coat over a principled surface, for one outgoing direction.
 
 use glam::Vec3;
 

@@ -1,4 +1,4 @@
-//! Fibres that stand on a surface: dust, velvet.
+//! Sheen: Charlie's distribution of fibres (Estevez & Kulla 2017).
 //!
 //! Charlie's distribution of micro-normals and its masking (Estevez & Kulla 2017), as `KHR_materials_sheen` has them:
 //! `f = D / (4 cos θ_o cos θ_i (1 + Λ_o + Λ_i))`, times a colour. Directions are chosen uniformly over the hemisphere: the

@@ -1,4 +1,4 @@
-//! What lies under coat and sheen: a mirror, of metal or over a body that is matte or lets light pass.
+//! The base of a principled surface: a microfacet boundary over a metal, a diffuse body or a transmissive one.
 
 use super::albedo::{self, Split};
 use super::{Film, Principled};

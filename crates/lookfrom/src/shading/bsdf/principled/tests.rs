@@ -1,4 +1,4 @@
-//! Is nothing won or lost, and are the limits what they should be? Densities and reciprocity are tested with all others.
+//! Tests of the principled BSDF: energy and limits. Densities and reciprocity are tested with all others.
 
 use super::*;
 use crate::core::color::DenselySampledSpectrum;

@@ -1,4 +1,4 @@
-//! A principled surface seen from a direction: the light that each lobe sends there, and the choice between lobes.
+//! A principled BSDF for one outgoing direction: its lobes, and the choice between them.
 //!
 //! The surface is mirrored where it is seen from below, so that here `wo.z > 0` always and `wi.z < 0` is what passes.
 

@@ -1,4 +1,4 @@
-//! Is it what the tree of rays computes? (Its density is tested with all others.)
+//! Tests of Whitted's BSDF against the tree of rays. (Its density is tested with all others.)
 
 use super::*;
 use crate::shading::bsdf::tests::{direction, number, numbers, uniform_direction};

@@ -1,4 +1,4 @@
-//! Is every mirrored direction outside, and is no normal turned that need not be?
+//! Tests of shading normals: reflections stay outside, valid normals stay as they are.
 
 use super::*;
 use crate::core::hash;
