@@ -99,10 +99,10 @@ fn the_inspector_tells_which_colour_is_left() {
         let mut lane = None;
         for ray in &inspection.rays {
             let Some(scattering) = &ray.scattering else { continue };
-            let share = ray.share_there.as_ref().expect("a share");
+            let share = ray.throughput_there.as_ref().expect("a share");
             if let Some(color) = ray.only_color {
                 // Only once, and for all three.
-                assert!(lane.is_none() && ray.share == [1.0; 3]);
+                assert!(lane.is_none() && ray.throughput == [1.0; 3]);
                 lane = ["red", "green", "blue"].iter().position(|name| *name == color);
                 told.insert(color);
                 assert!(inspection.to_string().contains(&format!("{color} goes on alone")));
@@ -113,7 +113,7 @@ fn the_inspector_tells_which_colour_is_left() {
             assert!((eta - (1.6 + 0.06 * (lane as f32 - 1.0))).abs() < 1e-6, "{eta} in lane {lane}");
         }
         if let Some(first) = inspection.rays.first().filter(|ray| ray.met.is_some()) {
-            let share = first.share_there.as_ref().expect("a share");
+            let share = first.throughput_there.as_ref().expect("a share");
             assert_eq!(share.iter().sum::<f32>(), 3.0);
         }
     }

@@ -205,7 +205,7 @@ fn heuristic(p: f32, q: f32) -> f32 {
 
 /// Each number of a ray by the formula that the report gives for it.
 fn check_ray(inspection: &Inspection, ray: &RayReport, what: &str) {
-    let share = ray.share_there.as_ref().unwrap_or(&ray.share);
+    let share = ray.throughput_there.as_ref().unwrap_or(&ray.throughput);
     let is_path = inspection.integrator == "path";
     for found in &ray.found {
         let (radiance, w) = (&found.radiance.lanes, found.weight);
@@ -238,13 +238,13 @@ fn check_ray(inspection: &Inspection, ray: &RayReport, what: &str) {
     }
     let next = inspection.rays.iter().find(|next| next.parent == Some(ray.address));
     if let Some(bounce) = &ray.bounce {
-        assert_eq!(&bounce.share_before, share, "{what}");
+        assert_eq!(&bounce.throughput_before, share, "{what}");
         let expected = |lane| share[lane] * bounce.f[lane] * bounce.cos / bounce.pdf;
-        assert_close(&bounce.share_after, expected, &format!("{what}: β"));
+        assert_close(&bounce.throughput_after, expected, &format!("{what}: β"));
         assert!(is_path || bounce.survival == 1.0, "{what}");
         if let Some(next) = next {
-            assert_eq!(Some(&next.share), bounce.next_share.as_ref(), "{what}");
-            assert_close(&next.share, |lane| bounce.share_after[lane] / bounce.survival, what);
+            assert_eq!(Some(&next.throughput), bounce.next_throughput.as_ref(), "{what}");
+            assert_close(&next.throughput, |lane| bounce.throughput_after[lane] / bounce.survival, what);
             assert_eq!(next.pdf.is_none(), bounce.lobe.starts_with("specular"), "{what}");
         }
     }
@@ -277,7 +277,7 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
                     told.extend(ray.bounce.iter().map(|bounce| bounce.lobe.clone()));
                     told.extend(ray.found.iter().map(|found| format!("{name} found {}", found.light)));
                     told.extend(ray.asked.iter().map(|asked| format!("{name} asked {}", asked.light)));
-                    let absorbs = ray.share_there.as_ref().is_some_and(|share| *share != ray.share);
+                    let absorbs = ray.throughput_there.as_ref().is_some_and(|share| *share != ray.throughput);
                     told.extend(absorbs.then(|| "absorbs".into()));
                 }
                 let dispersed = inspection.wavelengths.is_some_and(|wavelengths| wavelengths.dispersed);

@@ -242,7 +242,7 @@ fn what_is_told_of_media_adds_up() {
             let inspection = inspect(&renderer, SampleId { pixel: [1, 0], sample });
             assert!(inspection.adds_up);
             for ray in &inspection.rays {
-                let share = ray.share_there.as_ref().unwrap_or(&ray.share);
+                let share = ray.throughput_there.as_ref().unwrap_or(&ray.throughput);
                 for found in &ray.found {
                     let expected = |k: usize| share[k] * found.radiance.lanes[k] * found.weight;
                     assert!(

@@ -145,7 +145,7 @@ fn what_has_the_index_of_its_surroundings_is_not_there() {
                 assert_eq!((eta(ray), bounce.lobe.as_str()), (Some(1.0), "specular transmission"));
                 let before = glam::Vec3::from_array(ray.direction).normalize();
                 assert!((glam::Vec3::from_array(bounce.wi) - before).length() < 1e-5, "{there:?}");
-                let kept = bounce.share_before.iter().zip(&bounce.share_after);
+                let kept = bounce.throughput_before.iter().zip(&bounce.throughput_after);
                 assert!(kept.clone().all(|(before, after)| (before - after).abs() < 1e-5), "{bounce:?}");
             }
         }

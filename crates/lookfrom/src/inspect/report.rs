@@ -114,8 +114,8 @@ pub struct RayReport {
     pub a: [f64; 3],
     /// Its direction, not necessarily of unit length.
     pub direction: [f32; 3],
-    /// β: the share of the sample that light along it has.
-    pub share: Factor,
+    /// β: the throughput, the factor of light along it in the sample.
+    pub throughput: Factor,
     /// The density over solid angle with which its direction was chosen, as it is weighed against light sampling; `None`
     /// where it was the only one (from the camera and from mirrors) and in Whitted's tree.
     pub pdf: Option<f32>,
@@ -123,8 +123,8 @@ pub struct RayReport {
     pub candidates: Vec<Candidate>,
     /// What it met; `None` for the sky.
     pub met: Option<MetReport>,
-    /// The share at what it met, after absorption on the way and dispersion there; where a path is scattered.
-    pub share_there: Option<Factor>,
+    /// The throughput at what it met, after absorption on the way and dispersion there; where a path is scattered.
+    pub throughput_there: Option<Factor>,
     /// In RGB mode: the one colour that goes on, at the weight of all, where they go different ways in what was met.
     pub only_color: Option<&'static str>,
     /// Lights that it found by itself, along a path.

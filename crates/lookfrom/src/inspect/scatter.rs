@@ -40,7 +40,7 @@ pub struct FoundReport {
     /// q: the density with which light sampling would have chosen the direction, the choice of the light included; 0 where
     /// it could not. (p is the ray's `pdf`.)
     pub light_pdf: f32,
-    /// w: the share that this way of finding the light has; `p² / (p² + q²)` where both can.
+    /// w: the MIS weight of this way of finding the light, `p² / (p² + q²)` where both can.
     pub weight: f32,
     /// What was added to the sample.
     pub added: Amount,
@@ -79,7 +79,7 @@ pub struct AnswerReport {
     /// q: the density with which the material would have chosen the direction; `None` where nothing else can find the
     /// light, or nothing else is weighed against.
     pub bsdf_pdf: Option<f32>,
-    /// w: the share that this way of finding the light has; `p² / (p² + q²)` where both can.
+    /// w: the MIS weight of this way of finding the light, `p² / (p² + q²)` where both can.
     pub weight: f32,
 }
 
@@ -101,15 +101,15 @@ pub struct BounceReport {
     /// The index of refraction beyond the surface over the one before it, where light was bent; else 1.
     pub eta: f32,
     /// β before.
-    pub share_before: Factor,
+    pub throughput_before: Factor,
     /// `β f cos / pdf`.
-    pub share_after: Factor,
+    pub throughput_after: Factor,
     /// Russian roulette's probability of going on.
     pub survival: f32,
     /// Whether it goes on.
     pub survives: bool,
-    /// β of the next ray: `share_after / survival`; `None` where there is none.
-    pub next_share: Option<Factor>,
+    /// β of the next ray: `throughput_after / survival`; `None` where there is none.
+    pub next_throughput: Option<Factor>,
 }
 
 /// A scattering function in words and numbers; `factor` keeps the lanes that mean something.

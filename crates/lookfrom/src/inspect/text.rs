@@ -74,7 +74,7 @@ impl Inspection {
 
     fn write_ray(&self, f: &mut Formatter<'_>, ray: &RayReport, indent: usize) -> fmt::Result {
         let pad = "  ".repeat(indent + 1);
-        writeln!(f, "{pad}{} ray {}: share {} of the pixel", ray.kind, ray.address, lanes(&ray.share))?;
+        writeln!(f, "{pad}{} ray {}: throughput {}", ray.kind, ray.address, lanes(&ray.throughput))?;
         writeln!(f, "{pad}  a = {}   direction = {}", vector(&ray.a), vector32(&ray.direction))?;
         write_candidates(f, ray, OTHERS_IN_TREE, &pad)?;
         match &ray.met {

@@ -95,8 +95,8 @@ impl<'a> TraceLogBuilder<'a> {
                 };
                 let share = self.factor(*beta);
                 self.at(*address, |ray| {
-                    if share != ray.share {
-                        ray.share_there = Some(share);
+                    if share != ray.throughput {
+                        ray.throughput_there = Some(share);
                     }
                     ray.found.push(report);
                 });
@@ -179,11 +179,11 @@ impl<'a> TraceLogBuilder<'a> {
         let settings = self.renderer.settings();
         let addresses: Vec<u64> = self.rays.keys().copied().collect();
         for address in addresses {
-            let next = self.rays.get(&(address + 1)).map(|next| next.share.clone());
+            let next = self.rays.get(&(address + 1)).map(|next| next.throughput.clone());
             let Some(ray) = self.rays.get_mut(&address) else { continue };
             let kind_of_next = match &mut ray.bounce {
                 Some(bounce) => {
-                    bounce.next_share.clone_from(&next);
+                    bounce.next_throughput.clone_from(&next);
                     match settings.integrator {
                         Integrator::RandomWalk => "scattered",
                         _ if bounce.lobe.ends_with("transmission") => "transmitted",
@@ -204,7 +204,7 @@ impl<'a> TraceLogBuilder<'a> {
                 }
                 (_, Some(_), None) => "the surface offers no direction: its light is swallowed",
                 (.., Some(bounce)) if !bounce.survives => "Russian roulette ends it",
-                (.., Some(_)) => "no light from there would count: its share is 0",
+                (.., Some(_)) => "no light from there would count: its throughput is 0",
             });
         }
     }
@@ -242,12 +242,12 @@ impl<'a> TraceLogBuilder<'a> {
             depth: path.depth,
             a: in_world(self.world, path.ray.origin),
             direction: path.ray.direction,
-            share: self.factor(path.beta),
+            throughput: self.factor(path.beta),
             // Infinite is a choice without an alternative.
             pdf: (pdf != f32::INFINITY).then_some(pdf),
             candidates: candidate::candidates(self.world, &path.ray, hit),
             met: surface.map(|surface| met_report(self.world, hit, &surface)),
-            share_there: None,
+            throughput_there: None,
             only_color: None,
             found: Vec::new(),
             scattering: None,
@@ -302,10 +302,10 @@ impl<'a> TraceLogBuilder<'a> {
             Lanes::Spectral(_) => None,
         };
         self.at(address, |ray| {
-            let had_others = ray.share.iter().filter(|lane| **lane != 0.0).count() > 1;
+            let had_others = ray.throughput.iter().filter(|lane| **lane != 0.0).count() > 1;
             ray.only_color = only.filter(|_| had_others);
             ray.scattering = Some(report);
-            ray.share_there = Some(share);
+            ray.throughput_there = Some(share);
         });
     }
 
@@ -374,11 +374,15 @@ impl<'a> TraceLogBuilder<'a> {
             pdf: sample.pdf,
             pdf_is_proportional: sample.pdf_is_proportional,
             eta: sample.eta,
-            share_before: self.rays.get(&address).and_then(|ray| ray.share_there.clone()).unwrap_or_default(),
-            share_after: self.factor(bounce.beta),
+            throughput_before: self
+                .rays
+                .get(&address)
+                .and_then(|ray| ray.throughput_there.clone())
+                .unwrap_or_default(),
+            throughput_after: self.factor(bounce.beta),
             survival: bounce.survival,
             survives: bounce.survives,
-            next_share: None,
+            next_throughput: None,
         }
     }
 

@@ -38,7 +38,7 @@ impl Inspection {
         writeln!(f, "  steradian) of that choice, so that the mean over many samples is right.")?;
         writeln!(
             f,
-            "    β    the path's share: what light found here is multiplied by on its way into the pixel"
+            "    β    the path's throughput: what light found here is multiplied by on its way into the pixel"
         )?;
         writeln!(f, "    f    the scattering function of the surface; cos: of the angle to its normal n")?;
         writeln!(f, "    L    light that arrives from a direction")?;
@@ -74,7 +74,7 @@ impl Inspection {
             ray.address,
             ray.kind,
             after(ray.depth),
-            lanes(&ray.share)
+            lanes(&ray.throughput)
         )?;
         writeln!(f, "{pad}  a = {}   direction = {}", vector(&ray.a), vector32(&ray.direction))?;
         write_candidates(f, ray, OTHERS_ALONG_PATH, pad)?;
@@ -82,7 +82,7 @@ impl Inspection {
             None => writeln!(f, "{pad}  meets nothing: the sky")?,
             Some(met) => write_met(f, met, pad)?,
         }
-        if let Some(share) = ray.share_there.as_ref().filter(|share| **share != ray.share) {
+        if let Some(share) = ray.throughput_there.as_ref().filter(|share| **share != ray.throughput) {
             let why = match ray.only_color {
                 Some(color) => {
                     format!("colours go different ways here: {color} goes on alone, for all of them")
@@ -233,7 +233,7 @@ impl Inspection {
                 full(bounce.eta)
             )?;
         }
-        writeln!(f, "      β f cos / pdf = {}", lanes(&bounce.share_after))?;
+        writeln!(f, "      β f cos / pdf = {}", lanes(&bounce.throughput_after))?;
         match (bounce.survival < 1.0, bounce.survives) {
             (false, _) => Ok(()),
             (true, survives) => {
@@ -242,7 +242,7 @@ impl Inspection {
                     f,
                     "      Russian roulette: goes on with probability {survival} (greatest lane of β, × η² inside glass): "
                 )?;
-                match (survives, &bounce.next_share) {
+                match (survives, &bounce.next_throughput) {
                     (true, Some(share)) => {
                         writeln!(f, "it does,\n      and β / {survival} = {}", lanes(share))
                     }
