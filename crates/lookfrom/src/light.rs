@@ -150,7 +150,7 @@ impl Light {
         !matches!(self, Self::Area(_) | Self::Environment(_))
     }
 
-    /// Whether a sampler that samples materials as well needs to ask it.
+    /// Whether it needs to be sampled where BSDFs are sampled as well.
     fn is_sampled(&self) -> bool {
         match self {
             Self::Environment(environment) => environment.illuminates && environment.is_uneven(),

@@ -241,7 +241,7 @@ impl World {
         }
     }
 
-    /// Radiance that a surface is seen with, whatever the light, which no one asks for: `None` for all but unlit materials.
+    /// The constant radiance of an unlit material; `None` for all others.
     pub fn unlit(&self, surface: &SurfaceInteraction, lanes: &Lanes) -> Option<Spectrum> {
         let MaterialKind::Unlit { color, .. } = &self.materials[surface.material as usize].kind else {
             return None;

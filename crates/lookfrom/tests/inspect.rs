@@ -276,7 +276,7 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
                     told.extend(ray.scattering.iter().map(|scattering| scattering.kind.into()));
                     told.extend(ray.bounce.iter().map(|bounce| bounce.lobe.clone()));
                     told.extend(ray.found.iter().map(|found| format!("{name} found {}", found.light)));
-                    told.extend(ray.asked.iter().map(|asked| format!("{name} asked {}", asked.light)));
+                    told.extend(ray.asked.iter().map(|asked| format!("{name} sampled {}", asked.light)));
                     let absorbs = ray.throughput_there.as_ref().is_some_and(|share| *share != ray.throughput);
                     told.extend(absorbs.then(|| "absorbs".into()));
                 }
@@ -303,16 +303,16 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
         "specular reflection",
         "specular transmission",
         "path found sky",
-        "path asked sky",
-        "path asked window",
-        "path asked bulb",
-        "simple_path asked window",
+        "path sampled sky",
+        "path sampled window",
+        "path sampled bulb",
+        "simple_path sampled window",
         "simple_path found sky",
         "random_walk found sky",
         "it leaves the scene",
         "it may not be scattered more often (--depth)",
         "Russian roulette ends it",
-        "only whether the surroundings are open is asked",
+        "only whether the surroundings are open counts",
     ] {
         assert!(told.contains(expected), "{expected:?} is not in {told:#?}");
     }

@@ -131,9 +131,9 @@ pub struct RayReport {
     pub found: Vec<FoundReport>,
     /// What the surface does with light, along a path.
     pub scattering: Option<ScatteringReport>,
-    /// Each light that was asked, in Whitted's model.
+    /// Each light, in Whitted's model.
     pub lights: Vec<LightReport>,
-    /// The one light that was asked, along a path.
+    /// The one light that was sampled, along a path.
     pub asked: Option<AskedReport>,
     /// Whether anything is near, for ambient occlusion.
     pub openness: Option<ShadowReport>,
@@ -174,7 +174,7 @@ pub struct MetReport {
     pub front: bool,
     /// The material's name.
     pub material: String,
-    /// Its coefficients here, where the integrator asks for them.
+    /// Its coefficients here, where the integrator evaluates them.
     pub coefficients: Option<CoefficientsReport>,
 }
 
@@ -262,7 +262,7 @@ pub struct BranchReport {
 pub struct Addition {
     /// The ray whose hit made it.
     pub address: u64,
-    /// Why: `sky`, `emission`, `ambient`, `view`, `open sky`, or the light's name (`found` or `asked` along a path).
+    /// Why: `sky`, `emission`, `ambient`, `view`, `open sky`, or the light's name (`found` or `sampled` along a path).
     pub term: String,
     /// How much.
     pub value: Amount,

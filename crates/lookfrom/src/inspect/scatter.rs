@@ -46,7 +46,7 @@ pub struct FoundReport {
     pub added: Amount,
 }
 
-/// The one light that a surface asked: `β f cos L w / p` is added, if the shadow ray reaches it.
+/// The one light that was sampled at a surface: `β f cos L w / p` is added, if the shadow ray reaches it.
 #[derive(Clone, Debug, Serialize)]
 pub struct AskedReport {
     /// Its number.

@@ -198,7 +198,7 @@ impl<'a> TraceLogBuilder<'a> {
             }
             ray.ends = Some(match (&ray.met, &ray.scattering, &ray.bounce) {
                 (None, ..) => "it leaves the scene",
-                (Some(_), None, _) => "only whether the surroundings are open is asked",
+                (Some(_), None, _) => "only whether the surroundings are open counts",
                 (_, Some(_), None) if ray.depth >= settings.depth => {
                     "it may not be scattered more often (--depth)"
                 }
@@ -419,7 +419,7 @@ impl<'a> TraceLogBuilder<'a> {
             Term::Unoccluded => "open sky".into(),
             Term::Found { light, .. } => format!("found {}", name(light)),
             Term::Light(light) if is_path(self.renderer.settings().integrator) => {
-                format!("asked {}", name(light))
+                format!("sampled {}", name(light))
             }
             Term::Light(light) => name(light).clone(),
         }

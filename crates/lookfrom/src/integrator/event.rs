@@ -67,10 +67,10 @@ pub enum Event {
         address: u64,
         /// The place.
         surface: Box<SurfaceInteraction>,
-        /// The look, where the integrator asks for it.
+        /// Whitted's coefficients, where the integrator evaluates them.
         coefficients: Option<Box<crate::shading::material::Coefficients>>,
     },
-    /// A light was asked.
+    /// A light was sampled, in Whitted's model.
     LocalLight {
         /// Of the path.
         address: u64,
@@ -109,7 +109,7 @@ pub enum Event {
         /// The path throughput there, after what was absorbed on the way.
         beta: Spectrum,
     },
-    /// One light of many was asked in vain.
+    /// The sample of one light brings nothing.
     LightSampleFailed {
         /// Of the path.
         address: u64,
@@ -120,7 +120,7 @@ pub enum Event {
         /// What it said, of which the material sends nothing on; `None` when no light can come from there.
         sample: Option<crate::light::LightSample>,
     },
-    /// One light of many was asked.
+    /// One light of many was sampled.
     LightSampled {
         /// Of the path.
         address: u64,
@@ -161,7 +161,7 @@ pub enum Event {
         branch: Branch,
         /// The branch's weight relative to its parent.
         weight: Spectrum,
-        /// The part that Fresnel's equations mirror, where they are asked.
+        /// The part that Fresnel's equations mirror, where they are evaluated.
         fresnel: Option<f32>,
         /// Whether total reflection sent all into the mirrored branch.
         total_reflection: bool,

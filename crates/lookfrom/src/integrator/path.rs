@@ -44,9 +44,9 @@ const SAFE_BOUNCES: u32 = 4;
 pub enum LightSampling {
     /// Lights and materials are sampled together.
     MultipleImportance,
-    /// Lights are asked, and found by chance only where nothing else can: pbrt's `simplepath`.
+    /// Lights are sampled, and emission that a path hits counts only where sampling cannot find it: pbrt's `simplepath`.
     NextEventEstimation,
-    /// Nothing is asked; directions are uniform all around: pbrt's `randomwalk`.
+    /// No lights are sampled; directions are uniform over the sphere: pbrt's `randomwalk`.
     None,
 }
 
@@ -347,7 +347,7 @@ impl PathTracer {
         match self.light_sampling {
             _ if path.previous.pdf.is_infinite() => 1.0,
             LightSampling::MultipleImportance => power_heuristic(path.previous.pdf, light_pdf()),
-            // What is asked is found already.
+            // Light sampling has found it already.
             LightSampling::NextEventEstimation if light_pdf() > 0.0 => 0.0,
             LightSampling::NextEventEstimation | LightSampling::None => 1.0,
         }

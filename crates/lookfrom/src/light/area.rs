@@ -100,7 +100,7 @@ impl AreaLight {
     }
 
     /// Radiance that leaves a point of the light on the side of its normal (`front`) or on the other, at an angle of cosine
-    /// `cos` to its shading normal (on either side; asked only where there is a coat).
+    /// `cos` to its shading normal (on either side; evaluated only where there is a coat).
     pub fn emitted(
         &self,
         textures: &Textures,

@@ -1,7 +1,7 @@
 //! Light samplers: the choice of one light at a point (uniform, by power, by a light tree).
 //!
 //! Lights infinitely far take turns with the tree of those that have a place, each with the same probability, as in
-//! pbrt-v4. Lights that directions sampled from materials find as well (an even sky) need not be asked: they have
+//! pbrt-v4. Lights that directions sampled from materials find as well (an even sky) need not be sampled: they have
 //! probability 0.
 
 use lookfrom_scene::settings::LightSampler as Kind;
@@ -24,7 +24,7 @@ pub struct LightChoice {
 }
 
 impl LightChoice {
-    /// A choice among the lights that need to be asked; `radius` is that of the scene, for the power of lights infinitely
+    /// A choice among the lights that need to be sampled; `radius` is that of the scene, for the power of lights infinitely
     /// far.
     pub fn new(kind: Kind, lights: &[Light], brightness: &[f32], radius: f32) -> Self {
         let asked = || (0..).zip(lights).filter(|(_, light)| light.is_sampled());
@@ -55,7 +55,7 @@ impl LightChoice {
         Self { listed, weights, places, tree: Tree::new(&with_place, lights.len()) }
     }
 
-    /// A light to ask at a place and the probability of it, for `u ∈ [0, 1)`.
+    /// A light to sample at a point and the probability of its choice, for `u ∈ [0, 1)`.
     pub fn sample(&self, at: &LightSampleContext, u: f32) -> Option<(u32, f32)> {
         if let Some(weights) = &self.weights {
             let (place, probability, _) = weights.sample(u);
@@ -72,7 +72,7 @@ impl LightChoice {
         Some((light, probability * (1.0 - in_list)))
     }
 
-    /// The light that is asked everywhere, whatever the number, where there is one only.
+    /// The light that is sampled everywhere, whatever the number, where there is one only.
     #[inline]
     pub(crate) fn only(&self) -> Option<u32> {
         if self.weights.is_none() && self.listed.is_empty() { self.tree.only() } else { None }
@@ -89,7 +89,7 @@ impl LightChoice {
         }
     }
 
-    /// The probability that the list is asked and not the tree, which counts as one more light.
+    /// The probability of the list, and not the tree, which counts as one more light.
     fn share_of_list(&self) -> f32 {
         let (list, tree) = (self.listed.len() as f32, if self.tree.is_empty() { 0.0 } else { 1.0 });
         if list == 0.0 { 0.0 } else { list / (list + tree) }

@@ -132,7 +132,7 @@ impl Environment {
         sum.map(|sum| (sum / f64::from(width * height)) as f32)
     }
 
-    /// Whether asking it is worth while: its light is not nearly the same all around.
+    /// Whether sampling it is worth while: its light is not nearly the same all around.
     pub(super) fn is_uneven(&self) -> bool {
         self.portal.is_some() || matches!(self.sky, Sky::Image(_))
     }

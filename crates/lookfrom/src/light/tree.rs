@@ -214,7 +214,7 @@ impl LightBounds {
         }
     }
 
-    /// Surface area × solid angle of the normals with their emission: how much is lost by asking for one of the bounds.
+    /// Surface area × solid angle of the normals with their emission: the cost of the bounds (SAOH).
     fn cost(&self) -> f32 {
         let theta_o = angle(self.normals.cos);
         let theta_e = angle(self.cos_emission);

@@ -1,7 +1,7 @@
 //! The denoiser: guided non-local means.
 //!
 //! Between the film and [`crate::post::develop`]: light in, light out. Noise of neighbouring pixels is independent, what they show is
-//! not, so each pixel becomes a mean over those around it that show the same. Whether they do is asked three times:
+//! not, so each pixel becomes a mean over those around it that show the same. That is tested in three ways:
 //!
 //! - *Non-local means* (Buades, Coll & Morel 2005, as Rousselle, Knaus & Zwicker 2012 have it for renderings): the light of the 3 × 3
 //!   pixels around both may differ by no more than their noise, which the film knows. Where noise is small next to what is shown,
@@ -21,7 +21,7 @@ mod planes;
 use crate::film::{Film, Picture};
 use planes::Planes;
 
-/// How far away, in pixels along each axis, a pixel is still asked.
+/// The radius of the filter in pixels, along each axis.
 const RADIUS: usize = 5;
 
 /// How far a patch reaches around its pixel.

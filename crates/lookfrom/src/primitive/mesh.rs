@@ -30,7 +30,7 @@ pub struct Mesh {
     pub more_uvs: Vec<Vec<Vec2>>,
     /// Opacities, none or one a vertex.
     pub opacities: Vec<f32>,
-    /// Whether anybody asks for derivatives by texture coordinates; otherwise they are 0.
+    /// Whether derivatives by texture coordinates are needed; otherwise they are 0.
     pub wants_derivatives: bool,
     /// Whether the outside is where the triangles run clockwise: after a mirror, or a reversal, but not both.
     pub flip: bool,
@@ -66,7 +66,7 @@ impl Mesh {
         }
     }
 
-    /// Whether there is any [`VertexData`] worth asking for.
+    /// Whether there is any [`VertexData`] at all.
     pub fn has_vertex_data(&self) -> bool {
         !self.more_uvs.is_empty() || !self.opacities.is_empty()
     }

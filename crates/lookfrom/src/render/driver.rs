@@ -84,7 +84,7 @@ pub struct TileDone {
     pub picture: Option<Picture>,
 }
 
-/// TraceLog how far a render is, and asked whether it shall stop. Called from many threads; no lock is held meanwhile.
+/// Receives the progress of a render, and decides whether it shall stop. Called from many threads; no lock is held meanwhile.
 pub trait Progress: Sync {
     /// A tile has got more samples. Tiles may come in any order, those of one place in the order of their samples.
     fn tile(&self, _done: TileDone) {}

@@ -11,7 +11,7 @@ use crate::integrator::{
 };
 use crate::view::camera::Camera;
 
-/// What a renderer asks of an [`Integrator`], whichever it is.
+/// An [`Integrator`] as the renderer calls it.
 pub(super) trait Transport: std::fmt::Debug + Send + Sync {
     fn name(&self) -> &'static str;
 

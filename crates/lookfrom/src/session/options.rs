@@ -104,7 +104,7 @@ pub const MOST_SAMPLES: u32 = 1 << 24;
 /// The place of what is wrong with options, in [`Location::file`].
 pub const OPTIONS: &str = "the options";
 
-/// What was asked does not suit the scene.
+/// An option that does not suit the scene.
 pub(super) fn unsuitable(message: String) -> Error {
     Error::new(ErrorKind::Request, &Location::default(), message)
 }

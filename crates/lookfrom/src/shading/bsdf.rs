@@ -35,7 +35,7 @@ use whitted::Whitted;
 pub use local_scattering::LocalScattering;
 
 /// What travels from `wo` into the scene: radiance comes the other way on paths from the camera, importance on paths
-/// from lights. Only refraction asks.
+/// from lights. Only refraction depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// Paths that start at the camera.

@@ -1,7 +1,7 @@
 //! Materials: from their parameters at a point to a BSDF in a shading frame.
 //!
 //! [`Shading`] is the scattering function of a material at a point, in the frame of the (perhaps bent) shading normal:
-//! what path tracing asks. [`Coefficients`] are those of Whitted's model, which the older integrators ask of every
+//! for path tracing. [`Coefficients`] are those of Whitted's model, which ray casting and Whitted's tree use for every
 //! material.
 
 mod albedo;
@@ -107,7 +107,7 @@ impl Shading {
         !matches!(self.bsdf, Bsdf::Principled(_)) || on_one_side(self.ng) == on_one_side(self.frame.n)
     }
 
-    /// Lets `ask` ask what it does toward a unit direction of render space.
+    /// Calls `ask` with the scattering toward a unit direction of render space.
     #[inline]
     pub fn scattering<R>(&self, wo: Vec3, ask: impl FnOnce(&Scattering<'_>) -> R) -> R {
         self.bsdf.scattering(self.frame.local(wo), Mode::Radiance, Lobes::ALL, |bsdf| {
@@ -246,7 +246,7 @@ pub fn normal(
     }
 }
 
-/// Where a material is asked.
+/// The evaluation of a material at a point.
 struct Evaluator<'a> {
     materials: &'a [Material],
     textures: &'a Textures,

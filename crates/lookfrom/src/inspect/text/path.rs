@@ -46,7 +46,7 @@ impl Inspection {
             "path" => {
                 writeln!(
                     f,
-                    "    w    light can be found in two ways, by asking a light and by the path's own direction; each gets a"
+                    "    w    light can be found in two ways, by sampling a light and by the path's own direction; each gets a"
                 )?;
                 writeln!(
                     f,
@@ -57,11 +57,11 @@ impl Inspection {
             "simple_path" => {
                 writeln!(
                     f,
-                    "    w    light that can be asked for counts only where it is asked (w = 1), not where the path meets it"
+                    "    w    light that can be sampled counts only where it is sampled (w = 1), not where the path meets it"
                 )?;
-                writeln!(f, "         (w = 0), unless no light could be asked there")?;
+                writeln!(f, "         (w = 0), unless no light could be sampled there")?;
             }
-            _ => writeln!(f, "    w    no lights are asked: all light is found by chance, w = 1")?,
+            _ => writeln!(f, "    w    no lights are sampled: all light is found by chance, w = 1")?,
         }
         writeln!(f, "  Lines with + are what is added to the pixel.")
     }
@@ -128,17 +128,20 @@ impl Inspection {
         writeln!(f, "    finds the light {}: L = {}", found.light, amount(&found.radiance))?;
         let (w, q) = (full(found.weight), full(found.light_pdf));
         match (ray.pdf, self.integrator) {
-            (None, _) => writeln!(f, "      direction: {ONLY_CHOICE}, asking could not find it: w = {w}")?,
+            (None, _) => writeln!(
+                f,
+                "      direction: {ONLY_CHOICE}, light sampling could not have found it: w = {w}"
+            )?,
             (Some(p), "path") => {
                 writeln!(f, "      p = {}: pdf with which the surface before chose this direction", full(p))?;
-                writeln!(f, "      q = {q}: pdf with which asking a light there would have chosen it")?;
+                writeln!(f, "      q = {q}: pdf with which light sampling would have chosen it")?;
                 writeln!(f, "      w = p² / (p² + q²) = {w}")?;
             }
             (Some(_), "simple_path") if found.light_pdf > 0.0 => {
-                writeln!(f, "      asking lights finds it too (pdf {q}), and has counted it: w = {w}")?;
+                writeln!(f, "      light sampling finds it too (pdf {q}), and has counted it: w = {w}")?;
             }
-            (Some(_), "simple_path") => writeln!(f, "      asking lights cannot find it: w = {w}")?,
-            _ => writeln!(f, "      no lights are asked: w = {w}")?,
+            (Some(_), "simple_path") => writeln!(f, "      light sampling cannot find it: w = {w}")?,
+            _ => writeln!(f, "      no lights are sampled: w = {w}")?,
         }
         writeln!(f, "      + β L w = {}", amount(&found.added))
     }
@@ -146,7 +149,7 @@ impl Inspection {
     fn write_asked(&self, f: &mut Formatter<'_>, asked: &AskedReport) -> fmt::Result {
         writeln!(
             f,
-            "    asks one light: {}, chosen with probability {}",
+            "    samples one light: {}, chosen with probability {}",
             asked.light,
             full(asked.probability)
         )?;
@@ -189,7 +192,7 @@ impl Inspection {
                 )?;
                 let why = match self.integrator {
                     "path" => "a light without size: no path meets it",
-                    _ => "what can be asked for counts only here",
+                    _ => "light that can be sampled counts only here",
                 };
                 writeln!(f, "      w = {} ({why})", full(answer.weight))?;
             }

@@ -1,6 +1,6 @@
 //! Eight steps at once, where surfaces are of the commonest kind: flat triangles of a diffuse material of one colour. The twin
 //! of [`PathTracer::step`](crate::integrator::Integrator::step) for them, bit for bit: each operation is its, in its order, eight
-//! times side by side. Which light is sampled, and what cannot go side by side, is in `asked`.
+//! times side by side. Which light is sampled, and what cannot go side by side, is in `light_samples`.
 
 mod light_samples;
 

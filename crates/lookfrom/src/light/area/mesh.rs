@@ -1,5 +1,5 @@
 //! Triangles as lights: one is chosen by area (and by the emission of a pattern on it), then a direction uniformly over
-//! the solid angle in which it is seen. Triangles on which no light was found are not asked: a path that meets one finds
+//! the solid angle in which it is seen. Triangles without emission are not sampled: a path that hits one finds
 //! what there is.
 //!
 //! Arvo (1995), "Stratified Sampling of Spherical Triangles"; the solid angle by Van Oosterom & Strackee (1983). Where that
@@ -34,7 +34,7 @@ const PLACES_OF_TRIANGLE: std::ops::RangeInclusive<usize> = 8..=4096;
 #[derive(Clone, Debug)]
 pub struct MeshLight {
     mesh: Arc<Mesh>,
-    /// The triangles that are asked, in their order; `None` is all.
+    /// The triangles that are sampled, in their order; `None` is all.
     asked: Option<Vec<u32>>,
     /// Those: what choosing a point takes.
     triangles: Vec<Triangle>,
@@ -118,7 +118,7 @@ impl MeshLight {
         self.area
     }
 
-    /// Around what is asked.
+    /// Bounds of the triangles that are sampled.
     pub(super) fn bounds(&self) -> [DVec3; 2] {
         let vertices = self.triangles.iter().flat_map(|triangle| self.mesh.corners(triangle.index as usize));
         vertices
@@ -136,7 +136,7 @@ impl MeshLight {
         Cone::around(triangles.flat_map(|index| corners.map(|(u, v)| self.mesh.point(index, u, v).ng)))
     }
 
-    /// Which of those that are asked a triangle of the mesh is.
+    /// The index of a triangle of the mesh among those that are sampled.
     fn rank(&self, index: usize) -> Option<usize> {
         match &self.asked {
             None => Some(index),
@@ -202,7 +202,7 @@ impl MeshLight {
         Some((f64::from(self.choice.pdf(rank)) / solid_angle) as f32)
     }
 
-    /// The density over area where points of a triangle are chosen by area; 0 where it is not asked.
+    /// The density over area where points of a triangle are chosen by area; 0 where it is not sampled.
     pub(super) fn pdf_by_area(&self, index: usize) -> f64 {
         self.rank(index).map_or(0.0, |rank| f64::from(self.choice.pdf(rank)) / self.triangles[rank].area)
     }

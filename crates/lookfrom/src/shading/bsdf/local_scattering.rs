@@ -1,6 +1,6 @@
 //! A BSDF for one outgoing direction ω_o, with what depends on that alone computed once.
 //!
-//! A path asks three things of a surface with the same ω_o: the function and the density for a light's direction, and a
+//! A path needs three things at a surface with the same ω_o: the function and the density for a light's direction, and a
 //! direction of its own. What glTF's layers do toward ω_o is worked out once for them. The answers are those of
 //! [`Bsdf::f`], [`Bsdf::pdf`] and [`Bsdf::sample`], bit for bit.
 
@@ -20,7 +20,7 @@ pub struct LocalScattering<'a> {
 }
 
 impl Bsdf {
-    /// Lets `ask` ask what this does toward the unit direction `wo`, where [`Bsdf::sample`] may choose among `lobes`.
+    /// Calls `ask` with the scattering toward the unit direction `wo`, where [`Bsdf::sample`] may choose among `lobes`.
     #[inline]
     pub fn scattering<R>(
         &self,

@@ -72,7 +72,7 @@ impl Coefficients {
         }
     }
 
-    /// Whether lights need to be asked.
+    /// Whether lights contribute.
     pub fn is_lit(&self) -> bool {
         !(self.diffuse.is_black() && self.specular.is_black())
     }

@@ -27,7 +27,7 @@ pub(super) struct LaneSample {
 
 /// What lights answered.
 pub(super) struct LightSamples<S: Simd> {
-    /// Which light each asks, and the probability of having chosen it.
+    /// The light that each lane samples, and the probability of its choice.
     choice: [Option<(u32, f32)>; LANES],
     pub(super) samples: [Option<LaneSample>; LANES],
     pub(super) wi: Vectors<Narrow<S>>,
