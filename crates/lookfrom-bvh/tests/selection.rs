@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use lookfrom_bvh::{
-    Aabb, Affine, BuildError, Builder, Bvh, Faces, Hit, NONE, Procedural, ProceduralHit, Query, Ray, RayF64,
-    Sphere, Triangles,
+    Aabb, Affine, BuildError, Builder, Bvh, Faces, Hit, HitF64, NONE, Procedural, ProceduralHit, Query, Ray,
+    RayF64, Sphere, Triangles,
 };
 
 #[path = "../src/testing.rs"]
@@ -202,7 +202,7 @@ fn check_f64(selected: &Query<'_>, ray: &Ray, expected: &[Hit]) {
     let expected = expected.iter().map(|hit| (hit.instance, hit.geometry, hit.primitive, hit.t.to_bits()));
     assert_eq!(sorted(rounded), sorted(expected.collect()), "{selected:?} {ray:?}");
     assert_eq!(selected.occluded(&fine), closest.is_some());
-    assert_eq!(Some(selected.closest_hit(&fine)).filter(|hit| hit.is_hit()), closest);
+    assert_eq!(Some(selected.closest_hit(&fine)).filter(HitF64::is_hit), closest);
 }
 
 #[test]
