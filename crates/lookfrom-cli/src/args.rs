@@ -12,7 +12,7 @@ use clap_complete::Shell;
 use glam::DVec3;
 use lookfrom::session::Fireflies;
 use lookfrom_scene::settings::{
-    ColorMode, Crop, Filter, Integrator, Layers, LightSampler, Sampler, Sensor, Tonemap,
+    ColorMode, Filter, Integrator, Layers, LightSampler, PixelBounds, Sampler, Sensor, Tonemap,
 };
 
 use crate::values;
@@ -318,7 +318,7 @@ pub(crate) struct Overrides {
 
     /// Compute only this part: columns X0 to before X1, rows Y0 to before Y1, from the top left
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = values::crop, allow_hyphen_values = true)]
-    pub(crate) crop: Option<Crop>,
+    pub(crate) crop: Option<PixelBounds>,
 
     /// Samples a pixel
     #[arg(long, value_name = "N", value_parser = values::whole(1u32, 1 << 24))]

@@ -11,7 +11,7 @@ use lookfrom_scene::Inputs;
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::contents::{AnimationEntry, CameraEntry, Contents};
 use lookfrom_scene::count::Counts;
-use lookfrom_scene::settings::Crop;
+use lookfrom_scene::settings::PixelBounds;
 use serde::Serialize;
 
 use self::object::Object;
@@ -100,7 +100,7 @@ fn for_people(path: &Path, session: &Session) -> String {
         image.exposure,
         image.tonemap.word()
     );
-    if let Some(Crop { x0, y0, x1, y1 }) = image.crop {
+    if let Some(PixelBounds { x0, y0, x1, y1 }) = image.crop {
         let _ = write!(picture, ", crop {x0},{y0},{x1},{y1}");
     }
     if image.denoise {

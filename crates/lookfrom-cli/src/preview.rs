@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use lookfrom::film::Picture;
 use lookfrom::render::TileDone;
-use lookfrom_scene::settings::{Crop, ImageSettings};
+use lookfrom_scene::settings::{ImageSettings, PixelBounds};
 
 /// A picture, and how many samples a pixel it has on average, rounded down.
 pub(crate) type SoFar = (Picture, u64);
@@ -25,7 +25,8 @@ impl Preview {
     pub(crate) fn start(every: Duration, image: &ImageSettings) -> (Self, Receiver<SoFar>) {
         let (sender, receiver) = sync_channel(0);
         let &ImageSettings { width, height, crop, .. } = image;
-        let Crop { x0, y0, x1, y1 } = crop.unwrap_or(Crop { x0: 0, y0: 0, x1: width, y1: height });
+        let PixelBounds { x0, y0, x1, y1 } =
+            crop.unwrap_or(PixelBounds { x0: 0, y0: 0, x1: width, y1: height });
         let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
         let black = vec![[0.0; 3]; width as usize * height as usize];
         let picture = Picture { width, height, pixels: black, alpha: Vec::new() };

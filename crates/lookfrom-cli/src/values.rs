@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use lookfrom_scene::image::linear_from_srgb;
-use lookfrom_scene::settings::{Background, Crop, Filter, Layers};
+use lookfrom_scene::settings::{Background, Filter, Layers, PixelBounds};
 
 use lookfrom::session::Fireflies;
 
@@ -53,10 +53,10 @@ pub(crate) fn vector(typed: &str) -> Result<DVec3, String> {
 }
 
 /// `X0,Y0,X1,Y1`: pixels, with something between the edges.
-pub(crate) fn crop(typed: &str) -> Result<Crop, String> {
+pub(crate) fn crop(typed: &str) -> Result<PixelBounds, String> {
     let [x0, y0, x1, y1] = separated(typed, "four whole numbers of pixels, X0,Y0,X1,Y1")?;
     if x0 < x1 && y0 < y1 {
-        Ok(Crop { x0, y0, x1, y1 })
+        Ok(PixelBounds { x0, y0, x1, y1 })
     } else {
         Err("expected X0 < X1 and Y0 < Y1: pixels are counted from the top left".to_owned())
     }
@@ -218,7 +218,7 @@ mod tests {
         for wrong in ["", "1,2", "1,2,3,4", "1,,3", "1,2,x", "1,2,inf", "NaN,0,0"] {
             assert!(vector(wrong).is_err(), "{wrong}");
         }
-        assert_eq!(crop("1,2,3,4"), Ok(Crop { x0: 1, y0: 2, x1: 3, y1: 4 }));
+        assert_eq!(crop("1,2,3,4"), Ok(PixelBounds { x0: 1, y0: 2, x1: 3, y1: 4 }));
         for wrong in ["1,2,1,4", "1,4,3,4", "3,2,1,4", "-1,0,1,1", "0,0,1.5,1", "0,0,1"] {
             assert!(crop(wrong).is_err(), "{wrong}");
         }

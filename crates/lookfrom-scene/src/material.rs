@@ -44,19 +44,19 @@ pub struct Material {
     /// What kind of look.
     pub kind: MaterialKind,
     /// What turns or bends the shading normal.
-    pub relief: Relief,
+    pub bump_mapping: BumpMapping,
 }
 
 impl Material {
-    /// A look without a relief.
+    /// A look without bump mapping.
     pub fn new(name: impl Into<String>, at: Location, kind: MaterialKind) -> Self {
-        Self { name: name.into(), at, kind, relief: Relief::None }
+        Self { name: name.into(), at, kind, bump_mapping: BumpMapping::None }
     }
 
     /// Whether it matters which way u runs over the surface.
     pub fn has_grain(&self) -> bool {
         let uneven = |roughness: &Roughness| roughness.u != roughness.v;
-        self.relief != Relief::None
+        self.bump_mapping != BumpMapping::None
             || match &self.kind {
                 MaterialKind::Conductor { roughness, .. } | MaterialKind::Dielectric { roughness, .. } => {
                     uneven(roughness)
@@ -75,7 +75,7 @@ impl Material {
 
 /// What turns or bends the shading normal; the form stays as it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Relief {
+pub enum BumpMapping {
     /// Nothing.
     #[default]
     None,
@@ -290,7 +290,7 @@ pub struct Principled {
     pub clearcoat: Scalar,
     /// Its roughness, whose square is α.
     pub clearcoat_roughness: Scalar,
-    /// Its own normals; without, those of the mesh, not those of [`Material::relief`].
+    /// Its own normals; without, those of the mesh, not those of [`Material::bump_mapping`].
     pub clearcoat_normal: Option<NormalTexture>,
     /// The colour of fibres over all (`KHR_materials_sheen`); black is none.
     pub sheen_color: Color,

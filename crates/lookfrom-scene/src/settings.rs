@@ -12,7 +12,7 @@ pub struct ImageSettings {
     /// Rows, `ny`.
     pub height: u32,
     /// Only this part is computed; the picture keeps its full size.
-    pub crop: Option<Crop>,
+    pub crop: Option<PixelBounds>,
     /// The pixel reconstruction filter.
     pub filter: Filter,
     /// In stops: the picture is multiplied by 2^exposure before the tone map.
@@ -118,7 +118,7 @@ impl Default for ImageSettings {
 
 /// A part of the picture in pixels from the top left: `x0 ≤ x < x1`, `y0 ≤ y < y1`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Crop {
+pub struct PixelBounds {
     /// First column.
     pub x0: u32,
     /// First row.

@@ -196,7 +196,7 @@ pub struct Mesh {
     pub colors: Vec<[f32; 3]>,
     /// Opacities: none, or one a vertex.
     pub opacities: Vec<f32>,
-    /// Directions in which u grows, for relief and brushed metal, and in w whether v grows along normal × tangent (1) or
+    /// Directions in which u grows, for bump mapping and brushed metal, and in w whether v grows along normal × tangent (1) or
     /// against it (−1): none, or one a vertex.
     pub tangents: Vec<Vec4>,
 }

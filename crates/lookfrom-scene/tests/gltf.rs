@@ -10,7 +10,7 @@ use lookfrom_scene::camera::{Projection, View};
 use lookfrom_scene::files::{CameraChoice, ImportOptions};
 use lookfrom_scene::image::encode_png;
 use lookfrom_scene::light::LightKind;
-use lookfrom_scene::material::{Color, MaterialKind, Principled, Relief, Scalar};
+use lookfrom_scene::material::{BumpMapping, Color, MaterialKind, Principled, Scalar};
 use lookfrom_scene::scene::TextureId;
 use lookfrom_scene::settings::{Integrator, Tonemap};
 use lookfrom_scene::shape::{Geometry, Mesh, Shape};
@@ -436,8 +436,8 @@ fn a_picture_is_decoded_once_for_each_meaning() {
         panic!("a picture")
     };
     assert_eq!((channel, scale), (Channel::Green, 0.5));
-    let relief = scene.materials[0].relief;
-    assert!(matches!(relief, Relief::NormalTexture(normals) if normals.scale == 2.0));
+    let bump_mapping = scene.materials[0].bump_mapping;
+    assert!(matches!(bump_mapping, BumpMapping::NormalTexture(normals) if normals.scale == 2.0));
     assert!(scene.shapes[0].emission.is_some_and(|emission| !emission.two_sided));
 }
 

@@ -8,7 +8,7 @@ use lookfrom_scene::light::{LightKind, Power, Sky};
 use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Scalar};
 use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::{MaterialId, MediumId, MeshId};
-use lookfrom_scene::settings::{ColorMode, Crop, Filter, Integrator, Layers, Sampler};
+use lookfrom_scene::settings::{ColorMode, Filter, Integrator, Layers, PixelBounds, Sampler};
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::{CameraSensor, Curve};
 use lookfrom_scene::texture::{Mapping, TextureKind};
@@ -70,7 +70,7 @@ fn the_camera_sees_what_pbrts_sees() {
     assert_eq!(camera.window, Some(Window { x: [-1.0, 1.0], y: [-2.0, 2.0] }));
     let lens = camera.lens.expect("one");
     assert_eq!((lens.radius, lens.focus_distance), (0.5, 7.0));
-    assert_eq!(scene.image.crop, Some(Crop { x0: 0, y0: 100, x1: 100, y1: 400 }));
+    assert_eq!(scene.image.crop, Some(PixelBounds { x0: 0, y0: 100, x1: 100, y1: 400 }));
     assert_eq!((scene.image.layers, scene.image.sensor.imaging_ratio), (Layers::Geometry, 2.0));
 }
 

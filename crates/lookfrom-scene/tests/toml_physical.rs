@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{DVec3, Vec3};
 use lookfrom_scene::camera::{Projection, Window};
 use lookfrom_scene::light::{LightKind, Sky};
-use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Relief, Roughness, Scalar};
+use lookfrom_scene::material::{BumpMapping, Color, Ior, MaterialKind, Metal, Roughness, Scalar};
 use lookfrom_scene::settings::{ColorMode, Integrator, Layers, LightSampler};
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::{self, CameraSensor, Curve};
@@ -133,9 +133,10 @@ type = "dots"
     assert_eq!(*kind(&scene, "nothing"), MaterialKind::Interface);
 
     // The same file is numbers for a normal map and a colour elsewhere.
-    let relief = |name: &str| scene.materials.iter().find(|m| m.name == name).expect("a material").relief;
-    assert_eq!(relief("plastic"), Relief::Bump(Scalar::Texture(spots)));
-    let Relief::NormalMap(normals) = relief("paper") else { panic!("a normal map") };
+    let bump_mapping =
+        |name: &str| scene.materials.iter().find(|m| m.name == name).expect("a material").bump_mapping;
+    assert_eq!(bump_mapping("plastic"), BumpMapping::Bump(Scalar::Texture(spots)));
+    let BumpMapping::NormalMap(normals) = bump_mapping("paper") else { panic!("a normal map") };
     assert_eq!(scene.images[normals.index()].texel(0)[0], 128.0 / 255.0);
     let linear = image::linear_from_srgb(128.0 / 255.0);
     assert!(scene.images.iter().any(|image| image.texel(0)[0] == linear));

@@ -18,7 +18,7 @@ use self::aov::{AovSums, LayerSums};
 pub use self::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
 use self::channels::ChannelSums;
 
-use lookfrom_scene::settings::{Background, Crop, ImageSettings, Layers};
+use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds};
 use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 use std::cmp::Ordering;
@@ -42,7 +42,7 @@ pub struct Film {
 /// The light of a rectangle of a film, for one thread to fill.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FilmTile {
-    area: Crop,
+    area: PixelBounds,
     pixels: Vec<Pixel>,
     /// As many as there are pixels, or none.
     layers: Vec<LayerSums>,
@@ -137,12 +137,12 @@ impl Film {
     /// A black film for a picture of `width` × `height` pixels, of which only `crop` (cut to the picture) is held.
     ///
     /// An error if the picture has more than [`MOST_PIXELS`] or there is no memory for it.
-    pub fn new(width: u32, height: u32, crop: Option<Crop>) -> Result<Self> {
+    pub fn new(width: u32, height: u32, crop: Option<PixelBounds>) -> Result<Self> {
         Self::with_layers(width, height, crop, Layers::None)
     }
 
     /// As [`Film::new`], with room for what the layers need besides light.
-    pub fn with_layers(width: u32, height: u32, crop: Option<Crop>, layers: Layers) -> Result<Self> {
+    pub fn with_layers(width: u32, height: u32, crop: Option<PixelBounds>, layers: Layers) -> Result<Self> {
         Self::for_image(&ImageSettings { width, height, crop, layers, ..ImageSettings::default() })
     }
 
@@ -158,7 +158,7 @@ impl Film {
                 "a picture of {width} × {height} = {pixels} pixels; at most {MOST_PIXELS} are possible"
             )));
         }
-        let whole = Crop { x0: 0, y0: 0, x1: width, y1: height };
+        let whole = PixelBounds { x0: 0, y0: 0, x1: width, y1: height };
         let area = common(whole, crop.unwrap_or(whole));
         Ok(Self { width, height, tile: FilmTile::for_image(area, image)? })
     }
@@ -174,7 +174,7 @@ impl Film {
     }
 
     /// The part of the picture that is held.
-    pub fn area(&self) -> Crop {
+    pub fn area(&self) -> PixelBounds {
         self.tile.area
     }
 
@@ -279,14 +279,14 @@ impl Film {
 
     /// The means of all pixels, black outside of [`Film::area`].
     pub fn picture(&self) -> Picture {
-        self.picture_of(Crop { x0: 0, y0: 0, x1: self.width, y1: self.height })
+        self.picture_of(PixelBounds { x0: 0, y0: 0, x1: self.width, y1: self.height })
     }
 
     /// The means of the pixels of a rectangle, black outside of [`Film::area`]: a picture of its size.
-    pub fn picture_of(&self, part: Crop) -> Picture {
+    pub fn picture_of(&self, part: PixelBounds) -> Picture {
         let (width, height) = (part.x1.saturating_sub(part.x0), part.y1.saturating_sub(part.y0));
         let mut pixels = vec![[0.0; 3]; width as usize * height as usize];
-        let Crop { x0, y0, x1, y1 } = common(part, self.tile.area);
+        let PixelBounds { x0, y0, x1, y1 } = common(part, self.tile.area);
         for y in y0..y1 {
             let start = (y - part.y0) as usize * width as usize;
             let row = &mut pixels[start + (x0 - part.x0) as usize..start + (x1 - part.x0) as usize];
@@ -298,7 +298,7 @@ impl Film {
     }
 
     /// How much each pixel of a rectangle hides of what is behind; empty where that was not asked for.
-    fn alpha(&self, part: Crop) -> Vec<f32> {
+    fn alpha(&self, part: PixelBounds) -> Vec<f32> {
         let FilmTile { pixels, alphas, .. } = &self.tile;
         if alphas.is_empty() {
             return Vec::new();
@@ -316,12 +316,12 @@ impl FilmTile {
     /// A black tile. An area that ends before it begins is empty.
     ///
     /// An error if the area has more than [`MOST_PIXELS`] or there is no memory for it.
-    pub fn new(area: Crop) -> Result<Self> {
+    pub fn new(area: PixelBounds) -> Result<Self> {
         Self::with_layers(area, Layers::None)
     }
 
     /// As [`FilmTile::new`], with room for what the layers need besides light.
-    pub fn with_layers(area: Crop, layers: Layers) -> Result<Self> {
+    pub fn with_layers(area: PixelBounds, layers: Layers) -> Result<Self> {
         Self::for_image(area, &ImageSettings { layers, ..ImageSettings::default() })
     }
 
@@ -329,7 +329,7 @@ impl FilmTile {
     ///
     /// # Errors
     /// `Limit` as [`FilmTile::new`].
-    pub fn for_image(area: Crop, image: &ImageSettings) -> Result<Self> {
+    pub fn for_image(area: PixelBounds, image: &ImageSettings) -> Result<Self> {
         let count = u64::from(area.x1.saturating_sub(area.x0)) * u64::from(area.y1.saturating_sub(area.y0));
         if count > MOST_PIXELS {
             return Err(too_large(format!("{count} pixels; at most {MOST_PIXELS} are possible")));
@@ -370,7 +370,7 @@ impl FilmTile {
     }
 
     /// The pixels it covers.
-    pub fn area(&self) -> Crop {
+    pub fn area(&self) -> PixelBounds {
         self.area
     }
 
@@ -445,7 +445,7 @@ impl FilmTile {
 
     /// Adds what another tile holds within the area of this one.
     fn merge(&mut self, other: &Self) {
-        let Crop { x0, y0, x1, y1 } = common(self.area, other.area);
+        let PixelBounds { x0, y0, x1, y1 } = common(self.area, other.area);
         for y in y0..y1 {
             let rows = [self.row(y, x0, x1), other.row(y, x0, x1)];
             merge_row(&mut self.pixels, &other.pixels, &rows, Pixel::merge);
@@ -470,7 +470,7 @@ impl FilmTile {
     }
 
     fn index(&self, x: u32, y: u32) -> Option<usize> {
-        let Crop { x0, y0, x1, y1 } = self.area;
+        let PixelBounds { x0, y0, x1, y1 } = self.area;
         let inside = (x0..x1).contains(&x) && (y0..y1).contains(&y);
         inside.then(|| (y - y0) as usize * (x1 - x0) as usize + (x - x0) as usize)
     }
@@ -482,7 +482,7 @@ impl FilmTile {
 
     /// Where the pixels of columns `from` to before `to` of row `y` are. They must be inside.
     fn row(&self, y: u32, from: u32, to: u32) -> Range<usize> {
-        let Crop { x0, y0, x1, .. } = self.area;
+        let PixelBounds { x0, y0, x1, .. } = self.area;
         let start = (y - y0) as usize * (x1 - x0) as usize;
         start + (from - x0) as usize..start + (to - x0) as usize
     }
@@ -570,10 +570,14 @@ fn fixed_point(light: f32) -> i128 {
 }
 
 /// What two rectangles share; where that is nothing, the empty rectangle at the origin.
-fn common(a: Crop, b: Crop) -> Crop {
+fn common(a: PixelBounds, b: PixelBounds) -> PixelBounds {
     let (x0, x1) = (a.x0.max(b.x0), a.x1.min(b.x1));
     let (y0, y1) = (a.y0.max(b.y0), a.y1.min(b.y1));
-    if x0 < x1 && y0 < y1 { Crop { x0, y0, x1, y1 } } else { Crop { x0: 0, y0: 0, x1: 0, y1: 0 } }
+    if x0 < x1 && y0 < y1 {
+        PixelBounds { x0, y0, x1, y1 }
+    } else {
+        PixelBounds { x0: 0, y0: 0, x1: 0, y1: 0 }
+    }
 }
 
 fn too_large(message: String) -> Error {

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_scene::settings::{
-    Background, ColorMode, Crop, ImageSettings, RenderSettings, Sensor as SensorSettings,
+    Background, ColorMode, ImageSettings, PixelBounds, RenderSettings, Sensor as SensorSettings,
 };
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 
@@ -138,7 +138,7 @@ impl Renderer {
         if settings.samples == 0 {
             return invalid("0 samples a pixel; expected at least 1".into());
         }
-        if let Some(Crop { x0, y0, x1, y1 }) = image.crop
+        if let Some(PixelBounds { x0, y0, x1, y1 }) = image.crop
             && (x0 >= x1 || y0 >= y1 || x1 > image.width || y1 > image.height)
         {
             return invalid(format!(
@@ -438,9 +438,9 @@ fn lanes_by([u, _]: [f32; 2]) -> Lanes {
 }
 
 /// The pixels of an area by square blocks of 8 × 8, so that the rays of a packet of the kernel lie close together.
-fn blocks(area: Crop) -> impl Iterator<Item = [u32; 2]> {
+fn blocks(area: PixelBounds) -> impl Iterator<Item = [u32; 2]> {
     const SIDE: usize = 8;
-    let Crop { x0, y0, x1, y1 } = area;
+    let PixelBounds { x0, y0, x1, y1 } = area;
     let corners = (y0..y1).step_by(SIDE).flat_map(move |y| (x0..x1).step_by(SIDE).map(move |x| [x, y]));
     corners.flat_map(move |[x, y]| {
         let end = |start: u32, end: u32| (start + SIDE as u32).min(end);

@@ -5,7 +5,7 @@ mod support;
 use lookfrom::film::{Film, Picture};
 use lookfrom::post::denoise::denoised;
 use lookfrom_scene::Scene;
-use lookfrom_scene::settings::{Crop, Integrator};
+use lookfrom_scene::settings::{Integrator, PixelBounds};
 use support::{Compiled, own_scene};
 
 fn small(name: &str, samples: u32) -> Scene {
@@ -85,7 +85,7 @@ fn a_crop_is_denoised_as_the_whole_is_where_it_knows_as_much() {
     let whole = film(name, 4);
     let whole = denoised(&whole, &whole.picture());
     let mut scene = small(name, 4);
-    let crop = Crop { x0: 20, y0: 10, x1: 70, y1: 60 };
+    let crop = PixelBounds { x0: 20, y0: 10, x1: 70, y1: 60 };
     scene.image.crop = Some(crop);
     let part = Compiled::new(scene).film();
     let part = denoised(&part, &part.picture());

@@ -10,7 +10,7 @@ use lookfrom::render::SampleId;
 use lookfrom_scene::image::Image;
 use lookfrom_scene::light::{Light, LightKind, Power, Sky};
 use lookfrom_scene::scene::ImageId;
-use lookfrom_scene::settings::{ColorMode, Crop, Integrator};
+use lookfrom_scene::settings::{ColorMode, Integrator, PixelBounds};
 use lookfrom_scene::{Location, Scene};
 use support::{Compiled, scene};
 
@@ -159,7 +159,7 @@ fn what_is_shown_of_a_path_adds_up_to_what_the_film_received() {
         for color in [ColorMode::Rgb, ColorMode::Spectral] {
             let compiled = Compiled::new(room(integrator, color));
             let renderer = compiled.renderer();
-            let area = Crop { x0: 0, y0: 0, x1: 48, y1: 32 };
+            let area = PixelBounds { x0: 0, y0: 0, x1: 48, y1: 32 };
             let mut tile = FilmTile::new(area).expect("a small tile");
             renderer.render_tile(2..3, &mut tile);
             let mut film = Film::new(48, 32, None).expect("a small film");

@@ -11,7 +11,7 @@ use lookfrom::render::SampleId;
 use lookfrom::world::World;
 use lookfrom_bvh::Hit;
 use lookfrom_scene::Scene;
-use lookfrom_scene::settings::{Crop, Integrator};
+use lookfrom_scene::settings::{Integrator, PixelBounds};
 use support::{Compiled, own_scene};
 
 const SCENES: [&str; 6] = [
@@ -72,7 +72,7 @@ fn any_split_of_pixels_and_samples() {
     let renderer = compiled.renderer();
     let mut merged = lookfrom::film::Film::new(72, 50, None).expect("a small film");
     for (samples, columns) in [(2..3, 0..41), (0..2, 41..72), (0..1, 0..41), (2..3, 41..72), (1..2, 0..41)] {
-        let area = Crop { x0: columns.start, y0: 0, x1: columns.end, y1: 50 };
+        let area = PixelBounds { x0: columns.start, y0: 0, x1: columns.end, y1: 50 };
         let mut tile = FilmTile::new(area).expect("a small tile");
         renderer.render_tile(samples, &mut tile);
         merged.add_tile(&tile);
@@ -84,7 +84,7 @@ fn any_split_of_pixels_and_samples() {
 fn a_crop_is_a_part_of_the_picture() {
     let mut scene = small("textures.toml");
     let whole = Compiled::new(scene.clone()).film();
-    scene.image.crop = Some(Crop { x0: 13, y0: 7, x1: 60, y1: 44 });
+    scene.image.crop = Some(PixelBounds { x0: 13, y0: 7, x1: 60, y1: 44 });
     let part = Compiled::new(scene).film();
     for (x, y) in [(13, 7), (59, 43), (30, 20)] {
         assert_eq!(whole.mean(x, y), part.mean(x, y));
@@ -112,7 +112,7 @@ fn what_the_inspector_shows_adds_up_to_what_the_film_received() {
                 assert_eq!(sum.as_slice(), inspection.radiance.lanes);
                 assert!(inspection.adds_up, "{name} at {x} {y}");
                 // … are what a tile with all of its other pixels gave to the film
-                let area = Crop { x0: x / 32 * 32, y0: 0, x1: (x / 32 * 32 + 32).min(72), y1: 50 };
+                let area = PixelBounds { x0: x / 32 * 32, y0: 0, x1: (x / 32 * 32 + 32).min(72), y1: 50 };
                 let mut tile = FilmTile::new(area).expect("a small tile");
                 renderer.render_tile(2..3, &mut tile);
                 let mut film = lookfrom::film::Film::new(72, 50, None).expect("a small film");

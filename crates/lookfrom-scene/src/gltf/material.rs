@@ -13,7 +13,9 @@ use super::json::{self, TextureInfo, Whole};
 use super::texture::{Meaning, Textures, Use};
 use crate::error::Result;
 use crate::files::LoadContext;
-use crate::material::{Anisotropy, Color, Material, MaterialKind, NormalTexture, Principled, Relief, Scalar};
+use crate::material::{
+    Anisotropy, BumpMapping, Color, Material, MaterialKind, NormalTexture, Principled, Scalar,
+};
 use crate::scene::{MaterialId, Scene};
 use crate::shape::Emission;
 use crate::texture::{Channel, TextureKind};
@@ -112,14 +114,14 @@ impl Reader<'_, '_, '_> {
             (None, Some(own)) => MaterialKind::Principled(Box::new(self.glossy(own, base_color)?)),
             (None, None) => MaterialKind::Principled(Box::new(self.principled(entry, base_color)?)),
         };
-        let relief = self.normals(entry.normal_texture.as_ref(), "/normalTexture")?;
-        let grain = self.grain(entry, &kind, relief.is_some());
+        let bump_mapping = self.normals(entry.normal_texture.as_ref(), "/normalTexture")?;
+        let grain = self.grain(entry, &kind, bump_mapping.is_some());
         let name = match &entry.name {
             Some(name) => name.clone(),
             None => self.pointer.trim_start_matches('/').replace('/', " "),
         };
         let mut material = Material::new(name, self.document.at(&self.pointer), kind);
-        material.relief = relief.map_or(Relief::None, Relief::NormalTexture);
+        material.bump_mapping = bump_mapping.map_or(BumpMapping::None, BumpMapping::NormalTexture);
         self.scene.materials.push(material);
         let is_double_sided = entry.double_sided.unwrap_or(false);
         Ok(Look {

@@ -5,7 +5,7 @@ use super::params::{Kind, Parameters};
 use super::spectra::SRGB;
 use super::state::Entity;
 use crate::error::Result;
-use crate::settings::{Crop, Filter, Layers, Sensor};
+use crate::settings::{Filter, Layers, PixelBounds, Sensor};
 use crate::spectrum::CameraSensor;
 
 /// The largest width and height.
@@ -123,14 +123,14 @@ impl Reader<'_, '_> {
 }
 
 /// The part that is computed, in pixels or in shares of the picture.
-fn crop(parameters: &Parameters, width: u32, height: u32) -> Result<Option<Crop>> {
+fn crop(parameters: &Parameters, width: u32, height: u32) -> Result<Option<PixelBounds>> {
     let pixels = parameters.integers("pixelbounds")?;
     let shares = parameters.floats("cropwindow", Kind::Float)?;
     let crop = match (pixels, shares) {
         (&[x0, x1, y0, y1], _) => {
             let [x0, x1] = [x0, x1].map(|x| x.clamp(0, width as i32) as u32);
             let [y0, y1] = [y0, y1].map(|y| y.clamp(0, height as i32) as u32);
-            Crop { x0, y0, x1, y1 }
+            PixelBounds { x0, y0, x1, y1 }
         }
         ([], None) => return Ok(None),
         ([], Some(&[x0, x1, y0, y1])) => {
@@ -138,7 +138,7 @@ fn crop(parameters: &Parameters, width: u32, height: u32) -> Result<Option<Crop>
             let at = |share: f32, count: u32| (share.clamp(0.0, 1.0) * count as f32).ceil() as u32;
             let (x0, x1) = (at(x0.min(x1), width), at(x0.max(x1), width));
             let (y0, y1) = (at(y0.min(y1), height), at(y0.max(y1), height));
-            Crop { x0, y0, x1, y1 }
+            PixelBounds { x0, y0, x1, y1 }
         }
         ([], Some(_)) => return Err(parameters.refuse("cropwindow", "4 numbers: x0 x1 y0 y1")),
         _ => return Err(parameters.refuse("pixelbounds", "4 whole numbers: x0 x1 y0 y1")),

@@ -6,7 +6,7 @@ use super::spectra::Meaning::{Reflectance, Unbounded};
 use super::text::Place;
 use super::{NamedMaterial, Reader};
 use crate::error::Result;
-use crate::material::{Coat, Color, Ior, Material, MaterialKind, Metal, Relief, Roughness, Scalar};
+use crate::material::{BumpMapping, Coat, Color, Ior, Material, MaterialKind, Metal, Roughness, Scalar};
 use crate::scene::{ImageId, MaterialId};
 
 const KINDS: &[&str] = &[
@@ -125,23 +125,25 @@ impl Reader<'_, '_> {
             }
             _ => return Err(Self::unknown(&p.place, "material", kind, KINDS.iter().copied())),
         };
-        let relief = match kind {
-            MaterialKind::Interface | MaterialKind::Mix { .. } => Relief::None,
-            _ => self.relief(p)?,
+        let bump_mapping = match kind {
+            MaterialKind::Interface | MaterialKind::Mix { .. } => BumpMapping::None,
+            _ => self.bump_mapping(p)?,
         };
-        Ok(Material { name: name.to_owned(), at: p.place.location(), kind, relief })
+        Ok(Material { name: name.to_owned(), at: p.place.location(), kind, bump_mapping })
     }
 
-    fn relief(&mut self, p: &Parameters) -> Result<Relief> {
+    fn bump_mapping(&mut self, p: &Parameters) -> Result<BumpMapping> {
         let bump = self.scalar_or_none(p, "displacement")?;
-        let Some(name) = p.string("normalmap")? else { return Ok(bump.map_or(Relief::None, Relief::Bump)) };
+        let Some(name) = p.string("normalmap")? else {
+            return Ok(bump.map_or(BumpMapping::None, BumpMapping::Bump));
+        };
         if bump.is_some() {
             let message = "the material has a \"normalmap\" and a \"displacement\": only the first is used";
             self.context.warn(&p.place.location(), message);
         }
         let place = p.find("normalmap", &[Kind::String])?.map_or(&p.place, |parameter| &parameter.place);
         let image: ImageId = self.picture(name, "linear", place)?;
-        Ok(Relief::NormalMap(image))
+        Ok(BumpMapping::NormalMap(image))
     }
 
     fn metal(&mut self, p: &Parameters, [eta, k, reflectance]: [&'static str; 3]) -> Result<Metal> {

@@ -6,7 +6,7 @@ use super::table::{Kinds, Table};
 use super::value::Value;
 use super::{Reader, chain, principled};
 use crate::error::{Location, Result};
-use crate::material::{Color, Material, MaterialKind, Relief, Whitted};
+use crate::material::{BumpMapping, Color, Material, MaterialKind, Whitted};
 use crate::scene::MaterialId;
 use crate::shape::Emission;
 
@@ -124,7 +124,7 @@ impl Reader<'_, '_> {
             _ => self.physical(word, table),
         };
         self.scene.materials[id.index()].kind = kind;
-        self.scene.materials[id.index()].relief = self.relief(table);
+        self.scene.materials[id.index()].bump_mapping = self.bump_mapping(table);
         if let Some(glow) = self.emission(table) {
             self.glows.insert(id, glow);
         }
@@ -159,14 +159,14 @@ impl Reader<'_, '_> {
         self.context.warn(&at, format!("`{key}` has no effect without {without}"));
     }
 
-    fn relief(&mut self, table: &Table<'_>) -> Relief {
+    fn bump_mapping(&mut self, table: &Table<'_>) -> BumpMapping {
         table.one_of(&["normal_map", "bump"]);
         let normal_map = table.maybe("normal_map", |value| self.image_as(value, true));
         let bump = table.maybe("bump", |value| self.scalar_where(value, "a number", |_| true));
         match (normal_map, bump) {
-            (Some(image), _) => Relief::NormalMap(image),
-            (None, Some(height)) => Relief::Bump(height),
-            (None, None) => Relief::None,
+            (Some(image), _) => BumpMapping::NormalMap(image),
+            (None, Some(height)) => BumpMapping::Bump(height),
+            (None, None) => BumpMapping::None,
         }
     }
 

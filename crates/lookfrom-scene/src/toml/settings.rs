@@ -4,7 +4,7 @@ use super::table::Table;
 use super::value::Value;
 use crate::error::{Error, ErrorKind, Result};
 use crate::settings::{
-    ColorMode, Crop, Filter, ImageSettings, Integrator, Layers, LightSampler, RenderSettings, Sampler,
+    ColorMode, Filter, ImageSettings, Integrator, Layers, LightSampler, PixelBounds, RenderSettings, Sampler,
     Sensor, Tonemap,
 };
 use crate::spectrum::CameraSensor;
@@ -97,16 +97,16 @@ pub(super) fn kelvin(value: Value<'_>) -> Result<f32> {
 }
 
 /// A part of a picture, whose size is not always known.
-fn crop(value: Value<'_>, size: Option<[u32; 2]>) -> Result<Crop> {
+fn crop(value: Value<'_>, size: Option<[u32; 2]>) -> Result<PixelBounds> {
     let expected = "four whole numbers, [x0, y0, x1, y1]";
     let mut edges = [0; 4];
     for (edge, item) in edges.iter_mut().zip(value.list_of::<4>(expected)?) {
         *edge = item.integer(0, u32::MAX.into())? as u32;
     }
     let [x0, y0, x1, y1] = edges;
-    let Some([width, height]) = size else { return Ok(Crop { x0, y0, x1, y1 }) };
+    let Some([width, height]) = size else { return Ok(PixelBounds { x0, y0, x1, y1 }) };
     if x0 < x1 && x1 <= width && y0 < y1 && y1 <= height {
-        return Ok(Crop { x0, y0, x1, y1 });
+        return Ok(PixelBounds { x0, y0, x1, y1 });
     }
     Err(value
         .error(format!(

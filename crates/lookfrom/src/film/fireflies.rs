@@ -9,7 +9,7 @@
 //! standard errors, and stays. The excess above the median goes in equal parts to the 5 × 5 pixels around.
 
 use super::{Film, Picture};
-use lookfrom_scene::settings::Crop;
+use lookfrom_scene::settings::PixelBounds;
 
 /// How many standard errors are too many to be chance, and few enough to be.
 const STANDARD_ERRORS: f64 = 3.0;
@@ -79,8 +79,8 @@ impl Film {
 }
 
 /// The pixels at most `radius` away along each axis.
-fn around(area: Crop, x: u32, y: u32, radius: u32) -> Crop {
-    Crop {
+fn around(area: PixelBounds, x: u32, y: u32, radius: u32) -> PixelBounds {
+    PixelBounds {
         x0: x.saturating_sub(radius).max(area.x0),
         y0: y.saturating_sub(radius).max(area.y0),
         x1: (x + radius + 1).min(area.x1),

@@ -5,7 +5,7 @@
 //! standard error is taken as if the samples were independent (well-spread ones have less noise than it says).
 
 use super::{Film, Pixel, xyz};
-use lookfrom_scene::settings::Crop;
+use lookfrom_scene::settings::PixelBounds;
 
 /// How much of the picture's mean is added to a pixel's luminance before its error is compared with it.
 const SHARE_OF_MEAN: f64 = 0.1;
@@ -21,8 +21,8 @@ impl Film {
     /// The relative error of a part of the picture (what lies outside of [`Film::area`] is left out), where the mean
     /// luminance of the whole is `mean`: see the file's head. Infinite where a pixel has fewer than two samples, 0 for
     /// an empty area or a black picture.
-    pub fn relative_error(&self, area: Crop, mean: f64) -> f64 {
-        let Crop { x0, y0, x1, y1 } = super::common(self.tile.area, area);
+    pub fn relative_error(&self, area: PixelBounds, mean: f64) -> f64 {
+        let PixelBounds { x0, y0, x1, y1 } = super::common(self.tile.area, area);
         let mut sum = 0.0;
         for y in y0..y1 {
             for pixel in &self.tile.pixels[self.tile.row(y, x0, x1)] {

@@ -114,7 +114,7 @@ proptest! {
         let mut tiled = Film::new(SIZE, SIZE, None).unwrap();
         for (x0, x1) in [(cx, SIZE), (0, cx)] {
             for (y0, y1) in [(0, cy), (cy, SIZE)] {
-                let mut tile = FilmTile::new(Crop { x0, y0, x1, y1 }).unwrap();
+                let mut tile = FilmTile::new(PixelBounds { x0, y0, x1, y1 }).unwrap();
                 for &(x, y, sample, rgb) in &samples {
                     if (x0..x1).contains(&x) && (y0..y1).contains(&y) {
                         tile.add(x, y, sample, rgb);
@@ -192,9 +192,9 @@ fn many_bright_samples_fit() {
 
 #[test]
 fn a_crop_holds_its_part_of_the_whole_picture() {
-    let crop = Crop { x0: 2, y0: 1, x1: 100, y1: 3 };
+    let crop = PixelBounds { x0: 2, y0: 1, x1: 100, y1: 3 };
     let mut film = Film::new(4, 4, Some(crop)).unwrap();
-    assert_eq!(film.area(), Crop { x0: 2, y0: 1, x1: 4, y1: 3 });
+    assert_eq!(film.area(), PixelBounds { x0: 2, y0: 1, x1: 4, y1: 3 });
     film.add(3, 2, 0, [1.0, 2.0, 3.0]);
     let picture = film.picture();
     assert_eq!((picture.width, picture.height, picture.pixels.len()), (4, 4, 16));
@@ -204,8 +204,8 @@ fn a_crop_holds_its_part_of_the_whole_picture() {
     assert_eq!((film.mean(0, 0), film.mean(9, 9)), ([0.0; 3], [0.0; 3]));
     // A crop beside the picture, or one that ends before it begins, holds nothing.
     for (x0, y0, x1, y1) in [(7, 0, 9, 4), (0, 7, 4, 9), (3, 0, 1, 4), (4, 4, 4, 4)] {
-        let mut film = Film::new(4, 4, Some(Crop { x0, y0, x1, y1 })).unwrap();
-        film.add_tile(&FilmTile::new(Crop { x0, y0, x1, y1 }).unwrap());
+        let mut film = Film::new(4, 4, Some(PixelBounds { x0, y0, x1, y1 })).unwrap();
+        film.add_tile(&FilmTile::new(PixelBounds { x0, y0, x1, y1 }).unwrap());
         film.merge(&Film::new(4, 4, None).unwrap()).unwrap();
         assert_eq!(film.picture().pixels, [[0.0; 3]; 16]);
     }
@@ -213,11 +213,11 @@ fn a_crop_holds_its_part_of_the_whole_picture() {
 
 #[test]
 fn parts_of_tiles_outside_of_a_crop_are_left_out() {
-    let mut tile = FilmTile::new(Crop { x0: 0, y0: 0, x1: 4, y1: 4 }).unwrap();
+    let mut tile = FilmTile::new(PixelBounds { x0: 0, y0: 0, x1: 4, y1: 4 }).unwrap();
     for i in 0..16 {
         tile.add(i % 4, i / 4, 0, [i as f32; 3]);
     }
-    let mut film = Film::new(8, 8, Some(Crop { x0: 2, y0: 3, x1: 8, y1: 8 })).unwrap();
+    let mut film = Film::new(8, 8, Some(PixelBounds { x0: 2, y0: 3, x1: 8, y1: 8 })).unwrap();
     film.add_tile(&tile);
     assert_eq!([film.mean(2, 3), film.mean(3, 3), film.mean(4, 4)], [[14.0; 3], [15.0; 3], [0.0; 3]]);
 }
@@ -233,7 +233,7 @@ fn what_cannot_be_is_an_error() {
 #[test]
 #[should_panic(expected = "outside")]
 fn a_pixel_outside_of_the_tile_is_a_mistake_of_the_caller() {
-    FilmTile::new(Crop { x0: 4, y0: 4, x1: 8, y1: 8 }).unwrap().add(3, 5, 0, [0.0; 3]);
+    FilmTile::new(PixelBounds { x0: 4, y0: 4, x1: 8, y1: 8 }).unwrap().add(3, 5, 0, [0.0; 3]);
 }
 
 #[test]
@@ -273,13 +273,13 @@ fn noise_is_relative_to_the_light_and_to_the_mean() {
     assert!((film.mean_luminance() - 0.5).abs() < 1e-6);
     let error = (64.0_f64 / 63.0 / 64.0).sqrt() / 1.05;
     assert!((film.relative_error(area, film.mean_luminance()) - error / 2.0).abs() < 1e-6);
-    let right = Crop { x0: 1, y0: 0, x1: 5, y1: 9 };
+    let right = PixelBounds { x0: 1, y0: 0, x1: 5, y1: 9 };
     assert_eq!(film.relative_error(right, film.mean_luminance()), 0.0);
 }
 
 #[test]
 fn layers_are_means_whatever_the_order() {
-    let whole = Crop { x0: 0, y0: 0, x1: 2, y1: 1 };
+    let whole = PixelBounds { x0: 0, y0: 0, x1: 2, y1: 1 };
     let of = |k: f32| Aovs {
         albedo: [0.5, k * 0.25, 0.0],
         ng: [0.0, 0.0, -1.0],
@@ -352,7 +352,7 @@ fn fireflies_are_spread_and_the_sum_is_kept() {
 #[ignore = "measures time"]
 fn time_of_add() {
     const N: u32 = 20_000_000;
-    let mut tile = FilmTile::new(Crop { x0: 0, y0: 0, x1: 16, y1: 16 }).unwrap();
+    let mut tile = FilmTile::new(PixelBounds { x0: 0, y0: 0, x1: 16, y1: 16 }).unwrap();
     let start = std::time::Instant::now();
     for i in 0..N {
         tile.add(i & 15, i >> 4 & 15, i, [i as f32 * 1e-5, 0.5, -1e-7]);

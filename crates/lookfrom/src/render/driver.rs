@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use lookfrom_scene::Result;
-use lookfrom_scene::settings::Crop;
+use lookfrom_scene::settings::PixelBounds;
 
 use super::{Rays, Renderer};
 use crate::core::clock::Stopwatch;
@@ -70,7 +70,7 @@ impl StopReason {
 #[derive(Clone, Debug)]
 pub struct TileDone {
     /// Which pixels.
-    pub area: Crop,
+    pub area: PixelBounds,
     /// Which samples of each of them.
     pub samples: Range<u32>,
     /// Samples taken so far, of all pixels together.
@@ -172,7 +172,7 @@ struct Work<'a> {
 impl Work<'_> {
     /// Takes samples until a criterion is met; tiles that have enough leave `tiles`. Returns the samples of the others' pixels
     /// and why it ended.
-    fn rounds(&self, tiles: &mut Vec<Crop>, stop: &StopCriteria) -> Result<(u32, StopReason)> {
+    fn rounds(&self, tiles: &mut Vec<PixelBounds>, stop: &StopCriteria) -> Result<(u32, StopReason)> {
         let started = Stopwatch::start();
         let mut samples = 0;
         for round in rounds(self.renderer.settings.samples) {
@@ -203,7 +203,7 @@ impl Work<'_> {
     }
 
     /// Adds samples to every pixel of the tiles; false if it was broken off.
-    fn pass(&self, tiles: &[Crop], samples: Range<u32>) -> Result<bool> {
+    fn pass(&self, tiles: &[PixelBounds], samples: Range<u32>) -> Result<bool> {
         let whole = parallel::collect(tiles.len(), |index| -> Result<bool> {
             let tile_area = &tiles[index];
             if self.progress.cancelled() {
@@ -234,7 +234,7 @@ impl Work<'_> {
     }
 
     /// Leaves out the tiles that are clean enough, and estimates how many samples the others will take.
-    fn leave_clean(&self, tiles: &mut Vec<Crop>, samples: u32, noise: f64) {
+    fn leave_clean(&self, tiles: &mut Vec<PixelBounds>, samples: u32, noise: f64) {
         if samples < FEWEST_SAMPLES {
             return;
         }
@@ -264,16 +264,21 @@ fn affordable(samples: u32, elapsed: Duration, time: Duration) -> u32 {
 }
 
 /// The parts of an area that threads work on.
-fn tiles(area: Crop) -> Vec<Crop> {
+fn tiles(area: PixelBounds) -> Vec<PixelBounds> {
     let rows = (area.y0..area.y1).step_by(TILE as usize);
     rows.flat_map(|y0| {
         let columns = (area.x0..area.x1).step_by(TILE as usize);
-        columns.map(move |x0| Crop { x0, y0, x1: (x0 + TILE).min(area.x1), y1: (y0 + TILE).min(area.y1) })
+        columns.map(move |x0| PixelBounds {
+            x0,
+            y0,
+            x1: (x0 + TILE).min(area.x1),
+            y1: (y0 + TILE).min(area.y1),
+        })
     })
     .collect()
 }
 
-fn area(tile: &Crop) -> u64 {
+fn area(tile: &PixelBounds) -> u64 {
     u64::from(tile.x1 - tile.x0) * u64::from(tile.y1 - tile.y0)
 }
 

@@ -4,7 +4,7 @@
 use glam::DVec3;
 use lookfrom_scene::camera::{Projection, View};
 use lookfrom_scene::image::compare::{CHANNELS_ATTRIBUTE, channels_text};
-use lookfrom_scene::settings::{Background, Crop, ImageSettings, Layers, Sensor};
+use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds, Sensor};
 
 use super::Session;
 use crate::core::color;
@@ -67,7 +67,7 @@ pub(super) fn header(session: &Session, taken: &Taken) -> Vec<(String, String)> 
             "non-local means; noisy.R, noisy.G and noisy.B are the light as it was computed".to_owned(),
         ));
     }
-    if let Some(Crop { x0, y0, x1, y1 }) = image.crop {
+    if let Some(PixelBounds { x0, y0, x1, y1 }) = image.crop {
         texts.push(("crop", format!("{x0} {y0} {x1} {y1}")));
     }
     match camera.view {

@@ -7,8 +7,8 @@ use glam::{DMat3, DMat4, DVec3};
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::image::Image;
 use lookfrom_scene::settings::{
-    Background, ColorMode, Crop, Filter, ImageSettings, Integrator, Layers, LightSampler, RenderSettings,
-    Sampler, Tonemap,
+    Background, ColorMode, Filter, ImageSettings, Integrator, Layers, LightSampler, PixelBounds,
+    RenderSettings, Sampler, Tonemap,
 };
 use lookfrom_scene::{Error, ErrorKind, ImportOptions, Location, Result, Scene};
 
@@ -24,7 +24,7 @@ pub struct Options {
     /// Rows; alone it keeps the shape of the picture.
     pub height: Option<u32>,
     /// Only this part is computed.
-    pub crop: Option<Crop>,
+    pub crop: Option<PixelBounds>,
     /// Samples per pixel.
     pub samples: Option<u32>,
     /// The light transport algorithm.
@@ -122,7 +122,7 @@ impl Options {
         self.resize(image)?;
         if let Some(crop) = self.crop {
             if crop.x1 > image.width || crop.y1 > image.height {
-                let Crop { x0, y0, x1, y1 } = crop;
+                let PixelBounds { x0, y0, x1, y1 } = crop;
                 return Err(unsuitable(format!(
                     "the crop {x0},{y0},{x1},{y1} is not a part of the picture of {} × {} pixels",
                     image.width, image.height
@@ -163,10 +163,10 @@ impl Options {
             )));
         }
         // A crop that the scene asks for stays the same part of the picture, to the next pixel outward.
-        image.crop = image.crop.map(|Crop { x0, y0, x1, y1 }| {
+        image.crop = image.crop.map(|PixelBounds { x0, y0, x1, y1 }| {
             let down = |edge: u32, new: u64, old: u64| (u64::from(edge) * new / old) as u32;
             let up = |edge: u32, new: u64, old: u64| (u64::from(edge) * new).div_ceil(old) as u32;
-            Crop {
+            PixelBounds {
                 x0: down(x0, width, old_width),
                 y0: down(y0, height, old_height),
                 x1: up(x1, width, old_width),
@@ -253,7 +253,7 @@ mod tests {
     use super::*;
     use lookfrom_scene::camera::Lens;
 
-    fn image(width: u32, height: u32, crop: Option<Crop>) -> ImageSettings {
+    fn image(width: u32, height: u32, crop: Option<PixelBounds>) -> ImageSettings {
         ImageSettings { width, height, crop, ..ImageSettings::default() }
     }
 
@@ -283,15 +283,15 @@ mod tests {
 
     #[test]
     fn a_crop_of_the_scene_stays_the_same_part() {
-        let crop = Some(Crop { x0: 10, y0: 0, x1: 30, y1: 50 });
+        let crop = Some(PixelBounds { x0: 10, y0: 0, x1: 30, y1: 50 });
         let half = Options { width: Some(50), ..Options::default() };
         let image = resized(&half, image(100, 100, crop)).unwrap();
-        assert_eq!(image.crop, Some(Crop { x0: 5, y0: 0, x1: 15, y1: 25 }));
+        assert_eq!(image.crop, Some(PixelBounds { x0: 5, y0: 0, x1: 15, y1: 25 }));
     }
 
     #[test]
     fn a_crop_beyond_the_picture_is_refused() {
-        let crop = Some(Crop { x0: 0, y0: 0, x1: 11, y1: 10 });
+        let crop = Some(PixelBounds { x0: 0, y0: 0, x1: 11, y1: 10 });
         let beyond = Options { crop, ..Options::default() };
         assert!(matches!(resized(&beyond, image(10, 10, None)), Err(Error { kind: ErrorKind::Request, .. })));
         assert!(resized(&beyond, image(11, 10, None)).is_ok());

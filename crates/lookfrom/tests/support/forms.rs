@@ -8,7 +8,7 @@ use lookfrom::world::World;
 use lookfrom_bvh::{Hit, Ray};
 use lookfrom_scene::camera::{Camera, View};
 use lookfrom_scene::error::Location;
-use lookfrom_scene::material::{Color, Material, MaterialKind, Relief, Scalar};
+use lookfrom_scene::material::{BumpMapping, Color, Material, MaterialKind, Scalar};
 use lookfrom_scene::scene::{MaterialId, MeshId, Scene};
 use lookfrom_scene::shape::{Emission, Geometry, Mesh, Patches, Shape};
 
@@ -169,9 +169,9 @@ pub(crate) fn world(shape: Shape, meshes: Vec<Mesh>) -> World {
     let view = View::Look { lookfrom: DVec3::ZERO, lookat: DVec3::NEG_Z, up: DVec3::Y };
     let camera = Some(Camera { view, ..Camera::default() });
     // A material that asks for derivatives.
-    let relief = Relief::Bump(Scalar::Value(0.0));
+    let bump_mapping = BumpMapping::Bump(Scalar::Value(0.0));
     let kind = MaterialKind::Diffuse { reflectance: Color::gray(0.5) };
-    let materials = vec![Material { relief, ..Material::new("bumped", Location::default(), kind) }];
+    let materials = vec![Material { bump_mapping, ..Material::new("bumped", Location::default(), kind) }];
     let scene = Scene { camera, materials, meshes, shapes: vec![shape], ..Scene::default() };
     World::compile(scene, &mut Vec::new()).unwrap_or_else(|error| panic!("{error}"))
 }

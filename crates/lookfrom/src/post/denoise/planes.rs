@@ -1,7 +1,7 @@
 //! A film as the filter wants it: each number of a pixel in a plane of its own, scaled so that differences can be added, with
 //! a border as wide as the filter looks.
 
-use lookfrom_scene::settings::Crop;
+use lookfrom_scene::settings::PixelBounds;
 use lookfrom_scene::spectrum::space::xyz_of_rec709;
 
 use super::filter::COLUMNS;
@@ -30,7 +30,7 @@ pub(super) const COMPARED: usize = 6;
 /// The picture with `N` channels: X, Y, Z, whose variances the film knows, and perhaps alpha.
 pub(super) struct Planes<const N: usize> {
     /// The part of the picture that is held.
-    pub(super) area: Crop,
+    pub(super) area: PixelBounds,
     /// From one row to the next.
     pub(super) stride: usize,
     /// Light over albedo; alpha times the picture's mean light.

@@ -1,6 +1,6 @@
 //! Tests of the denoiser against its slow twin, and of its properties.
 
-use lookfrom_scene::settings::{Background, Crop, ImageSettings};
+use lookfrom_scene::settings::{Background, ImageSettings, PixelBounds};
 use proptest::prelude::*;
 
 use super::filter::{distance, falloff};
@@ -30,7 +30,7 @@ fn film(
 ) -> Film {
     let mut film = Film::for_image(image).unwrap();
     let mut tile = FilmTile::for_image(film.area(), image).unwrap();
-    let Crop { x0, y0, x1, y1 } = film.area();
+    let PixelBounds { x0, y0, x1, y1 } = film.area();
     for (y, x) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (y, x))) {
         for sample in 0..samples {
             let (rgb, alpha, aovs) = of(x, y, sample);
@@ -237,10 +237,13 @@ fn the_noise_of_alpha_goes_and_its_edges_stay() {
 
 #[test]
 fn pixels_without_samples_and_outside_stay_black() {
-    let crop = Some(Crop { x0: 3, y0: 2, x1: 30, y1: 20 });
+    let crop = Some(PixelBounds { x0: 3, y0: 2, x1: 30, y1: 20 });
     let settings = ImageSettings { crop, ..image(33, 23) };
-    let mut film =
-        random(&ImageSettings { crop: Some(Crop { x0: 3, y0: 2, x1: 20, y1: 11 }), ..image(33, 23) }, 2, 9);
+    let mut film = random(
+        &ImageSettings { crop: Some(PixelBounds { x0: 3, y0: 2, x1: 20, y1: 11 }), ..image(33, 23) },
+        2,
+        9,
+    );
     let rest = Film::for_image(&settings).unwrap();
     let mut whole = rest.clone();
     whole.merge(&film).unwrap();

@@ -27,7 +27,7 @@ impl<'a> Compiler<'a> {
         let whitted = approximate::in_whitteds_model(&material.kind, &self.whitted, self.textures);
         let compiled = Material {
             kind: self.kind(&material.kind),
-            bump_mapping: self.bump_mapping(&material.relief),
+            bump_mapping: self.bump_mapping(&material.bump_mapping),
             medium: None,
             whitted: self.whitted(&whitted),
         };
@@ -122,12 +122,12 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn bump_mapping(&self, written: &written::Relief) -> BumpMapping {
+    fn bump_mapping(&self, written: &written::BumpMapping) -> BumpMapping {
         match written {
-            written::Relief::None => BumpMapping::None,
-            written::Relief::Bump(height) => BumpMapping::Bump((*height).into()),
-            written::Relief::NormalMap(image) => BumpMapping::NormalMap(image.index()),
-            written::Relief::NormalTexture(map) => BumpMapping::NormalTexture(self.normals(map)),
+            written::BumpMapping::None => BumpMapping::None,
+            written::BumpMapping::Bump(height) => BumpMapping::Bump((*height).into()),
+            written::BumpMapping::NormalMap(image) => BumpMapping::NormalMap(image.index()),
+            written::BumpMapping::NormalTexture(map) => BumpMapping::NormalTexture(self.normals(map)),
         }
     }
 
