@@ -14,7 +14,7 @@ mod trace_log;
 
 use crate::integrator::Event;
 use crate::render::{Renderer, SampleId};
-use crate::shading::texture::Lanes;
+use crate::shading::texture::SpectralMode;
 
 use trace_log::TraceLogBuilder;
 
@@ -32,8 +32,8 @@ pub fn inspect(renderer: &Renderer, id: SampleId) -> Inspection {
     let (traced, _) = renderer.trace_events(&[id], &mut events);
     let traced = traced[0];
     let wavelengths = match traced.lanes {
-        Lanes::Rgb => None,
-        Lanes::Spectral(wavelengths) => Some(WavelengthsReport {
+        SpectralMode::Rgb => None,
+        SpectralMode::Spectral(wavelengths) => Some(WavelengthsReport {
             lambda: wavelengths.lambda,
             pdf: wavelengths.pdf,
             dispersed: wavelengths.secondary_terminated(),

@@ -25,7 +25,7 @@ use crate::core::spectrum::Spectrum;
 use crate::light::LightSampleContext;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
-use crate::shading::texture::Lanes;
+use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 pub use background::Alpha;
@@ -119,7 +119,7 @@ impl Path {
 
     /// The same path after what it is inside of took its part of the light, on the way to `hit` or, where nothing is met,
     /// to infinity.
-    fn absorbed(&self, world: &World, hit: &Hit, lanes: &Lanes) -> Self {
+    fn absorbed(&self, world: &World, hit: &Hit, lanes: &SpectralMode) -> Self {
         let length = match hit.is_hit() {
             true => Vec3::from_array(self.ray.direction).length() * hit.t,
             false => f32::INFINITY,
@@ -165,7 +165,7 @@ pub struct Queues {
     /// Light gathered so far, by slot.
     pub radiance: Vec<Spectrum>,
     /// What the lanes mean, by slot.
-    pub lanes: Vec<Lanes>,
+    pub lanes: Vec<SpectralMode>,
     /// What each sample hides of a background of the view's own, by slot.
     pub alpha: Vec<Alpha>,
     /// To be traced next.
@@ -189,7 +189,7 @@ impl Queues {
     }
 
     /// One sample more, in the next slot.
-    pub fn start(&mut self, lanes: Lanes) {
+    pub fn start(&mut self, lanes: SpectralMode) {
         self.radiance.push(Spectrum::BLACK);
         self.lanes.push(lanes);
         self.alpha.push(Alpha::Opaque);
@@ -209,7 +209,7 @@ pub struct StepOutput<'a, P: Probe> {
 
 impl<P: Probe> StepOutput<'_, P> {
     /// What the lanes of a path mean.
-    fn lanes(&self, path: &Path) -> Lanes {
+    fn lanes(&self, path: &Path) -> SpectralMode {
         self.queues.lanes[path.slot as usize]
     }
 

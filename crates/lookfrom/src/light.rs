@@ -20,7 +20,7 @@ use lookfrom_scene::light::Falloff;
 
 use crate::core::spectrum::Spectrum;
 use crate::shading::interaction::SurfaceInteraction;
-use crate::shading::texture::{Lanes, SpectrumTexture, TexturePoint, Textures};
+use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint, Textures};
 use cone::Cone;
 use tree::LightBounds;
 
@@ -87,12 +87,12 @@ pub struct EmissionSpectrum {
 impl EmissionSpectrum {
     /// The light at a point, in radiometric units.
     #[inline]
-    pub fn at(&self, textures: &Textures, point: &TexturePoint, lanes: &Lanes) -> Spectrum {
+    pub fn at(&self, textures: &Textures, point: &TexturePoint, lanes: &SpectralMode) -> Spectrum {
         textures.spectrum(&self.color, point, lanes) * self.scale
     }
 
     /// The light of a colour that is the same everywhere.
-    pub fn even(&self, textures: &Textures, lanes: &Lanes) -> Spectrum {
+    pub fn even(&self, textures: &Textures, lanes: &SpectralMode) -> Spectrum {
         self.at(textures, &TexturePoint::NOWHERE, lanes)
     }
 }
@@ -165,7 +165,7 @@ impl Light {
         textures: &Textures,
         at: &LightSampleContext,
         u: [f32; 2],
-        lanes: &Lanes,
+        lanes: &SpectralMode,
         incomplete_pdf: IncompletePdf,
     ) -> Option<LightSample> {
         let from = at.point;

@@ -29,7 +29,7 @@ pub use crate::film::SampleId;
 use crate::integrator::{
     Alpha, Event, Integrator, Path, PreviousVertex, Probe, Queues, SampleStream, StepOutput, resolve_shadows,
 };
-use crate::shading::texture::Lanes;
+use crate::shading::texture::SpectralMode;
 use crate::view::View;
 use crate::view::camera::CameraRay;
 use crate::world::World;
@@ -97,7 +97,7 @@ pub struct Traced {
     /// The sum over the tree of rays.
     pub radiance: Spectrum,
     /// What the lanes of `radiance` mean.
-    pub lanes: Lanes,
+    pub lanes: SpectralMode,
     /// The filter's weight: 1 for filters without negative lobes.
     pub weight: f32,
     /// How much of what is behind the picture it hides, 1 for all; not yet weighed.
@@ -301,7 +301,7 @@ impl Renderer {
             let lens = start.lens.get(slot).copied().unwrap_or_default();
             let (ray, weight) = self.camera_ray_by(*id, start.filter[slot], lens);
             weights.push(weight);
-            let lanes = start.wavelengths.get(slot).map_or(Lanes::Rgb, |u| lanes_by(*u));
+            let lanes = start.wavelengths.get(slot).map_or(SpectralMode::Rgb, |u| lanes_by(*u));
             output.queues.start(lanes);
             output.queues.paths.push(Path {
                 ray: self.kernel_ray(&ray),
@@ -375,7 +375,13 @@ impl Renderer {
 
     /// The colour of a sample, and how much of the view's own background it hides, 1 for all: where a shadow catcher is seen the
     /// picture holds only that. Single samples may be outside of 0 … 1; their mean is not but for noise.
-    fn with_alpha(&self, radiance: Spectrum, weight: f32, lanes: &Lanes, alpha: Alpha) -> ([f32; 3], f32) {
+    fn with_alpha(
+        &self,
+        radiance: Spectrum,
+        weight: f32,
+        lanes: &SpectralMode,
+        alpha: Alpha,
+    ) -> ([f32; 3], f32) {
         match alpha {
             Alpha::Transparent => ([0.0; 3], 0.0),
             Alpha::Shadow if self.image().background != Background::Environment => {
@@ -386,11 +392,11 @@ impl Renderer {
     }
 
     /// What the sensor makes of light: linear Rec. 709.
-    pub fn rgb(&self, light: Spectrum, lanes: &Lanes) -> [f32; 3] {
+    pub fn rgb(&self, light: Spectrum, lanes: &SpectralMode) -> [f32; 3] {
         let rgb = match lanes {
-            Lanes::Rgb if self.image().sensor == SensorSettings::default() => return light.rgb(),
-            Lanes::Rgb => self.sensor.balanced(light.rgb()),
-            Lanes::Spectral(wavelengths) => self.sensor.rgb(light, wavelengths),
+            SpectralMode::Rgb if self.image().sensor == SensorSettings::default() => return light.rgb(),
+            SpectralMode::Rgb => self.sensor.balanced(light.rgb()),
+            SpectralMode::Spectral(wavelengths) => self.sensor.rgb(light, wavelengths),
         };
         self.limited(rgb)
     }
@@ -433,8 +439,8 @@ impl Renderer {
 }
 
 /// The wavelengths of a sample, by its random numbers.
-fn lanes_by([u, _]: [f32; 2]) -> Lanes {
-    Lanes::Spectral(Wavelengths::sample_visible(u))
+fn lanes_by([u, _]: [f32; 2]) -> SpectralMode {
+    SpectralMode::Spectral(Wavelengths::sample_visible(u))
 }
 
 /// The pixels of an area by square blocks of 8 × 8, so that the rays of a packet of the kernel lie close together.

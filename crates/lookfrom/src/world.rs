@@ -28,7 +28,7 @@ use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::{InteriorStack, MediumInterface};
 use crate::shading::material::{self, Material, MaterialKind, Shading, ShadingContext};
 use crate::shading::texture::{
-    FloatTexture, Lanes, SpectrumTexture, SpectrumType, TexturePoint, Textures, spectrum_of,
+    FloatTexture, SpectralMode, SpectrumTexture, SpectrumType, TexturePoint, Textures, spectrum_of,
 };
 
 /// What light meets.
@@ -231,7 +231,7 @@ impl World {
     }
 
     /// Radiance that a surface gives off toward `wo`.
-    pub fn emitted(&self, surface: &SurfaceInteraction, lanes: &Lanes) -> Spectrum {
+    pub fn emitted(&self, surface: &SurfaceInteraction, lanes: &SpectralMode) -> Spectrum {
         match surface.light.map(|index| &self.lights[index as usize]) {
             Some(Light::Area(light)) => {
                 let cos = || surface.ns.dot(surface.wo);
@@ -242,7 +242,7 @@ impl World {
     }
 
     /// The constant radiance of an unlit material; `None` for all others.
-    pub fn unlit(&self, surface: &SurfaceInteraction, lanes: &Lanes) -> Option<Spectrum> {
+    pub fn unlit(&self, surface: &SurfaceInteraction, lanes: &SpectralMode) -> Option<Spectrum> {
         let MaterialKind::Unlit { color, .. } = &self.materials[surface.material as usize].kind else {
             return None;
         };
@@ -250,12 +250,12 @@ impl World {
     }
 
     /// Radiance that arrives along a ray that meets nothing.
-    pub fn sky(&self, ray: &Ray, lanes: &Lanes) -> Spectrum {
+    pub fn sky(&self, ray: &Ray, lanes: &SpectralMode) -> Spectrum {
         self.environments.iter().fold(Spectrum::BLACK, |sum, &index| sum + self.sky_of(index, ray, lanes))
     }
 
     /// Radiance of one environment, by its light's index, along a ray that meets nothing.
-    pub fn sky_of(&self, index: u32, ray: &Ray, lanes: &Lanes) -> Spectrum {
+    pub fn sky_of(&self, index: u32, ray: &Ray, lanes: &SpectralMode) -> Spectrum {
         let [origin, direction] = [ray.origin, ray.direction].map(Vec3::from_array);
         match &self.lights[index as usize] {
             Light::Environment(environment) => {
@@ -284,12 +284,12 @@ impl World {
     /// What is left of light after `distance` in what it is inside of (Beer's law). After an infinite one nothing is left in
     /// space that is filled with what absorbs, and all in a body, which must end somewhere although its end was not met.
     #[inline]
-    pub fn transmittance(&self, media: InteriorStack, distance: f32, lanes: &Lanes) -> Spectrum {
+    pub fn transmittance(&self, media: InteriorStack, distance: f32, lanes: &SpectralMode) -> Spectrum {
         if media.is_empty() { lanes.one() } else { self.transmittance_inside(media, distance, lanes) }
     }
 
     #[inline(never)]
-    fn transmittance_inside(&self, media: InteriorStack, distance: f32, lanes: &Lanes) -> Spectrum {
+    fn transmittance_inside(&self, media: InteriorStack, distance: f32, lanes: &SpectralMode) -> Spectrum {
         let medium = media.medium(&self.materials).and_then(|index| self.media.get(index as usize));
         let Some(medium) = medium else { return lanes.one() };
         if distance.is_infinite() && media.space().is_none() {
@@ -319,12 +319,12 @@ impl World {
     }
 
     /// Whitted's `I_a`.
-    pub fn ambient(&self, lanes: &Lanes) -> Spectrum {
+    pub fn ambient(&self, lanes: &SpectralMode) -> Spectrum {
         self.textures.spectrum(&self.ambient, &TexturePoint::NOWHERE, lanes)
     }
 
     /// Light of a colour.
-    pub fn light_of(&self, rgb: [f32; 3], lanes: &Lanes) -> Spectrum {
+    pub fn light_of(&self, rgb: [f32; 3], lanes: &SpectralMode) -> Spectrum {
         spectrum_of(rgb, SpectrumType::Illuminant, lanes)
     }
 }

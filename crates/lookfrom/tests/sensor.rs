@@ -5,7 +5,7 @@ mod support;
 use lookfrom::core::color::{rgb_from_xyz, xyz_of};
 use lookfrom::film::Film;
 use lookfrom::render::SampleId;
-use lookfrom::shading::texture::Lanes;
+use lookfrom::shading::texture::SpectralMode;
 use support::{Compiled, close, scene};
 
 /// A ball of glass that disperses, before a bright sky.
@@ -54,8 +54,8 @@ fn brightness_is_limited_in_the_sensors_channels() {
         for (limited, free) in limited.iter().zip(&free) {
             assert_eq!(limited.radiance, free.radiance);
             let xyz = match free.lanes {
-                Lanes::Spectral(wavelengths) => xyz_of(free.radiance, &wavelengths),
-                Lanes::Rgb => lookfrom::core::color::xyz_from_rgb(free.rgb),
+                SpectralMode::Spectral(wavelengths) => xyz_of(free.radiance, &wavelengths),
+                SpectralMode::Rgb => lookfrom::core::color::xyz_from_rgb(free.rgb),
             };
             // The same colour, darker where X, Y or Z is too bright.
             let brightest = xyz.into_iter().fold(0.0, f32::max);

@@ -21,7 +21,7 @@ use crate::light::LightSample;
 use crate::render::Renderer;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::{Coefficients, Shading};
-use crate::shading::texture::Lanes;
+use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// What has been heard so far.
@@ -29,7 +29,7 @@ pub(super) struct TraceLogBuilder<'a> {
     renderer: &'a Renderer,
     world: &'a World,
     /// What the lanes mean in the end.
-    lanes: Lanes,
+    lanes: SpectralMode,
     rays: BTreeMap<u64, RayReport>,
     /// What each ray's own hit added.
     added: BTreeMap<u64, Spectrum>,
@@ -54,7 +54,7 @@ fn is_path(integrator: Integrator) -> bool {
 
 impl<'a> TraceLogBuilder<'a> {
     /// Nothing yet.
-    pub(super) fn new(renderer: &'a Renderer, lanes: Lanes) -> Self {
+    pub(super) fn new(renderer: &'a Renderer, lanes: SpectralMode) -> Self {
         Self {
             renderer,
             world: renderer.world(),
@@ -218,8 +218,8 @@ impl<'a> TraceLogBuilder<'a> {
     /// The lanes that mean something.
     fn factor(&self, value: Spectrum) -> Factor {
         match self.lanes {
-            Lanes::Rgb => value.rgb().to_vec(),
-            Lanes::Spectral(_) => value.0.to_vec(),
+            SpectralMode::Rgb => value.rgb().to_vec(),
+            SpectralMode::Spectral(_) => value.0.to_vec(),
         }
     }
 
@@ -298,8 +298,8 @@ impl<'a> TraceLogBuilder<'a> {
         let report = scatter::scattering(shading, |value| self.factor(value));
         let share = self.factor(beta);
         let only = match self.lanes {
-            Lanes::Rgb => beta.only_lane().map(|lane| ["red", "green", "blue", ""][lane]),
-            Lanes::Spectral(_) => None,
+            SpectralMode::Rgb => beta.only_lane().map(|lane| ["red", "green", "blue", ""][lane]),
+            SpectralMode::Spectral(_) => None,
         };
         self.at(address, |ray| {
             let had_others = ray.throughput.iter().filter(|lane| **lane != 0.0).count() > 1;

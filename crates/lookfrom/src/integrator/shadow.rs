@@ -14,7 +14,7 @@ use crate::light::{LightSample, Target};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::Coefficients;
-use crate::shading::texture::Lanes;
+use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// How many transparent surfaces a shadow ray may cross before it counts as blocked.
@@ -188,7 +188,7 @@ fn let_through<P: Probe>(
 
 impl Shadow {
     /// The part of the light that comes through what fills the rest of the way.
-    fn reached(&self, world: &World, lanes: &Lanes) -> Spectrum {
+    fn reached(&self, world: &World, lanes: &SpectralMode) -> Spectrum {
         let length = Vec3::from_array(self.ray.direction).length() * self.ray.t_max;
         // Lights infinitely far emit light from twice the scene's radius away, as far as media are concerned, as in pbrt.
         let is_far = length.is_infinite() && self.interior.space().is_some();
@@ -202,7 +202,7 @@ impl Shadow {
         shadow_transparency: ShadowTransparency,
         hit: &Hit,
         surface: &SurfaceInteraction,
-        lanes: &Lanes,
+        lanes: &SpectralMode,
     ) -> Spectrum {
         let length = Vec3::from_array(self.ray.direction).length() * hit.t;
         let through_medium = world.transmittance(self.interior, length, lanes);

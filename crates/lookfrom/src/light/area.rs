@@ -16,7 +16,7 @@ use crate::core::spectrum::Spectrum;
 use crate::core::warp;
 use crate::primitive::Disk;
 use crate::shading::interaction::SurfaceInteraction;
-use crate::shading::texture::{FloatTexture, Lanes, TexturePoint, Textures};
+use crate::shading::texture::{FloatTexture, SpectralMode, TexturePoint, Textures};
 
 pub use mesh::MeshLight;
 pub(crate) use mesh::Triangle as LightTriangle;
@@ -107,7 +107,7 @@ impl AreaLight {
         at: &TexturePoint,
         front: bool,
         cos: impl FnOnce() -> f32,
-        lanes: &Lanes,
+        lanes: &SpectralMode,
     ) -> Spectrum {
         if !front && !self.two_sided {
             return Spectrum::BLACK;
@@ -128,7 +128,7 @@ impl AreaLight {
         textures: &Textures,
         from: DVec3,
         u: [f32; 2],
-        lanes: &Lanes,
+        lanes: &SpectralMode,
     ) -> Option<LightSample> {
         let light_point = self.sample_point(from, u)?;
         let LightPoint { point, normal, wi, pdf, .. } = light_point;

@@ -11,7 +11,7 @@ use super::{EmissionSpectrum, IncompletePdf, LightSample, LightSampleContext, Ta
 use crate::core::distribution::Piecewise2D;
 use crate::core::spectrum::Spectrum;
 use crate::core::warp;
-use crate::shading::texture::{self, Lanes, SpectrumType, Textures};
+use crate::shading::texture::{self, SpectralMode, SpectrumType, Textures};
 
 /// Light from infinitely far, all around.
 #[derive(Clone, Debug)]
@@ -71,7 +71,13 @@ pub enum Layout {
 
 impl Environment {
     /// Radiance that arrives at a point from a unit direction.
-    pub fn radiance(&self, textures: &Textures, from: DVec3, direction: Vec3, lanes: &Lanes) -> Spectrum {
+    pub fn radiance(
+        &self,
+        textures: &Textures,
+        from: DVec3,
+        direction: Vec3,
+        lanes: &SpectralMode,
+    ) -> Spectrum {
         match &self.portal {
             Some(portal) if !portal.is_seen(from, direction) => Spectrum::BLACK,
             _ => self.color(textures, direction, lanes),
@@ -79,7 +85,7 @@ impl Environment {
     }
 
     /// Radiance from a unit direction in which nothing stands, not even a wall with an opening.
-    fn color(&self, textures: &Textures, direction: Vec3, lanes: &Lanes) -> Spectrum {
+    fn color(&self, textures: &Textures, direction: Vec3, lanes: &SpectralMode) -> Spectrum {
         match &self.sky {
             Sky::Constant(emission_spectrum) => emission_spectrum.even(textures, lanes),
             Sky::Gradient { zenith, horizon, nadir } => {
@@ -113,7 +119,7 @@ impl Environment {
             let place = |k: u32| (k as f32 + 0.5) / SIDE as f32;
             let sum = (0..SIDE * SIDE).fold(Spectrum::BLACK, |sum, k| {
                 let wi = warp::cosine_hemisphere([place(k % SIDE), place(k / SIDE)], n);
-                sum + self.color(textures, wi, &Lanes::Rgb)
+                sum + self.color(textures, wi, &SpectralMode::Rgb)
             });
             return (sum * (PI / (SIDE * SIDE) as f32)).rgb();
         };
@@ -143,7 +149,7 @@ impl Environment {
         textures: &Textures,
         at: &LightSampleContext,
         u: [f32; 2],
-        lanes: &Lanes,
+        lanes: &SpectralMode,
         incomplete_pdf: IncompletePdf,
     ) -> Option<LightSample> {
         if !self.illuminates {
@@ -239,7 +245,7 @@ impl SkyImage {
         }
     }
 
-    fn radiance(&self, rgb: [f32; 3], lanes: &Lanes) -> Spectrum {
+    fn radiance(&self, rgb: [f32; 3], lanes: &SpectralMode) -> Spectrum {
         let rgb = std::array::from_fn(|c| (rgb[c] * self.scale[c]).max(0.0));
         texture::spectrum_of(rgb, SpectrumType::Illuminant, lanes)
     }

@@ -6,7 +6,7 @@ use lookfrom_scene::texture::{TexelFilter, Wrap};
 use super::{EmissionSpectrum, LightSample, Target, toward};
 use crate::core::spectrum::Spectrum;
 use crate::core::warp;
-use crate::shading::texture::{self, Lanes, SpectrumType, Textures};
+use crate::shading::texture::{self, SpectralMode, SpectrumType, Textures};
 
 /// A picture thrown into a rectangle.
 #[derive(Clone, Debug)]
@@ -24,7 +24,12 @@ pub struct Projection {
 }
 
 impl Projection {
-    pub(super) fn sample(&self, textures: &Textures, from: DVec3, lanes: &Lanes) -> Option<LightSample> {
+    pub(super) fn sample(
+        &self,
+        textures: &Textures,
+        from: DVec3,
+        lanes: &SpectralMode,
+    ) -> Option<LightSample> {
         let (wi, distance) = toward(from, self.position)?;
         let w = (self.light_from_render * -wi).normalize_or_zero();
         if w.z <= 1e-3 {
@@ -68,7 +73,12 @@ pub struct Goniometric {
 }
 
 impl Goniometric {
-    pub(super) fn sample(&self, textures: &Textures, from: DVec3, lanes: &Lanes) -> Option<LightSample> {
+    pub(super) fn sample(
+        &self,
+        textures: &Textures,
+        from: DVec3,
+        lanes: &SpectralMode,
+    ) -> Option<LightSample> {
         let (wi, distance) = toward(from, self.position)?;
         let w = (self.light_from_render * -wi).normalize_or_zero();
         let st = warp::octahedral_square(w);

@@ -20,7 +20,7 @@ use crate::core::math::luminance;
 use crate::core::sampler::Sampler;
 use crate::core::statistics::{chi_square_deviate, corrected_bound};
 use crate::core::warp;
-use crate::shading::texture::Lanes;
+use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// The eye's place, where render space begins: lights are far from the origin of the world.
@@ -169,12 +169,12 @@ fn check_directions(
     let light = &world.lights[0];
     let Light::Environment(sky) = light else { panic!("a sky") };
     let radiance =
-        |d: Vec3| f64::from(luminance(sky.radiance(&world.textures, at.point, d, &Lanes::Rgb).rgb()));
+        |d: Vec3| f64::from(luminance(sky.radiance(&world.textures, at.point, d, &SpectralMode::Rgb).rgb()));
     let pdf = |wi| f64::from(light.pdf(at, wi, None, incomplete_pdf));
     let mut counts = vec![0; CELLS[0] * CELLS[1]];
     let (mut chosen, mut differ, mut arriving) = (0, 0, 0.0);
     for i in 0..N {
-        let sample = light.sample(&world.textures, at, random(i), &Lanes::Rgb, incomplete_pdf);
+        let sample = light.sample(&world.textures, at, random(i), &SpectralMode::Rgb, incomplete_pdf);
         let Some(sample) = sample else { continue };
         chosen += 1;
         counts[cell(sample.wi)] += 1;
@@ -239,7 +239,7 @@ fn directions_to_environments_are_as_dense_as_they_say() {
 #[test]
 fn portals_are_sampled_in_all_wavelengths() {
     for around in environments().iter().filter(|around| around.has_portal) {
-        let lanes = Lanes::Spectral(Wavelengths::sample_visible(0.4));
+        let lanes = SpectralMode::Spectral(Wavelengths::sample_visible(0.4));
         let light = &around.world.lights[0];
         let Light::Environment(sky) = light else { panic!("a sky") };
         let at = places()[0];
@@ -294,8 +294,13 @@ fn placed(power: Power) -> Vec<(LightKind, Power)> {
 fn intensity(world: &World, light: usize, direction: Vec3) -> f64 {
     let point = DVec3::new(1.0, 2.0, 3.0) + direction.as_dvec3().normalize();
     let at = LightSampleContext { point, n: -direction };
-    let sample =
-        world.lights[light].sample(&world.textures, &at, [0.5; 2], &Lanes::Rgb, IncompletePdf::Forbidden);
+    let sample = world.lights[light].sample(
+        &world.textures,
+        &at,
+        [0.5; 2],
+        &SpectralMode::Rgb,
+        IncompletePdf::Forbidden,
+    );
     sample.map_or(0.0, |sample| f64::from(luminance(sample.li.rgb())))
 }
 
@@ -325,7 +330,7 @@ fn illuminances_are_what_is_asked() {
         let world = world_of(vec![(environment(sky, None), total(12.0))], images, vec![]);
         let Light::Environment(sky) = &world.lights[0] else { panic!("a sky") };
         let arriving = |d: Vec3| {
-            let radiance = sky.radiance(&world.textures, DVec3::ZERO, d, &Lanes::Rgb);
+            let radiance = sky.radiance(&world.textures, DVec3::ZERO, d, &SpectralMode::Rgb);
             f64::from(luminance(radiance.rgb()) * d.dot(up).max(0.0))
         };
         let sum: f64 = integrals(24, arriving).iter().sum();
@@ -335,7 +340,7 @@ fn illuminances_are_what_is_asked() {
     let world = world_of(vec![(distant, total(12.0))], vec![], vec![]);
     let at = LightSampleContext { point: DVec3::ZERO, n: Vec3::Y };
     let sample = world.lights[0]
-        .sample(&world.textures, &at, [0.5; 2], &Lanes::Rgb, IncompletePdf::Forbidden)
+        .sample(&world.textures, &at, [0.5; 2], &SpectralMode::Rgb, IncompletePdf::Forbidden)
         .expect("light from above");
     assert!((luminance(sample.li.rgb()) - 12.0).abs() < 1e-3 && sample.wi.dot(Vec3::Y) > 0.9999);
 }
@@ -419,7 +424,7 @@ fn curves_have_luminance_1_unless_they_are_absolute() {
         let y = world.textures.curve(CurveId(curve)).to_xyz()[1];
         for (light, expected) in world.lights.iter().zip([1.0, 3.0, y, 5.0 / PI]) {
             let Light::Environment(sky) = light else { panic!("a sky") };
-            let rgb = sky.radiance(&world.textures, DVec3::ZERO, Vec3::Y, &Lanes::Rgb).rgb();
+            let rgb = sky.radiance(&world.textures, DVec3::ZERO, Vec3::Y, &SpectralMode::Rgb).rgb();
             assert!((luminance(rgb) / expected - 1.0).abs() < 2e-3, "{curve}: {rgb:?}, not {expected}");
         }
     }
@@ -450,7 +455,7 @@ fn nothing_black_has_any_power() {
         let name = &world.names.lights[index];
         for i in 0..20 {
             if let Some(sample) =
-                light.sample(&world.textures, &at, random(i), &Lanes::Rgb, IncompletePdf::Forbidden)
+                light.sample(&world.textures, &at, random(i), &SpectralMode::Rgb, IncompletePdf::Forbidden)
             {
                 assert!(sample.li.is_black(), "{name}: {:?}", sample.li);
             }
@@ -512,7 +517,7 @@ fn lights_are_chosen_as_often_as_they_say() {
             for (index, light) in world.lights.iter().enumerate() {
                 let emits = (0..50).any(|i| {
                     light
-                        .sample(&world.textures, at, random(i), &Lanes::Rgb, IncompletePdf::Allowed)
+                        .sample(&world.textures, at, random(i), &SpectralMode::Rgb, IncompletePdf::Allowed)
                         .is_some()
                 });
                 assert!(!emits || expected[index] > 0.0, "{kind:?}: {}", world.names.lights[index]);

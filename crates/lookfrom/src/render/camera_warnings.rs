@@ -14,7 +14,7 @@ use crate::core::warp;
 use crate::light::{IncompletePdf, Light, LightSampleContext, Target};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::MaterialKind;
-use crate::shading::texture::Lanes;
+use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// Camera rays along each side of the picture: at first, and where those meet nothing. Then an odd number: what is small and far is
@@ -161,7 +161,8 @@ fn is_lit_from_within(renderer: &Renderer) -> bool {
         if matches!(light, Light::Distant { .. } | Light::Environment(_)) {
             return false;
         }
-        let sample = light.sample(&world.textures, &eye, [0.5; 2], &Lanes::Rgb, IncompletePdf::Forbidden);
+        let sample =
+            light.sample(&world.textures, &eye, [0.5; 2], &SpectralMode::Rgb, IncompletePdf::Forbidden);
         let Some(sample) = sample else { return false };
         match sample.target {
             Target::Point(place) => {

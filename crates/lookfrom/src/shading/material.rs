@@ -24,7 +24,7 @@ use crate::shading::bsdf::whitted::Whitted as WhittedBsdf;
 use crate::shading::bsdf::{self, Bsdf, BsdfSample, Mode};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
-use crate::shading::texture::{FloatTexture, Lanes, SpectrumTexture, TexturePoint, Textures};
+use crate::shading::texture::{FloatTexture, SpectralMode, SpectrumTexture, TexturePoint, Textures};
 
 pub use albedo::albedo;
 pub(crate) use compile::Compiler;
@@ -159,7 +159,7 @@ impl Scattering<'_> {
 #[derive(Debug)]
 pub struct ShadingContext<'a> {
     /// What the lanes mean. Where wavelengths go different ways, only the first is left.
-    pub lanes: &'a mut Lanes,
+    pub lanes: &'a mut SpectralMode,
     /// The path throughput. In RGB mode, where colours go different ways, one of those in it is left, at the
     /// weight of all.
     pub throughput: &'a mut Spectrum,
@@ -251,7 +251,7 @@ struct Evaluator<'a> {
     materials: &'a [Material],
     textures: &'a Textures,
     point: &'a TexturePoint,
-    lanes: &'a mut Lanes,
+    lanes: &'a mut SpectralMode,
     throughput: &'a mut Spectrum,
     interior: InteriorStack,
     u: f32,
@@ -355,10 +355,10 @@ impl Evaluator<'_> {
 
 /// The index of refraction of a curve: of the first wavelength, the only one left afterwards; in RGB mode that of sodium's
 /// yellow line.
-fn ior_at(curve: CurveId, textures: &Textures, lanes: &mut Lanes) -> f32 {
+fn ior_at(curve: CurveId, textures: &Textures, lanes: &mut SpectralMode) -> f32 {
     let nm = match lanes {
-        Lanes::Rgb => [589.3; 4],
-        Lanes::Spectral(wavelengths) => {
+        SpectralMode::Rgb => [589.3; 4],
+        SpectralMode::Spectral(wavelengths) => {
             wavelengths.terminate_secondary();
             wavelengths.lambda
         }

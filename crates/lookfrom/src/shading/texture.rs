@@ -39,7 +39,7 @@ use crate::core::spectrum::Spectrum;
 
 /// What the four lanes mean for a sample.
 #[derive(Clone, Copy, Debug)]
-pub enum Lanes {
+pub enum SpectralMode {
     /// Linear Rec. 709 and a 0.
     Rgb,
     /// Four wavelengths.
@@ -86,7 +86,7 @@ pub struct TexturePoint {
     pub n: Vec3,
 }
 
-impl Lanes {
+impl SpectralMode {
     /// The factor that changes nothing.
     #[inline]
     pub fn one(&self) -> Spectrum {
@@ -99,10 +99,10 @@ impl Lanes {
 
 /// The spectrum of a colour that is only known when it is asked for, such as a texel's.
 #[inline]
-pub fn spectrum_of(rgb: [f32; 3], spectrum_type: SpectrumType, lanes: &Lanes) -> Spectrum {
+pub fn spectrum_of(rgb: [f32; 3], spectrum_type: SpectrumType, lanes: &SpectralMode) -> Spectrum {
     match lanes {
-        Lanes::Rgb => RgbEvaluation(spectrum_type).color(rgb),
-        Lanes::Spectral(wavelengths) => {
+        SpectralMode::Rgb => RgbEvaluation(spectrum_type).color(rgb),
+        SpectralMode::Spectral(wavelengths) => {
             SpectralEvaluation { spectrum_type, lambda: &wavelengths.lambda }.color(rgb)
         }
     }
@@ -151,25 +151,30 @@ impl Textures {
     /// The spectrum at a point, in the lanes of a sample. Never negative where no texture scales by less than 0 or mixes beyond
     /// its ends.
     #[inline(always)]
-    pub fn spectrum(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
+    pub fn spectrum(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &SpectralMode) -> Spectrum {
         // What is asked most often needs no call.
         match lanes {
-            Lanes::Rgb if !texture.varies() => texture.rgb,
+            SpectralMode::Rgb if !texture.varies() => texture.rgb,
             _ => self.spectrum_of_any(texture, at, lanes),
         }
     }
 
     /// The same for a reflectance: 0 … 1 in every lane.
     #[inline(always)]
-    pub fn albedo(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
+    pub fn albedo(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &SpectralMode) -> Spectrum {
         self.spectrum(texture, at, lanes).map(|lane| lane.clamp(0.0, 1.0))
     }
 
-    fn spectrum_of_any(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
+    fn spectrum_of_any(
+        &self,
+        texture: &SpectrumTexture,
+        at: &TexturePoint,
+        lanes: &SpectralMode,
+    ) -> Spectrum {
         let SpectrumTexture { input, spectrum_type, .. } = texture;
         match lanes {
-            Lanes::Rgb => self.read(input, at, &RgbEvaluation(*spectrum_type)),
-            Lanes::Spectral(wavelengths) => {
+            SpectralMode::Rgb => self.read(input, at, &RgbEvaluation(*spectrum_type)),
+            SpectralMode::Spectral(wavelengths) => {
                 let lifted =
                     SpectralEvaluation { spectrum_type: *spectrum_type, lambda: &wavelengths.lambda };
                 self.read(input, at, &lifted)

@@ -13,7 +13,7 @@ use crate::core::spectrum::Spectrum;
 use crate::light::Light;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::MaterialKind;
-use crate::shading::texture::{Lanes, SpectrumType, Textures, spectrum_of};
+use crate::shading::texture::{SpectralMode, SpectrumType, Textures, spectrum_of};
 
 /// The least reflectance that is reckoned with: what the camera sees of a darker floor is multiplied later.
 const LEAST_REFLECTANCE: f32 = 1e-3;
@@ -24,7 +24,7 @@ fn irradiance(lights: &[Light], textures: &Textures, n: Vec3) -> [f32; 3] {
         let add = match light {
             Light::Environment(environment) if environment.illuminates => environment.irradiance(textures, n),
             Light::Distant { toward, irradiance } => {
-                (irradiance.even(textures, &Lanes::Rgb) * toward.dot(n).max(0.0)).rgb()
+                (irradiance.even(textures, &SpectralMode::Rgb) * toward.dot(n).max(0.0)).rgb()
             }
             _ => [0.0; 3],
         };
@@ -49,23 +49,23 @@ impl World {
     }
 
     /// The floor's reflectance: that with which it looks like the environment behind it, as far as matter can.
-    pub(super) fn catcher_reflectance(&self, surface: &SurfaceInteraction, lanes: &Lanes) -> Spectrum {
+    pub(super) fn catcher_reflectance(&self, surface: &SurfaceInteraction, lanes: &SpectralMode) -> Spectrum {
         self.reflectance_seen_along(-surface.wo, lanes)
     }
 
     /// What the camera's light from the floor is to be multiplied by for the floor to look like `behind` in place of what
     /// its reflectance in the path tracer makes of it; `direction` is the camera ray's, of any length.
-    pub fn catcher_correction(&self, direction: Vec3, behind: Spectrum, lanes: &Lanes) -> Spectrum {
+    pub fn catcher_correction(&self, direction: Vec3, behind: Spectrum, lanes: &SpectralMode) -> Spectrum {
         let irradiance = self.light_of(self.catcher_irradiance.unwrap_or_default(), lanes);
         let reflected = self.reflectance_seen_along(direction.normalize(), lanes) * irradiance;
         let pi_behind = behind * std::f32::consts::PI;
         pi_behind.zip(reflected, |behind, reflected| if reflected > 0.0 { behind / reflected } else { 0.0 })
     }
 
-    fn reflectance_seen_along(&self, direction: Vec3, lanes: &Lanes) -> Spectrum {
+    fn reflectance_seen_along(&self, direction: Vec3, lanes: &SpectralMode) -> Spectrum {
         let e0 = self.catcher_irradiance.unwrap_or_default();
         let ray = Ray::new([0.0; 3], direction.to_array());
-        let sky = self.sky(&ray, &Lanes::Rgb).rgb();
+        let sky = self.sky(&ray, &SpectralMode::Rgb).rgb();
         let rho: [f32; 3] = std::array::from_fn(|c| {
             let rho = if e0[c] > 0.0 { std::f32::consts::PI * sky[c] / e0[c] } else { 0.0 };
             rho.clamp(LEAST_REFLECTANCE, 1.0)

@@ -12,7 +12,7 @@ use super::{LightSampling, PathTracer, power_heuristic};
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{Alpha, Path, Probe, StepOutput, Term};
 use crate::light::Light;
-use crate::shading::texture::Lanes;
+use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 impl PathTracer {
@@ -72,7 +72,7 @@ impl PathTracer {
 }
 
 /// What a path adds if it meets nothing.
-fn sky_found(world: &World, path: &Path, lanes: &Lanes) -> Spectrum {
+fn sky_found(world: &World, path: &Path, lanes: &SpectralMode) -> Spectrum {
     let direction = Vec3::from_array(path.ray.direction).normalize();
     let at = path.light_context();
     let lit = world.environments.iter().filter(|&&index| world.lights[index as usize].illuminates());

@@ -22,7 +22,7 @@ use crate::primitive::Mesh;
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::Shading;
-use crate::shading::texture::{Lanes, TexturePoint};
+use crate::shading::texture::{SpectralMode, TexturePoint};
 use crate::world::World;
 use light_samples::LightSamples;
 
@@ -44,7 +44,7 @@ impl<'a> FlatDiffuseHit<'a> {
         world: &'a World,
         path: &'a Path,
         hit: &'a Hit,
-        lanes: &Lanes,
+        lanes: &SpectralMode,
         stream: impl FnOnce() -> SampleStream,
     ) -> Option<Self> {
         if !hit.is_hit()

@@ -4,7 +4,7 @@ use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Principled, Roug
 
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::fresnel;
-use crate::shading::texture::{Lanes, SpectrumType, TexturePoint, Textures};
+use crate::shading::texture::{SpectralMode, SpectrumType, TexturePoint, Textures};
 
 /// What a dielectric coat reflects at most angles.
 const COAT: f32 = 0.04;
@@ -110,6 +110,6 @@ fn shininess(roughness: &Roughness) -> f32 {
 fn ior(ior: &Ior, textures: &Textures) -> f32 {
     match ior {
         Ior::Value(eta) => *eta,
-        Ior::Curve(curve) => super::ior_at(*curve, textures, &mut Lanes::Rgb),
+        Ior::Curve(curve) => super::ior_at(*curve, textures, &mut SpectralMode::Rgb),
     }
 }

@@ -17,7 +17,7 @@ use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::principled::film::Film;
 use crate::shading::bsdf::principled::{Parameters, Principled};
 use crate::shading::interaction::SurfaceInteraction;
-use crate::shading::texture::{Lanes, SpectrumTexture};
+use crate::shading::texture::{SpectralMode, SpectrumTexture};
 
 /// What a dielectric of an index mirrors straight on; an index of 0 is infinite.
 fn straight(ior: f32) -> f32 {
@@ -35,20 +35,20 @@ pub(super) fn disperses(look: &PrincipledMaterial) -> bool {
 }
 
 /// The index of refraction for the one wavelength or colour that is left; the written one where more are.
-fn index_of(look: &PrincipledMaterial, lanes: &Lanes, share: Spectrum) -> f32 {
+fn index_of(look: &PrincipledMaterial, lanes: &SpectralMode, share: Spectrum) -> f32 {
     // Twenty times n_F − n_C.
     let spread = (look.ior - 1.0) * look.dispersion;
     match lanes {
-        Lanes::Spectral(wavelengths) if wavelengths.secondary_terminated() => {
+        SpectralMode::Spectral(wavelengths) if wavelengths.secondary_terminated() => {
             let [lambda, ..] = wavelengths.lambda;
             let bent = 523_655.0 / (lambda * lambda) - 1.5168;
             (look.ior + spread / 20.0 * bent).max(1.0)
         }
-        Lanes::Rgb => match share.only_lane() {
+        SpectralMode::Rgb => match share.only_lane() {
             Some(lane) => (look.ior + spread * (0.025 * (lane as f32 - 1.0))).max(1.0),
             None => look.ior,
         },
-        Lanes::Spectral(_) => look.ior,
+        SpectralMode::Spectral(_) => look.ior,
     }
 }
 
@@ -138,8 +138,8 @@ impl Evaluator<'_> {
                 eta: look.iridescence_ior,
                 thickness: self.float(look.iridescence_thickness),
                 wavelengths: match self.lanes {
-                    Lanes::Rgb => None,
-                    Lanes::Spectral(wavelengths) => Some(wavelengths.lambda),
+                    SpectralMode::Rgb => None,
+                    SpectralMode::Spectral(wavelengths) => Some(wavelengths.lambda),
                 },
             },
         };
@@ -153,8 +153,8 @@ impl Evaluator<'_> {
             return look.ior;
         }
         match self.lanes {
-            Lanes::Spectral(wavelengths) => wavelengths.terminate_secondary(),
-            Lanes::Rgb => self.throughput.leave_one(self.u),
+            SpectralMode::Spectral(wavelengths) => wavelengths.terminate_secondary(),
+            SpectralMode::Rgb => self.throughput.leave_one(self.u),
         }
         index_of(look, self.lanes, *self.throughput)
     }
@@ -183,8 +183,8 @@ impl Evaluator<'_> {
         }
         let rgb = self.textures.rgb(color, self.point);
         let lanes = match self.lanes {
-            Lanes::Rgb => Spectrum::from_rgb(rgb),
-            Lanes::Spectral(_) => self.textures.spectrum(color, self.point, self.lanes),
+            SpectralMode::Rgb => Spectrum::from_rgb(rgb),
+            SpectralMode::Spectral(_) => self.textures.spectrum(color, self.point, self.lanes),
         };
         (lanes, rgb.into_iter().fold(0.0, f32::max))
     }

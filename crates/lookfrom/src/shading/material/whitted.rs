@@ -19,7 +19,7 @@ use glam::Vec3;
 use super::kind::Whitted;
 use crate::core::math;
 use crate::core::spectrum::Spectrum;
-use crate::shading::texture::{Lanes, SpectrumTexture, TexturePoint, Textures};
+use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint, Textures};
 
 /// Whitted's coefficients at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,7 +57,7 @@ pub struct Branches {
 
 impl Coefficients {
     /// The material's coefficients at a point.
-    pub fn at(material: &Whitted, textures: &Textures, point: &TexturePoint, lanes: &Lanes) -> Self {
+    pub fn at(material: &Whitted, textures: &Textures, point: &TexturePoint, lanes: &SpectralMode) -> Self {
         let color = |texture: &SpectrumTexture| textures.spectrum(texture, point, lanes);
         let diffuse = color(&material.diffuse);
         Self {

@@ -17,7 +17,13 @@ impl Textures {
         self.rgb(&self.spectrum_texture(color, spectrum_type), at)
     }
 
-    fn spectrum_of(&self, color: Color, of: SpectrumType, at: &TexturePoint, lanes: &Lanes) -> Spectrum {
+    fn spectrum_of(
+        &self,
+        color: Color,
+        of: SpectrumType,
+        at: &TexturePoint,
+        lanes: &SpectralMode,
+    ) -> Spectrum {
         self.spectrum(&self.spectrum_texture(color, of), at, lanes)
     }
 
@@ -235,7 +241,7 @@ fn spectra_seen_in_daylight_have_their_colors() {
     let textures = textures_of(vec![picture(TexelFilter::Nearest, 1.0, false)], vec![image], vec![]);
     let curve_of = |color, usage, at: &TexturePoint| -> Vec<f32> {
         let spectral = |nm: &f32| {
-            let lanes = Lanes::Spectral(Wavelengths { lambda: [*nm; 4], pdf: [1.0; 4] });
+            let lanes = SpectralMode::Spectral(Wavelengths { lambda: [*nm; 4], pdf: [1.0; 4] });
             textures.spectrum_of(color, usage, at, &lanes).0[2]
         };
         lambda.iter().map(spectral).collect()
@@ -259,7 +265,7 @@ fn spectra_seen_in_daylight_have_their_colors() {
 
 #[test]
 fn spectra_are_blended_and_curves_read() {
-    let lanes = Lanes::Spectral(Wavelengths { lambda: [450.0, 500.0, 550.0, 600.0], pdf: [1.0; 4] });
+    let lanes = SpectralMode::Spectral(Wavelengths { lambda: [450.0, 500.0, 550.0, 600.0], pdf: [1.0; 4] });
     let curves = vec![
         Curve::Constant(0.5),
         Curve::Tabulated { wavelengths: vec![400.0, 600.0], values: vec![0.0, 1.0] },
@@ -338,12 +344,12 @@ fn time_of_look_ups() {
     let bytes = (0..1 << 12).map(|i| [90, 120, (i % 256) as u8, 255]).collect();
     let images =
         [Image::from_linear("", 64, 64, texels), Image::from_bytes("", 64, 64, bytes, Encoding::Srgb)];
-    let lanes = Lanes::Spectral(Wavelengths::sample_visible(0.3));
+    let lanes = SpectralMode::Spectral(Wavelengths::sample_visible(0.3));
     for (wrap, reach) in [(Wrap::Repeat, 1.0), (Wrap::Repeat, 9.0), (Wrap::Mirror, 9.0), (Wrap::Black, 1.0)] {
         for (channel, name, image, lanes) in [
-            (Channel::Rgb, "rgb", 0, &Lanes::Rgb),
-            (Channel::Rgb, "rgb of bytes", 1, &Lanes::Rgb),
-            (Channel::Green, "green of bytes", 1, &Lanes::Rgb),
+            (Channel::Rgb, "rgb", 0, &SpectralMode::Rgb),
+            (Channel::Rgb, "rgb of bytes", 1, &SpectralMode::Rgb),
+            (Channel::Green, "green of bytes", 1, &SpectralMode::Rgb),
             (Channel::Rgb, "spectral", 0, &lanes),
         ] {
             let kind = TextureKind::Image {
@@ -420,7 +426,7 @@ fn products_multiply_channels_and_only_one_factor_is_light() {
     assert_eq!(textures.rgb_of(of_colors, SpectrumType::Albedo, &here), [0.25, 0.25, 0.0]);
     assert_eq!(textures.scalar(Scalar::Texture(TextureId(2)), &here), 3.0);
 
-    let lanes = Lanes::Spectral(Wavelengths { lambda: [450.0, 500.0, 550.0, 600.0], pdf: [1.0; 4] });
+    let lanes = SpectralMode::Spectral(Wavelengths { lambda: [450.0, 500.0, 550.0, 600.0], pdf: [1.0; 4] });
     let spectrum = |color, usage| textures.spectrum_of(color, usage, &here, &lanes);
     for usage in [SpectrumType::Unbounded, SpectrumType::Illuminant] {
         let six = spectrum(Color::gray(6.0), usage);

@@ -11,7 +11,7 @@ use crate::core::eight::{LANES, Narrow, Points, Vectors, Wide, by_axis, by_lane,
 use crate::core::spectrum::Spectrum;
 use crate::integrator::Event;
 use crate::light::{IncompletePdf, Light, LightSample, LightSampleContext, LightTriangle, Target};
-use crate::shading::texture::Lanes;
+use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// What a light answered, in one lane.
@@ -44,7 +44,7 @@ impl<S: Simd> LightSamples<S> {
         plain: &[FlatDiffuseHit<'_>; LANES],
         surfaces: &Surfaces<S>,
         stream: &SampleStreams<S>,
-        lanes: &[Lanes],
+        lanes: &[SpectralMode],
     ) -> Self {
         let [u0, u1] = stream.two(simd, dimension::LIGHT);
         let from: [[f64; LANES]; 3] = by_axis!(i => surfaces.points.position.0[i].into());
