@@ -238,7 +238,7 @@ fn a_pixel_outside_of_the_tile_is_a_mistake_of_the_caller() {
 
 #[test]
 fn pixels_take_as_many_bytes_as_documented() {
-    assert_eq!([size_of::<Pixel>(), size_of::<AovSums>(), size_of::<LayerSums>()], [112, 96, 208]);
+    assert_eq!([size_of::<Pixel>(), size_of::<aov::AovSums>(), size_of::<aov::LayerSums>()], [112, 96, 208]);
 }
 
 #[test]

@@ -1,0 +1,223 @@
+//! Tiles of a film, each filled by one thread.
+
+use std::ops::Range;
+
+use lookfrom_scene::Result;
+use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds};
+
+use super::aov::{AovSums, LayerSums};
+use super::channels::ChannelSums;
+use super::pixel::{Pixel, fixed_point, fixed_point_square};
+use super::{Aovs, BRIGHTEST, FEATURE_SAMPLES, MOST_PIXELS, SampleId, common, too_large, xyz};
+
+/// The light of a rectangle of a film, for one thread to fill.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FilmTile {
+    pub(super) area: PixelBounds,
+    pub(super) pixels: Vec<Pixel>,
+    /// As many as there are pixels, or none.
+    pub(super) layers: Vec<LayerSums>,
+    /// As many as there are pixels, or none.
+    pub(super) channels: Vec<ChannelSums>,
+    /// As many as there are pixels, or none.
+    pub(super) features: Vec<AovSums>,
+    /// Sums of how much samples hide of what is behind, in multiples of 2⁻⁶⁴: as many as there are pixels, or none.
+    pub(super) alphas: Vec<i128>,
+    /// Sums of their squares, in multiples of 2⁻⁴⁸: as many as there are pixels, or none.
+    pub(super) alpha_squares: Vec<u128>,
+    pub(super) dropped: u64,
+    pub(super) first_dropped: Option<SampleId>,
+}
+
+impl FilmTile {
+    /// A black tile. An area that ends before it begins is empty.
+    ///
+    /// An error if the area has more than [`MOST_PIXELS`] or there is no memory for it.
+    pub fn new(area: PixelBounds) -> Result<Self> {
+        Self::with_layers(area, Layers::None)
+    }
+
+    /// As [`FilmTile::new`], with room for what the layers need besides light.
+    pub fn with_layers(area: PixelBounds, layers: Layers) -> Result<Self> {
+        Self::for_image(area, &ImageSettings { layers, ..ImageSettings::default() })
+    }
+
+    /// As [`FilmTile::new`], with room for all that a picture is asked for: layers, alpha.
+    ///
+    /// # Errors
+    /// `Limit` as [`FilmTile::new`].
+    pub fn for_image(area: PixelBounds, image: &ImageSettings) -> Result<Self> {
+        let count = u64::from(area.x1.saturating_sub(area.x0)) * u64::from(area.y1.saturating_sub(area.y0));
+        if count > MOST_PIXELS {
+            return Err(too_large(format!("{count} pixels; at most {MOST_PIXELS} are possible")));
+        }
+        let pixels = empty(count)?;
+        let layers = match image.layers {
+            Layers::None => Vec::new(),
+            Layers::Geometry => empty(count)?,
+        };
+        let channels = match image.layers {
+            Layers::Geometry if !image.sensor.measures_xyz() => empty(count)?,
+            _ => Vec::new(),
+        };
+        let features = if image.denoise { empty(count)? } else { Vec::new() };
+        let (alphas, alpha_squares) = match image.background {
+            Background::Environment => (Vec::new(), Vec::new()),
+            Background::Color(_) | Background::Transparent => {
+                (empty(count)?, if image.denoise { empty(count)? } else { Vec::new() })
+            }
+        };
+        let (dropped, first_dropped) = (0, None);
+        Ok(Self { area, pixels, layers, channels, features, alphas, alpha_squares, dropped, first_dropped })
+    }
+
+    /// Whether there is room for layers.
+    pub fn has_layers(&self) -> bool {
+        !self.layers.is_empty()
+    }
+
+    /// Whether there is room for what the camera's ray of a sample met: whether [`FilmTile::add_first_hit`] does anything.
+    pub fn wants_first_hit(&self, sample: u32) -> bool {
+        self.has_layers() || !self.features.is_empty() && sample < FEATURE_SAMPLES
+    }
+
+    /// Whether there is room for what the sensor measures: whether [`FilmTile::add_channels`] does anything.
+    pub fn has_channels(&self) -> bool {
+        !self.channels.is_empty()
+    }
+
+    /// The pixels it covers.
+    pub fn area(&self) -> PixelBounds {
+        self.area
+    }
+
+    /// Adds the light of one sample to its pixel.
+    ///
+    /// Each of red, green and blue is cut to ±[`BRIGHTEST`], then added exactly if its magnitude is at least 2⁻⁴⁰, else
+    /// cut towards zero at 2⁻⁶⁴. A sample that is not finite in all three is dropped, counted and remembered by its
+    /// address.
+    ///
+    /// # Panics
+    /// If the pixel is outside of the tile.
+    pub fn add(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3]) {
+        self.add_with_alpha(x, y, sample, rgb, 1.0);
+    }
+
+    /// As [`FilmTile::add`], and adds how much the sample hides of what is behind, where there is room for that: a sample
+    /// for which this is not finite is dropped as well.
+    ///
+    /// # Panics
+    /// If the pixel is outside of the tile.
+    pub fn add_with_alpha(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3], alpha: f32) {
+        let index = self.index_inside(x, y);
+        if !alpha.is_finite() || !rgb.iter().all(|light| light.is_finite()) {
+            self.drop_samples(1, Some(SampleId { pixel: [x, y], sample }));
+            return;
+        }
+        let pixel = &mut self.pixels[index];
+        for (sum, light) in pixel.sums.iter_mut().zip(rgb) {
+            *sum = sum.wrapping_add(fixed_point(light));
+        }
+        let cut = rgb.map(|light| f64::from(light.clamp(-BRIGHTEST, BRIGHTEST)));
+        for (sum, value) in pixel.squares.iter_mut().zip(xyz(cut)) {
+            *sum = sum.saturating_add(fixed_point_square(value));
+        }
+        pixel.samples = pixel.samples.saturating_add(1);
+        if let Some(sum) = self.alphas.get_mut(index) {
+            *sum = sum.wrapping_add(fixed_point(alpha));
+            if let Some(squares) = self.alpha_squares.get_mut(index) {
+                let square = fixed_point_square(f64::from(alpha.clamp(-BRIGHTEST, BRIGHTEST)));
+                *squares = squares.saturating_add(square);
+            }
+        }
+    }
+
+    /// Adds what the camera's ray of one sample met, `None` for nothing, where there is room for it: to the layers, and of the
+    /// first [`FEATURE_SAMPLES`] of a pixel to what the denoiser compares. What is not finite counts as nothing.
+    ///
+    /// # Panics
+    /// If the pixel is outside of the tile.
+    pub fn add_first_hit(&mut self, x: u32, y: u32, sample: u32, met: Option<&Aovs>) {
+        let index = self.index_inside(x, y);
+        if let Some(sums) = self.layers.get_mut(index) {
+            sums.add(sample, met);
+        }
+        if sample < FEATURE_SAMPLES
+            && let Some(sums) = self.features.get_mut(index)
+        {
+            sums.add(sample, met);
+        }
+    }
+
+    /// Adds what the sensor's channels measured of one sample, where there is room for it and all is finite.
+    ///
+    /// # Panics
+    /// If the pixel is outside of the tile.
+    pub fn add_channels(&mut self, x: u32, y: u32, channels: [f32; 3]) {
+        let index = self.index_inside(x, y);
+        if let Some(sums) = self.channels.get_mut(index) {
+            sums.add(channels);
+        }
+    }
+
+    /// Adds what another tile holds within the area of this one.
+    pub(super) fn merge(&mut self, other: &Self) {
+        let PixelBounds { x0, y0, x1, y1 } = common(self.area, other.area);
+        for y in y0..y1 {
+            let rows = [self.row(y, x0, x1), other.row(y, x0, x1)];
+            merge_row(&mut self.pixels, &other.pixels, &rows, Pixel::merge);
+            merge_row(&mut self.alphas, &other.alphas, &rows, |sum, add| *sum = sum.wrapping_add(*add));
+            merge_row(&mut self.alpha_squares, &other.alpha_squares, &rows, |sum, add| {
+                *sum = sum.saturating_add(*add);
+            });
+            merge_row(&mut self.layers, &other.layers, &rows, LayerSums::merge);
+            merge_row(&mut self.channels, &other.channels, &rows, ChannelSums::merge);
+            merge_row(&mut self.features, &other.features, &rows, AovSums::merge);
+        }
+        self.drop_samples(other.dropped, other.first_dropped);
+    }
+
+    pub(super) fn drop_samples(&mut self, count: u64, first: Option<SampleId>) {
+        self.dropped = self.dropped.saturating_add(count);
+        self.first_dropped = self.first_dropped.into_iter().chain(first).min();
+    }
+
+    pub(super) fn pixel(&self, x: u32, y: u32) -> Option<&Pixel> {
+        self.index(x, y).map(|index| &self.pixels[index])
+    }
+
+    pub(super) fn index(&self, x: u32, y: u32) -> Option<usize> {
+        let PixelBounds { x0, y0, x1, y1 } = self.area;
+        let inside = (x0..x1).contains(&x) && (y0..y1).contains(&y);
+        inside.then(|| (y - y0) as usize * (x1 - x0) as usize + (x - x0) as usize)
+    }
+
+    pub(super) fn index_inside(&self, x: u32, y: u32) -> usize {
+        let index = self.index(x, y);
+        index.unwrap_or_else(|| panic!("pixel ({x}, {y}) is outside of the tile {:?}", self.area))
+    }
+
+    /// Where the pixels of columns `from` to before `to` of row `y` are. They must be inside.
+    pub(super) fn row(&self, y: u32, from: u32, to: u32) -> Range<usize> {
+        let PixelBounds { x0, y0, x1, .. } = self.area;
+        let start = (y - y0) as usize * (x1 - x0) as usize;
+        start + (from - x0) as usize..start + (to - x0) as usize
+    }
+}
+
+/// Adds some of `theirs` to as many of `mine`, unless one of the two films has no room for them.
+fn merge_row<T>(mine: &mut [T], theirs: &[T], [to, from]: &[Range<usize>; 2], add: impl Fn(&mut T, &T)) {
+    if let (Some(mine), Some(theirs)) = (mine.get_mut(to.clone()), theirs.get(from.clone())) {
+        mine.iter_mut().zip(theirs).for_each(|(mine, theirs)| add(mine, theirs));
+    }
+}
+
+/// As many zeros as there is memory for.
+fn empty<T: Clone + Default>(count: u64) -> Result<Vec<T>> {
+    let mut values = Vec::new();
+    if values.try_reserve_exact(count as usize).is_err() {
+        return Err(too_large(format!("no memory for {count} pixels of {} bytes", size_of::<T>())));
+    }
+    values.resize(count as usize, T::default());
+    Ok(values)
+}
