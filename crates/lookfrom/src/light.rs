@@ -33,6 +33,7 @@ pub use portal::{Opening, Portal};
 
 /// A light, ready to be sampled. Positions are in render space.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Light {
     /// From a point to all sides.
     Point {

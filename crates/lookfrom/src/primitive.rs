@@ -45,6 +45,7 @@ pub struct MaterialBinding {
 
 /// The primitives that share a geometry id of the kernel.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Primitives {
     /// Triangles of one shape.
     Mesh(Arc<Mesh>),

@@ -29,6 +29,7 @@ pub struct Candidate {
 
 /// The numbers of a test, each with its name in the lecture notes.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub enum Test {
     /// Cramer's rule: `D D1 D2 D3 α β γ t`.
     Triangle {

@@ -11,6 +11,7 @@ use crate::shading::material::Shading;
 
 /// Why light is added.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Term {
     /// The ray left the scene.
     Sky,
@@ -44,6 +45,7 @@ pub enum Branch {
 
 /// Why a branch was not followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Cut {
     /// It could no longer change the pixel.
     Contribution,
@@ -53,6 +55,7 @@ pub enum Cut {
 
 /// Something that happened on the way of a sample.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Event {
     /// A path met `hit` (or nothing).
     Hit {

@@ -41,6 +41,7 @@ const SAFE_BOUNCES: u32 = 4;
 
 /// How much of what is known about light is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum LightSampling {
     /// Lights and materials are sampled together.
     MultipleImportance,

@@ -40,6 +40,7 @@ pub struct AreaLight {
 
 /// The form of a shape that emits light.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum LightShape {
     /// A sphere or ellipsoid, a cylinder, a disk, or a part of one.
     Quadric(Box<QuadricLight>),

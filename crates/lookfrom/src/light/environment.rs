@@ -26,6 +26,7 @@ pub struct Environment {
 
 /// The colours of an environment.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Sky {
     /// The same everywhere.
     Constant(EmissionSpectrum),
@@ -62,6 +63,7 @@ pub struct SkyImage {
 
 /// How the sphere of directions is laid out in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Layout {
     /// Row 0 is +y; the middle column looks along −z, columns to the right toward +x.
     LatitudeLongitude,

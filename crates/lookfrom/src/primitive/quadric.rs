@@ -22,6 +22,7 @@ const UNIT: f64 = 0.5 * f64::EPSILON;
 
 /// What a quadric is in its own space.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum QuadricKind {
     /// Around the origin, between two heights.
     Sphere {

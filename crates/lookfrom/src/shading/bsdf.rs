@@ -46,6 +46,7 @@ pub enum Mode {
 
 /// A scattering function at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Bsdf {
     /// Lambert's.
     Diffuse(Diffuse),

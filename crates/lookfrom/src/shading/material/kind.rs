@@ -8,6 +8,7 @@ use crate::shading::texture::{FloatTexture, SpectrumTexture, TexturePoint, Textu
 
 /// The materials there are.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum MaterialKind {
     /// Whitted's model.
     Whitted(Whitted),
@@ -108,6 +109,7 @@ pub struct Whitted {
 
 /// The optical constants of a metal.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Metal {
     /// The complex index of refraction η + i k.
     Indices {
@@ -177,6 +179,7 @@ pub struct Coat {
 
 /// What turns or bends the shading normal.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub enum BumpMapping {
     /// Nothing.
     None,
