@@ -415,7 +415,7 @@ impl SeenBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dispatch::{dispatch, levels};
+    use crate::dispatch::{dispatch_or_scalar, levels_and_scalar};
     use crate::exact::ExactRay;
     use crate::ray::Ray;
     use crate::triangle::intersect_exact;
@@ -436,7 +436,7 @@ mod tests {
     #[test]
     fn exact_hits_are_never_excluded() {
         let mut random = crate::testing::Random::new(7);
-        let levels = levels();
+        let levels = levels_and_scalar();
         let (mut hits, mut sure, mut kept, mut all) = (0, 0, 0, 0);
         for _ in 0..200_000 {
             let center = random.point_with_exponents(-8, 8);
@@ -459,7 +459,7 @@ mod tests {
             };
             let block = TriangleBlock::new(&[(corners, 0, 0)]);
             let (tested, surely_hit, [first, last]) =
-                dispatch(levels[all % levels.len()], TestBlock(&block, &prepared));
+                dispatch_or_scalar(levels[all % levels.len()], TestBlock(&block, &prepared));
             let keep = tested.count();
             all += 1;
             kept += keep;

@@ -1,22 +1,30 @@
-//! SIMD dispatch of the kernel: `lookfrom_simd`'s, and in unit tests the scalar level as well.
+//! SIMD dispatch of the kernel: `lookfrom_simd`'s. Unit tests of small parts go through the scalar level as well, which traversal is
+//! too large for: it would be half of what the tests compile.
 
+pub(crate) use lookfrom_simd::dispatch;
+#[cfg(test)]
 use lookfrom_simd::{Kernel, Level};
 
-/// [`lookfrom_simd::dispatch`].
-#[inline(always)]
-pub(crate) fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
-    #[cfg(test)]
+/// [`dispatch`], or the scalar level.
+#[cfg(test)]
+pub(crate) fn dispatch_or_scalar<K: Kernel>(level: Level, kernel: K) -> K::Output {
     if level.is_fallback() {
         return kernel.run(fearless_simd::Fallback::new());
     }
-    lookfrom_simd::dispatch(level, kernel)
+    dispatch(level, kernel)
 }
 
-/// Every level that this machine has.
+/// Every vector level that this machine has.
 #[cfg(test)]
 pub(crate) fn levels() -> Vec<Level> {
-    let mut levels = vec![Level::fallback(), Level::baseline(), Level::new()];
+    let mut levels = vec![Level::baseline(), Level::new()];
     #[cfg(target_arch = "x86_64")]
     levels.extend(Level::new().as_avx2().map(Level::Avx2));
     levels
+}
+
+/// The same and the scalar one, for [`dispatch_or_scalar`].
+#[cfg(test)]
+pub(crate) fn levels_and_scalar() -> Vec<Level> {
+    [vec![Level::fallback()], levels()].concat()
 }

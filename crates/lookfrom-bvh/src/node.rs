@@ -172,7 +172,7 @@ impl Node {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dispatch::{dispatch, levels};
+    use crate::dispatch::{dispatch_or_scalar, levels_and_scalar};
     use crate::exact::ExactRay;
     use crate::ray::Ray;
     use lookfrom_simd::Kernel;
@@ -191,7 +191,8 @@ mod tests {
     fn enters(bounds: &Aabb, ray: &Ray) -> bool {
         let mut node = Node::EMPTY;
         node.place(3, bounds, Child::triangles(7));
-        let entered = levels().into_iter().map(|level| dispatch(level, Enter(&node, ray)));
+        let entered =
+            levels_and_scalar().into_iter().map(|level| dispatch_or_scalar(level, Enter(&node, ray)));
         let entered: Vec<u32> = entered.collect();
         assert!(entered.iter().all(|&all| all == entered[0]), "every level says the same: {entered:?}");
         assert!(entered[0] & !8 == 0, "an empty child is never entered: {entered:?}");

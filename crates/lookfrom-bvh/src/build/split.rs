@@ -209,7 +209,7 @@ impl<S: Simd> Side<S> {
 mod tests {
     use super::*;
     use crate::build::primitives::Kind;
-    use crate::dispatch::{dispatch, levels};
+    use crate::dispatch::{dispatch_or_scalar, levels_and_scalar};
     use crate::testing::Random;
 
     /// The cheapest split, plainly: the least cost, and the references on its two sides.
@@ -268,10 +268,12 @@ mod tests {
             let covered = Covered::by(&references);
             let bins = [4, 8, 16, MAX_BINS][random.below(4) as usize];
             let expected = reference_split(&references, &covered.centers, bins);
-            for level in levels() {
+            for level in levels_and_scalar() {
                 let mut sorted = references.clone();
-                let split =
-                    dispatch(level, Split { references: &mut sorted, centers: &covered.centers, bins });
+                let split = dispatch_or_scalar(
+                    level,
+                    Split { references: &mut sorted, centers: &covered.centers, bins },
+                );
                 let Some((middle, sides)) = split else {
                     assert!(expected.is_none());
                     none += 1;
