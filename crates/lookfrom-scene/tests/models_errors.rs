@@ -177,7 +177,7 @@ fn stl() {
     );
     assert_eq!(
         said("a.stl", format!("solid\n{}", facet.replace("  vertex 1 0 0\n", ""))),
-        "a.stl:6:2: a facet with 2 vertices: expected three"
+        "a.stl:6:2: a facet with 2 vertices, expected 3"
     );
     assert_eq!(
         said("a.stl", &format!("solid\n{facet}")[..53]),

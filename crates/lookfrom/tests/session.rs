@@ -110,8 +110,9 @@ const FAR_APART: &str = r#"
     [[light]]
     type = "distant"
     from = [1, 1, 1]
+    intensity = 1
     [materials.wall]
-    diffuse = { type = "checker", size = 0.2 }
+    diffuse = { type = "checker", space = "world", size = 0.2 }
     [[sphere]]
     material = "wall"
     center = [0, 0, 0]

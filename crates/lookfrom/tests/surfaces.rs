@@ -245,13 +245,8 @@ fn the_camera_sees_through_backs_but_light_does_not() {
     }
 }
 
-/// The surface that a ray downward at (0.3, z = 0.4) meets, in a scene of one mesh.
-fn met(
-    mesh: &Mesh,
-    place: DMat4,
-    as_instance: bool,
-    reverse: bool,
-) -> lookfrom::shading::interaction::SurfaceInteraction {
+/// A scene of one mesh with three materials: white, brushed, and a mixture of both; the mesh is brushed.
+fn brushed(mesh: &Mesh, place: DMat4, as_instance: bool, reverse: bool) -> Scene {
     let mut scene = scene();
     let kind = MaterialKind::Conductor {
         metal: lookfrom_scene::material::Metal::Reflectance(Color::gray(0.5)),
@@ -262,7 +257,10 @@ fn met(
         },
     };
     scene.materials.push(Material::new("brushed", nowhere(), kind));
+    let mixed = MaterialKind::Mix { materials: [MaterialId(0), MaterialId(1)], amount: Scalar::Value(0.5) };
+    scene.materials.push(Material::new("mixed", nowhere(), mixed));
     let mut shape = push(&mut scene, mesh.clone());
+    shape.material = MaterialId(1);
     shape.reverse_orientation = reverse;
     if as_instance {
         scene.objects.push(Object { name: String::new(), at: nowhere(), shapes: vec![shape] });
@@ -276,12 +274,41 @@ fn met(
         shape.world_from_object = place;
         scene.shapes.push(shape);
     }
+    scene
+}
+
+/// The surface that a ray downward at (0.3, z = 0.4) meets.
+fn met_in(scene: Scene) -> lookfrom::shading::interaction::SurfaceInteraction {
     let world = compiled(scene);
     let origin = (DVec3::new(0.3, 3.0, 0.4) - world.origin()).as_vec3();
     let ray = Ray::new(origin.to_array(), [0.0, -1.0, 0.0]);
     let hit = world.bvh().closest_hit(&ray);
     assert!(hit.is_hit());
     world.surface(&ray, &hit)
+}
+
+fn met(
+    mesh: &Mesh,
+    place: DMat4,
+    as_instance: bool,
+    reverse: bool,
+) -> lookfrom::shading::interaction::SurfaceInteraction {
+    met_in(brushed(mesh, place, as_instance, reverse))
+}
+
+/// Derivatives are there where brushed metal or bumps need them, by a mixture and an instance's own material as well.
+#[test]
+fn only_meshes_with_a_grain_have_derivatives() {
+    let has_derivatives = |scene| met_in(scene).dpdu != Vec3::ZERO;
+    for (material, expected) in [(0, false), (1, true), (2, true)] {
+        let mut scene = brushed(&square(1), DMat4::IDENTITY, false, false);
+        scene.shapes[0].material = MaterialId(material);
+        assert_eq!(has_derivatives(scene), expected, "material {material}");
+        let mut scene = brushed(&square(1), DMat4::IDENTITY, true, false);
+        scene.objects[0].shapes[0].material = MaterialId(0);
+        scene.instances[0].material = Some(MaterialId(material));
+        assert_eq!(has_derivatives(scene), expected, "an instance's material {material}");
+    }
 }
 
 /// Tangents say on which side v grows, and that side stays the same one of the picture, however the mesh is placed.
