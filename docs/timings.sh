@@ -9,8 +9,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 if [[ -z ${LOOKFROM:-} ]]; then
-    cargo build --profile dist --bin lookfrom
-    LOOKFROM=${CARGO_TARGET_DIR:-target}/dist/lookfrom
+    cargo build --release --bin lookfrom
+    LOOKFROM=${CARGO_TARGET_DIR:-target}/release/lookfrom
 fi
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
