@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DMat4;
 use lookfrom_bvh::{Builder, Bvh, Triangles};
 use lookfrom_scene::light::LightKind;
-use lookfrom_scene::material::{Color, MaterialKind as WrittenKind};
+use lookfrom_scene::material::{Color, Material as Written, MaterialKind as WrittenKind};
 use lookfrom_scene::scene::{MaterialId, Scene};
 use lookfrom_scene::settings::Integrator as Kind;
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
@@ -167,8 +167,8 @@ impl World {
 }
 
 /// By material: whether it matters which way u runs over the surface; of a mixture, for any of its parts.
-fn grains(materials: &[lookfrom_scene::material::Material]) -> Vec<bool> {
-    let mut grains: Vec<bool> = materials.iter().map(|material| material.has_grain()).collect();
+fn grains(materials: &[Written]) -> Vec<bool> {
+    let mut grains: Vec<bool> = materials.iter().map(Written::has_grain).collect();
     let mut has_changed = true;
     while has_changed {
         has_changed = false;

@@ -7,8 +7,8 @@ use lookfrom_scene::texture::{Mapping, TexelFilter, Wrap};
 
 const FIRST: TextureId = TextureId(0);
 
-fn textures_of(kinds: Vec<TextureKind>, images: Vec<Image>, curves: Vec<Curve>) -> Textures {
-    Textures::new(&kinds, images, curves, ColorMode::Spectral)
+fn textures_of(kinds: &[TextureKind], images: Vec<Image>, curves: Vec<Curve>) -> Textures {
+    Textures::new(kinds, images, curves, ColorMode::Spectral)
 }
 
 /// What is asked of written colours and numbers.
@@ -43,7 +43,7 @@ fn in_world(x: f64, y: f64, z: f64) -> TexturePoint {
 const WORLD: Mapping = Mapping::World { texture_from_world: DMat4::IDENTITY };
 
 fn only(kind: TextureKind) -> Textures {
-    textures_of(vec![kind], vec![], vec![])
+    textures_of(&[kind], vec![], vec![])
 }
 
 fn number(textures: &Textures, at: &TexturePoint) -> f32 {
@@ -71,7 +71,7 @@ fn two_by_two() -> Image {
 fn texels_sit_where_they_should() {
     let color = Color::Texture(FIRST);
     for filter in [TexelFilter::Nearest, TexelFilter::Bilinear] {
-        let textures = textures_of(vec![picture(filter, 1.0, false)], vec![two_by_two()], vec![]);
+        let textures = textures_of(&[picture(filter, 1.0, false)], vec![two_by_two()], vec![]);
         let rgb = |u, v| textures.rgb_of(color, SpectrumType::Unbounded, &at(u, v));
         // v runs up: the top row of the picture is at v near 1
         assert_eq!(rgb(0.25, 0.75), [0.0; 3]);
@@ -92,7 +92,7 @@ fn texels_sit_where_they_should() {
 fn a_picture_as_a_number() {
     let image = Image::from_linear("", 1, 1, vec![[0.1, 0.2, 0.6]]);
     let value = |filter, scale, invert| {
-        number(&textures_of(vec![picture(filter, scale, invert)], vec![image.clone()], vec![]), &at(0.5, 0.5))
+        number(&textures_of(&[picture(filter, scale, invert)], vec![image.clone()], vec![]), &at(0.5, 0.5))
     };
     assert!((value(TexelFilter::Bilinear, 1.0, false) - 0.3).abs() < 1e-6);
     assert_eq!(value(TexelFilter::Nearest, 1.0, false), 0.1);
@@ -107,7 +107,7 @@ fn a_scaled_picture_is_clamped_after_its_scale() {
     let scale =
         |of: u32, by| TextureKind::Scale { color: Color::Texture(TextureId(of)), by: Scalar::Value(by) };
     let kinds = vec![picture(TexelFilter::Bilinear, 1.0, true), scale(0, 4.0), scale(1, 0.5)];
-    let textures = textures_of(kinds, vec![image], vec![]);
+    let textures = textures_of(&kinds, vec![image], vec![]);
     // 1 − 2 × texel, not 2 × (1 − texel)
     let rgb = textures.rgb_of(Color::Texture(TextureId(2)), SpectrumType::Albedo, &at(0.5, 0.5));
     assert_eq!(rgb, [0.0, 0.0, 0.5]);
@@ -152,7 +152,7 @@ fn blends() {
     );
     let kinds =
         vec![scale(Scalar::Texture(TextureId(1))), TextureKind::Bilinear { corners, mapping: Mapping::UV }];
-    let by_a_texture = textures_of(kinds, vec![], vec![]);
+    let by_a_texture = textures_of(&kinds, vec![], vec![]);
     assert_eq!(
         by_a_texture.rgb_of(Color::Texture(FIRST), SpectrumType::Unbounded, &at(1.0, 0.0)),
         [1.5, 3.0, 6.0]
@@ -238,7 +238,7 @@ fn spectra_seen_in_daylight_have_their_colors() {
     let texels: Vec<[f32; 3]> =
         (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|c| c as f32 * 0.45 + 0.05)).collect();
     let image = Image::from_linear("", 27, 1, texels.clone());
-    let textures = textures_of(vec![picture(TexelFilter::Nearest, 1.0, false)], vec![image], vec![]);
+    let textures = textures_of(&[picture(TexelFilter::Nearest, 1.0, false)], vec![image], vec![]);
     let curve_of = |color, usage, at: &TexturePoint| -> Vec<f32> {
         let spectral = |nm: &f32| {
             let lanes = SpectralMode::Spectral(Wavelengths { lambda: [*nm; 4], pdf: [1.0; 4] });
@@ -273,7 +273,7 @@ fn spectra_are_blended_and_curves_read() {
     let red = Color::Value([0.8, 0.1, 0.1]);
     let ramp = Color::Curve(CurveId(1));
     let kinds = vec![TextureKind::Mix { low: red, high: ramp, amount: Scalar::Value(0.25) }];
-    let textures = textures_of(kinds, vec![], curves);
+    let textures = textures_of(&kinds, vec![], curves);
     let spectrum = |color| textures.spectrum_of(color, SpectrumType::Albedo, &at(0.0, 0.0), &lanes);
     let expected = spectrum(red) * 0.75 + Spectrum([0.25, 0.5, 0.75, 1.0]) * 0.25;
     assert_eq!(spectrum(Color::Texture(FIRST)), expected);
@@ -322,7 +322,7 @@ fn nothing_is_nan_anywhere() {
                 });
             }
         }
-        let textures = textures_of(kinds.clone(), vec![two_by_two()], vec![]);
+        let textures = textures_of(&kinds, vec![two_by_two()], vec![]);
         for (index, kind) in kinds.iter().enumerate() {
             for u in wild {
                 for v in wild {
@@ -361,7 +361,7 @@ fn time_of_look_ups() {
                 scale: 1.0,
                 invert: false,
             };
-            let textures = textures_of(vec![kind], images.to_vec(), vec![]);
+            let textures = textures_of(&[kind], images.to_vec(), vec![]);
             let start = std::time::Instant::now();
             let mut sum = Spectrum::BLACK;
             let count = 1 << 21;
@@ -393,7 +393,7 @@ fn channels_are_greys_and_alpha_is_no_color() {
         scale: 2.0,
         invert: false,
     });
-    let textures = textures_of(kinds.to_vec(), vec![image], vec![]);
+    let textures = textures_of(&kinds, vec![image], vec![]);
     let number = |index, at: &TexturePoint| textures.scalar(Scalar::Texture(TextureId(index)), at);
     let green = lookfrom_scene::image::linear_from_srgb(0.2);
     // In the middle between both texels; nothing of the black above and below emits light in at v = 0.5.
@@ -419,7 +419,7 @@ fn products_multiply_channels_and_only_one_factor_is_light() {
         TextureKind::Product { a: Color::gray(0.5), b: Color::Texture(TextureId(1)) },
         TextureKind::Product { a: Color::gray(2.0), b: Color::Curve(CurveId(0)) },
     ];
-    let textures = textures_of(kinds, vec![], curves);
+    let textures = textures_of(&kinds, vec![], curves);
     let [of_colors, of_grays, nested, with_curve] = [0, 1, 2, 3].map(|id| Color::Texture(TextureId(id)));
     let here = TexturePoint::NOWHERE;
     assert_eq!(textures.rgb_of(of_colors, SpectrumType::Unbounded, &here), [0.25, 0.75, 0.0]);
@@ -454,7 +454,7 @@ fn mappings_choose_a_set_of_coordinates_and_turn_it() {
             invert: false,
         },
     );
-    let textures = textures_of(kinds.to_vec(), vec![image], vec![]);
+    let textures = textures_of(&kinds, vec![image], vec![]);
     let mut here = at(0.4, 0.1);
     here.more_uvs[1] = Vec2::new(0.9, 0.9);
     let number = |id| textures.scalar(Scalar::Texture(TextureId(id)), &here);
@@ -485,7 +485,7 @@ fn vertices_have_opacities_and_what_is_opaque_is_known() {
         TextureKind::Product { a: of(2), b: Color::gray(0.5) },
         TextureKind::Threshold { value: Scalar::Texture(TextureId(4)), edge: 0.5 },
     ];
-    let textures = textures_of(kinds, vec![clear, opaque], vec![]);
+    let textures = textures_of(&kinds, vec![clear, opaque], vec![]);
     let is_one = |id, has| textures.is_one(FloatTexture::Texture(TextureId(id)), has);
     assert_eq!(
         [0, 1, 2, 3, 4, 5, 6].map(|id| is_one(id, false)),
