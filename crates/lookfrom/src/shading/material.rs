@@ -126,7 +126,7 @@ pub struct Scattering<'a> {
 
 impl Scattering<'_> {
     /// The scattering function for light from `wi`, without a cosine, and where it is not black the density over solid
-    /// angle with which [`Toward::sample`] chooses `wi`.
+    /// angle with which [`Scattering::sample`] chooses `wi`.
     pub fn f_and_pdf(&self, wi: Vec3) -> (Spectrum, f32) {
         if !self.shading.agrees(self.wo, wi) {
             return (Spectrum::BLACK, 0.0);
