@@ -22,7 +22,7 @@ fn film(name: &str, samples: u32) -> Film {
 
 /// The truth, of other samples.
 fn truth(name: &str) -> Picture {
-    let mut scene = small(name, 1024);
+    let mut scene = small(name, 512);
     (scene.render.seed, scene.image.denoise) = (99, false);
     Compiled::new(scene).film().picture()
 }
