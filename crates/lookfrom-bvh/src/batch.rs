@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use crate::collector::{AnyHit, ClosestHit};
+use crate::collector::{AnyHit, ClosestHit, PacketCollector};
 use crate::dispatch::dispatch;
 use crate::origin_primitive::OriginPrimitive;
 use crate::packet::trace_packet;
@@ -18,110 +18,133 @@ use lookfrom_simd::{Kernel, Simd};
 #[cfg(feature = "parallel")]
 const BATCH: usize = 4096;
 
+/// A question that is asked of many rays, and its answer for each.
+trait Question: PacketCollector {
+    type Answer: Send;
+
+    fn ask(ray: &Ray) -> Self;
+
+    fn answer(&self) -> Self::Answer;
+
+    /// Answers for rays as a packet; false, and nothing done, where they cannot be one.
+    fn trace_packet<'a, S: Simd, V: Visibility<'a>>(
+        simd: S,
+        settings: &Settings<'a>,
+        rays: &[Ray],
+        answers: &mut [Self::Answer],
+        stack: &mut Stack,
+    ) -> bool;
+}
+
+impl Question for ClosestHit {
+    type Answer = Hit;
+
+    #[inline(always)]
+    fn ask(ray: &Ray) -> Self {
+        Self::new(ray)
+    }
+
+    #[inline(always)]
+    fn answer(&self) -> Hit {
+        self.hit
+    }
+
+    #[inline(always)]
+    fn trace_packet<'a, S: Simd, V: Visibility<'a>>(
+        simd: S,
+        settings: &Settings<'a>,
+        rays: &[Ray],
+        hits: &mut [Hit],
+        stack: &mut Stack,
+    ) -> bool {
+        hits.len() >= RAYS && trace_packet::<S, Self, V>(simd, settings, rays, hits, stack).is_some()
+    }
+}
+
+impl Question for AnyHit {
+    type Answer = bool;
+
+    #[inline(always)]
+    fn ask(ray: &Ray) -> Self {
+        Self::new(ray)
+    }
+
+    #[inline(always)]
+    fn answer(&self) -> bool {
+        self.found
+    }
+
+    #[inline(always)]
+    fn trace_packet<'a, S: Simd, V: Visibility<'a>>(
+        simd: S,
+        settings: &Settings<'a>,
+        rays: &[Ray],
+        occluded: &mut [bool],
+        stack: &mut Stack,
+    ) -> bool {
+        let found = trace_packet::<S, Self, V>(simd, settings, rays, &mut [], stack);
+        if let Some(found) = found {
+            for (ray, occluded) in occluded.iter_mut().enumerate() {
+                *occluded = found >> ray & 1 != 0;
+            }
+        }
+        found.is_some()
+    }
+}
+
 /// The closest hit of each ray.
 pub(crate) fn closest_hits(settings: &Settings<'_>, rays: &[Ray], hits: &mut [Hit]) {
-    let level = settings.bvh.level;
-    for_batches(rays, hits, |first, rays, hits| {
-        let settings = settings.from(first);
-        match settings.needs() {
-            Needs::Everything => dispatch(level, ClosestHits::<Everything>::new(settings, rays, hits)),
-            Needs::ExceptOrigin => dispatch(level, ClosestHits::<ExceptOrigin>::new(settings, rays, hits)),
-            Needs::Masked => dispatch(level, ClosestHits::<Masked<'_>>::new(settings, rays, hits)),
-        }
-    });
+    answer::<ClosestHit>(settings, rays, hits);
 }
 
 /// Whether each ray has a hit.
 pub(crate) fn occluded_many(settings: &Settings<'_>, rays: &[Ray], occluded: &mut [bool]) {
+    answer::<AnyHit>(settings, rays, occluded);
+}
+
+fn answer<C: Question>(settings: &Settings<'_>, rays: &[Ray], answers: &mut [C::Answer]) {
     let level = settings.bvh.level;
-    for_batches(rays, occluded, |first, rays, occluded| {
+    for_batches(rays, answers, |first, rays, answers| {
         let settings = settings.from(first);
         match settings.needs() {
-            Needs::Everything => dispatch(level, OccludedMany::<Everything>::new(settings, rays, occluded)),
-            Needs::ExceptOrigin => {
-                dispatch(level, OccludedMany::<ExceptOrigin>::new(settings, rays, occluded));
-            }
-            Needs::Masked => dispatch(level, OccludedMany::<Masked<'_>>::new(settings, rays, occluded)),
+            Needs::Everything => dispatch(level, Batch::<C, Everything>::new(settings, rays, answers)),
+            Needs::ExceptOrigin => dispatch(level, Batch::<C, ExceptOrigin>::new(settings, rays, answers)),
+            Needs::Masked => dispatch(level, Batch::<C, Masked<'_>>::new(settings, rays, answers)),
         }
     });
 }
 
-/// The closest hits of rays, in their order; as many as there are places for.
-struct ClosestHits<'a, 'b, V> {
+/// The answers for rays, in their order; as many as there are places for.
+struct Batch<'a, 'b, C: Question, V> {
     settings: Settings<'a>,
     rays: &'b [Ray],
-    hits: &'b mut [Hit],
+    answers: &'b mut [C::Answer],
     visibility: PhantomData<V>,
 }
 
-impl<'a, 'b, V> ClosestHits<'a, 'b, V> {
-    fn new(settings: Settings<'a>, rays: &'b [Ray], hits: &'b mut [Hit]) -> Self {
-        Self { settings, rays, hits, visibility: PhantomData }
+impl<'a, 'b, C: Question, V> Batch<'a, 'b, C, V> {
+    fn new(settings: Settings<'a>, rays: &'b [Ray], answers: &'b mut [C::Answer]) -> Self {
+        Self { settings, rays, answers, visibility: PhantomData }
     }
 }
 
-impl<'a, V: Visibility<'a>> Kernel for ClosestHits<'a, '_, V> {
+impl<'a, C: Question, V: Visibility<'a>> Kernel for Batch<'a, '_, C, V> {
     type Output = ();
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { settings, rays, hits, .. } = self;
+        let Self { settings, rays, answers, .. } = self;
         with_stack(
             #[inline(always)]
             |stack| {
-                for (packet, (rays, hits)) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)).enumerate() {
+                for (packet, (rays, answers)) in rays.chunks(RAYS).zip(answers.chunks_mut(RAYS)).enumerate() {
                     let settings = settings.from(packet * RAYS);
-                    let is_traced = hits.len() >= RAYS
-                        && if is_about_everything::<V>(&settings) {
-                            trace_packet::<S, ClosestHit, Everything>(simd, &settings, rays, hits, stack)
-                        } else {
-                            trace_packet::<S, ClosestHit, Masked<'_>>(simd, &settings, rays, hits, stack)
-                        }
-                        .is_some();
-                    if !is_traced {
-                        closest_hits_singly::<S, V>(simd, &settings, rays, hits, stack);
-                    }
-                }
-            },
-        );
-    }
-}
-
-/// Whether rays have hits, in their order; as many as there are places for.
-struct OccludedMany<'a, 'b, V> {
-    settings: Settings<'a>,
-    rays: &'b [Ray],
-    occluded: &'b mut [bool],
-    visibility: PhantomData<V>,
-}
-
-impl<'a, 'b, V> OccludedMany<'a, 'b, V> {
-    fn new(settings: Settings<'a>, rays: &'b [Ray], occluded: &'b mut [bool]) -> Self {
-        Self { settings, rays, occluded, visibility: PhantomData }
-    }
-}
-
-impl<'a, V: Visibility<'a>> Kernel for OccludedMany<'a, '_, V> {
-    type Output = ();
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let Self { settings, rays, occluded, .. } = self;
-        with_stack(
-            #[inline(always)]
-            |stack| {
-                for (packet, (rays, occluded)) in rays.chunks(RAYS).zip(occluded.chunks_mut(RAYS)).enumerate()
-                {
-                    let settings = settings.from(packet * RAYS);
-                    let found = if is_about_everything::<V>(&settings) {
-                        trace_packet::<S, AnyHit, Everything>(simd, &settings, rays, &mut [], stack)
+                    let is_traced = if is_about_everything::<V>(&settings) {
+                        C::trace_packet::<S, Everything>(simd, &settings, rays, answers, stack)
                     } else {
-                        trace_packet::<S, AnyHit, Masked<'_>>(simd, &settings, rays, &mut [], stack)
+                        C::trace_packet::<S, Masked<'_>>(simd, &settings, rays, answers, stack)
                     };
-                    if let Some(found) = found {
-                        for (ray, occluded) in occluded.iter_mut().enumerate() {
-                            *occluded = found >> ray & 1 != 0;
-                        }
-                    } else {
-                        occluded_singly::<S, V>(simd, &settings, rays, occluded, stack);
+                    if !is_traced {
+                        answer_singly::<S, C, V>(simd, &settings, rays, answers, stack);
                     }
                 }
             },
@@ -138,38 +161,19 @@ fn is_about_everything<'a, V: Visibility<'a>>(settings: &Settings<'_>) -> bool {
 }
 
 #[inline(never)]
-fn closest_hits_singly<'a, S: Simd, V: Visibility<'a>>(
+fn answer_singly<'a, S: Simd, C: Question, V: Visibility<'a>>(
     simd: S,
     settings: &Settings<'a>,
     rays: &[Ray],
-    hits: &mut [Hit],
+    answers: &mut [C::Answer],
     stack: &mut Stack,
 ) {
     simd.vectorize(
         #[inline(always)]
         || {
-            for (number, (ray, hit)) in rays.iter().zip(hits).enumerate() {
+            for (number, (ray, answer)) in rays.iter().zip(answers).enumerate() {
                 let visibility = V::of(settings, number);
-                *hit = trace(simd, settings.bvh, ray, ClosestHit::new, visibility, (), stack).hit;
-            }
-        },
-    );
-}
-
-#[inline(never)]
-fn occluded_singly<'a, S: Simd, V: Visibility<'a>>(
-    simd: S,
-    settings: &Settings<'a>,
-    rays: &[Ray],
-    occluded: &mut [bool],
-    stack: &mut Stack,
-) {
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            for (number, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
-                let visibility = V::of(settings, number);
-                *occluded = trace(simd, settings.bvh, ray, AnyHit::new, visibility, (), stack).found;
+                *answer = trace(simd, settings.bvh, ray, C::ask, visibility, (), stack).answer();
             }
         },
     );

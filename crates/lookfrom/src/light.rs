@@ -120,6 +120,13 @@ pub struct LightSample {
     pub target: Target,
 }
 
+impl LightSample {
+    /// The one direction to a light at a point in space.
+    fn of_point(wi: Vec3, li: Spectrum, position: DVec3) -> Self {
+        Self { wi, li, pdf: 1.0, target: Target::Point(position) }
+    }
+}
+
 /// What a shadow ray aims at.
 #[derive(Clone, Copy, Debug)]
 pub enum Target {
@@ -174,7 +181,7 @@ impl Light {
             Self::Point { position, intensity, falloff } => {
                 let (wi, distance) = toward(from, *position)?;
                 let li = intensity.even(textures, lanes) * fade(*falloff, distance);
-                Some(LightSample { wi, li, pdf: 1.0, target: Target::Point(*position) })
+                Some(LightSample::of_point(wi, li, *position))
             }
             Self::Distant { toward, irradiance } => {
                 let li = irradiance.even(textures, lanes);
@@ -187,7 +194,7 @@ impl Light {
                     return None;
                 }
                 let li = intensity.even(textures, lanes) * (fade(*falloff, distance) * cone);
-                Some(LightSample { wi, li, pdf: 1.0, target: Target::Point(*position) })
+                Some(LightSample::of_point(wi, li, *position))
             }
             Self::Projection(projection) => projection.sample(textures, from, lanes),
             Self::Goniometric(goniometric) => goniometric.sample(textures, from, lanes),

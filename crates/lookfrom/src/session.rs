@@ -113,6 +113,7 @@ impl Session {
     }
 
     /// A session of a scene or model file in memory, which is self-contained. The extension of `name` says its format.
+    /// The session keeps the bytes, to build its world again for cameras far away ([`Session::set_camera`]).
     ///
     /// # Errors
     /// As [`Session::open`].

@@ -5,7 +5,8 @@
 
 use lookfrom_scene::settings::Background;
 
-use super::{Path, Probe, StepOutput};
+use super::{Path, Probe, StepOutput, Term};
+use crate::world::World;
 
 /// What a sample hides of a background of the view's own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,5 +29,12 @@ impl<P: Probe> StepOutput<'_, P> {
             self.queues.alpha[path.slot as usize] = Alpha::Transparent;
         }
         shows
+    }
+
+    /// Adds what a path that met nothing sees: the environments, or the view's own background.
+    pub(super) fn add_surroundings(&mut self, world: &World, path: &Path) {
+        if !self.shows_background(path) {
+            self.add(path, Term::Sky, path.beta * world.sky(&path.ray, &self.lanes(path)));
+        }
     }
 }

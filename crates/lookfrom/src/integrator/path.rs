@@ -143,10 +143,13 @@ impl Integrator for PathTracer {
         hit: &Hit,
         output: &mut StepOutput<'_, P>,
     ) {
-        let path = &self.leave_catcher(world, path, output);
+        if path.previous.is_catcher {
+            self.expect_sky(world, path, output);
+        }
 
         // Absorb on the way.
         let mut path = path.absorbed(world, hit, &output.lanes(path));
+        path.previous.is_catcher = false;
 
         // A path that leaves the scene sees the sky.
         if !hit.is_hit() {

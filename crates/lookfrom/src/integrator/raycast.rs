@@ -3,7 +3,7 @@
 use lookfrom_bvh::Hit;
 
 use crate::integrator::direct::local_light;
-use crate::integrator::{Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput, Term};
+use crate::integrator::{Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput};
 use crate::world::World;
 
 /// Ray casting.
@@ -32,9 +32,7 @@ impl Integrator for Raycast {
     ) {
         let path = &path.absorbed(world, hit, &output.lanes(path));
         if !hit.is_hit() {
-            if !output.shows_background(path) {
-                output.add(path, Term::Sky, path.beta * world.sky(&path.ray, &output.lanes(path)));
-            }
+            output.add_surroundings(world, path);
             return;
         }
         let surface = world.surface(&path.ray, hit);

@@ -9,7 +9,7 @@ use lookfrom_bvh::{Hit, Ray};
 use crate::core::spectrum::Spectrum;
 use crate::integrator::direct::local_light;
 use crate::integrator::{
-    Branch, Cut, Event, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput, Term,
+    Branch, Cut, Event, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput,
 };
 use crate::shading::interaction::SurfaceInteraction;
 use crate::world::World;
@@ -50,9 +50,7 @@ impl Integrator for Whitted {
 
         // A ray that leaves the scene sees the sky.
         if !hit.is_hit() {
-            if !output.shows_background(path) {
-                output.add(path, Term::Sky, path.beta * world.sky(&path.ray, &output.lanes(path)));
-            }
+            output.add_surroundings(world, path);
             return;
         }
         let surface = world.surface(&path.ray, hit);

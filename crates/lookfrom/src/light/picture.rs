@@ -3,7 +3,7 @@
 use glam::{DVec3, Mat3, Vec3};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
-use super::{EmissionSpectrum, LightSample, Target, toward};
+use super::{EmissionSpectrum, LightSample, toward};
 use crate::core::spectrum::Spectrum;
 use crate::core::warp;
 use crate::shading::texture::{self, SpectralMode, SpectrumType, Textures};
@@ -44,7 +44,7 @@ impl Projection {
         let rgb = texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Nearest);
         let white = texture::spectrum_of(rgb, SpectrumType::Illuminant, lanes);
         let li = white * (self.scale / (distance * distance) as f32);
-        (!li.is_black()).then_some(LightSample { wi, li, pdf: 1.0, target: Target::Point(self.position) })
+        (!li.is_black()).then_some(LightSample::of_point(wi, li, self.position))
     }
 
     /// Where it looks, unit length.
@@ -86,6 +86,6 @@ impl Goniometric {
             texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Nearest);
         let brightness = (r + g + b) / 3.0;
         let li: Spectrum = self.intensity.even(textures, lanes) * (brightness / (distance * distance) as f32);
-        (!li.is_black()).then_some(LightSample { wi, li, pdf: 1.0, target: Target::Point(self.position) })
+        (!li.is_black()).then_some(LightSample::of_point(wi, li, self.position))
     }
 }

@@ -51,19 +51,12 @@ impl PathTracer {
         }
     }
 
-    /// Subtracts what a path that leaves a catcher finds if nothing is in the way. The path forgets where it comes from.
-    pub(super) fn leave_catcher<P: Probe>(
-        &self,
-        world: &World,
-        path: &Path,
-        output: &mut StepOutput<'_, P>,
-    ) -> Path {
-        let mut path = *path;
-        if std::mem::take(&mut path.previous.is_catcher) && self.has_control_variate() {
-            let expected = sky_found(world, &path, &output.lanes(&path));
-            output.add(&path, Term::Sky, expected * -1.0);
+    /// Subtracts what a path that leaves a catcher finds if nothing is in the way.
+    pub(super) fn expect_sky<P: Probe>(&self, world: &World, path: &Path, output: &mut StepOutput<'_, P>) {
+        if self.has_control_variate() {
+            let expected = sky_found(world, path, &output.lanes(path));
+            output.add(path, Term::Sky, expected * -1.0);
         }
-        path
     }
 
     fn has_control_variate(&self) -> bool {

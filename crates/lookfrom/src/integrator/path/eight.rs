@@ -93,24 +93,16 @@ impl<P: Probe> Kernel for Steps<'_, '_, '_, P> {
         let ends = light_samples.ends(simd, &origins);
         for lane in 0..count {
             let FlatDiffuseHit { path, reflectance, .. } = &plain[lane];
-            let Some(sample) = &light_samples.samples[lane] else {
+            let cos = facing[lane];
+            let f = *reflectance * FRAC_1_PI * cos;
+            let Some(sample) = light_samples.samples[lane].as_ref().filter(|_| !f.is_black()) else {
                 output.probe.notice_some(|| light_samples.in_vain(lane, path.address));
                 continue;
             };
-            let cos = facing[lane];
-            if cos == 0.0 {
-                output.probe.notice_some(|| light_samples.in_vain(lane, path.address));
-                continue;
-            }
-            let f = *reflectance * FRAC_1_PI * cos;
             let light_pdf = sample.probability * sample.pdf;
             let bsdf_pdf = warp::cosine_hemisphere_pdf(cos);
             let weight = if sample.is_delta { 1.0 } else { power_heuristic(light_pdf, bsdf_pdf) };
             let contribution = path.beta * f * sample.li * (weight / light_pdf);
-            if f.is_black() {
-                output.probe.notice_some(|| light_samples.in_vain(lane, path.address));
-                continue;
-            }
             output.probe.notice(|| Event::LightSampled {
                 address: path.address,
                 light: sample.light,
