@@ -1,4 +1,5 @@
-//! How fast is the kernel? Reads a mesh and files of rays, builds, traces, and prints one JSON object a measurement.
+//! Benchmark of the kernel. Reads a mesh and files of rays, builds, traces, and prints one JSON object per
+//! measurement.
 //!
 //! The formats and keys are those of the project's comparison with Embree:
 //! `kernel_bench MESH.bin NAME --rays DIR [--reps N] [--threads N] [--save DIR] [--quality fast|balanced|best]`.
@@ -11,7 +12,7 @@ use std::time::Instant;
 
 use lookfrom_bvh::{Builder, Bvh, Hit, NONE, Observer, Quality, Ray, Triangles};
 
-/// Rays that are dealt to a thread at once.
+/// Number of rays in one task of a thread.
 const CHUNK: usize = 4096;
 
 type Answer = (f32, u32);
@@ -108,13 +109,14 @@ fn write_hits(path: &Path, hits: &[Answer]) -> std::io::Result<()> {
     std::fs::write(path, bytes)
 }
 
-/// CPU seconds of this thread. To yield brings the kernel's account up to date, which else lags by a tick.
+/// CPU seconds of this thread. Yielding first updates the operating system's account, which otherwise lags
+/// by a tick.
 fn thread_seconds() -> Option<f64> {
     std::thread::yield_now();
     schedstat(Path::new("/proc/thread-self/schedstat"))
 }
 
-/// CPU seconds of all threads that now live.
+/// CPU seconds of all current threads.
 fn process_seconds() -> Option<f64> {
     let tasks = std::fs::read_dir("/proc/self/task").ok()?;
     Some(tasks.flatten().filter_map(|task| schedstat(&task.path().join("schedstat"))).sum())
@@ -125,7 +127,7 @@ fn schedstat(path: &Path) -> Option<f64> {
     text.split_whitespace().next()?.parse::<f64>().ok().map(|nanoseconds| nanoseconds * 1e-9)
 }
 
-/// How rays are traced.
+/// The way in which rays are traced.
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
     Closest,
@@ -155,7 +157,7 @@ fn trace(bvh: &Bvh, rays: &[Ray], way: Way, answers: &mut [Answer]) {
     }
 }
 
-/// Counts what closest hits visit.
+/// Counts the nodes and candidates visited by closest-hit queries.
 #[derive(Default)]
 struct Counts {
     nodes: u64,
@@ -172,7 +174,7 @@ impl Observer for Counts {
     }
 }
 
-/// Deals chunks of rays to threads; returns CPU seconds summed over them.
+/// Distributes chunks of rays to threads; returns CPU seconds summed over them.
 fn trace_all(bvh: &Bvh, rays: &[Ray], way: Way, answers: &mut [Answer], threads: usize) -> f64 {
     let measure = |work: &mut dyn FnMut()| {
         let (start, wall) = (thread_seconds(), Instant::now());

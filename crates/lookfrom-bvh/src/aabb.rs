@@ -1,8 +1,8 @@
-//! Boxes along the axes.
+//! Axis-aligned boxes.
 //!
-//! How rays meet boxes is in `node`.
+//! The intersection of rays with boxes is in `node`.
 
-/// A box along the axes, its faces included. Empty where a minimum is above a maximum.
+/// An axis-aligned box, including its faces. Empty where a minimum is above a maximum.
 ///
 /// ```
 /// use lookfrom_bvh::Aabb;
@@ -11,9 +11,9 @@
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
-    /// Least coordinates.
+    /// Minimum coordinates.
     pub min: [f32; 3],
-    /// Greatest coordinates.
+    /// Maximum coordinates.
     pub max: [f32; 3],
 }
 
@@ -21,7 +21,7 @@ pub struct Aabb {
 pub(crate) const LARGEST_COORDINATE: f32 = 1.267_650_6e30;
 
 impl Aabb {
-    /// The box of no points.
+    /// The empty box.
     ///
     /// ```
     /// assert!(lookfrom_bvh::Aabb::EMPTY.is_empty());
@@ -43,7 +43,7 @@ impl Aabb {
         result
     }
 
-    /// Whether there is no point in it.
+    /// True if it contains no point.
     ///
     /// ```
     /// use lookfrom_bvh::Aabb;
@@ -54,7 +54,7 @@ impl Aabb {
         !(0..3).all(|axis| self.min[axis] <= self.max[axis])
     }
 
-    /// Grows to hold a point.
+    /// Grows to contain a point.
     ///
     /// ```
     /// use lookfrom_bvh::Aabb;
@@ -66,7 +66,7 @@ impl Aabb {
         self.unite(&Self { min: point, max: point });
     }
 
-    /// Grows to hold another box.
+    /// Grows to contain another box.
     ///
     /// ```
     /// use lookfrom_bvh::Aabb;
@@ -77,13 +77,13 @@ impl Aabb {
     #[inline]
     pub fn unite(&mut self, other: &Self) {
         for axis in 0..3 {
-            // Written so that it becomes one instruction, which f32::min (with its rule for NaN) does not.
+            // Written so that it compiles to one instruction, unlike f32::min (with its rule for NaN).
             self.min[axis] = if other.min[axis] < self.min[axis] { other.min[axis] } else { self.min[axis] };
             self.max[axis] = if other.max[axis] > self.max[axis] { other.max[axis] } else { self.max[axis] };
         }
     }
 
-    /// Whether another box lies within this one.
+    /// True if another box lies within this one.
     ///
     /// ```
     /// use lookfrom_bvh::Aabb;
@@ -94,7 +94,8 @@ impl Aabb {
         (0..3).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
     }
 
-    /// Half of the surface, or 10³⁰ where it is larger, so that sums and quotients of areas are numbers; 0 for an empty box.
+    /// Half of the surface area, or 10³⁰ where it is larger, so that sums and quotients of areas are finite; 0 for
+    /// an empty box.
     ///
     /// ```
     /// use lookfrom_bvh::Aabb;
@@ -106,7 +107,7 @@ impl Aabb {
         (x * y + y * z + z * x).min(1e30)
     }
 
-    /// Whether it has points and all its coordinates can be calculated with.
+    /// True if it is not empty and all its coordinates are within [`LARGEST_COORDINATE`].
     pub(crate) fn is_valid(&self) -> bool {
         (0..3).all(|axis| {
             -LARGEST_COORDINATE <= self.min[axis]
@@ -117,8 +118,8 @@ impl Aabb {
 
     /// The box moved outwards by at least one unit in the last place of its largest coordinate.
     ///
-    /// So no box in a tree is flat, a ray that runs in a face of a primitive's box runs inside the tree's box, and
-    /// the box holds whatever a test in double precision may take for a point of the primitive.
+    /// So no box in a tree is flat, a ray within a face of a primitive's box runs inside the tree's box, and the
+    /// box contains everything that a test in double precision may take for a point of the primitive.
     pub(crate) fn padded(&self) -> Self {
         let mut largest = 0.0;
         for axis in 0..3 {
@@ -130,7 +131,7 @@ impl Aabb {
         Self { min: self.min.map(|x| x - pad), max: self.max.map(|x| x + pad) }
     }
 
-    /// Twice the middle.
+    /// Twice the centre.
     #[inline]
     pub(crate) fn twice_center(&self) -> [f32; 3] {
         [self.min[0] + self.max[0], self.min[1] + self.max[1], self.min[2] + self.max[2]]

@@ -1,8 +1,9 @@
-//! Affine maps in double precision: where instances stand.
+//! Affine maps in double precision: the transformations of instances.
 
 use crate::vector::{cross, dot};
 
-/// `x ↦ matrix · x + translation`. For an instance: world from object. Mirrors, shears and any scale are allowed.
+/// `x ↦ matrix · x + translation`. For an instance: world from object. Reflections, shears and any scale are
+/// allowed.
 ///
 /// ```
 /// use lookfrom_bvh::Affine;
@@ -13,12 +14,12 @@ use crate::vector::{cross, dot};
 pub struct Affine {
     /// The linear part, by rows.
     pub matrix: [[f64; 3]; 3],
-    /// Where the origin goes.
+    /// The image of the origin.
     pub translation: [f64; 3],
 }
 
 impl Affine {
-    /// Leaves everything where it is.
+    /// The identity.
     ///
     /// ```
     /// use lookfrom_bvh::Affine;
@@ -51,8 +52,8 @@ impl Affine {
         self.matrix.map(|row| dot(row, v))
     }
 
-    /// The image of a surface normal under the map from which `self` leads *back*: multiplication by the transposed
-    /// matrix. With `self` = object from world, object normals become world normals (not of unit length).
+    /// The image of a surface normal under the inverse of `self`: multiplication by the transposed matrix. With
+    /// `self` = object from world, object normals become world normals (not of unit length).
     ///
     /// ```
     /// use lookfrom_bvh::Affine;
@@ -65,7 +66,7 @@ impl Affine {
         [0, 1, 2].map(|i| m[0][i] * n[0] + m[1][i] * n[1] + m[2][i] * n[2])
     }
 
-    /// The map back, where there is one within the range of numbers.
+    /// The inverse, where it exists within the range of numbers.
     ///
     /// ```
     /// use lookfrom_bvh::Affine;
@@ -81,9 +82,10 @@ impl Affine {
     }
 }
 
-/// The inverse by cofactors. None where the determinant vanishes (within rounding) or numbers overflow.
+/// The inverse by cofactors. `None` where the determinant vanishes (within rounding) or numbers overflow.
 pub(crate) fn inverse_matrix(m: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
-    // Scale the rows to lengths about 1, so that neither the determinant nor its error bound depends on units.
+    // Scale the rows to lengths of about 1, so that neither the determinant nor its error bound depends on
+    // units.
     let scale = m.map(|row| row.iter().fold(0.0_f64, |largest, x| largest.max(x.abs())));
     if !scale.iter().all(|&s| s.is_finite() && s > 0.0) {
         return None;

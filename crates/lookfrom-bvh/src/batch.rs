@@ -1,7 +1,9 @@
-//! Batches of rays: dealt to threads, then in packets where they are coherent, and else one by one.
+//! Batches of rays: divided among threads, then traced in packets where they are coherent,
+//! otherwise one by one.
 
 use std::marker::PhantomData;
 
+use crate::coherence::Coherence;
 use crate::collector::{AnyHit, ClosestHit, PacketCollector};
 use crate::dispatch::dispatch;
 use crate::origin_primitive::OriginPrimitive;
@@ -14,11 +16,11 @@ use crate::traverse::trace;
 use crate::visibility::{Everything, ExceptOrigin, Masked, Visibility};
 use lookfrom_simd::{Kernel, Simd};
 
-/// Rays (or points) that one thread answers before it looks for others' work.
+/// Number of rays (or points) in one task of a thread.
 #[cfg(feature = "parallel")]
 const BATCH: usize = 4096;
 
-/// A question that is asked of many rays, and its answer for each.
+/// A query for many rays, with one result for each.
 trait Question: PacketCollector {
     type Answer: Send;
 
@@ -26,12 +28,13 @@ trait Question: PacketCollector {
 
     fn answer(&self) -> Self::Answer;
 
-    /// Answers for rays as a packet; false, and nothing done, where they cannot be one.
+    /// Traces rays as a packet; returns false without doing anything where they cannot form one.
     fn trace_packet<'a, S: Simd, V: Visibility<'a>>(
         simd: S,
         settings: &Settings<'a>,
         rays: &[Ray],
         answers: &mut [Self::Answer],
+        coherence: &mut Coherence,
         stack: &mut Stack,
     ) -> bool;
 }
@@ -55,9 +58,11 @@ impl Question for ClosestHit {
         settings: &Settings<'a>,
         rays: &[Ray],
         hits: &mut [Hit],
+        coherence: &mut Coherence,
         stack: &mut Stack,
     ) -> bool {
-        hits.len() >= RAYS && trace_packet::<S, Self, V>(simd, settings, rays, hits, stack).is_some()
+        hits.len() >= RAYS
+            && trace_packet::<S, Self, V>(simd, settings, rays, hits, coherence, stack).is_some()
     }
 }
 
@@ -80,9 +85,10 @@ impl Question for AnyHit {
         settings: &Settings<'a>,
         rays: &[Ray],
         occluded: &mut [bool],
+        coherence: &mut Coherence,
         stack: &mut Stack,
     ) -> bool {
-        let found = trace_packet::<S, Self, V>(simd, settings, rays, &mut [], stack);
+        let found = trace_packet::<S, Self, V>(simd, settings, rays, &mut [], coherence, stack);
         if let Some(found) = found {
             for (ray, occluded) in occluded.iter_mut().enumerate() {
                 *occluded = found >> ray & 1 != 0;
@@ -97,7 +103,7 @@ pub(crate) fn closest_hits(settings: &Settings<'_>, rays: &[Ray], hits: &mut [Hi
     answer::<ClosestHit>(settings, rays, hits);
 }
 
-/// Whether each ray has a hit.
+/// True for each ray that has a hit.
 pub(crate) fn occluded_many(settings: &Settings<'_>, rays: &[Ray], occluded: &mut [bool]) {
     answer::<AnyHit>(settings, rays, occluded);
 }
@@ -114,7 +120,7 @@ fn answer<C: Question>(settings: &Settings<'_>, rays: &[Ray], answers: &mut [C::
     });
 }
 
-/// The answers for rays, in their order; as many as there are places for.
+/// The results for rays, in their order; as many as fit into `answers`.
 struct Batch<'a, 'b, C: Question, V> {
     settings: Settings<'a>,
     rays: &'b [Ray],
@@ -136,12 +142,27 @@ impl<'a, C: Question, V: Visibility<'a>> Kernel for Batch<'a, '_, C, V> {
         with_stack(
             #[inline(always)]
             |stack| {
+                let mut coherence = Coherence::default();
                 for (packet, (rays, answers)) in rays.chunks(RAYS).zip(answers.chunks_mut(RAYS)).enumerate() {
                     let settings = settings.from(packet * RAYS);
                     let is_traced = if is_about_everything::<V>(&settings) {
-                        C::trace_packet::<S, Everything>(simd, &settings, rays, answers, stack)
+                        C::trace_packet::<S, Everything>(
+                            simd,
+                            &settings,
+                            rays,
+                            answers,
+                            &mut coherence,
+                            stack,
+                        )
                     } else {
-                        C::trace_packet::<S, Masked<'_>>(simd, &settings, rays, answers, stack)
+                        C::trace_packet::<S, Masked<'_>>(
+                            simd,
+                            &settings,
+                            rays,
+                            answers,
+                            &mut coherence,
+                            stack,
+                        )
                     };
                     if !is_traced {
                         answer_singly::<S, C, V>(simd, &settings, rays, answers, stack);
@@ -152,8 +173,8 @@ impl<'a, C: Question, V: Visibility<'a>> Kernel for Batch<'a, '_, C, V> {
     }
 }
 
-/// Whether the rays of a packet see everything. Packets are compiled for two kinds of visibility only: for everything, and for the
-/// general case.
+/// True if the rays of a packet see everything. Packets are compiled for two kinds of visibility only: for
+/// everything, and for the general case.
 #[inline(always)]
 fn is_about_everything<'a, V: Visibility<'a>>(settings: &Settings<'_>) -> bool {
     !V::HAS_ORIGIN
@@ -179,7 +200,7 @@ fn answer_singly<'a, S: Simd, C: Question, V: Visibility<'a>>(
     );
 }
 
-/// Answers each question in its place, batch by batch on several threads where there are many.
+/// Computes each result in its place, on several threads where there are many.
 pub(crate) fn for_each<Q: Sync, A: Send>(
     questions: &[Q],
     answers: &mut [A],
@@ -191,7 +212,7 @@ pub(crate) fn for_each<Q: Sync, A: Send>(
     });
 }
 
-/// The same, batch by batch, with the number of its first question.
+/// The same, batch by batch, with the index of the batch's first element.
 fn for_batches<Q: Sync, A: Send>(
     questions: &[Q],
     answers: &mut [A],

@@ -1,4 +1,4 @@
-//! The tree, and the plain questions to it. `query` has all others.
+//! The tree and its basic queries. All others are in `query`.
 
 use std::sync::Arc;
 
@@ -15,10 +15,11 @@ use crate::validate::{Invalid, Statistics};
 use crate::{batch, single};
 use lookfrom_simd::{Level, level};
 
-/// Geometry that rays can be traced against. Made by a [`Builder`](crate::Builder); frozen, and shared between threads.
+/// A bounding volume hierarchy (BVH) for tracing rays. Made by a [`Builder`](crate::Builder); immutable, and shared
+/// between threads.
 ///
-/// The plain questions are methods: the closest hit, occlusion, and both for batches of [`Ray`]s. [`Self::query`] asks all
-/// others: all hits, masks and faces, origin primitives, observers, rays in f64.
+/// The basic queries are methods: the closest hit, occlusion, and both for batches of [`Ray`]s. [`Self::query`]
+/// gives all others: all hits, masks and faces, origin primitives, observers, rays in f64.
 ///
 /// ```
 /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -30,12 +31,12 @@ use lookfrom_simd::{Level, level};
 /// ```
 #[derive(Debug)]
 pub struct Bvh {
-    /// The root first.
+    /// All nodes, root first.
     pub(crate) nodes: Vec<Node>,
     pub(crate) triangles: Vec<TriangleBlock>,
-    /// Those that hold no triangles.
+    /// The leaves without triangles.
     pub(crate) leaves: Vec<Leaf>,
-    /// The boxes of these, as nodes have them.
+    /// The boxes of `leaves`, as stored in nodes.
     pub(crate) leaf_bounds: Vec<Aabb>,
     pub(crate) spheres: Vec<SphereItem>,
     pub(crate) procedurals: Vec<ProceduralItem>,
@@ -46,11 +47,11 @@ pub struct Bvh {
     pub(crate) statistics: Statistics,
     /// The largest coordinate of a triangle.
     pub(crate) largest: f32,
-    /// The instructions to trace with.
+    /// The SIMD level for tracing.
     pub(crate) level: Level,
 }
 
-/// The content of a leaf without triangles: items in the array of their kind.
+/// The content of a leaf without triangles: a range of items in the array of their kind.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Leaf {
     Spheres { first: u32, count: u32 },
@@ -66,7 +67,7 @@ pub(crate) struct SphereItem {
     pub(crate) primitive: u32,
 }
 
-/// One of a procedural's shapes: `shape` is its place in [`Bvh::procedural_shapes`].
+/// One of a procedural's shapes: `shape` is the procedural's index in [`Bvh::procedural_shapes`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProceduralItem {
     pub(crate) shape: u32,
@@ -75,7 +76,7 @@ pub(crate) struct ProceduralItem {
 }
 
 impl Default for Bvh {
-    /// The tree of nothing.
+    /// The empty tree.
     fn default() -> Self {
         Self {
             nodes: Vec::new(),
@@ -96,7 +97,7 @@ impl Default for Bvh {
 }
 
 impl Bvh {
-    /// The box around everything, [`Aabb::EMPTY`] where there is nothing.
+    /// The box around everything; [`Aabb::EMPTY`] for an empty tree.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -115,7 +116,8 @@ impl Bvh {
         self.largest = bounds.min.iter().chain(&bounds.max).fold(0.0, |largest, x| x.abs().max(largest));
     }
 
-    /// Bytes held for tracing, without the trees of instances (which are shared) and without procedural shapes.
+    /// Memory for tracing in bytes, without the trees of instances (which are shared) and without procedural
+    /// shapes.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -138,7 +140,7 @@ impl Bvh {
             + self.masks.memory()
     }
 
-    /// The content of the tree, counted when it was built.
+    /// Statistics of the tree, counted when it was built.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -152,10 +154,11 @@ impl Bvh {
         self.statistics
     }
 
-    /// Checks every property that tracing relies on, and counts again. Slow: for tests and for doubts.
+    /// Checks every invariant that tracing relies on, and recounts the statistics. Slow: for tests and
+    /// debugging.
     ///
     /// # Errors
-    /// A fault of this library, and its place.
+    /// A bug of this library, and its place.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -169,8 +172,8 @@ impl Bvh {
         crate::validate::validate(self)
     }
 
-    /// The hit with the least t in the ray's range, or [`Hit::MISS`]. Of several hits at equal t it is the one with the lowest
-    /// ids: geometry outside of instances comes first, then by instance, geometry and primitive.
+    /// The hit with the smallest t in the ray's range, or [`Hit::MISS`]. Of several hits at equal t it is the one
+    /// with the lowest ids: geometry outside of instances comes first, then by instance, geometry and primitive.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Hit, Ray, Sphere};
@@ -185,7 +188,7 @@ impl Bvh {
         single::closest_hit_of_everything(self, ray)
     }
 
-    /// Whether anything is hit in the ray's range.
+    /// True if anything is hit in the ray's range.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -200,8 +203,8 @@ impl Bvh {
         single::occluded_by_everything(self, ray)
     }
 
-    /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent rays are traced in packets. The two
-    /// slices should be equally long; the surplus of the longer one is left alone.
+    /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent rays are traced in
+    /// packets. The two slices should have equal lengths; the surplus of the longer one is ignored.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Hit, Ray, Sphere};

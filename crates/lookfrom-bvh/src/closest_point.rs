@@ -1,9 +1,9 @@
 //! Closest-point queries: the point of the geometry that is nearest to a given one.
 //!
-//! Boxes are opened in the order of their distances, until the next is farther than the best point so far. As with rays,
-//! single precision only excludes: each primitive's distance is calculated in f64, on its own, so the tree never shows in an
-//! answer. Primitives of instances are measured in the world, under any map: triangles by their mapped corners, spheres as
-//! the ellipsoids that they become (`ellipsoid`).
+//! Boxes are opened in the order of their distances, until the next is farther than the best point so far. As with
+//! rays, single precision only excludes: each primitive's distance is computed in f64, on its own, so results do
+//! not depend on the tree. Primitives of instances are measured in the world, under any map: triangles by their
+//! transformed corners, spheres as the ellipsoids that they become (`ellipsoid`).
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -19,10 +19,10 @@ use crate::ray::NONE;
 use crate::sphere::Sphere;
 use crate::vector::{cross, dot, subtract, wide};
 
-/// Room for the rounding of distances, relative: 2⁻²⁰.
+/// Relative margin for the rounding of distances: 2⁻²⁰.
 const ROOM: f64 = 1.0 + 9.536_743_164_062_5e-7;
 
-/// Relative error of a mapped box, with much room: 2⁻⁴⁶.
+/// Relative error of a transformed box, with a large margin: 2⁻⁴⁶.
 const MAPPED_ERROR: f64 = 1.421_085_471_520_200_4e-14;
 
 /// The nearest point of some geometry, as [`Bvh::closest_point`] finds it.
@@ -38,9 +38,9 @@ const MAPPED_ERROR: f64 = 1.421_085_471_520_200_4e-14;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosestPoint {
-    /// Where it is, in the world.
+    /// Its position in the world.
     pub position: [f32; 3],
-    /// How far that is from the point asked about, not negative.
+    /// Its distance from the query point, not negative.
     pub distance: f32,
     /// Of a triangle: β, the weight of its second corner. Of a sphere: 0.
     pub u: f32,
@@ -50,12 +50,12 @@ pub struct ClosestPoint {
     pub primitive: u32,
     /// Number of the geometry in its tree.
     pub geometry: u32,
-    /// Number of the instance, [`NONE`] where the geometry is not in an instance.
+    /// Number of the instance; [`NONE`] where the geometry is not in an instance.
     pub instance: u32,
 }
 
 impl ClosestPoint {
-    /// The order of points at equal distance: as hits at equal t.
+    /// The order of points at equal distance: as for hits at equal t.
     fn rank(&self) -> (u32, u32, u32) {
         (self.instance.wrapping_add(1), self.geometry, self.primitive)
     }
@@ -66,12 +66,13 @@ impl ClosestPoint {
 }
 
 impl Bvh {
-    /// The point of triangles and of spheres' surfaces that is nearest to `point`, and at most `max_distance` away. Of
-    /// several at the same distance (in f32) that with the lowest ids, as [`Self::closest_hit`] decides.
+    /// The point on triangles and spheres' surfaces that is nearest to `point`, and at most `max_distance` away. Of
+    /// several at the same distance (in f32) the one with the lowest ids, as for [`Self::closest_hit`].
     ///
-    /// Distances are right to rounding in f32, and to about 10⁻¹⁵ of the triangle's or sphere's size. Instances may be
-    /// mapped in any way. Procedural shapes do not say where their surfaces are, and take no part. None where nothing is near
-    /// enough, for a point that is NaN or beyond 2¹⁰⁰, and where `max_distance` is NaN or negative.
+    /// Distances are right to rounding in f32, and to about 10⁻¹⁵ of the triangle's or sphere's size. Any maps of
+    /// instances are supported. Procedural shapes are ignored, because they do not define their surfaces. `None`
+    /// where nothing is near enough, for a point that is NaN or beyond 2¹⁰⁰, and where `max_distance` is NaN or
+    /// negative.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Triangles};
@@ -89,8 +90,8 @@ impl Bvh {
         self.search_points(point, max_distance, false)
     }
 
-    /// [`Self::closest_point`] for each point, on several threads where there are many. The two slices should be equally
-    /// long; the surplus of the longer one is left alone.
+    /// [`Self::closest_point`] for each point, on several threads where there are many. The two slices should have
+    /// equal lengths; the surplus of the longer one is ignored.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Sphere};
@@ -112,7 +113,7 @@ impl Bvh {
         for_each(points, nearest, |_, &point, nearest| *nearest = self.closest_point(point, max_distance));
     }
 
-    /// Whether [`Self::closest_point`] would find any: stops at the first primitive that is near enough.
+    /// True if [`Self::closest_point`] would find a point: stops at the first primitive that is near enough.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Sphere};
@@ -126,8 +127,8 @@ impl Bvh {
         self.search_points(point, max_distance, true).is_some()
     }
 
-    /// [`Self::is_near`] for each point, on several threads where there are many. The two slices should be equally long;
-    /// the surplus of the longer one is left alone.
+    /// [`Self::is_near`] for each point, on several threads where there are many. The two slices should have equal
+    /// lengths; the surplus of the longer one is ignored.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Sphere};
@@ -155,17 +156,17 @@ impl Bvh {
     }
 }
 
-/// A child that is yet to be opened.
+/// A child still to be opened.
 struct QueueEntry {
-    /// All in it is at least this far away.
+    /// Lower bound of the distances within it.
     distance: f64,
     child: Child,
-    /// Place of the instance in the outer tree's list; [`NONE`] for the outer tree itself.
+    /// Index of the instance in the outer tree's list; [`NONE`] for the outer tree itself.
     place: u32,
 }
 
 impl Ord for QueueEntry {
-    /// The nearest is the greatest, which a heap gives first.
+    /// The nearest is the largest, which the heap returns first.
     fn cmp(&self, other: &Self) -> Ordering {
         other.distance.total_cmp(&self.distance)
     }
@@ -189,7 +190,7 @@ struct Search<'a> {
     outer: &'a Bvh,
     point: [f64; 3],
     max_distance: f32,
-    /// Whether any point that is near enough will do.
+    /// True if any point that is near enough suffices.
     any: bool,
     best: Option<ClosestPoint>,
     queue: BinaryHeap<QueueEntry>,
@@ -246,12 +247,12 @@ impl Search<'_> {
         }
     }
 
-    /// Boxes beyond this hold nothing that is wanted.
+    /// Boxes beyond this distance are ignored.
     fn end(&self) -> f64 {
         f64::from(self.best.map_or(self.max_distance, |best| best.distance)) * ROOM
     }
 
-    /// Hears of a primitive's nearest point.
+    /// Replaces the best point if a primitive's nearest point is nearer.
     fn offer(&mut self, space: &Space<'_>, (geometry, primitive): (u32, u32), nearest: Nearest) {
         let offset = nearest.offset;
         let found = ClosestPoint {
@@ -272,18 +273,18 @@ impl Search<'_> {
 /// The nearest point of a primitive.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nearest {
-    /// From the point asked about.
+    /// Relative to the query point.
     pub(crate) offset: [f64; 3],
     pub(crate) distance: f64,
     pub(crate) u: f64,
     pub(crate) v: f64,
 }
 
-/// A tree's space, as seen from the point asked about: axes as in the world, the point at 0.
+/// A tree's space relative to the query point: axes as in the world, the query point at 0.
 struct Space<'a> {
-    /// None for the world itself.
+    /// `None` for the world itself.
     map: Option<&'a Affine>,
-    /// From the point asked about to where the space's origin is.
+    /// The space's origin relative to the query point.
     origin: [f64; 3],
     instance: u32,
 }
@@ -297,7 +298,7 @@ impl<'a> Space<'a> {
         Self { map: Some(map), origin: subtract(map.translation, point), instance }
     }
 
-    /// From the point asked about to one of the space.
+    /// A point of the space relative to the query point.
     fn offset(&self, p: [f32; 3]) -> [f64; 3] {
         let p = self.map.map_or(wide(p), |map| map.vector(wide(p)));
         [0, 1, 2].map(|axis| p[axis] + self.origin[axis])
@@ -307,7 +308,7 @@ impl<'a> Space<'a> {
         corners.map(|corner| self.offset(corner))
     }
 
-    /// All in a box is at least this far away.
+    /// Lower bound of the distances within a box.
     fn distance_to_box(&self, bounds: &Aabb) -> f64 {
         let (mut low, mut high) = (self.origin, self.origin);
         for axis in 0..3 {
@@ -317,7 +318,7 @@ impl<'a> Space<'a> {
                     high[axis] += f64::from(bounds.max[axis]);
                 }
                 Some(map) => {
-                    // Each term takes its least and greatest value on its own.
+                    // Each term takes its minimum and maximum independently.
                     let mut magnitude = self.origin[axis].abs();
                     for column in 0..3 {
                         let entry = map.matrix[axis][column];
@@ -343,16 +344,17 @@ impl<'a> Space<'a> {
             return nearest_on_ellipsoid(center, &map.matrix, radius);
         }
         let length = dot(center, center).sqrt();
-        // At the centre all directions are as good.
+        // At the centre all directions are equivalent.
         let toward = if length > 0.0 { center.map(|x| -x / length) } else { [1.0, 0.0, 0.0] };
         let offset = [0, 1, 2].map(|axis| center[axis] + radius * toward[axis]);
         Nearest { offset, distance: (length - radius).abs(), u: 0.0, v: 0.0 }
     }
 }
 
-/// The triangle's point nearest to 0: the foot of the perpendicular where that is inside, else the best on the edges.
+/// The triangle's point nearest to 0: the foot of the perpendicular where that is inside, else the best on the
+/// edges.
 ///
-/// Each candidate is a mean of corners with weights that are not negative, so it is on the triangle however thin that is.
+/// Each candidate is a convex combination of corners, so it is on the triangle however thin that is.
 pub(crate) fn nearest_on_triangle(&[a, b, c]: &[[f64; 3]; 3]) -> Nearest {
     let candidate = |u: f64, v: f64| {
         let w = 1.0 - u - v;

@@ -1,35 +1,35 @@
-//! The questions about a ray: its closest hit, whether there is any hit, all of its hits.
+//! The queries of a ray: its closest hit, occlusion, all of its hits.
 
 use crate::ray::{Hit, Ray};
 
-/// The state of a question: hits come in, and an end beyond which no more are wanted goes out.
+/// The state of a query: it collects hits, and its `end` limits the further search.
 pub(crate) trait Collector {
-    /// Whether near children are to be visited before far ones.
+    /// True if near children must be visited before far ones.
     const NEAREST_FIRST: bool;
 
-    /// Whether any hit will do, wherever in the ray's range it is.
+    /// True if any hit in the ray's range suffices.
     const ANY_HIT: bool;
 
-    /// No hit beyond this t is wanted; one at it may be.
+    /// Hits beyond this t are ignored; one at exactly this t may count.
     fn end(&self) -> f32;
 
-    /// Takes a hit beyond the ray's `t_min`. Returns true where no more are wanted.
+    /// Takes a hit beyond the ray's `t_min`. Returns true if no more hits are needed.
     fn commit(&mut self, hit: Hit) -> bool;
 }
 
-/// A question that a packet asks: its state is taken up ray by ray.
+/// A query of packets: its state is restored ray by ray.
 pub(crate) trait PacketCollector: Collector {
-    /// The state of a ray whose closest hit so far is `hit`, and of which no hit beyond `end` is wanted.
+    /// The state of a ray whose closest hit so far is `hit`, and for which hits beyond `end` are ignored.
     fn resume(ray: &Ray, hit: Hit, end: f32) -> Self;
 
     /// The closest hit so far.
     fn hit(&self) -> Hit;
 
-    /// Whether there was any hit.
+    /// True if there was any hit.
     fn found(&self) -> bool;
 }
 
-/// The hit with the least t; of several, that of the lowest rank.
+/// The hit with the smallest t; of several, the one with the lowest rank.
 pub(crate) struct ClosestHit {
     t_max: f32,
     end: f32,
@@ -80,7 +80,7 @@ impl PacketCollector for ClosestHit {
     }
 }
 
-/// Whether there is a hit.
+/// Occlusion: any hit.
 pub(crate) struct AnyHit {
     t_max: f32,
     pub(crate) found: bool,
@@ -126,14 +126,14 @@ impl PacketCollector for AnyHit {
     }
 }
 
-/// Every hit, in no order.
+/// All hits, in no particular order.
 pub(crate) struct AllHits {
     t_max: f32,
     pub(crate) hits: Vec<Hit>,
 }
 
 impl AllHits {
-    /// `hits` is empty.
+    /// `hits` must be empty.
     pub(crate) fn new(ray: &Ray, hits: Vec<Hit>) -> Self {
         Self { t_max: ray.t_max, hits }
     }

@@ -1,29 +1,31 @@
-//! The conservative triangle test: Möller, Trumbore (1997) in f32 with bounds of the errors, eight at a time.
+//! The conservative triangle test: Möller, Trumbore (1997) in f32 with error bounds, eight at a time.
 //!
-//! It finds triangles that the ray surely misses and triangles that the ray surely hits; the rest is left to the exact test (see
-//! `triangle`). It may be calculated in any way that has a bound of its errors. Lanes hold eight triangles and one ray, or, in
-//! packets, eight rays and one triangle.
+//! It finds triangles that the ray surely misses and triangles that the ray surely hits; the rest is left to the
+//! exact test (see `triangle`). Any way of computing it is allowed that has an error bound. Lanes hold eight
+//! triangles and one ray, or, in packets, eight rays and one triangle.
 
 use crate::aabb::Aabb;
 use crate::prepared::{self, PreparedRay};
 use crate::ray::NONE;
 use lookfrom_simd::{LaneMask, Simd, f32x8, mask32x8, prelude::*};
 
-/// Triangles in a block.
+/// Number of triangles in a block.
 pub(crate) const BLOCK: usize = 8;
 
-/// As many numbers as a block has triangles.
+/// One number per triangle of a block.
 type Lanes<S> = f32x8<S>;
 
 /// Errors of the test's determinants: 160 units of rounding, relative to the longest component of the direction.
 ///
-/// Relative to the largest component e of the edges and c of the way to the first corner: an edge function is a sum of
-/// three products of e and a sum of two products of c and the direction; with one unit for each rounding its error is
-/// below 45 e c units, that of the determinant N·d below 45 e e, and that of the third edge function, which is the
-/// determinant less the other two, below 114 e c + 57 e e. An origin that was rounded adds to c.
+/// Relative to the largest components e of the edges and c of the vector from the origin to the first corner: an
+/// edge function is a sum of three products of e and a sum of two products of c and the direction; with one unit
+/// for each rounding its error is below 45 e c units, that of the determinant N·d below 45 e e, and that of the
+/// third edge function, which is the determinant minus the other two, below 114 e c + 57 e e. An origin that was
+/// rounded adds to c.
 pub(crate) const ERROR: f32 = 160.0 / 16_777_216.0;
 
-/// The error that underflow may add, relative to the direction where that is longer than 1: some products that are less than this.
+/// The error that underflow may add, relative to the direction where that is longer than 1: a few products that are
+/// less than this.
 pub(crate) const UNDERFLOW: f32 = 64.0 * f32::MIN_POSITIVE;
 
 /// Beyond this (2⁴⁰) the test's products may overflow, and it excludes nothing.
@@ -51,7 +53,7 @@ pub(crate) struct ConservativeTest<S: Simd> {
     pub(crate) kept: LaneMask,
     /// Triangles that are surely hit in the ray's range.
     pub(crate) surely_hit: LaneMask,
-    /// The same as a mask.
+    /// The surely hit triangles as a SIMD mask.
     pub(crate) sure: mask32x8<S>,
     distance: Lanes<S>,
     distance_room: Lanes<S>,
@@ -61,13 +63,13 @@ pub(crate) struct ConservativeTest<S: Simd> {
 }
 
 impl<S: Simd> ConservativeTest<S> {
-    /// Among the sure hits, those of a front.
+    /// The front faces among the sure hits.
     #[inline(always)]
     pub(crate) fn looks_at_front(&self) -> mask32x8<S> {
         self.determinant.simd_lt(0.0)
     }
 
-    /// Bounds of the scaled t of each sure hit, below and above.
+    /// Lower and upper bounds of the scaled t of each sure hit.
     #[inline(always)]
     pub(crate) fn between(&self) -> [Lanes<S>; 2] {
         [
@@ -80,7 +82,7 @@ impl<S: Simd> ConservativeTest<S> {
 /// Scaled distances of sure hits are above this, 2⁻⁶⁰, and below 2⁶⁰.
 pub(crate) const SURE_AFTER: f32 = 8.673_617e-19;
 
-/// A ray for the test: one in every lane, or eight.
+/// Rays for the test: one in every lane, or eight.
 #[derive(Clone, Copy)]
 pub(crate) struct RayLanes<S: Simd> {
     pub(crate) origin: [Lanes<S>; 3],
@@ -106,7 +108,7 @@ impl<S: Simd> RayLanes<S> {
         }
     }
 
-    /// A usual ray of the world in each lane; `error` is [`ERROR`] times the longest component of its direction.
+    /// A usual ray of the world in each lane; `error` is [`ERROR`] times the largest component of its direction.
     #[inline(always)]
     pub(crate) fn of_rays(
         simd: S,
@@ -163,7 +165,7 @@ impl TriangleBlock {
         block
     }
 
-    /// How many triangles there are.
+    /// Number of triangles.
     pub(crate) fn count(&self) -> usize {
         self.primitive.iter().filter(|&&primitive| primitive != NONE).count()
     }
@@ -192,7 +194,7 @@ impl TriangleBlock {
         corners
     }
 
-    /// Which of the triangles the ray may meet between its `t_min` and an end, and which it surely does.
+    /// The triangles that the ray may hit between its `t_min` and an end, and those that it surely hits.
     #[inline(always)]
     pub(crate) fn test_conservatively<S: Simd>(
         &self,
@@ -239,7 +241,8 @@ impl<S: Simd> TriangleLanes<S> {
         Self { corners, extent: Lanes::splat(simd, block.extent(lane)) }
     }
 
-    /// Lane by lane: may the ray meet the triangle between its `t_min` and an end, and does it surely?
+    /// Lane by lane, whether the ray may hit the triangle between its `t_min` and an end, and whether
+    /// it surely does.
     ///
     /// Möller, Trumbore (1997), "Fast, Minimum Storage Ray/Triangle Intersection", without the division.
     #[inline(always)]
@@ -252,7 +255,7 @@ impl<S: Simd> TriangleLanes<S> {
         let ([[ax, ay, az], [bx, by, bz], [gx, gy, gz]], extent) = (self.corners, self.extent);
         let [dx, dy, dz] = ray.direction;
 
-        // The edges, the way to the first corner, and the normal.
+        // The edges, the vector from the origin to the first corner, and the normal.
         let (ex, ey, ez) = (bx - ax, by - ay, bz - az);
         let (fx, fy, fz) = (gx - ax, gy - ay, gz - az);
         let (cx, cy, cz) = (ax - ray.origin[0], ay - ray.origin[1], az - ray.origin[2]);
@@ -260,7 +263,7 @@ impl<S: Simd> TriangleLanes<S> {
         let ny = ez.mul_sub(fx, ex * fz);
         let nz = ex.mul_sub(fy, ey * fx);
 
-        // The determinant, and the edge functions: its parts that belong to the corners.
+        // The determinant, and the edge functions as its parts that belong to the corners.
         let rx = cy.mul_sub(dz, cz * dy);
         let ry = cz.mul_sub(dx, cx * dz);
         let rz = cx.mul_sub(dy, cy * dx);
@@ -269,7 +272,7 @@ impl<S: Simd> TriangleLanes<S> {
         let v = -ex.mul_add(rx, ey.mul_add(ry, ez * rz));
         let w = determinant - (u + v);
 
-        // Bound their errors: those of products with the direction relative to its length.
+        // Error bounds: those of products with the direction are relative to its length.
         let underflow = ray.underflow;
         let relative = extent.mul_add(ray.error, underflow);
         let reach = cx.abs().max(cy.abs()).max(cz.abs()) + ray.rounding;
@@ -285,7 +288,7 @@ impl<S: Simd> TriangleLanes<S> {
     }
 }
 
-/// The numbers that the test compares, and bounds of their errors.
+/// The quantities that the test compares, with error bounds.
 struct Determinants<S: Simd> {
     /// The edge functions.
     edges: [Lanes<S>; 3],
@@ -302,7 +305,8 @@ impl<S: Simd> Determinants<S> {
     #[inline(always)]
     fn test(&self, simd: S, ray: &RayLanes<S>, t_max: Lanes<S>, unused: mask32x8<S>) -> ConservativeTest<S> {
         let &Self { edges: [u, v, w], bound, determinant, size_error, distance, distance_error } = self;
-        // A miss has two edge functions of surely different signs. Comparisons with NaN are false, and exclude nothing.
+        // A miss has two edge functions of surely different signs. Comparisons with NaN are false, and exclude
+        // nothing.
         let least = u.min(v).min(w);
         let most = u.max(v).max(w);
         let outside = least.simd_lt(-bound) & most.simd_gt(bound);
@@ -315,7 +319,7 @@ impl<S: Simd> Determinants<S> {
         let out_of_range = size.simd_gt(size_error) & (beyond | before);
         let excluded = outside | out_of_range | unused;
 
-        // A hit is sure where all comparisons are the other way round, with twice the room.
+        // A hit is sure where all comparisons hold the other way round, with twice the error bounds.
         let inside = least.simd_gt(bound) | most.simd_lt(-bound);
         let (size_room, distance_room) = (size_error + size_error, distance_error + distance_error);
         let first = ray.t_min.max(SURE_AFTER);
@@ -337,20 +341,20 @@ impl<S: Simd> Determinants<S> {
     }
 }
 
-/// The part of the test of a block that is the same for all rays from one point.
-pub(crate) struct SeenBlock {
+/// A triangle block with the terms of the test that are the same for all rays from one origin.
+pub(crate) struct CommonOriginBlock {
     /// `normal[axis][lane]`, and likewise the vectors whose dot products with the direction are the edge functions.
     normal: [[f32; BLOCK]; 3],
     u: [[f32; BLOCK]; 3],
     v: [[f32; BLOCK]; 3],
     distance: [f32; BLOCK],
-    /// Errors, without the direction's.
+    /// Error bounds, without the direction's factor.
     bound: [f32; BLOCK],
     size_error: [f32; BLOCK],
     distance_error: [f32; BLOCK],
 }
 
-impl SeenBlock {
+impl CommonOriginBlock {
     #[inline(always)]
     pub(crate) fn new<S: Simd>(simd: S, block: &TriangleBlock, origin: [f32; 3]) -> Self {
         let [a, b, c] = [0, 1, 2].map(
@@ -384,8 +388,9 @@ impl SeenBlock {
         }
     }
 
-    /// [`TriangleLanes::test_conservatively`] for one of the triangles and rays from that point; `length` is the longest component of each ray's
-    /// direction. d·(f × c) takes the place of f·(c × d): the same products, so the same errors.
+    /// [`TriangleLanes::test_conservatively`] for one of the triangles and rays from that origin; `length` is the
+    /// largest component of each ray's direction. d·(f × c) replaces f·(c × d): the same products, so the same
+    /// errors.
     #[inline(always)]
     pub(crate) fn test_conservatively<S: Simd>(
         &self,

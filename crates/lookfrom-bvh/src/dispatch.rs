@@ -1,5 +1,5 @@
-//! SIMD dispatch of the kernel: `lookfrom_simd`'s. Unit tests of small parts go through the scalar level as well, which traversal is
-//! too large for: it would be half of what the tests compile.
+//! SIMD dispatch of the kernel: `lookfrom_simd`'s. Unit tests of small parts also use the scalar level, for which
+//! the traversal is too large: it would be half of the tests' compile time.
 
 pub(crate) use lookfrom_simd::dispatch;
 #[cfg(test)]
@@ -14,7 +14,7 @@ pub(crate) fn dispatch_or_scalar<K: Kernel>(level: Level, kernel: K) -> K::Outpu
     dispatch(level, kernel)
 }
 
-/// Every vector level that this machine has.
+/// All vector levels of this machine.
 #[cfg(test)]
 pub(crate) fn levels() -> Vec<Level> {
     let mut levels = vec![Level::baseline(), Level::new()];
@@ -23,7 +23,7 @@ pub(crate) fn levels() -> Vec<Level> {
     levels
 }
 
-/// The same and the scalar one, for [`dispatch_or_scalar`].
+/// All vector levels and the scalar one, for [`dispatch_or_scalar`].
 #[cfg(test)]
 pub(crate) fn levels_and_scalar() -> Vec<Level> {
     [vec![Level::fallback()], levels()].concat()

@@ -1,27 +1,29 @@
-//! The nearest point of an ellipsoid, which an affine map makes of a sphere: Eberly (2013).
+//! The nearest point of an ellipsoid, the affine image of a sphere: Eberly (2013).
 //!
-//! Its axes come from Hestenes (1958), "Inversion of Matrices by Biorthogonalization and Related Results": columns are turned
-//! in pairs until they are orthogonal, which keeps short axes as exact as long ones. The point then solves an equation of one
-//! unknown, by bisection: Eberly (2013), "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid".
+//! Its axes come from Hestenes (1958), "Inversion of Matrices by Biorthogonalization and Related Results": columns
+//! are rotated in pairs until they are orthogonal, which keeps short axes as exact as long ones. The point then
+//! results from an equation in one unknown, by bisection: Eberly (2013), "Distance from a Point to an Ellipse, an
+//! Ellipsoid, or a Hyperellipsoid".
 
 use crate::closest_point::Nearest;
 use crate::vector::dot;
 
-/// Turns of all pairs of columns; a handful is enough.
+/// Maximum number of sweeps over all pairs of columns; a handful is enough.
 const SWEEPS: usize = 32;
 
-/// Halvings of an interval of f64 until nothing is between its ends, with room.
+/// Number of bisections of an interval of f64 until nothing is between its ends, with a margin.
 const HALVINGS: usize = 2200;
 
-/// The point nearest to 0 on the image of the sphere around 0 of some radius, under a matrix (by rows), moved to `center`.
+/// The point nearest to 0 on an ellipsoid: the image under a matrix (by rows) of the sphere around 0 with a radius,
+/// translated to `center`.
 pub(crate) fn nearest_on_ellipsoid(center: [f64; 3], matrix: &[[f64; 3]; 3], radius: f64) -> Nearest {
-    // Work in sizes about 1, so that squares are in range.
+    // Scale to sizes about 1, so that squares are in range.
     let largest = matrix.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs())) * radius;
     let axes =
         orthogonal([0, 1, 2].map(|column| [0, 1, 2].map(|row| matrix[row][column] * radius / largest)));
     let lengths = axes.map(|axis| dot(axis, axis).sqrt());
 
-    // Coordinates along the axes; the signs are put back at the end.
+    // Coordinates along the axes; the signs are restored at the end.
     let at = [0, 1, 2].map(|i| -dot(center, axes[i]) / (lengths[i] * largest));
     let nearest = nearest_in_octant(lengths, at.map(f64::abs));
     let mut offset = center;
@@ -36,7 +38,7 @@ pub(crate) fn nearest_on_ellipsoid(center: [f64; 3], matrix: &[[f64; 3]; 3], rad
     Nearest { offset, distance: square.sqrt() * largest, u: 0.0, v: 0.0 }
 }
 
-/// Turns vectors in pairs until they are orthogonal: the semi-axes of the ellipsoid that they span.
+/// Rotates vectors in pairs until they are orthogonal: the semi-axes of the ellipsoid that they span.
 fn orthogonal(mut columns: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     for _ in 0..SWEEPS {
         let mut turned = false;
@@ -69,7 +71,7 @@ fn nearest_in_octant(lengths: [f64; 3], y: [f64; 3]) -> [f64; 3] {
     let e = lengths[shortest];
 
     // In units of e²: λ = e² (s − 1). Then xᵢ = rᵢ yᵢ / (s + rᵢ − 1), with rᵢ the square of eᵢ / e, and
-    // the sum of (eᵢ yᵢ / e² / (s + rᵢ − 1))² is to be 1.
+    // the sum of (eᵢ yᵢ / e² / (s + rᵢ − 1))² must be 1.
     let ratio = lengths.map(|length| (length / e) * (length / e));
     let excess = lengths.map(|length| ((length - e) / e) * ((length + e) / e));
     let z = [0, 1, 2].map(|i| lengths[i] / e * (y[i] / e));
@@ -81,7 +83,7 @@ fn nearest_in_octant(lengths: [f64; 3], y: [f64; 3]) -> [f64; 3] {
     };
     let (mut low, mut high) = (z[shortest], dot(z, z).sqrt());
     if z[shortest] == 0.0 && sum(0.0) <= 1.0 {
-        // In the middle plane, near the middle: the missing part goes along the shortest axis.
+        // In the middle plane, near the centre: the missing part goes along the shortest axis.
         let mut x = [0, 1, 2].map(|i| if z[i] > 0.0 { ratio[i] * y[i] / excess[i] } else { 0.0 });
         let missing = (0..3).filter(|&i| i != shortest).fold(1.0, |missing, i| {
             let share = x[i] / lengths[i];

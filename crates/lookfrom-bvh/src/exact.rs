@@ -9,11 +9,11 @@ use crate::vector::{subtract, wide};
 pub(crate) struct ExactRay<T = f32> {
     pub(crate) origin: [f64; 3],
     pub(crate) direction: [f64; 3],
-    /// Hits need a t above this, when it is rounded to the same type.
+    /// Hits need a t above this, rounded to the same type.
     pub(crate) t_min: T,
 }
 
-/// The type that results are rounded to: f32, or f64 as it is.
+/// The type that results are rounded to: f32, or f64 without rounding.
 pub(crate) trait Rounded: Copy + PartialOrd {
     fn rounded(x: f64) -> Self;
 }
@@ -40,18 +40,18 @@ impl ExactRay {
 }
 
 impl<T: Rounded> ExactRay<T> {
-    /// The same ray in an object's space; t stays what it is.
+    /// The same ray in an object's space; t is unchanged.
     #[inline(always)]
     pub(crate) fn in_object(&self, world_from_object: &Affine, object_from_world: &Affine) -> Self {
         Self {
-            // Subtract first: near the object that is where the digits are.
+            // Subtract first, to keep the significant digits near the object.
             origin: object_from_world.vector(subtract(self.origin, world_from_object.translation)),
             direction: object_from_world.vector(self.direction),
             t_min: self.t_min,
         }
     }
 
-    /// The axes in a turn, the one along which the direction is longest last.
+    /// The axes in cyclic order, with the largest component of the direction last.
     #[inline(always)]
     pub(crate) fn axes(&self) -> [usize; 3] {
         let [x, y, z] = self.direction.map(f64::abs);

@@ -1,4 +1,4 @@
-//! Instances: a tree inside of another one, perhaps many times. Two levels, no more.
+//! Instances: a tree within another one, possibly many times. Only two levels.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use crate::aabb::Aabb;
 use crate::affine::Affine;
 use crate::vector::{round_down, round_up, wide};
 
-/// Entries of a matrix and of its inverse beyond 2⁹⁰ lead out of the range of f32.
+/// Entries of a matrix and of its inverse beyond 2⁹⁰ exceed the range of f32.
 const LARGEST_ENTRY: f64 = 1.237_940_039_285_380_3e27;
 
 #[derive(Clone, Debug)]
@@ -19,7 +19,7 @@ pub(crate) struct Instance {
 }
 
 impl Instance {
-    /// None where the map has no usable inverse.
+    /// `None` where the map has no usable inverse.
     pub(crate) fn new(bvh: Arc<Bvh>, world_from_object: Affine, id: u32) -> Option<Self> {
         let object_from_world = world_from_object.inverse()?;
         let entries = world_from_object.matrix.iter().chain(&object_from_world.matrix).flatten();
@@ -38,7 +38,7 @@ impl Instance {
         for axis in 0..3 {
             let row = self.world_from_object.matrix[axis];
             let shift = self.world_from_object.translation[axis];
-            // Each term takes its least and greatest value on its own.
+            // Each term takes its minimum and maximum independently.
             let (mut least, mut greatest, mut magnitude) = (shift, shift, shift.abs());
             for column in 0..3 {
                 let [a, b] = [row[column] * sides[0][column], row[column] * sides[1][column]];

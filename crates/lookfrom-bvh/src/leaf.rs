@@ -70,7 +70,7 @@ fn procedurals<'a, C: Collector, V: Visibility<'a>, O: Observer>(
         if V::SELECTS && !state.visibility.shows(geometry, primitive) {
             continue;
         }
-        // Ask one step beyond the end: a hit at the same t may win the tie.
+        // Query one step beyond the end: a hit at the same t may win the tie.
         let t_max = state.collector.end().next_up();
         let [origin, direction] = [ray.origin, ray.direction].map(|x| x.map(|x| x as f32));
         let asked = Ray { origin, t_min: ray.t_min, direction, t_max };
@@ -93,7 +93,7 @@ fn procedurals<'a, C: Collector, V: Visibility<'a>, O: Observer>(
     false
 }
 
-/// Takes a ray into instances.
+/// Traces a ray through instances.
 fn instances<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     simd: S,
     bvh: &Bvh,

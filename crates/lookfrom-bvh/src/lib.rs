@@ -1,5 +1,5 @@
 #![doc = include_str!("../README.md")]
-// Axes and lanes are indices into several arrays at once, and `!(a < b)` is how NaN is meant to fail.
+// Axes and lanes are indices into several arrays at once, and `!(a < b)` is intended to be true for NaN.
 #![allow(clippy::needless_range_loop, clippy::neg_cmp_op_on_partial_ord)]
 
 mod aabb;
@@ -8,6 +8,7 @@ mod batch;
 mod build;
 mod bvh;
 mod closest_point;
+mod coherence;
 mod collector;
 mod conservative;
 mod dispatch;

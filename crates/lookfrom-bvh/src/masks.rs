@@ -1,6 +1,6 @@
 //! The masks of a tree's geometries, primitives and instances.
 //!
-//! Kept aside from the primitives, since most trees have none. `visibility` applies them.
+//! Stored apart from the primitives, since most trees have none. They are applied in `visibility`.
 
 /// Masks by id. Every ray sees a primitive without a mask.
 #[derive(Clone, Debug, Default)]
@@ -23,7 +23,7 @@ impl Masks {
         of(&self.geometries, geometry) & mask != 0 && own & mask != 0
     }
 
-    /// Bytes held.
+    /// Memory in bytes.
     pub(crate) fn memory(&self) -> usize {
         size_of_val(&*self.geometries)
             + size_of_val(&*self.instances)

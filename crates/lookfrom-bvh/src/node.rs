@@ -6,43 +6,44 @@
 //! | --- | --- |
 //! | 0..192 | `bounds[axis][side][child]`, f32: side 0 the minimum, side 1 the maximum; an empty child has +∞, −∞ |
 //! | 192..224 | `child[child]`, u32: a [`Child`] |
-//! | 224..256 | nothing: a shift finds a node sooner than a product |
+//! | 224..256 | unused: indexing by a shift is faster than by a product |
 //!
-//! A [`Child`] has its kind in bits 30 and 31 and a number in the others: 0 a node, 2 a block of triangles, 3 another leaf.
-//! Example: `0x8000_0005` is the triangles of block 5.
+//! A [`Child`] has its kind in bits 30 and 31 and a number in the others: 0 a node, 2 a block of triangles, 3
+//! another leaf. Example: `0x8000_0005` is triangle block 5.
 //!
-//! The box test never excludes a box that the exact ray meets: Ize (2013), "Robust BVH Ray Traversal", with the room
-//! for errors widened (see `prepared`), and the same room for the end of the ray, so that a hit at exactly the distance of
-//! the best one so far is still found and ties do not depend on the tree. Distances are along the scaled direction.
+//! The box test never excludes a box that the exact ray hits: Ize (2013), "Robust BVH Ray Traversal", with a wider
+//! error margin (see `prepared`), and the same margin for the end of the ray, so that a hit at exactly the distance
+//! of the best one so far is still found and ties do not depend on the tree. Distances are along the scaled
+//! direction.
 
 use crate::aabb::Aabb;
 use crate::prepared::PreparedRay;
 use lookfrom_simd::{Simd, f32x8, i32x8, prelude::*};
 
-/// How many children a node has at most.
+/// Maximum number of children of a node.
 pub(crate) const WIDTH: usize = 8;
 
-/// No tree is deeper.
+/// Maximum depth of a tree.
 pub(crate) const LARGEST_DEPTH: usize = 160;
 
 /// A child: its kind and its number, packed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Child(pub(crate) u32);
 
-/// The same, unpacked.
+/// An unpacked [`Child`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Content {
     Node(usize),
     /// Number of the block.
     Triangles(usize),
-    /// Place among [`crate::Bvh::leaves`].
+    /// Index in [`crate::Bvh::leaves`].
     Leaf(usize),
 }
 
 impl Child {
     pub(crate) const ROOT: Self = Self(0);
 
-    /// Numbers are below this, 2³⁰.
+    /// Upper limit of numbers, 2³⁰.
     pub(crate) const LIMIT: u64 = 1 << 30;
 
     pub(crate) fn node(number: usize) -> Self {
@@ -75,7 +76,7 @@ pub(crate) struct Node {
     child: [Child; WIDTH],
 }
 
-/// The children that a ray enters, and the distances.
+/// The children that a ray enters, and their distances.
 pub(crate) struct Entered<S: Simd> {
     /// Bit i stands for child i.
     pub(crate) children: u32,
@@ -139,16 +140,16 @@ impl Node {
         }
     }
 
-    /// A face of all children.
+    /// One face of all children's boxes.
     #[inline(always)]
     pub(crate) fn face<S: Simd>(&self, simd: S, axis: usize, side: usize) -> f32x8<S> {
         f32x8::load_array_ref(simd, &self.bounds[axis][side & 1])
     }
 
-    /// Which children the ray meets between its `t_min` and a scaled end.
+    /// The children that the ray hits between its `t_min` and a scaled end.
     ///
-    /// Distances are compared as whole numbers, which is sooner done: floats from 0 on are in the order of their bits, and the
-    /// bits of all others are less.
+    /// Distances are compared as integers, which is faster: floats from 0 on are in the order of their bits, and
+    /// the bits of all others are less.
     #[inline(always)]
     pub(crate) fn enter<S: Simd>(&self, simd: S, ray: &Slabs<S>, end: f32) -> Entered<S> {
         let face = |axis: usize, side: usize| self.face(simd, axis, side);

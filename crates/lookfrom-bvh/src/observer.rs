@@ -1,7 +1,7 @@
-//! Observers of a traversal: counters, explanations, or none.
+//! Observers of a traversal: counters, trace logs, or none.
 
-/// Hears of the nodes and candidates of a traversal. Every method does nothing unless written; `()` hears nothing and costs
-/// nothing.
+/// Is notified of the nodes and candidates of a traversal. The default methods do nothing; `()` observes nothing
+/// and costs nothing.
 ///
 /// ```
 /// use lookfrom_bvh::{Builder, Ray, Sphere, Observer};
@@ -23,7 +23,7 @@
 /// # Ok::<(), lookfrom_bvh::BuildError>(())
 /// ```
 pub trait Observer {
-    /// Whether the methods are to be called at all.
+    /// True if the methods are to be called at all.
     const LISTENS: bool = true;
 
     /// The ray visits a node of a tree; `instance` is [`NONE`](crate::NONE) in the outer tree.

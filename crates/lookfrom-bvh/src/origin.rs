@@ -1,14 +1,15 @@
-//! Origins of rays that leave a surface without meeting it again: Wächter, Binder (2019), with bounds of errors.
+//! Origins of rays that leave a surface without hitting it again: Wächter, Binder (2019), with error bounds.
 //!
-//! Not an epsilon away, but just beyond the error of the point it starts from: after Wächter & Binder (2019), "A Fast and
-//! Robust Method for Avoiding Self-Intersection", and the bounds of Pharr, Jakob, Humphreys, Physically Based Rendering.
-//! Points are calculated in f64 here, so their errors are far below the spacing of f32. It remains to round
-//! each coordinate to f32 *away* from the surface: a step of about one unit in the last place.
+//! Not offset by an epsilon, but just beyond the error of the point it starts from: after Wächter & Binder (2019),
+//! "A Fast and Robust Method for Avoiding Self-Intersection", and the error bounds of Pharr, Jakob, Humphreys,
+//! Physically Based Rendering. Points are computed in f64 here, so their errors are far below the spacing of f32.
+//! It remains to round each coordinate to f32 *away* from the surface: a step of about one unit in the last place.
 //!
-//! Why that is enough: a triangle, a sphere seen from outside, and any affine image of them lie on one side of the
-//! tangent plane at the point left. The origin is on the other side, the direction leads away, so the whole ray is.
-//! Inside a sphere, rounding moves each coordinate towards that of the centre (itself an f32), hence inwards. Inside an
-//! instanced sphere this holds only as long as its radii of curvature are large against the spacing of f32.
+//! Proof: a triangle, a sphere seen from outside, and any affine image of them lie on one side of the tangent plane
+//! at the origin point. The ray's origin is on the other side and its direction leads away, so the whole ray is on
+//! the other side. Inside a sphere, rounding moves each coordinate toward that of the centre (itself an f32), hence
+//! inwards. Inside an instanced sphere this holds only as long as its radii of curvature are large compared with
+//! the spacing of f32.
 
 use crate::affine::{Affine, inverse_matrix};
 use crate::vector::{cross, cross_magnitude, dot, round_toward, subtract, wide};
@@ -19,7 +20,7 @@ const UNIT: f64 = f64::EPSILON / 2.0;
 /// Unit of rounding of f32, 2⁻²⁴.
 const UNIT32: f64 = 5.960_464_477_539_063e-8;
 
-/// A point on a surface and a bound of its error.
+/// A point on a surface with its error bound.
 ///
 /// ```
 /// use lookfrom_bvh::Point;
@@ -29,17 +30,17 @@ const UNIT32: f64 = 5.960_464_477_539_063e-8;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Where it is.
+    /// The position.
     pub position: [f64; 3],
-    /// How far the surface, as rays see it, may be from there: for each coordinate, not negative. It holds all errors
-    /// but that of rounding the origin to f32, which [`Self::origin`] takes care of.
+    /// The maximum distance of the surface, as rays see it, from the position: for each coordinate, not negative.
+    /// It includes all errors except that of rounding the origin to f32, which [`Self::origin`] takes into account.
     pub error: [f64; 3],
 }
 
 impl Point {
-    /// The point of a triangle that a hit names: `p0 + u (p1 − p0) + v (p2 − p0)`.
+    /// The point on a triangle at a hit: `p0 + u (p1 − p0) + v (p2 − p0)`.
     ///
-    /// An error of `u` or `v` moves it inside the plane, so the bound does not hold them.
+    /// An error of `u` or `v` moves it within the plane, so the bound does not include them.
     ///
     /// ```
     /// use lookfrom_bvh::Point;
@@ -50,7 +51,7 @@ impl Point {
         Self::on_triangle_with_normal(p0, p1, p2, u, v).0
     }
 
-    /// The same, and `(p1 − p0) × (p2 − p0)`, which it needs on the way: twice the area long.
+    /// The same, and `(p1 − p0) × (p2 − p0)`, which is needed anyway; its length is twice the area.
     ///
     /// ```
     /// use lookfrom_bvh::Point;
@@ -71,7 +72,7 @@ impl Point {
         let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
         let position = [0, 1, 2].map(|i| p0[i] + u * e1[i] + v * e2[i]);
 
-        // How far off the plane a ray's decision may be: errors of n = e1 × e2, relative to its length.
+        // Error of a ray's hit relative to the plane: errors of n = e1 × e2, relative to its length.
         let n = cross(e1, e2);
         let reach = [0, 1, 2].map(|i| e1[i].abs() + e2[i].abs());
         let length = dot(n, n).sqrt();
@@ -84,7 +85,7 @@ impl Point {
         (Self { position, error }, n)
     }
 
-    /// The point of a sphere that is nearest to `hit`, which should be a point on it but for its errors.
+    /// The point of a sphere that is nearest to `hit`, which should be on the sphere up to its errors.
     ///
     /// ```
     /// use lookfrom_bvh::Point;
@@ -102,10 +103,10 @@ impl Point {
         Self { position, error }
     }
 
-    /// The point after a map, for a hit in an instance: `world_from_object` is the instance's.
+    /// The point under an affine map, for a hit in an instance: `world_from_object` is the instance's.
     ///
-    /// The bound grows by the rounding errors here and by those of the ray on its way back to the object's space, its
-    /// rounding to f32 there included (which procedural shapes see).
+    /// The bound grows by the rounding errors here and by those of the ray on its transformation to the object's
+    /// space, including its rounding to f32 there (for procedural shapes).
     ///
     /// ```
     /// use lookfrom_bvh::{Affine, Point};
@@ -119,7 +120,7 @@ impl Point {
         let position = [0, 1, 2].map(|i| relative[i] + world_from_object.translation[i]);
         let size = self.position.map(f64::abs);
 
-        // The amplification on the way back: |M| |M⁻¹| |position − translation|, and M M⁻¹ − 1.
+        // The amplification by the inverse transformation: |M| |M⁻¹| |position − translation|, and M M⁻¹ − 1.
         let inverse = inverse_matrix(matrix).unwrap_or([[0.0; 3]; 3]);
         let way = relative.map(|x| x.abs() * (1.0 + 1e-6));
         let error = [0, 1, 2].map(|i| {
@@ -141,10 +142,11 @@ impl Point {
         Self { position, error }
     }
 
-    /// Where a ray starts that leaves the point in a direction.
+    /// The origin of a ray that leaves the point in a direction.
     ///
-    /// `normal` is the surface's geometric normal, of any length but zero and with either sign; the ray starts on the side
-    /// that `direction` (of any length) leads to. The origin is beyond the error and rounded away from the surface, no more.
+    /// `normal` is the surface's geometric normal, of any length but zero and with either sign; the ray starts on
+    /// the side to which `direction` (of any length) points. The origin is beyond the error and rounded away from
+    /// the surface, no more.
     ///
     /// ```
     /// use lookfrom_bvh::Point;
@@ -173,7 +175,7 @@ impl Point {
         let side = if dot(unit_normal, direction) < 0.0 { -1.0 } else { 1.0 };
         let normal = unit_normal.map(|x| x * side);
 
-        // The step along the normal that makes up for the error in its direction, and for its own rounding.
+        // The step along the normal that covers the error in its direction, and the step's own rounding.
         let step = (0..3)
             .map(|i| normal[i].abs() * (self.error[i] + 4.0 * UNIT * self.position[i].abs()))
             .sum::<f64>()

@@ -1,12 +1,13 @@
-//! The primitive that a ray starts on, and its exclusion: no self-intersection.
+//! The origin primitive of a ray, and its exclusion: no self-intersection.
 //!
-//! [`Point`](crate::Point) places origins so that rays do not meet the triangle that they start on. A query that knows the
-//! triangle need not test it, which saves the test that takes longest: the ray is too near for single precision.
+//! [`Point`](crate::Point) places origins so that rays do not hit the triangle that they start on. A query that
+//! knows the triangle need not test it at all, which saves the slowest test: the ray is too near for single
+//! precision.
 
 use crate::ray::{Hit, NONE};
 
-/// The primitive that a ray starts on. A triangle, which is flat, is then not reported: the ray cannot meet it again. A
-/// sphere or a procedural shape, which a ray from its inside does meet again, is reported as ever.
+/// The primitive that a ray starts on. A triangle is flat, so the ray cannot hit it again, and it is not reported.
+/// A sphere or a procedural shape, which a ray from its inside does hit again, is reported as usual.
 ///
 /// ```
 /// use lookfrom_bvh::{Hit, NONE, OriginPrimitive};
@@ -18,14 +19,14 @@ use crate::ray::{Hit, NONE};
 pub struct OriginPrimitive {
     /// Number of its instance; [`NONE`] where its geometry is not in an instance.
     pub instance: u32,
-    /// Number of its geometry; [`NONE`] for rays that start on no primitive.
+    /// Number of its geometry; [`NONE`] for rays without an origin primitive.
     pub geometry: u32,
-    /// Its number there.
+    /// Its number within the geometry.
     pub primitive: u32,
 }
 
 impl OriginPrimitive {
-    /// The ray starts on no primitive, or on an unknown one.
+    /// The ray has no origin primitive, or an unknown one.
     ///
     /// ```
     /// use lookfrom_bvh::{NONE, OriginPrimitive};

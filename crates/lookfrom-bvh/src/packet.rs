@@ -1,16 +1,17 @@
-//! Packets: 64 coherent rays at once, as from neighbouring pixels.
+//! Packets: 64 coherent rays at once, such as those of neighbouring pixels.
 //!
-//! The packet goes down the tree as one, through every box that it may touch, by intervals of its rays' origins and directions:
-//! Boulos, Wald, Shirley (2006), "Geometric and Arithmetic Culling Methods for Entire Ray Packets". In a leaf the rays go by
-//! groups of eight, a ray in each lane: those that meet the leaf's box are tested against one triangle after the other, by the
-//! same tests as single rays. Spheres, procedural shapes and instances are left to the single-ray code, ray by ray. So the
-//! answers are those of single rays, bit for bit.
+//! The packet traverses the tree as a whole, through every box that it may hit, by intervals of its rays' origins
+//! and directions: Boulos, Wald, Shirley (2006), "Geometric and Arithmetic Culling Methods for Entire Ray Packets".
+//! In a leaf the rays are processed in groups of eight, a ray in each lane: those that hit the leaf's box are
+//! tested against one triangle after the other, by the same tests as single rays. Spheres, procedural shapes and
+//! instances are left to the single-ray code, ray by ray. So the results are those of single rays, bit for bit.
 
 use std::marker::PhantomData;
 
 use crate::Bvh;
+use crate::coherence::Coherence;
 use crate::collector::PacketCollector;
-use crate::conservative::{ConservativeTest, LARGEST_FILTERED, SeenBlock, TriangleLanes};
+use crate::conservative::{CommonOriginBlock, ConservativeTest, LARGEST_FILTERED, TriangleLanes};
 use crate::exact::ExactRay;
 use crate::leaf::other_leaf;
 use crate::node::{Child, Content};
@@ -24,18 +25,23 @@ use crate::triangle;
 use crate::visibility::{Faces, Visibility};
 use lookfrom_simd::{LaneMask, Simd, i32x8, prelude::*};
 
-/// Traces rays as a packet. Gives the rays that hit anything, bit i for ray i, and where the question is about the closest hits
-/// writes them to `hits`. None, and nothing done, where the rays are not alike, too few, or out of the usual range.
+/// Traces rays as a packet. Returns the rays that hit anything, bit i for ray i; closest hits are written to
+/// `hits`. Returns `None` where the rays are too few, not coherent, or out of the usual range, or meet triangles one
+/// by one; `hits` mean nothing then.
 #[inline(never)]
 pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
     simd: S,
     settings: &Settings<'a>,
     rays: &[Ray],
     hits: &mut [Hit],
+    coherence: &mut Coherence,
     stack: &mut Stack,
 ) -> Option<u64> {
     let bvh = settings.bvh;
     if rays.len() < RAYS || !seem_alike(rays) || bvh.nodes.is_empty() || !(bvh.largest < LARGEST_FILTERED) {
+        return None;
+    }
+    if !coherence.start() {
         return None;
     }
     simd.vectorize(
@@ -52,24 +58,24 @@ pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
             if !C::ANY_HIT {
                 hits[..RAYS].fill(Hit::MISS);
             }
-            let mut packet = Packet::<S, C, V> { settings, rays, groups, hits, question: PhantomData };
-            packet.traverse(
-                simd,
-                &packet_bounds,
-                &mut TraversalStack { entries: stack, bottom: 0, height: 0 },
-            );
-            Some(packet.finish())
+            let mut packet =
+                Packet::<S, C, V> { settings, rays, groups, hits, coherence, question: PhantomData };
+            let stack = &mut TraversalStack { entries: stack, bottom: 0, height: 0 };
+            let has_paid = packet.traverse(simd, &packet_bounds, stack);
+            packet.coherence.end(has_paid);
+            has_paid.then(|| packet.finish())
         },
     )
 }
 
-/// A packet on its way.
+/// A packet during traversal.
 struct Packet<'a, 'b, S: Simd, C, V> {
     settings: &'b Settings<'a>,
     rays: &'b [Ray],
     groups: [Ray8<S>; GROUPS],
-    /// The closest hits that are exact; empty where any hit will do.
+    /// The closest hits that are exact; empty for any-hit queries.
     hits: &'b mut [Hit],
+    coherence: &'b mut Coherence,
     question: PhantomData<(C, V)>,
 }
 
@@ -79,7 +85,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         self.settings.bvh
     }
 
-    /// The end of the longest ray; −∞ where all are done.
+    /// The end of the longest ray; −∞ when all are done.
     #[inline(always)]
     fn end(&self) -> f32 {
         let mut longest = self.groups[0].end;
@@ -89,8 +95,9 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         -least(-longest)
     }
 
+    /// Returns false, before the end, where the packet does not pay.
     #[inline(always)]
-    fn traverse(&mut self, simd: S, packet_bounds: &PacketBounds<S>, stack: &mut TraversalStack<'_>) {
+    fn traverse(&mut self, simd: S, packet_bounds: &PacketBounds<S>, stack: &mut TraversalStack<'_>) -> bool {
         let mut end = self.end();
         let mut current = Some(Child::ROOT);
         while let Some(child) = current {
@@ -107,14 +114,18 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 Content::Triangles(number) => self.triangles(simd, packet_bounds, number),
                 Content::Leaf(number) => self.other_leaf(simd, number, stack),
             };
+            if !self.coherence.pays() {
+                return false;
+            }
             if shortened {
                 end = self.end();
             }
             current = stack.pop(end);
         }
+        true
     }
 
-    /// Tests a block of triangles. False where no ray meets its box.
+    /// Tests a block of triangles. Returns false where no ray hits its box.
     #[inline(always)]
     fn triangles(&mut self, simd: S, packet_bounds: &PacketBounds<S>, number: usize) -> bool {
         let block = &self.bvh().triangles[number];
@@ -125,16 +136,17 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
             *meeting = group.meet(&bounds);
             any |= *meeting;
         }
+        self.coherence.count(&meeting);
         if any == 0 {
             return false;
         }
-        // Occlusion rays hardly ever start at one point.
+        // Occlusion rays rarely have a common origin.
         if !C::ANY_HIT
             && let Some(origin) = packet_bounds.common_origin
         {
-            let seen = SeenBlock::new(simd, block, origin);
+            let common = CommonOriginBlock::new(simd, block, origin);
             self.test(simd, number, &mut meeting, |of, group| {
-                seen.test_conservatively(simd, of, &group.ray_lanes, group.length, group.end)
+                common.test_conservatively(simd, of, &group.ray_lanes, group.length, group.end)
             });
         } else {
             self.test(simd, number, &mut meeting, |of, group| {
@@ -144,8 +156,8 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         true
     }
 
-    /// Tests a block of triangles against those rays of each group that may meet it. For closest hits nothing here branches on the
-    /// outcome of a test: it could not be predicted.
+    /// Tests a block of triangles against those rays of each group that may hit it. For closest hits nothing here
+    /// branches on the outcome of a test, because it could not be predicted.
     #[inline(always)]
     fn test(
         &mut self,
@@ -175,7 +187,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                     kept &= is_other.to_bitmask() as u32;
                 }
                 if V::SELECTS && visibility.faces() != Faces::Both {
-                    // The sign of a sure hit's determinant is sure as well.
+                    // The sign of a sure hit's determinant is also sure.
                     let is_front = tested.looks_at_front();
                     sure &= if visibility.faces() == Faces::Front { is_front } else { !is_front };
                 }
@@ -192,7 +204,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                     continue;
                 }
 
-                // Put off the exact test of a sure hit, unless another is surely nearer.
+                // Defer the exact test of a sure hit, unless another hit is surely nearer.
                 let [first, last] = tested.between();
                 let nearer = sure & first.simd_le(group.last);
                 let unclear = nearer & last.simd_ge(group.first);
@@ -203,7 +215,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 group.block = nearer.select(i32x8::splat(simd, number as i32), blocks);
                 group.lane = nearer.select(i32x8::splat(simd, of as i32), lanes);
 
-                // Test exactly the hits that are not sure, and sure hits that may be as near.
+                // Test exactly the hits that are not sure, and sure hits whose distances overlap.
                 let unclear = unclear.to_bitmask() as u32 & rays;
                 if open | unclear != 0 {
                     for lane in LaneMask(open) {
@@ -217,7 +229,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         }
     }
 
-    /// Tests a ray exactly against a triangle that is not its origin primitive. Returns true where the ray is done.
+    /// Tests a ray exactly against a triangle that is not its origin primitive. Returns true if the ray is done.
     #[cold]
     #[inline(never)]
     fn intersect_exact(&mut self, (block, of): (usize, usize), index: usize, lane: usize) -> bool {
@@ -236,7 +248,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         self.update(place, &state.collector)
     }
 
-    /// Tests the rays that meet the box of a leaf without triangles, one by one. False where none does.
+    /// Tests the rays that hit the box of a leaf without triangles, one by one. Returns false if none does.
     #[inline(never)]
     fn other_leaf(&mut self, simd: S, number: usize, stack: &mut TraversalStack<'_>) -> bool {
         simd.vectorize(
@@ -260,7 +272,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         )
     }
 
-    /// A ray's state as it stands.
+    /// The current state of a ray.
     #[inline(always)]
     fn state(&self, place: usize) -> TraversalState<C, V, ()> {
         let hit = if C::ANY_HIT { Hit::MISS } else { self.hits[place] };
@@ -270,7 +282,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         TraversalState { instance: NONE, collector, visibility, observer: () }
     }
 
-    /// Notes a ray's hit. Returns true where the ray is done.
+    /// Stores a ray's hit. Returns true if the ray is done.
     #[inline(always)]
     fn update(&mut self, place: usize, collector: &C) -> bool {
         let (group, lane) = (&mut self.groups[place / LANES], place % LANES);
@@ -283,7 +295,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         C::ANY_HIT && collector.found()
     }
 
-    /// Intersects the sure hits exactly. Returns the rays that hit anything.
+    /// Intersects the deferred sure hits exactly. Returns the rays that hit anything.
     #[inline(always)]
     fn finish(&mut self) -> u64 {
         let mut found = 0;

@@ -1,4 +1,5 @@
-//! Bounds of the rays of a packet, an interval ray: one test of eight boxes serves them all. Boulos, Wald, Shirley (2006).
+//! Bounds of the rays of a packet, as an interval ray: one test of eight boxes serves them all. Boulos, Wald,
+//! Shirley (2006).
 
 use crate::aabb::Aabb;
 use crate::node::{Entered, Node};
@@ -7,16 +8,16 @@ use crate::ray::Ray;
 use crate::ray8::{GROUPS, RAYS, Ray8, least};
 use lookfrom_simd::{Simd, f32x8, i32x8, prelude::*};
 
-/// Directions of a packet differ by at most this part of their length.
+/// Largest difference of directions in a packet, relative to their length.
 const SPREAD: f32 = 0.25;
 
-/// Origins of a packet differ by at most this part of the tree's largest coordinate.
+/// Largest difference of origins in a packet, relative to the tree's largest coordinate.
 const NEARNESS: f32 = 1.0 / 32.0;
 
-/// Far beyond every distance.
+/// A distance far beyond all others.
 const BEYOND: f32 = 1e37;
 
-/// Whether the first and some other rays have like directions: a look before the work.
+/// True if the first and some other rays have similar directions: a quick check in advance.
 pub(crate) fn seem_alike(rays: &[Ray]) -> bool {
     let first = rays[0].direction;
     let length = first.iter().fold(0.0_f32, |length, x| length.max(x.abs()));
@@ -25,22 +26,22 @@ pub(crate) fn seem_alike(rays: &[Ray]) -> bool {
         .all(|&other| (0..3).all(|axis| (rays[other].direction[axis] - first[axis]).abs() < SPREAD * length))
 }
 
-/// Intervals around the origins and reciprocal directions of all rays of a packet.
+/// Intervals that contain the origins and reciprocal directions of all rays of a packet.
 pub(crate) struct PacketBounds<S: Simd> {
-    /// The least corner of the box around the origins.
+    /// The minimum corner of the box around the origins.
     origin: [f32; 3],
-    /// The origin of all rays, where that is one.
+    /// The common origin of all rays, if they have one.
     pub(crate) common_origin: Option<[f32; 3]>,
     near_side: [usize; 3],
-    /// Least and greatest 1 / direction, with room.
+    /// Minimum and maximum of 1 / direction, with a margin.
     reciprocal: [[f32x8<S>; 2]; 3],
-    /// How far the origins may be from there, in distances along the rays.
+    /// The extent of the origins from there, in distances along the rays.
     offset: [f32x8<S>; 3],
     t_min: i32x8<S>,
 }
 
 impl<S: Simd> PacketBounds<S> {
-    /// None where the rays are too different to go together, or not usual ones.
+    /// Returns `None` where the rays are too different for a packet, or not usual ones.
     #[inline(always)]
     pub(crate) fn around(simd: S, groups: &[Ray8<S>; GROUPS], largest: f32) -> Option<Self> {
         let mut usual = groups[0].usual;
@@ -75,7 +76,7 @@ impl<S: Simd> PacketBounds<S> {
         let origin = origins.min;
         let splat = |[a, b]: [f32; 2]| [f32x8::splat(simd, a), f32x8::splat(simd, b)];
         let mut near_side = [0; 3];
-        // An axis along which some rays go forth and some back limits nothing.
+        // An axis with directions of both signs does not limit anything.
         let mut reciprocal = [[1.0 / BEYOND; 2]; 3];
         let mut offset = [BEYOND; 3];
         for axis in 0..3 {
@@ -99,7 +100,8 @@ impl<S: Simd> PacketBounds<S> {
         })
     }
 
-    /// Which children some ray may meet before the end, and where the first would. As [`Node::enter`] for one ray.
+    /// The children that some ray may hit before the end, and a lower bound of the distances. As [`Node::enter`]
+    /// for one ray.
     #[inline(always)]
     pub(crate) fn enter(&self, simd: S, node: &Node, end: f32) -> Entered<S> {
         let way = |axis: usize, side: usize| node.face(simd, axis, side) - self.origin[axis];

@@ -1,72 +1,74 @@
-//! A ray prepared for the box test and the conservative triangle test: in f32, moved and scaled, once in the world and once
-//! more in each instance that it enters.
+//! A ray prepared for the box test and the conservative triangle test: in f32, translated and scaled, once in the
+//! world and again in each instance that it enters.
 //!
-//! These tests only *exclude*, with room for their errors; exact tests use the ray in f64 (see `exact`). Where the origin of the
-//! scaled ray is rounded, the difference is part of the room: of the products' and of `rounding`.
+//! These tests only *exclude*, with error margins; exact tests use the ray in f64 (see `exact`). Where the origin
+//! of the scaled ray is rounded, the difference is part of the margin: of the products' and of `rounding`.
 //!
-//! A scaled ray never starts behind its origin: for a ray with a negative `t_min` the origin is moved back along the ray. So
-//! its distances are positive, and their bits are in their order.
+//! A scaled ray never starts behind its origin: for a ray with a negative `t_min` the origin is moved back along
+//! the ray. So its distances are positive, and their bits have the same order.
 
 use crate::conservative::{self, LARGEST_FILTERED, SURE_AFTER};
 use crate::exact::ExactRay;
 use crate::ray::Ray;
 use lookfrom_simd::{Simd, f32x4, prelude::*};
 
-/// The largest product of an origin and a reciprocal, 2¹²⁶: beyond it a reciprocal is made smaller, that of 0 too. So no
-/// slab distance is ever NaN, and inside a padded box such a component leaves t free.
+/// The largest product of an origin and a reciprocal, 2¹²⁶: reciprocals that would exceed it are reduced, including
+/// that of 0. So no slab distance is ever NaN, and inside a padded box such a component does not limit t.
 const LARGEST_PRODUCT: f32 = 8.507_059e37;
 
-/// Room in a product of origin and reciprocal, relative, 2⁻²²: for its rounding, and the origin's in an instance.
+/// Relative margin of a product of origin and reciprocal, 2⁻²²: for its rounding, and the origin's in an
+/// instance.
 const PRODUCT_ROOM: f32 = 2.384_185_8e-7;
 
-/// Room for rounding in distances along a ray, relative: 2⁻²⁰, sixteen units of rounding. Four are needed for a slab
-/// (reciprocal, product, and the f32 t that it is compared with), on either side.
+/// Relative margin for rounding in distances along a ray: 2⁻²⁰, sixteen units of rounding. Four are needed for a
+/// slab (reciprocal, product, and the f32 t that it is compared with), on either side.
 pub(crate) const ROOM: f32 = 9.536_743e-7;
 
-/// Room for the rounding of a t so small that rounding is not relative to it: 2⁻¹⁰⁰.
+/// Absolute margin for a t so small that rounding is not relative to it: 2⁻¹⁰⁰.
 pub(crate) const TINY: f32 = 7.888_609e-31;
 
 /// Usual directions are longer than this, 2⁻²⁰, and no component is longer than its inverse.
 pub(crate) const SHORT: f32 = 9.536_743e-7;
 
-/// Usual origins have no coordinate from here on, 2²⁴.
+/// Upper limit of the coordinates of usual origins, 2²⁴.
 pub(crate) const FAR: f32 = 16_777_216.0;
 
-/// How large a reciprocal may be for usual origins.
+/// Largest reciprocal for usual origins.
 pub(crate) const LARGEST_RECIPROCAL: f32 = LARGEST_PRODUCT / FAR;
 
 /// The conservative triangle test's absolute error for usual directions.
 pub(crate) const USUAL_UNDERFLOW: f32 = conservative::UNDERFLOW / SHORT;
 
-/// Room for rounding in f64 where a start is moved, relative: 2⁻⁴⁸.
+/// Relative margin for rounding in f64 where a start is moved: 2⁻⁴⁸.
 const MOVED_ROOM: f64 = 3.552_713_678_800_501e-15;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PreparedRay {
     pub(crate) scaled: ScaledRay,
-    /// The first distance, with room.
+    /// The first distance, with its margin.
     pub(crate) t_min: f32,
-    /// Box test: 1 / direction, and the same with room for farther faces.
+    /// Box test: 1 / direction, and the same with a margin for farther faces.
     pub(crate) near_reciprocal: [f32; 3],
     pub(crate) far_reciprocal: [f32; 3],
-    /// Box test: these times the origin, moved within their errors so that near faces seem nearer, far faces farther.
+    /// Box test: these times the origin, shifted within their errors so that near faces appear nearer, far faces
+    /// farther.
     pub(crate) near_product: [f32; 3],
     pub(crate) far_product: [f32; 3],
-    /// Box test: which face is met first, 0 the minimum or 1 the maximum.
+    /// Box test: the face that is hit first, 0 the minimum or 1 the maximum.
     pub(crate) near_side: [usize; 3],
 }
 
-/// The ray in f32. Distances along it count from its origin and in lengths of its direction.
+/// The ray in f32. Distances along it are measured from its origin, in lengths of its direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ScaledRay {
     pub(crate) origin: [f32; 3],
-    /// The ray's, times a power of two where that is very short or long.
+    /// The ray's direction, times a power of two where it is very short or long.
     pub(crate) direction: [f32; 3],
-    /// The ray's t at the origin: 0, or less.
+    /// The ray's t at the origin: 0 or less.
     start: f32,
     /// The factor from t to distances: the power of two's inverse.
     pub(crate) scale: f32,
-    /// How large reciprocals may be.
+    /// Upper limits of the reciprocals.
     largest_reciprocal: [f32; 3],
     /// The error of the origin, beyond its rounding to f32.
     moved: f32,
@@ -75,13 +77,13 @@ pub(crate) struct ScaledRay {
     /// The conservative triangle test's errors, relative and absolute.
     pub(crate) error: f32,
     pub(crate) underflow: f32,
-    /// The distance before which the conservative test may be sure of a hit.
+    /// The distance before which the conservative test may find a sure hit.
     pub(crate) sure_before: f32,
 }
 
 impl PreparedRay {
-    /// A usual ray in the world, in which no coordinate is beyond `largest`. None for one that does not start before its origin,
-    /// or that has numbers so large or so small that they need care.
+    /// A usual ray in the world, in which no coordinate is larger than `largest`. `None` for one that starts behind
+    /// its origin, or whose numbers are so large or so small that they need care.
     #[inline(always)]
     pub(crate) fn usual<S: Simd>(simd: S, ray: &Ray, largest: f32) -> Option<Self> {
         let &Ray { origin, t_min, direction, .. } = ray;
@@ -91,7 +93,8 @@ impl PreparedRay {
         )
     }
 
-    /// Any ray, in any space in which no coordinate is beyond `largest`. None where it cannot hit anything.
+    /// Any ray, in any space in which no coordinate is larger than `largest`. `None` where it cannot hit
+    /// anything.
     #[inline(always)]
     pub(crate) fn new<S: Simd>(simd: S, exact: &ExactRay, largest: f32) -> Option<Self> {
         let origin = exact.origin.map(|x| x as f32);
@@ -125,7 +128,7 @@ impl PreparedRay {
         }
     }
 
-    /// A ray's end as a distance, with room. 0 or more.
+    /// A ray's end as a distance, with its margin. 0 or more.
     #[inline(always)]
     pub(crate) fn end(&self, t_max: f32) -> f32 {
         let ScaledRay { start, scale, .. } = self.scaled;
@@ -153,7 +156,7 @@ pub(crate) fn slabs<S: Simd, V: SimdFloat<S, Element = f32>>(
     [near_reciprocal, far_reciprocal, near_product, far_product]
 }
 
-/// Whether a ray does not start behind its origin and no number is so large or small as to need care.
+/// True if a ray does not start behind its origin and no number is so large or small that it needs care.
 #[inline(always)]
 fn is_usual<S: Simd>(simd: S, origin: [f32; 3], direction: [f32; 3], t_min: f32, largest: f32) -> bool {
     let lanes = |[x, y, z]: [f32; 3]| f32x4::load_array(simd, [x, y, z, 0.0]);
@@ -179,8 +182,8 @@ impl ScaledRay {
         }
     }
 
-    /// The scaled of a ray that starts behind its origin or has numbers out of the usual range. None where one of them is not
-    /// finite, or the direction vanishes.
+    /// The scaled form of a ray that starts behind its origin or has numbers out of the usual range. `None` where
+    /// one of them is not finite, or the direction vanishes.
     #[cold]
     #[inline(never)]
     fn unusual(exact: &ExactRay, largest: f32) -> Option<Self> {
@@ -192,7 +195,7 @@ impl ScaledRay {
             return None;
         }
 
-        // Go back, but not farther than where everything is ahead.
+        // Move back, but not farther than where the whole tree is ahead.
         let everything = -1.001 * (widest(o) + f64::from(largest)) / widest(d);
         let start = f64::from(exact.t_min.min(0.0)).max(everything).max(f64::from(-LARGEST_PRODUCT)) as f32;
         let t = f64::from(start);
@@ -225,7 +228,7 @@ impl ScaledRay {
     }
 }
 
-/// The greatest magnitude.
+/// The largest magnitude.
 #[inline(always)]
 fn greatest(values: [f32; 3]) -> f32 {
     let [x, y, z] = values.map(f32::abs);
@@ -237,7 +240,7 @@ fn first_three<S: Simd>(values: f32x4<S>) -> [f32; 3] {
     [values[0], values[1], values[2]]
 }
 
-/// The greater of two numbers, the second where there is a NaN.
+/// The larger of two numbers; the second where one is NaN.
 #[inline(always)]
 fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }

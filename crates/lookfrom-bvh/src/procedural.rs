@@ -1,4 +1,4 @@
-//! Shapes that are neither triangles nor spheres: the caller says where they are and where rays meet them.
+//! Procedural shapes: neither triangles nor spheres; the caller defines their bounds and intersections.
 
 use std::fmt::Debug;
 
@@ -37,19 +37,19 @@ use crate::ray::Ray;
 /// # Ok::<(), lookfrom_bvh::BuildError>(())
 /// ```
 pub trait Procedural: Send + Sync + Debug {
-    /// How many shapes there are. Asked once, when the tree is built.
+    /// The number of shapes. Called once, when the tree is built.
     fn count(&self) -> u32;
 
-    /// The box around a shape, in which [`Self::intersect`] finds all its hits. A shape whose box is empty, or not
-    /// finite, is left out. Asked once or twice, when the tree is built.
+    /// The bounding box of a shape, which must contain all hits of [`Self::intersect`]. A shape whose box is empty
+    /// or not finite is left out. Called once or twice, when the tree is built.
     fn bounds(&self, primitive: u32) -> Aabb;
 
-    /// The nearest hit with `ray.t_min < t < ray.t_max`; others are ignored. In an instance the ray is in the object's
-    /// space, rounded to f32, with the same `t`.
+    /// The nearest hit with `ray.t_min < t < ray.t_max`; others are ignored. In an instance the ray is in the
+    /// object's space, rounded to f32, with the same `t`.
     fn intersect(&self, primitive: u32, ray: &Ray) -> Option<ProceduralHit>;
 }
 
-/// Where a ray meets a [`Procedural`].
+/// A hit of a ray with a [`Procedural`].
 ///
 /// ```
 /// let hit = lookfrom_bvh::ProceduralHit { t: 2.0, u: 0.0, v: 0.0 };
@@ -59,8 +59,8 @@ pub trait Procedural: Send + Sync + Debug {
 pub struct ProceduralHit {
     /// The ray's parameter.
     pub t: f32,
-    /// Goes into [`Hit::u`](crate::Hit::u).
+    /// Becomes [`Hit::u`](crate::Hit::u).
     pub u: f32,
-    /// Goes into [`Hit::v`](crate::Hit::v).
+    /// Becomes [`Hit::v`](crate::Hit::v).
     pub v: f32,
 }

@@ -1,4 +1,4 @@
-//! The builder of queries: a tree, the part of it that rays see, and an observer; then the question.
+//! The builder of queries: a tree, the part of it that rays see, and an observer; then the query itself.
 
 use crate::Bvh;
 use crate::observer::Observer;
@@ -6,19 +6,19 @@ use crate::origin_primitive::OriginPrimitive;
 use crate::trace_ray::TraceRay;
 use crate::visibility::Faces;
 
-/// What rays see of a tree.
+/// The part of a tree that rays see.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings<'a> {
     pub(crate) bvh: &'a Bvh,
-    /// None where masks do not count.
+    /// `None` where masks are ignored.
     pub(crate) mask: Option<u32>,
     pub(crate) faces: Faces,
-    /// That of the rays for which `origins` has none.
+    /// The origin primitive of rays for which `origins` has none.
     pub(crate) origin: OriginPrimitive,
     pub(crate) origins: &'a [OriginPrimitive],
 }
 
-/// The visibility that settings need: see [`crate::visibility`].
+/// The kind of visibility that settings need: see [`crate::visibility`].
 pub(crate) enum Needs {
     Everything,
     ExceptOrigin,
@@ -26,7 +26,7 @@ pub(crate) enum Needs {
 }
 
 impl<'a> Settings<'a> {
-    /// Everything.
+    /// Settings that see the whole tree.
     pub(crate) const fn new(bvh: &'a Bvh) -> Self {
         Self { bvh, mask: None, faces: Faces::Both, origin: OriginPrimitive::NONE, origins: &[] }
     }
@@ -41,23 +41,23 @@ impl<'a> Settings<'a> {
         }
     }
 
-    /// The origin primitive of the ray with a number.
+    /// The origin primitive of the ray with index `number`.
     #[inline(always)]
     pub(crate) fn origin_of(&self, number: usize) -> OriginPrimitive {
         self.origins.get(number).copied().unwrap_or(self.origin)
     }
 
-    /// The same for rays that begin with the number `first`.
+    /// The same settings for rays that begin with the index `first`.
     pub(crate) fn from(self, first: usize) -> Self {
         Self { origins: self.origins.get(first..).unwrap_or_default(), ..self }
     }
 }
 
-/// A question to a [`Bvh`] in the making; made by [`Bvh::query`].
+/// A query of a [`Bvh`], in builder style; created by [`Bvh::query`].
 ///
-/// A query begins with everything. Methods that are named like a thing narrow it and give it back; methods that are named
-/// like a question trace rays, either [`Ray`](crate::Ray)s or [`RayF64`](crate::RayF64)s. A query is small and `Copy` (but for one with an observer), so it
-/// can be made once and asked often.
+/// A query initially sees everything. Setters such as [`Self::mask`] narrow it and return it; methods such as
+/// [`Self::closest_hit`] trace rays, either [`Ray`](crate::Ray)s or [`RayF64`](crate::RayF64)s. A query is small
+/// and `Copy` (except with an observer), so it can be created once and used often.
 ///
 /// ```
 /// use lookfrom_bvh::{Builder, Faces, Hit, HitF64, OriginPrimitive, Ray, RayF64, Triangles};
@@ -77,14 +77,14 @@ impl<'a> Settings<'a> {
 /// # Ok::<(), lookfrom_bvh::BuildError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-#[must_use = "a query does nothing until it is asked"]
+#[must_use = "a query does nothing until it traces a ray"]
 pub struct Query<'a, O = ()> {
     settings: Settings<'a>,
     observer: O,
 }
 
 impl Bvh {
-    /// A query about everything: see [`Query`].
+    /// A query of the whole tree: see [`Query`].
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -101,9 +101,9 @@ impl Bvh {
 }
 
 impl<'a, O> Query<'a, O> {
-    /// Only primitives that have a bit in common with `mask`: in their own mask, in their geometry's and in their instance's
-    /// (see [`Builder::geometry_mask`](crate::Builder::geometry_mask)). A primitive that was given no mask has all bits. A
-    /// query without a mask is about everything, whatever its mask.
+    /// Selects only primitives that have a bit in common with `mask`: in their own mask, in their geometry's and in
+    /// their instance's (see [`Builder::geometry_mask`](crate::Builder::geometry_mask)). Masks that were not set
+    /// have all bits. A query without a mask sees everything, whatever its mask.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -120,7 +120,7 @@ impl<'a, O> Query<'a, O> {
         self
     }
 
-    /// Only surfaces that rays meet from this side.
+    /// Selects front or back faces only.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Faces, Ray, Sphere};
@@ -154,8 +154,8 @@ impl<'a, O> Query<'a, O> {
         self
     }
 
-    /// Excludes for each ray of a batch the triangle that it starts on, in the order of the rays. Rays beyond the end of
-    /// the slice have that of [`Self::origin`]. A single ray is a batch of one.
+    /// Sets the origin primitive of each ray of a batch, in the order of the rays. Rays beyond the end of the slice
+    /// use that of [`Self::origin`]. A single ray is a batch of one.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Hit, OriginPrimitive, Ray, Triangles};
@@ -175,8 +175,8 @@ impl<'a, O> Query<'a, O> {
         self
     }
 
-    /// Tells an observer of every node and candidate. The answers are the same. Batches are traced ray by ray, in order,
-    /// on this thread. Primitives that the query does not see are among the candidates.
+    /// Notifies an observer of every node and candidate, including primitives that the query does not see. The
+    /// results are the same. Batches are traced ray by ray, in order, on this thread.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Observer, Ray, Sphere};
@@ -200,11 +200,12 @@ impl<'a, O> Query<'a, O> {
 }
 
 impl<O: Observer> Query<'_, O> {
-    /// The hit with the least t in the ray's range, or a miss. Of several hits at equal t it is the one with the lowest ids:
-    /// geometry outside of instances comes first, then by instance, geometry and primitive.
+    /// The hit with the smallest t in the ray's range, or a miss. Of several hits at equal t it is the one with the
+    /// lowest ids: geometry outside of instances comes first, then by instance, geometry and primitive.
     ///
-    /// For a [`RayF64`](crate::RayF64) `t` is right to about 10⁻¹⁵ of sizes and distances, `u` and `v` to about 10⁻¹⁰ (less where a triangle
-    /// is seen nearly edge on); procedural shapes are asked in f32. It takes some times longer than a [`Ray`](crate::Ray).
+    /// For a [`RayF64`](crate::RayF64) `t` is right to about 10⁻¹⁵ of sizes and distances, `u` and `v` to about
+    /// 10⁻¹⁰ (less where a triangle is seen nearly edge-on); procedural shapes are queried in f32. It takes several
+    /// times as long as a [`Ray`](crate::Ray).
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, RayF64, Triangles};
@@ -220,7 +221,7 @@ impl<O: Observer> Query<'_, O> {
         R::closest_hit(&self.settings, ray, &mut self.observer)
     }
 
-    /// Whether there is a hit in the ray's range.
+    /// True if there is a hit in the ray's range.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, RayF64, Sphere};
@@ -236,8 +237,8 @@ impl<O: Observer> Query<'_, O> {
         R::occluded(&self.settings, ray, &mut self.observer)
     }
 
-    /// Replaces the content of `hits` by all hits in the ray's range, sorted by t and then as [`Self::closest_hit`]
-    /// decides ties. A triangle gives at most one hit, a sphere two, a procedural shape one (its nearest).
+    /// Replaces the content of `hits` by all hits in the ray's range, sorted by t, ties as in
+    /// [`Self::closest_hit`]. A triangle gives at most one hit, a sphere two, a procedural shape one (its nearest).
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Faces, Ray, Sphere};
@@ -255,8 +256,8 @@ impl<O: Observer> Query<'_, O> {
         R::all_hits(&self.settings, ray, hits, &mut self.observer);
     }
 
-    /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent [`Ray`](crate::Ray)s are traced in packets. The
-    /// two slices should be equally long; the surplus of the longer one is left alone.
+    /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent [`Ray`](crate::Ray)s
+    /// are traced in packets. The two slices should have equal lengths; the surplus of the longer one is ignored.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Faces, Hit, Ray, Sphere};

@@ -1,8 +1,8 @@
 //! Rays and hits in single precision: plain data with the layout of C.
 //!
-//! `prepared` makes a ray ready for the tests.
+//! `prepared` prepares a ray for the tests.
 
-/// "None" where an id is expected: the ids of a miss.
+/// "None" in place of an id: the ids of a miss.
 ///
 /// ```
 /// use lookfrom_bvh::{Hit, NONE};
@@ -10,10 +10,10 @@
 /// ```
 pub const NONE: u32 = u32::MAX;
 
-/// A ray, or a piece of one: the points `p(t) = origin + t · direction` with `t_min < t < t_max`.
+/// A ray or a segment of one: the points `p(t) = origin + t · direction` with `t_min < t < t_max`.
 ///
-/// The direction may have any length but zero; `t` counts in its lengths. A ray with a NaN, an infinite origin or
-/// direction, a zero direction or an empty range hits nothing.
+/// The direction may have any length but zero; `t` is in units of its length. A ray with a NaN, an infinite
+/// origin or direction, a zero direction or an empty range hits nothing.
 ///
 /// The layout is that of C: `origin` at byte 0, `t_min` at 12, `direction` at 16, `t_max` at 28; 32 bytes in all.
 ///
@@ -25,7 +25,7 @@ pub const NONE: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Ray {
-    /// Where `t` is zero.
+    /// The point at `t = 0`.
     pub origin: [f32; 3],
     /// Hits need `t > t_min`. May be negative.
     pub t_min: f32,
@@ -47,7 +47,7 @@ impl Ray {
         Self { origin, t_min: 0.0, direction, t_max: f32::INFINITY }
     }
 
-    /// The same ray with another end.
+    /// The same ray with another `t_max`.
     ///
     /// ```
     /// use lookfrom_bvh::Ray;
@@ -58,7 +58,7 @@ impl Ray {
     }
 }
 
-/// The point where a ray meets a primitive, or [`Hit::MISS`].
+/// The intersection of a ray with a primitive, or [`Hit::MISS`].
 ///
 /// The layout is that of C: `t` at byte 0, `u` at 4, `v` at 8, `primitive` at 12, `geometry` at 16, `instance` at 20; 24 bytes
 /// in all.
@@ -77,15 +77,15 @@ impl Ray {
 pub struct Hit {
     /// The ray's parameter: the hit is at `origin + t · direction`. Infinite for a miss.
     pub t: f32,
-    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural: its own.
+    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural shape: its own.
     pub u: f32,
-    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural: its own.
+    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural shape: its own.
     pub v: f32,
     /// Number of the primitive in its geometry.
     pub primitive: u32,
     /// Number of the geometry in its tree, in the order of the builder's calls.
     pub geometry: u32,
-    /// Number of the instance, [`NONE`] where the geometry is not in an instance.
+    /// Number of the instance; [`NONE`] where the geometry is not in an instance.
     pub instance: u32,
 }
 
@@ -98,7 +98,7 @@ impl Hit {
     pub const MISS: Self =
         Self { t: f32::INFINITY, u: 0.0, v: 0.0, primitive: NONE, geometry: NONE, instance: NONE };
 
-    /// Whether something was hit.
+    /// True if something was hit.
     ///
     /// ```
     /// use lookfrom_bvh::Hit;
@@ -108,13 +108,13 @@ impl Hit {
         self.primitive != NONE
     }
 
-    /// The order of hits at equal `t`, which decides ties: geometry outside of instances comes first, then by
+    /// The order of hits at equal `t`, which breaks ties: geometry outside of instances comes first, then by
     /// instance, geometry and primitive.
     pub(crate) fn rank(&self) -> (u32, u32, u32) {
         (self.instance.wrapping_add(1), self.geometry, self.primitive)
     }
 
-    /// Whether this hit comes before another: nearer, or as near and of lower rank.
+    /// True if this hit precedes another: it is nearer, or as near and of lower rank.
     pub(crate) fn precedes(&self, other: &Self) -> bool {
         self.t < other.t || (self.t == other.t && self.rank() < other.rank())
     }

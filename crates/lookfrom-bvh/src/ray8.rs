@@ -7,38 +7,38 @@ use crate::prepared::{self, FAR, LARGEST_RECIPROCAL, SHORT};
 use crate::ray::{NONE, Ray};
 use lookfrom_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
 
-/// Rays in a group.
+/// Number of rays in a group.
 pub(crate) const LANES: usize = 8;
 
-/// Groups in a packet.
+/// Number of groups in a packet.
 pub(crate) const GROUPS: usize = 8;
 
-/// Rays in a packet.
+/// Number of rays in a packet.
 pub(crate) const RAYS: usize = LANES * GROUPS;
 
-/// The number of no block.
+/// Marks the absence of a block.
 pub(crate) const NO_BLOCK: i32 = -1;
 
 /// Eight rays, one in each lane, and their closest hits so far.
 #[derive(Clone, Copy)]
 pub(crate) struct Ray8<S: Simd> {
     pub(crate) ray_lanes: RayLanes<S>,
-    /// The lanes of usual rays; the others hold nothing of use.
+    /// The lanes of usual rays; the contents of the others are meaningless.
     pub(crate) usual: u32,
-    /// The longest component of their directions.
+    /// The largest component of each direction.
     pub(crate) length: f32x8<S>,
     pub(crate) near_reciprocal: [f32x8<S>; 3],
     pub(crate) far_reciprocal: [f32x8<S>; 3],
     pub(crate) near_product: [f32x8<S>; 3],
     pub(crate) far_product: [f32x8<S>; 3],
     pub(crate) end: f32x8<S>,
-    /// Bounds of the distance of a sure hit that is not yet intersected exactly; ∞ where there is none.
+    /// Bounds of the distance of a sure hit whose exact test is deferred; ∞ where there is none.
     pub(crate) first: f32x8<S>,
     pub(crate) last: f32x8<S>,
     /// That hit's block and its lane in it.
     pub(crate) block: i32x8<S>,
     pub(crate) lane: i32x8<S>,
-    /// Geometry and primitive of the triangles outside of instances that the rays start on.
+    /// Geometry and primitive of the rays' origin triangles that are not in instances.
     origin_ids: [i32x8<S>; 2],
 }
 
@@ -72,7 +72,7 @@ impl<S: Simd> Ray8<S> {
             f32x8::load_array(simd, [ox, oy, oz, t_min, dx, dy, dz, t_max])
         };
         let mut v = [row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)];
-        // Three times like shuffling cards, and rows are columns.
+        // Three perfect shuffles transpose the rows to columns.
         for _ in 0..3 {
             let [a, b, c, d, e, f, g, h] = v;
             v = [
@@ -120,7 +120,7 @@ impl<S: Simd> Ray8<S> {
         }
     }
 
-    /// Takes the origin primitives of the rays, lane by lane.
+    /// Sets the origin primitives of the rays, lane by lane.
     #[inline(always)]
     pub(crate) fn set_origins(&mut self, simd: S, origin: impl Fn(usize) -> OriginPrimitive) {
         let mut ids = [[NONE as i32; LANES]; 2];
@@ -133,7 +133,7 @@ impl<S: Simd> Ray8<S> {
         self.origin_ids = [i32x8::load_array(simd, ids[0]), i32x8::load_array(simd, ids[1])];
     }
 
-    /// The rays that start on a triangle outside of instances.
+    /// The rays that start on a triangle that is not in an instance.
     #[inline(always)]
     pub(crate) fn start_on(&self, simd: S, geometry: u32, primitive: u32) -> mask32x8<S> {
         let [geometries, primitives] = self.origin_ids;
@@ -141,19 +141,19 @@ impl<S: Simd> Ray8<S> {
             & primitives.simd_eq(i32x8::splat(simd, primitive as i32))
     }
 
-    /// Ends rays for good: they meet no box any more.
+    /// Terminates rays: they hit no more boxes.
     #[inline(always)]
     pub(crate) fn retire(&mut self, simd: S, rays: mask32x8<S>) {
         self.end = rays.select(f32x8::splat(simd, f32::NEG_INFINITY), self.end);
     }
 
-    /// Ends a ray at a hit, with the same room as [`Self::new`] gives it, unless it ends sooner.
+    /// Ends a ray at a hit, with the same margin as [`Self::new`], unless it already ends sooner.
     pub(crate) fn shorten(&mut self, lane: usize, t: f32) {
         let end = t + (t.abs() * prepared::ROOM + prepared::TINY);
         self.end[lane] = smaller(end, self.end[lane]);
     }
 
-    /// The rays that meet a box before their ends.
+    /// The rays that hit a box before their ends.
     #[inline(always)]
     pub(crate) fn meet(&self, bounds: &Aabb) -> u32 {
         let mut near = self.ray_lanes.t_min;
@@ -169,7 +169,7 @@ impl<S: Simd> Ray8<S> {
     }
 }
 
-/// The least of some numbers.
+/// The minimum of the lanes.
 #[inline(always)]
 pub(crate) fn least<S: Simd>(numbers: f32x8<S>) -> f32 {
     let numbers: [f32; LANES] = numbers.into();

@@ -1,14 +1,14 @@
 //! Rays and hits in double precision: plain data with the layout of C.
 //!
-//! For rays whose numbers are not those of f32: CAD far from the origin, measurements, comparison with other kernels.
-//! `traverse_f64` traces them.
+//! For rays whose numbers are not representable in f32: CAD far from the origin, measurements, comparisons with
+//! other kernels. `traverse_f64` traces them.
 
 use crate::ray::{NONE, Ray};
 
 /// A ray in double precision: the points `p(t) = origin + t · direction` with `t_min < t < t_max`.
 ///
-/// The direction may have any length but zero; `t` counts in its lengths. A ray with a NaN, an empty range, or an
-/// origin or direction that f32 would round to infinity (or to a zero direction) hits nothing.
+/// The direction may have any length but zero; `t` is in units of its length. A ray with a NaN, an empty range,
+/// or an origin or direction that f32 would round to infinity (or to a zero direction) hits nothing.
 ///
 /// The layout is that of C: `origin` at byte 0, `t_min` at 24, `direction` at 32, `t_max` at 56; 64 bytes in all.
 ///
@@ -20,7 +20,7 @@ use crate::ray::{NONE, Ray};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct RayF64 {
-    /// Where `t` is zero.
+    /// The point at `t = 0`.
     pub origin: [f64; 3],
     /// Hits need `t > t_min`. May be negative.
     pub t_min: f64,
@@ -53,7 +53,7 @@ impl From<Ray> for RayF64 {
     }
 }
 
-/// The point where a [`RayF64`] meets a primitive, or [`HitF64::MISS`].
+/// The intersection of a [`RayF64`] with a primitive, or [`HitF64::MISS`].
 ///
 /// The layout is that of C: `t` at byte 0, `u` at 8, `v` at 16, `primitive` at 24, `geometry` at 28, `instance` at 32; 40 bytes
 /// in all, of which the last four are padding.
@@ -66,15 +66,17 @@ impl From<Ray> for RayF64 {
 pub struct HitF64 {
     /// The ray's parameter: the hit is at `origin + t · direction`. Infinite for a miss.
     pub t: f64,
-    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural: its own, in f32.
+    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural shape: its own,
+    /// in f32.
     pub u: f64,
-    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural: its own, in f32.
+    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural shape: its own,
+    /// in f32.
     pub v: f64,
     /// Number of the primitive in its geometry.
     pub primitive: u32,
     /// Number of the geometry in its tree, in the order of the builder's calls.
     pub geometry: u32,
-    /// Number of the instance, [`NONE`] where the geometry is not in an instance.
+    /// Number of the instance; [`NONE`] where the geometry is not in an instance.
     pub instance: u32,
 }
 
@@ -87,7 +89,7 @@ impl HitF64 {
     pub const MISS: Self =
         Self { t: f64::INFINITY, u: 0.0, v: 0.0, primitive: NONE, geometry: NONE, instance: NONE };
 
-    /// Whether something was hit.
+    /// True if something was hit.
     ///
     /// ```
     /// use lookfrom_bvh::HitF64;
@@ -97,12 +99,12 @@ impl HitF64 {
         self.primitive != NONE
     }
 
-    /// The order of hits at equal `t`, as that of [`Hit`](crate::Hit)s.
+    /// The order of hits at equal `t`, as for [`Hit`](crate::Hit)s.
     pub(crate) fn rank(&self) -> (u32, u32, u32) {
         (self.instance.wrapping_add(1), self.geometry, self.primitive)
     }
 
-    /// Whether this hit comes before another: nearer, or as near and of lower rank.
+    /// True if this hit precedes another: it is nearer, or as near and of lower rank.
     pub(crate) fn precedes(&self, other: &Self) -> bool {
         self.t < other.t || (self.t == other.t && self.rank() < other.rank())
     }

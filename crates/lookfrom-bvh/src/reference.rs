@@ -1,7 +1,7 @@
-//! The reference: the same questions in the simplest formulas, for tests and for people who want to see the numbers.
+//! The reference: the same queries by the simplest formulas, for tests and for users who want to see the numbers.
 //!
 //! Generic over f32 and f64, close to the lecture notes in letters and formulas, without a tree and without any of
-//! the kernel's precautions: in f32 its answers may be wrong where the kernel's are right.
+//! the kernel's precautions: in f32 its results may be wrong where the kernel's are right.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -57,7 +57,7 @@ impl Real for f64 {
     }
 }
 
-/// Why something is not hit. The first reason in this order is given.
+/// Reason why something is not hit. The first reason in this order is returned.
 ///
 /// ```
 /// use lookfrom_bvh::reference::{Rejection, cramer};
@@ -74,7 +74,7 @@ pub enum Rejection {
     GammaNegative,
     /// β + γ > 1: the hit with the plane is beyond the edge P1 P2.
     BeyondEdge,
-    /// The ray's line passes the sphere by.
+    /// The ray's line misses the sphere.
     NoRealRoot,
     /// `t ≤ t_min`: behind the origin, where `t_min` is 0.
     BeforeTMin,
@@ -82,7 +82,7 @@ pub enum Rejection {
     BeyondTMax,
 }
 
-/// Cramer's rule for `a + t d = P0 + β (P1 − P0) + γ (P2 − P0)`, with every number that it takes.
+/// Cramer's rule for `a + t d = P0 + β (P1 − P0) + γ (P2 − P0)`, with all intermediate results.
 ///
 /// Nothing is checked: where `d` is 0, quotients are NaN or infinite.
 ///
@@ -137,7 +137,7 @@ pub fn cramer<T: Real>(a: [T; 3], d: [T; 3], p0: [T; 3], p1: [T; 3], p2: [T; 3])
 }
 
 impl<T: Real> Cramer<T> {
-    /// The ray's parameter at the hit, or why there is none with `t_min < t < t_max`.
+    /// The ray's parameter at the hit, or the reason why there is none with `t_min < t < t_max`.
     ///
     /// # Errors
     /// The first reason that applies.
@@ -166,7 +166,7 @@ impl<T: Real> Cramer<T> {
     }
 }
 
-/// The quadratic equation of a ray and a sphere, `A t² + 2 B t + C = 0`, with every number that it takes.
+/// The quadratic equation of a ray and a sphere, `A t² + 2 B t + C = 0`, with all intermediate results.
 ///
 /// Nothing is checked: where the discriminant is negative, `q` and the roots are NaN.
 ///
@@ -183,9 +183,9 @@ pub struct Quadratic<T> {
     pub b: T,
     /// `C = (a−c)·(a−c) − R²`.
     pub c: T,
-    /// `A (R² − |(a−c) − (B/A) d|²)`: does not cancel for small or far spheres.
+    /// `A (R² − |(a−c) − (B/A) d|²)`: without cancellation for small or distant spheres.
     pub discriminant: T,
-    /// `B² − A C`, as it is usually written.
+    /// `B² − A C`, the usual form.
     pub discriminant_naive: T,
     /// `−(B + sign(B) √discriminant)`.
     pub q: T,
@@ -195,7 +195,7 @@ pub struct Quadratic<T> {
     pub t2: T,
 }
 
-/// Which root of a [`Quadratic`] was taken.
+/// The root of a [`Quadratic`] that is the hit.
 ///
 /// ```
 /// use lookfrom_bvh::reference::{Root, sphere};
@@ -206,7 +206,7 @@ pub struct Quadratic<T> {
 pub enum Root {
     /// The smaller one: the ray enters the sphere.
     Near,
-    /// The greater one: the ray leaves the sphere, or the smaller one is out of range.
+    /// The larger one: the ray leaves the sphere, or the smaller one is out of range.
     Far,
 }
 
@@ -223,7 +223,7 @@ pub fn sphere<T: Real>(a: [T; 3], d: [T; 3], c: [T; 3], r: T) -> Quadratic<T> {
     let f = subtract(a, c);
     let coefficient_a = dot(d, d);
     let b = dot(d, f);
-    // (|f| − R) (|f| + R) loses less than f·f − R².
+    // (|f| − R) (|f| + R) loses fewer digits than f·f − R².
     let length = dot(f, f).square_root();
     let coefficient_c = (length - r) * (length + r);
     let s = b / coefficient_a;
@@ -237,7 +237,7 @@ pub fn sphere<T: Real>(a: [T; 3], d: [T; 3], c: [T; 3], r: T) -> Quadratic<T> {
 }
 
 impl<T: Real> Quadratic<T> {
-    /// Which root is the nearest hit with `t_min < t < t_max`, and its t; or why there is none.
+    /// The root that is the nearest hit with `t_min < t < t_max`, and its t; or the reason why there is none.
     ///
     /// # Errors
     /// The first reason that applies.
@@ -263,7 +263,7 @@ impl<T: Real> Quadratic<T> {
     }
 }
 
-/// Something to hit, for the searches by brute force.
+/// A primitive, for the brute-force queries.
 ///
 /// ```
 /// use lookfrom_bvh::reference::Shape;
@@ -274,15 +274,15 @@ impl<T: Real> Quadratic<T> {
 pub enum Shape<T> {
     /// Three corners.
     Triangle([[T; 3]; 3]),
-    /// Middle and radius.
+    /// Centre and radius.
     Sphere([T; 3], T),
 }
 
 impl<T: Real> Shape<T> {
-    /// Where the ray `a + t d` hits it first with `t_min < t < t_max`.
+    /// The t of the first hit of the ray `a + t d` with `t_min < t < t_max`.
     ///
     /// # Errors
-    /// Why it does not.
+    /// The reason why there is none.
     ///
     /// ```
     /// use lookfrom_bvh::reference::Shape;
@@ -297,7 +297,7 @@ impl<T: Real> Shape<T> {
     }
 }
 
-/// The first of the nearest hits among shapes: which, and its t.
+/// The first of the nearest hits among shapes: the shape's index, and t.
 ///
 /// ```
 /// use lookfrom_bvh::reference::{Shape, closest};
@@ -317,7 +317,7 @@ pub fn closest<T: Real>(shapes: &[Shape<T>], a: [T; 3], d: [T; 3], t_min: T, t_m
     best
 }
 
-/// Whether any shape is hit.
+/// True if any shape is hit.
 ///
 /// ```
 /// use lookfrom_bvh::reference::{Shape, any};
@@ -329,7 +329,7 @@ pub fn any<T: Real>(shapes: &[Shape<T>], a: [T; 3], d: [T; 3], t_min: T, t_max: 
     shapes.iter().any(|shape| shape.intersect(a, d, t_min, t_max).is_ok())
 }
 
-/// The nearest hit of each shape that is hit, in the order of the shapes: which, and its t.
+/// The nearest hit of each shape that is hit, in the order of the shapes: the shape's index, and t.
 ///
 /// ```
 /// use lookfrom_bvh::reference::{Shape, all};

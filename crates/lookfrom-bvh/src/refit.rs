@@ -1,8 +1,9 @@
 //! Refitting: a tree follows geometry that moves.
 //!
-//! Its topology stays and its boxes are fitted again, from the leaves up: Wald, Boulos, Shirley (2007), "Ray Tracing Deformable
-//! Scenes Using Dynamic Bounding Volume Hierarchies". Answers are exact after any motion; tracing takes longer the more
-//! neighbours have parted, which [`Statistics::cost`](crate::Statistics::cost) shows, and then a new tree pays.
+//! The topology stays and the boxes are refitted from the leaves up: Wald, Boulos, Shirley (2007), "Ray Tracing
+//! Deformable Scenes Using Dynamic Bounding Volume Hierarchies". Results are exact after any motion; tracing gets
+//! slower the farther neighbours move apart, which [`Statistics::cost`](crate::Statistics::cost) shows, and then
+//! building a new tree pays off.
 
 use std::fmt;
 
@@ -16,7 +17,7 @@ use crate::node::{Content, WIDTH};
 use crate::sphere::Sphere;
 use crate::validate::Statistics;
 
-/// Where a geometry is now, all of its primitives in the order in which the builder was told.
+/// The new positions of a geometry: all of its primitives, in the order in which they were added.
 ///
 /// ```
 /// use lookfrom_bvh::{Builder, Moved, Sphere};
@@ -30,13 +31,13 @@ use crate::validate::Statistics;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub enum Moved<'a> {
-    /// Triangles. They may name other corners than before.
+    /// Triangles. They may refer to other corners than before.
     Triangles(Triangles<'a>),
     /// Spheres. Radii may change too.
     Spheres(&'a [Sphere]),
 }
 
-/// Why a tree cannot follow; it needs to be built again.
+/// Reason why a tree cannot follow; it must be built again.
 ///
 /// ```
 /// use lookfrom_bvh::{Builder, Moved, RefitError, Sphere};
@@ -49,21 +50,22 @@ pub enum Moved<'a> {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RefitError {
-    /// A triangle names a corner that is not there.
+    /// A triangle refers to a position that does not exist.
     IndexOutOfRange {
         /// The geometry.
         geometry: u32,
         /// The triangle in it.
         triangle: u32,
-        /// How many positions there are.
+        /// Number of positions.
         positions: usize,
     },
-    /// The tree holds other primitives of a geometry than those that rays can now meet: there are more or fewer, or of
-    /// another kind, or some were left out of the tree (see [`Builder::build`](crate::Builder::build)) or now would be.
+    /// The tree does not contain exactly those primitives of a geometry that rays can hit after the motion: there
+    /// are more or fewer, or of another kind, or some were left out of the tree (see
+    /// [`Builder::build`](crate::Builder::build)) or now would be.
     OtherPrimitives {
         /// The geometry.
         geometry: u32,
-        /// The first primitive that is in the tree or to be met by rays, but not both.
+        /// The first primitive that is either in the tree or can be hit by rays, but not both.
         primitive: u32,
     },
 }
@@ -78,8 +80,8 @@ impl fmt::Display for RefitError {
             ),
             Self::OtherPrimitives { geometry, primitive } => write!(
                 f,
-                "primitive {primitive} of geometry {geometry} can be met by rays only before or only after the motion, or \
-                 has become one of another kind; build the tree again"
+                "primitive {primitive} of geometry {geometry} can be hit by rays only before or only after the motion, or \
+                 its kind has changed; build the tree again"
             ),
         }
     }
@@ -88,13 +90,14 @@ impl fmt::Display for RefitError {
 impl std::error::Error for RefitError {}
 
 impl Bvh {
-    /// Moves geometries of this tree and fits its boxes to them. Other geometries stay where they are. Of several motions of
-    /// one geometry the last counts.
+    /// Moves geometries of this tree and refits its boxes. Other geometries stay where they are. Of several motions
+    /// of one geometry the last counts.
     ///
-    /// The answers are those of a new tree. Takes time in proportion to the whole tree, a small part of what building takes.
+    /// The results of queries are those of a new tree. The time is proportional to the whole tree, a small part of
+    /// the build time.
     ///
     /// # Errors
-    /// See [`RefitError`]. The tree is then as it was.
+    /// See [`RefitError`]. The tree is then unchanged.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Moved, Ray, Sphere};
@@ -125,7 +128,7 @@ impl Bvh {
         Ok(())
     }
 
-    /// Whether the tree holds just those primitives that rays can meet after the motion.
+    /// Checks that the tree contains exactly those primitives that rays can hit after the motion.
     fn check(&self, geometry: u32, moved: &Moved<'_>) -> Result<(), RefitError> {
         let mut usable = match moved {
             Moved::Triangles(triangles) => usable_triangles(geometry, triangles)?,
@@ -136,7 +139,7 @@ impl Bvh {
         let spheres = self.spheres.iter().map(|item| (item.geometry, item.primitive));
         let procedurals = self.procedurals.iter().map(|item| (item.geometry, item.primitive));
 
-        // Strike out the primitives of the tree; those of another kind are in it and cannot be.
+        // Cross off the primitives of the tree; for those of another kind the refit fails.
         let is_triangles = matches!(moved, Moved::Triangles(_));
         let held = triangles
             .map(|ids| (ids, is_triangles))
@@ -184,8 +187,8 @@ impl Bvh {
         }
     }
 
-    /// Fits the boxes of a node and of all below it. Returns the box around their primitives, and the node's own, which
-    /// holds the primitives' padded boxes.
+    /// Refits the boxes of a node and of all below it. Returns the box around their primitives, and the node's own,
+    /// which contains the primitives' padded boxes.
     fn fit(&mut self, number: usize) -> [Aabb; 2] {
         let mut all = [Aabb::EMPTY; 2];
         for slot in 0..WIDTH {
@@ -223,7 +226,7 @@ impl Bvh {
     }
 }
 
-/// The box around some boxes, and the box around these padded.
+/// The box around some boxes, and the box around these boxes padded.
 fn around(boxes: impl Iterator<Item = Aabb>) -> [Aabb; 2] {
     boxes.fold([Aabb::EMPTY; 2], |[mut exact, mut padded], bounds| {
         exact.unite(&bounds);
@@ -232,7 +235,7 @@ fn around(boxes: impl Iterator<Item = Aabb>) -> [Aabb; 2] {
     })
 }
 
-/// For each triangle whether rays can meet it.
+/// For each triangle, whether rays can hit it.
 fn usable_triangles(geometry: u32, triangles: &Triangles<'_>) -> Result<Vec<bool>, RefitError> {
     let positions = triangles.positions;
     let usable = |(triangle, indices): (usize, &[u32; 3])| {

@@ -1,4 +1,4 @@
-//! Questions about single rays in single precision: one site of compiled code for each question and level.
+//! Queries of single rays in single precision: one site of compiled code for each query and level.
 
 use crate::Bvh;
 use crate::batch;
@@ -12,8 +12,8 @@ use crate::traverse::trace;
 use crate::visibility::{Everything, Masked, Visibility};
 use lookfrom_simd::{Kernel, Simd};
 
-/// Traces one ray at the best level that there is, and gives back the collector. `ask` makes it: inside of the code for the level,
-/// so that it may live in registers.
+/// Traces one ray at the best available level and returns the collector. `ask` creates it inside the code for the
+/// level, so that it can be kept in registers.
 struct Trace<'a, F, V, O> {
     bvh: &'a Bvh,
     ray: &'a Ray,
@@ -39,7 +39,7 @@ fn ask_everything<C: Collector>(bvh: &Bvh, ray: &Ray, ask: impl FnOnce(&Ray) -> 
     dispatch(bvh.level, Trace { bvh, ray, ask, visibility: Everything, observer: () })
 }
 
-/// The general case, with whatever the settings need.
+/// The general case, with any settings.
 #[inline(always)]
 fn ask<C: Collector>(
     settings: &Settings<'_>,
@@ -51,12 +51,12 @@ fn ask<C: Collector>(
     dispatch(bvh.level, Trace { bvh, ray, ask, visibility: Masked::of(settings, 0), observer })
 }
 
-/// The closest hit among everything.
+/// The closest hit in the whole tree.
 pub(crate) fn closest_hit_of_everything(bvh: &Bvh, ray: &Ray) -> Hit {
     ask_everything(bvh, ray, ClosestHit::new).hit
 }
 
-/// Whether anything is hit.
+/// True if anything in the tree is hit.
 pub(crate) fn occluded_by_everything(bvh: &Bvh, ray: &Ray) -> bool {
     ask_everything(bvh, ray, AnyHit::new).found
 }
@@ -71,7 +71,7 @@ pub(crate) fn closest_hit(settings: &Settings<'_>, ray: &Ray) -> Hit {
     hit[0]
 }
 
-/// Whether there is a hit.
+/// True if there is a hit.
 pub(crate) fn occluded(settings: &Settings<'_>, ray: &Ray) -> bool {
     if let Needs::Everything = settings.needs() {
         return occluded_by_everything(settings.bvh, ray);
@@ -81,7 +81,7 @@ pub(crate) fn occluded(settings: &Settings<'_>, ray: &Ray) -> bool {
     occluded[0]
 }
 
-/// All hits, sorted. `hits` is empty.
+/// All hits, sorted. `hits` must be empty.
 pub(crate) fn all_hits(settings: &Settings<'_>, ray: &Ray, hits: &mut Vec<Hit>) {
     let room = std::mem::take(hits);
     let all = move |ray: &Ray| AllHits::new(ray, room);
@@ -92,17 +92,17 @@ pub(crate) fn all_hits(settings: &Settings<'_>, ray: &Ray, hits: &mut Vec<Hit>) 
     sort(hits);
 }
 
-/// The closest hit, while an observer listens.
+/// The closest hit, with an observer.
 pub(crate) fn observed_closest_hit(settings: &Settings<'_>, ray: &Ray, observer: &mut impl Observer) -> Hit {
     ask(settings, ray, ClosestHit::new, observer).hit
 }
 
-/// Whether there is a hit, while an observer listens.
+/// True if there is a hit, with an observer.
 pub(crate) fn observed_occluded(settings: &Settings<'_>, ray: &Ray, observer: &mut impl Observer) -> bool {
     ask(settings, ray, AnyHit::new, observer).found
 }
 
-/// All hits, sorted, while an observer listens. `hits` is empty.
+/// All hits, sorted, with an observer. `hits` must be empty.
 pub(crate) fn observed_all_hits(
     settings: &Settings<'_>,
     ray: &Ray,
@@ -114,7 +114,7 @@ pub(crate) fn observed_all_hits(
     sort(hits);
 }
 
-/// Sorts hits by t and then as ties are decided.
+/// Sorts hits by t, and hits at equal t by rank.
 fn sort(hits: &mut [Hit]) {
     // A zero is a zero, whatever its sign.
     hits.sort_unstable_by(|a, b| (a.t + 0.0).total_cmp(&(b.t + 0.0)).then_with(|| a.rank().cmp(&b.rank())));

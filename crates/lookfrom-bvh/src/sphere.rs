@@ -1,6 +1,6 @@
 //! The intersection of a ray with a sphere: Haines et al. (2019).
 //!
-//! Wholly in f64: "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7. With
+//! Entirely in f64: "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7. With
 //! the vector `f` from centre to origin and half the usual linear coefficient, `A t² + 2 B t + C = 0`.
 
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
@@ -18,14 +18,14 @@ use crate::vector::{dot, subtract, wide};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// Middle.
+    /// Centre.
     pub center: [f32; 3],
     /// Positive and finite.
     pub radius: f32,
 }
 
 impl Sphere {
-    /// The box around it, rounded outwards.
+    /// Its bounding box, rounded outwards.
     ///
     /// ```
     /// use lookfrom_bvh::Sphere;
@@ -33,7 +33,7 @@ impl Sphere {
     /// assert!(bounds.min[0] < -1.0 && bounds.max[0] > 1.0);
     /// ```
     pub fn bounds(&self) -> Aabb {
-        // One unit more than the sum's rounding: a point at exactly the radius is inside.
+        // One ulp more than the sum's rounding: a point at exactly the radius is inside.
         Aabb {
             min: self.center.map(|x| (x - self.radius).next_down()),
             max: self.center.map(|x| (x + self.radius).next_up()),
@@ -45,7 +45,7 @@ impl Sphere {
     }
 }
 
-/// Both hits of the whole line with the sphere, the smaller t first. None where it passes by.
+/// Both hits of the whole line with the sphere, the smaller t first. `None` where the line misses it.
 pub(crate) fn intersect_exact<T: Rounded>(ray: &ExactRay<T>, sphere: &Sphere) -> Option<[T; 2]> {
     let f = subtract(ray.origin, wide(sphere.center));
     let d = ray.direction;
@@ -53,7 +53,8 @@ pub(crate) fn intersect_exact<T: Rounded>(ray: &ExactRay<T>, sphere: &Sphere) ->
     let a = dot(d, d);
     let b = dot(f, d);
 
-    // Discriminant, from the line's point nearest to the centre: it does not cancel for small or far spheres.
+    // The discriminant from the line's point nearest to the centre: no cancellation for small or distant
+    // spheres.
     let s = b / a;
     let nearest = [f[0] - s * d[0], f[1] - s * d[1], f[2] - s * d[2]];
     let discriminant = a * (radius * radius - dot(nearest, nearest));
@@ -61,7 +62,7 @@ pub(crate) fn intersect_exact<T: Rounded>(ray: &ExactRay<T>, sphere: &Sphere) ->
         return None;
     }
 
-    // Both roots without a difference of like numbers.
+    // Both roots without cancellation.
     let length = dot(f, f).sqrt();
     let c = (length - radius) * (length + radius);
     let q = -(b + discriminant.sqrt().copysign(b));

@@ -1,4 +1,4 @@
-//! The traversal stack: children of nodes that are yet to be visited, nearest on top.
+//! The traversal stack: children still to be visited, nearest on top.
 
 use std::cell::Cell;
 
@@ -6,8 +6,8 @@ use crate::collector::Collector;
 use crate::node::{Child, Entered, LARGEST_DEPTH, Node, WIDTH};
 use lookfrom_simd::Simd;
 
-/// A child that is yet to be visited: the distance at which the ray enters it (f32 bits) above the child. Positive distances
-/// are ordered as these numbers are; the others only cost time.
+/// A child still to be visited: the distance at which the ray enters it (f32 bits) above the child. Positive
+/// distances are ordered like these integers; the others only cost time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct StackEntry(u64);
 
@@ -30,15 +30,15 @@ impl StackEntry {
     }
 }
 
-/// The most entries: all children but one on each level of a tree, and of an instance's. A power of two.
+/// The capacity: all children but one on each level of a tree, and of an instance's. A power of two.
 const STACK: usize = (2 * LARGEST_DEPTH * (WIDTH - 1)).next_power_of_two();
 
-/// Storage for the entries of any tree, so that nothing is allocated on the way.
+/// Storage for the entries of any tree, so that traversal does not allocate.
 pub(crate) type Stack = [StackEntry; STACK];
 
 thread_local! {
-    /// The last traversal's stack, kept so that a ray costs no allocation. Taken while in use, so a procedural that
-    /// traces rays of its own gets a new one.
+    /// The last traversal's stack, kept so that a ray costs no allocation. Taken while in use, so a procedural
+    /// shape that traces rays of its own gets a new one.
     static KEPT: Cell<Option<Box<Stack>>> = const { Cell::new(None) };
 }
 
@@ -56,7 +56,7 @@ fn new_stack() -> Box<Stack> {
     Box::new([StackEntry::NONE; STACK])
 }
 
-/// The entries of one tree, above those of the tree around it.
+/// The entries of one tree, above those of the outer tree.
 pub(crate) struct TraversalStack<'a> {
     pub(crate) entries: &'a mut Stack,
     pub(crate) bottom: usize,
@@ -83,8 +83,8 @@ impl TraversalStack<'_> {
         self.height += 1;
     }
 
-    /// Pushes the children that were entered but one, the nearest last, and returns that one, which is nearer. There is
-    /// one at least.
+    /// Pushes all entered children but the nearest, in order, the nearer ones on top, and returns the nearest.
+    /// There must be at least one.
     #[inline(always)]
     pub(crate) fn push_all_but_nearest<S: Simd, C: Collector>(
         &mut self,
@@ -105,7 +105,7 @@ impl TraversalStack<'_> {
             let mut entry = next(node, entered, &mut children);
             if C::NEAREST_FIRST {
                 (nearest, entry) = (nearest.min(entry), nearest.max(entry));
-                // Insert: farther entries stay below.
+                // Insertion sort: farther entries stay below.
                 let mut place = self.height;
                 while place > bottom && self.entries[(place - 1) % STACK] < entry {
                     self.entries[place % STACK] = self.entries[(place - 1) % STACK];
@@ -121,7 +121,7 @@ impl TraversalStack<'_> {
     }
 }
 
-/// Takes the first of some children.
+/// Removes the first child from a set.
 #[inline(always)]
 fn next<S: Simd>(node: &Node, entered: &Entered<S>, children: &mut u32) -> StackEntry {
     let slot = children.trailing_zeros() as usize % WIDTH;

@@ -1,4 +1,5 @@
-//! Seeded random geometry for tests, those in `tests/` too: random exponents, not just random numbers.
+//! Seeded random geometry for tests, including those in `tests/`: with random exponents, not just
+//! random numbers.
 
 #![allow(dead_code)] // No test uses all of it.
 
@@ -17,17 +18,17 @@ impl Random {
         shifted.rotate_right((state >> 59) as u32)
     }
 
-    /// In [0, 1).
+    /// A number in [0, 1).
     pub(crate) fn unit(&mut self) -> f32 {
         (self.next() >> 8) as f32 / 16_777_216.0
     }
 
-    /// A whole number in 0..count.
+    /// An integer in 0..count.
     pub(crate) fn below(&mut self, count: u32) -> u32 {
         ((u64::from(self.next()) * u64::from(count)) >> 32) as u32
     }
 
-    /// A direction of any length, now and then along an axis or in a plane of two.
+    /// A direction of any length, sometimes along an axis or in a plane of two.
     pub(crate) fn direction(&mut self) -> [f32; 3] {
         loop {
             let length = self.size(-3, 3);
@@ -47,7 +48,7 @@ impl Random {
         10.0_f32.powf(low as f32 + (high - low) as f32 * self.unit())
     }
 
-    /// A point whose coordinates have exponents of their own.
+    /// A point whose coordinates have independent exponents.
     pub(crate) fn point_with_exponents(&mut self, low: i32, high: i32) -> [f32; 3] {
         [0; 3].map(|_| self.size(low, high) * if self.unit() < 0.5 { -1.0 } else { 1.0 })
     }

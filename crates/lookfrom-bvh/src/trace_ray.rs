@@ -1,4 +1,4 @@
-//! The types of rays that queries trace, and the code for each: f32 by SIMD, f64 by the scalar twin.
+//! The types of rays that queries trace, and the code for each: f32 by SIMD, f64 by scalar code.
 
 use crate::observer::Observer;
 use crate::query::Settings;
@@ -6,7 +6,8 @@ use crate::ray::{Hit, Ray};
 use crate::ray_f64::{HitF64, RayF64};
 use crate::{batch, single, traverse_f64};
 
-/// A type of ray that queries trace: [`Ray`], whose `Hit` is [`Hit`], or [`RayF64`], whose `Hit` is [`HitF64`]. There are no others.
+/// A type of ray that queries trace: [`Ray`], whose `Hit` is [`Hit`], or [`RayF64`], whose `Hit` is [`HitF64`]. The
+/// trait is sealed.
 ///
 /// ```
 /// use lookfrom_bvh::{Bvh, TraceRay};
@@ -28,14 +29,14 @@ mod sealed {
     use crate::observer::Observer;
     use crate::query::Settings;
 
-    /// The questions about a type of ray.
+    /// The queries of a type of ray.
     pub trait Trace: Copy + Sync + Sized {
         /// A hit in the same precision.
         type Hit: Copy + Send;
 
         fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> Self::Hit;
         fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool;
-        /// Adds the hits to `hits`, which is empty.
+        /// Adds the hits to `hits`, which must be empty.
         fn all_hits<O: Observer>(
             settings: &Settings<'_>,
             ray: &Self,

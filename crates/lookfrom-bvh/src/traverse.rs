@@ -1,9 +1,9 @@
-//! The traversal of single rays.
+//! Traversal of single rays.
 //!
-//! Generic over the question ([`Collector`]: the closest hit, any hit, all hits), over the part of the geometry that the ray sees
-//! ([`Visibility`]) and over an [`Observer`]. Children are visited from near to far; subtrees beyond the question's current end
-//! are skipped. The order of visits never shows in a result: ends are compared with room for errors (see `node`), and ties
-//! are decided by ids (see `Hit`).
+//! Generic over the query ([`Collector`]: the closest hit, any hit, all hits), over the part of the geometry that
+//! the ray sees ([`Visibility`]) and over an [`Observer`]. Children are visited from near to far; subtrees beyond
+//! the query's current end are skipped. The order of visits never affects a result: ends are compared with an error
+//! margin (see `node`), and ties are decided by ids (see `Hit`).
 
 use crate::Bvh;
 use crate::collector::Collector;
@@ -20,7 +20,7 @@ use crate::triangle::Crossing;
 use crate::visibility::{Visibility, shown};
 use lookfrom_simd::Simd;
 
-/// A ray's state on its way: its instance, its question, its visibility, its observer.
+/// A ray's state during traversal: its instance, collector, visibility and observer.
 pub(crate) struct TraversalState<C, V, O> {
     /// The instance that the ray is in.
     pub(crate) instance: u32,
@@ -46,7 +46,7 @@ pub(crate) fn trace<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     }
     let stack = &mut TraversalStack { entries: stack, bottom: 0, height: 0 };
     if let Some(prepared) = PreparedRay::usual(simd, ray, bvh.largest) {
-        // Made anew where it is needed: few rays need it, and the black box keeps it from being made for all.
+        // Recomputed where it is needed: few rays need it, and the black box prevents computing it for all.
         let exact = || ExactRay::new(std::hint::black_box(ray));
         traverse(simd, bvh, &prepared, exact, &mut state, stack);
     } else {
@@ -55,8 +55,8 @@ pub(crate) fn trace<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     state.collector
 }
 
-/// Traces any ray, in the world or in an object's space, through a tree that is not empty. Returns true where no more hits are
-/// wanted, as all that follow.
+/// Traces any ray, in the world or in an object's space, through a tree that is not empty. Returns true if no more
+/// hits are needed.
 ///
 /// Not inlined, so that the loop over the outer tree keeps its registers; compiled for the level again inside.
 #[inline(never)]
@@ -89,9 +89,9 @@ fn traverse<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     let slabs = Slabs::new(simd, ray);
     let mut current = Child::ROOT;
     let mut end = ray.end(state.collector.end());
-    let mut undecided = None;
+    let mut deferred = None;
     'ray: loop {
-        // Go down, each time to the nearest child that the ray enters; the others go on the stack.
+        // Descend, each time to the nearest child that the ray enters; the others go on the stack.
         while let Content::Node(number) = current.content() {
             state.observer.node(state.instance, number as u32);
             let node = &bvh.nodes[number];
@@ -112,7 +112,7 @@ fn traverse<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
             Content::Triangles(number) => {
                 let block = &bvh.triangles[number];
                 let ray_lanes = RayLanes::new(simd, ray);
-                triangles(simd, block, &ray_lanes, exact, &mut end, &mut undecided, state)
+                triangles(simd, block, &ray_lanes, exact, &mut end, &mut deferred, state)
             }
             Content::Leaf(number) => other_leaf(simd, bvh, &bvh.leaves[number], &exact(), state, stack),
             Content::Node(_) => false,
@@ -127,7 +127,7 @@ fn traverse<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
             None => break,
         }
     }
-    undecided.is_some_and(|Undecided { block, lane, .. }| intersect_sure(block, lane, exact, state))
+    deferred.is_some_and(|DeferredHit { block, lane, .. }| intersect_sure(block, lane, exact, state))
 }
 
 #[inline(always)]
@@ -137,7 +137,7 @@ fn triangles<'a, 'b, S: Simd, C: Collector, V: Visibility<'b>, O: Observer>(
     ray_lanes: &RayLanes<S>,
     exact: impl Fn() -> ExactRay,
     end: &mut f32,
-    undecided: &mut Option<Undecided<'a>>,
+    deferred: &mut Option<DeferredHit<'a>>,
     state: &mut TraversalState<C, V, O>,
 ) -> bool {
     if O::LISTENS {
@@ -164,10 +164,10 @@ fn triangles<'a, 'b, S: Simd, C: Collector, V: Visibility<'b>, O: Observer>(
             continue;
         }
         if C::NEAREST_FIRST && !C::ANY_HIT && tested.surely_hit.0 >> lane & 1 != 0 {
-            // A sure hit ends the ray; it is intersected exactly later, if none is surely nearer.
+            // A sure hit ends the ray; its exact test is deferred, and skipped if another hit is surely nearer.
             let [first, last] = tested.between();
             let (first, last) = (first[lane], last[lane]);
-            if let Some(earlier) = undecided {
+            if let Some(earlier) = deferred {
                 if first > earlier.last {
                     continue;
                 }
@@ -175,7 +175,7 @@ fn triangles<'a, 'b, S: Simd, C: Collector, V: Visibility<'b>, O: Observer>(
                     intersect_exact(earlier.block, earlier.lane, &exact(), state);
                 }
             }
-            *undecided = Some(Undecided { block, lane, first, last });
+            *deferred = Some(DeferredHit { block, lane, first, last });
             *end = if last < *end { last } else { *end };
         } else if intersect_exact(block, lane, &exact(), state) {
             return true;
@@ -184,8 +184,8 @@ fn triangles<'a, 'b, S: Simd, C: Collector, V: Visibility<'b>, O: Observer>(
     false
 }
 
-/// A triangle that is surely hit, between two distances, and is not yet intersected exactly.
-struct Undecided<'a> {
+/// A sure hit with bounds of its distance, whose exact test is deferred.
+struct DeferredHit<'a> {
     block: &'a TriangleBlock,
     lane: usize,
     first: f32,
@@ -205,9 +205,10 @@ pub(crate) fn intersect_exact<C: Collector, V, O>(
         .is_some_and(|crossing| report(crossing, block, lane, state))
 }
 
-/// The same for a triangle that is surely hit.
+/// The same for a sure hit.
 ///
-/// Not inlined: compiled for AVX-512, its scattered loads become vectors of 512 bits, which slow down all that is around them.
+/// Not inlined: compiled for AVX-512, its scattered loads become vectors of 512 bits, which slow down the
+/// surrounding code.
 #[inline(never)]
 pub(crate) fn intersect_sure<C: Collector, V, O>(
     block: &TriangleBlock,

@@ -1,7 +1,8 @@
-//! The traversal of rays in double precision.
+//! Traversal of rays in double precision.
 //!
-//! Plain scalar code over the same nodes, and the same exact tests, whose f64 is not rounded here. So for rays that are numbers of
-//! f32 the answers are those of single precision, but finer: hits that are equal in f32 are told apart.
+//! Plain scalar code over the same nodes, with the same exact tests, whose f64 results are not rounded here. So for
+//! rays whose numbers are f32 the results agree with single precision, but are finer: hits at equal t in f32 are
+//! distinguished.
 
 use crate::Bvh;
 use crate::aabb::Aabb;
@@ -17,7 +18,8 @@ use crate::vector::{round_down, round_up};
 use crate::visibility::{Masked, Visibility};
 use crate::{sphere, triangle};
 
-/// Room for rounding in distances along a ray, relative, 2⁻²⁰: that of the rays in f32, since the exact tests may use it all.
+/// Relative margin for rounding in distances along a ray, 2⁻²⁰: the same as for rays in f32, since the exact tests
+/// may use all of it.
 const ROOM: f64 = 9.536_743_164_062_5e-7;
 
 /// The closest hit.
@@ -32,7 +34,7 @@ pub(crate) fn closest_hit(settings: &Settings<'_>, ray: &RayF64, observer: &mut 
     closest
 }
 
-/// Whether there is a hit.
+/// True if there is a hit.
 pub(crate) fn occluded(settings: &Settings<'_>, ray: &RayF64, observer: &mut impl Observer) -> bool {
     let mut found = false;
     traverse(settings, ray, observer, |_| {
@@ -42,7 +44,7 @@ pub(crate) fn occluded(settings: &Settings<'_>, ray: &RayF64, observer: &mut imp
     found
 }
 
-/// Adds all hits to `hits`, which is empty, and sorts them by t and then as ties are decided.
+/// Adds all hits to `hits`, which must be empty, and sorts them by t, at equal t by rank.
 pub(crate) fn all_hits(
     settings: &Settings<'_>,
     ray: &RayF64,
@@ -62,14 +64,14 @@ pub(crate) fn closest_hits(settings: &Settings<'_>, rays: &[RayF64], hits: &mut 
     for_each(rays, hits, |number, ray, hit| *hit = closest_hit(&settings.from(number), ray, &mut ()));
 }
 
-/// Whether each ray has a hit.
+/// True for each ray that has a hit.
 pub(crate) fn occluded_many(settings: &Settings<'_>, rays: &[RayF64], occluded: &mut [bool]) {
     for_each(rays, occluded, |number, ray, occluded| {
         *occluded = self::occluded(&settings.from(number), ray, &mut ());
     });
 }
 
-/// Commits hits in the ray's range until none are left up to the t that `commit` returned last.
+/// Commits all hits in the ray's range up to the t that `commit` returned last.
 fn traverse(
     settings: &Settings<'_>,
     ray: &RayF64,
@@ -86,12 +88,12 @@ fn traverse(
     }
 }
 
-/// A ray on its way.
+/// A ray during traversal.
 struct Traversal<'a, O> {
     outer: &'a Bvh,
-    /// In the world.
+    /// The ray in world space.
     ray: &'a RayF64,
-    /// Hits beyond this are not wanted.
+    /// Hits beyond this are ignored.
     end: f64,
     visibility: Masked<'a>,
     observer: &'a mut O,
@@ -99,7 +101,7 @@ struct Traversal<'a, O> {
 }
 
 impl<O: Observer> Traversal<'_, O> {
-    /// Visits a node of a tree, in whose space the ray is, and all below it.
+    /// Visits a node of a tree and all nodes below it, with the ray in the tree's space.
     fn node(&mut self, bvh: &Bvh, ray: &ExactRay<f64>, instance: u32, number: usize) {
         self.observer.node(instance, number as u32);
         let (mut entered, count) = enter(&bvh.nodes[number], ray, self.ray.t_min);
@@ -124,7 +126,7 @@ impl<O: Observer> Traversal<'_, O> {
         }
     }
 
-    /// Whether a primitive is to be tested, which the observer hears of in any case.
+    /// True if a primitive must be tested. The observer is notified in any case.
     fn is_candidate(&mut self, instance: u32, (geometry, primitive): (u32, u32)) -> bool {
         self.observer.candidate(instance, geometry, primitive);
         self.visibility.shows(geometry, primitive)
@@ -170,7 +172,7 @@ impl<O: Observer> Traversal<'_, O> {
                         continue;
                     }
                     let [origin, direction] = [ray.origin, ray.direction].map(|x| x.map(|x| x as f32));
-                    // Ask one step beyond the end: a hit at the same t may win the tie.
+                    // Query one step beyond the end: a hit at the same t may win the tie.
                     let (t_min, t_max) =
                         (round_down(self.ray.t_min), round_up(self.end.min(self.ray.t_max)).next_up());
                     let asked = Ray { origin, t_min, direction, t_max };
@@ -195,13 +197,14 @@ impl<O: Observer> Traversal<'_, O> {
     }
 }
 
-/// Whether a ray can hit anything: its origin and direction, rounded to f32, are finite, and its direction is not zero.
+/// True if a ray can hit anything: its origin and direction, rounded to f32, are finite, and its direction is not
+/// zero.
 fn is_usable(ray: &ExactRay<f64>) -> bool {
     let finite = ray.origin.iter().chain(&ray.direction).all(|&x| (x as f32).is_finite());
     finite && ray.direction.iter().any(|&x| x as f32 != 0.0)
 }
 
-/// The children of a node that a line meets after `t_min`, and where it enters them.
+/// The children of a node that a line hits after `t_min`, and the t at which it enters them.
 fn enter(node: &Node, ray: &ExactRay<f64>, t_min: f64) -> ([(f64, Child); WIDTH], usize) {
     let mut entered = [(0.0, Child::ROOT); WIDTH];
     let mut count = 0;
@@ -219,7 +222,7 @@ fn enter(node: &Node, ray: &ExactRay<f64>, t_min: f64) -> ([(f64, Child); WIDTH]
     (entered, count)
 }
 
-/// Between which t a line is in a box; the first is beyond the second where it never is.
+/// The interval of t in which a line is inside a box; the first is larger than the second if it is empty.
 fn slabs(bounds: &Aabb, ray: &ExactRay<f64>) -> [f64; 2] {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {

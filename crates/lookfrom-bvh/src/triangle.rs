@@ -1,22 +1,22 @@
 //! The exact intersection of a ray with a triangle: Woop, Benthin, Wald (2013), in f64.
 //!
-//! Every triangle goes through two tests. The conservative test (see `conservative`) takes eight triangles at once in f32 and
-//! excludes those that the ray surely misses. The exact test takes one triangle in f64. It alone determines hits, so the same
-//! bits come out of every tree and every machine.
+//! Every triangle goes through two tests. The conservative test (see `conservative`) takes eight triangles at once
+//! in f32 and excludes those that the ray surely misses. The exact test takes one triangle in f64. It alone
+//! determines hits, so the same bits result for every tree and on every machine.
 //!
-//! The exact test is watertight: "Watertight Ray/Triangle Intersection". Corners are moved to
-//! the ray's origin and sheared so that the ray runs along one axis. A corner's two remaining coordinates come out the
-//! same for every triangle that has it, and signs of the edge functions are right for these coordinates: rounding is
-//! monotonous, so a difference of two rounded products has the sign of the exact one or is 0, and then the rounding
+//! The exact test is watertight: "Watertight Ray/Triangle Intersection". Corners are translated to the ray's origin
+//! and sheared so that the ray runs along one axis. A corner's two remaining coordinates are the same for every
+//! triangle that shares it, and the signs of the edge functions are right for these coordinates: rounding is
+//! monotonic, so a difference of two rounded products has the sign of the exact one or is 0, and then the rounding
 //! errors of the products decide. So rays see a plane mesh without gaps. An edge belongs to both of its triangles.
 //!
-//! `t` is the plane's, `n·(p0 − o) / n·d`, from differences of f32 values that f64 holds (nearly) exactly: its sign is
-//! right to about 10⁻¹⁵ of the triangle's size, however near the origin is to the plane.
+//! `t` is that of the plane, `n·(p0 − o) / n·d`, from differences of f32 values that f64 holds (nearly) exactly:
+//! its sign is right to about 10⁻¹⁵ of the triangle's size, however near the origin is to the plane.
 
 use crate::exact::{ExactRay, Rounded};
 use crate::vector::{cross, cross_magnitude, dot, subtract, wide};
 
-/// Where a triangle is met: `t`, and the weights of its second and third corner.
+/// The intersection with a triangle: `t`, and the barycentric weights of its second and third corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Crossing<T = f32> {
     pub(crate) t: T,
@@ -26,7 +26,7 @@ pub(crate) struct Crossing<T = f32> {
 
 /// The hit of a ray with a triangle, with `t_min < t`. The caller compares t with the ray's end.
 ///
-/// No component of the edges at the first corner is larger than `extent` (but for rounding to f32).
+/// No component of the edges at the first corner is larger than `extent` (up to rounding to f32).
 #[inline(always)]
 pub(crate) fn intersect_exact<T: Rounded>(
     ray: &ExactRay<T>,
@@ -45,7 +45,7 @@ pub(crate) fn intersect_exact<T: Rounded>(
         if determinant > CLEAR * product * (extent + widest(subtract(wide(corners[0]), ray.origin))) {
             meeting.round()
         } else if determinant > GRAZING * 6.5 * product * extent {
-            // No product of the determinant is larger: t is right, the weights may have lost their digits.
+            // No product of the determinant is larger: t is right, but the weights may have lost their digits.
             let [u, v] = sheared.weights();
             Crossing { t: T::rounded(meeting.t), u, v }
         } else {
@@ -59,23 +59,23 @@ fn widest([x, y, z]: [f64; 3]) -> f64 {
     x.abs().max(y.abs()).max(z.abs())
 }
 
-/// The hit with a triangle that the conservative test found surely hit, so that nothing else of [`intersect_exact`] is needed. Its
-/// determinant is clear: it is the sum of three edge functions that are beyond their error, and that error is
-/// `conservative::ERROR` relative to the same product as [`CLEAR`].
+/// The hit with a triangle that the conservative test found surely hit, so that the rest of [`intersect_exact`] is
+/// not needed. Its determinant is clear: it is the sum of three edge functions that exceed their error, and that
+/// error is `conservative::ERROR` relative to the same product as [`CLEAR`].
 #[inline(always)]
 pub(crate) fn intersect_sure(ray: &ExactRay, corners: &[[f32; 3]; 3]) -> Crossing {
     meet(ray, corners).round()
 }
 
-/// Whether the ray looks at the front of a triangle that it meets: the face from which its corners are seen
-/// counter-clockwise. Signs are those of the exact test, so a closed mesh is left through as many backs as it is entered
-/// through fronts.
+/// True if the ray hits the front face of a triangle: the face from which its corners are seen counter-clockwise.
+/// The signs are those of the exact test, so a ray leaves a closed mesh through as many back faces as it enters
+/// through front faces.
 pub(crate) fn is_front<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -> bool {
     let Sheared { edges: [u, v, w], along, .. } = Sheared::new(ray, corners);
     (u + v + w > 0.0) == (along > 0.0)
 }
 
-/// A meeting before it is rounded.
+/// An intersection before it is rounded.
 struct Meeting {
     determinant: f64,
     t: f64,
@@ -84,7 +84,7 @@ struct Meeting {
 }
 
 impl Meeting {
-    /// Weights that are less than 0 are so by their rounding alone.
+    /// Weights less than 0 can only result from rounding.
     #[inline(always)]
     fn round<T: Rounded>(&self) -> Crossing<T> {
         let weight = |x: f64| T::rounded(if x > 0.0 { x } else { 0.0 });
@@ -92,7 +92,8 @@ impl Meeting {
     }
 }
 
-/// Where a ray meets the plane of a triangle: Cramer's rule, as Möller and Trumbore (1997) arrange it.
+/// The intersection of a ray with the plane of a triangle: Cramer's rule in the form of Möller and
+/// Trumbore (1997).
 #[inline(always)]
 fn meet<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -> Meeting {
     let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
@@ -105,7 +106,8 @@ fn meet<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -> Meeting {
     Meeting { determinant, t: dot(n, c) * inverse, u: dot(e2, r) * inverse, v: -dot(e1, r) * inverse }
 }
 
-/// A triangle moved to the ray's origin and sheared so that the ray runs along the third axis, and its edge functions.
+/// A triangle translated to the ray's origin and sheared so that the ray runs along the third axis, with its edge
+/// functions.
 struct Sheared {
     corners: [[f64; 3]; 3],
     edges: [f64; 3],
@@ -118,8 +120,8 @@ impl Sheared {
     fn new<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -> Self {
         let [kx, ky, kz] = ray.axes();
         let d = ray.direction;
-        // Multiplying by the direction's length, in place of dividing by it, keeps whole numbers whole: edges and
-        // corners are met exactly.
+        // Multiplying by the direction's length instead of dividing by it keeps integers exact: edges and corners
+        // are hit exactly.
         let shear = |corner: usize| {
             let p = subtract(wide(corners[corner]), ray.origin);
             [d[kz] * p[kx] - d[kx] * p[kz], d[kz] * p[ky] - d[ky] * p[kz], p[kz]]
@@ -129,16 +131,17 @@ impl Sheared {
         Self { corners: [a, b, c], edges, along: d[kz] }
     }
 
-    /// Whether the ray meets the triangle or its edges. One that is seen edge on is not met.
+    /// True if the ray hits the triangle or its edges. A triangle seen edge-on is not hit.
     #[inline(always)]
     fn is_met(&self) -> bool {
         let [u, v, w] = self.edges;
-        // Without short cuts: which of the signs it is cannot be predicted.
+        // Without short-circuit evaluation: the signs cannot be predicted.
         let outside = ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0));
         !outside & (u + v + w != 0.0)
     }
 
-    /// The crossing where the ray runs nearly along the triangle's plane. NaN where it is before the ray.
+    /// The crossing where the ray runs nearly along the triangle's plane. NaN where it is behind the
+    /// ray's start.
     #[cold]
     #[inline(never)]
     fn grazing<T: Rounded>(&self, ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -> Crossing<T> {
@@ -152,13 +155,13 @@ impl Sheared {
         let mut t = if determinant.abs() > DETERMINANT_ERROR * magnitude {
             dot(n, subtract(p0, ray.origin)) / determinant
         } else {
-            // The ray runs along the plane, as far as f64 can tell: t is somewhere between the corners.
+            // The ray runs along the plane, within the accuracy of f64: t is somewhere between the corners.
             (u * a[2] + v * b[2] + w * c[2]) / (sum * self.along)
         };
         if !(T::rounded(t) > ray.t_min) {
             t = f64::NAN;
         } else if determinant.abs() < GRAZING * magnitude {
-            // Keep it inside the triangle's box, where every tree looks for it.
+            // Keep it inside the triangle's box, where every tree finds it.
             t = clamp_to_box(ray, corners, t);
         }
         let [u, v] = self.weights();
@@ -173,14 +176,14 @@ impl Sheared {
     }
 }
 
-/// Relative error of the determinant n·d, with much room: 2⁻⁴⁸ (rounding: about 6 · 2⁻⁵³).
+/// Relative error of the determinant n·d, with a large margin: 2⁻⁴⁸ (rounding: about 6 · 2⁻⁵³).
 const DETERMINANT_ERROR: f64 = 3.552_713_678_800_501e-15;
 
-/// Below this relative determinant, 2⁻³⁰, the errors of t and of the edge functions may differ by more than 2⁻²² of the
-/// triangle's size, which comes near the room of the box test.
+/// Below this relative determinant, 2⁻³⁰, the errors of t and of the edge functions may differ by more than 2⁻²² of
+/// the triangle's size, which comes close to the margin of the box test.
 const GRAZING: f64 = 9.313_225_746_154_785e-10;
 
-/// From this relative determinant on, 2⁻¹⁷, the weights of Cramer's rule have f32's digits.
+/// Above this relative determinant, 2⁻¹⁷, the weights of Cramer's rule have the accuracy of f32.
 const CLEAR: f64 = 7.629_394_531_25e-6;
 
 /// `p.x q.y − p.y q.x` with the right sign.
@@ -188,13 +191,13 @@ const CLEAR: f64 = 7.629_394_531_25e-6;
 fn edge_function(p: [f64; 3], q: [f64; 3]) -> f64 {
     let [first, second] = [p[0] * q[1], p[1] * q[0]];
     if first == second {
-        // The parts that were rounded away decide.
+        // The rounding errors of the products decide.
         return product_error(p[0], q[1], first) - product_error(p[1], q[0], second);
     }
     first - second
 }
 
-/// `a · b − product` exactly, where `product` is a · b rounded: Dekker (1971), Veltkamp's splitting.
+/// `a · b − product` exactly, where `product` is a · b rounded: Dekker (1971), with Veltkamp's splitting.
 #[cold]
 fn product_error(a: f64, b: f64, product: f64) -> f64 {
     let split = |x: f64| {
@@ -206,7 +209,7 @@ fn product_error(a: f64, b: f64, product: f64) -> f64 {
     ((ah * bh - product) + ah * bl + al * bh) + al * bl
 }
 
-/// Moves t into the interval in which the ray is inside the triangle's box.
+/// Clamps t to the interval in which the ray is inside the triangle's box.
 fn clamp_to_box<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3], t: f64) -> f64 {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
@@ -234,7 +237,7 @@ mod tests {
 
     #[test]
     fn a_wide_plane_one_ulp_beneath_the_origin() {
-        // The plane runs through height 0.1; the ray starts there, one unit above and one below, and runs off slanting.
+        // The plane is at height 0.1; the ray starts there, one ulp above and one below, and leaves at a slant.
         let height = 0.1_f32;
         let corners = [[-1e6, -1e6, height], [1e6, -1e6, height], [3.0, 1e6, height]];
         for direction in [[0.3, -0.2, 1.0], [0.3, -0.2, 1e-6], [1e3, 0.0, 1e-3]] {

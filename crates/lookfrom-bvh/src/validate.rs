@@ -7,7 +7,7 @@ use crate::aabb::Aabb;
 use crate::bvh::Leaf;
 use crate::node::{Content, LARGEST_DEPTH, Node, WIDTH};
 
-/// The content of a tree.
+/// Statistics of a tree.
 ///
 /// ```
 /// # use lookfrom_bvh::{Builder, Sphere};
@@ -20,27 +20,28 @@ use crate::node::{Content, LARGEST_DEPTH, Node, WIDTH};
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
-    /// Triangles that rays can meet.
+    /// Number of triangles in the tree.
     pub triangles: usize,
-    /// Spheres that rays can meet.
+    /// Number of spheres in the tree.
     pub spheres: usize,
-    /// Procedural shapes that rays can meet.
+    /// Number of procedural shapes in the tree.
     pub procedurals: usize,
-    /// Instances that rays can meet.
+    /// Number of instances in the tree.
     pub instances: usize,
-    /// Primitives and instances that no ray can meet and that are not in the tree.
+    /// Number of primitives and instances that no ray can hit and that are not in the tree.
     pub left_out: usize,
-    /// Nodes of up to eight children.
+    /// Number of nodes, of up to eight children.
     pub nodes: usize,
-    /// Leaves.
+    /// Number of leaves.
     pub leaves: usize,
-    /// Levels of nodes.
+    /// Number of levels of nodes.
     pub depth: usize,
-    /// Expected number of nodes and leaves that a random line through the tree's box visits: their areas' sum, relative to the root's.
+    /// Expected number of nodes and leaves that a random line through the tree's box visits: the sum of their
+    /// areas, relative to the root's.
     pub cost: f64,
 }
 
-/// A property that tracing relies on and that a tree does not have.
+/// A violated invariant of a tree.
 ///
 /// ```
 /// # use lookfrom_bvh::{Builder, Sphere};
@@ -64,7 +65,7 @@ impl fmt::Display for Invalid {
 impl std::error::Error for Invalid {}
 
 impl Bvh {
-    /// Counts the content, and trusts the tree.
+    /// Counts the content without checking the tree.
     pub(crate) fn take_statistics(&self) -> Statistics {
         let mut walk = Walk::default();
         if !self.nodes.is_empty() {
@@ -125,7 +126,7 @@ pub(crate) fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
     Ok(statistics)
 }
 
-/// The children of a node that are there.
+/// The non-empty children of a node.
 fn children(node: &Node) -> impl Iterator<Item = (usize, Aabb, Content)> + '_ {
     (0..WIDTH).filter_map(|slot| {
         let bounds = node.child_bounds(slot);
@@ -175,7 +176,7 @@ struct Check<'a> {
     spheres: Vec<bool>,
     procedurals: Vec<bool>,
     instances: Vec<bool>,
-    /// Geometry and primitive of all but instances.
+    /// Geometry and primitive of everything but instances.
     ids: Vec<(u32, u32)>,
 }
 
@@ -197,7 +198,7 @@ impl Check<'_> {
                     self.leaf(leaf)?
                 }
             };
-            // (Boxes are a little larger than the largest coordinate there may be.)
+            // (Boxes are a little larger than the largest allowed coordinate.)
             let is_finite = bounds.min.iter().chain(&bounds.max).all(|x| x.is_finite());
             if !is_finite || !bounds.contains(&inside) {
                 return Err(Invalid(format!(
@@ -253,7 +254,7 @@ impl Check<'_> {
     }
 }
 
-/// Notes that some items were reached, and fails where they are not there or were reached before.
+/// Marks items as reached, and fails where they do not exist or were reached before.
 fn mark(seen: &mut [bool], first: usize, count: u32, name: &str) -> Result<std::ops::Range<usize>, Invalid> {
     let range = first..first + count as usize;
     let Some(items) = seen.get_mut(range.clone()) else {

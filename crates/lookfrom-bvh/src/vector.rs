@@ -1,4 +1,4 @@
-//! The few operations on three components that the exact tests need.
+//! The vector operations of the exact tests.
 
 #[inline(always)]
 pub(crate) fn wide(a: [f32; 3]) -> [f64; 3] {
@@ -20,20 +20,20 @@ pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The cross product's terms with their signs taken away: the magnitude that its rounding errors are relative to.
+/// The cross product's terms without their signs: the magnitude that its rounding errors are relative to.
 pub(crate) fn cross_magnitude(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     let [a, b] = [a.map(f64::abs), b.map(f64::abs)];
     [a[1] * b[2] + a[2] * b[1], a[2] * b[0] + a[0] * b[2], a[0] * b[1] + a[1] * b[0]]
 }
 
-/// `x` as the nearest f32 that is not on the wrong side of it: not below for `up`, not above otherwise. Without a branch
-/// that depends on where `x` lies, since nobody can guess that.
+/// `x` rounded to the nearest f32 that is not below (`up`) or not above it. Without a branch that depends on `x`,
+/// since it could not be predicted.
 #[inline]
 pub(crate) fn round_toward(x: f64, up: bool) -> f32 {
     let nearest = x as f32;
     let wide = f64::from(nearest);
     let is_wrong = if up { wide < x } else { wide > x };
-    // One step in the order of the numbers is one step of the bits, forward or back by sign; from zero there is no such.
+    // The next float is one step of the bits, forward or back by sign, except from zero.
     if nearest == 0.0 && is_wrong {
         return if up { f32::from_bits(1) } else { -f32::from_bits(1) };
     }
@@ -62,7 +62,7 @@ mod tests {
         let mut seed = 1_u64;
         for _ in 0..100_000 {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            // random exponents of f32 and beyond
+            // Random exponents of f32 and beyond.
             let bits = seed & !(0x7ff << 52) | (860 + (seed >> 20) % 300) << 52;
             let x = f64::from_bits(bits);
             assert_eq!(round_up(x).to_bits(), up(x).to_bits(), "{x:e}");

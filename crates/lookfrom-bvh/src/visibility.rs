@@ -1,6 +1,7 @@
 //! The part of the geometry that a query sees: masks, faces, and the exclusion of the origin primitive.
 //!
-//! Each kind of visibility is a type, so that queries about everything are compiled apart and pay nothing.
+//! Each kind of visibility is a type, so that queries of the whole tree are compiled separately, without
+//! overhead.
 
 use crate::Bvh;
 use crate::conservative::TriangleBlock;
@@ -13,10 +14,10 @@ use lookfrom_simd::LaneMask;
 
 /// The faces of surfaces that rays hit.
 ///
-/// A triangle's front is where its corners are seen counter-clockwise, a sphere's is its outside. In an instance the
-/// faces are those that the object has in its own space: the outside of a closed object stays its outside in a mirror.
-/// Procedural shapes have no faces that the tree knows of and are hit from any side; their
-/// [`intersect`](crate::Procedural::intersect) may choose.
+/// A triangle's front is the side from which its corners are seen counter-clockwise, a sphere's is its outside. In
+/// an instance the faces are those of the object in its own space: the outside of a closed object remains its
+/// outside under a reflection. Procedural shapes have no faces that the tree knows of and are hit from any side;
+/// their [`intersect`](crate::Procedural::intersect) may choose.
 ///
 /// ```
 /// # use lookfrom_bvh::{Builder, Faces, Ray, Sphere};
@@ -30,12 +31,12 @@ use lookfrom_simd::LaneMask;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Faces {
-    /// Both.
+    /// Both faces.
     #[default]
     Both,
-    /// Only those that the ray meets from their front: back faces are culled.
+    /// Front faces only: back faces are culled.
     Front,
-    /// Only those that the ray meets from behind: front faces are culled.
+    /// Back faces only: front faces are culled.
     Back,
 }
 
@@ -52,13 +53,13 @@ impl Faces {
 
 /// The part of the geometry that one ray sees.
 pub(crate) trait Visibility<'a>: Copy {
-    /// Whether there may be an origin primitive, so that [`Self::origin`] is to be asked.
+    /// True if there may be an origin primitive, so that [`Self::origin`] must be called.
     const HAS_ORIGIN: bool;
 
-    /// Whether masks or faces may hide primitives, so that the other methods are to be asked.
+    /// True if masks or faces may hide primitives, so that the other methods must be called.
     const SELECTS: bool;
 
-    /// The visibility of the ray with a number among those of a query.
+    /// The visibility for the ray with index `number` of a query.
     fn of(settings: &Settings<'a>, number: usize) -> Self;
 
     /// The primitive that the ray starts on.
@@ -67,18 +68,19 @@ pub(crate) trait Visibility<'a>: Copy {
         OriginPrimitive::NONE
     }
 
-    /// The ray is about to enter an instance, named by its place in the outer tree's list. False where it is not to.
+    /// Called before the ray enters an instance, given by its index in the outer tree's list. Returns false if the
+    /// instance is hidden.
     #[inline(always)]
     fn enter_instance(&mut self, place: usize) -> bool {
         let _ = place;
         true
     }
 
-    /// The ray is in the outer tree again.
+    /// Called when the ray is back in the outer tree.
     #[inline(always)]
     fn leave_instance(&mut self) {}
 
-    /// Whether the ray sees a primitive of the tree that it is in.
+    /// True if the ray sees a primitive of the current tree.
     #[inline(always)]
     fn shows(&self, geometry: u32, primitive: u32) -> bool {
         let _ = (geometry, primitive);
@@ -91,7 +93,7 @@ pub(crate) trait Visibility<'a>: Copy {
         Faces::Both
     }
 
-    /// Whether a triangle of an instance, or of none, is the one that the ray starts on.
+    /// True if a triangle, in an instance or not, is the ray's origin primitive.
     #[inline(always)]
     fn is_origin(&self, instance: u32, triangle: (u32, u32)) -> bool {
         Self::HAS_ORIGIN && self.origin().is(instance, triangle)
@@ -112,7 +114,7 @@ impl Visibility<'_> for Everything {
     }
 }
 
-/// All but the triangle that the ray starts on.
+/// All but the origin primitive.
 #[derive(Clone, Copy)]
 pub(crate) struct ExceptOrigin(OriginPrimitive);
 
@@ -131,14 +133,14 @@ impl Visibility<'_> for ExceptOrigin {
     }
 }
 
-/// The primitives whose masks and faces are those of the query, but for the triangle that the ray starts on.
+/// The primitives selected by the query's mask and faces, except the origin primitive.
 #[derive(Clone, Copy)]
 pub(crate) struct Masked<'a> {
     mask: Option<u32>,
     faces: Faces,
     origin: OriginPrimitive,
     outer: &'a Bvh,
-    /// Those of the tree that the ray is in.
+    /// The masks of the current tree.
     masks: &'a Masks,
 }
 
@@ -180,7 +182,8 @@ impl<'a> Visibility<'a> for Masked<'a> {
     }
 }
 
-/// Those of some lanes that a ray sees. Lanes that the ray misses may be wrong: there a face is not defined.
+/// The lanes that a ray sees among the given ones. Lanes that the ray misses may be wrong, because they have
+/// no defined face.
 #[inline(never)]
 pub(crate) fn shown<'a, V: Visibility<'a>>(
     visibility: &V,

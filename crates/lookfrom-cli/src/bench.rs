@@ -1,4 +1,4 @@
-//! `lookfrom bench`: rendering speed, and the noise left per time.
+//! `lookfrom bench`: rendering speed, and error × time.
 
 use std::path::Path;
 use std::time::Instant;
@@ -16,10 +16,10 @@ use crate::exit::{self, DONE, Failure, answer};
 use crate::prepare::{self, prepare};
 use crate::{json, report};
 
-/// Samples a pixel where nobody said.
+/// Default number of samples per pixel.
 const SAMPLES: u32 = 16;
 
-/// What a scene took; the keys are explained in docs/guide/command.md.
+/// Measurements of a scene; docs/guide/command.md explains the keys.
 #[derive(Debug, Serialize)]
 pub(crate) struct Measured {
     scene: String,
@@ -34,10 +34,10 @@ pub(crate) struct Measured {
     bias: [f64; 3],
 }
 
-/// Measures every scene; goes on after one that fails, with the code of the first failure.
+/// Measures every scene and returns the exit code. A scene that fails does not stop the others; its code is kept.
 pub(crate) fn run(arguments: &BenchArguments) -> u8 {
     let usage = (arguments.reference.is_some() && arguments.scenes.len() > 1)
-        .then(|| Failure::Usage("--reference is for one scene".to_owned()));
+        .then(|| Failure::Usage("--reference works with one scene only".to_owned()));
     if let Some(failure) = usage.or_else(|| prepare::use_threads(&arguments.common).err()) {
         return failure.report();
     }
@@ -64,13 +64,13 @@ const HEADING: &str =
     "scene                     samples  seconds  Msamples/s   Mrays/s  relative MSE  error × s";
 
 fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure> {
-    // Nothing is written that could take the place of an input.
+    // No file is written, so no input can be overwritten.
     let inputs = Inputs::default();
     let environment = prepare::environment(&arguments.overrides, &inputs)?;
     let most = if arguments.time.is_some() { MOST_SAMPLES } else { SAMPLES };
     let options = Options {
         samples: Some(arguments.overrides.samples.unwrap_or(most)),
-        // What is measured is how light is computed.
+        // Light transport is measured, without the denoiser.
         denoise: Some(false),
         stop: StopCriteria { time: arguments.time, noise: None },
         ..arguments.overrides.options(&arguments.common, environment.as_ref())
@@ -78,14 +78,14 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
     let session = prepare(path, &arguments.common, &options, &inputs)?;
     exit::say_warnings(session.warnings());
 
-    // What is measured.
+    // The measured render.
     let renderer = session.renderer();
     let started = Instant::now();
     let rendered = renderer.render_until(&options.stop, options.threads, &());
     let Rendered { film, rays, samples, samples_taken, .. } = rendered.map_err(exit::in_scene(path))?;
     let seconds = report::seconds(started.elapsed()).max(1e-6);
 
-    // What it is measured by.
+    // The reference.
     let reference = match &arguments.reference {
         Some(file) => read(file, None, &inputs)?,
         None => {
@@ -125,7 +125,7 @@ impl Measured {
     fn row(&self) -> String {
         let Self { samples, render_seconds, relative_mse, error_time, .. } = self;
         let path = Path::new(&self.scene);
-        // Scenes of other programs often have one name in folders of different ones.
+        // Scenes of other programs often share a file name (`scene.pbrt`) and differ in the folder.
         let parts: Vec<_> =
             path.components().rev().take(2).map(|part| part.as_os_str().to_string_lossy()).collect();
         let name = parts.into_iter().rev().collect::<Vec<_>>().join("/");

@@ -17,10 +17,10 @@ use crate::exit::{self, BAD_SCENE, DONE, Failure, answer, say};
 use crate::html::{self, Shown};
 use crate::{json, output};
 
-/// Noise in a mean is no reason to call it wrong: up to this many standard errors.
+/// A difference of means up to this many standard errors is explained by noise.
 const MOST_STANDARD_ERRORS_OF_MEAN: f64 = 3.5;
 
-/// What is said of a pair; the keys are explained in docs/guide/command.md.
+/// Result of the comparison of a pair; docs/guide/command.md explains the keys.
 #[derive(Debug, Serialize)]
 pub(crate) struct Verdict {
     pub(crate) picture: String,
@@ -35,7 +35,7 @@ pub(crate) struct Verdict {
     pub(crate) passed: bool,
 }
 
-/// What noise explains.
+/// Result of the z-tests against the measured variances.
 #[derive(Debug, Serialize)]
 pub(crate) struct Noise {
     pub(crate) channels: NoiseChannels,
@@ -45,18 +45,18 @@ pub(crate) struct Noise {
     pub(crate) relative_error_of_mean: f64,
 }
 
-/// What noise is measured in.
+/// Channels of the variances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) enum NoiseChannels {
-    /// The standard observer's.
+    /// X, Y and Z of the standard observer.
     #[serde(rename = "XYZ")]
     Xyz,
-    /// Those of the sensor that a picture, or the command line, names.
+    /// Those of the sensor that a picture or the command line names.
     #[serde(rename = "sensor")]
     Sensor,
 }
 
-/// Compares every pair.
+/// Compares every pair and returns the exit code.
 pub(crate) fn run(arguments: &CompareArguments) -> u8 {
     match compare_all(arguments) {
         Ok(code) => code,
@@ -94,7 +94,7 @@ fn compare_all(arguments: &CompareArguments) -> Result<u8, Failure> {
     Ok(code)
 }
 
-/// Both sides, and the map between them.
+/// A picture, its reference and their FLIP map.
 struct Pictures {
     picture: Sampled,
     reference: Sampled,
@@ -119,7 +119,7 @@ fn compare_pair(
     if channels.is_none() && a.variances.is_some() && b.variances.is_some() {
         let (picture, reference) = (picture.display(), reference.display());
         say(&format!(
-            "warning: {picture} and {reference} know the noise of different sensors: it is not compared"
+            "warning: {picture} and {reference} have variances of different sensors: noise is not compared"
         ));
     }
     let Comparison { means, relative, rmse, relative_mse, noise } =
@@ -162,7 +162,7 @@ fn passes(verdict: &Verdict, arguments: &CompareArguments) -> bool {
     means && pixels && verdict.not_finite == 0
 }
 
-/// A picture of any format, which joins `inputs`; only an EXR knows its noise.
+/// Reads a picture of any format and records it in `inputs`; only an EXR can have variances.
 pub(crate) fn read(path: &Path, samples: Option<u64>, inputs: &Inputs) -> Result<Sampled, Failure> {
     let files = inputs.record(&Disk, "the comparison");
     let mut context = LoadContext::new(&files);
@@ -186,7 +186,7 @@ fn exposed(of: &Sampled, stops: f32) -> Vec<[f32; 3]> {
 }
 
 impl Pictures {
-    /// As PNGs, for the report.
+    /// The pictures as PNGs, for the report.
     fn shown(self, verdict: Verdict, exposure: f32) -> Result<Shown, Failure> {
         let (width, height) = (self.picture.width, self.picture.pixels.len() / self.picture.width);
         let png = |bytes: &[u8]| {
@@ -223,7 +223,7 @@ fn mean_light(verdict: &Verdict) -> f32 {
 }
 
 impl Verdict {
-    /// For a person.
+    /// The result as text.
     pub(crate) fn for_people(&self) -> String {
         let percent = |share: f64| format!("{:+.3} %", share * 100.0);
         let mean = |mean: [f64; 3]| mean.map(|channel| format!("{channel:.6}")).join(" ");
@@ -231,11 +231,11 @@ impl Verdict {
             Some(noise) => {
                 let [channels, second] = match noise.channels {
                     NoiseChannels::Xyz => ["X, Y, Z", "Y"],
-                    NoiseChannels::Sensor => ["the sensor's channels", "the second"],
+                    NoiseChannels::Sensor => ["the sensor's channels", "the second channel"],
                 };
                 format!(
                     "\n  noise       {:.2} % of the pixels and {:.2} % of the blocks within 3.5 standard errors; the means differ by \
-                     {} ({channels}), one is {:.3} % of {second}",
+                     {} standard errors ({channels}); one standard error is {:.3} % of {second}",
                     noise.pixels_within * 100.0,
                     noise.blocks_within * 100.0,
                     noise.mean.map(|z| format!("{z:+.2}")).join(" "),
@@ -252,7 +252,7 @@ impl Verdict {
             "{} against {}: {}\n  means       {} against {}\n  difference  {}\n  errors      RMSE {:.6}, relative MSE {:.6}, FLIP {:.4}{noise}{not_finite}",
             self.picture,
             self.reference,
-            if self.passed { "as it should be" } else { "too far away" },
+            if self.passed { "passed" } else { "failed" },
             mean(self.means[0]),
             mean(self.means[1]),
             self.relative.map(percent).join(" "),
@@ -263,15 +263,13 @@ impl Verdict {
     }
 }
 
-/// The pair of numbers of samples, `N,M`.
+/// Samples per pixel of picture and reference, `N,M`.
 pub(crate) fn samples(typed: &str) -> Result<[u64; 2], String> {
     let numbers: Option<Vec<u64>> = typed.split(',').map(|number| number.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some(&[picture, reference]) if picture > 0 && reference > 0 => Ok([picture, reference]),
-        _ => {
-            Err("expected two numbers of samples a pixel, those of the picture and of the reference: 64,1024"
-                .to_owned())
-        }
+        _ => Err("expected two numbers of samples per pixel, of the picture and of the reference: 64,1024"
+            .to_owned()),
     }
 }
 
@@ -286,7 +284,7 @@ pub(crate) fn sensor(typed: &str) -> Result<Sensor, String> {
             let cameras = CameraSensor::all().map(CameraSensor::name);
             let known: Vec<&str> = std::iter::once(Sensor::OBSERVER).chain(cameras).collect();
             return Err(format!(
-                "expected a sensor, with its white balance after a comma, if any: canon_eos_5d_mkiv,5000; there are {}",
+                "expected a sensor, with an optional white balance after a comma: canon_eos_5d_mkiv,5000; the sensors are {}",
                 known.join(", ")
             ));
         }

@@ -1,8 +1,8 @@
 //! Diagnostics for a terminal: message, location, source line, help.
 //!
-//! All have one form, which is also that of compilers: `error: …`, then the place as `--> file:line:column`, one word to
-//! search for or to click on, and the line with carets, then `help: …`. What the parser of the command line says looks alike
-//! and ends with the way to `--help`. Colours are those of that parser; the printer removes them where they are not wanted.
+//! All have the form of compiler errors: `error: …`, then the location as `--> file:line:column`, which terminals make
+//! clickable, the source line with carets, and `help: …`. Errors about the command line have the same form and end with a
+//! pointer to `--help`. Colours are clap's; the printer removes them where they are not wanted.
 
 use std::fmt::Write;
 
@@ -11,31 +11,31 @@ use clap::builder::styling::{AnsiColor, Style};
 use lookfrom_scene::excerpt::{Excerpt, Excerpts};
 use lookfrom_scene::{Disk, Error, Files, Result};
 
-/// The last words of what is wrong with a command line, as the parser has them.
+/// Last line of an error about the command line, as clap has it.
 const TO_HELP: &str = "\n\nFor more information, try '--help'.";
 
 /// The frame around a line of a file.
 const FRAME: Style = AnsiColor::Blue.on_default().bold();
 
-/// An error without a place.
+/// An error without a location.
 pub(crate) fn plain(message: &str) -> String {
     let error = *Styles::styled().get_error();
     format!("{error}error:{error:#} {message}")
 }
 
-/// The command line makes no sense for this scene, which its parser could not know.
+/// An error about the command line that only the scene reveals.
 pub(crate) fn of_usage(message: &str) -> String {
     plain(message) + TO_HELP
 }
 
-/// What the parser says of the command line; what it calls a tip is called help like everywhere else.
+/// An error of clap about the command line. Its `tip:` becomes `help:`, as everywhere else.
 pub(crate) fn of_clap(error: &clap::Error) -> String {
     let valid = *Styles::styled().get_valid();
     let [tip, help] = ["tip:", "help:"].map(|word| format!("{valid}{word}{valid:#}"));
     error.render().ansi().to_string().replace(&tip, &help)
 }
 
-/// What is wrong in files, with the lines that are wrong.
+/// Errors in files, with the lines that they point at.
 pub(crate) fn of_files(error: &Error) -> String {
     let mut excerpts = Excerpts::new(&Regular);
     let (few, left) = error.first_few();
@@ -50,7 +50,7 @@ fn of_file(error: &Error, excerpt: Option<Excerpt>) -> String {
     let styles = Styles::styled();
     let (red, green) = (*styles.get_error(), *styles.get_valid());
     let at = &error.at;
-    // Of a file as a whole the message says something only together with its name.
+    // An error about a file as a whole has the file's name in its message.
     let mut text = match at.line {
         0 => plain(&format!("{at}: {}", error.message)),
         _ => plain(&error.message),
@@ -73,7 +73,7 @@ fn of_file(error: &Error, excerpt: Option<Excerpt>) -> String {
     text
 }
 
-/// The disk, but nothing that can be read only once, or would be waited for.
+/// Regular files on disk. Pipes and devices, which may block or can be read only once, are refused.
 struct Regular;
 
 impl Files for Regular {

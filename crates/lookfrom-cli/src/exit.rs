@@ -9,28 +9,28 @@ use lookfrom_scene::{Error, ErrorKind, Location, Warning, WarningGroup, WarningK
 
 use crate::diagnostic;
 
-/// All that was asked is done.
+/// Success.
 pub(crate) const DONE: u8 = 0;
 /// A scene could not be read or is invalid.
 pub(crate) const BAD_SCENE: u8 = 1;
-/// The command line does not make sense, by itself or for this scene.
+/// The command line is invalid, by itself or for this scene.
 pub(crate) const BAD_USAGE: u8 = 2;
 /// The output could not be written.
 pub(crate) const BAD_OUTPUT: u8 = 3;
 /// Stopped by Ctrl-C or SIGTERM.
 pub(crate) const INTERRUPTED: u8 = 130;
 
-/// More kinds of warnings than this about one scene are only counted.
+/// Lines of warnings (and of notes) shown for one scene; the rest is only counted.
 const MOST_WARNINGS: usize = 20;
 
-/// Why a subcommand cannot go on.
+/// Reason why a subcommand fails.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// A scene could not be read or is invalid.
     Scene(Error),
-    /// Warnings that are not harmless where `--strict` allows none.
+    /// Warnings other than notes, under `--strict`.
     Strict(Vec<Warning>),
-    /// The command line does not make sense, by itself or for this scene.
+    /// The command line is invalid, by itself or for this scene.
     Usage(String),
     /// The output could not be written.
     Output(String),
@@ -46,7 +46,7 @@ impl Failure {
         }
     }
 
-    /// Says it on stderr, in the way of [`diagnostic`], and gives back the exit code.
+    /// Prints it on stderr as a [`diagnostic`] and returns the exit code.
     pub(crate) fn report(&self) -> u8 {
         say_in_color(&match self {
             Self::Scene(error) => diagnostic::of_files(error),
@@ -63,7 +63,7 @@ impl fmt::Display for Failure {
             Self::Scene(error) => error.fmt(f),
             Self::Strict(warnings) => {
                 let lines = listed(warnings, WarningKind::Warning);
-                write!(f, "warnings, which --strict makes errors:\n  {}", lines.join("\n  "))
+                write!(f, "warnings, which are errors under --strict:\n  {}", lines.join("\n  "))
             }
             Self::Usage(message) | Self::Output(message) => message.fmt(f),
         }
@@ -79,7 +79,7 @@ impl From<Error> for Failure {
     }
 }
 
-/// What is wrong with a scene; where no place is known, its file is the place.
+/// Turns an error into a failure of the scene at `path`; an error without a location gets the file as its location.
 pub(crate) fn in_scene(path: &Path) -> impl Fn(Error) -> Failure {
     move |mut error| {
         for at in std::iter::once(&mut error.at).chain(error.more.iter_mut().map(|error| &mut error.at)) {
@@ -93,29 +93,29 @@ pub(crate) fn in_scene(path: &Path) -> impl Fn(Error) -> Failure {
     }
 }
 
-/// Says what was wrong with the command line, or the help that it asks for, and gives back the exit code.
+/// Prints clap's error about the command line, or the requested help, and returns the exit code.
 pub(crate) fn not_parsed(error: &clap::Error) -> u8 {
     if error.use_stderr() {
         say_in_color(diagnostic::of_clap(error).trim_end());
     } else {
-        // Where nobody listens any more, nothing is lost.
+        // A closed stdout is not an error.
         let _ = error.print();
     }
     u8::try_from(error.exit_code()).unwrap_or(BAD_USAGE)
 }
 
-/// Whether `--strict` allows none of them: one is not harmless.
+/// Whether `--strict` makes these warnings an error: one of them is not a note.
 pub(crate) fn is_bad(warnings: &[Warning]) -> bool {
     warnings.iter().any(|warning| warning.kind == WarningKind::Warning)
 }
 
-/// Warnings of a kind, in one line those that say the same of several places.
+/// Warnings of a kind; those with the same message at several locations are one line.
 pub(crate) fn lines(warnings: &[Warning], kind: WarningKind) -> Vec<String> {
     let groups = WarningGroup::of(warnings);
     groups.iter().filter(|group| group.kind() == kind).map(ToString::to_string).collect()
 }
 
-/// The first few of those lines, and how many more there are.
+/// The first [`MOST_WARNINGS`] of those lines, and the number of the others.
 fn listed(warnings: &[Warning], kind: WarningKind) -> Vec<String> {
     let mut lines = lines(warnings, kind);
     if lines.len() > MOST_WARNINGS {
@@ -126,24 +126,24 @@ fn listed(warnings: &[Warning], kind: WarningKind) -> Vec<String> {
     lines
 }
 
-/// Says warnings on stderr: those that matter for the picture, then the harmless ones.
+/// Prints warnings on stderr: first those that matter for the picture, then the harmless ones (notes).
 pub(crate) fn say_warnings(warnings: &[Warning]) {
     for (kind, word) in [(WarningKind::Warning, "warning"), (WarningKind::Notice, "note")] {
         listed(warnings, kind).iter().for_each(|line| say(&format!("{word}: {line}")));
     }
 }
 
-/// Writes a line to stderr. Where nobody listens any more, nothing is lost.
+/// Writes a line to stderr. A closed stderr is not an error.
 pub(crate) fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
-/// Writes lines with colours to stderr, or without where it is no terminal that shows them, or nobody wants them.
+/// Writes lines to stderr, in colour where the terminal and the user's settings allow it.
 fn say_in_color(lines: &str) {
     let _ = writeln!(anstream::stderr(), "{lines}");
 }
 
-/// Writes a line to stdout. A reader that has closed the pipe (`| head`) has read enough.
+/// Writes a line to stdout. A closed pipe (`| head`) is not an error.
 ///
 /// # Errors
 /// `Output` where it cannot be written for another reason.
@@ -157,7 +157,7 @@ pub(crate) fn answer(line: &str) -> Result<(), Failure> {
     }
 }
 
-/// Whether a person looks at stderr.
+/// Whether stderr is a terminal.
 pub(crate) fn stderr_is_terminal() -> bool {
     std::io::stderr().is_terminal()
 }

@@ -1,22 +1,25 @@
-//! The report of a comparison as one HTML file with everything in it.
+//! Report of a comparison as one self-contained HTML file.
 
 use std::fmt::Write;
 
 use crate::compare::Verdict;
 
-/// A pair as it is shown.
+/// A compared pair with the pictures to show.
 pub(crate) struct Shown {
     /// Captions and PNGs.
     pub(crate) pictures: [(&'static str, Vec<u8>); 4],
     pub(crate) verdict: Verdict,
 }
 
-/// What is said to each kind of picture.
+/// Captions of the pictures by name.
 const CAPTIONS: [(&str, &str); 4] = [
     ("picture", "the picture"),
     ("reference", "the reference"),
-    ("difference", "red: the picture is brighter, blue: darker; full at a quarter of the light"),
-    ("FLIP", "what the eye sees when the two alternate: black nothing, white all"),
+    (
+        "difference",
+        "relative difference of luminance; red: the picture is brighter, blue: darker; saturated at a quarter",
+    ),
+    ("FLIP", "visible difference when the two alternate: black none, white the largest"),
 ];
 
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;margin:2rem;background:#1b1b1d;color:#ddd}\
@@ -50,7 +53,7 @@ pub(crate) fn report(pairs: &[Shown]) -> String {
     page + "</body></html>\n"
 }
 
-/// One line a pair.
+/// Table with one row per pair.
 fn overview(pairs: &[Shown]) -> String {
     let mut table =
         "<table><tr><th>picture</th><th>red</th><th>green</th><th>blue</th><th>pixels within</th>\
@@ -60,7 +63,7 @@ fn overview(pairs: &[Shown]) -> String {
         let [red, green, blue] = verdict.relative.map(|share| format!("{:+.3} %", share * 100.0));
         let share = |of: Option<f64>| of.map_or("–".to_owned(), |share| format!("{:.2} %", share * 100.0));
         let noise = verdict.noise.as_ref();
-        let (class, word) = if verdict.passed { ("good", "good") } else { ("bad", "too far away") };
+        let (class, word) = if verdict.passed { ("good", "passed") } else { ("bad", "failed") };
         let _ = writeln!(
             table,
             "<tr><td>{}</td><td>{red}</td><td>{green}</td><td>{blue}</td><td>{}</td><td>{}</td><td>{:.4}</td><td>{:.6}</td>\
@@ -75,7 +78,7 @@ fn overview(pairs: &[Shown]) -> String {
     table + "</table>\n"
 }
 
-/// How much brighter `a` is than `b`, in shares of both and a little of the picture's mean: -1 … 1.
+/// Signed relative difference of luminance, `a` − `b` over the mean of both plus a tenth of the picture's mean: -1 … 1.
 pub(crate) fn signed_difference(a: [f32; 3], b: [f32; 3], mean: f32) -> f32 {
     let light = |rgb: [f32; 3]| 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
     let (a, b) = (light(a), light(b));
@@ -83,7 +86,7 @@ pub(crate) fn signed_difference(a: [f32; 3], b: [f32; 3], mean: f32) -> f32 {
     if scale > 0.0 { ((a - b) / scale).clamp(-1.0, 1.0) } else { 0.0 }
 }
 
-/// Red above 0, blue below, black between; full from a quarter on.
+/// Red above 0, blue below, black at 0; saturated from ±¼ on.
 pub(crate) fn signed_color(difference: f32) -> [u8; 3] {
     let level = (difference.abs() * 4.0).min(1.0);
     let full = (level * 255.0 + 0.5) as u8;
@@ -91,7 +94,7 @@ pub(crate) fn signed_color(difference: f32) -> [u8; 3] {
     if difference > 0.0 { [full, half, 0] } else { [0, half, full] }
 }
 
-/// From black over violet, red and orange to white: brighter is more.
+/// Heat map from black over violet, red and orange to white.
 pub(crate) fn heat_color(error: f32) -> [u8; 3] {
     const STOPS: [[f32; 3]; 6] = [
         [0.0, 0.0, 0.0],

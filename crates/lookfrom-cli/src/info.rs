@@ -1,4 +1,4 @@
-//! `lookfrom info`: what is in scenes and models, and what they become.
+//! `lookfrom info`: contents of scenes and models, their settings, and statistics of the BVH.
 
 mod object;
 
@@ -22,7 +22,7 @@ use crate::json;
 use crate::prepare::{self, prepare};
 use crate::report::{self, bytes, thousands};
 
-/// Describes every scene; goes on after one that fails, with the code of the first failure.
+/// Describes every scene and returns the exit code. A scene that fails does not stop the others; its code is kept.
 pub(crate) fn run(arguments: &InfoArguments) -> u8 {
     if let Err(failure) = prepare::use_threads(&arguments.common) {
         return failure.report();
@@ -52,7 +52,7 @@ fn info(path: &Path, arguments: &InfoArguments) -> Result<(), Failure> {
     answer(&for_people(path, &session))
 }
 
-/// What a tree consists of. Those of objects, which instances share, are not counted in.
+/// Statistics of the top-level BVH. The trees of objects, which instances share, are not included.
 #[derive(Serialize)]
 struct Tree {
     nodes: usize,
@@ -126,7 +126,7 @@ fn for_people(path: &Path, session: &Session) -> String {
     let Tree { nodes, leaves, depth, memory_bytes, left_out } = tree(session);
     let mut tree = format!("{nodes} nodes, {leaves} leaves, depth {depth}, {}", bytes(memory_bytes as u64));
     if left_out > 0 {
-        let _ = write!(tree, "; {left_out} primitives without size or place left out");
+        let _ = write!(tree, "; {left_out} degenerate or non-finite primitives left out");
     }
     line("bvh", tree);
     line(
@@ -136,7 +136,7 @@ fn for_people(path: &Path, session: &Session) -> String {
     lines.join("\n")
 }
 
-/// What is there, kind by kind; kinds of which there is nothing are left out.
+/// Counts of the contents by kind; kinds with a count of 0 are left out.
 fn contents(counts: &Counts, line: &mut impl FnMut(&str, String)) {
     let kinds = |kinds: &std::collections::BTreeMap<&'static str, u64>| {
         let each: Vec<String> =
@@ -162,7 +162,7 @@ fn contents(counts: &Counts, line: &mut impl FnMut(&str, String)) {
     line("lights", kinds(&counts.lights));
 }
 
-/// What one can choose from by name or number; where there is no choice, nothing is said.
+/// Lists of the scenes, animations, variants and cameras that can be selected by name or number; empty lists are left out.
 fn choices(contents: &Contents, line: &mut impl FnMut(&str, String)) {
     let mut list = |kind: &str, entries: Vec<String>| {
         if !entries.is_empty() {
@@ -189,7 +189,7 @@ fn choices(contents: &Contents, line: &mut impl FnMut(&str, String)) {
                 format!("perspective, {}", projection_in_words(*seen))
             }
             Some(seen) => projection_in_words(*seen),
-            None => "numbers out of range".to_owned(),
+            None => "values out of range".to_owned(),
         };
         format!("{} ({projection})", quoted(name))
     };
@@ -199,11 +199,9 @@ fn choices(contents: &Contents, line: &mut impl FnMut(&str, String)) {
 fn projection_in_words(projection: Projection) -> String {
     match projection {
         Projection::Perspective { fov } => format!("fov {}°", digits(fov)),
-        Projection::Orthographic { height } => format!("parallel rays, height {}", digits(height)),
-        Projection::Equirectangular | Projection::EquirectangularPbrt => {
-            "all around by latitude and longitude".to_owned()
-        }
-        Projection::Octahedral => "all around on an octahedral square".to_owned(),
+        Projection::Orthographic { height } => format!("orthographic, height {}", digits(height)),
+        Projection::Equirectangular | Projection::EquirectangularPbrt => "equirectangular".to_owned(),
+        Projection::Octahedral => "octahedral".to_owned(),
     }
 }
 
@@ -212,12 +210,16 @@ fn camera_in_words(camera: &Camera) -> String {
         View::Look { lookfrom, lookat, up } => {
             format!("lookfrom {}, lookat {}, up {}", numbers(lookfrom), numbers(lookat), numbers(up))
         }
-        View::Matrix(matrix) => format!("lookfrom {}, by a matrix", numbers(matrix.w_axis.truncate())),
+        View::Matrix(matrix) => format!("lookfrom {}, given by a matrix", numbers(matrix.w_axis.truncate())),
     };
     let _ = write!(text, ", {}", projection_in_words(camera.projection));
     if let Some(lens) = camera.lens {
-        let _ =
-            write!(text, ", lens of radius {} sharp at {}", digits(lens.radius), digits(lens.focus_distance));
+        let _ = write!(
+            text,
+            ", lens radius {}, focus distance {}",
+            digits(lens.radius),
+            digits(lens.focus_distance)
+        );
     }
     text
 }
@@ -227,7 +229,7 @@ fn numbers(v: DVec3) -> String {
     format!("{},{},{}", digits(v.x), digits(v.y), digits(v.z))
 }
 
-/// A number to six digits.
+/// A number to six significant digits.
 fn digits(x: f64) -> String {
     format!("{x:.5e}").parse::<f64>().unwrap_or(x).to_string()
 }

@@ -29,19 +29,19 @@ fn follow(arguments: &InspectArguments) -> Result<(), Failure> {
     let (width, height) = (session.image().width, session.image().height);
     if x >= width || y >= height {
         return Err(Failure::Usage(format!(
-            "pixel {x} {y} is not in the picture of {width} × {height} pixels"
+            "pixel {x} {y} is outside of the picture of {width} × {height} pixels"
         )));
     }
     let samples = session.settings().samples;
     if sample >= samples {
         return Err(Failure::Usage(format!(
-            "there is no sample {sample}: the picture has {samples} samples a pixel, counted from 0"
+            "there is no sample {sample}: the picture has {samples} samples per pixel, counted from 0"
         )));
     }
     report(session.renderer(), SampleId { pixel: [x, y], sample }, arguments, &inputs)
 }
 
-/// Answers as text or JSON, and with a drawing where one is asked for.
+/// Prints the inspection as text or JSON, and writes the drawing of `--svg`.
 fn report(
     renderer: &Renderer,
     id: SampleId,

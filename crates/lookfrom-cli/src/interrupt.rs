@@ -1,5 +1,5 @@
-//! Ctrl-C and SIGTERM: while a picture is being made, the first asks for an end that keeps what there is; the second, or one
-//! when there is nothing to keep, ends at once.
+//! Ctrl-C and SIGTERM. While a picture is rendered, the first signal requests a stop that keeps the picture so far; a second
+//! one, or one while there is nothing to keep, ends the process at once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -8,7 +8,7 @@ use crate::exit::{INTERRUPTED, say};
 static ASKED: AtomicBool = AtomicBool::new(false);
 static SOMETHING_TO_KEEP: AtomicBool = AtomicBool::new(false);
 
-/// Listens from now on. Call it once.
+/// Installs the signal handler. Call it once.
 pub(crate) fn listen() {
     let listening = ctrlc::set_handler(|| {
         let asked_before = ASKED.swap(true, Ordering::SeqCst);
@@ -17,16 +17,16 @@ pub(crate) fn listen() {
         }
     });
     if let Err(error) = listening {
-        say(&format!("warning: Ctrl-C will end at once, without a picture: {error}"));
+        say(&format!("warning: Ctrl-C will end the process at once, without writing the picture: {error}"));
     }
 }
 
-/// Whether an end was asked for.
+/// Whether a stop was requested.
 pub(crate) fn asked() -> bool {
     ASKED.load(Ordering::SeqCst)
 }
 
-/// Does work that heeds [`asked`] by itself and keeps what there is.
+/// Runs work that checks [`asked`] by itself and keeps its result when stopped.
 pub(crate) fn keeping<T>(work: impl FnOnce() -> T) -> T {
     SOMETHING_TO_KEEP.store(true, Ordering::SeqCst);
     let result = work();

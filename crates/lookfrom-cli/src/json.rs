@@ -1,6 +1,5 @@
-//! The JSON that the command writes. JSON has no numbers that are not finite; they are written as the strings "NaN",
-//! "Infinity" and "-Infinity" (the JSON mapping of Protocol Buffers, proto3), so that `null` always means that there is
-//! nothing.
+//! JSON output. JSON has no NaN or infinities; they are written as the strings "NaN", "Infinity" and "-Infinity" (the JSON
+//! mapping of Protocol Buffers, proto3), so that `null` always means an absent value.
 
 use serde::ser::{
     Serialize, SerializeMap, SerializeSeq, SerializeStruct, SerializeStructVariant, SerializeTuple,
@@ -9,7 +8,7 @@ use serde::ser::{
 
 /// A value on one line.
 pub(crate) fn line(value: &impl Serialize) -> String {
-    // What is written here has neither keys nor types that could fail.
+    // None of the values has keys or types that serde_json refuses.
     serde_json::to_string(&Named(value)).unwrap_or_default()
 }
 
@@ -18,7 +17,7 @@ pub(crate) fn document(value: &impl Serialize) -> String {
     serde_json::to_string_pretty(&Named(value)).unwrap_or_default()
 }
 
-/// The name of a number that JSON does not have.
+/// The string for a number that JSON cannot represent.
 fn name(number: f64) -> Option<&'static str> {
     match number {
         _ if number.is_nan() => Some("NaN"),
@@ -28,7 +27,7 @@ fn name(number: f64) -> Option<&'static str> {
     }
 }
 
-/// A value whose numbers have names where JSON has none for them.
+/// A value whose non-finite numbers are serialized as strings.
 struct Named<'a, T: ?Sized>(&'a T);
 
 impl<T: Serialize + ?Sized> Serialize for Named<'_, T> {
@@ -37,7 +36,7 @@ impl<T: Serialize + ?Sized> Serialize for Named<'_, T> {
     }
 }
 
-/// A serializer, or a part of one, that hands everything on but names these numbers.
+/// A serializer, or a part of one, that forwards everything but writes non-finite numbers as strings.
 struct Naming<S>(S);
 
 macro_rules! hand_on {

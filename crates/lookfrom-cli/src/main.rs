@@ -1,7 +1,7 @@
 //! The command `lookfrom`: files in, pictures out.
 //!
-//! A door: it parses what a person asks, calls the libraries and shows the answer. One file a subcommand. What was typed
-//! ([`args`]) is kept apart from what it changes in a scene ([`overrides`]).
+//! A front end: it parses arguments, calls the libraries and prints the results. Each subcommand has its own file. Arguments as
+//! typed ([`args`]) are kept apart from the session options that they become ([`overrides`]).
 
 mod args;
 mod bench;

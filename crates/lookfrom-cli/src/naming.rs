@@ -1,4 +1,4 @@
-//! Names of pictures: from the names of their scenes and the pattern after `-o`.
+//! File names of pictures, from the names of their scenes and the pattern after `-o`.
 
 use std::collections::HashMap;
 use std::ffi::{OsStr, OsString};
@@ -12,10 +12,10 @@ use lookfrom_scene::{Disk, Files};
 use crate::exit::Failure;
 use crate::output::{Target, folder_or_here};
 
-/// What a pattern can say of a scene.
+/// A placeholder of a pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Word {
-    /// Its name without folder and extension.
+    /// The scene's name without folder and extension.
     Name,
     /// Its folder, as typed.
     Dir,
@@ -25,7 +25,7 @@ enum Word {
     Number,
 }
 
-/// The words of patterns.
+/// The placeholders by name.
 const WORDS: [(&str, Word); 4] =
     [("name", Word::Name), ("dir", Word::Dir), ("parent", Word::Parent), ("n", Word::Number)];
 
@@ -45,11 +45,11 @@ struct Numbered<'a> {
     count: usize,
 }
 
-/// Where the pictures of scenes go, by what was typed after `-o`; everything that can be known before scenes are read is
-/// checked.
+/// Targets of the pictures of all scenes, from the argument of `-o`. Checks everything that can be known before scenes are
+/// read.
 ///
 /// # Errors
-/// `Usage` for an unknown format, several scenes for one file, a pattern that makes no sense, or a picture to a terminal;
+/// `Usage` for an unknown format, several scenes for one file, an invalid pattern, or a picture to a terminal;
 /// `Output` where a folder cannot be written to.
 pub(crate) fn targets(scenes: &[PathBuf], output: Option<&Path>, json: bool) -> Result<Vec<Target>, Failure> {
     let count = scenes.len();
@@ -62,7 +62,7 @@ pub(crate) fn targets(scenes: &[PathBuf], output: Option<&Path>, json: bool) -> 
         }
         if std::io::stdout().is_terminal() {
             return usage(
-                "a picture is not written to a terminal; give -o a file, or send stdout to a pipe or file",
+                "a picture cannot be written to a terminal; give -o a file, or redirect stdout to a pipe or file",
             );
         }
     }
@@ -82,7 +82,7 @@ pub(crate) fn targets(scenes: &[PathBuf], output: Option<&Path>, json: bool) -> 
     Ok(targets)
 }
 
-/// The error that two pictures would be one file.
+/// The error that two pictures would have the same file name.
 fn same_name(first: &Path, second: &Path, path: &Path) -> Failure {
     let extension = path.extension().unwrap_or_default().display();
     Failure::Usage(format!(
@@ -94,7 +94,7 @@ fn same_name(first: &Path, second: &Path, path: &Path) -> Failure {
     ))
 }
 
-/// Where the picture of a scene goes.
+/// Target of the picture of one scene.
 fn target(of: Numbered<'_>, output: Option<&Path>) -> Result<Target, Failure> {
     let mut default_name = stem(of.scene).to_owned();
     default_name.push(".png");
@@ -108,11 +108,11 @@ fn target(of: Numbered<'_>, output: Option<&Path>) -> Result<Target, Failure> {
             )),
         };
     }
-    // What is no text has no words.
+    // A name that is not Unicode has no placeholders.
     let pieces = output.to_str().map(pieces).transpose()?;
     let has_words = pieces.iter().flatten().any(|piece| matches!(piece, Piece::Word(_)));
     let output = pieces.map_or_else(|| output.to_owned(), |pieces| filled(&pieces, of));
-    // Several scenes go into a folder; one goes there if it is there or its name ends like a folder's.
+    // Several scenes go into a folder; one scene does if the folder exists or its name ends with a separator.
     let ends_like_folder = output.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
     if output.is_dir() || ends_like_folder {
         return file(output.join(default_name));
@@ -132,7 +132,7 @@ fn target(of: Numbered<'_>, output: Option<&Path>) -> Result<Target, Failure> {
     file(output.join(default_name))
 }
 
-/// The parts of a pattern: `{word}` is a word, `{{` and `}}` are braces.
+/// The parts of a pattern: `{word}` is a placeholder, `{{` and `}}` are literal braces.
 fn pieces(typed: &str) -> Result<Vec<Piece>, Failure> {
     let wrong = |what: String, hint: String| {
         Err(Failure::Usage(format!("-o {typed}: {what}\n  help: {hint}; {{{{ and }}}} stand for braces")))
@@ -150,12 +150,15 @@ fn pieces(typed: &str) -> Result<Vec<Piece>, Failure> {
             continue;
         }
         let Some((word, behind)) = behind.split_once('}').filter(|_| brace == "{") else {
-            return wrong(format!("a single {brace}"), format!("what can stand in braces is {}", known()));
+            return wrong(format!("a single {brace}"), format!("the placeholders are {}", known()));
         };
         let Some(&(_, found)) = WORDS.iter().find(|(known, _)| *known == word) else {
             let near = nearest(word, WORDS.map(|(word, _)| word));
             let meant = near.map_or(String::new(), |near| format!("did you mean {{{near}}}? "));
-            return wrong(format!("there is no {{{word}}}"), format!("{meant}there are {}", known()));
+            return wrong(
+                format!("there is no {{{word}}}"),
+                format!("{meant}the placeholders are {}", known()),
+            );
         };
         pieces.extend([Piece::Text(std::mem::take(&mut text)), Piece::Word(found)]);
         rest = behind;
@@ -164,7 +167,7 @@ fn pieces(typed: &str) -> Result<Vec<Piece>, Failure> {
     Ok(pieces)
 }
 
-/// What a pattern comes to for a scene.
+/// The file name that a pattern gives for a scene.
 fn filled(pieces: &[Piece], Numbered { scene, index, count }: Numbered<'_>) -> PathBuf {
     let mut name = OsString::new();
     let folder = folder_or_here(scene.parent());
@@ -183,7 +186,7 @@ fn filled(pieces: &[Piece], Numbered { scene, index, count }: Numbered<'_>) -> P
     name.into()
 }
 
-/// The last name in the path of a folder; where that is `.` or `..`, the name that the file system has.
+/// The last component of a folder's path; where that is `.` or `..`, the folder's name in the file system.
 fn name_of_folder(folder: &Path) -> OsString {
     if let Some(Component::Normal(name)) = folder.components().next_back() {
         return name.to_owned();
@@ -269,13 +272,13 @@ mod tests {
             assert_eq!(of(&["a.toml"], Some(wrong)), Err(2), "{wrong}");
         }
         let message = |typed: &str| pieces(typed).unwrap_err().to_string();
-        let all = "there are {name}, {dir}, {parent}, {n}; {{ and }} stand for braces";
+        let all = "the placeholders are {name}, {dir}, {parent}, {n}; {{ and }} stand for braces";
         assert_eq!(
             message("{nam}.png"),
             format!("-o {{nam}}.png: there is no {{nam}}\n  help: did you mean {{name}}? {all}")
         );
         assert_eq!(message("{width}"), format!("-o {{width}}: there is no {{width}}\n  help: {all}"));
-        assert!(message("a}").starts_with("-o a}: a single }\n  help: what can stand in braces is {name}, "));
+        assert!(message("a}").starts_with("-o a}: a single }\n  help: the placeholders are {name}, "));
     }
 
     #[test]

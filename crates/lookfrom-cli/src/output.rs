@@ -1,5 +1,5 @@
-//! Where pictures go and in which format: decided and tried before anything is rendered, and written so that a file is there
-//! as a whole or not at all, and never in the place of one that was read.
+//! Output files and their formats. Targets are checked before anything is rendered; files are replaced atomically, and input
+//! files are never overwritten.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
@@ -10,7 +10,7 @@ use lookfrom_scene::{Disk, Inputs};
 
 use crate::exit::Failure;
 
-/// Where a picture goes.
+/// Target of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
     /// A PNG to stdout.
@@ -20,7 +20,7 @@ pub(crate) enum Target {
 }
 
 impl Target {
-    /// What it is called.
+    /// Its name in messages and summaries.
     pub(crate) fn name(&self) -> String {
         match self {
             Self::Stdout => "-".to_owned(),
@@ -28,7 +28,7 @@ impl Target {
         }
     }
 
-    /// Where the picture of this number goes, of `count` of the same scene: NAME-000.png for NAME.png.
+    /// Target of picture `number` of `count` of the same scene: NAME-000.png for NAME.png.
     pub(crate) fn numbered(&self, number: u32, count: u32) -> Self {
         let Self::File(path, format) = self else { return self.clone() };
         let digits = (count - 1).to_string().len().max(3);
@@ -38,7 +38,7 @@ impl Target {
         Self::File(path.with_file_name(name), *format)
     }
 
-    /// The format of the picture there.
+    /// The format of the picture.
     pub(crate) fn format(&self) -> Format {
         match self {
             Self::Stdout => Format::Png,
@@ -46,12 +46,12 @@ impl Target {
         }
     }
 
-    /// Whether something is there already.
+    /// Whether the file already exists.
     pub(crate) fn exists(&self) -> bool {
         matches!(self, Self::File(path, _) if path.exists())
     }
 
-    /// Refuses to write over a file that was read.
+    /// Refuses to overwrite a file that was read.
     ///
     /// # Errors
     /// `Output` where this target is such a file.
@@ -62,10 +62,10 @@ impl Target {
         }
     }
 
-    /// Puts bytes there.
+    /// Writes the bytes of a picture.
     ///
     /// # Errors
-    /// `Output` where that is not possible or would overwrite an input; what was there before is then still there.
+    /// `Output` where that fails or would overwrite an input; an existing file then stays as it was.
     pub(crate) fn write(&self, bytes: &[u8], inputs: &Inputs) -> Result<(), Failure> {
         match self {
             Self::Stdout => std::io::stdout()
@@ -76,7 +76,7 @@ impl Target {
         }
     }
 
-    /// Whether it seems that the picture can be put there. Folders that are missing are made when there is a picture.
+    /// Checks, as far as possible, that the picture can be written. Missing folders are created only when there is a picture.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         let Self::File(path, _) = self else { return Ok(()) };
         let wrong = |message: String| Err(Failure::Output(message));
@@ -97,7 +97,7 @@ impl Target {
     }
 }
 
-/// Refuses to write over a file that was read; `option` says where another name can be given.
+/// Refuses to overwrite a file that was read. The error names `option` as the way to give another name.
 ///
 /// # Errors
 /// `Output` where `path` leads to such a file.
@@ -108,7 +108,7 @@ pub(crate) fn keep_inputs(path: &Path, inputs: &Inputs, option: &str) -> Result<
         reader if reader == name => "the scene itself".to_owned(),
         reader => format!("an input of {reader}"),
     };
-    let spelled = if input.path == path { String::new() } else { format!(", by the name {name}") };
+    let spelled = if input.path == path { String::new() } else { format!(", under the name {name}") };
     let extension = path.extension().unwrap_or_default().display();
     Err(Failure::Output(format!(
         "cannot write {}: it is {what}{spelled}\n  help: give the output another name: {option} other.{extension}",
@@ -116,10 +116,10 @@ pub(crate) fn keep_inputs(path: &Path, inputs: &Inputs, option: &str) -> Result<
     )))
 }
 
-/// Writes a file beside the one that is meant, then lets it take its place. Folders that are missing are made.
+/// Writes a temporary file beside `path` and renames it to `path`. Missing folders are created.
 ///
 /// # Errors
-/// `Output` where it cannot be written, or would take the place of an input; `option` as for [`keep_inputs`].
+/// `Output` where it cannot be written or would overwrite an input; `option` as for [`keep_inputs`].
 pub(crate) fn replace_file(path: &Path, bytes: &[u8], inputs: &Inputs, option: &str) -> Result<(), Failure> {
     keep_inputs(path, inputs, option)?;
     let folder = folder_or_here(path.parent());
@@ -129,7 +129,7 @@ pub(crate) fn replace_file(path: &Path, bytes: &[u8], inputs: &Inputs, option: &
         .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
         .and_then(|()| fs::rename(&partial, path));
     if let Err(error) = written {
-        // The first error is the one to tell of.
+        // The first error is reported; one of the clean-up is not.
         let _ = fs::remove_file(&partial);
         return Err(Failure::Output(format!("cannot write {}: {error}", path.display())));
     }
@@ -137,12 +137,12 @@ pub(crate) fn replace_file(path: &Path, bytes: &[u8], inputs: &Inputs, option: &
     Ok(())
 }
 
-/// A name for a file that no other process uses.
+/// Name of the temporary file, unique to this process.
 fn partial() -> String {
     format!(".lookfrom-{}.partial", std::process::id())
 }
 
-/// The folder of a file by the path's parent.
+/// The folder of a file, from the parent of its path: `.` where that is empty.
 pub(crate) fn folder_or_here(parent: Option<&Path>) -> &Path {
     parent.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

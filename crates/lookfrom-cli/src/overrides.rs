@@ -6,7 +6,7 @@ use lookfrom_scene::image::Image;
 use crate::args::{Common, Overrides};
 
 impl Overrides {
-    /// The options, with the picture of the surroundings that was read for them.
+    /// The session options, with the environment map of `--environment`.
     pub(crate) fn options(&self, common: &Common, environment: Option<&Image>) -> Options {
         let [width, height] = match self.model.size {
             Some(size) => size.map(Some),

@@ -12,8 +12,8 @@ use crate::exit::{self, Failure};
 /// A session of a scene or model file. Every file that is read joins `inputs`.
 ///
 /// # Errors
-/// `Scene` where the file cannot be read or made into a world, `Usage` where the options do not suit it, `Strict` where it
-/// gives warnings that `--strict` does not allow: all that are not harmless.
+/// `Scene` where the file cannot be read or compiled into a world, `Usage` where the options do not suit it, `Strict` where
+/// `--strict` is given and there are warnings other than notes.
 pub(crate) fn prepare(
     path: &Path,
     common: &Common,
@@ -28,7 +28,7 @@ pub(crate) fn prepare(
     Ok(session)
 }
 
-/// The picture of the surroundings that the command line names, read once for all scenes.
+/// The environment map of `--environment`, read once for all scenes.
 ///
 /// # Errors
 /// `Scene` where it cannot be read.
@@ -38,7 +38,7 @@ pub(crate) fn environment(overrides: &Overrides, inputs: &Inputs) -> Result<Opti
     Ok(Some(image::read(path, &mut LoadContext::new(&files))?))
 }
 
-/// Reads scenes for nothing but the files that they read, which join `inputs`. What is wrong with them is told when they are
+/// Reads scenes only to record their input files in `inputs`. Errors are ignored here; they are reported when the scenes are
 /// prepared.
 pub(crate) fn read_ahead(scenes: &[PathBuf], overrides: &Overrides, inputs: &Inputs) {
     for scene in scenes {
@@ -50,10 +50,10 @@ pub(crate) fn read_ahead(scenes: &[PathBuf], overrides: &Overrides, inputs: &Inp
     }
 }
 
-/// Sets how many threads build and render. Call it once, before anything else.
+/// Sets the number of threads for builds and renders. Call it once, before anything else.
 ///
 /// # Errors
-/// `Usage` where there are no such threads to be had.
+/// `Usage` where the threads cannot be started.
 pub(crate) fn use_threads(common: &Common) -> Result<(), Failure> {
     let Some(threads) = common.threads else { return Ok(()) };
     rayon::ThreadPoolBuilder::new()

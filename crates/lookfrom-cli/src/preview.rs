@@ -1,4 +1,4 @@
-//! Previews: the picture so far, written repeatedly by a thread of its own.
+//! Previews: the picture so far, written at intervals by a separate thread.
 
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -8,20 +8,20 @@ use lookfrom::film::Picture;
 use lookfrom::render::TileDone;
 use lookfrom_scene::settings::{ImageSettings, PixelBounds};
 
-/// A picture, and how many samples a pixel it has on average, rounded down.
+/// A picture, and its mean number of samples per pixel, rounded down.
 pub(crate) type SoFar = (Picture, u64);
 
-/// Puts the picture together from its tiles, says when it is time for another one to be written, and hands it on.
+/// Assembles the picture from its tiles and sends it to the writer at intervals.
 pub(crate) struct Preview {
     every: Duration,
-    /// How many pixels are computed.
+    /// The number of pixels in the crop window.
     pixels: u64,
     so_far: Mutex<(Picture, Instant)>,
     sender: SyncSender<SoFar>,
 }
 
 impl Preview {
-    /// Starts the clock. The writer takes pictures from the receiver until there are no more.
+    /// Starts the clock. The writer receives pictures until the channel closes.
     pub(crate) fn start(every: Duration, image: &ImageSettings) -> (Self, Receiver<SoFar>) {
         let (sender, receiver) = sync_channel(0);
         let &ImageSettings { width, height, crop, .. } = image;
@@ -33,7 +33,7 @@ impl Preview {
         (Self { every, pixels, so_far: Mutex::new((picture, Instant::now())), sender }, receiver)
     }
 
-    /// Adds a tile, and hands the picture on if it is time; not while the last one is still being written.
+    /// Adds a tile, and sends the picture if the interval has passed and the writer is not busy with the last one.
     pub(crate) fn add(&self, tile: TileDone) {
         let Some(of_tile) = tile.picture else { return };
         let mut so_far = self.so_far.lock().unwrap_or_else(std::sync::PoisonError::into_inner);

@@ -10,18 +10,18 @@ use crate::exit::stderr_is_terminal;
 use crate::interrupt;
 use crate::preview::Preview;
 
-/// Shows and remembers how far a render is.
+/// Progress of a render: the bar on stderr, the count of samples, and the preview.
 pub(crate) struct Watcher {
     bar: Option<ProgressBar>,
     started: Instant,
     done: AtomicU64,
-    /// When the render will be ended by the clock.
+    /// The time limit of the render.
     time: Option<Duration>,
     preview: Option<Preview>,
 }
 
 impl Watcher {
-    /// Starts the clock. A bar is shown unless `quiet`, or where stderr is no terminal; it ends at `time` if there is one.
+    /// Starts the clock. A bar is shown unless `quiet` or where stderr is not a terminal; it ends at `time` if there is one.
     pub(crate) fn start(quiet: bool, time: Option<Duration>, preview: Option<Preview>) -> Self {
         let bar = (!quiet && stderr_is_terminal()).then(|| {
             let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
@@ -31,7 +31,7 @@ impl Watcher {
         Self { bar, started: Instant::now(), done: AtomicU64::new(0), time, preview }
     }
 
-    /// Takes the bar away and says how many samples were taken.
+    /// Removes the bar and returns the number of samples taken.
     pub(crate) fn finish(self) -> u64 {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
@@ -43,7 +43,7 @@ impl Watcher {
 impl Progress for Watcher {
     fn tile(&self, tile: TileDone) {
         let TileDone { done, total, rays, .. } = tile;
-        // Threads may come here out of order; the greatest number is the latest.
+        // Threads may report out of order; the largest count is the latest.
         self.done.fetch_max(done, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
             let elapsed = self.started.elapsed();

@@ -18,19 +18,19 @@ use crate::progress::Watcher;
 use crate::report::{self, Summary};
 use crate::{interrupt, naming};
 
-/// Renders every scene; goes on after one that fails, with the code of the first failure.
+/// Renders every scene and returns the exit code. A scene that fails does not stop the others; its code is kept.
 pub(crate) fn run(arguments: &RenderArguments) -> u8 {
     let ready = naming::targets(&arguments.scenes, arguments.output.as_deref(), arguments.json)
         .and_then(|targets| prepare::use_threads(&arguments.common).map(|()| targets));
     let ready = ready.and_then(|targets| match arguments.write_every {
-        Some(_) if targets.contains(&Target::Stdout) => Err(Failure::Usage(
-            "--write-every needs a file to write again and again; -o - is none".to_owned(),
-        )),
+        Some(_) if targets.contains(&Target::Stdout) => {
+            Err(Failure::Usage("--write-every needs an output file; -o - is stdout".to_owned()))
+        }
         _ => Ok(targets),
     });
     let ready = ready.and_then(|targets| match arguments.turntable {
         Some(_) if targets.contains(&Target::Stdout) => {
-            Err(Failure::Usage("--turntable makes several files; -o - is none".to_owned()))
+            Err(Failure::Usage("--turntable writes several files; -o - is stdout".to_owned()))
         }
         _ => Ok(targets),
     });
@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &RenderArguments) -> u8 {
         Err(failure) => return failure.report(),
     };
     interrupt::listen();
-    // A picture may be in the place of what a later scene reads. Where there is nothing yet, nothing can be lost.
+    // A picture may overwrite an input of a later scene. Where no output file exists yet, nothing can be lost.
     if targets.len() > 1 && targets.iter().flat_map(|target| pictures(target, arguments)).any(|t| t.exists())
     {
         prepare::read_ahead(&arguments.scenes, &arguments.overrides, &inputs);
@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &RenderArguments) -> u8 {
     code
 }
 
-/// Where the pictures of one scene go: one, or those of a turntable.
+/// Targets of the pictures of one scene: one, or those of a turntable.
 fn pictures(target: &Target, arguments: &RenderArguments) -> Vec<Target> {
     match arguments.turntable {
         None => vec![target.clone()],
@@ -76,7 +76,7 @@ fn pictures(target: &Target, arguments: &RenderArguments) -> Vec<Target> {
     }
 }
 
-/// Renders all pictures of one scene, which is read once, and says what was done; gives the exit code.
+/// Renders all pictures of one scene, which is read once, prints the summaries and returns the exit code.
 fn render_all(
     path: &Path,
     target: &Target,
@@ -122,7 +122,7 @@ fn render_all(
     Ok(DONE)
 }
 
-/// Refuses pictures in the place of files that were read, and a scene that reads a picture of this call.
+/// Refuses pictures that would overwrite an input, and a scene that reads a picture of this call.
 fn keep_inputs(path: &Path, targets: &[Target], inputs: &Inputs) -> Result<(), Failure> {
     targets.iter().try_for_each(|target| target.keep_inputs(inputs))?;
     let scene = path.display().to_string();
@@ -143,7 +143,7 @@ fn render_picture(
     arguments: &RenderArguments,
     inputs: &Inputs,
 ) -> Result<Summary, Failure> {
-    // Render, and write what there is in between.
+    // Render, and write previews meanwhile.
     let started = Instant::now();
     let finished = std::thread::scope(|scope| {
         let preview = arguments.write_every.map(|every| {
@@ -159,7 +159,7 @@ fn render_picture(
     let render_time = report::seconds(started.elapsed());
     let finished = finished.map_err(exit::in_scene(path))?;
 
-    // Write; before the first sample there is nothing that could be called a picture.
+    // Write, unless the render was stopped before the first sample.
     let started = Instant::now();
     let has_picture = finished.rendered.samples_taken > 0;
     if has_picture {
@@ -176,7 +176,7 @@ fn render_picture(
     Ok(summary)
 }
 
-/// Writes pictures as they come. One that cannot be written is told of once; the last one, by others, is what counts.
+/// Writes previews as they arrive. Only the first failure is reported; the final picture is written elsewhere.
 fn write_previews(target: &Target, session: &Session, pictures: &Receiver<SoFar>, inputs: &Inputs) {
     let mut told = false;
     for (picture, mean) in pictures {

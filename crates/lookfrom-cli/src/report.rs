@@ -13,18 +13,18 @@ use serde::Serialize;
 use crate::exit::{self, Failure};
 use crate::json;
 
-/// What was done for one scene. The names are those of the JSON object, which docs/guide/command.md explains.
+/// Summary of the render of one scene. The names are those of the JSON object, which docs/guide/command.md explains.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     pub(crate) scene: String,
-    /// `None` where it was stopped before there was a picture.
+    /// `None` where the render was stopped before there was a picture.
     pub(crate) output: Option<String>,
     pub(crate) width: u32,
     pub(crate) height: u32,
     pub(crate) samples: u32,
     pub(crate) samples_taken: u64,
     pub(crate) ended_by: &'static str,
-    /// `None` where there are too few samples to say.
+    /// `None` where there are too few samples for an estimate.
     pub(crate) relative_error: Option<f64>,
     pub(crate) integrator: &'static str,
     pub(crate) denoised: bool,
@@ -35,9 +35,9 @@ pub(crate) struct Summary {
     pub(crate) triangles: u64,
     pub(crate) spheres: u64,
     pub(crate) instances: u64,
-    /// By which the picture may differ from what was meant.
+    /// Warnings: the picture may differ from what was meant.
     pub(crate) warnings: Vec<String>,
-    /// Harmless ones.
+    /// Notes: harmless warnings.
     pub(crate) notices: Vec<String>,
     pub(crate) cancelled: bool,
     pub(crate) dropped_samples: Dropped,
@@ -61,14 +61,14 @@ pub(crate) struct RayCounts {
     pub(crate) total: u64,
 }
 
-/// Samples that were not finite and left out.
+/// Samples that were not finite and were left out.
 #[derive(Debug, Serialize)]
 pub(crate) struct Dropped {
     pub(crate) count: u64,
     pub(crate) first: Option<DroppedAddress>,
 }
 
-/// Which sample of which pixel.
+/// Pixel and index of a dropped sample.
 #[derive(Debug, Serialize)]
 pub(crate) struct DroppedAddress {
     pub(crate) x: u32,
@@ -89,7 +89,7 @@ impl From<SampleId> for DroppedAddress {
 }
 
 impl Summary {
-    /// What was done, but for where the picture went and how long that took.
+    /// The summary without the output's name and the times of render and write.
     pub(crate) fn new(session: &Session, finished: &Finished) -> Self {
         let (info, rendered) = (session.info(), &finished.rendered);
         let film = &rendered.film;
@@ -123,7 +123,7 @@ impl Summary {
         }
     }
 
-    /// Adds how long it took to render and to write, in seconds.
+    /// Adds the times of render and write, in seconds, and the memory.
     pub(crate) fn measured(&mut self, render: f64, write: f64) {
         (self.seconds.render, self.seconds.write) = (render, write);
         self.mrays_per_s = self.rays.total as f64 * 1e-6 / render.max(1e-6);
@@ -147,7 +147,7 @@ impl Summary {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{scene} → {output}: {width} × {height} pixels, {samples} samples each, {integrator}{}",
+            "{scene} → {output}: {width} × {height} pixels, {samples} samples per pixel, {integrator}{}",
             if self.denoised { ", denoised" } else { "" }
         );
         let _ = writeln!(
@@ -173,20 +173,20 @@ impl Summary {
                 let error = self.relative_error.map_or("unknown".to_owned(), |error| format!("{error:.4}"));
                 write!(
                     text,
-                    "\n  enough  by {}: at most {samples} samples a pixel, {} on average; relative error {error}",
+                    "\n  stopped by {}: at most {samples} samples per pixel, {} on average; relative error {error}",
                     self.ended_by, self.samples_taken
                 )
             }
         };
         if let Dropped { count, first: Some(DroppedAddress { x, y, sample }) } = self.dropped_samples {
-            // The inspector knows the scene's number of samples, not what a time limit made of it.
+            // The inspector knows the scene's number of samples, not the number that a time or noise limit led to.
             let of = match self.ended_by {
                 "time" | "noise" => format!(" --samples {samples}"),
                 _ => String::new(),
             };
             let _ = write!(
                 text,
-                "\nwarning: {count} samples were not finite and were left out; the first is replayed, with the same options, by\n  \
+                "\nwarning: {count} samples were not finite and were left out; to replay the first, with the same options:\n  \
                  lookfrom inspect {scene} {x} {y} --sample {sample}{of}"
             );
         }
@@ -194,7 +194,7 @@ impl Summary {
     }
 }
 
-/// What is said of a scene that could not be rendered, as JSON.
+/// The JSON object of a scene that could not be rendered.
 pub(crate) fn failure(scene: &Path, failure: &Failure) -> String {
     #[derive(Serialize)]
     struct Failed {
@@ -209,7 +209,7 @@ pub(crate) fn seconds(duration: Duration) -> f64 {
     duration.as_micros() as f64 / 1e6
 }
 
-/// The most memory that this process has had so far, where the system tells.
+/// Peak resident memory of this process so far, on systems that report it.
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -229,7 +229,7 @@ pub(crate) fn thousands(number: u64) -> String {
     grouped
 }
 
-/// A number of bytes in the unit that suits it.
+/// A number of bytes in a suitable unit.
 pub(crate) fn bytes(number: u64) -> String {
     match number {
         0..10_000 => format!("{number} bytes"),
@@ -287,7 +287,7 @@ mod tests {
         assert!(stopped.ends_with("stopped after 2.5 s; a.png holds the picture so far: 12 of 64 samples"));
         let clean =
             Summary { ended_by: "noise", relative_error: Some(0.0199), samples_taken: 40, ..summary() };
-        let words = "enough  by noise: at most 64 samples a pixel, 40 on average; relative error 0.0199";
+        let words = "stopped by noise: at most 64 samples per pixel, 40 on average; relative error 0.0199";
         assert!(clean.for_people().contains(words), "{}", clean.for_people());
         let nothing = Summary { cancelled: true, output: None, ..summary() }.for_people();
         assert!(nothing.contains("a.toml → nothing") && nothing.ends_with("nothing is written"), "{nothing}");

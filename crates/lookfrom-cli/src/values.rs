@@ -11,19 +11,19 @@ use lookfrom_scene::settings::{Background, Filter, Layers, PixelBounds};
 
 use lookfrom::session::Fireflies;
 
-/// What an EXR holds besides the picture.
+/// AOVs of an EXR.
 pub(crate) const LAYERS: &[(&str, Layers)] = &[("none", Layers::None), ("geometry", Layers::Geometry)];
 
-/// Whether something is done.
+/// Switches.
 pub(crate) const ON_OFF: &[(&str, bool)] = &[("on", true), ("off", false)];
 
-/// What becomes of fireflies.
+/// Firefly filters.
 pub(crate) const FIREFLIES: &[(&str, Fireflies)] = &[("off", Fireflies::Keep), ("median", Fireflies::Spread)];
 
-/// Units of time, in seconds; those whose names end like others' come first.
+/// Units of time, in seconds. A unit whose name ends with that of another (`ms`, `s`) comes before it.
 const UNITS: [(&str, f64); 4] = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];
 
-/// The widest filter, in pixels: as in scene files.
+/// The largest filter radius in pixels, as in scene files.
 const GREATEST_RADIUS: f32 = 16.0;
 
 /// `60s`, `500ms`, `2m`, `1.5h`: a time of more than 0 and at most a year.
@@ -36,13 +36,13 @@ pub(crate) fn duration(typed: &str) -> Result<Duration, String> {
     }
 }
 
-/// Accepts the words of a table, and shows them in the help and in completions.
+/// Parser of the words of a table, which the help and completions list.
 pub(crate) fn word<T: Copy + Send + Sync>(
     words: &'static [(&'static str, T)],
 ) -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(words.iter().map(|&(word, _)| word)).try_map(move |typed| {
         let known = words.iter().find(|(word, _)| *word == typed);
-        known.map(|&(_, value)| value).ok_or_else(|| format!("{typed:?} is not known"))
+        known.map(|&(_, value)| value).ok_or_else(|| format!("unknown value {typed:?}"))
     })
 }
 
@@ -52,7 +52,7 @@ pub(crate) fn vector(typed: &str) -> Result<DVec3, String> {
     if vector.is_finite() { Ok(vector) } else { Err("expected finite numbers".to_owned()) }
 }
 
-/// `X0,Y0,X1,Y1`: pixels, with something between the edges.
+/// `X0,Y0,X1,Y1`: a window of at least one pixel.
 pub(crate) fn crop(typed: &str) -> Result<PixelBounds, String> {
     let [x0, y0, x1, y1] = separated(typed, "four whole numbers of pixels, X0,Y0,X1,Y1")?;
     if x0 < x1 && y0 < y1 {
@@ -70,13 +70,13 @@ fn separated<T: FromStr + Copy + Default, const N: usize>(
     numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| format!("expected {expected}"))
 }
 
-/// `N` or `WxH`: columns and rows.
+/// `N` or `WxH`: width and height.
 pub(crate) fn size(typed: &str) -> Result<[u32; 2], String> {
     let side = |typed: &str| typed.trim().parse::<u32>().ok().filter(|&side| side > 0);
     let (width, height) = typed.split_once(['x', '×']).unwrap_or((typed, typed));
     match (side(width), side(height)) {
         (Some(width), Some(height)) => Ok([width, height]),
-        _ => Err("expected pixels, as 256 for a square or 640x360".to_owned()),
+        _ => Err("expected pixels, such as 256 for a square or 640x360".to_owned()),
     }
 }
 
@@ -86,7 +86,7 @@ pub(crate) fn moment(typed: &str) -> Result<f64, String> {
     let (number, seconds) = unit.unwrap_or((typed, 1.0));
     match number.trim().parse::<f64>() {
         Ok(number) if (0.0..=1e9).contains(&number) => Ok(number * seconds),
-        _ => Err("expected a time of at least 0, as 1.5s, 500ms or 1.5".to_owned()),
+        _ => Err("expected a time of at least 0, such as 1.5s, 500ms or 1.5".to_owned()),
     }
 }
 
@@ -111,7 +111,7 @@ pub(crate) fn background(typed: &str) -> Result<Background, String> {
     }
 }
 
-/// A number within a range; NaN is in none.
+/// A number within a range. NaN is in no range.
 pub(crate) fn between<T>(least: T, greatest: T) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync
 where
     T: FromStr + PartialOrd + Display + Copy + Send + Sync,
@@ -133,11 +133,11 @@ where
     }
 }
 
-/// An angle between 0° and 180°, neither of them included.
+/// An angle between 0° and 180°, both excluded.
 pub(crate) fn field_of_view(typed: &str) -> Result<f64, String> {
     match typed.parse::<f64>() {
         Ok(degrees) if degrees > 0.0 && degrees < 180.0 => Ok(degrees),
-        _ => Err("expected degrees between 0 and 180, neither of them included".to_owned()),
+        _ => Err("expected degrees between 0 and 180, both excluded".to_owned()),
     }
 }
 

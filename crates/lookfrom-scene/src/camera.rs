@@ -1,26 +1,27 @@
-//! Camera parameters, with the names of the lecture notes: `lookfrom`, `lookat`, `up`, `θ`. Crate `lookfrom` makes matrices of them.
+//! Camera parameters, with the names of the lecture notes: `lookfrom`, `lookat`, `up`, `θ`. The crate `lookfrom` computes
+//! matrices from them.
 
 use glam::{DMat4, DVec3};
 
 use crate::error::Location;
 use crate::scene::MediumId;
 
-/// A camera description. It is validated when its matrices are made.
+/// A camera description. It is validated when its matrices are computed.
 #[derive(Clone, Debug)]
 pub struct Camera {
     /// The location in the file.
     pub at: Location,
     /// Position and orientation.
     pub view: View,
-    /// The target of a [`View::Matrix`], where the file has one.
+    /// The target of a [`View::Matrix`], if the file gives one.
     pub target: Option<Target>,
     /// The projection.
     pub projection: Projection,
-    /// A lens that blurs what is not in focus; `None` is a pinhole.
+    /// A thin lens, for depth of field; `None` is a pinhole.
     pub lens: Option<Lens>,
-    /// The screen window; `None` is that of the projection, around the axis.
+    /// The screen window; `None` for that of the projection, centred on the axis.
     pub window: Option<Window>,
-    /// `d`, the distance of the image plane: > 0. Only the `t` that is shown to people depends on it.
+    /// `d`, the distance of the image plane: > 0. Only the `t` shown to users depends on it.
     pub distance: f64,
     /// The medium around the camera; `None` is a vacuum.
     pub medium: Option<MediumId>,
@@ -29,17 +30,17 @@ pub struct Camera {
 /// Position and orientation of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum View {
-    /// As in the notes.
+    /// As in the lecture notes.
     Look {
         /// The position of the camera.
         lookfrom: DVec3,
         /// The point at the centre of the view.
         lookat: DVec3,
-        /// The up vector; any length, any angle to the view but parallel.
+        /// The up vector; of any length, not parallel to the view.
         up: DVec3,
     },
-    /// From another format: camera space has x to the *left*, y up, z forward, as the notes' `u v w`; any invertible
-    /// affine matrix. One that mirrors makes a mirrored picture.
+    /// As in other formats: camera space has x to the *left*, y up, z forward, as the notes' `u v w`; any invertible affine
+    /// matrix. A reflection mirrors the image.
     Matrix(DMat4),
 }
 
@@ -53,17 +54,17 @@ impl View {
     }
 }
 
-/// The target of a camera. The picture does not depend on it; a turntable orbits around it.
+/// The target of a camera. The image does not depend on it; a turntable orbits around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// The point, in the world.
+    /// The point, in world space.
     pub lookat: DVec3,
-    /// The up vector, in the world; any length.
+    /// The up vector, in world space; any length.
     pub up: DVec3,
 }
 
 impl Target {
-    /// The same in the space that a matrix leads to.
+    /// The target transformed by a matrix.
     pub fn transformed(&self, matrix: &DMat4) -> Self {
         Self { lookat: matrix.transform_point3(self.lookat), up: matrix.transform_vector3(self.up) }
     }
@@ -79,24 +80,24 @@ pub enum Projection {
     },
     /// Orthographic projection.
     Orthographic {
-        /// The height of the picture in the world: > 0.
+        /// The height of the image in world units: > 0.
         height: f64,
     },
-    /// All around in latitude and longitude: rows are angles from the up axis, the middle column is the direction of view,
-    /// and columns further right look further to the right. Of surroundings that are a [`Sky::Image`], an eye that looks
-    /// along −z of its space, with y up, sees that picture again.
+    /// A full panorama in latitude and longitude: rows are angles from the up axis, the middle column is the direction of
+    /// view, and columns further right look further to the right. With a [`Sky::Image`] as environment, a camera that looks
+    /// along −z of its space, with y up, reproduces that image.
     ///
     /// [`Sky::Image`]: crate::light::Sky::Image
     Equirectangular,
-    /// The equirectangular mapping of pbrt's spherical camera: the first column looks to the right, one quarter on is the
-    /// direction of view, and columns further right look further to the *left*.
+    /// The equirectangular mapping of pbrt's spherical camera: the first column looks to the right, the column at a quarter
+    /// of the width is the direction of view, and columns further right look further to the *left*.
     EquirectangularPbrt,
-    /// All around, on a square of equal area folded from an octahedron (Clarberg 2008).
+    /// A full panorama on a square, by the equal-area octahedral mapping (Clarberg 2008).
     Octahedral,
 }
 
-/// A part of the image plane, in units of half the height that the projection gives: x to the right, y up. Without one
-/// the picture shows x ∈ [−nx/ny, nx/ny], y ∈ [−1, 1].
+/// A part of the image plane, in units of half the projection's height: x to the right, y up. Without one the image shows
+/// x ∈ [−nx/ny, nx/ny], y ∈ [−1, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// From left to right.
@@ -110,7 +111,7 @@ pub struct Window {
 pub struct Lens {
     /// Radius of the aperture: ≥ 0.
     pub radius: f64,
-    /// Distance, along the view axis, of the plane that is sharp: > 0.
+    /// Distance of the plane of focus along the view axis: > 0.
     pub focus_distance: f64,
 }
 

@@ -2,18 +2,19 @@
 
 use crate::camera::Projection;
 
-/// What a [`ImportOptions`](crate::ImportOptions) chooses from, in the order of its numbers. Only glTF files have such things.
+/// The items that [`ImportOptions`](crate::ImportOptions) selects from, in the order of their numbers. Only glTF files have
+/// any.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contents {
     /// The names of the scenes.
     pub scenes: Vec<Option<String>>,
-    /// Number of the scene that was read.
+    /// Index of the scene that was read.
     pub scene: Option<usize>,
     /// The cameras of the scene that was read.
     pub cameras: Vec<CameraEntry>,
     /// The animations.
     pub animations: Vec<AnimationEntry>,
-    /// The names of the variants of materials.
+    /// The names of the material variants.
     pub variants: Vec<Option<String>>,
 }
 
@@ -22,7 +23,7 @@ pub struct Contents {
 pub struct CameraEntry {
     /// The name of its node, or else its own.
     pub name: Option<String>,
-    /// Its projection; `None` where its numbers are out of range.
+    /// Its projection; `None` if its values are out of range.
     pub projection: Option<Projection>,
 }
 
@@ -31,6 +32,6 @@ pub struct CameraEntry {
 pub struct AnimationEntry {
     /// Its name.
     pub name: Option<String>,
-    /// The time of its last key in seconds: ≥ 0; `None` where no key can be read.
+    /// The time of its last keyframe in seconds: ≥ 0; `None` if no keyframe can be read.
     pub duration: Option<f64>,
 }

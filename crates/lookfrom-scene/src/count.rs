@@ -11,41 +11,41 @@ use crate::shape::Geometry;
 /// Counts of a scene's contents. Shapes of an object count once, whatever the number of its instances.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Counts {
-    /// Shapes by kind; those that are not there are left out.
+    /// Shapes by kind; kinds that do not occur are left out.
     pub shapes: BTreeMap<&'static str, u64>,
-    /// Of meshes, once for each shape that has the mesh; and two for each quad.
+    /// Triangles of meshes, once per shape that uses the mesh, and two per quad.
     pub triangles: u64,
-    /// Of meshes, as they are stored.
+    /// Vertices of meshes, as they are stored.
     pub vertices: u64,
-    /// Single ones and those of clouds.
+    /// Spheres, including those of clouds.
     pub spheres: u64,
-    /// Groups of shapes that instances repeat.
+    /// Groups of shapes, which instances place.
     pub objects: u64,
-    /// Repetitions of objects.
+    /// Instances of objects.
     pub instances: u64,
-    /// Materials.
+    /// Number of materials.
     pub materials: u64,
-    /// Textures.
+    /// Number of textures.
     pub textures: u64,
-    /// Pictures that textures and environments use.
+    /// Images used by textures and environments.
     pub images: Vec<ImageCount>,
-    /// Lights by kind; shapes that shine are "emissive shape".
+    /// Lights by kind; shapes that emit light are "emissive shape".
     pub lights: BTreeMap<&'static str, u64>,
 }
 
-/// A picture that a scene uses.
+/// An image that a scene uses.
 #[derive(Clone, Debug, Serialize)]
 pub struct ImageCount {
-    /// Its file, or what its file calls it.
+    /// The name of its file, or its name in its file.
     pub name: String,
-    /// Columns.
+    /// Width in texels.
     pub width: u32,
-    /// Rows.
+    /// Height in texels.
     pub height: u32,
 }
 
 impl Counts {
-    /// Counts.
+    /// The counts of a scene.
     pub fn of(scene: &Scene) -> Self {
         let mut counts = Self {
             vertices: scene.meshes.iter().map(|mesh| mesh.positions.len() as u64).sum(),

@@ -1,36 +1,37 @@
 //! Errors of readers, with location, message and hint.
 //!
-//! Every reader returns [`Error`] for what stops it and collects [`Warning`](crate::Warning)s for what can be survived. Nothing here prints.
+//! Every reader returns [`Error`] for what stops it and collects [`Warning`](crate::Warning)s for recoverable problems.
+//! Nothing here prints.
 
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A place in a file. Lines and columns count from 1; 0 means that only the file (or only the line) is known.
+/// A location in a file. Lines and columns count from 1; 0 means that only the file (or only the line) is known.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Location {
-    /// The file as it was named by the person or by the file that includes it.
+    /// The name of the file as given by the user or by the file that includes it.
     pub file: Arc<str>,
     /// Line, from 1.
     pub line: u32,
     /// Column in characters, from 1.
     pub column: u32,
-    /// Where in a JSON document, as a pointer (RFC 6901) such as `/meshes/3/name`; empty is the whole of it.
+    /// The location in a JSON document, as a pointer (RFC 6901) such as `/meshes/3/name`; empty for the whole document.
     pub pointer: Arc<str>,
 }
 
 impl Location {
-    /// The whole of a file.
+    /// A file as a whole.
     pub fn file(path: &Path) -> Self {
         Self { file: path.display().to_string().into(), ..Self::default() }
     }
 
-    /// Another place in the same file.
+    /// Another location in the same file.
     pub fn at(&self, line: u32, column: u32) -> Self {
         Self { file: self.file.clone(), line, column, ..Self::default() }
     }
 
-    /// A place in the same file that is a JSON document, by its pointer.
+    /// A JSON pointer in the same file.
     pub fn pointer(&self, pointer: &str) -> Self {
         Self { file: self.file.clone(), pointer: pointer.into(), ..Self::default() }
     }
@@ -54,43 +55,43 @@ impl fmt::Display for Location {
 pub enum ErrorKind {
     /// The file could not be read or written.
     Io,
-    /// The bytes are not what the format allows.
+    /// The bytes violate the format.
     Syntax,
-    /// The syntax is right, but a value is not meaningful (an index out of range, a radius of zero).
+    /// The syntax is correct, but a value is not meaningful (an index out of range, a radius of zero).
     Invalid,
-    /// Valid, but this program does not know it.
+    /// Valid, but not supported by this program.
     Unsupported,
     /// Larger or deeper than the stated limits allow.
     Limit,
-    /// Options given besides the file do not suit the scene.
+    /// Options given in addition to the file do not suit the scene.
     Request,
 }
 
 /// An error: what was found and expected, its location, and a hint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error {
-    /// The category of an error.
+    /// The category.
     pub kind: ErrorKind,
     /// The location.
     pub at: Location,
-    /// What was found and what was expected.
+    /// The message: what was found and what was expected.
     pub message: String,
-    /// A remedy, where one is known.
+    /// A remedy, if one is known.
     pub hint: Option<String>,
     /// Further errors found in the same run.
     pub more: Vec<Error>,
 }
 
-/// How many of an error and its further ones are written out; the rest are counted.
+/// Maximum number of errors that are written out, including further ones; the rest are counted.
 const MOST_WRITTEN: usize = 20;
 
 impl Error {
-    /// An error of `kind` at a place.
+    /// An error of `kind` at a location.
     pub fn new(kind: ErrorKind, at: &Location, message: impl Into<String>) -> Self {
         Self { kind, at: at.clone(), message: message.into(), hint: None, more: Vec::new() }
     }
 
-    /// The bytes are not what the format allows.
+    /// An error of kind [`ErrorKind::Syntax`]: the bytes violate the format.
     pub fn syntax(at: &Location, message: impl Into<String>) -> Self {
         Self::new(ErrorKind::Syntax, at, message)
     }
@@ -106,7 +107,7 @@ impl Error {
         self
     }
 
-    /// All errors of a run as one: the first, with the others as its further ones. `None` where there are none.
+    /// All errors of a run as one: the first, with the others as further ones. `None` if there are none.
     pub fn all(errors: Vec<Self>) -> Option<Self> {
         let mut flat = errors.into_iter().flat_map(|mut error| {
             let more = std::mem::take(&mut error.more);
@@ -121,14 +122,14 @@ impl Error {
         std::iter::once(self).chain(&self.more)
     }
 
-    /// Those of [`each`](Self::each) that are written out, and how many are left.
+    /// The first errors of [`each`](Self::each), which are written out, and the number of the others.
     pub fn first_few(&self) -> (impl Iterator<Item = &Self>, usize) {
         (self.each().take(MOST_WRITTEN), (1 + self.more.len()).saturating_sub(MOST_WRITTEN))
     }
 }
 
-/// For logs and messages: each error as `file:line:column: message` and an indented remedy, and how many are left out. The
-/// lines that they point at are not shown: see [`Excerpts`](crate::excerpt::Excerpts).
+/// For logs and messages: each error as `file:line:column: message` and an indented remedy, and the number of errors left
+/// out. The lines they point at are not shown: see [`Excerpts`](crate::excerpt::Excerpts).
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (written, left) = self.first_few();
@@ -145,7 +146,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// What a reader gives back.
+/// The result of readers.
 pub type Result<T> = std::result::Result<T, Error>;
 
 #[cfg(test)]

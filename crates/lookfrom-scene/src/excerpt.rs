@@ -1,7 +1,7 @@
 //! The line of a text file at a [`Location`], with the columns to mark, for the display of errors.
 //!
-//! Readers keep no text in their errors: the line is read again when somebody looks. So every location of every text format
-//! has one, also those that are found long after reading.
+//! Readers keep no text in their errors: the line is read again for display. So every location in every text format has an
+//! excerpt, even those found long after reading.
 
 use std::fmt;
 use std::ops::Range;
@@ -14,23 +14,23 @@ use crate::error::Location;
 use crate::files::{Files, Limits};
 use crate::packed;
 
-/// The widest piece of a line that is shown, in columns of a terminal.
+/// Maximum width of an excerpt in columns of a terminal.
 const WIDEST: usize = 96;
-/// Columns of a tab.
+/// The replacement of a tab.
 const TAB: &str = "    ";
-/// Longer files are not read again to show a line of them.
+/// Maximum length of a file that is read again to show a line.
 const LONGEST_FILE: u64 = 1 << 28;
 
-/// A line, or a piece of it, as it can be printed: tabs are spaces, control characters are replaced.
+/// A line, or a part of it, as it can be printed: tabs are spaces, control characters are replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Excerpt {
-    /// The line without its end; `…` stands where it was cut.
+    /// The line without its end; `…` marks where it was cut.
     pub text: String,
     /// The columns of a terminal to mark, counted from 0; never empty.
     pub mark: Range<usize>,
 }
 
-/// The text, and below it carets under the mark.
+/// The text, and carets under the mark below it.
 impl fmt::Display for Excerpt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.text.trim_end())?;
@@ -38,7 +38,7 @@ impl fmt::Display for Excerpt {
     }
 }
 
-/// Cuts excerpts out of files; the last file is kept.
+/// Extracts excerpts from files; the last file is cached.
 pub struct Excerpts<'a> {
     files: &'a dyn Files,
     last: Option<(Arc<str>, Vec<u8>)>,
@@ -50,7 +50,7 @@ impl<'a> Excerpts<'a> {
         Self { files, last: None }
     }
 
-    /// The line at a place, or `None` where no line is known, the file cannot be read (again), or it is no text there.
+    /// The line at a location, or `None` if no line is known, the file cannot be read (again), or it is not text there.
     pub fn of(&mut self, at: &Location) -> Option<Excerpt> {
         let line_index = usize::try_from(at.line.checked_sub(1)?).ok()?;
         if self.last.as_ref().is_none_or(|(file, _)| *file != at.file) {
@@ -69,9 +69,9 @@ impl<'a> Excerpts<'a> {
     }
 }
 
-/// What is shown of a line where the character of this number, from 1, is meant; 0 is the whole line.
+/// The excerpt of a line that marks the token at a column, from 1; 0 marks the whole line.
 fn cut(line: &str, column: usize) -> Excerpt {
-    // A line may be the whole of a large file: what lies far from the mark is not looked at.
+    // A line may be the whole of a large file: text far from the mark is ignored.
     let skipped = column.saturating_sub(2 * WIDEST);
     let mut rest = line.chars().skip(skipped);
     let characters: Vec<char> = rest.by_ref().take(6 * WIDEST).collect();
@@ -84,13 +84,13 @@ fn cut(line: &str, column: usize) -> Excerpt {
             first..characters.iter().rposition(is_text).map_or(0, |last| last + 1)
         }
     };
-    // What is printed of each character, and in how many columns of the line before any cut.
+    // The printed form of each character, and its column in the line before any cut.
     let mut printed = Vec::with_capacity(characters.len());
     let mut starts = vec![0];
     for &character in &characters {
         let text = match character {
             '\t' => TAB.to_owned(),
-            // Nor may what is shown be turned around by what it says (Boucher & Anderson 2021).
+            // Bidirectional control characters must not reorder the displayed text (Boucher & Anderson 2021).
             '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}'.to_string(),
             c if c.is_control() => '\u{fffd}'.to_string(),
             c => c.to_string(),
@@ -102,7 +102,7 @@ fn cut(line: &str, column: usize) -> Excerpt {
     let end = characters.len();
     let mark = starts[marked.start]..starts[marked.end.min(end)].max(starts[marked.start] + 1);
 
-    // A piece of the line in which the mark begins, a third from its left where the line is cut there.
+    // A part of the line that contains the start of the mark, a third from its left if the line is cut there.
     let is_whole = starts[end] <= WIDEST && !is_begun && !is_left;
     let from = match is_whole || (mark.end < WIDEST && !is_begun) {
         true => 0,
@@ -119,7 +119,7 @@ fn cut(line: &str, column: usize) -> Excerpt {
     Excerpt { text, mark: start..shown(mark.end).min(shown_end).max(start + 1) }
 }
 
-/// Where that ends which begins at a character: a word, a string, or brackets and what is in them.
+/// The end of the token that begins at a character: a word, a string, or brackets with their content.
 fn token_end(line: &[char], first: usize) -> usize {
     let Some(&opening) = line.get(first) else { return first };
     let is_word = |c: char| !c.is_whitespace() && !"=,;()[]{}\"'".contains(c);
@@ -131,7 +131,7 @@ fn token_end(line: &[char], first: usize) -> usize {
     }
 }
 
-/// The end of a string, behind its closing quote.
+/// The end of a string, after its closing quote.
 fn string_end(line: &[char], first: usize) -> Option<usize> {
     let mut index = first + 1;
     while let Some(&c) = line.get(index) {
@@ -218,11 +218,11 @@ mod tests {
             assert!(text.chars().count() <= WIDEST + 1 && mark.chars().count() <= WIDEST + 1);
             assert_eq!(text.starts_with('…'), place >= 95);
         }
-        // Characters of no width take no room, however many there are.
+        // Zero-width characters take no columns, however many there are.
         let accents = "\u{301}".repeat(3000);
         let [text, mark] = rows(&format!("{accents}!{accents}"), 3001);
         assert!(text.starts_with('…') && text.ends_with('…') && text.contains('!') && mark.ends_with(" ^"));
-        // A mark longer than there is room for ends with what is shown.
+        // A mark that is too long ends with the excerpt.
         let [text, mark] = rows(&format!("{}\"{}\"", " ".repeat(500), "x".repeat(500)), 501);
         assert!(mark.chars().count() <= text.chars().count() && text.ends_with('…'));
     }

@@ -1,4 +1,4 @@
-//! File access within limits: a disk, or memory for tests and embedders. Nothing else opens a file.
+//! File access within limits: from disk, or from memory for tests and embedders. Nothing else opens a file.
 //! [`Inputs`](crate::inputs::Inputs) wraps it and records the files that were read.
 
 use std::collections::HashMap;
@@ -32,11 +32,11 @@ pub trait Files: Sync {
     /// The whole content of a file of at most `limit` bytes.
     ///
     /// # Errors
-    /// `Io` when it cannot be read, `Limit` when it is longer than `limit`.
+    /// `Io` if it cannot be read, `Limit` if it is longer than `limit`.
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>>;
 
-    /// The identities of the file at a path, whether it exists or not: two paths with a common identity lead to the same file.
-    /// Without an implementation of its own, a file is its path.
+    /// The identities of the file at a path, whether it exists or not: two paths with a common identity refer to the
+    /// same file. By default, a file is identified by its path.
     fn identities(&self, path: &Path) -> Vec<FileId> {
         vec![FileId::Path(path.to_owned())]
     }
@@ -46,13 +46,13 @@ pub trait Files: Sync {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum FileId {
-    /// The path, on a disk absolute and with all links resolved.
+    /// The path; on disk it is absolute, with all links resolved.
     Path(PathBuf),
-    /// The file system's own number: the same for hard links, and for names in upper and lower case where these are one.
+    /// The file system's number of the file: equal for hard links, and for names in any case if case is ignored.
     Number {
         /// The file system.
         device: u64,
-        /// The file in it (inode).
+        /// The file on it (inode).
         file: u64,
     },
 }
@@ -76,8 +76,8 @@ impl Files for Disk {
                 IoKind::IsADirectory => {
                     ("this is a folder, not a file".to_owned(), "name a scene or model file in it")
                 }
-                IoKind::PermissionDenied => ("may not be read".to_owned(), "check the file's permissions"),
-                _ => (format!("cannot be read: {error}"), "check that the file is there and whole"),
+                IoKind::PermissionDenied => ("permission denied".to_owned(), "check the file's permissions"),
+                _ => (format!("cannot be read: {error}"), "check that the file exists and is whole"),
             };
             Error::new(ErrorKind::Io, &at, message).hint(hint)
         };
@@ -87,7 +87,7 @@ impl Files for Disk {
         if length > limit {
             return Err(too_long(&at, limit));
         }
-        // A device or a pipe claims length 0 and may never end: read one byte more than is allowed, at most.
+        // A device or a pipe reports length 0 and may never end: read at most one byte more than the limit.
         let limit = if metadata.is_file() { limit } else { limit.min(MOST_OF_A_STREAM) };
         let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| io(&e))?;
@@ -105,7 +105,7 @@ impl Files for Disk {
     }
 }
 
-/// A path that is absolute and has no links, as far as it exists.
+/// The absolute path without links, as far as the path exists.
 fn resolved(path: &Path) -> PathBuf {
     if let Ok(resolved) = std::fs::canonicalize(path) {
         return resolved;
@@ -159,12 +159,12 @@ pub struct LoadContext<'a> {
 /// Import options: the animation, material variant, scene and camera of a file that has several.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
-    /// The animation, by name or number from 0, in whose pose the model stands; `None` is the pose of rest, or, where
-    /// `at` is not 0, the first animation.
+    /// The animation, by name or number from 0, that poses the model; `None` is the pose at rest, or, if `at` is not 0, the
+    /// first animation.
     pub animation: Option<String>,
-    /// The time in seconds from its beginning.
+    /// The time in seconds from the beginning of the animation.
     pub at: f64,
-    /// The variant of its materials, by name or number from 0.
+    /// The material variant, by name or number from 0.
     pub variant: Option<String>,
     /// The scene, by name or number from 0.
     pub scene: Option<String>,
@@ -176,10 +176,10 @@ pub struct ImportOptions {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CameraChoice {
-    /// The first of the scene, where there is one.
+    /// The first of the scene, if there is one.
     #[default]
     First,
-    /// The one of this name, or of this number from 0.
+    /// The one with this name, or with this number from 0.
     Named(String),
     /// No camera of the file: the scene is framed automatically, whatever its format.
     None,

@@ -1,9 +1,10 @@
 //! Reader for glTF 2.0 files (Khronos, "glTF 2.0 Specification", 2021; ISO/IEC 12113:2022).
 //!
-//! `json` says what stands in the file, `file` and `uri` which bytes belong to it, `accessor` how bytes become vectors.
-//! `node` places things, `mesh` gives them form, `material` and `texture` a look; `camera` and `light` do what their
-//! names say, `build` joins everything, and `contents` lists what there is to `choose` from. `pose` and `track` say how nodes stand at a moment, `morph` and `skin` how
-//! meshes follow; `meshopt` and `draco` unpack what is compressed. Errors name the file and the place in its JSON as a pointer (RFC 6901).
+//! `json` holds the structures of the JSON, `file` and `uri` find the bytes that belong to it, `accessor` turns bytes into
+//! vectors. `node` places nodes in the world, `mesh` builds their geometry, `material` and `texture` their materials;
+//! `camera` and `light` convert cameras and lights, `build` assembles the scene, and `contents` lists the items that
+//! `choose` selects from. `pose` and `track` evaluate animations, `morph` and `skin` deform meshes; `meshopt` and `draco`
+//! decompress. Errors name the file and the location in its JSON as a pointer (RFC 6901).
 
 mod accessor;
 mod build;
@@ -37,12 +38,12 @@ use crate::load;
 use crate::scene::Scene;
 use crate::studio;
 
-/// Reads a glTF file (`.gltf` or `.glb`) as a scene: path traced, developed by Khronos' tone map, seen by the file's
-/// camera where it has one. [`LoadContext::import`] says which scene, camera, animation and variant are meant.
+/// Reads a glTF file (`.gltf` or `.glb`) as a scene: path traced, with the Khronos PBR Neutral tone mapper, seen by the
+/// file's camera where it has one. [`LoadContext::import`] selects the scene, camera, animation and variant.
 ///
 /// # Errors
-/// `Io` and `Limit` where it cannot be read, `Syntax` where it is no glTF, `Unsupported` where it is not of version 2,
-/// `Invalid` where what it says cannot be.
+/// `Io` and `Limit` if the file cannot be read, `Syntax` if it is not glTF, `Unsupported` if it is not version 2,
+/// `Invalid` if its content is invalid.
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let content = context.read(path)?;
     let (image, render) = studio::settings_for_models();
@@ -52,8 +53,8 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Reads a glTF file as a part of another scene: its meshes, materials and pictures join the scene, the rest is given
-/// back and stands where the file has it.
+/// Reads a glTF file as a part of another scene: its meshes, materials and images are added to the scene; the rest is
+/// returned, at the places that the file gives it.
 ///
 /// # Errors
 /// As [`read`].
@@ -62,10 +63,10 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
     Ok(document_model(content, path, context, scene)?.into_parts())
 }
 
-/// Whether a file's content is that of a glTF file: the mark of a GLB container, or JSON that speaks of an asset.
+/// Whether a file's content is that of a glTF file: the signature of a GLB container, or JSON with an `asset`.
 pub fn is_gltf(content: &[u8]) -> bool {
     let text = content.strip_prefix("\u{feff}".as_bytes()).unwrap_or(content).trim_ascii_start();
-    // The asset may stand behind much else: then the name of the file has to say what it is.
+    // `asset` may come later in the file; then only the file's extension identifies it.
     let beginning = &text[..text.len().min(1 << 16)];
     content.starts_with(file::MAGIC)
         || (text.starts_with(b"{") && beginning.windows(7).any(|word| word == b"\"asset\""))

@@ -29,33 +29,33 @@ struct Register {
 }
 
 impl Inputs {
-    /// `files`, with every file that `reader` asks for on record, found or not.
+    /// Wraps `files` so that every file requested by `reader` is recorded, found or not.
     pub fn record<'a>(&'a self, files: &'a dyn Files, reader: impl Into<String>) -> Recorded<'a> {
         Recorded { files, reader: reader.into(), inputs: self }
     }
 
-    /// The input that is lost when `path` is written to, by whatever path it was read.
+    /// The input that would be overwritten by writing to `path`, whatever path it was read from.
     pub fn at(&self, path: &Path, files: &dyn Files) -> Option<Input> {
         let identities = files.identities(path);
         let register = self.register();
         identities.iter().find_map(|identity| {
             let input = register.read.get(identity)?;
-            // Numbers of files that are gone are given to others.
+            // Inode numbers of deleted files are reused.
             let is_still =
                 matches!(identity, FileId::Path(_)) || files.identities(&input.path).contains(identity);
             is_still.then(|| input.clone())
         })
     }
 
-    /// Puts on record that `path` was written to.
+    /// Records that `path` was written to.
     pub fn note_output(&self, path: &Path, files: &dyn Files) {
-        // Not by its number: what is written next takes its place, and another file may get the number.
+        // Not by its inode number: the next output replaces the file, and another file may get the number.
         let identities = files.identities(path).into_iter();
         let paths = identities.filter(|identity| matches!(identity, FileId::Path(_)));
         self.register().written.extend(paths);
     }
 
-    /// The files read by `reader` that had been written before.
+    /// A file read by `reader` that had been written before.
     pub fn own_output(&self, reader: &str) -> Option<Input> {
         self.register().own_outputs.iter().find(|input| input.reader == reader).cloned()
     }
@@ -77,7 +77,7 @@ impl Inputs {
     }
 }
 
-/// Files whose use is on record.
+/// Files whose requests are recorded.
 pub struct Recorded<'a> {
     files: &'a dyn Files,
     reader: String,
@@ -121,7 +121,7 @@ mod tests {
         let memory = Memory::default();
         let inputs = Inputs::default();
         let read = |path: &str, reader: &str| {
-            // Nothing is there, which does not matter.
+            // The file does not exist, which does not matter.
             let _ = LoadContext::new(&inputs.record(&memory, reader)).read(Path::new(path));
         };
         read("p", "before");
@@ -132,7 +132,7 @@ mod tests {
         assert_eq!(inputs.own_output("other").map(|input| input.path), Some("p".into()));
     }
 
-    /// Files whose numbers are what the test says.
+    /// Files with the inode numbers that the test sets.
     struct Numbers(Mutex<HashMap<PathBuf, u64>>);
 
     impl Files for Numbers {
@@ -153,7 +153,7 @@ mod tests {
         let inputs = Inputs::default();
         assert!(LoadContext::new(&inputs.record(&files, "scene")).read(Path::new("a")).is_ok());
         assert!(inputs.at(Path::new("hard"), &files).is_some());
-        // `a` is replaced by an editor, and its old number goes to what is written then.
+        // `a` is replaced by an editor, and its old number is reused for the next file.
         *files.0.lock().expect("nobody panics") = [("a".into(), 2), ("p".into(), 1)].into();
         assert!(inputs.at(Path::new("p"), &files).is_none() && inputs.at(Path::new("a"), &files).is_some());
     }
@@ -181,7 +181,7 @@ mod tests {
         for other in ["b.png", "sub", "sub/a.png"] {
             assert!(!share("a.png", other), "{other}");
         }
-        // What does not exist has identities, too.
+        // Files that do not exist have identities, too.
         assert!(share("new/b.png", "sub/../new/x/../b.png") && !share("new/b.png", "b.png"));
         std::fs::remove_dir_all(&folder).expect("it is ours");
     }

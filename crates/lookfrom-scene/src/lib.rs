@@ -1,7 +1,7 @@
-//! Everything that can be on disk: scenes, meshes and images, read into plain data.
+//! Everything read from or written to disk: scenes, meshes and images, as plain data.
 //!
-//! A [`scene::Scene`] is what was written. It keeps names and places, is checked as far as a file can be checked by
-//! itself, and knows nothing of rays. Start reading at [`scene`].
+//! A [`scene::Scene`] is a scene as it was written. It keeps names and locations, is validated as far as a file can be
+//! validated by itself, and is independent of rendering. Start reading at [`scene`].
 
 pub mod camera;
 pub mod contents;

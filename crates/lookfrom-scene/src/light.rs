@@ -10,10 +10,10 @@ use crate::error::Location;
 use crate::material::Color;
 use crate::scene::ImageId;
 
-/// A light.
+/// A light source.
 #[derive(Clone, Debug)]
 pub struct Light {
-    /// Its name, where one was given.
+    /// Its name, if it has one.
     pub name: Option<String>,
     /// The location in the file.
     pub at: Location,
@@ -28,17 +28,17 @@ pub struct Light {
 pub struct Power {
     /// Multiplies the colour.
     pub scale: f32,
-    /// The total before `scale`: the illuminance on a surface that faces it for distant lights
-    /// and environments, else the power of all that is sent out, both in units whose white light of radiance 1 has
-    /// luminance 1. `None` leaves the colour as bright as it is written.
+    /// The total before `scale`: for distant lights and environments the illuminance on a surface that faces the light, else
+    /// the total power emitted, both in units in which white light of radiance 1 has luminance 1. `None` leaves the colour
+    /// as bright as it is written.
     pub total: Option<f32>,
-    /// Whether a curve's brightness counts; otherwise it is divided by its own luminance first, as colours are whose
-    /// white has luminance 1.
+    /// Whether the brightness of a spectrum counts; otherwise it is first divided by its own luminance, so that it has
+    /// luminance 1, as RGB white has.
     pub absolute: bool,
 }
 
 impl Power {
-    /// As much as the colour says.
+    /// The brightness of the colour, unscaled.
     pub const AS_WRITTEN: Self = Self { scale: 1.0, total: None, absolute: false };
 }
 
@@ -48,15 +48,15 @@ impl Default for Power {
     }
 }
 
-/// The lights there are.
+/// The kinds of lights.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightKind {
-    /// Whitted's `I_a`: reaches everything from everywhere without a shadow.
+    /// Whitted's `I_a`: reaches every surface from all directions, without shadows.
     Ambient {
         /// `I_a`.
         color: [f32; 3],
     },
-    /// From a point, the same to all sides.
+    /// A point light, equal in all directions.
     Point {
         /// The location.
         position: DVec3,
@@ -65,14 +65,14 @@ pub enum LightKind {
         /// The falloff with distance.
         falloff: Falloff,
     },
-    /// From infinitely far.
+    /// A light at infinity.
     Distant {
         /// The direction *to* which the light travels; any length but zero.
         direction: DVec3,
         /// `I_j`.
         intensity: Color,
     },
-    /// From a point into a cone.
+    /// A spot light: a point light within a cone.
     Spot {
         /// The location.
         position: DVec3,
@@ -80,46 +80,46 @@ pub enum LightKind {
         direction: DVec3,
         /// `I_j` on the axis at a distance of 1.
         intensity: Color,
-        /// Half-angle beyond which it is dark, in degrees, in (0, 180].
+        /// Half-angle of the cone beyond which it is dark, in degrees, in (0, 180].
         cone_angle: f64,
-        /// Half-angle up to which it is full, in degrees, in [0, cone_angle]; a smooth step lies between.
+        /// Half-angle of the cone of full intensity, in degrees, in [0, cone_angle]; a smoothstep lies between.
         inner_angle: f64,
         /// The falloff with distance.
         falloff: Falloff,
     },
-    /// From a point, a picture thrown into a rectangle.
+    /// A projection light: a point light that projects an image.
     Projection {
-        /// The picture.
+        /// The image.
         image: ImageId,
         /// `I_j` of a white texel, at a distance of 1.
         intensity: f32,
-        /// Field of view along the picture's shorter side, in degrees, in (0, 180).
+        /// Field of view along the image's shorter side, in degrees, in (0, 180).
         fov: f32,
-        /// The light's space: it looks along +z, y is up, x to the right of the picture. Any invertible matrix.
+        /// From the light's space, which looks along +z with y up and x to the right of the image; any invertible matrix.
         world_from_light: DMat4,
     },
-    /// From a point, more or less by direction.
+    /// A goniometric light: a point light whose intensity depends on direction.
     Goniometric {
-        /// `I_j` at a distance of 1 where the picture is white.
+        /// `I_j` at a distance of 1 where the image is white.
         intensity: Color,
-        /// By direction, in the octahedral equal-area square of [`Sky::Octahedral`]; only brightness counts.
+        /// Intensity by direction, in the octahedral equal-area map of [`Sky::Octahedral`]; only luminance counts.
         image: ImageId,
         /// The transform from the light's space to the world.
         world_from_light: DMat4,
     },
-    /// From all around, infinitely far.
+    /// An environment light: radiance from all directions, at infinity.
     Environment {
         /// Its colours.
         sky: Sky,
-        /// The corners of the one opening through which it is seen (in the world), in order around it: against the clock
-        /// for one who looks out. A rectangle (see [`is_rectangle`]).
+        /// The corners of the only opening through which it is visible, in world space, in counter-clockwise order for a
+        /// viewer who looks out. A rectangle (see [`is_rectangle`]).
         portal: Option<[DVec3; 4]>,
-        /// Whether it lights surfaces; otherwise it is only seen, by camera, mirrored and refracted rays.
+        /// Whether it illuminates surfaces; otherwise it is visible only to camera, reflected and refracted rays.
         illuminates: bool,
     },
 }
 
-/// Whether four points are the corners of a rectangle, one after the other.
+/// Whether four points are the corners of a rectangle, in order around it.
 pub fn is_rectangle([a, b, c, d]: &[DVec3; 4]) -> bool {
     let (u, v) = (b - a, d - a);
     let is_parallelogram = (a - b + c - d).length() <= 1e-3 * (u.length() + v.length());
@@ -130,11 +130,11 @@ pub fn is_rectangle([a, b, c, d]: &[DVec3; 4]) -> bool {
 /// The falloff of light with the distance r from its source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Falloff {
-    /// Not at all, as in Whitted 1980.
+    /// No falloff, as in Whitted 1980.
     None,
     /// By 1/r.
     Linear,
-    /// By 1/r²: as nature does.
+    /// By 1/r², which is physically correct.
     #[default]
     Quadratic,
 }
@@ -142,33 +142,33 @@ pub enum Falloff {
 /// The colours of an environment.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sky {
-    /// The same everywhere.
+    /// Constant in all directions.
     Constant(Color),
     /// By the height y of the unit direction: from `nadir` (y = −1) over `horizon` (0) to `zenith` (1), linear in y.
     Gradient {
-        /// Straight up.
+        /// The colour straight up.
         zenith: [f32; 3],
-        /// All around.
+        /// The colour at the horizon.
         horizon: [f32; 3],
-        /// Straight down.
+        /// The colour straight down.
         nadir: [f32; 3],
     },
-    /// A picture in latitude and longitude: row 0 is +y of the light's space; u = ½ looks along −z of the light's
-    /// space, and u grows to the right of one who looks there (towards +x).
+    /// An equirectangular environment map: row 0 is +y of the light's space; u = ½ is −z of the light's space, and u grows
+    /// to the right of a viewer who looks there (towards +x).
     Image {
-        /// The picture.
+        /// The environment map.
         image: ImageId,
-        /// Multiplies it.
+        /// Multiplies the map.
         scale: [f32; 3],
         /// The transform from the light's space to the world: a rotation.
         world_from_light: DMat4,
     },
-    /// A square picture over the sphere of directions folded to an octahedron, of equal area (Clarberg 2008), as pbrt-v4
-    /// has it: z of the light's space is the middle of the square.
+    /// A square environment map in the equal-area octahedral mapping (Clarberg 2008), as in pbrt-v4: z of the light's space
+    /// is the centre of the square.
     Octahedral {
-        /// The picture; square.
+        /// The environment map; square.
         image: ImageId,
-        /// Multiplies it.
+        /// Multiplies the map.
         scale: [f32; 3],
         /// The transform from the light's space to the world: a rotation or reflection.
         world_from_light: DMat4,

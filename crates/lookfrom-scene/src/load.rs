@@ -11,15 +11,15 @@ use crate::scene::{MaterialId, Scene, SourceFormat};
 use crate::shape::{Part, Shape};
 use crate::{gltf, model, packed, pbrt, studio, toml};
 
-/// The reflectance of a model whose file names no material.
+/// The reflectance of models whose file has no materials.
 const CLAY: f32 = 0.8;
 
-/// Reads a scene in our own format (`.toml`), one of pbrt-v4 (`.pbrt`), a glTF file (`.gltf`, `.glb`), or a model file,
-/// whose parts stand in the scene where the file has them and wear a matte grey "default" where the file gives them no
-/// material. [`LoadContext::import`] selects the camera of a file.
+/// Reads a scene in our own format (`.toml`), of pbrt-v4 (`.pbrt`), a glTF file (`.gltf`, `.glb`), or a model file, whose
+/// parts are placed as in the file and have a diffuse grey material "default" if the file gives them none.
+/// [`LoadContext::import`] selects the camera of a file.
 ///
 /// # Errors
-/// `Unsupported` where the format is not known, and what the reader of the format finds.
+/// `Unsupported` if the format is not known, and the errors of the format's reader.
 pub fn scene(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut scene = whole(path, context)?;
     if context.import.camera == CameraChoice::None {
@@ -53,17 +53,17 @@ pub(crate) fn is_toml(path: &Path) -> bool {
     extension(path) == "toml"
 }
 
-/// Whether a file is a scene of pbrt, by its name (`.pbrt`, `.pbrt.gz`), or by its content where that says nothing.
+/// Whether a file is a scene of pbrt, by its name (`.pbrt`, `.pbrt.gz`), or by its content if the name is inconclusive.
 fn is_pbrt(path: &Path, context: &LoadContext<'_>) -> bool {
     let is_other = model::is_model(path) || GLTF.contains(&&*extension(path));
     extension(&packed::unpacked_name(path)) == "pbrt"
         || (!is_other && packed::read(path, context).is_ok_and(|bytes| pbrt::is_pbrt(&bytes)))
 }
 
-/// The endings of names of glTF files.
+/// The extensions of glTF files.
 const GLTF: &[&str] = &["gltf", "glb"];
 
-/// Whether a file is a glTF file, by its name, or by its content where that says nothing.
+/// Whether a file is a glTF file, by its name, or by its content if the name is inconclusive.
 pub(crate) fn is_gltf(path: &Path, context: &LoadContext<'_>) -> bool {
     GLTF.contains(&&*extension(path))
         || (!model::is_model(path) && context.read(path).is_ok_and(|bytes| gltf::is_gltf(&bytes)))
@@ -73,7 +73,7 @@ fn extension(path: &Path) -> String {
     path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-/// The parts of a merged file that were not added to the scene already.
+/// The parts of a merged file that are not added to the scene directly.
 #[derive(Clone, Default)]
 pub(crate) struct Model {
     pub(crate) parts: Vec<Part>,
@@ -95,15 +95,15 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
         return gltf::model(path, context, scene);
     }
     let parts = model::read(path, context, scene).map_err(|error| match error.kind {
-        ErrorKind::Unsupported if !model::is_model(path) => {
-            unsupported("a file of a kind that is not known, by its name and by its content".to_owned())
-        }
+        ErrorKind::Unsupported if !model::is_model(path) => unsupported(
+            "the format is not known, neither by the name nor by the content of the file".to_owned(),
+        ),
         _ => error,
     })?;
     Ok(Model { parts, ..Model::default() })
 }
 
-/// Parts as shapes with the transforms of the file.
+/// Converts parts to shapes with the transforms of the file.
 pub(crate) fn shapes(parts: Vec<Part>, at: &Location, default: MaterialId) -> Vec<Shape> {
     parts
         .into_iter()

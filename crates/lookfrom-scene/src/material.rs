@@ -5,55 +5,55 @@ use glam::Vec3;
 use crate::error::Location;
 use crate::scene::{CurveId, ImageId, MaterialId, TextureId};
 
-/// A colour that may vary over the surface.
+/// A colour, constant or textured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Color {
-    /// Linear Rec. 709, the same everywhere.
+    /// Linear Rec. 709, constant.
     Value([f32; 3]),
-    /// From a texture.
+    /// A texture.
     Texture(TextureId),
-    /// By wavelength, the same everywhere.
+    /// A spectrum, constant.
     Curve(CurveId),
 }
 
 impl Color {
-    /// Nothing.
+    /// No light.
     pub const BLACK: Self = Self::Value([0.0; 3]);
-    /// The same amount of each primary.
+    /// A grey: the same value in each channel.
     pub const fn gray(value: f32) -> Self {
         Self::Value([value; 3])
     }
 }
 
-/// A number that may vary over the surface.
+/// A number, constant or textured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scalar {
-    /// The same everywhere.
+    /// A constant.
     Value(f32),
     /// The mean of a texture's three channels.
     Texture(TextureId),
 }
 
-/// A named look.
+/// A named material.
 #[derive(Clone, Debug)]
 pub struct Material {
     /// The name that shapes use.
     pub name: String,
     /// The location in the file.
     pub at: Location,
-    /// What kind of look.
+    /// The kind of material.
     pub kind: MaterialKind,
-    /// What turns or bends the shading normal.
+    /// Bump or normal mapping.
     pub bump_mapping: BumpMapping,
 }
 
 impl Material {
-    /// A look without bump mapping.
+    /// A material without bump mapping.
     pub fn new(name: impl Into<String>, at: Location, kind: MaterialKind) -> Self {
         Self { name: name.into(), at, kind, bump_mapping: BumpMapping::None }
     }
 
-    /// Whether it matters which way u runs over the surface.
+    /// Whether the material depends on the direction of u on the surface.
     pub fn has_grain(&self) -> bool {
         let uneven = |roughness: &Roughness| roughness.u != roughness.v;
         self.bump_mapping != BumpMapping::None
@@ -73,22 +73,22 @@ impl Material {
     }
 }
 
-/// What turns or bends the shading normal; the form stays as it is.
+/// Bump or normal mapping: it changes the shading normal, not the geometry.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum BumpMapping {
-    /// Nothing.
+    /// None.
     #[default]
     None,
-    /// Heights along the normal, in the shape's unit of length.
+    /// A bump map: heights along the normal, in the shape's unit of length.
     Bump(Scalar),
-    /// A picture of normals in the tangent frame (u, v, outward): x, y, z are 2·texel − 1. Row 0 is v = 1.
+    /// A normal map in the tangent frame (u, v, outward): x, y, z are 2·texel − 1. Row 0 is v = 1.
     NormalMap(ImageId),
-    /// The same from a texture, as glTF means it.
+    /// A normal map from a texture, as in glTF.
     NormalTexture(NormalTexture),
 }
 
-/// Normals from a texture in the tangent frame (u, v, outward): `(scale, scale, 1) · (2·texel − 1)`, made of unit length.
-/// v is to the left of u where the mesh's tangents say so (their w), else where texture coordinates do.
+/// Normals from a texture in the tangent frame (u, v, outward): `(scale, scale, 1) · (2·texel − 1)`, normalised. The
+/// handedness of u and v is that of the mesh's tangents (their w) if there are any, else that of its texture coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalTexture {
     /// Read as linear RGB.
@@ -97,21 +97,21 @@ pub struct NormalTexture {
     pub scale: f32,
 }
 
-/// The looks there are.
+/// The kinds of materials.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialKind {
     /// Whitted's model.
     Whitted(Whitted),
-    /// Reflects the same to all sides (Lambert).
+    /// Lambertian reflection.
     Diffuse {
-        /// The part of light that is reflected.
+        /// The fraction of light that is reflected.
         reflectance: Color,
     },
-    /// Reflects and lets through, the same to all sides.
+    /// Diffuse reflection and transmission.
     DiffuseTransmission {
-        /// The part that is reflected.
+        /// The fraction of light that is reflected.
         reflectance: Color,
-        /// The part that is let through.
+        /// The fraction of light that is transmitted.
         transmittance: Color,
         /// Multiplies both.
         scale: f32,
@@ -120,24 +120,24 @@ pub enum MaterialKind {
     Conductor {
         /// Its optical constants.
         metal: Metal,
-        /// Of its surface.
+        /// Roughness of its surface.
         roughness: Roughness,
     },
-    /// Glass, water: the inside is a body.
+    /// A dielectric such as glass or water, which encloses an interior.
     Dielectric {
         /// Index of refraction, inside over outside.
         eta: Ior,
-        /// Of its surface.
+        /// Roughness of its surface.
         roughness: Roughness,
     },
-    /// A pane so thin that light goes straight on.
+    /// A sheet so thin that transmitted light is not deflected.
     ThinDielectric {
-        /// Index of refraction of the pane over that around it.
+        /// Index of refraction of the sheet relative to the surrounding medium.
         eta: Ior,
     },
     /// A diffuse base under a dielectric coat.
     CoatedDiffuse {
-        /// Of the base.
+        /// Reflectance of the base.
         reflectance: Color,
         /// The coat.
         coat: Coat,
@@ -146,32 +146,32 @@ pub enum MaterialKind {
     CoatedConductor {
         /// The base's optical constants.
         metal: Metal,
-        /// Of the base.
+        /// Roughness of the base.
         roughness: Roughness,
         /// The coat.
         coat: Coat,
     },
-    /// One or the other, by chance at each meeting.
+    /// A stochastic mix: one of two materials is chosen at random at each intersection.
     Mix {
-        /// The looks that are mixed; never, through any number of steps, this one.
+        /// The two materials; neither may contain this one, directly or indirectly.
         materials: [MaterialId; 2],
         /// The probability of the second.
         amount: Scalar,
     },
     /// glTF's metallic-roughness material and its extensions.
     Principled(Box<Principled>),
-    /// Seen in its colour whatever the light, which it neither reflects nor lets through (`KHR_materials_unlit`).
+    /// A constant radiance, whatever the lighting; no light is reflected or transmitted (`KHR_materials_unlit`).
     Unlit {
-        /// Radiance that it is seen with.
+        /// Its radiance.
         color: Color,
     },
-    /// A floor that is seen only by the shadows on it: matte, as bright as what lies behind it where nothing is in the way
-    /// of the light from infinitely far, darker where something is.
+    /// A floor of which only shadows are visible: diffuse, as bright as the background where nothing occludes the light from
+    /// infinity, darker where something does.
     ShadowCatcher {
-        /// Where the floor looks: of unit length, in the world.
+        /// The floor's normal: of unit length, in world space.
         normal: Vec3,
     },
-    /// No surface at all: the border of a medium.
+    /// No surface: only a medium interface.
     Interface,
 }
 
@@ -213,7 +213,7 @@ impl MaterialKind {
 }
 
 impl MaterialKind {
-    /// Its colours that are shares of the light that arrives, by name: 1 is all of it.
+    /// Its colours that are reflectances or transmittances, by name: 1 is all light.
     pub fn reflectances(&self) -> Vec<(&'static str, Color)> {
         match self {
             Self::Whitted(k) => vec![
@@ -255,52 +255,53 @@ impl MaterialKind {
     }
 }
 
-/// glTF 2.0's metallic-roughness material with its extensions: a metal, glass or diffuse body, by parts, under sheen and
-/// a clear coat. All numbers are those of the extensions, with textures and factors multiplied.
+/// glTF 2.0's metallic-roughness material with its extensions: a weighted mix of metal, dielectric and diffuse base, under
+/// sheen and a clear coat. All parameters are those of the extensions, with textures and factors multiplied.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Principled {
-    /// The metal's reflectance straight on; the albedo or tint of what is not metal.
+    /// Normal-incidence reflectance of the metal; albedo or tint of the dielectric.
     pub base_color: Color,
     /// 0 is a dielectric, 1 a metal.
     pub metallic: Scalar,
-    /// Its square is the model's α.
+    /// Perceptual roughness: α is its square.
     pub roughness: Scalar,
-    /// How the highlight is drawn out (`KHR_materials_anisotropy`).
+    /// Anisotropy of the highlight (`KHR_materials_anisotropy`).
     pub anisotropy: Option<Anisotropy>,
-    /// Index of refraction (`KHR_materials_ior`); 0 means infinite: Fresnel's reflectance is 1 times the specular colour.
+    /// Index of refraction (`KHR_materials_ior`); 0 means infinity: the Fresnel reflectance is 1 times the specular colour.
     pub ior: f32,
-    /// 20 over Abbe's number (`KHR_materials_dispersion`): 0 is none.
+    /// 20 divided by the Abbe number (`KHR_materials_dispersion`); 0 means no dispersion.
     pub dispersion: f32,
-    /// How much a dielectric mirrors (`KHR_materials_specular`).
+    /// Strength of a dielectric's specular reflection (`KHR_materials_specular`).
     pub specular: Scalar,
-    /// The colour of what a dielectric mirrors straight on.
+    /// Colour of a dielectric's specular reflection at normal incidence.
     pub specular_color: Color,
-    /// How much of what is not mirrored passes through instead of being scattered (`KHR_materials_transmission`).
+    /// The fraction of light not reflected specularly that is transmitted instead of scattered
+    /// (`KHR_materials_transmission`).
     pub transmission: Scalar,
-    /// Whether the surface bounds a body that bends light (`KHR_materials_volume` with a thickness); otherwise it is a thin
+    /// Whether the surface bounds a refracting volume (`KHR_materials_volume` with a thickness); otherwise it is a thin
     /// sheet.
     pub is_solid: bool,
-    /// Absorption in the body per unit of length of the world, for each primary: ≥ 0.
+    /// Absorption coefficient of the volume in world units, for each primary: ≥ 0.
     pub absorption: [f32; 3],
-    /// How much of the diffuse light is let through instead of reflected (`KHR_materials_diffuse_transmission`).
+    /// The fraction of diffuse light that is transmitted instead of reflected (`KHR_materials_diffuse_transmission`).
     pub diffuse_transmission: Scalar,
-    /// Its colour.
+    /// Colour of the diffuse transmission.
     pub diffuse_transmission_color: Color,
-    /// The strength of a clear coat over all (`KHR_materials_clearcoat`); its index of refraction is 1.5.
+    /// Strength of a clear coat (`KHR_materials_clearcoat`); its index of refraction is 1.5.
     pub clearcoat: Scalar,
-    /// Its roughness, whose square is α.
+    /// Perceptual roughness of the clear coat: α is its square.
     pub clearcoat_roughness: Scalar,
-    /// Its own normals; without, those of the mesh, not those of [`Material::bump_mapping`].
+    /// Normal map of the clear coat; `None` for the mesh's normals, without [`Material::bump_mapping`].
     pub clearcoat_normal: Option<NormalTexture>,
-    /// The colour of fibres over all (`KHR_materials_sheen`); black is none.
+    /// Colour of the sheen of fibres (`KHR_materials_sheen`); black means no sheen.
     pub sheen_color: Color,
-    /// Their roughness, whose square is the α of Charlie's distribution (Estevez & Kulla 2017).
+    /// Roughness of the sheen, whose square is the α of the Charlie distribution (Estevez & Kulla 2017).
     pub sheen_roughness: Scalar,
-    /// How much of a thin film there is (`KHR_materials_iridescence`, Belcour & Barla 2017).
+    /// Strength of the thin-film effect (`KHR_materials_iridescence`, Belcour & Barla 2017).
     pub iridescence: Scalar,
-    /// The film's index of refraction.
+    /// Index of refraction of the film.
     pub iridescence_ior: f32,
-    /// The film's thickness in nm.
+    /// Thickness of the film in nm.
     pub iridescence_thickness: Scalar,
 }
 
@@ -333,72 +334,73 @@ impl Default for Principled {
     }
 }
 
-/// How a highlight is drawn out along a direction of the surface (`KHR_materials_anisotropy`).
+/// Elongation of the highlight along a direction of the surface (`KHR_materials_anisotropy`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anisotropy {
-    /// 0 is none, 1 as far as it goes.
+    /// From 0, isotropic, to 1, the maximum.
     pub strength: f32,
-    /// From the tangent (u) toward the bitangent (v), in radians.
+    /// Angle from the tangent (u) toward the bitangent (v), in radians.
     pub rotation: f32,
-    /// Red and green, 2·texel − 1, are a direction in the tangent frame, which is then turned; blue multiplies the strength.
+    /// Red and green, 2·texel − 1, are a direction in the tangent frame, to which `rotation` is added; blue multiplies the
+    /// strength.
     pub texture: Option<TextureId>,
 }
 
 /// The optical constants of a metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Metal {
-    /// By the complex index of refraction η + i k, relative to vacuum.
+    /// The complex index of refraction η + i k, relative to vacuum.
     Indices {
         /// η.
         eta: Color,
         /// k.
         k: Color,
     },
-    /// By the colour at normal incidence: η = 1 and the k that gives it.
+    /// The reflectance at normal incidence: η = 1 and the k that gives it.
     Reflectance(Color),
 }
 
 /// An index of refraction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ior {
-    /// The same for all wavelengths.
+    /// Constant over wavelengths.
     Value(f32),
-    /// By wavelength: light is dispersed.
+    /// By wavelength, which disperses light.
     Curve(CurveId),
 }
 
-/// How rough a microfacet surface is (Trowbridge & Reitz 1975), along u and v.
+/// Roughness of a microfacet surface (Trowbridge & Reitz 1975), along u and v.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roughness {
     /// Along u.
     pub u: Scalar,
     /// Along v.
     pub v: Scalar,
-    /// Whether the numbers are a user's 0 … 1 whose square root is the model's α; otherwise they are α.
+    /// Whether the values are user-facing ones in [0, 1], whose square root is α; otherwise they are α.
     pub remap: bool,
 }
 
 impl Roughness {
-    /// None.
+    /// A perfectly smooth surface.
     pub const SMOOTH: Self = Self { u: Scalar::Value(0.0), v: Scalar::Value(0.0), remap: true };
 }
 
-/// A dielectric layer over a base, and the medium between (Guo, Hašan & Zhao 2018).
+/// A dielectric layer over a base, with a medium in between (Guo, Hašan & Zhao 2018).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coat {
     /// Index of refraction.
     pub eta: Ior,
-    /// Of its outer surface.
+    /// Roughness of its outer surface.
     pub roughness: Roughness,
-    /// Of the layer.
+    /// Thickness of the layer.
     pub thickness: Scalar,
-    /// Of the medium in the layer: the part of light that a particle scatters; black is no medium.
+    /// Single-scattering albedo of the medium in the layer; black for no medium.
     pub albedo: Color,
-    /// Of the medium: Henyey & Greenstein's mean cosine, in (−1, 1).
+    /// Henyey–Greenstein asymmetry parameter of the medium: the mean cosine, in (−1, 1).
     pub g: Scalar,
-    /// How often light may bounce between coat and base.
+    /// Maximum number of bounces between coat and base.
     pub max_depth: u32,
-    /// How many random walks are averaged.
+    /// Number of random walks that are averaged.
     pub samples: u32,
 }
 
@@ -406,7 +408,7 @@ pub struct Coat {
 /// `I = k_a I_a + k_d Σ (N·L) I_j + k_s Σ (N·H)^n I_j + k_r S + k_t T`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Whitted {
-    /// `k_a`, the answer to ambient light; `None` means the same as `diffuse`.
+    /// `k_a`, the reflection of ambient light; `None` for the same as `diffuse`.
     pub ambient: Option<Color>,
     /// `k_d`.
     pub diffuse: Color,
@@ -414,16 +416,16 @@ pub struct Whitted {
     pub specular: Color,
     /// `n`, the sharpness of the highlight: ≥ 0.
     pub shininess: f32,
-    /// `k_r`, how much of the mirrored direction is seen.
+    /// `k_r`, the weight of the reflected ray.
     pub mirror: Color,
-    /// `k_t`, how much of the refracted direction is seen.
+    /// `k_t`, the weight of the refracted ray.
     pub transmission: Color,
     /// Index of refraction of the inside relative to the outside: > 0.
     pub ior: f32,
-    /// Whether Fresnel's equations share out the light between the mirrored and the refracted ray; otherwise
-    /// `mirror` and `transmission` alone do (total internal reflection happens either way).
+    /// Whether Fresnel's equations distribute the light between the reflected and the refracted ray; otherwise only `mirror`
+    /// and `transmission` do (total internal reflection is handled in both cases).
     pub fresnel: bool,
-    /// Absorption in the inside per unit of length (Beer's law), for each primary: ≥ 0.
+    /// Absorption coefficient of the inside (Beer's law), for each primary: ≥ 0.
     pub absorption: [f32; 3],
 }
 

@@ -4,24 +4,24 @@ use crate::error::Location;
 use crate::material::Color;
 use crate::scene::MediumId;
 
-/// Something that light crosses. It takes light away on the way; what it would scatter is not modelled.
+/// A participating medium. It absorbs light; scattering is not modelled.
 #[derive(Clone, Debug)]
 pub struct Medium {
     /// The name that interfaces use.
     pub name: String,
     /// The location in the file.
     pub at: Location,
-    /// The part of light that is lost per unit of length, for short lengths: e^(−absorption · length) is left.
+    /// Absorption coefficient: the transmittance is e^(−absorption · length).
     pub absorption: Color,
     /// Multiplies it: ≥ 0.
     pub scale: f32,
 }
 
-/// What fills the space on both sides of a surface; `None` is a vacuum.
+/// The media on both sides of a surface; `None` is a vacuum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sides {
-    /// Behind the outside normal.
+    /// On the side opposite to the outward normal.
     pub inside: Option<MediumId>,
-    /// Before it.
+    /// On the side of the outward normal.
     pub outside: Option<MediumId>,
 }

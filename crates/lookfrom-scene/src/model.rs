@@ -1,7 +1,7 @@
 //! Model files: selection of the reader, and the parts that readers share.
 //!
-//! The reader is selected by the extension, or by the content where the extension is absent or wrong. Models in formats
-//! without a camera and lights are shown in [`crate::studio`].
+//! The reader is selected by the extension, or by the content if the extension is absent or wrong. Models in formats
+//! without a camera and lights are shown by [`crate::studio`].
 
 pub(crate) mod number;
 pub(crate) mod points;
@@ -27,17 +27,17 @@ enum Format {
     Stl,
 }
 
-/// Whether the ending of the name is that of a model format: `.obj`, `.ply` or `.stl` in any case, with or without a
-/// further `.gz` of a file that gzip packed.
+/// Whether the name has the extension of a model format: `.obj`, `.ply` or `.stl` in upper or lower case, with or without
+/// `.gz` for gzip compression.
 pub fn is_model(path: &Path) -> bool {
     by_name(path).is_some()
 }
 
-/// Reads a model: its meshes, materials, textures and pictures are added to the scene, its parts are given back and
-/// have no place in the world yet.
+/// Reads a model: its meshes, materials, textures and images are added to the scene; its parts are returned, and are not
+/// placed in the world yet.
 ///
 /// # Errors
-/// `Unsupported` where neither name nor content is that of a model; otherwise those of the format's reader.
+/// `Unsupported` if neither name nor content is that of a model; otherwise the errors of the format's reader.
 pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
     let bytes = packed::read(path, context)?;
     let file = Location::file(path);
@@ -81,7 +81,7 @@ fn by_content(bytes: &[u8]) -> Option<Format> {
     }
 }
 
-/// Whether a vertex is among the first lines.
+/// Whether there is a vertex among the first lines.
 fn looks_like_obj(bytes: &[u8]) -> bool {
     let text = text::utf8(&bytes[..bytes.len().min(1 << 16)]).into_owned();
     let mut scanner = scan::Scanner::joining_lines(&text);

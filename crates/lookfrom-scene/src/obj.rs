@@ -1,8 +1,8 @@
 //! Reader for Wavefront OBJ files, to meshes and materials.
 //!
-//! `statement` reads the text, `build` makes one mesh for each material of it, [`mtl`] reads material libraries and
-//! `look` turns their materials into the scene's. The format: Wavefront, "Object Files (.obj)", Advanced Visualizer
-//! manual, appendix B1; vertex colours after the coordinates are an extension that many programs write.
+//! `statement` parses the text, `build` makes one mesh per material, [`mtl`] parses material libraries and `look` converts
+//! their materials. The format: Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1; vertex colours
+//! after the coordinates are an extension that many programs write.
 
 mod build;
 mod look;
@@ -19,16 +19,16 @@ use crate::packed;
 use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Part};
 
-/// Reads an OBJ file and the material libraries and pictures that it names. There is one part for each material; a file
-/// without faces is a cloud of points. Colours of vertices are taken to be sRGB-encoded.
+/// Reads an OBJ file and the material libraries and images that it names. There is one part per material; a file without
+/// faces is a point cloud. Vertex colours are taken to be sRGB-encoded.
 ///
 /// # Errors
-/// `Io`, `Limit`, `Syntax` and `Invalid`, at line and column. After an error the scene may hold pieces of the file.
+/// `Io`, `Limit`, `Syntax` and `Invalid`, at line and column. After an error the scene may contain parts of the file.
 pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
     from_bytes(&packed::read(path, context)?, path, context, scene)
 }
 
-/// The same for the content of a file; `path` is where it came from, for messages and for the files it names.
+/// The same for the content of a file; messages and relative file names use `path`.
 ///
 /// # Errors
 /// As [`read`].
@@ -68,7 +68,7 @@ pub fn from_bytes(
     Ok(parts)
 }
 
-/// A colour component as files have it; those of MeshLab, ZBrush and Blender are sRGB-encoded.
+/// Linear value of a component of a vertex colour; those of MeshLab, ZBrush and Blender are sRGB-encoded.
 fn linear_color(encoded: f32) -> f32 {
     if encoded.is_finite() { linear_from_srgb(encoded.clamp(0.0, 1.0)) } else { 1.0 }
 }

@@ -7,16 +7,16 @@ use std::path::{Path, PathBuf};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, LoadContext};
 
-/// The extension of packed files.
+/// The extension of gzip files.
 const EXTENSION: &str = "gz";
 
-/// The first bytes of packed files.
+/// The signature of gzip files.
 const MAGIC: &[u8] = b"\x1f\x8b";
 
-/// Packed files of meshes are a tenth as long as unpacked; this much is suspicious.
+/// Maximum compression ratio: meshes compress to about a tenth, so a larger ratio is suspicious.
 const MOST_UNPACKED: u64 = 250;
 
-/// The name without `.gz`, which tells the format.
+/// The name without `.gz`, whose extension identifies the format.
 pub(crate) fn unpacked_name(path: &Path) -> PathBuf {
     match path.extension() {
         Some(extension) if extension.eq_ignore_ascii_case(EXTENSION) => path.with_extension(""),
@@ -24,10 +24,10 @@ pub(crate) fn unpacked_name(path: &Path) -> PathBuf {
     }
 }
 
-/// A file's content, unpacked where it is packed. Where `x.ply` cannot be read, `x.ply.gz` is read in its place.
+/// A file's content, decompressed if it is compressed. If `x.ply` cannot be read, `x.ply.gz` is read instead.
 ///
 /// # Errors
-/// `Io` where neither can be read, `Syntax` where the packed bytes are damaged, `Limit` where they or the unpacked ones are too many.
+/// `Io` if neither can be read, `Syntax` if the compressed bytes are damaged, `Limit` if the content is too long.
 pub(crate) fn read(path: &Path, context: &LoadContext<'_>) -> Result<Vec<u8>> {
     let (bytes, path) = match context.read(path) {
         Ok(bytes) => (bytes, path.to_owned()),
@@ -47,7 +47,7 @@ pub(crate) fn read(path: &Path, context: &LoadContext<'_>) -> Result<Vec<u8>> {
     unpacked(bytes, &path, &context.limits)
 }
 
-/// The same bytes, or what they hold where they are packed.
+/// The bytes, decompressed if they are compressed.
 pub(crate) fn unpacked(packed: Vec<u8>, path: &Path, limits: &Limits) -> Result<Vec<u8>> {
     if !packed.starts_with(MAGIC) {
         return Ok(packed);

@@ -1,8 +1,8 @@
-//! Reader for scenes of pbrt-v4 (Pharr, Jakob & Humphreys 2023). Errors have the location of the wrong value.
+//! Reader for scenes of pbrt-v4 (Pharr, Jakob & Humphreys 2023). Errors have the location of the invalid value.
 //!
-//! `text` and `lexer` know bytes and words, `params` the typed parameters, `directive` what each directive does to the
-//! `state`; beside them a file for each part of the vocabulary. What pbrt knows and this program does not render is
-//! read, warned of once, and replaced by what is nearest.
+//! `text` and `lexer` handle bytes and tokens, `params` the typed parameters, `directive` executes directives on the
+//! `state`; the other files each handle a part of the vocabulary. Features of pbrt that this program does not render are
+//! read, warned of once, and replaced by the nearest equivalent.
 
 mod camera;
 mod curve;
@@ -43,13 +43,12 @@ use crate::material::{Color, Material, MaterialKind};
 use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
 use crate::settings::ColorMode;
 
-/// Reads a scene of pbrt-v4 with all that it includes. Names of files are relative to the folder of `path`, or else to
-/// that of the file they stand in.
+/// Reads a scene of pbrt-v4 with all its includes. File names are relative to the folder of `path`, or else to the folder
+/// of the file that contains them.
 ///
 /// # Errors
-/// With line and column: `Syntax` where words are not those of the format, `Invalid` where they
-/// say what cannot be (a scene of pbrt-v3 among them), `Limit` where something is too large or nests too deep, and
-/// whatever goes wrong in the files that are named. Files that do not exist are told of all at once, as
+/// With line and column: `Syntax` for malformed files, `Invalid` for invalid values (and for scenes of pbrt-v3), `Limit`
+/// for excessive sizes and nesting, and the errors of the files that are named. All missing files are reported at once, as
 /// [`Error::more`].
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut scene = Scene::default();
@@ -90,7 +89,7 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Whether a text looks like a scene of pbrt: one of its first words is a directive that begins such files.
+/// Whether a text is a scene of pbrt: one of its first words is a directive that such files begin with.
 pub(crate) fn is_pbrt(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 16)];
     let lines = head.split(|&byte| byte == b'\n' || byte == b'\r');
@@ -100,13 +99,13 @@ pub(crate) fn is_pbrt(bytes: &[u8]) -> bool {
     })
 }
 
-/// A scene on its way from files.
+/// The state of reading a scene.
 struct Reader<'s, 'f> {
     context: &'s mut LoadContext<'f>,
     scene: Scene,
     /// The folder of the main file.
     folder: PathBuf,
-    /// The files that are being read: each is included by the one before.
+    /// The open files: each is included by the previous one.
     open: Vec<PathBuf>,
     /// The number of included files.
     included: u32,
@@ -115,73 +114,73 @@ struct Reader<'s, 'f> {
     /// Open blocks.
     stack: Vec<Opened>,
     coordinate_systems: BTreeMap<String, DMat4>,
-    /// Whether `WorldBegin` was there.
+    /// Whether `WorldBegin` has been read.
     in_world: bool,
     /// Settings before `WorldBegin`.
     options: Options,
     materials: BTreeMap<String, NamedMaterial>,
-    /// By name and whether they give numbers.
+    /// By name and whether they are float textures.
     textures: BTreeMap<(bool, String), NamedTexture>,
-    /// Whether textures may only be used after they are written (as textures of textures are).
+    /// Whether textures may only be used after their definition (as inside other textures).
     only_earlier: bool,
     objects: BTreeMap<String, ObjectId>,
-    /// The object that shapes go to.
+    /// The open object, to which shapes are added.
     object: Option<ObjectId>,
-    /// Instances whose objects are looked up when all are there.
+    /// Instances, whose objects are looked up at the end.
     instances: Vec<(String, Place, DMat4)>,
     curves: BTreeMap<String, CurveId>,
-    /// Pictures by path and by what was done to their values.
+    /// Images by path and conversion of their values.
     images: BTreeMap<(PathBuf, String), ImageId>,
     models: BTreeMap<PathBuf, Model>,
-    /// Warnings that were given already.
+    /// Warnings that have been given already.
     warned: BTreeSet<String>,
-    /// By name.
+    /// Media by name.
     media: BTreeMap<String, NamedMedium>,
-    /// An integrator that knows no media, until that is told of.
+    /// An integrator that does not support media, until it has been warned of.
     without_media: Option<(String, Place)>,
-    /// Files that are not there, so far.
+    /// Missing files so far.
     missing: Missing,
 }
 
-/// A material that was made or mentioned.
+/// A material that has been defined or referred to.
 struct NamedMaterial {
     id: MaterialId,
-    /// The location of the first mention.
+    /// Location of the first mention.
     first: Place,
     is_made: bool,
 }
 
-/// A texture that was made or mentioned.
+/// A texture that has been defined or referred to.
 struct NamedTexture {
-    /// A value where it is the same everywhere.
+    /// The texture, or its value if it is constant.
     color: Color,
-    /// The location of the first mention.
+    /// Location of the first mention.
     first: Place,
     is_made: bool,
 }
 
 impl Reader<'_, '_> {
-    /// Warns of something the first time only.
+    /// Warns of something only the first time.
     fn warn_once(&mut self, what: &str, place: &Place, message: impl std::fmt::Display) {
         if self.warned.insert(what.to_owned()) {
             self.context.warn(&place.location(), message.to_string());
         }
     }
 
-    /// A message for a word that is not known, with what was probably meant.
+    /// The error for an unknown word, with the most similar known one.
     fn unknown<'a>(
         place: &Place,
         what: &str,
         word: &str,
         known: impl IntoIterator<Item = &'a str> + Clone,
     ) -> Error {
-        let error = place.invalid(format!("{word:?} is no {what} that is known"));
+        let error = place.invalid(format!("{word:?} is not a known {what}"));
         match crate::suggest::nearest(word, known.clone()) {
             Some(meant) => error.hint(format!("did you mean {meant:?}?")),
             None => {
                 let mut known: Vec<&str> = known.into_iter().take(20).collect();
                 if known.is_empty() {
-                    return error.hint("there is none at all before this");
+                    return error.hint("none is defined before this");
                 }
                 known.sort_unstable();
                 error.hint(format!("there are: {}", known.join(", ")))

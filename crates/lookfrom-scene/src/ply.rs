@@ -1,8 +1,7 @@
 //! Reader and writer for PLY files: meshes and point clouds.
 //!
-//! `header` reads what the file says of itself, `body` (by way of `values`) what it holds, `build` makes the mesh,
-//! [`write`](fn@write) writes one. The format: Turk 1994, "The PLY Polygon File Format"; names of properties as programs have
-//! come to write them.
+//! `header` parses the header, `body` (with `values`) the elements, `build` makes the mesh, [`write`](fn@write) writes one.
+//! The format: Turk 1994, "The PLY Polygon File Format"; property names as they are in common use.
 
 mod body;
 mod build;
@@ -19,17 +18,17 @@ use crate::packed;
 use crate::scene::Scene;
 use crate::shape::Part;
 
-/// Reads a PLY file, ASCII or binary: one mesh, or a cloud of points where there are no faces. Colours that are whole
-/// numbers are sRGB-encoded, others linear; a picture that a comment `TextureFile` names is used.
+/// Reads a PLY file, ASCII or binary: one mesh, or a point cloud if there are no faces. Integer colours are sRGB-encoded,
+/// floating-point ones linear; an image named by a comment `TextureFile` is used.
 ///
 /// # Errors
-/// `Io`, `Limit`, `Syntax` and `Invalid`; at line and column, or at a byte in what is binary. After an error the scene
-/// may hold pieces of the file.
+/// `Io`, `Limit`, `Syntax` and `Invalid`; at line and column, or at a byte in binary formats. After an error the scene may
+/// contain parts of the file.
 pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
     from_bytes(&packed::read(path, context)?, path, context, scene)
 }
 
-/// The same for the content of a file; `path` is where it came from, for messages and for the files it names.
+/// The same for the content of a file; messages and relative file names use `path`.
 ///
 /// # Errors
 /// As [`read`].

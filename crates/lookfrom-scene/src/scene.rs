@@ -1,7 +1,7 @@
-//! The scene description: plain, editable data in arenas, with names and source locations. Crate `lookfrom` compiles it to a
-//! `World` for rendering.
+//! The scene description: plain, editable data in arenas, with names and source locations. The crate `lookfrom` compiles it
+//! to a `World` for rendering.
 //!
-//! Units: the scene's own length; angles in degrees; colours are linear Rec. 709 (sRGB primaries), unbounded above.
+//! Units: lengths are the scene's own; angles are in degrees; colours are linear Rec. 709 (sRGB primaries), unbounded above.
 
 use glam::{DMat4, DVec3};
 
@@ -23,7 +23,7 @@ macro_rules! ids {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub struct $name(pub u32);
         impl $name {
-            /// As an index into its arena.
+            /// The index into its arena.
             pub fn index(self) -> usize { self.0 as usize }
         }
     )*};
@@ -49,38 +49,37 @@ ids! {
 /// A scene as it was written.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// Whether the file says all that there is, so that no light is added to show it: a scene of pbrt without lights is
-    /// black.
+    /// Whether the file is complete, so that no light is added automatically: a scene of pbrt without lights is black.
     pub is_complete: bool,
     /// The format of the file that it was read from.
     pub source_format: SourceFormat,
     /// The animations, variants, cameras and scenes of the file.
     pub contents: Contents,
-    /// The camera; `None` where the file has none: then the scene is framed by its bounds.
+    /// The camera; `None` if the file has none: then the scene is framed by its bounds.
     pub camera: Option<Camera>,
-    /// Size, filter and development of the picture.
+    /// Resolution, filter, sensor and tone mapping.
     pub image: ImageSettings,
     /// The integrator and its settings.
     pub render: RenderSettings,
-    /// Surfaces' looks.
+    /// Materials of surfaces.
     pub materials: Vec<Material>,
-    /// Colour over surfaces.
+    /// Textures of materials.
     pub textures: Vec<Texture>,
     /// Participating media.
     pub media: Vec<Medium>,
-    /// Values by wavelength, shared by whatever has a colour.
+    /// Spectra, shared by everything that has a colour.
     pub curves: Vec<Curve>,
-    /// Decoded pictures, shared by textures and environment lights.
+    /// Decoded images, shared by textures and environment lights.
     pub images: Vec<Image>,
-    /// Triangles, shared by shapes.
+    /// Triangle meshes, shared by shapes.
     pub meshes: Vec<Mesh>,
-    /// Shapes of the world outside objects.
+    /// Shapes of the world outside of objects.
     pub shapes: Vec<Shape>,
-    /// Groups of shapes that instances repeat.
+    /// Groups of shapes, which instances place.
     pub objects: Vec<Object>,
-    /// Repetitions of objects.
+    /// Placed copies of objects.
     pub instances: Vec<Instance>,
-    /// Lights that are not shapes; area lights are shapes with [`Shape::emission`].
+    /// Lights other than shapes; area lights are shapes with [`Shape::emission`].
     pub lights: Vec<Light>,
 }
 
@@ -88,7 +87,7 @@ pub struct Scene {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SourceFormat {
-    /// A scene of ours or of pbrt, or no file.
+    /// A scene in our own format or of pbrt, or no file.
     #[default]
     Scene,
     /// A glTF file.
@@ -104,62 +103,62 @@ pub struct Object {
     pub name: String,
     /// The location in the file.
     pub at: Location,
-    /// Its shapes; their `world_from_object` leads to the space of this group.
+    /// Its shapes; their `world_from_object` is the transform to the space of this group.
     pub shapes: Vec<Shape>,
 }
 
-/// One repetition of an object.
+/// A placed copy of an object.
 #[derive(Clone, Debug)]
 pub struct Instance {
     /// The location in the file.
     pub at: Location,
-    /// The object that is instanced.
+    /// The instanced object.
     pub object: ObjectId,
-    /// From the object's space to the world: any invertible affine matrix, mirrors included.
+    /// From the object's space to the world: any invertible affine matrix, including reflections.
     pub world_from_object: DMat4,
-    /// Takes the place of every material in the object.
+    /// Replaces every material in the object.
     pub material: Option<MaterialId>,
 }
 
 /// An axis-aligned box; empty when `min > max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Least corner.
+    /// Minimum corner.
     pub min: DVec3,
-    /// Greatest corner.
+    /// Maximum corner.
     pub max: DVec3,
 }
 
 impl Bounds {
-    /// Holds nothing; the identity of [`Bounds::union`].
+    /// The empty box; the identity of [`Bounds::union`].
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
-    /// The least box around both.
+    /// The smallest box around both.
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// The least box around this one and a point.
+    /// The smallest box around this one and a point.
     pub fn with(self, point: DVec3) -> Self {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// Whether it holds nothing.
+    /// Whether the box is empty.
     pub fn is_empty(self) -> bool {
         !(self.min.x <= self.max.x && self.min.y <= self.max.y && self.min.z <= self.max.z)
     }
 
-    /// Middle.
+    /// The centre.
     pub fn center(self) -> DVec3 {
         0.5 * (self.min + self.max)
     }
 
-    /// Half the diagonal: the radius of the sphere around the box.
+    /// Half the diagonal: the radius of the bounding sphere.
     pub fn radius(self) -> f64 {
         if self.is_empty() { 0.0 } else { 0.5 * (self.max - self.min).length() }
     }
 
-    /// The box around the transformed box.
+    /// The bounding box of the transformed box.
     pub fn transformed(self, matrix: &DMat4) -> Self {
         if self.is_empty() {
             return self;
@@ -176,7 +175,7 @@ impl Bounds {
 }
 
 impl Scene {
-    /// The box around everything that is placed in the world.
+    /// The bounding box of everything that is placed in the world.
     pub fn bounds(&self) -> Bounds {
         let of = |shapes: &[Shape]| {
             shapes.iter().fold(Bounds::EMPTY, |bounds, shape| bounds.union(shape.bounds(&self.meshes)))

@@ -4,40 +4,40 @@ use crate::image::srgb_from_linear;
 
 use crate::spectrum::CameraSensor;
 
-/// Size, filter and development of the picture.
+/// Resolution, filter, sensor and tone mapping of the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageSettings {
-    /// Columns, `nx`.
+    /// Width in pixels, `nx`.
     pub width: u32,
-    /// Rows, `ny`.
+    /// Height in pixels, `ny`.
     pub height: u32,
-    /// Only this part is computed; the picture keeps its full size.
+    /// The crop window: only this part is rendered; the image keeps its full size.
     pub crop: Option<PixelBounds>,
     /// The pixel reconstruction filter.
     pub filter: Filter,
-    /// In stops: the picture is multiplied by 2^exposure before the tone map.
+    /// In stops: the image is multiplied by 2^exposure before tone mapping.
     pub exposure: f32,
     /// The tone mapping from linear light to [0, 1].
     pub tonemap: Tonemap,
     /// The sensor.
     pub sensor: Sensor,
-    /// The AOVs of an EXR besides the picture.
+    /// The AOVs written to an EXR in addition to the image.
     pub layers: Layers,
-    /// The background of the picture where the camera sees no surface.
+    /// The background of the image where the camera sees no surface.
     pub background: Background,
-    /// Whether noise is filtered out of the picture.
+    /// Whether the image is denoised.
     pub denoise: bool,
 }
 
-/// The background of the picture where the camera sees no surface; illumination is the same for all of them.
+/// The background of the image where the camera sees no surface; illumination does not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Background {
-    /// The environments.
+    /// The environment lights.
     #[default]
     Environment,
-    /// A colour: linear Rec. 709.
+    /// A constant colour: linear Rec. 709.
     Color([f32; 3]),
-    /// Nothing: the picture has an alpha channel.
+    /// None: the image has an alpha channel.
     Transparent,
 }
 
@@ -58,26 +58,26 @@ impl std::fmt::Display for Background {
 /// The sensor that converts light to colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
-    /// The camera whose spectral responses it has; `None` is the CIE 1931 standard observer.
+    /// The camera whose spectral responses are used; `None` for the CIE 1931 standard observer.
     pub camera: Option<CameraSensor>,
-    /// Multiplies all light: exposure time × ISO / 100 of pbrt's films.
+    /// Multiplies all light: exposure time × ISO / 100 in pbrt's films.
     pub imaging_ratio: f32,
-    /// The colour temperature, in kelvin, of the light that shall look white; `None` leaves colours as they are, and is
-    /// [`Sensor::DAYLIGHT`] for a camera.
+    /// The colour temperature, in kelvin, of light that appears white; `None` leaves colours unchanged, except for a camera,
+    /// where it is [`Sensor::DAYLIGHT`].
     pub white_balance: Option<f32>,
-    /// A sample whose greatest channel is brighter is darkened to it: a bias against fireflies. Channels are those of the
-    /// sensor, before white balance: the camera's red, green and blue, or X, Y and Z. Infinite is none.
+    /// The maximum of a sample's channels; brighter samples are scaled down to it: biased, against fireflies. Channels are
+    /// those of the sensor, before white balance: the camera's red, green and blue, or X, Y and Z. Infinity for no limit.
     pub max_component: f32,
 }
 
 impl Sensor {
-    /// The word for the standard observer, where cameras have their names.
+    /// The word for the standard observer, besides the names of cameras.
     pub const OBSERVER: &str = "cie1931";
 
-    /// The white balance of a camera where nothing is said, in kelvin.
+    /// The default white balance of a camera, in kelvin.
     pub const DAYLIGHT: f32 = 6500.0;
 
-    /// Whether its channels are X, Y and Z of the picture's light.
+    /// Whether its channels are X, Y and Z of the image.
     pub fn measures_xyz(&self) -> bool {
         self.camera.is_none() && self.white_balance.is_none()
     }
@@ -89,13 +89,13 @@ impl Default for Sensor {
     }
 }
 
-/// The AOVs of an EXR besides the picture.
+/// The AOVs written to an EXR in addition to the image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layers {
     /// None.
     #[default]
     None,
-    /// Albedo, normals, position, depth, uv and variance of what the camera sees first.
+    /// Albedo, normals, position, depth, uv and variance of the first visible surface.
     Geometry,
 }
 
@@ -116,58 +116,57 @@ impl Default for ImageSettings {
     }
 }
 
-/// A part of the picture in pixels from the top left: `x0 ≤ x < x1`, `y0 ≤ y < y1`.
+/// A part of the image in pixels from the top left: `x0 ≤ x < x1`, `y0 ≤ y < y1`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PixelBounds {
     /// First column.
     pub x0: u32,
     /// First row.
     pub y0: u32,
-    /// Beyond the last column.
+    /// One past the last column.
     pub x1: u32,
-    /// Beyond the last row.
+    /// One past the last row.
     pub y1: u32,
 }
 
 /// The pixel reconstruction filter. Radii are in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filter {
-    /// All the same. Half a pixel is the pixel itself.
+    /// A constant. With a radius of half a pixel it covers exactly the pixel.
     Box {
-        /// Half the width: > 0.
+        /// Radius: > 0.
         radius: f32,
     },
-    /// A tent.
+    /// A tent function.
     Triangle {
-        /// Half the width: > 0.
+        /// Radius: > 0.
         radius: f32,
     },
-    /// A bell, shifted down so that it ends at 0.
+    /// A Gaussian, shifted down so that it is 0 at the radius.
     Gaussian {
-        /// Half the width: > 0.
+        /// Radius: > 0.
         radius: f32,
         /// Standard deviation: > 0.
         sigma: f32,
     },
-    /// Mitchell & Netravali 1988.
+    /// Mitchell & Netravali 1988, with its parameters B and C.
     Mitchell {
-        /// Half the width: > 0.
+        /// Radius: > 0.
         radius: f32,
-        /// Blur.
+        /// B: blurring.
         b: f32,
-        /// Ringing.
+        /// C: ringing.
         c: f32,
     },
-    /// Blackman & Harris' four-term window.
+    /// The four-term Blackman–Harris window.
     BlackmanHarris {
-        /// Half the width: > 0.
+        /// Radius: > 0.
         radius: f32,
     },
 }
 
 impl Filter {
-    /// The words for them, in scene files and on the command line, with the radii and shapes that they have where nothing is
-    /// said.
+    /// The words for the filters, in scene files and on the command line, with their default radii and parameters.
     pub const WORDS: &'static [(&'static str, Self)] = &[
         ("box", Self::Box { radius: 0.5 }),
         ("triangle", Self::Triangle { radius: 1.0 }),
@@ -177,7 +176,7 @@ impl Filter {
     ];
 }
 
-/// `name:radius`, and what shapes it besides.
+/// `name:radius`, and further parameters.
 impl std::fmt::Display for Filter {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -199,23 +198,23 @@ impl Default for Filter {
 /// The tone mapping from linear light to [0, 1], before the sRGB curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tonemap {
-    /// Cut at 1.
+    /// Clamping at 1.
     #[default]
     Clamp,
     /// x / (1 + x) on luminance (Reinhard et al. 2002).
     Reinhard,
     /// A filmic curve (the fit of Narkowicz 2015 to ACES).
     Filmic,
-    /// Khronos' PBR Neutral (2024): colours as they are, highlights compressed; the default of glTF.
+    /// Khronos PBR Neutral (2024): preserves colours and compresses highlights; the default for glTF.
     PbrNeutral,
-    /// The reference and output transforms of ACES 1.0 (the fit of Stephen Hill).
+    /// The reference rendering and output transforms of ACES 1.0 (the fit of Stephen Hill).
     Aces,
-    /// AgX (Troy Sobotka 2022), as Blender's default look.
+    /// AgX (Troy Sobotka 2022), as in Blender's default look.
     Agx,
 }
 
 impl Tonemap {
-    /// The words for them, in scene files and on the command line.
+    /// The words for the tone mappers, in scene files and on the command line.
     pub const WORDS: &'static [(&'static str, Self)] = &[
         ("clamp", Self::Clamp),
         ("reinhard", Self::Reinhard),
@@ -225,7 +224,7 @@ impl Tonemap {
         ("agx", Self::Agx),
     ];
 
-    /// Its word.
+    /// The word for this tone mapper.
     pub fn word(self) -> &'static str {
         word_of(Self::WORDS, self)
     }
@@ -236,29 +235,29 @@ impl Tonemap {
 pub struct RenderSettings {
     /// The integrator.
     pub integrator: Integrator,
-    /// Samples a pixel: ≥ 1.
+    /// Samples per pixel: ≥ 1.
     pub samples: u32,
     /// The maximum path depth: the number of reflections, refractions and scatterings.
     pub depth: u32,
-    /// A branch of the tree whose share of the pixel falls below this is cut off (Whitted's adaptive depth control).
+    /// Minimum throughput of a branch of the ray tree; branches below it are cut off (Whitted's adaptive depth control).
     pub min_contribution: f32,
     /// The sample sequence.
     pub sampler: Sampler,
-    /// Another seed, other noise.
+    /// The seed of the random numbers.
     pub seed: u64,
-    /// Whether light goes straight through transparent things to what they would shadow, coloured by them.
+    /// Whether shadow rays pass straight through transparent objects, tinted by them.
     pub transparent_shadows: bool,
     /// The meaning of the four lanes of a spectrum: RGB or wavelengths.
     pub color: ColorMode,
     /// The light sampler: the choice of one light of many.
     pub light_sampler: LightSampler,
-    /// Whether the path tracer blurs what it sees after the first diffuse bounce: less noise, slightly wrong.
+    /// Whether the path tracer roughens BSDFs after the first diffuse bounce (regularization): less noise, but biased.
     pub regularize: bool,
     /// The maximum distance of ambient occlusion.
     pub occlusion_distance: f32,
-    /// Whether what fills space counts: the media on the sides of surfaces ([`Sides`](crate::medium::Sides)) and around
-    /// the camera. Without them interfaces stop shadow rays, but no others, as in pbrt's integrators that know no media.
-    /// What materials say of the inside of bodies counts always.
+    /// Whether media are rendered: those on the sides of surfaces ([`Sides`](crate::medium::Sides)) and around the camera.
+    /// Otherwise interfaces block shadow rays, but no others, as in pbrt's integrators without media. Absorption inside
+    /// materials is always rendered.
     pub media: bool,
 }
 
@@ -268,15 +267,15 @@ pub enum ColorMode {
     /// Linear Rec. 709.
     #[default]
     Rgb,
-    /// Four wavelengths, chosen anew for each sample.
+    /// Four wavelengths, sampled anew for each camera ray.
     Spectral,
 }
 
 impl ColorMode {
-    /// The words for them, in scene files and on the command line.
+    /// The words for the modes, in scene files and on the command line.
     pub const WORDS: &'static [(&'static str, Self)] = &[("rgb", Self::Rgb), ("spectral", Self::Spectral)];
 
-    /// Its word.
+    /// The word for this mode.
     pub fn word(self) -> &'static str {
         word_of(Self::WORDS, self)
     }
@@ -285,21 +284,21 @@ impl ColorMode {
 /// The light sampler: the choice of one light of many.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightSampler {
-    /// All the same.
+    /// With equal probabilities.
     Uniform,
-    /// By what they send out.
+    /// By emitted power.
     Power,
-    /// By what they may send to where it is asked (Conty Estevez & Kulla 2018).
+    /// By importance at the shaded point, in a light BVH (Conty Estevez & Kulla 2018).
     #[default]
     Bvh,
 }
 
 impl LightSampler {
-    /// The words for them, in scene files and on the command line.
+    /// The words for the light samplers, in scene files and on the command line.
     pub const WORDS: &'static [(&'static str, Self)] =
         &[("uniform", Self::Uniform), ("power", Self::Power), ("bvh", Self::Bvh)];
 
-    /// Its word.
+    /// The word for this light sampler.
     pub fn word(self) -> &'static str {
         word_of(Self::WORDS, self)
     }
@@ -324,28 +323,28 @@ impl Default for RenderSettings {
     }
 }
 
-/// The computations there are.
+/// The integrators.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
     /// Appel 1968: the nearest surface, local shading, one shadow ray to each light.
     Raycast,
-    /// Whitted 1980: the tree of rays.
+    /// Whitted 1980: recursive ray tracing.
     #[default]
     Whitted,
-    /// Kajiya 1986 with everything that has been learned since: lights and materials sampled together.
+    /// Path tracing (Kajiya 1986) with next-event estimation and multiple importance sampling.
     Path,
-    /// The same without asking lights wisely: a check of `Path`.
+    /// Path tracing with next-event estimation alone, without multiple importance sampling: a check of `Path`.
     SimplePath,
-    /// Directions all around at each hit: a check of both.
+    /// Path tracing with uniformly sampled directions, without light sampling: a check of both.
     RandomWalk,
     /// Ambient occlusion.
     AmbientOcclusion {
-        /// Whether directions are chosen by the cosine.
+        /// Whether directions are cosine-weighted.
         cosine: bool,
     },
     /// Shading normals as colours.
     Normals,
-    /// Distance from the eye along the view axis.
+    /// Distance from the camera along the view axis.
     Depth,
     /// Texture coordinates as colours.
     Uv,
@@ -354,7 +353,7 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// The words for them, in scene files and on the command line.
+    /// The words for the integrators, in scene files and on the command line.
     pub const WORDS: &'static [(&'static str, Self)] = &[
         ("path", Self::Path),
         ("whitted", Self::Whitted),
@@ -368,12 +367,12 @@ impl Integrator {
         ("id", Self::Id),
     ];
 
-    /// Whether paths are followed from surface to surface by chance.
+    /// Whether paths are sampled stochastically.
     pub fn is_path_traced(self) -> bool {
         matches!(self, Self::Path | Self::SimplePath | Self::RandomWalk)
     }
 
-    /// Its word. Ambient occlusion has one for both of its ways to choose directions.
+    /// The word for this integrator. Ambient occlusion has one for both of its ways to sample directions.
     pub fn word(self) -> &'static str {
         let spoken = match self {
             Self::AmbientOcclusion { .. } => Self::AmbientOcclusion { cosine: true },
@@ -389,16 +388,16 @@ pub enum Sampler {
     /// Owen-scrambled Sobol' points.
     #[default]
     Sobol,
-    /// Independent numbers.
+    /// Independent random numbers.
     Independent,
 }
 
 impl Sampler {
-    /// The words for them, in scene files and on the command line.
+    /// The words for the samplers, in scene files and on the command line.
     pub const WORDS: &'static [(&'static str, Self)] =
         &[("sobol", Self::Sobol), ("independent", Self::Independent)];
 
-    /// Its word.
+    /// The word for this sampler.
     pub fn word(self) -> &'static str {
         word_of(Self::WORDS, self)
     }

@@ -10,33 +10,33 @@ use crate::material::{Color, Scalar};
 use crate::medium::Sides;
 use crate::scene::{Bounds, MaterialId, MeshId};
 
-/// One thing in the world (or in an object).
+/// A shape in the world (or in an object).
 #[derive(Clone, Debug)]
 pub struct Shape {
-    /// Its name, where one was given.
+    /// Its name, if it has one.
     pub name: Option<String>,
     /// The location in the file.
     pub at: Location,
-    /// Its form, in its own space.
+    /// Its geometry, in its own space.
     pub geometry: Geometry,
-    /// Its look.
+    /// Its material.
     pub material: MaterialId,
-    /// The light it gives off.
+    /// Its emission; `None` for shapes that emit no light.
     pub emission: Option<Emission>,
-    /// The part of it that is there: light passes where chance says that it is not. `None` is all of it.
+    /// Its alpha: the probability that a ray hits it. `None` for opaque shapes.
     pub alpha: Option<Scalar>,
-    /// The media on both sides, where the surface is a medium interface; otherwise the medium continues.
+    /// The media on both sides, if the surface is a medium interface; otherwise the surrounding medium continues.
     pub sides: Option<Sides>,
     /// Whether the orientation is reversed.
     pub reverse_orientation: bool,
-    /// Whether rays from the camera pass its back faces, as if they were not there.
+    /// Whether camera rays pass through its back faces (back-face culling).
     pub single_sided: bool,
     /// From the shape's space to the world: any invertible affine matrix.
     pub world_from_object: DMat4,
 }
 
 impl Shape {
-    /// A form with a look, at the origin, whole, without light of its own.
+    /// A geometry with a material, at the origin, opaque, without emission.
     pub fn new(at: Location, geometry: Geometry, material: MaterialId) -> Self {
         Self {
             name: None,
@@ -53,30 +53,30 @@ impl Shape {
     }
 }
 
-/// The light that a surface gives off, the same in all directions.
+/// The emission of a surface, the same in all directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emission {
     /// Emitted radiance.
     pub radiance: Color,
     /// The power.
     pub power: Power,
-    /// Whether both sides shine; otherwise the side that the normal points to.
+    /// Whether both sides emit light; otherwise only the side that the normal points to.
     pub two_sided: bool,
 }
 
 impl Emission {
-    /// As much as the colour says.
+    /// Emission with the brightness of the colour, unscaled.
     pub fn new(radiance: Color, two_sided: bool) -> Self {
         Self { radiance, power: Power::AS_WRITTEN, two_sided }
     }
 }
 
-/// Form, in the shape's space.
+/// Geometry, in the shape's space.
 #[derive(Clone, Debug)]
 pub enum Geometry {
     /// A sphere; its poles lie on the y axis of its space. Radius positive and finite.
     Sphere(Sphere),
-    /// Many spheres with one look: a sphereflake, a cloud of points.
+    /// Many spheres with one material, such as a sphereflake or a point cloud.
     Spheres(Arc<[Sphere]>),
     /// The parallelogram `corner + s·edge_u + t·edge_v`, `s, t ∈ [0, 1]`, uv = (s, t), normal along `edge_u × edge_v`.
     Quad {
@@ -87,49 +87,49 @@ pub enum Geometry {
         /// Along t.
         edge_v: DVec3,
     },
-    /// A round plate.
+    /// A disk.
     Disk {
-        /// Middle.
+        /// The centre.
         center: DVec3,
         /// Normal, of any length but zero.
         normal: DVec3,
         /// Radius, positive.
         radius: f64,
     },
-    /// Triangles.
+    /// A triangle mesh.
     Mesh(MeshId),
-    /// A part of a sphere around the origin; poles on z, uv as pbrt has them.
+    /// A part of a sphere around the origin; poles on z, uv as in pbrt.
     PartialSphere {
         /// Radius, positive.
         radius: f64,
-        /// Cut below and above.
+        /// Minimum and maximum z.
         z: [f64; 2],
-        /// Swept from +x toward +y, in degrees, in (0, 360].
+        /// Sweep angle from +x toward +y, in degrees, in (0, 360].
         phi_max: f64,
     },
-    /// A round plate across the z axis that looks along +z, perhaps with a hole; uv as pbrt has them.
+    /// A disk perpendicular to the z axis that faces +z, possibly with a hole; uv as in pbrt.
     PartialDisk {
-        /// At this z.
+        /// Its z.
         height: f64,
         /// Radius, positive.
         radius: f64,
-        /// Of the hole: ≥ 0.
+        /// Radius of the hole: ≥ 0.
         inner_radius: f64,
-        /// Swept from +x toward +y, in degrees, in (0, 360].
+        /// Sweep angle from +x toward +y, in degrees, in (0, 360].
         phi_max: f64,
     },
-    /// A tube around the z axis; uv as pbrt has them.
+    /// An open cylinder around the z axis; uv as in pbrt.
     Cylinder {
         /// Radius, positive.
         radius: f64,
-        /// From and to.
+        /// Minimum and maximum z.
         z: [f64; 2],
-        /// Swept from +x toward +y, in degrees, in (0, 360].
+        /// Sweep angle from +x toward +y, in degrees, in (0, 360].
         phi_max: f64,
     },
-    /// Patches, each blended from four corners.
+    /// Bilinear patches.
     Bilinear(Arc<Patches>),
-    /// Hairs, wires, ribbons.
+    /// Curves: hair, wires, ribbons.
     Curves(Arc<[Strand]>),
 }
 
@@ -138,11 +138,11 @@ pub enum Geometry {
 pub struct Patches {
     /// Vertices: finite.
     pub positions: Vec<Vec3>,
-    /// Four vertices a patch.
+    /// Four vertices per patch.
     pub patches: Vec<[u32; 4]>,
-    /// Shading normals: none, or one a vertex.
+    /// Shading normals: none, or one per vertex.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates: none, or one a vertex.
+    /// Texture coordinates: none, or one per vertex.
     pub uvs: Vec<Vec2>,
 }
 
@@ -151,7 +151,7 @@ pub struct Patches {
 pub struct Strand {
     /// Control points.
     pub points: [Vec3; 4],
-    /// At the beginning and at the end: > 0.
+    /// Width at the beginning and at the end: > 0.
     pub width: [f32; 2],
     /// The cross-section.
     pub profile: Profile,
@@ -160,44 +160,44 @@ pub struct Strand {
 /// The cross-section of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Profile {
-    /// A band that turns to whoever looks.
+    /// A flat band that always faces the ray.
     Flat,
-    /// The same, shaded as if it were round.
+    /// The same, shaded as a cylinder.
     Cylinder,
-    /// A band that stands across these two unit normals, at its beginning and at its end.
+    /// A flat band perpendicular to these two unit normals, at its beginning and at its end.
     Ribbon([Vec3; 2]),
 }
 
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// Middle.
+    /// The centre.
     pub center: DVec3,
     /// Positive and finite.
     pub radius: f64,
 }
 
-/// Triangles over shared vertices. Front faces run counter-clockwise.
+/// Triangles over shared vertices. Front faces are counter-clockwise.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// Its name or file.
     pub name: String,
     /// Vertices: finite.
     pub positions: Vec<Vec3>,
-    /// Three vertices a triangle, each below `positions.len()`.
+    /// Three vertices per triangle, each below `positions.len()`.
     pub triangles: Vec<[u32; 3]>,
-    /// Shading normals: none, or one a vertex (not necessarily of unit length; zero where unknown).
+    /// Shading normals: none, or one per vertex (not necessarily of unit length; zero if unknown).
     pub normals: Vec<Vec3>,
-    /// Texture coordinates: none, or one a vertex.
+    /// Texture coordinates: none, or one per vertex.
     pub uvs: Vec<Vec2>,
-    /// Further sets of texture coordinates: each with one a vertex; what is beyond [`Mesh::MOST_UV_SETS`] is not used.
+    /// Further sets of texture coordinates: each with one per vertex; those beyond [`Mesh::MOST_UV_SETS`] are not used.
     pub more_uvs: Vec<Vec<Vec2>>,
-    /// Linear colours: none, or one a vertex.
+    /// Linear colours: none, or one per vertex.
     pub colors: Vec<[f32; 3]>,
-    /// Opacities: none, or one a vertex.
+    /// Opacities: none, or one per vertex.
     pub opacities: Vec<f32>,
-    /// Directions in which u grows, for bump mapping and brushed metal, and in w whether v grows along normal × tangent (1) or
-    /// against it (−1): none, or one a vertex.
+    /// Tangents along u, for bump mapping and anisotropy; w is the direction of v relative to normal × tangent (1 or −1):
+    /// none, or one per vertex.
     pub tangents: Vec<Vec4>,
 }
 
@@ -206,27 +206,27 @@ impl Mesh {
     pub const MOST_UV_SETS: usize = 4;
 }
 
-/// One piece of a model file: what a reader makes of it before a scene gives it a place.
+/// A part of a model file, before it is placed in a scene.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// Its name in the file, where there is one.
+    /// Its name in the file, if it has one.
     pub name: Option<String>,
-    /// Its form.
+    /// Its geometry.
     pub geometry: Geometry,
-    /// Its look, where the file gives one.
+    /// Its material, if the file gives one.
     pub material: Option<MaterialId>,
-    /// Its light, where the file gives one.
+    /// Its emission, if the file gives any.
     pub emission: Option<Emission>,
-    /// The part of it that is there, where the file says so.
+    /// Its alpha, if the file gives any.
     pub alpha: Option<Scalar>,
-    /// Whether rays from the camera pass its back faces.
+    /// Whether camera rays pass through its back faces.
     pub single_sided: bool,
     /// The transform of the file: any invertible affine matrix.
     pub world_from_object: DMat4,
 }
 
 impl Part {
-    /// A form where it is, without a look.
+    /// A geometry at its place, without a material.
     pub fn new(name: Option<String>, geometry: Geometry) -> Self {
         Self {
             name,
@@ -241,17 +241,17 @@ impl Part {
 }
 
 impl Shape {
-    /// The box around the shape, in the space that `world_from_object` leads to.
+    /// The bounding box of the shape, in the space that `world_from_object` transforms to.
     pub fn bounds(&self, meshes: &[Mesh]) -> Bounds {
         self.geometry.bounds(meshes, &self.world_from_object)
     }
 }
 
 impl Geometry {
-    /// The box around the form after `matrix`.
+    /// The bounding box of the geometry, transformed by `matrix`.
     pub fn bounds(&self, meshes: &[Mesh], matrix: &DMat4) -> Bounds {
         let sphere = |sphere: &Sphere| {
-            // The extent of a transformed sphere along an axis is the length of the matrix's row there (times the radius).
+            // The extent of a transformed sphere along an axis is its radius times the length of the matrix's row.
             let rows = matrix.transpose();
             let extent = sphere.radius
                 * DVec3::new(

@@ -1,9 +1,9 @@
 //! Spectral distributions.
 //!
-//! A [`Curve`] is a spectrum as a file states it: a constant, a table, a black body. Measured ones have names
-//! ([`named()`]), or are read from `.spd` files ([`read_spd`]). Beside them: the standard observer, which weighs
-//! wavelengths as the eye does, the sensors of digital cameras, daylight of any temperature, and the RGB colour spaces.
-//! Sampling wavelengths and lifting RGB to a spectrum are left to the crate `lookfrom`.
+//! A [`Curve`] is a spectrum as a file states it: a constant, a table, a blackbody. Measured ones have names ([`named()`]),
+//! or are read from `.spd` files ([`read_spd`]). Besides: the colour matching functions of the standard observer, the
+//! sensors of digital cameras, daylight of any temperature, and the RGB colour spaces. Sampling of wavelengths and spectral
+//! uplifting of RGB are left to the crate `lookfrom`.
 
 mod camera;
 pub mod daylight;
@@ -16,26 +16,26 @@ pub use camera::{CameraSensor, swatches};
 pub use named::{named, names};
 pub use read::read_spd;
 
-/// The shortest wavelength that is looked at, in nm.
+/// Shortest wavelength that is rendered, in nm.
 pub const SHORTEST: u32 = 360;
-/// The longest wavelength that is looked at, in nm.
+/// Longest wavelength that is rendered, in nm.
 pub const LONGEST: u32 = 830;
 
-/// A function of the wavelength.
+/// A spectrum: a function of wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Curve {
-    /// The same everywhere.
+    /// The same value at all wavelengths.
     Constant(f32),
     /// Linear between entries, 0 outside.
     Tabulated {
-        /// In nm, strictly rising, as many as there are values.
+        /// In nm, strictly increasing, as many as there are values.
         wavelengths: Vec<f32>,
         /// The value at each wavelength.
         values: Vec<f32>,
     },
-    /// The light of a black body (Planck 1900), scaled so that the greatest value over all wavelengths is 1.
+    /// Blackbody radiation (Planck 1900), scaled so that its maximum over all wavelengths is 1.
     Blackbody {
-        /// The temperature in kelvin; black where it is not above 0.
+        /// The temperature in kelvin; black if it is not above 0.
         kelvin: f32,
     },
 }
@@ -50,7 +50,7 @@ impl Curve {
         }
     }
 
-    /// The same curve, which goes on with its first and last values to the ends of the visible wavelengths.
+    /// The same spectrum with its first and last values extended to the ends of the visible range.
     pub(crate) fn extended(self) -> Self {
         let Self::Tabulated { mut wavelengths, mut values } = self else { return self };
         if wavelengths[0] > SHORTEST as f32 {
@@ -65,7 +65,7 @@ impl Curve {
         Self::Tabulated { wavelengths, values }
     }
 
-    /// The same curve times a factor; `None` for a black body, whose scale is fixed.
+    /// The same spectrum times a factor; `None` for a blackbody, whose scale is fixed.
     fn scaled(self, factor: f32) -> Option<Self> {
         match self {
             Self::Constant(value) => Some(Self::Constant(value * factor)),
@@ -79,7 +79,7 @@ impl Curve {
 }
 
 fn tabulated(wavelengths: &[f32], values: &[f32], nm: f32) -> f32 {
-    // The first entry beyond nm, so that nm lies between it and the one before.
+    // The first entry beyond nm, so that nm lies between it and the previous one.
     let beyond = wavelengths.partition_point(|&wavelength| wavelength <= nm);
     match (wavelengths.get(beyond.wrapping_sub(1)), wavelengths.get(beyond)) {
         (Some(&below), Some(&above)) => {
@@ -91,7 +91,7 @@ fn tabulated(wavelengths: &[f32], values: &[f32], nm: f32) -> f32 {
     }
 }
 
-/// Planck's law over its own maximum, which is at b / T (Wien's displacement law).
+/// Planck's law relative to its maximum, which is at b / T (Wien's displacement law).
 fn blackbody(nm: f64, kelvin: f64) -> f64 {
     const WIEN: f64 = 2.897_772_1e-3;
     /// h c / k in m K.
@@ -99,7 +99,7 @@ fn blackbody(nm: f64, kelvin: f64) -> f64 {
     if !(kelvin > 0.0 && nm > 0.0) {
         return 0.0;
     }
-    // With the peak as the unit of length, only the ratio of the wavelengths and a constant are left.
+    // In units of the peak wavelength, only the ratio of the wavelengths and a constant remain.
     let ratio = nm * 1e-9 * kelvin / WIEN;
     let peak = SECOND_RADIATION / WIEN;
     let fifth = ratio * ratio * ratio * ratio * ratio;

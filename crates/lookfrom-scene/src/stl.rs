@@ -1,9 +1,9 @@
 //! Reader for STL files.
 //!
-//! Triangles without shared vertices, in text or binary (3D Systems, "StereoLithography Interface Specification",
-//! 1989). Vertices with the same bits are made one. The normals of facets are ignored: they are often wrong, and flat
-//! shading follows from the triangles. Colours in the attribute bytes of binary files are read in both dialects:
-//! VisCAM's and, where the header says `COLOR=`, Magics'.
+//! Triangles without shared vertices, in text or binary (3D Systems, "StereoLithography Interface Specification", 1989).
+//! Vertices with equal bits are merged. The normals of facets are ignored: they are often wrong, and flat shading follows
+//! from the triangles. Colours in the attribute bytes of binary files are read in both dialects: VisCAM's and, if the
+//! header contains `COLOR=`, Magics'.
 
 use std::path::Path;
 
@@ -23,22 +23,22 @@ use crate::packed;
 use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Mesh, Part};
 
-/// Bytes before the triangles of a binary file: 80 for people, then their number.
+/// Bytes before the triangles of a binary file: 80 bytes of free text, then their number.
 const HEADER: usize = 84;
-/// Bytes of a triangle: normal, three vertices, attributes.
+/// Bytes per triangle: normal, three vertices, attributes.
 const TRIANGLE: usize = 50;
-/// Stands for a facet without a colour of its own.
+/// Placeholder for a facet without a colour of its own.
 const NO_COLOR: u32 = u32::MAX;
 
-/// Reads an STL file: one part for each solid in it.
+/// Reads an STL file: one part per solid.
 ///
 /// # Errors
-/// `Io`, `Limit` and `Syntax`; at line and column, or at a byte in what is binary.
+/// `Io`, `Limit` and `Syntax`; at line and column, or at a byte in binary files.
 pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
     from_bytes(&packed::read(path, context)?, path, context, scene)
 }
 
-/// The same for the content of a file; `path` is where it came from, for messages.
+/// The same for the content of a file; `path` is for messages.
 ///
 /// # Errors
 /// As [`read`].
@@ -79,13 +79,13 @@ pub fn from_bytes(
     Ok(parts)
 }
 
-/// Whether the length is the one that a binary file of as many triangles as it claims must have.
+/// Whether the length matches a binary file with the number of triangles in its header.
 pub(crate) fn is_binary_by_length(bytes: &[u8]) -> bool {
     claimed_triangles(bytes)
         .is_some_and(|count| HEADER as u64 + TRIANGLE as u64 * count == bytes.len() as u64)
 }
 
-/// Whether it is the text format. Headers of binary files may start with `solid` too.
+/// Whether the file has the text format. Headers of binary files may start with `solid`, too.
 pub(crate) fn is_text(bytes: &[u8]) -> bool {
     let text = text::utf8(&bytes[..bytes.len().min(1 << 12)]).to_ascii_lowercase();
     let is_word = |word: &[u8]| text.windows(word.len()).any(|window| window == word);
@@ -99,9 +99,9 @@ fn claimed_triangles(bytes: &[u8]) -> Option<u64> {
     Some(u64::from(u32::from_le_bytes([count[0], count[1], count[2], count[3]])))
 }
 
-/// Collects the triangles of one solid after the other.
+/// Collects the triangles of one solid at a time.
 struct Triangles {
-    /// Bits of the coordinates, and the colour.
+    /// Vertices by the bits of their coordinates, and the colour.
     weld: Weld<4>,
     triangles: Vec<[u32; 3]>,
     limit: usize,
@@ -127,7 +127,7 @@ impl Triangles {
             self.flat.add(line);
         } else {
             self.triangles.push(points.map(|point| {
-                // Adding 0 makes −0 and 0 the same.
+                // Adding 0 makes −0 and 0 equal.
                 let [x, y, z] = point.to_array().map(|value| (value + 0.0).to_bits());
                 self.weld.id([x, y, z, color])
             }));
@@ -149,7 +149,7 @@ impl Triangles {
     }
 }
 
-/// 5 bits each of red (highest), green and blue, sRGB-encoded.
+/// Linear colour of 5 bits each of red (highest), green and blue, sRGB-encoded.
 fn linear_color(color: u32) -> [f32; 3] {
     if color == NO_COLOR {
         return [0.8; 3];
@@ -171,7 +171,7 @@ fn read_binary(
     let there = (body.len() / TRIANGLE) as u64;
     let is_whole = body.len().is_multiple_of(TRIANGLE);
     let count = if claimed == 0 && is_whole && there > 0 {
-        // Some programs do not know the number when they start to write.
+        // Some programs write the header before they know the number.
         context.notice(file, format!("the header says that there are no triangles; all {there} are read"));
         there
     } else {
@@ -179,7 +179,9 @@ fn read_binary(
     };
     if count > there {
         let message = format!("{count} triangles are declared, but there are only bytes for {there}");
-        return Err(Error::syntax(file, message).hint("the file may be cut off, or it may be no STL file"));
+        return Err(
+            Error::syntax(file, message).hint("the file may be cut off, or it may not be an STL file")
+        );
     }
     if count as usize > triangles.limit {
         let message = format!("{count} triangles are more than the limit of {}", triangles.limit);
@@ -189,7 +191,7 @@ fn read_binary(
     let rest = body.len() - used;
     if rest > 0 {
         let message = format!("{rest} bytes after the last triangle are ignored");
-        // Triangles may be among them; less than one is padding.
+        // The rest may contain triangles; less than one is padding.
         if rest >= TRIANGLE { context.warn(file, message) } else { context.notice(file, message) }
     }
     let header = &bytes[..HEADER - 4];
@@ -239,7 +241,7 @@ fn read_text(
                 name = (!rest.is_empty()).then(|| String::from_utf8_lossy(rest).into_owned());
                 is_open = true;
             }
-            // What follows is a normal.
+            // The rest of the line is the normal.
             b"facet" => {
                 scanner.rest_of_line();
                 is_in_facet = true;

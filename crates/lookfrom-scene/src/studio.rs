@@ -1,7 +1,7 @@
-//! Automatic framing and lighting of scenes and models without a camera or lights. Everything is proportional to the bounds, so that a
-//! model of any size makes the same picture: a three-quarter view from slightly above. Models stand in a studio, which
-//! `surroundings` builds; scenes without light get a lamp: a large soft key light from the upper left of the camera, and
-//! a fill from all around.
+//! Automatic framing and lighting of scenes and models without a camera or lights. Everything is proportional to the bounds,
+//! so that models of any size give the same image: a three-quarter view from slightly above. Models are placed in a studio,
+//! built by `surroundings`; scenes without light get a large soft key light from the upper left of the camera, and a fill
+//! light from all directions.
 
 mod framing;
 mod surroundings;
@@ -25,14 +25,14 @@ pub use turntable::Turntable;
 /// Vertical field of view in degrees, and the tangent of its half: 2 − √3.
 const FOV: f64 = 30.0;
 const TAN_HALF_FOV: f64 = 0.267_949_192_431_122_7;
-/// The share of the picture that the bounds may fill.
+/// The fraction of the image that the bounds may fill.
 const FILL: f64 = 0.88;
-/// From the model to the camera, in parts of right, up and towards: 23° above the horizon. With the field of view no
-/// horizon is in the picture: the floor fills it.
+/// Direction from the model to the camera, as components to the right, up and towards the viewer: 23° above the horizon.
+/// With this field of view the horizon is outside the image: the floor fills it.
 const TO_CAMERA: [f64; 3] = [0.5, 0.42, 0.85];
-/// From the model to the key light, in parts of the camera's right, up, and its horizontal back.
+/// Direction from the model to the key light, as components to the camera's right, up, and horizontally backwards.
 const TO_KEY: [f64; 3] = [-0.62, 0.85, 0.5];
-/// Distance of the key light, in radii of the bounds, and half the length of its sides as a part of that: soft shadows.
+/// Distance of the key light in radii of the bounds, and half its side length relative to that, for soft shadows.
 const KEY_DISTANCE: f64 = 6.0;
 const KEY_HALF_SIZE: f64 = 0.16;
 /// The radiance of a white surface that faces the key light; with the fill it stays below 1.
@@ -43,13 +43,13 @@ const FILL_NADIR: [f32; 3] = [0.17, 0.165, 0.16];
 /// Lighting inside a closed room: ambient light, and a point light at the camera.
 const ROOM: f32 = 0.3;
 const LAMP: f32 = 0.55;
-/// Samples per pixel of a picture of a model that is not denoised.
+/// Default samples per pixel for images of models without denoising.
 pub const MODEL_SAMPLES: u32 = 64;
-/// Samples per pixel of a picture of thumbnail size.
+/// Default samples per pixel for thumbnails.
 const THUMBNAIL_SAMPLES: u32 = 8;
-/// The most pixels of a thumbnail.
+/// Maximum number of pixels of a thumbnail.
 const THUMBNAIL_PIXELS: u64 = 256 * 256;
-/// The same for pictures that are denoised.
+/// The same with denoising.
 const DENOISED_SAMPLES: u32 = 16;
 const SMALL_DENOISED_SAMPLES: u32 = 6;
 const SMALL_DENOISED_PIXELS: u64 = 512 * 512;
@@ -80,13 +80,13 @@ pub fn add_studio_and_camera(scene: &mut Scene, up: Option<DVec3>) {
     }
 }
 
-/// Whether any shape has emission.
+/// Whether any shape emits light.
 pub fn shines(scene: &Scene) -> bool {
     let in_objects = scene.objects.iter().flat_map(|object| &object.shapes);
     scene.shapes.iter().chain(in_objects).any(|shape| shape.emission.is_some())
 }
 
-/// Default settings for pictures of models: path tracing, and Khronos' PBR Neutral tone mapping.
+/// Default settings for images of models: path tracing, and the Khronos PBR Neutral tone mapper.
 pub fn settings_for_models() -> (ImageSettings, RenderSettings) {
     let image = ImageSettings { tonemap: Tonemap::PbrNeutral, ..ImageSettings::default() };
     let samples = samples_for_models(&image);
@@ -94,7 +94,7 @@ pub fn settings_for_models() -> (ImageSettings, RenderSettings) {
     (image, render)
 }
 
-/// Default samples per pixel for pictures of models.
+/// Default samples per pixel for images of models.
 pub fn samples_for_models(image: &ImageSettings) -> u32 {
     let pixels = u64::from(image.width) * u64::from(image.height);
     if image.denoise {
@@ -103,8 +103,8 @@ pub fn samples_for_models(image: &ImageSettings) -> u32 {
     if pixels <= THUMBNAIL_PIXELS { THUMBNAIL_SAMPLES } else { MODEL_SAMPLES }
 }
 
-/// A camera that shows the box from right, above and before, as large as it fits into a picture of this aspect ratio
-/// (width / height). An empty box is taken to be a unit box around the origin. `up` may have any length.
+/// A camera that shows the box from the right, above and front, as large as it fits into an image of this aspect ratio
+/// (width / height). An empty box is replaced by a unit box around the origin. `up` may have any length.
 pub fn framing(bounds: Bounds, aspect: f64, up: DVec3) -> Camera {
     let bounds = sane(bounds);
     let mut framing = Framing::new(bounds.center(), basis(up), aspect);
@@ -180,7 +180,7 @@ impl StudioFrame {
         }
     }
 
-    /// The position of the camera if it is inside the bounds, as in a room that no light from outside may reach.
+    /// The position of the camera if it is inside the bounds, as in a closed room that light from outside may not reach.
     fn eye_inside(&self, scene: &Scene) -> Option<DVec3> {
         let eye = match scene.camera.as_ref()?.view {
             View::Look { lookfrom, .. } => lookfrom,
@@ -190,7 +190,7 @@ impl StudioFrame {
         (eye.cmpgt(min).all() && eye.cmplt(max).all()).then_some(eye)
     }
 
-    /// A square that faces the middle of the bounds from the upper left of the camera.
+    /// A square light that faces the centre of the bounds from the upper left of the camera.
     fn key_light(&self, scene: &mut Scene) -> Shape {
         let up = self.basis[1];
         let center = self.bounds.center();
@@ -199,7 +199,7 @@ impl StudioFrame {
             Some(View::Matrix(matrix)) => -matrix.z_axis.truncate(),
             None => self.basis[2],
         };
-        // What is right and towards the camera, in the horizontal plane; of a camera that looks straight down, any.
+        // Right and back of the camera in the horizontal plane; arbitrary for a camera that looks straight down.
         let level = to_camera - to_camera.dot(up) * up;
         let back = if level.length() > 1e-6 * to_camera.length() { level.normalize() } else { self.basis[2] };
         let right = up.cross(back);
@@ -209,8 +209,8 @@ impl StudioFrame {
         let edge_u = 2.0 * half_size * up.cross(direction).normalize();
         let edge_v = 2.0 * half_size * edge_u.cross(direction).normalize();
         let corner = center + distance * direction - 0.5 * (edge_u + edge_v);
-        // Radiance that gives a white surface in the middle, facing the light, the brightness KEY: a small square of
-        // solid angle Ω gives L Ω / π.
+        // The radiance that gives a white surface in the centre, facing the light, the brightness KEY: a small square light
+        // of solid angle Ω gives L Ω / π.
         let solid_angle = 4.0 * KEY_HALF_SIZE * KEY_HALF_SIZE;
         let radiance = (KEY * std::f64::consts::PI / solid_angle) as f32;
         let black = Whitted { diffuse: Color::BLACK, ..Whitted::default() };
@@ -223,12 +223,12 @@ impl StudioFrame {
     }
 }
 
-/// Width over height of the scene's picture.
+/// The aspect ratio of the scene's image.
 fn aspect(scene: &Scene) -> f64 {
     f64::from(scene.image.width) / f64::from(scene.image.height)
 }
 
-/// Includes the whole world in the framing: vertices of meshes, corners of the bounding boxes of other shapes.
+/// Visits points that bound the world: vertices of meshes, corners of the bounding boxes of other shapes.
 fn visit(scene: &Scene, see: &mut dyn FnMut(DVec3)) {
     for shape in &scene.shapes {
         visit_shape(scene, shape, see);
@@ -251,7 +251,7 @@ fn visit_shape(scene: &Scene, shape: &Shape, see: &mut dyn FnMut(DVec3)) {
     }
 }
 
-/// Shows the corners of an object's bounds, in its own space, where an instance places them.
+/// Visits the corners of an object's bounds, transformed by an instance.
 fn visit_instance(instance: &Instance, of_object: Bounds, see: &mut dyn FnMut(DVec3)) {
     if !of_object.is_empty() {
         corners(of_object)
@@ -260,7 +260,7 @@ fn visit_instance(instance: &Instance, of_object: Bounds, see: &mut dyn FnMut(DV
     }
 }
 
-/// The box around shapes, in the space that they are placed in.
+/// The bounding box of shapes, in the space that contains them.
 fn bounds_of<'a>(scene: &Scene, shapes: impl IntoIterator<Item = &'a Shape>) -> Bounds {
     shapes.into_iter().map(|shape| shape.bounds(&scene.meshes)).fold(Bounds::EMPTY, Bounds::union)
 }
@@ -277,13 +277,13 @@ fn corners(Bounds { min, max }: Bounds) -> [DVec3; 8] {
     })
 }
 
-/// Bounds with an extent: an empty box is a unit box around the origin, a point gets a box around it.
+/// Non-empty bounds: an empty box is replaced by a unit box around the origin, a point by a box around it.
 fn sane(bounds: Bounds) -> Bounds {
     if bounds.is_empty() || !bounds.min.is_finite() || !bounds.max.is_finite() {
         return Bounds { min: DVec3::splat(-0.5), max: DVec3::splat(0.5) };
     }
     let size = bounds.min.abs().max(bounds.max.abs()).max_element();
-    // What is smaller than the precision of its coordinates cannot be looked at.
+    // Bounds smaller than the precision of their coordinates cannot be framed.
     if bounds.radius() > 1e-7 * size {
         return bounds;
     }
@@ -291,8 +291,8 @@ fn sane(bounds: Bounds) -> Bounds {
     Bounds { min: bounds.center() - half, max: bounds.center() + half }
 }
 
-/// Right, up and towards the viewer, of unit length. The viewer of models with y up stands at +z, with z up at −y, as
-/// modelling programs have it.
+/// Unit vectors to the right, up and towards the viewer. The viewer of models with y up is at +z, with z up at −y, as in
+/// modelling programs.
 fn basis(up: DVec3) -> [DVec3; 3] {
     let up = up.try_normalize().unwrap_or(DVec3::Y);
     let hint = if up.x.abs() > 0.9 { DVec3::Y } else { DVec3::X };
@@ -306,7 +306,7 @@ mod tests {
     use glam::DMat4;
     use proptest::prelude::*;
 
-    /// The projection of a point: x and y in [−1, 1], and its depth.
+    /// The projection of a point: x and y in [−1, 1], and depth.
     fn project(camera: &Camera, aspect: f64, p: DVec3) -> [f64; 3] {
         let View::Look { lookfrom, lookat, up } = camera.view else { panic!("not a lookat") };
         let w = (lookat - lookfrom).normalize();
@@ -340,7 +340,7 @@ mod tests {
                     most[axis] = most[axis].max(value);
                 }
             }
-            // One of the two directions is filled from edge to edge.
+            // The image is filled from edge to edge in one of the two directions.
             prop_assert!((0..2).any(|axis| (most[axis] - FILL).abs() < 1e-6 && (least[axis] + FILL).abs() < 1e-6));
         }
     }
@@ -356,7 +356,7 @@ mod tests {
 
     #[test]
     fn a_mesh_is_framed_by_its_vertices() {
-        // A double pyramid: the corners of its box are far from it.
+        // A double pyramid: the corners of its bounding box are far from it.
         let mut positions = vec![];
         for axis in [glam::Vec3::X, glam::Vec3::Y, glam::Vec3::Z] {
             positions.extend([axis, -axis]);
@@ -425,7 +425,7 @@ mod tests {
             add_lights_and_camera(&mut scene, None);
             (scene.lights.len(), scene.shapes.len())
         };
-        // inside: the fill, light from everywhere and a lamp; outside: the fill and a key light that is a shape
+        // inside: the fill, ambient light and a point light; outside: the fill and a key light that is a shape
         assert_eq!(lights_with_eye_at(2.0), (3, 1));
         assert_eq!(lights_with_eye_at(9.0), (1, 2));
     }

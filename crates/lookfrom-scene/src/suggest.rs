@@ -1,7 +1,7 @@
 //! Suggestions for unknown words: the known word of the smallest edit distance (Damerau 1964, Levenshtein 1965).
 
-/// The candidate that is the fewest edits away, if that is near enough to be a slip of the hand; the first in the
-/// alphabet among equals.
+/// The candidate with the smallest edit distance, if that is small enough for a typing error; among equals the first in
+/// alphabetical order.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word: Vec<char> = word.chars().flat_map(char::to_lowercase).collect();
     let near_enough = (word.len() / 3).max(1);
@@ -16,7 +16,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, candidate)| candidate)
 }
 
-/// The edit distance: insertions, deletions, replacements and swaps of neighbours.
+/// The edit distance: insertions, deletions, replacements and transpositions of neighbours.
 fn distance(word: &[char], candidate: &str) -> usize {
     let candidate: Vec<char> = candidate.chars().flat_map(char::to_lowercase).collect();
     let columns = candidate.len() + 1;

@@ -17,27 +17,27 @@ pub struct Texture {
     pub kind: TextureKind,
 }
 
-/// The textures there are. A texture may use others, never (through any number of steps) itself: readers see to that.
+/// The kinds of textures. A texture may use others, but never itself, directly or indirectly: readers ensure that.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TextureKind {
-    /// A picture; v runs up, so v = 0 is the bottom row.
+    /// An image; v runs up, so v = 0 is the bottom row.
     Image {
-        /// The picture.
+        /// The image.
         image: ImageId,
-        /// The mapping; its x and y are s and t of the picture.
+        /// The mapping; its x and y are s and t of the image.
         mapping: Mapping,
         /// The wrap modes beyond the left and right, and beyond the upper and lower edges.
         wrap: [Wrap; 2],
-        /// Between the texels.
+        /// The interpolation between texels.
         filter: TexelFilter,
         /// The channels that are read.
         channel: Channel,
-        /// Multiplies it.
+        /// Multiplies the value.
         scale: f32,
         /// Whether the value is inverted to 1 − value (after `scale`).
         invert: bool,
     },
-    /// Squares over uv, or cubes in space, of two colours.
+    /// A checkerboard of squares over uv, or of cubes in space.
     Checker {
         /// The value where the sum of the integer parts is even.
         even: Color,
@@ -48,20 +48,20 @@ pub enum TextureKind {
     },
     /// Perlin noise of several octaves, between two colours.
     Noise {
-        /// The value where the noise is least.
+        /// The value where the noise is minimal.
         low: Color,
-        /// The value where it is greatest.
+        /// The value where it is maximal.
         high: Color,
         /// Number of octaves: 1 to 16.
         octaves: u32,
         /// The mapping.
         mapping: Mapping,
     },
-    /// Veins: a sine along x, moved by turbulence (Perlin 1985), between two colours.
+    /// Marble veins: a sine along x, displaced by turbulence (Perlin 1985), between two colours.
     Marble {
-        /// In the veins.
+        /// The value in the veins.
         vein: Color,
-        /// Between the veins.
+        /// The value between the veins.
         base: Color,
         /// Number of octaves: 1 to 16.
         octaves: u32,
@@ -70,43 +70,43 @@ pub enum TextureKind {
         /// The mapping.
         mapping: Mapping,
     },
-    /// A texture, more or less.
+    /// A texture multiplied by a factor.
     Scale {
         /// The texture that is scaled.
         color: Color,
-        /// By how much.
+        /// The factor.
         by: Scalar,
     },
-    /// Between two colours.
+    /// Interpolation between two colours.
     Mix {
-        /// At 0.
+        /// The value at 0.
         low: Color,
-        /// At 1.
+        /// The value at 1.
         high: Color,
         /// The interpolation parameter, not clamped.
         amount: Scalar,
     },
-    /// Between two colours, by how much the geometric normal looks along a direction of the world.
+    /// Interpolation between two colours, by the angle between the geometric normal and a direction in world space.
     DirectionMix {
         /// The value where the normal is perpendicular to the direction.
         low: Color,
         /// The value where the normal is parallel to the direction.
         high: Color,
-        /// Of unit length.
+        /// The direction, of unit length.
         direction: Vec3,
     },
-    /// Linear in u and v between four corners.
+    /// Bilinear interpolation in u and v between four corners.
     Bilinear {
-        /// At (0,0), (0,1), (1,0), (1,1).
+        /// The values at (0,0), (0,1), (1,0), (1,1).
         corners: [Color; 4],
         /// The mapping.
         mapping: Mapping,
     },
     /// Round dots in some cells of a grid over uv.
     Dots {
-        /// In the dots.
+        /// The value in the dots.
         inside: Color,
-        /// Around them.
+        /// The value around them.
         outside: Color,
         /// The mapping.
         mapping: Mapping,
@@ -120,7 +120,7 @@ pub enum TextureKind {
         /// The mapping.
         mapping: Mapping,
     },
-    /// pbrt's `wrinkled`: the same of absolute values.
+    /// pbrt's `wrinkled`: the same with absolute values of the noise.
     Wrinkled {
         /// Number of octaves: 1 to 16.
         octaves: u32,
@@ -129,65 +129,65 @@ pub enum TextureKind {
         /// The mapping.
         mapping: Mapping,
     },
-    /// pbrt's `windy`: waves on water, by two noises.
+    /// pbrt's `windy`: water waves from two noises.
     Windy {
         /// The mapping.
         mapping: Mapping,
     },
-    /// pbrt's `marble`: its own palette of colours along noisy veins.
+    /// pbrt's `marble`: a fixed palette of colours along noisy veins.
     PbrtMarble {
         /// Number of octaves: 1 to 16.
         octaves: u32,
         /// The persistence: the ratio of amplitudes of successive octaves.
         roughness: f32,
-        /// Multiplies places before the noise.
+        /// Multiplies positions before the noise.
         scale: f32,
         /// The displacement of the veins by noise.
         variation: f32,
         /// The mapping.
         mapping: Mapping,
     },
-    /// The mesh's own colours, white where it has none.
+    /// The mesh's vertex colours, white if it has none.
     VertexColor {
         /// Multiplies them.
         tint: [f32; 3],
     },
-    /// The mesh's own opacity, 1 where it has none.
+    /// The mesh's vertex opacities, 1 if it has none.
     VertexAlpha,
-    /// One times the other, channel by channel.
+    /// The product of two textures, channel by channel.
     Product {
-        /// One.
+        /// The first factor.
         a: Color,
-        /// The other.
+        /// The second factor.
         b: Color,
     },
-    /// 1 where a number reaches an edge, else 0.
+    /// 1 where a number is at least the threshold, else 0.
     Threshold {
         /// The number.
         value: Scalar,
-        /// The edge.
+        /// The threshold.
         edge: f32,
     },
 }
 
-/// The channels of a picture that a texture reads.
+/// The channels of an image that a texture reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Channel {
     /// The colour.
     #[default]
     Rgb,
-    /// Its red, as a grey.
+    /// Red, as a grey.
     Red,
-    /// Its green.
+    /// Green, as a grey.
     Green,
-    /// Its blue.
+    /// Blue, as a grey.
     Blue,
-    /// Its opacity, 1 where the picture has none.
+    /// Opacity as a grey, 1 if the image has none.
     Alpha,
 }
 
 impl TextureKind {
-    /// The colours that its places have, or lie between; none where they are only factors of others.
+    /// The colours between which the texture's values lie; empty for textures that only combine others.
     pub fn colors(&self) -> Vec<Color> {
         match self {
             Self::Checker { even: a, odd: b, .. }
@@ -201,7 +201,7 @@ impl TextureKind {
         }
     }
 
-    /// The textures and colours that this texture uses; textures of numbers are given as colours.
+    /// The textures and colours that this texture uses; float textures are given as colours.
     pub fn parts(&self) -> Vec<Color> {
         let scalar = |scalar: &Scalar| match *scalar {
             Scalar::Value(value) => Color::gray(value),
@@ -232,60 +232,60 @@ impl TextureKind {
 /// The mapping of a pattern: from a surface point to texture coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mapping {
-    /// On the surface: uv times `scale` plus `offset`.
+    /// Surface coordinates: uv times `scale` plus `offset`.
     Uv {
         /// Repetitions in u and v.
         scale: [f32; 2],
         /// Added afterwards.
         offset: [f32; 2],
     },
-    /// On the surface: a set of texture coordinates (0 is the first), turned, scaled and moved.
+    /// An affine map of a set of texture coordinates (0 is the first).
     Affine {
-        /// The set of texture coordinates; one that the mesh does not have is (0, 0) everywhere.
+        /// The set of texture coordinates; (0, 0) everywhere if the mesh does not have it.
         set: u32,
-        /// Rows: s and t are these, dotted with (u, v, 1).
+        /// Rows: s and t are their dot products with (u, v, 1).
         matrix: [[f32; 3]; 2],
     },
-    /// By the direction from the origin of the texture's space: (θ/π, φ/2π), θ from +z, φ from +x toward +y.
+    /// By the direction from the origin of texture space: (θ/π, φ/2π), θ from +z, φ from +x toward +y.
     Spherical {
-        /// From the world.
+        /// The transform from world to texture space.
         texture_from_world: DMat4,
     },
-    /// Around the z axis of the texture's space: (φ/2π, z), φ from −x by way of −y.
+    /// Around the z axis of texture space: (φ/2π, z), φ from −x via −y.
     Cylindrical {
-        /// From the world.
+        /// The transform from world to texture space.
         texture_from_world: DMat4,
     },
-    /// Along two vectors of the texture's space.
+    /// Planar projection along two vectors of texture space.
     Planar {
-        /// From the world.
+        /// The transform from world to texture space.
         texture_from_world: DMat4,
-        /// Dotted with the place, they give u and v …
+        /// Vectors whose dot products with the position are u and v …
         axes: [Vec3; 2],
         /// … after this is added.
         offset: [f32; 2],
     },
-    /// In space: the pattern's coordinates are `texture_from_world` times the point in the world.
+    /// 3D coordinates: `texture_from_world` times the position in world space.
     World {
-        /// To the pattern's space.
+        /// The transform from world to texture space.
         texture_from_world: DMat4,
     },
 }
 
 impl Mapping {
-    /// uv as they are.
+    /// uv unchanged.
     pub const UV: Self = Self::Uv { scale: [1.0; 2], offset: [0.0; 2] };
 }
 
-/// The wrap mode beyond the edges of a picture.
+/// The wrap mode beyond the edges of an image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
-    /// The picture again.
+    /// The image is repeated.
     #[default]
     Repeat,
-    /// The picture mirrored.
+    /// The image is repeated, every other copy mirrored.
     Mirror,
-    /// The last texel.
+    /// The edge texels are repeated.
     Clamp,
     /// Black.
     Black,
@@ -294,9 +294,9 @@ pub enum Wrap {
 /// The interpolation between texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TexelFilter {
-    /// A blend of the four around.
+    /// Bilinear interpolation of the four nearest texels.
     #[default]
     Bilinear,
-    /// The nearest one.
+    /// The nearest texel.
     Nearest,
 }

@@ -1,8 +1,8 @@
-//! Reader for our own scene format (`docs/guide/scene-format.md`). Errors have the location of the wrong value.
+//! Reader for our own scene format (`docs/guide/scene-format.md`). Errors have the location of the invalid value.
 //!
-//! This file reads files and joins what they import. Beside it: `document`, `table` and `value` (what is there, with its
-//! place; what is wrong is noted there), `syntax` (texts that are no TOML), `synonyms` (what others call it), and a decoder
-//! for each part of the vocabulary.
+//! This file reads files and merges what they import. Beside it: `document`, `table` and `value` (the parsed text with
+//! locations, and recorded errors), `syntax` (recovery from errors of TOML), `synonyms` (terms of other programs), and a
+//! decoder for each part of the vocabulary.
 
 mod camera;
 mod chain;
@@ -57,12 +57,11 @@ use crate::{image, load};
 
 pub use self::vocabulary::vocabulary;
 
-/// Reads a scene in our own format, with all that it imports.
+/// Reads a scene in our own format, with all its imports.
 ///
 /// # Errors
-/// With the line and column of all that is wrong, as far as one run can find it: `Syntax` where the text is no TOML, `Invalid` where a
-/// key, a type, a number or a name is not what it can be, `Limit` where something is too large or nests too deep, and
-/// whatever goes wrong in the files that it names.
+/// With line and column, and all errors that one run can find: `Syntax` for malformed TOML, `Invalid` for an unknown or
+/// invalid key, type, number or name, `Limit` for excessive sizes and nesting, and the errors of the files that it names.
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut reader = Reader {
         context,
@@ -91,7 +90,7 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     if let Some(error) = Error::all(reader.errors) {
         return Err(error);
     }
-    // Only the path tracer knows what light does on physical materials.
+    // Only path tracing renders physically based materials completely.
     let mut scene = reader.scene;
     let is_physical = |kind: &MaterialKind| !matches!(kind, MaterialKind::Whitted(_));
     if !reader.names_integrator && scene.materials.iter().any(|material| is_physical(&material.kind)) {
@@ -112,32 +111,32 @@ struct Reader<'s, 'f> {
     materials: BTreeMap<String, MaterialId>,
     textures: BTreeMap<String, TextureId>,
     objects: BTreeMap<String, ObjectId>,
-    /// By file, and whether it holds numbers rather than colours.
+    /// By file, and whether it contains data rather than colours.
     images: BTreeMap<(PathBuf, bool), ImageId>,
-    /// By their description.
+    /// By description.
     curves: BTreeMap<String, CurveId>,
     /// By file and import options.
     models: Vec<((PathBuf, ImportOptions), Model)>,
-    /// Emission of materials.
+    /// Emission of materials that have any.
     glows: BTreeMap<MaterialId, Emission>,
-    /// The material "default", where it was needed but no file has written it (yet).
+    /// The material "default", if it has been used but is not defined in a file (yet).
     unwritten_default: Option<MaterialId>,
     black: Option<MaterialId>,
-    /// The files that are being read: each is imported by the one before.
+    /// The open files: each is imported by the previous one.
     open: Vec<PathBuf>,
     /// The files that have been read.
     done: BTreeSet<PathBuf>,
-    /// Whether the shapes that are being read belong to an object.
+    /// Whether the current shapes belong to an object.
     in_object: bool,
-    /// Spheres of all sphereflakes so far.
+    /// Number of spheres of all sphereflakes so far.
     flake_spheres: u64,
     has_image: bool,
     has_render: bool,
     /// Whether the effective `[render]` names an integrator.
     names_integrator: bool,
-    /// Whether all definitions of names could be read. Otherwise an unknown name may be one of the others.
+    /// Whether all definitions of names could be read. Otherwise an unknown name may be one that could not.
     knows_all_names: bool,
-    /// Errors of the files that have been read.
+    /// Errors of all files so far.
     errors: Vec<Error>,
 }
 
@@ -166,7 +165,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Reads what was parsed of a file; `errors` are those of its syntax.
+    /// Reads a parsed file; `errors` are its syntax errors.
     fn document(&mut self, path: &Path, document: &Document, root: &DeTable<'_>, errors: Vec<Error>) {
         self.open.push(path.to_owned());
         self.tables(&Table::new(document, 0, SCENE.to_owned(), root));
@@ -201,7 +200,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The camera, picture and computation of this file, or else of the first import that has one.
+    /// The camera, image and render settings of this file; without them, those of the first import that has any apply.
     fn settings(&mut self, top: &Table<'_>) {
         if let Some(table) = top.maybe("camera", |value| value.table("[camera]")) {
             let camera = camera::camera(&table).map_err(|error| table.note(error));
@@ -218,12 +217,12 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A picture; each file is read once.
+    /// An image; each file is read once.
     fn image(&mut self, value: Value<'_>) -> Result<ImageId> {
         self.image_as(value, false)
     }
 
-    /// A picture of colours, or of numbers: then 8 and 16 bits are linear.
+    /// An image of colours, or of data: then 8- and 16-bit values are linear.
     fn image_as(&mut self, value: Value<'_>, is_data: bool) -> Result<ImageId> {
         let key = (self.resolve(value, "the name of a picture")?, is_data);
         if let Some(&id) = self.images.get(&key) {
@@ -237,7 +236,7 @@ impl Reader<'_, '_> {
         Ok(id)
     }
 
-    /// The content of a model file; each file is read once for each set of import options.
+    /// The content of a model file; each file is read once per set of import options.
     fn model(&mut self, value: Value<'_>, choice: &ImportOptions) -> Result<Model> {
         let path = self.resolve(value, "the name of a model file")?;
         if let Some((_, model)) = self.models.iter().find(|(key, _)| (&key.0, &key.1) == (&path, choice)) {
@@ -251,7 +250,7 @@ impl Reader<'_, '_> {
         Ok(model)
     }
 
-    /// The path of a file that is named relative to the one being read.
+    /// The path of a file whose name is relative to the current file.
     fn resolve(&self, value: Value<'_>, expected: &str) -> Result<PathBuf> {
         let name = value.text(expected)?;
         if name.contains('\0') {
@@ -261,7 +260,7 @@ impl Reader<'_, '_> {
         Ok(folder.join(name))
     }
 
-    /// The item of a name, or the error that the name is unknown.
+    /// The item with this name, or the error that the name is unknown.
     fn named<Id: Copy>(
         &self,
         known: &BTreeMap<String, Id>,
@@ -274,7 +273,7 @@ impl Reader<'_, '_> {
                 return Error::untold();
             }
             let error = value.error(format!("there is no {what} {name:?}"));
-            // What only we have named is no name of the file's.
+            // The implicit default material is not a name of the file's.
             let is_ours =
                 |name: &str| what == "material" && self.unwritten_default.is_some() && name == DEFAULT;
             let names = || known.keys().map(String::as_str).filter(|name| !is_ours(name));
@@ -285,7 +284,7 @@ impl Reader<'_, '_> {
             };
             match nearest(name, names().take(MOST_COMPARED)) {
                 Some(meant) => error.hint(format!("did you mean {meant:?}?")),
-                None if count == 0 => error.hint(format!("there is none at all: write it as {example}")),
+                None if count == 0 => error.hint(format!("none is defined: write it as {example}")),
                 None => {
                     let mut some: Vec<&str> = names().take(12).collect();
                     if count > some.len() {
@@ -298,9 +297,9 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The error that a name is given to two things.
+/// The error that a name is defined twice.
 fn twice(entry: Value<'_>, what: &str, before: &Location) -> Error {
     entry
-        .error(format!("{what} {:?} is already there, at {before}", entry.key()))
+        .error(format!("{what} {:?} is already defined, at {before}", entry.key()))
         .hint("give one of them another name")
 }

@@ -1,54 +1,55 @@
-//! Warnings, their severity for the picture, and the grouping of equal ones.
+//! Warnings, their severity, and the grouping of equal ones.
 
 use std::collections::HashMap;
 use std::fmt;
 
 use crate::error::Location;
 
-/// The severity of a warning for the picture.
+/// The severity of a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum WarningKind {
-    /// The picture may differ from what was meant.
+    /// The image may differ from the intended one.
     Warning,
-    /// Harmless: the picture is the one that was meant.
+    /// Harmless: the image is as intended.
     Notice,
 }
 
-/// Something that can be survived: the picture is made all the same.
+/// A recoverable problem: the image is rendered nevertheless.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// The severity for the picture.
+    /// The severity.
     pub kind: WarningKind,
     /// The location; of several occurrences in a file, the first.
     pub at: Location,
-    /// What was found and what was done instead. Where things were [counted](Self::counted), without their number and noun.
+    /// The message: what was found and what was done instead. If items were [counted](Self::counted), without their
+    /// number and noun.
     pub message: String,
-    /// The things that the message is about, where they were counted.
+    /// The items that the message is about, if they were counted.
     pub counted: Option<Counted>,
 }
 
-/// A number of things of one kind.
+/// A number of items of one kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counted {
     /// The count: at least 1.
     pub count: u64,
-    /// The noun for one of them.
+    /// The noun for one item.
     pub noun: String,
 }
 
 impl Warning {
-    /// A warning that the picture may differ from what was meant.
+    /// A warning that the image may differ from the intended one.
     pub fn new(at: &Location, message: impl Into<String>) -> Self {
         Self { kind: WarningKind::Warning, at: at.clone(), message: message.into(), counted: None }
     }
 
-    /// A harmless one.
+    /// A harmless warning.
     pub fn notice(at: &Location, message: impl Into<String>) -> Self {
         Self { kind: WarningKind::Notice, ..Self::new(at, message) }
     }
 
-    /// The same warning about a number of things.
+    /// The same warning about a number of items.
     #[must_use]
     pub fn of(mut self, count: u64, noun: impl Into<String>) -> Self {
         self.counted = Some(Counted { count, noun: noun.into() });
@@ -75,21 +76,21 @@ impl fmt::Display for Warning {
     }
 }
 
-/// Further places of a [`WarningGroup`] that its line names.
+/// Maximum number of further locations that a [`WarningGroup`] displays.
 const PLACES: usize = 2;
 
-/// Warnings that say the same of several places.
+/// Warnings with the same message at several locations.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WarningGroup {
-    /// The first of them, with the number of things of all.
+    /// The first of them, with the total number of items.
     pub first: Warning,
     /// The locations of the others.
     pub further: Vec<Location>,
 }
 
 impl WarningGroup {
-    /// Groups of the warnings that say the same: those that matter for the picture, then the harmless ones; otherwise in the order in
-    /// which they were found.
+    /// Groups of warnings with the same message: first those that may change the image, then the harmless ones; otherwise in
+    /// the order in which they were found.
     pub fn of(warnings: &[Warning]) -> Vec<Self> {
         let mut groups: Vec<Self> = Vec::new();
         let mut by_what = HashMap::new();
@@ -111,7 +112,7 @@ impl WarningGroup {
         groups
     }
 
-    /// Their severity for the picture.
+    /// Their severity.
     pub fn kind(&self) -> WarningKind {
         self.first.kind
     }
@@ -181,7 +182,7 @@ mod tests {
         assert!(lines(&warnings)[1].ends_with("(also at b.ply:7, c.ply and one more place)"));
         warnings.extend((0..115).map(|k| flat(&format!("{k}.ply"), 0, 1)));
         assert!(lines(&warnings)[1].ends_with("(also at b.ply:7, c.ply and 116 more places)"));
-        // The same words of another kind are another line, and a place named twice is one place.
+        // The same message of another kind is another line, and equal locations are listed once.
         let twice = [other.clone(), Warning { kind: WarningKind::Notice, ..other.clone() }, other];
         assert_eq!(lines(&twice), ["z.obj: something real"; 2]);
     }

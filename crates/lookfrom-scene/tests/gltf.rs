@@ -764,7 +764,7 @@ fn a_scene_of_ours_takes_what_it_asks_for() {
     assert!(imported.camera.is_some() && imported.lights.len() == 1 && imported.shapes.len() == 1);
     let error =
         read("[[objects.a.mesh]]\nfile = \"m/a.gltf\"\nlights = true\n").expect_err("objects have no lights");
-    assert!(error.to_string().starts_with("a.toml:3:10: an object has no `lights`"), "{error}");
+    assert!(error.to_string().starts_with("a.toml:3:10: an object cannot have `lights`"), "{error}");
 }
 
 #[test]

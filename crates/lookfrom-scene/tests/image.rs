@@ -203,7 +203,7 @@ fn errors_say_what_to_do() {
     let said = |name: &str, bytes: &[u8]| read_as(name, bytes, None).unwrap_err().to_string();
     let whole = "\n  help: check that the file is whole; opening it in another program and saving it again may repair it";
     assert_eq!(said("a.png", b""), format!("a.png: the file is empty; expected a picture{whole}"));
-    assert!(said("a.xyz", b"what is this").starts_with("a.xyz: not a picture that is known"));
+    assert!(said("a.xyz", b"what is this").starts_with("a.xyz: the picture format is not known"));
     assert!(said("a.xyz", b"what is this").contains("save it as one of PNG, JPEG"));
     let exr = image::encode_exr(1, 1, &[("Z".to_owned(), &[0.0])], &[]).expect("EXR");
     assert_eq!(

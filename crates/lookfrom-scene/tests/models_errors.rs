@@ -100,7 +100,7 @@ fn ply() {
     let vertices = "0 0 0\n1 0 0\n0 1 0\n";
     assert_eq!(
         said("a.ply", "ply\nformat ascii 1.0\nelement vertex many\n"),
-        "a.ply:3:16: expected how many rows the element has, found `many`"
+        "a.ply:3:16: expected the number of rows of the element, found `many`"
     );
     assert_eq!(
         said("a.ply", "ply\nformat ebcdic 1.0\n"),
@@ -108,7 +108,7 @@ fn ply() {
     );
     assert_eq!(
         said("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty flot x\n"),
-        "a.ply:4:10: expected a type as `float` or `uchar`, found `flot`"
+        "a.ply:4:10: expected a type such as `float` or `uchar`, found `flot`"
     );
     assert_eq!(
         said("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n"),
@@ -165,7 +165,7 @@ fn stl() {
     assert_eq!(
         said("a.stl", &binary),
         "a.stl: 1 triangles are declared, but there are only bytes for 0\n  \
-         help: the file may be cut off, or it may be no STL file"
+         help: the file may be cut off, or it may not be an STL file"
     );
     assert_eq!(
         said("a.stl", format!("solid\n{}", facet.replace("1 0 0", "1 o 0"))),

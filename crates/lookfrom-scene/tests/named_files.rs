@@ -112,8 +112,8 @@ fn all_missing_files_of_a_scene_are_told_of_at_once() {
     let expected = [
         (2, "a.png: no such file"),
         (4, "n.png: no such file"),
-        (9, "there is no spectrum of the name \"eta.spd\", and no file eta.spd"),
-        (9, "there is no spectrum of the name \"metal-Cu-kk\", and no file metal-Cu-kk"),
+        (9, "there is no spectrum named \"eta.spd\", and no file eta.spd"),
+        (9, "there is no spectrum named \"metal-Cu-kk\", and no file metal-Cu-kk"),
         (10, "sky.exr: no such file"),
     ];
     let expected = expected.map(|(line, message)| (line, message.to_owned()));

@@ -270,10 +270,10 @@ fn what_is_not_rendered_is_warned_of_once() {
          Shape \"sphere\" \"float raduis\" 2",
     )]);
     let expected = [
-        "a.pbrt:1:1: the integrator \"bdpt\" is not there: \"volpath\" computes the same light in its place",
-        "a.pbrt:2:1: the medium \"fog\" only absorbs: what it would scatter is not rendered yet",
-        "a.pbrt:3:1: the hair material is not rendered yet: \"diffuse\" takes the place of it",
-        "a.pbrt:3:33: subsurface scattering is not rendered yet: \"coateddiffuse\" takes the place of \"subsurface\"",
+        "a.pbrt:1:1: the integrator \"bdpt\" is not supported: \"volpath\", which computes the same light, is used instead",
+        "a.pbrt:2:1: the medium \"fog\" only absorbs: it would also scatter, which is not rendered yet",
+        "a.pbrt:3:1: the hair material is not rendered yet: \"diffuse\" is used instead",
+        "a.pbrt:3:33: subsurface scattering is not rendered yet: \"coateddiffuse\" is used instead",
         "a.pbrt:4:16: Shape \"sphere\" has no parameter \"float raduis\"; did you mean \"radius\"?",
     ];
     assert_eq!(warnings, expected);
@@ -291,8 +291,8 @@ fn media_are_around_the_camera_and_beside_shapes() {
         read_files(&[("a.pbrt", &format!("{integrator}\n{made}MediumInterface \"a\" \"b\"\n{world}"))])
     };
     let unrendered = [
-        "a.pbrt:3:1: the medium \"b\" only absorbs: what it would emit is not rendered yet",
-        "a.pbrt:4:1: the medium \"c\" is not rendered yet: light passes it as a vacuum",
+        "a.pbrt:3:1: the medium \"b\" only absorbs: it would also emit, which is not rendered yet",
+        "a.pbrt:4:1: the medium \"c\" is not rendered yet: it is treated as a vacuum",
     ];
     for integrator in ["", "Integrator \"volpath\"", "Integrator \"simplevolpath\""] {
         let (scene, warnings) = of(integrator);
@@ -309,14 +309,15 @@ fn media_are_around_the_camera_and_beside_shapes() {
         assert!(!scene.render.media, "{integrator}");
         assert_eq!(warnings.len(), 1);
         assert!(
-            warnings[0].starts_with(&format!("a.pbrt:1:1: the integrator {integrator:?} knows no media"))
+            warnings[0]
+                .starts_with(&format!("a.pbrt:1:1: the integrator {integrator:?} does not support media"))
         );
     }
     let unknown = "MediumInterface \"d\" Camera \"perspective\" WorldBegin";
     let files = Memory([(PathBuf::from("a.pbrt"), unknown.as_bytes().to_vec())].into());
     let error =
         load::scene(Path::new("a.pbrt"), &mut LoadContext::new(&files)).expect_err("an unknown medium");
-    assert!(error.to_string().starts_with("a.pbrt:1:21: \"d\" is no medium that is known"), "{error}");
+    assert!(error.to_string().starts_with("a.pbrt:1:21: \"d\" is not a known medium"), "{error}");
 }
 
 #[test]

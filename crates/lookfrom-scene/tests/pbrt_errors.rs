@@ -1,21 +1,11 @@
 //! What is said of broken scenes of pbrt: the place, the line, what was found, what was expected.
 
+mod support;
+
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::excerpt::Excerpts;
-use lookfrom_scene::{Error, LoadContext, Memory, load};
-
-/// Each of the errors with the line that it points at.
-fn shown(error: &Error, files: &Memory) -> String {
-    let mut excerpts = Excerpts::new(files);
-    let each = error.each().map(|error| {
-        let excerpt = excerpts.of(&error.at).map(|excerpt| format!("\n{excerpt}").replace('\n', "\n  | "));
-        let hint = error.hint.as_ref().map(|hint| format!("\n  help: {hint}"));
-        let [excerpt, hint] = [excerpt, hint].map(Option::unwrap_or_default);
-        format!("{}: {}{excerpt}{hint}", error.at, error.message)
-    });
-    each.collect::<Vec<_>>().join("\n")
-}
+use lookfrom_scene::{LoadContext, Memory, load};
+use support::shown;
 
 /// All that is said of a scene: its error if there is one, and then its warnings.
 fn said(text: &str) -> String {

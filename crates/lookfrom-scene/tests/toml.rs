@@ -1,5 +1,7 @@
 //! Our own format: what is said is what is read, and what is wrong is named with its place and a remedy.
 
+mod support;
+
 use std::path::Path;
 
 use glam::{DMat4, DVec3};
@@ -9,7 +11,8 @@ use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{Color, MaterialKind, Whitted};
 use lookfrom_scene::shape::Geometry;
 use lookfrom_scene::texture::{Mapping, TextureKind};
-use lookfrom_scene::{Error, ErrorKind, LoadContext, Memory, Result, Scene, image, load};
+use lookfrom_scene::{ErrorKind, LoadContext, Memory, Result, Scene, image, load};
+use support::shown;
 
 fn files(texts: &[(&str, &str)]) -> Memory {
     let mut files = Memory::default();
@@ -33,18 +36,6 @@ fn read(text: &str) -> Scene {
 fn look(scene: &Scene, index: usize) -> &Whitted {
     let MaterialKind::Whitted(whitted) = &scene.materials[index].kind else { panic!("not Whitted's") };
     whitted
-}
-
-/// Each of the errors with the line that it points at.
-fn shown(error: &Error, files: &Memory) -> String {
-    let mut excerpts = Excerpts::new(files);
-    let each = error.each().map(|error| {
-        let excerpt = excerpts.of(&error.at).map(|excerpt| format!("\n{excerpt}").replace('\n', "\n  | "));
-        let hint = error.hint.as_ref().map(|hint| format!("\n  help: {hint}"));
-        let [excerpt, hint] = [excerpt, hint].map(Option::unwrap_or_default);
-        format!("{}: {}{excerpt}{hint}", error.at, error.message)
-    });
-    each.collect::<Vec<_>>().join("\n")
 }
 
 /// `tests/toml/errors.txt` has bad scenes and what is said of them; `LOOKFROM_ACCEPT=1 cargo test` writes anew what is

@@ -1,8 +1,9 @@
-//! Run-time dispatch: a generic kernel is compiled for the instructions of each level, and the level is chosen when it starts.
+//! Run-time dispatch: a generic kernel is compiled for the instructions of each level, and the level is chosen at
+//! run time.
 
 use fearless_simd::{Level, Simd};
 
-/// A computation at a level that is known only when the program runs.
+/// A computation at a level that is known only at run time.
 ///
 /// ```
 /// use lookfrom_simd::{Kernel, Level, Simd, dispatch, f32x8, prelude::*};
@@ -27,8 +28,8 @@ pub trait Kernel {
 
 /// Runs a kernel with the instructions of a level: see [`Kernel`].
 ///
-/// AVX-512 is used for its registers, twice as many; vectors stay 256 bits long. SSE4.2 is left aside, since it brings nothing
-/// over SSE2 here. On x86-64 there is no scalar level.
+/// AVX-512 is used for its doubled number of registers; vectors stay 256 bits long. SSE4.2 is not used, since it
+/// has no advantage over SSE2 here. On x86-64 there is no scalar level.
 #[inline(always)]
 pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]

@@ -1,6 +1,7 @@
 //! Masks of lanes as bits, and iteration over the lanes that are set.
 
-/// A mask of lanes, bit i for lane i. As an iterator it gives the numbers of the lanes that are set, from the least.
+/// A mask of lanes, bit i for lane i. As an iterator it yields the indices of the lanes that are set, in ascending
+/// order.
 ///
 /// ```
 /// use lookfrom_simd::LaneMask;

@@ -4,9 +4,9 @@ use std::sync::OnceLock;
 
 use fearless_simd::Level;
 
-/// The machine's best level, or the lower one that the environment variable `LOOKFROM_SIMD` names: `sse2`, `avx2` or `avx512`.
-/// Results have the same bits at every level; the variable is for tests that show it, and to measure what a level brings. A
-/// level that the machine does not have, and any other word, is its best.
+/// The machine's best level, or the lower one that the environment variable `LOOKFROM_SIMD` selects: `sse2`, `avx2`
+/// or `avx512`. Results have the same bits at every level; the variable is for tests of this property, and for
+/// measuring the effect of a level. A level that the machine does not support, or any other word, selects the best.
 ///
 /// The variable is read once.
 pub fn level() -> Level {
@@ -14,7 +14,7 @@ pub fn level() -> Level {
     *LEVEL.get_or_init(|| named(&std::env::var("LOOKFROM_SIMD").unwrap_or_default(), Level::new()))
 }
 
-/// The level of a name, where it is at most `best`.
+/// The level of a name if it is at most `best`, otherwise `best`.
 #[cfg(target_arch = "x86_64")]
 fn named(name: &str, best: Level) -> Level {
     let lower = match name {
@@ -25,7 +25,7 @@ fn named(name: &str, best: Level) -> Level {
     lower.unwrap_or(best)
 }
 
-/// Other machines have one level.
+/// Other architectures have only one level.
 #[cfg(not(target_arch = "x86_64"))]
 fn named(_: &str, best: Level) -> Level {
     best

@@ -1,4 +1,4 @@
-//! Test data outside the repository: corpora of models, scenes and reference pictures of others.
+//! Test data outside the repository: third-party models, scenes and reference pictures.
 //!
 //! The environment variable `LOOKFROM_SHARED` names the folder. CONTRIBUTING.md says what it holds.
 
@@ -12,13 +12,13 @@ pub const VARIABLE: &str = "LOOKFROM_SHARED";
 /// not set. Then the test returns, and a line on stderr says that it was skipped.
 ///
 /// # Panics
-/// If the variable is set and there is no such file or folder: a test that was asked for is not skipped.
+/// If the variable is set and there is no such file or folder: then the test must not be skipped.
 pub fn shared(name: &str) -> Option<PathBuf> {
     let Some(root) = std::env::var_os(VARIABLE) else {
         let thread = std::thread::current();
         let test = thread.name().unwrap_or("a test");
-        // Written to stderr itself: the test harness hides the output of `eprintln!` where a test passes. Nothing depends
-        // on whether the line can be written.
+        // Written to stderr directly: the test harness hides the output of `eprintln!` of tests that pass. An error in
+        // writing the line does no harm.
         let _ = writeln!(std::io::stderr(), "skipped: {test} needs {name} in the folder {VARIABLE}");
         return None;
     };

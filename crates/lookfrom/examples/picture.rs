@@ -1,4 +1,4 @@
-//! A picture from Rust: any scene or model in, a picture file out.
+//! Rendering a scene or model file to a picture file.
 //!
 //! `cargo run --release -p lookfrom --example picture -- scenes/hero.toml hero.png`
 

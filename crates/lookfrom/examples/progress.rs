@@ -1,4 +1,4 @@
-//! Progress with cancellation: a picture is rendered in the background, looked at while it grows, and stopped early.
+//! Progress and cancellation: a picture is rendered in the background, and stopped after a time limit.
 //!
 //! `cargo run --release -p lookfrom --example progress -- scenes/hero.toml hero.png 5`
 
@@ -9,12 +9,12 @@ use std::time::{Duration, Instant};
 use lookfrom::render::{Progress, TileDone};
 use lookfrom::session::{Format, Options, Session};
 
-/// Sends every tile to who looks. Nothing waits for them: no lock is held while a tile is told of.
+/// Sends every tile through a channel. The render does not wait for the receiver: no lock is held during the call.
 struct Tiles(Sender<TileDone>);
 
 impl Progress for Tiles {
     fn tile(&self, done: TileDone) {
-        // Where nobody listens any more, nothing is lost.
+        // An error means that the receiver is gone, which does no harm.
         let _ = self.0.send(done);
     }
 }

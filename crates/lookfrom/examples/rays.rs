@@ -1,4 +1,4 @@
-//! Rays against a mesh, without a picture: what is where, and how far, as a laser scanner asks it.
+//! Ray queries against a mesh, without a picture: primitives and distances, as a laser scanner measures them.
 //!
 //! `cargo run --release -p lookfrom --example rays -- scenes/models/knot.obj`
 
@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (world, bounds) = (session.world(), session.info().bounds);
     let center = bounds.center() - world.origin();
 
-    // A ring of rays from around the model to its middle, in one batch. Positions are relative to `World::origin`.
+    // A ring of rays from around the model to its centre, in one batch. Positions are relative to `World::origin`.
     let rays: Vec<Ray> = (0..24)
         .map(|k| {
             let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 24.0).sin_cos();

@@ -1,4 +1,4 @@
-//! Many models in one process: a small picture of each, and the next one where one fails.
+//! Thumbnails of many models in one process; an error in one does not stop the others.
 //!
 //! `cargo run --release -p lookfrom --example thumbnails -- thumbnails/ scenes/models/*.obj scenes/models/*.ply`
 

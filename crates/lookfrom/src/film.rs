@@ -1,13 +1,12 @@
 //! The film: sums of samples per pixel in fixed point, independent of their order.
 //!
-//! Step 7 on the way of a pixel. Sums of floating-point numbers depend on their order, sums of integers do not. So each
-//! pixel holds three fixed-point sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the
-//! variance; any division of the work among threads, tiles, passes or machines ends in the same bytes *by
-//! construction*. What a camera sees first, for layers and denoiser, is in [`aov`]; what its sensor measures, in `channels`; how much
-//! noise there is, in `noise`; what becomes of single samples that outshine a pixel, in `fireflies`. How a picture is shown
-//! is left to [`crate::post::develop`].
+//! Sums of floating-point numbers depend on their order, sums of integers do not. So each pixel holds three fixed-point
+//! sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the variance; any division of the
+//! work among threads, tiles, passes or machines ends in the same bytes *by construction*. AOVs, for layers and
+//! denoiser, are in [`aov`]; variances in the sensor's channels in `channels`; noise estimates in `noise`; firefly
+//! suppression in `fireflies`. Conversion for display is in [`crate::post::develop`].
 //!
-//! A pixel takes 112 bytes, and as much more as [`aov`] and `channels` say where they are asked for.
+//! A pixel takes 112 bytes, and those of [`aov`] and `channels` where they are enabled.
 
 pub mod aov;
 mod channels;
@@ -26,14 +25,14 @@ use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 use std::cmp::Ordering;
 
-/// Films have at most this many pixels: 2²⁸, which take 28 GiB.
+/// Maximum number of pixels of a film: 2²⁸, which take 28 GiB.
 pub const MOST_PIXELS: u64 = 1 << 28;
 
-/// Light is taken for at most this much: 2⁴⁰ in either direction. So the sums hold at least 2²³ samples of the very
-/// brightest, and far more of any other.
+/// Light is clamped to this, 2⁴⁰, in either direction. So the sums hold at least 2²³ samples of the brightest, and far
+/// more of any other.
 pub const BRIGHTEST: f32 = 1_099_511_627_776.0;
 
-/// The light that a picture's samples brought, pixel by pixel.
+/// The film: sums of a picture's samples, pixel by pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Film {
     width: u32,
@@ -41,7 +40,7 @@ pub struct Film {
     tile: FilmTile,
 }
 
-/// Which sample of which pixel. The order is that of reading: row, column, sample.
+/// Identifies a sample of a pixel. The order is by row, column, sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SampleId {
     /// Column and row from the top left.
@@ -72,14 +71,13 @@ pub struct Picture {
     pub height: u32,
     /// `width` × `height` pixels: red, green, blue.
     pub pixels: Vec<[f32; 3]>,
-    /// How much each pixel hides of what is behind the picture, 0 … 1 but for noise; the colours are multiplied by it. Empty
-    /// where nothing is behind.
+    /// Alpha of each pixel, 0 … 1 up to noise; the colours are premultiplied by it. Empty if the picture has none.
     pub alpha: Vec<f32>,
 }
 
 impl Picture {
-    /// Puts a smaller picture in the place of a part of this one, whose upper left corner is at column `x0` and row `y0`.
-    /// What lies outside is left out.
+    /// Replaces a part of this picture, with its upper left corner at column `x0` and row `y0`, by a smaller picture.
+    /// Pixels outside are left out.
     pub fn replace(&mut self, x0: u32, y0: u32, part: &Self) {
         let (width, columns) = (self.width as usize, part.width.min(self.width.saturating_sub(x0)) as usize);
         if columns == 0 {
@@ -97,7 +95,7 @@ impl Picture {
         }
     }
 
-    /// The picture before a background of light as it is, of which alpha shows its share; one without alpha stays the same.
+    /// The picture composited by its alpha over a background of linear light; one without alpha stays the same.
     pub fn before(mut self, background: [f32; 3]) -> Self {
         for (pixel, alpha) in self.pixels.iter_mut().zip(std::mem::take(&mut self.alpha)) {
             let share = 1.0 - alpha.clamp(0.0, 1.0);
@@ -108,19 +106,19 @@ impl Picture {
 }
 
 impl Film {
-    /// A black film for a picture of `width` × `height` pixels, of which only `crop` (cut to the picture) is held.
+    /// A black film for a picture of `width` × `height` pixels, of which only `crop` (clipped to the picture) is held.
     ///
     /// An error if the picture has more than [`MOST_PIXELS`] or there is no memory for it.
     pub fn new(width: u32, height: u32, crop: Option<PixelBounds>) -> Result<Self> {
         Self::with_layers(width, height, crop, Layers::None)
     }
 
-    /// As [`Film::new`], with room for what the layers need besides light.
+    /// As [`Film::new`], with memory for AOVs.
     pub fn with_layers(width: u32, height: u32, crop: Option<PixelBounds>, layers: Layers) -> Result<Self> {
         Self::for_image(&ImageSettings { width, height, crop, layers, ..ImageSettings::default() })
     }
 
-    /// A black film with room for all that a picture is asked for: layers, alpha.
+    /// A black film with memory for everything that the settings need: AOVs, alpha.
     ///
     /// # Errors
     /// `Limit` as [`Film::new`].
@@ -160,13 +158,13 @@ impl Film {
         self.tile.add(x, y, sample, rgb);
     }
 
-    /// Adds what a tile holds. What lies outside of [`Film::area`] is left out; samples that the tile dropped are
-    /// counted all the same.
+    /// Adds the sums of a tile. Pixels outside of [`Film::area`] are left out; samples that the tile dropped are
+    /// counted nevertheless.
     pub fn add_tile(&mut self, tile: &FilmTile) {
         self.tile.merge(tile);
     }
 
-    /// Adds what another film of the same picture holds: other samples, or other pixels.
+    /// Adds the sums of another film of the same picture: other samples, or other pixels.
     ///
     /// An error if the pictures differ in size.
     pub fn merge(&mut self, other: &Self) -> Result<()> {
@@ -188,42 +186,42 @@ impl Film {
         self.tile.pixel(x, y).map_or([0.0; 3], Pixel::mean)
     }
 
-    /// The variance of *one* sample of a pixel in X, Y and Z (CIE 1931, as [`xyz`] has them; so the second is that of the
-    /// luminance), estimated from its samples without bias. Divided by [`Film::samples`] it is that of the mean of
-    /// independent samples; well-spread ones vary less. Infinite with fewer than two samples, and outside of
-    /// [`Film::area`]. Squares of more than 2⁸⁰ in all are not counted on.
+    /// The unbiased estimate of the variance of *one* sample of a pixel in X, Y and Z (CIE 1931, see [`xyz`]; the
+    /// second is that of the luminance). Divided by [`Film::samples`] it is that of the mean of independent samples;
+    /// that of stratified ones is less. Infinite with fewer than two samples, and outside of [`Film::area`]. The sum of
+    /// squares saturates at 2⁸⁰.
     pub fn variance(&self, x: u32, y: u32) -> [f32; 3] {
         self.tile
             .pixel(x, y)
             .map_or([f32::INFINITY; 3], |pixel| pixel.variance().map(|variance| variance as f32))
     }
 
-    /// The variance of *one* sample of a pixel in the channels of the sensor, estimated as [`Film::variance`] is; `None` where the
-    /// film has no room for it (no layers, or a sensor that measures X, Y and Z), and outside of [`Film::area`].
+    /// The variance of *one* sample of a pixel in the channels of the sensor, estimated like [`Film::variance`]; `None`
+    /// where the film has no memory for it (no AOVs, or a sensor that measures X, Y and Z), and outside of
+    /// [`Film::area`].
     pub fn channel_variance(&self, x: u32, y: u32) -> Option<[f32; 3]> {
         self.tile.channels.get(self.tile.index(x, y)?).map(ChannelSums::variance)
     }
 
-    /// What the camera sees first in a pixel, in the mean over its samples: the albedo over all of them (nothing is black), all
-    /// else over those that met something. `None` where the film has no room for it, where no sample met anything, and outside
-    /// of [`Film::area`].
+    /// The mean AOVs of a pixel: the albedo over all samples (a miss is black), all others over the samples with a hit.
+    /// `None` where the film has no memory for them, where no sample hit anything, and outside of [`Film::area`].
     pub fn aovs(&self, x: u32, y: u32) -> Option<Aovs> {
         self.tile.layers.get(self.tile.index(x, y)?)?.mean()
     }
 
-    /// Whether there is room for layers.
+    /// Whether the film has AOVs.
     pub fn has_layers(&self) -> bool {
         self.tile.has_layers()
     }
 
-    /// What the denoiser compares a pixel by; `None` where the film has no room for it or no samples, and outside of
+    /// The denoiser features of a pixel; `None` where the film has no memory for them or no samples, and outside of
     /// [`Film::area`].
     pub fn denoiser_features(&self, x: u32, y: u32) -> Option<DenoiserFeatures> {
         self.tile.features.get(self.tile.index(x, y)?)?.features()
     }
 
-    /// The variance of how much *one* sample of a pixel hides of what is behind, estimated as [`Film::variance`] is. 0 where the
-    /// film has no alpha or no room for what the denoiser is told, and outside of [`Film::area`].
+    /// The variance of the alpha of *one* sample of a pixel, estimated like [`Film::variance`]. 0 where the film has no
+    /// alpha or is not made for the denoiser, and outside of [`Film::area`].
     pub fn alpha_variance(&self, x: u32, y: u32) -> f32 {
         let FilmTile { pixels, alphas, alpha_squares, .. } = &self.tile;
         let Some(index) = self.tile.index(x, y) else { return 0.0 };
@@ -236,17 +234,17 @@ impl Film {
         unbiased_variance(n, sum as f64 / (n * TWO_TO_64), squares as f64 / (n * TWO_TO_48)) as f32
     }
 
-    /// How many samples a pixel holds, without those that were dropped.
+    /// Number of samples of a pixel, without those that were dropped.
     pub fn samples(&self, x: u32, y: u32) -> u64 {
         self.tile.pixel(x, y).map_or(0, |pixel| pixel.samples)
     }
 
-    /// How many samples were dropped because they were not finite.
+    /// Number of samples that were dropped because they were not finite.
     pub fn dropped(&self) -> u64 {
         self.tile.dropped
     }
 
-    /// The least address of a dropped sample, which replays it: the same whatever the order of the work.
+    /// The least id of a dropped sample, which replays it: the same whatever the order of the work.
     pub fn first_dropped(&self) -> Option<SampleId> {
         self.tile.first_dropped
     }
@@ -271,7 +269,7 @@ impl Film {
         Picture { width, height, pixels, alpha: self.alpha(part) }
     }
 
-    /// How much each pixel of a rectangle hides of what is behind; empty where that was not asked for.
+    /// Alpha of the pixels of a rectangle; empty where the film has none.
     fn alpha(&self, part: PixelBounds) -> Vec<f32> {
         let FilmTile { pixels, alphas, .. } = &self.tile;
         if alphas.is_empty() {
@@ -286,7 +284,7 @@ impl Film {
     }
 }
 
-/// What two rectangles share; where that is nothing, the empty rectangle at the origin.
+/// The intersection of two rectangles; if it is empty, the empty rectangle at the origin.
 fn common(a: PixelBounds, b: PixelBounds) -> PixelBounds {
     let (x0, x1) = (a.x0.max(b.x0), a.x1.min(b.x1));
     let (y0, y1) = (a.y0.max(b.y0), a.y1.min(b.y1));

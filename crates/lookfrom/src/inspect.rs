@@ -1,7 +1,7 @@
 //! The inspector: every matrix, determinant, root, ray and density of one sample.
 //!
-//! This is the render itself with a watcher listening: [`inspect`] traces the one sample through [`Renderer::trace`], as a
-//! tile would, and arranges what the watcher heard. What it shows adds up, bit for bit, to what the film received.
+//! It is the renderer itself with a probe: [`inspect`] traces the one sample as a tile would, and arranges the recorded
+//! events ([`Renderer::trace_events`]). The contributions that it shows add up, bit for bit, to what the film received.
 //! Points are shown in the world (not in render space).
 
 mod camera;
@@ -23,10 +23,10 @@ pub use report::{
     Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport, Factor, Inspection,
     LightReport, MatrixStep, MetReport, RayReport, ShadowReport, WavelengthsReport,
 };
-pub use scatter::{AnswerReport, AskedReport, BounceReport, FoundReport, ScatteringReport};
+pub use scatter::{BounceReport, FoundReport, LightSampleReport, SampledDirectionReport, ScatteringReport};
 pub use svg::svg;
 
-/// Follows one sample and reports all that happens on its way.
+/// Traces one sample and reports all steps of its computation.
 pub fn inspect(renderer: &Renderer, id: SampleId) -> Inspection {
     let mut events: Vec<Event> = Vec::new();
     let (traced, _) = renderer.trace_events(&[id], &mut events);

@@ -1,8 +1,8 @@
 //! Integrators: from a path and its hit to light, shadow rays and further paths.
 //!
 //! An integrator turns one [`Path`] and its hit into contributions, shadow rays and further paths. Steps run in stages
-//! over batches (see `render`): all paths of a batch are traced, then stepped, then their shadow rays are traced, and the
-//! further paths are the next batch. Whitted's tree of rays thus grows breadth first, and the contributions to one
+//! over batches (see `render`): all paths of a batch are traced, then stepped, then their shadow rays are traced, and
+//! the further paths are the next batch. Whitted's tree of rays thus grows breadth first, and the contributions to one
 //! sample are added in one fixed order, whatever else is in the batch.
 
 mod background;
@@ -39,22 +39,21 @@ pub use shadow::ShadowTransparency;
 pub(crate) use shadow::resolve as resolve_shadows;
 pub use whitted::Whitted;
 
-/// How one ray's hit is turned into light. Implement it to plug a light transport algorithm of your own into a
-/// [`Renderer`](crate::render::Renderer): the renderer traces rays in batches, and calls [`Integrator::step`] for each path and
-/// what it hit.
+/// A light transport algorithm. Implement it to plug one of your own into a [`Renderer`](crate::render::Renderer): the
+/// renderer traces rays in batches, and calls [`Integrator::step`] for each path and its hit.
 pub trait Integrator: std::fmt::Debug + Send + Sync {
-    /// Whether what it computes is light, which the spectral mode and the sensor apply to, and not false colours.
+    /// True if the integrator computes light, to which the spectral mode and the sensor apply; false for false colours.
     const IS_LIGHT: bool = true;
 
-    /// What it is called, in a word.
+    /// A name of one word.
     fn name(&self) -> &'static str;
 
-    /// What lets shadow rays pass.
+    /// The surfaces that shadow rays pass.
     fn shadow_transparency(&self) -> ShadowTransparency {
         ShadowTransparency::AlphaTested
     }
 
-    /// Adds to `output` what follows from `path` having met `hit`.
+    /// Adds to `output` the contributions, shadow rays and paths that follow from the `hit` of `path`.
     fn step<P: Probe>(
         &self,
         world: &World,
@@ -64,8 +63,8 @@ pub trait Integrator: std::fmt::Debug + Send + Sync {
         output: &mut StepOutput<'_, P>,
     );
 
-    /// [`Integrator::step`] for all paths of a batch and their hits. What is done for one path does not depend on others;
-    /// contributions to one sample come in the order of its paths.
+    /// [`Integrator::step`] for all paths of a batch and their hits. The result for one path does not depend on the
+    /// others; contributions to one sample are added in the order of its paths.
     fn step_all<P: Probe>(
         &self,
         world: &World,
@@ -81,23 +80,23 @@ pub trait Integrator: std::fmt::Debug + Send + Sync {
     }
 }
 
-/// A ray on its way, and all that is remembered of where it came from.
+/// A ray, its throughput, and the state kept of the path so far.
 #[derive(Clone, Copy, Debug)]
 pub struct Path {
     /// In render space; not of unit length: from the camera, `t = 1` is the image plane.
     pub ray: Ray,
     /// The path throughput: the factor of light along this ray in the sample.
     pub beta: Spectrum,
-    /// Which sample of the batch.
+    /// Index of the sample in the batch.
     pub slot: u32,
-    /// How many mirrors, refractions and bounces lie behind.
+    /// Number of reflections, refractions and bounces so far.
     pub depth: u32,
-    /// Its place among the rays of its sample: 1 is the camera's. In Whitted's tree the mirrored child of n is 2n, the
-    /// refracted one 2n + 1; along a path the next ray of n is n + 1.
+    /// Number of the ray within its sample: 1 is the camera ray. In Whitted's tree the reflected child of n is 2n, the
+    /// refracted one 2n + 1; along a path n is followed by n + 1.
     pub address: u64,
-    /// What it travels in.
+    /// The media that the ray is inside of.
     pub interior: InteriorStack,
-    /// What it remembers of the surface that it left.
+    /// The surface that the ray left.
     pub previous: PreviousVertex,
 }
 
@@ -105,19 +104,19 @@ impl Path {
     /// The address of the root of the tree.
     pub const ROOT: u64 = 1;
 
-    /// Where it left from, as lights are sampled there.
+    /// The light sample context of the previous vertex.
     pub(crate) fn light_context(&self) -> LightSampleContext {
         LightSampleContext { point: self.previous.point.as_dvec3(), n: self.previous.n }
     }
 
-    /// Whether it goes through a surface as if that were not there: by its alpha, where that is a matter of chance for
-    /// `u ∈ [0, 1)`, or on its way from the camera because it met the back of what has only a front.
+    /// Whether the path passes the surface as if it were not there: by the alpha test, decided by `u ∈ [0, 1)` where it
+    /// is stochastic, or, on its way from the camera, because it hit the back of a single-sided surface.
     fn goes_through(&self, world: &World, surface: &SurfaceInteraction, u: f32) -> bool {
         let is_back = surface.single_sided && !surface.front && !self.previous.blurred;
         is_back || !world.passes_alpha_test(surface, u)
     }
 
-    /// The same path after what it is inside of took its part of the light, on the way to `hit` or, where nothing is met,
+    /// The same path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed,
     /// to infinity.
     fn absorbed(&self, world: &World, hit: &Hit, lanes: &SpectralMode) -> Self {
         let length = match hit.is_hit() {
@@ -127,7 +126,7 @@ impl Path {
         Self { beta: self.beta * world.transmittance(self.interior, length, lanes), ..*self }
     }
 
-    /// The same path behind a surface that is not there.
+    /// The same path continued behind a surface that it passes.
     fn passed(&self, surface: &SurfaceInteraction) -> Self {
         let direction = Vec3::from_array(self.ray.direction);
         let ray = Ray::new(surface.origin(direction), self.ray.direction);
@@ -136,19 +135,19 @@ impl Path {
     }
 }
 
-/// Random numbers for one ray: a pure function of pixel, sample, seed and the ray's place in its tree.
+/// Random numbers for one ray: a pure function of pixel, sample, seed and the ray's address.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleStream {
-    /// Where they come from: the pixel's.
+    /// The sampler of the pixel.
     pub sampler: PixelSampler,
-    /// Which sample of the pixel.
+    /// Index of the sample in the pixel.
     pub sample: u32,
     /// [`Path::address`].
     pub address: u64,
 }
 
 impl SampleStream {
-    /// A number in `[0, 1)` for the alpha test, in a dimension that integrators do not use otherwise.
+    /// A number in `[0, 1)` for the alpha test, in a dimension that integrators use for nothing else.
     fn presence(&self, world: &World, surface: &SurfaceInteraction) -> f32 {
         if world.is_stochastic(surface) { self.two(u32::MAX)[0] } else { 0.0 }
     }
@@ -164,22 +163,22 @@ impl SampleStream {
 pub struct Queues {
     /// Light gathered so far, by slot.
     pub radiance: Vec<Spectrum>,
-    /// What the lanes mean, by slot.
+    /// The spectral mode, by slot.
     pub lanes: Vec<SpectralMode>,
-    /// What each sample hides of a background of the view's own, by slot.
+    /// Alpha over the view's own background, by slot.
     pub alpha: Vec<Alpha>,
-    /// To be traced next.
+    /// Paths to be traced next.
     pub paths: Vec<Path>,
-    /// To be traced before that.
+    /// Shadow rays, to be traced before them.
     pub shadows: Vec<Shadow>,
-    /// The rays of `shadows`, what they leave, and whether they are blocked: memory.
+    /// The rays of `shadows`, their origin primitives, and whether they are blocked: memory that is reused.
     rays: Vec<Ray>,
     origin_primitives: Vec<OriginPrimitive>,
     blocked: Vec<bool>,
 }
 
 impl Queues {
-    /// Forgets all samples.
+    /// Removes all samples.
     pub fn clear(&mut self) {
         self.radiance.clear();
         self.lanes.clear();
@@ -188,7 +187,7 @@ impl Queues {
         self.shadows.clear();
     }
 
-    /// One sample more, in the next slot.
+    /// Adds a sample, in the next slot.
     pub fn start(&mut self, lanes: SpectralMode) {
         self.radiance.push(Spectrum::BLACK);
         self.lanes.push(lanes);
@@ -199,16 +198,16 @@ impl Queues {
 /// The output of a step, and the probe that listens.
 #[derive(Debug)]
 pub struct StepOutput<'a, P: Probe> {
-    /// The samples that steps add to.
+    /// The samples, to which steps add.
     pub queues: Queues,
-    /// What the camera sees where nothing stands.
+    /// The background that camera rays see where they hit nothing.
     pub background: Background,
     /// The listener.
     pub probe: &'a mut P,
 }
 
 impl<P: Probe> StepOutput<'_, P> {
-    /// What the lanes of a path mean.
+    /// The spectral mode of a path.
     fn lanes(&self, path: &Path) -> SpectralMode {
         self.queues.lanes[path.slot as usize]
     }

@@ -13,5 +13,5 @@ pub mod shading;
 pub mod view;
 pub mod world;
 
-/// The vectors and matrices of this crate's interface.
+/// The vector and matrix types of this crate's interface.
 pub use glam;

@@ -1,7 +1,7 @@
-//! Lights: samples as seen from a point, and their densities.
+//! Lights: sampling from a point, and densities.
 //!
 //! In radiometric units: a written intensity `I` of a point light is `π I` W/sr here, so that a white diffuse surface
-//! (`k_d / π`) that faces it from a distance of 1 is seen with radiance `I` (the convention of `lookfrom_scene::light`).
+//! (`k_d / π`) that faces it at a distance of 1 has radiance `I` (the convention of `lookfrom_scene::light`).
 
 mod area;
 mod choice;
@@ -35,25 +35,25 @@ pub use portal::{Opening, Portal};
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Light {
-    /// From a point to all sides.
+    /// A point light, isotropic.
     Point {
-        /// Where.
+        /// Its position.
         position: DVec3,
         /// W/sr.
         intensity: EmissionSpectrum,
-        /// How it fades.
+        /// Attenuation with distance.
         falloff: Falloff,
     },
-    /// From infinitely far.
+    /// A directional light, infinitely far away.
     Distant {
         /// Toward the light, unit length.
         toward: Vec3,
         /// W/m² on a surface that faces it.
         irradiance: EmissionSpectrum,
     },
-    /// From a point into a cone.
+    /// A spotlight.
     Spot {
-        /// Where.
+        /// Its position.
         position: DVec3,
         /// The axis, away from the light, unit length.
         axis: Vec3,
@@ -61,104 +61,105 @@ pub enum Light {
         intensity: EmissionSpectrum,
         /// Cosine of the angle beyond which it is dark.
         cos_outer: f32,
-        /// Cosine of the angle up to which it is full.
+        /// Cosine of the angle up to which it has full intensity.
         cos_inner: f32,
-        /// How it fades.
+        /// Attenuation with distance.
         falloff: Falloff,
     },
-    /// From a point, a picture thrown into a rectangle.
+    /// A point light that projects a picture into a rectangle.
     Projection(Projection),
-    /// From a point, more or less by direction.
+    /// A point light whose intensity depends on direction.
     Goniometric(Goniometric),
-    /// From a surface.
+    /// A surface that emits light.
     Area(AreaLight),
-    /// From all around.
+    /// An environment light.
     Environment(Environment),
 }
 
-/// The colour of a light and how much there is of it.
+/// The emission spectrum of a light: colour times scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmissionSpectrum {
     /// Of the type [`SpectrumType::Illuminant`](crate::shading::texture::SpectrumType::Illuminant).
     pub color: SpectrumTexture,
-    /// Multiplies it.
+    /// Factor of the colour.
     pub scale: f32,
 }
 
 impl EmissionSpectrum {
-    /// The light at a point, in radiometric units.
+    /// The emission at a point, in radiometric units.
     #[inline]
     pub fn at(&self, textures: &Textures, point: &TexturePoint, lanes: &SpectralMode) -> Spectrum {
         textures.spectrum(&self.color, point, lanes) * self.scale
     }
 
-    /// The light of a colour that is the same everywhere.
+    /// The emission of a colour that is the same everywhere.
     pub fn even(&self, textures: &Textures, lanes: &SpectralMode) -> Spectrum {
         self.at(textures, &TexturePoint::NOWHERE, lanes)
     }
 }
 
-/// Where light arrives.
+/// The reference point that lights are sampled from.
 #[derive(Clone, Copy, Debug)]
 pub struct LightSampleContext {
     /// In render space.
     pub point: DVec3,
-    /// The unit normal that the light is weighed with.
+    /// Unit normal, with which the light is weighted.
     pub n: Vec3,
 }
 
-/// One way that light reaches a point, if nothing stands in it.
+/// A sample of a light as seen from a point, without visibility.
 #[derive(Clone, Copy, Debug)]
 pub struct LightSample {
     /// Toward the light, unit length.
     pub wi: Vec3,
-    /// Radiance that arrives (for a point light: intensity after fall-off; for a distant one: irradiance) …
+    /// Incident radiance (for a point light: intensity after fall-off; for a distant one: irradiance) …
     pub li: Spectrum,
     /// … to be divided by this density over solid angle (1 where there is only one direction).
     pub pdf: f32,
-    /// What the shadow ray aims at.
+    /// The target of the shadow ray.
     pub target: Target,
 }
 
 impl LightSample {
-    /// The one direction to a light at a point in space.
+    /// The sample of a light at a point in space, which has only one direction.
     fn of_point(wi: Vec3, li: Spectrum, position: DVec3) -> Self {
         Self { wi, li, pdf: 1.0, target: Target::Point(position) }
     }
 }
 
-/// What a shadow ray aims at.
+/// The target of a shadow ray.
 #[derive(Clone, Copy, Debug)]
 pub enum Target {
     /// A point in space with no surface.
     Point(DVec3),
-    /// A point of a surface with its outside normal: the shadow ray ends just before it.
+    /// A point of a surface with its outward normal: the shadow ray ends just before it.
     Surface(Point, DVec3),
-    /// Infinitely far in the direction `wi`.
+    /// Infinitely far away in the direction `wi`.
     Infinity,
 }
 
-/// Whether lights are sampled alone or beside materials.
+/// Whether a light's density may be zero in directions from which light arrives, since BSDF sampling finds it (pbrt's
+/// `allowIncompletePDFs`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum IncompletePdf {
-    /// Every direction from which light comes may be chosen.
+    /// Every direction from which light comes has a positive density.
     Forbidden,
-    /// Directions of even, dim light are left to the sampling of materials.
+    /// Directions of uniform, dim light are left to BSDF sampling.
     Allowed,
 }
 
 impl Light {
-    /// Whether surfaces are lit by it; otherwise it is only seen.
+    /// Whether the light illuminates surfaces; otherwise it is only visible.
     pub fn illuminates(&self) -> bool {
         !matches!(self, Self::Environment(environment) if !environment.illuminates)
     }
 
-    /// Whether it has one direction only at any place: no direction chosen otherwise finds it.
+    /// Whether the light comes from a single direction at any point: BSDF sampling cannot find it.
     pub fn is_delta(&self) -> bool {
         !matches!(self, Self::Area(_) | Self::Environment(_))
     }
 
-    /// Whether it needs to be sampled where BSDFs are sampled as well.
+    /// Whether the light needs to be sampled where BSDFs are sampled as well.
     fn is_sampled(&self) -> bool {
         match self {
             Self::Environment(environment) => environment.illuminates && environment.is_uneven(),
@@ -167,7 +168,7 @@ impl Light {
         }
     }
 
-    /// One way from the light to a place, or `None` where there is none. `u ∈ [0, 1)²`.
+    /// A sample of the light from a reference point; `None` if no light arrives. `u ∈ [0, 1)²`.
     pub fn sample(
         &self,
         textures: &Textures,
@@ -203,8 +204,8 @@ impl Light {
         }
     }
 
-    /// The density over solid angle with which [`Light::sample`] chooses a unit direction at a place, in which a ray met
-    /// this light: at `surface`, or nowhere for an environment.
+    /// The solid angle density of a unit direction in [`Light::sample`]. A ray in that direction hit this light at
+    /// `surface` (`None` for an environment).
     pub fn pdf(
         &self,
         at: &LightSampleContext,
@@ -219,7 +220,7 @@ impl Light {
         }
     }
 
-    /// How much it sends out where its radiance (or intensity) is 1, roughly; `radius` is that of the scene.
+    /// Approximate power of the light for a radiance (or intensity) of 1; `radius` is that of the scene.
     fn power_per_brightness(&self, radius: f32) -> f64 {
         use std::f64::consts::PI;
         match self {
@@ -232,7 +233,7 @@ impl Light {
         }
     }
 
-    /// Where it stands and how much it sends out: `power`, in any unit; `None` for lights infinitely far.
+    /// The bounds of the light in a light tree, with its `power` in any unit; `None` for lights infinitely far away.
     fn bounds(&self, power: f32) -> Option<LightBounds> {
         let at_point = |position: &DVec3, normals: Cone, rim: f32| LightBounds {
             min: position.as_vec3(),
@@ -242,7 +243,7 @@ impl Light {
             two_sided: false,
             power,
         };
-        // Slightly wider than they are, so that rounding leaves no rim in the dark.
+        // Slightly wider than the exact angles, so that rounding leaves no rim dark.
         const SLACK: f32 = 1e-3;
         const WIDEST_RIM: f32 = std::f32::consts::FRAC_PI_2;
         Some(match self {
@@ -255,7 +256,8 @@ impl Light {
             }
             Self::Spot { position, axis, cos_outer, cos_inner, .. } => {
                 let [outer, inner] = [cos_outer, cos_inner].map(|cos| cone::angle(*cos));
-                // The cosine to the cone stands for the fall-off, and must not get to 0 within it.
+                // The importance takes the cosine of the angle to the cone for the fall-off; it must not reach 0 within
+                // it.
                 let rim = (outer - inner + SLACK).min(WIDEST_RIM - 0.25);
                 let cos = libm::cosf((outer + SLACK - rim).clamp(0.0, std::f32::consts::PI));
                 at_point(position, Cone { axis: *axis, cos }, rim)

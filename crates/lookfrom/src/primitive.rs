@@ -1,9 +1,10 @@
 //! Primitives: from a hit (ids, t, u, v) to a point with normals, derivatives and texture coordinates.
 //!
-//! Each kind of form has a file of its own. Positions are in the space of the group that the form belongs to: render
-//! space, or the space of an instanced object. `∂p/∂u` and `∂p/∂v` follow pbrt-v4 for each kind, since brushed metal
-//! and bump mapping depend on them; the outside is the side of `∂p/∂u × ∂p/∂v` after the shape's transform, turned over by
-//! `reverse_orientation` and, once more, by a mirror: what was outside before a mirror is outside after it.
+//! Each kind of primitive has a file of its own. Positions are in the space of the group that the primitive belongs to:
+//! render space, or the space of an instanced object. `∂p/∂u` and `∂p/∂v` follow pbrt-v4 for each kind, since
+//! anisotropic reflection and bump mapping depend on them; the outside is the side of `∂p/∂u × ∂p/∂v` after the shape's
+//! transform, flipped by `reverse_orientation` and again by a transform that reflects, so that a reflection keeps the
+//! outside outside.
 
 mod curve;
 mod disk;
@@ -31,11 +32,11 @@ pub struct MaterialBinding {
     pub material: u32,
     /// Index into the world's lights, where the surface emits light.
     pub light: Option<u32>,
-    /// Which shape of the scene.
+    /// Index of the scene's shape.
     pub shape: u32,
-    /// Index into the world's alphas, where part of the surface may not be there.
+    /// Index into the world's alphas, where the surface is alpha-tested.
     pub alpha: Option<u32>,
-    /// Index into the world's medium interfaces, where the surface says what fills space around it.
+    /// Index into the world's medium interfaces, where the surface has one.
     pub medium_interface: Option<u32>,
     /// Index into the world's meshes with further texture coordinates or opacities.
     pub vertex_data: Option<u32>,
@@ -61,26 +62,26 @@ pub enum Primitives {
     Curves(Arc<Curves>),
 }
 
-/// A point of a form.
+/// A point of a primitive.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoint {
-    /// Where, with its error bound.
+    /// Position, with its error bound.
     pub point: Point,
-    /// Geometric normal to the outside, unit length.
+    /// Outward geometric normal, unit length.
     pub ng: DVec3,
     /// Shading normal, unit length, on the side of `ng`.
     pub ns: DVec3,
     /// Texture coordinates.
     pub uv: Vec2,
-    /// Derivatives of the position by the texture coordinates.
+    /// Derivative of the position by the first texture coordinate.
     pub dpdu: DVec3,
-    /// By the second one.
+    /// Derivative of the position by the second one.
     pub dpdv: DVec3,
-    /// Those of the smoothed surface: what bumps are raised on, and what brushed metal is brushed along. Across `ns`
-    /// where there is smoothing, otherwise the same as `dpdu`.
+    /// Shading tangent, for bump mapping and anisotropy: perpendicular to `ns` where normals are interpolated,
+    /// otherwise the same as `dpdu`.
     pub shading_dpdu: DVec3,
-    /// By the second one. Where the mesh has tangents or normals it is across both: along `ns × shading_dpdu`, or against
-    /// it where the mesh's tangents say so (mirrored texture coordinates).
+    /// Shading bitangent. Where the mesh has tangents or normals it is perpendicular to `ns` and `shading_dpdu`: along
+    /// `ns × shading_dpdu`, or opposite to it where the mesh's tangents say so (mirrored texture coordinates).
     pub shading_dpdv: DVec3,
     /// The mesh's own linear colour; white where it has none.
     pub color: [f32; 3],
@@ -89,7 +90,7 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// A point without smoothing and without a colour of its own.
+    /// A point without an interpolated normal and without a vertex colour.
     fn plain(point: Point, ng: DVec3, uv: Vec2, [dpdu, dpdv]: [DVec3; 2], binding: MaterialBinding) -> Self {
         Self {
             point,
@@ -107,7 +108,7 @@ impl SurfacePoint {
 }
 
 impl Primitives {
-    /// The point that `hit` means for a ray from `origin` into `direction` (the one that was traced, in this form's space).
+    /// The point of `hit` on a ray from `origin` in `direction` (the one that was traced, in this primitive's space).
     pub fn point(&self, hit: &Hit, origin: DVec3, direction: DVec3) -> SurfacePoint {
         let index = hit.primitive as usize;
         let near = origin + f64::from(hit.t) * direction;

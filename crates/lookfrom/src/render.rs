@@ -1,8 +1,8 @@
-//! The renderer: start, hit, step, occluded, add. Which pixels and samples are rendered when is decided in `driver`.
+//! The renderer: stages over batches of paths (start, hit, step, occluded, add). `driver` schedules pixels and samples.
 //!
-//! [`Renderer::render_tile`] is pure: the same world, view, settings, pixels and sample numbers give the same bits, on any
-//! machine, with any number of threads. Everything else ([`Renderer::render`], the inspector, a session) only decides which
-//! tiles and samples are rendered.
+//! [`Renderer::render_tile`] is pure: the same world, view, settings, pixels and sample numbers give the same bits, on
+//! any machine, with any number of threads. Everything else ([`Renderer::render`], the inspector, a session) only
+//! chooses the tiles and samples to render.
 
 mod camera_warnings;
 mod driver;
@@ -40,12 +40,12 @@ use transport::Transport;
 
 pub use driver::{FEWEST_SAMPLES, Progress, Rendered, StopCriteria, StopReason, TileDone};
 
-/// The dimensions of a sample's random numbers that the camera uses; rays use hashes of their place in the tree.
+/// Dimensions of a sample's random numbers that the camera uses; rays use hashes of their address and dimension.
 const FILTER_DIMENSION: u32 = 0;
 const LENS_DIMENSION: u32 = 1;
 const WAVELENGTH_DIMENSION: u32 = 2;
 
-/// A world, a view of it and the settings of the computation: everything that decides the light of a picture.
+/// A world, a view of it and the render settings: everything that determines the light of a picture.
 ///
 /// Owns what it needs and is cheap to clone; the world is shared.
 #[derive(Clone, Debug)]
@@ -54,7 +54,7 @@ pub struct Renderer {
     view: View,
     settings: RenderSettings,
     integrator: Arc<dyn Transport>,
-    /// Whether the integrator is not the one that the settings name.
+    /// Whether the integrator is a custom one, not that of the settings.
     is_plugged_in: bool,
     /// The camera's position in render space.
     eye: DVec3,
@@ -63,19 +63,19 @@ pub struct Renderer {
     sensor: Sensor,
 }
 
-/// How many rays were traced.
+/// Numbers of rays traced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rays {
-    /// From the camera.
+    /// Camera rays.
     pub camera: u64,
-    /// Mirrored and refracted.
+    /// Further rays of paths and trees.
     pub secondary: u64,
-    /// To lights.
+    /// Shadow rays.
     pub shadow: u64,
 }
 
 impl Rays {
-    /// All together.
+    /// The sum of all.
     pub fn total(self) -> u64 {
         self.camera + self.secondary + self.shadow
     }
@@ -89,22 +89,22 @@ impl std::ops::AddAssign for Rays {
     }
 }
 
-/// A sample's light before the film, with what the filter and the camera made of it.
+/// A sample's light, before and after the sensor and the filter weight.
 #[derive(Clone, Copy, Debug)]
 pub struct Traced {
-    /// What the film gets: `radiance · weight`.
+    /// The value for the film: `radiance · weight`.
     pub rgb: [f32; 3],
     /// The sum over the tree of rays.
     pub radiance: Spectrum,
-    /// What the lanes of `radiance` mean.
+    /// The spectral mode of `radiance`.
     pub lanes: SpectralMode,
     /// The filter's weight: 1 for filters without negative lobes.
     pub weight: f32,
-    /// How much of what is behind the picture it hides, 1 for all; not yet weighed.
+    /// Alpha, not multiplied by the filter weight.
     pub alpha: f32,
 }
 
-/// Random numbers for the camera's rays of a batch, by slot. Empty where nothing asks for them.
+/// Random numbers for the camera rays of a batch, by slot. Empty where they are not needed.
 #[derive(Debug, Default)]
 struct StartNumbers {
     filter: Vec<[f32; 2]>,
@@ -112,7 +112,7 @@ struct StartNumbers {
     wavelengths: Vec<[f32; 2]>,
 }
 
-/// The memory of a batch, which the next one uses again.
+/// The memory of a batch, reused by the next one.
 #[derive(Debug, Default)]
 struct Batch {
     numbers: StartNumbers,
@@ -122,7 +122,7 @@ struct Batch {
     rays: Vec<Ray>,
     origin_primitives: Vec<OriginPrimitive>,
     hits: Vec<Hit>,
-    /// What the camera's rays met, by slot; only where it is asked for.
+    /// First hits, by slot; only where AOVs or the denoiser need them.
     first_hits: Vec<FirstHit>,
     traced: Vec<Traced>,
 }
@@ -136,7 +136,7 @@ impl Renderer {
         let invalid = |message: String| Err(Error::new(ErrorKind::Invalid, &Location::default(), message));
         let image = &view.image;
         if settings.samples == 0 {
-            return invalid("0 samples a pixel; expected at least 1".into());
+            return invalid("0 samples per pixel; expected at least 1".into());
         }
         if let Some(PixelBounds { x0, y0, x1, y1 }) = image.crop
             && (x0 >= x1 || y0 >= y1 || x1 > image.width || y1 > image.height)
@@ -160,8 +160,8 @@ impl Renderer {
         })
     }
 
-    /// Compiles a scene, and renders the view by its own camera with its own settings. What can be survived is added to
-    /// `warnings`.
+    /// A renderer of a scene, which is compiled, with its own camera and settings. Problems that do not prevent
+    /// rendering are added to `warnings`.
     ///
     /// # Errors
     /// As [`View::of_scene`], [`World::compile`] and [`Renderer::new`].
@@ -173,18 +173,18 @@ impl Renderer {
         Ok(renderer)
     }
 
-    /// Warns of a camera that sees nothing of what it should.
+    /// Warns of a camera that sees nothing of the scene, or is inside a body.
     pub(crate) fn check_view(&self, subject: &Subject, warnings: &mut Vec<Warning>) {
         camera_warnings::check(self, subject, warnings);
     }
 
-    /// The same with an integrator of one's own in place of the one that the settings name.
+    /// The same with a custom integrator in place of the one in the settings.
     #[must_use]
     pub fn with_integrator(self, integrator: impl Integrator + 'static) -> Self {
         Self { integrator: Arc::new(integrator), is_plugged_in: true, ..self }
     }
 
-    /// The same world and settings, seen otherwise.
+    /// The same world and settings with another view.
     ///
     /// # Errors
     /// As [`Renderer::new`].
@@ -196,7 +196,7 @@ impl Renderer {
         })
     }
 
-    /// Another world, or the same one with other lights, as a view sees it.
+    /// The same settings with another world, or the same one with other lights, and a view of it.
     ///
     /// # Errors
     /// As [`Renderer::new`].
@@ -204,7 +204,7 @@ impl Renderer {
         Self { world, ..self.clone() }.with_view(view)
     }
 
-    /// The same view of the same world, computed otherwise: by the integrator that the settings name.
+    /// The same view of the same world with other settings, and the integrator that they name.
     ///
     /// # Errors
     /// As [`Renderer::new`].
@@ -212,7 +212,7 @@ impl Renderer {
         Self::new(self.world.clone(), self.view.clone(), settings)
     }
 
-    /// The world that is pictured.
+    /// The world.
     pub fn world(&self) -> &Arc<World> {
         &self.world
     }
@@ -222,12 +222,12 @@ impl Renderer {
         &self.view
     }
 
-    /// What light is turned into colour by.
+    /// The sensor, which converts light to colour.
     pub fn sensor(&self) -> &Sensor {
         &self.sensor
     }
 
-    /// How it is rendered.
+    /// The render settings.
     pub fn settings(&self) -> &RenderSettings {
         &self.settings
     }
@@ -241,7 +241,7 @@ impl Renderer {
         &self.view.image
     }
 
-    /// The camera's ray for a sample and the filter's weight.
+    /// The camera ray of a sample and the filter weight.
     pub fn camera_ray(&self, id: SampleId) -> (CameraRay, f32) {
         let two = |dimension| self.sampler.two(id.pixel, id.sample, dimension);
         self.camera_ray_by(id, two(FILTER_DIMENSION), two(LENS_DIMENSION))
@@ -256,14 +256,14 @@ impl Renderer {
         (self.view.camera.ray([x_k, y_k], lens), weight)
     }
 
-    /// Follows samples to their light. The result for a sample does not depend on the others.
+    /// Computes samples. The result for a sample does not depend on the others.
     pub fn trace(&self, ids: &[SampleId]) -> (Vec<Traced>, Rays) {
         let mut batch = Batch::default();
         let rays = self.integrator.trace(self, ids, &mut batch);
         (batch.traced, rays)
     }
 
-    /// As [`Renderer::trace`], with everything that happens on the way added to `events`.
+    /// As [`Renderer::trace`], and adds all events of the computation to `events`.
     pub fn trace_events(&self, ids: &[SampleId], events: &mut Vec<Event>) -> (Vec<Traced>, Rays) {
         let mut batch = Batch::default();
         let rays = self.integrator.trace_events(self, ids, events, &mut batch);
@@ -334,7 +334,7 @@ impl Renderer {
             };
             integrator.step_all(&self.world, numbers, paths, hits, &mut output);
 
-            // Occluded: what arrives of the lights.
+            // Occluded: trace shadow rays and add unoccluded light.
             rays_traced.shadow += resolve_shadows(&self.world, integrator.shadow_transparency(), &mut output);
             rays_traced.secondary += output.queues.paths.len() as u64;
         }
@@ -349,14 +349,14 @@ impl Renderer {
         rays_traced
     }
 
-    /// The kernel's form of a camera ray, with `t` of the notes: 1 on the image plane.
+    /// A camera ray as a ray of the kernel, with `t` of the notes: 1 on the image plane.
     #[inline]
     fn kernel_ray(&self, ray: &CameraRay) -> Ray {
         let a = self.eye + ray.a_from_eye;
         Ray::new(a.as_vec3().to_array(), ray.direction.as_vec3().to_array())
     }
 
-    /// Draws the numbers that the camera's rays of a batch ask for.
+    /// Draws the random numbers that the camera rays of a batch need.
     fn prepare_start(&self, ids: &[SampleId], numbers: &mut StartNumbers) {
         let StartNumbers { filter, lens, wavelengths } = numbers;
         let draw = |is_sampled: bool, dimension: u32, numbers: &mut Vec<[f32; 2]>| {
@@ -373,8 +373,8 @@ impl Renderer {
         self.settings.color == ColorMode::Spectral && self.integrator.is_light()
     }
 
-    /// The colour of a sample, and how much of the view's own background it hides, 1 for all: where a shadow catcher is seen the
-    /// picture holds only that. Single samples may be outside of 0 … 1; their mean is not but for noise.
+    /// The colour and alpha of a sample. Over the view's own background, a shadow catcher has only alpha; single
+    /// samples of it may be outside of 0 … 1, but not their mean, up to noise.
     fn with_alpha(
         &self,
         radiance: Spectrum,
@@ -391,7 +391,7 @@ impl Renderer {
         }
     }
 
-    /// What the sensor makes of light: linear Rec. 709.
+    /// The colour that the sensor measures: linear Rec. 709.
     pub fn rgb(&self, light: Spectrum, lanes: &SpectralMode) -> [f32; 3] {
         let rgb = match lanes {
             SpectralMode::Rgb if self.image().sensor == SensorSettings::default() => return light.rgb(),
@@ -401,19 +401,19 @@ impl Renderer {
         self.limited(rgb)
     }
 
-    /// A colour of which no channel of the sensor is brighter than it may be (pbrt's `maxcomponentvalue`). Channels are looked
-    /// at before they become RGB: there single wavelengths are far outside of the gamut.
+    /// A colour scaled so that no channel of the sensor exceeds its limit (pbrt's `maxcomponentvalue`). The channels
+    /// are those before the conversion to RGB, where single wavelengths are far outside of the gamut.
     fn limited(&self, rgb: [f32; 3]) -> [f32; 3] {
         let most = self.image().sensor.max_component;
         if most == f32::INFINITY {
             return rgb;
         }
-        // Light that a filter's negative lobes weigh is limited as well.
+        // Negative values, from a filter's negative lobes, are limited as well.
         let brightest = self.sensor.channels(rgb).into_iter().fold(0.0, |most, c| c.abs().max(most));
         if brightest > most { rgb.map(|c| c * (most / brightest)) } else { rgb }
     }
 
-    /// Adds the given samples of every pixel of a tile to its light.
+    /// Adds the given samples of every pixel of a tile to the tile.
     pub fn render_tile(&self, samples: Range<u32>, tile: &mut FilmTile) -> Rays {
         let mut rays = Rays::default();
         let mut batch = Batch::default();
@@ -438,12 +438,12 @@ impl Renderer {
     }
 }
 
-/// The wavelengths of a sample, by its random numbers.
+/// The wavelengths of a sample, chosen by its random numbers.
 fn lanes_by([u, _]: [f32; 2]) -> SpectralMode {
     SpectralMode::Spectral(Wavelengths::sample_visible(u))
 }
 
-/// The pixels of an area by square blocks of 8 × 8, so that the rays of a packet of the kernel lie close together.
+/// The pixels of an area by square blocks of 8 × 8, so that the rays of a packet of the kernel are coherent.
 fn blocks(area: PixelBounds) -> impl Iterator<Item = [u32; 2]> {
     const SIDE: usize = 8;
     let PixelBounds { x0, y0, x1, y1 } = area;

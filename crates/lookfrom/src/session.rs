@@ -1,7 +1,7 @@
-//! Sessions: the one way from a file to a finished picture, for every door.
+//! Sessions: from a file to a finished picture, for the command line and every other API.
 //!
-//! A [`Session`] reads (or is given) a scene, applies [`Options`], decides what both leave open — camera, lights, samples,
-//! denoising, AOVs — and owns the compiled [`World`]. Its picture is rendered with progress and
+//! A [`Session`] reads (or is given) a scene, applies [`Options`], chooses defaults for what both leave open — camera,
+//! lights, samples, denoising, AOVs — and owns the compiled [`World`]. Its picture is rendered with progress and
 //! cancellation; its camera and settings may be changed and the picture rendered again.
 //!
 //! ```no_run
@@ -49,17 +49,17 @@ use prepare::Prepared;
 pub use running::Running;
 use source::Source;
 
-/// A scene that is ready to be rendered, and to be rendered again from elsewhere or with other settings.
+/// A scene that is ready to be rendered, and to be rendered again with another camera or other settings.
 ///
-/// Owns what it needs; a clone shares the world.
+/// Owns its data; a clone shares the world.
 #[derive(Clone, Debug)]
 pub struct Session {
     name: String,
     renderer: Renderer,
     camera: Camera,
-    /// Where the scene can be read again.
+    /// The source from which the scene can be read again.
     source: Source,
-    /// What turns it, where the options ask for that.
+    /// The turntable, if enabled by the options.
     turntable: Option<Turning>,
     stop: StopCriteria,
     fireflies: Fireflies,
@@ -69,7 +69,7 @@ pub struct Session {
     warnings: Vec<Warning>,
 }
 
-/// What a scene is turned by.
+/// A turntable and the camera on it.
 #[derive(Clone, Debug)]
 struct Turning {
     turntable: Turntable,
@@ -85,20 +85,20 @@ impl Turning {
     }
 }
 
-/// What a session found in its file, and what it took to get it ready.
+/// Contents of a session's file, and the time to prepare them.
 #[derive(Clone, Debug)]
 pub struct SceneInfo {
-    /// What the file has, without what was added to show it.
+    /// Counts of the file's contents, without additions.
     pub counts: Counts,
-    /// What can be chosen in the file: animations, variants, cameras, scenes.
+    /// Contents of the file that can be selected: animations, variants, cameras, scenes.
     pub contents: Contents,
-    /// The box around what the file has.
+    /// The bounding box of the file's contents.
     pub bounds: Bounds,
-    /// What was added to show it: "camera", "lights", "floor".
+    /// Additions: "camera", "lights", "floor".
     pub added: Vec<&'static str>,
     /// The time it took to read the file.
     pub read: Duration,
-    /// The time it took from there to the world.
+    /// The time it took to build the world from it.
     pub build: Duration,
 }
 
@@ -106,14 +106,14 @@ impl Session {
     /// A session of a scene or model file on disk.
     ///
     /// # Errors
-    /// What the file's reader finds, what [`World::compile`] finds, and `Request` where the options do not suit the scene.
+    /// Those of the file's reader and of [`World::compile`], and `Request` where the options do not suit the scene.
     pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Self> {
         let path = path.as_ref();
         Self::read_from(Source::File(path.to_owned(), Arc::new(options.clone())), path, &Disk, options)
     }
 
-    /// A session of a scene or model file in memory, which is self-contained. The extension of `name` says its format.
-    /// The session keeps the bytes, to build its world again for cameras far away ([`Session::set_camera`]).
+    /// A session of a scene or model file in memory, which is self-contained. The extension of `name` determines its
+    /// format. The session keeps the bytes, to rebuild its world for cameras far away ([`Session::set_camera`]).
     ///
     /// # Errors
     /// As [`Session::open`].
@@ -124,7 +124,7 @@ impl Session {
         Self::read_from(source, &path, &*files, options)
     }
 
-    /// A session of a scene or model file, with all that it refers to, read through `files`.
+    /// A session of a scene or model file, read through `files` with all files that it refers to.
     ///
     /// # Errors
     /// As [`Session::open`].
@@ -196,32 +196,32 @@ impl Session {
         Ok(session)
     }
 
-    /// The file's name as it was given; empty for a scene that was made elsewhere.
+    /// The file's name as it was given; empty for a scene that was passed to [`Session::of_scene`].
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What could be survived in reading and compiling.
+    /// Warnings from reading and compiling.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
 
-    /// What the file has, and what was added to it.
+    /// Contents of the file, and additions.
     pub fn info(&self) -> &SceneInfo {
         &self.info
     }
 
-    /// The camera as it is written, with what the options say.
+    /// The scene's camera, with the options applied.
     pub fn camera(&self) -> &Camera {
         &self.camera
     }
 
-    /// What is asked of the picture.
+    /// The image settings.
     pub fn image(&self) -> &ImageSettings {
         self.renderer.view().image()
     }
 
-    /// What is asked of the computation.
+    /// The render settings.
     pub fn settings(&self) -> &RenderSettings {
         self.renderer.settings()
     }
@@ -231,18 +231,18 @@ impl Session {
         self.renderer.world()
     }
 
-    /// The renderer of the picture, for those who call it themselves.
+    /// The renderer of the picture.
     pub fn renderer(&self) -> &Renderer {
         &self.renderer
     }
 
-    /// Looks at the world from elsewhere. Nothing is read or built again, unless the eye is so far from the origin of render space, and
-    /// so near to something, that the world would not be exact there ([`World::is_precise_from`]): then the scene is read again
-    /// and its world built around that eye.
+    /// Changes the camera. Nothing is read or built again, unless the camera is so far from the origin of render space,
+    /// and so near to a surface, that the world would not be precise there ([`World::is_precise_from`]): then the scene
+    /// is read again and its world built around that camera.
     ///
     /// # Errors
-    /// `Invalid` for a camera that cannot see; `Request` where the world is not exact from there and cannot be read again, since the
-    /// session was made of a scene or through [`Session::read`]. Then nothing has changed.
+    /// `Invalid` for a degenerate camera; `Request` where the world is not precise from there and cannot be read again,
+    /// because the session was made of a scene or through [`Session::read`]. Then nothing has changed.
     pub fn set_camera(&mut self, camera: Camera) -> Result<()> {
         let view = View::new(&camera, self.image().clone())?;
         let eye = view.camera().lookfrom();
@@ -260,14 +260,14 @@ impl Session {
         Ok(())
     }
 
-    /// Turns the scene on a turntable: the camera of the beginning goes around it by degrees, counter-clockwise as seen from above,
-    /// and pictures of the surroundings with it. No tree is built, nothing is read.
+    /// Turns the scene on a turntable: the initial camera orbits it by `degrees`, counter-clockwise as seen from above,
+    /// and environment maps rotate with it. No BVH is built, nothing is read.
     ///
     /// # Errors
     /// `Request` for a session without a turntable ([`Options::turn`]).
     pub fn set_turn(&mut self, degrees: f64) -> Result<()> {
         let Some(turning) = &self.turntable else {
-            let message = "this session has no turntable: ask for one by the option `turn`";
+            let message = "this session has no turntable: enable it by the option `turn`";
             return Err(options::unsuitable(message.to_owned()));
         };
         let turning = Turning { degrees, ..turning.clone() };
@@ -279,7 +279,7 @@ impl Session {
         Ok(())
     }
 
-    /// Asks for another picture of the same world: another size, crop, filter, background or development.
+    /// Changes the image settings: size, crop, filter, background or development.
     ///
     /// # Errors
     /// `Invalid` for a size or crop without pixels; then nothing has changed.
@@ -288,7 +288,8 @@ impl Session {
         Ok(())
     }
 
-    /// Asks for another computation: samples, integrator, depth, seed. How lights are chosen stays as the world was compiled.
+    /// Changes the render settings: samples, integrator, depth, seed. The light sampler stays as the world was
+    /// compiled.
     ///
     /// # Errors
     /// `Invalid` for no samples; then nothing has changed.
@@ -297,7 +298,7 @@ impl Session {
         Ok(())
     }
 
-    /// Renders with an integrator of one's own. The next [`Session::set_settings`] takes it away again.
+    /// Sets a custom integrator. The next [`Session::set_settings`] removes it again.
     pub fn set_integrator(&mut self, integrator: impl Integrator + 'static) {
         self.renderer = self.renderer.clone().with_integrator(integrator);
     }
@@ -305,14 +306,14 @@ impl Session {
     /// Renders and finishes the picture.
     ///
     /// # Errors
-    /// `Limit` when there is no memory for the film or there are no threads to be had.
+    /// `Limit` if memory for the film or threads are not available.
     pub fn render(&self, progress: &dyn Progress) -> Result<Finished> {
         let rendered = self.renderer.render_until(&self.stop, self.threads, progress)?;
         Ok(self.finish(rendered))
     }
 
-    /// The bytes of a file of the picture so far, which is not finished: without AOVs, fireflies and noise in it, after
-    /// `mean_samples` samples a pixel.
+    /// The bytes of a file of an unfinished picture, after `mean_samples` samples per pixel: without AOVs, firefly
+    /// suppression and denoising.
     ///
     /// # Errors
     /// As [`Finished::encode`].
@@ -322,13 +323,13 @@ impl Session {
         encode::encode(format, picture, &[], self.image(), &header::header(self, &taken))
     }
 
-    /// Whether the picture goes where there is room for AOVs, as far as is known.
+    /// Whether the picture's format, if it is known, can hold AOVs.
     fn has_room_for_layers(&self) -> bool {
         self.format.is_none_or(Format::has_layers)
     }
 }
 
-/// What is wrong with a scene; where no place is known, its file is the place.
+/// Completes an error that has no location by the scene's file.
 fn in_file(path: &Path) -> impl Fn(Error) -> Error {
     move |mut error| {
         if error.at.file.is_empty() && !path.as_os_str().is_empty() {

@@ -1,4 +1,4 @@
-//! A view of a world: the camera, and the picture that it takes.
+//! Views of a world: camera and settings of the picture.
 
 pub mod camera;
 
@@ -9,23 +9,23 @@ use lookfrom_scene::{Result, Scene};
 
 use crate::view::camera::Camera;
 
-/// What looks at a [`World`](crate::world::World): a camera made for the size of a picture, and what is asked of the picture. A
-/// world can have any number of views.
+/// A view of a [`World`](crate::world::World): a camera made for the size of a picture, and the settings of the
+/// picture. A world can have any number of views.
 #[derive(Clone, Debug)]
 pub struct View {
     /// The camera, in the world's coordinates.
     pub(crate) camera: Camera,
-    /// What the camera is inside of; `None` is a vacuum.
+    /// The medium around the camera; `None` is a vacuum.
     pub(crate) medium: Option<MediumId>,
     /// Size, crop, filter, background and development of the picture.
     pub(crate) image: ImageSettings,
 }
 
 impl View {
-    /// A view by a camera as it is written.
+    /// A view by a scene's camera.
     ///
     /// # Errors
-    /// `Invalid` for a camera that cannot see, see [`Camera::new`].
+    /// `Invalid` for a degenerate camera, see [`Camera::new`].
     pub fn new(camera: &Written, image: ImageSettings) -> Result<Self> {
         Ok(Self { camera: Camera::new(camera, image.width, image.height)?, medium: camera.medium, image })
     }
@@ -43,7 +43,7 @@ impl View {
         &self.camera
     }
 
-    /// What is asked of the picture.
+    /// Size, crop, filter, background and development of the picture.
     pub fn image(&self) -> &ImageSettings {
         &self.image
     }

@@ -1,8 +1,8 @@
 //! The world: a scene compiled to flat arrays and integer ids, frozen.
 //!
-//! *Render space* is the world translated so that its origin is the eye of the scene's camera: f32 is finest where the
-//! picture looks closest. Views from elsewhere share it as long as they are exact ([`World::is_precise_from`]).
-//! After [`World::compile`] nothing fails but cancellation.
+//! *Render space* is the world translated so that its origin is the position of the scene's camera: f32 is finest near
+//! the camera. Views from elsewhere share it as long as they are precise ([`World::is_precise_from`]). After
+//! [`World::compile`] a scene causes no further errors.
 
 mod catcher;
 mod class;
@@ -31,118 +31,121 @@ use crate::shading::texture::{
     FloatTexture, SpectralMode, SpectrumTexture, SpectrumType, TexturePoint, Textures, spectrum_of,
 };
 
-/// What light meets.
+/// A scene compiled for light transport: geometry, materials, media and lights.
 ///
-/// A clone shares geometry and looks; only the lights are its own.
+/// A clone shares geometry and materials; only the lights are its own.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// Where the origin of render space lies in the world.
+    /// The origin of render space, in the world.
     pub(crate) origin: DVec3,
-    /// Everything that rays can meet.
+    /// The BVH over everything that rays can hit.
     pub(crate) bvh: Arc<Bvh>,
-    /// What stands in the world once, by the kernel's geometry id.
+    /// Primitives that are not instanced, by the kernel's geometry id.
     pub(crate) primitives: Arc<[Primitives]>,
-    /// Objects, which instances repeat: forms by geometry id.
+    /// Objects, which instances repeat: primitives by geometry id.
     pub(crate) objects: Arc<[Vec<Primitives>]>,
-    /// What stands in the world once, by the kernel's geometry id: its class.
+    /// Classes of the primitives that are not instanced, by the kernel's geometry id.
     pub(crate) classes: Arc<[Class]>,
-    /// By the kernel's instance id.
+    /// Instances, by the kernel's instance id.
     pub(crate) instances: Arc<[Instance]>,
-    /// Looks of surfaces.
+    /// Materials of surfaces.
     pub(crate) materials: Arc<[Material]>,
-    /// Parts of surfaces that are there, see [`MaterialBinding::alpha`](crate::primitive::MaterialBinding::alpha).
+    /// Alpha textures, see [`MaterialBinding::alpha`](crate::primitive::MaterialBinding::alpha).
     pub(crate) alphas: Vec<FloatTexture>,
-    /// What fills bodies and space.
+    /// Media that fill bodies and space.
     pub(crate) media: Vec<Medium>,
-    /// Whether what fills space counts ([`RenderSettings::media`](lookfrom_scene::settings::RenderSettings::media)).
+    /// Whether media that fill space count
+    /// ([`RenderSettings::media`](lookfrom_scene::settings::RenderSettings::media)).
     pub(crate) has_media: bool,
-    /// Half the diagonal of the box around everything that is placed.
+    /// Half the diagonal of the bounding box of all primitives.
     pub(crate) radius: f32,
-    /// What surfaces say is on their sides, see [`MaterialBinding::medium_interface`](crate::primitive::MaterialBinding::medium_interface).
+    /// Media on the two sides of surfaces, see
+    /// [`MaterialBinding::medium_interface`](crate::primitive::MaterialBinding::medium_interface).
     pub(crate) medium_interfaces: Vec<MediumInterface>,
-    /// Meshes with further texture coordinates or opacities, see [`MaterialBinding::vertex_data`](crate::primitive::MaterialBinding::vertex_data).
+    /// Meshes with further texture coordinates or opacities, see
+    /// [`MaterialBinding::vertex_data`](crate::primitive::MaterialBinding::vertex_data).
     pub(crate) vertex_data: Vec<Arc<Mesh>>,
-    /// Colours over surfaces.
+    /// Textures.
     pub(crate) textures: Arc<Textures>,
-    /// Lights to be sampled.
+    /// The lights.
     pub(crate) lights: Vec<Light>,
-    /// Which light is sampled where only one is.
+    /// The light sampler.
     pub(crate) light_choice: Arc<LightChoice>,
     /// Whitted's `I_a`.
     pub(crate) ambient: SpectrumTexture,
-    /// Indices into `lights` of those that are seen where a ray meets nothing.
+    /// Indices into `lights` of the environments, which rays that hit nothing see.
     pub(crate) environments: Vec<u32>,
-    /// Whether any material lets light through.
+    /// Whether any material transmits light.
     pub(crate) transmissive: bool,
-    /// Whether rays pass any surface without meeting it: alpha, interfaces.
+    /// Whether rays may pass any surface as if it were not there: alpha, medium interfaces.
     pub(crate) has_gaps: bool,
-    /// What arrives on the floor of shadows ([`MaterialKind::ShadowCatcher`]) from infinitely far where nothing is in the
-    /// way, in linear Rec. 709; `None` where there is no such floor.
+    /// Unoccluded irradiance of the shadow catcher ([`MaterialKind::ShadowCatcher`]) from lights infinitely far away,
+    /// in linear Rec. 709; `None` where there is no shadow catcher.
     pub(crate) catcher_irradiance: Option<[f32; 3]>,
-    /// Names of the scene's materials and shapes, for people.
+    /// Names of the scene's materials, shapes and lights, for reports.
     pub(crate) names: Arc<Names>,
 }
 
-/// Something that light crosses, and that takes light away on the way.
+/// An absorbing medium.
 #[derive(Clone, Copy, Debug)]
 pub struct Medium {
-    /// The part of light that is lost per unit of length, for short lengths.
+    /// Absorption coefficient, per unit of length.
     pub absorption: SpectrumTexture,
-    /// Multiplies it: ≥ 0.
+    /// Factor of it: ≥ 0.
     pub scale: f32,
 }
 
-/// Names, for people.
+/// Names, for reports.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
-    /// By material index.
+    /// Names of materials, by index.
     pub materials: Vec<String>,
-    /// By shape number.
+    /// Names of shapes, by index.
     pub shapes: Vec<String>,
-    /// By light index.
+    /// Names of lights, by index.
     pub lights: Vec<String>,
 }
 
-/// A repetition of an object.
+/// An instance of an object.
 #[derive(Clone, Debug)]
 pub struct Instance {
     /// Index into the world's objects.
     pub object: u32,
     /// From the object's space to render space.
     pub render_from_object: DMat4,
-    /// And back.
+    /// The inverse.
     pub object_from_render: DMat4,
-    /// Takes the place of the materials in the object.
+    /// Replaces the materials of the object.
     pub material: Option<u32>,
 }
 
 impl World {
-    /// Where the origin of render space lies in the world.
+    /// The origin of render space, in the world.
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
-    /// What a ray is inside of that starts in a medium, and in no body.
+    /// The interior stack of a ray that starts in a medium, and in no body.
     pub(crate) fn space_of(&self, medium: Option<MediumId>) -> InteriorStack {
         InteriorStack::in_space(medium.filter(|_| self.has_media))
     }
 
-    /// Everything that rays can meet.
+    /// The BVH over everything that rays can hit.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
     }
 
-    /// Lights to be sampled.
+    /// The lights.
     pub fn lights(&self) -> &[Light] {
         &self.lights
     }
 
-    /// How one of the lights is chosen to be sampled.
+    /// The light sampler.
     pub fn light_choice(&self) -> &LightChoice {
         &self.light_choice
     }
 
-    /// The form that a hit belongs to and its instance, where it is in one.
+    /// The primitives that a hit belongs to and the instance, if it is in one.
     pub fn primitives(&self, hit: &Hit) -> (&Primitives, Option<&Instance>) {
         if hit.instance == NONE {
             return (&self.primitives[hit.geometry as usize], None);
@@ -151,7 +154,7 @@ impl World {
         (&self.objects[instance.object as usize][hit.geometry as usize], Some(instance))
     }
 
-    /// The surface that `ray` met.
+    /// The surface interaction of `ray` at `hit`.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
         let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
         let at_primitive = match self.primitives(hit) {
@@ -189,7 +192,7 @@ impl World {
         }
     }
 
-    /// What a texture may depend on at a surface.
+    /// The inputs of texture evaluation at a surface.
     pub fn texture_point(&self, surface: &SurfaceInteraction) -> TexturePoint {
         let world = self.origin + DVec3::from_array(surface.point.position);
         let point = TexturePoint {
@@ -206,22 +209,23 @@ impl World {
         TexturePoint { more_uvs, opacity, ..point }
     }
 
-    /// Whether a surface is where a ray met it: by its alpha, where that is a matter of chance for `u ∈ [0, 1)`.
+    /// The alpha test: whether the surface exists where a ray hit it. Stochastic for alpha between 0 and 1, by `u ∈ [0,
+    /// 1)`.
     pub fn passes_alpha_test(&self, surface: &SurfaceInteraction, u: f32) -> bool {
         surface.alpha.is_none_or(|alpha| u < self.textures.float(alpha, &self.texture_point(surface)))
     }
 
-    /// Whether chance has a say in what a surface is: by its alpha, or by its material.
+    /// Whether evaluating a surface needs random numbers: for its alpha, or for its material.
     pub fn is_stochastic(&self, surface: &SurfaceInteraction) -> bool {
         self.materials[surface.material as usize].is_stochastic() || surface.alpha.is_some()
     }
 
-    /// Whether a surface is only the border of a medium.
+    /// Whether a surface is only an interface between media.
     pub fn is_interface(&self, surface: &SurfaceInteraction) -> bool {
         matches!(self.materials[surface.material as usize].kind, MaterialKind::Interface)
     }
 
-    /// What a surface does with light: see [`material::shading`].
+    /// The BSDF of a surface: see [`material::shading`].
     pub fn shading(&self, surface: &SurfaceInteraction, arrival: ShadingContext<'_>) -> Option<Shading> {
         if self.is_catcher(surface) {
             return Some(Shading::matte(surface, self.catcher_reflectance(surface, arrival.lanes)));
@@ -230,7 +234,7 @@ impl World {
         material::shading(&self.materials, &self.textures, surface, &point, arrival)
     }
 
-    /// Radiance that a surface gives off toward `wo`.
+    /// Radiance that a surface emits toward `wo`.
     pub fn emitted(&self, surface: &SurfaceInteraction, lanes: &SpectralMode) -> Spectrum {
         match surface.light.map(|index| &self.lights[index as usize]) {
             Some(Light::Area(light)) => {
@@ -249,12 +253,12 @@ impl World {
         Some(self.textures.spectrum(color, &self.texture_point(surface), lanes))
     }
 
-    /// Radiance that arrives along a ray that meets nothing.
+    /// Radiance that arrives along a ray that hits nothing.
     pub fn sky(&self, ray: &Ray, lanes: &SpectralMode) -> Spectrum {
         self.environments.iter().fold(Spectrum::BLACK, |sum, &index| sum + self.sky_of(index, ray, lanes))
     }
 
-    /// Radiance of one environment, by its light's index, along a ray that meets nothing.
+    /// Radiance of one environment, by its light's index, along a ray that hits nothing.
     pub fn sky_of(&self, index: u32, ray: &Ray, lanes: &SpectralMode) -> Spectrum {
         let [origin, direction] = [ray.origin, ray.direction].map(Vec3::from_array);
         match &self.lights[index as usize] {
@@ -265,8 +269,8 @@ impl World {
         }
     }
 
-    /// The density over solid angle with which sampling one light from a place finds `light` in the unit direction `wi`, in
-    /// which a ray met it at `surface` (nowhere for an environment).
+    /// The solid angle density of the unit direction `wi` in light sampling, the choice of the light included. A ray in
+    /// that direction hit `light` at `surface` (`None` for an environment).
     pub fn light_pdf(
         &self,
         light: u32,
@@ -281,8 +285,9 @@ impl World {
         probability * self.lights[light as usize].pdf(at, wi, surface, IncompletePdf::Allowed)
     }
 
-    /// What is left of light after `distance` in what it is inside of (Beer's law). After an infinite one nothing is left in
-    /// space that is filled with what absorbs, and all in a body, which must end somewhere although its end was not met.
+    /// Transmittance of the medium that a ray is in over `distance` (Beer's law). Over an infinite distance it is 0 in
+    /// an absorbing medium that fills space, and 1 in a body, which must end somewhere although the ray did not hit its
+    /// surface.
     #[inline]
     pub fn transmittance(&self, media: InteriorStack, distance: f32, lanes: &SpectralMode) -> Spectrum {
         if media.is_empty() { lanes.one() } else { self.transmittance_inside(media, distance, lanes) }
@@ -303,8 +308,8 @@ impl World {
         lanes.one() * sigma.map(|sigma| if sigma == 0.0 { 1.0 } else { libm::expf(-sigma * length) })
     }
 
-    /// The same world with its pictures of the surroundings turned: geometry and looks are shared, no tree is built. `rotation` is of the
-    /// world.
+    /// The same world with its environment maps rotated by `rotation`, in the world: geometry and materials are shared,
+    /// no BVH is built.
     #[must_use]
     pub fn with_surroundings_turned(&self, rotation: &DMat3) -> Self {
         let turn = |light: &Light| match light {
@@ -323,7 +328,7 @@ impl World {
         self.textures.spectrum(&self.ambient, &TexturePoint::NOWHERE, lanes)
     }
 
-    /// Light of a colour.
+    /// The illuminant spectrum of a colour.
     pub fn light_of(&self, rgb: [f32; 3], lanes: &SpectralMode) -> Spectrum {
         spectrum_of(rgb, SpectrumType::Illuminant, lanes)
     }
@@ -336,7 +341,7 @@ impl Instance {
         (to_object.transform_point3(origin), to_object.transform_vector3(direction))
     }
 
-    /// A point of the object, in render space.
+    /// A surface point of the object, in render space.
     fn place(&self, of_object: SurfacePoint) -> SurfacePoint {
         let vector = |v: DVec3| self.render_from_object.transform_vector3(v);
         let normal = |n: DVec3| math::transform_normal(&self.object_from_render, n).normalize();

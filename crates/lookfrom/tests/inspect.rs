@@ -216,22 +216,22 @@ fn check_ray(inspection: &Inspection, ray: &RayReport, what: &str) {
             _ => assert_eq!(w, 1.0, "{what}: {found:?}"),
         }
     }
-    if let Some((asked, answer)) = ray.asked.as_ref().and_then(|asked| Some((asked, asked.answer.as_ref()?)))
-    {
-        assert!(close(answer.pdf, asked.probability * answer.light_pdf), "{what}: {asked:?}");
-        let expected = answer.bsdf_pdf.map_or(1.0, |q| heuristic(answer.pdf, q));
-        assert!(close(answer.weight, expected), "{what}: {asked:?}");
-        let through = |lane: usize| match &asked.shadow {
+    let light_sample = ray.light_sample.as_ref();
+    if let Some((light, sample)) = light_sample.and_then(|light| Some((light, light.sample.as_ref()?))) {
+        assert!(close(sample.pdf, light.probability * sample.light_pdf), "{what}: {light:?}");
+        let expected = sample.bsdf_pdf.map_or(1.0, |q| heuristic(sample.pdf, q));
+        assert!(close(sample.weight, expected), "{what}: {light:?}");
+        let through = |lane: usize| match &light.shadow {
             Some(shadow) => shadow.blockers.iter().map(|blocker| blocker.passed[lane]).product(),
             None => 0.0,
         };
-        let (arrives, f_cos) = (&answer.arrives.lanes, &answer.f_cos);
+        let (arrives, f_cos) = (&sample.arrives.lanes, &sample.f_cos);
         let added =
-            |lane| share[lane] * f_cos[lane] * arrives[lane] * through(lane) * answer.weight / answer.pdf;
-        let found = &asked.added.lanes;
+            |lane| share[lane] * f_cos[lane] * arrives[lane] * through(lane) * sample.weight / sample.pdf;
+        let found = &light.added.lanes;
         // what is left of the way after the last crossing is absorbed as well, and not told
-        if asked.shadow.as_ref().is_none_or(|shadow| shadow.blockers.is_empty()) {
-            assert_close(found, added, &format!("{what}: asked"));
+        if light.shadow.as_ref().is_none_or(|shadow| shadow.blockers.is_empty()) {
+            assert_close(found, added, &format!("{what}: light sample"));
         } else {
             assert!(found.iter().enumerate().all(|(lane, found)| *found <= 1.00001 * added(lane)), "{what}");
         }
@@ -276,7 +276,9 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
                     told.extend(ray.scattering.iter().map(|scattering| scattering.kind.into()));
                     told.extend(ray.bounce.iter().map(|bounce| bounce.lobe.clone()));
                     told.extend(ray.found.iter().map(|found| format!("{name} found {}", found.light)));
-                    told.extend(ray.asked.iter().map(|asked| format!("{name} sampled {}", asked.light)));
+                    told.extend(
+                        ray.light_sample.iter().map(|light| format!("{name} sampled {}", light.light)),
+                    );
                     let absorbs = ray.throughput_there.as_ref().is_some_and(|share| *share != ray.throughput);
                     told.extend(absorbs.then(|| "absorbs".into()));
                 }
@@ -310,11 +312,11 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
         "simple_path found sky",
         "random_walk found sky",
         "it leaves the scene",
-        "it may not be scattered more often (--depth)",
+        "the maximum depth is reached (--depth)",
         "Russian roulette ends it",
-        "only whether the surroundings are open counts",
+        "ambient occlusion needs no further rays",
     ] {
         assert!(told.contains(expected), "{expected:?} is not in {told:#?}");
     }
-    assert!(!told.iter().any(|told| told.starts_with("random_walk asked")), "{told:#?}");
+    assert!(!told.iter().any(|told| told.starts_with("random_walk sampled")), "{told:#?}");
 }

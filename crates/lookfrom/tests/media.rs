@@ -224,8 +224,8 @@ fn only_integrators_for_media_know_them() {
         &format!("{fog} {OUTSIDE}"),
         &mirror(r#"MediumInterface "fog" """#, false),
     ));
-    let expected = "a.pbrt:1:1: the integrator \"path\" knows no media, as in pbrt: light passes them as a vacuum; \
-                    \"volpath\" knows them";
+    let expected = "a.pbrt:1:1: the integrator \"path\" does not support media, as in pbrt: they are treated as a vacuum; \
+                    \"volpath\" supports them";
     assert_eq!(warnings, [expected]);
     assert!(read(&text("path", SIGMA, fog, &lamp(6.0))).1.is_empty());
 }

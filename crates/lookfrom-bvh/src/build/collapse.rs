@@ -1,6 +1,7 @@
-//! From the binary tree to the wide one, as `plan` has chosen.
+//! Collapses the binary tree to the wide one, as chosen by `plan`.
 //!
-//! Nodes are written depth first, leaves beside them in the same order, so neighbours in space are neighbours in memory.
+//! Nodes are written depth first, leaves in a separate list in the same order, so that neighbours in space are
+//! neighbours in memory.
 
 use crate::Bvh;
 use crate::bvh::{Leaf, ProceduralItem, SphereItem};
@@ -13,7 +14,7 @@ use super::primitives::{Geometry, Kind, Primitives};
 use super::reference::Reference;
 use super::sah::Binary;
 
-/// Makes the tree, all but its bounds and statistics.
+/// Builds the tree except for its bounds and statistics.
 pub(super) fn collapse(
     binary: &[Binary],
     plan: &Plan,
@@ -21,7 +22,7 @@ pub(super) fn collapse(
     primitives: &Primitives<'_>,
 ) -> Bvh {
     let mut bvh = Bvh::default();
-    // Procedural geometries keep their order; an item names its place among them.
+    // Procedural geometries keep their order; an item refers to its index among them.
     let mut procedural_place = vec![0; primitives.geometries.len()];
     for (index, geometry) in primitives.geometries.iter().enumerate() {
         if let Geometry::Procedural(shapes) = geometry {
@@ -52,7 +53,7 @@ struct Collapse<'a> {
 }
 
 impl Collapse<'_> {
-    /// Writes the node that stands for a binary one, and all below it; returns it.
+    /// Writes the wide node of a binary one, and all below it; returns it as a child.
     fn node(&mut self, root: usize) -> Child {
         let (children, count) = self.plan.children(self.binary, root);
         let number = self.bvh.nodes.len();
@@ -65,7 +66,7 @@ impl Collapse<'_> {
         Child::node(number)
     }
 
-    /// Writes the primitives of a leaf, or notes them where they are triangles.
+    /// Writes the primitives of a leaf; triangles are only recorded, to be written later.
     fn leaf(&mut self, node: &Binary) -> Child {
         let kind = self.references[node.first as usize].kind();
         if kind == Kind::Triangle {

@@ -3,8 +3,9 @@
 use super::{BuildError, Builder};
 
 impl Builder {
-    /// Gives a geometry a mask, in place of all bits. Rays with a mask of their own ([`Query::mask`](crate::Query::mask)) see
-    /// it where the two have a bit in common. A number that no geometry has makes [`Self::build`] fail.
+    /// Sets the mask of a geometry; by default all bits are set. Rays with a mask
+    /// ([`Query::mask`](crate::Query::mask)) see it where the two have a bit in common. An unknown geometry number
+    /// makes [`Self::build`] fail.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -24,8 +25,8 @@ impl Builder {
         self
     }
 
-    /// Gives each primitive of a geometry a mask of its own, beside the geometry's: a ray sees a primitive where its mask
-    /// has a bit in common with each of the two. Too many or too few of them make [`Self::build`] fail.
+    /// Sets a mask for each primitive of a geometry, in addition to the geometry's: a ray sees a primitive where
+    /// its mask has a bit in common with each of the two. A wrong number of masks makes [`Self::build`] fail.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -53,8 +54,9 @@ impl Builder {
         self
     }
 
-    /// Gives an instance a mask, in place of all bits: a ray sees its content where the ray's mask has a bit in common with
-    /// the instance's and with those of the geometry inside. A number that no instance has makes [`Self::build`] fail.
+    /// Sets the mask of an instance; by default all bits are set. A ray sees its content where the ray's mask has a
+    /// bit in common with the instance's and with those of the geometry inside. An unknown instance number makes
+    /// [`Self::build`] fail.
     ///
     /// ```
     /// use lookfrom_bvh::{Affine, Builder, Ray, Sphere};
@@ -79,7 +81,7 @@ impl Builder {
         self
     }
 
-    /// Whether there is a geometry of that number; if not, that is the error.
+    /// True if there is a geometry of that number; otherwise the error is stored.
     fn has_geometry(&mut self, geometry: u32) -> bool {
         let geometries = self.geometries.len();
         let is_there = (geometry as usize) < geometries;
@@ -90,7 +92,7 @@ impl Builder {
     }
 }
 
-/// Writes into a list, which grows as needed.
+/// Writes an element of a list, which grows as needed.
 fn place<T: Clone>(list: &mut Vec<T>, number: u32, unset: T, value: T) {
     let number = number as usize;
     if list.len() <= number {

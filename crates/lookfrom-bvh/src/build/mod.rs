@@ -1,7 +1,7 @@
-//! From geometry to a tree.
+//! Construction of the tree from geometry.
 //!
-//! Geometry is copied as it is added, primitives that no ray can meet are left out, `sah` splits the rest in two again and
-//! again, and `collapse` turns that binary tree into the wide one that rays walk.
+//! Geometry is copied as it is added, primitives that no ray can hit are left out, `sah` splits the rest
+//! recursively, and `collapse` turns that binary tree into the wide one that rays traverse.
 
 mod collapse;
 mod masks;
@@ -30,7 +30,7 @@ use plan::Plan;
 use primitives::{Geometry, Primitives};
 pub(crate) use primitives::{has_area, has_surface};
 
-/// Triangles over shared corners, borrowed while the builder copies them. Rays hit both faces.
+/// Triangles with shared corners, borrowed while the builder copies them. Rays hit both faces.
 ///
 /// ```
 /// use lookfrom_bvh::{Builder, Triangles};
@@ -44,11 +44,11 @@ pub(crate) use primitives::{has_area, has_surface};
 pub struct Triangles<'a> {
     /// Corners.
     pub positions: &'a [[f32; 3]],
-    /// Three corners a triangle.
+    /// Corner indices of each triangle.
     pub indices: &'a [[u32; 3]],
 }
 
-/// How much time to spend on the tree. The answers to rays do not depend on it.
+/// Build quality: time spent on the tree. The results of queries do not depend on it.
 ///
 /// ```
 /// use lookfrom_bvh::{Builder, Quality, Sphere};
@@ -60,16 +60,16 @@ pub struct Triangles<'a> {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// Built soonest.
+    /// Fastest build.
     Fast,
     /// For most purposes.
     #[default]
     Balanced,
-    /// Traced soonest.
+    /// Fastest traversal.
     Best,
 }
 
-/// A reason why a tree cannot be built.
+/// Reason why a tree cannot be built.
 ///
 /// ```
 /// use lookfrom_bvh::{Builder, BuildError, Triangles};
@@ -81,53 +81,53 @@ pub enum Quality {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BuildError {
-    /// A triangle names a corner that is not there.
+    /// A triangle refers to a position that does not exist.
     IndexOutOfRange {
         /// The geometry, as the builder numbered it.
         geometry: u32,
         /// The triangle in it.
         triangle: u32,
-        /// The index that it names.
+        /// The index.
         index: u32,
-        /// How many positions there are.
+        /// Number of positions.
         positions: usize,
     },
-    /// An instanced tree holds instances itself; there are two levels only.
+    /// An instanced tree contains instances itself; only two levels are supported.
     NestedInstance {
         /// The instance, as the builder numbered it.
         instance: u32,
     },
-    /// A matrix has no inverse, or its entries or its inverse's are out of range.
+    /// A matrix has no inverse, or entries of it or its inverse are out of range.
     SingularMatrix {
         /// The instance, as the builder numbered it.
         instance: u32,
     },
-    /// A mask is for a geometry that is not there.
+    /// A mask is for a geometry that does not exist.
     NoSuchGeometry {
-        /// The number that was named.
+        /// The number of the missing geometry.
         geometry: u32,
-        /// How many geometries there were then.
+        /// Number of geometries at the time.
         geometries: usize,
     },
-    /// A mask is for an instance that is not there.
+    /// A mask is for an instance that does not exist.
     NoSuchInstance {
-        /// The number that was named.
+        /// The number of the missing instance.
         instance: u32,
-        /// How many instances there were then.
+        /// Number of instances at the time.
         instances: usize,
     },
-    /// There are more or fewer masks than primitives.
+    /// The number of masks differs from the number of primitives.
     MaskCount {
         /// The geometry, as the builder numbered it.
         geometry: u32,
-        /// How many masks there are.
+        /// Number of masks.
         masks: usize,
-        /// How many primitives the geometry has.
+        /// Number of primitives in the geometry.
         primitives: u64,
     },
-    /// Ids are 32 bits wide.
+    /// Too many primitives for 32-bit ids.
     TooMany {
-        /// How many primitives there are.
+        /// Number of primitives.
         primitives: u64,
     },
 }
@@ -204,7 +204,7 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// A builder of nothing yet, with [`Quality::Balanced`].
+    /// An empty builder, with [`Quality::Balanced`].
     ///
     /// ```
     /// use lookfrom_bvh::{Aabb, Builder};
@@ -215,7 +215,7 @@ impl Builder {
         Self::default()
     }
 
-    /// How much time to spend on the tree.
+    /// Sets the build quality.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Quality};
@@ -272,7 +272,7 @@ impl Builder {
         self.geometries.len() as u32 - 1
     }
 
-    /// Adds shapes that the caller defines and returns their geometry's number.
+    /// Adds procedural shapes and returns their geometry's number.
     ///
     /// ```
     /// use lookfrom_bvh::{Aabb, Builder, Procedural, ProceduralHit, Ray};
@@ -303,8 +303,8 @@ impl Builder {
         self.geometries.len() as u32 - 1
     }
 
-    /// Places another tree in this one and returns the instance's number. A tree that holds instances itself, or a
-    /// map without an inverse, makes [`Self::build`] fail.
+    /// Adds an instance of another tree and returns the instance's number. A tree that contains instances itself,
+    /// or a map without an inverse, makes [`Self::build`] fail.
     ///
     /// ```
     /// use lookfrom_bvh::{Affine, Builder, Ray, Sphere};
@@ -324,8 +324,9 @@ impl Builder {
 
     /// Builds the tree.
     ///
-    /// Primitives that no ray can meet are left out and counted in [`Statistics::left_out`]: coordinates that are NaN,
-    /// infinite or beyond 2¹⁰⁰, triangles without area, radii that are not positive, empty boxes, empty instances.
+    /// Primitives that no ray can hit are left out and counted in [`Statistics::left_out`]: coordinates that are
+    /// NaN, infinite or beyond 2¹⁰⁰, triangles without area, radii that are not positive, empty boxes, empty
+    /// instances.
     ///
     /// # Errors
     /// See [`BuildError`].
@@ -351,7 +352,7 @@ impl Builder {
         if self.quality == Quality::Best
             && let Some((other, sorted)) = reinsert::reinsert(&binary, &references)
         {
-            // A cheaper binary tree may make a dearer wide one, where leaves no longer fill up.
+            // A cheaper binary tree may give a more expensive wide one, where leaves are no longer full.
             let other_plan = Plan::new(&other, &sorted);
             if other_plan.cost() < plan.cost() {
                 (binary, references, plan) = (other, sorted, other_plan);

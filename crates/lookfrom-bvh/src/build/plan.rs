@@ -1,8 +1,8 @@
 //! The choice of binary nodes that become children of wide nodes or leaves: Ylitie, Karras, Laine (2017).
 //!
-//! The cheapest choice under the surface area heuristic, by dynamic programming from the leaves up: Ylitie, Karras, Laine
-//! (2017), "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3. `cost[n][i − 1]` is
-//! the least cost of all below binary node n when it may take up to i places in a wide node.
+//! The cheapest choice under the surface area heuristic, by dynamic programming from the leaves up: Ylitie, Karras,
+//! Laine (2017), "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.
+//! `cost[n][i − 1]` is the least cost of the subtree of binary node n when it may take up to i slots of a wide node.
 
 use crate::node::WIDTH;
 
@@ -10,20 +10,20 @@ use super::parallel::{self, join};
 use super::reference::{Reference, fits_a_leaf};
 use super::sah::Binary;
 
-/// Places that a child may take.
+/// Maximum number of slots for a child's subtree.
 const PLACES: usize = WIDTH - 1;
 
 /// The cost of a visit to a wide node.
 const NODE: f32 = 1.0;
 
-/// The cost of a visit to a leaf, measured in nodes.
+/// The cost of a visit to a leaf, relative to a node.
 const LEAF: f32 = 1.0;
 
 /// The choice for one binary node.
 #[derive(Clone, Copy, Default)]
 struct Choice {
     cost: [f32; PLACES],
-    /// How many places the left child gets where there are two to eight: `left[i − 2]`; 0 to use one place less.
+    /// Number of slots of the left child when there are two to eight: `left[i − 2]`; 0 to use one slot less.
     left: [u8; PLACES],
     leaf: bool,
 }
@@ -40,17 +40,17 @@ impl Plan {
         Self(choices)
     }
 
-    /// The expected visits of a ray, in the area of boxes.
+    /// The expected cost of a ray, in units of box area.
     pub(super) fn cost(&self) -> f32 {
         self.0.first().map_or(0.0, |root| root.cost[0])
     }
 
-    /// Whether a binary node becomes a leaf.
+    /// True if a binary node becomes a leaf.
     pub(super) fn is_leaf(&self, number: usize) -> bool {
         self.0[number].leaf
     }
 
-    /// The binary nodes that become the children of the wide node that stands for one.
+    /// The binary nodes that become the children of the wide node at `root`.
     pub(super) fn children(&self, binary: &[Binary], root: usize) -> ([usize; WIDTH], usize) {
         let mut children = [root; WIDTH];
         let mut count = 0;
@@ -100,7 +100,7 @@ fn choose_all(binary: &[Binary], references: &[Reference], choices: &mut [Choice
     choices[0] = choose(binary, references, choices);
 }
 
-/// The choice for the first of some binary nodes, where those for its children are made.
+/// The choice for the first of some binary nodes, after those for its children are made.
 fn choose(binary: &[Binary], references: &[Reference], choices: &[Choice]) -> Choice {
     let node = &binary[0];
     let area = node.bounds.half_area();
@@ -116,7 +116,7 @@ fn choose(binary: &[Binary], references: &[Reference], choices: &[Choice]) -> Ch
         return choice;
     }
 
-    // Share out two to eight places; the last are those of a wide node of its own.
+    // Distribute two to eight slots between the children; the last case is a wide node of its own.
     let (left, right) = (&choices[1].cost, &choices[node.right as usize].cost);
     let mut shared = [f32::INFINITY; WIDTH + 1];
     for places in 2..=WIDTH {

@@ -1,4 +1,4 @@
-//! The primitives of a tree: all that were added to the builder, with a number and a box each.
+//! The primitives of a tree: everything added to the builder, with a number and a box each.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use super::{BuildError, parallel};
 /// A geometry that was added to the builder.
 #[derive(Debug)]
 pub(super) enum Geometry {
-    /// Three corners a triangle.
+    /// Three corners per triangle.
     Triangles(Vec<[[f32; 3]; 3]>),
     Spheres(Vec<Sphere>),
     Procedural(Arc<dyn Procedural>),
@@ -48,7 +48,7 @@ impl Geometry {
         }
     }
 
-    /// Whether a ray can meet a primitive, its box aside.
+    /// True if a ray can hit a primitive, apart from its box.
     fn is_usable(&self, primitive: u32) -> bool {
         match self {
             Self::Triangles(corners) => has_area(&corners[primitive as usize]),
@@ -58,7 +58,7 @@ impl Geometry {
     }
 }
 
-/// All that may go into the tree, numbered: the primitives of one geometry after the other, then the instances.
+/// All candidates for the tree, numbered: the primitives of one geometry after the other, then the instances.
 pub(super) struct Primitives<'a> {
     pub(super) geometries: &'a [Geometry],
     pub(super) instances: Vec<Instance>,
@@ -85,7 +85,7 @@ impl<'a> Primitives<'a> {
         self.first[self.geometries.len()] as usize + self.instances.len()
     }
 
-    /// Geometry and primitive; of an instance, the number of geometries and its place.
+    /// Geometry and primitive; for an instance, the number of geometries and the instance's index.
     pub(super) fn ids(&self, number: u32) -> (u32, u32) {
         let geometry = self.first.partition_point(|&first| first <= number) - 1;
         (geometry as u32, number - self.first[geometry])
@@ -99,7 +99,7 @@ impl<'a> Primitives<'a> {
         }
     }
 
-    /// The items to be sorted, with padded boxes; an empty one where no ray can meet the primitive.
+    /// The reference with its padded box, which is empty where no ray can hit the primitive.
     fn reference(&self, number: u32) -> Reference {
         let (geometry, primitive) = self.ids(number);
         let (usable, kind) = match self.geometries.get(geometry as usize) {
@@ -111,7 +111,7 @@ impl<'a> Primitives<'a> {
         Reference::new(&bounds, number, kind)
     }
 
-    /// Everything that rays can meet.
+    /// References to all primitives that rays can hit.
     pub(super) fn references(&self) -> Vec<Reference> {
         let make = |number| self.reference(number as u32);
         let mut references = parallel::collect(self.count(), parallel::GRAIN, make);
@@ -122,7 +122,7 @@ impl<'a> Primitives<'a> {
         references
     }
 
-    /// The box around the primitives that are referred to.
+    /// The box around the referenced primitives.
     pub(super) fn bounds_of(&self, references: &[Reference]) -> Aabb {
         let chunks = parallel::chunks(references, |references| {
             let mut bounds = Aabb::EMPTY;
@@ -146,10 +146,10 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// The most of the numbers below.
+    /// The largest of the capacities below.
     pub(super) const MOST_IN_A_LEAF: usize = BLOCK;
 
-    /// How many fit into a leaf.
+    /// Maximum number of primitives in a leaf.
     pub(super) fn leaf_capacity(self) -> usize {
         match self {
             Self::Triangle | Self::Sphere => Self::MOST_IN_A_LEAF,
@@ -158,9 +158,9 @@ impl Kind {
     }
 }
 
-/// Whether the corners are finite numbers and do not lie on a line.
+/// True if the corners are finite numbers and not collinear.
 pub(crate) fn has_area(corners: &[[f32; 3]; 3]) -> bool {
-    // (A sum of magnitudes is compared once, and is NaN where one of them is.)
+    // (One comparison of the sum of magnitudes, which is NaN where one of them is.)
     let sum: f32 = corners.iter().flatten().map(|x| x.abs()).sum();
     let is_finite =
         sum <= LARGEST_COORDINATE || corners.iter().flatten().all(|x| x.abs() <= LARGEST_COORDINATE);
@@ -168,7 +168,7 @@ pub(crate) fn has_area(corners: &[[f32; 3]; 3]) -> bool {
     is_finite && cross(subtract(b, a), subtract(c, a)) != [0.0; 3]
 }
 
-/// Whether the sphere is finite and larger than a point.
+/// True if the sphere is finite and larger than a point.
 pub(crate) fn has_surface(sphere: &Sphere) -> bool {
     sphere.radius > 0.0 && sphere.is_finite() && sphere.bounds().is_valid()
 }

@@ -7,8 +7,9 @@ use super::primitives::Kind;
 
 /// Eight lanes: minimum x, y, z, and the primitive's number (as bits); negated maximum x, y, z, and its kind.
 ///
-/// With maxima negated, the box around two boxes is one minimum of vectors. The kind counts from 1, and numbers below 2³⁰
-/// are the bits of floats below 2, so that no lane is NaN and no difference of the two is denormal, which would be slow.
+/// With negated maxima, the box around two boxes is one minimum of vectors. The kind counts from 1, and numbers
+/// below 2³⁰ are the bits of floats below 2, so that no lane is NaN and no difference of the two is denormal, which
+/// would be slow.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Reference([f32; 8]);
@@ -26,7 +27,7 @@ impl Reference {
         Aabb { min: [x, y, z], max: [-u, -v, -w] }
     }
 
-    /// Which of all primitives it is.
+    /// The primitive's number among all primitives.
     pub(super) fn number(&self) -> u32 {
         self.0[3].to_bits()
     }
@@ -41,7 +42,7 @@ impl Reference {
     }
 }
 
-/// Whether the references make a leaf: few, and of one kind.
+/// True if the references can form a leaf: few, and of one kind.
 pub(super) fn fits_a_leaf(references: &[Reference]) -> bool {
     let fits = |kind: Kind| {
         references.len() <= kind.leaf_capacity()
@@ -50,11 +51,11 @@ pub(super) fn fits_a_leaf(references: &[Reference]) -> bool {
     references.len() <= Kind::MOST_IN_A_LEAF && fits(references[0].kind())
 }
 
-/// The boxes that some references cover.
+/// The boxes covered by some references.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Covered {
     pub(super) bounds: Aabb,
-    /// The box around their boxes' centers, times two.
+    /// Twice the box around the centres of their boxes.
     pub(super) centers: Aabb,
 }
 

@@ -1,8 +1,10 @@
-//! Makes a binary tree cheaper: takes subtrees out and puts them where they enlarge the least.
+//! Optimisation of a binary tree by reinsertion: subtrees are removed and inserted where they
+//! enlarge the tree least.
 //!
-//! Meister, Bittner (2018), "Parallel Reinsertion for Bounding Volume Hierarchy Optimization": the largest nodes look
-//! for better places, all at once in the tree as it is; then the moves are made, those that gain most first, where they do
-//! not touch nodes that another has changed. The search is branch and bound. The result does not depend on the number of threads.
+//! Meister, Bittner (2018), "Parallel Reinsertion for Bounding Volume Hierarchy Optimization": better positions for
+//! the largest nodes are searched, all in the current state of the tree; then the nodes are moved, those with the
+//! largest gain first, unless another move has changed the nodes involved. The search is branch and bound. The
+//! result does not depend on the number of threads.
 
 use crate::aabb::Aabb;
 use crate::node::LARGEST_DEPTH;
@@ -11,18 +13,18 @@ use super::parallel;
 use super::reference::Reference;
 use super::sah::Binary;
 
-/// How often all is searched and moved at most.
+/// Maximum number of rounds of search and moves.
 const ROUNDS: usize = 12;
 
-/// A round that saves less than this part of the cost is the last. Scanned meshes are done after one to three rounds, and the
-/// long, crossing triangles of a room after eight.
+/// A round that saves less than this fraction of the cost is the last. Scanned meshes are done after one to three
+/// rounds, the long, crossing triangles of a room after eight.
 const WORTHWHILE: f64 = 1.0 / 256.0;
 
-/// One node of this many is moved in a round.
+/// One of this many nodes is moved in a round.
 const SHARE: usize = 8;
 
-/// Nodes that the search for one move looks at. Scanned meshes and rooms need fewer; where all boxes overlap this keeps the time
-/// from growing with the square of their number.
+/// Maximum number of nodes visited by the search for one move. Scanned meshes and rooms need fewer; where all boxes
+/// overlap, this keeps the time from growing with the square of their number.
 const VISITS: usize = 200;
 
 const NONE: u32 = u32::MAX;
@@ -35,11 +37,11 @@ struct Spot {
     parent: u32,
     /// [`NONE`] for a leaf.
     left: u32,
-    /// Of a leaf: the reference.
+    /// Of a leaf: the index of the reference.
     right: u32,
 }
 
-/// A subtree's move above another node.
+/// The insertion of a subtree as the sibling of another node.
 #[derive(Clone, Copy)]
 struct Move {
     node: u32,
@@ -47,7 +49,7 @@ struct Move {
     gain: f32,
 }
 
-/// The optimized tree of single references, and these in its order. None where it would be too deep.
+/// The optimised tree of single references, and the references in its order. `None` where it would be too deep.
 pub(super) fn reinsert(tree: &[Binary], references: &[Reference]) -> Option<(Vec<Binary>, Vec<Reference>)> {
     if tree.len() < 8 {
         return None;
@@ -93,7 +95,7 @@ impl Spots {
         Self(spots)
     }
 
-    /// The expected visits of a ray: the sum of the inner nodes' areas.
+    /// The expected number of visits by a ray: the sum of the inner nodes' areas.
     fn cost(&self) -> f64 {
         self.0.iter().filter(|spot| spot.left != NONE).map(|spot| f64::from(spot.area)).sum()
     }
@@ -107,10 +109,10 @@ impl Spots {
         if parent.left == number { parent.right } else { parent.left }
     }
 
-    /// The best move of each of the largest nodes, the most useful first.
+    /// The best move of each of the largest nodes, in order of decreasing gain.
     fn find_moves(&self) -> Vec<Move> {
-        // The root and its children stay.
-        // Areas are not negative, so their bits are in their order; of equal ones the first node comes first.
+        // The root and its children stay. Areas are not negative, so their bits have the same order; of equal
+        // ones the first node comes first.
         let by_area = |n: u32| u64::from(!self.at(n).area.to_bits()) << 32 | u64::from(n);
         let nodes = 1..self.0.len() as u32;
         let mut largest: Vec<u64> = nodes.filter(|&n| self.at(n).parent != 0).map(by_area).collect();
@@ -127,14 +129,14 @@ impl Spots {
         moves
     }
 
-    /// Where a subtree would cost the least, if that is less than where it is.
+    /// The cheapest position for a subtree, if it is cheaper than the current one.
     fn find_move(&self, node: u32) -> Option<Move> {
         let moved = self.at(node);
         let parent = moved.parent;
         let mut best = Move { node, to: NONE, gain: 0.0 };
 
-        // Go up, and at each step search the subtree on the other side. `saved` is the area that taking the node out saves on
-        // the way up: its parent's, and that by which its ancestors shrink.
+        // Ascend, and at each step search the subtree on the other side. `saved` is the area saved by removing the
+        // node: its parent's, and that by which its ancestors shrink.
         let mut saved = self.at(parent).area;
         let mut other = self.sibling(node);
         let mut pivot = parent;
@@ -190,7 +192,7 @@ impl Spots {
             }
             changed.iter().for_each(|&n| touched[n as usize] = true);
 
-            // The sibling takes the parent's place, and the parent goes with the node.
+            // The sibling takes the parent's place, and the parent moves with the node.
             self.replace_child(above, parent, sibling);
             self.replace_child(above_to, to, parent);
             self.0[parent as usize].left = node;
@@ -211,7 +213,7 @@ impl Spots {
         self.0[new as usize].parent = parent;
     }
 
-    /// Fits the boxes from a node up to where nothing changes.
+    /// Refits the boxes from a node upwards until nothing changes.
     fn refit(&mut self, from: u32) {
         let mut number = from;
         while number != NONE {
@@ -229,11 +231,12 @@ impl Spots {
         }
     }
 
-    /// The tree in depth-first order, and the references in that order. None where it has become too deep.
+    /// The tree in depth-first order, and the references in that order. `None` where it has become too deep.
     fn binary(&self) -> Option<(Vec<Binary>, Vec<u32>)> {
         let mut tree: Vec<Binary> = Vec::with_capacity(self.0.len());
         let mut order = Vec::with_capacity(self.0.len() / 2 + 1);
-        // The entries to be written: a node, its depth, and whose right child it is.
+        // The entries still to be written: a node, its depth, and the index of its parent if it is
+        // a right child.
         let mut stack = vec![(0_u32, 0_u32, None::<usize>)];
         while let Some((number, depth, right_of)) = stack.pop() {
             if depth as usize > LARGEST_DEPTH {

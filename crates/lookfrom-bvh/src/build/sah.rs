@@ -1,8 +1,8 @@
-//! Splits primitives in two, again and again, where rays are expected to find the least work.
+//! Top-down construction of a binary tree by the surface area heuristic (SAH).
 //!
-//! Where `split` finds nothing to separate, or has gone too deep, halves are taken by number, so that depth stays
-//! below [`HEURISTIC_DEPTH`] + 32 + a few, and the time below that times the number of primitives, whatever the input.
-//! The tree is the same for any number of threads and any instructions.
+//! Where `split` finds no split, or the tree has become too deep, references are halved by their number. So the
+//! depth stays below [`HEURISTIC_DEPTH`] + 32 + a few, and the time below that times the number of primitives,
+//! whatever the input. The tree is the same for any number of threads and any SIMD level.
 
 use crate::aabb::Aabb;
 use crate::dispatch::dispatch;
@@ -13,21 +13,21 @@ use super::parallel::{self, join};
 use super::reference::{Covered, Reference, fits_a_leaf};
 use super::split::{MAX_BINS, Split};
 
-/// The levels that the heuristic splits; below, the median does.
+/// Number of levels split by the heuristic; below, by the median.
 const HEURISTIC_DEPTH: u32 = 64;
 
 /// A node of the binary tree. Its left child follows it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Binary {
     pub(super) bounds: Aabb,
-    /// How much farther the right child is; 0 for a leaf.
+    /// Offset of the right child; 0 for a leaf.
     pub(super) right: u32,
-    /// The references in it.
+    /// The range of references in it.
     pub(super) first: u32,
     pub(super) count: u32,
 }
 
-/// Sorts the references and returns the tree over them, its root first. Empty where there are none.
+/// Sorts the references and returns the tree over them, root first. Empty where there are none.
 pub(super) fn build(references: &mut [Reference], quality: Quality, level: Level) -> Vec<Binary> {
     let mut tree = Vec::new();
     if !references.is_empty() {
@@ -47,13 +47,13 @@ pub(super) fn build(references: &mut [Reference], quality: Quality, level: Level
 
 struct Task {
     bins: usize,
-    /// Whether to go on where everything fits into a leaf: better trees for half again the time.
+    /// True to continue splitting where everything fits into a leaf: better trees for half again the time.
     to_the_end: bool,
     level: Level,
 }
 
 impl Task {
-    /// How many nodes there will be over so many references, or little more.
+    /// An estimate of the number of nodes over so many references, or slightly more.
     fn room(&self, references: usize) -> usize {
         if self.to_the_end { 2 * references } else { references }
     }
@@ -107,7 +107,7 @@ impl Task {
     }
 }
 
-/// Halves by number along the axis on which centroids lie widest.
+/// Halves by number along the axis with the largest extent of the centroids.
 fn halve(references: &mut [Reference], centers: &Aabb) -> (usize, [Covered; 2]) {
     let extent = |axis: usize| centers.max[axis] - centers.min[axis];
     let axis = (1..3).fold(0, |widest, axis| if extent(axis) > extent(widest) { axis } else { widest });

@@ -1,7 +1,7 @@
-//! The split of a set of primitives in two by the surface area heuristic, in bins: Wald (2007).
+//! Binned SAH splits of a set of primitives: Wald (2007).
 //!
-//! Centroids fall into bins on all three axes in one pass: Wald (2007), "On fast Construction of SAH-based Bounding Volume
-//! Hierarchies". Minima and negated maxima lie in one vector, so one instruction unites boxes.
+//! Centroids are binned on all three axes in one pass: Wald (2007), "On fast Construction of SAH-based Bounding
+//! Volume Hierarchies". Minima and negated maxima are in one vector, so one instruction unites boxes.
 
 use crate::aabb::Aabb;
 use crate::conservative::BLOCK;
@@ -9,14 +9,14 @@ use lookfrom_simd::{Kernel, Simd, f32x4, f32x8, prelude::*, u32x4};
 
 use super::reference::{Covered, Reference};
 
-/// Bins per axis at most.
+/// Maximum number of bins per axis.
 pub(super) const MAX_BINS: usize = 32;
 
-/// Where these are enough, less is to be cleared.
+/// Number of bins for smaller sets, with less to clear.
 const FEW_BINS: usize = 8;
 
-/// Splits two or more references: sorts those of the left side to the front. Gives their number and the boxes of the two sides, or
-/// none where no split between bins separates anything.
+/// Splits two or more references by moving those of the left side to the front. Returns their number and the boxes
+/// of the two sides, or `None` where no split between bins separates anything.
 pub(super) struct Split<'a> {
     pub(super) references: &'a mut [Reference],
     pub(super) centers: &'a Aabb,
@@ -49,7 +49,7 @@ impl Split<'_> {
         }
         let (axis, split) = bins.cheapest_split(simd, self.bins)?;
 
-        // Move the left side to the front, without a branch, since none could be foreseen.
+        // Move the left side to the front, without a branch, since it could not be predicted.
         let mut centers = [f32x8::splat(simd, f32::INFINITY); 2];
         let mut middle = 0;
         for place in 0..self.references.len() {
@@ -57,7 +57,7 @@ impl Split<'_> {
             let center = twice_center(reference.lanes(simd));
             let is_left = usize::from((binning.bins(simd, center)[axis] as usize) < split);
             let center = point(center);
-            // The centers of the other side are moved to infinity.
+            // The centres of the other side are moved to infinity.
             centers[0] = centers[0].min(center + f32x8::splat(simd, [f32::INFINITY, 0.0][is_left]));
             centers[1] = centers[1].min(center + f32x8::splat(simd, [0.0, f32::INFINITY][is_left]));
             self.references[place] = self.references[middle];
@@ -74,7 +74,7 @@ fn twice_center<S: Simd>(lanes: f32x8<S>) -> f32x4<S> {
     min - negated_max
 }
 
-/// The box of one point.
+/// The box of a point.
 #[inline(always)]
 fn point<S: Simd>(center: f32x4<S>) -> f32x8<S> {
     center.combine(-center)
@@ -86,7 +86,7 @@ fn aabb<S: Simd>(lanes: f32x8<S>) -> Aabb {
     Aabb { min: [x, y, z], max: [-u, -v, -w] }
 }
 
-/// Which bins a centroid falls into.
+/// The map from centroids to bins.
 struct Binning<S: Simd> {
     origin: f32x4<S>,
     scale: f32x4<S>,
@@ -108,7 +108,7 @@ impl<S: Simd> Binning<S> {
         }
     }
 
-    /// The bins on the three axes. (The fourth lane means nothing.)
+    /// The bins on the three axes. (The fourth lane is unused.)
     #[inline(always)]
     fn bins(&self, simd: S, twice_center: f32x4<S>) -> [i32; 4] {
         let place = (twice_center - self.origin) * self.scale;
@@ -131,7 +131,7 @@ impl<S: Simd, const BINS: usize> Bins<S, BINS> {
     /// The axis of the cheapest split, and the first bin to its right.
     #[inline(always)]
     fn cheapest_split(&self, simd: S, bins: usize) -> Option<(usize, usize)> {
-        // Sweep from the right: the boxes right of each split.
+        // Sweep from the right: the boxes to the right of each split.
         let nothing = f32x4::splat(simd, f32::INFINITY);
         let mut right = [nothing; BINS];
         let mut side = Side::new(simd);
@@ -181,8 +181,8 @@ impl<S: Simd> Side<S> {
         Self { bounds: [f32x8::splat(simd, f32::INFINITY); 3], counts: u32x4::splat(simd, 0) }
     }
 
-    /// Adds a bin of each axis. Returns, in a lane for each axis, half the area times the number of blocks, since primitives
-    /// are tested together; infinity where there is nothing. (The fourth lane means nothing.)
+    /// Adds a bin of each axis. Returns, in a lane for each axis, half the area times the number of blocks, since
+    /// the primitives of a block are tested together; infinity for an empty side. (The fourth lane is unused.)
     #[inline(always)]
     fn add(&mut self, simd: S, boxes: &[f32x8<S>; 3], counts: &[u32; 4]) -> f32x4<S> {
         self.counts += u32x4::load_array_ref(simd, counts);
@@ -192,7 +192,7 @@ impl<S: Simd> Side<S> {
             let (min, negated_max) = self.bounds[axis].split();
             extents[axis] = min + negated_max;
         }
-        // From a vector for each split to a vector for each dimension. Extents are negated, their products are not.
+        // Transpose from a vector per split to a vector per dimension. Extents are negated, their products are not.
         let [a, b, c] = extents;
         let (xy_ac, xy_b) = (a.zip_low(c), b.zip_low(b));
         let [x, y] = [xy_ac.zip_low(xy_b), xy_ac.zip_high(xy_b)];
@@ -212,7 +212,7 @@ mod tests {
     use crate::dispatch::{dispatch_or_scalar, levels_and_scalar};
     use crate::testing::Random;
 
-    /// The cheapest split, plainly: the least cost, and the references on its two sides.
+    /// The cheapest split by a plain search: the least cost, and the references on its two sides.
     fn reference_split(
         references: &[Reference],
         centers: &Aabb,
@@ -285,7 +285,7 @@ mod tests {
                     .iter()
                     .map(|side| Covered::by(side).bounds.half_area() * side.len().div_ceil(BLOCK) as f32)
                     .sum();
-                // The order of a sum may decide between splits that are equally good.
+                // The order of summation may decide between equally good splits.
                 assert!((cost - least).abs() <= 1e-6 * least, "{cost}, not {least}");
                 if cost == *least {
                     assert_eq!([numbers(left), numbers(right)], *expected);

@@ -12,7 +12,8 @@ use crate::visibility::Everything;
 use crate::{Aabb, Affine, Builder, Procedural, ProceduralHit, Query, Sphere, Triangles};
 use lookfrom_simd::Kernel;
 
-/// Neighbouring rays towards a target, from one origin or from several, some with an end, some of them odd.
+/// Neighbouring rays toward a target, from one origin or several; some have an end, some are invalid or
+/// unusual.
 fn neighbours(random: &mut Random, target: [f32; 3], size: f32) -> Vec<Ray> {
     let from = random.near(target, 4.0 * size);
     let (lens, opening) = (random.unit() < 0.3, size * random.size(-3, 0));
@@ -36,7 +37,7 @@ fn packets_say_what_single_rays_say() {
     for _ in 0..60 {
         let (center, size) = (random.point_with_exponents(-6, 6), random.size(-6, 6));
         let mut positions: Vec<[f32; 3]> = (0..600).map(|_| random.near(center, size)).collect();
-        // Doubled corners make flat and doubled triangles.
+        // Repeated corners make degenerate and duplicate triangles.
         for corner in 1..60 {
             positions[10 * corner] = positions[corner];
         }
@@ -64,7 +65,7 @@ fn packets_say_what_single_rays_say() {
     assert!(hits > 10_000 && misses > 10_000, "{hits} hits, {misses} misses");
 }
 
-/// Boxes, of which rays hit the floor.
+/// Boxes whose floors are hit by rays.
 #[derive(Debug)]
 struct Floors(Vec<Aabb>);
 
@@ -87,7 +88,7 @@ impl Procedural for Floors {
     }
 }
 
-/// Triangles, spheres, procedural shapes and instances of these, with masks; `counts` says how many of each kind.
+/// Triangles, spheres, procedural shapes and instances of these, with masks; `counts` is the number of each kind.
 fn mixture(random: &mut Random, center: [f32; 3], size: f32, counts: [u32; 4]) -> Bvh {
     let [triangles, spheres, floors, instances] = counts;
     let point = |random: &mut Random| random.near(center, size);
@@ -123,7 +124,7 @@ fn mixture(random: &mut Random, center: [f32; 3], size: f32, counts: [u32; 4]) -
     builder.build().unwrap()
 }
 
-/// Whether rays go as a packet.
+/// True if the rays are traced as a packet.
 struct GoTogether<'a>(&'a Bvh, &'a [Ray]);
 
 impl Kernel for GoTogether<'_> {
@@ -132,7 +133,15 @@ impl Kernel for GoTogether<'_> {
     fn run<S: Simd>(self, simd: S) -> bool {
         let settings = Settings::new(self.0);
         with_stack(|stack| {
-            trace_packet::<S, AnyHit, Everything>(simd, &settings, self.1, &mut [], stack).is_some()
+            trace_packet::<S, AnyHit, Everything>(
+                simd,
+                &settings,
+                self.1,
+                &mut [],
+                &mut Coherence::default(),
+                stack,
+            )
+            .is_some()
         })
     }
 }
@@ -151,7 +160,7 @@ fn packets_of_every_query_say_what_single_rays_say() {
             let rays = neighbours(&mut random, target, size);
             let faces = [Faces::Both, Faces::Front, Faces::Back][random.below(3) as usize];
             let mask = 1 << random.below(4);
-            // Exclude the triangle that is hit first, so that the exclusion shows.
+            // Exclude the triangle that is hit first, so that the exclusion has an effect.
             let origins: Vec<OriginPrimitive> = rays
                 .iter()
                 .map(|ray| match random.below(3) {
@@ -181,7 +190,7 @@ fn packets_of_every_query_say_what_single_rays_say() {
                     assert_eq!(together[number], hit, "{kind} {ray:?}");
                     assert_eq!(occluded[number], hit.is_hit(), "{kind} {ray:?}");
                     assert_eq!(alone.occluded(ray), hit.is_hit(), "{kind} {ray:?}");
-                    // All hits, without those on the triangle that the ray starts on.
+                    // All hits, without those on the origin primitive.
                     let (mut all, mut expected) = (Vec::new(), Vec::new());
                     alone.all_hits(ray, &mut all);
                     alone.origin(OriginPrimitive::NONE).all_hits(ray, &mut expected);

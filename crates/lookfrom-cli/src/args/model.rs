@@ -10,61 +10,60 @@ use lookfrom_scene::{CameraChoice, ImportOptions};
 
 use crate::values;
 
-/// What surrounds a model, and what of its file is meant.
+/// The surroundings of a model, and the selected parts of its file.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Models and their surroundings")]
+#[command(next_help_heading = "Models and environment")]
 pub(crate) struct ModelArguments {
-    /// Columns and rows at once: 256 (a square) or 640x360
+    /// Width and height in pixels at once: 256 (a square) or 640x360
     #[arg(long, value_name = "N|WxH", value_parser = values::size, conflicts_with_all = ["width", "height"])]
     pub(crate) size: Option<[u32; 2]>,
 
-    /// Light from all around: a picture in latitude and longitude (.hdr, .exr) in place of the studio, or of a scene's own
-    /// environments
+    /// Environment light: an equirectangular map (.hdr, .exr) in place of the studio, or of a scene's own environments
     #[arg(long, value_name = "FILE")]
     pub(crate) environment: Option<PathBuf>,
 
-    /// Turn pictures of the surroundings around what is up, against the clock as seen from above
+    /// Rotate environment maps around the up vector, counter-clockwise as seen from above
     #[arg(long, value_name = "DEGREES", value_parser = values::between(-36000.0f64, 36000.0), allow_hyphen_values = true)]
     pub(crate) rotate_environment: Option<f64>,
 
-    /// What the camera sees where nothing stands: environment, transparent, white, black or #rrggbb
+    /// Background where the camera sees no surface: environment, transparent, white, black or #rrggbb
     ///
-    /// The light stays that of the environment. Transparent pictures are for PNG (not multiplied by alpha) and EXR
-    /// (multiplied). A colour is shown as it is, without exposure and tone map.
-    #[arg(long, value_name = "WHAT", value_parser = values::background)]
+    /// The light stays that of the environment. Transparent pictures need PNG (straight alpha) or EXR (premultiplied alpha). A
+    /// colour is shown as given, without exposure and tone map.
+    #[arg(long, value_name = "BACKGROUND", value_parser = values::background)]
     pub(crate) background: Option<Background>,
 
-    /// Lay a floor under the model that is seen only by the shadows on it (with the path tracer)
+    /// Add a shadow-catcher floor under the model: only the shadows on it are visible (with the path tracer)
     #[arg(long)]
     pub(crate) floor: bool,
 
-    /// Turn the camera around what it looks at, and pictures of the surroundings with it: one picture of --turntable
+    /// Orbit the camera around the point that it looks at, with the environment: one picture of --turntable
     #[arg(long, value_name = "DEGREES", value_parser = values::between(-36000.0f64, 36000.0), allow_hyphen_values = true)]
     pub(crate) turn: Option<f64>,
 
-    /// The animation of a glTF file in whose pose the model stands, by name or number from 0
+    /// Animation that poses the model of a glTF file, by name or number from 0
     #[arg(long, value_name = "NAME|N")]
     pub(crate) animation: Option<String>,
 
-    /// When in the animation: 1.5s, 500ms, 1.5
+    /// Time in the animation: 1.5s, 500ms, 1.5
     #[arg(long, value_name = "TIME", value_parser = values::moment)]
     pub(crate) at: Option<f64>,
 
-    /// The variant of a glTF file's materials, by name or number from 0
+    /// Material variant of a glTF file, by name or number from 0
     #[arg(long, value_name = "NAME|N")]
     pub(crate) variant: Option<String>,
 
-    /// The scene of a glTF file, by name or number from 0
+    /// Scene of a glTF file, by name or number from 0
     #[arg(long = "scene", value_name = "NAME|N")]
     pub(crate) scene_of_file: Option<String>,
 
-    /// The camera of a glTF file, by name or number from 0; or none: any scene is framed as if it had no camera
+    /// Camera of a glTF file, by name or number from 0; none frames any scene as if it had no camera
     #[arg(long, value_name = "NAME|N")]
     pub(crate) camera: Option<String>,
 }
 
 impl ModelArguments {
-    /// What is asked of files that hold several things.
+    /// The import options: which scene, camera, animation and variant of a file to use.
     pub(crate) fn choice(&self) -> ImportOptions {
         ImportOptions {
             animation: self.animation.clone(),

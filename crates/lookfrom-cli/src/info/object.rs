@@ -14,7 +14,7 @@ use serde::Serialize;
 use super::{Tree, tree};
 use crate::{exit, report};
 
-/// A scene, and what it becomes.
+/// Contents and settings of a scene, and statistics of its BVH.
 #[derive(Serialize)]
 pub(super) struct Object<'a> {
     scene: String,
@@ -44,7 +44,7 @@ struct BoundsObject {
 #[derive(Serialize)]
 struct SceneObject<'a> {
     name: Option<&'a str>,
-    /// Whether everything else is told of this one.
+    /// Whether this is the scene that the rest of the object describes.
     shown: bool,
 }
 
@@ -61,7 +61,7 @@ struct CameraEntryObject<'a> {
     projection: Option<ProjectionObject>,
 }
 
-/// A projection by the words that scenes of ours have for it.
+/// A projection in the words of our scene format.
 #[derive(Serialize)]
 struct ProjectionObject {
     projection: &'static str,
@@ -119,7 +119,7 @@ struct SecondsObject {
 }
 
 impl<'a> Object<'a> {
-    /// What is told of a scene.
+    /// The description of a session's scene.
     pub(super) fn new(path: &Path, session: &'a Session) -> Self {
         let SceneInfo { counts, contents, bounds, added, read, build } = session.info();
         Self {

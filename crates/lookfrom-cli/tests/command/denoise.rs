@@ -32,7 +32,7 @@ fn models_are_denoised_until_somebody_says_otherwise() {
     let scene = &stage.json("render scene.toml --json -o p.png")[0];
     assert_eq!(scene["denoised"], false);
     let run = stage.done("render model.obj -o p.png --size 24");
-    assert!(run.stderr.contains("6 samples each, path, denoised"), "{}", run.stderr);
+    assert!(run.stderr.contains("6 samples per pixel, path, denoised"), "{}", run.stderr);
 }
 
 #[test]

@@ -41,7 +41,7 @@ fn a_clean_picture_ends() {
     assert!(summary["relative_error"].as_f64().unwrap() <= 0.05);
     let (most, mean) = (summary["samples"].as_u64().unwrap(), summary["samples_taken"].as_u64().unwrap());
     assert!(mean >= 16 && mean <= most, "{mean} {most}");
-    assert!(run.stderr.contains("enough  by noise"), "{}", run.stderr);
+    assert!(run.stderr.contains("stopped by noise"), "{}", run.stderr);
     stage.done("render noisy.toml -q -o b.exr --noise 0.05 --width 80 --threads 1");
     assert!(stage.bytes("a.exr") == stage.bytes("b.exr"), "threads matter");
     // With a limit it is never more.

@@ -61,7 +61,7 @@ fn what_can_be_chosen_is_listed() {
         "  scenes     0, 1 \"Hall\" (this one)",
         "  animations 0 \"Walk\" 1 s, 1 without keys",
         "  variants   0 \"Oak\", 1 \"Steel\"",
-        "  cameras    0 \"Front\" (perspective, fov 57.2958°), 1 \"Plan\" (parallel rays, height 3)",
+        "  cameras    0 \"Front\" (perspective, fov 57.2958°), 1 \"Plan\" (orthographic, height 3)",
     ] {
         assert!(text.lines().any(|found| found == line), "{line:?} is not in: {text}");
     }

@@ -7,7 +7,7 @@ use super::file::Document;
 use super::json::{self, Whole};
 use crate::error::{Error, Result};
 
-/// The numbers that vectors are made of, by the names of their constants in OpenGL.
+/// Component types, by the names of OpenGL's constants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ComponentType {
     I8,
@@ -44,15 +44,15 @@ impl ComponentType {
     }
 }
 
-/// A number as it stands in a buffer.
+/// A component as it is stored in a buffer.
 trait Component: Copy {
-    /// From its first bytes, of which there are enough.
+    /// The value of the first bytes of `bytes`, which has enough.
     fn read(bytes: &[u8]) -> Self;
-    /// As it is.
+    /// The value without normalisation.
     fn number(self) -> f32;
     /// The normalised value: 0 … 1 or −1 … 1.
     fn fraction(self) -> f32;
-    /// As an index.
+    /// The value as an index.
     fn whole(self) -> u32;
 }
 
@@ -104,7 +104,7 @@ impl Value for u32 {
     }
 }
 
-/// The number of components of an element, and of its columns.
+/// The number of components of an element of this type, and of one of its columns.
 fn shape_of(kind: &str) -> Option<(usize, usize)> {
     Some(match kind {
         "SCALAR" => (1, 1),
@@ -123,11 +123,11 @@ fn shape_of(kind: &str) -> Option<(usize, usize)> {
 struct Layout {
     component: ComponentType,
     normalized: bool,
-    /// Numbers a column.
+    /// Components per column.
     rows: usize,
-    /// From column to column in bytes: those of matrices start at multiples of four.
+    /// Stride from column to column in bytes: columns of matrices start at multiples of four.
     column: usize,
-    /// Bytes of an element.
+    /// Size of an element in bytes.
     size: usize,
 }
 
@@ -140,7 +140,7 @@ impl Layout {
         Self { component, normalized, rows, column, size: column * (numbers / rows) }
     }
 
-    /// The vectors in bytes that hold `count` of them.
+    /// The `count` elements that `bytes` hold.
     fn read<V: Value, const N: usize>(&self, bytes: &[u8], stride: usize, count: usize) -> Vec<[V; N]> {
         match self.component {
             ComponentType::I8 => self.gather::<i8, V, N>(bytes, stride, count),
@@ -166,10 +166,10 @@ impl Layout {
 }
 
 impl Document {
-    /// The number of components of an accessor's elements, and the number of its elements.
+    /// The number of components per element of an accessor, and the number of its elements.
     ///
     /// # Errors
-    /// If there is no such accessor, or it has no known type.
+    /// If there is no such accessor, or its type is unknown.
     pub(crate) fn shape(&self, index: Whole, asked: &str) -> Result<(usize, usize)> {
         let accessor = self.one_of(&self.root.accessors, index, "accessor", asked)?;
         let (numbers, _) = shape_of(&accessor.kind)
@@ -177,20 +177,20 @@ impl Document {
         Ok((numbers, accessor.count.index()))
     }
 
-    /// The vectors, or matrices column by column, of an accessor, with whole numbers as fractions where that is said.
-    /// They may be infinite or not a number. `asked` is the pointer of what uses them.
+    /// The vectors of an accessor, matrices as columns one after another, with integers normalised where the accessor says
+    /// so. They may be infinite or NaN. `asked` is the JSON pointer of the property that refers to the accessor.
     ///
     /// # Errors
-    /// If the accessor has vectors of another size, if it, its view or its buffer does not exist or too short, or
-    /// where there are too many.
+    /// If the accessor has another number of components, if it, its view or its buffer does not exist or is too short, or
+    /// if there are too many elements.
     pub(crate) fn vectors<const N: usize>(&self, index: Whole, asked: &str) -> Result<Vec<[f32; N]>> {
         self.elements(index, asked)
     }
 
-    /// The same for unsigned whole numbers that stand for something: vertices, joints.
+    /// The same for unsigned integers: indices of vertices and joints.
     ///
     /// # Errors
-    /// As [`Document::vectors`], and where the numbers are not whole or may be negative.
+    /// As [`Document::vectors`], and if the components are floating-point or signed.
     pub(crate) fn whole_vectors<const N: usize>(&self, index: Whole, asked: &str) -> Result<Vec<[u32; N]>> {
         let accessor = self.one_of(&self.root.accessors, index, "accessor", asked)?;
         match ComponentType::of(accessor.component_type) {
@@ -206,7 +206,7 @@ impl Document {
         }
     }
 
-    /// The numbers of an accessor of scalars.
+    /// The values of an accessor of scalars.
     ///
     /// # Errors
     /// As [`Document::vectors`].
@@ -223,19 +223,19 @@ impl Document {
         let accessor = self.one_of(&self.root.accessors, index, "accessor", asked)?;
         let wrong = |what: String| self.wrong(index, asked, &what);
 
-        // What is said.
+        // Layout.
         let component = ComponentType::of(accessor.component_type)
             .ok_or_else(|| wrong(format!("has the unknown component type {}", accessor.component_type.0)))?;
         let (numbers, rows) = shape_of(&accessor.kind)
             .ok_or_else(|| wrong(format!("has the unknown type {:?}", accessor.kind)))?;
         if numbers != N {
-            return Err(wrong(format!("is {}: {numbers} numbers an element; expected {N}", accessor.kind)));
+            return Err(wrong(format!("is {}: {numbers} numbers per element; expected {N}", accessor.kind)));
         }
         let layout = Layout::new(component, accessor.normalized.unwrap_or(false), numbers, rows);
         let count = accessor.count.index();
         self.count(count as u64, asked)?;
 
-        // A part of a compressed mesh; where that cannot be had, what stands there for those who cannot unpack it.
+        // A part of a compressed mesh; if it cannot be decompressed, the uncompressed fallback, where there is one.
         if let Some((view, role)) = self.compressed.role(index) {
             match self.unpacked(view, asked) {
                 Ok(mesh) => return self.part_of(mesh, role, layout.normalized, asked),
@@ -244,7 +244,7 @@ impl Document {
             }
         }
 
-        // What is there: zeros where no view is named.
+        // Values: zeros without a buffer view.
         let mut elements = match accessor.buffer_view {
             Some(view) => self.gather(layout, view, accessor.byte_offset, count, asked)?,
             None => {
@@ -264,7 +264,7 @@ impl Document {
         Ok(elements)
     }
 
-    /// The values of one attribute of a compressed mesh: all of the mesh, whatever the count of the accessor.
+    /// The values of one attribute of a compressed mesh, for all of its vertices, whatever the accessor's count.
     fn part_of<V: Value, const N: usize>(
         &self,
         mesh: &draco::Decoded,
@@ -283,7 +283,7 @@ impl Document {
             },
         };
         if found != N {
-            let message = format!("the compressed mesh has {found} numbers an element; expected {N}");
+            let message = format!("the compressed mesh has {found} numbers per element; expected {N}");
             return Err(self.invalid(asked, message));
         }
         let one = if normalized { one } else { None };
@@ -291,7 +291,7 @@ impl Document {
         Ok(numbers.as_chunks::<N>().0.iter().map(|element| element.map(value)).collect())
     }
 
-    /// `count` elements of a view, from `offset` on.
+    /// `count` elements of a buffer view, from `offset` on.
     fn gather<V: Value, const N: usize>(
         &self,
         layout: Layout,
@@ -328,7 +328,7 @@ impl Document {
         Ok(layout.read(bytes, stride, count))
     }
 
-    /// The indices that a sparse accessor replaces: all below `count`.
+    /// The indices of the elements that a sparse accessor replaces: all below `count`.
     fn sparse_indices(&self, sparse: &json::Sparse, count: usize, asked: &str) -> Result<Vec<u32>> {
         let component = match ComponentType::of(sparse.indices.component_type) {
             Some(component) if component.is_unsigned() => component,

@@ -25,15 +25,15 @@ use crate::load;
 use crate::scene::{Instance, MeshId, Object, ObjectId, Scene};
 use crate::shape::{Geometry, Part, Shape};
 
-/// Triangles that repetitions of one mesh may have together before they become instances of it, which are smaller but
-/// slower.
+/// The maximum number of triangles in copies of one mesh; with more, the copies become instances, which take less
+/// memory but are slower to trace.
 const MOST_REPEATED_TRIANGLES: usize = 1 << 18;
 
-/// The state of the assembly of a scene that has its meshes, materials and images already.
+/// The parts of a scene that are not added directly: meshes, materials and images already are.
 pub(super) struct Model {
     shapes: Vec<Shape>,
     objects: Vec<Object>,
-    /// Of `objects`.
+    /// Instances of `objects`.
     instances: Vec<Instance>,
     eye: Option<Eye>,
     lights: Vec<Light>,
@@ -41,7 +41,7 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// Puts everything into a scene that has no objects yet.
+    /// Moves everything into a scene that has no objects yet.
     pub(super) fn into_scene(self, scene: &mut Scene) {
         if let Some(Eye { camera, aspect }) = self.eye {
             scene.camera = Some(camera);
@@ -56,7 +56,7 @@ impl Model {
         scene.contents = self.contents;
     }
 
-    /// Everything for another scene, instances one by one.
+    /// Everything as a part of another scene, which takes its instances one by one.
     pub(super) fn into_parts(self) -> load::Model {
         let repeated = self.instances.iter().flat_map(|instance| {
             let shapes = &self.objects[instance.object.index()].shapes;
@@ -78,13 +78,13 @@ fn part(shape: &Shape, world_from_object: &DMat4) -> Part {
     }
 }
 
-/// Columns and rows of a picture of this aspect, the greater of them `most`.
+/// Width and height of an image of this aspect ratio, the larger of them `most`.
 fn size(aspect: f64, most: u32) -> (u32, u32) {
     let smaller = |aspect: f64| ((f64::from(most) / aspect).round() as u32).max(1);
     if aspect >= 1.0 { (most, smaller(aspect)) } else { (smaller(1.0 / aspect), most) }
 }
 
-/// Reads everything; pictures are decoded last, side by side.
+/// Reads everything; images are decoded last, in parallel.
 pub(super) fn model(document: &Document, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Model> {
     let Pose { local, weights } = pose::pose(document, context)?;
     let tree = Tree::new(document, &local, context)?;
@@ -124,7 +124,7 @@ pub(super) fn model(document: &Document, context: &mut LoadContext<'_>, scene: &
     Ok(model)
 }
 
-/// A primitive of a mesh, with its look.
+/// A primitive of a mesh, with its material.
 #[derive(Clone)]
 struct Piece {
     pointer: Location,
@@ -134,7 +134,8 @@ struct Piece {
     world_from_skinned: Option<DMat4>,
 }
 
-/// A mesh in one form: that of every node which does not bend it, or that of one node which does.
+/// A mesh and its deformation: `node` is set where a node's own skin or morph weights deform it, and `None` for the
+/// mesh that all other nodes share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Form {
     mesh: usize,
@@ -146,7 +147,7 @@ struct Builder<'b, 'd, 'f> {
     context: &'b mut LoadContext<'f>,
     scene: &'b mut Scene,
     looks: Looks<'d>,
-    /// Of each mesh that was needed.
+    /// The primitives of each mesh used so far.
     pieces: BTreeMap<Form, Vec<Piece>>,
     /// Morph weights of nodes that override those of the mesh.
     weights: Vec<Option<Vec<f64>>>,
@@ -166,7 +167,7 @@ impl Builder<'_, '_, '_> {
         let mut skins: BTreeMap<usize, Skin> = BTreeMap::new();
         let mut objects: BTreeMap<Form, ObjectId> = BTreeMap::new();
         if nodes.is_empty() && self.document.root.scenes.is_empty() {
-            // A library of meshes: they all stand at the origin.
+            // A library of meshes: all are placed at the origin.
             for mesh in 0..self.document.root.meshes.len() {
                 let pieces = self.mesh(Form { mesh, node: None }, None, "/meshes")?;
                 let name = self.document.root.meshes[mesh].name.clone();
@@ -198,7 +199,7 @@ impl Builder<'_, '_, '_> {
                 continue;
             }
             let repeated = triangles(&pieces, self.scene).saturating_mul(uses[&form] - 1);
-            // Instances do not shine.
+            // Instances cannot be light sources.
             let shines = pieces.iter().any(|piece| piece.look.emission.is_some());
             if repeated > MOST_REPEATED_TRIANGLES && !shines {
                 let object = *objects.entry(form).or_insert_with(|| self.object(&name, &pieces));
@@ -213,7 +214,7 @@ impl Builder<'_, '_, '_> {
         Ok(())
     }
 
-    /// The mesh of a node, with its morph weights and skin.
+    /// The mesh of a node, by itself where morph weights or a skin deform it.
     fn form(&self, node: usize) -> Option<Form> {
         let root = &self.document.root;
         let index = root.nodes[node].mesh?.index();
@@ -225,7 +226,7 @@ impl Builder<'_, '_, '_> {
         Some(Form { mesh: index, node: is_own.then_some(node) })
     }
 
-    /// The parts of a mesh; each posed mesh is built once.
+    /// The primitives of a mesh; each form of it is built once.
     fn mesh(&mut self, form: Form, skin: Option<&Skin>, asked: &str) -> Result<Vec<Piece>> {
         let mesh =
             self.document.one_of(&self.document.root.meshes, Whole(form.mesh as u64), "mesh", asked)?;
@@ -278,7 +279,7 @@ impl Builder<'_, '_, '_> {
         }))
     }
 
-    /// The material of a primitive in the variant that is meant, and the pointer that says so.
+    /// The material of a primitive in the selected variant, and the JSON pointer of its reference.
     fn material(&self, primitive: &Primitive, pointer: &str) -> (Option<Whole>, String) {
         if let (Some(variant), Some(own)) = (self.variant, &primitive.extensions.variants) {
             let is_meant = |variants: &[Whole]| variants.iter().any(|one| one.index() == variant);
@@ -295,7 +296,7 @@ impl Builder<'_, '_, '_> {
         if is_invertible(&world_from_object) {
             shape.world_from_object = world_from_object;
         } else {
-            // Scaled by 0 along one axis it is flat, and still to be seen.
+            // Scaled by 0 along one axis, a mesh is flat, but still visible.
             let Geometry::Mesh(id) = piece.geometry else { return };
             let flat = mesh::flattened(&self.scene.meshes[id.index()], &world_from_object);
             if flat.triangles.is_empty() {
@@ -322,7 +323,7 @@ impl Builder<'_, '_, '_> {
         }
     }
 
-    /// The transforms of `EXT_mesh_gpu_instancing`, before that of the node.
+    /// The transforms of `EXT_mesh_gpu_instancing`, applied before that of the node.
     fn places(&self, instancing: &Instancing, node: usize) -> Result<Vec<DMat4>> {
         let pointer =
             |name: &str| format!("/nodes/{node}/extensions/EXT_mesh_gpu_instancing/attributes/{name}");
@@ -355,14 +356,14 @@ impl Builder<'_, '_, '_> {
             placed(vector(&translations, i, DVec3::ZERO), rotation, vector(&scales, i, DVec3::ONE))
         };
         let mut places: Vec<DMat4> = (0..count).map(place).collect();
-        // A file of a few bytes can ask for millions at one place, which no tree of boxes can tell apart.
+        // A file of a few bytes can request millions of instances at one place, which no BVH can separate.
         places.dedup();
         Ok(places)
     }
 }
 
 fn shape(piece: &Piece, name: &Option<String>) -> Shape {
-    // Points and lines have no backs.
+    // Points and lines have no back side.
     let single_sided = piece.look.single_sided && matches!(piece.geometry, Geometry::Mesh(_));
     Shape {
         name: name.clone(),
@@ -384,7 +385,7 @@ fn triangles(pieces: &[Piece], scene: &Scene) -> usize {
     pieces.iter().map(of).sum()
 }
 
-/// Whether a matrix can be computed with in both directions.
+/// Whether a matrix can be inverted.
 fn is_invertible(matrix: &DMat4) -> bool {
     matrix.is_finite() && matrix.determinant().is_normal() && matrix.inverse().is_finite()
 }

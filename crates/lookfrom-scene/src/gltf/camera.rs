@@ -1,6 +1,6 @@
 //! Selection of the camera, and its projection (specification, §3.10).
 //!
-//! Near and far planes cut nothing off: rays need none.
+//! Near and far planes are ignored: rays need no clipping.
 
 use glam::{DMat4, DVec3, DVec4};
 
@@ -13,7 +13,7 @@ use crate::contents::CameraEntry;
 use crate::error::Result;
 use crate::files::{CameraChoice, LoadContext};
 
-/// A camera of the file, and width over height of the picture that it is meant for, where it says so.
+/// A camera of the file, and the aspect ratio (width over height) that it is meant for, where the file gives one.
 pub(super) struct Eye {
     pub(super) camera: Camera,
     pub(super) aspect: Option<f64>,
@@ -22,12 +22,12 @@ pub(super) struct Eye {
 /// The cameras of the scene.
 pub(super) struct Cameras<'d> {
     document: &'d Document,
-    /// The node and the number of each.
+    /// Indices of the node and of the camera, for each.
     placed: Vec<(usize, usize)>,
 }
 
 impl<'d> Cameras<'d> {
-    /// Those of the nodes that are shown.
+    /// The cameras of the visible nodes.
     ///
     /// # Errors
     /// If a node names a camera that does not exist.
@@ -43,7 +43,7 @@ impl<'d> Cameras<'d> {
         Ok(Self { document, placed })
     }
 
-    /// Their names and projections.
+    /// Names and projections of the cameras.
     pub(super) fn entries(&self) -> Vec<CameraEntry> {
         let entry = |&(node, index): &(usize, usize)| {
             let camera = &self.document.root.cameras[index];
@@ -56,10 +56,10 @@ impl<'d> Cameras<'d> {
         self.placed.iter().map(entry).collect()
     }
 
-    /// The requested camera, or else the first.
+    /// The requested camera, or else the first one.
     ///
     /// # Errors
-    /// If the one that is requested does not exist.
+    /// If the requested camera does not exist.
     fn chosen(&self, choice: &CameraChoice) -> Result<Option<(usize, usize)>> {
         let root = &self.document.root;
         Ok(match choice {
@@ -77,10 +77,10 @@ impl<'d> Cameras<'d> {
     }
 }
 
-/// The requested camera, or else the first of the scene.
+/// The requested camera, or else the first one of the scene; `None`, with a warning, if its values are invalid.
 ///
 /// # Errors
-/// If the one that is requested does not exist, or none of its numbers can be.
+/// If the requested camera does not exist.
 pub(super) fn eye(cameras: &Cameras<'_>, tree: &Tree, context: &mut LoadContext<'_>) -> Result<Option<Eye>> {
     let document = cameras.document;
     let chosen = cameras.chosen(&context.import.camera)?;
@@ -88,11 +88,11 @@ pub(super) fn eye(cameras: &Cameras<'_>, tree: &Tree, context: &mut LoadContext<
     let pointer = format!("/cameras/{index}");
     let at = document.at(&pointer);
     let Some((projection, aspect)) = projection(&document.root.cameras[index]) else {
-        context.warn(&at, "the camera's numbers cannot be; the scene is framed without it");
+        context.warn(&at, "the camera's values are invalid; the scene is framed without it");
         return Ok(None);
     };
     let Some(matrix) = world_from_camera(&tree.world_from_node[node]) else {
-        context.warn(&at, "the camera's node has no size; the scene is framed without it");
+        context.warn(&at, "the camera's node has a degenerate transform; the scene is framed without it");
         return Ok(None);
     };
     let camera = Camera { at, view: View::Matrix(matrix), projection, ..Camera::default() };
@@ -110,8 +110,8 @@ fn projection(camera: &json::Camera) -> Option<(Projection, Option<f64>)> {
     (x > 0.0 && y > 0.0).then_some((Projection::Orthographic { height: 2.0 * y }, Some(x / y)))
 }
 
-/// A glTF camera has x to the right and looks along −z, ours has x to the left and looks along z. Scales of nodes do not
-/// count for cameras.
+/// The camera's orthonormal frame. A glTF camera has x to the right and looks along −z, ours has x to the left and looks
+/// along z. Scales of nodes do not affect cameras.
 fn world_from_camera(world_from_node: &DMat4) -> Option<DMat4> {
     let axis = |column: DVec4| column.truncate().try_normalize();
     let (x, y, z) =

@@ -4,10 +4,10 @@ use super::file::Document;
 use crate::error::Result;
 use crate::suggest::nearest;
 
-/// The index of the item with this name, or else, where it is a number, of the item with this number from 0.
+/// The index of the item with this name, or else, if the name is a number, of the item with this index, from 0.
 ///
 /// # Errors
-/// If nothing is meant; it says what there is.
+/// If there is no such item; the hint lists the items.
 pub(crate) fn choose<'a>(
     document: &Document,
     what: &str,

@@ -8,7 +8,7 @@ use super::json::{Animation, Whole};
 use super::node::Tree;
 use crate::contents::{AnimationEntry, Contents};
 
-/// Keys of animations that are looked at: to tell how long animations are is not worth more.
+/// The maximum number of keyframes read to find durations of animations, to bound the cost of the list.
 const MOST_KEYS: u64 = 1 << 22;
 
 /// The content of the file. Faults in animations that are not requested are not errors.
@@ -29,12 +29,12 @@ pub(super) fn contents(document: &Document, tree: &Tree, cameras: &Cameras<'_>) 
     }
 }
 
-/// Durations of animations; channels often share their keyframes.
+/// Durations of animations; channels often share the times of their keyframes.
 struct Clock<'d> {
     document: &'d Document,
-    /// By accessor.
+    /// Time of the last keyframe, by accessor.
     last_keys: HashMap<Whole, Option<f64>>,
-    /// Keys that may still be looked at.
+    /// Number of keyframes that may still be read.
     left: u64,
 }
 
@@ -49,7 +49,7 @@ impl Clock<'_> {
             return known;
         }
         let accessor = self.document.root.accessors.get(times.index())?;
-        // Keys that no view holds are all 0, and counted against the limits of the file.
+        // Keyframes without a buffer view are all 0, and would count against the limits of the file.
         let mut keys = Vec::new();
         if accessor.buffer_view.is_some() && accessor.count.0 <= self.left {
             self.left -= accessor.count.0;

@@ -1,7 +1,7 @@
 //! Meshes compressed by Draco (`KHR_draco_mesh_compression`).
 //!
-//! The crate `draco-core` decodes the stream, within limits; which accessor stands for which part of it, `accessor` asks
-//! here. Without the feature `draco` such meshes are read only where a file has them uncompressed, too.
+//! The crate `draco-core` decodes the stream, within limits; `accessor` looks up here which accessor refers to which part
+//! of it. Without the feature `draco` such meshes are read only where the file contains an uncompressed fallback.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -13,15 +13,15 @@ use crate::files::Limits;
 /// A decoded mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Decoded {
-    /// Three for each triangle, each below `vertices`.
+    /// Three per triangle, each below `vertices`.
     pub(crate) indices: Vec<u32>,
-    /// The count.
+    /// The number of vertices.
     pub(crate) vertices: usize,
-    /// By the number that the extension's JSON gives them.
+    /// By the ids that the extension's JSON gives them.
     pub(crate) attributes: BTreeMap<u64, Attribute>,
 }
 
-/// Numbers of vertices.
+/// The values of a vertex attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Attribute {
     /// The number of components per vertex.
@@ -37,21 +37,21 @@ pub(crate) struct Attribute {
 pub(crate) enum Role {
     /// The corners of triangles.
     Indices,
-    /// The attribute of this number.
+    /// The attribute with this id.
     Attribute(u64),
 }
 
 /// The accessors of a file that refer to compressed meshes.
 #[derive(Debug)]
 pub(crate) struct Compressed {
-    /// By accessor: the buffer view of the stream, and which part of it.
+    /// By accessor: the buffer view of the stream, and the part of it.
     roles: BTreeMap<usize, (Whole, Role)>,
-    /// By buffer view, after the first request.
+    /// By buffer view, filled at the first request.
     decoded: Vec<OnceLock<Result<Decoded>>>,
 }
 
 impl Compressed {
-    /// Those of all primitives.
+    /// The accessors of all primitives.
     pub(crate) fn new(root: &Root) -> Self {
         let decoded = root.buffer_views.iter().map(|_| OnceLock::new()).collect();
         let mut compressed = Self { roles: BTreeMap::new(), decoded };
@@ -70,7 +70,7 @@ impl Compressed {
         compressed
     }
 
-    /// The buffer view and the part of its stream that an accessor stands for, where it does.
+    /// The buffer view and the part of its stream that an accessor refers to; `None` for uncompressed data.
     pub(crate) fn role(&self, accessor: Whole) -> Option<(Whole, Role)> {
         self.roles.get(&accessor.index()).copied()
     }
@@ -94,7 +94,7 @@ impl Compressed {
 /// Decodes a stream.
 ///
 /// # Errors
-/// `Syntax` for what is no whole Draco stream, `Limit` for more vertices or triangles than [`Limits::elements`] or more
+/// `Syntax` if it is not a complete Draco stream, `Limit` for more vertices or triangles than [`Limits::elements`] or more
 /// than 2 GiB of values, `Unsupported` without the feature `draco`.
 #[cfg(feature = "draco")]
 pub(crate) fn decode(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Decoded> {
@@ -135,7 +135,7 @@ pub(crate) fn decode(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Dec
     Ok(Decoded { indices, vertices, attributes })
 }
 
-/// Nothing can be decoded without the feature.
+/// Without the feature nothing can be decoded.
 #[cfg(not(feature = "draco"))]
 pub(crate) fn decode(_: &[u8], at: &Location, _: &Limits) -> Result<Decoded> {
     Err(Error::new(ErrorKind::Unsupported, at, "compressed by Draco, which this build cannot read")

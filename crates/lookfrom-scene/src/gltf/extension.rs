@@ -3,7 +3,7 @@
 use super::file::Document;
 use crate::files::LoadContext;
 
-/// Extensions that are read.
+/// Supported extensions.
 const READ: &[&str] = &[
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
@@ -31,7 +31,7 @@ const READ: &[&str] = &[
     "KHR_texture_transform",
 ];
 
-/// Extensions that say nothing of how a model looks.
+/// Extensions that do not affect the rendered image.
 const WITHOUT_A_LOOK: &[&str] = &[
     "KHR_xmp",
     "KHR_xmp_json_ld",
@@ -41,18 +41,18 @@ const WITHOUT_A_LOOK: &[&str] = &[
     "EXT_structural_metadata",
 ];
 
-/// Whether an extension needs no warning.
+/// Whether an extension is supported or safe to ignore.
 fn is_known(name: &str) -> bool {
     READ.contains(&name) || WITHOUT_A_LOOK.contains(&name)
 }
 
-/// Warns of extensions that are not known.
+/// Warns of unknown extensions.
 pub(super) fn warn(document: &Document, context: &mut LoadContext<'_>) {
     let root = &document.root;
     for (index, name) in root.extensions_required.iter().enumerate().filter(|(_, name)| !is_known(name)) {
         let at = document.at(&format!("/extensionsRequired/{index}"));
         let message = format!(
-            "the file requires the extension {name}, which is not known: it is read as well as can be, and may look \
+            "the file requires the extension {name}, which is not known: it is read without the extension, and may look \
              wrong"
         );
         context.warn(&at, message);
@@ -60,7 +60,7 @@ pub(super) fn warn(document: &Document, context: &mut LoadContext<'_>) {
     for (index, name) in root.extensions_used.iter().enumerate() {
         if !is_known(name) && !root.extensions_required.contains(name) {
             let at = document.at(&format!("/extensionsUsed/{index}"));
-            context.warn(&at, format!("the extension {name} is not known and is passed over"));
+            context.warn(&at, format!("the extension {name} is not known and is ignored"));
         }
     }
 }

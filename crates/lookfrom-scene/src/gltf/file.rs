@@ -1,5 +1,5 @@
-//! A glTF document and its bytes: the JSON, by itself or in a GLB container, and the buffers in the container, in other
-//! files or in the JSON (specification, §2.7, §3.6.1, §4).
+//! A glTF document and its bytes: the JSON, alone or in a GLB container, and the buffers in the container, in other files
+//! or in the JSON (specification, §2.7, §3.6.1, §4).
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -20,11 +20,11 @@ pub(super) const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: u32 = 0x4E4F_534A;
 const BINARY_CHUNK: u32 = 0x004E_4942;
 
-/// The number of attribute and index values that one element of [`Limits::elements`] may have: a vertex has several.
+/// The number of attribute and index values allowed per element of [`Limits::elements`]: a vertex has several.
 const VALUES_AN_ELEMENT: u64 = 8;
 
-/// The maximum number of elements of accessors without a buffer view, which are zeros, in a file: a file of a few
-/// bytes could ask for all memory otherwise.
+/// The maximum number of elements of accessors without a buffer view, which are zeros, in a file: otherwise a file of a
+/// few bytes could exhaust the memory.
 const MOST_ZEROS: u64 = 1 << 26;
 
 /// A file with its buffers.
@@ -42,9 +42,9 @@ pub(crate) struct Document {
     decoded: Vec<OnceLock<Result<Vec<u8>>>>,
     /// Decoded Draco meshes.
     pub(super) compressed: Compressed,
-    /// The number of accessor values read so far.
+    /// The number of accessor elements read so far.
     values: AtomicU64,
-    /// The number of those without bytes in a buffer.
+    /// The number of elements without bytes in a buffer so far.
     zeros: AtomicU64,
 }
 
@@ -53,24 +53,24 @@ enum Bytes {
     /// A part of the container.
     Chunk(Range<usize>),
     Own(Arc<Vec<u8>>),
-    /// Nowhere. That matters only where it is used.
+    /// The bytes could not be read; an error only where they are used.
     Missing(Error),
 }
 
-/// A part of a buffer.
+/// The bytes of a buffer view.
 #[derive(Clone, Copy)]
 pub(crate) struct View<'a> {
     /// Its bytes.
     pub(crate) bytes: &'a [u8],
-    /// From element to element, where that is said.
+    /// Distance from element to element in bytes, where the file gives one.
     pub(crate) stride: Option<usize>,
 }
 
 impl Document {
-    /// Takes a file's content apart and reads the buffers that it names.
+    /// Splits a file's content into JSON and binary chunk, and reads the buffers that it names.
     ///
     /// # Errors
-    /// `Syntax` where it is no glTF, `Unsupported` where it is of another version.
+    /// `Syntax` if it is not glTF, `Unsupported` if it is another version.
     pub(crate) fn open(content: Vec<u8>, path: &Path, context: &mut LoadContext<'_>) -> Result<Self> {
         let at = Location::file(path);
         let (what, (json, binary)) = match content.starts_with(MAGIC) {
@@ -98,17 +98,17 @@ impl Document {
         Ok(document)
     }
 
-    /// A place in the JSON.
+    /// The location of a JSON pointer in this file.
     pub(crate) fn at(&self, pointer: &str) -> Location {
         self.at.pointer(pointer)
     }
 
-    /// An error of kind `Invalid` at a place in the JSON.
+    /// An error of kind `Invalid` at a JSON pointer.
     pub(crate) fn invalid(&self, pointer: &str, message: impl Into<String>) -> Error {
         Error::invalid(&self.at(pointer), message)
     }
 
-    /// One of a list, or the error that there is no such one.
+    /// An item of a list, or the error that it does not exist.
     pub(crate) fn one_of<'a, T>(
         &self,
         list: &'a [T],
@@ -127,10 +127,10 @@ impl Document {
         })
     }
 
-    /// Notes that so many values are about to be read.
+    /// Counts elements that are about to be read.
     ///
     /// # Errors
-    /// `Limit` where all of them together are more than the limits allow.
+    /// `Limit` if their total exceeds the limits.
     pub(crate) fn count(&self, values: u64, asked: &str) -> Result<()> {
         let before = self.values.fetch_add(values, Ordering::Relaxed);
         let most = self.limits.elements.saturating_mul(VALUES_AN_ELEMENT);
@@ -145,10 +145,10 @@ impl Document {
         Ok(())
     }
 
-    /// Notes that so many zeros are about to be made.
+    /// Counts zero-filled elements that are about to be created.
     ///
     /// # Errors
-    /// `Limit` where all of them together are too many.
+    /// `Limit` if their total is too large.
     pub(crate) fn count_zeros(&self, zeros: u64, asked: &str) -> Result<()> {
         let before = self.zeros.fetch_add(zeros, Ordering::Relaxed);
         if before.saturating_add(zeros) > MOST_ZEROS {
@@ -161,10 +161,10 @@ impl Document {
         Ok(())
     }
 
-    /// The bytes of a view; `asked` is the pointer of what uses it.
+    /// The bytes of a buffer view; `asked` is the JSON pointer of the property that refers to it.
     ///
     /// # Errors
-    /// If the view, or its buffer, does not exist or too short, or if it cannot be unpacked.
+    /// If the view, or its buffer, does not exist or is too short, or if it cannot be decompressed.
     pub(crate) fn view(&self, index: Whole, asked: &str) -> Result<View<'_>> {
         let view = self.one_of(&self.root.buffer_views, index, "buffer view", asked)?;
         let stride = view.byte_stride.map(Whole::index);
@@ -186,15 +186,15 @@ impl Document {
     fn unpack(&self, bytes: &[u8], packed: &json::Meshopt, place: &str) -> Result<Vec<u8>> {
         let at = self.at(place);
         let layout = Layout::new(packed, &at)?;
-        // Elements can have hundreds of bytes, and a damaged file many views: count what they are made of.
+        // Elements can have hundreds of bytes, and a damaged file many views, so bytes count as well.
         self.count(layout.count.saturating_mul(layout.stride / 4), place)?;
         meshopt::decode(bytes, &layout, &at, &self.limits)
     }
 
-    /// The mesh that a view holds in Draco's compression; `asked` is the pointer of what uses it.
+    /// The Draco mesh in a buffer view; `asked` is the JSON pointer of the property that refers to it.
     ///
     /// # Errors
-    /// As [`Document::view`], and where it cannot be unpacked.
+    /// As [`Document::view`], and if it cannot be decoded.
     pub(super) fn unpacked(&self, view: Whole, asked: &str) -> Result<&Decoded> {
         self.one_of(&self.root.buffer_views, view, "buffer view", asked)?;
         self.compressed.get_or_decode(view, || {
@@ -249,8 +249,10 @@ impl Document {
             };
             if (length as u64) < buffer.byte_length.0 {
                 let expected = buffer.byte_length.0;
-                context
-                    .notice(&self.at(&place), format!("{expected} bytes are announced, {length} are there"));
+                context.notice(
+                    &self.at(&place),
+                    format!("the file announces {expected} bytes for the buffer; it has {length}"),
+                );
             }
             buffers.push(bytes);
         }
@@ -280,7 +282,7 @@ impl Document {
     /// The content of a `uri`.
     ///
     /// # Errors
-    /// `Syntax` where its data is broken, `Unsupported` where it is an address in the net.
+    /// `Syntax` if its data is malformed, `Unsupported` if it is a network address.
     pub(crate) fn uri(&self, uri: &str, asked: &str) -> Result<Uri> {
         uri::read(uri, &self.at(asked))
     }
@@ -288,7 +290,7 @@ impl Document {
     /// The result for the first of these names, relative to this file, that can be read.
     ///
     /// # Errors
-    /// That of the first one, which says in addition where it was asked for.
+    /// The error of the first name, at the property that refers to it.
     pub(crate) fn first_of<T>(
         &self,
         names: &[String],
@@ -305,7 +307,7 @@ impl Document {
                 }
             }
         }
-        let error = first.unwrap_or_else(|| self.invalid(asked, "names nothing"));
+        let error = first.unwrap_or_else(|| self.invalid(asked, "this names no file"));
         Err(Error { message: format!("{}: {}", error.at, error.message), at: self.at(asked), ..error })
     }
 }
@@ -354,7 +356,7 @@ fn chunks(
             JSON_CHUNK | BINARY_CHUNK => {
                 context.warn(at, "the GLB container has a chunk twice: the first one counts");
             }
-            // Chunks of other kinds are for others.
+            // Chunks of other types are ignored.
             _ => {}
         }
         start = end;
@@ -365,25 +367,25 @@ fn chunks(
     }
 }
 
-/// The JSON in bytes, which are called `what`.
+/// Parses the bytes of the JSON; messages call them `what`.
 fn parse(bytes: &[u8], what: &str, at: &Location, context: &mut LoadContext<'_>) -> Result<Root> {
     let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     let text = String::from_utf8_lossy(bytes);
     if matches!(text, std::borrow::Cow::Owned(_)) {
-        context.notice(at, "the JSON is not UTF-8; what is not is taken as �");
+        context.notice(at, "the JSON is not valid UTF-8; invalid bytes are read as �");
     }
     let text = text.trim_end_matches(['\0', ' ', '\n', '\r', '\t']);
     if text.is_empty() {
-        let found = if bytes.is_empty() { "is empty" } else { "has nothing but spaces and zeros" };
+        let found = if bytes.is_empty() { "is empty" } else { "contains only spaces and zeros" };
         return Err(Error::syntax(at, format!("{what} {found}; expected the JSON of a glTF 2.0 model")));
     }
     json::parse(text).map_err(|wrong| {
         let Some(pointer) = wrong.pointer else {
             let place = at.at(wrong.line, wrong.column);
-            return Error::syntax(&place, format!("this is no JSON: {}", wrong.message))
+            return Error::syntax(&place, format!("this is not valid glTF JSON: {}", wrong.message))
                 .hint(instead_of_json(text));
         };
-        // Things are called otherwise in other versions: that is what is wrong then.
+        // Other versions have other names, so a JSON error may be due to the version.
         match json::version(text) {
             Some(version) if !version.starts_with("2.") => {
                 unsupported(&at.pointer("/asset/version"), &format!("glTF {version}"))

@@ -1,6 +1,6 @@
 //! Structures of the JSON of a glTF file, one for each object of the specification (Khronos 2021, §5) and of its
-//! extensions. Other properties are ignored. Meaning, defaults that depend on others and checks are left
-//! to the files beside this one.
+//! extensions. Other properties are ignored. Interpretation, defaults that depend on other properties, and checks are
+//! left to the other modules.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,12 +9,12 @@ use serde::Deserialize;
 use serde::Deserializer;
 use serde::de::Visitor;
 
-/// A whole number of at least 0: an index or a count. `3.0` is one too.
+/// A whole number of at least 0: an index or a count. `3.0` is accepted, too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Whole(pub(crate) u64);
 
 impl Whole {
-    /// As an index: one that no array has where it is too large for this machine.
+    /// The number as an index; one that is too large for this machine becomes an index beyond every array.
     pub(crate) fn index(self) -> usize {
         usize::try_from(self.0).unwrap_or(usize::MAX)
     }
@@ -53,7 +53,7 @@ fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Resu
     Option::<Vec<T>>::deserialize(deserializer).map(Option::unwrap_or_default)
 }
 
-/// Something with a default, that may be `null`.
+/// A value with a default, which also stands for `null`.
 fn or_default<'de, D: Deserializer<'de>, T: Deserialize<'de> + Default>(
     deserializer: D,
 ) -> Result<T, D::Error> {
@@ -100,7 +100,7 @@ pub(crate) struct Root {
     pub(crate) extensions: RootExtensions,
 }
 
-/// The versions of the format.
+/// The format's version, and the minimum version that a reader needs.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(crate) struct Asset {
@@ -164,7 +164,7 @@ pub(crate) struct Node {
     pub(crate) name: Option<String>,
     #[serde(default, deserialize_with = "list")]
     pub(crate) children: Vec<Whole>,
-    /// Column by column.
+    /// In column-major order.
     pub(crate) matrix: Option<[f64; 16]>,
     pub(crate) translation: Option<[f64; 3]>,
     /// x, y, z, w.
@@ -230,7 +230,7 @@ pub(crate) struct Mesh {
     pub(crate) name: Option<String>,
     #[serde(default, deserialize_with = "list")]
     pub(crate) primitives: Vec<Primitive>,
-    /// Those of morph targets, where a node has none.
+    /// Default weights of the morph targets, for nodes that have none.
     pub(crate) weights: Option<Vec<f64>>,
 }
 
@@ -303,7 +303,7 @@ pub(crate) struct MetallicRoughness {
     pub(crate) metallic_roughness_texture: Option<TextureInfo>,
 }
 
-/// The extensions of materials that are read.
+/// The supported material extensions.
 #[derive(Debug, Default, Deserialize)]
 pub(crate) struct MaterialExtensions {
     #[serde(rename = "KHR_materials_anisotropy")]
@@ -440,7 +440,7 @@ pub(crate) struct Volume {
 pub(crate) struct TextureInfo {
     pub(crate) index: Whole,
     pub(crate) tex_coord: Option<Whole>,
-    /// Of normal textures.
+    /// Only of normal textures.
     pub(crate) scale: Option<f64>,
     #[serde(default, deserialize_with = "or_default")]
     pub(crate) extensions: TextureInfoExtensions,
@@ -597,7 +597,7 @@ pub(crate) struct AnimationChannel {
 #[derive(Debug, Deserialize)]
 pub(crate) struct AnimationTarget {
     pub(crate) node: Option<Whole>,
-    /// `translation`, `rotation`, `scale`, `weights`, or what an extension says.
+    /// `translation`, `rotation`, `scale`, `weights`, or a word of an extension.
     pub(crate) path: String,
 }
 
@@ -605,13 +605,13 @@ pub(crate) struct AnimationTarget {
 pub(crate) struct AnimationSampler {
     /// Accessor of times in seconds.
     pub(crate) input: Whole,
-    /// `LINEAR` (where none is given), `STEP` or `CUBICSPLINE`.
+    /// `LINEAR` (the default), `STEP` or `CUBICSPLINE`.
     pub(crate) interpolation: Option<String>,
     /// Accessor of values.
     pub(crate) output: Whole,
 }
 
-/// Why a text is no glTF.
+/// The error of a text that is not glTF.
 pub(super) struct Wrong {
     /// The message.
     pub(super) message: String,
@@ -623,15 +623,15 @@ pub(super) struct Wrong {
     pub(super) column: u32,
 }
 
-/// Reads the text.
+/// Parses the text.
 pub(super) fn parse(text: &str) -> Result<Root, Wrong> {
-    // The quick way first: keeping the path costs time and is only needed for a message.
+    // First without the path to the error: tracking it costs time and is only needed for a message.
     serde_json::from_str(text).map_err(|error| {
         let mut deserializer = serde_json::Deserializer::from_str(text);
         let path = serde_path_to_error::deserialize::<_, Root>(&mut deserializer).err();
         let pointer = path.filter(|_| error.is_data()).map(|error| pointer(error.path()));
         let message = error.to_string();
-        // Line and column, which the message ends with, are told elsewhere.
+        // The message ends with line and column, which are reported separately.
         let message = message.split(" at line ").next().unwrap_or_default();
         Wrong {
             message: in_words_of_json(message),
@@ -642,7 +642,7 @@ pub(super) fn parse(text: &str) -> Result<Root, Wrong> {
     })
 }
 
-/// The version that a JSON says it is written for, where it says one as glTF does.
+/// The version in `asset` of a JSON text that does not parse as glTF 2.0; `None` if there is none.
 pub(super) fn version(text: &str) -> Option<String> {
     #[derive(Deserialize)]
     struct Versioned {
@@ -651,7 +651,7 @@ pub(super) fn version(text: &str) -> Option<String> {
     serde_json::from_str::<Versioned>(text).ok().map(|found| found.asset.version)
 }
 
-/// Without the names of our types.
+/// The message of serde with JSON's terms instead of the names of our types.
 fn in_words_of_json(message: &str) -> String {
     let words = [
         ("f64", "a number"),

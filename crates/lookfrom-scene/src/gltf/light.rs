@@ -1,8 +1,8 @@
 //! Punctual lights (`KHR_lights_punctual`).
 //!
-//! Their units are photometric: candela, and lux of the sun. A radiance of 1 is a luminance of 1 cd/m², so no efficacy
-//! of 683 lm/W appears. Under an illuminance E a white diffuse surface has the radiance E/π, which is what our
-//! intensities say. `range`, a help for rasterisers, is passed over: light fades with the square of the distance.
+//! Units are photometric: candela, and lux for the sun. A radiance of 1 is a luminance of 1 cd/m², so no luminous efficacy
+//! of 683 lm/W appears. Under an illuminance E a white diffuse surface has the luminance E/π; our intensities include this
+//! 1/π. `range`, an aid for rasterisers, is ignored: light falls off with the square of the distance.
 
 use glam::{DMat4, DVec3};
 
@@ -17,7 +17,7 @@ use crate::material::Color;
 /// The punctual lights of the scene.
 ///
 /// # Errors
-/// If a node has a light that does not exist.
+/// If a node refers to a light that does not exist.
 pub(super) fn lights(document: &Document, tree: &Tree, context: &mut LoadContext<'_>) -> Result<Vec<Light>> {
     let known = document.root.extensions.lights.as_ref().map_or(&[][..], |lights| &lights.lights);
     let mut lights = Vec::new();

@@ -1,8 +1,8 @@
 //! Conversion of materials (specification, §3.9, and the extensions `KHR_materials_…`).
 //!
-//! Each becomes a [`Principled`] look, or an unlit one, and besides: the light that the surface gives off, the part of it
-//! that is there, and whether its back is seen. Numbers outside what their extension allows are clamped. Occlusion
-//! textures are for those who cannot trace rays.
+//! Each becomes a [`Principled`] material, or an unlit one, together with the emission, the alpha and the sidedness of the
+//! surface. Factors outside the range that their extension allows are clamped. Occlusion textures are ignored: they
+//! approximate what path tracing computes.
 
 mod glossiness;
 
@@ -20,15 +20,15 @@ use crate::scene::{MaterialId, Scene};
 use crate::shape::Emission;
 use crate::texture::{Channel, TextureKind};
 
-/// The material of a primitive.
+/// The material of a primitive, and the properties that a shape keeps beside its material.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
     pub(super) material: MaterialId,
     pub(super) emission: Option<Emission>,
     pub(super) alpha: Option<Scalar>,
     pub(super) single_sided: bool,
-    /// Whether it matters which way u runs over the surface: then the mesh needs tangents for this set of texture
-    /// coordinates.
+    /// The set of texture coordinates that the mesh needs tangents for; `None` where the direction of u on the surface
+    /// does not matter.
     pub(super) grain: Option<u32>,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Brought {
     pub(super) opacities: bool,
 }
 
-/// The looks that were needed so far.
+/// The materials converted so far.
 pub(super) struct Looks<'d> {
     document: &'d Document,
     textures: Textures<'d>,
@@ -51,15 +51,15 @@ impl<'d> Looks<'d> {
         Self { document, textures: Textures::new(document), known: BTreeMap::new() }
     }
 
-    /// Decodes the pictures of all looks.
+    /// Decodes the images of all materials.
     pub(super) fn decode(self, context: &mut LoadContext<'_>, scene: &mut Scene) {
         self.textures.decode(context, scene);
     }
 
-    /// The look of a primitive with this material; without one, glTF's default.
+    /// The material of a primitive; glTF's default if `material` is `None`.
     ///
     /// # Errors
-    /// If the material, or a texture of it, does not exist.
+    /// If the material, or one of its textures, does not exist.
     pub(super) fn look(
         &mut self,
         material: Option<Whole>,
@@ -88,13 +88,13 @@ impl<'d> Looks<'d> {
     }
 }
 
-/// One material on its way.
+/// The state of the conversion of one material.
 struct Reader<'r, 'd, 'f> {
     document: &'d Document,
     textures: &'r mut Textures<'d>,
     context: &'r mut LoadContext<'f>,
     scene: &'r mut Scene,
-    /// The material's.
+    /// The JSON pointer of the material.
     pointer: String,
 }
 
@@ -133,7 +133,7 @@ impl Reader<'_, '_, '_> {
         })
     }
 
-    /// The colour and the opacity that the material begins with.
+    /// The base colour and alpha of the material.
     fn base(&mut self, entry: &json::Material) -> Result<(Color, Scalar)> {
         let (factor, info, place) =
             match (&entry.extensions.specular_glossiness, &entry.pbr_metallic_roughness) {
@@ -249,7 +249,8 @@ impl Reader<'_, '_, '_> {
         Ok(())
     }
 
-    /// Between the least and the greatest thickness by the green of a texture; without one, the greatest.
+    /// Thin-film thickness, interpolated between minimum and maximum by the texture's green channel; without a texture, the
+    /// maximum.
     fn film_thickness(&mut self, own: &json::Iridescence) -> Result<Scalar> {
         let most = positive(own.iridescence_thickness_maximum.unwrap_or(400.0));
         let least = positive(own.iridescence_thickness_minimum.unwrap_or(100.0));
@@ -264,13 +265,13 @@ impl Reader<'_, '_, '_> {
         }
     }
 
-    /// A colour factor that is a share of light: clamped to 0 to 1, with a warning where it is above that.
+    /// A colour factor that is a reflectance: clamped to [0, 1], with a warning if it is larger.
     fn reflectance(&mut self, factor: [f64; 3], place: &str) -> [f32; 3] {
         let [r, g, b] = factor;
         if r.max(g).max(b) > 1.0 {
             let at = self.document.at(&format!("{}{place}", self.pointer));
             let message =
-                format!("the factor is [{r}, {g}, {b}]; expected 0 to 1: what is above 1 is taken as 1");
+                format!("the factor is [{r}, {g}, {b}]; expected 0 to 1: values above 1 are clamped to 1");
             self.context.warn(&at, message);
         }
         factor.map(|factor| unit(Some(factor), 1.0))
@@ -282,7 +283,7 @@ impl Reader<'_, '_, '_> {
             ior if ior >= 1.0 => ior.min(1e6) as f32,
             ior => {
                 let at = self.document.at(&format!("{}/extensions/KHR_materials_ior/ior", self.pointer));
-                self.context.warn(&at, format!("the index of refraction {ior} cannot be; 1.5 is taken"));
+                self.context.warn(&at, format!("the index of refraction {ior} is invalid; 1.5 is used"));
                 1.5
             }
         }
@@ -297,7 +298,7 @@ impl Reader<'_, '_, '_> {
         Ok(texture.map(|texture| NormalTexture { texture, scale }))
     }
 
-    /// The set of texture coordinates that directions on the surface go by.
+    /// The set of texture coordinates that defines the tangents of the surface.
     fn grain(&self, entry: &json::Material, kind: &MaterialKind, has_normals: bool) -> Option<u32> {
         let MaterialKind::Principled(look) = kind else { return None };
         let extensions = &entry.extensions;
@@ -382,23 +383,23 @@ impl Reader<'_, '_, '_> {
     }
 }
 
-/// A number from 0 to 1.
+/// A number clamped to [0, 1].
 fn unit(number: Option<f64>, otherwise: f32) -> f32 {
     number.map_or(otherwise, |number| number.clamp(0.0, 1.0) as f32)
 }
 
-/// A number of at least 0 that can be computed with.
+/// A number clamped to [0, 1e30].
 fn positive(number: f64) -> f32 {
     number.clamp(0.0, 1e30) as f32
 }
 
-/// Of light that goes the distance, the colour is left: absorption = −ln(colour) / distance.
+/// Beer–Lambert law: white light has the attenuation colour after the distance, so absorption = −ln(colour) / distance.
 fn absorption(volume: &json::Volume) -> [f32; 3] {
     let distance = volume.attenuation_distance.unwrap_or(f64::INFINITY);
     if !(distance > 0.0 && distance.is_finite()) {
         return [0.0; 3];
     }
-    // Nothing at all cannot be left after any distance.
+    // A colour of 0 would need infinite absorption, so it is clamped.
     let color = volume.attenuation_color.unwrap_or([1.0; 3]);
     color.map(|c| positive(-libm::log(c.clamp(1e-6, 1.0)) / distance))
 }

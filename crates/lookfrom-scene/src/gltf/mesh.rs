@@ -17,29 +17,29 @@ use crate::warning::Warning;
 
 use self::topology::Topology;
 
-/// The radius of points and lines, in radii of the sphere around the primitive.
+/// The radius of points and lines, relative to that of the primitive's bounding sphere.
 const THINNESS: f64 = 0.004;
 
-/// The attributes of a primitive's vertices, as the file has them but for v, which runs up.
+/// The attributes of a primitive's vertices as in the file, except for v, which runs up.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Vertices {
     pub(crate) positions: Vec<Vec3>,
-    /// None, or one a vertex.
+    /// Empty, or one per vertex.
     pub(crate) normals: Vec<Vec3>,
-    /// None, or one a vertex; w says whether v grows along normal × tangent.
+    /// Empty, or one per vertex; w is the sign of v's direction along normal × tangent.
     pub(crate) tangents: Vec<Vec4>,
-    /// Sets, each empty or with one a vertex.
+    /// Texture coordinate sets, each empty or with one per vertex.
     pub(crate) uvs: Vec<Vec<Vec2>>,
-    /// None, or one a vertex.
+    /// Empty, or one per vertex.
     pub(crate) colors: Vec<[f32; 3]>,
-    /// None, or one a vertex.
+    /// Empty, or one per vertex.
     pub(crate) opacities: Vec<f32>,
-    /// The vertex indices; `None` is all vertices in order.
+    /// The vertex indices; `None` for all vertices in order.
     pub(crate) indices: Option<Vec<u32>>,
-    /// Whether they are those of a compressed mesh: three for each triangle, even where the mode says strips, as the
-    /// extension allows without saying how.
+    /// Whether the indices are those of a Draco mesh: three per triangle, even where the mode says strips, which the
+    /// extension allows without specifying the result.
     pub(crate) is_compressed: bool,
-    /// The set of texture coordinates that its look needs tangents for.
+    /// The set of texture coordinates that its material needs tangents for.
     pub(crate) grain: Option<u32>,
 }
 
@@ -52,7 +52,7 @@ impl Vertices {
         }
     }
 
-    /// Adds a copy of a vertex, without its tangent, and says which it is.
+    /// Appends a copy of a vertex, without its tangent, and returns its index.
     pub(super) fn repeat(&mut self, vertex: usize) -> u32 {
         fn again<T: Copy>(values: &mut Vec<T>, vertex: usize) {
             if let Some(&value) = values.get(vertex) {
@@ -68,10 +68,10 @@ impl Vertices {
     }
 }
 
-/// Reads the attributes and indices of a primitive at `pointer`. `None`, with a warning, where it has no positions.
+/// Reads the attributes and indices of a primitive at `pointer`. `None`, with a warning, if it has no positions.
 ///
 /// # Errors
-/// If an accessor cannot be read, or is no such attribute.
+/// If an accessor cannot be read, or does not fit the attribute.
 pub(crate) fn vertices(
     document: &Document,
     primitive: &Primitive,
@@ -129,7 +129,7 @@ pub(crate) fn vertices(
         .and_then(|draco| document.unpacked(draco.buffer_view, pointer).ok())
     {
         vertices.is_compressed = true;
-        // It always has indices, and files may forget to say so.
+        // A Draco mesh always has indices, but files may omit the accessor.
         vertices.indices.get_or_insert_with(|| mesh.indices.clone());
     }
     Ok(Some(vertices))
@@ -175,11 +175,11 @@ fn colors(
     check_count(document, vertices.colors.len(), count, pointer)
 }
 
-/// The geometry of a primitive: triangles as a mesh of the scene, points as spheres, lines as curves. `None`, with a warning
-/// where something is odd, if nothing is left.
+/// The geometry of a primitive: triangles as a mesh of the scene, points as spheres, lines as curves. Elements with
+/// invalid positions are left out with a warning; `None` if nothing is left.
 ///
 /// # Errors
-/// If an index is beyond the vertices, or the mode is not known.
+/// If an index is out of range, or the mode is not known.
 pub(crate) fn geometry(
     document: &Document,
     primitive: &Primitive,
@@ -236,7 +236,7 @@ pub(crate) fn geometry(
         Topology::Triangles | Topology::TriangleStrip | Topology::TriangleFan => {
             let mut triangles = topology::triangles(topology, &order);
             let corners = |triangle: &[u32; 3]| triangle.map(|vertex| vertices.positions[vertex as usize]);
-            // Triangles without area hold strips together, and no ray meets one.
+            // Strips are joined by triangles without area, which no ray hits.
             triangles.retain(|triangle| usable(triangle) && has_area(corners(triangle)));
             if let Some(set) = vertices.grain {
                 tangents::complete(&mut vertices, &mut triangles, set);
@@ -274,7 +274,7 @@ impl Order<'_> {
 
 fn push_mesh(scene: &mut Scene, name: &str, vertices: Vertices, triangles: Vec<[u32; 3]>) -> MeshId {
     let Vertices { mut positions, normals, tangents, uvs, colors, opacities, .. } = vertices;
-    // No triangle uses these.
+    // No triangle uses these vertices.
     positions.iter_mut().filter(|position| !position.is_finite()).for_each(|position| *position = Vec3::ZERO);
     let mut sets = uvs.into_iter();
     scene.meshes.push(Mesh {
@@ -291,7 +291,7 @@ fn push_mesh(scene: &mut Scene, name: &str, vertices: Vertices, triangles: Vec<[
     MeshId(scene.meshes.len() as u32 - 1)
 }
 
-/// The radius of points and lines around these places.
+/// The radius of points and lines, for a primitive with these positions.
 fn radius(places: impl Iterator<Item = DVec3>) -> f64 {
     let bounds = places.fold(Bounds::EMPTY, Bounds::with);
     let size = if bounds.radius() > 0.0 { bounds.radius() } else { bounds.center().abs().max_element() };
@@ -299,7 +299,7 @@ fn radius(places: impl Iterator<Item = DVec3>) -> f64 {
     if radius.is_normal() && (radius as f32).is_normal() { radius } else { THINNESS }
 }
 
-/// A straight wire.
+/// A straight curve segment.
 fn strand([a, b]: [Vec3; 2], width: f32) -> Strand {
     Strand {
         points: [a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b],
@@ -308,8 +308,8 @@ fn strand([a, b]: [Vec3; 2], width: f32) -> Strand {
     }
 }
 
-/// A mesh with its places taken through a matrix that cannot be undone, such as one that makes it flat; without normals
-/// and tangents, which such a matrix does not carry over.
+/// A mesh with its positions transformed by a singular matrix, such as one that flattens it; without normals and tangents,
+/// which such a matrix does not transform.
 pub(super) fn flattened(mesh: &Mesh, matrix: &glam::DMat4) -> Mesh {
     let positions: Vec<Vec3> =
         mesh.positions.iter().map(|p| matrix.transform_point3(p.as_dvec3()).as_vec3()).collect();

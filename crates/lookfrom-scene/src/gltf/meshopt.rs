@@ -1,7 +1,7 @@
 //! Decoder for compressed buffer views (`EXT_meshopt_compression`, `KHR_meshopt_compression`).
 //!
-//! Written from the specifications' appendices (Kapoulkine 2016–2026). Streams are hostile input: every read is checked,
-//! and the result grows only as far as the stream has been understood. What the bytes mean is the accessors' matter.
+//! Written from the specifications' appendices (Kapoulkine 2016–2026). Streams are untrusted input: every read is
+//! checked, and the result grows only as far as the stream has been decoded. The bytes are interpreted by `accessor`.
 
 mod attributes;
 mod filter;
@@ -14,45 +14,45 @@ use crate::files::Limits;
 /// The compression mode of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mode {
-    /// Elements of any kind, as differences of bytes.
+    /// Elements of any kind, as deltas of bytes.
     Attributes,
-    /// Indices of a list of triangles.
+    /// Indices of a triangle list.
     Triangles,
-    /// Indices of anything.
+    /// Indices of any topology.
     Indices,
 }
 
 /// The filter applied to decoded elements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Filter {
-    /// Nothing.
+    /// No filter.
     #[default]
     None,
-    /// Unit vectors were octahedra.
+    /// Unit vectors from octahedral encoding.
     Octahedral,
-    /// Unit quaternions left out their largest component.
+    /// Unit quaternions stored without their largest component.
     Quaternion,
-    /// Floats were mantissa and exponent.
+    /// Floats stored as mantissa and exponent.
     Exponential,
-    /// Colours were luma and chroma.
+    /// Colours stored as luma and chroma.
     Color,
 }
 
 /// The extension's properties of a buffer view.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
-    /// Elements.
+    /// Number of elements.
     pub(crate) count: u64,
-    /// Bytes of each.
+    /// Bytes per element.
     pub(crate) stride: u64,
     /// The compression mode.
     pub(crate) mode: Mode,
-    /// What follows.
+    /// The filter applied after decoding.
     pub(crate) filter: Filter,
 }
 
 impl Layout {
-    /// The mode and filter of the JSON's names.
+    /// The layout of a buffer view's extension.
     ///
     /// # Errors
     /// `Unsupported` for a mode or filter that is not known.
@@ -78,20 +78,20 @@ impl Layout {
     }
 }
 
-/// Why a stream cannot be decoded.
+/// The result of decoding; the error is its message.
 type Decoded<T> = std::result::Result<T, &'static str>;
 
 const TOO_SHORT: &str = "the compressed stream ends too early";
 const LEFT_OVER: &str = "the compressed stream has bytes left over";
 
-/// The `count · stride` bytes that `bytes` stand for.
+/// The `count · stride` bytes that `bytes` decode to.
 ///
 /// # Errors
 /// `Invalid` for a layout that the extension does not allow, `Syntax` for a stream that is not of its mode, too short or
 /// too long, `Limit` for more elements than [`Limits::elements`].
 pub(crate) fn decode(bytes: &[u8], layout: &Layout, at: &Location, limits: &Limits) -> Result<Vec<u8>> {
     let &Layout { count, stride, mode, filter } = layout;
-    // The largest stride that the extension knows, times any count within the limits, is far from overflow.
+    // The largest stride that the extension allows, times any count within the limits, does not overflow.
     let is_allowed = match mode {
         Mode::Attributes => stride.is_multiple_of(4) && (4..=256).contains(&stride),
         Mode::Triangles => count.is_multiple_of(3) && [2, 4].contains(&stride),
@@ -131,12 +131,12 @@ pub(crate) fn decode(bytes: &[u8], layout: &Layout, at: &Location, limits: &Limi
     Ok(decoded)
 }
 
-/// Indices of 2 or 4 bytes.
+/// Indices stored in 2 or 4 bytes each.
 fn packed(indices: &[u32], stride: usize) -> Vec<u8> {
     indices.iter().flat_map(|index| index.to_le_bytes().into_iter().take(stride)).collect()
 }
 
-/// Bytes that are read one after another.
+/// A reader of bytes in order.
 struct Stream<'a> {
     rest: &'a [u8],
 }
@@ -152,7 +152,7 @@ impl<'a> Stream<'a> {
         self.take(1).map(|byte| byte[0])
     }
 
-    /// An unsigned number in groups of 7 bits, the low ones first (LEB128), of at most five bytes.
+    /// An unsigned integer in groups of 7 bits, the low ones first (LEB128), of at most five bytes.
     fn number(&mut self) -> Decoded<u32> {
         let mut number = 0;
         for shift in [0, 7, 14, 21, 28] {

@@ -7,11 +7,11 @@ use super::json::Whole;
 use super::mesh::Vertices;
 use crate::error::Result;
 
-/// Adds the displacements of a primitive's targets, times their weights. Targets without a weight are not read, nor are
-/// displacements of what the primitive does not have.
+/// Adds a primitive's morph target displacements, times their weights. Targets without a weight are not read, and
+/// displacements of attributes that the primitive does not have are ignored.
 ///
 /// # Errors
-/// If displacements cannot be read, or are not one a vertex.
+/// If displacements cannot be read, or there is not one per vertex.
 pub(super) fn morph(
     document: &Document,
     targets: &[BTreeMap<String, Whole>],
@@ -40,7 +40,7 @@ pub(super) fn morph(
                 }
                 "TANGENT" if !vertices.tangents.is_empty() => {
                     let steps = read(vertices.tangents.len())?;
-                    // Their w stays.
+                    // w, the handedness, stays.
                     let directions = vertices.tangents.iter_mut().map(|tangent| {
                         let [x, y, z, _] = tangent.as_mut();
                         [x, y, z]
@@ -75,7 +75,7 @@ pub(super) fn morph(
     Ok(())
 }
 
-/// Colours and, where displacements have a fourth number, opacities; both stay in 0 … 1.
+/// Adds displacements of colours and, where they have a fourth component, of opacities; both are clamped to [0, 1].
 fn colors(
     document: &Document,
     accessor: Whole,
@@ -100,7 +100,7 @@ fn colors(
     Ok(())
 }
 
-/// Moves each vector by its displacement times the weight.
+/// Adds to each vector its displacement times the weight.
 fn add<'v, const N: usize>(vectors: impl Iterator<Item = &'v mut [f32; N]>, steps: &[[f32; N]], weight: f64) {
     for (vector, step) in vectors.zip(steps) {
         for (number, &step) in vector.iter_mut().zip(step) {

@@ -14,16 +14,16 @@ pub(crate) struct Tree {
     pub(crate) world_from_node: Vec<DMat4>,
     /// The nodes of the scene, parents before their children.
     pub(crate) shown: Vec<usize>,
-    /// The number of the scene, where the file has any.
+    /// The index of the scene, if the file has any.
     pub(crate) scene: Option<usize>,
 }
 
 impl Node {
-    /// Its own transform at rest.
+    /// The local transform at rest.
     pub(crate) fn at_rest(&self) -> DMat4 {
         if let Some(matrix) = self.matrix {
             let mut matrix = DMat4::from_cols_array(&matrix);
-            // What a projection would need is not for nodes.
+            // The last row of an affine transform.
             for (axis, w) in [(0, 0.0), (1, 0.0), (2, 0.0), (3, 1.0)] {
                 matrix.col_mut(axis).w = w;
             }
@@ -35,22 +35,22 @@ impl Node {
     }
 }
 
-/// Scaled, then turned by a quaternion of any length but zero, then moved.
+/// Scale, then rotation by a quaternion of any non-zero length, then translation.
 pub(crate) fn placed(translation: DVec3, rotation: DVec4, scale: DVec3) -> DMat4 {
     let rotation = DQuat::from_vec4(rotation.normalize_or(DVec4::W));
     DMat4::from_scale_rotation_translation(scale, rotation, translation)
 }
 
-/// Whether all numbers of a transform are such that points and rays can have, too.
+/// Whether all values of a transform are finite in single precision.
 fn is_within_reach(matrix: &DMat4) -> bool {
     matrix.to_cols_array().iter().all(|&number| (number as f32).is_finite())
 }
 
 impl Tree {
-    /// The tree that the nodes make with these transforms, one for each.
+    /// The hierarchy of the nodes, with one local transform for each.
     ///
     /// # Errors
-    /// If a node is its own ancestor, if a child or a node of the scene does not exist, or the scene that is requested.
+    /// If a node is its own ancestor, or if a child, a node of the scene or the requested scene does not exist.
     pub(crate) fn new(document: &Document, local: &[DMat4], context: &mut LoadContext<'_>) -> Result<Self> {
         let nodes = &document.root.nodes;
         let mut parents: Vec<Option<usize>> = vec![None; nodes.len()];
@@ -72,7 +72,7 @@ impl Tree {
             }
         }
 
-        // Downwards from those without parents; who is not met then is in a circle.
+        // Top-down from the roots; nodes that are not reached form cycles.
         let is_child = |parent: usize, child: usize| parents.get(child).is_some_and(|&p| p == Some(parent));
         let mut world_from_node = vec![DMat4::IDENTITY; nodes.len()];
         let mut is_met = vec![false; nodes.len()];
@@ -90,7 +90,7 @@ impl Tree {
                 .hint("take it out of the children of one of its descendants"));
         }
 
-        // Those of the scene.
+        // The nodes of the scene.
         let (scene, mut waiting) = Self::roots(document, &parents, context)?;
         waiting.reverse();
         let mut shown = Vec::new();
@@ -113,7 +113,7 @@ impl Tree {
         Ok(Self { world_from_node, shown, scene })
     }
 
-    /// The scene's number and the nodes that it names; without any scene, all that have no parent.
+    /// The index of the scene and its root nodes; all nodes without a parent if the file has no scene.
     fn roots(
         document: &Document,
         parents: &[Option<usize>],

@@ -1,7 +1,7 @@
 //! Node transforms and morph weights at one time of an animation, or at rest (specification, §3.11).
 //!
-//! [`LoadContext::import`] selects the animation and the time. Channels that extensions bring (`KHR_animation_pointer`) are passed over with a
-//! warning.
+//! [`LoadContext::import`] selects the animation and the time. Channels of extensions (`KHR_animation_pointer`) are
+//! ignored with a warning.
 
 use glam::{DMat4, DVec3, DVec4};
 
@@ -15,9 +15,9 @@ use crate::files::LoadContext;
 
 /// The pose of all nodes.
 pub(crate) struct Pose {
-    /// The transform of each node within its parent.
+    /// Transform of each node relative to its parent.
     pub(crate) local: Vec<DMat4>,
-    /// For each node, how much of its mesh's morph targets there is, where the node or the animation says so.
+    /// Morph target weights of each node, where the node or the animation gives any.
     pub(crate) weights: Vec<Option<Vec<f64>>>,
 }
 
@@ -33,7 +33,7 @@ struct Placement {
 impl Placement {
     fn at_rest(node: &Node) -> Self {
         if node.matrix.is_some() {
-            // Animations are for nodes without matrices; take the matrix apart where that can be done.
+            // Only nodes without a matrix are animated by the specification; others are decomposed where possible.
             let matrix = node.at_rest();
             if matrix.determinant().is_normal() && matrix.is_finite() {
                 let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
@@ -51,7 +51,7 @@ impl Placement {
 /// The requested pose.
 ///
 /// # Errors
-/// If there is no such animation, or what it names does not exist.
+/// If there is no such animation, or an object that it refers to does not exist.
 pub(crate) fn pose(document: &Document, context: &mut LoadContext<'_>) -> Result<Pose> {
     let nodes = &document.root.nodes;
     let mut pose = Pose {
@@ -64,7 +64,7 @@ pub(crate) fn pose(document: &Document, context: &mut LoadContext<'_>) -> Result
     Ok(pose)
 }
 
-/// The number of the requested animation.
+/// The index of the requested animation.
 fn chosen(document: &Document, context: &mut LoadContext<'_>) -> Result<Option<usize>> {
     let animations = &document.root.animations;
     match &context.import.animation {
@@ -96,9 +96,9 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, context: &mut Loa
         )?;
         let asked = format!("/animations/{index}/samplers/{}", channel.sampler.0);
         let Some(target) = channel.target.node else {
-            // Channels of `KHR_animation_pointer` may be many; that it is not known is said once.
+            // `KHR_animation_pointer` may have many channels; the extension as a whole has one warning already.
             if channel.target.path != "pointer" {
-                context.warn(&document.at(&pointer), "the channel moves no node and is passed over");
+                context.warn(&document.at(&pointer), "the channel moves no node and is ignored");
             }
             continue;
         };
@@ -109,7 +109,7 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, context: &mut Loa
             "rotation" => Some(4),
             "weights" => None,
             path => {
-                let message = format!("the channel moves {path:?}, which is not known, and is passed over");
+                let message = format!("the channel moves {path:?}, which is not known, and is ignored");
                 context.warn(&document.at(&pointer), message);
                 continue;
             }
@@ -117,7 +117,7 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, context: &mut Loa
         let Some(numbers) = sample(document, sampler, width, time, &asked)? else {
             context.warn(
                 &document.at(&pointer),
-                "the channel says nothing that is a number, and is passed over",
+                "the channel's values are infinite or not numbers, and it is ignored",
             );
             continue;
         };
@@ -143,7 +143,8 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, context: &mut Loa
     Ok(())
 }
 
-/// The value of a sampler with this number of components; `None` stands for one for each morph target. The result is `None` where a component is not finite.
+/// The value of a sampler with this number of components; `None` stands for one per morph target. The result is `None` if
+/// a component is not finite.
 fn sample(
     document: &Document,
     sampler: &AnimationSampler,

@@ -1,7 +1,7 @@
 //! Linear blend skinning (specification, §3.7.3).
 //!
-//! Joints are nodes anywhere in the tree, and stand for the node of the mesh, whose own transform does not count: so a
-//! skinned mesh is already in the world.
+//! Joints are nodes anywhere in the hierarchy and replace the transform of the mesh's own node, so the vertices of a
+//! skinned mesh are in world space.
 
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
@@ -14,9 +14,9 @@ use crate::error::Result;
 /// The joint matrices of a skin.
 #[derive(Clone, Debug)]
 pub(super) struct Skin {
-    /// Of each joint: from where vertices were bound to it.
+    /// Joint matrices: from the bind pose to skinned space.
     skinned_from_bound: Vec<DMat4>,
-    /// From where these lead to.
+    /// From skinned space to world space: the identity or a reflection.
     pub(super) world_from_skinned: DMat4,
 }
 
@@ -28,7 +28,7 @@ pub(super) struct Influence {
 }
 
 impl Skin {
-    /// The skin of this number in a tree of nodes.
+    /// The skin with this index in a node hierarchy.
     ///
     /// # Errors
     /// If the skin, its joints or its matrices do not exist.
@@ -45,7 +45,7 @@ impl Skin {
             let mut matrix = DMat4::IDENTITY;
             if let Some(columns) = bound.get(place) {
                 matrix = DMat4::from_cols_array(&columns.map(f64::from));
-                // What a projection would need is not for joints.
+                // The last row of an affine transform.
                 for (axis, w) in [(0, 0.0), (1, 0.0), (2, 0.0), (3, 1.0)] {
                     matrix.col_mut(axis).w = w;
                 }
@@ -55,8 +55,8 @@ impl Skin {
         Ok(Self::of(joints))
     }
 
-    /// Of these matrices. Where all of them mirror, the mesh is mirrored as a whole, so that the outsides of its
-    /// triangles stay outside.
+    /// A skin with these joint matrices. If all of them contain a reflection, it is factored out of them, so that the
+    /// triangles keep their outsides.
     pub(super) fn of(mut world_from_bound: Vec<DMat4>) -> Self {
         let mirrors = |matrix: &DMat4| matrix.determinant() < 0.0;
         let is_mirrored = !world_from_bound.is_empty() && world_from_bound.iter().all(mirrors);
@@ -64,16 +64,15 @@ impl Skin {
             true => DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)),
             false => DMat4::IDENTITY,
         };
-        // A mirror is its own inverse.
+        // A reflection is its own inverse.
         world_from_bound.iter_mut().for_each(|matrix| *matrix = world_from_skinned * *matrix);
         Self { skinned_from_bound: world_from_bound, world_from_skinned }
     }
 
-    /// Takes a primitive's vertices to where its joints have them. `false` where it has none: then it is as stiff as any
-    /// other mesh.
+    /// Skins a primitive's vertices. `false` if the primitive has no joints: then it is transformed like any other mesh.
     ///
     /// # Errors
-    /// If joints or weights cannot be read, are not one a vertex, or if there is no such joint.
+    /// If joints or weights cannot be read, if there is not one per vertex, or if a joint does not exist.
     pub(super) fn bend(
         &self,
         document: &Document,
@@ -117,15 +116,15 @@ impl Skin {
         Ok(!sets.is_empty())
     }
 
-    /// A joint that has a weight but is not there.
+    /// A joint that has a weight but does not exist.
     fn beyond(&self, set: &[Influence]) -> Option<u32> {
         let mut used = set.iter().flat_map(|influence| influence.joints.into_iter().zip(influence.weights));
         let is_beyond = |joint: u32| joint as usize >= self.skinned_from_bound.len();
         used.find(|&(joint, weight)| weight > 0.0 && is_beyond(joint)).map(|(joint, _)| joint)
     }
 
-    /// Takes vertices along. Each set has one influence a vertex; weights need not sum to 1. A vertex without any weight
-    /// follows its first joint.
+    /// Skins vertices. Each set has one influence per vertex; weights need not sum to 1. A vertex without weights follows
+    /// its first joint.
     pub(super) fn apply(&self, sets: &[Vec<Influence>], vertices: &mut Vertices) {
         if sets.is_empty() {
             return;
@@ -163,19 +162,19 @@ impl Skin {
     }
 }
 
-/// Weights are finite and not negative.
+/// A weight: 0 if it is not finite or negative.
 fn usable(weight: f32) -> f32 {
     if weight > 0.0 && weight.is_finite() { weight } else { 0.0 }
 }
 
-/// The matrix for normals: the inverse transpose, but for a positive factor, which every matrix has.
+/// The matrix for normals: the inverse transpose up to a positive factor, which exists for singular matrices, too.
 fn across(matrix: DMat3) -> DMat3 {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
     if matrix.determinant() < 0.0 { cofactors * -1.0 } else { cofactors }
 }
 
-/// Of unit length, or 0.
+/// The normalised vector, or 0.
 fn direction(vector: DVec3) -> Vec3 {
     vector.normalize_or_zero().as_vec3()
 }

@@ -1,7 +1,7 @@
 //! Tangents of meshes whose file has none, by MikkTSpace (specification, §3.7.2.1; Mikkelsen 2008).
 //!
-//! The crate `bevy_mikktspace` gives the tangents that normal maps are baked with. They belong to corners of triangles,
-//! so vertices where they differ, as at the seams of mirrored texture coordinates, become several.
+//! The crate `bevy_mikktspace` computes the tangents that normal maps are baked with. They belong to corners of
+//! triangles, so vertices whose corners differ, as at the seams of mirrored texture coordinates, are split.
 
 use std::collections::BTreeMap;
 
@@ -10,9 +10,9 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::mesh::Vertices;
 
-/// Gives vertices tangents for one of their sets of texture coordinates, where they have normals and that set, but no
-/// tangents yet. w is 1 where v, which runs up, grows along normal × tangent, and −1 where it grows against it, as glTF
-/// has it in its own tangents. A vertex that no triangle uses has the tangent 0.
+/// Adds tangents for one set of texture coordinates, if the vertices have normals and that set, but no tangents yet. w is
+/// 1 where v, which runs up, grows along normal × tangent, and −1 where it grows in the opposite direction, as in glTF's
+/// own tangents. A vertex that no triangle uses has the tangent 0.
 pub(super) fn complete(vertices: &mut Vertices, triangles: &mut [[u32; 3]], set: u32) {
     let Some(uvs) = vertices.uvs.get(set as usize).filter(|uvs| !uvs.is_empty()) else { return };
     if vertices.normals.is_empty() || !vertices.tangents.is_empty() {
@@ -31,7 +31,7 @@ pub(super) fn tangents(
 ) -> Vec<[Vec4; 3]> {
     let mut surface =
         Surface { positions, normals, uvs, triangles, tangents: vec![[Vec4::W; 3]; triangles.len()] };
-    // There are no kinds of errors.
+    // The error type has no values.
     let Ok(()) = generate_tangents(&mut surface) else { return surface.tangents };
     surface.tangents
 }
@@ -44,7 +44,7 @@ struct Surface<'a> {
     tangents: Vec<[Vec4; 3]>,
 }
 
-/// Arithmetic with the same bits everywhere.
+/// Arithmetic with identical bits on every platform.
 struct Portable;
 
 impl Ops for Portable {
@@ -90,7 +90,7 @@ impl Geometry<Portable> for Surface<'_> {
     }
 }
 
-/// Hands the tangents of corners to their vertices; where one has been given another already, a copy of it takes this.
+/// Assigns the tangents of corners to their vertices; a vertex that already has a different one is copied.
 fn split(vertices: &mut Vertices, triangles: &mut [[u32; 3]], corners: &[[Vec4; 3]]) {
     let mut given: Vec<Option<Vec4>> = vec![None; vertices.positions.len()];
     let mut copies: BTreeMap<(u32, [u32; 4]), u32> = BTreeMap::new();

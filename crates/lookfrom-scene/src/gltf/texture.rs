@@ -1,8 +1,8 @@
 //! Textures: image, sampler, channels and transform (specification, §3.8; `KHR_texture_transform`, `EXT_texture_webp`,
 //! `KHR_texture_basisu`).
 //!
-//! In glTF v runs down from the picture's upper edge, here it runs up: meshes have 1 − v, and [`mapping`] says of that
-//! what the file says of v. Only pictures that are used are decoded, once for colours and once for numbers, side by side.
+//! In glTF v runs down from the image's upper edge, here it runs up: meshes have 1 − v, and [`mapping`] converts glTF's
+//! transforms of v. Only images that are used are decoded, once as colours and once as data, in parallel.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,37 +18,37 @@ use crate::parallel;
 use crate::scene::{ImageId, Scene, TextureId};
 use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
 
-/// The number of images of [`crate::Limits::texels`] one file may have in all.
+/// The maximum number of texels of all images of a file, in units of [`crate::Limits::texels`].
 const PICTURES_OF_MOST_TEXELS: u64 = 4;
 
 /// The role of an image: colours or data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Meaning {
-    /// Colours by the sRGB curve; opacity is linear.
+    /// sRGB-encoded colours; opacity is linear.
     Color,
-    /// Numbers as they are.
+    /// Linear values.
     Number,
-    /// The same, as normals.
+    /// Linear values, as normals.
     Normal,
 }
 
-/// A texture with all that it needs, and where it is used.
+/// A reference to a texture.
 #[derive(Clone, Copy)]
 pub(super) struct Use<'a> {
-    /// The JSON of the file.
+    /// The JSON of the reference.
     pub(super) info: Option<&'a TextureInfo>,
-    /// The pointer of that.
+    /// The JSON pointer of the reference.
     pub(super) pointer: &'a str,
 }
 
-/// The textures and pictures that materials asked for so far.
+/// The textures and images that materials have requested so far.
 pub(super) struct Textures<'d> {
     document: &'d Document,
-    /// By the first image of the file that has the same content.
+    /// By the first image of the file with the same content.
     pictures: BTreeMap<(usize, Meaning), ImageId>,
     /// The first image with the same content as this one.
     firsts: Vec<usize>,
-    /// For those who cannot read an image that an extension names: the one to take instead.
+    /// Fallbacks for images that an extension names and that cannot be read.
     instead: BTreeMap<usize, usize>,
 }
 
@@ -77,7 +77,7 @@ impl<'d> Textures<'d> {
         }
     }
 
-    /// A number: a factor, times one channel of a texture where there is one.
+    /// A scalar: a factor, times one channel of a texture where there is one.
     ///
     /// # Errors
     /// As [`Textures::color`].
@@ -88,13 +88,13 @@ impl<'d> Textures<'d> {
         channel: Channel,
         scene: &mut Scene,
     ) -> Result<Scalar> {
-        // Opacity is linear in pictures of colours, too: so a picture that has both is decoded once.
+        // Opacity is linear in colour images, too, so an image with both is decoded once.
         let meaning = if channel == Channel::Alpha { Meaning::Color } else { Meaning::Number };
         let found = self.image(texture, channel, meaning, factor, false, scene)?;
         Ok(found.map_or(Scalar::Value(factor), Scalar::Texture))
     }
 
-    /// A texture of a picture; `None` where none is named.
+    /// A texture of an image; `None` where no texture is named.
     ///
     /// # Errors
     /// As [`Textures::color`].
@@ -135,7 +135,7 @@ impl<'d> Textures<'d> {
         Ok(Some(self.push(kind, texture.pointer, scene)))
     }
 
-    /// One times the other.
+    /// The product of two colours.
     pub(super) fn product(&self, a: Color, b: Color, pointer: &str, scene: &mut Scene) -> Color {
         if a == Color::gray(1.0) {
             return b;
@@ -153,7 +153,7 @@ impl<'d> Textures<'d> {
         TextureId(scene.textures.len() as u32 - 1)
     }
 
-    /// Decodes the pictures that were requested. One that cannot be is white, with a warning.
+    /// Decodes the requested images. An image that cannot be read is white, with a warning.
     pub(super) fn decode(self, context: &mut LoadContext<'_>, scene: &mut Scene) {
         let Self { document, pictures, instead, .. } = self;
         let (files, limits) = (context.files, context.limits);
@@ -170,8 +170,7 @@ impl<'d> Textures<'d> {
                     }
                 });
             let image = image.unwrap_or_else(|error| {
-                let message =
-                    format!("the picture cannot be used, and white is in its place: {}", error.message);
+                let message = format!("the picture cannot be used, white is used instead: {}", error.message);
                 context.warn(&error.at, message);
                 blank(document, index, meaning)
             });
@@ -185,7 +184,7 @@ impl<'d> Textures<'d> {
     }
 }
 
-/// The image of a texture: extensions name better ones than those for whom they are not there.
+/// The image of a texture: the one of an extension if there is one, else the fallback.
 fn source(entry: &TextureEntry) -> Option<Whole> {
     let others = [&entry.extensions.basisu, &entry.extensions.webp];
     others.into_iter().flatten().find_map(|other| other.source).or(entry.source)
@@ -205,7 +204,7 @@ fn sampling(sampler: Option<&Sampler>) -> ([Wrap; 2], TexelFilter) {
     ([wrap(sampler.wrap_s), wrap(sampler.wrap_t)], filter)
 }
 
-/// From the coordinates (u, w = 1 − v) of our meshes to (s, 1 − t), where s and t are glTF's: scaled, turned, moved.
+/// The affine map from the coordinates (u, w = 1 − v) of our meshes to (s, 1 − t), where s and t are glTF's.
 fn mapping(info: &TextureInfo) -> Mapping {
     let transform = info.extensions.transform.as_ref();
     let set = transform.and_then(|transform| transform.tex_coord).or(info.tex_coord).unwrap_or_default();
@@ -224,7 +223,7 @@ fn mapping(info: &TextureInfo) -> Mapping {
     Mapping::Affine { set, matrix: rows.map(|row| row.map(finite)) }
 }
 
-/// Decodes one picture.
+/// Decodes one image.
 fn picture(
     document: &Document,
     index: usize,
@@ -270,7 +269,7 @@ fn decoded(
     image::decode(bytes, &document.at(pointer).to_string(), encoding, context)
 }
 
-/// The placeholder of a picture that cannot be used.
+/// The placeholder of an image that cannot be used.
 fn blank(document: &Document, index: usize, meaning: Meaning) -> Image {
     let name = document.at(&format!("/images/{index}")).to_string();
     let texel = if meaning == Meaning::Normal { [0.5, 0.5, 1.0] } else { [1.0; 3] };

@@ -5,16 +5,16 @@ use glam::{DQuat, DVec4};
 /// The interpolation between two keyframes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Interpolation {
-    /// On a straight line, or a great circle for rotations.
+    /// Linear, and along a great arc for rotations.
     Linear,
-    /// At the earlier one.
+    /// The value of the earlier keyframe.
     Step,
-    /// On Hermite's cubic: each key has a tangent before and one after its value.
+    /// Cubic Hermite: each keyframe has a tangent before and one after its value.
     CubicSpline,
 }
 
 impl Interpolation {
-    /// By the word that files say.
+    /// The interpolation of a file's keyword.
     pub(super) fn of(word: &str) -> Option<Self> {
         Some(match word {
             "LINEAR" => Self::Linear,
@@ -24,26 +24,26 @@ impl Interpolation {
         })
     }
 
-    /// Elements that a key has.
+    /// Number of elements per keyframe.
     pub(super) fn elements(self) -> usize {
         if self == Self::CubicSpline { 3 } else { 1 }
     }
 }
 
-/// Values over time.
+/// Keyframes of a value over time.
 pub(super) struct Track<'a> {
-    /// In seconds, growing: at least one.
+    /// In seconds, increasing: at least one.
     pub(super) times: &'a [f32],
-    /// `width` numbers for each element of each key.
+    /// `width` numbers for each element of each keyframe.
     pub(super) values: &'a [f32],
-    /// Numbers of an element.
+    /// Numbers per element.
     pub(super) width: usize,
     /// The interpolation.
     pub(super) interpolation: Interpolation,
 }
 
 impl Track<'_> {
-    /// The value at a time, which is clamped to the first and last key; NaN is the first.
+    /// The value at a time, which is clamped to the first and last keyframe; NaN gives the first.
     pub(super) fn vector(&self, time: f64) -> Vec<f64> {
         let (key, part, span) = self.place(time);
         let blend = |f: &dyn Fn(f64, f64) -> f64| {
@@ -73,7 +73,7 @@ impl Track<'_> {
         }
     }
 
-    /// The same for quaternions (x, y, z, w): of unit length where the keys are, the shorter way around.
+    /// The same for quaternions (x, y, z, w): of unit length if the keyframes are, along the shorter arc.
     pub(super) fn rotation(&self, time: f64) -> DVec4 {
         let unit = |numbers: &[f64]| match numbers {
             &[x, y, z, w] => DVec4::new(x, y, z, w).normalize_or_zero(),
@@ -88,7 +88,7 @@ impl Track<'_> {
         slerp(DQuat::from_vec4(from), DQuat::from_vec4(to), part).into()
     }
 
-    /// The key before a time, how far on the way to the next one it is, and the time between both.
+    /// The keyframe before a time, the fraction of the way to the next one, and the time between both.
     fn place(&self, time: f64) -> (usize, f64, f64) {
         let next = self.times.partition_point(|&key| f64::from(key) <= time);
         if next == 0 || next == self.times.len() {
@@ -96,7 +96,7 @@ impl Track<'_> {
         }
         let (from, to) = (f64::from(self.times[next - 1]), f64::from(self.times[next]));
         let span = to - from;
-        // Times that do not grow are nowhere between.
+        // Decreasing or equal times have nothing between them.
         let part = (time - from) / span;
         if part > 0.0 && part < 1.0 { (next - 1, part, span) } else { (next - 1, 0.0, 0.0) }
     }
@@ -110,7 +110,7 @@ impl Track<'_> {
     }
 }
 
-/// On the great circle between two unit quaternions (Shoemake 1985), the shorter way around.
+/// Spherical interpolation between two unit quaternions (Shoemake 1985), along the shorter arc.
 fn slerp(from: DQuat, to: DQuat, part: f64) -> DQuat {
     let cos = from.dot(to);
     // A quaternion and its opposite are the same rotation.
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn a_cubic_is_hermites() {
-        // Keys: tangent before, value, tangent after; a second between 1 and 3.
+        // Keyframes: tangent before, value, tangent after; between the times 1 and 3.
         let track = track(&[1.0, 3.0], &[9.0, 2.0, 1.0, -2.0, 4.0, 9.0], Interpolation::CubicSpline);
         // By hand at u = ½: ½·2 + ½·4 + 2·(⅛·1 − ⅛·(−2)) = 3.75.
         assert_eq!(track.vector(2.0), [3.75]);
@@ -158,7 +158,7 @@ mod tests {
             (track.vector(0.0), track.vector(1.0), track.vector(3.0)),
             (vec![2.0], vec![2.0], vec![4.0])
         );
-        // It leaves with the tangent after and reaches with the tangent before.
+        // It starts with the tangent after the first value and ends with the tangent before the second.
         let slope = |from: f64, to: f64| (track.vector(to)[0] - track.vector(from)[0]) / (to - from);
         assert!((slope(1.0, 1.0 + 1e-6) - 1.0).abs() < 1e-4);
         assert!((slope(3.0 - 1e-6, 3.0) + 2.0).abs() < 1e-4);
@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn rotations_take_the_shorter_way_at_even_speed() {
-        // From no turn to a turn by `angle` around z.
+        // From no rotation to a rotation by `angle` about z.
         for exponent in -30..=7 {
             let angle = 2f64.powi(exponent) * 0.0245;
             for sign in [1.0, -1.0] {
@@ -176,7 +176,7 @@ mod tests {
                 let times = [0.0, 1.0];
                 let track =
                     Track { times: &times, values: &values, width: 4, interpolation: Interpolation::Linear };
-                // What the rounded quaternion really is.
+                // The exact angle of the rounded quaternion.
                 let reached = 2.0 * f64::atan2(f64::from(to[2]) * sign, f64::from(to[3]) * sign);
                 for part in [0.125, 0.5, 0.75] {
                     let at = track.rotation(part);

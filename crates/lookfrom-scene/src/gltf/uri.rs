@@ -4,10 +4,10 @@ use crate::error::{Error, ErrorKind, Location, Result};
 
 /// The content of a `uri`.
 pub(crate) enum Uri {
-    /// Its own bytes.
+    /// Embedded bytes.
     Data(Vec<u8>),
-    /// A file's name relative to this file: as it is meant, and as it is written where that differs; then with slashes
-    /// for backslashes.
+    /// The path of a file relative to this file: percent-decoded, as written where that differs, and each with slashes
+    /// instead of backslashes.
     Names(Vec<String>),
 }
 
@@ -44,7 +44,7 @@ pub(super) fn read(uri: &str, at: &Location) -> Result<Uri> {
         _ => {}
     }
     names.push(written);
-    // Programs for Windows may write names as they are there.
+    // Programs for Windows may write backslashes.
     let turned: Vec<String> =
         names.iter().filter(|name| name.contains('\\')).map(|name| name.replace('\\', "/")).collect();
     names.extend(turned);
@@ -56,7 +56,7 @@ fn strip_scheme<'a>(uri: &'a str, scheme: &str) -> Option<&'a str> {
     start.eq_ignore_ascii_case(scheme).then(|| &uri[scheme.len()..])
 }
 
-/// The beginning of something that may be long.
+/// The beginning of a long text, for messages.
 fn shown(uri: &str) -> String {
     let start: String = uri.chars().take(60).collect();
     if start.len() < uri.len() { start + "…" } else { start }
@@ -83,7 +83,7 @@ fn percent_decoded(text: &str) -> Vec<u8> {
 
 /// Not a digit.
 const NONE: u8 = 255;
-/// To be passed over: white space and what fills up the end.
+/// To be skipped: white space and padding.
 const SKIP: u8 = 254;
 
 /// The value of each byte as a base64 digit (RFC 4648, both alphabets).
@@ -109,7 +109,7 @@ fn base64(text: &[u8], at: &Location) -> Result<Vec<u8>> {
     let (mut word, mut digits) = (0_u32, 0);
     let mut i = 0;
     while i < text.len() {
-        // Four digits at a time while there is nothing between them.
+        // Four digits at a time while nothing is between them.
         if digits == 0
             && let Some(&[a, b, c, d]) = text.get(i..i + 4)
         {

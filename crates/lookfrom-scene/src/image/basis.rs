@@ -1,8 +1,8 @@
 //! Decoders for the Basis Universal formats of KTX 2 files, ETC1S in BasisLZ and UASTC, to 8-bit RGBA.
 //!
-//! Whatever bytes there are, the answer is texels or a [`Damage`]: codes and indices are looked up with `get`, numbers of bits are
-//! those of tables here. Khronos, "KTX File Format Specification", version 2.0 (2021), sections on BasisLZ; Binomial, "UASTC LDR
-//! 4x4 Texture Specification" (2020). ETC1S, BasisLZ and UASTC are by Rich Geldreich and Stephanie Hurlburt.
+//! Arbitrary bytes give texels or a [`Damage`]: codes and indices are looked up with `get`, bit counts come from tables
+//! here. Khronos, "KTX File Format Specification", version 2.0 (2021), sections on BasisLZ; Binomial, "UASTC LDR 4x4
+//! Texture Specification" (2020). ETC1S, BasisLZ and UASTC are by Rich Geldreich and Stephanie Hurlburt.
 
 mod codebook;
 mod etc1s;
@@ -12,21 +12,21 @@ mod uastc;
 pub(super) use self::etc1s::etc1s;
 pub(super) use self::uastc::{BLOCK, uastc};
 
-/// The kind of damage of a file.
+/// A description of the damage to a file.
 pub(super) type Damage = &'static str;
 
-/// Columns and rows.
+/// Width and height.
 pub(super) type Size = [usize; 2];
 
-/// Red, green, blue, opacity.
+/// Red, green, blue, alpha.
 type Texel = [u8; 4];
 
-/// Columns and rows of blocks that cover a picture.
+/// The number of columns and rows of blocks that cover an image.
 fn blocks(size: Size) -> Size {
     size.map(|length| length.div_ceil(4))
 }
 
-/// Puts the 4 × 4 texels of each block where they belong, row by row from the top; those beyond the picture are dropped.
+/// Copies 4 × 4 blocks to their places, row by row from the top; texels beyond the image are dropped.
 fn lay<const N: usize>(
     texels: &mut [[u8; N]],
     [width, _]: Size,

@@ -1,41 +1,41 @@
 //! Comparison of two images: error metrics, and z-tests against their measured variance.
 //!
-//! Means and errors in numbers; and where both pictures know their variance (channels `Variance.R G B`: of *one* sample, as pbrt's
-//! `gbuffer` film writes them and ours does), a z-test of each pixel and of each block of pixels: the difference in shares of
-//! the standard error that both sides' noise gives it. How it looks is left to [`super::flip`].
+//! Means and errors; and if both images have variances (channels `Variance.R G B`: of *one* sample, as pbrt's `gbuffer`
+//! film and ours write them), a z-test of each pixel and of each block of pixels: the difference relative to the standard
+//! error that both images' noise gives it. The perceived difference is left to [`super::flip`].
 //!
-//! Variances are those of the channels of the sensor: of X, Y and Z, or of a camera's own red, green and blue. They cannot be
-//! converted without their covariances, so colours are. Ours say what they are of (`variance.from_rgb`), pbrt's do not: they are
-//! taken for the same as the other picture's.
+//! Variances are those of the sensor's channels: of X, Y and Z, or of a camera's own red, green and blue. They cannot be
+//! converted without their covariances, so the colours are converted instead. Our files name the channels
+//! (`variance.from_rgb`), pbrt's do not: they are assumed to be those of the other image.
 
 use super::openexr::Channels;
 use crate::error::{Error, Location, Result};
 use crate::spectrum::space::{Matrix, XYZ_FROM_RGB, apply};
 
-/// A pixel farther away than this many standard errors is not explained by noise.
+/// Maximum difference of a pixel in standard errors; larger ones are not explained by noise.
 pub const MOST_STANDARD_ERRORS: f64 = 3.5;
 
-/// Pixels on the side of a block.
+/// Side of a block in pixels.
 pub const BLOCK: usize = 16;
 
-/// What is allowed besides noise, in shares of the light: rounding, and where neither side has a variance, what a film
-/// does not count as such (pbrt's leaves out samples that meet nothing).
+/// Allowed difference besides noise, relative to the reference: for rounding, and without any variance for light that a
+/// film does not include in it (pbrt's ignores samples that hit nothing).
 const ROUNDING: f64 = 1e-3;
 const WITHOUT_VARIANCE: f64 = 1e-2;
 
-/// Added to the square of the reference in [`Comparison::relative_mse`], so that black is no pole.
+/// Added to the square of the reference in [`Comparison::relative_mse`], so that black is not a division by 0.
 const DARK: f64 = 1e-2;
 
-/// The attribute of an EXR that says which channels its variances are of: nine numbers, by rows, that give them from linear
-/// Rec. 709.
+/// The attribute of an EXR that defines the channels of its variances: the matrix from linear Rec. 709 to them, nine
+/// numbers in row-major order.
 pub const CHANNELS_ATTRIBUTE: &str = "variance.from_rgb";
 
-/// The text of that attribute.
+/// The text of [`CHANNELS_ATTRIBUTE`] for a matrix.
 pub fn channels_text(channels_from_rgb: &Matrix) -> String {
     channels_from_rgb.as_flattened().iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
 }
 
-/// The matrix of such a text; `None` for anything but nine finite numbers.
+/// The matrix of such a text; `None` unless it is nine finite numbers.
 fn matrix(text: &str) -> Option<Matrix> {
     let numbers: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
     let &[a, b, c, d, e, f, g, h, i] = numbers?.as_slice() else { return None };
@@ -43,10 +43,10 @@ fn matrix(text: &str) -> Option<Matrix> {
     matrix.iter().flatten().all(|number| number.is_finite()).then_some(matrix)
 }
 
-/// A picture to compare: linear colours, and what is known of their noise.
+/// An image to compare: linear colours, and their variances if known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampled {
-    /// Columns.
+    /// Width in pixels.
     pub width: usize,
     /// Linear Rec. 709, row by row; all finite.
     pub pixels: Vec<[f32; 3]>,
@@ -54,44 +54,44 @@ pub struct Sampled {
     pub not_finite: usize,
     /// The variances of the pixels (not of one sample) in three channels.
     pub variances: Option<Vec<[f64; 3]>>,
-    /// The matrix from linear Rec. 709 to the channels of the variances; `None` where it is not known.
+    /// The matrix from linear Rec. 709 to the channels of the variances; `None` if it is not known.
     pub channels_from_rgb: Option<Matrix>,
 }
 
-/// The result of a comparison of two pictures. Channels are red, green, blue.
+/// The result of a comparison of two images. Channels are red, green, blue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// The mean of the picture and of the reference, by channel.
+    /// The mean of the image and of the reference, by channel.
     pub means: [[f64; 3]; 2],
     /// The difference of the means relative to the reference's means.
     pub relative: [f64; 3],
-    /// Root of the mean squared difference.
+    /// Root mean square error.
     pub rmse: f64,
-    /// Mean squared difference in shares of the reference's square plus 0.01.
+    /// Relative mean squared error: squared differences relative to the reference's square plus 0.01.
     pub relative_mse: f64,
-    /// The z-tests, where both pictures have variances in the same channels.
+    /// The z-tests, if both images have variances in the same channels.
     pub noise: Option<NoiseTest>,
 }
 
 /// The z-tests, in the channels of the variances: X, Y and Z, or those of a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseTest {
-    /// The share of pixels of which all three differ by at most [`MOST_STANDARD_ERRORS`].
+    /// Fraction of the pixels that differ by at most [`MOST_STANDARD_ERRORS`] in all three channels.
     pub pixels_within: f64,
-    /// The same of the means of blocks of [`BLOCK`] × [`BLOCK`] pixels.
+    /// The same for the means of blocks of [`BLOCK`] × [`BLOCK`] pixels.
     pub blocks_within: f64,
-    /// The difference of the pictures' means in standard errors.
+    /// The difference of the images' means in standard errors.
     pub mean: [f64; 3],
-    /// The standard error of the difference of the means in the second channel (Y, green), in shares of the reference's mean.
+    /// Standard error of the difference of the means in the second channel (Y, green), relative to the reference's mean.
     pub relative_error_of_mean: f64,
 }
 
 impl Sampled {
-    /// A picture from all that a file has; `samples` a pixel are what the file says where nobody does (`samples`, or pbrt's
-    /// `samplesPerPixel`). Without either there are no variances.
+    /// The colours and variances of a file. `samples` is the number of samples per pixel; if it is `None`, the file's own is
+    /// used (`samples`, or pbrt's `samplesPerPixel`). Without either there are no variances.
     ///
     /// # Errors
-    /// `Invalid` where there are no channels R, G, B, nor Y.
+    /// `Invalid` if the file has neither the channels R, G, B nor Y.
     pub fn new(file: &Channels, samples: Option<u64>) -> Result<Self> {
         let three = |names: [&str; 3]| {
             let [a, b, c] = names.map(|name| file.channel(name));
@@ -123,10 +123,10 @@ impl Sampled {
     }
 }
 
-/// Compares a picture with a reference.
+/// Compares an image with a reference.
 ///
 /// # Errors
-/// `Invalid` where they differ in size or have no pixels.
+/// `Invalid` if they differ in size or have no pixels.
 pub fn compare(picture: &Sampled, reference: &Sampled) -> Result<Comparison> {
     let size = |of: &Sampled| (of.width, of.pixels.len() / of.width.max(1));
     if size(picture) != size(reference) || picture.pixels.is_empty() {
@@ -169,8 +169,8 @@ pub fn compare(picture: &Sampled, reference: &Sampled) -> Result<Comparison> {
     })
 }
 
-/// The channels in which two pictures' noise can be compared, from linear Rec. 709: those that either says, or X, Y and Z.
-/// `None` where they say different ones.
+/// The channels in which the noise of two images can be compared, from linear Rec. 709: those of either image, or X, Y and
+/// Z. `None` if theirs differ.
 pub fn channels_of_both(picture: &Sampled, reference: &Sampled) -> Option<Matrix> {
     match (picture.channels_from_rgb, reference.channels_from_rgb) {
         (Some(a), Some(b)) if a != b => None,
@@ -179,17 +179,17 @@ pub fn channels_of_both(picture: &Sampled, reference: &Sampled) -> Option<Matrix
     }
 }
 
-/// `part / of`, and 0 where nothing is no part of anything.
+/// `part / of`, but 0 for 0 / 0.
 fn relative(part: f64, of: f64) -> f64 {
     if part == 0.0 { 0.0 } else { part / of.abs() }
 }
 
-/// A pixel, a block or the whole, in the channels of the variances.
+/// The values of a pixel, of a block or of the whole image, in the channels of the variances.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
     difference: [f64; 3],
     reference: [f64; 3],
-    /// Of the difference.
+    /// Variance of the difference.
     variance: [f64; 3],
 }
 
@@ -212,7 +212,7 @@ fn cells(
     (reference, b): (&Sampled, &[[f64; 3]]),
     channels: &Matrix,
 ) -> Vec<Cell> {
-    // A side without variance saw the same all the time, or did not count what it saw: the other's noise is the guess.
+    // A variance of 0 means that all samples were equal or not counted; then that of the other image is the best estimate.
     let variance = |a: f64, b: f64| match (a > 0.0, b > 0.0) {
         (false, true) => 2.0 * b,
         (true, false) => 2.0 * a,
@@ -230,7 +230,7 @@ fn cells(
     (0..picture.pixels.len()).map(cell).collect()
 }
 
-/// The mean of cells whose noise is independent.
+/// The mean of cells with independent noise.
 fn mean<'a>(cells: impl Iterator<Item = &'a Cell>) -> Cell {
     let (mut sum, mut count) = (Cell::default(), 0.0_f64);
     for cell in cells {
@@ -275,7 +275,7 @@ mod tests {
     const WIDTH: usize = 100;
     const HEIGHT: usize = 50;
 
-    /// About normal, with mean 0 and variance 1: twelve numbers of a linear congruence.
+    /// Approximately normal, with mean 0 and variance 1: the sum of twelve numbers of a linear congruential generator.
     fn normal(state: &mut u64) -> f64 {
         let mut uniform = || {
             *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -284,12 +284,13 @@ mod tests {
         (0..12).map(|_| uniform()).sum::<f64>() - 6.0
     }
 
-    /// Gray `light` with noise of `deviation`, which the file knows as that of one of 16 samples.
+    /// Grey of value `light` with noise of standard deviation `deviation`, which the file stores as the variance of one of
+    /// 16 samples.
     fn noisy(light: f64, deviation: f64, seed: u64) -> Channels {
         let mut state = seed;
         let gray: Vec<f32> =
             (0..WIDTH * HEIGHT).map(|_| (light + deviation * normal(&mut state)) as f32).collect();
-        // Of Rec. 709's gray g, X is 0.95 g and Z is 1.09 g.
+        // Grey g in Rec. 709 has X = 0.95 g and Z = 1.09 g.
         let variance = |scale: f64| vec![(deviation * deviation * scale * scale * 16.0) as f32; gray.len()];
         let [x, y, z] = apply(&XYZ_FROM_RGB, [1.0; 3]).map(variance);
         let names = ["R", "G", "B", "Variance.R", "Variance.G", "Variance.B"];
@@ -316,12 +317,12 @@ mod tests {
         let error = (0.05_f64 / (WIDTH * HEIGHT) as f64).sqrt();
         assert!((test.relative_error_of_mean / error - 1.0).abs() < 0.05);
         assert!((same.rmse - 0.05_f64.sqrt()).abs() < 0.01, "{}", same.rmse);
-        // Two hundredths brighter: no pixel tells, but blocks do a little, and the mean is certain.
+        // 5 % brighter: single pixels do not show it, blocks slightly, and the mean clearly.
         let brighter = compared(&noisy(1.05, 0.2, 2), &reference);
         let test = brighter.noise.unwrap();
         assert!(test.pixels_within > 0.99 && test.blocks_within < 0.95 && test.mean[1] > 10.0, "{test:?}");
         assert!((brighter.relative[0] - 0.05).abs() < 0.02);
-        // Twice as much noise as the file says.
+        // Twice as much noise as the file states.
         let mut liar = noisy(1.0, 0.4, 3);
         liar.channels[4].1 = vec![0.2 * 0.2 * 16.0; WIDTH * HEIGHT];
         assert!(compared(&liar, &reference).noise.unwrap().pixels_within < 0.96);
@@ -344,7 +345,7 @@ mod tests {
 
     #[test]
     fn noise_is_compared_in_the_channels_it_is_of() {
-        // Two channels of a sensor that are far from X and Y: noise that looks large in X, Y and Z is none there.
+        // Two channels of a sensor that are far from X and Y: noise that looks large in X, Y and Z is zero in them.
         let channels = [[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [0.0, 0.0, 1.0]];
         let known = |file: &Channels| {
             let mut file = file.clone();
@@ -362,17 +363,17 @@ mod tests {
             }
         };
         let [a, b] = [1, 2].map(|seed| known(&noisy(1.0, 0.1, seed)));
-        // Grey noise has none of the first two channels. One picture says so, or both do.
+        // Grey noise does not appear in the first two channels. One image states them, or both do.
         for (a, b) in [(&says(&a), &b), (&a, &says(&b)), (&says(&a), &says(&b))] {
             let noise = compared(a, b).noise.expect("noise");
             assert!(noise.pixels_within > 0.998 && noise.mean[2].abs() < 4.0, "{noise:?}");
         }
         assert!(compared(&a, &b).noise.expect("noise").pixels_within < 0.5, "taken for X, Y and Z");
-        // Who says different things is not compared.
+        // Images with different channels are not compared.
         let mut other = a.clone();
         other.attributes.push((CHANNELS_ATTRIBUTE.to_owned(), channels_text(&XYZ_FROM_RGB)));
         assert_eq!(compared(&other, &says(&b)).noise, None);
-        // What is no matrix says nothing.
+        // Anything but a matrix is ignored.
         for text in ["", "1 2 3", "1 0 0 0 1 0 0 0 inf", "1 0 0 0 1 0 0 0 one", "1 0 0 0 1 0 0 0 1 1"] {
             assert_eq!(matrix(text), None, "{text}");
         }
@@ -387,7 +388,7 @@ mod tests {
         assert!(compare(&a, &b).unwrap_err().message.contains("100 × 50"));
         narrow.channels.retain(|(name, _)| name != "G");
         assert!(Sampled::new(&narrow, None).unwrap_err().message.contains("Variance.R"));
-        // Without a number of samples there is no noise to test with.
+        // Without a number of samples there is no noise test.
         narrow = noisy(1.0, 0.1, 1);
         narrow.attributes.clear();
         assert_eq!(Sampled::new(&narrow, None).unwrap().variances, None);

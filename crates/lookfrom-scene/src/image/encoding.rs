@@ -1,4 +1,4 @@
-//! Transfer functions from integer samples to light or other values.
+//! Transfer functions from integer texels to linear light or other values.
 
 use std::fmt;
 use std::sync::{Arc, LazyLock};
@@ -11,11 +11,11 @@ pub(super) type Table = Arc<[f32; 256]>;
 /// The transfer function from integers, scaled to [0, 1], to values.
 #[derive(Clone, Copy)]
 pub enum Encoding<'a> {
-    /// By the sRGB curve: colours.
+    /// The sRGB curve: for colours.
     Srgb,
-    /// As they are: bumps, weights, normals.
+    /// The identity: for bump maps, weights, normals.
     Linear,
-    /// By any other curve.
+    /// Any other curve.
     Curve(&'a dyn Fn(f32) -> f32),
 }
 
@@ -29,7 +29,7 @@ impl Encoding<'_> {
         }
     }
 
-    /// [`Self::decode`] of every byte; one table for all pictures in the usual encodings. What is not finite is 0.
+    /// [`Self::decode`] of every byte; images in the usual encodings share one table. Values that are not finite become 0.
     pub(super) fn table(self) -> Table {
         static SRGB: LazyLock<Table> = LazyLock::new(|| tabulated(Encoding::Srgb));
         static LINEAR: LazyLock<Table> = LazyLock::new(|| tabulated(Encoding::Linear));

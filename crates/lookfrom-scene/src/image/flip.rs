@@ -1,52 +1,52 @@
 //! LDR-ꟻLIP: the difference of two images as perceived by an observer who alternates between them.
 //!
-//! Colours are blurred as the eye blurs them at the distance of the screen, and compared in a space of about equal steps;
-//! edges and points are found in both pictures, and where one has what the other has not, the difference of colour is made
-//! more of. 0 is equal, 1 is as different as can be.
+//! Colours are blurred by the contrast sensitivity of the eye at the distance of the screen, and compared in a perceptually
+//! uniform space; edges and points are detected in both images, and the colour difference is amplified where these
+//! features differ. 0 is equal, 1 is the maximum difference.
 //!
 //! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström & Fairchild 2020, "FLIP: A Difference Evaluator for Alternating
-//! Images"; the contrast sensitivities are those of Johnson & Fairchild 2003, the distance is HyAB (Abasi et al. 2020), the
-//! loss of colour in the dark Hunt's.
+//! Images"; the contrast sensitivities are those of Johnson & Fairchild 2003, the distance is HyAB (Abasi et al. 2020),
+//! chroma is reduced in the dark by the Hunt effect.
 
-/// Pixels a degree of sight: a screen of 3840 pixels over 0.7 m, seen from 0.7 m.
+/// Pixels per degree of visual angle: a screen of 3840 pixels over 0.7 m, seen from 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0;
 
-/// Exponents of the two kinds of difference.
+/// Exponents of the colour difference and of the feature difference.
 const COLOR_EXPONENT: f64 = 0.7;
 const FEATURE_EXPONENT: f64 = 0.5;
 
-/// Differences of colour of up to this share of the greatest are spread over [0, `NEAR_ERROR`].
+/// Colour differences up to this fraction of the maximum are mapped to [0, `NEAR_ERROR`].
 const NEAR: f64 = 0.4;
 const NEAR_ERROR: f64 = 0.95;
 
 /// The width of an edge in degrees.
 const EDGE_WIDTH: f64 = 0.082;
 
-/// Contrast sensitivity of the eye for luminance, red–green and blue–yellow: sums of a·√(π/b)·exp(−π²x²/b), x in degrees.
+/// Contrast sensitivity functions for luminance, red–green and blue–yellow: sums of a·√(π/b)·exp(−π²x²/b), x in degrees.
 const SENSITIVITIES: [[(f64, f64); 2]; 3] =
     [[(1.0, 0.0047), (0.0, 1e-5)], [(1.0, 0.0053), (0.0, 1e-5)], [(34.1, 0.04), (13.5, 0.025)]];
 
-/// The widest `b` of [`SENSITIVITIES`].
+/// The largest `b` of [`SENSITIVITIES`], which determines the filter's radius.
 const WIDEST: f64 = 0.04;
 
 type Color = [f64; 3];
 
-/// The error of each pixel, in 0 … 1, between two pictures of `width` columns of linear colours, of which what lies beyond
-/// 0 … 1 is cut. At a border the last pixels go on.
+/// The error of each pixel, in [0, 1], between two images of `width` columns of linear colours, which are clamped to
+/// [0, 1]. At a border the last pixels are repeated.
 ///
 /// # Panics
-/// If the pictures are not whole rows or not of the same size.
+/// If the images are not whole rows or differ in size.
 pub fn flip(picture: &[[f32; 3]], reference: &[[f32; 3]], width: usize, pixels_per_degree: f64) -> Vec<f32> {
     assert!(width > 0 && picture.len() == reference.len() && picture.len().is_multiple_of(width));
     let opponents = [picture, reference].map(|rgb| {
         rgb.iter().map(|rgb| opponent(rgb.map(|c| f64::from(c).clamp(0.0, 1.0)))).collect::<Vec<Color>>()
     });
 
-    // Colours as the eye blurs them, and how far they are from one another.
+    // The colour difference after spatial filtering.
     let [a, b] = opponents.each_ref().map(|colors| perceived(colors, width, pixels_per_degree));
     let most = difference(perceive([0.0, 1.0, 0.0]), perceive([0.0, 0.0, 1.0]));
 
-    // Edges and points of what is there of light.
+    // Edge and point features of the luminance.
     let [features_a, features_b] = opponents.each_ref().map(|colors| {
         let light: Vec<f64> = colors.iter().map(|color| (color[0] + 16.0) / 116.0).collect();
         features(&light, width, pixels_per_degree)
@@ -61,7 +61,7 @@ pub fn flip(picture: &[[f32; 3]], reference: &[[f32; 3]], width: usize, pixels_p
     (0..a.len()).map(of_pixel).collect()
 }
 
-/// The part of the greatest difference that counts: small differences take most of 0 … 1.
+/// Maps a colour difference to [0, 1]: small differences take up most of the range.
 fn spread(difference: f64, most: f64) -> f64 {
     let near = NEAR * most;
     if difference < near {
@@ -71,13 +71,13 @@ fn spread(difference: f64, most: f64) -> f64 {
     }
 }
 
-/// HyAB between two colours of [`perceive`], bent.
+/// HyAB distance between two colours of [`perceive`], to the power of `COLOR_EXPONENT`.
 fn difference(a: Color, b: Color) -> f64 {
     let [l, x, y] = [0, 1, 2].map(|i| a[i] - b[i]);
     libm::pow(l.abs() + (x * x + y * y).sqrt(), COLOR_EXPONENT)
 }
 
-/// L*a*b* of a linear colour, with less of a* and b* where it is dark.
+/// L*a*b* of a linear colour, with a* and b* scaled down in the dark (Hunt effect).
 fn perceive(rgb: Color) -> Color {
     let bend = |t: f64| {
         let delta = 6.0 / 29.0;
@@ -88,14 +88,14 @@ fn perceive(rgb: Color) -> Color {
     [light, 5.0 * (x - y) * light, 2.0 * (y - z) * light]
 }
 
-/// From linear Rec. 709 to X, Y, Z.
+/// The matrix from linear Rec. 709 to X, Y, Z.
 const XYZ_FROM_RGB: [[f64; 3]; 3] = [
     [0.412_390_799_265_959_5, 0.357_584_339_383_878, 0.180_480_788_401_834_3],
     [0.212_639_005_871_510_36, 0.715_168_678_767_756, 0.072_192_315_360_733_71],
     [0.019_330_818_715_591_85, 0.119_194_779_794_625_99, 0.950_532_152_249_661],
 ];
 
-/// And back.
+/// Its inverse.
 const RGB_FROM_XYZ: [[f64; 3]; 3] = [
     [3.240_969_941_904_522_6, -1.537_383_177_570_094, -0.498_610_760_293_003_4],
     [-0.969_243_636_280_879_6, 1.875_967_501_507_720_2, 0.041_555_057_407_175_59],
@@ -106,13 +106,13 @@ fn multiply(matrix: &[[f64; 3]; 3], v: Color) -> Color {
     matrix.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
 }
 
-/// X, Y, Z in shares of white's.
+/// X, Y, Z relative to white.
 fn relative_xyz(rgb: Color) -> Color {
     let (xyz, white) = (multiply(&XYZ_FROM_RGB, rgb), multiply(&XYZ_FROM_RGB, [1.0; 3]));
     [0, 1, 2].map(|i| xyz[i] / white[i])
 }
 
-/// Y, Cx, Cz: light, red–green and blue–yellow, linear.
+/// Opponent space Y, Cx, Cz: luminance, red–green and blue–yellow, linear.
 fn opponent(rgb: Color) -> Color {
     let [x, y, z] = relative_xyz(rgb);
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
@@ -126,13 +126,13 @@ fn rgb_from_opponent([y, cx, cz]: Color) -> Color {
     multiply(&RGB_FROM_XYZ, [0, 1, 2].map(|i| relative[i] * white[i]))
 }
 
-/// The colours after the blur of the eye, for [`difference`].
+/// The colours after filtering with the contrast sensitivity functions, for [`difference`].
 fn perceived(colors: &[Color], width: usize, pixels_per_degree: f64) -> Vec<Color> {
     let deviations = (WIDEST / (2.0 * std::f64::consts::PI * std::f64::consts::PI)).sqrt();
     let radius = (3.0 * deviations * pixels_per_degree).ceil() as i32;
     let channels: [Vec<f64>; 3] = std::array::from_fn(|channel| {
         let values: Vec<f64> = colors.iter().map(|color| color[channel]).collect();
-        // A sum of Gaussians: each is a blur along rows and one along columns.
+        // A sum of Gaussians: each is separable into a blur along rows and one along columns.
         let mut total = 0.0;
         let mut blurred = vec![0.0; values.len()];
         for (a, b) in SENSITIVITIES[channel] {
@@ -162,9 +162,9 @@ fn perceived(colors: &[Color], width: usize, pixels_per_degree: f64) -> Vec<Colo
         .collect()
 }
 
-/// Edge and point feature strength at each pixel.
+/// Edge and point feature strengths at each pixel.
 fn features(light: &[f64], width: usize, pixels_per_degree: f64) -> Vec<[f64; 2]> {
-    // A Gaussian as wide as an edge, its first derivative and its second, each with parts above and below 0 that weigh 1.
+    // A Gaussian as wide as an edge and its first two derivatives; positive and negative weights are each normalised.
     let deviation = 0.5 * EDGE_WIDTH * pixels_per_degree;
     let radius = (3.0 * deviation).ceil() as i32;
     let gauss = |x: i32| libm::exp(-f64::from(x * x) / (2.0 * deviation * deviation));
@@ -186,7 +186,7 @@ fn features(light: &[f64], width: usize, pixels_per_degree: f64) -> Vec<[f64; 2]
     edges.into_iter().zip(points).map(|(edge, point)| [edge, point]).collect()
 }
 
-/// Each pixel as the weighted sum of those beside it.
+/// Convolution along rows.
 fn along_rows(values: &[f64], width: usize, line: &[f64]) -> Vec<f64> {
     let radius = line.len() / 2;
     let mut sums = Vec::with_capacity(values.len());
@@ -199,7 +199,7 @@ fn along_rows(values: &[f64], width: usize, line: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// Each pixel as the weighted sum of those above and below.
+/// Convolution along columns.
 fn along_columns(values: &[f64], width: usize, line: &[f64]) -> Vec<f64> {
     let (radius, height) = (line.len() / 2, values.len() / width);
     let mut sums = vec![0.0; values.len()];
@@ -220,7 +220,7 @@ mod tests {
     const WIDTH: usize = 24;
     const HEIGHT: usize = 16;
 
-    /// A pattern that a script made for the authors' own program (flip-evaluator 1.7), whose answers stand below.
+    /// A generated pattern for which the authors' own program (flip-evaluator 1.7) gave the results below.
     fn pattern(seed: usize) -> Vec<[f32; 3]> {
         let value = |x: usize, y: usize, c: usize| {
             let number = (x * 7 + y * 13 + c * 29 + seed * ((x * 5 + y * 3 + c) % 11)) % 64;

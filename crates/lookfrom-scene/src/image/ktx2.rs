@@ -1,8 +1,8 @@
 //! Reader for KTX 2.0 files, in Basis Universal formats (ETC1S, UASTC) and uncompressed (Khronos, "KTX File Format
 //! Specification", version 2.0, 2021).
 //!
-//! Only the first picture is read, without its smaller versions. Whether its bytes are colours by the sRGB curve, those
-//! who use it know. `basis` unpacks Basis Universal's formats; other formats of graphics cards (BC7, ASTC …) are not read.
+//! Only the first image is read, without its mipmaps. Whether it is sRGB-encoded is decided by the caller. `basis` decodes
+//! Basis Universal's formats; other GPU formats (BC7, ASTC …) are not supported.
 
 use std::io::Read;
 
@@ -14,52 +14,52 @@ use crate::files::Limits;
 /// The first bytes of every file.
 pub(super) const MAGIC: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
 
-/// Bytes of the header before the list of levels.
+/// Length of the header before the list of levels, in bytes.
 const HEADER: usize = 80;
 
 const NOT_WHOLE: &str = "check that the file is whole; writing it again may repair it";
 
-/// The supercompression of the first level.
+/// Supercompression schemes.
 const PLAIN: u32 = 0;
 const BASIS_LZ: u32 = 1;
 const ZSTANDARD: u32 = 2;
 const ZLIB: u32 = 3;
 
-/// Colour models of the descriptor.
+/// Colour models of the data format descriptor.
 const ETC1S: u8 = 163;
 const UASTC: u8 = 166;
 
-/// A decoded picture.
+/// A decoded image.
 #[derive(Debug)]
 pub(super) struct Pixels {
     pub(super) width: u32,
     pub(super) height: u32,
-    /// Row by row from the top: red, green, blue, opacity.
+    /// Row by row from the top: red, green, blue, alpha.
     pub(super) texels: Vec<[u8; 4]>,
 }
 
 /// The header of a file.
 struct Header {
-    /// Vulkan's number of the format; 0 where Basis Universal is meant.
+    /// The `VkFormat`; 0 for Basis Universal.
     format: u32,
     width: u32,
     height: u32,
     packing: u32,
-    /// The numbers of levels, layers and faces.
+    /// The number of images: layers × faces × levels.
     images: usize,
     descriptor: std::ops::Range<usize>,
-    /// The global data of all pictures.
+    /// The supercompression global data.
     shared: std::ops::Range<usize>,
-    /// Of the first level.
+    /// The bytes of the first level.
     level: std::ops::Range<usize>,
-    /// Bytes of that once it is unpacked.
+    /// Uncompressed length of the first level in bytes.
     unpacked: u64,
 }
 
 /// Decodes a file that starts with [`MAGIC`].
 ///
 /// # Errors
-/// `Syntax` where it is not whole, `Unsupported` for other formats, `Limit` for more than [`Limits::texels`].
+/// `Syntax` if it is damaged or cut off, `Unsupported` for other formats, `Limit` for more than [`Limits::texels`].
 pub(super) fn decode(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Pixels> {
     let header = header(bytes, at)?;
     let Header { format, width, height, packing, .. } = header;
@@ -87,7 +87,7 @@ fn header(bytes: &[u8], at: &Location) -> Result<Header> {
         (end <= bytes.len()).then_some(offset as usize..end)
     };
     let read = || {
-        // Keys and values are not read, but must be there.
+        // Keys and values are not read, but must lie within the file.
         within(u64::from(field(56)?), u64::from(field(60)?))?;
         let counts = [field(32)?, field(36)?, field(40)?];
         Some(Header {
@@ -104,12 +104,16 @@ fn header(bytes: &[u8], at: &Location) -> Result<Header> {
     };
     let header = read().ok_or_else(short)?;
     if field(28).ok_or_else(short)? > 1 {
-        return Err(Error::new(ErrorKind::Unsupported, at, "a KTX 2 file of a solid, not of a picture"));
+        return Err(Error::new(
+            ErrorKind::Unsupported,
+            at,
+            "a KTX 2 file of a 3D texture; expected a 2D texture",
+        ));
     }
     Ok(header)
 }
 
-/// The bytes of the first level, of which there must be `expected`.
+/// The uncompressed bytes of the first level, which must have the length `expected`.
 fn unpacked(bytes: &[u8], header: &Header, expected: u64, at: &Location) -> Result<Vec<u8>> {
     let packed = &bytes[header.level.clone()];
     let bad = |what: String| Error::syntax(at, what).hint(NOT_WHOLE);
@@ -139,7 +143,7 @@ fn unpacked(bytes: &[u8], header: &Header, expected: u64, at: &Location) -> Resu
     }
     if level.len() as u64 != expected {
         let message = format!(
-            "its first level should have {expected} bytes, and has {} (it says {})",
+            "its first level should have {expected} bytes, and has {} (its header says {})",
             level.len(),
             header.unpacked
         );
@@ -148,9 +152,9 @@ fn unpacked(bytes: &[u8], header: &Header, expected: u64, at: &Location) -> Resu
     Ok(level)
 }
 
-/// Texels of one to four bytes.
+/// Uncompressed formats of one to four bytes per texel.
 fn plain(bytes: &[u8], header: &Header, at: &Location) -> Result<Vec<[u8; 4]>> {
-    // Vulkan's formats of 8 bits a channel, linear and sRGB.
+    // The values of `VkFormat` with 8 bits per channel, linear and sRGB.
     let (size, is_reversed) = match header.format {
         9 | 15 => (1, false),
         16 | 22 => (2, false),
@@ -159,7 +163,7 @@ fn plain(bytes: &[u8], header: &Header, at: &Location) -> Result<Vec<[u8; 4]>> {
         37 | 43 => (4, false),
         44 | 50 => (4, true),
         other => {
-            let message = format!("Vulkan's format {other} in KTX 2 is not read");
+            let message = format!("the Vulkan format {other} in KTX 2 is not supported");
             return Err(Error::new(ErrorKind::Unsupported, at, message)
                 .hint("write it as Basis Universal (ETC1S, UASTC), as PNG or as WebP"));
         }
@@ -175,14 +179,14 @@ fn plain(bytes: &[u8], header: &Header, at: &Location) -> Result<Vec<[u8; 4]>> {
     Ok(level.chunks_exact(size).map(texel).collect())
 }
 
-/// ETC1S and UASTC.
+/// Basis Universal: ETC1S and UASTC.
 fn basis(bytes: &[u8], header: &Header, at: &Location) -> Result<Vec<[u8; 4]>> {
     let size = [header.width, header.height].map(|length| length as usize);
     let texels = match (bytes[header.descriptor.clone()].get(12), header.packing) {
         (Some(&ETC1S), BASIS_LZ) => {
             basis::etc1s(&bytes[header.shared.clone()], &bytes[header.level.clone()], header.images, size)
         }
-        // There may be more than one picture in it.
+        // The level may contain several images: layers and faces.
         (Some(&UASTC), PLAIN) => basis::uastc(&bytes[header.level.clone()], size),
         (Some(&UASTC), _) => {
             let [columns, rows] = size.map(|length| length.div_ceil(4) as u64);
@@ -191,7 +195,7 @@ fn basis(bytes: &[u8], header: &Header, at: &Location) -> Result<Vec<[u8; 4]>> {
         }
         (model, packing) => {
             let model = model.map_or("no colour model".to_owned(), |model| format!("colour model {model}"));
-            let message = format!("KTX 2 of {model} and supercompression {packing} is not read");
+            let message = format!("KTX 2 with {model} and supercompression {packing} is not supported");
             return Err(Error::new(ErrorKind::Unsupported, at, message)
                 .hint("write it as Basis Universal's ETC1S or UASTC, as PNG or as WebP"));
         }

@@ -1,7 +1,7 @@
 //! OpenEXR files with any number of named channels of linear values (the format: openexr.com, "File Layout").
 //!
-//! Reading is left to crate `exr`. Writing is done here, because that crate writes text attributes in a random order,
-//! and the same picture shall be the same bytes.
+//! Reading uses the crate `exr`. Writing is done here, because that crate writes text attributes in a random order, and
+//! equal images should give equal bytes.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -19,22 +19,22 @@ use crate::files::{Limits, LoadContext};
 /// The signature of an OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-/// Rows that are compressed together.
+/// Number of rows that are compressed together.
 const BLOCK_ROWS: usize = 16;
 
-/// More channels than any renderer writes; beyond it a file is taken to be hostile.
+/// Maximum number of channels, more than any renderer writes; files with more are taken to be hostile.
 const MOST_CHANNELS: u64 = 1024;
 
-/// All that an OpenEXR file holds.
+/// The channels and attributes of an OpenEXR file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channels {
-    /// Columns.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Height in pixels.
     pub height: u32,
     /// Names ("R", "albedo.R") and `width * height` values each, row 0 on top.
     pub channels: Vec<(String, Vec<f32>)>,
-    /// The attributes of the header that are text or a whole number, by name.
+    /// The header's attributes with text or integer values, by name.
     pub attributes: Vec<(String, String)>,
 }
 
@@ -45,8 +45,8 @@ impl Channels {
     }
 }
 
-/// Reads every channel of an OpenEXR file whose parts all have the same size; the names of a part's channels follow
-/// the part's name and a point.
+/// Reads every channel of an OpenEXR file whose parts all have the same size; channels are prefixed with their part's name
+/// and a point.
 ///
 /// # Errors
 /// As [`super::read()`].
@@ -55,7 +55,7 @@ pub fn read_exr(path: &Path, context: &mut LoadContext<'_>) -> Result<Channels> 
     decode_channels(&bytes, &Location::file(path), &context.limits)
 }
 
-/// The colours of an OpenEXR file: R, G, B where they are, else Y.
+/// The colours of an OpenEXR file: R, G, B if present, else Y.
 pub(super) fn decode_rgb(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Floats> {
     let found = decode_channels(bytes, at, limits)?;
     let rgb = ["R", "G", "B"].map(|name| found.channel(name).or_else(|| found.channel("Y")));
@@ -84,7 +84,7 @@ fn decode_channels(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Chann
             .hint("check that the file is whole, or save it again as plain scan lines")
     };
 
-    // The headers first: nothing is decoded that is larger than allowed.
+    // The headers first: nothing larger than the limits is decoded.
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| fault(&error))?;
     let mut total = 0_u64;
     for header in &meta.headers {
@@ -153,12 +153,12 @@ fn decode_channels(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Chann
     Ok(found)
 }
 
-/// The bytes of an OpenEXR file: one part of scan lines, 32-bit numbers, ZIP compression without loss. The channels are
-/// named as they are to be shown ("R", "G", "B"; others as "albedo.R"); `attributes` are texts for the header, their
-/// names none of the format's own. The same input gives the same bytes, whatever the order of the channels.
+/// The bytes of an OpenEXR file: one part of scan lines, 32-bit floats, lossless ZIP compression. The channels have their
+/// names in the file ("R", "G", "B"; others as "albedo.R"); `attributes` are texts for the header, under names that the
+/// format does not use itself. The same input gives the same bytes, whatever the order of the channels.
 ///
 /// # Errors
-/// `Invalid` where a channel has not `width * height` values, or a name is empty, too long, given twice or reserved.
+/// `Invalid` if a channel has not `width * height` values, or a name is empty, too long, duplicate or reserved.
 pub fn encode_exr(
     width: u32,
     height: u32,
@@ -176,7 +176,7 @@ pub fn encode_exr(
     bytes.extend(2_i32.to_le_bytes());
     write_header(&mut bytes, width, height, &channels, attributes);
 
-    // The table of offsets is filled in as the blocks become known.
+    // The offset table is filled in as the blocks are written.
     let (width, height) = (width as usize, height as usize);
     let table = bytes.len();
     let blocks = height.div_ceil(BLOCK_ROWS);
@@ -200,7 +200,7 @@ pub fn encode_exr(
     Ok(bytes)
 }
 
-/// Names that the format gives a meaning to.
+/// Attribute names reserved by the format.
 const RESERVED: [&str; 10] = [
     "channels",
     "compression",
@@ -254,7 +254,7 @@ fn write_header(
         bytes.extend(value);
     };
 
-    // Each channel: its name, 2 for 32-bit numbers, no hint for lossy compression, every pixel.
+    // Each channel: its name, pixel type 2 (32-bit float), not perceptually linear, no subsampling.
     let mut list = Vec::new();
     for (name, _) in channels {
         list.extend(name.as_bytes());
@@ -283,7 +283,7 @@ fn write_header(
     bytes.push(0);
 }
 
-/// OpenEXR's ZIP: bytes of even and of odd place apart, each as the difference to the one before, then deflated.
+/// OpenEXR's ZIP: even and odd bytes separated, each as the difference from the previous one, then deflated.
 fn compress(raw: &[u8]) -> Vec<u8> {
     let mut parted: Vec<u8> = raw.iter().step_by(2).chain(raw.iter().skip(1).step_by(2)).copied().collect();
     let mut before = parted.first().copied().unwrap_or(0);

@@ -1,5 +1,5 @@
-//! Image readers, to linear colours. The format is recognised by the content; the extension counts only where the content
-//! has no signature (TGA). Of an animation the first picture is read.
+//! Image readers, to linear colours. The format is recognised by the content; the extension matters only for formats
+//! without a signature (TGA). Of an animation the first image is read.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -14,18 +14,17 @@ use crate::files::{Limits, LoadContext};
 /// The names of the readable formats, for messages.
 const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, KTX2";
 
-/// Reads a picture of colours: 8- and 16-bit formats are taken to be sRGB and become linear, formats of floating-point
-/// numbers are linear already. Values that are not finite become 0, with a warning.
+/// Reads a colour image: 8- and 16-bit formats are taken to be sRGB-encoded and become linear, floating-point formats are
+/// linear already. Values that are not finite become 0, with a warning.
 ///
 /// # Errors
-/// `Io` where the file cannot be read; `Syntax` where its bytes are no whole picture; `Unsupported` where its format
-/// is not known; `Limit` where it has more texels than [`Limits::texels`], which its header is asked before anything is
-/// decoded.
+/// `Io` if the file cannot be read; `Syntax` if it is not a complete image; `Unsupported` if its format is not known;
+/// `Limit` if it has more texels than [`Limits::texels`], which is checked before anything is decoded.
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Image> {
     read_encoded(path, context, Encoding::Srgb)
 }
 
-/// Reads a picture of numbers (bumps, weights): as [`read`], but 8- and 16-bit values are taken as they are, over 0…1.
+/// Reads an image of data (bump maps, weights): as [`read`], but 8- and 16-bit values are linear in [0, 1].
 ///
 /// # Errors
 /// As [`read`].
@@ -33,7 +32,7 @@ pub fn read_data(path: &Path, context: &mut LoadContext<'_>) -> Result<Image> {
     read_encoded(path, context, Encoding::Linear)
 }
 
-/// Reads a picture of whatever: as [`read`], but `encoding` takes the 0…1 of 8- and 16-bit values to what is meant.
+/// Reads an image in any encoding: as [`read`], but `encoding` decodes 8- and 16-bit values, scaled to [0, 1].
 ///
 /// # Errors
 /// As [`read`].
@@ -42,7 +41,7 @@ pub fn read_encoded(path: &Path, context: &mut LoadContext<'_>, encoding: Encodi
     decode(&bytes, &path.display().to_string(), encoding, context)
 }
 
-/// The picture that bytes hold, as [`read_encoded`] has it from a file. `name` becomes its own, and stands in messages.
+/// Decodes an image file's content, as [`read_encoded`] does. `name` is the image's name and appears in messages.
 ///
 /// # Errors
 /// As [`read`], without `Io`.
@@ -54,7 +53,7 @@ pub fn decode(
 ) -> Result<Image> {
     let at = Location::file(Path::new(name));
     let limits = context.limits;
-    // Formats that the crate `image` does not read are told by their first bytes.
+    // Formats that the crate `image` does not support are recognised by their first bytes.
     if bytes.starts_with(&ktx2::MAGIC) {
         let ktx2::Pixels { width, height, texels } = ktx2::decode(bytes, &at, &limits)?;
         return Ok(Image::from_bytes(name, width, height, texels, encoding));
@@ -82,13 +81,13 @@ pub fn decode(
         }
     }
     if bad > 0 {
-        context.warn(&at, format!("{bad} values are not finite numbers; each is taken as 0"));
+        context.warn(&at, format!("{bad} values are not finite numbers; each becomes 0"));
     }
     Ok(Image::from_linear_and_alpha(name, width, height, texels, alpha))
 }
 
-/// The opacity (alpha) of a picture, as greys, where it has one that is not 1 everywhere. `encoding` is as in
-/// [`read_encoded`]; that of EXR and KTX2 is not looked at.
+/// The opacity (alpha) of an image in grey, if it has one that is not 1 everywhere. `encoding` is as in [`read_encoded`];
+/// the opacity of EXR, KTX2 and PFM is ignored.
 ///
 /// # Errors
 /// As [`read`].
@@ -123,7 +122,7 @@ pub fn read_opacity(
     Ok(Some(Image::from_bytes(name, width, height, texels, encoding)))
 }
 
-/// Checks a header's claim before memory is allocated.
+/// Checks the size in a header before memory is allocated.
 pub(super) fn check_size(width: u64, height: u64, at: &Location, limits: &Limits) -> Result<()> {
     if width == 0 || height == 0 {
         return Err(Error::invalid(at, format!("a picture of {width}×{height} has no texels")));
@@ -139,7 +138,7 @@ pub(super) fn check_size(width: u64, height: u64, at: &Location, limits: &Limits
     Ok(())
 }
 
-/// A picture of 32-bit numbers; no alpha where it is opaque.
+/// An image of 32-bit floats; `alpha` is empty if it is opaque.
 pub(super) struct Floats {
     pub(super) width: u32,
     pub(super) height: u32,
@@ -159,7 +158,7 @@ fn decode_common(bytes: &[u8], path: &Path, at: &Location, limits: &Limits) -> R
     }
     let mut reader = reader.with_guessed_format().map_err(|error| fault(&ImageError::IoError(error)))?;
 
-    // The pixels, what they become, and what decoders need besides.
+    // Memory for the pixels, the result of conversion, and the decoders themselves.
     let mut crate_limits = ::image::Limits::default();
     crate_limits.max_alloc = Some(limits.texels.saturating_mul(32).saturating_add(64 << 20));
     reader.limits(crate_limits);
@@ -170,7 +169,7 @@ fn decode_common(bytes: &[u8], path: &Path, at: &Location, limits: &Limits) -> R
     DynamicImage::from_decoder(decoder).map_err(|error| fault(&error))
 }
 
-/// Whether a picture is finer than 8 bits.
+/// Whether an image has more than 8 bits per channel.
 fn is_deep(picture: &DynamicImage) -> bool {
     !matches!(
         picture,
@@ -181,7 +180,7 @@ fn is_deep(picture: &DynamicImage) -> bool {
     )
 }
 
-/// Linear colours; `encoding` is for whole numbers.
+/// Linear colours; `encoding` applies to integer formats.
 fn floats_of(picture: DynamicImage, encoding: Encoding<'_>) -> Floats {
     let (width, height) = (picture.width(), picture.height());
     let has_alpha = picture.color().has_alpha();
@@ -206,14 +205,14 @@ fn floats_of(picture: DynamicImage, encoding: Encoding<'_>) -> Floats {
     Floats { width, height, texels, alpha }
 }
 
-/// In our words what the decoder found.
+/// Our error for an error of the decoder.
 fn wrong(error: &ImageError, bytes: &[u8], at: &Location, limits: &Limits) -> Error {
     let whole =
         "check that the file is whole; opening it in another program and saving it again may repair it";
     match error {
         _ if bytes.is_empty() => Error::syntax(at, "the file is empty; expected a picture").hint(whole),
         ImageError::Unsupported(_) => {
-            Error::new(ErrorKind::Unsupported, at, format!("not a picture that is known: {error}"))
+            Error::new(ErrorKind::Unsupported, at, format!("the picture format is not known: {error}"))
                 .hint(format!("save it as one of {KNOWN}"))
         }
         ImageError::Limits(limit) => {
@@ -226,7 +225,7 @@ fn wrong(error: &ImageError, bytes: &[u8], at: &Location, limits: &Limits) -> Er
             Error::new(ErrorKind::Limit, at, message)
                 .hint("make the picture smaller, or raise `Limits::texels`")
         }
-        _ => Error::syntax(at, format!("not a whole picture: {error}")).hint(whole),
+        _ => Error::syntax(at, format!("not a complete picture: {error}")).hint(whole),
     }
 }
 

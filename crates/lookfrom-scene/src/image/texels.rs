@@ -1,19 +1,19 @@
 //! Texel storage: 8-bit images stay bytes, four to a texel; others are 32-bit floats.
 //!
-//! A table of 256 numbers says what bytes stand for, so that a byte gives exactly the number that decoding the whole
-//! picture beforehand would.
+//! A table of 256 numbers decodes the bytes, so that a byte gives exactly the value that decoding the whole image in
+//! advance would give.
 
 use super::encoding::{Encoding, Table};
 use crate::texture::Channel;
 
-/// A picture of linear colours and perhaps opacity, row 0 on top.
+/// An image of linear colours and optional alpha, row 0 on top.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Image {
-    /// The file it came from.
+    /// The file that it was read from.
     pub name: String,
-    /// Columns: > 0.
+    /// Width: > 0.
     pub width: u32,
-    /// Rows: > 0.
+    /// Height: > 0.
     pub height: u32,
     texels: Texels,
     has_alpha: bool,
@@ -22,9 +22,9 @@ pub struct Image {
 /// `width * height` texels, row by row.
 #[derive(Clone, Debug, PartialEq)]
 enum Texels {
-    /// Red, green and blue by the table; opacity over 255.
+    /// Red, green and blue, decoded by the table; alpha in units of 1/255.
     Bytes { texels: Vec<[u8; 4]>, table: Table },
-    /// Linear Rec. 709; `alpha` is empty where all is opaque.
+    /// Linear Rec. 709; `alpha` is empty if the image is opaque.
     Floats { texels: Vec<[f32; 3]>, alpha: Vec<f32> },
 }
 
@@ -35,18 +35,18 @@ impl Default for Texels {
 }
 
 impl Image {
-    /// A picture of `width * height` linear Rec. 709 colours, row by row from the top.
+    /// An image of `width * height` linear Rec. 709 colours, row by row from the top.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If the number of texels differs.
     pub fn from_linear(name: impl Into<String>, width: u32, height: u32, texels: Vec<[f32; 3]>) -> Self {
         Self::from_linear_and_alpha(name, width, height, texels, Vec::new())
     }
 
-    /// The same with opacities: as many, or none.
+    /// The same with alpha: one per texel, or none.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If the number of texels differs.
     pub fn from_linear_and_alpha(
         name: impl Into<String>,
         width: u32,
@@ -64,10 +64,10 @@ impl Image {
         Self { name: name.into(), width, height, texels: Texels::Floats { texels, alpha }, has_alpha }
     }
 
-    /// A picture of `width * height` times red, green, blue and opacity in bytes, row by row from the top.
+    /// An image of `width * height` texels of red, green, blue and alpha in bytes, row by row from the top.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If the number of texels differs.
     pub fn from_bytes(
         name: impl Into<String>,
         width: u32,
@@ -81,7 +81,7 @@ impl Image {
         Self { name: name.into(), width, height, texels, has_alpha }
     }
 
-    /// The number of texels.
+    /// Number of texels.
     pub fn len(&self) -> usize {
         match &self.texels {
             Texels::Bytes { texels, .. } => texels.len(),
@@ -94,25 +94,25 @@ impl Image {
         self.len() == 0
     }
 
-    /// Whether it is not opaque everywhere.
+    /// Whether the image has an alpha channel.
     pub fn has_alpha(&self) -> bool {
         self.has_alpha
     }
 
-    /// The linear Rec. 709 colour of a texel, counted row by row.
+    /// The linear Rec. 709 colour of a texel; indices go row by row.
     ///
     /// # Panics
-    /// If there is none.
+    /// If there is no such texel.
     #[inline]
     pub fn texel(&self, index: usize) -> [f32; 3] {
         let [texel] = self.texels_at([index]);
         texel
     }
 
-    /// The colours of several.
+    /// The colours of several texels.
     ///
     /// # Panics
-    /// If there are none.
+    /// If there is no such texel.
     #[inline]
     pub fn texels_at<const N: usize>(&self, indices: [usize; N]) -> [[f32; 3]; N] {
         match &self.texels {
@@ -124,10 +124,10 @@ impl Image {
         }
     }
 
-    /// One channel of several texels; of [`Channel::Rgb`] the red.
+    /// One channel of several texels; red for [`Channel::Rgb`].
     ///
     /// # Panics
-    /// If there are none.
+    /// If there is no such texel.
     #[inline]
     pub fn channel_at<const N: usize>(&self, indices: [usize; N], channel: Channel) -> [f32; N] {
         let place = match channel {
@@ -142,10 +142,10 @@ impl Image {
         }
     }
 
-    /// The opacity of a texel, counted row by row: 1 where the picture has none.
+    /// The opacity of a texel; indices go row by row: 1 if the image has no alpha.
     ///
     /// # Panics
-    /// If there is no such texel in a picture that is not opaque.
+    /// If there is no such texel in an image with alpha.
     #[inline]
     pub fn alpha(&self, index: usize) -> f32 {
         if !self.has_alpha {
@@ -162,7 +162,7 @@ impl Image {
         (0..self.len()).map(|index| self.texel(index))
     }
 
-    /// The same picture with each of its colours multiplied.
+    /// The same image with each of its colours multiplied by `tint`.
     pub fn tinted(&self, tint: [f32; 3]) -> Self {
         let texels = self.texels().map(|texel| std::array::from_fn(|c| texel[c] * tint[c])).collect();
         let alpha =

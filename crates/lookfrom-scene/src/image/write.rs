@@ -11,17 +11,17 @@ use crate::error::{Error, ErrorKind, Location, Result};
 /// The bytes of a PNG of 8-bit sRGB colours, row 0 on top. The same input gives the same bytes.
 ///
 /// # Errors
-/// `Invalid` where `rgb` is not `3 * width * height` bytes.
+/// `Invalid` if `rgb` is not `3 * width * height` bytes.
 pub fn encode_png(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>> {
     check_bytes(width, height, rgb, 3)?;
     encode(width, height, rgb, ExtendedColorType::Rgb8)
 }
 
-/// The bytes of a PNG of 8-bit sRGB colours that are not multiplied by the alpha that follows each of them, row 0 on top. The
-/// same input gives the same bytes.
+/// The bytes of a PNG of 8-bit sRGB colours with straight (not premultiplied) alpha, row 0 on top. The same input gives the
+/// same bytes.
 ///
 /// # Errors
-/// `Invalid` where `rgba` is not `4 * width * height` bytes.
+/// `Invalid` if `rgba` is not `4 * width * height` bytes.
 pub fn encode_png_with_alpha(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>> {
     check_bytes(width, height, rgba, 4)?;
     encode(width, height, rgba, ExtendedColorType::Rgba8)
@@ -40,7 +40,7 @@ fn encode(width: u32, height: u32, bytes: &[u8], color: ExtendedColorType) -> Re
 /// The bytes of a binary PPM (P6) of 8-bit sRGB colours, row 0 on top.
 ///
 /// # Errors
-/// `Invalid` where `rgb` is not `3 * width * height` bytes.
+/// `Invalid` if `rgb` is not `3 * width * height` bytes.
 pub fn encode_ppm(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>> {
     check_bytes(width, height, rgb, 3)?;
     let mut bytes = format!("P6\n{width} {height}\n255\n").into_bytes();
@@ -48,10 +48,10 @@ pub fn encode_ppm(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The bytes of a Radiance HDR picture of linear colours, row 0 on top: three 8-bit mantissas with one exponent.
+/// The bytes of a Radiance HDR image of linear colours, row 0 on top: three 8-bit mantissas with a shared exponent.
 ///
 /// # Errors
-/// `Invalid` where `texels` are not `width * height` colours.
+/// `Invalid` if `texels` are not `width * height` colours.
 pub fn encode_hdr(width: u32, height: u32, texels: &[[f32; 3]]) -> Result<Vec<u8>> {
     check(width, height, texels.len())?;
     let mut bytes = Vec::new();
@@ -62,10 +62,10 @@ pub fn encode_hdr(width: u32, height: u32, texels: &[[f32; 3]]) -> Result<Vec<u8
     Ok(bytes)
 }
 
-/// The bytes of a portable float map of linear colours, row 0 on top: every bit is kept.
+/// The bytes of a portable float map of linear colours, row 0 on top, without loss.
 ///
 /// # Errors
-/// `Invalid` where `texels` are not `width * height` colours.
+/// `Invalid` if `texels` are not `width * height` colours.
 pub fn encode_pfm(width: u32, height: u32, texels: &[[f32; 3]]) -> Result<Vec<u8>> {
     check(width, height, texels.len())?;
     let mut bytes = format!("PF\n{width} {height}\n-1.0\n").into_bytes();
@@ -79,15 +79,15 @@ fn check_bytes(width: u32, height: u32, bytes: &[u8], a_pixel: usize) -> Result<
     if bytes.len().is_multiple_of(a_pixel) {
         return check(width, height, bytes.len() / a_pixel);
     }
-    Err(Error::invalid(&Location::default(), format!("{} bytes are not {a_pixel} a pixel", bytes.len())))
+    Err(Error::invalid(&Location::default(), format!("{} bytes are not {a_pixel} per pixel", bytes.len())))
 }
 
-/// Whether there is a value for each pixel, and at least one pixel.
+/// Checks that there is a value for each pixel, and at least one pixel.
 pub(super) fn check(width: u32, height: u32, values: usize) -> Result<()> {
     if values == 0 || u64::from(width) * u64::from(height) != values as u64 {
         return Err(Error::invalid(
             &Location::default(),
-            format!("a picture of {width}×{height} was to be made of {values} pixels"),
+            format!("a picture of {width}×{height} cannot be made of {values} pixels"),
         ));
     }
     Ok(())

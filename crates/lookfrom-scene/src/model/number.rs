@@ -1,8 +1,8 @@
 //! Parser for decimal numbers.
 //!
-//! Exactly the nearest one, as the standard library finds it, but faster for the short decimals that models are full
-//! of (Clinger 1990: a product or quotient of two exact doubles is rounded once). Odd spellings that other programs
-//! write are understood on the slow path.
+//! The result is the nearest number, as in the standard library, but faster for the short decimals that models consist
+//! of (Clinger 1990: a product or quotient of two exact doubles is rounded once). Unusual spellings that other programs
+//! write are handled by the slow path.
 
 /// 10⁰ … 10²²: the powers of ten that are exact doubles.
 const POWERS: [f64; 23] = [
@@ -10,11 +10,11 @@ const POWERS: [f64; 23] = [
     1e19, 1e20, 1e21, 1e22,
 ];
 
-/// The `f32` nearest to the decimal number; infinite where it is too large.
+/// The `f32` nearest to the decimal number; infinite if it is too large.
 pub(crate) fn parse_f32(word: &[u8]) -> Option<f32> {
     if let Some(double) = short_decimal(word) {
         let magnitude = double.abs();
-        // Rounding twice is wrong only where the double lies exactly between two singles.
+        // Rounding twice is wrong only if the double is exactly halfway between two singles.
         let tie = double.to_bits() & 0x1fff_ffff == 0x1000_0000;
         if !tie && (magnitude >= f64::from(f32::MIN_POSITIVE) || magnitude == 0.0) {
             return Some(double as f32);
@@ -23,7 +23,7 @@ pub(crate) fn parse_f32(word: &[u8]) -> Option<f32> {
     slow(word)
 }
 
-/// The `f64` nearest to the decimal number; infinite where it is too large.
+/// The `f64` nearest to the decimal number; infinite if it is too large.
 pub(crate) fn parse_f64(word: &[u8]) -> Option<f64> {
     short_decimal(word).or_else(|| slow(word))
 }
@@ -35,7 +35,7 @@ fn short_decimal(word: &[u8]) -> Option<f64> {
         b'+' => (false, &word[1..]),
         _ => (false, word),
     };
-    // Longer ones may overflow; what is too long for a double is left to the slow path.
+    // Longer numbers may overflow and are left to the slow path.
     if digits.len() > 24 {
         return None;
     }
@@ -80,7 +80,7 @@ fn short_decimal(word: &[u8]) -> Option<f64> {
     Some(if negative { -magnitude } else { magnitude })
 }
 
-/// The result of the standard library's parser, after odd spellings are normalised.
+/// The result of the standard library's parser, after unusual spellings are normalised.
 fn slow<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     let text = std::str::from_utf8(word).ok()?;
     if let Ok(number) = text.parse() {
@@ -149,7 +149,7 @@ mod tests {
 
         #[test]
         fn ties_go_to_even(bits in 0x0080_0000_u32..0x4b00_0000) {
-            // Exactly between two singles: written with all its digits.
+            // Exactly halfway between two singles, written with all its digits.
             let middle = 0.5 * (f64::from(f32::from_bits(bits)) + f64::from(f32::from_bits(bits + 1)));
             let text = format!("{middle:.17e}");
             prop_assert_eq!(parse_f32(text.as_bytes()).map(f32::to_bits), text.parse().ok().map(f32::to_bits));

@@ -1,7 +1,7 @@
 //! Point clouds as spheres.
 //!
-//! As spheres whose radius follows from how near the points lie to one another. Spheres of one part have one look, so
-//! coloured clouds are parted by colour.
+//! The radius follows from the distances between points. Spheres of one part share a material, so coloured clouds are
+//! split by colour.
 
 use std::collections::BTreeMap;
 
@@ -15,16 +15,16 @@ use crate::material::{Color, Whitted};
 use crate::scene::Scene;
 use crate::shape::{Geometry, Part, Sphere};
 
-/// Steps of each primary by which coloured points are parted.
+/// Number of steps per primary by which coloured points are split.
 const COLOR_STEPS: f32 = 8.0;
 
-/// The number of points whose nearest neighbour is searched.
+/// Number of points whose nearest neighbour is searched.
 const SAMPLES: usize = 256;
 
-/// Radius of the spheres, in distances to the nearest neighbour: neighbours overlap a little, surfaces look closed.
+/// Radius of the spheres relative to the distance of nearest neighbours: they overlap a little, so surfaces look closed.
 const RADIUS: f64 = 0.7;
 
-/// Spheres for points. `colors` are linear; there may be none, or too few: the rest is white.
+/// Spheres for points. `colors` are linear; there may be none, or too few: missing ones are white.
 pub(crate) fn cloud(
     positions: &[Vec3],
     colors: &[[f32; 3]],
@@ -48,7 +48,7 @@ pub(crate) fn cloud(
     if colors.is_empty() {
         return vec![part(&mut finite.iter().map(|&(point, _)| point), None)];
     }
-    // Part by colour; the steps are finer in the dark, where the eye sees more of them.
+    // Split by colour; steps are finer in the dark, where the eye distinguishes more of them.
     let mut by_color: BTreeMap<[u8; 3], Vec<usize>> = BTreeMap::new();
     let color_of = |index: usize| colors.get(index).copied().unwrap_or([1.0; 3]);
     for (order, &(_, index)) in finite.iter().enumerate() {
@@ -65,7 +65,7 @@ pub(crate) fn cloud(
     parts.collect()
 }
 
-/// A radius for spheres around these points: a share of the median distance to the nearest neighbour.
+/// A radius for spheres around these points: a multiple of the median distance to the nearest neighbour.
 fn radius(mut points: Vec<DVec3>) -> f64 {
     let (min, max) = points
         .iter()
@@ -73,7 +73,7 @@ fn radius(mut points: Vec<DVec3>) -> f64 {
     let axis = (max - min).max_position();
     points.sort_by(|a, b| a[axis].total_cmp(&b[axis]));
     points.dedup();
-    // Neighbours along the longest axis come first; what is farther along it than the best is not nearer.
+    // Sorted along the longest axis; points whose distance along it exceeds the best distance are not nearer.
     let nearest = |i: usize| {
         let mut best = f64::INFINITY;
         for &other in &points[i + 1..] {
@@ -96,12 +96,12 @@ fn radius(mut points: Vec<DVec3>) -> f64 {
     distances.sort_by(f64::total_cmp);
     match distances.get(distances.len() / 2) {
         Some(median) => RADIUS * median,
-        // All in one place.
+        // All points coincide.
         None => Some(0.01 * max.abs().max_element()).filter(|&radius| radius > 0.0).unwrap_or(1.0),
     }
 }
 
-/// The distance of two points; those in the same place are no neighbours.
+/// The distance between two points; infinite for coincident points, which do not count as neighbours.
 fn closer(a: DVec3, b: DVec3) -> f64 {
     if a == b { f64::INFINITY } else { a.distance(b) }
 }

@@ -1,18 +1,18 @@
 //! Triangulation of polygons.
 //!
-//! A fan where that is right, otherwise ears are cut off one after the other (Meisters 1975). Polygons in space are
-//! looked at along their mean normal (Newell's, in Sutherland, Sproull, Schumacker 1974). No vertex is left out, so
-//! that neighbours with the same edges fit without gaps.
+//! A fan if its triangles do not overlap, otherwise ear clipping (Meisters 1975). Polygons in space are projected along
+//! their mean normal (Newell's, in Sutherland, Sproull, Schumacker 1974). No vertex is left out, so neighbours with the
+//! same edges fit without gaps.
 
 use glam::{DVec2, DVec3, Vec3};
 
-/// Cuts polygons into triangles; keeps its memory between polygons.
+/// A polygon triangulator, which reuses its memory.
 pub(crate) struct Triangulator {
     flat: Vec<DVec2>,
-    /// The corners that are left.
+    /// The remaining corners.
     left: Vec<u32>,
-    /// The budget of corner tests: ear clipping costs the square of the number of corners, and a file must not be
-    /// able to ask for hours.
+    /// The budget of corner tests: ear clipping takes time quadratic in the number of corners, and a file must not be able
+    /// to take hours.
     tests_left: u64,
 }
 
@@ -27,8 +27,8 @@ impl Triangulator {
         self.tests_left == 0
     }
 
-    /// Appends triangles as indices into `points`, with the orientation of the polygon. Points must be finite; of n ≥ 3
-    /// points come n − 2 triangles, some perhaps without area.
+    /// Appends triangles as indices into `points`, with the orientation of the polygon. Points must be finite; n ≥ 3 points
+    /// give n − 2 triangles, some possibly without area.
     pub(crate) fn cut(&mut self, points: &[Vec3], triangles: &mut Vec<[u32; 3]>) {
         let count = points.len() as u32;
         if count <= 3 {
@@ -46,7 +46,7 @@ impl Triangulator {
         }
     }
 
-    /// Projects along the mean normal, so that the polygon runs counter-clockwise.
+    /// Projects along the mean normal, so that the polygon is counter-clockwise.
     fn flatten(&mut self, points: &[Vec3]) {
         let origin = points[0].as_dvec3();
         let at = |i: usize| points[i % points.len()].as_dvec3() - origin;
@@ -55,7 +55,7 @@ impl Triangulator {
         self.flat.clear();
         self.flat.extend((0..points.len()).map(|i| {
             let p = at(i);
-            // Drop the axis along which the normal is longest; swap the others where it points backwards.
+            // Drop the axis along which the normal is longest; swap the others if the normal points backwards.
             let (flat, forward) = if size.x > size.y && size.x > size.z {
                 (DVec2::new(p.y, p.z), normal.x)
             } else if size.y > size.z {
@@ -82,7 +82,7 @@ impl Triangulator {
             let n = self.left.len();
             tip %= n;
             let ear = [self.left[(tip + n - 1) % n], self.left[tip], self.left[(tip + 1) % n]];
-            // Where no corner is an ear the polygon crosses itself: cut anyway, so that it ends.
+            // If no corner is an ear, the polygon intersects itself: clip anyway, so that the loop terminates.
             if self.is_ear(ear) || failures >= n {
                 triangles.push(ear);
                 self.left.remove(tip);
@@ -92,10 +92,10 @@ impl Triangulator {
                 self.tests_left -= 1;
                 failures += 1;
             }
-            // Going on beyond the next corner keeps triangles fat.
+            // Skipping the next corner avoids thin triangles.
             tip += 1;
         }
-        // The last triangle; after giving up, a fan.
+        // The last triangle; if the budget is exhausted, a fan.
         triangles.extend(self.left.windows(2).skip(1).map(|pair| [self.left[0], pair[0], pair[1]]));
     }
 
@@ -104,7 +104,7 @@ impl Triangulator {
         if self.area(ear) <= 0.0 {
             return false;
         }
-        // One is kept for the caller to spend.
+        // At least one test is left, to be spent by the caller.
         self.tests_left = self.tests_left.saturating_sub(self.left.len() as u64).max(1);
         let tips = ear.map(|i| self.flat[i as usize]);
         self.left.iter().all(|&other| {
@@ -117,7 +117,7 @@ impl Triangulator {
     }
 }
 
-/// Whether three finite points span an area.
+/// Whether the triangle of three finite points has an area.
 pub(crate) fn has_area([a, b, c]: [Vec3; 3]) -> bool {
     let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
     (b - a).cross(c - a) != DVec3::ZERO
@@ -171,7 +171,7 @@ mod tests {
             scale in -20_i32..20,
             axis in 0_usize..6,
         ) {
-            // A polygon around the origin of any concavity, on one of six sides of a cube.
+            // A star-shaped polygon around the origin of any concavity, in one of six orientations of a cube.
             let scale = 2_f32.powi(scale);
             let step = std::f32::consts::TAU / radii.len() as f32;
             let points: Vec<Vec3> = radii.iter().enumerate().map(|(i, r)| {
@@ -188,7 +188,7 @@ mod tests {
             });
             let triangles = cut(&points);
             prop_assert_eq!(triangles.len(), n - 2);
-            // Oriented as the polygon, all of them, with the same area in sum: no overlap, no gap.
+            // All have the orientation of the polygon, and their areas sum to its area: no overlap, no gap.
             let direction = whole.normalize();
             let mut sum = 0.0;
             for &triangle in &triangles {

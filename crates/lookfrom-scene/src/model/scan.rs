@@ -1,7 +1,7 @@
 //! Scanner for line-oriented text formats.
 //!
-//! A cursor over bytes for line-oriented formats. It knows line ends of all kinds (LF, CR LF, CR) and the places of
-//! words; what words mean is left to the readers of the formats.
+//! It handles line ends of all kinds (LF, CR LF, CR) and the locations of words; readers of the formats interpret the
+//! words.
 
 use crate::error::Location;
 
@@ -13,17 +13,17 @@ pub(crate) struct Scanner<'a> {
     line: u32,
     line_start: usize,
     word_start: usize,
-    /// Whether a backslash before a line end joins the next line to this one.
+    /// Whether a backslash before a line end continues the line.
     joins_lines: bool,
 }
 
 impl<'a> Scanner<'a> {
-    /// At the start of `bytes`, which is line 1.
+    /// A scanner at the start of `bytes`, which is line 1.
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, position: 0, line: 1, line_start: 0, word_start: 0, joins_lines: false }
     }
 
-    /// The same, for formats in which a backslash before a line end joins the next line to this one.
+    /// The same, for formats in which a backslash before a line end continues the line.
     pub(crate) fn joining_lines(bytes: &'a [u8]) -> Self {
         Self { joins_lines: true, ..Self::new(bytes) }
     }
@@ -33,26 +33,26 @@ impl<'a> Scanner<'a> {
         self.line
     }
 
-    /// The number of bytes before the cursor.
+    /// Number of bytes before the cursor.
     pub(crate) fn position(&self) -> usize {
         self.position
     }
 
-    /// The place of the last word (or rest of a line) that was read.
+    /// The location of the last word (or rest of a line) that was read.
     pub(crate) fn at(&self, file: &Location) -> Location {
         let before = &self.bytes[self.line_start.min(self.word_start)..self.word_start];
         let column = String::from_utf8_lossy(before).chars().count() + 1;
         file.at(self.line, u32::try_from(column).unwrap_or(0))
     }
 
-    /// The next word of this line; empty where the line ends.
+    /// The next word of this line; empty at the end of the line.
     pub(crate) fn word(&mut self) -> &'a [u8] {
         self.skip_blanks();
         self.word_start = self.position;
         let rest = &self.bytes[self.position..];
         let length = rest.iter().position(|&byte| byte <= b' ').unwrap_or(rest.len());
         self.position += length;
-        // A backslash that joins lines is no part of the word before it.
+        // A backslash that continues the line is not part of the word before it.
         if self.joins_lines && length > 0 && rest[length - 1] == b'\\' && self.line_end(self.position) > 0 {
             self.position -= 1;
             return &rest[..length - 1];
@@ -60,7 +60,7 @@ impl<'a> Scanner<'a> {
         &rest[..length]
     }
 
-    /// The next word of this line or of those that follow; empty at the end of the text.
+    /// The next word of this line or of following lines; empty at the end of the text.
     pub(crate) fn word_across_lines(&mut self) -> &'a [u8] {
         loop {
             let word = self.word();
@@ -70,7 +70,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// The rest of this line, without blanks at its ends; the cursor stays on the line.
+    /// The rest of this line, trimmed; the cursor stays on the line.
     pub(crate) fn rest_of_line(&mut self) -> &'a [u8] {
         self.skip_blanks();
         self.word_start = self.position;
@@ -80,7 +80,7 @@ impl<'a> Scanner<'a> {
         rest[..length].trim_ascii()
     }
 
-    /// Goes to the start of the next line; false at the end of the text.
+    /// Moves to the start of the next line; false at the end of the text.
     pub(crate) fn next_line(&mut self) -> bool {
         let rest = &self.bytes[self.position..];
         match rest.iter().position(|&byte| byte == b'\n' || byte == b'\r') {
@@ -126,7 +126,7 @@ impl<'a> Scanner<'a> {
     }
 }
 
-/// A word as it is shown to people: at most 40 characters of it.
+/// A word for messages: at most 40 characters of it.
 pub(crate) fn shown(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(&word[..word.len().min(200)]);
     let mut short: String = text.chars().take(40).flat_map(char::escape_debug).collect();

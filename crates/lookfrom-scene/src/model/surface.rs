@@ -9,7 +9,7 @@ use crate::material::{Color, Material, MaterialKind, Whitted};
 use crate::scene::{ImageId, MaterialId, Scene, TextureId};
 use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
 
-/// The path of a file that is named, with `/` between folders, in the file at `path`.
+/// The path of a file with this name, with `/` between folders, in the file at `path`.
 pub(crate) fn beside(path: &Path, name: &str) -> PathBuf {
     path.parent().unwrap_or(Path::new("")).join(name.trim_start_matches("./"))
 }
@@ -19,8 +19,8 @@ pub(crate) fn base_name(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
-/// The picture that is named in the file at `path`; if it is not there, the one of that name beside the file: exporters
-/// like to write the folders of their own machine.
+/// The image with this name in the file at `path`; if it does not exist, the one of that name beside the file: exporters
+/// often write the folders of their own machine.
 ///
 /// # Errors
 /// The error of the first name.
@@ -29,7 +29,7 @@ pub(crate) fn read_image(path: &Path, name: &str, context: &mut LoadContext<'_>)
         .or_else(|error| image::read(&beside(path, base_name(name)), context).map_err(|_| error))
 }
 
-/// A picture over uv, bilinear.
+/// An image texture over uv, with bilinear filtering.
 pub(crate) fn picture(image: ImageId, scale: [f32; 2], offset: [f32; 2], wrap: Wrap) -> TextureKind {
     let mapping = Mapping::Uv { scale, offset };
     TextureKind::Image {
@@ -43,7 +43,7 @@ pub(crate) fn picture(image: ImageId, scale: [f32; 2], offset: [f32; 2], wrap: W
     }
 }
 
-/// Adds a picture.
+/// Adds an image.
 pub(crate) fn push_image(scene: &mut Scene, image: Image) -> ImageId {
     scene.images.push(image);
     ImageId(scene.images.len() as u32 - 1)
@@ -61,7 +61,7 @@ pub(crate) fn push_material(scene: &mut Scene, name: &str, at: &Location, whitte
     MaterialId(scene.materials.len() as u32 - 1)
 }
 
-/// Adds a matte material with the colours of the mesh's vertices.
+/// Adds a diffuse material with the colours of the mesh's vertices.
 pub(crate) fn push_vertex_colors(scene: &mut Scene, at: &Location) -> MaterialId {
     let name = "vertex colours";
     let diffuse = push_texture(scene, name, at, TextureKind::VertexColor { tint: [1.0; 3] });

@@ -12,12 +12,12 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
-    /// Counts one at a line (or 0 where lines are unknown).
+    /// Counts one occurrence at a line (0 if unknown).
     pub(crate) fn add(&mut self, line: u32) {
         self.add_many(1, line);
     }
 
-    /// Counts several at a line.
+    /// Counts several occurrences at a line.
     pub(crate) fn add_many(&mut self, count: u64, line: u32) {
         if count > 0 && self.count == 0 {
             self.first = line;
@@ -30,12 +30,12 @@ impl Tally {
         self.count
     }
 
-    /// Warns where there were any: "3 triangles `what`".
+    /// Warns if there were any: "3 triangles `what`".
     pub(crate) fn warn(self, noun: &str, what: &str, file: &Location, context: &mut LoadContext<'_>) {
         self.tell(WarningKind::Warning, noun, what, file, context);
     }
 
-    /// As a note: the picture is the intended one.
+    /// The same as a note: the image is as intended.
     pub(crate) fn notice(self, noun: &str, what: &str, file: &Location, context: &mut LoadContext<'_>) {
         self.tell(WarningKind::Notice, noun, what, file, context);
     }

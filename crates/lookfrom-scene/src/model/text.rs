@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// The text in UTF-8 (or in an unknown 8-bit encoding) without byte order mark. UTF-16 is known by its mark.
+/// The text in UTF-8 (or in an unknown 8-bit encoding) without byte order mark. UTF-16 is recognised by its mark.
 pub(crate) fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     let from_utf16 = |units: &[u8], unit: fn([u8; 2]) -> u16| {
         let units = units.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));

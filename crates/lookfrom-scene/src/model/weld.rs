@@ -1,7 +1,7 @@
 //! Vertex deduplication: equal tuples get one id.
 //!
-//! An open hash table from tuples to ids in the order of first appearance. The secret of its hash changes from run
-//! to run, so that no file can be built to make it slow; ids do not depend on it.
+//! An open-addressing hash table from tuples to ids in the order of first appearance. Its hash is seeded randomly, so
+//! that no file can be constructed to make it slow; ids do not depend on the seed.
 
 use std::hash::{BuildHasher, RandomState};
 
@@ -10,13 +10,13 @@ const EMPTY: u32 = u32::MAX;
 /// Tuples with ids 0, 1, 2 … in the order of first appearance.
 pub(crate) struct Weld<const N: usize> {
     keys: Vec<[u32; N]>,
-    /// Ids, at most half of the places taken; their number is a power of two.
+    /// Ids in a hash table whose size is a power of two, at most half full.
     slots: Vec<u32>,
     secret: [u64; 2],
 }
 
 impl<const N: usize> Weld<N> {
-    /// No tuple yet.
+    /// An empty set.
     pub(crate) fn new() -> Self {
         let state = RandomState::new();
         Self { keys: Vec::new(), slots: vec![EMPTY; 16], secret: [state.hash_one(0), state.hash_one(1)] }
@@ -27,7 +27,7 @@ impl<const N: usize> Weld<N> {
         &self.keys
     }
 
-    /// The id of a tuple, a new one where it is new. There may be fewer than 2³² − 1 tuples.
+    /// The id of a tuple, a new one if the tuple is new. There may be fewer than 2³² − 1 tuples.
     pub(crate) fn id(&mut self, key: [u32; N]) -> u32 {
         let mask = self.slots.len() - 1;
         let mut slot = self.hash(&key) & mask;

@@ -1,8 +1,8 @@
-//! Meshes of faces with separate indices for position, texture coordinates and normal.
+//! Meshes from faces with separate indices for position, texture coordinates and normal.
 //!
-//! One mesh for each material: polygons cut into triangles, corners with equal indices made one vertex, and normals
-//! made where smoothing groups ask for them: facet normals weighted by the angle at the corner (Thürmer & Wüthrich
-//! 1998), so that they do not depend on how polygons were cut.
+//! One mesh per material: polygons are triangulated, corners with equal indices share a vertex, and normals are generated
+//! where smoothing groups require them: face normals weighted by the angle at the corner (Thürmer & Wüthrich 1998), so
+//! that they do not depend on the triangulation.
 
 use glam::{DVec3, Vec2, Vec3};
 
@@ -14,7 +14,7 @@ use crate::model::tally::Tally;
 use crate::model::weld::Weld;
 use crate::shape::Mesh;
 
-/// All pieces of a file.
+/// All meshes of a file.
 pub(super) struct Meshes {
     pub(super) pieces: Vec<Piece>,
     /// The locations and names of material libraries.
@@ -28,7 +28,7 @@ pub(super) struct Piece {
     pub(super) mesh: Mesh,
 }
 
-/// The items that could not be used.
+/// Counts of elements that could not be used.
 #[derive(Default)]
 struct Tallies {
     not_finite: Tally,
@@ -36,7 +36,7 @@ struct Tallies {
     values: Tally,
 }
 
-/// Makes the meshes; groups without triangles are left out.
+/// Builds the meshes; groups without triangles are left out.
 pub(super) fn meshes(
     mut statements: Statements,
     file: &Location,
@@ -60,7 +60,7 @@ pub(super) fn meshes(
     if triangulator.gave_up() {
         context.warn(
             file,
-            "concave polygons with very many corners: some were cut without care for their shape",
+            "concave polygons with very many corners: some were triangulated as if they were convex",
         );
     }
     Ok(Meshes { pieces, libraries: statements.libraries })
@@ -77,8 +77,8 @@ fn make_values_finite(statements: &mut Statements, tally: &mut Tally) {
     }
 }
 
-/// Calls `each` with the corners and line of every triangle of a group. `skipped` is told of faces with points that are
-/// not finite.
+/// Calls `each` with the corners and line of every triangle of a group, and `skipped` with the lines of faces whose
+/// positions are not finite.
 fn triangles(
     group: &Group,
     positions: &[Vec3],
@@ -107,7 +107,7 @@ fn triangles(
     }
 }
 
-/// Gives a normal to each corner that has none and lies in a smoothing group: one for each position and group.
+/// Adds a normal to each corner that has none and lies in a smoothing group: one per position and group.
 fn smooth(statements: &mut Statements, triangulator: &mut Triangulator) {
     let Statements { groups, positions, normals, .. } = statements;
     let mut weld = Weld::new();
@@ -144,7 +144,7 @@ fn smooth(statements: &mut Statements, triangulator: &mut Triangulator) {
             start += face.corners as usize;
             for corner in corners.iter_mut().filter(|corner| corner.normal == NONE && face.smoothing != 0) {
                 let id = weld.id([corner.position, face.smoothing]);
-                // Corners of faces that were skipped have no sum, and no triangle will ask for one.
+                // Corners of skipped faces have no sum, and no triangle uses them.
                 if (id as usize) < sums.len() {
                     corner.normal = first + id;
                 }
@@ -153,7 +153,7 @@ fn smooth(statements: &mut Statements, triangulator: &mut Triangulator) {
     }
 }
 
-/// The angle at `tip`, in radians; 0 where a side has no length.
+/// The angle at `tip`, in radians; 0 if a side has no length.
 fn angle(tip: DVec3, a: DVec3, b: DVec3) -> f64 {
     let (a, b) = ((a - tip).normalize_or_zero(), (b - tip).normalize_or_zero());
     if a == DVec3::ZERO || b == DVec3::ZERO { 0.0 } else { libm::acos(a.dot(b).clamp(-1.0, 1.0)) }

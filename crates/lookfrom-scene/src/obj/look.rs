@@ -1,16 +1,16 @@
-//! Conversion of MTL materials.
+//! Conversion of MTL materials to the Whitted model.
 //!
-//! From MTL to Whitted's model. Colours are taken to be linear. Only materials that are used are made, and only their
-//! pictures are read. Ambient light is answered with the diffuse colour: `Ka` is rarely meant.
+//! Colours are taken to be linear. Only materials that are used are converted, and only their images are read. Ambient
+//! light is reflected by the diffuse colour: `Ka` is rarely meaningful.
 //!
 //! | MTL | here |
 //! | --- | --- |
-//! | `Kd`, `map_Kd` | diffuse; the product of both, the picture alone where `Kd` is black |
-//! | `Ks`, `Ns`, where `illum` is 2 or more (or not said) and `Ns` > 0 | highlight |
-//! | `illum` 3, 5 | mirror of strength `Ks` (5: by Fresnel) |
-//! | `d` < 1 | share of the diffuse colour; the rest is let through, tinted by `Tf`, refracted where `illum` says so |
-//! | `illum` 4, 6, 7, 9 | glass: mirror `Ks`, refraction by `Ni` (7: by Fresnel) |
-//! | `Pm`, `Pr` | a metal: mirror of strength `Kd · Pm · (1 − Pr)²`, the rest a highlight |
+//! | `Kd`, `map_Kd` | diffuse; their product, or the image alone if `Kd` is black |
+//! | `Ks`, `Ns`, if `illum` is 2 or more (or absent) and `Ns` > 0 | highlight |
+//! | `illum` 3, 5 | mirror reflection with the colour `Ks` (5: by Fresnel) |
+//! | `d` < 1 | weight of the diffuse colour; the rest is transmitted, tinted by `Tf`, and refracted by `illum` |
+//! | `illum` 4, 6, 7, 9 | glass: mirror reflection `Ks`, refraction by `Ni` (7: by Fresnel) |
+//! | `Pm`, `Pr` | a metal: mirror reflection `Kd · Pm · (1 − Pr)²`, the rest a highlight |
 //! | `Ke`, `map_Ke` | emission, from both sides |
 
 use std::collections::HashMap;
@@ -31,26 +31,26 @@ use crate::scene::{ImageId, MaterialId, Scene};
 use crate::shape::Emission;
 use crate::texture::{TextureKind, Wrap};
 
-/// The materials that a file may use.
+/// The material libraries of a file, and what is converted of them.
 pub(super) struct Looks {
     materials: Vec<(MtlMaterial, PathBuf)>,
     by_name: HashMap<Vec<u8>, usize>,
-    /// Pictures by file and tint, so that each is read once; `None` where it cannot be read.
+    /// Images by file and tint, so that each is read once; `None` if it cannot be read.
     images: HashMap<(PathBuf, [u32; 3]), Option<ImageId>>,
-    /// Texels of all pictures so far.
+    /// Total number of texels of the images read so far.
     texels: u64,
     names_libraries: bool,
     missing: Tally,
     missing_name: String,
 }
 
-/// The material of one part.
+/// The material and emission of one part.
 pub(super) struct Look {
     pub(super) material: Option<MaterialId>,
     pub(super) emission: Option<Emission>,
 }
 
-/// Limits on the number of library names and on the length of a library, against hostile files.
+/// Limits on the number of libraries and on the length of each, against hostile files.
 const MOST_LIBRARIES: usize = 64;
 const LIBRARY_BYTES: u64 = 1 << 26;
 
@@ -58,7 +58,7 @@ const BLACK: [f32; 3] = [0.0; 3];
 const WHITE: [f32; 3] = [1.0; 3];
 
 impl Looks {
-    /// Reads the material libraries that the file at `path` names. Those that cannot be read are warned of.
+    /// Reads the material libraries of the file at `path`, with warnings for those that cannot be read.
     pub(super) fn read(
         libraries: &[(Location, Vec<u8>)],
         path: &Path,
@@ -79,7 +79,7 @@ impl Looks {
         for (at, names) in libraries.iter().take(MOST_LIBRARIES) {
             let names = String::from_utf8_lossy(names).replace('\\', "/");
             let whole = names.trim_matches('"');
-            // The whole line is one name with blanks, or it is several names.
+            // The line is one name with spaces, or several names.
             let Err(error) = looks.read_library(whole, path, context) else { continue };
             let words: Vec<&str> = names.split_whitespace().take(MOST_LIBRARIES).collect();
             let mut missing = vec![(whole, error)];
@@ -87,7 +87,7 @@ impl Looks {
                 let tried = words.iter().map(|name| (*name, looks.read_library(name, path, context)));
                 missing = tried.filter_map(|(name, result)| Some((name, result.err()?))).collect();
             }
-            // Libraries are renamed along with their models, but not in them.
+            // Libraries are often renamed along with the model, but not in the model's text.
             let same_stem = packed::unpacked_name(path).with_extension("mtl");
             let is_replaced = missing.len() == words.len() && looks.read_at(&same_stem, context).is_ok();
             for (name, error) in missing {
@@ -110,7 +110,7 @@ impl Looks {
     fn read_at(&mut self, library: &Path, context: &mut LoadContext<'_>) -> Result<()> {
         let bytes = context.files.read(library, LIBRARY_BYTES.min(context.limits.file_bytes))?;
         for material in mtl::parse(&bytes, library, context) {
-            // The first of a name counts.
+            // The first material with a name counts.
             if let Entry::Vacant(entry) = self.by_name.entry(material.name.clone()) {
                 entry.insert(self.materials.len());
                 self.materials.push((material, library.to_owned()));
@@ -119,7 +119,7 @@ impl Looks {
         Ok(())
     }
 
-    /// The look of the pieces that name this material, added to the scene. `colored` tells that vertices have colours.
+    /// Converts the material with this name and adds it to the scene. `colored` tells whether vertices have colours.
     pub(super) fn look(
         &mut self,
         name: Option<&[u8]>,
@@ -143,7 +143,7 @@ impl Looks {
         self.translate(&written, &library, colored, context, scene)
     }
 
-    /// Warns of materials that no library defines. Without any library names are only names.
+    /// Warns of materials that no library defines. Files without libraries use names freely.
     pub(super) fn warn(&self, file: &Location, context: &mut LoadContext<'_>) {
         if !self.names_libraries {
             return;
@@ -166,12 +166,12 @@ impl Looks {
         let opacity = written.opacity.unwrap_or(1.0);
         let kd = written.diffuse.unwrap_or(if written.diffuse_map.is_some() { WHITE } else { [0.8; 3] });
         let metallic = written.metallic.unwrap_or(0.0).min(1.0);
-        // A material that lets light through: by its opacity, or because its model is glass.
+        // The transmitted fraction: given by opacity, or 1 if the illumination model is glass.
         let is_glass = matches!(illumination, 6 | 7);
         let passing = if is_glass && opacity == 1.0 { 1.0 } else { 1.0 - opacity };
         let covering = (1.0 - passing) * (1.0 - metallic);
 
-        // Without a picture the colour itself is checked where the scene becomes a world.
+        // A colour without an image is checked when the scene is built.
         let tinted = [(written.diffuse, &written.diffuse_map), (written.specular, &written.specular_map)];
         for (tint, map) in tinted {
             if let (Some([r, g, b]), Some(map)) = (tint, map)
@@ -219,10 +219,10 @@ impl Looks {
             },
             ..Whitted::default()
         };
-        // Many programs write `Ni 1` everywhere, and with it there would be no mirror.
+        // Many programs write `Ni 1` everywhere, which would leave no reflection.
         whitted.fresnel = illumination == 7 || (illumination == 5 && whitted.ior != 1.0);
         if whitted.fresnel && passing > 0.0 {
-            // Fresnel's equations share out all the light that there is.
+            // Fresnel's equations distribute all light between reflection and transmission.
             mirror = Color::Value(if ks == BLACK { WHITE } else { ks });
         }
         if metallic > 0.0 {
@@ -230,7 +230,7 @@ impl Looks {
             let clear = (1.0 - roughness) * (1.0 - roughness);
             mirror = color(kd, written.diffuse_map.as_ref(), metallic * clear, scene);
             specular = color(kd, written.diffuse_map.as_ref(), metallic * (1.0 - clear), scene);
-            // The exponent whose highlight is as wide as that of a roughness (Walter et al. 2007: α = roughness²).
+            // The exponent with a highlight as wide as this roughness (Walter et al. 2007: α = roughness²).
             let alpha = (roughness * roughness).max(0.01);
             whitted.shininess = (2.0 / (alpha * alpha) - 2.0).max(1.0);
         }
@@ -247,7 +247,7 @@ impl Looks {
         Look { material: Some(push_material(scene, &name, &written.at, whitted)), emission }
     }
 
-    /// The texture of a map with its texels multiplied by `tint`; `None`, with a warning, where it cannot be read.
+    /// The texture of a map with its texels multiplied by `tint`; `None`, with a warning, if it cannot be read.
     fn texture(
         &mut self,
         map: &Map,
@@ -277,8 +277,8 @@ impl Looks {
         Some(push_texture(scene, &map.file, &map.at, kind))
     }
 
-    /// A picture with its texels multiplied. The same picture with many tints must not fill the memory: in sum there
-    /// are no more texels than one picture may have.
+    /// Reads an image and multiplies its texels by `tint`. One image with many tints must not exhaust the memory: all images
+    /// together have at most as many texels as one image may have.
     fn read_tinted(
         &mut self,
         name: &str,

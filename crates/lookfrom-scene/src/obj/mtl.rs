@@ -1,8 +1,8 @@
 //! Parser for MTL files.
 //!
-//! Materials as they are written (Wavefront, "MTL material format", Advanced Visualizer manual, appendix B2, and the
-//! extensions of Clara.io for physically based ones). What they mean is left to the file beside this one, `look`.
-//! Nothing in a material library is an error: what is not understood is ignored with a warning.
+//! Materials as they are written (Wavefront, "MTL material format", Advanced Visualizer manual, appendix B2, and Clara.io's
+//! extensions for physically based materials). `look` interprets them. Nothing in a material library is an error:
+//! statements that are not understood are ignored with a warning.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,20 +14,20 @@ use crate::model::scan::{Scanner, shown};
 use crate::model::tally::Tally;
 use crate::model::text;
 
-/// A material as it is written; `None` where nothing is said.
+/// A material as it is written; `None` for absent statements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MtlMaterial {
-    /// The bytes after `newmtl`, without blanks at their ends.
+    /// The bytes after `newmtl`, trimmed.
     pub name: Vec<u8>,
     /// The location of its first byte.
     pub at: Location,
-    /// `Kd`, `Ks`, `Ke` and `Tf`: finite, not negative.
+    /// `Kd`, finite and not negative, as are `Ks`, `Ke` and `Tf`.
     pub diffuse: Option<[f32; 3]>,
     /// `Ks`.
     pub specular: Option<[f32; 3]>,
     /// `Ke`.
     pub emission: Option<[f32; 3]>,
-    /// `Tf`: what is let through.
+    /// `Tf`: the transmission filter.
     pub filter: Option<[f32; 3]>,
     /// `Ns`: the sharpness of the highlight.
     pub shininess: Option<f32>,
@@ -35,11 +35,11 @@ pub struct MtlMaterial {
     pub ior: Option<f32>,
     /// `d`, or 1 − `Tr`: 1 is opaque.
     pub opacity: Option<f32>,
-    /// `illum`: which illumination model.
+    /// `illum`: the number of the illumination model.
     pub illumination: Option<u32>,
-    /// `Pm`: 1 is a metal.
+    /// `Pm`: 1 is metal.
     pub metallic: Option<f32>,
-    /// `Pr`: 0 is a mirror.
+    /// `Pr`: 0 is a perfect mirror.
     pub roughness: Option<f32>,
     /// `map_Kd`.
     pub diffuse_map: Option<Map>,
@@ -49,22 +49,22 @@ pub struct MtlMaterial {
     pub emission_map: Option<Map>,
 }
 
-/// A picture over the surface.
+/// A texture map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// The location of its name.
     pub at: Location,
-    /// The file as it is written, with `/` between folders.
+    /// The file name as it is written, with `/` between folders.
     pub file: String,
-    /// `-s`: uv is multiplied by this.
+    /// `-s`: factor of the texture coordinates.
     pub scale: [f32; 2],
     /// `-o`: then this is added.
     pub offset: [f32; 2],
-    /// `-clamp on`: nothing lies beyond the edges.
+    /// `-clamp on`: black outside [0, 1].
     pub clamp: bool,
 }
 
-/// Reads the materials of a library in the order of the file; `path` is for messages.
+/// Parses a library's materials in the order of the file; `path` is for messages.
 pub fn parse(bytes: &[u8], path: &Path, context: &mut LoadContext<'_>) -> Vec<MtlMaterial> {
     let file = Location::file(path);
     let text = text::utf8(bytes);
@@ -97,7 +97,7 @@ pub fn parse(bytes: &[u8], path: &Path, context: &mut LoadContext<'_>) -> Vec<Mt
         let noun = format!("`{name}` statement");
         let what = "ignored: not supported";
         match name {
-            // It is about a picture that `refl` names.
+            // A parameter of `refl`, which has its own warning.
             "sharpness" => tally.notice(&noun, what, &file, context),
             _ => tally.warn(&noun, what, &file, context),
         }
@@ -142,7 +142,7 @@ impl MtlMaterial {
                     word = scanner.word();
                 }
                 let value = parse_f32(word).filter(|value| value.is_finite());
-                // Where both are said, `d` counts: the meaning of `Tr` was never agreed on.
+                // If both are given, `d` counts: programs disagree on the meaning of `Tr`.
                 match value {
                     Some(d) if keyword == b"d" => self.opacity = Some(d.clamp(0.0, 1.0)),
                     Some(tr) => self.opacity = self.opacity.or(Some(1.0 - tr.clamp(0.0, 1.0))),
@@ -167,7 +167,7 @@ impl MtlMaterial {
             b"map_kd" => map(&mut self.diffuse_map),
             b"map_ks" => map(&mut self.specular_map),
             b"map_ke" => map(&mut self.emission_map),
-            // Ambient colours are rarely meant: most programs write black, white or the diffuse colour here.
+            // Ambient colours are rarely meaningful: most programs write black, white or the diffuse colour.
             b"ka" | b"map_ka" => Outcome::Done,
             b"map_d" => Outcome::Ignored("map_d"),
             b"map_ns" => Outcome::Ignored("map_Ns"),
@@ -188,7 +188,7 @@ fn read_number(scanner: &mut Scanner<'_>) -> Option<f32> {
     parse_f32(scanner.word()).filter(|value| value.is_finite() && *value >= 0.0)
 }
 
-/// `r [g b]` or `xyz x [y z]`; one number stands for all three.
+/// `r [g b]` or `xyz x [y z]`; a single number stands for all three.
 fn read_color(scanner: &mut Scanner<'_>) -> Option<[f32; 3]> {
     let mut word = scanner.word();
     let is_xyz = word == b"xyz";
@@ -219,14 +219,14 @@ fn read_color(scanner: &mut Scanner<'_>) -> Option<[f32; 3]> {
     Some(rgb.map(|value| value.max(0.0)))
 }
 
-/// Options, then a file name that may have blanks in it.
+/// Options, then a file name that may contain spaces.
 fn read_map(scanner: &mut Scanner<'_>, file: &Location) -> Option<Map> {
     let mut map =
         Map { at: file.clone(), file: String::new(), scale: [1.0; 2], offset: [0.0; 2], clamp: false };
     loop {
         let before = scanner.clone();
         let option = scanner.word();
-        // How many words follow the option: at least, and at most as long as they are numbers.
+        // Minimum and maximum number of arguments; those beyond the minimum must be numbers.
         let (least, most) = match option {
             b"-s" | b"-o" | b"-t" => (1, 3),
             b"-mm" => (2, 2),
@@ -268,7 +268,7 @@ fn read_map(scanner: &mut Scanner<'_>, file: &Location) -> Option<Map> {
     }
 }
 
-/// The name of a material as it is shown to people.
+/// The name of a material, for messages.
 pub(super) fn shown_name(name: &[u8]) -> String {
     if name.is_empty() { "(no name)".to_owned() } else { shown(name) }
 }

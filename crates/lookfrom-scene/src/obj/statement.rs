@@ -1,7 +1,7 @@
 //! Parser for the statements of OBJ files.
 //!
-//! One pass over the text (Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1). What it leaves
-//! to others: triangles and normals ([`super::build`]), materials ([`super::mtl`]).
+//! One pass over the text (Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1). Triangles and
+//! normals are left to [`super::build`], materials to [`super::mtl`].
 
 use std::collections::HashMap;
 
@@ -13,7 +13,7 @@ use crate::model::number::parse_f32;
 use crate::model::scan::{Scanner, shown};
 use crate::model::tally::Tally;
 
-/// Stands for an index that a corner does not have.
+/// Placeholder for an index that a corner does not have.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// A corner of a face: indices, from 0, of its position, texture coordinates and normal.
@@ -36,7 +36,7 @@ pub(super) struct Face {
 /// The faces of one material.
 #[derive(Default)]
 pub(super) struct Group {
-    /// The name that `usemtl` gave, as its bytes.
+    /// The name in `usemtl`, in bytes.
     pub(super) material: Option<Vec<u8>>,
     /// The first object or group in which it was used.
     pub(super) object: Option<String>,
@@ -45,7 +45,7 @@ pub(super) struct Group {
     pub(super) corners: Vec<Corner>,
 }
 
-/// All that a file says, as far as it is understood.
+/// All statements of a file that are supported.
 #[derive(Default)]
 pub(super) struct Statements {
     pub(super) positions: Vec<Vec3>,
@@ -54,11 +54,11 @@ pub(super) struct Statements {
     pub(super) uvs: Vec<Vec2>,
     pub(super) normals: Vec<Vec3>,
     pub(super) groups: Vec<Group>,
-    /// The locations and names of the material libraries of `mtllib`.
+    /// The locations and names of the libraries of `mtllib`.
     pub(super) libraries: Vec<(Location, Vec<u8>)>,
 }
 
-/// The largest index of a kind, and where it stands: indices may be used before what they name.
+/// The largest index of a kind, and its location: indices may precede the elements that they refer to.
 struct Largest {
     count: usize,
     at: Location,
@@ -83,16 +83,16 @@ struct Parser<'a> {
     unknown_name: String,
 }
 
-/// Reads the statements of a file.
+/// Parses the statements of a file.
 ///
 /// # Errors
-/// `Syntax` for numbers that are none, `Invalid` for indices out of range, `Limit` for too many elements.
+/// `Syntax` for malformed numbers, `Invalid` for indices out of range, `Limit` for too many elements.
 pub(super) fn parse(text: &[u8], file: &Location, context: &mut LoadContext<'_>) -> Result<Statements> {
     let largest = || Largest { count: 0, at: file.clone(), written: String::new() };
     let mut parser = Parser {
         file,
         scanner: Scanner::joining_lines(text),
-        // Indices must fit 32 bits besides.
+        // Indices must also fit in 32 bits.
         elements: context.limits.elements.min(u64::from(u32::MAX) / 4) as usize,
         statements: Statements::default(),
         group_of_material: HashMap::new(),
@@ -159,7 +159,7 @@ impl Parser<'_> {
             b"p" | b"l" => self.loose.add(self.scanner.line()),
             b"curv" | b"curv2" | b"surf" => self.curves.add(self.scanner.line()),
             b"call" | b"csh" => self.calls.add(self.scanner.line()),
-            // Parts of curves and surfaces, and hints to programs of the nineties.
+            // Attributes of curves and surfaces, and display attributes.
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"parm" | b"trim" | b"hole" | b"scrv"
             | b"sp" | b"end" | b"con" | b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod"
             | b"shadow_obj" | b"trace_obj" | b"ctech" | b"stech" | b"usemap" | b"maplib" => {}
@@ -191,7 +191,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Up to N numbers, of which `least` must be there; more than N are passed over.
+    /// Up to N numbers, at least `least`; more than N are ignored.
     fn numbers<const N: usize>(&mut self, least: usize) -> Result<([f32; N], usize)> {
         let mut values = [0.0; N];
         let mut count = 0;
@@ -273,7 +273,7 @@ impl Parser<'_> {
         if back {
             return Ok((count - value) as u32);
         }
-        // It may be defined further on: look again at the end.
+        // The element may follow later: checked at the end.
         if value > count && value > self.largest[kind].count {
             self.largest[kind] =
                 Largest { count: value, at: self.scanner.at(self.file), written: shown(number) };

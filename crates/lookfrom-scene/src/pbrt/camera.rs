@@ -9,7 +9,8 @@ use crate::camera::{Camera, Lens, Projection, View, Window};
 use crate::error::{Location, Result};
 
 impl Reader<'_, '_> {
-    /// The camera, the matrix from the world to its space and the name of the medium around it; without one, pbrt's: at the origin, along +z.
+    /// Converts the camera, with its matrix from world to camera space and the medium around it; without one, pbrt's
+    /// default: at the origin, along +z.
     pub(super) fn camera(&mut self, camera: Option<&(Entity, DMat4)>, medium: &str) -> Result<()> {
         let aspect = f64::from(self.scene.image.width) / f64::from(self.scene.image.height);
         let Some((Entity { kind, parameters }, camera_from_world)) = camera else {
@@ -25,7 +26,7 @@ impl Reader<'_, '_> {
         let projection = match &**kind {
             "perspective" => Projection::Perspective { fov: field_of_view(parameters)? },
             "realistic" => {
-                let message = "realistic cameras (lens systems) are not rendered yet: a \"perspective\" camera takes the place of it";
+                let message = "realistic cameras (lens systems) are not rendered yet: a \"perspective\" camera is used instead";
                 self.context.warn(&parameters.place.location(), message);
                 parameters.ignore(&["lensfile", "aperturediameter", "focusdistance", "aperture"]);
                 Projection::Perspective { fov: 50.0 }
@@ -72,13 +73,13 @@ impl Reader<'_, '_> {
     }
 }
 
-/// In degrees along the shorter side of the picture.
+/// Field of view in degrees along the shorter side of the image.
 fn field_of_view(parameters: &Parameters) -> Result<f64> {
     let ok = |degrees: f32| degrees > 0.0 && degrees < 180.0;
     parameters.float_where("fov", 90.0, "an angle between 0 and 180 degrees", ok).map(f64::from)
 }
 
-/// What the picture shows: as written, or ±1 along its shorter side. The unit is half of what the projection says, which
+/// The screen window: as written, or ±1 along the shorter side. The unit is half of the projection's field of view, which
 /// pbrt measures along the shorter side, and we along the height.
 fn window(written: Option<[f32; 4]>, aspect: f64) -> Option<Window> {
     if let Some(numbers) = written {

@@ -32,7 +32,7 @@ impl Reader<'_, '_> {
         let widths = [p.float("width0", width)?, p.float("width1", width)?];
         if !(widths[0].max(widths[1]) > 0.0) || widths[0].min(widths[1]) < 0.0 {
             let name = if p.has("width0") { "width0" } else { "width" };
-            return Err(p.refuse(name, "widths of at least 0, one of them greater"));
+            return Err(p.refuse(name, "widths of at least 0, one of them greater than 0"));
         }
 
         let points = p.vectors("P", Kind::Point3)?;
@@ -55,7 +55,7 @@ impl Reader<'_, '_> {
         }
 
         let at = |end: usize| widths[0] + (widths[1] - widths[0]) * (end as f32 / segments as f32);
-        // A curve that ends in a point is as thin there as numbers allow in practice.
+        // The smallest width, for curves that end in a point.
         let thinnest = 1e-6 * widths[0].max(widths[1]);
         let strands = (0..segments).map(|segment| {
             let points = match (basis, degree) {
@@ -77,7 +77,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Makes one shape of curves that follow one another and are alike but for their form: hair has one shape for each.
+/// Merges successive shapes of curves that differ only in geometry: files of hair have one shape per curve.
 pub(super) fn join(shapes: &mut Vec<Shape>) {
     let mut joined: Vec<Shape> = Vec::new();
     let mut strands: Vec<Strand> = Vec::new();
@@ -106,7 +106,7 @@ pub(super) fn join(shapes: &mut Vec<Shape>) {
     *shapes = joined;
 }
 
-/// Gives the last shape the curves that were collected for it.
+/// Moves the collected curves into the last shape.
 fn close(joined: &mut [Shape], strands: &mut Vec<Strand>) {
     if let (Some(last), false) = (joined.last_mut(), strands.is_empty()) {
         last.geometry = Geometry::Curves(std::mem::take(strands).into());
@@ -117,7 +117,7 @@ fn corners<const N: usize>(points: &[Vec3]) -> [Vec3; N] {
     std::array::from_fn(|i| points[i])
 }
 
-/// The cubic that is the same curve as a quadratic.
+/// Degree elevation from quadratic to cubic.
 fn elevated([a, b, c]: [Vec3; 3]) -> [Vec3; 4] {
     [a, a + (b - a) * (2.0 / 3.0), c + (b - c) * (2.0 / 3.0), c]
 }
@@ -148,7 +148,7 @@ mod tests {
         }
     }
 
-    /// By the blending polynomials, as textbooks have them.
+    /// Evaluation by the basis polynomials.
     fn b_spline(p: [Vec3; 4], t: f32) -> Vec3 {
         let s = 1.0 - t;
         (p[0] * s.powi(3)

@@ -63,7 +63,7 @@ const DIRECTIVES: &[&str] = &[
 ];
 
 impl Reader<'_, '_> {
-    /// Does what a directive says; the lexer stands behind its first word.
+    /// Executes a directive; the lexer is after its first word.
     pub(super) fn directive(&mut self, word: &[u8], place: &Place, lexer: &mut Lexer<'_>) -> Result<()> {
         match word {
             b"Shape" => {
@@ -187,8 +187,9 @@ impl Reader<'_, '_> {
                 let entity = self.option(word, place, lexer)?;
                 let matrix = self.state.matrix;
                 if !transform::is_invertible(&matrix) {
-                    return Err(place
-                        .invalid("the transform in force here flattens space: a camera cannot see by it"));
+                    return Err(
+                        place.invalid("the current transform is singular: a camera needs an invertible one")
+                    );
                 }
                 self.coordinate_systems.insert("camera".to_owned(), matrix.inverse());
                 self.options.target = self.options.look.map(|look| look.transformed(&matrix.inverse()));
@@ -242,7 +243,7 @@ impl Reader<'_, '_> {
             return Ok(());
         }
         let error =
-            place.invalid(format!("{} can only stand after WorldBegin", String::from_utf8_lossy(word)));
+            place.invalid(format!("{} is only allowed after WorldBegin", String::from_utf8_lossy(word)));
         Err(error.hint("write `WorldBegin` between the camera and film and the first shape or light"))
     }
 
@@ -251,11 +252,11 @@ impl Reader<'_, '_> {
             return Ok(());
         }
         let error =
-            place.invalid(format!("{} can only stand before WorldBegin", String::from_utf8_lossy(word)));
+            place.invalid(format!("{} is only allowed before WorldBegin", String::from_utf8_lossy(word)));
         Err(error.hint("move it to the beginning of the scene"))
     }
 
-    /// A kind and its parameters.
+    /// A quoted type and its parameters.
     pub(super) fn entity(
         &self,
         word: &[u8],
@@ -327,12 +328,12 @@ impl Reader<'_, '_> {
 
     fn attribute(&mut self, place: &Place, lexer: &mut Lexer<'_>) -> Result<()> {
         let start = lexer.here();
-        let name = lexer.string("what the parameters are for, such as \"shape\"")?;
+        let name = lexer.string("the target of the parameters, such as \"shape\"")?;
         let target = TARGETS.iter().position(|&target| target == name);
         let target = target
             .ok_or_else(|| Self::unknown(&lexer.place(start), "target of Attribute", &name, TARGETS))?;
         let own = params::read(lexer)?;
-        // What rgb values mean is settled here, not where they are used.
+        // The colour space of rgb values is that of their definition, not that of their use.
         let parameters =
             Parameters::new(String::new(), place.clone(), self.state.space, own, &Inherited::default());
         let attributes = Rc::make_mut(&mut self.state.attributes[target]);
@@ -380,7 +381,8 @@ impl Reader<'_, '_> {
         }
         if let Some(id) = self.objects.get(&name) {
             let before = &self.scene.objects[id.index()].at;
-            let error = lexer.place(start).invalid(format!("object {name:?} is already there, at {before}"));
+            let error =
+                lexer.place(start).invalid(format!("object {name:?} is already defined, at {before}"));
             return Err(error.hint("give one of them another name"));
         }
         self.begin("Object", place)?;
@@ -406,7 +408,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// The material of a name, which may be made later.
+    /// The material with this name, which may be defined later.
     pub(super) fn material_named(&mut self, name: &str, place: &Place) -> MaterialId {
         if let Some(named) = self.materials.get(name) {
             return named.id;
@@ -426,7 +428,7 @@ impl Reader<'_, '_> {
         self.settle_options()
     }
 
-    /// The camera, the film and all that is said before the world, or their defaults.
+    /// Sets camera, film and the other options before the world, or their defaults.
     fn settle_options(&mut self) -> Result<()> {
         let options = std::mem::take(&mut self.options);
         self.film(options.film.as_ref(), options.camera.as_ref().map(|(entity, _)| entity))?;
@@ -444,13 +446,13 @@ impl Reader<'_, '_> {
     }
 }
 
-/// A colour space by name.
+/// The colour space with this name.
 pub(super) fn color_space(name: &str, place: &Place) -> Result<Space> {
     let known = || space::names();
     let found = known().find(|known| known.eq_ignore_ascii_case(name));
     found.ok_or_else(|| {
         let words: Vec<&str> = known().collect();
-        let error = place.invalid(format!("{name:?} is no colour space that is known"));
+        let error = place.invalid(format!("{name:?} is not a known colour space"));
         error.hint(format!("there are: {}", words.join(", ")))
     })
 }

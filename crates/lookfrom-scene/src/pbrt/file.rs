@@ -13,14 +13,14 @@ use crate::ply;
 use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Mesh};
 
-/// The maximum number of includes: small files that include one another twice would not end.
+/// The maximum number of includes: small files that include each other twice would take exponential time.
 const MOST_INCLUDED: u32 = 1 << 17;
 
-/// A model file that shapes wait for.
+/// A model file that shapes refer to.
 pub(super) struct Model {
     /// The location of the first mention.
     place: Place,
-    /// Stands in for what the file will hold.
+    /// The placeholder that the file's mesh will replace.
     pub(super) mesh: MeshId,
 }
 
@@ -34,7 +34,7 @@ impl Reader<'_, '_> {
         }
         let head = &bytes[..bytes.len().min(1 << 12)];
         if head.contains(&0) {
-            return Err(Error::syntax(&whole, "this is not a text").hint("a scene of pbrt is a text file"));
+            return Err(Error::syntax(&whole, "this is not text").hint("a scene of pbrt is a text file"));
         }
         self.open.push(path.to_owned());
         let text = Text::new(path, bytes);
@@ -79,23 +79,23 @@ impl Reader<'_, '_> {
                 .hint("files may include one another in cycles"));
         }
         match self.file(&path) {
-            // This file's own: what it names in turn has been noted.
+            // Only this file: missing files that it names have been noted already.
             Err(error) if error.kind == ErrorKind::Io => self.missing.add_text(&path, place.blame(error)),
             result => result.map_err(|error| place.blame(error)),
         }
     }
 
-    /// The path of a file that is named in the scene: relative to the folder of the scene's first file.
+    /// The path of a file named in the scene, relative to the folder of the scene's main file.
     pub(super) fn resolve(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }
 
-    /// The same, relative to the folder of the file that is being read.
+    /// The same, relative to the folder of the current file.
     fn resolve_locally(&self, name: &str) -> Option<PathBuf> {
         Some(self.open.last()?.parent()?.join(name))
     }
 
-    /// The mesh that a model file will hold.
+    /// The mesh of a model file, which is read later.
     pub(super) fn model(&mut self, path: PathBuf, place: &Place) -> MeshId {
         let next = MeshId(self.scene.meshes.len() as u32);
         let model = self.models.entry(path).or_insert_with(|| Model { place: place.clone(), mesh: next });
@@ -105,7 +105,7 @@ impl Reader<'_, '_> {
         model.mesh
     }
 
-    /// Reads all model files, several at once; meshes, warnings and errors come in the order of the files' names.
+    /// Reads all model files in parallel; meshes, warnings and errors come in the order of the files' names.
     pub(super) fn read_models(&mut self) -> Result<()> {
         let models: Vec<(PathBuf, Model)> = std::mem::take(&mut self.models).into_iter().collect();
         let (files, limits) = (self.context.files, self.context.limits);
@@ -127,17 +127,17 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The mesh in a PLY file, packed or not.
+/// The mesh in a PLY file, compressed or not.
 fn mesh(path: &Path, context: &mut LoadContext<'_>) -> Result<Mesh> {
     let bytes = packed::read(path, context)?;
     let mut alone = Scene::default();
     let parts = ply::from_bytes(&bytes, path, context, &mut alone)?;
     if parts.iter().any(|part| !matches!(part.geometry, Geometry::Mesh(_))) {
         let at = Location::file(path);
-        context.warn(&at, "there are points but no faces: nothing of it is shown");
+        context.warn(&at, "there are points but no faces: nothing is rendered");
     }
     let mut mesh = alone.meshes.into_iter().next().unwrap_or_default();
-    // A material of its own is what would use them.
+    // Vertex colours are used only by a material of the PLY file's own.
     mesh.colors = Vec::new();
     Ok(mesh)
 }

@@ -8,11 +8,11 @@ use crate::error::Result;
 use crate::settings::{Filter, Layers, PixelBounds, Sensor};
 use crate::spectrum::CameraSensor;
 
-/// The largest width and height.
+/// Maximum width and height.
 const LARGEST: i32 = 1 << 16;
 
 impl Reader<'_, '_> {
-    /// The film, and of the camera the time that its shutter is open.
+    /// Converts the film, and the camera's exposure time.
     pub(super) fn film(&mut self, film: Option<&Entity>, camera: Option<&Entity>) -> Result<()> {
         let image = &mut self.scene.image;
         (image.width, image.height) = (1280, 720);
@@ -34,7 +34,7 @@ impl Reader<'_, '_> {
             "rgb" => {}
             "gbuffer" => image.layers = Layers::Geometry,
             "spectral" => {
-                let message = "spectral films are not written yet: the film is taken as \"rgb\"";
+                let message = "spectral films are not written yet: the film \"rgb\" is used instead";
                 self.context.warn(&parameters.place.location(), message);
                 parameters.ignore(&["nbuckets", "lambdamin", "lambdamax"]);
             }
@@ -49,7 +49,7 @@ impl Reader<'_, '_> {
         image.sensor = sensor;
         if parameters.space != SRGB {
             let message = format!(
-                "pictures are written in sRGB's primaries (Rec. 709), not in those of {}",
+                "images are written with the primaries of sRGB (Rec. 709), not with those of {}",
                 parameters.space
             );
             self.context.warn(&parameters.place.location(), message);
@@ -99,7 +99,7 @@ impl Reader<'_, '_> {
         let other = parameters.positive("yradius", default)?;
         if radius != other {
             let message =
-                format!("a filter of {radius} × {other} pixels is taken as one of {radius} × {radius}");
+                format!("a filter of {radius} × {other} pixels is replaced by one of {radius} × {radius}");
             self.context.warn(&parameters.place.location(), message);
         }
         self.scene.image.filter = match &**kind {
@@ -113,7 +113,7 @@ impl Reader<'_, '_> {
             },
             _ => {
                 parameters.ignore(&["tau"]);
-                let message = "the filter \"sinc\" is not there yet: Mitchell's takes its place";
+                let message = "the filter \"sinc\" is not supported yet: \"mitchell\" is used instead";
                 self.context.warn(&parameters.place.location(), message);
                 Filter::Mitchell { radius: radius.min(2.0), b: 1.0 / 3.0, c: 1.0 / 3.0 }
             }
@@ -122,7 +122,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The part that is computed, in pixels or in shares of the picture.
+/// The crop window, from pixels or from fractions of the image.
 fn crop(parameters: &Parameters, width: u32, height: u32) -> Result<Option<PixelBounds>> {
     let pixels = parameters.integers("pixelbounds")?;
     let shares = parameters.floats("cropwindow", Kind::Float)?;
@@ -134,7 +134,7 @@ fn crop(parameters: &Parameters, width: u32, height: u32) -> Result<Option<Pixel
         }
         ([], None) => return Ok(None),
         ([], Some(&[x0, x1, y0, y1])) => {
-            // A pixel belongs to the part that its lower edge lies in.
+            // A pixel belongs to the crop window that contains its lower edge.
             let at = |share: f32, count: u32| (share.clamp(0.0, 1.0) * count as f32).ceil() as u32;
             let (x0, x1) = (at(x0.min(x1), width), at(x0.max(x1), width));
             let (y0, y1) = (at(y0.min(y1), height), at(y0.max(y1), height));

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::settings::{Integrator, LightSampler, Sampler};
 use crate::suggest::nearest;
 
-/// The most samples a pixel.
+/// Maximum number of samples per pixel.
 const MOST_SAMPLES: i32 = 1 << 24;
 
 const SAMPLERS: &[&str] =
@@ -29,7 +29,7 @@ const INTEGRATORS: &[&str] = &[
     "volpath",
 ];
 
-/// Options of the whole program, and whether they would change the picture.
+/// Program options, and whether they would change the image.
 const OPTIONS: &[(&str, bool)] = &[
     ("disablepixeljitter", true),
     ("disabletexturefiltering", false),
@@ -87,7 +87,7 @@ impl Reader<'_, '_> {
                 for name in ["samplelights", "samplebsdf"] {
                     if !parameters.boolean(name, true)? {
                         let message =
-                            format!("\"bool {name}\" false: both ways of sampling are used all the same");
+                            format!("\"bool {name}\" false: both sampling techniques are used anyway");
                         self.context.notice(&parameters.place.location(), message);
                     }
                 }
@@ -106,7 +106,7 @@ impl Reader<'_, '_> {
             _ => {
                 let other = if self.scene.render.media { "volpath" } else { "path" };
                 let message = format!(
-                    "the integrator {kind:?} is not there: {other:?} computes the same light in its place"
+                    "the integrator {kind:?} is not supported: {other:?}, which computes the same light, is used instead"
                 );
                 self.context.notice(&parameters.place.location(), message);
                 let theirs = [
@@ -153,7 +153,7 @@ impl Reader<'_, '_> {
         let declaration = lexer.string("a quoted name of an option")?;
         let name = declaration.split_ascii_whitespace().next_back().unwrap_or_default();
         let Some(&(_, matters)) = OPTIONS.iter().find(|option| option.0 == name) else {
-            let error = lexer.place(start).invalid(format!("{name:?} is no option that is known"));
+            let error = lexer.place(start).invalid(format!("{name:?} is not a known option"));
             let words = || OPTIONS.iter().map(|option| option.0);
             return Err(match nearest(name, words()) {
                 Some(meant) => error.hint(format!("did you mean {meant:?}?")),

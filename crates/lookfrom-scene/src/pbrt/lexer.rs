@@ -1,7 +1,7 @@
 //! Lexer for pbrt scene files.
 //!
-//! Words, quoted strings and brackets, divided by white space and by comments from `#` to the end of the line. Words
-//! are slices of the file; long lists of numbers go straight into their buffers, on several threads where they are
+//! Words, quoted strings and brackets, separated by white space and by comments from `#` to the end of the line. Words
+//! are slices of the file; long lists of numbers are parsed directly into their buffers, on several threads if they are
 //! very long.
 
 use std::borrow::Cow;
@@ -12,10 +12,10 @@ use crate::error::{Error, Result};
 use crate::model::number::{parse_f32, parse_f64};
 use crate::parallel;
 
-/// A list of numbers longer than this, in bytes, is divided among threads.
+/// Minimum length in bytes of a list of numbers that is parsed on several threads.
 const LONG_LIST: usize = 1 << 18;
 
-/// One word of a file.
+/// A token of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Token<'a> {
     /// A directive, a number, `true`.
@@ -28,7 +28,7 @@ pub(super) enum Token<'a> {
     Close,
 }
 
-/// A place in a file, from which words are read.
+/// A cursor into a file.
 pub(super) struct Lexer<'a> {
     text: &'a Rc<Text>,
     bytes: &'a [u8],
@@ -46,7 +46,7 @@ impl<'a> Lexer<'a> {
         Place::new(self.text, offset)
     }
 
-    /// Where the next word starts.
+    /// Offset of the next token.
     pub(super) fn here(&mut self) -> usize {
         self.skip_space();
         self.next
@@ -65,7 +65,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// The next word, if there is one, without going past it.
+    /// The next token, if there is one, without consuming it.
     pub(super) fn peek(&mut self) -> Result<Option<Token<'a>>> {
         let before = self.here();
         let token = self.token();
@@ -73,7 +73,7 @@ impl<'a> Lexer<'a> {
         token
     }
 
-    /// The next word, if there is one.
+    /// The next token, if there is one.
     pub(super) fn token(&mut self) -> Result<Option<Token<'a>>> {
         self.skip_space();
         let start = self.next;
@@ -92,7 +92,7 @@ impl<'a> Lexer<'a> {
         }))
     }
 
-    /// The bytes up to the next that cannot be part of a word.
+    /// The bytes up to the next one that cannot be part of a word.
     fn word(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.next..];
         let length = rest.iter().position(|&byte| ends_word(byte)).unwrap_or(rest.len());
@@ -132,7 +132,7 @@ impl<'a> Lexer<'a> {
         let rest = &self.bytes[self.next..];
         let end = rest.iter().position(|byte| matches!(byte, b']' | b'#' | b'"')).unwrap_or(rest.len());
         if end > LONG_LIST && rest[end..].first() == Some(&b']') {
-            // What is wrong is found once more below, where its place is known.
+            // Errors are found again below, where their location is known.
             if let Some(values) = in_pieces(&rest[..end], parse) {
                 self.next += end + 1;
                 return Ok(values);
@@ -155,7 +155,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// A number by itself.
+    /// A single number.
     pub(super) fn double(&mut self) -> Result<f64> {
         let start = self.here();
         let number = match self.token()? {
@@ -165,7 +165,7 @@ impl<'a> Lexer<'a> {
         number.ok_or_else(|| self.wrong(start, "a number"))
     }
 
-    /// A string by itself.
+    /// A quoted string.
     pub(super) fn string(&mut self, expected: &str) -> Result<String> {
         let start = self.here();
         match self.token()? {
@@ -197,7 +197,7 @@ impl<'a> Lexer<'a> {
                 b'f' => 12,
                 b'\\' | b'\'' | b'"' => escaped,
                 _ => {
-                    let message = format!("`\\{}` stands for nothing", char::from(escaped));
+                    let message = format!("`\\{}` is not a valid escape", char::from(escaped));
                     return Err(self.place(start).syntax(message).hint("write `\\\\` for a backslash"));
                 }
             });
@@ -205,7 +205,7 @@ impl<'a> Lexer<'a> {
         Ok(Cow::Owned(String::from_utf8_lossy(&bytes).into_owned()))
     }
 
-    /// The error that something else is expected at a place.
+    /// The error that something else is expected at this offset.
     pub(super) fn wrong(&self, start: usize, expected: &str) -> Error {
         let mut probe = Lexer { next: start, ..*self };
         let short = |bytes: &[u8]| {
@@ -229,7 +229,7 @@ fn ends_word(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\n' | b'\r' | b'"' | b'[' | b']' | b'#')
 }
 
-/// A finite single.
+/// A finite `f32`.
 pub(super) fn parse_single(word: &[u8]) -> Option<f32> {
     parse_f32(word).filter(|number| number.is_finite())
 }
@@ -246,7 +246,7 @@ pub(super) fn parse_integer(word: &[u8]) -> Option<i32> {
     (f64::from(whole) == number).then_some(whole)
 }
 
-/// Numbers and white space and nothing else, in pieces that are cut at white space.
+/// Parses numbers and white space in pieces that are split at white space; `None` for anything else.
 fn in_pieces<T: Send>(list: &[u8], parse: fn(&[u8]) -> Option<T>) -> Option<Vec<T>> {
     let pieces = 4 * parallel::threads();
     let mut cuts = vec![0];
@@ -259,7 +259,7 @@ fn in_pieces<T: Send>(list: &[u8], parse: fn(&[u8]) -> Option<T>) -> Option<Vec<
         let words = list[cut[0]..cut[1]].split(|&byte| ends_word(byte)).filter(|word| !word.is_empty());
         words.map(parse).collect()
     };
-    // A bracket would have to be refused, not skipped.
+    // A bracket is an error, which this function must not skip.
     if list.contains(&b'[') {
         return None;
     }
@@ -333,7 +333,7 @@ mod tests {
         assert_eq!(lexer.singles().expect("numbers"), numbers);
         assert_eq!(lexer.token().expect("a word"), Some(Token::Word(b"after")));
 
-        // The same list in one piece, because of a comment at its start.
+        // The same list, parsed in one piece because it starts with a comment.
         let plain = text(&("# list\n".to_owned() + &words.join(" \n") + "]"));
         assert_eq!(Lexer::new(&plain).singles().expect("numbers"), numbers);
 

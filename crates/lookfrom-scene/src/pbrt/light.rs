@@ -1,7 +1,7 @@
 //! The `LightSource` and `AreaLightSource` directives.
 //!
-//! pbrt's point lights have intensities in W/sr and its distant lights irradiances, ours Whitted's `I_j`: π times less.
-//! A `power` or `illuminance` is in the same units on both sides, but pbrt multiplies it by the brightness of an rgb
+//! pbrt's point lights have intensities in W/sr and its distant lights irradiances, ours Whitted's `I_j`: smaller by a
+//! factor of π. A `power` or `illuminance` has the same unit in both, but pbrt multiplies it by the luminance of an rgb
 //! colour.
 
 use std::f32::consts::PI;
@@ -20,7 +20,7 @@ use crate::shape::Emission;
 
 const KINDS: &[&str] = &["distant", "goniometric", "infinite", "point", "projection", "spot"];
 
-/// The light where no colour is written: the scene's white.
+/// The default colour of lights: the scene's white.
 const WHITE: Color = Color::Value([1.0; 3]);
 
 impl Reader<'_, '_> {
@@ -29,7 +29,7 @@ impl Reader<'_, '_> {
         if !transform::is_invertible(&matrix) {
             return Err(p
                 .place
-                .invalid("the transform in force here flattens space: a light cannot stand in it"));
+                .invalid("the current transform is singular: a light needs an invertible one"));
         }
         let (kind, power) = match kind {
             "point" => {
@@ -69,7 +69,7 @@ impl Reader<'_, '_> {
             "goniometric" => {
                 let intensity = self.light_color(p, "I")?.unwrap_or(WHITE);
                 let image = self.light_picture(p, true)?;
-                // The middle of the picture is the light's y axis, but z of an octahedral square.
+                // The centre of the image is the light's y axis, but the z axis of an octahedral map.
                 let swapped = DMat4::from_cols(DVec4::X, DVec4::Z, DVec4::Y, DVec4::W);
                 let kind = LightKind::Goniometric { intensity, image, world_from_light: matrix * swapped };
                 (kind, power(p, "power", intensity, PI)?)
@@ -83,13 +83,13 @@ impl Reader<'_, '_> {
 
     fn infinite(&mut self, p: &Parameters, world_from_light: DMat4) -> Result<(LightKind, Power)> {
         let written = self.light_color(p, "L")?;
-        // A portal stands in the world, whatever the transform.
+        // Portals are given in world space, whatever the transform.
         let portal = p.vectors("portal", Kind::Point3)?;
         let portal = match portal[..] {
             [] => None,
             [a, b, c, d] => Some([a, b, c, d].map(Vec3::as_dvec3))
                 .filter(is_rectangle)
-                .ok_or_else(|| p.refuse("portal", "the corners of a rectangle, one after the other"))
+                .ok_or_else(|| p.refuse("portal", "the corners of a rectangle, in order"))
                 .map(Some)?,
             _ => return Err(p.refuse("portal", &format!("4 corners, found {}", portal.len()))),
         };
@@ -109,13 +109,13 @@ impl Reader<'_, '_> {
         };
         let mut power = power(p, "illuminance", color, 1.0)?;
         if let (Some(total), Sky::Octahedral { .. }) = (&mut power.total, &sky) {
-            // pbrt-v4 takes a texel's share of the hemisphere for that of the sphere: its pictures give twice as much.
+            // pbrt-v4 weights texels as if the image covered only a hemisphere, so its images give twice as much.
             *total *= 2.0;
         }
         Ok((LightKind::Environment { sky, portal, illuminates: true }, power))
     }
 
-    /// The picture of a light: one over all directions has to be square.
+    /// The image of a light: environment maps have to be square.
     fn light_picture(&mut self, p: &Parameters, is_square: bool) -> Result<ImageId> {
         let parameter = p.find("filename", &[Kind::String])?;
         let Some(name) = p.string("filename")? else {
@@ -129,11 +129,11 @@ impl Reader<'_, '_> {
         let image = &self.scene.images[id.index()];
         if is_square && image.width != image.height {
             let message = format!(
-                "the picture is {} × {}, but one over all directions is square here (of equal area)",
+                "the picture is {} × {}, but an environment map must be square (equal-area)",
                 image.width, image.height
             );
             return Err(place.invalid(message).hint(
-                "pbrt's own program makes it of one in latitude and longitude: \
+                "pbrt's own program converts one in latitude and longitude: \
                  imgtool makeequiarea old.exr --outfile new.exr",
             ));
         }
@@ -162,7 +162,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// How much light there is; `unit` is how many of pbrt's units make one of ours where no total is written.
+/// The power of a light; `unit` is the number of pbrt's units per unit of ours if no total is given.
 fn power(p: &Parameters, total: &'static str, color: Color, unit: f32) -> Result<Power> {
     let scale = p.float_where("scale", 1.0, "a number of at least 0", |scale| scale >= 0.0)?;
     let total = p.float_or_none(total)?.filter(|&total| total > 0.0);
@@ -175,7 +175,7 @@ fn power(p: &Parameters, total: &'static str, color: Color, unit: f32) -> Result
     })
 }
 
-/// The position and direction of a light, in the world.
+/// The position and direction of a light in world space.
 fn from_to(p: &Parameters, matrix: &DMat4) -> Result<(DVec3, DVec3)> {
     let from = p.vector("from", Kind::Point3, DVec3::ZERO)?;
     let to = p.vector("to", Kind::Point3, DVec3::Z)?;

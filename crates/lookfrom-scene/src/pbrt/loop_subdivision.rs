@@ -1,8 +1,8 @@
 //! Loop subdivision surfaces (Loop 1987).
 //!
-//! Each level divides every triangle into four and moves the vertices; at last they are put where infinitely many
-//! levels would put them, with the normals of that limit (Hoppe et al. 1994). Edges with one face are borders, which
-//! stay curves of their own.
+//! Each level splits every triangle into four and moves the vertices; at the end the vertices are moved to the limit
+//! surface, with its normals (Hoppe et al. 1994). Edges with one face are boundaries, which converge to curves of their
+//! own.
 
 use std::collections::BTreeMap;
 
@@ -10,21 +10,21 @@ use glam::Vec3;
 
 use crate::shape::Mesh;
 
-/// A mesh with what is next to what. Faces have their edge `k` from corner `k` to corner `k + 1`.
+/// A mesh with adjacency. Edge `k` of a face goes from corner `k` to corner `k + 1`.
 struct Surface {
     positions: Vec<Vec3>,
     faces: Vec<[u32; 3]>,
-    /// Across each edge: a face, or none at the border.
+    /// Across each edge: a face, or none at the boundary.
     neighbours: Vec<[Option<u32>; 3]>,
-    /// For each vertex a face that has it; at the border the one from which all others follow in turn.
+    /// For each vertex a face that contains it; at the boundary the first one of its fan.
     first_face: Vec<Option<u32>>,
     is_border: Vec<bool>,
 }
 
-/// The mesh after so many levels, on the limit surface, with its normals. Vertices without faces stay where they are.
+/// The mesh after `levels` subdivisions, on the limit surface, with its normals. Vertices without faces stay in place.
 ///
 /// # Errors
-/// A message where more than two faces meet in an edge, or only in a vertex, or face different ways.
+/// A message if more than two faces meet at an edge, or surfaces only at a vertex, or if orientations differ.
 pub(super) fn subdivide(positions: &[Vec3], triangles: &[[u32; 3]], levels: u32) -> Result<Mesh, String> {
     let mut surface = Surface::new(positions.to_vec(), triangles.to_vec())?;
     for _ in 0..levels {
@@ -68,7 +68,7 @@ impl Surface {
         }
     }
 
-    /// Finds for each vertex the face that its fan begins with.
+    /// Finds the first face of the fan of each vertex.
     fn with_neighbours(
         positions: Vec<Vec3>,
         faces: Vec<[u32; 3]>,
@@ -89,12 +89,12 @@ impl Surface {
         Self { positions, faces, neighbours, first_face, is_border }
     }
 
-    /// Which corner of a face a vertex is.
+    /// The index of the face's corner at a vertex.
     fn corner(&self, face: u32, vertex: usize) -> usize {
         self.faces[face as usize].iter().position(|&v| v as usize == vertex).unwrap_or(0)
     }
 
-    /// The faces around a vertex, each across the edge before the vertex from the last.
+    /// The faces around a vertex, each across the edge before the vertex in the previous face.
     fn fan(&self, vertex: usize) -> Vec<u32> {
         let Some(first) = self.first_face[vertex] else { return Vec::new() };
         let mut fan = vec![first];
@@ -111,7 +111,7 @@ impl Surface {
         }
     }
 
-    /// The vertices around a vertex in turn; at the border from one end to the other.
+    /// The vertices around a vertex in order; at the boundary from one end to the other.
     fn ring(&self, vertex: usize) -> Vec<u32> {
         let fan = self.fan(vertex);
         let other =
@@ -127,7 +127,7 @@ impl Surface {
         ring.iter().fold(Vec3::ZERO, |sum, &vertex| sum + self.positions[vertex as usize])
     }
 
-    /// `p` with a share of each end of the border, or of all neighbours.
+    /// `p` blended with the two boundary neighbours, or with all neighbours, by the weight of each.
     fn blend(&self, vertex: usize, ring: &[u32], border_share: f32, share: f32) -> Vec3 {
         let p = self.positions[vertex];
         let (ends, share) = match ring {
@@ -138,7 +138,7 @@ impl Surface {
         p * (1.0 - ends.len() as f32 * share) + self.sum(ends) * share
     }
 
-    /// One level: vertices move, edges get a vertex each, faces become four.
+    /// One level of subdivision: vertices move, edges get a vertex each, faces become four.
     fn refined(&self) -> Self {
         let mut positions: Vec<Vec3> = Vec::with_capacity(4 * self.positions.len());
         for vertex in 0..self.positions.len() {
@@ -193,8 +193,8 @@ impl Surface {
         self.blend(vertex, ring, 1.0 / 5.0, gamma)
     }
 
-    /// The normal of the limit surface, of any length, by two tangents; positions are those of the limit. As in pbrt it
-    /// looks to the side from which faces run clockwise.
+    /// The normal of the limit surface, not normalised, from two tangents; positions are those of the limit. As in pbrt it
+    /// points to the side from which faces are clockwise.
     fn normal(&self, vertex: usize, ring: &[u32]) -> Vec3 {
         let p = self.positions[vertex];
         let at = |k: usize| self.positions[ring[k] as usize];
@@ -230,7 +230,7 @@ impl Surface {
     }
 }
 
-/// The share of each of so many neighbours (Warren's choice of Loop's weights).
+/// The weight of each neighbour for this valence (Warren's choice of Loop's weights).
 fn beta(valence: usize) -> f32 {
     match valence {
         3 => 3.0 / 16.0,
@@ -262,9 +262,9 @@ mod tests {
         let (points, faces) = tetrahedron();
         let mesh = subdivide(&points, &faces, 3).expect("a good mesh");
         assert_eq!(mesh.triangles.len(), 4 << 6);
-        // Euler: as many vertices as a sphere has.
+        // Euler's formula, with the characteristic of a sphere.
         assert_eq!(mesh.positions.len() + mesh.triangles.len() - mesh.triangles.len() * 3 / 2, 2);
-        // Faces run counter-clockwise seen from outside: normals lean inwards.
+        // Faces are counter-clockwise seen from outside, so normals point inwards.
         for (position, normal) in mesh.positions.iter().zip(&mesh.normals) {
             assert!(normal.normalize().dot(position.normalize()) < -0.5, "{position} {normal}");
         }
@@ -285,7 +285,7 @@ mod tests {
     fn the_limit_does_not_depend_on_the_levels() {
         let (points, faces) = tetrahedron();
         let [coarse, fine] = [0, 4].map(|levels| subdivide(&points, &faces, levels).expect("a good mesh"));
-        // Old vertices keep their numbers.
+        // Old vertices keep their indices.
         for vertex in 0..4 {
             assert!(coarse.positions[vertex].abs_diff_eq(fine.positions[vertex], 1e-5));
             let (a, b) = (coarse.normals[vertex].normalize(), fine.normals[vertex].normalize());

@@ -25,14 +25,14 @@ const KINDS: &[&str] = &[
 ];
 
 impl Reader<'_, '_> {
-    /// A material without a name.
+    /// An unnamed material.
     pub(super) fn material(&mut self, kind: &str, parameters: &Parameters) -> Result<MaterialId> {
         let material = self.look(kind, kind, parameters)?;
         self.scene.materials.push(material);
         Ok(MaterialId(self.scene.materials.len() as u32 - 1))
     }
 
-    /// Keeps a place for a material that is mentioned before it is made.
+    /// Reserves a material that is referred to before its definition.
     pub(super) fn reserve_material(&mut self, name: &str, place: &Place) -> MaterialId {
         let id = MaterialId(self.scene.materials.len() as u32);
         self.scene.materials.push(Material::new(name, place.location(), MaterialKind::Interface));
@@ -53,11 +53,11 @@ impl Reader<'_, '_> {
         super::version3::check_word("Material", &kind, &name_place)?;
         if let Some(named) = self.materials.get(&name).filter(|named| named.is_made) {
             let before = &self.scene.materials[named.id.index()].at;
-            let error = name_place.invalid(format!("material {name:?} is already there, at {before}"));
+            let error = name_place.invalid(format!("material {name:?} is already defined, at {before}"));
             return Err(error.hint("give one of them another name"));
         }
         parameters.title = format!("Material {kind:?}");
-        // Looked at before the name is known, so that no mixture can hold itself.
+        // Converted before the name is defined, so that no mix can contain itself.
         let material = self.look(&name, &kind, &parameters)?;
         let id = self.material_named(&name, &name_place);
         self.scene.materials[id.index()] = material;
@@ -117,8 +117,7 @@ impl Reader<'_, '_> {
             "subsurface" => self.subsurface(p)?,
             "hair" => self.hair(p)?,
             "measured" => {
-                let message =
-                    "measured materials are not rendered yet: gray \"diffuse\" takes the place of it";
+                let message = "measured materials are not rendered yet: gray \"diffuse\" is used instead";
                 self.warn_once("measured", &p.place, message);
                 p.ignore(&["filename"]);
                 MaterialKind::Diffuse { reflectance: gray }
@@ -181,7 +180,7 @@ impl Reader<'_, '_> {
     }
 
     fn index_of_refraction(&mut self, p: &Parameters, name: &'static str, default: f32) -> Result<Ior> {
-        // pbrt prefers the spectrum where both are written.
+        // pbrt prefers the spectrum if both are given.
         if p.of_kind(name, Kind::Spectrum)?.is_none() {
             let value = p.float_or_none(name)?.unwrap_or(default);
             if !(value > 0.0) {
@@ -208,15 +207,14 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Of two materials that were made before.
+    /// A mix of two materials that are already defined.
     fn mix(&mut self, p: &Parameters) -> Result<MaterialKind> {
         let amount = self.scalar(p, "amount", 0.5)?;
         let parameter = p.find("materials", &[Kind::String])?;
         let Some(parameter) = parameter else {
             let error = p.place.invalid(format!("{} has no \"string materials\"", p.title));
-            return Err(
-                error.hint("name two materials that were made before: \"string materials\" [ \"A\" \"B\" ]")
-            );
+            return Err(error
+                .hint("name two materials that are defined before: \"string materials\" [ \"A\" \"B\" ]"));
         };
         let [first, second] = parameter.strings() else {
             return Err(parameter.wrong(format!("two names, found {}", parameter.strings().len())));
@@ -232,10 +230,9 @@ impl Reader<'_, '_> {
         Ok(MaterialKind::Mix { materials: [made(first)?, made(second)?], amount })
     }
 
-    /// A coat over the colour that so many walks under the surface would give.
+    /// A coat over a diffuse base with the colour that subsurface scattering would give.
     fn subsurface(&mut self, p: &Parameters) -> Result<MaterialKind> {
-        let message =
-            "subsurface scattering is not rendered yet: \"coateddiffuse\" takes the place of \"subsurface\"";
+        let message = "subsurface scattering is not rendered yet: \"coateddiffuse\" is used instead";
         self.warn_once("subsurface", &p.place, message);
         p.ignore(&["name", "mfp", "scale", "sigma_a", "sigma_s", "g"]);
         let reflectance = self.color(p, "reflectance", Color::Value([0.83, 0.79, 0.75]), Reflectance)?;
@@ -253,7 +250,7 @@ impl Reader<'_, '_> {
     }
 
     fn hair(&mut self, p: &Parameters) -> Result<MaterialKind> {
-        let message = "the hair material is not rendered yet: \"diffuse\" takes the place of it";
+        let message = "the hair material is not rendered yet: \"diffuse\" is used instead";
         self.warn_once("hair", &p.place, message);
         p.ignore(&["sigma_a", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"]);
         let color = self.color_or_none(p, "reflectance", Reflectance)?;

@@ -15,15 +15,15 @@ use crate::warning::Warning;
 
 const KINDS: &[&str] = &["cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"];
 
-/// pbrt's `sigma_a` where a file names none, per mm of its unit.
+/// pbrt's default `sigma_a`, in mm⁻¹.
 const SIGMA_A: [f32; 3] = [0.0011, 0.0024, 0.014];
 
-/// The integrators that know media; the others let light pass as if all were a vacuum.
+/// The integrators that support media; the others treat all media as a vacuum.
 const KNOWING: &[&str] = &["volpath", "simplevolpath", "bdpt", "mlt"];
 
-/// A medium that was made.
+/// A named medium.
 pub(super) struct NamedMedium {
-    /// `None` for one that is not rendered.
+    /// `None` for a medium that is not rendered.
     id: Option<MediumId>,
     /// Its properties that are not rendered, for a warning when it is used.
     warning: Option<Warning>,
@@ -38,7 +38,7 @@ impl Reader<'_, '_> {
         let warning = |message: String| Some(Warning::new(&p.place.location(), message));
         if kind != "homogeneous" || p.has("preset") {
             p.ignore_all();
-            let message = format!("the medium {name:?} is not rendered yet: light passes it as a vacuum");
+            let message = format!("the medium {name:?} is not rendered yet: it is treated as a vacuum");
             self.media.insert(name, NamedMedium { id: None, warning: warning(message) });
             return Ok(());
         }
@@ -47,7 +47,7 @@ impl Reader<'_, '_> {
         let emission = self.light_color(p, "Le")?;
         p.ignore(&["Lescale", "g"]);
         let is_black = |color| matches!(color, Color::Value(rgb) if rgb == [0.0; 3]);
-        // Where nothing is written, pbrt's media scatter, but do not shine.
+        // By default, pbrt's media scatter, but do not emit.
         let missing = match (scattering.is_some_and(is_black), emission.is_none_or(is_black)) {
             (false, true) => Some("scatter"),
             (true, false) => Some("emit"),
@@ -55,7 +55,9 @@ impl Reader<'_, '_> {
             (true, true) => None,
         };
         let warning = missing.and_then(|missing| {
-            warning(format!("the medium {name:?} only absorbs: what it would {missing} is not rendered yet"))
+            warning(format!(
+                "the medium {name:?} only absorbs: it would also {missing}, which is not rendered yet"
+            ))
         });
         let scale = p.float_where("scale", 1.0, "a number of at least 0", |scale| scale >= 0.0)?;
         let id = MediumId(self.scene.media.len() as u32);
@@ -74,17 +76,17 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Notes whether the scene's integrator knows media.
+    /// Records whether the scene's integrator supports media.
     pub(super) fn settle_media(&mut self, integrator: &str, place: &Place) {
         self.scene.render.media = KNOWING.contains(&integrator);
         self.without_media = (!self.scene.render.media).then(|| (integrator.to_owned(), place.clone()));
     }
 
-    /// The media of the next shape's sides.
+    /// The media on both sides of the next shape.
     pub(super) fn sides(&mut self, place: &Place) -> Result<Option<Sides>> {
         let Some(names) = self.state.media.clone() else { return Ok(None) };
         let [inside, outside] = [self.medium(&names[0], place)?, self.medium(&names[1], place)?];
-        // The same on both sides is no border.
+        // Equal media on both sides need no interface.
         if names[0] == names[1] {
             return Ok(None);
         }
@@ -92,14 +94,14 @@ impl Reader<'_, '_> {
         Ok(Some(Sides { inside, outside }))
     }
 
-    /// The medium around the camera: what was outside of shapes where it was written.
+    /// The medium around the camera: the outside medium at its definition.
     pub(super) fn medium_around(&mut self, name: &str, camera: &Place) -> Result<Option<MediumId>> {
         let medium = self.medium(name, camera)?;
         self.use_medium(name);
         Ok(medium)
     }
 
-    /// A medium by its name; the name of the vacuum is empty.
+    /// A medium by its name; the vacuum has an empty name.
     fn medium(&self, name: &str, place: &Place) -> Result<Option<MediumId>> {
         if name.is_empty() {
             return Ok(None);
@@ -109,13 +111,13 @@ impl Reader<'_, '_> {
         Ok(named.id)
     }
 
-    /// Warns of what is not rendered of a medium, the first time that one is used.
+    /// Warns of the properties of a medium that are not rendered, when a medium is first used.
     fn use_medium(&mut self, name: &str) {
         let Some(named) = self.media.get_mut(name) else { return };
         match self.without_media.take() {
             Some((integrator, place)) => {
                 let message = format!(
-                    "the integrator {integrator:?} knows no media, as in pbrt: light passes them as a vacuum; \"volpath\" knows them"
+                    "the integrator {integrator:?} does not support media, as in pbrt: they are treated as a vacuum; \"volpath\" supports them"
                 );
                 self.context.warn(&place.location(), message);
             }

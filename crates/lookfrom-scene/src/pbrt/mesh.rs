@@ -11,7 +11,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::scene::MeshId;
 use crate::shape::{Geometry, Mesh, Patches};
 
-/// The most triangles that one subdivision may give: a few words of a file could else ask for all memory.
+/// Maximum number of triangles of a subdivision: otherwise a few words of a file could exhaust the memory.
 const MOST_SUBDIVIDED: u64 = 1 << 24;
 
 impl Reader<'_, '_> {
@@ -19,7 +19,7 @@ impl Reader<'_, '_> {
         p.ignore(&["faceIndices"]);
         let positions = points(p)?;
         let triangles = faces::<3>(p, positions.len())?;
-        // pbrt's v is along normal × tangent in the world, whatever the transform mirrors.
+        // pbrt's v runs along normal × tangent in world space, even under reflections.
         let mirrors = self.state.matrix.determinant() < 0.0;
         let handedness = if mirrors == self.state.reverse_orientation { 1.0 } else { -1.0 };
         let mesh = Mesh {
@@ -46,7 +46,7 @@ impl Reader<'_, '_> {
         };
         let place = parameter.map_or(&p.place, |parameter| &parameter.place);
         if p.find("displacement", &[Kind::Texture, Kind::String])?.is_some() {
-            let message = "displacement is not rendered yet: the mesh keeps its form";
+            let message = "displacement is not rendered yet: the mesh is not displaced";
             self.warn_once("displacement", &p.place, message);
         }
         p.ignore(&["edgelength", "displacement.uvscale"]);
@@ -57,7 +57,7 @@ impl Reader<'_, '_> {
     pub(super) fn bilinear_mesh(&mut self, p: &Parameters) -> Result<Option<Geometry>> {
         p.ignore(&["faceIndices"]);
         if p.find("emissionfilename", &[Kind::String])?.is_some() {
-            let message = "\"emissionfilename\" is not there yet: the whole patch shines alike";
+            let message = "\"emissionfilename\" is not supported yet: the whole patch emits uniformly";
             self.warn_once("emissionfilename", &p.place, message);
         }
         let positions = points(p)?;
@@ -78,7 +78,7 @@ impl Reader<'_, '_> {
         let levels = p.integer("levels", 3, 0, 15)? as u32;
         let positions = points(p)?;
         let triangles = faces::<3>(p, positions.len())?;
-        // Each level makes four of one.
+        // Each level splits each triangle into four.
         let count = (triangles.len() as u64) << (2 * levels);
         let limit = self.context.limits.elements.min(MOST_SUBDIVIDED);
         if count > limit {
@@ -103,7 +103,7 @@ impl Reader<'_, '_> {
         Ok(self.one_a_vertex(p, "uv", p.points2("uv")?, count))
     }
 
-    /// Values at vertices, dropped with a warning where there are too many or too few.
+    /// Values at vertices, dropped with a warning unless there is one per vertex.
     fn one_a_vertex<T>(&mut self, p: &Parameters, name: &str, values: Vec<T>, count: usize) -> Vec<T> {
         if values.is_empty() || values.len() == count {
             return values;
@@ -124,7 +124,7 @@ fn points(p: &Parameters) -> Result<Vec<Vec3>> {
     Ok(positions)
 }
 
-/// The corners of each face: `N` indices, or all vertices where there are just `N`.
+/// The corners of each face: `N` indices each, or all vertices if there are exactly `N`.
 fn faces<const N: usize>(p: &Parameters, count: usize) -> Result<Vec<[u32; N]>> {
     let indices = p.integers("indices")?;
     if indices.is_empty() {

@@ -5,25 +5,25 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 
-/// After so many, reading stops.
+/// The number of missing files after which reading stops.
 const MOST_MISSING: usize = 1000;
 
 /// The missing files so far.
 #[derive(Default)]
 pub(super) struct Missing {
-    /// In the order in which they were found.
+    /// In the order of discovery.
     errors: Vec<Error>,
     /// The files of these errors.
     paths: BTreeSet<PathBuf>,
-    /// Whether a part of the scene's text is among them, so that names may be unknown only because of that.
+    /// Whether a part of the scene's text is missing, so that unknown names may be defined there.
     has_text: bool,
 }
 
 impl Missing {
-    /// Notes that a file is missing; once is enough for each.
+    /// Records a missing file, once per file.
     ///
     /// # Errors
-    /// The same error where there are too many.
+    /// The same error if there are too many.
     pub(super) fn add(&mut self, path: &Path, error: Error) -> Result<()> {
         if self.errors.len() >= MOST_MISSING {
             return Err(error);
@@ -43,7 +43,7 @@ impl Missing {
         self.add(path, error)
     }
 
-    /// All errors of a scene as one: files that are missing, and what stopped reading where that was not for want of text.
+    /// All errors as one: missing files, and the error that stopped reading unless missing text explains it.
     pub(super) fn and(self, result: Result<()>) -> Option<Error> {
         let mut errors = self.errors;
         if !self.has_text || errors.is_empty() {

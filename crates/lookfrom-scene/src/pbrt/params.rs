@@ -1,7 +1,7 @@
 //! Parameter lists of directives.
 //!
-//! A parameter is `"type name"` with a value or a list of values. A name that is there with a type that does not fit
-//! is an error that says what fits; a name that no directive reads is warned of.
+//! A parameter is `"type name"` with a value or a list of values. A parameter whose type does not fit is an error that
+//! names the types that do; parameters that no directive reads are warned of.
 
 use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
@@ -17,7 +17,7 @@ use crate::error::{Error, Result};
 use crate::files::LoadContext;
 use crate::suggest::nearest;
 
-/// The types that parameters have.
+/// Types of parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Integer,
@@ -51,7 +51,7 @@ const KINDS: [(&str, Kind); 13] = [
     ("texture", Kind::Texture),
 ];
 
-/// The types of colours that are not textures.
+/// Types of constant colours.
 pub(super) const SPECTRA: &[Kind] = &[Kind::Rgb, Kind::Spectrum, Kind::Blackbody];
 
 impl Kind {
@@ -95,13 +95,13 @@ pub(super) struct Parameter {
     pub(super) name: String,
     pub(super) place: Place,
     pub(super) values: Values,
-    /// The colour space of its rgb values, where that was fixed at its definition (in `Attribute`).
+    /// The colour space of its rgb values, if it was fixed at its definition (in `Attribute`).
     pub(super) space: Cell<Option<Space>>,
     used: Cell<bool>,
 }
 
 impl Parameter {
-    /// Its numbers; none where it has others values.
+    /// Its numbers; empty for values of other types.
     pub(super) fn numbers(&self) -> &[f32] {
         match &self.values {
             Values::Numbers(values) => values,
@@ -109,7 +109,7 @@ impl Parameter {
         }
     }
 
-    /// Its strings; none where it has other values.
+    /// Its strings; empty for values of other types.
     pub(super) fn strings(&self) -> &[String] {
         match &self.values {
             Values::Strings(values) => values,
@@ -117,15 +117,15 @@ impl Parameter {
         }
     }
 
-    /// An error about it.
+    /// The error that its value is not as expected.
     pub(super) fn wrong(&self, expected: impl std::fmt::Display) -> Error {
         self.place.invalid(format!("\"{} {}\": expected {expected}", self.kind.word(), self.name))
     }
 
-    /// Checks that there are whole values, at least one.
+    /// Checks that there is at least one value and that all are complete.
     fn check_length(&self) -> Result<()> {
         let (count, each) = (self.values.len(), self.kind.numbers());
-        // A spectrum's numbers come in pairs, which is for its reader to say.
+        // A spectrum's numbers come in pairs, which is checked by its reader.
         if count > 0 && count.is_multiple_of(each) {
             return Ok(());
         }
@@ -198,7 +198,7 @@ fn values(lexer: &mut Lexer<'_>, kind: Kind) -> Result<Values> {
     let first = lexer.peek()?;
     let strings = match kind {
         Kind::String | Kind::Texture | Kind::Bool => true,
-        // A spectrum is a name, or wavelengths with values.
+        // A spectrum is a name or file, or pairs of wavelength and value.
         Kind::Spectrum => matches!(first, Some(Token::Quoted(_))),
         _ => false,
     };
@@ -250,11 +250,11 @@ fn values(lexer: &mut Lexer<'_>, kind: Kind) -> Result<Values> {
     })
 }
 
-/// The parameters of one directive, and what `Attribute` directives before it add.
+/// The parameters of a directive, with those that earlier `Attribute` directives add.
 pub(super) struct Parameters {
-    /// The directive that has them, for messages: `Shape "sphere"`.
+    /// The directive, for messages: `Shape "sphere"`.
     pub(super) title: String,
-    /// The location of that.
+    /// The location of the directive.
     pub(super) place: Place,
     /// The colour space of rgb values.
     pub(super) space: Space,
@@ -277,7 +277,7 @@ impl Parameters {
         Self { title, place, space, own, inherited: inherited.clone(), asked: RefCell::default() }
     }
 
-    /// The parameter of that name, if it has one of these types. The last one written counts.
+    /// The parameter with this name, if it has one of these types. The last one written counts.
     pub(super) fn find(&self, name: &'static str, kinds: &[Kind]) -> Result<Option<&Parameter>> {
         self.asked.borrow_mut().push(name);
         let mut misfit = None;
@@ -300,13 +300,13 @@ impl Parameters {
         found.map(|parameter| parameter.check_length().map(|()| &**parameter)).transpose()
     }
 
-    /// Whether the parameter is there, as any type, without asking for it.
+    /// Whether the parameter is present, with any type; it is not marked as read.
     pub(super) fn has(&self, name: &str) -> bool {
         self.own.iter().any(|parameter| parameter.name == name)
             || self.inherited.iter().any(|parameter| parameter.name == name)
     }
 
-    /// The parameter of that name and type, if there is one; another type is not minded.
+    /// The parameter with this name and type, if there is one; one of another type is not an error.
     pub(super) fn of_kind(&self, name: &'static str, kind: Kind) -> Result<Option<&Parameter>> {
         let there = |p: &Parameter| p.name == name && p.kind == kind;
         if self.own.iter().any(there) || self.inherited.iter().any(|parameter| there(parameter)) {
@@ -317,13 +317,13 @@ impl Parameters {
         }
     }
 
-    /// Marks a parameter that is understood but makes no difference here.
+    /// Marks parameters that are known but have no effect here.
     pub(super) fn ignore(&self, names: &[&'static str]) {
         self.asked.borrow_mut().extend(names);
         self.own.iter().filter(|parameter| names.contains(&&*parameter.name)).for_each(|p| p.used.set(true));
     }
 
-    /// Marks all of them so.
+    /// Marks all parameters as known.
     pub(super) fn ignore_all(&self) {
         self.own.iter().for_each(|parameter| parameter.used.set(true));
     }
@@ -337,7 +337,7 @@ impl Parameters {
         Ok(self.float_or_none(name)?.unwrap_or(default))
     }
 
-    /// A number that is `ok`.
+    /// A number that satisfies `ok`.
     pub(super) fn float_where(
         &self,
         name: &'static str,
@@ -349,12 +349,12 @@ impl Parameters {
         if ok(value) { Ok(value) } else { Err(self.refuse(name, &format!("{expected}, found {value}"))) }
     }
 
-    /// A number > 0.
+    /// A number greater than 0.
     pub(super) fn positive(&self, name: &'static str, default: f32) -> Result<f32> {
         self.float_where(name, default, "a number greater than 0", |value| value > 0.0)
     }
 
-    /// The error that a parameter's value is out of what is expected.
+    /// The error that a parameter's value is not as expected.
     pub(super) fn refuse(&self, name: &str, expected: &str) -> Error {
         let own = self.own.iter().rev();
         let parameter = own.chain(self.inherited.iter().rev().map(|p| &**p)).find(|p| p.name == name);
@@ -396,7 +396,7 @@ impl Parameters {
         Ok(parameter.single(parameter.strings())?.first().map(String::as_str))
     }
 
-    /// One of a few words.
+    /// A word of a fixed set.
     pub(super) fn choice<T: Copy>(
         &self,
         name: &'static str,
@@ -416,7 +416,7 @@ impl Parameters {
         })
     }
 
-    /// All the numbers of a list.
+    /// All numbers of a list.
     pub(super) fn floats(&self, name: &'static str, kind: Kind) -> Result<Option<&[f32]>> {
         Ok(self.find(name, &[kind])?.map(Parameter::numbers))
     }
@@ -430,19 +430,19 @@ impl Parameters {
         })
     }
 
-    /// Many points, vectors or normals; empty where there are none.
+    /// A list of points, vectors or normals; empty if absent.
     pub(super) fn vectors(&self, name: &'static str, kind: Kind) -> Result<Vec<Vec3>> {
         let numbers = self.floats(name, kind)?.unwrap_or_default();
         Ok(numbers.chunks_exact(3).map(|v| Vec3::new(v[0], v[1], v[2])).collect())
     }
 
-    /// Many points of a plane; empty where there are none.
+    /// A list of points in the plane; empty if absent.
     pub(super) fn points2(&self, name: &'static str) -> Result<Vec<Vec2>> {
         let numbers = self.floats(name, Kind::Point2)?.unwrap_or_default();
         Ok(numbers.chunks_exact(2).map(|v| Vec2::new(v[0], v[1])).collect())
     }
 
-    /// Many whole numbers; empty where there are none.
+    /// A list of integers; empty if absent.
     pub(super) fn integers(&self, name: &'static str) -> Result<&[i32]> {
         Ok(match self.find(name, &[Kind::Integer])?.map(|parameter| &parameter.values) {
             Some(Values::Integers(values)) => values,
@@ -450,7 +450,7 @@ impl Parameters {
         })
     }
 
-    /// The parameters themselves, to be handed on to later directives.
+    /// The parameters themselves, for later directives to inherit.
     pub(super) fn into_own(self) -> Vec<Parameter> {
         self.own
     }
@@ -463,12 +463,12 @@ impl Parameters {
             names.sort_unstable();
             names.dedup();
             let meant: Cow<'_, str> = if names.contains(&&*parameter.name) {
-                // A second one of the same name.
-                "it is overruled by another one".into()
+                // Another parameter has the same name.
+                "it is overridden by another one".into()
             } else {
                 match nearest(&parameter.name, names) {
                     Some(meant) => format!("did you mean {meant:?}?").into(),
-                    None => "it makes no difference".into(),
+                    None => "it has no effect".into(),
                 }
             };
             let message = format!(

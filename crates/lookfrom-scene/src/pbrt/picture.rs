@@ -9,7 +9,7 @@ use crate::image::{self, Encoding, Image};
 use crate::scene::ImageId;
 
 impl Reader<'_, '_> {
-    /// The opacity of a picture that has one, else its values: what a texture of numbers takes from a file.
+    /// The image of a float texture: the file's alpha channel if it has one, else its values.
     pub(super) fn number_picture(&mut self, name: &str, encoding: &str, place: &Place) -> Result<ImageId> {
         let key = (self.resolve(name), format!("{encoding}, opacity"));
         if let Some(&id) = self.images.get(&key) {
@@ -22,7 +22,7 @@ impl Reader<'_, '_> {
         Ok(self.push_picture(key, opacity))
     }
 
-    /// A picture whose whole-number values are `sRGB`, `linear` or `gamma x`; each file is decoded once.
+    /// An image whose integer values are encoded as `sRGB`, `linear` or `gamma x`; each file is decoded once.
     pub(super) fn picture(&mut self, name: &str, encoding: &str, place: &Place) -> Result<ImageId> {
         if name.is_empty() {
             return Err(place
@@ -40,7 +40,7 @@ impl Reader<'_, '_> {
         Ok(self.push_picture(key, image))
     }
 
-    /// What was read of a picture; where it is not there, that is noted and `blank` takes its place.
+    /// The image that was read; if the file is missing, that is recorded and `blank` is returned.
     fn or_blank<T>(&mut self, read: Result<T>, path: &Path, place: &Place, blank: T) -> Result<T> {
         match read.map_err(|error| place.blame(error)) {
             Err(error) if error.kind == ErrorKind::Io => self.missing.add(path, error).map(|()| blank),
@@ -56,12 +56,12 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The placeholder of a missing picture, until all is read.
+/// The placeholder of a missing image.
 fn blank(name: &str) -> Image {
     Image::from_linear(name, 1, 1, vec![[1.0; 3]])
 }
 
-/// The result of `read` for the encoding of that name.
+/// The result of `read` for the encoding with this name.
 fn with_encoding<T>(
     encoding: &str,
     place: &Place,
@@ -78,12 +78,12 @@ fn with_encoding<T>(
         },
         _ => {}
     }
-    let error = place.invalid(format!("{encoding:?} is no encoding that is known"));
+    let error = place.invalid(format!("{encoding:?} is not a known encoding"));
     Err(error.hint("there are: \"sRGB\", \"linear\", \"gamma 2.2\""))
 }
 
-/// How the values of a file are encoded where the scene does not say. pbrt asks only for the encoding of PNG files: other
-/// files of whole numbers are always sRGB.
+/// The encoding of a file's values if the scene gives none. pbrt applies the given encoding only to PNG files: other
+/// integer formats are always sRGB.
 pub(super) fn encoding_of(name: &str, written: Option<&str>) -> String {
     let extension = Path::new(name).extension().map(|e| e.to_string_lossy().to_lowercase());
     match (extension.as_deref(), written) {

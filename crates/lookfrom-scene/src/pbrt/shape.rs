@@ -51,7 +51,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Adds a shape to the world, or to the object that is open.
+    /// Adds a shape to the world, or to the open object.
     fn push_shape(&mut self, shape: Shape) {
         match self.object {
             Some(object) => self.scene.objects[object.index()].shapes.push(shape),
@@ -60,7 +60,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The swept angle in degrees.
+/// The sweep angle in degrees.
 fn phi_max(p: &Parameters) -> Result<f64> {
     p.float_where("phimax", 360.0, "an angle in (0, 360]", |phi| phi > 0.0 && phi <= 360.0).map(f64::from)
 }

@@ -1,7 +1,7 @@
 //! Colours and spectra of parameters.
 //!
-//! `rgb` values are brought from the scene's colour space to linear Rec. 709; `spectrum` values (inline, from a file, or
-//! measured ones with names) and `blackbody` values become curves by wavelength.
+//! `rgb` values are converted from the scene's colour space to linear Rec. 709; `spectrum` values (inline, from a file, or
+//! named measured ones) and `blackbody` values become functions of wavelength.
 
 use super::Reader;
 use super::params::{Kind, Parameter, Parameters, SPECTRA};
@@ -15,17 +15,17 @@ use crate::suggest::nearest;
 /// The name of a colour space.
 pub(super) type Space = &'static str;
 
-/// The space of the scenes that name none.
+/// The default colour space of scenes.
 pub(super) const SRGB: Space = "srgb";
 
 /// The role of a colour: albedo, illuminant or unbounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Meaning {
-    /// A part of light, in [0, 1].
+    /// A reflectance or transmittance, in [0, 1].
     Reflectance,
-    /// A number at each wavelength.
+    /// An unbounded value at each wavelength.
     Unbounded,
-    /// Light.
+    /// An emission spectrum.
     Light,
 }
 
@@ -56,7 +56,7 @@ impl Reader<'_, '_> {
         Ok(self.color_or_none(parameters, name, meaning)?.unwrap_or(default))
     }
 
-    /// The colour of a light, which is the same everywhere.
+    /// The colour of a light, which is constant.
     pub(super) fn light_color(
         &mut self,
         parameters: &Parameters,
@@ -89,7 +89,7 @@ impl Reader<'_, '_> {
         Ok(self.scalar_or_none(parameters, name)?.unwrap_or(Scalar::Value(default)))
     }
 
-    /// A spectrum by name, from a file or inline, or a black body's.
+    /// A spectrum by name, from a file or inline, or a blackbody's.
     fn uniform(&mut self, parameter: &Parameter, scene_space: Space, meaning: Meaning) -> Result<Color> {
         match parameter.kind {
             Kind::Rgb => rgb(parameter, parameter.space.get().unwrap_or(scene_space), meaning),
@@ -114,7 +114,7 @@ impl Reader<'_, '_> {
         CurveId(self.scene.curves.len() as u32 - 1)
     }
 
-    /// A measured curve that has a name, or one from a file.
+    /// A named measured spectrum, or one from a file.
     pub(super) fn named_curve(&mut self, name: &str, place: &Place) -> Result<CurveId> {
         if let Some(&id) = self.curves.get(name) {
             return Ok(id);
@@ -126,9 +126,8 @@ impl Reader<'_, '_> {
                 match spectrum::read_spd(&path, self.context) {
                     Err(error) if error.kind == ErrorKind::Io => {
                         let file = path.display();
-                        let error = place.invalid(format!(
-                            "there is no spectrum of the name {name:?}, and no file {file}"
-                        ));
+                        let error =
+                            place.invalid(format!("there is no spectrum named {name:?}, and no file {file}"));
                         let hint = match nearest(name, spectrum::names()) {
                             Some(meant) => format!("did you mean {meant:?}?"),
                             None => {
@@ -148,7 +147,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// How bright a light's colour is, white of 1 being 1: pbrt divides spectra by their own brightness, but rgb colours by
+/// Luminance of a light's colour relative to white: pbrt normalises spectra by their own luminance, but rgb colours by
 /// that of white.
 pub(super) fn brightness(color: Color) -> f32 {
     match color {
@@ -166,8 +165,7 @@ fn rgb(parameter: &Parameter, space: Space, meaning: Meaning) -> Result<Color> {
         return Err(parameter.wrong(format!("no negative number, {found}")));
     }
     if meaning == Meaning::Reflectance && (red > 1.0 || green > 1.0 || blue > 1.0) {
-        let hint =
-            "a surface cannot reflect more light than it receives: divide by the greatest of the three";
+        let hint = "a surface cannot reflect more light than it receives: divide by the largest of the three";
         return Err(parameter.wrong(format!("numbers from 0 to 1, {found}")).hint(hint));
     }
     if space == SRGB {
@@ -179,12 +177,12 @@ fn rgb(parameter: &Parameter, space: Space, meaning: Meaning) -> Result<Color> {
     };
     let rows = matrix.unwrap_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
     let most = if meaning == Meaning::Reflectance { 1.0 } else { f32::INFINITY };
-    // What is outside of Rec. 709 goes to its border.
+    // Colours outside the gamut of Rec. 709 are clamped.
     let convert = |row: [f32; 3]| (row[0] * red + row[1] * green + row[2] * blue).clamp(0.0, most);
     Ok(Color::Value(rows.map(convert)))
 }
 
-/// Wavelengths and values in turns.
+/// Pairs of wavelength and value.
 fn inline(parameter: &Parameter) -> Result<Curve> {
     let numbers = parameter.numbers();
     if !numbers.len().is_multiple_of(2) {

@@ -17,16 +17,16 @@ pub(super) const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "
 /// The current graphics state.
 #[derive(Clone)]
 pub(super) struct State {
-    /// From the space that directives speak in to the world (before `WorldBegin`: from the world to the camera's space).
+    /// The current transformation matrix: from object to world space (before `WorldBegin`: from world to camera space).
     pub(super) matrix: DMat4,
-    /// Whether transforms reach the start of the shutter's time, which is what is rendered.
+    /// Whether transforms apply to the start of the shutter interval, which is the time that is rendered.
     pub(super) at_start: bool,
-    /// Whether they reach its end.
+    /// Whether transforms apply to its end.
     pub(super) at_end: bool,
     pub(super) reverse_orientation: bool,
     pub(super) material: MaterialId,
     pub(super) emission: Option<Emission>,
-    /// The names of the media inside and outside; empty is a vacuum.
+    /// The names of the media inside and outside; an empty name is the vacuum.
     pub(super) media: Option<Rc<[String; 2]>>,
     pub(super) attributes: [Inherited; 5],
     pub(super) space: Space,
@@ -48,13 +48,13 @@ impl Default for State {
     }
 }
 
-/// The kind of block.
+/// An open block.
 pub(super) struct Opened {
     /// `Attribute`, `Transform` or `Object`.
     pub(super) word: &'static str,
-    /// The location of its beginning.
+    /// The location of its `Begin`.
     pub(super) place: Place,
-    /// The graphics state that is restored at its end.
+    /// The graphics state to restore at its end.
     pub(super) state: State,
 }
 
@@ -68,13 +68,13 @@ pub(super) struct Entity {
 /// Settings before `WorldBegin`.
 #[derive(Default)]
 pub(super) struct Options {
-    /// What the last `LookAt` looks at and what is up for it, by the transforms so far: in the camera's space.
+    /// Look-at point and up vector of the last `LookAt`, in camera space under the transforms so far.
     pub(super) look: Option<Target>,
-    /// With the matrix from the world to its space.
+    /// The camera, and the matrix from world to camera space.
     pub(super) camera: Option<(Entity, DMat4)>,
-    /// The name of the medium around the camera; empty is a vacuum.
+    /// The name of the medium around the camera; an empty name is the vacuum.
     pub(super) camera_medium: String,
-    /// The point at the centre of the view.
+    /// The camera's target, for orbiting.
     pub(super) target: Option<Target>,
     pub(super) film: Option<Entity>,
     pub(super) filter: Option<Entity>,

@@ -1,7 +1,7 @@
-//! Line and column of a byte of a scene file.
+//! Conversion of byte offsets in a scene file to line and column.
 //!
-//! Lines are counted only when somebody asks, and onwards from where they were last counted: a large file is not
-//! searched for line ends before it is read, nor again for every shape.
+//! Lines are counted only on demand, and starting from the last count, so a large file is not searched for line ends
+//! before it is read, nor again for every shape.
 
 use std::cell::Cell;
 use std::path::Path;
@@ -9,11 +9,11 @@ use std::rc::Rc;
 
 use crate::error::{Error, ErrorKind, Location};
 
-/// A file's content, with what is needed to name places in it.
+/// A file's content, with the state for converting offsets to locations.
 pub(super) struct Text {
     whole: Location,
     bytes: Vec<u8>,
-    /// An offset, its line (from 1) and where that line starts.
+    /// The last offset counted to, its line (from 1) and the offset at which that line starts.
     counted: Cell<(usize, u32, usize)>,
 }
 
@@ -26,7 +26,7 @@ impl Text {
         &self.bytes
     }
 
-    /// The line of a byte and where that line starts.
+    /// The line of an offset, and the offset at which that line starts.
     fn line(&self, offset: usize) -> (u32, usize) {
         let (mut from, mut line, mut start) = self.counted.get();
         if offset < start {
@@ -48,7 +48,7 @@ impl Text {
     }
 }
 
-/// A byte of a file.
+/// A byte offset in a file.
 #[derive(Clone)]
 pub(super) struct Place {
     text: Rc<Text>,
@@ -69,7 +69,7 @@ impl Place {
         Error::new(kind, &self.location(), message.to_string())
     }
 
-    /// The bytes here are not what the format allows.
+    /// An error of kind `Syntax` at this place.
     pub(super) fn syntax(&self, message: impl std::fmt::Display) -> Error {
         self.error(ErrorKind::Syntax, message)
     }
@@ -79,7 +79,7 @@ impl Place {
         self.error(ErrorKind::Invalid, message)
     }
 
-    /// A file that cannot be opened or is of no known kind is this place's fault; what is wrong inside a file is not.
+    /// Relocates to here the error of a file that cannot be opened or has no known format; errors inside a file stay there.
     pub(super) fn blame(&self, error: Error) -> Error {
         if error.at.line > 0 || !matches!(error.kind, ErrorKind::Io | ErrorKind::Unsupported) {
             return error;

@@ -30,12 +30,12 @@ const KINDS: &[&str] = &[
 ];
 
 impl Reader<'_, '_> {
-    /// The colours that a texture parameter names.
+    /// The spectrum texture that a parameter names.
     pub(super) fn spectrum_texture(&mut self, parameter: &Parameter) -> Result<Color> {
         self.texture_named(parameter, false)
     }
 
-    /// The numbers that a texture parameter names.
+    /// The float texture that a parameter names.
     pub(super) fn float_texture(&mut self, parameter: &Parameter) -> Result<Scalar> {
         Ok(match self.texture_named(parameter, true)? {
             Color::Value([value, ..]) => Scalar::Value(value),
@@ -67,7 +67,7 @@ impl Reader<'_, '_> {
                 });
             }
         }
-        // It may come later: keep a place for it.
+        // The definition may follow: reserve the texture.
         let color = self.push_texture(name, &parameter.place, TextureKind::VertexColor { tint: [1.0; 3] });
         self.textures.insert(key, NamedTexture { color, first: parameter.place.clone(), is_made: false });
         Ok(color)
@@ -96,10 +96,10 @@ impl Reader<'_, '_> {
         let key = (is_float, name.clone());
         if let Some(before) = self.textures.get(&key).filter(|named| named.is_made) {
             let at = before.first.location();
-            let error = name_place.invalid(format!("{values} texture {name:?} is already there, at {at}"));
+            let error = name_place.invalid(format!("{values} texture {name:?} is already defined, at {at}"));
             return Err(error.hint("give one of them another name"));
         }
-        // So that no texture can be part of itself.
+        // No texture may be part of itself.
         self.only_earlier = true;
         let made = self.pattern(&kind, &parameters, is_float, &lexer.place(start));
         self.only_earlier = false;
@@ -125,7 +125,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// A colour or a number of the texture's parameters, as a colour.
+    /// A colour or float parameter of the texture, as a colour.
     fn part(&mut self, p: &Parameters, name: &'static str, default: f32, is_float: bool) -> Result<Color> {
         if !is_float {
             return self.color(p, name, Color::gray(default), Unbounded);
@@ -158,7 +158,7 @@ impl Reader<'_, '_> {
             "directionmix" => {
                 let direction = p.vector("dir", Kind::Vector3, DVec3::Y)?;
                 let direction = self.state.matrix.transform_vector3(direction).try_normalize();
-                let direction = direction.ok_or_else(|| p.refuse("dir", "a vector that has a direction"))?;
+                let direction = direction.ok_or_else(|| p.refuse("dir", "a vector other than 0"))?;
                 TextureKind::DirectionMix {
                     low: self.part(p, "tex2", 1.0, is_float)?,
                     high: self.part(p, "tex1", 0.0, is_float)?,
@@ -213,7 +213,7 @@ impl Reader<'_, '_> {
                 return Err(error.hint(format!("write {there:?} between the name and {kind:?}")));
             }
             "ptex" => {
-                let message = "Ptex is not read: such textures are gray";
+                let message = "Ptex is not supported: such textures are gray";
                 self.warn_once("ptex", &p.place, message);
                 p.ignore(&["filename", "encoding", "scale"]);
                 uniform(Color::gray(0.5))
@@ -259,7 +259,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// The place of a pattern in space: the space that is in force where the texture is written.
+    /// The texture space of a 3D pattern: the object space at its definition.
     fn in_space(&self, p: &Parameters) -> Result<Mapping> {
         Ok(Mapping::World { texture_from_world: self.texture_from_world(p)? })
     }
@@ -268,7 +268,7 @@ impl Reader<'_, '_> {
         if !transform::is_invertible(&self.state.matrix) {
             return Err(p
                 .place
-                .invalid("the transform in force here flattens space: a pattern cannot live in it"));
+                .invalid("the current transform is singular: a texture needs an invertible one"));
         }
         Ok(self.state.matrix.inverse())
     }
@@ -293,7 +293,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// The picture that an area light shows, over the uv of its shape.
+    /// The image of an area light, over the uv of its shape.
     pub(super) fn shown_picture(&mut self, name: &str, place: &Place) -> Result<Color> {
         let image = self.picture(name, "sRGB", place)?;
         let kind = TextureKind::Image {
@@ -309,7 +309,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The same everywhere.
+/// A constant texture.
 fn uniform(color: Color) -> TextureKind {
     TextureKind::Scale { color, by: Scalar::Value(1.0) }
 }

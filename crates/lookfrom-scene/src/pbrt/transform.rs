@@ -1,6 +1,7 @@
 //! Transform directives, which multiply onto the current transformation matrix.
 //!
-//! Matrices map columns; a file's sixteen numbers are columns one after another. In doubles, where pbrt has singles.
+//! Matrices multiply column vectors; a file's sixteen numbers are in column-major order. Computed in double precision,
+//! where pbrt uses single.
 
 use glam::{DMat4, DVec3, DVec4};
 
@@ -16,7 +17,7 @@ pub(super) fn numbers<const N: usize>(lexer: &mut Lexer<'_>) -> Result<[f64; N]>
     Ok(numbers)
 }
 
-/// Sixteen numbers in brackets: an affine matrix.
+/// An affine matrix from sixteen numbers in brackets.
 pub(super) fn matrix(lexer: &mut Lexer<'_>, place: &Place) -> Result<DMat4> {
     let start = lexer.here();
     if lexer.token()? != Some(Token::Open) {
@@ -37,17 +38,17 @@ pub(super) fn matrix(lexer: &mut Lexer<'_>, place: &Place) -> Result<DMat4> {
     Ok(matrix * (1.0 / row.w))
 }
 
-/// From the world to the space of one who stands at `eye`: x to the right, y up, z forward, left-handed.
+/// The matrix from world space to the space of a viewer at `eye`: x to the right, y up, z forward, left-handed.
 pub(super) fn look_at([ex, ey, ez, lx, ly, lz, ux, uy, uz]: [f64; 9], place: &Place) -> Result<DMat4> {
     let (eye, at, up) = (DVec3::new(ex, ey, ez), DVec3::new(lx, ly, lz), DVec3::new(ux, uy, uz));
     let forward = (at - eye).try_normalize();
     let forward = forward
-        .ok_or_else(|| place.invalid("LookAt: the eye (3 numbers) and what it looks at (3) are the same"))?;
+        .ok_or_else(|| place.invalid("LookAt: the eye (3 numbers) and the look-at point (3) are the same"))?;
     let right = up.normalize_or_zero().cross(forward).try_normalize().filter(|_| up != DVec3::ZERO);
     let right = right.ok_or_else(|| {
         place
-            .invalid("LookAt: up (the last 3 numbers) lies along the view")
-            .hint("give any direction that is up in the picture")
+            .invalid("LookAt: up (the last 3 numbers) is parallel to the view direction")
+            .hint("give any direction that points up in the image")
     })?;
     let true_up = forward.cross(right);
     let world_from_eye =
@@ -55,7 +56,7 @@ pub(super) fn look_at([ex, ey, ez, lx, ly, lz, ux, uy, uz]: [f64; 9], place: &Pl
     Ok(world_from_eye.inverse())
 }
 
-/// By an angle in degrees around an axis.
+/// Rotation by an angle in degrees around an axis.
 pub(super) fn rotate([angle, x, y, z]: [f64; 4], place: &Place) -> Result<DMat4> {
     let axis = DVec3::new(x, y, z).try_normalize();
     let axis = axis.ok_or_else(|| place.invalid("Rotate: the axis (the last 3 numbers) has no direction"))?;
@@ -67,7 +68,7 @@ pub(super) fn rotate([angle, x, y, z]: [f64; 4], place: &Place) -> Result<DMat4>
     Ok(DMat4::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z), DVec4::W))
 }
 
-/// Whether the matrix has an inverse, and all its numbers are finite.
+/// Whether the matrix is invertible, and all its values are finite.
 pub(super) fn is_invertible(matrix: &DMat4) -> bool {
     let determinant = matrix.determinant();
     determinant != 0.0 && determinant.is_finite() && matrix.is_finite() && matrix.inverse().is_finite()
@@ -89,7 +90,7 @@ mod tests {
         let quarter = rotate([90.0, 0.0, 0.0, 5.0], &place()).expect("an axis");
         assert!((quarter.transform_vector3(DVec3::X) - DVec3::Y).length() < 1e-15);
         assert!(rotate([90.0, 0.0, 0.0, 0.0], &place()).is_err());
-        // Against glam's own.
+        // Compared with glam's rotation.
         let axis = DVec3::new(1.0, -2.0, 0.5);
         let ours = rotate([33.0, axis.x, axis.y, axis.z], &place()).expect("an axis");
         assert!(ours.abs_diff_eq(DMat4::from_axis_angle(axis.normalize(), 33_f64.to_radians()), 1e-14));

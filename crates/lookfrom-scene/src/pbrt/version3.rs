@@ -1,12 +1,12 @@
 //! Detection of pbrt-v3 scenes, with hints for conversion.
 //!
-//! Version 4 renamed most of the language. One clear error at the first thing that only version 3 has is worth more
+//! Version 4 renamed most of the language. One clear error at the first word that exists only in version 3 is worth more
 //! than one for every line after it.
 
 use super::text::Place;
 use crate::error::{Error, Result};
 
-/// The error that something is of version 3.
+/// The error that a scene is written for version 3.
 fn old(place: &Place, found: &str, now: &str) -> Error {
     place.invalid(format!("this scene is written for pbrt-v3: {found}; pbrt-v4 {now}")).hint(
         "convert the whole scene with pbrt-v4's own program: pbrt --upgrade old.pbrt > new.pbrt \
@@ -14,29 +14,29 @@ fn old(place: &Place, found: &str, now: &str) -> Error {
     )
 }
 
-/// Words that only version 3 has, by directive: what it is called, and what version 4 does.
+/// Words that exist only in version 3: the directive, the word, and version 4's equivalent.
 const WORDS: &[(&str, &str, &str)] = &[
     ("Material", "matte", "calls it \"diffuse\""),
     ("Material", "plastic", "calls it \"coateddiffuse\""),
     ("Material", "metal", "calls it \"conductor\""),
     ("Material", "glass", "calls it \"dielectric\""),
-    ("Material", "mirror", "has \"conductor\" for it"),
+    ("Material", "mirror", "uses \"conductor\" instead"),
     ("Material", "substrate", "calls it \"coateddiffuse\""),
     ("Material", "translucent", "calls it \"diffusetransmission\""),
-    ("Material", "uber", "has \"coateddiffuse\" for it"),
+    ("Material", "uber", "uses \"coateddiffuse\" instead"),
     ("Material", "disney", "does not have it"),
-    ("Material", "fourier", "has \"measured\" for it"),
+    ("Material", "fourier", "uses \"measured\" instead"),
     ("Material", "kdsubsurface", "calls it \"subsurface\""),
     ("Film", "image", "calls it \"rgb\""),
     ("Camera", "environment", "calls it \"spherical\""),
-    ("Sampler", "lowdiscrepancy", "has \"zsobol\" for it"),
-    ("Sampler", "02sequence", "has \"pmj02bn\" for it"),
-    ("Sampler", "maxmindist", "has \"zsobol\" for it"),
+    ("Sampler", "lowdiscrepancy", "uses \"zsobol\" instead"),
+    ("Sampler", "02sequence", "uses \"pmj02bn\" instead"),
+    ("Sampler", "maxmindist", "uses \"zsobol\" instead"),
     ("Sampler", "random", "calls it \"independent\""),
-    ("Sampler", "bestcandidate", "has \"zsobol\" for it"),
-    ("Sampler", "adaptive", "has \"zsobol\" for it"),
-    ("Integrator", "directlighting", "has \"path\" for it"),
-    ("Integrator", "whitted", "has \"path\" for it"),
+    ("Sampler", "bestcandidate", "uses \"zsobol\" instead"),
+    ("Sampler", "adaptive", "uses \"zsobol\" instead"),
+    ("Integrator", "directlighting", "uses \"path\" instead"),
+    ("Integrator", "whitted", "uses \"path\" instead"),
     ("Accelerator", "grid", "does not have it"),
     ("Shape", "cone", "does not have it"),
     ("Shape", "paraboloid", "does not have it"),
@@ -48,7 +48,7 @@ const WORDS: &[(&str, &str, &str)] = &[
     ("AreaLightSource", "area", "calls it \"diffuse\""),
 ];
 
-/// The names of types that version 3 alone has.
+/// Checks for parameter types that exist only in version 3.
 pub(super) fn check_kind(word: &str, name: &str, place: &Place) -> Result<()> {
     let now = match word {
         "point" if name == "uv" || name == "st" => "point2",
@@ -69,7 +69,7 @@ pub(super) fn check_kind(word: &str, name: &str, place: &Place) -> Result<()> {
     Err(old(place, &format!("{shown:?} has a type of version 3"), &format!("calls the type {now:?}")))
 }
 
-/// The kinds of materials, lights … that version 3 alone has.
+/// Checks for materials, lights … that exist only in version 3.
 pub(super) fn check_word(directive: &str, word: &str, place: &Place) -> Result<()> {
     match WORDS.iter().find(|entry| entry.0 == directive && entry.1 == word) {
         Some(&(_, _, now)) => Err(old(place, &format!("{directive} {word:?}"), now)),
@@ -77,18 +77,18 @@ pub(super) fn check_word(directive: &str, word: &str, place: &Place) -> Result<(
     }
 }
 
-/// The directives that version 3 (or an even older one) alone has.
+/// Checks for directives that exist only in version 3 or earlier.
 pub(super) fn check_directive(word: &[u8], place: &Place) -> Result<()> {
     let now = match word {
         b"WorldEnd" => "has none: the end of the file ends the world",
         b"SurfaceIntegrator" => "calls it Integrator",
-        b"VolumeIntegrator" | b"Volume" | b"Renderer" => "has an Integrator for it",
+        b"VolumeIntegrator" | b"Volume" | b"Renderer" => "uses an Integrator instead",
         _ => return Ok(()),
     };
-    Err(old(place, &format!("there is a directive `{}`", String::from_utf8_lossy(word)), now))
+    Err(old(place, &format!("the directive `{}`", String::from_utf8_lossy(word)), now))
 }
 
-/// The parameters whose names version 4 has changed, which would else make a silent difference.
+/// Checks for parameters that version 4 has renamed, which would otherwise be ignored.
 pub(super) fn check_parameter(directive: &str, kind: &str, name: &str, place: &Place) -> Result<()> {
     let now = match (directive, kind, name) {
         ("LightSource", _, "mapname") => "calls it \"filename\"",
@@ -96,8 +96,8 @@ pub(super) fn check_parameter(directive: &str, kind: &str, name: &str, place: &P
         ("Material", _, "Ks" | "Kr" | "Kt") => "has none",
         ("Material", _, "bumpmap") => "calls it \"displacement\"",
         ("Material", "float", "sigma") => "has none",
-        ("Texture", "bool", "trilinear") => "has \"string filter\"",
-        ("Texture", "float", "gamma") | ("Texture", "bool", "gamma") => "has \"string encoding\"",
+        ("Texture", "bool", "trilinear") => "uses \"string filter\"",
+        ("Texture", "float", "gamma") | ("Texture", "bool", "gamma") => "uses \"string encoding\"",
         _ => return Ok(()),
     };
     Err(old(place, &format!("{directive} has \"{kind} {name}\""), now))

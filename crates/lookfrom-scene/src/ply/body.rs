@@ -1,7 +1,7 @@
 //! Parser for the elements of PLY files.
 //!
-//! Vertices and faces; other elements and properties are passed over. A header may lie: what it claims is compared
-//! with the bytes that are there before memory is allocated.
+//! Vertices and faces; other elements and properties are skipped. Headers are not trusted: declared sizes are compared
+//! with the remaining bytes before memory is allocated.
 
 use glam::{Vec2, Vec3};
 
@@ -15,31 +15,31 @@ use crate::model::scan::shown;
 /// The supported content of a file.
 #[derive(Default)]
 pub(super) struct Content {
-    /// As they are written: not necessarily finite.
+    /// As in the file: not necessarily finite.
     pub(super) positions: Vec<Vec3>,
-    /// None, or one a vertex.
+    /// Empty, or one per vertex.
     pub(super) normals: Vec<Vec3>,
-    /// None, or one a vertex.
+    /// Empty, or one per vertex.
     pub(super) uvs: Vec<Vec2>,
-    /// None, or one a vertex; linear.
+    /// Empty, or one per vertex; linear.
     pub(super) colors: Vec<[f32; 3]>,
     pub(super) faces: Vec<Face>,
-    /// The vertices of all faces, one face after the other: each is below the number of vertices.
+    /// The vertices of all faces, one face after the other; each index is below the number of vertices.
     pub(super) corners: Vec<u32>,
-    /// None, or texture coordinates of each corner.
+    /// Empty, or the texture coordinates of each corner.
     pub(super) corner_uvs: Vec<Vec2>,
-    /// Faces with fewer than three corners, and the line of the first.
+    /// The number of faces with fewer than three corners, and the line of the first.
     pub(super) thin: (u64, u32),
 }
 
 /// A polygon.
 pub(super) struct Face {
     pub(super) corners: u32,
-    /// In binary formats 0.
+    /// 0 in binary formats.
     pub(super) line: u32,
 }
 
-/// Names of vertex properties, in the order of `Row`'s values.
+/// Names of vertex properties, in the order of the values in `read_vertices`.
 const VERTEX: [&[&str]; 11] = [
     &["x"],
     &["y"],
@@ -54,17 +54,17 @@ const VERTEX: [&[&str]; 11] = [
     &["blue", "b", "diffuse_blue"],
 ];
 
-/// Reads the values after the header.
+/// Parses the values after the header.
 ///
 /// # Errors
-/// `Syntax` where values are missing or are none, `Invalid` for indices out of range, `Limit`.
+/// `Syntax` for missing or malformed values, `Invalid` for indices out of range, `Limit`.
 pub(super) fn read(bytes: &[u8], header: &Header, file: &Location, limits: &Limits) -> Result<Content> {
     let mut content = Content::default();
     let vertices = header.elements.iter().find(|element| element.name == "vertex").map_or(0, |e| e.count);
     let mut reader = Reader::new(bytes, header, file);
     for element in &header.elements {
         let least = element.least_row(header.format);
-        // The last value of a text needs no blank after it.
+        // The last value of a text needs no space after it.
         let there = reader.left() as u64 + u64::from(header.format == Format::Ascii);
         if element.count.checked_mul(least).is_none_or(|bytes| bytes > there) {
             return Err(too_short(element, least, there));
@@ -120,7 +120,7 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
     let color_type = columns[8].map(|column| element.properties[column].kind);
     let decode = color_decoder(color_type);
     for _ in 0..count {
-        // One place more than there are names: what is passed over goes there.
+        // One slot more than there are names, for properties that are skipped.
         let mut row = [0.0_f64; VERTEX.len() + 1];
         for (property, &slot) in element.properties.iter().zip(&slots) {
             match property.kind {
@@ -143,7 +143,7 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
     Ok(())
 }
 
-/// To linear light: whole numbers are sRGB-encoded, others are linear.
+/// The conversion of a colour to linear light: integers are sRGB-encoded, floating-point values are linear.
 fn color_decoder(kind: Option<Kind>) -> impl Fn(f64) -> f32 {
     let bytes: Vec<f32> = (0..=255).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
     let full = match kind {
@@ -238,12 +238,12 @@ impl Content {
         }
     }
 
-    /// Triangles of strips; −1 ends a strip. Every second triangle of a strip is turned around.
+    /// Adds the triangles of strips; −1 ends a strip. Every second triangle of a strip is reversed.
     fn push_strips(&mut self, indices: &[f64], line: u32) {
         for strip in indices.split(|&index| index == -1.0) {
             for (i, triangle) in strip.windows(3).enumerate() {
                 let [a, b, c] = [triangle[0], triangle[1], triangle[2]];
-                // Strips are sewn together by triangles that name a vertex twice.
+                // Strips are joined by degenerate triangles, which name a vertex twice.
                 if a != b && b != c && c != a {
                     self.push_face(&if i % 2 == 0 { [a, b, c] } else { [b, a, c] }, &[], line);
                 }

@@ -68,7 +68,7 @@ fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> Mes
     let Content { mut positions, normals, uvs, colors, faces, corners, corner_uvs, .. } = content;
     let mut triangulator = Triangulator::new();
     let (mut not_finite, mut flat) = (Tally::default(), Tally::default());
-    // Triangles of corners.
+    // Triangles, as indices of corners.
     let mut triangles: Vec<[u32; 3]> = Vec::with_capacity(faces.len());
     let (mut points, mut cut) = (Vec::new(), Vec::new());
     let mut start = 0;
@@ -96,20 +96,20 @@ fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> Mes
     if triangulator.gave_up() {
         context.warn(
             file,
-            "concave polygons with very many corners: some were cut without care for their shape",
+            "concave polygons with very many corners: some were triangulated as if they were convex",
         );
     }
     if corner_uvs.is_empty() {
         for triangle in &mut triangles {
             *triangle = triangle.map(|corner| corners[corner as usize]);
         }
-        // No triangle uses these any more.
+        // No triangle uses these.
         for position in positions.iter_mut().filter(|position| !position.is_finite()) {
             *position = Vec3::ZERO;
         }
         return Mesh { positions, triangles, normals, uvs, colors, ..Mesh::default() };
     }
-    // A vertex with different texture coordinates in different faces becomes several.
+    // A vertex with different texture coordinates in different faces is split.
     let mut weld = Weld::new();
     for triangle in &mut triangles {
         *triangle = triangle.map(|corner| {
@@ -132,7 +132,7 @@ fn select<T: Copy>(values: &[T], keys: &[[u32; 3]]) -> Vec<T> {
     keys.iter().filter_map(|key| values.get(key[0] as usize).copied()).collect()
 }
 
-/// The picture that the file names where there are texture coordinates, or else the vertices' colours.
+/// A material with the image that the file names, if there are texture coordinates, or else with the vertices' colours.
 fn material(
     mesh: &Mesh,
     header: &Header,

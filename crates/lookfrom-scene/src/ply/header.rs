@@ -5,7 +5,7 @@ use crate::files::LoadContext;
 use crate::model::scan::{Scanner, shown};
 use crate::model::tally::Tally;
 
-/// The format of values.
+/// The encoding of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Ascii,
@@ -26,7 +26,7 @@ pub(super) enum Scalar {
     F64,
 }
 
-/// One value, or a list of values after their number.
+/// A value, or a list of values after its length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     One(Scalar),
@@ -49,15 +49,15 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub(super) format: Format,
     pub(super) elements: Vec<Element>,
-    /// Pictures named by comments.
+    /// Images named by comments.
     pub(super) textures: Vec<String>,
-    /// Bytes up to the values, and lines.
+    /// Length of the header in bytes and lines.
     pub(super) length: usize,
     pub(super) lines: u32,
 }
 
 impl Scalar {
-    /// Bytes in binary formats.
+    /// Size in binary formats in bytes.
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -83,7 +83,7 @@ impl Scalar {
 }
 
 impl Element {
-    /// The fewest bytes that one row of it takes (in ASCII with the blank after each value).
+    /// Minimum length of a row in bytes (in ASCII with the space after each value).
     pub(super) fn least_row(&self, format: Format) -> u64 {
         let least = |property: &Property| match (format, property.kind) {
             (Format::Ascii, _) => 2,
@@ -98,7 +98,7 @@ impl Element {
     }
 }
 
-/// Reads the header.
+/// Parses the header.
 ///
 /// # Errors
 /// `Syntax` at line and column.
@@ -149,7 +149,7 @@ pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>
                 element.properties.push(property);
             }
             b"end_header" => break,
-            // Some programs write comments without the word.
+            // Some programs write comments without the keyword.
             _ => strays.add(scanner.line()),
         }
     }
@@ -157,7 +157,7 @@ pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>
     let Some(format) = format else {
         return Err(Error::syntax(&file.at(scanner.line(), 0), "the header has no `format` line"));
     };
-    // Values start after the line's end, which is of the same kind as the first one: a line feed may be a value.
+    // Values start after the line's end, which is the same as that of the first line: a line feed may be part of a value.
     let lone_returns = bytes.get(3) == Some(&b'\r') && bytes.get(4) != Some(&b'\n');
     scanner.rest_of_line();
     let before = scanner.position();
@@ -174,7 +174,7 @@ fn element(scanner: &mut Scanner<'_>, at: Location, file: &Location, others: &[E
     }
     let word = scanner.word();
     let count = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).ok_or_else(|| {
-        let message = format!("expected how many rows the element has, found `{}`", shown(word));
+        let message = format!("expected the number of rows of the element, found `{}`", shown(word));
         Error::syntax(&scanner.at(file), message)
     })?;
     Ok(Element { name, count, properties: Vec::new(), at })
@@ -183,7 +183,7 @@ fn element(scanner: &mut Scanner<'_>, at: Location, file: &Location, others: &[E
 fn property(scanner: &mut Scanner<'_>, file: &Location) -> Result<Property> {
     let scalar = |word: &[u8], scanner: &Scanner<'_>| {
         Scalar::named(word).ok_or_else(|| {
-            let message = format!("expected a type as `float` or `uchar`, found `{}`", shown(word));
+            let message = format!("expected a type such as `float` or `uchar`, found `{}`", shown(word));
             Error::syntax(&scanner.at(file), message)
         })
     };
@@ -192,10 +192,7 @@ fn property(scanner: &mut Scanner<'_>, file: &Location) -> Result<Property> {
         let count = scanner.word();
         let count = scalar(count, scanner)?;
         if matches!(count, Scalar::F32 | Scalar::F64) {
-            return Err(Error::syntax(
-                &scanner.at(file),
-                "the number of a list's values must be a whole number's type",
-            ));
+            return Err(Error::syntax(&scanner.at(file), "the length of a list must have an integer type"));
         }
         let item = scanner.word();
         Kind::List { count, item: scalar(item, scanner)? }

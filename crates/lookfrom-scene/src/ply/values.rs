@@ -10,28 +10,28 @@ pub(super) struct Reader<'a> {
     file: &'a Location,
     bytes: &'a [u8],
     format: Format,
-    /// In binary formats.
+    /// Offset in binary formats.
     position: usize,
-    /// In text.
+    /// The scanner of the text in ASCII.
     scanner: Scanner<'a>,
     header_bytes: usize,
     header_lines: u32,
 }
 
 impl<'a> Reader<'a> {
-    /// At the first value; `bytes` are those after the header.
+    /// A cursor at the first value; `bytes` are those after the header.
     pub(super) fn new(bytes: &'a [u8], header: &Header, file: &'a Location) -> Self {
         let scanner = Scanner::new(bytes);
         let (header_bytes, header_lines) = (header.length, header.lines);
         Self { file, bytes, format: header.format, position: 0, scanner, header_bytes, header_lines }
     }
 
-    /// The number of bytes read after the header.
+    /// Number of bytes read after the header.
     pub(super) fn position(&self) -> usize {
         if self.format == Format::Ascii { self.scanner.position() } else { self.position }
     }
 
-    /// The number of remaining bytes.
+    /// Number of remaining bytes.
     pub(super) fn left(&self) -> usize {
         self.bytes.len() - self.position()
     }
@@ -41,7 +41,7 @@ impl<'a> Reader<'a> {
         if self.format == Format::Ascii { self.header_lines + self.scanner.line() - 1 } else { 0 }
     }
 
-    /// An error at a line (in text) or at a position after the header (in binary formats).
+    /// An error at a line (in ASCII) or at an offset after the header (in binary formats).
     pub(super) fn error_at(&self, line: u32, position: usize, kind: ErrorKind, message: String) -> Error {
         let place = if self.format == Format::Ascii {
             String::new()
@@ -70,7 +70,7 @@ impl<'a> Reader<'a> {
                     return Err(self.ended());
                 }
                 let number = match scalar {
-                    // Rounded once.
+                    // Parsed as `f32`, so that it is rounded only once.
                     Scalar::F32 => parse_f32(word).map(f64::from),
                     _ => parse_f64(word),
                 };
@@ -91,7 +91,7 @@ impl<'a> Reader<'a> {
             return Err(self.ended());
         };
         self.position += size;
-        // The bytes in the order of little-endian, then as the type.
+        // The bytes in little-endian order.
         let mut little = [0_u8; 8];
         little[..size].copy_from_slice(bytes);
         if big {
@@ -110,12 +110,12 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// The values of the next list.
+    /// Calls `each` with the values of the next list.
     pub(super) fn list(&mut self, count: Scalar, item: Scalar, mut each: impl FnMut(f64)) -> Result<()> {
         let position = self.position();
         let values = self.value(count)?;
         if values < 0.0 || values.fract() != 0.0 || values > self.left() as f64 {
-            let message = format!("a list of {values} values, where {} bytes are left", self.left());
+            let message = format!("a list of {values} values, but only {} bytes are left", self.left());
             return Err(self
                 .error_at(self.line(), position, ErrorKind::Syntax, message)
                 .hint("the file may be cut off, or its header may be wrong"));
@@ -126,7 +126,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Passes over bytes of a binary format; false in text.
+    /// Skips bytes of a binary format; returns false in ASCII.
     pub(super) fn skip_bytes(&mut self, count: u64) -> bool {
         let is_binary = self.format != Format::Ascii;
         if is_binary {

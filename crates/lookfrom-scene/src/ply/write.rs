@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use crate::shape::Mesh;
 
-/// A mesh as a binary, little-endian PLY file. What it holds comes back from [`super::read`] bit by bit, except for
-/// its name and for triangles without area.
+/// A mesh as a binary, little-endian PLY file. [`super::read`] gives the same mesh, bit by bit, except for its name and for
+/// triangles without area.
 pub fn write(mesh: &Mesh) -> Vec<u8> {
     let (normals, uvs, colors) = (!mesh.normals.is_empty(), !mesh.uvs.is_empty(), !mesh.colors.is_empty());
     let mut header = String::from("ply\nformat binary_little_endian 1.0\n");

@@ -1,20 +1,20 @@
-//! Spectral responses of digital cameras, and the reflectances by which cameras are calibrated.
+//! Spectral responses of digital cameras, and the reflectances used to calibrate them.
 //!
-//! The numbers are in `sensors.txt` and `swatches.txt`, which name their sources. Crate `lookfrom` applies the sensors to
-//! light.
+//! The numbers are in `sensors.txt` and `swatches.txt`, which name their sources. The crate `lookfrom` applies the sensors
+//! to light.
 
 use super::Curve;
 
 const SENSORS: &str = include_str!("sensors.txt");
 const SWATCHES: &str = include_str!("swatches.txt");
 
-/// Wavelengths of both tables, in nm: the first, and from one to the next.
+/// First wavelength and wavelength step of both tables, in nm.
 const FIRST: f32 = 380.0;
 const STEP: f32 = 10.0;
-/// Wavelengths of a response.
+/// Number of wavelengths of a response.
 const SAMPLES: usize = 35;
 
-/// The sensor of a camera whose spectral responses are known.
+/// A camera sensor with known spectral responses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CameraSensor {
     name: &'static str,
@@ -22,13 +22,13 @@ pub struct CameraSensor {
 }
 
 impl CameraSensor {
-    /// Every sensor there is.
+    /// All known sensors.
     pub fn all() -> impl Iterator<Item = Self> + Clone {
         let tables = SENSORS.split("\n\n").skip(1).filter_map(|table| table.split_once('\n'));
         tables.map(|(name, numbers)| Self { name, numbers })
     }
 
-    /// The sensor of that name, as `canon_eos_5d_mkiv`.
+    /// The sensor with this name, such as `canon_eos_5d_mkiv`.
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|sensor| sensor.name == name)
     }
@@ -38,7 +38,7 @@ impl CameraSensor {
         self.name
     }
 
-    /// What red, green and blue pixels make of light of density 1 at a wavelength; the response of green at 520 nm is 1.
+    /// Responses of red, green and blue pixels to light of spectral density 1 at a wavelength; that of green at 520 nm is 1.
     pub fn responses(self) -> [Curve; 3] {
         let values = numbers(self.numbers);
         std::array::from_fn(|channel| curve(values[channel * SAMPLES..][..SAMPLES].to_vec()))

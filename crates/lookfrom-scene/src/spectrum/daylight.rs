@@ -1,15 +1,15 @@
 //! Spectra of daylight by correlated colour temperature.
 //!
-//! The CIE's series D (CIE 15; Judd, MacAdam, Wyszecki 1964): a chromaticity on the daylight locus, and the mixture of
-//! three measured components that has it.
+//! The CIE's D series (CIE 15; Judd, MacAdam, Wyszecki 1964): a chromaticity on the daylight locus, and the mixture of
+//! three measured components with this chromaticity.
 
 use super::Curve;
 
-/// Daylight of a correlated colour temperature in kelvin on the scale of the 1960s (6500 is D65), of no particular scale.
+/// Daylight of a correlated colour temperature in kelvin, on the scale of the 1960s (6500 is D65), not normalised.
 ///
-/// Below 4000 K, where the series is not defined, the light of a black body, as in pbrt-v4.
+/// Below 4000 K, where the series is not defined, it is a blackbody, as in pbrt-v4.
 pub fn daylight(kelvin: f32) -> Curve {
-    // Planck's second constant was corrected after the illuminants had been given their names.
+    // Planck's second radiation constant was revised after the illuminants had been named.
     let kelvin = kelvin * (1.4388 / 1.4380);
     if !(kelvin >= 4000.0) {
         return Curve::Blackbody { kelvin };
@@ -21,7 +21,7 @@ pub fn daylight(kelvin: f32) -> Curve {
         ((-2.0064e9 * t + 1.9018e6) * t + 247.48) * t + 0.23704
     };
     let y = -3.0 * x * x + 2.87 * x - 0.275;
-    // How much of the two components of variation
+    // Weights of the two components of variation
     let m = 0.0241 + 0.2562 * x - 0.7341 * y;
     let m1 = (-1.3515 - 1.7703 * x + 5.9114 * y) / m;
     let m2 = (0.03 - 31.4424 * x + 30.0717 * y) / m;

@@ -1,23 +1,23 @@
 //! Measured spectra by name.
 //!
-//! Those of pbrt-v4, so that its scenes can name them: indices of refraction and absorption of metals, glasses, and
-//! standard illuminants. Illuminants are scaled so that their luminance Y is 1. A table that ends within the visible
-//! wavelengths goes on with its last value. The numbers are in `named.txt`.
+//! The spectra of pbrt-v4, for its scenes: indices of refraction and absorption coefficients of metals, glasses, and
+//! standard illuminants. Illuminants are scaled so that their luminance Y is 1. A table that ends within the visible range
+//! is extended with its last value. The numbers are in `named.txt`.
 
 use super::{Curve, observer};
 
 const TABLES: &str = include_str!("named.txt");
 
-/// Other names that are understood: what the glasses are really called.
+/// Aliases: the actual names of the glasses.
 const ALIASES: &[(&str, &str)] =
     &[("glass-SF5", "glass-F5"), ("glass-SF10", "glass-F10"), ("glass-SF11", "glass-F11")];
 
-/// The curve of that name; see [`names`].
+/// The spectrum with this name; see [`names`].
 pub fn named(name: &str) -> Option<Curve> {
     let name = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, meant)| meant);
     let mut wavelengths = "";
     for (found, rest) in tables() {
-        // `same` refers to the curve before, so keep the last wavelengths that were written.
+        // `same` refers to the previous table, so keep the last wavelengths.
         if !rest.trim_start().starts_with("same") {
             wavelengths = rest;
         }
@@ -30,17 +30,17 @@ pub fn named(name: &str) -> Option<Curve> {
     None
 }
 
-/// All names that [`named`] knows, for "did you mean".
+/// All names that [`named`] knows, for suggestions.
 pub fn names() -> impl Iterator<Item = &'static str> {
     tables().map(|(name, _)| name).chain(ALIASES.iter().map(|(alias, _)| *alias))
 }
 
-/// Each table's name and what follows it.
+/// The name of each table, and the text after it.
 fn tables() -> impl Iterator<Item = (&'static str, &'static str)> {
     TABLES.split("\n\n").skip(1).filter_map(|table| table.split_once('\n'))
 }
 
-/// Reads a table, whose wavelengths may stand in the one before.
+/// Parses a table, whose wavelengths may be those of the previous one.
 fn table(own: &str, wavelengths_in: &str) -> Option<Curve> {
     let numbers =
         |text: &str| -> Vec<f32> { text.split_whitespace().filter_map(|word| word.parse().ok()).collect() };
@@ -50,7 +50,7 @@ fn table(own: &str, wavelengths_in: &str) -> Option<Curve> {
             let (first, step): (f32, f32) = (first.parse().ok()?, step.parse().ok()?);
             (0..numbers(body).len()).map(|i| first + step * i as f32).collect()
         }
-        // First all wavelengths, then as many values.
+        // All wavelengths first, then as many values.
         None => {
             let mut both = numbers(wavelengths_in);
             both.truncate(both.len() / 2);

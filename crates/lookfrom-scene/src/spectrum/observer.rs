@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use super::{Curve, LONGEST, SHORTEST};
 
-/// How many wavelengths the observer has.
+/// The number of wavelengths of the observer.
 pub const SAMPLES: usize = (LONGEST - SHORTEST + 1) as usize;
 
 /// The integral of y over the wavelengths in nm, as pbrt-v4 rounds it.
@@ -29,7 +29,7 @@ pub fn matching() -> &'static [[f32; SAMPLES]; 3] {
     })
 }
 
-/// The colour of light with this spectrum: the sums over whole nm, divided by [`Y_INTEGRAL`].
+/// XYZ of this spectrum: sums in steps of 1 nm, divided by [`Y_INTEGRAL`].
 pub fn xyz(light: &Curve) -> [f64; 3] {
     let samples: Vec<f32> = (SHORTEST..=LONGEST).map(|nm| light.at(nm as f32)).collect();
     matching().map(|function| {

@@ -13,11 +13,11 @@ use crate::model::text;
 /// Reads a table of wavelengths and values.
 ///
 /// # Errors
-/// `Io` and `Limit` as [`LoadContext::read`], and more entries than [`crate::Limits::elements`]; `Syntax` for a word that is
-/// no number or a wavelength without a value; `Invalid` for wavelengths that do not rise, for numbers that are not
-/// finite, and for a file without entries.
+/// `Io` and `Limit` as [`LoadContext::read`], `Limit` for more entries than [`crate::Limits::elements`]; `Syntax` for words
+/// that are not numbers and a wavelength without a value; `Invalid` for wavelengths that do not increase, for numbers that
+/// are not finite, and for a file without entries.
 pub fn read_spd(path: &Path, context: &mut LoadContext<'_>) -> Result<Curve> {
-    const HINT: &str = "each line is a wavelength in nm and a value, like `550 0.25`";
+    const HINT: &str = "each line is a wavelength in nm and a value, such as `550 0.25`";
     let bytes = context.read(path)?;
     let file = Location::file(path);
     let text = text::utf8(&bytes);
@@ -36,8 +36,7 @@ pub fn read_spd(path: &Path, context: &mut LoadContext<'_>) -> Result<Curve> {
             }
             let Some(wavelength) = pending.take() else {
                 if let Some(before) = wavelengths.last().filter(|&&before| number <= before) {
-                    let message =
-                        format!("the wavelength {number} does not lie above the one before, {before}");
+                    let message = format!("the wavelength {number} is not above the previous one, {before}");
                     return Err(
                         Error::invalid(&at(), message).hint("sort the lines by wavelength, each once")
                     );

@@ -1,14 +1,14 @@
 //! RGB colour spaces and their matrices.
 //!
-//! A space is given by the chromaticities of its primaries and by its white, which is the colour of an illuminant's
-//! spectrum rather than a rounded chromaticity, as in pbrt-v4. Vectors are columns; matrices are lists of rows.
+//! A space is given by the chromaticities of its primaries and by its white point, which is the colour of an illuminant's
+//! spectrum instead of a rounded chromaticity, as in pbrt-v4. Vectors are columns; matrices are lists of rows.
 
 use super::{named, observer};
 
 /// A linear map of three numbers: rows of coefficients.
 pub type Matrix = [[f64; 3]; 3];
 
-/// The RGB spaces that scenes may name, in lower case: primaries and white.
+/// The RGB spaces that scenes may name, in lower case: primaries and white point.
 const SPACES: &[(&str, [[f64; 2]; 3], &str)] = &[
     ("srgb", [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06]], "stdillum-D65"),
     ("dci-p3", [[0.68, 0.32], [0.265, 0.69], [0.15, 0.06]], "stdillum-D65"),
@@ -21,27 +21,27 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     SPACES.iter().map(|(name, ..)| *name)
 }
 
-/// The XYZ of a space's RGB, of which (1, 1, 1) is its white with Y = 1. Upper and lower case are the same.
+/// The matrix from a space's RGB to XYZ; (1, 1, 1) is the space's white with Y = 1. The name is case-insensitive.
 pub fn xyz_from(space: &str) -> Option<Matrix> {
     let (_, primaries, white) = SPACES.iter().find(|(name, ..)| name.eq_ignore_ascii_case(space))?;
     let white = observer::xyz(&named(white)?);
     let columns = primaries.map(|[x, y]| [x / y, 1.0, (1.0 - x - y) / y]);
     let primaries: Matrix = std::array::from_fn(|row| columns.map(|column| column[row]));
-    // Scale the primaries so that together they are the white.
+    // Scale the primaries so that their sum is white.
     let scale = apply(&inverse(&primaries), white);
     Some(primaries.map(|row| std::array::from_fn(|i| row[i] * scale[i])))
 }
 
-/// What turns the RGB of light in a space into linear Rec. 709 of the same XYZ; `srgb` gives (nearly) the identity.
+/// The matrix from a space's RGB to linear Rec. 709 of the same XYZ, for light; `srgb` gives (nearly) the identity.
 ///
-/// The white of `aces2065-1` is warmer than that of Rec. 709 and stays so. For reflectances, whose white reflects all
-/// light, see [`reflectance_rec709_from`].
+/// The white of `aces2065-1` is warmer than that of Rec. 709 and stays so. For reflectances, whose white reflects all light,
+/// see [`reflectance_rec709_from`].
 pub fn rec709_from(space: &str) -> Option<[[f32; 3]; 3]> {
     let matrix = product(&inverse(&xyz_from("srgb")?), &xyz_from(space)?);
     Some(matrix.map(|row| row.map(|value| value as f32)))
 }
 
-/// What turns the RGB of a surface in a space into linear Rec. 709, white into white (adapted as by [`adapted`]).
+/// The matrix from a space's RGB to linear Rec. 709 for reflectances: white stays white (adapted as by [`adapted`]).
 pub fn reflectance_rec709_from(space: &str) -> Option<[[f32; 3]; 3]> {
     let (from, to) = (xyz_from(space)?, xyz_from("srgb")?);
     let white = |matrix: &Matrix| apply(matrix, [1.0; 3]);
@@ -49,29 +49,29 @@ pub fn reflectance_rec709_from(space: &str) -> Option<[[f32; 3]; 3]> {
     Some(matrix.map(|row| row.map(|value| value as f32)))
 }
 
-/// What colours look under another white: von Kries's scaling of the eye's responses as Bradford sharpened them
-/// (Lam 1985). Maps the XYZ `from` to `to`, if both have the same Y.
+/// Chromatic adaptation to another white: von Kries scaling of the cone responses in Bradford's sharpened space (Lam 1985).
+/// Maps the XYZ `from` to `to`, if both have the same Y.
 pub fn adapted(from: [f64; 3], to: [f64; 3]) -> Matrix {
     const BRADFORD: Matrix =
         [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
-    // Only the chromaticities count.
+    // Only the chromaticities matter.
     let response = |white: [f64; 3]| apply(&BRADFORD, white.map(|value| value / white[1]));
     let (from, to) = (response(from), response(to));
     let scaled: Matrix = std::array::from_fn(|row| BRADFORD[row].map(|value| value * to[row] / from[row]));
     product(&inverse(&BRADFORD), &scaled)
 }
 
-/// The matrix applied to a column.
+/// The product of a matrix and a column vector.
 pub fn apply(matrix: &Matrix, [x, y, z]: [f64; 3]) -> [f64; 3] {
     matrix.map(|[a, b, c]| a * x + b * y + c * z)
 }
 
-/// First the right matrix, then the left one.
+/// The product of two matrices: `right` is applied first.
 pub fn product(left: &Matrix, right: &Matrix) -> Matrix {
     left.map(|row| std::array::from_fn(|column| (0..3).map(|i| row[i] * right[i][column]).sum()))
 }
 
-/// The inverse of a matrix that has one.
+/// The inverse of an invertible matrix.
 pub fn inverse(matrix: &Matrix) -> Matrix {
     let minor = |row: usize, column: usize| {
         let (r, s) = ((row + 1) % 3, (row + 2) % 3);
@@ -82,15 +82,15 @@ pub fn inverse(matrix: &Matrix) -> Matrix {
     std::array::from_fn(|row| std::array::from_fn(|column| minor(column, row) / determinant))
 }
 
-/// What gives X, Y and Z of linear Rec. 709 (white, D65, has Y = 1), by seven digits: what films and comparisons of them measure
-/// noise in. Y is the luminance.
+/// The matrix from linear Rec. 709 to X, Y, Z (white, D65, has Y = 1), with seven digits: noise is measured in these
+/// channels, by films and in comparisons. Y is luminance.
 pub const XYZ_FROM_RGB: Matrix = [
     [0.412_390_8, 0.357_584_3, 0.180_480_8],
     [0.212_639, 0.715_168_7, 0.072_192_3],
     [0.019_330_8, 0.119_194_8, 0.950_532_2],
 ];
 
-/// X, Y and Z by [`XYZ_FROM_RGB`].
+/// X, Y, Z by [`XYZ_FROM_RGB`].
 pub fn xyz_of_rec709(rgb: [f64; 3]) -> [f64; 3] {
     apply(&XYZ_FROM_RGB, rgb)
 }

@@ -44,7 +44,7 @@ fn a_black_body_follows_planck() {
     assert_eq!(Curve::Blackbody { kelvin: 6500.0 }.at(0.0), 0.0);
 }
 
-/// The chromaticity of a light.
+/// The chromaticity of a light source.
 fn xy(light: &Curve) -> [f64; 2] {
     let [x, y, z] = observer::xyz(light);
     [x / (x + y + z), y / (x + y + z)]
@@ -100,7 +100,7 @@ fn named_curves_are_whole() {
         assert_eq!(wavelengths.len(), values.len(), "{name}");
         assert!(wavelengths.windows(2).all(|pair| pair[0] < pair[1]), "{name}: {wavelengths:?}");
         assert!(values.iter().all(|&value| (0.0..30.0).contains(&value)), "{name}");
-        // Without a gap at the ends
+        // No gap at the ends
         assert!(wavelengths[0] <= 360.0 && wavelengths[wavelengths.len() - 1] >= 830.0, "{name}");
         if name.contains("illum-") {
             assert!((observer::xyz(&curve)[1] - 1.0).abs() < 1e-6, "{name}");
@@ -115,7 +115,7 @@ fn named_curves_are_whole() {
 #[test]
 fn named_curves_have_known_values() {
     let at = |name: &str, nm: f32| named(name).unwrap().at(nm);
-    // Gold between its entries at 495.94 and 506.06 nm
+    // Gold, between the entries at 495.94 and 506.06 nm
     let t = (500.0 - 495.936_7) / (506.057_86 - 495.936_7);
     assert!((at("metal-Au-k", 500.0) - (1.84 + t * (1.9565 - 1.84))).abs() < 1e-5);
     assert!((at("metal-Au-eta", 495.936_7) - 0.916).abs() < 1e-5);
@@ -140,7 +140,7 @@ fn the_observer_weighs_green_most() {
     let [x, y, z] = observer::matching();
     let integral = |f: &[f32]| f.iter().map(|&v| f64::from(v)).sum::<f64>();
     assert!((integral(y) / observer::Y_INTEGRAL - 1.0).abs() < 1e-6);
-    // All three have nearly the same integral: equal energy is grey.
+    // All three have nearly the same integral: an equal-energy spectrum is grey.
     assert!((integral(x) / integral(y) - 1.0).abs() < 1e-3 && (integral(z) / integral(y) - 1.0).abs() < 1e-3);
     assert_eq!(y[(555 - 360) as usize], 1.0);
 }
@@ -184,7 +184,7 @@ fn spd_files_are_read() {
 fn spd_errors_say_where() {
     for (text, kind, line, says) in [
         ("400 1\n500 one", ErrorKind::Syntax, 2, "found `one`"),
-        ("400 1\n\n400 2", ErrorKind::Invalid, 3, "does not lie above"),
+        ("400 1\n\n400 2", ErrorKind::Invalid, 3, "is not above the previous"),
         ("400 nan", ErrorKind::Invalid, 1, "not a finite"),
         ("400 1\n500", ErrorKind::Syntax, 0, "has no value"),
         ("# nothing\n", ErrorKind::Invalid, 0, "no wavelength"),
@@ -213,7 +213,7 @@ fn the_shared_gold_is_ours() {
     }
 }
 
-/// The sum over a table of each camera's red, green and blue, so that no number changes unseen.
+/// Sums over the responses of each camera's red, green and blue, so that no number changes unnoticed.
 const SUMS_OF_RESPONSES: &[(&str, [f64; 3])] = &[
     ("canon_eos_100d", [4.819924, 9.856912, 7.099039]),
     ("canon_eos_1dx_mkii", [5.341798, 10.199717, 6.994573]),

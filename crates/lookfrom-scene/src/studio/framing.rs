@@ -1,8 +1,8 @@
-//! Fit of a perspective camera to points, and to circles on which points turn around an axis.
+//! Fit of a perspective camera to points, and to circles swept by points that rotate around an axis.
 //!
-//! A point is inside the right edge of the picture where x − eye.x ≤ k (z − eye.z), and so on for the four edges: each edge is
-//! a plane whose offset grows with a linear function of the point. Opposite edges together bound eye.z; halfway between them
-//! lies the eye. Of a circle, that a point sweeps, the greatest value of the linear function counts.
+//! A point is inside the right edge of the image where x − eye.x ≤ k (z − eye.z), and so on for the four edges: each edge is
+//! a plane whose offset grows with a linear function of the point. Opposite edges together bound eye.z; the eye is halfway
+//! between them. For the circle swept by a point, the maximum of the linear function counts.
 
 use glam::DVec3;
 
@@ -16,17 +16,17 @@ pub(super) struct Framing {
     /// The up vector in the world, of unit length.
     vertical: DVec3,
     forward: DVec3,
-    /// Right and up in the picture.
+    /// Right and up in the image.
     axes: [DVec3; 2],
     /// The tangents of half the horizontal and vertical fields of view.
     slopes: [f64; 2],
-    /// For each axis of the picture, the greatest offset of its upper and of its lower edge.
+    /// For each axis of the image, the maximum offset of its upper and of its lower edge.
     edges: [[f64; 2]; 2],
 }
 
 impl Framing {
-    /// A three-quarter view from slightly above; `basis` is right, up and towards the viewer, of unit length, and `aspect` the
-    /// picture's width over its height.
+    /// A three-quarter view from slightly above; `basis` is right, up and towards the viewer, of unit length, and `aspect`
+    /// the image's aspect ratio (width over height).
     pub(super) fn new(center: DVec3, basis: [DVec3; 3], aspect: f64) -> Self {
         let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
         let to_camera = TO_CAMERA[0] * basis[0] + TO_CAMERA[1] * basis[1] + TO_CAMERA[2] * basis[2];
@@ -52,7 +52,7 @@ impl Framing {
         }
     }
 
-    /// Includes the circle of a point that turns around the vertical through the centre.
+    /// Includes the circle swept by a point that rotates around the vertical axis through the centre.
     pub(super) fn include_turning(&mut self, point: DVec3) {
         let offset = point - self.center;
         let height = offset.dot(self.vertical);
@@ -68,7 +68,7 @@ impl Framing {
         }
     }
 
-    /// The nearest camera of this direction that shows all points so far, of which there must be one.
+    /// The nearest camera in this direction that shows all included points, of which there must be at least one.
     pub(super) fn camera(self) -> Camera {
         let Self { center, vertical, forward, axes: [right, up], slopes, edges } = self;
         let [x, y] = edges.map(|[above, below]| 0.5 * (above - below));

@@ -1,9 +1,9 @@
 //! Environments for models without lights: a procedural photographer's studio, or an environment map; and a shadow-catcher
 //! floor.
 //!
-//! The studio is a backdrop that grows darker downward, with lamps behind soft boxes: a large key light at the upper left of
-//! the camera, one overhead, and two upright strips, at the right and behind at the left, that draw edges on whatever
-//! mirrors. It is a light from infinitely far, so that a model of any size looks the same in it.
+//! The studio is a backdrop that darkens downwards, with softboxes: a large key light at the upper left of the camera, one
+//! overhead, and two vertical strips, at the right and behind at the left, that give reflective surfaces bright edges. It is
+//! an environment light at infinity, so models of any size look the same in it.
 
 use glam::{DMat4, DVec3};
 
@@ -16,11 +16,11 @@ use crate::model::surface::push_image;
 use crate::scene::{Bounds, MaterialId, Scene};
 use crate::shape::{Geometry, Shape};
 
-/// Texels of the studio's picture.
+/// Resolution of the studio's environment map.
 const WIDTH: u32 = 256;
 const HEIGHT: u32 = 128;
 
-/// The backdrop by the height of the direction, from −1 to 1, linear in between.
+/// Radiance of the backdrop by the height of the direction, from −1 to 1, linearly interpolated.
 const BACKDROP: [(f64, [f64; 3]); 5] = [
     (-1.0, [0.20, 0.20, 0.205]),
     (-0.55, [0.36, 0.365, 0.375]),
@@ -29,13 +29,13 @@ const BACKDROP: [(f64, [f64; 3]); 5] = [
     (1.0, [0.18, 0.185, 0.195]),
 ];
 
-/// A softbox: a rectangle that emits.
+/// A softbox: a rectangular light.
 struct SoftBox {
-    /// From the model, in parts of right, up and towards the camera; any length.
+    /// Direction from the model, as components to the right, up and towards the camera; any length.
     toward: [f64; 3],
     /// Half its width and height at a distance of 1.
     half: [f64; 2],
-    /// Radiance in its middle.
+    /// Radiance at its centre.
     radiance: [f64; 3],
 }
 
@@ -46,21 +46,21 @@ const SOFT_BOXES: [SoftBox; 4] = [
     SoftBox { toward: [-0.75, 0.68, -0.75], half: [0.14, 0.42], radiance: [1.9, 1.95, 2.05] },
 ];
 
-/// The share of a box's half size over which its edge fades.
+/// The fraction of a box's half size over which its edge fades out.
 const FADE: f64 = 0.12;
 
-/// Radius of the floor in radii of the bounds: beyond the upper edge of the picture.
+/// Radius of the floor in radii of the bounds, so that it extends beyond the upper edge of the image.
 const FLOOR_RADIUS: f64 = 60.0;
 
 impl StudioFrame {
-    /// Adds the studio, turned to the viewer whom models look at.
+    /// Adds the studio, oriented towards the viewer whom models face.
     pub(super) fn add_studio(&self, scene: &mut Scene) {
         let image = push_image(scene, studio());
         let sky = Sky::Image { image, scale: [1.0; 3], world_from_light: self.world_from_light() };
         super::add(scene, "studio", LightKind::Environment { sky, portal: None, illuminates: true });
     }
 
-    /// From a picture of the surroundings with +y up, whose middle lies before the viewer.
+    /// The rotation from an environment map with +y up whose centre is in front of the viewer.
     fn world_from_light(&self) -> DMat4 {
         let [right, up, back] = self.basis.map(|axis| axis.extend(0.0));
         DMat4::from_cols(right, up, back, DMat4::IDENTITY.w_axis)
@@ -100,10 +100,10 @@ pub(super) fn rotation(axis: DVec3, degrees: f64) -> DMat4 {
 /// in [`super::add_lights_and_camera`].
 pub fn add_floor(scene: &mut Scene, up: Option<DVec3>) {
     let StudioFrame { bounds, basis: [_, up, _] } = StudioFrame::of(scene, up);
-    // What is in objects stands in the world as well: the lowest corner of the box along `up`.
+    // The bounds include instances: take the lowest corner of the box along `up`.
     let Bounds { min, max } = bounds;
     let lowest = DVec3::select(up.cmpge(DVec3::ZERO), min, max).dot(up);
-    // A little below it: flat undersides must not lie in the floor.
+    // Slightly below it, so that flat undersides do not coincide with the floor.
     let radius = bounds.radius();
     let gap = 1e-3 * radius + 1e-6 * min.abs().max(max.abs()).max_element();
     let center = bounds.center();
@@ -118,7 +118,7 @@ pub fn add_floor(scene: &mut Scene, up: Option<DVec3>) {
     });
 }
 
-/// The studio's picture in latitude and longitude: the camera stands at +z.
+/// The studio's equirectangular environment map: the camera is at +z.
 fn studio() -> Image {
     let turns = |parts: f64| libm::sincos(std::f64::consts::PI * parts);
     let columns: Vec<(f64, f64)> =
@@ -143,7 +143,7 @@ fn radiance(direction: DVec3, frames: &[[DVec3; 3]; 4]) -> [f64; 3] {
     let t = ((direction.y - y0) / (y1 - y0)).clamp(0.0, 1.0);
     let mut sum: [f64; 3] = std::array::from_fn(|c| low[c] + t * (high[c] - low[c]));
 
-    // What lies before it.
+    // The softboxes in front of it.
     for (SoftBox { half, radiance, .. }, [right, up, toward]) in SOFT_BOXES.iter().zip(frames) {
         let depth = direction.dot(*toward);
         if depth <= 0.0 {
@@ -160,7 +160,7 @@ fn radiance(direction: DVec3, frames: &[[DVec3; 3]; 4]) -> [f64; 3] {
     sum
 }
 
-/// Right, up and the direction itself, of unit length, for something that faces where `toward` comes from.
+/// Right, up and the direction itself, as unit vectors, for a rectangle that faces the origin from direction `toward`.
 fn basis_facing(toward: DVec3) -> [DVec3; 3] {
     let toward = toward.normalize();
     let hint = if toward.y > 0.95 { DVec3::Z } else { DVec3::Y };
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn the_studio_is_bright_enough_for_a_white_model_and_no_brighter() {
         let image = studio();
-        // What a white matte surface that looks there sends back.
+        // The radiosity of a white diffuse surface with this normal.
         let seen = |normal: DVec3| {
             let normal = normal.normalize();
             let mut sum = [0.0; 3];
@@ -197,7 +197,7 @@ mod tests {
             [DVec3::Y, DVec3::from_array(SOFT_BOXES[0].toward), DVec3::Z, DVec3::X, -DVec3::Y].map(seen);
         println!("up {up:?} key {key:?} front {front:?} right {right:?} below {below:?}");
         assert!((0.9..1.3).contains(&up[1]) && key[1] < 1.5, "{up:?} {key:?}");
-        // No side is without light, and none is coloured.
+        // No side is unlit, and none is tinted.
         for side in [up, key, front, right, below] {
             assert!(side[1] > 0.25 && (side[0] / side[2] - 1.0).abs() < 0.06, "{side:?}");
         }

@@ -1,7 +1,7 @@
-//! A turntable: the camera's orbit around a scene, and a framing that holds at every angle.
+//! A turntable: the camera's orbit around a scene, and a framing that fits at every angle.
 //!
-//! The axis goes through the point that the camera looks at, where the scene says it, and else through the middle of what is
-//! visible: lamps, backdrops and floors without end would move it away from what the picture is about.
+//! The axis goes through the point that the camera looks at, if the scene gives one, and else through the centre of the
+//! visible subject: lights, backdrops and endless floors would move it away from the subject of the image.
 
 use glam::{DMat4, DVec3};
 
@@ -13,32 +13,32 @@ use crate::material::MaterialKind;
 use crate::scene::{Bounds, Instance, Scene, SourceFormat};
 use crate::shape::{Geometry, Shape};
 
-/// The ratio of sizes from which a flat thing counts as a backdrop or an endless floor: its radius over
-/// that of their bounds.
+/// The ratio of sizes above which a flat item counts as a backdrop or an endless floor: its radius over that of the bounds
+/// of the other items.
 const LARGEST_FLAT: f64 = 3.0;
-/// The thickness of a flat mesh as a share of its extent.
+/// The thickness of a flat mesh relative to its extent.
 const FLAT: f64 = 1e-3;
 
-/// The axis of a turntable, and what stands on it.
+/// A turntable: its axis and orientation.
 #[derive(Clone, Debug)]
 pub struct Turntable {
-    /// A point of the axis.
+    /// A point on the axis.
     pivot: DVec3,
     /// Right, up (the direction of the axis) and towards the viewer: unit vectors.
     basis: [DVec3; 3],
 }
 
 impl Turntable {
-    /// The turntable of a scene to which nothing was added yet. The axis goes through `lookat`; where that is `None`, through
-    /// the point that the scene's own camera looks at, or else through the middle of what is visible. `up` is the axis'
-    /// direction (of any length); where it is `None`, the camera's, or else y.
+    /// The turntable of a scene to which nothing has been added yet. The axis goes through `lookat`; if that is `None`,
+    /// through the point that the scene's own camera looks at, or else through the centre of the visible subject. `up` is the
+    /// axis' direction (of any length); if it is `None`, the camera's, or else y.
     pub fn new(scene: &Scene, up: Option<DVec3>, lookat: Option<DVec3>) -> Self {
         let target = scene.camera.as_ref().and_then(|camera| match camera.view {
             View::Look { lookat, up, .. } => Some(Target { lookat, up }),
             View::Matrix(_) => camera.target,
         });
         let of_matrix = || match scene.camera.as_ref()?.view {
-            // The format says what is up.
+            // In these formats the camera's y axis is the up vector.
             View::Matrix(matrix) if scene.source_format != SourceFormat::Gltf => {
                 Some(matrix.y_axis.truncate())
             }
@@ -50,7 +50,7 @@ impl Turntable {
         Self { pivot, basis: basis(up.unwrap_or(DVec3::Y)) }
     }
 
-    /// Adds a camera, if there is none, that shows all that is visible at every angle, in the same size.
+    /// Adds a camera, if there is none, that shows the whole subject at every angle, at the same size.
     pub fn frame(&self, scene: &mut Scene) {
         if scene.camera.is_some() {
             return;
@@ -66,7 +66,7 @@ impl Turntable {
         scene.camera = Some(framing.camera());
     }
 
-    /// Where a camera is after going around the axis by degrees, counter-clockwise as seen from above.
+    /// The camera after an orbit around the axis by degrees, counter-clockwise as seen from above.
     pub fn turned(&self, camera: &Camera, degrees: f64) -> Camera {
         let orbit = DMat4::from_translation(self.pivot)
             * self.rotation(degrees)
@@ -82,8 +82,8 @@ impl Turntable {
         Camera { view, ..camera.clone() }
     }
 
-    /// The rotation about the direction of the axis by degrees, counter-clockwise as seen from above: what pictures of the
-    /// surroundings are turned by along with the camera, as if everything else turned the other way.
+    /// The rotation about the axis' direction by degrees, counter-clockwise as seen from above: environment maps are rotated
+    /// by it along with the camera, as if everything else rotated the other way.
     pub fn rotation(&self, degrees: f64) -> DMat4 {
         rotation(self.basis[1], degrees)
     }
@@ -113,7 +113,7 @@ impl Item<'_> {
         }
     }
 
-    /// Whether all of it lies in a plane.
+    /// Whether the item lies in a plane.
     fn is_flat(self, scene: &Scene) -> bool {
         match self {
             Self::Shape(shape) => match &shape.geometry {
@@ -137,7 +137,7 @@ impl Item<'_> {
     }
 }
 
-/// The box around what can be seen of an object, in its own space.
+/// The bounding box of the visible shapes of an object, in its own space.
 fn visible_of_object(scene: &Scene, instance: &Instance) -> Bounds {
     let shapes = &scene.objects[instance.object.index()].shapes;
     bounds_of(scene, shapes.iter().filter(|shape| !is_hidden(scene, shape)))
@@ -147,7 +147,7 @@ fn bounds(scene: &Scene, items: &[Item<'_>]) -> Bounds {
     items.iter().map(|item| item.bounds(scene)).fold(Bounds::EMPTY, Bounds::union)
 }
 
-/// The subject of the picture. In a scene where nothing is left, everything is.
+/// The subject of the image. If nothing else is left, all items are.
 fn visible(scene: &Scene) -> Vec<Item<'_>> {
     let shapes = scene.shapes.iter().map(Item::Shape);
     let all: Vec<Item<'_>> = shapes.chain(scene.instances.iter().map(Item::Instance)).collect();
@@ -172,7 +172,7 @@ fn visible(scene: &Scene) -> Vec<Item<'_>> {
     solids.iter().copied().chain(small).collect()
 }
 
-/// Whether a shape is an area light or only the boundary of a medium. In a model, emissive shapes are parts of it.
+/// Whether a shape is an area light or only a medium interface. In a model, emissive shapes are parts of it.
 fn is_hidden(scene: &Scene, shape: &Shape) -> bool {
     let is_lamp = scene.source_format == SourceFormat::Scene && shape.emission.is_some();
     let material = scene.materials.get(shape.material.index());
@@ -194,7 +194,7 @@ fn surrounds_the_eye(scene: &Scene, item: &Item<'_>) -> bool {
     eye.cmpgt(min).all() && eye.cmplt(max).all()
 }
 
-/// Whether points lie in a plane, as far as their extent goes.
+/// Whether points lie in a plane, relative to their extent.
 fn is_coplanar<P: Iterator<Item = DVec3>>(points: impl Fn() -> P) -> bool {
     let farthest = |measure: &dyn Fn(DVec3) -> f64| {
         points().fold((0.0, DVec3::ZERO), |(most, at), point| {

@@ -24,7 +24,7 @@ pub(super) const KEYS: &[&str] = &[
 /// The keys of `window`.
 pub(super) const WINDOW: &[&str] = &["x", "y"];
 
-/// The eye, if it can see.
+/// The camera, if it is valid.
 pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
     table.allow(&[KEYS]);
     let lookfrom = table.need("lookfrom", "[0, 1, 5]", DVec3::Z, Value::vector);
@@ -37,7 +37,7 @@ pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
     let focus = focus(table);
     table.sound(&["lookfrom", "lookat", "up", "aperture", "focus", "focus_distance"])?;
 
-    // Neither the view axis nor the picture's horizontal may vanish.
+    // Neither the view axis nor the horizontal axis of the image may be 0.
     let w = (lookat - lookfrom).normalize_or_zero();
     if w == DVec3::ZERO || !w.is_finite() {
         return Err(table
@@ -45,7 +45,7 @@ pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
                 "lookat",
                 "`lookat` and `lookfrom` are the same point, or too near or too far apart for a direction",
             )
-            .hint("look at a point that lies in front of the eye"));
+            .hint("give a `lookat` that is in front of the camera"));
     }
     if up.normalize().cross(w).length_squared() < 1e-20 {
         let key = if table.has("up") { "up" } else { "lookat" };
@@ -61,8 +61,8 @@ pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
     };
     if !(focus_distance > 0.0 && focus_distance.is_finite()) {
         return Err(table
-            .error_at("focus", "`focus` lies behind the eye")
-            .hint("give a point that the eye can see"));
+            .error_at("focus", "`focus` is behind the camera")
+            .hint("give a point in front of the camera"));
     }
     let lens = aperture.filter(|&radius| radius > 0.0).map(|radius| Lens { radius, focus_distance });
     Ok(Camera {
@@ -77,7 +77,7 @@ pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
     })
 }
 
-/// The words for projections, each with the keys that mean something in it, of those that do not mean something in all.
+/// The words for projections, each with those of its keys that not all projections have.
 pub(super) const PROJECTIONS: [(&str, &[&str]); 4] = [
     ("perspective", &["fov", "aperture", "focus", "focus_distance", "window"]),
     ("orthographic", &["height", "aperture", "focus", "focus_distance", "window"]),
@@ -88,7 +88,7 @@ pub(super) const PROJECTIONS: [(&str, &[&str]); 4] = [
 fn projection(table: &Table<'_>) -> Projection {
     let words = PROJECTIONS.map(|(word, keys)| (word, (word, keys)));
     let Some((word, keys)) = table.or("projection", Some(PROJECTIONS[0]), |value| {
-        // Where it is none, nobody knows what means something.
+        // With an unknown projection, no key can be checked.
         let choice = value.choice(&words);
         Ok(value.noting(choice.map(Some), None))
     }) else {
@@ -106,7 +106,7 @@ fn projection(table: &Table<'_>) -> Projection {
     }
     match word {
         "perspective" => {
-            let expected = "degrees between 0 and 180, neither of them included";
+            let expected = "degrees between 0 and 180, exclusive";
             let fov = table.or("fov", 45.0, |value| {
                 value.number_where(expected, |degrees| degrees > 0.0 && degrees < 180.0)
             });
@@ -120,7 +120,7 @@ fn projection(table: &Table<'_>) -> Projection {
     }
 }
 
-/// A part of the image plane that is not empty.
+/// A non-empty part of the image plane.
 fn window(value: Value<'_>) -> Result<Window> {
     let table = value.table("`window`")?;
     table.allow(&[WINDOW]);
@@ -132,7 +132,7 @@ fn window(value: Value<'_>) -> Result<Window> {
                 return Ok([low, high]);
             }
             Err(value
-                .error(format!("`{key}` of `window` goes from {low} to {high}: nothing is between"))
+                .error(format!("`{key}` of `window` goes from {low} to {high}: it is empty"))
                 .hint("give the lower one first; x runs to the right, y up"))
         })
     };
@@ -141,9 +141,9 @@ fn window(value: Value<'_>) -> Result<Window> {
 
 /// The focus distance.
 enum Focus {
-    /// So far along the view axis.
+    /// A distance along the view axis.
     Distance(f64),
-    /// In the plane of a point.
+    /// The plane through a point.
     Point(DVec3),
 }
 

@@ -1,5 +1,5 @@
-//! Detection of cycles: a texture or a mix that uses itself, directly or through others, is an error, and so is a chain
-//! that is too deep.
+//! Detection of cycles: a texture or a mix that uses itself, directly or indirectly, is an error, and so is a chain that is
+//! too deep.
 
 use std::collections::BTreeMap;
 
@@ -8,28 +8,28 @@ use crate::error::{Error, ErrorKind, Location, Result};
 /// The maximum depth of a chain.
 const DEEPEST: usize = 16;
 
-/// Things that may be made of others of their kind.
+/// Items that may be made of others of their kind.
 pub(super) trait Made {
-    /// The noun for one of them in messages.
+    /// The noun for an item in messages.
     const WHAT: &'static str;
-    /// The remedy for one that uses itself.
+    /// The remedy for an item that uses itself.
     const REMEDY: &'static str;
-    /// The name that it has.
+    /// The item's name.
     fn name(&self) -> &str;
     /// The location in the file.
     fn at(&self) -> &Location;
-    /// The indices of those that it is made of.
+    /// The indices of the items that it is made of.
     fn parts(&self) -> Vec<usize>;
 }
 
-/// Checks these of the things, and what they are made of.
+/// Checks these items, and all that they are made of.
 pub(super) fn check<T: Made>(things: &[T], indices: impl IntoIterator<Item = usize>) -> Vec<Error> {
     let mut search = Search { things, chain: Vec::new(), heights: BTreeMap::new() };
     let mut errors = Vec::new();
     for index in indices {
         if let Err(error) = search.height(index) {
             errors.push(error);
-            // Told once: what stands in this chain counts as flat from here on.
+            // Reported once: from here on the items of this chain count as having no parts.
             let chain = search.chain.drain(..).map(|index| (index, 1));
             search.heights.extend(chain);
         }
@@ -39,13 +39,13 @@ pub(super) fn check<T: Made>(things: &[T], indices: impl IntoIterator<Item = usi
 
 struct Search<'a, T> {
     things: &'a [T],
-    /// From the one that the search began with to the one that is looked at.
+    /// From the item that the search began with to the current one.
     chain: Vec<usize>,
     heights: BTreeMap<usize, usize>,
 }
 
 impl<T: Made> Search<'_, T> {
-    /// The depth of this one in the chain.
+    /// The depth of the chains that begin with this item.
     fn height(&mut self, index: usize) -> Result<usize> {
         if let Some(&height) = self.heights.get(&index) {
             return Ok(height);
@@ -66,7 +66,7 @@ impl<T: Made> Search<'_, T> {
         }
         if height > DEEPEST || self.chain.len() > DEEPEST {
             let (what, name) = (T::WHAT, thing.name());
-            let message = format!("{what} {name:?} stands in a chain of more than {DEEPEST} {what}s");
+            let message = format!("{what} {name:?} is in a chain of more than {DEEPEST} {what}s");
             return Err(Error::new(ErrorKind::Limit, thing.at(), message)
                 .hint(format!("use fewer {what}s in {what}s")));
         }

@@ -1,4 +1,4 @@
-//! Colours and numbers that may be textured: numbers, `[r, g, b]`, `"#rrggbb"`, curves, names of textures, textures in place.
+//! Colours and numbers, possibly textured: numbers, `[r, g, b]`, `"#rrggbb"`, curves, names of textures, inline textures.
 
 use super::Reader;
 use super::table::Table;
@@ -10,10 +10,10 @@ use crate::scene::TextureId;
 use crate::spectrum::{Curve, observer, space};
 use crate::texture::Texture;
 
-/// The least luminance of a light's curve: it will be divided by.
+/// Minimum luminance of a light's spectrum, which is divided by.
 const DARKEST: f64 = 1e-30;
 
-/// A colour that is the same everywhere.
+/// A constant RGB colour.
 pub(super) fn plain_color(value: Value<'_>) -> Result<[f32; 3]> {
     let expected = "a colour: a number, [r, g, b] or \"#rrggbb\"";
     if value.is_number() {
@@ -30,7 +30,7 @@ fn primary(value: Value<'_>) -> Result<f32> {
     value.single_where("a number of at least 0", |number| number >= 0.0)
 }
 
-/// `#rgb` or `#rrggbb`, made linear.
+/// `#rgb` or `#rrggbb`, converted to linear.
 fn hex_color(text: &str) -> Option<[f32; 3]> {
     let digits: Vec<f32> =
         text.strip_prefix('#')?.chars().map(|c| c.to_digit(16).map(|d| d as f32)).collect::<Option<_>>()?;
@@ -43,7 +43,7 @@ fn hex_color(text: &str) -> Option<[f32; 3]> {
 }
 
 impl Reader<'_, '_> {
-    /// A colour that may be a curve, or a texture by name or written in its place.
+    /// A colour that may be a spectrum, or a texture by name or inline.
     pub(super) fn color(&mut self, value: Value<'_>) -> Result<Color> {
         if value.is_table() {
             let table = value.table("a texture")?;
@@ -59,12 +59,12 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A colour of a table, or a grey where it is not given.
+    /// The colour of a key, or a grey if it is absent.
     pub(super) fn color_or(&mut self, table: &Table<'_>, key: &str, gray: f32) -> Color {
         table.or(key, Color::gray(gray), |value| self.color(value))
     }
 
-    /// A number that may be a texture, by name or written in its place; as `expected` where `ok`.
+    /// A number that may be a texture, by name or inline; a number must satisfy `ok`, which `expected` describes.
     pub(super) fn scalar_where(
         &mut self,
         value: Value<'_>,
@@ -80,15 +80,15 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A part of a whole that may be a texture, or a default where it is not given.
+    /// A number in [0, 1] that may be a texture, or a default if it is absent.
     pub(super) fn share_or(&mut self, table: &Table<'_>, key: &str, default: f32) -> Scalar {
         table.or(key, Scalar::Value(default), |value| {
             self.scalar_where(value, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
         })
     }
 
-    /// The colour of a light and what multiplies it. A curve says only which colour: it is as bright as the grey of its `scale`.
-    /// Textures are for lights that are shapes.
+    /// The colour of a light and its scale. A spectrum only determines the chromaticity: it is as bright as a grey of its
+    /// `scale`. Only lights that are shapes may have `textures`.
     pub(super) fn light_color(&mut self, value: Value<'_>, textures: bool) -> Result<(Color, f32)> {
         if value.is_table() && !value.table("a colour")?.has("type") {
             let table = value.table("a colour")?;
@@ -108,7 +108,7 @@ impl Reader<'_, '_> {
         Ok((self.color(value)?, 1.0))
     }
 
-    /// The colour of a light that is always RGB; a curve becomes it.
+    /// The colour of a light that is always RGB; a spectrum is converted.
     pub(super) fn light_rgb(&mut self, value: Value<'_>) -> Result<[f32; 3]> {
         match self.light_color(value, false)? {
             (Color::Curve(id), scale) => Ok(rgb(&self.scene.curves[id.index()]).map(|c| c * scale)),
@@ -117,7 +117,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Keeps a texture that was written where it is used.
+    /// Adds an inline texture.
     pub(super) fn add_texture(&mut self, value: Value<'_>, kind: crate::texture::TextureKind) -> TextureId {
         let name = format!("{} at {}", value.key(), value.at());
         self.scene.textures.push(Texture { name, at: value.at(), kind });
@@ -133,7 +133,7 @@ fn luminance(curve: &Curve) -> f64 {
     observer::xyz(curve)[1]
 }
 
-/// Rec. 709 of light that is seen, with luminance 1; what is too saturated loses what it lacks.
+/// Linear Rec. 709 of a light's spectrum, with luminance 1; negative components are clamped to 0.
 fn rgb(light: &Curve) -> [f32; 3] {
     let xyz = observer::xyz(light);
     let Some(xyz_from_rgb) = space::xyz_from("srgb") else { return [0.0; 3] };

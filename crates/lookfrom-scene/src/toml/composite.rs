@@ -4,7 +4,7 @@ use glam::{DVec3, Vec2, Vec3};
 
 use crate::shape::{Mesh, Sphere};
 
-/// Two unit vectors `u`, `v` with `u × v = n`, for a unit normal; `u` is level where that is possible.
+/// Two unit vectors `u`, `v` with `u × v = n`, for a unit normal; `u` is horizontal if possible.
 pub(super) fn tangents(n: DVec3) -> (DVec3, DVec3) {
     let level = DVec3::Y.cross(n);
     let u = if level.length_squared() < 1e-12 { DVec3::X } else { level.normalize() };
@@ -12,7 +12,7 @@ pub(super) fn tangents(n: DVec3) -> (DVec3, DVec3) {
     (u, v)
 }
 
-/// A square of a plane around a point; uv counts units of length from the point.
+/// A square part of a plane around a point; uv are distances from the point.
 pub(super) fn plane(point: DVec3, normal: DVec3, size: f64) -> Mesh {
     let (u, v) = tangents(normal.normalize());
     let half = 0.5 * size;
@@ -26,12 +26,12 @@ pub(super) fn plane(point: DVec3, normal: DVec3, size: f64) -> Mesh {
     }
 }
 
-/// The box between two corners, its faces to the outside; uv runs from 0 to 1 over each face.
+/// The box between two corners, with its faces oriented outwards; uv runs from 0 to 1 over each face.
 pub(super) fn cuboid(min: DVec3, max: DVec3) -> Mesh {
     let mut mesh = Mesh { name: "box".to_owned(), ..Mesh::default() };
     for axis in 0..3 {
         for side in [min, max] {
-            // u × v points along the axis; on the low side they change places.
+            // u × v points along the axis; on the lower side they are swapped.
             let (mut u, mut v) = ((axis + 1) % 3, (axis + 2) % 3);
             if side == min {
                 (u, v) = (v, u);
@@ -52,13 +52,13 @@ pub(super) fn cuboid(min: DVec3, max: DVec3) -> Mesh {
     mesh
 }
 
-/// Spheres of a sphereflake of a depth: `(9^(depth + 1) − 1) / 8`.
+/// The number of spheres of a sphereflake: `(9^(depth + 1) − 1) / 8`.
 pub(super) fn sphereflake_count(depth: u32) -> u64 {
     9_u64.checked_pow(depth + 1).map_or(u64::MAX, |power| (power - 1) / 8)
 }
 
-/// The sphereflake (the "balls" of Haines' standard procedural databases, 1987): on each sphere sit nine of a third of
-/// its radius, six around the equator and three above, each with its pole away from the sphere it sits on.
+/// The sphereflake (the "balls" of Haines' standard procedural databases, 1987): on each sphere are nine of a third of its
+/// radius, six around the equator and three above, each with its pole pointing away from its parent.
 pub(super) fn sphereflake(center: DVec3, radius: f64, depth: u32) -> Vec<Sphere> {
     let mut spheres = vec![Sphere { center, radius }];
     let mut poles = vec![(DVec3::Y, DVec3::X)];
@@ -78,11 +78,11 @@ pub(super) fn sphereflake(center: DVec3, radius: f64, depth: u32) -> Vec<Sphere>
     spheres
 }
 
-/// The directions of the nine, around the pole `n`; `u` is a unit vector across it.
+/// The directions of the nine children, around the pole `n`; `u` is a unit vector perpendicular to it.
 fn children(n: DVec3, u: DVec3) -> [DVec3; 9] {
     let v = n.cross(u);
     let (half, root) = (0.5, 0.75_f64.sqrt());
-    // Sines and cosines of 60° and 30° are these; the three above stand 30° from the pole.
+    // The sines and cosines of 30° and 60°; the three above are 30° from the pole.
     let above = |across: DVec3| root * n + half * across;
     [
         u,
@@ -97,7 +97,7 @@ fn children(n: DVec3, u: DVec3) -> [DVec3; 9] {
     ]
 }
 
-/// One triangle.
+/// A mesh of one triangle.
 pub(super) fn triangle(positions: [Vec3; 3]) -> Mesh {
     Mesh {
         name: "triangle".to_owned(),

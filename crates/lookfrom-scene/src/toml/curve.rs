@@ -11,7 +11,7 @@ use super::value::Value;
 use crate::error::Result;
 use crate::shape::{Geometry, Patches, Profile, Strand};
 
-/// A bilinear patch between four corners.
+/// A bilinear patch with four corners.
 pub(super) fn patch(table: &Table<'_>) -> Result<Geometry> {
     let example = "[[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1]]";
     let corners = table.need("corners", example, [Vec3::ZERO; 4], |value| {
@@ -42,7 +42,7 @@ fn four<T>(value: Value<'_>, expected: &str, decode: impl Fn(Value<'_>) -> Resul
     Ok([decode(a)?, decode(b)?, decode(c)?, decode(d)?])
 }
 
-/// Cubic Bézier curves, each beginning where the one before ends.
+/// Cubic Bézier curves, each of which begins where the previous one ends.
 pub(super) fn curve(table: &Table<'_>, limit: u64) -> Result<Geometry> {
     let is_round = table.or("profile", false, |value| {
         value.choice(&[("flat", false), ("cylinder", true), ("ribbon", false)])
@@ -78,7 +78,7 @@ pub(super) fn curve(table: &Table<'_>, limit: u64) -> Result<Geometry> {
     Ok(Geometry::Curves(strands.collect()))
 }
 
-/// One width for all, or one for each joint.
+/// One width for all, or one per joint.
 fn widths(value: Value<'_>, joints: usize) -> Result<Vec<f32>> {
     let width = |value: Value<'_>| value.single_where("a number greater than 0", |width| width > 0.0);
     if value.is_number() {
@@ -92,7 +92,7 @@ fn widths(value: Value<'_>, joints: usize) -> Result<Vec<f32>> {
     items.map(width).collect()
 }
 
-/// The unit normals of a ribbon at its joints; nothing for other profiles.
+/// The unit normals of a ribbon at its joints; `None` for other profiles.
 fn ribbon(table: &Table<'_>, joints: usize) -> Result<Option<Vec<Vec3>>> {
     let is_ribbon = table.find("profile").and_then(Value::as_text) == Some("ribbon");
     let expected = format!("a list of {joints} vectors, one for each end of a curve");
@@ -102,7 +102,7 @@ fn ribbon(table: &Table<'_>, joints: usize) -> Result<Option<Vec<Vec3>>> {
             .error("`normals` are for ribbons")
             .hint("leave them out, or add `profile = \"ribbon\"`")),
         (None, true) => Err(table
-            .error("`normals` are missing: they say how the ribbon stands")
+            .error("`normals` are missing: they orient the ribbon")
             .hint(format!("add `normals`, {expected}"))),
         (Some(value), true) => {
             let items = value.list(&expected)?;

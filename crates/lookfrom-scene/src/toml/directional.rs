@@ -12,7 +12,7 @@ use crate::light::{LightKind, Power};
 use crate::scene::ImageId;
 
 impl Reader<'_, '_> {
-    /// Into a cone.
+    /// A spot light.
     pub(super) fn spot(&mut self, table: &Table<'_>) -> Result<(LightKind, Power)> {
         let position = position(table);
         let direction = aim(table, position);
@@ -29,15 +29,17 @@ impl Reader<'_, '_> {
         Ok((LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, falloff }, power))
     }
 
-    /// A picture that is thrown.
+    /// A projection light.
     pub(super) fn projection(&mut self, table: &Table<'_>) -> Result<(LightKind, Power)> {
         let position = position(table);
         let forward = aim(table, position).normalize();
         let up = table.maybe("up", Value::direction);
-        let expected = "degrees between 0 and 180, neither of them included";
+        let expected = "degrees between 0 and 180, exclusive";
         let fov = table.or("fov", 45.0, |value| value.single_where(expected, |fov| fov > 0.0 && fov < 180.0));
         let intensity = table.or("intensity", 1.0, |value| {
-            value.single_where("a number of at least 0: the picture has the colours", |number| number >= 0.0)
+            value.single_where("a number of at least 0: the colours are in the picture", |number| {
+                number >= 0.0
+            })
         });
         let power = power(table, "power", 1.0);
         let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.image(value));
@@ -47,7 +49,7 @@ impl Reader<'_, '_> {
                 let up = up.normalize();
                 if up.cross(forward).length_squared() < 1e-20 {
                     return Err(table
-                        .error_at("up", format!("up {up} is parallel to where the light goes"))
+                        .error_at("up", format!("up {up} is parallel to the direction of the light"))
                         .hint("give another `up`, such as [0, 0, 1] for a light straight down"));
                 }
                 up
@@ -65,7 +67,7 @@ impl Reader<'_, '_> {
         Ok((LightKind::Projection { image, intensity, fov, world_from_light }, power))
     }
 
-    /// Brightness by direction.
+    /// A goniometric light.
     pub(super) fn goniometric(&mut self, table: &Table<'_>) -> (LightKind, Power) {
         let position = position(table);
         let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.octahedral_image(value));

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use crate::error::{Error, Location};
 
-/// The most errors that are noted of one file.
+/// Maximum number of errors recorded per file.
 const MOST_ERRORS: usize = 1000;
 
 /// A file's text, its line starts, and the errors recorded so far.
@@ -14,7 +14,7 @@ pub(super) struct Document {
     whole: Location,
     text: String,
     line_starts: Vec<usize>,
-    /// By byte offset and message: each once.
+    /// By byte offset and message, so that each is recorded once.
     errors: RefCell<BTreeMap<(usize, String), Error>>,
 }
 
@@ -42,12 +42,12 @@ impl Document {
         self.errors.borrow().len()
     }
 
-    /// Whether there are so many errors that no more are looked for.
+    /// Whether the maximum number of errors is reached.
     pub(super) fn is_full(&self) -> bool {
         self.count() >= MOST_ERRORS
     }
 
-    /// The errors that were noted, and some others of the same file, in the order of its lines.
+    /// The recorded errors, and some others of the same file, in the order of its lines.
     pub(super) fn errors(&self, others: Vec<Error>) -> Vec<Error> {
         let line = |offset: usize| self.location(offset).line;
         let others = others.into_iter().map(|error| (error.at.line, error));
@@ -61,7 +61,7 @@ impl Document {
         &self.text
     }
 
-    /// The line and column of a byte.
+    /// The line and column of a byte offset.
     pub(super) fn location(&self, offset: usize) -> Location {
         let line = self.line_starts.partition_point(|&start| start <= offset);
         let start = self.line_starts[line - 1];

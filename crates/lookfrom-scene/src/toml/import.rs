@@ -9,7 +9,7 @@ use crate::load;
 use crate::scene::MaterialId;
 
 impl Reader<'_, '_> {
-    /// One file or a list of them. Without all of them, not all names are known.
+    /// Imports one file or a list of them. Unless all can be read, not all names are known.
     pub(super) fn imports(&mut self, value: Value<'_>) {
         let mut import = |value: Value<'_>| {
             if let Err(error) = self.import(value) {
@@ -42,7 +42,7 @@ impl Reader<'_, '_> {
             return Err(Error { kind: ErrorKind::Limit, ..value.error(message) }
                 .hint("import the files from fewer levels, or raise `Limits::import_depth`"));
         }
-        // A file that several others import joins the scene once.
+        // A file that several others import is merged once.
         if self.done.contains(&tidy(&path)) {
             return Ok(());
         }
@@ -63,7 +63,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// An imported scene's camera and settings count where none was there before.
+    /// Imports a scene; its camera and settings apply unless there are some already.
     fn import_scene(&mut self, path: &Path) -> Result<()> {
         let camera = self.scene.camera.take();
         let image = self.has_image.then(|| self.scene.image.clone());
@@ -78,7 +78,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// A path without `.` and without `x/..`, so that the same file has one name (where no links are followed).
+/// A path without `.` and without `x/..`, so that the same file has the same path (apart from links).
 pub(super) fn tidy(path: &Path) -> PathBuf {
     let mut tidied = PathBuf::new();
     for component in path.components() {

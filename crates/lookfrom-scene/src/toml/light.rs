@@ -12,7 +12,7 @@ use crate::light::{Falloff, Light, LightKind, Power};
 use crate::material::Color;
 use crate::shape::{Emission, Geometry, Shape, Sphere};
 
-/// The keys of lights, by type, besides [`COMMON`].
+/// The keys of lights, by type, in addition to [`COMMON`].
 pub(super) const KEYS: Kinds = &[
     ("ambient", &["color"]),
     ("point", &["position", "intensity", "power", "falloff"]),
@@ -57,14 +57,14 @@ pub(super) const KEYS: Kinds = &[
         ],
     ),
 ];
-/// The words for how light fades with distance.
+/// The words for the falloff with distance.
 pub(super) const FALLOFFS: &[(&str, Falloff)] =
     &[("none", Falloff::None), ("linear", Falloff::Linear), ("quadratic", Falloff::Quadratic)];
 /// Keys of all lights.
 pub(super) const COMMON: &[&str] = &["type", "name"];
 
 impl Reader<'_, '_> {
-    /// One `[[light]]`.
+    /// Reads one `[[light]]`.
     pub(super) fn read_light(&mut self, table: &Table<'_>) {
         let Some(word) = table.kind(KEYS, None, |_| COMMON) else { return };
         if let Err(error) = self.light(word, table) {
@@ -98,7 +98,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// A light that is a shape.
+    /// Reads a light that is a shape.
     fn read_lamp(&mut self, word: &str, table: &Table<'_>, name: Option<String>) -> Result<()> {
         let (radiance, scale) = match table.find("radiance") {
             None if table.has("power") || table.means(&["power"]) => (Color::gray(1.0), 1.0),
@@ -126,7 +126,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// `intensity` and how much of it; `total` is the key that may say so instead.
+    /// `intensity` and its power; `total` is the key of the total power.
     pub(super) fn intensity(&mut self, table: &Table<'_>, total: &str) -> (Color, Power) {
         let (color, scale) = match table.find("intensity") {
             None if table.has(total) || table.means(&[total]) => (Color::gray(1.0), 1.0),
@@ -136,17 +136,17 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The power: that of the key `total`, or else that of the colour, times `scale`.
+/// The power: the total in the key `total`, or else that of the colour, times `scale`.
 pub(super) fn power(table: &Table<'_>, total: &str, scale: f32) -> Power {
     let total = table.or(total, None, |value| {
         value.single_where("a number of at least 0", |total| total >= 0.0).map(Some)
     });
-    // What it comes to is then known, whatever the colour's brightness.
+    // The total replaces the brightness of the colour, so `scale` has no effect.
     let scale = if total.is_some() { 1.0 } else { scale };
     Power { scale, total, absolute: false }
 }
 
-/// `rotate`: degrees about y, or as for shapes.
+/// `rotate`: degrees about y, or a rotation as of shapes.
 pub(super) fn turned(table: &Table<'_>) -> DMat4 {
     table.or("rotate", DMat4::IDENTITY, |value| {
         if value.is_number() { Ok(about(DVec3::Y, value.number()?)) } else { rotate(value) }
@@ -161,14 +161,14 @@ pub(super) fn falloff(table: &Table<'_>) -> Falloff {
     table.or("falloff", Falloff::default(), |value| value.choice(FALLOFFS))
 }
 
-/// The way from a point to the point that a value names.
+/// The vector from a point to a target point.
 fn towards(target: Value<'_>, from: DVec3) -> Result<DVec3> {
     let direction = target.vector()? - from;
     if direction.length_squared() > 0.0 && direction.length_squared().is_finite() {
         return Ok(direction);
     }
     Err(target
-        .error(format!("`{}` is where the light is, or too far", target.key()))
+        .error(format!("`{}` is at the position of the light, or too far away", target.key()))
         .hint("give another point"))
 }
 
@@ -180,7 +180,7 @@ fn distant_direction(table: &Table<'_>) -> Result<DVec3> {
     table.sound(&["direction", "from", "to"])?;
     if !table.has("direction") && !table.has("from") {
         let error = table.error("`direction` or `from` is missing");
-        let error = error.hint("add `direction = [0, -1, 0]`, where the light goes to");
+        let error = error.hint("add `direction = [0, -1, 0]`, the direction in which the light travels");
         table.lacks(&["direction", "from"], error);
         return Err(Error::untold());
     }
@@ -216,7 +216,7 @@ fn facing(table: &Table<'_>, [target, direction]: [&str; 2], from: DVec3, remedy
     -DVec3::Y
 }
 
-/// By a corner and two edges, or by its middle, where it faces, and its sides.
+/// A rectangle given by a corner and two edges, or by centre, target, width and height.
 fn rectangle(table: &Table<'_>) -> Result<Geometry> {
     if table.has("center") {
         let keys: &[&str] = &["center", "target", "width", "height", "radiance", "power", "two_sided"];

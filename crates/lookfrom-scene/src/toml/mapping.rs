@@ -8,14 +8,14 @@ use super::value::Value;
 use crate::error::Result;
 use crate::texture::Mapping;
 
-/// The keys that say where a texture lives.
+/// The keys of mappings.
 pub(super) const KEYS: &[&str] =
     &["space", "scale", "offset", "size", "rotate", "translate", "axis_u", "axis_v"];
 
 /// The words for `space`.
 pub(super) const SPACES: [&str; 5] = ["uv", "world", "spherical", "cylindrical", "planar"];
 
-/// The mapping, in the default `space` unless another is named.
+/// The mapping, with `default` if `space` is absent.
 pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
     let words = SPACES.map(|word| (word, word));
     let space = table.find("space").map_or(Ok(default), |value| value.choice(&words))?;
@@ -31,7 +31,7 @@ pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
         if !has(space) {
             let spaces = words.map(|word| word.0).into_iter().filter(|word| has(word));
             let spaces = spaces.map(|word| format!("{word:?}")).collect::<Vec<_>>().join(" or ");
-            let error = key.error(format!("`{}` means nothing in space = {space:?}", key.key()));
+            let error = key.error(format!("`{}` has no meaning in space = {space:?}", key.key()));
             key.note(error.hint(format!("leave it out, or give space = {spaces}")));
         }
     }
@@ -47,7 +47,7 @@ pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
             .error("the pattern is too small or too large to compute with")
             .hint("change `size` or `scale`"));
     }
-    // Here up is y; the mappings have their poles on z.
+    // Up is y here; the poles of the mappings are on z.
     let pole_on_z = DMat4::from_cols(DVec4::X, DVec4::Z, -DVec4::Y, DVec4::W) * texture_from_world;
     Ok(match space {
         "world" => Mapping::World { texture_from_world },
@@ -61,7 +61,7 @@ pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
     })
 }
 
-/// A vector that is not 0 and can be computed with.
+/// A non-zero vector that is finite as `f32`.
 fn axis(value: Value<'_>) -> Result<Vec3> {
     value.direction()?;
     super::shape::point(value)

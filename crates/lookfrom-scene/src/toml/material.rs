@@ -10,7 +10,7 @@ use crate::material::{BumpMapping, Color, Material, MaterialKind, Whitted};
 use crate::scene::MaterialId;
 use crate::shape::Emission;
 
-/// The keys of materials, by type, besides [`COMMON`].
+/// The keys of materials, by type, in addition to [`COMMON`].
 pub(super) const KEYS: Kinds = &[
     (
         "whitted",
@@ -67,7 +67,7 @@ pub(super) const DEFAULT: &str = "default";
 
 impl chain::Made for Material {
     const WHAT: &'static str = "material";
-    const REMEDY: &'static str = "let one of them be made of other materials";
+    const REMEDY: &'static str = "let one of them mix other materials";
     fn name(&self) -> &str {
         &self.name
     }
@@ -83,7 +83,7 @@ impl chain::Made for Material {
 }
 
 impl Reader<'_, '_> {
-    /// `[materials]`: all names first, so that a mix may use the others, wherever they are written.
+    /// Reads `[materials]`: all names first, so that a mix may use materials that are defined later.
     pub(super) fn read_materials(&mut self, value: Value<'_>) {
         self.knows_all_names &= value.is_table();
         let mut read = Vec::new();
@@ -91,7 +91,7 @@ impl Reader<'_, '_> {
             let name = entry.key();
             let kind = MaterialKind::Whitted(Whitted::default());
             let material = Material::new(name, entry.at(), kind);
-            // The default may have been needed before it was written.
+            // The default may have been used before its definition.
             let id = match self.materials.get(name) {
                 Some(&id) if Some(id) == self.unwritten_default => {
                     self.scene.materials[id.index()] = material;
@@ -153,7 +153,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Warns of a key that changes nothing without another.
+    /// Warns of a key that has no effect without another.
     pub(super) fn ineffective(&mut self, table: &Table<'_>, key: &str, without: &str) {
         let at = table.find(key).map_or_else(|| table.at(), Value::at);
         self.context.warn(&at, format!("`{key}` has no effect without {without}"));
@@ -174,8 +174,9 @@ impl Reader<'_, '_> {
     pub(super) fn emission(&mut self, table: &Table<'_>) -> Option<Emission> {
         if !table.has("emission") && !table.has("power") {
             if let Some(value) = table.find("two_sided").filter(|_| !table.means(&["emission", "power"])) {
-                let error = value.error("`two_sided` says which sides shine, but there is no `emission`");
-                let remedy = "surfaces are seen from both sides anyway: leave it out, or add `emission`";
+                let error =
+                    value.error("`two_sided` selects the sides that emit light, but there is no `emission`");
+                let remedy = "surfaces are visible from both sides anyway: leave it out, or add `emission`";
                 value.note(error.hint(remedy));
             }
             return None;
@@ -193,13 +194,13 @@ impl Reader<'_, '_> {
         id
     }
 
-    /// A material of a name that the file gives.
+    /// The material with the name in `value`.
     pub(super) fn material_named(&self, value: Value<'_>) -> Result<MaterialId> {
         let name = value.text("the name of a material")?;
         self.named(&self.materials, "material", value, name)
     }
 
-    /// The material of shapes that name none: grey with a slight highlight, unless a file defines another.
+    /// The material of shapes that name none: grey with a slight highlight, unless a file defines `default`.
     pub(super) fn default_material(&mut self) -> MaterialId {
         if let Some(&id) = self.materials.get(DEFAULT) {
             return id;
@@ -209,7 +210,7 @@ impl Reader<'_, '_> {
         id
     }
 
-    /// The black material of area lights, which only emit.
+    /// The black material of area lights, which reflect nothing.
     pub(super) fn black_material(&mut self) -> MaterialId {
         if let Some(id) = self.black {
             return id;

@@ -12,7 +12,7 @@ use crate::scene::MeshId;
 use crate::shape::{Geometry, Mesh};
 
 impl Reader<'_, '_> {
-    /// Keeps a mesh whose coordinates can be computed with.
+    /// Adds a mesh after checking that its positions are finite.
     pub(super) fn mesh(&mut self, table: &Table<'_>, mesh: Mesh) -> Result<Geometry> {
         if !mesh.positions.iter().all(|position| position.is_finite()) {
             return Err(table
@@ -69,7 +69,7 @@ impl Reader<'_, '_> {
         Ok(mesh)
     }
 
-    /// Normals, uvs and colours: each as many as there are vertices.
+    /// Normals, texture coordinates and colours: one each per vertex.
     pub(super) fn vertex_data(&mut self, table: &Table<'_>, mesh: &mut Mesh) {
         let expected = mesh.positions.len();
         mesh.normals = for_vertices(table, "normals", expected, point);
@@ -80,14 +80,14 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The values of a key, one for each of the vertices, if it is given.
+/// The values of a key, one per vertex, if the key is present.
 fn for_vertices<'a, T>(
     table: &Table<'a>,
     key: &str,
     expected: usize,
     decode: impl Fn(Value<'a>) -> Result<T>,
 ) -> Vec<T> {
-    // Where the vertices are wrong, nobody knows how many there should be.
+    // If the vertices are invalid, their number is unknown.
     let is_counted = table.sound(&["positions", "vertices"]).is_ok();
     table.or(key, Vec::new(), |value| {
         let items = value.list("a list with a value for each vertex")?;
@@ -101,7 +101,7 @@ fn for_vertices<'a, T>(
     })
 }
 
-/// The error that there are more elements than is allowed.
+/// The error that there are more elements than the limit.
 pub(super) fn too_many(table: &Table<'_>, count: u64, limit: u64) -> Error {
     let message = format!("{count} elements are more than the limit of {limit}");
     Error { kind: ErrorKind::Limit, ..table.error(message) }.hint("use fewer, or raise `Limits::elements`")

@@ -13,12 +13,12 @@ use crate::light::{Light, LightKind};
 use crate::load;
 use crate::shape::Part;
 
-/// The keys of a mesh from a glTF file, which may hold several things.
+/// The keys that select the contents of a glTF file.
 pub(super) const CHOICE: &[&str] = &["scene", "animation", "at", "variant", "camera", "lights"];
 
 impl Reader<'_, '_> {
-    /// The parts of the model file of a `[[mesh]]` that stands at `world_from_model`. Its camera and lights join the scene
-    /// where they are asked for.
+    /// The parts of the model file of a `[[mesh]]` placed by `world_from_model`. Its camera and lights are added to the
+    /// scene if they are requested.
     pub(super) fn model_parts(
         &mut self,
         table: &Table<'_>,
@@ -34,14 +34,14 @@ impl Reader<'_, '_> {
         if let Some(key) = CHOICE.iter().find_map(|key| table.find(key))
             && !load::is_gltf(&path, self.context)
         {
-            return Err(key.error(format!("`{}` is for glTF files, which hold several things", key.key())));
+            return Err(key.error(format!("`{}` is only for glTF files", key.key())));
         }
         let (choice, has_camera) = self.choice(table);
         let stray = ["lights", "camera"].into_iter().find_map(|key| table.find(key));
         if let Some(key) = stray.filter(|_| self.in_object) {
             return Err(key
-                .error(format!("an object has no `{}`", key.key()))
-                .hint("give it to a [[mesh]] that stands in the scene itself"));
+                .error(format!("an object cannot have `{}`", key.key()))
+                .hint("give it to a [[mesh]] outside of objects"));
         }
         let model = self.model(file, &choice)?;
         if table.or("lights", false, Value::boolean) {
@@ -79,7 +79,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// A light of a model that is moved with it; how much it gives stays.
+/// A light of a model, transformed with it; its power stays the same.
 fn moved_light(light: Light, matrix: &DMat4) -> Light {
     let mut moved = light;
     match &mut moved.kind {
@@ -94,8 +94,8 @@ fn moved_light(light: Light, matrix: &DMat4) -> Light {
     moved
 }
 
-/// A camera of a model that is moved with it: what it sees grows with the model. `None` where the model is too small or
-/// large to stand in.
+/// A camera of a model, transformed with it; the height of an orthographic view is scaled. `None` if the transform is
+/// degenerate.
 fn moved_camera(camera: Camera, matrix: &DMat4) -> Option<Camera> {
     let View::Matrix(world_from_camera) = camera.view else { return Some(camera) };
     let moved = *matrix * world_from_camera;

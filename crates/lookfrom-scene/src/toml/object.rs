@@ -8,7 +8,7 @@ use crate::scene::{Instance, Object, ObjectId};
 use crate::shape::Shape;
 
 impl Reader<'_, '_> {
-    /// `[objects]`.
+    /// Reads `[objects]`.
     pub(super) fn read_objects(&mut self, value: Value<'_>) {
         self.knows_all_names &= value.is_table();
         for entry in value.named("[objects]") {
@@ -39,7 +39,7 @@ impl Reader<'_, '_> {
         shapes
     }
 
-    /// One `[[instance]]`.
+    /// Reads one `[[instance]]`.
     pub(super) fn read_instance(&mut self, table: &Table<'_>) {
         table.allow(&[INSTANCE, transform::KEYS]);
         let object = table.need("object", "\"the name of an object\"", None, |value| {

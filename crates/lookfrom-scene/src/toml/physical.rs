@@ -1,7 +1,7 @@
-//! Physically based materials: the types besides Whitted's.
+//! Physically based materials: all types except "whitted".
 //!
-//! A roughness is written as people perceive it, from 0 to 1: the spread of slopes α of the microfacet model is its square
-//! (Burley 2012). It becomes α here, also where it comes from a texture.
+//! Roughness is perceptual, from 0 to 1: the α of the microfacet distribution is its square (Burley 2012). It is converted
+//! to α here, also if it is a texture.
 
 use super::Reader;
 use super::table::Table;
@@ -9,11 +9,11 @@ use super::value::Value;
 use crate::error::Result;
 use crate::material::{Coat, Color, Ior, MaterialKind, Metal, Roughness, Scalar};
 
-/// Index of refraction where none is given.
+/// Default index of refraction.
 const IOR: f32 = 1.5;
 
 impl Reader<'_, '_> {
-    /// A material of a type that is not "whitted".
+    /// A material of a type other than "whitted".
     pub(super) fn physical(&mut self, word: &str, table: &Table<'_>) -> MaterialKind {
         match word {
             "diffuse" => MaterialKind::Diffuse { reflectance: self.color_or(table, "reflectance", 0.8) },
@@ -59,7 +59,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// By its name, by its colour, or by its optical constants.
+    /// A metal given by its name, its colour, or its optical constants.
     fn metal_of(&mut self, table: &Table<'_>) -> Metal {
         table.one_of(&["metal", "reflectance", "k"]);
         table.one_of(&["metal", "reflectance", "eta"]);
@@ -72,7 +72,7 @@ impl Reader<'_, '_> {
             return table.or("reflectance", stand_in, |value| self.color(value).map(Metal::Reflectance));
         }
         if !table.has("eta") && !table.has("k") {
-            let error = table.error("it does not say which metal");
+            let error = table.error("no metal is given");
             let error = error.hint("add `metal = \"gold\"`, or a `reflectance`, or `eta` and `k`");
             table.lacks(&["metal", "reflectance", "eta", "k"], error);
             return stand_in;
@@ -108,7 +108,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// One for all directions, or a list of those along u and v; smooth where it is not given.
+    /// One roughness for all directions, or a list of two along u and v; smooth by default.
     fn roughness(&mut self, table: &Table<'_>, key: &str) -> Roughness {
         table.or(key, Roughness { remap: false, ..Roughness::SMOOTH }, |value| {
             let [u, v] = if value.is_list() {

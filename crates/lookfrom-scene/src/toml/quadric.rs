@@ -11,7 +11,7 @@ use super::{Reader, composite};
 use crate::error::Result;
 use crate::shape::{Geometry, Sphere};
 
-/// The deepest sphereflake: 5.4 million spheres.
+/// Maximum depth of a sphereflake: 5.4 million spheres.
 const DEEPEST_FLAKE: u64 = 7;
 
 impl Reader<'_, '_> {
@@ -19,7 +19,7 @@ impl Reader<'_, '_> {
         let Sphere { center, radius } = sphere(table);
         let depth = table.or("depth", 4, |value| value.integer(0, DEEPEST_FLAKE)) as u32;
         table.sound(&["center", "radius", "depth"])?;
-        // All of them together: a few lines of text must not fill the memory.
+        // All sphereflakes together: a few lines of text must not exhaust the memory.
         self.flake_spheres = self.flake_spheres.saturating_add(composite::sphereflake_count(depth));
         if self.flake_spheres > self.context.limits.elements {
             return Err(too_many(table, self.flake_spheres, self.context.limits.elements));
@@ -41,7 +41,7 @@ fn sphere(table: &Table<'_>) -> Sphere {
     }
 }
 
-/// A sphere, whole or cut; and where its own space lies.
+/// A full or partial sphere, and the transform from its own space.
 pub(super) fn sphere_or_part(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
     let Sphere { center, radius } = sphere(table);
     if !["z_min", "z_max", "phi_max"].iter().any(|key| table.has(key)) {
@@ -58,13 +58,13 @@ pub(super) fn sphere_or_part(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
     if z[0] >= z[1] {
         return Err(table
             .error(format!("nothing is left between z_min = {} and z_max = {}", z[0], z[1]))
-            .hint("`z_min` has to be below `z_max`; both count from the middle"));
+            .hint("`z_min` has to be less than `z_max`; both are relative to `center`"));
     }
     let part = Geometry::PartialSphere { radius, z, phi_max };
     Ok((part, DMat4::from_translation(center)))
 }
 
-/// A disk, whole or with a hole or a gap; and where its own space lies.
+/// A disk, possibly with a hole or partial, and the transform from its own space.
 pub(super) fn disk(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
     let center = table.need("center", "[0, 0, 0]", DVec3::ZERO, Value::vector);
     let normal = table.need("normal", "[0, 1, 0]", DVec3::Y, Value::direction);
@@ -83,7 +83,7 @@ pub(super) fn disk(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
     Ok((part, along(center, normal.normalize())))
 }
 
-/// A tube between two points; and where its own space lies.
+/// A cylinder between two points, and the transform from its own space.
 pub(super) fn cylinder(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
     let from = table.need("from", "[0, 0, 0]", DVec3::ZERO, Value::vector);
     let to = table.need("to", "[0, 1, 0]", DVec3::Y, Value::vector);
@@ -94,8 +94,8 @@ pub(super) fn cylinder(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
     let length = axis.length();
     if !length.is_normal() {
         return Err(table
-            .error_at("to", "`to` is where `from` is, or too near or too far")
-            .hint("give the middles of the two ends of the tube"));
+            .error_at("to", "`to` is the same point as `from`, or too near or too far away")
+            .hint("give the centres of both ends of the cylinder"));
     }
     Ok((Geometry::Cylinder { radius, z: [0.0, length], phi_max }, along(from, axis / length)))
 }
@@ -106,7 +106,7 @@ fn phi_max(table: &Table<'_>) -> f64 {
     })
 }
 
-/// The space with its origin at a point and z along a unit vector.
+/// The transform from a space with its origin at a point and z along a unit vector.
 fn along(origin: DVec3, z: DVec3) -> DMat4 {
     let (x, y) = composite::tangents(z);
     DMat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), origin.extend(1.0))

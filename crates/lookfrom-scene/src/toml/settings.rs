@@ -41,10 +41,10 @@ pub(super) const RENDER: &[&str] = &[
     "occlusion_distance",
 ];
 
-/// The most pixels of a picture.
+/// Maximum number of pixels of an image.
 const MOST_PIXELS: u64 = 1 << 28;
 
-/// Size, filter and development of the picture.
+/// Resolution, filter, sensor and tone mapping.
 pub(super) fn image(table: &Table<'_>) -> ImageSettings {
     table.allow(&[IMAGE]);
     let default = ImageSettings::default();
@@ -81,7 +81,7 @@ pub(super) fn image(table: &Table<'_>) -> ImageSettings {
     }
 }
 
-/// A camera's sensor, or none for the standard observer.
+/// A camera's sensor; `None` for the standard observer.
 fn camera(value: Value<'_>) -> Result<Option<CameraSensor>> {
     let cameras = CameraSensor::all().map(|sensor| (sensor.name(), Some(sensor)));
     value.choice(&std::iter::once((Sensor::OBSERVER, None)).chain(cameras).collect::<Vec<_>>())
@@ -91,12 +91,12 @@ fn above_zero(value: Value<'_>) -> Result<f32> {
     value.single_where("a number greater than 0", |number| number > 0.0)
 }
 
-/// A colour temperature that can be computed with.
+/// A colour temperature in the supported range.
 pub(super) fn kelvin(value: Value<'_>) -> Result<f32> {
     value.single_where("kelvin from 500 to 100000", |kelvin| (500.0..=100_000.0).contains(&kelvin))
 }
 
-/// A part of a picture, whose size is not always known.
+/// A crop window; the image's size is not known if it is invalid.
 fn crop(value: Value<'_>, size: Option<[u32; 2]>) -> Result<PixelBounds> {
     let expected = "four whole numbers, [x0, y0, x1, y1]";
     let mut edges = [0; 4];
@@ -110,7 +110,7 @@ fn crop(value: Value<'_>, size: Option<[u32; 2]>) -> Result<PixelBounds> {
     }
     Err(value
         .error(format!(
-            "the crop from ({x0}, {y0}) to ({x1}, {y1}) is no part of a picture of {width}×{height}"
+            "the crop from ({x0}, {y0}) to ({x1}, {y1}) is not a part of a picture of {width}×{height}"
         ))
         .hint("x0 < x1 and y0 < y1 count pixels from the top left"))
 }

@@ -8,7 +8,7 @@ use super::{Reader, composite, curve, light, quadric, transform};
 use crate::error::Result;
 use crate::shape::{Geometry, Part, Shape};
 
-/// The keys of shapes, by kind, besides [`COMMON`] and those that place it.
+/// The keys of shapes, by kind, in addition to [`COMMON`] and those of transforms.
 pub(super) const KEYS: Kinds = &[
     ("sphere", &["center", "radius", "z_min", "z_max", "phi_max"]),
     ("triangle", &["vertices", "normals", "uvs"]),
@@ -50,7 +50,7 @@ pub(super) fn kinds() -> Vec<&'static str> {
 }
 
 impl Reader<'_, '_> {
-    /// All shapes of a table that holds arrays of them.
+    /// All shapes in the arrays of a table.
     pub(super) fn shapes(&mut self, table: &Table<'_>) -> Vec<Shape> {
         let mut shapes = Vec::new();
         for &(kind, keys) in KEYS {
@@ -79,7 +79,7 @@ impl Reader<'_, '_> {
                 world_from_object *= own;
                 if !world_from_object.is_finite() {
                     return Err(table
-                        .error("it stands too far away to compute with")
+                        .error("it is too far away to compute with")
                         .hint("use smaller numbers"));
                 }
                 vec![Part::new(None, geometry)]
@@ -87,7 +87,7 @@ impl Reader<'_, '_> {
         };
         for part in parts {
             let material = material.or(part.material).unwrap_or_else(|| self.default_material());
-            // What the shape says goes before what its material says, and that before what its file says.
+            // Emission of the shape has priority over that of its material, and that over that of its file.
             let emission = emission.or_else(|| self.glows.get(&material).copied()).or(part.emission);
             let name = name.clone().or(part.name);
             shapes.push(Shape {
@@ -103,7 +103,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// A form and where its own space lies.
+    /// A geometry, and the transform from its own space.
     fn geometry(&mut self, kind: &str, table: &Table<'_>) -> Result<(Geometry, DMat4)> {
         let geometry = match kind {
             "sphere" => return quadric::sphere_or_part(table),

@@ -10,10 +10,10 @@ use crate::error::{Error, Result};
 use crate::light::{LightKind, Power, Sky, is_rectangle};
 use crate::scene::ImageId;
 
-/// Its keys, besides those of its colours.
+/// The keys besides those of the colours.
 const ALWAYS: &[&str] = &["illuminance", "portal", "illuminates"];
 
-/// The words for how directions lie in a picture, and whether in an octahedron's way.
+/// The words for the layouts of environment maps, and whether they are octahedral.
 pub(super) const LAYOUTS: &[(&str, bool)] = &[("latitude_longitude", false), ("octahedral", true)];
 
 impl Reader<'_, '_> {
@@ -68,7 +68,7 @@ impl Reader<'_, '_> {
         Ok(Sky::Octahedral { image, scale, world_from_light: turn * up_from_pole() })
     }
 
-    /// A picture of all directions on a square.
+    /// A square octahedral map of all directions.
     pub(super) fn octahedral_image(&mut self, value: Value<'_>) -> Result<ImageId> {
         let id = self.image(value)?;
         let (width, height) = (self.scene.images[id.index()].width, self.scene.images[id.index()].height);
@@ -76,12 +76,12 @@ impl Reader<'_, '_> {
             return Ok(id);
         }
         Err(value
-            .error(format!("an octahedral picture is square, and this one is {width}×{height}"))
-            .hint("one in latitude and longitude is for an environment without `layout`"))
+            .error(format!("an octahedral picture must be square, but this one is {width}×{height}"))
+            .hint("a picture in latitude and longitude needs an environment without `layout`"))
     }
 }
 
-/// Takes +z, the middle of an octahedral picture, to where up is here.
+/// The rotation from the octahedral map's space, whose centre is +z, to our space with y up.
 pub(super) fn up_from_pole() -> DMat4 {
     DMat4::from_cols(DVec4::X, -DVec4::Z, DVec4::Y, DVec4::W)
 }
@@ -98,6 +98,6 @@ fn portal(value: Value<'_>) -> Result<[DVec3; 4]> {
         return Ok(corners);
     }
     Err(value
-        .error("the corners of `portal` make no rectangle")
-        .hint("give the four corners of the opening one after the other, as one goes around it"))
+        .error("the corners of `portal` do not form a rectangle")
+        .hint("give the four corners of the opening in order around it"))
 }

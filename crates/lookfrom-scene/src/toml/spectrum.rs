@@ -1,4 +1,4 @@
-//! Spectral values: black bodies, tables, `.spd` files, and named spectra.
+//! Spectra: blackbodies, tables, `.spd` files, and named spectra.
 
 use super::Reader;
 use super::settings::kelvin;
@@ -8,10 +8,10 @@ use crate::material::{Color, Ior};
 use crate::scene::CurveId;
 use crate::spectrum::{self, Curve};
 
-/// The keys of a colour by wavelength; lights also have `scale`.
+/// The keys of a spectrum; lights also have `scale`.
 pub(super) const KEYS: &[&str] = &["kelvin", "curve", "spd", "illuminant"];
 
-/// Names of metals, besides their symbols.
+/// Names of metals, in addition to their chemical symbols.
 const METALS: &[(&str, &str)] = &[
     ("silver", "Ag"),
     ("aluminium", "Al"),
@@ -22,11 +22,11 @@ const METALS: &[(&str, &str)] = &[
 ];
 
 impl Reader<'_, '_> {
-    /// A table of one of [`KEYS`], and perhaps of `others`.
+    /// A spectrum: a table with one of [`KEYS`], and possibly `others`.
     pub(super) fn curve(&mut self, value: Value<'_>, others: &[&'static str]) -> Result<CurveId> {
         let table = value.table("a colour by wavelength")?;
         let Some(one) = table.one_of(KEYS) else {
-            return Err(value.error(format!("`{}` is a table without a `type`: no texture", value.key())).hint(
+            return Err(value.error(format!("`{}` is a table without a `type`, so it is not a texture", value.key())).hint(
                 "add `type = \"checker\"` or another; a colour by wavelength has `kelvin`, `curve`, `spd` or `illuminant`",
             ));
         };
@@ -77,7 +77,7 @@ impl Reader<'_, '_> {
         Ok(["eta", "k"].map(|part| Color::Curve(self.known_curve(&format!("metal-{symbol}-{part}")))))
     }
 
-    /// η or k of a metal: a colour whose curve goes on beyond its ends.
+    /// η or k of a metal: a colour, whose spectrum is extended beyond the ends of its table.
     pub(super) fn optical_color(&mut self, value: Value<'_>) -> Result<Color> {
         match self.color(value)? {
             Color::Curve(id) if value.key() == "eta" => self.optical(value, id).map(Color::Curve),
@@ -86,7 +86,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// An index of refraction, which is never 0, and goes on beyond the ends of its table.
+    /// A spectral index of refraction, which must be positive, extended beyond the ends of its table.
     fn optical(&mut self, value: Value<'_>, id: CurveId) -> Result<CurveId> {
         let is_usable = match &self.scene.curves[id.index()] {
             Curve::Tabulated { values, .. } => values.iter().all(|&eta| eta > 0.0),
@@ -95,7 +95,7 @@ impl Reader<'_, '_> {
         if !is_usable {
             return Err(value
                 .error(format!(
-                    "`{}` is no index of refraction: it has to be above 0 everywhere",
+                    "`{}` is not an index of refraction: it has to be above 0 everywhere",
                     value.key()
                 ))
                 .hint("give a number, or a curve of numbers such as 1.5"));
@@ -103,7 +103,7 @@ impl Reader<'_, '_> {
         Ok(self.extended(id))
     }
 
-    /// The same curve with its first and last values up to the ends of what is seen.
+    /// The same spectrum with its first and last values extended to the ends of the visible range.
     fn extended(&mut self, id: CurveId) -> CurveId {
         match &self.scene.curves[id.index()] {
             curve @ Curve::Tabulated { .. } => {
@@ -114,7 +114,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A file; each is read once.
+    /// A spectrum from a file; each is read once.
     fn spd(&mut self, value: Value<'_>) -> Result<CurveId> {
         let path = self.resolve(value, "the name of an .spd file")?;
         let name = format!("spd {}", path.display());
@@ -166,7 +166,7 @@ fn inline(value: Value<'_>, limit: u64) -> Result<Curve> {
         let nm_value = nm.single_where("a wavelength in nm, greater than 0", |nm| nm > 0.0)?;
         if let Some(&before) = wavelengths.last().filter(|&&before| nm_value <= before) {
             return Err(nm
-                .error(format!("the wavelength {nm_value} does not lie above the one before, {before}"))
+                .error(format!("the wavelength {nm_value} is not above the previous one, {before}"))
                 .hint("sort the entries by wavelength, each once"));
         }
         wavelengths.push(nm_value);

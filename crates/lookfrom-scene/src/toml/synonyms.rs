@@ -1,6 +1,6 @@
-//! Synonyms: words of other renderers, file formats and textbooks, and our words for them.
+//! Synonyms: terms of other renderers, file formats and textbooks, and our words for them.
 //!
-//! A word may have several synonyms. The table in question decides between them: a suggestion is always a key of that table.
+//! A word may have several synonyms. The table in question decides between them: every suggestion is a key of that table.
 
 mod choices;
 mod keys;
@@ -10,7 +10,7 @@ mod tests;
 use self::choices::CHOICES;
 use self::keys::KEYS;
 
-/// The synonyms of an unknown word among the keys of a table; empty where there are none.
+/// The synonyms of an unknown word among the keys of a table; empty if there are none.
 pub(super) fn keys(word: &str, known: &[&'static str]) -> &'static [&'static str] {
     let word = plain(word);
     KEYS.iter()

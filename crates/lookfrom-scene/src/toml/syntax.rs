@@ -1,8 +1,8 @@
 //! Recovery from syntax errors of TOML.
 //!
-//! A parser that goes on after an error (a bracket that is not closed) takes what follows for what it is not. Headers of
-//! tables, at the beginnings of lines, are where it surely can begin again: each section between two headers is parsed by
-//! itself, its first error told, and the section left out.
+//! After an error (such as a bracket that is not closed) a parser misinterprets the rest. Headers of tables, at the
+//! beginnings of lines, are where it can safely restart: each section between two headers is parsed by itself, its first
+//! error is reported, and the section is left out.
 
 use ::toml::de::{DeTable, Error as TomlError};
 
@@ -12,17 +12,17 @@ use crate::error::Error;
 /// The parser's message for a duplicate key, after which its results are still valid.
 const TWICE: &str = "duplicate key";
 
-/// The sections of a text with syntax errors that can be read.
+/// The readable sections of a text with syntax errors.
 pub(super) struct Readable {
-    /// The text without the sections that are no TOML, which are blank; nothing where the others do not go together either.
+    /// The text with malformed sections blanked; empty if the other sections are not valid together either.
     pub(super) text: String,
-    /// Errors of the other sections.
+    /// Errors of the malformed sections.
     pub(super) errors: Vec<Error>,
-    /// Whether none of them gives names to things.
+    /// Whether none of the malformed sections defines names.
     pub(super) has_all_names: bool,
 }
 
-/// The sections of a text with syntax errors that can be read.
+/// Parses each section of a text with syntax errors.
 pub(super) fn readable(document: &Document) -> Readable {
     let (mut errors, mut sound, mut has_all_names) = (Vec::new(), String::new(), true);
     for section in sections(document.text()) {
@@ -43,7 +43,7 @@ pub(super) fn readable(document: &Document) -> Readable {
             sound.extend(section.bytes().map(|byte| if byte == b'\n' { '\n' } else { ' ' }));
         }
     }
-    // Sections that do not go together, such as two of the same name.
+    // Sections that are not valid together, such as two with the same name.
     let (_, wrong) = DeTable::parse_recoverable(&sound);
     if wrong.is_empty() {
         return Readable { text: sound, errors, has_all_names };
@@ -52,7 +52,7 @@ pub(super) fn readable(document: &Document) -> Readable {
     Readable { text: String::new(), errors, has_all_names: false }
 }
 
-/// Whether a section may give names to things: it does so itself, or by what it imports.
+/// Whether a section may define names, by itself or by importing files.
 fn gives_names(section: &str) -> bool {
     section.lines().map(str::trim_start).any(|line| {
         let is_header = line.starts_with('[');
@@ -64,7 +64,7 @@ fn gives_names(section: &str) -> bool {
 fn told(document: &Document, start: usize, error: &TomlError) -> Error {
     let at = document.location(start + error.span().map_or(0, |span| span.start));
     Error::syntax(&at, error.message().replace('\n', "; "))
-        .hint("the text is no TOML here; docs/guide/scene-format.md shows how scenes are written")
+        .hint("this is not valid TOML; docs/guide/scene-format.md shows how scenes are written")
 }
 
 /// The text up to its first header, and from each header to the next.
@@ -81,7 +81,7 @@ fn sections(text: &str) -> impl Iterator<Item = &str> {
     starts.into_iter().zip(ends).map(|(start, end)| &text[start..end])
 }
 
-/// Whether a line is `[name]` or `[[name]]`, rather than a list in a list.
+/// Whether a line is `[name]` or `[[name]]`, rather than a nested list.
 fn is_header(line: &str) -> bool {
     let line = line.split('#').next().unwrap_or_default().trim();
     let name = line.strip_prefix("[[").and_then(|rest| rest.strip_suffix("]]"));

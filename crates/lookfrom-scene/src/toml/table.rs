@@ -15,24 +15,24 @@ use crate::suggest::nearest;
 /// The name of the outermost table in messages.
 pub(super) const SCENE: &str = "a scene";
 
-/// The types of a thing, and the keys of each.
+/// Types of an item, with the keys of each.
 pub(super) type Kinds = &'static [(&'static str, &'static [&'static str])];
 
-/// A table whose keys are looked up by name. Errors are recorded and a placeholder takes the place of the value, so that one run
+/// A table whose keys are looked up by name. Errors are recorded and values are replaced by placeholders, so that one run
 /// finds all errors; the result is valid only if none was recorded.
 pub(super) struct Table<'a> {
     document: &'a Document,
     offset: usize,
     title: String,
     map: &'a DeTable<'a>,
-    /// The keys whose values were found to be wrong, or missing, so far.
+    /// The keys whose values are invalid or missing, so far.
     wrong: RefCell<BTreeSet<String>>,
-    /// The keys that are suggested for unknown ones.
+    /// The keys that were suggested for unknown ones.
     meant: RefCell<Vec<&'static str>>,
 }
 
 impl<'a> Table<'a> {
-    /// A table that begins at a byte, as `title` in messages.
+    /// A table at a byte offset, called `title` in messages.
     pub(super) fn new(document: &'a Document, offset: usize, title: String, map: &'a DeTable<'a>) -> Self {
         Self { document, offset, title, map, wrong: RefCell::default(), meant: RefCell::default() }
     }
@@ -46,18 +46,18 @@ impl<'a> Table<'a> {
         Error::invalid(&self.at(), format!("{}: {message}", self.title))
     }
 
-    /// An error about one of its values.
+    /// An error about the value of a key.
     pub(super) fn error_at(&self, key: &str, message: impl Into<String>) -> Error {
         let at = self.find(key).map_or_else(|| self.at(), Value::at);
         Error::invalid(&at, message)
     }
 
-    /// Notes an error about the table as a whole.
+    /// Records an error about the table as a whole.
     pub(super) fn note(&self, error: Error) {
         self.document.note(self.offset, error);
     }
 
-    /// An error of the combination of these values, suppressed where one of them has an error of its own.
+    /// Fails if one of these values has an error of its own, so that an error of their combination is not reported.
     pub(super) fn sound(&self, keys: &[&str]) -> Result<()> {
         let is_wrong = keys.iter().any(|&key| self.wrong.borrow().contains(key));
         if is_wrong { Err(Error::untold()) } else { Ok(()) }
@@ -67,12 +67,12 @@ impl<'a> Table<'a> {
         self.wrong.borrow_mut().extend(keys.iter().map(|&key| key.to_owned()));
     }
 
-    /// Whether one of these keys is probably meant by an unknown one.
+    /// Whether one of these keys was suggested for an unknown key.
     pub(super) fn means(&self, keys: &[&str]) -> bool {
         self.meant.borrow().iter().any(|meant| keys.contains(meant))
     }
 
-    /// Notes that none of these keys is there, but not where one of them is probably meant by an unknown one.
+    /// Records that these keys are missing, unless one of them was suggested for an unknown key.
     pub(super) fn lacks(&self, keys: &[&str], error: Error) {
         self.are_wrong(keys);
         if !self.means(keys) {
@@ -80,7 +80,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Rejects every key that is in none of the groups: a misspelt key must not be ignored.
+    /// Rejects every key that is in none of the groups: misspelt keys must not be ignored.
     pub(super) fn allow(&self, groups: &[&[&'static str]]) {
         let known = groups.concat();
         for key in self.map.keys().filter(|key| !known.contains(&key.get_ref().as_ref())) {
@@ -102,11 +102,11 @@ impl<'a> Table<'a> {
         if !synonyms.is_empty() {
             return Some(ask(synonyms));
         }
-        // Settings are easily taken for those of another table.
+        // Settings are often written in the wrong table.
         let is_setting = self.title == SCENE || SETTINGS.iter().any(|(title, _)| *title == self.title);
         let others = || SETTINGS.iter().filter(|(title, _)| is_setting && *title != self.title);
         if let Some((title, _)) = others().find(|(_, keys)| keys.contains(&word)) {
-            return Some(format!("`{word}` stands in {title}"));
+            return Some(format!("`{word}` belongs in {title}"));
         }
         if let Some(meant) = nearest(word, known.iter().copied()) {
             return Some(ask(&[meant]));
@@ -124,15 +124,15 @@ impl<'a> Table<'a> {
     }
 
     fn refuse(&self, offset: usize, message: String, hint: String) {
-        // Keys are checked against all that a type has, and then against what goes together.
+        // Keys are checked against all those of a type first, and then against those that may be combined.
         if !self.document.is_noted(offset) {
             let error = Error::invalid(&self.document.location(offset), message).hint(hint);
             self.document.note(offset, error);
         }
     }
 
-    /// The type that is requested, or else the default one. Refuses every key that it does not have, and says so if another
-    /// type has it. `None` where it is no type: the error is noted.
+    /// The requested type, or else the default one. Rejects every key that the type does not have, naming the types that
+    /// have it. `None` for an unknown type: the error is recorded.
     pub(super) fn kind(
         &self,
         kinds: Kinds,
@@ -184,7 +184,7 @@ impl<'a> Table<'a> {
         Some(Value { document: self.document, key: key.get_ref(), item })
     }
 
-    /// A value that has to be there, decoded, or a stand-in; `example` shows how it could look.
+    /// A required value, decoded, or a placeholder; `example` is a possible value.
     pub(super) fn need<T>(
         &self,
         key: &str,
@@ -204,7 +204,7 @@ impl<'a> Table<'a> {
         self.error(format!("`{key}` is missing")).hint(format!("add `{key} = {example}`"))
     }
 
-    /// A value decoded, or a default where it is not given or is wrong.
+    /// A value, decoded, or a default if it is absent or invalid.
     pub(super) fn or<T>(&self, key: &str, default: T, decode: impl FnOnce(Value<'a>) -> Result<T>) -> T {
         let Some(value) = self.find(key) else { return default };
         let result = decode(value);
@@ -214,12 +214,12 @@ impl<'a> Table<'a> {
         value.noting(result, default)
     }
 
-    /// A value decoded, where it is given and right.
+    /// A value, decoded, if it is present and valid.
     pub(super) fn maybe<T>(&self, key: &str, decode: impl FnOnce(Value<'a>) -> Result<T>) -> Option<T> {
         self.or(key, None, |value| decode(value).map(Some))
     }
 
-    /// At most one of these keys may be given: the first, if any.
+    /// The first of these keys that is present; more than one is an error.
     pub(super) fn one_of(&self, keys: &[&str]) -> Option<Value<'a>> {
         let mut given = keys.iter().filter_map(|key| self.find(key));
         let first = given.next();
@@ -231,7 +231,7 @@ impl<'a> Table<'a> {
         first
     }
 
-    /// All that is in the table, in the order of the names.
+    /// All entries of the table, in the order of their keys.
     pub(super) fn entries(&self) -> impl Iterator<Item = Value<'a>> {
         let document = self.document;
         self.map.iter().map(move |(key, item)| Value { document, key: key.get_ref(), item })

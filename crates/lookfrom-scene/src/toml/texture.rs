@@ -12,7 +12,7 @@ use crate::material::{Color, Scalar};
 use crate::scene::{ImageId, TextureId};
 use crate::texture::{Channel, TexelFilter, Texture, TextureKind, Wrap};
 
-/// The keys of textures, by type, besides `type` and those of `mapping`.
+/// The keys of textures, by type, in addition to `type` and those of `mapping`.
 pub(super) const KEYS: Kinds = &[
     ("image", &["file", "encoding", "wrap", "filter", "multiply", "invert"]),
     ("checker", &["even", "odd"]),
@@ -29,16 +29,16 @@ pub(super) const KEYS: Kinds = &[
     ("vertex_color", &["tint"]),
 ];
 
-/// The words for what a picture's numbers are, and whether they are linear.
+/// The words for encodings of an image, and whether they are linear.
 pub(super) const ENCODINGS: &[(&str, bool)] = &[("srgb", false), ("linear", true)];
-/// The words for what lies beyond a picture's edges.
+/// The words for wrap modes.
 pub(super) const WRAPS: &[(&str, Wrap)] =
     &[("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp), ("black", Wrap::Black)];
-/// The words for what lies between texels.
+/// The words for interpolation between texels.
 pub(super) const FILTERS: &[(&str, TexelFilter)] =
     &[("bilinear", TexelFilter::Bilinear), ("nearest", TexelFilter::Nearest)];
 
-/// Whether a type of textures lives somewhere, rather than being made of others.
+/// Whether a type of texture has a mapping of its own.
 pub(super) fn is_mapped(kind: &str) -> bool {
     !["scale", "mix", "direction_mix", "vertex_color"].contains(&kind)
 }
@@ -59,7 +59,7 @@ impl chain::Made for Texture {
 }
 
 impl Reader<'_, '_> {
-    /// `[textures]`: all names first, so that each may use the others, wherever they are written.
+    /// Reads `[textures]`: all names first, so that each may use textures that are defined later.
     pub(super) fn read_textures(&mut self, value: Value<'_>) {
         self.knows_all_names &= value.is_table();
         let first = self.scene.textures.len();
@@ -73,7 +73,7 @@ impl Reader<'_, '_> {
             if let Some(before) = self.textures.insert(name.to_owned(), id) {
                 entry.note(super::twice(entry, "texture", &self.scene.textures[before.index()].at));
             }
-            // Its place is held until it can be read.
+            // Reserved until it is read.
             let kind = TextureKind::VertexColor { tint: [1.0; 3] };
             self.scene.textures.push(Texture { name: name.to_owned(), at, kind });
         }
@@ -88,7 +88,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A texture; where it is wrong, that is noted.
+    /// A texture; if it is invalid, a placeholder, and the error is recorded.
     pub(super) fn texture_kind(&mut self, table: &Table<'_>) -> TextureKind {
         self.typed(table).unwrap_or_else(|error| {
             table.note(error);
@@ -193,7 +193,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// A texture whose mean is the square of another's: both factors are its mean.
+    /// A texture for a scalar whose mean is the square of another's: both factors are its mean.
     pub(super) fn squared(&mut self, value: Value<'_>, id: TextureId) -> Scalar {
         let (color, by) = (Color::Texture(id), Scalar::Texture(id));
         Scalar::Texture(self.add_texture(value, TextureKind::Scale { color, by }))

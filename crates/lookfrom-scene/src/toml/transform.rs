@@ -6,14 +6,14 @@ use super::table::Table;
 use super::value::Value;
 use crate::error::{Error, Result};
 
-/// The keys that place a thing.
+/// The keys of transforms.
 pub(super) const KEYS: &[&str] = &["scale", "rotate", "translate", "transform"];
 /// The keys of one step of `transform`.
 pub(super) const STEPS: &[&str] = &["scale", "rotate", "translate", "matrix"];
 /// The keys of a rotation about an axis.
 pub(super) const ROTATION: &[&str] = &["axis", "angle"];
 
-/// The matrix from a thing's own space to the one it is placed in: affine, finite and invertible.
+/// The matrix from object space to the parent space: affine, finite and invertible.
 pub(super) fn world_from_object(table: &Table<'_>) -> DMat4 {
     if !table.has("transform") {
         return scale_rotate_translate(table);
@@ -24,7 +24,7 @@ pub(super) fn world_from_object(table: &Table<'_>) -> DMat4 {
     table.or("transform", DMat4::IDENTITY, transform)
 }
 
-/// Any number of steps.
+/// A list of any number of steps.
 fn transform(steps: Value<'_>) -> Result<DMat4> {
     let mut matrix = DMat4::IDENTITY;
     for step in steps.list("a list of steps, such as [{ scale = 2 }, { translate = [0, 1, 0] }]")? {
@@ -77,7 +77,7 @@ fn scale(value: Value<'_>) -> Result<DMat4> {
     Ok(DMat4::from_scale(factors))
 }
 
-/// A turn: degrees about x, then y, then z, or about one axis.
+/// A rotation: degrees about x, then y, then z, or about an axis.
 pub(super) fn rotate(value: Value<'_>) -> Result<DMat4> {
     if value.is_table() {
         let table = value.table("`rotate`")?;
@@ -89,7 +89,7 @@ pub(super) fn rotate(value: Value<'_>) -> Result<DMat4> {
     Ok(about(DVec3::Z, z) * about(DVec3::Y, y) * about(DVec3::X, x))
 }
 
-/// The rotation about a unit axis, counter-clockwise for one whom the axis points at (Rodrigues).
+/// The rotation about a unit axis, counter-clockwise if the axis points at the viewer (Rodrigues).
 pub(super) fn about(axis: DVec3, degrees: f64) -> DMat4 {
     let (sin, cos) = sin_cos(degrees);
     let column = |v: DVec3| (cos * v + sin * axis.cross(v) + (1.0 - cos) * axis.dot(v) * axis).extend(0.0);

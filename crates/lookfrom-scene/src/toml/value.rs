@@ -1,4 +1,4 @@
-//! A TOML value with its location, and checks of its type and range. The decoders beside this file interpret it.
+//! A TOML value with its location, and checks of its type and range. The other decoders interpret it.
 
 use ::toml::Spanned;
 use ::toml::de::DeValue;
@@ -10,7 +10,7 @@ use super::table::Table;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::suggest::nearest;
 
-/// A value, and the key it was given for.
+/// A value with its key.
 #[derive(Clone, Copy)]
 pub(super) struct Value<'a> {
     pub(super) document: &'a Document,
@@ -27,12 +27,12 @@ impl<'a> Value<'a> {
         self.key
     }
 
-    /// Notes an error that is about this value.
+    /// Records an error about this value.
     pub(super) fn note(self, error: Error) {
         self.document.note(self.item.span().start, error);
     }
 
-    /// The decoded value, or a placeholder where decoding failed: the error is recorded.
+    /// The decoded value, or a placeholder if decoding failed: the error is recorded.
     pub(super) fn noting<T>(self, result: Result<T>, stand_in: T) -> T {
         result.unwrap_or_else(|error| {
             self.note(error);
@@ -40,12 +40,12 @@ impl<'a> Value<'a> {
         })
     }
 
-    /// An error at this place.
+    /// An error at this value.
     pub(super) fn error(self, message: impl Into<String>) -> Error {
         Error::invalid(&self.at(), message)
     }
 
-    /// The error that this value is not what it should be.
+    /// The error that this value is not as expected.
     pub(super) fn wrong(self, expected: &str) -> Error {
         self.error(format!("`{}` is {}; expected {expected}", self.key, self.found()))
     }
@@ -105,7 +105,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// A finite number that is `ok`.
+    /// A finite number that satisfies `ok`.
     pub(super) fn number_where(self, expected: &str, ok: impl Fn(f64) -> bool) -> Result<f64> {
         self.as_number()
             .filter(|&number| number.is_finite() && ok(number))
@@ -127,13 +127,13 @@ impl<'a> Value<'a> {
         self.number_where("a number of at least 0", |number| number >= 0.0)
     }
 
-    /// A number that is finite as an `f32` and is `ok` as such.
+    /// A number that is finite as `f32` and satisfies `ok`.
     pub(super) fn single_where(self, expected: &str, ok: impl Fn(f32) -> bool) -> Result<f32> {
         self.number_where(expected, |number| (number as f32).is_finite() && ok(number as f32))
             .map(|number| number as f32)
     }
 
-    /// A number that is finite as an `f32`.
+    /// A number that is finite as `f32`.
     pub(super) fn single(self) -> Result<f32> {
         self.single_where("a finite number", |_| true)
     }
@@ -159,12 +159,12 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// A string that is not empty.
+    /// A non-empty string.
     pub(super) fn text(self, expected: &str) -> Result<&'a str> {
         self.as_text().filter(|text| !text.is_empty()).ok_or_else(|| self.wrong(expected))
     }
 
-    /// One of a few words.
+    /// A word of a fixed set.
     pub(super) fn choice<T: Copy>(self, choices: &[(&str, T)]) -> Result<T> {
         let words = || choices.iter().map(|&(word, _)| word);
         let expected = || words().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(", ");
@@ -186,7 +186,7 @@ impl<'a> Value<'a> {
         Ok(items.iter().map(move |item| Value { item, ..self }))
     }
 
-    /// The values of a list of `N`.
+    /// The values of a list of length `N`.
     pub(super) fn list_of<const N: usize>(self, expected: &str) -> Result<[Value<'a>; N]> {
         let items: Vec<Value<'a>> = self.list(expected)?.take(N + 1).collect();
         items.try_into().map_err(|_| self.wrong(expected))
@@ -217,7 +217,7 @@ impl<'a> Value<'a> {
         self.numbers("three numbers, [x, y, z]").map(DVec3::from_array)
     }
 
-    /// A vector that has a direction.
+    /// A vector of non-zero length.
     pub(super) fn direction(self) -> Result<DVec3> {
         let vector = self.vector()?;
         if vector.length_squared() > 0.0 && vector.length_squared().is_finite() {
@@ -227,13 +227,13 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// A table, as `title` in messages.
+    /// A table, called `title` in messages.
     pub(super) fn table(self, title: impl Into<String>) -> Result<Table<'a>> {
         let DeValue::Table(map) = self.item.get_ref() else { return Err(self.wrong("a table")) };
         Ok(Table::new(self.document, self.item.span().start, title.into(), map))
     }
 
-    /// The tables of an array `[[key]]`; of what is none, an error is noted.
+    /// The tables of an array `[[key]]`; anything else is recorded as an error.
     pub(super) fn tables(self) -> impl Iterator<Item = Table<'a>> {
         let remedy = format!("write [[{}]], with two brackets, for each of them", self.key);
         let items = self.list("an array of tables").map_err(|error| error.hint(remedy));

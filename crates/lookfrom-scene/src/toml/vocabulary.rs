@@ -3,15 +3,15 @@
 use super::table::Kinds;
 use super::{camera, light, mapping, material, settings, shape, spectrum, texture, transform};
 
-/// The keys of a file besides the kinds of shapes.
+/// The top-level keys of a file, except the kinds of shapes.
 pub(super) const TOP: &[&str] =
     &["import", "camera", "image", "render", "materials", "textures", "objects", "instance", "light"];
 
-/// The tables of which there is one, and their keys.
+/// The tables that occur at most once, and their keys.
 pub(super) const SETTINGS: Kinds =
     &[("[camera]", camera::KEYS), ("[image]", settings::IMAGE), ("[render]", settings::RENDER)];
 
-/// Every table of the format and the keys that it may have: for documentation, editors and tests.
+/// Every table of the format, with the keys that it may have: for documentation, editors and tests.
 pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
     let mut tables = vec![
         ("a scene".to_owned(), [TOP, &shape::kinds()].concat()),

@@ -1,13 +1,13 @@
 //! Wall-clock time, where the platform has a clock.
 //!
-//! `std::time::Instant` panics on wasm32-unknown-unknown. There no time passes: durations are reported as zero, and a limit
-//! of time never ends a render.
+//! `std::time::Instant` panics on wasm32-unknown-unknown. There durations are reported as zero, and a time limit
+//! never ends a render.
 
 use std::time::Duration;
 #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
 use std::time::Instant;
 
-/// A clock that was started.
+/// A running stopwatch.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stopwatch {
     #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
@@ -15,7 +15,7 @@ pub(crate) struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Starts a clock.
+    /// Starts a stopwatch.
     pub(crate) fn start() -> Self {
         Self {
             #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]

@@ -1,10 +1,11 @@
 //! Colour: wavelengths to RGB, and RGB to spectra.
 //!
-//! In spectral mode a sample follows four [`Wavelengths`] at once (hero wavelength sampling: Wilkie et al. 2014). Colours
-//! that enter as RGB are lifted to smooth spectra ([`Sigmoid`], [`Unbounded`]: Jakob and Hanika 2019), measured curves are
-//! sampled at whole nm ([`DenselySampledSpectrum`]), and what arrives at the film is seen by a [`Sensor`]. All of it agrees with pbrt-v4
-//! (Pharr, Jakob, Humphreys 2023), with one difference of units: here light of luminance 1 is seen as 1, where pbrt has
-//! lights divide by their luminous integral and the sensor not. RGB is linear with the primaries of Rec. 709.
+//! In spectral mode a sample follows four [`Wavelengths`] at once (hero wavelength sampling: Wilkie et al. 2014).
+//! RGB colours are uplifted to smooth spectra ([`Sigmoid`], [`Unbounded`]: Jakob and Hanika 2019), measured curves
+//! are sampled at whole nm ([`DenselySampledSpectrum`]), and a [`Sensor`] converts radiance to RGB at the film. All
+//! of it agrees with pbrt-v4 (Pharr, Jakob, Humphreys 2023), with one difference of units: here the sensor maps
+//! light of luminance 1 to 1; in pbrt, lights are divided by their luminous integral and the sensor is not. RGB is
+//! linear with the primaries of Rec. 709.
 
 mod calibration;
 mod densely_sampled;
@@ -25,7 +26,7 @@ pub use wavelengths::Wavelengths;
 
 use crate::core::spectrum::Spectrum;
 
-/// The XYZ of a sample's radiance: an estimate whose mean is the colour of the light, where 1 is Y of the constant 1.
+/// XYZ of a sample's radiance: an estimate whose mean is the colour of the light, where 1 is Y of the constant 1.
 pub fn xyz_of(radiance: Spectrum, wavelengths: &Wavelengths) -> [f32; 3] {
     static MATCHING: OnceLock<[DenselySampledSpectrum; 3]> = OnceLock::new();
     let matching = MATCHING.get_or_init(|| {
@@ -38,17 +39,17 @@ pub fn xyz_of(radiance: Spectrum, wavelengths: &Wavelengths) -> [f32; 3] {
     matching.each_ref().map(|function| (function.at(&wavelengths.lambda) * weighted).0.into_iter().sum())
 }
 
-/// Linear Rec. 709 of an XYZ; what lies outside the gamut has negative components.
+/// XYZ to linear Rec. 709; colours outside the gamut have negative components.
 pub fn rgb_from_xyz(xyz: [f32; 3]) -> [f32; 3] {
     space::apply(&matrices().1, xyz.map(f64::from)).map(|value| value as f32)
 }
 
-/// XYZ of linear Rec. 709; (1, 1, 1) has Y = 1.
+/// Linear Rec. 709 to XYZ; (1, 1, 1) has Y = 1.
 pub fn xyz_from_rgb(rgb: [f32; 3]) -> [f32; 3] {
     space::apply(&matrices().0, rgb.map(f64::from)).map(|value| value as f32)
 }
 
-/// XYZ from Rec. 709, and back.
+/// The matrices from Rec. 709 to XYZ, and back.
 fn matrices() -> &'static (space::Matrix, space::Matrix) {
     static MATRICES: OnceLock<(space::Matrix, space::Matrix)> = OnceLock::new();
     MATRICES.get_or_init(|| {

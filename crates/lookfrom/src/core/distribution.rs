@@ -1,9 +1,8 @@
 //! Piecewise-constant distributions, sampled in proportion to their weights.
 //!
-//! [`Discrete`] chooses an entry of a list, [`Piecewise2D`] a point of the unit square by the brightness of a picture
-//! there, [`Windowed2D`] one of a part of it. All search running sums (inversion), which keeps near numbers near:
-//! well-spread samples stay well spread.
-//! What is chosen, and what it weighs, is left to lights.
+//! [`Discrete`] samples an entry of a list, [`Piecewise2D`] a point of the unit square by the luminance of an image
+//! there, [`Windowed2D`] a point within a window of it. All invert cumulative sums, which is monotonic:
+//! well-distributed samples stay well distributed. Entries and weights are up to the lights.
 
 mod window;
 
@@ -11,10 +10,10 @@ pub use window::{Window, Windowed2D};
 
 use crate::core::sampler::ONE_MINUS_EPSILON;
 
-/// A choice among the entries of a list, each with a probability proportional to its weight.
+/// A discrete distribution: entries of a list with probabilities proportional to their weights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Discrete {
-    /// Sums of the weights before each entry, and of all.
+    /// Cumulative sums: of the weights before each entry, and of all.
     sums: Vec<f64>,
     guide: Vec<u32>,
 }
@@ -36,15 +35,15 @@ impl Discrete {
         Self { sums, guide }
     }
 
-    /// The entry for `u` in [0, 1), its probability (the one of [`Discrete::pdf`]), and a new number in [0, 1): where
-    /// `u` lies in the entry's share, for further use. An entry of no weight is never chosen.
+    /// The entry for `u` in [0, 1), its probability (equal to [`Discrete::pdf`]), and a new number in [0, 1) for
+    /// further use: the position of `u` within the entry's interval. An entry of weight 0 is never sampled.
     #[inline]
     pub fn sample(&self, u: f32) -> (usize, f32, f32) {
         let (index, rest) = choose(&self.sums, &self.guide, u);
         (index, self.pdf(index), (rest as f32).min(ONE_MINUS_EPSILON))
     }
 
-    /// The probability of an entry: 0 for one of no weight, or if there is none of that index.
+    /// The probability of an entry; 0 for one of weight 0 or an index out of range.
     pub fn pdf(&self, index: usize) -> f32 {
         rounded(share(&self.sums, index))
     }
@@ -55,19 +54,19 @@ impl Discrete {
 pub struct Piecewise2D {
     width: usize,
     height: usize,
-    /// Sums of the weights of whole rows.
+    /// Cumulative sums of the weights of whole rows.
     rows: Vec<f64>,
     row_guide: Vec<u32>,
-    /// Of each row the sums of its weights: `width + 1` numbers.
+    /// Cumulative sums of the weights within each row: `width + 1` numbers per row.
     columns: Vec<f64>,
-    /// Of each row the same number.
+    /// Guide tables of all rows, of equal length.
     column_guide: Vec<u32>,
 }
 
 impl Piecewise2D {
     /// `width` × `height` weights, row by row: the first cell is the one at (0, 0), the first coordinate runs along
-    /// rows. Weights that are negative or not finite count as zero; if none is positive the density is uniform, as it
-    /// is if there are no cells. Takes 9 to 10 bytes a cell.
+    /// rows. Weights that are negative or not finite count as zero; if none is positive or there are no cells, the
+    /// density is uniform. Takes 9 to 10 bytes per cell.
     ///
     /// # Panics
     /// If there are not `width` × `height` weights.
@@ -89,8 +88,9 @@ impl Piecewise2D {
         Self { width, height, rows, row_guide, columns, column_guide }
     }
 
-    /// A point for `u` in [0, 1)², and the density there, over the area of the unit square: the one of
-    /// [`Piecewise2D::pdf`]. Each coordinate grows with its own. A cell of no weight is never chosen.
+    /// A point for `u` in [0, 1)², and its density over the area of the unit square (equal to
+    /// [`Piecewise2D::pdf`]). Each coordinate is monotonic in its coordinate of `u`. A cell of weight
+    /// 0 is never sampled.
     pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
         let (row, v) = choose(&self.rows, &self.row_guide, u[1]);
         let stride = self.column_guide.len() / self.height;
@@ -119,12 +119,12 @@ impl Piecewise2D {
     }
 }
 
-/// The weight, if it is one.
+/// The weight, or 0 if it is not a positive finite number.
 fn usable(weight: f32) -> f64 {
     if weight.is_finite() && weight > 0.0 { f64::from(weight) } else { 0.0 }
 }
 
-/// Appends 0 and the sums of the first 1, 2, … all weights; gives the last.
+/// Appends 0 and the cumulative sums of the weights; returns the last.
 fn push_sums(sums: &mut Vec<f64>, weights: &[f32]) -> f64 {
     let mut sum = 0.0;
     sums.push(sum);
@@ -135,13 +135,13 @@ fn push_sums(sums: &mut Vec<f64>, weights: &[f32]) -> f64 {
     sum
 }
 
-/// Appends where [`choose`] begins its search: for each of about a quarter as many equal parts of 0 … 1 as there are
-/// entries the entry at the beginning of that part, and at last the one at the end of all.
+/// Appends a guide table for [`choose`]: 0 … 1 is divided into about a quarter as many equal intervals as there are
+/// entries, and each interval stores the entry at its beginning; the last number is the entry at the end.
 ///
-/// (Chen & Asau 1974: with the guide, a search takes a step or two, whatever the number of entries.)
+/// (Chen & Asau 1974: with the guide table, a search takes one or two steps, whatever the number of entries.)
 fn push_guide(guide: &mut Vec<u32>, sums: &[f64]) {
     let total = sums[sums.len() - 1];
-    // A power of two: the ends of its parts are exact, so that no rounding leads past the goal.
+    // A power of two: the ends of the intervals are exact, so that no rounding skips the right entry.
     let parts = (sums.len() / 4).next_power_of_two().min(1 << 20);
     let mut entry = 0;
     for part in 0..parts {
@@ -154,35 +154,36 @@ fn push_guide(guide: &mut Vec<u32>, sums: &[f64]) {
     guide.push(sums[1..].partition_point(|&end| end < total) as u32);
 }
 
-/// The entry in whose share `u` lies, and where in it (0 … 1). `sums` must end in more than 0.
+/// The entry whose interval contains `u`, and the position in it (0 … 1). `sums` must end in more than 0.
 #[inline]
 fn choose(sums: &[f64], guide: &[u32], u: f32) -> (usize, f64) {
     let u = u.clamp(0.0, ONE_MINUS_EPSILON);
     let goal = f64::from(u) * sums[sums.len() - 1];
     let part = (u * (guide.len() - 1) as f32) as usize;
     let [from, to] = [guide[part] as usize, guide[part + 1] as usize];
-    // The first entry that ends beyond the goal has a width.
+    // The first entry that ends beyond the goal has positive width.
     let index = from + sums[from + 1..to + 1].partition_point(|&end| end <= goal);
     (index, (goal - sums[index]) / (sums[index + 1] - sums[index]))
 }
 
-/// The probability of an entry; 0 beyond the end, and where there is nothing to choose.
+/// The probability of an entry; 0 beyond the end, and if all weights are 0.
 fn share(sums: &[f64], index: usize) -> f64 {
     let total = sums[sums.len() - 1];
     if index + 1 < sums.len() && total > 0.0 { (sums[index + 1] - sums[index]) / total } else { 0.0 }
 }
 
-/// As f32, where what is possible stays possible: a density that is divided by must not become 0.
+/// Rounded to f32 such that a positive probability stays positive: a density that is divided by
+/// must not become 0.
 fn rounded(probability: f64) -> f32 {
     if probability > 0.0 { (probability as f32).max(f32::MIN_POSITIVE) } else { 0.0 }
 }
 
-/// In which of `cells` equal parts of 0 … 1 a number lies.
+/// The index of the cell, of `cells` equal ones in 0 … 1, that contains a number.
 fn cell(x: f32, cells: usize) -> usize {
     ((f64::from(x) * cells as f64) as usize).min(cells - 1)
 }
 
-/// The number in [0, 1) that lies at `rest` (0 … 1) of a part. It is in that part after rounding too.
+/// The number in [0, 1) at the position `rest` (0 … 1) of a cell. It is in that cell after rounding too.
 fn place(index: usize, rest: f64, cells: usize) -> f32 {
     let x = ((index as f64 + rest) / cells as f64) as f32;
     let x = x.min(ONE_MINUS_EPSILON);

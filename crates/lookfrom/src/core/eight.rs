@@ -1,12 +1,12 @@
-//! Points, normals and frames of eight surfaces at once, one in each lane of the machine's vectors.
+//! Points, normals and frames of eight surfaces at once, one in each lane of the SIMD vectors.
 //!
-//! The lane-wise twins of [`lookfrom_bvh::Point`], of [`crate::core::warp`] and of glam's vectors: each lane has, bit for bit, what they
-//! say, since every operation is theirs, in their order. Functions are `#[inline(always)]`, so that they are compiled for the level
-//! that their caller runs at.
+//! The SIMD versions of [`lookfrom_bvh::Point`], of [`crate::core::warp`] and of glam's vectors: each lane has bit
+//! for bit the scalar result, because it performs the same operations in the same order. Functions are
+//! `#[inline(always)]`, so that they are compiled for the SIMD level of their caller.
 
 use lookfrom_simd::{Simd, f32x8, f64x8, i32x8, mask32x8, mask64x8, prelude::*};
 
-/// How many at once.
+/// Number of lanes.
 pub(crate) const LANES: usize = 8;
 
 /// Eight numbers in single precision.
@@ -22,7 +22,8 @@ const UNIT: f64 = f64::EPSILON / 2.0;
 #[derive(Clone, Copy)]
 pub(crate) struct Vectors<T>(pub(crate) [T; 3]);
 
-/// An array of what an expression says for each lane. (Closures of `from_fn` and `map` are not compiled for the level.)
+/// An array of an expression's values for each lane. (Closures of `from_fn` and `map` are not compiled for the SIMD
+/// level.)
 macro_rules! by_lane {
     ($lane:ident => $value:expr) => {{
         let mut $lane = 0;
@@ -37,7 +38,7 @@ macro_rules! by_lane {
     }};
 }
 
-/// An array of what an expression says for each axis.
+/// An array of an expression's values for each axis.
 macro_rules! by_axis {
     ($axis:ident => $value:expr) => {
         [
@@ -59,14 +60,14 @@ macro_rules! by_axis {
 
 pub(crate) use {by_axis, by_lane};
 
-/// In double precision.
+/// Converts to double precision.
 #[inline(always)]
 pub(crate) fn widen<S: Simd>(x: Narrow<S>) -> Wide<S> {
     let (low, high) = x.widen();
     low.combine(high)
 }
 
-/// Rounded to single precision.
+/// Rounds to single precision.
 #[inline(always)]
 pub(crate) fn narrow<S: Simd>(x: Wide<S>) -> Narrow<S> {
     let (low, high) = x.split();
@@ -119,7 +120,7 @@ impl<S: Simd> Vectors<Wide<S>> {
         self.dot(self).sqrt()
     }
 
-    /// Of unit length, as glam does it.
+    /// Normalised, in the same way as glam.
     #[inline(always)]
     pub(crate) fn normalize(self, simd: S) -> Self {
         self.scale(f64x8::splat(simd, 1.0) / self.length())
@@ -155,7 +156,7 @@ impl<S: Simd> Vectors<Narrow<S>> {
         Self([ax + bx, ay + by, az + bz])
     }
 
-    /// Of unit length, as glam does it.
+    /// Normalised, in the same way as glam.
     #[inline(always)]
     pub(crate) fn normalize(self, simd: S) -> Self {
         self.scale(f32x8::splat(simd, 1.0) / self.dot(self).sqrt())
@@ -173,7 +174,7 @@ impl<S: Simd> Vectors<Narrow<S>> {
     }
 }
 
-/// Points on surfaces and bounds of their errors: the twin of [`lookfrom_bvh::Point`].
+/// Points on surfaces with their error bounds: the SIMD version of [`lookfrom_bvh::Point`].
 #[derive(Clone, Copy)]
 pub(crate) struct Points<S: Simd> {
     pub(crate) position: Vectors<Wide<S>>,
@@ -181,7 +182,7 @@ pub(crate) struct Points<S: Simd> {
 }
 
 impl<S: Simd> Points<S> {
-    /// The twin of [`lookfrom_bvh::Point::on_triangle_with_normal`].
+    /// The SIMD version of [`lookfrom_bvh::Point::on_triangle_with_normal`].
     #[inline(always)]
     pub(crate) fn on_triangles(
         simd: S,
@@ -210,7 +211,7 @@ impl<S: Simd> Points<S> {
         (Self { position: Vectors(position), error: Vectors(error) }, n)
     }
 
-    /// The twin of [`lookfrom_bvh::Point::leave`].
+    /// The SIMD version of [`lookfrom_bvh::Point::leave`].
     #[inline(always)]
     pub(crate) fn leave(
         &self,
@@ -233,7 +234,7 @@ impl<S: Simd> Points<S> {
     }
 }
 
-/// As the nearest f32 that is not below (`up`) or not above; simply the nearest where `still`.
+/// Rounds to the nearest f32 that is not below (`up`) or not above; to the nearest where `still`.
 #[inline(always)]
 fn round_toward<S: Simd>(simd: S, x: Wide<S>, up: mask64x8<S>, still: mask64x8<S>) -> Narrow<S> {
     let nearest = narrow(x);
@@ -241,8 +242,8 @@ fn round_toward<S: Simd>(simd: S, x: Wide<S>, up: mask64x8<S>, still: mask64x8<S
     let wrong = (up & wide.simd_lt(x)) | (!up & wide.simd_gt(x));
     let wrong = narrow_mask(simd, wrong & !still);
     let up = narrow_mask(simd, up);
-    // One step in the order of the numbers is one step of the bits, forward or back by sign; from zero it is the least
-    // number of that side.
+    // The next float is one step of the bits, forward or back by sign; from zero it is the smallest number of that
+    // sign.
     let bits: i32x8<S> = nearest.bitcast();
     let (one, back) = (i32x8::splat(simd, 1), i32x8::splat(simd, -1));
     let zero = i32x8::splat(simd, 0);
@@ -254,13 +255,13 @@ fn round_toward<S: Simd>(simd: S, x: Wide<S>, up: mask64x8<S>, still: mask64x8<S
     wrong.select(stepped, bits).bitcast()
 }
 
-/// For vectors of single precision.
+/// Converts a mask of double precision to single precision.
 #[inline(always)]
 fn narrow_mask<S: Simd>(simd: S, mask: mask64x8<S>) -> mask32x8<S> {
     mask32x8::from_bitmask(simd, mask.to_bitmask())
 }
 
-/// Frames of unit vectors about normals of unit length: the twin of [`crate::core::warp::orthonormal_basis`].
+/// Orthonormal frames about unit normals: the SIMD version of [`crate::core::warp::orthonormal_basis`].
 #[inline(always)]
 pub(crate) fn orthonormal_bases<S: Simd>(simd: S, n: Vectors<Narrow<S>>) -> [Vectors<Narrow<S>>; 2] {
     let one = f32x8::splat(simd, 1.0);
@@ -280,7 +281,7 @@ mod tests {
     use super::*;
     use crate::core::{hash, warp};
 
-    /// What a test asks: corners, u and v, a direction, a point of the square.
+    /// The input of a test case: corners, u and v, a direction, a point of the square.
     #[derive(Clone, Copy, Debug)]
     struct Question {
         corners: [[f32; 3]; 3],
@@ -356,7 +357,7 @@ mod tests {
             };
             let questions: [Question; LANES] = std::array::from_fn(|lane| {
                 let mut corners = [[0.0; 3]; 3].map(|corner: [f32; 3]| corner.map(|_| real(-20, 20)));
-                // Some lie in a plane of the axes, as walls do.
+                // Some lie in an axis-aligned plane, as walls do.
                 if (round + lane) % 3 == 0 {
                     corners.iter_mut().for_each(|corner| corner[lane % 3] = 1.5);
                 }
@@ -368,7 +369,7 @@ mod tests {
                 let answers = dispatch(level, Ask(&questions));
                 for (question, answer) in questions.iter().zip(answers) {
                     let expected = one_by_one(question);
-                    // Of a triangle without area nothing is known; bits of its NaN do not matter.
+                    // A triangle of zero area gives NaN, whose bits do not matter.
                     if expected.origin.iter().all(|x| x.is_finite()) {
                         assert_eq!(answer, expected, "{question:?}");
                     }

@@ -1,26 +1,26 @@
-//! Pixel reconstruction filters, sampled by importance.
+//! Pixel reconstruction filters with filter importance sampling.
 //!
-//! Step 3 on the way of a pixel. The weight is not applied to samples that fall anywhere: places are *chosen* with a
-//! density proportional to the filter, so that a sample touches only its own pixel (filter importance sampling, Ernst,
-//! Stamminger & Greiner 2006). Where a filter is negative, so is the weight. Filters here are products of one curve
-//! along x and y.
+//! Step 3 in the computation of a pixel. Instead of weighting samples, positions are *sampled* with a density
+//! proportional to the filter, so that a sample contributes to its own pixel only (filter importance sampling,
+//! Ernst, Stamminger & Greiner 2006). Where a filter is negative, so is the weight. All filters here are separable:
+//! products of one curve along x and y.
 //!
 //! Mitchell & Netravali 1988 (the cubic); Harris 1978 (the four-term window).
 
 use crate::core::sampler::ONE_MINUS_EPSILON;
 use lookfrom_scene::settings::Filter as Shape;
 
-/// Cells of a table from the centre to the radius.
+/// Number of table cells from the centre to the radius.
 const CELLS: usize = 1024;
 
-/// Parts that shares are sorted into before a cell is looked for.
+/// Number of equal intervals of the cumulative sum that speed up the search for a cell.
 const PARTS: usize = 1024;
 
-/// A pixel filter, made ready for sampling.
+/// A pixel filter, prepared for sampling.
 ///
-/// Box and triangle are inverted exactly. The others are tabulated: along each axis 1024 cells from the centre to the
-/// radius, of constant density each, with the integral over each cell right to rounding. So no sample lies farther than
-/// radius/1024 pixels from where the exact inverse would put it.
+/// Box and triangle are inverted exactly. The others are tabulated: along each axis 1024 cells from the centre to
+/// the radius, each of constant density, with the integral over each cell exact up to rounding. So no sample lies
+/// farther than radius/1024 pixels from the exact inverse.
 #[derive(Clone, Debug)]
 pub struct Filter {
     curve: Curve,
@@ -33,11 +33,12 @@ pub struct Filter {
 /// The inverse of |f| along one axis, from the centre outward.
 #[derive(Clone, Debug)]
 struct Table {
-    /// Share of ∫|f| before each cell, and 1 at the end.
+    /// The fraction of ∫|f| before each cell, and 1 at the end.
     cumulative: Vec<f32>,
-    /// For each of [`PARTS`] equal parts of 0 … 1, the cell that holds its beginning: where to begin to look.
+    /// For each of [`PARTS`] equal intervals of 0 … 1, the cell that contains its beginning: the start of the
+    /// search.
     first: Vec<u16>,
-    /// Whether f is negative in the cell.
+    /// True if f is negative in the cell.
     negative: Vec<bool>,
     /// (∫|f| / ∫f)², for both axes together.
     weight: f32,
@@ -60,8 +61,8 @@ enum Curve {
 }
 
 impl Filter {
-    /// The filter that was written. A radius that is not positive and finite is taken for ½; a shape that has no
-    /// finite, positive integral (a Gaussian without width, wild coefficients) for the box of the same radius.
+    /// A radius that is not positive and finite is replaced by ½, a shape without a finite, positive integral (a
+    /// Gaussian of zero width, extreme coefficients) by the box of the same radius.
     pub fn new(shape: Shape) -> Self {
         let (curve, radius) = match shape {
             Shape::Box { radius } => (Curve::Box, radius),
@@ -92,13 +93,13 @@ impl Filter {
         Self { curve, radius, integral: square(f64::from(radius) * integral), table: None }
     }
 
-    /// A place for a sample, as an offset in pixels from the centre of the pixel, and the weight of what is seen there.
+    /// The position of a sample, as an offset in pixels from the centre of the pixel, and the sample's weight.
     ///
-    /// `u` is in [0, 1)²; each coordinate of the offset grows with its own. Weights are all of one magnitude, negative
-    /// where the filter is, and 1 on the average.
+    /// `u` is in [0, 1)²; each coordinate of the offset is monotonic in its coordinate of `u`. All weights have the
+    /// same magnitude; they are negative where the filter is, and 1 on average.
     pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
         let [(x, x_sign), (y, y_sign)] = u.map(|u| {
-            // Choose a side, and how far to go on it.
+            // Choose a side, and the distance on it.
             let outward = (2.0 * u - 1.0).abs().min(ONE_MINUS_EPSILON);
             let side = if u < 0.5 { -self.radius } else { self.radius };
             let (x, sign) = match (&self.table, self.curve) {
@@ -112,7 +113,8 @@ impl Filter {
         ([x, y], x_sign * y_sign * magnitude)
     }
 
-    /// The filter itself at an offset in pixels from the centre, per pixel²: its integral over the plane is 1.
+    /// The value of the filter at an offset in pixels from the centre, per pixel²: its integral over the plane
+    /// is 1.
     pub fn evaluate(&self, x: f32, y: f32) -> f32 {
         let along = |x: f32| {
             let x = (f64::from(x) / f64::from(self.radius)).abs();
@@ -121,7 +123,7 @@ impl Filter {
         (along(x) * along(y) / self.integral) as f32
     }
 
-    /// How far from the centre of the pixel samples may lie along each axis, in pixels.
+    /// The largest distance of samples from the centre of the pixel along each axis, in pixels.
     pub fn radius(&self) -> f32 {
         self.radius
     }
@@ -138,7 +140,7 @@ impl Table {
         if !(total.is_finite() && absolute.is_finite() && total > 0.0 && weight.is_finite()) {
             return None;
         }
-        // Sum up the shares; the end is 1, whatever the rounding.
+        // Accumulate the fractions; the end is 1, whatever the rounding.
         let mut sum = 0.0;
         let mut cumulative = vec![0.0];
         for cell in &cells {
@@ -155,7 +157,8 @@ impl Table {
         Some((Self { cumulative, first, negative, weight }, 2.0 * total))
     }
 
-    /// How far out (0 … 1) the given share of |f| reaches, and the sign of f there. `share` is in [0, 1).
+    /// The distance (0 … 1) that encloses the fraction `share` of |f|, and the sign of f there. `share`
+    /// is in [0, 1).
     fn invert(&self, share: f32) -> (f32, f32) {
         // Find the last cell that begins at or before it: one of positive width in the table.
         let mut cell = usize::from(self.first[(share * PARTS as f32) as usize]);
@@ -193,7 +196,7 @@ impl Curve {
                 -libm::exp(-steepness * x * x) * libm::expm1(-steepness * (1.0 - x * x))
             }
             Self::Mitchell { b, c } => {
-                // The cubic is written for a radius of 2.
+                // The cubic is defined for a radius of 2.
                 let x = 2.0 * x;
                 let sixfold = if x <= 1.0 {
                     ((12.0 - 9.0 * b - 6.0 * c) * x + (-18.0 + 12.0 * b + 6.0 * c)) * x * x + (6.0 - 2.0 * b)

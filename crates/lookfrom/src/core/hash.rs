@@ -1,15 +1,15 @@
 //! Integer hashes.
 //!
-//! The one mixing function behind random numbers ([`crate::core::sampler`]) and lattices ([`crate::core::noise`]). What is mixed,
-//! and in which order, is left to the caller.
+//! The mixing function behind random numbers ([`crate::core::sampler`]) and lattices ([`crate::core::noise`]). The
+//! inputs and their order are up to the caller.
 //!
 //! Steele, Lea & Flood 2014 (SplitMix), with the multipliers of Stafford's variant 13.
 
 /// 2⁶⁴ divided by the golden ratio, made odd: its multiples are spread evenly over the 64-bit numbers.
 pub(crate) const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// A bijection of the 64-bit numbers in which each bit of the input flips each bit of the output about half the time.
-/// Zero stays zero.
+/// A bijection of the 64-bit numbers in which each bit of the input flips each bit of the output about half the
+/// time. Zero maps to zero.
 #[inline]
 pub(crate) fn mix(mut bits: u64) -> u64 {
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -17,7 +17,7 @@ pub(crate) fn mix(mut bits: u64) -> u64 {
     bits ^ (bits >> 31)
 }
 
-/// A 64-bit hash of two numbers, whose order matters.
+/// A 64-bit hash of two numbers, which depends on their order.
 #[inline]
 pub(crate) fn pair(a: u64, b: u64) -> u64 {
     mix(mix(a.wrapping_add(GOLDEN)) ^ b)

@@ -1,17 +1,19 @@
-//! The few vector operations that the field needs and glam lacks; no spectrum, no scene.
+//! Vector and scalar functions of rendering that glam lacks.
 
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_bvh::Affine;
 
-/// `wo` mirrored about the unit normal `n`: both point away from the surface, `2 (n·wo) n − wo`.
+/// The reflection of `wo` about the unit normal `n`: both directions point away from the surface,
+/// `2 (n·wo) n − wo`.
 pub fn reflect(wo: Vec3, n: Vec3) -> Vec3 {
     2.0 * n.dot(wo) * n - wo
 }
 
-/// The direction into which Snell's law bends light that arrives along `−wo`, or `None` where it is totally reflected.
+/// The direction of refraction by Snell's law for light that arrives along `−wo`, or `None` for total internal
+/// reflection.
 ///
-/// `n` is of unit length on the side of `wo`; `eta` is the index of refraction beyond the surface divided by the one on
-/// the side of `wo`. The result is of unit length (up to rounding) for a unit `wo`.
+/// `n` has unit length and is on the side of `wo`; `eta` is the index of refraction beyond the surface divided by
+/// the one on the side of `wo`. The result has unit length (up to rounding) for a unit `wo`.
 pub fn refract(wo: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     let cos_i = n.dot(wo);
     let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
@@ -22,7 +24,7 @@ pub fn refract(wo: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     Some((cos_i / eta - cos_t) * n - wo / eta)
 }
 
-/// The part of unpolarised light that a dielectric mirrors (Fresnel), for `cos_i = n·wo ≥ 0` and `eta` as in [`refract`].
+/// Fresnel reflectance of a dielectric for unpolarised light, for `cos_i = n·wo ≥ 0` and `eta` as in [`refract`].
 pub fn fresnel_dielectric(cos_i: f32, eta: f32) -> f32 {
     let cos_i = cos_i.clamp(0.0, 1.0);
     let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
@@ -35,7 +37,7 @@ pub fn fresnel_dielectric(cos_i: f32, eta: f32) -> f32 {
     0.5 * (parallel * parallel + perpendicular * perpendicular)
 }
 
-/// The kernel's form of an affine matrix.
+/// Converts an affine matrix to the kernel's type.
 pub fn affine(matrix: &DMat4) -> Affine {
     let rows = matrix.transpose();
     Affine {
@@ -44,7 +46,7 @@ pub fn affine(matrix: &DMat4) -> Affine {
     }
 }
 
-/// The direction of a normal after `matrix`, whose inverse is given: by the inverse's transpose; not of unit length.
+/// The direction of a normal transformed by a matrix, by the transpose of its `inverse`; not of unit length.
 pub fn transform_normal(inverse: &DMat4, normal: DVec3) -> DVec3 {
     inverse.transpose().transform_vector3(normal)
 }
@@ -59,7 +61,7 @@ pub fn power(x: f32, n: f32) -> f32 {
     libm::powf(x, n)
 }
 
-/// Schlick's s: 0 straight on, 1 along the surface.
+/// Schlick's (1 − cos θ)⁵: 0 at normal, 1 at grazing incidence.
 #[inline]
 pub fn schlick(cos: f32) -> f32 {
     let x = (1.0 - cos).clamp(0.0, 1.0);
@@ -80,7 +82,7 @@ mod tests {
             let wt = refract(wo, n, 1.5).unwrap();
             // sin θ_t = sin θ_i / 1.5, on the other side, in the same plane
             assert!((wt.x + wo.x / 1.5).abs() < 1e-6 && wt.y < 0.0 && wt.z == 0.0 && wt.is_normalized());
-            // and back again by the same way
+            // And back along the same path.
             let back = refract(wt, -n, 1.0 / 1.5).unwrap();
             assert!((back - wo).length() < 2e-6);
         }
@@ -96,7 +98,7 @@ mod tests {
     fn fresnel_known_values() {
         assert!((fresnel_dielectric(1.0, 1.5) - 0.04).abs() < 1e-6);
         assert!((fresnel_dielectric(0.0, 1.5) - 1.0).abs() < 1e-6);
-        // At Brewster's angle only the perpendicular half is left: ½ ((η²−1)/(η²+1))².
+        // At Brewster's angle only the perpendicular polarisation is reflected: ½ ((η²−1)/(η²+1))².
         let brewster = 1.0 / (1.0f32 + 1.5 * 1.5).sqrt();
         let expected = 0.5 * (1.25f32 / 3.25).powi(2);
         assert!((fresnel_dielectric(brewster, 1.5) - expected).abs() < 1e-6);

@@ -1,8 +1,8 @@
 //! Gradient noise over three-dimensional space, and its sums over octaves.
 //!
-//! Perlin 1985 (gradients on a lattice, turbulence) and 2002 (the quintic fade, gradients along the edges of a cube). A
-//! hash of the lattice point takes the place of Perlin's table, so that the pattern does not repeat every 256 units; noise by
-//! the table itself is in [`perlin`].
+//! Perlin 1985 (gradients on a lattice, turbulence) and 2002 (the quintic fade, gradients along the edges of a
+//! cube). A hash of the lattice point replaces Perlin's table, so that the pattern does not repeat every 256 units;
+//! noise by the table itself is in [`perlin`].
 
 pub mod perlin;
 mod permutation;
@@ -10,10 +10,10 @@ mod permutation;
 use crate::core::hash::mix;
 use glam::Vec3;
 
-/// Octaves beyond this are left out: they weigh less than 2⁻²³ together.
+/// Further octaves are omitted: together they contribute less than 2⁻²³.
 const MOST_OCTAVES: u32 = 24;
 
-/// How far each octave's lattice is shifted against the one before, so that their zeros do not meet.
+/// Offset of each octave's lattice from the one before, so that their zeros do not coincide.
 const SHIFT: Vec3 = Vec3::new(0.374_165, 0.732_051, 0.181_981);
 
 /// The twelve directions from the centre of a cube to its edges.
@@ -32,7 +32,7 @@ const EDGES: [Vec3; 12] = [
     Vec3::new(0.0, -1.0, -1.0),
 ];
 
-/// Gradient noise: about −1 … 1 (never beyond ±1.04), 0 on the average and at points of whole coordinates, with two
+/// Gradient noise: about −1 … 1 (never beyond ±1.04), 0 on average and at points of whole coordinates, with two
 /// continuous derivatives. Features are about one unit wide.
 ///
 /// Finite for every `p`: 0 where a coordinate is not finite, and where all are too large to have fractions (beyond
@@ -41,14 +41,14 @@ pub fn noise(p: Vec3) -> f32 {
     octave(p, 0)
 }
 
-/// Fractional Brownian motion: the sum of `octaves` noises, each twice as fine as the one before and half as strong.
-/// About −1 … 1, in theory less than ±2.1; 0 for no octaves. At most 24 octaves are summed.
+/// Fractional Brownian motion: the sum of `octaves` noises, each of twice the frequency and half the amplitude of
+/// the one before. About −1 … 1, in theory less than ±2.1; 0 for no octaves. At most 24 octaves are summed.
 pub fn fbm(p: Vec3, octaves: u32) -> f32 {
     sum(p, octaves, |noise| noise)
 }
 
-/// Perlin's turbulence: [`fbm`] of the magnitudes of the noises, which makes creases where they are 0. Not negative, in
-/// theory less than 2.1, mostly below 1.
+/// Perlin's turbulence: [`fbm`] of the magnitudes of the noises, which has creases where they are 0. Not negative,
+/// in theory less than 2.1, mostly below 1.
 pub fn turbulence(p: Vec3, octaves: u32) -> f32 {
     sum(p, octaves, f32::abs)
 }
@@ -68,31 +68,31 @@ fn octave(p: Vec3, octave: u32) -> f32 {
     if !p.is_finite() {
         return 0.0;
     }
-    // Find the cell of the lattice, and the place in it.
+    // Find the cell of the lattice and the position in it.
     let floor = p.floor();
     let place = p - floor;
     let cell = floor.to_array().map(|x| x as i32);
-    // Each corner slopes along its gradient, and is 0 at itself.
+    // Each corner contributes a linear ramp along its gradient, 0 at the corner.
     let corner = |x: i32, y: i32, z: i32| {
         let [i, j, k] = cell;
         let gradient = gradient([i.wrapping_add(x), j.wrapping_add(y), k.wrapping_add(z)], octave);
         gradient.dot(place - Vec3::new(x as f32, y as f32, z as f32))
     };
-    // Fade from corner to corner, along x, then y, then z.
+    // Interpolate between corners, along x, then y, then z.
     let [u, v, w] = place.to_array().map(fade);
     let edge = |y, z| mix_linearly(corner(0, y, z), corner(1, y, z), u);
     let face = |z| mix_linearly(edge(0, z), edge(1, z), v);
     mix_linearly(face(0), face(1), w)
 }
 
-/// The direction in which the noise grows at a lattice point.
+/// The gradient at a lattice point.
 fn gradient([x, y, z]: [i32; 3], octave: u32) -> Vec3 {
     let bits = |coordinate: i32| u64::from(coordinate as u32);
     let hash = mix(mix(bits(x) | bits(y) << 32) ^ (bits(z) | u64::from(octave) << 32));
     EDGES[(((hash >> 32) * EDGES.len() as u64) >> 32) as usize]
 }
 
-/// From 0 to 1 with no slope and no bend at either end: 6t⁵ − 15t⁴ + 10t³.
+/// The fade from 0 to 1 with zero first and second derivatives at both ends: 6t⁵ − 15t⁴ + 10t³.
 fn fade(t: f32) -> f32 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }

@@ -1,6 +1,6 @@
 //! Data-parallel loops: on rayon's threads with the feature `parallel`, on the caller's thread without it.
 //!
-//! Each result has its own place, so that results are the same for any number of threads.
+//! Each result has a fixed position, so that results are the same for any number of threads.
 
 use lookfrom_scene::Result;
 #[cfg(feature = "parallel")]
@@ -19,7 +19,7 @@ pub(crate) fn collect<T>(count: usize, make: impl Fn(usize) -> T) -> Vec<T> {
     (0..count).map(make).collect()
 }
 
-/// Calls `each` with the number and the elements of every chunk of `size` elements; the last chunk may be shorter.
+/// Calls `each` with the index and the elements of every chunk of `size` elements; the last chunk may be shorter.
 ///
 /// # Panics
 /// If `size` is 0.
@@ -33,7 +33,7 @@ pub(crate) fn for_chunks_mut<T: Send>(
     items.par_chunks_mut(size).enumerate().for_each(|(number, chunk)| each(number, chunk));
 }
 
-/// Calls `each` with the number and the elements of every chunk of `size` elements; the last chunk may be shorter.
+/// Calls `each` with the index and the elements of every chunk of `size` elements; the last chunk may be shorter.
 ///
 /// # Panics
 /// If `size` is 0.
@@ -42,7 +42,7 @@ pub(crate) fn for_chunks_mut<T>(items: &mut [T], size: usize, each: impl Fn(usiz
     items.chunks_mut(size).enumerate().for_each(|(number, chunk)| each(number, chunk));
 }
 
-/// Both results.
+/// Runs both closures, in parallel if possible, and returns both results.
 #[cfg(feature = "parallel")]
 pub(crate) fn join<A: Send, B: Send>(
     one: impl FnOnce() -> A + Send,
@@ -51,16 +51,16 @@ pub(crate) fn join<A: Send, B: Send>(
     rayon::join(one, other)
 }
 
-/// Both results.
+/// Runs both closures and returns both results.
 #[cfg(not(feature = "parallel"))]
 pub(crate) fn join<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> (A, B) {
     (one(), other())
 }
 
-/// Runs `work` so that the loops in it use `threads` threads (`None`: as many as the machine runs at once).
+/// Runs `work` so that its parallel loops use `threads` threads (`None`: one per hardware thread).
 ///
 /// # Errors
-/// `Limit` where the threads cannot be started.
+/// `Limit` if the threads cannot be started.
 #[cfg(feature = "parallel")]
 pub(crate) fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
@@ -68,7 +68,7 @@ pub(crate) fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() ->
     Ok(pool.install(work))
 }
 
-/// Runs `work` on the caller's thread, whatever number is asked for.
+/// Runs `work` on the caller's thread, whatever `threads` is.
 ///
 /// # Errors
 /// None.

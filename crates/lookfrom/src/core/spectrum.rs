@@ -1,12 +1,12 @@
 //! Spectra: light as four lanes.
 //!
-//! In RGB mode the lanes are linear Rec. 709 red, green, blue and an unused fourth that is always 0. All arithmetic of
-//! materials and lights is lane-wise; only where colour enters (textures, light colours) and leaves (the film) does the
-//! meaning of a lane matter, so that four wavelengths can take their place later.
+//! In RGB mode the lanes are linear Rec. 709 red, green, blue and an unused fourth that is always 0. In spectral
+//! mode they are four wavelengths. All arithmetic of materials and lights is lane-wise; the meaning of a lane
+//! matters only where colour enters (textures, light colours) and leaves (the film).
 
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Sub};
 
-/// An amount of light, or a factor that light is multiplied by, in four lanes.
+/// Radiance, or a factor of it, in four lanes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(16))]
 pub struct Spectrum(pub [f32; 4]);
@@ -14,7 +14,7 @@ pub struct Spectrum(pub [f32; 4]);
 impl Spectrum {
     /// No light.
     pub const BLACK: Self = Self([0.0; 4]);
-    /// The factor that changes nothing (in RGB mode).
+    /// The multiplicative identity (in RGB mode).
     pub const ONE: Self = Self([1.0, 1.0, 1.0, 0.0]);
 
     /// A colour in linear Rec. 709.
@@ -28,29 +28,29 @@ impl Spectrum {
         [r, g, b]
     }
 
-    /// Each lane by `f`.
+    /// Applies `f` to each lane.
     pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
         Self(self.0.map(f))
     }
 
-    /// Each pair of lanes by `f`.
+    /// Applies `f` to each pair of lanes.
     pub fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
         Self(std::array::from_fn(|lane| f(self.0[lane], other.0[lane])))
     }
 
-    /// The greatest lane.
+    /// The largest lane.
     pub fn max_lane(self) -> f32 {
         self.0.into_iter().fold(f32::NEG_INFINITY, f32::max)
     }
 
-    /// The one lane that is not 0; `None` where there are several or none.
+    /// The only lane that is not 0; `None` where there are several or none.
     pub fn only_lane(self) -> Option<usize> {
         let mut lanes = (0..4).filter(|&lane| self.0[lane] != 0.0);
         lanes.next().filter(|_| lanes.next().is_none())
     }
 
-    /// Leaves one of the lanes that are not 0, chosen evenly by `u ∈ [0, 1)`, at the weight of all of them: the mean stays
-    /// what it was.
+    /// Keeps one of the lanes that are not 0, chosen uniformly by `u ∈ [0, 1)` and multiplied by their number, so
+    /// that the expectation is unchanged.
     pub fn leave_one(&mut self, u: f32) {
         let count = self.0.iter().filter(|lane| **lane != 0.0).count();
         let chosen = ((u * count as f32) as usize).min(count.saturating_sub(1));
@@ -63,7 +63,7 @@ impl Spectrum {
         }
     }
 
-    /// Whether there is no light in any lane.
+    /// True if all lanes are 0.
     pub fn is_black(self) -> bool {
         self.0 == [0.0; 4]
     }

@@ -1,11 +1,11 @@
 //! Chi-square statistics for tests.
 //!
-//! Wilson & Hilferty 1931 turn a chi-square into a normal deviate.
+//! The conversion of chi-square to a normal deviate follows Wilson & Hilferty 1931.
 
-/// How many standard deviations Pearson's chi-square of the counts lies above what is expected of it. Cells in which
-/// fewer than five are expected are pooled. Above 4.5 is no accident (three in a million).
+/// Deviation of Pearson's chi-square of the counts from its expectation, in standard deviations. Cells with an
+/// expected count below five are pooled. A deviation above 4.5 is significant (three in a million).
 ///
-/// An infinity where something was counted in cells that expect nothing at all.
+/// Infinite if anything was counted in cells whose expected count is 0.
 pub(crate) fn chi_square_deviate(observed: &[u64], expected: &[f64]) -> f64 {
     assert_eq!(observed.len(), expected.len());
     let (mut statistic, mut cells) = (0.0, 0_u32);
@@ -28,7 +28,7 @@ pub(crate) fn chi_square_deviate(observed: &[u64], expected: &[f64]) -> f64 {
     ((statistic / freedom).cbrt() - (1.0 - spread)) / spread.sqrt()
 }
 
-/// The deviate that the greatest of so many independent normal ones exceeds with a probability of about 0.01.
+/// The deviate that the largest of `tests` independent normal ones exceeds with a probability of about 0.01.
 pub(crate) fn corrected_bound(tests: usize) -> f64 {
     let tail = 0.01 / tests as f64;
     let (mut low, mut high) = (0.0, 40.0);

@@ -1,9 +1,9 @@
 //! Warps: from the unit square to directions and to points on shapes.
 //!
-//! Each warp takes `u` in [0, 1)² and keeps near numbers near, so that well-spread samples stay well spread; beside
-//! each stands its density. The disk is the root of all directions: Shirley & Chiu's map has no seam, and Archimedes'
-//! (a sphere's area is that of its shadow cylinder) carries it to spheres and cones. Which warp to use is left to
-//! lights and materials.
+//! Each warp takes `u` in [0, 1)² and keeps neighbouring numbers close together, so that well-distributed samples
+//! stay well distributed; its density is beside it. All directions are derived from the disk: Shirley & Chiu's map
+//! has no seam, and Archimedes' theorem (a sphere has the area of its circumscribed cylinder) extends it to spheres
+//! and cones. The choice of warp is left to lights and materials.
 //!
 //! Shirley & Chiu 1997 (disk); Malley (hemisphere by the disk); Heitz 2019 (triangle); Duff et al. 2017 (basis).
 
@@ -11,23 +11,24 @@ use glam::{Vec2, Vec3};
 use lookfrom_simd::{Simd, f32x8, prelude::*};
 use std::f32::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_4, PI};
 
-/// A uniform point of the unit disk, over area: the density is [`CONCENTRIC_DISK_PDF`]. The centre of the square is the
-/// centre of the disk, concentric squares become circles.
+/// A uniform point in the unit disk: the density over area is [`CONCENTRIC_DISK_PDF`]. The centre of the square
+/// maps to the centre of the disk, concentric squares to circles.
 pub fn concentric_disk(u: [f32; 2]) -> Vec2 {
     let [a, b] = u.map(|u| 2.0 * u - 1.0);
     if a == 0.0 && b == 0.0 {
         return Vec2::ZERO;
     }
-    // The radius is the side of the square through the point, the angle the place along that side.
+    // The radius is half the side of the concentric square through the point, the angle is the
+    // position along that side.
     let is_wide = a * a > b * b;
     let (radius, along) = if is_wide { (a, b) } else { (b, a) };
     let (sin, cos) = sin_cos_of_eighths(along / radius);
-    // Beyond the diagonal the angle is π/2 less what it is before.
+    // Beyond the diagonal the angle is π/2 minus the one before it.
     if is_wide { Vec2::new(radius * cos, radius * sin) } else { Vec2::new(radius * sin, radius * cos) }
 }
 
-/// Sine and cosine of `t` eighths of a turn (π/4), for |t| ≤ 1, to 2⁻²²: their Taylor series. Short and without branches, so that
-/// eight may go side by side.
+/// Sine and cosine of `t` π/4 for |t| ≤ 1, to 2⁻²², by their Taylor series. Short and without branches, so that
+/// eight can be computed side by side.
 fn sin_cos_of_eighths(t: f32) -> (f32, f32) {
     let t2 = t * t;
     let sin = t * (SIN[0] + t2 * (SIN[1] + t2 * (SIN[2] + t2 * (SIN[3] + t2 * SIN[4]))));
@@ -35,7 +36,7 @@ fn sin_cos_of_eighths(t: f32) -> (f32, f32) {
     (sin, cos)
 }
 
-/// π/4, squared.
+/// (π/4)².
 const SQUARE: f64 = std::f64::consts::FRAC_PI_4 * std::f64::consts::FRAC_PI_4;
 
 /// (−1)ᵏ (π/4)²ᵏ⁺¹ / (2k + 1)!
@@ -81,17 +82,17 @@ pub(crate) fn concentric_disks<S: Simd>(simd: S, [u, v]: [f32x8<S>; 2]) -> [f32x
 /// Density of [`concentric_disk`] over area: 1/π.
 pub const CONCENTRIC_DISK_PDF: f32 = FRAC_1_PI;
 
-/// A direction about `n`, as dense as the cosine of its angle to it: [`cosine_hemisphere_pdf`]. `n` must be of unit
-/// length, the result is, up to rounding; its cosine is always positive.
+/// A cosine-distributed direction about `n`, with density [`cosine_hemisphere_pdf`]. `n` must have unit length; the
+/// result has unit length up to rounding, and its cosine is always positive.
 pub fn cosine_hemisphere(u: [f32; 2], n: Vec3) -> Vec3 {
     let disk = concentric_disk(u);
-    // Lift the rim a little (2⁻¹², far below what can be seen), so that no density is 0.
+    // Lift the rim slightly (2⁻¹², far below anything visible), so that no density is 0.
     let height = (1.0 - disk.length_squared()).max(1.0 / 16_777_216.0).sqrt();
     let (s, t) = orthonormal_basis(n);
     disk.x * s + disk.y * t + height * n
 }
 
-/// Density of [`cosine_hemisphere`] over solid angle, for the cosine of the direction's angle to the normal. 0 below.
+/// Density of [`cosine_hemisphere`] over solid angle, by the cosine to the normal. 0 below.
 pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
     FRAC_1_PI * cos_theta.max(0.0)
 }
@@ -106,40 +107,39 @@ pub const UNIFORM_SPHERE_PDF: f32 = 0.25 * FRAC_1_PI;
 
 /// A uniform direction within a cone about +z, of unit length up to rounding: the density is [`uniform_cone_pdf`].
 ///
-/// The cone is given by `1 − cos` of the angle between its axis and its side: 0 … 2. In that form a cone may be as thin
-/// as one likes; where sin² is known (radius²/distance² of a sphere), `1 − cos = sin² / (1 + √(1 − sin²))`.
+/// The cone is given by `1 − cos` of the angle between its axis and its side: 0 … 2. This form allows arbitrarily
+/// thin cones; where sin² is known (radius²/distance² of a sphere), `1 − cos = sin² / (1 + √(1 − sin²))`.
 pub fn uniform_cone(u: [f32; 2], one_minus_cos_theta_max: f32) -> Vec3 {
     let disk = concentric_disk(u);
-    // The depth below the pole is uniform, as the square of the disk's radius is.
+    // The depth below the pole is uniform, like the square of the disk's radius.
     let depth = disk.length_squared().min(1.0) * one_minus_cos_theta_max;
     // sin θ = √(depth (2 − depth)), along the disk's direction.
     let widen = (one_minus_cos_theta_max * (2.0 - depth).max(0.0)).sqrt();
     Vec3::new(disk.x * widen, disk.y * widen, 1.0 - depth)
 }
 
-/// Density of [`uniform_cone`] over solid angle within the cone; infinite for a cone of no width.
+/// Density of [`uniform_cone`] over solid angle within the cone; infinite for a cone of zero width.
 pub fn uniform_cone_pdf(one_minus_cos_theta_max: f32) -> f32 {
     1.0 / (2.0 * PI * one_minus_cos_theta_max)
 }
 
-/// Barycentric coordinates α, β, γ ≥ 0 of a uniform point of a triangle; their sum is 1 up to rounding. The density
+/// Barycentric coordinates α, β, γ ≥ 0 of a uniform point in a triangle; their sum is 1 up to rounding. The density
 /// over area is [`uniform_triangle_pdf`].
 pub fn uniform_triangle([u, v]: [f32; 2]) -> [f32; 3] {
-    // Fold the square along its diagonal, each half moving towards the other two corners.
+    // Fold the square along its diagonal, each half moving toward the other two corners.
     let (alpha, beta) = if v > u { (0.5 * u, v - 0.5 * u) } else { (u - 0.5 * v, 0.5 * v) };
     [alpha, beta, 1.0 - (alpha + beta)]
 }
 
-/// Density of [`uniform_triangle`] over a triangle of that area.
+/// Density of [`uniform_triangle`] for a triangle of this area.
 pub fn uniform_triangle_pdf(area: f32) -> f32 {
     1.0 / area
 }
 
-/// The direction at a point of the unit square that is folded to an octahedron and blown up to a sphere, of equal area
-/// everywhere (Clarberg 2008, as pbrt-v4 lays it out): +z is the middle, −z the corners. Points beyond the edges are
-/// taken to where the fold leads.
+/// The direction of a point in the unit square under the equal-area octahedral mapping (Clarberg 2008, in pbrt-v4's
+/// layout): +z is the centre, −z the corners. Points beyond the edges are wrapped around the fold.
 pub fn octahedral_direction([mut u, mut v]: [f32; 2]) -> Vec3 {
-    // Beyond an edge the square goes on with itself turned half around.
+    // Beyond an edge the square continues with itself rotated by 180°.
     if !(0.0..=1.0).contains(&u) {
         (u, v) = (if u < 0.0 { -u } else { 2.0 - u }, 1.0 - v);
     }
@@ -175,7 +175,7 @@ pub fn octahedral_square(direction: Vec3) -> [f32; 2] {
 
 /// Two unit vectors that make a right-handed orthonormal basis (s, t, n) with the unit vector `n`, up to rounding.
 pub fn orthonormal_basis(n: Vec3) -> (Vec3, Vec3) {
-    // No branch but the sign of z, which keeps the denominator away from 0.
+    // The only branch is the sign of z, which keeps the denominator away from 0.
     let sign = 1.0_f32.copysign(n.z);
     let a = -1.0 / (sign + n.z);
     let b = n.x * n.y * a;

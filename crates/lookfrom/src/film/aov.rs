@@ -1,68 +1,69 @@
-//! AOVs: what the camera sees first in a pixel (a G-buffer), in the mean over its samples.
+//! AOVs: data of the first hits of a pixel (a G-buffer), in the mean over its samples.
 //!
-//! One accumulator for two readers. The layers of a picture are means over all samples; the denoiser compares means over the first
-//! [`FEATURE_SAMPLES`], so that it does the same whether or not layers are asked for. Sums of fixed-point numbers, as those
-//! of light, do not depend on the order of the samples. The denoiser's take 96 bytes a pixel, those of layers 208.
+//! One accumulator for two readers. The AOVs of a picture are means over all samples; the denoiser compares means over
+//! the first [`FEATURE_SAMPLES`], so that its result does not depend on whether AOVs are written. Sums of fixed-point
+//! numbers, as those of light, do not depend on the order of the samples. The denoiser's take 96 bytes per pixel, those
+//! of AOVs 208.
 
-/// How many samples of a pixel count for the denoiser.
+/// Number of samples of a pixel that count for the denoiser.
 pub const FEATURE_SAMPLES: u32 = 16;
 
-/// What the ray of one sample met first, or a mean over samples.
+/// The first hit of one sample, or a mean over samples.
 ///
-/// Directions and places are in the camera's space: x to the right, y up, z ahead, in the scene's unit; the origin is
+/// Directions and positions are in camera space: x to the right, y up, z forward, in the scene's unit; the origin is
 /// lookfrom.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Aovs {
-    /// The colour that the surface multiplies light by: 0 … 1 in linear Rec. 709. A look-up of base colours, as Cycles and Open Image
-    /// Denoise have it, not an integral over directions: 1 for glass, the colour of a metal straight on.
+    /// Albedo: 0 … 1 in linear Rec. 709. Base colours, as in Cycles and Open Image Denoise, not an integral over
+    /// directions: 1 for glass, the colour at normal incidence for a metal.
     pub albedo: [f32; 3],
     /// Geometric normal on the viewer's side, of unit length.
     pub ng: [f32; 3],
-    /// Shading normal (smoothed, bent by bumps and normal maps) on the viewer's side, of unit length.
+    /// Shading normal (interpolated, with bump and normal maps) on the viewer's side, of unit length.
     pub ns: [f32; 3],
-    /// The point. Its z is the depth: the distance from the eye along the view axis.
+    /// Position. Its z is the depth: the distance from the camera along the view axis.
     pub position: [f32; 3],
     /// Texture coordinates.
     pub uv: [f32; 2],
 }
 
-/// What the denoiser compares pixels by.
+/// The features by which the denoiser compares pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DenoiserFeatures {
-    /// The mean albedo, where nothing is white, and the mean of the shading normals, where nothing has none; the geometric normal and
-    /// the position of the first sample that met something, 0 where none did. No uv.
+    /// The mean albedo, in which a miss is white, and the mean of the shading normals, in which it is 0; the geometric
+    /// normal and the position of the first sample with a hit, 0 if there is none. No uv.
     pub aovs: Aovs,
-    /// How many samples they are of.
+    /// Number of samples.
     pub samples: u64,
-    /// The share of them that met something: 0 … 1.
+    /// The fraction of them with a hit: 0 … 1.
     pub coverage: f32,
 }
 
-/// Beyond this a place's coordinate is cut: 2⁴⁰.
+/// Bound to which coordinates of positions are clamped: 2⁴⁰.
 const FARTHEST: f32 = 1_099_511_627_776.0;
 
 const TWO_TO_32: f64 = 4_294_967_296.0;
 const TWO_TO_64: f64 = TWO_TO_32 * TWO_TO_32;
 
-/// Sums over the samples of a pixel. Additions wrap, after no less than 2²³ of the greatest.
+/// Sums over the samples of a pixel. Additions wrap, after at least 2²³ of the largest values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct AovSums {
     /// Multiples of 2⁻³².
     albedo: [i64; 3],
     /// Multiples of 2⁻³².
     ns: [i64; 3],
-    /// How many were added.
+    /// Number of samples.
     samples: u64,
-    /// How many of them met something.
+    /// Number of samples with a hit.
     hits: u64,
-    /// The least number of a sample that met something; `u32::MAX` for none.
+    /// The least index of a sample with a hit; `u32::MAX` for none.
     first: u32,
-    /// The bits of that one's geometric normal and position.
+    /// The bits of the geometric normal and position of that sample.
     ng: [u32; 3],
     position: [u32; 3],
 }
 
-/// Sums for layers, of what the denoiser does not compare the means of.
+/// Sums for the AOVs of the picture, with those that the denoiser does not need.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct LayerSums {
     shared: AovSums,
@@ -113,7 +114,7 @@ fn merge_narrow(sums: &mut [i64; 3], others: [i64; 3]) {
 }
 
 impl AovSums {
-    /// Adds what a sample met, `None` for nothing; what is not finite counts as nothing.
+    /// Adds the first hit of a sample, `None` for a miss; one that is not finite counts as a miss.
     pub(super) fn add(&mut self, sample: u32, met: Option<&Aovs>) {
         self.samples = self.samples.saturating_add(1);
         let Some(aovs) = met.filter(|aovs| aovs.is_finite()) else { return };
@@ -136,7 +137,7 @@ impl AovSums {
         }
     }
 
-    /// What the denoiser compares; `None` where there are no samples.
+    /// The denoiser features; `None` where there are no samples.
     pub(super) fn features(&self) -> Option<DenoiserFeatures> {
         if self.samples == 0 {
             return None;
@@ -175,9 +176,9 @@ impl LayerSums {
         }
     }
 
-    /// The mean; `None` where no sample met anything. The albedo is over all samples (nothing is black), as the picture is; all
-    /// else is over those that met something, as pbrt's `gbuffer` film has it. A mean of normals is made of unit length again;
-    /// where they cancel, it is 0.
+    /// The mean; `None` where no sample has a hit. The albedo is over all samples (a miss is black), as the picture is;
+    /// all others are over the samples with a hit, as in pbrt's `gbuffer` film. A mean of normals is normalised; where
+    /// they cancel, it is 0.
     pub(super) fn mean(&self) -> Option<Aovs> {
         let AovSums { albedo, ns, samples, hits, .. } = self.shared;
         if hits == 0 {
@@ -194,7 +195,7 @@ impl LayerSums {
     }
 }
 
-/// The vector of unit length in this direction; 0 where there is none.
+/// The unit vector in this direction; 0 for the zero vector.
 fn unit(sums: [i64; 3]) -> [f32; 3] {
     let v = sums.map(|sum| sum as f64 / TWO_TO_32);
     let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -1,5 +1,4 @@
-//! The variance of what the sensor itself measures, where its channels are not X, Y and Z: for the layers, as pbrt-v4's `gbuffer`
-//! film has it.
+//! Variances in the sensor's channels, where they are not X, Y and Z: for the AOVs, as in pbrt-v4's `gbuffer` film.
 //!
 //! Sums of fixed-point numbers, as those of light. A pixel takes 112 bytes.
 
@@ -10,7 +9,7 @@ use super::{BRIGHTEST, TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square, un
 pub(super) struct ChannelSums {
     /// Multiples of 2⁻⁶⁴. Additions wrap.
     sums: [i128; 3],
-    /// Multiples of 2⁻⁴⁸. Additions stop at the end.
+    /// Multiples of 2⁻⁴⁸. Additions saturate.
     squares: [u128; 3],
     samples: u64,
 }
@@ -37,7 +36,7 @@ impl ChannelSums {
         self.samples = self.samples.saturating_add(add.samples);
     }
 
-    /// Of one sample; infinite with fewer than two.
+    /// The variance of one sample; infinite with fewer than two.
     pub(super) fn variance(&self) -> [f32; 3] {
         if self.samples < 2 {
             return [f32::INFINITY; 3];

@@ -1,25 +1,26 @@
-//! Firefly suppression: samples that outshine their pixel are spread over its neighbours.
+//! Firefly suppression: the excess of outliers is spread over the neighbouring pixels.
 //!
-//! A path that finds a small bright thing by chance makes its pixel far too bright (a firefly), while its neighbours miss
-//! that light. Cutting it off would darken the picture. Here the excess is spread over the pixels around, so that the sum over
-//! the picture stays what it was: noise is traded for blur where it is worst, and the mean is honest.
+//! A path that hits a small bright light by chance makes its pixel far too bright (a firefly), while its neighbours
+//! miss that light. Clamping it would darken the picture. Here the excess is spread over the pixels around, so that the
+//! sum over the picture is preserved: noise is traded for blur where it is worst.
 //!
-//! A pixel is a firefly if it is brighter than the median of its eight neighbours by more than three of their standard errors
-//! (their median), and by less than three of its own. What is bright for good (a light, a highlight) is so by many of its own
-//! standard errors, and stays. The excess above the median goes in equal parts to the 5 × 5 pixels around.
+//! A pixel is a firefly if it is brighter than the median of its eight neighbours by more than three of their standard
+//! errors (their median), and by less than three of its own. A pixel that is really bright (a light, a highlight) is so
+//! by many of its own standard errors, and stays. The excess above the median goes in equal parts to the 5 × 5 pixels
+//! around.
 
 use super::{Film, Picture};
 use lookfrom_scene::settings::PixelBounds;
 
-/// How many standard errors are too many to be chance, and few enough to be.
+/// Number of standard errors beyond which a difference is significant.
 const STANDARD_ERRORS: f64 = 3.0;
 
-/// Pixels to each side that share an excess.
+/// The radius in pixels over which an excess is spread.
 const RADIUS: u32 = 2;
 
 impl Film {
-    /// The means of all pixels, as [`Film::picture`] has them, with the excess of fireflies spread over their
-    /// surroundings. The sum over the picture is the same but for rounding.
+    /// The means of all pixels, as in [`Film::picture`], with the excess of fireflies spread over their neighbours. The
+    /// sum over the picture is the same up to rounding.
     pub fn picture_without_fireflies(&self) -> Picture {
         let mut picture = self.picture();
         let area = self.area();
@@ -54,7 +55,7 @@ impl Film {
         picture
     }
 
-    /// The share of its light that a pixel keeps: 1 unless it is a firefly.
+    /// The fraction of its light that a pixel keeps: 1 unless it is a firefly.
     fn kept(&self, x: u32, y: u32) -> f64 {
         let at = |x, y| {
             let pixel = self.tile.pixel(x, y)?;
@@ -69,7 +70,7 @@ impl Film {
             .unzip();
         let (Some(median), Some(error)) = (median(&mut lights), median(&mut errors)) else { return 1.0 };
         let excess = own - median;
-        // One sample a pixel says nothing of its error; infinities compare as they should.
+        // The error of a pixel with one sample is infinite; infinities compare as they should.
         let firefly = own > 0.0
             && median >= 0.0
             && excess > STANDARD_ERRORS * error
@@ -88,7 +89,7 @@ fn around(area: PixelBounds, x: u32, y: u32, radius: u32) -> PixelBounds {
     }
 }
 
-/// The middle one, or the lower of the two.
+/// The median; the lower of the two for an even number.
 fn median(values: &mut [f64]) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len().checked_sub(1)? / 2).copied()

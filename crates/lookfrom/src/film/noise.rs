@@ -1,13 +1,13 @@
 //! Noise estimates of parts of a picture.
 //!
-//! A pixel's *relative error* is the standard error of its luminance over its luminance plus a tenth of the picture's mean:
-//! what is much darker than the rest need not be as clean for its own sake. An area's error is the mean over its pixels. The
-//! standard error is taken as if the samples were independent (well-spread ones have less noise than it says).
+//! A pixel's *relative error* is the standard error of its luminance over its luminance plus a tenth of the picture's
+//! mean: dark parts of the picture need not be as clean relative to themselves. An area's error is the mean over its
+//! pixels. The standard error is estimated as if the samples were independent (stratified ones have less noise).
 
 use super::{Film, Pixel, xyz};
 use lookfrom_scene::settings::PixelBounds;
 
-/// How much of the picture's mean is added to a pixel's luminance before its error is compared with it.
+/// The fraction of the picture's mean luminance that is added to a pixel's luminance in its relative error.
 const SHARE_OF_MEAN: f64 = 0.1;
 
 impl Film {
@@ -18,9 +18,9 @@ impl Film {
         if pixels.is_empty() { 0.0 } else { sum / pixels.len() as f64 }
     }
 
-    /// The relative error of a part of the picture (what lies outside of [`Film::area`] is left out), where the mean
-    /// luminance of the whole is `mean`: see the file's head. Infinite where a pixel has fewer than two samples, 0 for
-    /// an empty area or a black picture.
+    /// The relative error of a part of the picture (pixels outside of [`Film::area`] are left out), where the mean
+    /// luminance of the whole is `mean`: see the head of this file. Infinite if a pixel has fewer than two samples, 0
+    /// for an empty area or a black picture.
     pub fn relative_error(&self, area: PixelBounds, mean: f64) -> f64 {
         let PixelBounds { x0, y0, x1, y1 } = super::common(self.tile.area, area);
         let mut sum = 0.0;
@@ -38,12 +38,12 @@ impl Film {
 }
 
 impl Pixel {
-    /// Of the mean.
+    /// Luminance of the mean.
     pub(super) fn luminance(&self) -> f64 {
         xyz(self.mean().map(f64::from))[1]
     }
 
-    /// Of the mean's luminance.
+    /// Standard error of the mean's luminance.
     pub(super) fn standard_error(&self) -> f64 {
         (self.variance()[1] / self.samples.max(1) as f64).sqrt()
     }

@@ -11,7 +11,7 @@ pub(super) const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 pub(super) struct Pixel {
     /// Multiples of 2⁻⁶⁴. Additions wrap, which keeps them independent of their order even where they overflow.
     pub(super) sums: [i128; 3],
-    /// Multiples of 2⁻⁴⁸. Additions stop at the end, which is independent of their order, too, where nothing is negative.
+    /// Multiples of 2⁻⁴⁸. Additions saturate, which is independent of their order, too, since nothing is negative.
     pub(super) squares: [u128; 3],
     pub(super) samples: u64,
 }
@@ -35,7 +35,8 @@ impl Pixel {
         self.sums.map(|sum| (sum as f64 / scale) as f32)
     }
 
-    /// Of one sample, in X, Y and Z: the mean of the squares less the square of the mean, times n / (n − 1).
+    /// The variance of one sample, in X, Y and Z: the mean of the squares less the square of the mean, times n / (n −
+    /// 1).
     pub(super) fn variance(&self) -> [f64; 3] {
         if self.samples < 2 {
             return [f64::INFINITY; 3];
@@ -48,23 +49,23 @@ impl Pixel {
     }
 }
 
-/// Of one of `n` > 1 samples, by their mean and that of their squares.
+/// The unbiased variance of one of `n` > 1 samples, by their mean and that of their squares.
 pub(super) fn unbiased_variance(n: f64, mean: f64, mean_of_squares: f64) -> f64 {
-    // Rounding leaves a little of equal samples, on either side of zero.
+    // For equal samples rounding leaves a small value of either sign.
     (mean_of_squares - mean * mean).max(0.0) * (n / (n - 1.0))
 }
 
-/// The square of a finite number, rounded to f64, as a multiple of 2⁻⁴⁸; at most the greatest there is.
+/// The square of a finite number, rounded to f64, as a multiple of 2⁻⁴⁸; saturates.
 pub(super) fn fixed_point_square(value: f64) -> u128 {
     let square = value * value * TWO_TO_48;
-    // The cast cuts at both ends; nearly always 64 bits do, and they take a fraction of the time.
+    // The cast saturates; 64 bits nearly always suffice, and take a fraction of the time.
     if square < TWO_TO_63 { u128::from(square as u64) } else { square as u128 }
 }
 
-/// A finite number as a multiple of 2⁻⁶⁴, cut towards zero.
+/// A finite number as a multiple of 2⁻⁶⁴, truncated towards zero.
 pub(super) fn fixed_point(light: f32) -> i128 {
-    // An f32 in f64 can be multiplied by a power of two exactly. From 2⁻²⁴ on it is a whole multiple of 2⁻⁴⁷: then, which is
-    // nearly always, 64 bits do, and they take a fraction of the time.
+    // An f32 in f64 can be multiplied by a power of two exactly. From 2⁻²⁴ on it is a whole multiple of 2⁻⁴⁷: then,
+    // which is nearly always, 64 bits suffice, and take a fraction of the time.
     let light = f64::from(light.clamp(-BRIGHTEST, BRIGHTEST));
     let upper = light * TWO_TO_47;
     let cut = upper as i64;

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 const SIZE: u32 = 4;
 
-/// Any f32 whatever, by its exponent: among them zeros, denormals, infinities and NaNs.
+/// Any f32, by its exponent: among them zeros, denormals, infinities and NaNs.
 fn any_light() -> impl Strategy<Value = f32> {
     (0_u32..256, 0_u32..1 << 23, any::<bool>()).prop_map(|(exponent, fraction, negative)| {
         f32::from_bits(u32::from(negative) << 31 | exponent << 23 | fraction)
@@ -27,7 +27,7 @@ fn film_of<'a>(samples: impl IntoIterator<Item = &'a Sample>) -> Film {
     film
 }
 
-/// The same, for numbers whose exact value is wanted: whole multiples of 2⁻⁶⁴ from the bits of an f32, by shifting.
+/// The exact reference: whole multiples of 2⁻⁶⁴ from the bits of an f32, by shifting.
 fn slow_fixed_point(light: f32) -> i128 {
     let bits = light.to_bits();
     let exponent = (bits >> 23 & 0xff) as i32;
@@ -66,7 +66,7 @@ proptest! {
         exponent in -20..20_i32,
         samples in prop::collection::vec((-1.0..1.0_f64, 0.0..1.0_f64, -60..0_i32), 2..40),
     ) {
-        // One scale a pixel, and numbers of any size below it.
+        // One scale per pixel, and numbers of any size below it.
         let scale = 2_f64.powi(exponent);
         let mut film = Film::new(1, 1, None).unwrap();
         let lights: Vec<[f32; 3]> = samples
@@ -82,7 +82,7 @@ proptest! {
             let mean = values().sum::<f64>() / n;
             let expected = values().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
             let found = f64::from(film.variance(0, 0)[channel]);
-            // What the squares are cut at, and what the difference of two rounded numbers loses.
+            // The truncation of the squares, and the cancellation in the difference of two rounded numbers.
             let allowed = 1e-6 * expected + 2_f64.powi(-46) + 1e-13 * scale * scale;
             prop_assert!((found - expected).abs() <= allowed, "{channel}: {found} {expected}");
         }
@@ -91,7 +91,7 @@ proptest! {
     #[test]
     fn the_order_does_not_matter(samples in prop::collection::vec(any_sample(), 0..60), seed: u64) {
         let mut other = samples.clone();
-        // Shuffle, as Fisher and Yates do.
+        // Fisher–Yates shuffle.
         for i in (1..other.len()).rev() {
             other.swap(i, mix(seed.wrapping_add(i as u64)) as usize % (i + 1));
         }
@@ -101,7 +101,7 @@ proptest! {
     #[test]
     fn the_split_does_not_matter(samples in prop::collection::vec(any_sample(), 0..60), seed: u64) {
         let whole = film_of(&samples);
-        // Deal the samples to five films, and merge them backward.
+        // Distribute the samples over five films, and merge them in reverse order.
         let dealt = |hand: u64| samples.iter().enumerate()
             .filter(move |&(i, _)| mix(seed.wrapping_add(i as u64)) % 5 == hand).map(|(_, sample)| sample);
         let mut merged = Film::new(SIZE, SIZE, None).unwrap();
@@ -202,7 +202,7 @@ fn a_crop_holds_its_part_of_the_whole_picture() {
         assert_eq!(pixel, if i == 2 * 4 + 3 { [1.0, 2.0, 3.0] } else { [0.0; 3] });
     }
     assert_eq!((film.mean(0, 0), film.mean(9, 9)), ([0.0; 3], [0.0; 3]));
-    // A crop beside the picture, or one that ends before it begins, holds nothing.
+    // A crop outside of the picture, or one that ends before it begins, is empty.
     for (x0, y0, x1, y1) in [(7, 0, 9, 4), (0, 7, 4, 9), (3, 0, 1, 4), (4, 4, 4, 4)] {
         let mut film = Film::new(4, 4, Some(PixelBounds { x0, y0, x1, y1 })).unwrap();
         film.add_tile(&FilmTile::new(PixelBounds { x0, y0, x1, y1 }).unwrap());
@@ -252,7 +252,7 @@ fn the_variance_of_little_and_of_much() {
         film.add(0, 0, sample, [3.0; 3]);
     }
     assert!(film.variance(0, 0).iter().all(|&variance| variance < 1e-12), "{:?}", film.variance(0, 0));
-    // Beyond the end the squares stay there, whatever comes.
+    // Saturated squares stay saturated.
     for sample in 0..100 {
         film.add(1, 0, sample, [BRIGHTEST, 1.0, -BRIGHTEST]);
     }
@@ -295,7 +295,7 @@ fn layers_are_means_whatever_the_order() {
             tile.add_first_hit(0, 0, k, Some(&of(k as f32)));
             film.add_tile(&tile);
         }
-        // One sample more, whose position is no number: as one that meets nothing.
+        // One more sample, whose position is NaN: it counts as a miss.
         film.tile.add_first_hit(0, 0, 3, Some(&Aovs { position: [f32::NAN; 3], ..of(1.0) }));
     }
     assert!(films[0] == films[1]);
@@ -303,7 +303,7 @@ fn layers_are_means_whatever_the_order() {
     assert_eq!(mean.albedo, [0.375, 0.1875, 0.0]);
     assert_eq!((mean.position, mean.ng, mean.uv), ([1e3, -1.0, 7.0], [0.0, 0.0, -1.0], [1e-3, 0.5]));
     assert_eq!((films[0].aovs(1, 0), films[0].aovs(9, 9)), (None, None));
-    // A mean of normals is of unit length again, and 0 where they cancel.
+    // A mean of normals is normalised, and 0 where they cancel.
     let mut tile = FilmTile::with_layers(whole, Layers::Geometry).unwrap();
     tile.add_first_hit(0, 0, 0, Some(&Aovs { ns: [1.0, 0.0, 0.0], ..of(0.0) }));
     let other = Aovs { ng: [0.0, 0.0, 1.0], ns: [0.0, 1.0, 0.0], ..of(0.0) };
@@ -313,7 +313,7 @@ fn layers_are_means_whatever_the_order() {
     let mean = film.aovs(0, 0).unwrap();
     let diagonal = std::f32::consts::FRAC_1_SQRT_2;
     assert_eq!((mean.ng, mean.ns), ([0.0; 3], [diagonal, diagonal, 0.0]));
-    // Without room for them nothing happens.
+    // Without memory for them nothing happens.
     let mut plain = FilmTile::new(whole).unwrap();
     plain.add_first_hit(0, 0, 0, Some(&of(1.0)));
     assert!(!plain.has_layers() && plain == FilmTile::new(whole).unwrap());
@@ -329,7 +329,7 @@ fn fireflies_are_spread_and_the_sum_is_kept() {
     for (x, y) in (0..81).map(|i| (i % 9, i / 9)) {
         for sample in 0..16 {
             let grain = 1.0 + 0.1 * (mix(u64::from((y * 9 + x) * 16 + sample)) % 1000) as f32 * 1e-3;
-            // A light that is always seen, and one sample that found it by chance.
+            // A light that is always visible, and one sample that hit it by chance.
             let lamp = if (x, y) == (7, 7) { 100.0 } else { 0.0 };
             let chance = if (x, y, sample) == (2, 3, 5) { 4000.0 } else { 0.0 };
             film.add(x, y, sample, [grain + lamp + chance, grain + lamp, grain + lamp + 0.5 * chance]);
@@ -384,7 +384,7 @@ fn channels_have_their_variance() {
         assert!((found - expected).abs() < 1e-6, "{found} ≠ {expected}");
     }
     assert_eq!(film.channel_variance(1, 0), Some([f32::INFINITY; 3]));
-    // X, Y and Z have their variance already, and without layers nobody asks.
+    // X, Y and Z have their variance already, and without AOVs it is not needed.
     for (layers, sensor) in [(Layers::Geometry, Sensor::default()), (Layers::None, sensor)] {
         let image = ImageSettings { layers, sensor, ..ImageSettings::default() };
         assert_eq!(Film::for_image(&image).unwrap().channel_variance(0, 0), None);

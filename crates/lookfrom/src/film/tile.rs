@@ -15,15 +15,15 @@ use super::{Aovs, BRIGHTEST, FEATURE_SAMPLES, MOST_PIXELS, SampleId, common, too
 pub struct FilmTile {
     pub(super) area: PixelBounds,
     pub(super) pixels: Vec<Pixel>,
-    /// As many as there are pixels, or none.
+    /// One per pixel, or none.
     pub(super) layers: Vec<LayerSums>,
-    /// As many as there are pixels, or none.
+    /// One per pixel, or none.
     pub(super) channels: Vec<ChannelSums>,
-    /// As many as there are pixels, or none.
+    /// One per pixel, or none.
     pub(super) features: Vec<AovSums>,
-    /// Sums of how much samples hide of what is behind, in multiples of 2⁻⁶⁴: as many as there are pixels, or none.
+    /// Sums of alpha, in multiples of 2⁻⁶⁴: one per pixel, or none.
     pub(super) alphas: Vec<i128>,
-    /// Sums of their squares, in multiples of 2⁻⁴⁸: as many as there are pixels, or none.
+    /// Sums of their squares, in multiples of 2⁻⁴⁸: one per pixel, or none.
     pub(super) alpha_squares: Vec<u128>,
     pub(super) dropped: u64,
     pub(super) first_dropped: Option<SampleId>,
@@ -37,12 +37,12 @@ impl FilmTile {
         Self::with_layers(area, Layers::None)
     }
 
-    /// As [`FilmTile::new`], with room for what the layers need besides light.
+    /// As [`FilmTile::new`], with memory for AOVs.
     pub fn with_layers(area: PixelBounds, layers: Layers) -> Result<Self> {
         Self::for_image(area, &ImageSettings { layers, ..ImageSettings::default() })
     }
 
-    /// As [`FilmTile::new`], with room for all that a picture is asked for: layers, alpha.
+    /// As [`FilmTile::new`], with memory for everything that the settings need: AOVs, alpha.
     ///
     /// # Errors
     /// `Limit` as [`FilmTile::new`].
@@ -71,17 +71,17 @@ impl FilmTile {
         Ok(Self { area, pixels, layers, channels, features, alphas, alpha_squares, dropped, first_dropped })
     }
 
-    /// Whether there is room for layers.
+    /// Whether the tile has AOVs.
     pub fn has_layers(&self) -> bool {
         !self.layers.is_empty()
     }
 
-    /// Whether there is room for what the camera's ray of a sample met: whether [`FilmTile::add_first_hit`] does anything.
+    /// Whether the first hit of a sample is needed: whether [`FilmTile::add_first_hit`] does anything.
     pub fn wants_first_hit(&self, sample: u32) -> bool {
         self.has_layers() || !self.features.is_empty() && sample < FEATURE_SAMPLES
     }
 
-    /// Whether there is room for what the sensor measures: whether [`FilmTile::add_channels`] does anything.
+    /// Whether the sensor's channels are needed: whether [`FilmTile::add_channels`] does anything.
     pub fn has_channels(&self) -> bool {
         !self.channels.is_empty()
     }
@@ -93,9 +93,9 @@ impl FilmTile {
 
     /// Adds the light of one sample to its pixel.
     ///
-    /// Each of red, green and blue is cut to ±[`BRIGHTEST`], then added exactly if its magnitude is at least 2⁻⁴⁰, else
-    /// cut towards zero at 2⁻⁶⁴. A sample that is not finite in all three is dropped, counted and remembered by its
-    /// address.
+    /// Each of red, green and blue is clamped to ±[`BRIGHTEST`], then added exactly if its magnitude is at least 2⁻⁴⁰,
+    /// else truncated towards zero at 2⁻⁶⁴. A sample that is not finite in all three is dropped and counted, and its id
+    /// is kept.
     ///
     /// # Panics
     /// If the pixel is outside of the tile.
@@ -103,8 +103,8 @@ impl FilmTile {
         self.add_with_alpha(x, y, sample, rgb, 1.0);
     }
 
-    /// As [`FilmTile::add`], and adds how much the sample hides of what is behind, where there is room for that: a sample
-    /// for which this is not finite is dropped as well.
+    /// As [`FilmTile::add`], and adds the sample's alpha, if the tile has alpha: a sample whose alpha is not finite is
+    /// dropped as well.
     ///
     /// # Panics
     /// If the pixel is outside of the tile.
@@ -132,8 +132,8 @@ impl FilmTile {
         }
     }
 
-    /// Adds what the camera's ray of one sample met, `None` for nothing, where there is room for it: to the layers, and of the
-    /// first [`FEATURE_SAMPLES`] of a pixel to what the denoiser compares. What is not finite counts as nothing.
+    /// Adds the first hit of one sample, `None` for a miss, where there is memory for it: to the AOVs, and for the
+    /// first [`FEATURE_SAMPLES`] of a pixel to the denoiser features. A hit that is not finite counts as a miss.
     ///
     /// # Panics
     /// If the pixel is outside of the tile.
@@ -149,7 +149,7 @@ impl FilmTile {
         }
     }
 
-    /// Adds what the sensor's channels measured of one sample, where there is room for it and all is finite.
+    /// Adds the sensor's channels of one sample, where there is memory for them and all are finite.
     ///
     /// # Panics
     /// If the pixel is outside of the tile.
@@ -160,7 +160,7 @@ impl FilmTile {
         }
     }
 
-    /// Adds what another tile holds within the area of this one.
+    /// Adds the sums of another tile within the area of this one.
     pub(super) fn merge(&mut self, other: &Self) {
         let PixelBounds { x0, y0, x1, y1 } = common(self.area, other.area);
         for y in y0..y1 {
@@ -197,7 +197,7 @@ impl FilmTile {
         index.unwrap_or_else(|| panic!("pixel ({x}, {y}) is outside of the tile {:?}", self.area))
     }
 
-    /// Where the pixels of columns `from` to before `to` of row `y` are. They must be inside.
+    /// The indices of the pixels of columns `from` to `to` (exclusive) of row `y`. They must be inside.
     pub(super) fn row(&self, y: u32, from: u32, to: u32) -> Range<usize> {
         let PixelBounds { x0, y0, x1, .. } = self.area;
         let start = (y - y0) as usize * (x1 - x0) as usize;
@@ -205,14 +205,14 @@ impl FilmTile {
     }
 }
 
-/// Adds some of `theirs` to as many of `mine`, unless one of the two films has no room for them.
+/// Adds a range of `theirs` to one of `mine`, unless one of the two films has none.
 fn merge_row<T>(mine: &mut [T], theirs: &[T], [to, from]: &[Range<usize>; 2], add: impl Fn(&mut T, &T)) {
     if let (Some(mine), Some(theirs)) = (mine.get_mut(to.clone()), theirs.get(from.clone())) {
         mine.iter_mut().zip(theirs).for_each(|(mine, theirs)| add(mine, theirs));
     }
 }
 
-/// As many zeros as there is memory for.
+/// `count` zeros; an error if there is no memory for them.
 fn empty<T: Clone + Default>(count: u64) -> Result<Vec<T>> {
     let mut values = Vec::new();
     if values.try_reserve_exact(count as usize).is_err() {

@@ -1,4 +1,4 @@
-//! From the pixel to the world: each matrix of the camera, each product, each point.
+//! Report on the camera: each matrix from the pixel to the world, each product, each point.
 
 use glam::{DMat4, DVec4};
 
@@ -17,13 +17,13 @@ pub(super) fn camera_steps(renderer: &Renderer, id: SampleId) -> CameraSteps {
     let steps = vec![
         step(
             "T1",
-            "the middle of the image to the axis, the image plane to the distance d",
+            "the centre of the image to the axis, the image plane to the distance d",
             &camera.t1,
             ray.after_t1,
         ),
-        step("S2", "pixels to lengths; x turned round, since u points to the left", &camera.s2, ray.after_s2),
-        step("R3", "view to world, around the eye: [u v w]", &camera.r3, ray.after_r3),
-        step("T4", "the eye to lookfrom", &camera.t4, ray.p_world.extend(1.0)),
+        step("S2", "pixels to lengths; x flipped, since u points to the left", &camera.s2, ray.after_s2),
+        step("R3", "view to world, about the camera: [u v w]", &camera.r3, ray.after_r3),
+        step("T4", "the camera to lookfrom", &camera.t4, ray.p_world.extend(1.0)),
     ];
     let [u, v, w] =
         [camera.r3.x_axis, camera.r3.y_axis, camera.r3.z_axis].map(|axis| axis.truncate().to_array());

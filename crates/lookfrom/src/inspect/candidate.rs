@@ -1,7 +1,7 @@
 //! Candidates of an intersection test, with each number of the test in f32 and f64.
 //!
-//! The numbers are those of the kernel's slow twin ([`lookfrom_bvh::reference`]) for the very ray that was traced: the
-//! same inputs, computed once in f32 and once in f64, so that a difference is what the arithmetic lost.
+//! The numbers are those of the kernel's reference implementation ([`lookfrom_bvh::reference`]) for the ray that was
+//! traced: the same inputs, computed once in f32 and once in f64, so that a difference shows the loss of precision.
 
 use glam::Vec3;
 use lookfrom_bvh::reference::{Cramer, Quadratic, Rejection, Root, cramer, sphere};
@@ -11,19 +11,19 @@ use serde::Serialize;
 use crate::primitive::{Mesh, Primitives};
 use crate::world::World;
 
-/// A ray that looks at more primitives than this has only so many reported.
+/// Maximum number of reported primitives per ray.
 const MOST_CANDIDATES: usize = 10_000;
 
 /// A primitive that a ray was tested against.
 #[derive(Clone, Debug, Serialize)]
 pub struct Candidate {
-    /// Which primitive of which shape.
+    /// The primitive and its shape.
     pub name: String,
-    /// That it was hit, or why not.
+    /// The result of the test, with the reason for a miss.
     pub verdict: String,
-    /// Whether it is what the ray met.
+    /// Whether it is the ray's closest hit.
     pub is_nearest: bool,
-    /// The numbers.
+    /// The numbers of the test.
     pub test: Test,
 }
 
@@ -33,15 +33,15 @@ pub struct Candidate {
 pub enum Test {
     /// Cramer's rule: `D D1 D2 D3 α β γ t`.
     Triangle {
-        /// By name.
+        /// The numbers, by name.
         numbers: Vec<(&'static str, Number)>,
     },
     /// The quadratic equation `A t² + 2 B t + C = 0`.
     Sphere {
-        /// By name.
+        /// The numbers, by name.
         numbers: Vec<(&'static str, Number)>,
     },
-    /// Another form, without numbers in the notes.
+    /// Another primitive, without numbers in the notes.
     Other,
 }
 
@@ -52,7 +52,7 @@ pub struct Number {
     pub f32: f32,
     /// In f64.
     pub f64: f64,
-    /// How many leading bits agree, of the 24 that f32 has.
+    /// Number of leading bits that agree, of the 24 that f32 has.
     pub bits: u32,
 }
 
@@ -62,7 +62,7 @@ impl Number {
     }
 }
 
-/// How many leading bits of `approximate` are right: 24 when it is `exact` rounded to f32, 0 when not even the first is.
+/// Number of correct leading bits of `approximate`: 24 when it is `exact` rounded to f32, 0 when not even the first is.
 fn matching_bits(approximate: f32, exact: f64) -> u32 {
     if approximate == exact as f32 || (approximate.is_nan() && exact.is_nan()) {
         return f32::MANTISSA_DIGITS;
@@ -73,14 +73,14 @@ fn matching_bits(approximate: f32, exact: f64) -> u32 {
     if bits > 0.0 { (bits as u32).min(f32::MANTISSA_DIGITS - 1) } else { 0 }
 }
 
-/// Every primitive that the kernel tests `ray` against, in its order.
+/// Every primitive that the kernel tests `ray` against, in order.
 pub(super) fn candidates(world: &World, ray: &Ray, nearest: &Hit) -> Vec<Candidate> {
     let mut tested = Tested(Vec::new());
     world.bvh.query().observer(&mut tested).closest_hit(ray);
     tested.0.into_iter().map(|ids| candidate(world, ray, ids, nearest)).collect()
 }
 
-/// Listens to the kernel.
+/// The observer that collects the candidates.
 struct Tested(Vec<[u32; 3]>);
 
 impl Observer for Tested {
@@ -99,7 +99,7 @@ fn candidate(
     nearest: &Hit,
 ) -> Candidate {
     let (primitives, placed) = world.primitives(&Hit { instance, geometry, primitive, ..Hit::MISS });
-    // In an instance the test happens in the object's space, with the same t.
+    // In an instance the test is done in object space, with the same t.
     let ray = match placed {
         None => *ray,
         Some(placed) => {

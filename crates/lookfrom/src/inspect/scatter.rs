@@ -1,7 +1,7 @@
 //! Reports on scattering: BSDFs, light samples and BSDF samples with their weights.
 //!
-//! Densities are over solid angle, per steradian. β is the path throughput, p and q are the two densities with which the two
-//! ways find a light.
+//! Densities are over solid angle, per steradian. β is the path throughput; p is the density of the technique that
+//! found a light, q that of the other one.
 
 use serde::Serialize;
 
@@ -13,106 +13,106 @@ use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::material::Shading;
 
-/// A scattering function at a point.
+/// A BSDF at a point.
 #[derive(Clone, Debug, Serialize)]
 pub struct ScatteringReport {
-    /// Which one.
+    /// The kind of BSDF.
     pub kind: &'static str,
-    /// What it does, in words.
+    /// A description.
     pub does: &'static str,
-    /// Its numbers by name: one, one an axis, or one a lane.
+    /// Its parameters by name: one number, one per axis, or one per lane.
     pub numbers: Vec<(&'static str, Vec<f32>)>,
-    /// The kinds of scattering that it has, in words.
+    /// Its lobes, in words.
     pub lobes: String,
-    /// The shading normal to the outside, as normal and bump maps bend it.
+    /// The outward shading normal, with normal and bump maps.
     pub n: [f32; 3],
 }
 
-/// A light that a path's own direction found: `β L w` is added.
+/// A light that a path hit: `β L w` is added.
 #[derive(Clone, Debug, Serialize)]
 pub struct FoundReport {
-    /// Its number.
+    /// Index of the light.
     pub index: u32,
     /// Its name.
     pub light: String,
-    /// L: what it sends this way.
+    /// L: the radiance toward the ray's origin.
     pub radiance: Amount,
-    /// q: the density with which light sampling would have chosen the direction, the choice of the light included; 0 where
-    /// it could not. (p is the ray's `pdf`.)
+    /// q: the density of the direction in light sampling, the choice of the light included; 0 if light sampling cannot
+    /// find it. (p is the ray's `pdf`.)
     pub light_pdf: f32,
-    /// w: the MIS weight of this way of finding the light, `p² / (p² + q²)` where both can.
+    /// w: the MIS weight, `p² / (p² + q²)` where both techniques can find the light.
     pub weight: f32,
-    /// What was added to the sample.
+    /// The contribution to the sample.
     pub added: Amount,
 }
 
-/// The one light that was sampled at a surface: `β f cos L w / p` is added, if the shadow ray reaches it.
+/// The light that was sampled at a surface (next-event estimation): `β f cos L w / p` is added, if it is unoccluded.
 #[derive(Clone, Debug, Serialize)]
-pub struct AskedReport {
-    /// Its number.
+pub struct LightSampleReport {
+    /// Index of the light.
     pub index: u32,
     /// Its name.
     pub light: String,
-    /// The probability of having chosen it among all lights.
+    /// The probability of choosing it among all lights.
     pub probability: f32,
-    /// What it answered; `None` when no light can come from there.
-    pub answer: Option<AnswerReport>,
-    /// The shadow ray; `None` where it would bring nothing.
+    /// The sampled direction; `None` when the light does not illuminate this point.
+    pub sample: Option<SampledDirectionReport>,
+    /// The shadow ray; `None` where its contribution would be 0.
     pub shadow: Option<ShadowReport>,
-    /// What was added to the sample.
+    /// The contribution to the sample.
     pub added: Amount,
 }
 
-/// A light's answer.
+/// A direction to a light that was sampled.
 #[derive(Clone, Debug, Serialize)]
-pub struct AnswerReport {
-    /// Toward it, unit length.
+pub struct SampledDirectionReport {
+    /// Toward the light, unit length.
     pub wi: [f32; 3],
-    /// The density with which the light chose that direction; 1 where there is only one.
+    /// The density of the direction for this light; 1 where there is only one.
     pub light_pdf: f32,
-    /// p: the density of the whole choice, `probability · light_pdf`.
+    /// p: the density with the choice of the light, `probability · light_pdf`.
     pub pdf: f32,
-    /// L: what arrives if nothing is in the way.
+    /// L: the unoccluded incident radiance.
     pub arrives: Amount,
-    /// The scattering function times the cosine; black where the material sends nothing on.
+    /// The BSDF times the cosine; black where it does not scatter this light.
     pub f_cos: Factor,
-    /// q: the density with which the material would have chosen the direction; `None` where nothing else can find the
-    /// light, or nothing else is weighed against.
+    /// q: the density of the direction in BSDF sampling; `None` for a delta light, and where light is not weighted by
+    /// MIS.
     pub bsdf_pdf: Option<f32>,
-    /// w: the MIS weight of this way of finding the light, `p² / (p² + q²)` where both can.
+    /// w: the MIS weight, `p² / (p² + q²)` where both techniques can find the light.
     pub weight: f32,
 }
 
-/// How a path goes on: β becomes `β f cos / pdf`, over the roulette's probability.
+/// The continuation of a path: β becomes `β f cos / pdf`, divided by the survival probability of Russian roulette.
 #[derive(Clone, Debug, Serialize)]
 pub struct BounceReport {
-    /// What kind of scattering was chosen, in words.
+    /// The sampled lobe, in words.
     pub lobe: String,
     /// The direction, unit length.
     pub wi: [f32; 3],
-    /// The scattering function (for mirrors and smooth glass with the factor of the delta function that `pdf` has, too).
+    /// The BSDF (for specular lobes the factor of the same delta function as in `pdf`).
     pub f: Factor,
-    /// The cosine of the direction to the shading normal, without its sign.
+    /// Absolute cosine of the direction and the shading normal.
     pub cos: f32,
-    /// The density of the choice; for mirrors and smooth glass a probability.
+    /// The density of the direction; for specular lobes a probability.
     pub pdf: f32,
-    /// Whether `f` and `pdf` are estimates of which only the ratio means anything.
+    /// Whether `f` and `pdf` are estimates of which only the ratio is meaningful.
     pub pdf_is_proportional: bool,
-    /// The index of refraction beyond the surface over the one before it, where light was bent; else 1.
+    /// Relative index of refraction, beyond the surface over before it, where light was refracted; else 1.
     pub eta: f32,
     /// β before.
     pub throughput_before: Factor,
     /// `β f cos / pdf`.
     pub throughput_after: Factor,
-    /// Russian roulette's probability of going on.
+    /// The survival probability of Russian roulette.
     pub survival: f32,
-    /// Whether it goes on.
+    /// Whether the path goes on.
     pub survives: bool,
     /// β of the next ray: `throughput_after / survival`; `None` where there is none.
     pub next_throughput: Option<Factor>,
 }
 
-/// A scattering function in words and numbers; `factor` keeps the lanes that mean something.
+/// The report on a BSDF; `factor` keeps the lanes that are in use.
 pub(super) fn scattering(shading: &Shading, factor: impl Fn(Spectrum) -> Factor) -> ScatteringReport {
     let alpha = |roughness: TrowbridgeReitz| ("alpha", vec![roughness.alpha_x, roughness.alpha_y]);
     let metal =
@@ -128,38 +128,34 @@ pub(super) fn scattering(shading: &Shading, factor: impl Fn(Spectrum) -> Factor)
     let (kind, does, numbers) = match &shading.bsdf {
         Bsdf::Diffuse(bsdf) => (
             "diffuse",
-            "matte: equally bright from all sides, f = reflectance / π",
+            "Lambertian: equally bright from all directions, f = reflectance / π",
             vec![("reflectance", factor(bsdf.reflectance))],
         ),
         Bsdf::DiffuseTransmission(bsdf) => (
             "diffuse transmission",
-            "matte on both sides, like paper: f = reflectance / π or transmittance / π",
+            "Lambertian on both sides, like paper: f = reflectance / π or transmittance / π",
             vec![("reflectance", factor(bsdf.reflectance)), ("transmittance", factor(bsdf.transmittance))],
         ),
         Bsdf::Conductor(bsdf) if bsdf.roughness.is_smooth() => {
-            ("conductor", "smooth metal: a mirror, tinted by Fresnel's equations", metal(bsdf))
+            ("conductor", "smooth metal: specular reflection, tinted by Fresnel's equations", metal(bsdf))
         }
-        Bsdf::Conductor(bsdf) => {
-            ("conductor", "rough metal: many small mirrors, their slopes spread by alpha", metal(bsdf))
-        }
+        Bsdf::Conductor(bsdf) => ("conductor", "rough metal: microfacets of roughness alpha", metal(bsdf)),
         Bsdf::Dielectric(bsdf) => (
             "dielectric",
             match bsdf.roughness.is_smooth() {
-                true => "smooth glass: mirrors and refracts; Fresnel's equations say how much of each",
-                false => {
-                    "rough glass: many small facets that mirror and refract, their slopes spread by alpha"
-                }
+                true => "smooth glass: reflects and refracts, in the ratio of Fresnel's equations",
+                false => "rough glass: microfacets of roughness alpha that reflect and refract",
             },
             vec![("eta", vec![bsdf.eta]), alpha(bsdf.roughness)],
         ),
         Bsdf::ThinDielectric(bsdf) => (
             "thin dielectric",
-            "a thin pane: mirrors, or lets light straight through",
+            "a thin pane: reflects light, or transmits it straight on",
             vec![("eta", vec![bsdf.eta])],
         ),
         Bsdf::CoatedDiffuse(bsdf) => (
             "coated diffuse",
-            "matte under a clear coat: light walks at random between the two",
+            "diffuse under a clear coat: a random walk between the two layers",
             [
                 coat(bsdf.coat.eta, bsdf.coat.roughness, bsdf.thickness, bsdf.albedo),
                 vec![("reflectance", factor(bsdf.base.reflectance))],
@@ -168,13 +164,13 @@ pub(super) fn scattering(shading: &Shading, factor: impl Fn(Spectrum) -> Factor)
         ),
         Bsdf::CoatedConductor(bsdf) => (
             "coated conductor",
-            "metal under a clear coat: light walks at random between the two",
+            "metal under a clear coat: a random walk between the two layers",
             [coat(bsdf.coat.eta, bsdf.coat.roughness, bsdf.thickness, bsdf.albedo), metal(&bsdf.base)]
                 .concat(),
         ),
         Bsdf::Whitted(bsdf) => (
             "whitted",
-            "the coefficients of Whitted's formula as shares of light",
+            "the coefficients of Whitted's formula as a BSDF",
             vec![
                 ("k_d", factor(bsdf.diffuse)),
                 ("k_s", factor(bsdf.specular)),
@@ -188,7 +184,7 @@ pub(super) fn scattering(shading: &Shading, factor: impl Fn(Spectrum) -> Factor)
             let p = bsdf.parameters();
             (
                 "principled",
-                "glTF's layers: metal, glass and a matte body by parts, under fibres and a clear coat",
+                "glTF's layers: a mix of metal, glass and diffuse, under sheen and a clear coat",
                 vec![
                     ("base color", factor(p.base_color)),
                     ("metallic", vec![p.metallic]),
@@ -211,7 +207,7 @@ pub(super) fn scattering(shading: &Shading, factor: impl Fn(Spectrum) -> Factor)
     ScatteringReport { kind, does, numbers, lobes, n: shading.n().to_array() }
 }
 
-/// A set of kinds of scattering in words.
+/// A set of lobes in words.
 pub(super) fn words(lobes: Lobes) -> String {
     let named = |names: &[(Lobes, &'static str)], and: &str| {
         let names: Vec<&str> =
@@ -222,7 +218,7 @@ pub(super) fn words(lobes: Lobes) -> String {
         named(&[(Lobes::DIFFUSE, "diffuse"), (Lobes::GLOSSY, "glossy"), (Lobes::SPECULAR, "specular")], ", ");
     let side = named(&[(Lobes::REFLECTION, "reflection"), (Lobes::TRANSMISSION, "transmission")], " and ");
     match side.is_empty() {
-        true => "nothing: it swallows all light".into(),
+        true => "none: it absorbs all light".into(),
         false => format!("{spread} {side}"),
     }
 }

@@ -1,4 +1,4 @@
-//! The rays as a drawing: a side view of the scene with the camera, one colour for each kind of ray, blocked
+//! The rays as a drawing (SVG): a side view of the scene with the camera, one colour for each kind of ray, blocked
 //! shadow rays black.
 
 use std::fmt::Write;
@@ -14,7 +14,7 @@ use crate::world::World;
 /// Width of the drawing in its own units; the height follows from the scene.
 const WIDTH: f64 = 1000.0;
 
-/// Outlines of at most so many triangles of one mesh are drawn, evenly chosen.
+/// Maximum number of triangles of a mesh whose outlines are drawn, at regular steps.
 const MOST_TRIANGLES: usize = 600;
 
 /// Draws an inspection in a plane that holds the direction of view (to the right) and up.
@@ -23,7 +23,7 @@ pub fn svg(renderer: &Renderer, inspection: &Inspection) -> String {
     let side = SideView::new(camera);
     let segments = segments(&side, inspection);
 
-    // Frame the rays and the eye; what lies beyond is cut off.
+    // Frame the rays and the camera; the rest is clipped.
     let mut low = side.project(DVec3::from_array(inspection.camera.lookfrom));
     let mut high = low;
     for segment in &segments {
@@ -75,8 +75,8 @@ pub fn svg(renderer: &Renderer, inspection: &Inspection) -> String {
     out
 }
 
-/// Seen from the camera's left: forward is to the right, up is up. The world's y is up as long as the camera does not look
-/// along it; then it is the camera's own.
+/// A view from the camera's left: forward is to the right, up is up. The world's y is up unless the camera looks along
+/// it; then the camera's v is up.
 struct SideView {
     forward: DVec3,
     up: DVec3,
@@ -116,7 +116,7 @@ impl Kind {
     fn of(ray: &RayReport) -> Self {
         match ray.kind {
             "camera" => Self::Camera,
-            "mirrored" | "reflected" | "scattered" => Self::Mirrored,
+            "reflected" | "scattered" => Self::Mirrored,
             "straight on" => Self::StraightOn,
             _ => Self::Refracted,
         }
@@ -136,11 +136,11 @@ impl Kind {
     fn name(self, is_path: bool) -> &'static str {
         match self {
             Self::Camera => "camera ray",
-            Self::Mirrored if is_path => "ray that is reflected or scattered",
-            Self::Mirrored => "mirrored ray",
-            Self::Refracted if is_path => "ray that is let through",
+            Self::Mirrored if is_path => "reflected or scattered ray",
+            Self::Mirrored => "reflected ray",
+            Self::Refracted if is_path => "transmitted ray",
             Self::Refracted => "refracted ray",
-            Self::StraightOn => "ray through a surface that is not there",
+            Self::StraightOn => "ray that passed a surface (interface or alpha)",
             Self::Shadow => "shadow ray that reaches its light",
             Self::Blocked => "shadow ray that is blocked",
         }
@@ -156,7 +156,7 @@ impl Kind {
 }
 
 struct Segment {
-    /// The ray's address; a shadow ray has none.
+    /// The ray's address; `None` for a shadow ray.
     address: Option<u64>,
     kind: Kind,
     from: DVec2,
@@ -164,7 +164,8 @@ struct Segment {
     title: String,
 }
 
-/// Every ray as a line; those that meet nothing, and shadow rays to infinitely far lights, end after a while.
+/// Every ray as a line segment; rays that hit nothing, and shadow rays to lights infinitely far away, get a finite
+/// length.
 fn segments(side: &SideView, inspection: &Inspection) -> Vec<Segment> {
     let length = length_without_end(inspection);
     let mut segments = Vec::new();
@@ -176,7 +177,7 @@ fn segments(side: &SideView, inspection: &Inspection) -> Vec<Segment> {
             None => a + direction.normalize() * length,
         };
         let kind = Kind::of(ray);
-        let title = format!("{} ray {}, brings {:?}", ray.kind, ray.address, ray.subtree.rgb);
+        let title = format!("{} ray {}, contributes {:?}", ray.kind, ray.address, ray.subtree.rgb);
         let address = Some(ray.address);
         segments.push(Segment { address, kind, from: side.project(a), to: side.project(end), title });
         shadow_segments(side, ray, length, &mut segments);
@@ -186,14 +187,14 @@ fn segments(side: &SideView, inspection: &Inspection) -> Vec<Segment> {
 
 fn shadow_segments(side: &SideView, ray: &RayReport, length: f64, segments: &mut Vec<Segment>) {
     let of_lights = ray.lights.iter().map(|light| (&light.shadow, &*light.light, &light.added));
-    let of_one = ray.asked.iter().map(|light| (&light.shadow, &*light.light, &light.added));
+    let of_one = ray.light_sample.iter().map(|light| (&light.shadow, &*light.light, &light.added));
     let of_openness = [(&ray.openness, "the open sky", &ray.added)];
     for (shadow, aim, added) in of_lights.chain(of_one).chain(of_openness) {
         let Some(shadow) = shadow else { continue };
         let [start, end] = [shadow.from, shadow.to].map(DVec3::from_array);
         let end = if shadow.is_endless { start + (end - start).normalize() * length } else { end };
         let kind = if shadow.is_blocked() { Kind::Blocked } else { Kind::Shadow };
-        let title = format!("shadow ray to {aim}, brings {:?}", added.rgb);
+        let title = format!("shadow ray to {aim}, contributes {:?}", added.rgb);
         segments.push(Segment {
             address: None,
             kind,
@@ -204,7 +205,7 @@ fn shadow_segments(side: &SideView, ray: &RayReport, length: f64, segments: &mut
     }
 }
 
-/// How long a ray without an end is drawn: a good part of what is seen.
+/// The length at which a ray without an end is drawn: a considerable part of the drawing.
 fn length_without_end(inspection: &Inspection) -> f64 {
     let eye = DVec3::from_array(inspection.camera.lookfrom);
     let points =
@@ -249,7 +250,7 @@ fn draw_scene(out: &mut String, world: &World, side: &SideView, place: &impl Fn(
     out.push_str("</g>\n");
 }
 
-/// The numbers of a path's rays, beside their middles.
+/// The addresses of a path's rays, beside their midpoints.
 fn draw_numbers(out: &mut String, segments: &[Segment], place: &impl Fn(DVec2) -> DVec2) {
     for segment in segments {
         let Some(address) = segment.address else { continue };

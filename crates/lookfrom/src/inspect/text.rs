@@ -1,5 +1,4 @@
-//! The inspection as a person reads it: from the pixel to the world, then the tree of rays, indented as the tree it is,
-//! or the path, ray by ray.
+//! The inspection as text: from the pixel to the world, then the tree of rays, indented, or the path, ray by ray.
 
 mod path;
 
@@ -8,7 +7,7 @@ use std::fmt::{self, Display, Formatter, Write as _};
 use super::candidate::{Number, Test};
 use super::{Amount, Candidate, Inspection, LightReport, MetReport, RayReport, ShadowReport};
 
-/// How many candidates are shown beside what a ray of the tree met; the JSON form has all.
+/// Number of candidates that are shown besides the hit of a ray of the tree; the JSON has all.
 const OTHERS_IN_TREE: usize = 5;
 
 impl Display for Inspection {
@@ -90,7 +89,7 @@ impl Inspection {
         for branch in &ray.branches {
             let mut how = String::new();
             if let Some(fresnel) = branch.fresnel {
-                write!(how, ", Fresnel mirrors {fresnel}")?;
+                write!(how, ", Fresnel reflectance {fresnel}")?;
             }
             if branch.total_reflection {
                 how.push_str(", total internal reflection");
@@ -109,21 +108,21 @@ impl Inspection {
         Ok(())
     }
 
-    /// What the lanes are, where they are not red, green and blue.
+    /// Writes the wavelengths of the lanes, in spectral mode.
     fn write_wavelengths(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Some(wavelengths) = &self.wavelengths else { return Ok(()) };
-        writeln!(f, "Light is four wavelengths; numbers in [brackets] are one for each, in this order")?;
+        writeln!(f, "Light has four wavelengths; numbers in [brackets] are one for each, in this order")?;
         writeln!(f, "  λ   = {} nm", vector32(&wavelengths.lambda))?;
         writeln!(
             f,
-            "  pdf = {} per nm: with this density each was chosen; the sensor divides by it",
+            "  pdf = {} per nm: the density with which each was sampled; the sensor divides by it",
             vector32(&wavelengths.pdf)
         )?;
         if wavelengths.dispersed {
             writeln!(
                 f,
-                "  Dispersion: where wavelengths go different ways the path follows the first alone; the others count\n  \
-                 nothing any more (pdf 0), and the first four times (its pdf is a quarter of what it was)."
+                "  Dispersion: each wavelength is refracted differently, so the path follows only the first; the others no\n  \
+                 longer count (pdf 0), and the first counts four times (its pdf is divided by four)."
             )?;
         }
         writeln!(f)
@@ -136,7 +135,7 @@ impl Inspection {
         }
         writeln!(f, "  = {}   times the filter's weight {}", amount(&self.radiance), self.weight)?;
         let verdict = if self.adds_up { "the same, bit for bit" } else { "NOT the same: please report this" };
-        let sensor = if self.wavelengths.is_some() { "seen by the camera's sensor, and " } else { "" };
+        let sensor = if self.wavelengths.is_some() { "measured by the camera's sensor, and " } else { "" };
         writeln!(f, "  = {}   {sensor}what the film received: {verdict}", lanes(&self.film))
     }
 }
@@ -153,7 +152,7 @@ fn write_candidates(f: &mut Formatter<'_>, ray: &RayReport, others: usize, pad: 
     Ok(())
 }
 
-/// The nearest hit and the first few others, and how many are left out.
+/// The nearest hit and the first few others, and the number of those left out.
 fn chosen(candidates: &[Candidate], others: usize) -> (Vec<&Candidate>, usize) {
     let mut shown: Vec<&Candidate> = candidates.iter().filter(|candidate| candidate.is_nearest).collect();
     shown.extend(candidates.iter().filter(|candidate| !candidate.is_nearest).take(others));
@@ -196,7 +195,7 @@ fn write_met(f: &mut Formatter<'_>, met: &MetReport, pad: &str) -> fmt::Result {
 
 fn write_light(f: &mut Formatter<'_>, light: &LightReport, pad: &str) -> fmt::Result {
     let Some(wi) = light.wi else {
-        return writeln!(f, "{pad}  light {}: none can come from there", light.light);
+        return writeln!(f, "{pad}  light {}: does not illuminate this point", light.light);
     };
     writeln!(f, "{pad}  light {}: L = {}   I_j = {}", light.light, vector32(&wi), amount(&light.intensity))?;
     let (diffuse, specular) = (lanes(&light.diffuse), lanes(&light.specular));
@@ -204,16 +203,16 @@ fn write_light(f: &mut Formatter<'_>, light: &LightReport, pad: &str) -> fmt::Re
     write_shadow(f, light.shadow.as_ref(), "reaches the light", pad)
 }
 
-/// What became of a shadow ray; `end` says what it is if nothing is in the way.
+/// Writes the result of a shadow ray; `end` describes one that is unoccluded.
 fn write_shadow(f: &mut Formatter<'_>, shadow: Option<&ShadowReport>, end: &str, pad: &str) -> fmt::Result {
     let Some(shadow) = shadow else {
-        return writeln!(f, "{pad}    no shadow ray: it would bring nothing");
+        return writeln!(f, "{pad}    no shadow ray: its contribution would be 0");
     };
     for blocker in &shadow.blockers {
         let (name, passed) = (&blocker.shape, &blocker.passed);
         match passed.iter().all(|lane| *lane == 0.0) {
             true => writeln!(f, "{pad}    shadow ray: blocked by {name}")?,
-            false => writeln!(f, "{pad}    shadow ray: through {name}, which lets {} pass", lanes(passed))?,
+            false => writeln!(f, "{pad}    shadow ray: through {name}, transmittance {}", lanes(passed))?,
         }
     }
     if shadow.is_blocked() { Ok(()) } else { writeln!(f, "{pad}    shadow ray: {end}") }
@@ -227,7 +226,7 @@ fn vector32(v: &[f32]) -> String {
     format!("({})", v.iter().map(|x| short(f64::from(*x))).collect::<Vec<_>>().join(", "))
 }
 
-/// Light in full, since these numbers are to be added up; beside wavelengths the colour that they are.
+/// Light with all digits, so that these numbers can be added up; in spectral mode followed by its colour.
 fn amount(amount: &Amount) -> String {
     match amount.lanes == amount.rgb || amount.lanes.iter().all(|lane| *lane == 0.0) {
         true => lanes(&amount.lanes),
@@ -238,19 +237,19 @@ fn amount(amount: &Amount) -> String {
     }
 }
 
-/// A factor or a colour in full.
+/// A factor or a colour with all digits.
 fn lanes(lanes: &[f32]) -> String {
     format!("[{}]", lanes.iter().map(|x| full(*x)).collect::<Vec<_>>().join(" "))
 }
 
-/// As many digits as it takes to read the same number back.
+/// Enough digits to read the same number back.
 fn full(x: f32) -> String {
     if x != 0.0 && x.abs() < 1e-5 { format!("{x:e}") } else { format!("{x}") }
 }
 
-/// Seven digits, without an idle tail.
+/// Seven digits, without trailing zeros.
 fn short(x: f64) -> String {
-    // −0 reads as a slip
+    // print −0 as 0
     let x = if x == 0.0 { 0.0 } else { x };
     if x != 0.0 && !(1e-4..1e7).contains(&x.abs()) {
         return format!("{x:.4e}");

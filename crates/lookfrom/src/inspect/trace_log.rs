@@ -1,7 +1,7 @@
 //! The trace log: events of a sample, arranged by rays.
 //!
-//! Rays form a tree (Whitted's, the child of n is 2n or 2n + 1) or a path (the next ray of n is n + 1): the integrator
-//! decides.
+//! Rays form a tree (Whitted's, the child of n is 2n or 2n + 1) or a path (n is followed by n + 1), depending on the
+//! integrator.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use super::report::{
     Addition, Amount, Blocker, BranchReport, CoefficientsReport, Factor, LightReport, MetReport, RayReport,
     ShadowReport,
 };
-use super::scatter::{self, AnswerReport, AskedReport, BounceReport, FoundReport};
+use super::scatter::{self, BounceReport, FoundReport, LightSampleReport, SampledDirectionReport};
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{Bounce, Branch, Cut, Event, Path, Shadow, Term};
 use crate::light::LightSample;
@@ -24,21 +24,21 @@ use crate::shading::material::{Coefficients, Shading};
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
-/// What has been heard so far.
+/// Builds a trace log from events.
 pub(super) struct TraceLogBuilder<'a> {
     renderer: &'a Renderer,
     world: &'a World,
-    /// What the lanes mean in the end.
+    /// The spectral mode at the end of the sample.
     lanes: SpectralMode,
     rays: BTreeMap<u64, RayReport>,
-    /// What each ray's own hit added.
+    /// The contribution of each ray's own hit.
     added: BTreeMap<u64, Spectrum>,
-    /// All of it, in the order in which it was added.
+    /// The sum of all contributions, added in their order.
     sum: Spectrum,
     additions: Vec<Addition>,
 }
 
-/// What was heard in all.
+/// The finished trace log.
 pub(super) struct TraceLog {
     pub(super) rays: Vec<RayReport>,
     pub(super) additions: Vec<Addition>,
@@ -46,14 +46,14 @@ pub(super) struct TraceLog {
     pub(super) radiance: Amount,
 }
 
-/// Whether the next ray of n is n + 1.
+/// Whether the rays form a path: n is followed by n + 1.
 fn is_path(integrator: Integrator) -> bool {
     use Integrator::{AmbientOcclusion, Path, RandomWalk, SimplePath};
     matches!(integrator, Path | SimplePath | RandomWalk | AmbientOcclusion { .. })
 }
 
 impl<'a> TraceLogBuilder<'a> {
-    /// Nothing yet.
+    /// An empty log.
     pub(super) fn new(renderer: &'a Renderer, lanes: SpectralMode) -> Self {
         Self {
             renderer,
@@ -66,7 +66,7 @@ impl<'a> TraceLogBuilder<'a> {
         }
     }
 
-    /// One thing more. What is said of a ray comes after the ray itself.
+    /// Records an event. A ray's own event comes before all others of that ray.
     pub(super) fn record(&mut self, event: &Event) {
         match event {
             Event::Hit { path, hit } => {
@@ -93,25 +93,26 @@ impl<'a> TraceLogBuilder<'a> {
                     weight: *weight,
                     added: self.amount(Spectrum::BLACK),
                 };
-                let share = self.factor(*beta);
+                let throughput = self.factor(*beta);
                 self.at(*address, |ray| {
-                    if share != ray.throughput {
-                        ray.throughput_there = Some(share);
+                    if throughput != ray.throughput {
+                        ray.throughput_there = Some(throughput);
                     }
                     ray.found.push(report);
                 });
             }
             Event::LightSampleFailed { address, light, probability, sample } => {
-                let answer = sample
+                let sample = sample
                     .as_ref()
-                    .map(|sample| self.answer(*probability, sample, Spectrum::BLACK, None, 1.0));
-                self.asked(*address, *light, *probability, answer);
+                    .map(|sample| self.direction(*probability, sample, Spectrum::BLACK, None, 1.0));
+                self.light_sample(*address, *light, *probability, sample);
             }
             Event::LightSampled { address, light, probability, sample, f, bsdf_pdf, weight } => {
-                let is_weighed = self.renderer.settings().integrator == Integrator::Path
+                let is_weighted = self.renderer.settings().integrator == Integrator::Path
                     && !self.world.lights[*light as usize].is_delta();
-                let answer = self.answer(*probability, sample, *f, is_weighed.then_some(*bsdf_pdf), *weight);
-                self.asked(*address, *light, *probability, Some(answer));
+                let bsdf_pdf = is_weighted.then_some(*bsdf_pdf);
+                let sample = self.direction(*probability, sample, *f, bsdf_pdf, *weight);
+                self.light_sample(*address, *light, *probability, Some(sample));
             }
             Event::Shadow { shadow, hit, passed } => self.shadow(shadow, hit, *passed),
             Event::Bounced { address, bounce } => {
@@ -120,7 +121,7 @@ impl<'a> TraceLogBuilder<'a> {
             }
             Event::Grew { address, branch, weight, fresnel, total_reflection, cut } => {
                 let (kind, bit) = match branch {
-                    Branch::Mirrored => ("mirrored", 0),
+                    Branch::Mirrored => ("reflected", 0),
                     Branch::Refracted => ("refracted", 1),
                 };
                 let report = BranchReport {
@@ -131,7 +132,7 @@ impl<'a> TraceLogBuilder<'a> {
                     total_reflection: *total_reflection,
                     cut: cut.map(|cut| match cut {
                         Cut::Contribution => "can no longer change the pixel",
-                        Cut::Depth => "the greatest depth is reached",
+                        Cut::Depth => "the maximum depth is reached",
                     }),
                 };
                 self.at(*address, |ray| ray.branches.push(report));
@@ -140,14 +141,14 @@ impl<'a> TraceLogBuilder<'a> {
         }
     }
 
-    /// All of it: the sums are drawn.
+    /// Finishes the log: computes the sums.
     pub(super) fn end(mut self) -> TraceLog {
         let is_path = is_path(self.renderer.settings().integrator);
         if is_path {
             self.end_paths();
         }
 
-        // Children have greater addresses than their parents: from the last to the first, each adds itself to its parent.
+        // Children have larger addresses than their parents: from the last to the first, each is added to its parent.
         let mut subtrees = self.added.clone();
         let addresses: Vec<u64> = self.rays.keys().copied().collect();
         for &address in addresses.iter().rev() {
@@ -174,7 +175,7 @@ impl<'a> TraceLogBuilder<'a> {
         }
     }
 
-    /// What is known of a path only when the next ray is, or when there is none.
+    /// Completes what depends on the next ray of a path: kinds of rays, and the reason why the path ends.
     fn end_paths(&mut self) {
         let settings = self.renderer.settings();
         let addresses: Vec<u64> = self.rays.keys().copied().collect();
@@ -198,13 +199,11 @@ impl<'a> TraceLogBuilder<'a> {
             }
             ray.ends = Some(match (&ray.met, &ray.scattering, &ray.bounce) {
                 (None, ..) => "it leaves the scene",
-                (Some(_), None, _) => "only whether the surroundings are open counts",
-                (_, Some(_), None) if ray.depth >= settings.depth => {
-                    "it may not be scattered more often (--depth)"
-                }
-                (_, Some(_), None) => "the surface offers no direction: its light is swallowed",
+                (Some(_), None, _) => "ambient occlusion needs no further rays",
+                (_, Some(_), None) if ray.depth >= settings.depth => "the maximum depth is reached (--depth)",
+                (_, Some(_), None) => "the surface absorbs its light: no direction could be sampled",
                 (.., Some(bounce)) if !bounce.survives => "Russian roulette ends it",
-                (.., Some(_)) => "no light from there would count: its throughput is 0",
+                (.., Some(_)) => "its throughput is 0",
             });
         }
     }
@@ -215,7 +214,7 @@ impl<'a> TraceLogBuilder<'a> {
         }
     }
 
-    /// The lanes that mean something.
+    /// The lanes that are in use.
     fn factor(&self, value: Spectrum) -> Factor {
         match self.lanes {
             SpectralMode::Rgb => value.rgb().to_vec(),
@@ -230,7 +229,7 @@ impl<'a> TraceLogBuilder<'a> {
     fn ray(&self, path: &Path, hit: &Hit) -> RayReport {
         let kind = match (path.address, path.address & 1) {
             (Path::ROOT, _) => "camera",
-            (_, 0) => "mirrored",
+            (_, 0) => "reflected",
             _ => "refracted",
         };
         let pdf = path.previous.pdf;
@@ -243,7 +242,7 @@ impl<'a> TraceLogBuilder<'a> {
             a: in_world(self.world, path.ray.origin),
             direction: path.ray.direction,
             throughput: self.factor(path.beta),
-            // Infinite is a choice without an alternative.
+            // Infinite stands for a specular bounce or a camera ray.
             pdf: (pdf != f32::INFINITY).then_some(pdf),
             candidates: candidate::candidates(self.world, &path.ray, hit),
             met: surface.map(|surface| met_report(self.world, hit, &surface)),
@@ -252,7 +251,7 @@ impl<'a> TraceLogBuilder<'a> {
             found: Vec::new(),
             scattering: None,
             lights: Vec::new(),
-            asked: None,
+            light_sample: None,
             openness: None,
             bounce: None,
             branches: Vec::new(),
@@ -296,7 +295,7 @@ impl<'a> TraceLogBuilder<'a> {
 
     fn shaded(&mut self, address: u64, shading: &Shading, beta: Spectrum) {
         let report = scatter::scattering(shading, |value| self.factor(value));
-        let share = self.factor(beta);
+        let throughput = self.factor(beta);
         let only = match self.lanes {
             SpectralMode::Rgb => beta.only_lane().map(|lane| ["red", "green", "blue", ""][lane]),
             SpectralMode::Spectral(_) => None,
@@ -305,19 +304,19 @@ impl<'a> TraceLogBuilder<'a> {
             let had_others = ray.throughput.iter().filter(|lane| **lane != 0.0).count() > 1;
             ray.only_color = only.filter(|_| had_others);
             ray.scattering = Some(report);
-            ray.throughput_there = Some(share);
+            ray.throughput_there = Some(throughput);
         });
     }
 
-    fn answer(
+    fn direction(
         &self,
         probability: f32,
         sample: &LightSample,
         f_cos: Spectrum,
         bsdf_pdf: Option<f32>,
         weight: f32,
-    ) -> AnswerReport {
-        AnswerReport {
+    ) -> SampledDirectionReport {
+        SampledDirectionReport {
             wi: sample.wi.to_array(),
             light_pdf: sample.pdf,
             pdf: probability * sample.pdf,
@@ -328,11 +327,17 @@ impl<'a> TraceLogBuilder<'a> {
         }
     }
 
-    fn asked(&mut self, address: u64, index: u32, probability: f32, answer: Option<AnswerReport>) {
+    fn light_sample(
+        &mut self,
+        address: u64,
+        index: u32,
+        probability: f32,
+        sample: Option<SampledDirectionReport>,
+    ) {
         let light = self.world.names.lights[index as usize].clone();
         let added = self.amount(Spectrum::BLACK);
-        let report = AskedReport { index, light, probability, answer, shadow: None, added };
-        self.at(address, |ray| ray.asked = Some(report));
+        let report = LightSampleReport { index, light, probability, sample, shadow: None, added };
+        self.at(address, |ray| ray.light_sample = Some(report));
     }
 
     fn shadow(&mut self, shadow: &Shadow, hit: &Hit, passed: Spectrum) {
@@ -346,7 +351,7 @@ impl<'a> TraceLogBuilder<'a> {
         let report = match shadow.term {
             Term::Light(light) => match ray.lights.iter_mut().find(|report| report.index == light) {
                 Some(report) => &mut report.shadow,
-                None => match &mut ray.asked {
+                None => match &mut ray.light_sample {
                     Some(report) => &mut report.shadow,
                     None => return,
                 },
@@ -355,7 +360,7 @@ impl<'a> TraceLogBuilder<'a> {
         };
         let [origin, direction] =
             [shadow.ray.origin, shadow.ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-        // behind a transparent surface less is left of the way
+        // behind a transparent surface the rest of the way is shorter
         let is_endless = shadow.ray.t_max.is_infinite();
         let length = if is_endless { 1.0 } else { f64::from(shadow.ray.t_max) };
         let [from, to] = [origin, origin + direction * length].map(|point| (world.origin + point).to_array());
@@ -396,7 +401,7 @@ impl<'a> TraceLogBuilder<'a> {
             Term::Light(light) => {
                 if let Some(report) = ray.lights.iter_mut().find(|report| report.index == light) {
                     report.added = amount;
-                } else if let Some(report) = &mut ray.asked {
+                } else if let Some(report) = &mut ray.light_sample {
                     report.added = amount;
                 }
             }

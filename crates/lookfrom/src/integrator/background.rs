@@ -1,28 +1,28 @@
-//! Backgrounds in place of the environment, as integrators show them to the camera.
+//! Backgrounds in place of the environment, for camera rays.
 //!
-//! The background itself is laid behind the picture when that is developed; samples only say what hides it. Rays that come
-//! straight from the camera (or passed gaps in surfaces) see it; mirrors and glass show the environment.
+//! The background itself is laid behind the picture when that is developed; samples only give its alpha. Rays that come
+//! straight from the camera (or passed surfaces by alpha) see it; mirrors and glass show the environment.
 
 use lookfrom_scene::settings::Background;
 
 use super::{Path, Probe, StepOutput, Term};
 use crate::world::World;
 
-/// What a sample hides of a background of the view's own.
+/// Alpha of a sample over the view's own background.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Alpha {
-    /// All of it: something stands there.
+    /// The sample hides the background.
     #[default]
     Opaque,
-    /// Nothing: the sample shows the background.
+    /// The sample shows the background.
     Transparent,
-    /// The part that is in shadow: the sample shows a shadow catcher, and its light is the part of white that is left.
+    /// The sample shows a shadow catcher: its light is the unshadowed part of white, and the rest hides the background.
     Shadow,
 }
 
 impl<P: Probe> StepOutput<'_, P> {
-    /// For a path that met nothing: whether it shows the view's own background instead of the environment, and so is done. Its
-    /// sample is transparent then.
+    /// For a path that hit nothing: whether it shows the view's own background instead of the environment, and so ends.
+    /// Its sample is then transparent.
     pub fn shows_background(&mut self, path: &Path) -> bool {
         let shows = path.depth == 0 && self.background != Background::Environment;
         if shows {
@@ -31,7 +31,7 @@ impl<P: Probe> StepOutput<'_, P> {
         shows
     }
 
-    /// Adds what a path that met nothing sees: the environments, or the view's own background.
+    /// Adds the light of the environments to a path that hit nothing, unless it shows the view's own background.
     pub(super) fn add_surroundings(&mut self, world: &World, path: &Path) {
         if !self.shows_background(path) {
             self.add(path, Term::Sky, path.beta * world.sky(&path.ray, &self.lanes(path)));

@@ -8,7 +8,7 @@ use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::Coefficients;
 use crate::world::World;
 
-/// Adds what the surface emits and `k_a I_a`, and from every light `k_d (N·L) I_j + k_s (N·H)ⁿ I_j`.
+/// Adds the surface's emission and `k_a I_a`, and from every light `k_d (N·L) I_j + k_s (N·H)ⁿ I_j`.
 pub(super) fn local_light<P: Probe>(
     world: &World,
     stream: &SampleStream,
@@ -37,7 +37,7 @@ pub(super) fn local_light<P: Probe>(
         let at = LightSampleContext { point: DVec3::from_array(surface.point.position), n };
         let u = stream.two(index);
         let sample = light.sample(&world.textures, &at, u, &lanes, IncompletePdf::Forbidden);
-        // What emits light from behind the surface does not light its front, whatever the smoothed normal says.
+        // Light from behind the surface does not reach its front, whatever the interpolated normal says.
         let sample = sample.filter(|sample| ng.dot(sample.wi) > 0.0);
         let (diffuse, specular) =
             sample.map(|sample| coefficients.lit(n, surface.wo, sample.wi)).unwrap_or_default();

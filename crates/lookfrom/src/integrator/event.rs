@@ -1,4 +1,4 @@
-//! Events of a sample, for probes such as the inspector.
+//! Events in the computation of a sample, for probes such as the inspector.
 
 use glam::Vec3;
 use lookfrom_bvh::Hit;
@@ -9,7 +9,7 @@ use crate::shading::bsdf::BsdfSample;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::Shading;
 
-/// Why light is added.
+/// The reason why light is added.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Term {
@@ -21,193 +21,194 @@ pub enum Term {
     Ambient,
     /// A light, by its index, reached the surface.
     Light(u32),
-    /// A path found a light by itself.
+    /// A path hit a light by its own direction.
     Found {
-        /// Its index.
+        /// Index of the light.
         light: u32,
-        /// The share that this way of finding it has.
+        /// Its multiple importance sampling weight.
         weight: f32,
     },
-    /// Nothing is near.
+    /// Ambient occlusion: nothing is near.
     Unoccluded,
     /// A view's false colour.
     View,
 }
 
-/// Which way a path goes on.
+/// A branch of Whitted's tree of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Branch {
-    /// Toward `S`.
+    /// Reflected: `S`.
     Mirrored,
-    /// Toward `T`.
+    /// Refracted: `T`.
     Refracted,
 }
 
-/// Why a branch was not followed.
+/// The reason why a branch was not followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Cut {
     /// It could no longer change the pixel.
     Contribution,
-    /// The greatest depth was reached.
+    /// The maximum depth was reached.
     Depth,
 }
 
-/// Something that happened on the way of a sample.
+/// A step in the computation of a sample.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Event {
-    /// A path met `hit` (or nothing).
+    /// A path was traced.
     Hit {
         /// The path.
         path: Path,
-        /// What it met.
+        /// Its hit, or a miss.
         hit: Hit,
     },
-    /// What was met has these properties.
+    /// The surface that was hit was evaluated.
     Surface {
-        /// Of the path.
+        /// Address of the path.
         address: u64,
-        /// The place.
+        /// The surface interaction.
         surface: Box<SurfaceInteraction>,
         /// Whitted's coefficients, where the integrator evaluates them.
         coefficients: Option<Box<crate::shading::material::Coefficients>>,
     },
     /// A light was sampled, in Whitted's model.
     LocalLight {
-        /// Of the path.
+        /// Address of the path.
         address: u64,
-        /// Which.
+        /// Index of the light.
         light: u32,
-        /// What it said; `None` when no light can come from there.
+        /// The light sample; `None` when no light can come from there.
         sample: Option<crate::light::LightSample>,
         /// `k_d (N·L)`.
         diffuse: Spectrum,
         /// `k_s (N·H)ⁿ`.
         specular: Spectrum,
     },
-    /// A path is shaded by a scattering function.
+    /// A path's hit is shaded by a BSDF.
     Shaded {
-        /// Of the path.
+        /// Address of the path.
         address: u64,
-        /// The place.
+        /// The surface interaction.
         surface: Box<SurfaceInteraction>,
-        /// What it does with light.
+        /// Its BSDF in its shading frame.
         shading: Box<Shading>,
-        /// The path throughput here, after what was absorbed on the way.
+        /// The path throughput here, after absorption on the way.
         beta: Spectrum,
     },
-    /// A path's own direction found a light.
+    /// A path hit a light by its own direction.
     Found {
-        /// Of the path.
+        /// Address of the path.
         address: u64,
-        /// Which.
+        /// Index of the light.
         light: u32,
-        /// What it sends this way.
+        /// Radiance toward the ray's origin.
         radiance: Spectrum,
-        /// The density with which light sampling would have chosen the direction.
+        /// The density of this direction in light sampling.
         light_pdf: f32,
-        /// The share that this way of finding the light has.
+        /// The multiple importance sampling weight.
         weight: f32,
-        /// The path throughput there, after what was absorbed on the way.
+        /// The path throughput there, after absorption on the way.
         beta: Spectrum,
     },
-    /// The sample of one light brings nothing.
+    /// A light was sampled and contributes nothing.
     LightSampleFailed {
-        /// Of the path.
+        /// Address of the path.
         address: u64,
-        /// Which.
+        /// Index of the light.
         light: u32,
-        /// The probability of having chosen it.
+        /// The probability of choosing this light.
         probability: f32,
-        /// What it said, of which the material sends nothing on; `None` when no light can come from there.
+        /// The light sample, which the BSDF does not scatter toward the viewer; `None` when no light can come from
+        /// there.
         sample: Option<crate::light::LightSample>,
     },
     /// One light of many was sampled.
     LightSampled {
-        /// Of the path.
+        /// Address of the path.
         address: u64,
-        /// Which.
+        /// Index of the light.
         light: u32,
-        /// The probability of having chosen it.
+        /// The probability of choosing this light.
         probability: f32,
-        /// What it said.
+        /// The light sample.
         sample: crate::light::LightSample,
-        /// The scattering function times the cosine.
+        /// The BSDF times the cosine.
         f: Spectrum,
-        /// The density with which the material would have chosen the direction.
+        /// The density of this direction in BSDF sampling.
         bsdf_pdf: f32,
-        /// The share that this way of finding the light has.
+        /// The multiple importance sampling weight.
         weight: f32,
     },
-    /// A path goes on, or would have.
+    /// The BSDF was sampled; the path goes on, or Russian roulette ends it.
     Bounced {
-        /// Of the path that arrives.
+        /// Address of the path that arrives.
         address: u64,
-        /// How.
+        /// The sampled direction and its weights.
         bounce: Box<Bounce>,
     },
-    /// A shadow ray met something (or nothing).
+    /// A shadow ray was traced.
     Shadow {
-        /// The ray, with its contribution as it was before this meeting.
+        /// The ray, with its contribution as it was before this hit.
         shadow: Shadow,
-        /// What it met.
+        /// Its hit, or a miss.
         hit: Hit,
-        /// What was let through: black when blocked, one when nothing was met.
+        /// Transmittance: black when blocked, one when nothing was hit.
         passed: Spectrum,
     },
     /// The tree may grow.
     Grew {
-        /// Of the path that branches.
+        /// Address of the path that branches.
         address: u64,
-        /// Which way.
+        /// The branch.
         branch: Branch,
         /// The branch's weight relative to its parent.
         weight: Spectrum,
-        /// The part that Fresnel's equations mirror, where they are evaluated.
+        /// Fresnel reflectance, where it is evaluated.
         fresnel: Option<f32>,
-        /// Whether total reflection sent all into the mirrored branch.
+        /// Whether total internal reflection sent all light into the reflected branch.
         total_reflection: bool,
-        /// Why it was not followed, if so.
+        /// The reason why the branch was not followed, if it was not.
         cut: Option<Cut>,
     },
     /// Light was added to the sample.
     Add {
-        /// Of the path.
+        /// Address of the path.
         address: u64,
-        /// Why.
+        /// The reason.
         term: Term,
-        /// How much.
+        /// The light that was added.
         value: Spectrum,
     },
 }
 
-/// How a path goes on.
+/// The continuation of a path: a BSDF sample and the outcome of Russian roulette.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounce {
     /// In render space.
     pub wi: Vec3,
-    /// To the shading normal.
+    /// Cosine of `wi` and the shading normal.
     pub cos: f32,
-    /// What the scattering function chose.
+    /// The BSDF sample.
     pub sample: BsdfSample,
-    /// The path throughput of light from there, before Russian roulette.
+    /// The path throughput after the bounce, before Russian roulette.
     pub beta: Spectrum,
-    /// The probability of going on.
+    /// The survival probability of Russian roulette.
     pub survival: f32,
-    /// Whether it goes on.
+    /// Whether the path goes on.
     pub survives: bool,
 }
 
-/// A listener to the events of samples. `()` listens to nothing and compiles to nothing.
+/// A listener to the events of samples. `()` ignores all events and compiles to nothing.
 pub trait Probe {
-    /// Whether it wants to hear anything.
+    /// Whether the probe uses events at all.
     const LISTENS: bool = true;
 
-    /// Something happened.
+    /// Called for each event.
     fn notice(&mut self, event: impl FnOnce() -> Event);
 
-    /// Something may have happened.
+    /// Called for an event that may turn out not to exist.
     fn notice_some(&mut self, event: impl FnOnce() -> Option<Event>) {
         if Self::LISTENS
             && let Some(event) = event()

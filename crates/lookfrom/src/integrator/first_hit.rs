@@ -53,7 +53,7 @@ impl Integrator for FirstHit {
             return;
         }
         let surface = world.surface(&path.ray, hit);
-        // What is more clear than not is not shown.
+        // Surfaces whose alpha is below one half are not shown.
         if path.goes_through(world, &surface, 0.5) {
             output.queues.paths.push(path.passed(&surface));
             return;
@@ -83,7 +83,7 @@ impl FirstHit {
     }
 }
 
-/// A bright colour of its own for each number.
+/// A bright colour for each number, by a hash.
 fn id_color(id: u32) -> [f32; 3] {
     let bits = hash::pair(u64::from(id), 0);
     let channel = |shift: u32| 0.1 + 0.9 * ((bits >> shift & 0xff) as f32 / 255.0);

@@ -1,4 +1,4 @@
-//! Ambient occlusion (Zhukov, Iones & Kronin 1998): how much of the sky a white surface sees, as pbrt-v4 shows it.
+//! Ambient occlusion (Zhukov, Iones & Kronin 1998): the part of the sky that a white surface sees, as in pbrt-v4.
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
@@ -11,9 +11,9 @@ use crate::world::World;
 /// Ambient occlusion.
 #[derive(Clone, Copy, Debug)]
 pub struct AmbientOcclusion {
-    /// Whether directions are chosen by the cosine, and not uniformly.
+    /// Whether directions are sampled by the cosine, not uniformly.
     pub cosine: bool,
-    /// What is farther than this does not occlude, in the scene's unit.
+    /// Surfaces farther than this do not occlude, in the scene's unit.
     pub distance: f32,
 }
 
@@ -42,7 +42,7 @@ impl Integrator for AmbientOcclusion {
         }
         let n = surface.ng_facing();
         let u = stream.two(1);
-        // What of a uniform sky is seen: the mean of visibility, weighed by the cosine over π.
+        // The visible part of a uniform sky: the mean of visibility, weighted by the cosine over π.
         let (wi, weight) = if self.cosine {
             (warp::cosine_hemisphere(u, n), 1.0)
         } else {
@@ -61,7 +61,7 @@ impl Integrator for AmbientOcclusion {
             slot: path.slot,
             address: path.address,
             term: Term::Unoccluded,
-            // Whether something is near does not depend on what fills the space between.
+            // Visibility does not depend on the medium.
             interior: InteriorStack::default(),
         });
     }

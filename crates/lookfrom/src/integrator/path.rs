@@ -1,7 +1,7 @@
-//! Path tracing (Kajiya 1986): from each surface on in one direction, chosen by its material, and at each surface one
-//! light is sampled. Both ways of finding light share it by multiple importance sampling (Veach & Guibas 1995, the power
-//! heuristic), and paths that carry little are ended by chance (Russian roulette, Arvo & Kirk 1990). The order of
-//! things is pbrt-v4's, so that the same scene converges to the same picture.
+//! Path tracing (Kajiya 1986): at each surface one light is sampled (next-event estimation), and the path goes on in
+//! one direction, sampled by the BSDF. The two strategies are combined by multiple importance sampling (Veach & Guibas
+//! 1995, the power heuristic), and paths of small throughput are ended by Russian roulette (Arvo & Kirk 1990). The
+//! order of steps is pbrt-v4's, so that the same scene converges to the same picture.
 
 mod catcher;
 mod eight;
@@ -21,31 +21,32 @@ use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::{Scattering, ShadingContext};
 use crate::world::World;
 
-/// Purposes of random numbers at a surface.
+/// Dimensions of the random numbers at a surface.
 mod dimension {
-    /// Whether the surface is there; which of two mixed materials is, which colour goes on.
+    /// The alpha test; the choice between two mixed materials, and of the colour that remains after dispersion.
     pub(super) const PRESENCE: u32 = 0;
-    /// Which light, which lobe.
+    /// Choice of the light, choice of the lobe.
     pub(super) const CHOICE: u32 = 1;
-    /// Where on the light.
+    /// Point on the light.
     pub(super) const LIGHT: u32 = 2;
-    /// Which direction.
+    /// Direction of the BSDF sample.
     pub(super) const DIRECTION: u32 = 3;
-    /// Whether the path goes on.
+    /// Russian roulette.
     pub(super) const ROULETTE: u32 = 4;
 }
 
-/// No path is ended by chance before it has bounced more often than this: what the first bounces find is most of the
-/// picture, and their noise most of the noise. (pbrt-v4 begins after the first; the light is the same.)
+/// Number of bounces before Russian roulette begins: the light that the first bounces find is most of the picture, and
+/// their noise most of the noise. (pbrt-v4 begins after the first; the light is the same.)
 const SAFE_BOUNCES: u32 = 4;
 
-/// How much of what is known about light is used.
+/// Strategy for finding light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LightSampling {
-    /// Lights and materials are sampled together.
+    /// Lights and BSDFs are sampled, combined by multiple importance sampling.
     MultipleImportance,
-    /// Lights are sampled, and emission that a path hits counts only where sampling cannot find it: pbrt's `simplepath`.
+    /// Lights are sampled, and emission that a path hits counts only where sampling cannot find it: pbrt's
+    /// `simplepath`.
     NextEventEstimation,
     /// No lights are sampled; directions are uniform over the sphere: pbrt's `randomwalk`.
     None,
@@ -54,28 +55,29 @@ pub enum LightSampling {
 /// Path tracing.
 #[derive(Clone, Copy, Debug)]
 pub struct PathTracer {
-    /// How many times a path may be scattered.
+    /// Maximum number of bounces of a path.
     pub depth: u32,
-    /// Whether sharp lobes are blurred after the first bounce that is not sharp.
+    /// Whether sharp lobes are roughened after the first non-specular bounce (path regularisation).
     pub regularize: bool,
-    /// What is used of what is known.
+    /// The strategy for finding light.
     pub light_sampling: LightSampling,
 }
 
-/// What a path remembers of the surface that it left.
+/// The surface that a path left.
 #[derive(Clone, Copy, Debug)]
 pub struct PreviousVertex {
-    /// Density over solid angle of the direction that it took; infinite where that was the only one, or from the camera.
+    /// Solid angle density of the sampled direction; infinite after a specular bounce, or from the camera.
     pub pdf: f32,
-    /// The triangle there.
+    /// The primitive there.
     pub origin_primitive: OriginPrimitive,
-    /// Where, in render space.
+    /// Its position, in render space.
     pub point: Vec3,
     /// Shading normal there.
     pub n: Vec3,
-    /// Product of η² of what it has entered: radiance is not lost where it is only squeezed.
+    /// Product of η² over the refractions so far: Russian roulette must not end paths whose radiance is only compressed
+    /// into a smaller solid angle.
     pub eta_scale: f32,
-    /// Whether any bounce so far was not a mirror's.
+    /// Whether any bounce so far was non-specular.
     pub blurred: bool,
     /// Whether the surface was a shadow catcher, seen by the camera.
     pub is_catcher: bool,
@@ -160,7 +162,7 @@ impl Integrator for PathTracer {
         }
         let surface = world.surface(&path.ray, hit);
 
-        // Light passes where the surface is not there.
+        // Pass surfaces that fail the alpha test.
         let [presence, u] = match world.is_stochastic(&surface) {
             true => stream.two(dimension::PRESENCE),
             false => [0.0; 2],
@@ -176,13 +178,13 @@ impl Integrator for PathTracer {
             self.show_behind(world, &mut path, output);
         }
 
-        // Add what the surface itself emits.
+        // Add the surface's emission.
         self.add_emission(world, &path, &surface, output);
         if let Some(radiance) = world.unlit(&surface, &output.lanes(&path)) {
             output.add(&path, Term::Emission, path.beta * radiance);
         }
 
-        // What it does with light; dispersion leaves one wavelength, or one colour.
+        // Evaluate the material; dispersion leaves one wavelength, or one colour.
         let lanes = &mut output.queues.lanes[path.slot as usize];
         let arrival = ShadingContext { lanes, throughput: &mut path.beta, interior: path.interior, u };
         let Some(mut shading) = world.shading(&surface, arrival) else {
@@ -218,7 +220,7 @@ struct Vertex<'a> {
 }
 
 impl PathTracer {
-    /// Steps of paths that met the commonest surfaces, eight at a time.
+    /// Steps of paths that hit flat diffuse triangles, up to eight at once.
     fn step_plain<P: Probe>(
         &self,
         world: &World,
@@ -231,7 +233,7 @@ impl PathTracer {
         dispatch(level(), steps);
     }
 
-    /// What light does at a surface: from one light, and from one direction.
+    /// Samples one light, and continues the path in one direction.
     fn scatter<P: Probe>(
         &self,
         world: &World,
@@ -265,7 +267,7 @@ impl PathTracer {
         let transmitted = sample.lobe.is_transmission();
         let eta_scale = path.previous.eta_scale * if transmitted { sample.eta * sample.eta } else { 1.0 };
 
-        // End paths that carry little, by chance.
+        // End paths of small throughput by Russian roulette.
         let depth = path.depth + 1;
         let (survival, survives) = self.roulette(stream, beta, eta_scale, depth);
         output.probe.notice(|| Event::Bounced {
@@ -298,7 +300,7 @@ impl PathTracer {
     fn add_sky<P: Probe>(&self, world: &World, path: &Path, output: &mut StepOutput<'_, P>) {
         let direction = Vec3::from_array(path.ray.direction).normalize();
         for &index in &world.environments {
-            // Some skies are only seen: by the camera, in mirrors and through glass.
+            // Some skies do not illuminate: they are only visible to the camera, in mirrors and through glass.
             if path.previous.blurred && !world.lights[index as usize].illuminates() {
                 continue;
             }
@@ -324,7 +326,7 @@ impl PathTracer {
         self.add_found(path, light, radiance, pdf, output);
     }
 
-    /// Adds light that the direction of a path found, which light sampling finds with density `light_pdf`.
+    /// Adds emission that a path hit; `light_pdf` is the density of its direction in light sampling.
     fn add_found<P: Probe>(
         &self,
         path: &Path,
@@ -346,12 +348,12 @@ impl PathTracer {
         output.add(path, Term::Found { light, weight }, path.beta * radiance * weight);
     }
 
-    /// The weight of light that the direction of a path found, which light sampling finds with density `light_pdf`.
+    /// The weight of emission that a path hit; `light_pdf` is the density of its direction in light sampling.
     fn weight_of_found(&self, path: &Path, light_pdf: impl FnOnce() -> f32) -> f32 {
         match self.light_sampling {
             _ if path.previous.pdf.is_infinite() => 1.0,
             LightSampling::MultipleImportance => power_heuristic(path.previous.pdf, light_pdf()),
-            // Light sampling has found it already.
+            // Light sampling has counted it already.
             LightSampling::NextEventEstimation if light_pdf() > 0.0 => 0.0,
             LightSampling::NextEventEstimation | LightSampling::None => 1.0,
         }
@@ -417,7 +419,7 @@ impl PathTracer {
         (sample.pdf > 0.0).then_some(sample)
     }
 
-    /// The probability with which a path goes on after its `depth`-th bounce, and whether it does.
+    /// The survival probability of a path after its `depth`-th bounce, and whether it survives.
     fn roulette(&self, stream: &SampleStream, beta: Spectrum, eta_scale: f32, depth: u32) -> (f32, bool) {
         let survival = beta.max_lane() * eta_scale;
         if self.light_sampling != LightSampling::MultipleImportance
@@ -431,8 +433,8 @@ impl PathTracer {
     }
 }
 
-/// The weight of a way that finds light with density `this`, where another one finds it with `other` (Veach & Guibas
-/// 1995, β = 2).
+/// The power heuristic (Veach & Guibas 1995, β = 2): weight of a sample of density `this`, where the other strategy has
+/// density `other`.
 pub(crate) fn power_heuristic(this: f32, other: f32) -> f32 {
     // In this form nothing overflows.
     let ratio = other / this;

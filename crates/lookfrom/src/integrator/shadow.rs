@@ -1,8 +1,8 @@
 //! Shadow rays: visibility between a surface and a light.
 //!
-//! In a scene without transparent things the answer is yes or no. With them (and `transparent_shadows`) a shadow ray goes
-//! straight on through what lets light pass, coloured by `k_t` and by absorption on the way; the bending is ignored, as in
-//! most renderers of this kind since Whitted's.
+//! In a scene without transparent surfaces visibility is binary. With them (and `transparent_shadows`) a shadow ray
+//! goes straight on through transparent surfaces, coloured by `k_t` and by absorption on the way; refraction is
+//! ignored, as in most renderers of this kind since Whitted's.
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Point, Ray};
@@ -17,25 +17,25 @@ use crate::shading::material::Coefficients;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
-/// How many transparent surfaces a shadow ray may cross before it counts as blocked.
+/// Maximum number of transparent surfaces that a shadow ray may cross before it counts as blocked.
 const MOST_CROSSINGS: u32 = 32;
 
-/// A ray to a light, and the light that it brings if nothing stands in its way.
+/// A shadow ray, and its contribution if it is unoccluded.
 #[derive(Clone, Copy, Debug)]
 pub struct Shadow {
-    /// From the surface; `t = 1` is the light, unless that is infinitely far.
+    /// From the surface; `t = 1` is the light, unless that is infinitely far away.
     pub ray: Ray,
-    /// The triangle that it leaves.
+    /// The primitive that it leaves.
     pub origin_primitive: OriginPrimitive,
-    /// What is added to the sample if the light is reached.
+    /// The light that is added to the sample if the ray is unoccluded.
     pub contribution: Spectrum,
-    /// Which sample of the batch.
+    /// Index of the sample in the batch.
     pub slot: u32,
-    /// The address of the path whose hit asked for it.
+    /// The address of the path whose hit sampled the light.
     pub address: u64,
-    /// Why it is added.
+    /// The reason why it is added.
     pub term: Term,
-    /// What it travels in.
+    /// The media that the ray is inside of.
     pub interior: InteriorStack,
 }
 
@@ -54,7 +54,7 @@ impl Shadow {
             Target::Point(position) => toward(origin, position.to_array()),
             Target::Surface(point, normal) => {
                 // The ray must end before the light's own surface although its direction is rounded: an error of at
-                // most 2⁻²⁴ of its length a component, here with a reserve of two.
+                // most 2⁻²⁴ of its length per component, here with a safety factor of two.
                 let length: f64 =
                     (0..3).map(|k| (point.position[k] - f64::from(origin[k])).abs()).fold(0.0, f64::max);
                 let slack = length * f64::from(f32::EPSILON);
@@ -65,7 +65,7 @@ impl Shadow {
             }
         };
         let Path { slot, address, interior, .. } = *path;
-        // Through the surface of a body it travels in what is behind.
+        // A ray through the surface continues in the medium behind it.
         let crosses = (surface.ng.dot(sample.wi.as_dvec3()) > 0.0) != surface.front;
         let interior = interior.leaving(&world.materials, surface, sample.wi, crosses);
         let origin_primitive = surface.origin_primitive;
@@ -73,30 +73,30 @@ impl Shadow {
     }
 }
 
-/// From `origin` to `target` at t = 1.
+/// The ray from `origin` to `target`, which is at t = 1.
 pub(super) fn toward(origin: [f32; 3], target: [f64; 3]) -> Ray {
     let direction = std::array::from_fn(|k| (target[k] - f64::from(origin[k])) as f32);
     Ray { t_max: 1.0, ..Ray::new(origin, direction) }
 }
 
-/// What lets shadow rays pass.
+/// The surfaces that let shadow rays pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ShadowTransparency {
-    /// Only where there is no surface: by its alpha, or an interface of media.
+    /// Only surfaces that fail the alpha test, and interfaces of media.
     AlphaTested,
     /// Transparent materials as well, straight on, coloured by them (Whitted's model).
     Transparent,
 }
 
 impl ShadowTransparency {
-    /// Of Whitted's model, where transparent shadows may be asked for.
+    /// The transparency in Whitted's model, where `transparent_shadows` is a setting.
     pub(super) fn of_whitted(transparent_shadows: bool) -> Self {
         if transparent_shadows { Self::Transparent } else { Self::AlphaTested }
     }
 }
 
-/// Traces all shadow rays of a batch and adds what arrives, in their order. Gives the number of rays traced.
+/// Traces all shadow rays of a batch and adds their contributions, in their order. Returns the number of rays traced.
 pub(crate) fn resolve<P: Probe>(
     world: &World,
     shadow_transparency: ShadowTransparency,
@@ -119,7 +119,7 @@ pub(crate) fn resolve<P: Probe>(
     traced
 }
 
-/// Whatever stands in the way takes all.
+/// Traces shadow rays that any hit blocks completely.
 fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
     let Queues { shadows, lanes, rays, origin_primitives, blocked, .. } = queues;
     rays.clear();
@@ -132,14 +132,14 @@ fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
     for (shadow, blocked) in shadows.iter_mut().zip(&*blocked) {
         let lanes = &lanes[shadow.slot as usize];
         let passed = if *blocked { Spectrum::BLACK } else { shadow.reached(world, lanes) };
-        // The picture needs to know only that something is in the way, a probe also what.
+        // The picture needs only occlusion, a probe the closest hit.
         probe.notice(|| Event::Shadow { shadow: *shadow, hit: world.bvh.closest_hit(&shadow.ray), passed });
         shadow.contribution *= passed;
     }
     rays.len() as u64
 }
 
-/// What lets light through takes its part; the ray goes on behind it.
+/// Traces shadow rays that surfaces may attenuate; each ray goes on behind the surface.
 fn let_through<P: Probe>(
     world: &World,
     shadow_transparency: ShadowTransparency,
@@ -187,15 +187,16 @@ fn let_through<P: Probe>(
 }
 
 impl Shadow {
-    /// The part of the light that comes through what fills the rest of the way.
+    /// Transmittance of the medium on the rest of the way.
     fn reached(&self, world: &World, lanes: &SpectralMode) -> Spectrum {
         let length = Vec3::from_array(self.ray.direction).length() * self.ray.t_max;
-        // Lights infinitely far emit light from twice the scene's radius away, as far as media are concerned, as in pbrt.
+        // Lights infinitely far emit light from twice the scene's radius away, as far as media are concerned, as in
+        // pbrt.
         let is_far = length.is_infinite() && self.interior.space().is_some();
         world.transmittance(self.interior, if is_far { 2.0 * world.radius } else { length }, lanes)
     }
 
-    /// The part of the light that comes through to where the ray met `surface` and through it.
+    /// Transmittance of the medium up to `surface` and of the surface.
     fn passed(
         &self,
         world: &World,
@@ -219,7 +220,7 @@ impl Shadow {
         Coefficients::at(material, &world.textures, &point, lanes).transmission * through_medium
     }
 
-    /// A number in [0, 1) that depends on the ray and on what it met.
+    /// A pseudorandom number in [0, 1): a hash of the ray and its hit.
     fn number(&self, hit: &Hit) -> f32 {
         let [x, y, z] = self.ray.direction.map(f32::to_bits);
         let of_ray = hash::pair(u64::from(x) << 32 | u64::from(y), u64::from(z));
@@ -227,7 +228,7 @@ impl Shadow {
         (hash::pair(of_ray, of_hit) >> 40) as f32 * (1.0 / 16_777_216.0)
     }
 
-    /// Starts again behind a surface that lets light pass.
+    /// Continues the ray behind a surface that lets light pass.
     fn go_on_behind(&mut self, world: &World, hit: &Hit, surface: &SurfaceInteraction) {
         let direction = Vec3::from_array(self.ray.direction);
         self.ray.origin = surface.origin(direction);

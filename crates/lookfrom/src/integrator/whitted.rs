@@ -1,4 +1,4 @@
-//! Recursive ray tracing (Whitted 1980): at each hit shadow rays, one mirrored and one refracted ray, and so on. The
+//! Recursive ray tracing (Whitted 1980): at each hit shadow rays, one reflected and one refracted ray, and so on. The
 //! colour of a pixel is the sum over that tree of rays.
 //!
 //! *Adaptive depth control* (Hall & Greenberg 1983): a branch that can no longer change the pixel is not followed.
@@ -14,13 +14,13 @@ use crate::integrator::{
 use crate::shading::interaction::SurfaceInteraction;
 use crate::world::World;
 
-/// The deepest tree that [`Path::address`] can number.
+/// The depth of the deepest tree that [`Path::address`] can number.
 const DEEPEST: u32 = 62;
 
 /// Recursive ray tracing.
 #[derive(Clone, Copy, Debug)]
 pub struct Whitted {
-    /// How many times a ray may be mirrored or refracted; no ray goes on after 62 surfaces.
+    /// Maximum number of reflections and refractions along a ray; no ray goes on after 62 surfaces.
     pub depth: u32,
     /// Branches with a smaller throughput are not followed.
     pub min_contribution: f32,
@@ -55,7 +55,7 @@ impl Integrator for Whitted {
         }
         let surface = world.surface(&path.ray, hit);
 
-        // Light passes where the surface is not there: an only child, straight on.
+        // Pass surfaces that fail the alpha test: an only child, straight on.
         if path.goes_through(world, &surface, stream.presence(world, &surface)) {
             if path.address < 1 << DEEPEST {
                 output.queues.paths.push(Path { address: path.address << 1 | 1, ..path.passed(&surface) });
@@ -89,7 +89,7 @@ impl Integrator for Whitted {
 }
 
 impl Whitted {
-    /// The path that goes on from a surface, or why there is none.
+    /// The path that goes on from a surface, or the reason why there is none.
     fn child(
         &self,
         world: &World,
@@ -124,8 +124,8 @@ impl Whitted {
     }
 }
 
-/// A smoothed normal can send a mirrored ray into the surface or a refracted one out of it: then the nearest direction
-/// that does not is taken, mirrored at the tangent plane. `side` is 1 for the side of `ng`, −1 for the other.
+/// The direction, reflected at the tangent plane if it points to the wrong side of it: an interpolated normal can send
+/// a reflected ray into the surface or a refracted one out of it. `side` is 1 for the side of `ng`, −1 for the other.
 fn same_side(direction: Vec3, ng: Vec3, side: f32) -> Vec3 {
     let cos = direction.dot(ng);
     if cos * side >= 0.0 { direction } else { direction - 2.0 * cos * ng }

@@ -1,7 +1,7 @@
-//! Area lights: points sampled as seen from a point, and their densities.
+//! Area lights: sampling of points as seen from a reference point, and densities.
 //!
-//! [`AreaLight::sample_point`] and [`AreaLight::pdf`] are of the same density over solid angle, so that light found by
-//! either of two ways can be weighed (multiple importance sampling). How each form is chosen from stands in its file.
+//! [`AreaLight::sample_point`] and [`AreaLight::pdf`] have the same solid angle density, as multiple importance
+//! sampling requires. The sampling of each kind of shape is in a file of its own.
 
 mod mesh;
 mod patch;
@@ -23,22 +23,22 @@ pub(crate) use mesh::Triangle as LightTriangle;
 pub use patch::PatchLight;
 pub use quadric::QuadricLight;
 
-/// A area light.
+/// An area light.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
     /// Emitted radiance.
     pub radiance: EmissionSpectrum,
-    /// The part of the shape that is there; `None` is all of it.
+    /// Alpha; `None` is opaque.
     pub alpha: Option<FloatTexture>,
     /// Whether both sides emit light.
     pub two_sided: bool,
-    /// How much of a clear coat is over it; `None` where there is none.
+    /// Weight of a clear coat over the emitter; `None` where there is none.
     pub coat: Option<FloatTexture>,
-    /// Where it emits light from.
+    /// The shape that emits light.
     pub shape: LightShape,
 }
 
-/// The form of a shape that emits light.
+/// The geometry of an area light.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum LightShape {
@@ -55,44 +55,44 @@ pub enum LightShape {
 /// A point of a light, as seen from another point.
 #[derive(Clone, Copy, Debug)]
 pub struct LightPoint {
-    /// Where, in render space.
+    /// Position, in render space.
     pub point: Point,
-    /// Geometric normal to the outside, unit length: the side that emits light, where only one does.
+    /// Outward geometric normal, unit length: the side that emits light, where only one does.
     pub normal: DVec3,
     /// Texture coordinates.
     pub uv: Vec2,
-    /// Of a mesh, the triangle; else 0.
+    /// Index of the triangle, for a mesh; else 0.
     pub primitive: u32,
     /// The weights of the triangle's second and third corner.
     pub on_primitive: Vec2,
     /// Toward the light, unit length.
     pub wi: Vec3,
-    /// Density over solid angle, finite and positive.
+    /// Solid angle density, finite and positive.
     pub pdf: f32,
 }
 
-/// Where a light is and which way it emits.
+/// Bounds of an area light and of its normals.
 #[derive(Clone, Copy, Debug)]
 pub struct EmitterBounds {
-    /// Box around it, in render space.
+    /// Minimum of the bounding box, in render space.
     pub min: DVec3,
-    /// Box around it, in render space.
+    /// Maximum of the bounding box, in render space.
     pub max: DVec3,
-    /// About the middle of its normals, unit length.
+    /// Axis of the cone of normals, unit length.
     pub axis: Vec3,
-    /// Cosine of the greatest angle between a normal and the axis; −1 where they point to all sides.
+    /// Cosine of the largest angle between a normal and the axis; −1 where they point in all directions.
     pub cos_normals: f32,
     /// Whether both sides emit light.
     pub two_sided: bool,
 }
 
 impl AreaLight {
-    /// Whether any of it was found to emit; otherwise only rays that hit it find what there is.
+    /// Whether any emission was found on it; otherwise it is not sampled, and only rays that hit it find its light.
     pub fn is_sampled(&self) -> bool {
         !matches!(&self.shape, LightShape::Mesh(light) if !light.is_sampled())
     }
 
-    /// The mean over the light of the pattern that its form was made for, if it was.
+    /// The mean of the emission texture over the light, where sampling takes the texture into account.
     pub fn mean_of_pattern(&self) -> Option<f32> {
         match &self.shape {
             LightShape::Mesh(light) => light.brightness(),
@@ -100,8 +100,8 @@ impl AreaLight {
         }
     }
 
-    /// Radiance that leaves a point of the light on the side of its normal (`front`) or on the other, at an angle of cosine
-    /// `cos` to its shading normal (on either side; evaluated only where there is a coat).
+    /// Emitted radiance at a point of the light on the side of its normal (`front`) or on the other, at an angle of
+    /// cosine `cos` to its shading normal (on either side; evaluated only where there is a coat).
     pub fn emitted(
         &self,
         textures: &Textures,
@@ -123,7 +123,7 @@ impl AreaLight {
         }
     }
 
-    /// One way from the light to a point.
+    /// A sample of the light from a reference point.
     pub(super) fn sample(
         &self,
         textures: &Textures,
@@ -141,8 +141,7 @@ impl AreaLight {
         (!li.is_black()).then_some(LightSample { wi, li, pdf, target: Target::Surface(point, normal) })
     }
 
-    /// The triangle that a number chooses, of meshes that emit alike everywhere; its probability, and what is left of
-    /// the number.
+    /// The triangle that `u0` chooses, its probability, and the remapped `u0`; only for meshes of uniform emission.
     #[inline]
     pub(crate) fn triangle(&self, u0: f32) -> Option<(&LightTriangle, f32, f32)> {
         match &self.shape {
@@ -155,7 +154,7 @@ impl AreaLight {
         }
     }
 
-    /// What the colour of a patterned light depends on: not its place in the world.
+    /// The inputs of an emission texture; the position in the world is not among them.
     fn texture_point(&self, point: &LightPoint) -> TexturePoint {
         let at = TexturePoint { uv: point.uv, n: point.normal.as_vec3(), ..TexturePoint::NOWHERE };
         let is_even = self.alpha.is_none()
@@ -169,7 +168,7 @@ impl AreaLight {
         }
     }
 
-    /// The normal that its coat is seen with.
+    /// The shading normal of the coat.
     fn shading_normal(&self, point: &LightPoint) -> DVec3 {
         match &self.shape {
             LightShape::Mesh(light) => light.shading_normal(point.primitive, point.on_primitive),
@@ -177,9 +176,9 @@ impl AreaLight {
         }
     }
 
-    /// A point of the light to be seen from another, in render space, for `u ∈ [0, 1)²`: with a density of
-    /// [`Self::pdf`] over solid angle. None where there is none to be seen, or no usable density. It may be hidden
-    /// behind other points of the light, or look away.
+    /// A sampled point of the light as seen from `from`, in render space, for `u ∈ [0, 1)²`, with the solid angle
+    /// density [`Self::pdf`]. None where no point is visible, or the density is not usable. The point may be hidden
+    /// behind other points of the light, or face away.
     pub fn sample_point(&self, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
         let point = match &self.shape {
             LightShape::Quadric(light) => light.sample(from, u, self.two_sided),
@@ -190,8 +189,8 @@ impl AreaLight {
         (point.pdf.is_finite() && point.pdf > 0.0).then_some(point)
     }
 
-    /// The density over solid angle with which [`Self::sample_point`] would have chosen, seen from a point, the place
-    /// of this light that a ray from there into the unit direction `wi` has met. 0 where it has none.
+    /// The solid angle density in [`Self::sample_point`] of `surface`, the point of this light that a ray from `from`
+    /// in the unit direction `wi` hit. 0 where it is never sampled.
     pub fn pdf(&self, from: DVec3, surface: &SurfaceInteraction, wi: Vec3) -> f32 {
         let by_area = |density: f64| {
             let to = DVec3::from_array(surface.point.position) - from;
@@ -223,7 +222,7 @@ impl AreaLight {
         }
     }
 
-    /// Where it is and which way it emits.
+    /// Bounds of the light and of its normals.
     pub fn emitter_bounds(&self) -> EmitterBounds {
         let (bounds, Cone { axis, cos }) = match &self.shape {
             LightShape::Quadric(light) => (light.bounds(), light.normals()),
@@ -238,14 +237,14 @@ impl AreaLight {
     }
 }
 
-/// The part of light that a clear coat mirrors back into what is below, for a cosine to its normal. As
-/// `KHR_materials_clearcoat` has it for emission: Schlick's curve from 0.04, smooth however rough the coat is. (Its normal map
-/// is left out: a light does not know it.)
+/// The part of emitted light that a clear coat reflects back, for a cosine to its normal, as in
+/// `KHR_materials_clearcoat`: Schlick's approximation with F0 = 0.04, whatever the roughness of the coat. (Its normal
+/// map is ignored: a light does not have it.)
 fn mirrored_by_coat(cos: f32) -> f32 {
     0.04 + 0.96 * math::schlick(cos)
 }
 
-/// Directions around an axis of unit length, up to an angle of this cosine.
+/// A cone of directions around an axis of unit length, up to an angle of this cosine.
 #[derive(Clone, Copy, Debug)]
 struct Cone {
     axis: DVec3,
@@ -255,7 +254,7 @@ struct Cone {
 impl Cone {
     const ALL: Self = Self { axis: DVec3::Z, cos: -1.0 };
 
-    /// Around all of some unit vectors.
+    /// A cone that contains the given unit vectors.
     fn around(directions: impl Iterator<Item = DVec3> + Clone) -> Self {
         let sum: DVec3 = directions.clone().sum();
         let Some(axis) = sum.try_normalize() else { return Self::ALL };
@@ -263,14 +262,14 @@ impl Cone {
     }
 }
 
-/// A point of a light that was chosen with a density over area, as it is seen.
+/// A point of a light that was sampled with an area density, with its solid angle density as seen from `from`.
 fn seen(from: DVec3, point: Point, normal: DVec3, uv: Vec2, density: f64) -> Option<LightPoint> {
     let (wi, distance) = toward(from, DVec3::from_array(point.position))?;
     let pdf = (density * distance * distance / normal.dot(wi.as_dvec3()).abs()) as f32;
     Some(LightPoint { point, normal, uv, primitive: 0, on_primitive: Vec2::ZERO, wi, pdf })
 }
 
-/// By area.
+/// A point of a disk, sampled by area.
 fn sample_disk(disk: &Disk, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
     let on_disk = warp::concentric_disk(u);
     seen(from, disk.at(on_disk), disk.normal().normalize(), 0.5 + 0.5 * on_disk, 1.0 / disk_area(disk))

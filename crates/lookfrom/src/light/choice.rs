@@ -1,7 +1,7 @@
-//! Light samplers: the choice of one light at a point (uniform, by power, by a light tree).
+//! Light samplers: choice of one light at a point (uniform, by power, by a light tree).
 //!
-//! Lights infinitely far take turns with the tree of those that have a place, each with the same probability, as in
-//! pbrt-v4. Lights that directions sampled from materials find as well (an even sky) need not be sampled: they have
+//! Each light infinitely far away is chosen with the same probability as the whole light tree of those that have a
+//! position, as in pbrt-v4. Lights that BSDF sampling finds as well (a uniform sky) need not be sampled: they have
 //! probability 0.
 
 use lookfrom_scene::settings::LightSampler as Kind;
@@ -11,27 +11,27 @@ use super::{Light, LightSampleContext};
 use crate::core::distribution::Discrete;
 use crate::core::sampler::ONE_MINUS_EPSILON;
 
-/// A way to choose one of many lights.
+/// A distribution over lights.
 #[derive(Clone, Debug)]
 pub struct LightChoice {
-    /// Lights without a place (or, if there is no tree, all lights) …
+    /// Lights without a position (or, if there is no tree, all lights) …
     listed: Vec<u32>,
-    /// … by weight; all the same where there is none.
+    /// … by weight; uniform if `None`.
     weights: Option<Discrete>,
-    /// For each light of the world, its place in `listed`.
+    /// For each light of the world, its index in `listed`.
     places: Vec<Option<u32>>,
     tree: Tree,
 }
 
 impl LightChoice {
-    /// A choice among the lights that need to be sampled; `radius` is that of the scene, for the power of lights infinitely
-    /// far.
+    /// The distribution over the lights that need to be sampled; `radius` is that of the scene, for the power of lights
+    /// infinitely far away.
     pub fn new(kind: Kind, lights: &[Light], brightness: &[f32], radius: f32) -> Self {
         let asked = || (0..).zip(lights).filter(|(_, light)| light.is_sampled());
         let power = |index: u32, light: &Light| {
             f64::from(brightness[index as usize]) * light.power_per_brightness(radius)
         };
-        // Relative to the greatest, any power is an f32; what is positive stays so.
+        // Relative to the largest, any power fits an f32; a positive one stays positive.
         let greatest = asked().map(|(index, light)| power(index, light)).fold(0.0, f64::max);
         let relative = |power: f64| if power > 0.0 { ((power / greatest) as f32).max(1e-30) } else { 0.0 };
         let mut listed: Vec<u32> = Vec::new();
@@ -55,7 +55,7 @@ impl LightChoice {
         Self { listed, weights, places, tree: Tree::new(&with_place, lights.len()) }
     }
 
-    /// A light to sample at a point and the probability of its choice, for `u ∈ [0, 1)`.
+    /// The light to sample at a point and the probability of its choice, for `u ∈ [0, 1)`.
     pub fn sample(&self, at: &LightSampleContext, u: f32) -> Option<(u32, f32)> {
         if let Some(weights) = &self.weights {
             let (place, probability, _) = weights.sample(u);
@@ -72,13 +72,13 @@ impl LightChoice {
         Some((light, probability * (1.0 - in_list)))
     }
 
-    /// The light that is sampled everywhere, whatever the number, where there is one only.
+    /// The only light that is sampled, if there is only one.
     #[inline]
     pub(crate) fn only(&self) -> Option<u32> {
         if self.weights.is_none() && self.listed.is_empty() { self.tree.only() } else { None }
     }
 
-    /// The probability with which [`LightChoice::sample`] chooses a light at a place.
+    /// The probability with which [`LightChoice::sample`] chooses a light at a point.
     pub fn probability(&self, at: &LightSampleContext, light: u32) -> f32 {
         match (self.places[light as usize], &self.weights) {
             (Some(place), Some(weights)) => weights.pdf(place as usize),
@@ -89,7 +89,7 @@ impl LightChoice {
         }
     }
 
-    /// The probability of the list, and not the tree, which counts as one more light.
+    /// The probability of choosing from the list; the tree counts as one more light.
     fn share_of_list(&self) -> f32 {
         let (list, tree) = (self.listed.len() as f32, if self.tree.is_empty() { 0.0 } else { 1.0 });
         if list == 0.0 { 0.0 } else { list / (list + tree) }

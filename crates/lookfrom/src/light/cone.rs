@@ -1,4 +1,4 @@
-//! Cones of directions: the orientation bounds of a light tree.
+//! Cones of directions: orientation bounds of a light tree.
 
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -16,7 +16,7 @@ impl Cone {
     /// Every direction.
     pub(super) const ALL: Self = Self { axis: Vec3::Z, cos: -1.0 };
 
-    /// A cone around both; the least one, up to rounding.
+    /// The smallest cone around both, up to rounding.
     pub(super) fn union(self, other: Self) -> Self {
         if self == other || self.cos <= -1.0 {
             return self;
@@ -34,14 +34,14 @@ impl Cone {
         if half >= PI || normal.length_squared() == 0.0 {
             return Self::ALL;
         }
-        // Turn the first axis toward the other one (Rodrigues; the axis of the turn stands across).
+        // Rotate the first axis toward the other one (Rodrigues; the rotation axis is perpendicular to both).
         let (sin, cos) = libm::sincosf(half - half_a);
         let axis = self.axis * cos + normal.normalize().cross(self.axis) * sin;
         Self { axis: axis.normalize(), cos: libm::cosf(half) }
     }
 }
 
-/// The angle of a cosine that rounding may have taken beyond ±1.
+/// The angle of a cosine, clamped to ±1 against rounding.
 pub(super) fn angle(cos: f32) -> f32 {
     libm::acosf(cos.clamp(-1.0, 1.0))
 }

@@ -1,4 +1,4 @@
-//! Environment lights: a constant, a gradient or a picture, perhaps seen through a portal.
+//! Environment lights: a constant, a gradient or an environment map, optionally with a portal.
 
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -13,14 +13,14 @@ use crate::core::spectrum::Spectrum;
 use crate::core::warp;
 use crate::shading::texture::{self, SpectralMode, SpectrumType, Textures};
 
-/// Light from infinitely far, all around.
+/// An environment light.
 #[derive(Clone, Debug)]
 pub struct Environment {
     /// Its colours.
     pub sky: Sky,
-    /// The only opening through which it is seen.
+    /// The portal, the only opening through which it is visible.
     pub portal: Option<Box<Portal>>,
-    /// Whether surfaces are lit by it; otherwise it is only seen.
+    /// Whether it illuminates surfaces; otherwise it is only visible.
     pub illuminates: bool,
 }
 
@@ -39,40 +39,40 @@ pub enum Sky {
         /// At y = −1.
         nadir: EmissionSpectrum,
     },
-    /// A picture.
+    /// An environment map.
     Image(Box<SkyImage>),
 }
 
-/// A picture of the surroundings.
+/// An environment map.
 #[derive(Clone, Debug)]
 pub struct SkyImage {
     /// Index of the picture in the world.
     pub image: usize,
-    /// Multiplies it, by channel.
+    /// Factor of each channel.
     pub scale: [f32; 3],
-    /// How the sphere of directions is laid out in it.
+    /// Its parametrisation of the sphere of directions.
     pub layout: Layout,
-    /// Columns: the light's axes in the world; a rotation, perhaps mirrored.
+    /// Columns: the light's axes in the world; a rotation or a rotation with reflection.
     pub world_from_light: Mat3,
-    /// By the light of each part of the picture.
+    /// Distribution by luminous contribution: brightness times solid angle of each texel.
     pub complete: Arc<Piecewise2D>,
-    /// By how much brighter than the mean each part is (Karlík et al. 2019): where materials are sampled too, dim
-    /// directions need no samples of their own.
+    /// MIS-compensated distribution (Karlík et al. 2019), by the excess of each texel over the mean: where BSDFs are
+    /// sampled too, dim directions need no light samples.
     pub compensated: Arc<Piecewise2D>,
 }
 
-/// How the sphere of directions is laid out in a picture.
+/// Parametrisation of the sphere of directions in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Layout {
-    /// Row 0 is +y; the middle column looks along −z, columns to the right toward +x.
+    /// Equirectangular. Row 0 is +y; the middle column is −z, columns to the right are toward +x.
     LatitudeLongitude,
     /// `warp::octahedral_direction`.
     Octahedral,
 }
 
 impl Environment {
-    /// Radiance that arrives at a point from a unit direction.
+    /// Incident radiance at a point from a unit direction.
     pub fn radiance(
         &self,
         textures: &Textures,
@@ -86,7 +86,7 @@ impl Environment {
         }
     }
 
-    /// Radiance from a unit direction in which nothing stands, not even a wall with an opening.
+    /// Radiance from a unit direction, ignoring the portal.
     fn color(&self, textures: &Textures, direction: Vec3, lanes: &SpectralMode) -> Spectrum {
         match &self.sky {
             Sky::Constant(emission_spectrum) => emission_spectrum.even(textures, lanes),
@@ -103,7 +103,7 @@ impl Environment {
         }
     }
 
-    /// The same with its picture, if it is one, turned by a rotation of the world; openings stay where they are.
+    /// The same light with its environment map, if it has one, rotated in the world; the portal stays where it is.
     pub(crate) fn turned(&self, rotation: &DMat3, textures: &Textures) -> Self {
         let Sky::Image(sky) = &self.sky else { return self.clone() };
         let world_from_light = (*rotation * sky.world_from_light.as_dmat3()).as_mat3();
@@ -112,11 +112,11 @@ impl Environment {
         Self { sky: Sky::Image(Box::new(sky)), portal, illuminates: self.illuminates }
     }
 
-    /// What arrives of it on a surface with the unit normal `n` that nothing is in the way of: the integral of radiance
-    /// times cosine, in linear Rec. 709. Openings are not heeded.
+    /// Unoccluded irradiance on a surface with the unit normal `n`, in linear Rec. 709: the integral of radiance times
+    /// cosine. The portal is ignored.
     pub fn irradiance(&self, textures: &Textures, n: Vec3) -> [f32; 3] {
         let Sky::Image(sky) = &self.sky else {
-            // The middle of many small parts: light that varies as little as this needs no more.
+            // The midpoint rule is enough for light that varies as little as this.
             const SIDE: u32 = 64;
             let place = |k: u32| (k as f32 + 0.5) / SIDE as f32;
             let sum = (0..SIDE * SIDE).fold(Spectrum::BLACK, |sum, k| {
@@ -140,12 +140,12 @@ impl Environment {
         sum.map(|sum| (sum / f64::from(width * height)) as f32)
     }
 
-    /// Whether sampling it is worth while: its light is not nearly the same all around.
+    /// Whether light sampling is worthwhile: its light is far from uniform.
     pub(super) fn is_uneven(&self) -> bool {
         self.portal.is_some() || matches!(self.sky, Sky::Image(_))
     }
 
-    /// One direction: out through the opening, by the picture's brightness, or by the cosine to the normal.
+    /// A sampled direction: through the portal, by the brightness of the map, or by the cosine to the normal.
     pub(super) fn sample(
         &self,
         textures: &Textures,
@@ -177,7 +177,7 @@ impl Environment {
         usable.then_some(LightSample { wi, li, pdf, target: Target::Infinity })
     }
 
-    /// The density of [`Environment::sample`] over solid angle.
+    /// The solid angle density of [`Environment::sample`].
     pub(super) fn pdf(&self, at: &LightSampleContext, wi: Vec3, incomplete_pdf: IncompletePdf) -> f32 {
         match (&self.portal, &self.sky, incomplete_pdf) {
             _ if !self.illuminates => 0.0,
@@ -204,7 +204,7 @@ impl SkyImage {
         }
     }
 
-    /// The picture's colour at a place of it.
+    /// The map's colour at (u, v).
     fn texel(&self, textures: &Textures, uv: [f32; 2]) -> [f32; 3] {
         let image = textures.image(self.image);
         match self.layout {
@@ -215,20 +215,20 @@ impl SkyImage {
         }
     }
 
-    /// What of it is seen through an opening.
+    /// The environment map resampled for a portal.
     pub(crate) fn through(&self, opening: Opening, textures: &Textures) -> Portal {
         let picture = textures.image(self.image);
         let size = [picture.width, picture.height];
         Portal::of_picture(opening, size, |direction| self.blended(textures, direction))
     }
 
-    /// The picture's colour in a unit direction, blended between the middles of texels.
+    /// The map's colour in a unit direction, bilinearly interpolated between texel centres.
     pub fn blended(&self, textures: &Textures, direction: Vec3) -> [f32; 3] {
         let uv = self.uv(direction);
         match self.layout {
             Layout::LatitudeLongitude => self.texel(textures, uv),
             Layout::Octahedral => {
-                // Look up four texels; beyond an edge the square goes on where the fold leads.
+                // Look up four texels; beyond an edge of the octahedral square the coordinates are folded back.
                 let image = textures.image(self.image);
                 let size = [image.width as f32, image.height as f32];
                 let place: [f32; 2] = std::array::from_fn(|i| uv[i] * size[i] - 0.5);
@@ -252,16 +252,16 @@ impl SkyImage {
         texture::spectrum_of(rgb, SpectrumType::Illuminant, lanes)
     }
 
-    /// What turns a density over the picture into one over solid angle.
+    /// Factor from a density over the unit square of the map to one over solid angle.
     fn per_solid_angle(&self, [_, v]: [f32; 2]) -> f32 {
         match self.layout {
-            // the picture's area element is 2π² sin θ of the sphere's
+            // the sphere's area element is 2π² sin θ times that of the unit square
             Layout::LatitudeLongitude => 1.0 / (2.0 * PI * PI * libm::sinf(v * PI)),
             Layout::Octahedral => 0.25 / PI,
         }
     }
 
-    /// Where in the picture a unit direction lies.
+    /// The (u, v) of a unit direction.
     fn uv(&self, direction: Vec3) -> [f32; 2] {
         let d = self.world_from_light.transpose() * direction;
         match self.layout {

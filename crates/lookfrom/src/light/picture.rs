@@ -8,12 +8,12 @@ use crate::core::spectrum::Spectrum;
 use crate::core::warp;
 use crate::shading::texture::{self, SpectralMode, SpectrumType, Textures};
 
-/// A picture thrown into a rectangle.
+/// A light that projects a picture into a rectangle.
 #[derive(Clone, Debug)]
 pub struct Projection {
-    /// Where.
+    /// Position.
     pub position: DVec3,
-    /// To the light's space: it looks along +z, y is up, x to the right of the picture.
+    /// To the light's space: +z is its axis, y is up, x to the right of the picture.
     pub light_from_render: Mat3,
     /// Index of the picture in the world.
     pub image: usize,
@@ -47,7 +47,7 @@ impl Projection {
         (!li.is_black()).then_some(LightSample::of_point(wi, li, self.position))
     }
 
-    /// Where it looks, unit length.
+    /// The axis, unit length.
     pub(super) fn axis(&self) -> Vec3 {
         (self.light_from_render.inverse() * Vec3::Z).normalize()
     }
@@ -59,10 +59,10 @@ impl Projection {
     }
 }
 
-/// A light that sends out more or less by direction.
+/// A goniometric light: a point light whose intensity depends on direction.
 #[derive(Clone, Debug)]
 pub struct Goniometric {
-    /// Where.
+    /// Position.
     pub position: DVec3,
     /// To the light's space.
     pub light_from_render: Mat3,

@@ -1,9 +1,9 @@
 //! Portals: environments sampled through a rectangle (Bitterli, Novák & Jarosz 2015).
 //!
-//! Bitterli, Novák & Jarosz 2015: with two angles about the sides of a rectangle as coordinates (*rectified*), what is seen
-//! through it from any point is a rectangle too, a window of the square. Colours of pictures are taken over into that
-//! square once; from each point, directions are chosen within its window. As in pbrt-v4 light enters from one side, and who
-//! looks elsewhere than through the opening sees nothing of the environment.
+//! With two angles about the sides of the rectangle as coordinates (*rectified*), the part of the environment that is
+//! visible through it from any point is a rectangle too, a window of the square. Environment maps are resampled into
+//! that square once; from each point, directions are sampled within its window. As in pbrt-v4 light enters from one
+//! side, and the environment is invisible elsewhere than through the portal.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ use lookfrom_scene::image::Image;
 use crate::core::distribution::{Window, Windowed2D};
 use crate::core::parallel;
 
-/// How many cells a side are told apart where the colours are no picture.
+/// Resolution of the square, per side, for an environment without a map.
 const SIDE: usize = 64;
 
 /// A rectangle through which an environment is seen.
@@ -21,30 +21,30 @@ const SIDE: usize = 64;
 pub struct Portal {
     opening: Opening,
     choice: Windowed2D,
-    /// In the opening's square: what a picture of the surroundings has there.
+    /// The environment map, resampled into the square.
     picture: Option<Image>,
 }
 
-/// The rectangle, and the square of the angles about its sides: 0 … 1 stands for −π/2 … π/2 of the hemisphere outside.
+/// The rectangle, and the square of the angles about its sides: 0 … 1 stands for −π/2 … π/2 of the outer hemisphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Opening {
     /// In render space: the corner that comes first in both angles …
     corner: DVec3,
     /// … and the one across.
     opposite: DVec3,
-    /// Of unit length: along both sides, and outside.
+    /// Of unit length: along both sides, and outward.
     axes: [DVec3; 3],
     area: f64,
 }
 
 impl Portal {
-    /// An opening to even colours, or ones that vary little.
+    /// A portal to a constant environment, or one that varies little.
     pub fn plain(opening: Opening) -> Self {
         let weights = solid_angles(SIDE, SIDE).map(|angle| angle as f32).collect();
         Self { opening, choice: Windowed2D::new(weights, SIDE, SIDE), picture: None }
     }
 
-    /// An opening to a picture of that size, whose colours are given by unit direction in render space.
+    /// A portal to an environment map of that size, whose colours are given by unit direction in render space.
     ///
     /// # Panics
     /// If the picture has no texels.
@@ -74,18 +74,18 @@ impl Portal {
         self.opening
     }
 
-    /// Whether one looks out through it.
+    /// Whether a ray leaves through the portal.
     pub fn is_seen(&self, from: DVec3, direction: Vec3) -> bool {
         self.place(from, direction).is_some()
     }
 
-    /// The place in the square of a direction out through it from a point.
+    /// The point in the square of a direction through the portal from a point.
     fn place(&self, from: DVec3, direction: Vec3) -> Option<[f64; 2]> {
         let place = self.opening.place(direction.as_dvec3())?;
         self.opening.window(from)?.contains(place).then_some(place)
     }
 
-    /// The texel of the picture, where there is one, in a direction out through it.
+    /// The texel of the resampled map, if there is one, in a direction through the portal.
     pub(super) fn texel(&self, direction: Vec3) -> Option<[f32; 3]> {
         let picture = self.picture.as_ref()?;
         let place = self.opening.place(direction.as_dvec3())?;
@@ -94,7 +94,7 @@ impl Portal {
         Some(picture.texel(y * picture.width as usize + x))
     }
 
-    /// A direction out through it and the density over solid angle, or `None` where nothing is to be seen.
+    /// A sampled direction through the portal and its solid angle density, or `None` where nothing is visible.
     pub(super) fn sample(&self, from: DVec3, u: [f32; 2]) -> Option<(Vec3, f32)> {
         let (place, pdf) = self.choice.sample(&self.opening.window(from)?, u)?;
         Some((self.opening.direction(place), pdf / self.opening.solid_angle(place)))
@@ -110,41 +110,41 @@ impl Portal {
         self.choice.pdf(&window, place) / self.opening.solid_angle(place)
     }
 
-    /// Of the rectangle.
+    /// Area of the rectangle.
     pub(super) fn area(&self) -> f64 {
         self.opening.area
     }
 }
 
 impl Opening {
-    /// The rectangle of four corners in render space, one after the other: counter-clockwise as seen when looking
-    /// out. If they make none, nothing is seen through it.
+    /// The rectangle of four corners in render space, in order: counter-clockwise when looking out. If they do not form
+    /// a rectangle, nothing is visible through it.
     pub fn new([a, b, c, d]: [DVec3; 4]) -> Self {
         let x = (d - a).normalize_or_zero();
         let z = x.cross(b - a).normalize_or_zero();
         Self { corner: a, opposite: c, axes: [x, z.cross(x), z], area: (d - a).cross(b - a).length() }
     }
 
-    /// The part of the square that is seen through the opening from a point; `None` from outside and beside it.
+    /// The part of the square that is visible through the portal from a point; `None` from outside and from its plane.
     fn window(&self, from: DVec3) -> Option<Window> {
         let min = self.place(self.corner - from)?;
         let max = self.place(self.opposite - from)?;
         Some(Window { min, max })
     }
 
-    /// Where in the square a direction of any length lies; `None` for those that do not lead outside.
+    /// The point in the square of a direction of any length; `None` for those that do not lead outside.
     fn place(&self, direction: DVec3) -> Option<[f64; 2]> {
         let [x, y, z] = self.axes.map(|axis| axis.dot(direction));
         (z > 0.0).then(|| [x, y].map(|side| (0.5 + libm::atan2(side, z) / PI).clamp(0.0, 1.0)))
     }
 
-    /// The unit direction of a place in the square.
+    /// The unit direction of a point in the square.
     fn direction(&self, place: [f64; 2]) -> Vec3 {
         let [x, y] = place.map(slope);
         (self.axes[0] * x + self.axes[1] * y + self.axes[2]).normalize().as_vec3()
     }
 
-    /// How much solid angle there is at a place, by area of the square.
+    /// Solid angle per area of the square, at a point of it.
     fn solid_angle(&self, place: [f64; 2]) -> f32 {
         let [x2, y2] = place.map(|place| slope(place) * slope(place));
         let length2 = 1.0 + x2 + y2;
@@ -152,7 +152,7 @@ impl Opening {
     }
 }
 
-/// The tangent of the angle from the normal of an opening; at a right angle very large.
+/// The tangent of the angle from the normal; very large at a right angle.
 fn slope(place: f64) -> f64 {
     libm::tan(PI * (place - 0.5).clamp(-0.4999999999, 0.4999999999))
 }
@@ -160,7 +160,7 @@ fn slope(place: f64) -> f64 {
 /// The solid angle of each cell of the square, row by row.
 fn solid_angles(width: usize, height: usize) -> impl Iterator<Item = f64> {
     let edges = move |cells: usize| (0..=cells).map(move |cell| slope(cell as f64 / cells as f64));
-    // Seen from a distance of 1: a rectangle with one corner in the middle of the view and the other one at (x, y).
+    // Solid angle from a distance of 1 of a rectangle with one corner on the axis and the opposite one at (x, y).
     let until = |x: f64, y: f64| libm::atan2(x * y, (1.0 + x * x + y * y).sqrt());
     let columns: Vec<f64> = edges(width).collect();
     let rows: Vec<f64> = edges(height).collect();
@@ -168,7 +168,7 @@ fn solid_angles(width: usize, height: usize) -> impl Iterator<Item = f64> {
         let ([left, right], [top, bottom]) =
             ([0, 1].map(|i| columns[index % width + i]), [0, 1].map(|i| rows[index / width + i]));
         let angle = until(right, bottom) - until(left, bottom) - until(right, top) + until(left, top);
-        // rounding leaves no cell without any
+        // rounding must not leave a cell without solid angle
         angle.max(f64::MIN_POSITIVE)
     })
 }
@@ -178,7 +178,7 @@ mod tests {
     use super::*;
 
     fn unit() -> Opening {
-        // counter-clockwise when looking along −z: from below on the left
+        // counter-clockwise when looking along −z, from the lower left
         Opening::new(
             [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| DVec3::new(x, y, -1.0)),
         )

@@ -23,7 +23,7 @@ use crate::core::warp;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
-/// The eye's place, where render space begins: lights are far from the origin of the world.
+/// The camera's position, the origin of render space: lights are far from the origin of the world.
 const EYE: DVec3 = DVec3::new(1000.0, -300.0, 50.0);
 
 fn random(i: u32) -> [f32; 2] {
@@ -46,7 +46,7 @@ fn total(total: f32) -> Power {
     Power { total: Some(total), ..Power::AS_WRITTEN }
 }
 
-/// A picture of light of any exponent, some of it black.
+/// A picture with values over many orders of magnitude, some of them black.
 fn picture(width: u32, height: u32, seed: u32) -> Image {
     let texels = (0..width * height)
         .map(|i| {
@@ -82,7 +82,7 @@ fn pictures() -> Vec<Image> {
     vec![picture(16, 8, 1), picture(8, 8, 2)]
 }
 
-/// A window of 2 × 3, turned, a little before the eye.
+/// A rotated window of 2 × 3, a little in front of the camera.
 fn window() -> [DVec3; 4] {
     let corners = [[-1.0, -1.5], [1.0, -1.5], [1.0, 1.5], [-1.0, 1.5]];
     corners.map(|[x, y]| EYE + turn().transform_point3(DVec3::new(x, y, -2.0)))
@@ -114,7 +114,7 @@ fn environments() -> Vec<Around> {
     [false, true].iter().flat_map(|portal| skies.iter().map(|sky| around(sky, *portal))).collect()
 }
 
-/// A place to be lit at: far from and near to the portal, one near its edge.
+/// Reference points: far from and near to the portal, one near its edge.
 fn places() -> [LightSampleContext; 3] {
     let at = |x, y, z| {
         let n = Vec3::new(0.3, -0.9, 0.2).normalize();
@@ -123,7 +123,7 @@ fn places() -> [LightSampleContext; 3] {
     [at(0.0, 0.0, 0.0), at(0.8, -1.2, -1.95), at(1.5, 0.5, 2.0)]
 }
 
-/// Cells of equal solid angle: so many of z, and of the angle around it.
+/// Number of cells of equal solid angle, along z and around it.
 const CELLS: [usize; 2] = [30, 60];
 
 fn cell(d: Vec3) -> usize {
@@ -156,7 +156,8 @@ fn integrals(fine: usize, f: impl Fn(Vec3) -> f64 + Sync) -> Vec<f64> {
         .collect()
 }
 
-/// Directions of a million samples against the density, and what they bring against what arrives.
+/// Checks the directions of a million samples against the density, and their estimate of the irradiance against the
+/// integral.
 fn check_directions(
     around: &Around,
     at: &LightSampleContext,
@@ -180,22 +181,22 @@ fn check_directions(
         counts[cell(sample.wi)] += 1;
         let li = f64::from(luminance(sample.li.rgb()));
         arriving += li / f64::from(sample.pdf);
-        // Now and then, ask what another way to the same direction is told.
+        // For some samples, compare with the density and radiance of the same direction evaluated directly.
         if i % 16 == 0 {
             assert!((sample.wi.length() - 1.0).abs() < 1e-5, "{what}");
             let ratios = [pdf(sample.wi) / f64::from(sample.pdf), radiance(sample.wi) / li];
             differ += u32::from(ratios.iter().any(|ratio| (ratio - 1.0).abs() > 1e-2));
         }
     }
-    // Only directions on the border of two texels are taken for their neighbours.
+    // Only directions on the border of two texels may fall into the neighbour.
     assert!(differ < 100, "{what}: {differ} of 62500");
 
-    // Black directions are no samples.
+    // Black directions give no samples.
     let bright = |wi| if radiance(wi) > 0.0 { pdf(wi) } else { 0.0 };
-    // Where few texels are chosen, their borders weigh more.
+    // Where few texels are sampled, their borders count more.
     let fine = if incomplete_pdf == IncompletePdf::Allowed { 96 } else { 30 };
     let expected = integrals(fine, bright).into_iter().map(|share| share * f64::from(N));
-    // Cells that are hardly cut by what is bright are known too roughly.
+    // The expected counts of cells that bright texels hardly overlap are too inexact.
     let (counts, expected): (Vec<u64>, Vec<f64>) =
         counts.into_iter().zip(expected).filter(|(_, e)| *e > 20.0).unzip();
     let elsewhere = 1.0 - counts.iter().sum::<u64>() as f64 / f64::from(chosen);
@@ -205,7 +206,7 @@ fn check_directions(
     let deviate = chi_square_deviate(&counts, &expected);
     assert!(deviate < bound, "{what}: {deviate} instead of {bound}");
 
-    // All that arrives is found.
+    // The estimate finds all light that arrives.
     if incomplete_pdf == IncompletePdf::Forbidden || *has_portal {
         let seen = |d: Vec3| if *by_cosine && at.n.dot(d) <= 0.0 { 0.0 } else { radiance(d) };
         let ratio = arriving / f64::from(N) / integrals(24, seen).iter().sum::<f64>();
@@ -218,11 +219,11 @@ fn directions_to_environments_are_as_dense_as_they_say() {
     let bound = corrected_bound(16);
     let mut checked = 0;
     for around in &environments() {
-        // Without a portal all places are one; and portals to what is no picture all choose alike.
+        // Without a portal the point does not matter; and portals to environments without a map all sample alike.
         let count = if around.has_portal && around.name != "gradient" { 3 } else { 1 };
         for (place, at) in places().iter().enumerate().take(count) {
             for incomplete_pdf in [IncompletePdf::Forbidden, IncompletePdf::Allowed] {
-                // Portals do not ask which one it is; what is chosen by the cosine is left to materials.
+                // Portals sample alike in both modes; environments sampled by the cosine are left to BSDF sampling.
                 if incomplete_pdf == IncompletePdf::Allowed && (around.by_cosine || around.has_portal) {
                     continue;
                 }
@@ -261,7 +262,7 @@ fn portals_are_sampled_in_all_wavelengths() {
     }
 }
 
-/// Lights with a place, of each kind, with what makes them as bright as they are.
+/// Lights with a position, of each kind, of a given power.
 fn placed(power: Power) -> Vec<(LightKind, Power)> {
     let here = EYE + DVec3::new(1.0, 2.0, 3.0);
     let world_from_light = DMat4::from_translation(here) * turn();
@@ -290,7 +291,7 @@ fn placed(power: Power) -> Vec<(LightKind, Power)> {
     .collect()
 }
 
-/// Luminance of the light that arrives at a distance of 1 from the light's place in a direction from it.
+/// Luminance that arrives at a distance of 1 from the light's position, in a direction from it.
 fn intensity(world: &World, light: usize, direction: Vec3) -> f64 {
     let point = DVec3::new(1.0, 2.0, 3.0) + direction.as_dvec3().normalize();
     let at = LightSampleContext { point, n: -direction };
@@ -360,7 +361,7 @@ fn spots_fade_by_a_cubic_of_the_cosine() {
     }
 }
 
-/// One texel of its own in each corner.
+/// A picture with a different texel in each corner.
 fn corners(width: u32, height: u32) -> Image {
     let mut texels = vec![[0.0; 3]; (width * height) as usize];
     texels[0] = [1.0; 3];
@@ -379,7 +380,7 @@ fn projections_stand_upright() {
         // The shorter side is seen under the angle.
         let short = libm::tanf(30.0_f32.to_radians()) / width.min(height) as f32;
         let [right, up] = [width, height].map(|texels| short * (texels - 1) as f32);
-        // It looks along z; y is up, x to the right.
+        // Its axis is z; y is up, x to the right.
         for (x, y, expected) in [(-right, up, 1.0), (right, up, 2.0), (-right, -up, 3.0), (right, -up, 4.0)] {
             let toward = |x: f32, y: f32| turn().transform_vector3(DVec3::new(x.into(), y.into(), 1.0));
             let found = intensity(&world, 0, toward(x, y).as_vec3()) / PI64;
@@ -465,7 +466,7 @@ fn nothing_black_has_any_power() {
     }
 }
 
-/// All kinds of lights at once, compiled for one way to choose.
+/// All kinds of lights at once, compiled with one light sampler.
 fn many(light_sampler: LightSampler) -> World {
     let mut scene = Scene { images: pictures(), ..Scene::default() };
     scene.images.push(picture(7, 13, 3));
@@ -513,7 +514,7 @@ fn lights_are_chosen_as_often_as_they_say() {
             let expected: Vec<f64> = (0..count).map(|l| f64::from(probability(l)) * f64::from(N)).collect();
             let deviate = chi_square_deviate(&counts, &expected);
             assert!(deviate < bound, "{kind:?}, {place}: {deviate}, {counts:?} {expected:?}");
-            // Whoever can be sampled is chosen sometimes.
+            // Every light that can be sampled is chosen sometimes.
             for (index, light) in world.lights.iter().enumerate() {
                 let emits = (0..50).any(|i| {
                     light

@@ -1,7 +1,7 @@
-//! A light tree: one of many lights, chosen in proportion to its estimated contribution (Conty Estevez & Kulla 2018).
+//! Light tree: one of many lights, chosen in proportion to its estimated contribution.
 //!
-//! Conty Estevez & Kulla 2018 (importance of bundles of lights, cost of a division by their orientation); the bounds of
-//! an importance as pbrt-v4 has them.
+//! Conty Estevez & Kulla 2018 (importance of light clusters, surface area orientation heuristic); the bounds of an
+//! importance as in pbrt-v4.
 
 use glam::Vec3;
 
@@ -9,32 +9,32 @@ use super::cone::{Cone, angle};
 use crate::core::parallel;
 use crate::core::sampler::ONE_MINUS_EPSILON;
 
-/// How many parts of an axis are tried as places to divide at.
+/// Number of buckets per axis for candidate splits.
 const BUCKETS: usize = 12;
 
-/// Where a light stands, where it looks and how much it sends out.
+/// Light bounds: box, cone of normals, emission angle and power.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightBounds {
-    /// Least corner, in render space.
+    /// Minimum corner, in render space.
     pub(super) min: Vec3,
-    /// Greatest corner.
+    /// Maximum corner.
     pub(super) max: Vec3,
     /// The directions of the surfaces' normals (or of the axis of a spot).
     pub(super) normals: Cone,
-    /// Cosine of the greatest angle to a normal at which light is sent out.
+    /// Cosine of the largest angle to a normal at which light is emitted.
     pub(super) cos_emission: f32,
-    /// Whether the other side sends light too.
+    /// Whether the other side emits light too.
     pub(super) two_sided: bool,
     /// Power, in any unit: ≥ 0.
     pub(super) power: f32,
 }
 
-/// A tree over lights with a place.
+/// A tree over lights with a position.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
-    /// For each light of the world, the turns from the root to its leaf, the first in the lowest bit; `None` where it is
-    /// not in the tree.
+    /// For each light of the world, the bit trail from the root to its leaf, the first branch in the lowest bit; `None`
+    /// where it is not in the tree.
     ways: Vec<Option<u64>>,
 }
 
@@ -51,11 +51,11 @@ enum Link {
     Second(u32),
 }
 
-/// Of a bounds, what its importance is computed from.
+/// Light bounds in the form that importances are computed from.
 #[derive(Clone, Copy, Debug)]
 struct Sight {
     center: Vec3,
-    /// Of the sphere around the box.
+    /// Radius of the sphere around the box.
     radius: f32,
     axis: Vec3,
     cos_normals: f32,
@@ -66,7 +66,7 @@ struct Sight {
 }
 
 impl Tree {
-    /// A tree over lights with their numbers, of `count` lights in the world. Lights without power are left out.
+    /// A tree over lights with their indices, of `count` lights in the world. Lights without power are left out.
     pub(super) fn new(lights: &[(u32, LightBounds)], count: usize) -> Self {
         let mut lights: Vec<(u32, LightBounds)> =
             lights.iter().copied().filter(|(_, b)| b.power > 0.0).collect();
@@ -104,8 +104,8 @@ impl Tree {
         }
     }
 
-    /// A light for `u ∈ [0, 1)` and its probability at a place with the unit normal `n` (or zero, where nothing has one);
-    /// `None` where of many lights none can send anything to `p`.
+    /// A light for `u ∈ [0, 1)` and its probability at a point with the unit normal `n` (or zero, where there is none);
+    /// `None` if none of several lights can reach `p`.
     pub(super) fn sample(&self, p: Vec3, n: Vec3, mut u: f32) -> Option<(u32, f32)> {
         let mut probability = 1.0;
         let mut node = 0;
@@ -149,7 +149,7 @@ impl Tree {
     fn first_share(&self, node: usize, second: usize, p: Vec3, n: Vec3) -> Option<f32> {
         let first = self.nodes[node + 1].sight.importance(p, n);
         let second = self.nodes[second].sight.importance(p, n);
-        /// What may send a little light is not forgotten beside what may send much and be hidden.
+        /// Least probability of a child of positive importance: the other one may be hidden.
         const LEAST: f32 = 1.0 / 65536.0;
         let sum = first + second;
         let share = first / sum;
@@ -161,15 +161,16 @@ impl Tree {
     }
 }
 
-/// Fills `nodes`, the first of which is number `first` of the tree, with one over the lights; gives their bounds.
+/// Builds the subtree over the lights into `nodes`, the first of which has index `first` in the tree; returns the
+/// bounds.
 fn build(nodes: &mut [Node], first: u32, lights: &mut [(u32, LightBounds)], depth: u32) -> LightBounds {
-    /// So many lights are worth a task of their own.
+    /// Number of lights from which a subtree is built in a parallel task.
     const PARALLEL: usize = 2048;
     if let [(light, bounds)] = *lights {
         nodes[0] = Node { sight: bounds.sight(), link: Link::Light(light) };
         return bounds;
     }
-    // Below 32 turns the tree is halved, so that 64 bits are enough for 2³² lights.
+    // Below depth 32 the lights are halved, so that 64 bits are enough for 2³² lights.
     let middle = if depth < 32 { divide(lights) } else { lights.len() / 2 };
     let is_large = lights.len() > PARALLEL;
     let (left, right) = lights.split_at_mut(middle);
@@ -226,29 +227,29 @@ impl LightBounds {
                 * (2.0 * theta_w * sin_o - libm::cosf(theta_o - 2.0 * theta_w) - 2.0 * theta_o * sin_o
                     + cos_o);
         let d = self.max - self.min;
-        // A row of points has no area, and should be divided well too.
+        // The second term is for points in a row, whose box has no area.
         let extent = d.x * d.y + d.y * d.z + d.z * d.x + 1e-3 * d.length_squared();
         self.power * spread * 2.0 * extent
     }
 }
 
 impl Sight {
-    /// An upper bound, up to the variation of distance within the bounds, of what arrives at `p` with normal `n`. Finite,
-    /// and positive where anything may arrive.
+    /// An upper bound, up to the variation of distance within the bounds, of the light that arrives at `p` with normal
+    /// `n`. Finite, and positive where any light may arrive.
     #[inline]
     fn importance(&self, p: Vec3, n: Vec3) -> f32 {
-        /// What neither a sum of two nor the ratio of two takes out of the range of f32.
+        /// Range in which neither the sum nor the ratio of two importances leaves that of f32.
         const RANGE: [f32; 2] = [1e-30, 1e30];
         let to_p = p - self.center;
         let length2 = to_p.length_squared();
-        // Near and inside, distance says nothing.
+        // Near and inside the box, the distance to its centre is meaningless.
         let by_distance = self.power / length2.max(self.radius);
         if !(1e-36..1e36).contains(&length2) {
             return by_distance.clamp(RANGE[0], RANGE[1]);
         }
         let wi = to_p * (1.0 / length2.sqrt());
 
-        // θ to the axis, less the spread of the normals, less what the box fills of the view.
+        // θ to the axis, less the spread of the normals, less the angle that the box subtends.
         let mut cos_axis = self.axis.dot(wi);
         if self.two_sided {
             cos_axis = cos_axis.abs();
@@ -265,7 +266,7 @@ impl Sight {
         if least.0 <= self.cos_emission {
             return 0.0;
         }
-        // At the surface: the least angle between its normal and the box, on either side.
+        // At the surface: the smallest angle between its normal and the box, on either side.
         let cos_surface = wi.dot(n).abs();
         let at_surface = angle_less((cos_surface, sin_of(cos_surface)), (cos_box, sin_box)).0;
         let at_surface = if n == Vec3::ZERO { 1.0 } else { at_surface };
@@ -277,7 +278,7 @@ fn sin_of(cos: f32) -> f32 {
     (1.0 - cos * cos).max(0.0).sqrt()
 }
 
-/// Cosine and sine of max(0, a − b), for angles by both.
+/// Cosine and sine of max(0, a − b), for angles given by cosine and sine.
 #[inline]
 fn angle_less((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
     if cos_a > cos_b {
@@ -286,7 +287,7 @@ fn angle_less((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f
     (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b)
 }
 
-/// Orders the lights so that they are best divided at the given place: neither 0 nor their number.
+/// Orders the lights for the best split and returns its index, neither 0 nor their number.
 fn divide(lights: &mut [(u32, LightBounds)]) -> usize {
     if lights.len() == 2 {
         return 1;
@@ -307,7 +308,7 @@ fn divide(lights: &mut [(u32, LightBounds)]) -> usize {
             let bucket = &mut buckets[bucket_of(bounds, axis)];
             *bucket = Some(bucket.map_or(*bounds, |sum| sum.union(bounds)));
         }
-        // Cost of what is below each place to divide at, and then of what is above.
+        // Cost of the lights below each candidate split, and then of those above.
         let mut below = [None; BUCKETS];
         let mut sum: Option<LightBounds> = None;
         for at in 1..BUCKETS {
@@ -317,14 +318,14 @@ fn divide(lights: &mut [(u32, LightBounds)]) -> usize {
                 sum = Some(union);
             }
         }
-        // Thin boxes are dear along their thin sides.
+        // Splits of thin boxes along their thin sides cost more.
         let stretch = extent.max_element() / extent[axis];
         let mut sum: Option<LightBounds> = None;
         for at in (1..BUCKETS).rev() {
             if let Some(bucket) = &buckets[at] {
                 sum = Some(sum.map_or(*bucket, |sum| sum.union(bucket)));
             }
-            // Where the bucket below is empty, the next place down divides alike.
+            // Where the bucket below is empty, the next split down is the same.
             let (Some(above), Some(below)) = (&sum, below[at]) else { continue };
             let cost = stretch * (below + above.cost());
             if best.is_none_or(|(least, ..)| cost < least) {
@@ -336,7 +337,7 @@ fn divide(lights: &mut [(u32, LightBounds)]) -> usize {
     partition(lights, |bounds| bucket_of(bounds, axis) < at)
 }
 
-/// Puts those that are to come first there, and gives their number.
+/// Partitions the lights and returns the number of those that come first.
 fn partition(lights: &mut [(u32, LightBounds)], comes_first: impl Fn(&LightBounds) -> bool) -> usize {
     let mut middle = 0;
     for index in 0..lights.len() {
@@ -394,7 +395,7 @@ mod tests {
         }
     }
 
-    /// Prints nanoseconds a choice, and seconds a build.
+    /// Prints nanoseconds per choice, and seconds per build.
     #[test]
     #[ignore = "a measurement: cargo test --release -p lookfrom light::tree -- --ignored --nocapture"]
     fn speed() {
@@ -460,7 +461,8 @@ mod tests {
         }
     }
 
-    /// Slow twin of an importance being positive: rays from points of the box along directions that a normal allows.
+    /// Brute-force reference for positive importance: rays from points of the box along directions that a normal
+    /// allows.
     #[test]
     fn whoever_may_shine_on_a_point_is_chosen_sometimes() {
         let mut seed = 3_u32;
@@ -472,7 +474,7 @@ mod tests {
         let tree = Tree::new(&lights, 60);
         for _ in 0..20_000 {
             let (light, bounds) = lights[(next() * 60.0) as usize];
-            // a normal in the cone, and a direction that it emits light in
+            // a normal in the cone, and a direction in which it emits light
             let (s, t) = crate::core::warp::orthonormal_basis(bounds.normals.axis);
             let local = crate::core::warp::uniform_cone([next(), next()], 1.0 - bounds.normals.cos);
             let mut normal = s * local.x + t * local.y + bounds.normals.axis * local.z;

@@ -1,19 +1,21 @@
 //! The denoiser: guided non-local means.
 //!
-//! Between the film and [`crate::post::develop`]: light in, light out. Noise of neighbouring pixels is independent, what they show is
-//! not, so each pixel becomes a mean over those around it that show the same. That is tested in three ways:
+//! Between the film and [`crate::post::develop`]: light in, light out. The noise of neighbouring pixels is independent,
+//! their signal is not, so each pixel becomes a mean over those around it that show the same. That is tested in three
+//! ways:
 //!
-//! - *Non-local means* (Buades, Coll & Morel 2005, as Rousselle, Knaus & Zwicker 2012 have it for renderings): the light of the 3 × 3
-//!   pixels around both may differ by no more than their noise, which the film knows. Where noise is small next to what is shown,
-//!   only equals are left: with ever more samples the picture becomes that of the film.
-//! - *Features* (joint filtering: Rousselle, Manzi & Zwicker 2013): albedo, normal and place of what the camera saw may differ
-//!   by little.
-//! - Light is divided by the albedo first and multiplied by it afterwards, so that a texture is not taken for noise, nor
-//!   blurred.
+//! - *Non-local means* (Buades, Coll & Morel 2005; for renderings Rousselle, Knaus & Zwicker 2012): the light of the 3
+//!   × 3 pixels around both may differ by no more than their noise, which the film estimates. Where noise is small
+//!   compared with the differences in the picture, only equal pixels are averaged: with more samples the result
+//!   converges to the film's.
+//! - *Features* (joint filtering: Rousselle, Manzi & Zwicker 2013): albedo, normal and position of the first hits may
+//!   differ by little.
+//! - Light is divided by the albedo first and multiplied by it afterwards, so that a texture is not taken for noise,
+//!   nor blurred.
 //!
-//! What is added to a pixel is a mean of *differences* to its neighbours, so that where there are none nothing is changed, not even by
-//! rounding. A pixel's result is a pure function of those around it, and sums have a fixed order: bits do not depend on
-//! threads or the machine's vectors. `exp(−x)` is replaced by `(1 − x/8)⁸`, which ends at 8.
+//! A mean of *differences* to its neighbours is added to a pixel, so that where there are none nothing is changed, not
+//! even by rounding. A pixel's result is a pure function of those around it, and sums have a fixed order: bits do not
+//! depend on the number of threads or the SIMD width. `exp(−x)` is replaced by `(1 − x/8)⁸`, and by 0 beyond x = 8.
 
 mod filter;
 mod planes;
@@ -24,14 +26,14 @@ use planes::Planes;
 /// The radius of the filter in pixels, along each axis.
 const RADIUS: usize = 5;
 
-/// How far a patch reaches around its pixel.
+/// The radius of a patch around its pixel.
 const PATCH: usize = 1;
 
-/// `picture`, that of `film` (perhaps without its fireflies), with noise filtered out: colours, and alpha where it has some.
+/// `picture`, that of `film` (possibly without its fireflies), denoised: colours, and alpha where it has some.
 ///
-/// Works with what the film knows: without its [features](Film::denoiser_features), textures and edges must be told from noise by light alone. Pixels
-/// without samples, and those outside of [`Film::area`], stay as they are. The mean light of the picture stays much the
-/// same; it is not kept exactly.
+/// Without the film's [features](Film::denoiser_features), textures and edges are distinguished from noise by light
+/// alone. Pixels without samples, and those outside of [`Film::area`], stay as they are. The mean light of the picture
+/// is preserved approximately, not exactly.
 ///
 /// # Panics
 /// If the picture has another size than the film.

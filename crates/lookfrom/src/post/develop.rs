@@ -1,7 +1,7 @@
 //! Development: from linear light to display bytes.
 //!
-//! Step 8 on the way of a pixel, the last: exposure, tone map, the curve of sRGB, eight bits. No dithering, so that
-//! equal light gives equal bytes. How bytes become a file is left to `lookfrom_scene::image`.
+//! The last step of a pixel: exposure, tone map, the curve of sRGB, eight bits. No dithering, so that equal light gives
+//! equal bytes. Encoding to files is in `lookfrom_scene::image`.
 //!
 //! The tone maps are in `tonemap`. IEC 61966-2-1 (sRGB).
 
@@ -10,16 +10,17 @@ mod tonemap;
 use crate::film::Picture;
 use lookfrom_scene::settings::Tonemap;
 
-/// The picture in sRGB, three bytes a pixel, row by row from the top left.
+/// The picture in sRGB, three bytes per pixel, row by row from the top left.
 ///
-/// Light is multiplied by 2^`exposure` (cut to ±128 stops; NaN is none), mapped by `tonemap`, cut to 0 … 1, bent by the
-/// exact sRGB curve and rounded to the nearest byte. NaN and negative light are black, infinite light is white.
+/// Light is multiplied by 2^`exposure` (clamped to ±128 stops; NaN is 0), mapped by `tonemap`, clamped to 0 … 1,
+/// encoded by the exact sRGB curve and rounded to the nearest byte. NaN and negative light are black, infinite light is
+/// white.
 pub fn srgb8(picture: &Picture, exposure: f32, tonemap: Tonemap) -> Vec<u8> {
     srgb8_before(picture, [0.0; 3], exposure, tonemap)
 }
 
-/// As [`srgb8`], before a background of linear colours in 0 … 1 that is shown as it is, without exposure and tone map: its
-/// share is what the picture's alpha leaves, its colour on the screen just this one.
+/// As [`srgb8`], over a background of a linear colour in 0 … 1, composited by the picture's alpha. Exposure and tone
+/// map do not change the background: where alpha is 0, the screen shows just this colour.
 pub fn srgb8_before(picture: &Picture, background: [f32; 3], exposure: f32, tonemap: Tonemap) -> Vec<u8> {
     let byte = Bytes::new();
     let scale = scale(exposure);
@@ -36,8 +37,8 @@ pub fn srgb8_before(picture: &Picture, background: [f32; 3], exposure: f32, tone
     bytes
 }
 
-/// As [`srgb8`], with a fourth byte a pixel: how much it hides of what is behind, evenly from 0 to 255. The colours are
-/// divided by it first: those of PNG are not multiplied by their alpha. Pixels without an alpha hide all.
+/// As [`srgb8`], with a fourth byte per pixel: alpha, linear from 0 to 255. The colours are divided by it first: PNG
+/// has straight alpha. Pixels without an alpha are opaque.
 pub fn srgba8(picture: &Picture, exposure: f32, tonemap: Tonemap) -> Vec<u8> {
     let byte = Bytes::new();
     let scale = scale(exposure);
@@ -50,7 +51,7 @@ pub fn srgba8(picture: &Picture, exposure: f32, tonemap: Tonemap) -> Vec<u8> {
     bytes
 }
 
-/// A colour that was multiplied by its alpha without it, and the alpha cut to 0 … 1.
+/// Straight colour from one premultiplied by alpha, and the alpha clamped to 0 … 1.
 fn straight(rgb: [f32; 3], alpha: f32) -> ([f32; 3], f32) {
     let alpha = alpha.clamp(0.0, 1.0);
     (if alpha > 0.0 { rgb.map(|c| c / alpha) } else { [0.0; 3] }, alpha)
@@ -75,7 +76,7 @@ fn scale(exposure: f32) -> f64 {
     libm::exp2(stops)
 }
 
-/// What a screen should show, linear in 0 … 1.
+/// The display colour, linear in 0 … 1.
 fn display(rgb: [f32; 3], scale: f64, tonemap: Tonemap) -> [f32; 3] {
     // A NaN is not greater than 0; the bound keeps infinities out of the quotients.
     let [r, g, b] = rgb.map(|light| if light > 0.0 { (f64::from(light) * scale).min(1e100) } else { 0.0 });
@@ -89,7 +90,7 @@ fn encode(value: f32) -> u8 {
     (255.0 * bent + 0.5) as u8
 }
 
-/// The least values that [`encode`] gives the bytes 1, 2, … 255: the curve never falls, so these say all of it.
+/// The least values that [`encode`] maps to the bytes 1, 2, … 255: the curve is monotonic, so they determine it.
 fn thresholds() -> [f32; 255] {
     std::array::from_fn(|below| {
         // Bisect the bits of f32: those of positive numbers are in the order of the numbers.

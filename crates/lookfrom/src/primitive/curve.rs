@@ -1,9 +1,9 @@
-//! Curves: hairs and wires that face the ray, and ribbons.
+//! Curves: flat curves that face the ray, cylinders, and ribbons.
 //!
-//! In a frame whose z axis is the ray, a curve is split until it is nearly straight; where the straight piece passes the
-//! origin closer than half its width, the ray meets it: Nakamaru & Ohno (2002), "Ray Tracing for Curves Primitive", with the
-//! conventions of Pharr, Jakob, Humphreys, Physically Based Rendering: u along, v across, the depth is that of the
-//! curve's middle, and a leaving ray starts a whole width away.
+//! In a frame whose z axis is the ray, a curve is split until it is nearly straight; where the straight piece passes
+//! the origin closer than half its width, the ray hits it: Nakamaru & Ohno (2002), "Ray Tracing for Curves Primitive",
+//! with the conventions of Pharr, Jakob, Humphreys, Physically Based Rendering: u along, v across, the depth is that of
+//! the curve's centre line, and a ray that leaves starts a whole width away.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Affine, Point, Procedural, ProceduralHit, Ray};
@@ -11,21 +11,21 @@ use lookfrom_scene::shape::{Profile, Strand};
 
 use super::{MaterialBinding, SurfacePoint};
 
-/// In how many pieces each strand comes to the kernel: tighter boxes.
+/// Number of pieces into which each strand is split for the BVH, for tighter boxes.
 pub const SEGMENTS: u32 = 8;
 
-/// A piece is split until it is off a straight line by less than this part of its width.
+/// A piece is split until its distance from a straight line is less than this part of its width.
 const FLATNESS: f64 = 0.05;
 
-/// Splits at most, each in two.
+/// Maximum number of splits, each in two.
 const MOST_SPLITS: u32 = 10;
 
-/// Curves of one shape, with their map.
+/// Curves of one shape, with their transform.
 #[derive(Clone, Debug)]
 pub struct Curves {
     strands: Vec<Strand>,
     render_from_object: Affine,
-    /// The linear part of the way back.
+    /// Inverse of the linear part.
     object_from_render: Affine,
     reverse: bool,
     /// Its attributes.
@@ -36,7 +36,7 @@ pub struct Curves {
 type Controls = [DVec3; 4];
 
 impl Curves {
-    /// Puts strands into their place. None where the map has no inverse.
+    /// Places strands by a transform. None where it has no inverse.
     pub fn new(
         strands: &[Strand],
         render_from_object: Affine,
@@ -48,7 +48,7 @@ impl Curves {
         Some(Self { strands: strands.to_vec(), render_from_object, object_from_render, reverse, binding })
     }
 
-    /// Of a primitive: its strand, and where on it it begins and ends.
+    /// The strand of a primitive, and its range of u.
     fn segment(&self, primitive: u32) -> (&Strand, [f64; 2]) {
         let number = f64::from(primitive % SEGMENTS);
         let from = number / f64::from(SEGMENTS);
@@ -64,7 +64,7 @@ impl Curves {
         DVec3::from_array(self.render_from_object.vector(v.to_array()))
     }
 
-    /// The point at u along and v across a strand that a ray met near a point.
+    /// The point at u along and v across a strand that a ray hit near a point.
     pub(super) fn point(
         &self,
         index: usize,
@@ -79,7 +79,7 @@ impl Curves {
         let dpdu = if dpdu == DVec3::ZERO { direction.any_orthonormal_vector() } else { dpdu };
         let width = visible_width(strand, along, direction);
 
-        // Across: in the ribbon, or across what the ray sees; a round one turns with v.
+        // Across: in the ribbon's plane, or perpendicular to the ray; that of a cylinder turns with v.
         let across = match strand.profile {
             Profile::Ribbon(normals) => ribbon_normal(normals, along).cross(dpdu),
             Profile::Flat | Profile::Cylinder => direction.cross(dpdu),
@@ -93,7 +93,7 @@ impl Curves {
         let normal = self.object_from_render.normal_back(dpdu.cross(dpdv).to_array());
         let ng = DVec3::from_array(normal).normalize_or(DVec3::Z) * if self.reverse { -1.0 } else { 1.0 };
 
-        // A whole width, as wide as it is on the way to render space.
+        // The error bound is a whole width, scaled to render space.
         let rows = self.render_from_object.matrix.map(|row| DVec3::from_array(row).length());
         let error = near.abs() * f64::from(f32::EPSILON) + width * DVec3::from_array(rows);
         let point = Point { position: near.to_array(), error: error.to_array() };
@@ -149,7 +149,7 @@ impl Procedural for Curves {
     }
 }
 
-/// The search for the nearest meeting of a ray and a strand.
+/// The search for the nearest intersection of a ray and a strand.
 struct Search<'a> {
     strand: &'a Strand,
     /// Of unit length, in the strand's space.
@@ -161,7 +161,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Looks into a piece, seen along the ray, that begins and ends at some u.
+    /// Intersects a piece, in the ray's frame, with the given range of u.
     fn split(&mut self, piece: &Controls, [from, to]: [f64; 2], splits: u32) {
         // Does the ray pass the piece's box?
         let half = 0.5 * width_at(self.strand, from).max(width_at(self.strand, to));
@@ -186,14 +186,14 @@ impl Search<'_> {
         self.split(&second, [middle, to], splits - 1);
     }
 
-    /// Tries a piece that is nearly straight.
+    /// Intersects a piece that is nearly straight.
     fn meet(&mut self, piece: &Controls, [from, to]: [f64; 2]) {
         // The ray must pass between the planes across the piece's ends.
         let [p0, p1, p2, p3] = piece.map(DVec3::truncate);
         if (p1 - p0).dot(-p0) < 0.0 || (p2 - p3).dot(-p3) < 0.0 {
             return;
         }
-        // The place on the straight line between the ends that the ray passes nearest.
+        // The point on the straight line between the ends that is nearest to the ray.
         let chord = p3 - p0;
         let square = chord.length_squared();
         if square == 0.0 {
@@ -203,7 +203,7 @@ impl Search<'_> {
         let u = from + share * (to - from);
         let width = visible_width(self.strand, u, self.direction);
 
-        // The curve itself there: is it close enough, at a depth that counts?
+        // The curve itself there: is it close enough, at a depth in range?
         let (p, along) = evaluate(piece, share);
         let distance = p.truncate().length();
         if !(distance <= 0.5 * width && p.z > self.nearest[0] && p.z < self.nearest[1]) {
@@ -225,7 +225,7 @@ fn width_at(strand: &Strand, u: f64) -> f64 {
     (1.0 - u) * first + u * last
 }
 
-/// How wide a strand is seen along a unit direction: ribbons may stand edge on.
+/// The apparent width of a strand along a unit direction: ribbons may be seen edge on.
 fn visible_width(strand: &Strand, u: f64, direction: DVec3) -> f64 {
     let width = width_at(strand, u);
     match strand.profile {
@@ -234,7 +234,7 @@ fn visible_width(strand: &Strand, u: f64, direction: DVec3) -> f64 {
     }
 }
 
-/// Between the normals at a ribbon's ends, along the arc between them.
+/// The normal of a ribbon, spherically interpolated between those at its ends.
 fn ribbon_normal([first, last]: [Vec3; 2], u: f64) -> DVec3 {
     let [first, last] = [first, last].map(|n| n.as_dvec3().normalize_or(DVec3::Z));
     let angle = 2.0 * libm::asin((0.5 * (last - first).length()).min(1.0));
@@ -245,7 +245,7 @@ fn ribbon_normal([first, last]: [Vec3; 2], u: f64) -> DVec3 {
     (libm::sin((1.0 - u) * angle) * first + libm::sin(u * angle) * last) / sin
 }
 
-/// How often a piece must be halved to be nearly straight.
+/// The number of halvings after which a piece is nearly straight.
 fn splits(piece: &Controls, width: f64) -> u32 {
     let bend = |k: usize| (piece[k] - 2.0 * piece[k + 1] + piece[k + 2]).abs().max_element();
     // Each halving divides the distance from the straight line, at most √2 · 6/8 · bend, by four.
@@ -263,12 +263,12 @@ fn evaluate(c: &Controls, u: f64) -> (DVec3, DVec3) {
     let a = [c[0].lerp(c[1], u), c[1].lerp(c[2], u), c[2].lerp(c[3], u)];
     let b = [a[0].lerp(a[1], u), a[1].lerp(a[2], u)];
     let derivative = 3.0 * (b[1] - b[0]);
-    // Where two control points are one, the chord still has a direction.
+    // Where two control points coincide, the chord still has a direction.
     let derivative = if derivative == DVec3::ZERO { c[3] - c[0] } else { derivative };
     (b[0].lerp(b[1], u), derivative)
 }
 
-/// Two curves that together are one.
+/// The two halves of a curve.
 fn halves(c: &Controls) -> [Controls; 2] {
     let middle = |a: DVec3, b: DVec3| 0.5 * (a + b);
     let a = [middle(c[0], c[1]), middle(c[1], c[2]), middle(c[2], c[3])];
@@ -277,7 +277,7 @@ fn halves(c: &Controls) -> [Controls; 2] {
     [[c[0], a[0], b[0], center], [center, b[1], a[2], c[3]]]
 }
 
-/// The piece of a curve between two places, by its blossom.
+/// The piece of a curve between two parameters, by its blossom.
 fn part(c: &Controls, from: f64, to: f64) -> Controls {
     let blossom = |u: [f64; 3]| {
         let a = [c[0].lerp(c[1], u[0]), c[1].lerp(c[2], u[0]), c[2].lerp(c[3], u[0])];

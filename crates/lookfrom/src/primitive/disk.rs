@@ -1,24 +1,24 @@
-//! Disks, perhaps sheared to ellipses.
+//! Disks, possibly sheared to ellipses.
 
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Point, Procedural, ProceduralHit, Ray};
 
 use super::{MaterialBinding, SurfacePoint};
 
-/// A round disk, perhaps sheared to an ellipse: `center + x·axis_u + y·axis_v`, `x² + y² ≤ 1`.
+/// A disk, possibly sheared to an ellipse: `center + x·axis_u + y·axis_v`, `x² + y² ≤ 1`.
 #[derive(Clone, Copy, Debug)]
 pub struct Disk {
-    /// Middle.
+    /// Centre.
     pub center: DVec3,
-    /// To the rim.
+    /// From the centre to the rim.
     pub axis_u: DVec3,
-    /// To the rim.
+    /// From the centre to the rim.
     pub axis_v: DVec3,
     /// Whether the outside is the side of `axis_v × axis_u`, not of `axis_u × axis_v`.
     pub flip: bool,
 }
 
-/// Round disks of many shapes.
+/// Disks of many shapes.
 #[derive(Clone, Debug, Default)]
 pub struct Disks {
     /// The disks.
@@ -37,7 +37,7 @@ impl Disk {
         Point { position: (self.center + u + v).to_array(), error: error.to_array() }
     }
 
-    /// To the outside, not of unit length: the disk's area is π times its length.
+    /// The outward normal, not of unit length: the disk's area is π times its length.
     pub fn normal(&self) -> DVec3 {
         if self.flip { self.axis_v.cross(self.axis_u) } else { self.axis_u.cross(self.axis_v) }
     }
@@ -58,7 +58,7 @@ impl Disk {
 }
 
 impl Disks {
-    /// The point of a disk nearest to one that is on it but for errors.
+    /// The point of a disk nearest to one that is on it up to errors.
     pub(super) fn point(&self, index: usize, near: DVec3) -> SurfacePoint {
         let disk = &self.disks[index];
         let [x, y] = disk.coordinates(near);

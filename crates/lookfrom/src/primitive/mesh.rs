@@ -1,7 +1,7 @@
 //! Triangle meshes.
 //!
-//! Derivatives by texture coordinates are those of the plane through the triangle, as in Pharr, Jakob, Humphreys,
-//! Physically Based Rendering; a mesh's tangents take the place of `∂p/∂u` in shading.
+//! Derivatives by texture coordinates are those of the triangle's plane, as in Pharr, Jakob, Humphreys, Physically
+//! Based Rendering; a mesh's tangents replace `∂p/∂u` in shading.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use lookfrom_bvh::Point;
@@ -15,30 +15,31 @@ use crate::shading::texture::MORE_UV_SETS;
 pub struct Mesh {
     /// Vertices.
     pub positions: Vec<[f32; 3]>,
-    /// Three vertices a triangle.
+    /// Three vertices per triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Unit shading normals (zero where unknown), none or one a vertex.
+    /// Unit shading normals (zero where unknown), none or one per vertex.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates, none or one a vertex.
+    /// Texture coordinates, none or one per vertex.
     pub uvs: Vec<Vec2>,
-    /// Linear colours, none or one a vertex.
+    /// Linear colours, none or one per vertex.
     pub colors: Vec<[f32; 3]>,
-    /// Directions in which u grows, of any length, and in w on which side v does (in this space, beside the normals of
-    /// this mesh): > 0 is along normal × tangent. None or one a vertex.
+    /// Tangents, in the direction of u, of any length; w is the sign of the bitangent (in this space, with the normals
+    /// of this mesh): v grows along normal × tangent where w > 0. None or one per vertex.
     pub tangents: Vec<Vec4>,
-    /// Texture coordinates of further sets, none or one a vertex in each.
+    /// Texture coordinates of further sets, none or one per vertex in each.
     pub more_uvs: Vec<Vec<Vec2>>,
-    /// Opacities, none or one a vertex.
+    /// Opacities, none or one per vertex.
     pub opacities: Vec<f32>,
     /// Whether derivatives by texture coordinates are needed; otherwise they are 0.
     pub wants_derivatives: bool,
-    /// Whether the outside is where the triangles run clockwise: after a mirror, or a reversal, but not both.
+    /// Whether the outside is the side from which triangles are clockwise: after a reflection, or a reversal, but not
+    /// both.
     pub flip: bool,
     /// Its attributes.
     pub binding: MaterialBinding,
 }
 
-/// What few meshes say of their points: apart from [`SurfacePoint`], which is computed for every hit.
+/// Vertex data that few meshes have: kept apart from [`SurfacePoint`], which is computed for every hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VertexData {
     /// Texture coordinates of further sets; (0, 0) where there is none.
@@ -47,7 +48,7 @@ pub struct VertexData {
     pub opacity: f32,
 }
 
-/// Determinants of texture coordinates below this are taken for none.
+/// Determinants of texture coordinates below this count as degenerate.
 const LEAST_DETERMINANT: f64 = 1e-9;
 
 impl Mesh {
@@ -71,7 +72,7 @@ impl Mesh {
         !self.more_uvs.is_empty() || !self.opacities.is_empty()
     }
 
-    /// What the vertices say besides, at the point with weight `u` of a triangle's second corner and `v` of its third.
+    /// The interpolated vertex data at the point with weight `u` of a triangle's second corner and `v` of its third.
     pub fn vertex_data(&self, index: usize, u: f32, v: f32) -> VertexData {
         let weights = [1.0 - u - v, u, v];
         let vertices = self.triangles[index].map(|vertex| vertex as usize);
@@ -119,7 +120,7 @@ impl Mesh {
         };
 
         let smooth = (!self.normals.is_empty()).then(|| mix(&self.normals).try_normalize()).flatten();
-        // Written normals, not the winding, decide which side is outside.
+        // The mesh's normals, not the winding, decide which side is outside.
         if smooth.is_some_and(|ns| ns.dot(ng) < 0.0) {
             ng = -ng;
         }
@@ -146,7 +147,7 @@ impl Mesh {
         let corners = corners.map(|p| Vec3::from_array(p).as_dvec3());
         let [dpdu, dpdv] = derivatives(corners, uvs, winding);
 
-        // Smoothing turns the derivatives into the plane across the shading normal.
+        // Rotate the derivatives into the plane perpendicular to the interpolated normal.
         let tangent = self.tangent(weights, vertices).filter(|(s, _)| *s != DVec3::ZERO);
         let (mut shading_dpdu, mut shading_dpdv) = (dpdu, dpdv);
         if smooth.is_some() || tangent.is_some() {
@@ -175,7 +176,7 @@ impl Mesh {
 }
 
 impl Mesh {
-    /// The tangent between the corners, and whether v grows to the left of it, seen from outside.
+    /// The interpolated tangent, and whether v grows to the left of it, seen from outside.
     fn tangent(&self, weights: [f32; 3], vertices: [usize; 3]) -> Option<(DVec3, bool)> {
         if self.tangents.is_empty() {
             return None;
@@ -186,7 +187,7 @@ impl Mesh {
     }
 }
 
-/// `∂p/∂u` and `∂p/∂v` of a triangle; any two directions in its plane where its texture coordinates say nothing.
+/// `∂p/∂u` and `∂p/∂v` of a triangle; any two directions in its plane where its texture coordinates are degenerate.
 fn derivatives([p0, p1, p2]: [DVec3; 3], uvs: [Vec2; 3], winding: DVec3) -> [DVec3; 2] {
     let [uv0, uv1, uv2] = uvs.map(Vec2::as_dvec2);
     let (along0, along1) = (uv0 - uv2, uv1 - uv2);

@@ -1,8 +1,8 @@
 //! Bilinear patches.
 //!
-//! A ray meets the line of constant u that it crosses where a quadratic in u vanishes (Reshetov 2019, "Cool Patches"); here
-//! in f64, and each meeting is then sharpened by Newton's method in (u, v, t), so that on which side of the patch a ray
-//! starts is decided by the distance from it alone, however flat the ray.
+//! The u of an intersection is a root of a quadratic (Reshetov 2019, "Cool Patches"), solved here in f64; each
+//! intersection is then refined by Newton's method in (u, v, t), so that the side of the patch on which a ray starts is
+//! decided by its distance from the patch alone, however grazing the ray.
 
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Point, Procedural, ProceduralHit, Ray};
@@ -12,7 +12,7 @@ use super::{MaterialBinding, SurfacePoint};
 /// Unit of rounding of f64, 2⁻⁵³.
 const UNIT: f64 = 0.5 * f64::EPSILON;
 
-/// How far beyond an edge a ray still meets a patch, in u and v: neighbours have no crack between them.
+/// Tolerance in u and v beyond an edge: neighbours have no crack between them.
 const SLACK: f64 = 1e-12;
 
 /// Texture coordinates that change less than this along a patch's sides are taken to be constant there.
@@ -23,19 +23,19 @@ const LEAST_CHANGE: f64 = 1e-8;
 pub struct Patches {
     /// Vertices.
     pub positions: Vec<Vec3>,
-    /// Four vertices a patch.
+    /// Four vertices per patch.
     pub patches: Vec<[u32; 4]>,
-    /// Unit shading normals (zero where unknown), none or one a vertex.
+    /// Unit shading normals (zero where unknown), none or one per vertex.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates, none or one a vertex.
+    /// Texture coordinates, none or one per vertex.
     pub uvs: Vec<Vec2>,
-    /// Whether the outside is the side of `∂p/∂v × ∂p/∂u`: after a mirror, or a reversal, but not both.
+    /// Whether the outside is the side of `∂p/∂v × ∂p/∂u`: after a reflection, or a reversal, but not both.
     pub flip: bool,
     /// Its attributes.
     pub binding: MaterialBinding,
 }
 
-/// The four corners of a patch, as what they blend.
+/// The bilinear polynomial of a patch.
 #[derive(Clone, Copy, Debug)]
 struct Blend {
     /// At (0, 0).
@@ -44,7 +44,7 @@ struct Blend {
     along_u: DVec3,
     /// From there to (0, 1).
     along_v: DVec3,
-    /// What the fourth corner is off the parallelogram of the others.
+    /// Offset of the fourth corner from the parallelogram of the others.
     twist: DVec3,
 }
 
@@ -68,20 +68,20 @@ impl Patches {
         self.patches[index].map(|vertex| self.positions[vertex as usize].as_dvec3())
     }
 
-    /// `∂p/∂u × ∂p/∂v` at a point: its length is the area of a small piece, divided by that of its square in u and v.
+    /// `∂p/∂u × ∂p/∂v` at a point: its length is the area element.
     pub fn area_vector(&self, index: usize, u: f64, v: f64) -> DVec3 {
         let [du, dv] = Blend::new(self.corners(index)).derivatives(u, v);
         du.cross(dv)
     }
 
-    /// The unit normal to the outside at a point.
+    /// The outward unit normal at a point.
     pub fn normal(&self, index: usize, u: f64, v: f64) -> DVec3 {
         let along = self.area_vector(index, u, v).try_normalize();
-        // Where two corners are one there is no normal; take the one nearby.
+        // Where two corners coincide there is no normal; take one nearby.
         let nearby = || self.area_vector(index, 0.001 + 0.998 * u, 0.001 + 0.998 * v).normalize_or(DVec3::Z);
         let n = along.unwrap_or_else(nearby) * if self.flip { -1.0 } else { 1.0 };
         let smooth = self.smooth(index, u, v);
-        // Written normals decide which side is outside.
+        // The mesh's normals decide which side is outside.
         if smooth.is_some_and(|ns| ns.dot(n) < 0.0) { -n } else { n }
     }
 
@@ -103,7 +103,8 @@ impl Patches {
         let [mut dpdu, mut dpdv] = blend.derivatives(u, v);
         let area_vector = dpdu.cross(dpdv);
 
-        // The error: rounding, and the bend over the distance that rounding an origin to f32 moves it sideways.
+        // The error: rounding, and the curvature over the distance by which rounding an origin to f32 moves it
+        // sideways.
         let position = blend.at(u, v);
         let size = corners.iter().fold(DVec3::ZERO, |size, p| size.max(p.abs()));
         let sideways = (position.abs() * f64::from(f32::EPSILON)).length_squared();
@@ -112,7 +113,7 @@ impl Patches {
         let error = 32.0 * UNIT * size + DVec3::splat(if bend.is_finite() { bend } else { 0.0 });
         let point = Point { position: position.to_array(), error: error.to_array() };
 
-        // Texture coordinates of its own change what the derivatives are by.
+        // With texture coordinates of the mesh, the derivatives are by those.
         let mut uv = Vec2::new(patch_u, patch_v);
         if !self.uvs.is_empty() {
             let corners = self.patches[index].map(|vertex| self.uvs[vertex as usize].as_dvec2().extend(0.0));
@@ -131,7 +132,7 @@ impl Patches {
         let ng = self.normal(index, u, v);
         let mut of_patch = SurfacePoint::plain(point, ng, uv, [dpdu, dpdv], self.binding);
         if let Some(ns) = self.smooth(index, u, v) {
-            // The derivatives turn with the normal.
+            // The derivatives rotate with the normal.
             let turned = |d: DVec3| turn(d, ng, ns);
             of_patch.ns = ns;
             let along = turned(dpdu);
@@ -177,9 +178,10 @@ impl Procedural for Patches {
     }
 }
 
-/// Up to two (u, v, t) where a line meets the whole surface that a patch is a part of; NaN where there is none.
+/// Up to two intersections (u, v, t) of a line with the whole surface of which a patch is a part; NaN where there is
+/// none.
 fn meetings(blend: &Blend, origin: DVec3, direction: DVec3) -> [[f64; 3]; 2] {
-    // a + b u + c u² vanishes where the line of constant u meets the ray.
+    // a + b u + c u² vanishes where the line of constant u intersects the ray.
     let start = blend.start - origin;
     let a = start.cross(direction).dot(blend.along_v);
     let c = blend.along_u.cross(blend.twist).dot(-direction);

@@ -1,12 +1,12 @@
-//! Ellipsoids, elliptic cylinders and disks, and parts of them: spheres, cylinders and disks around the z axis of their
-//! own space, under any affine map.
+//! Quadrics: ellipsoids, elliptic cylinders and disks, and parts of them. They are spheres, cylinders and disks around
+//! the z axis of their object space, under any affine map.
 //!
-//! A ray is taken to the shape's own space in f64 and met there. A point found is put onto the surface exactly there and
-//! then taken back, with a bound of all errors on the way: [`Point::transformed`], and for surfaces that bend towards a
-//! leaving ray also what the rounding of its origin to f32 moves it sideways.
+//! A ray is transformed to object space in f64 and intersected there. The intersection is refined onto the surface and
+//! transformed back, with a bound of all errors on the way: [`Point::transformed`], and for surfaces that curve towards
+//! a leaving ray also the effect of rounding its origin to f32, which moves it sideways.
 //!
-//! Conventions of u, v and their derivatives: Pharr, Jakob, Humphreys, Physically Based Rendering. The intersection after
-//! Haines et al. (2019), "Precision Improvements for Ray/Sphere Intersection".
+//! Conventions of u, v and their derivatives: Pharr, Jakob, Humphreys, Physically Based Rendering. The intersection
+//! after Haines et al. (2019), "Precision Improvements for Ray/Sphere Intersection".
 
 use std::f64::consts::PI;
 
@@ -20,27 +20,27 @@ use crate::core::warp;
 /// Unit of rounding of f64, 2⁻⁵³.
 const UNIT: f64 = 0.5 * f64::EPSILON;
 
-/// What a quadric is in its own space.
+/// The shape of a quadric in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum QuadricKind {
-    /// Around the origin, between two heights.
+    /// A sphere around the origin, between two heights.
     Sphere {
         /// Positive.
         radius: f64,
         /// In ascending order, within ± the radius.
         z: [f64; 2],
     },
-    /// Across the z axis.
+    /// A disk perpendicular to the z axis.
     Disk {
         /// At this z.
         height: f64,
         /// Positive.
         radius: f64,
-        /// Of the hole: not negative, below the radius.
+        /// Radius of the hole: not negative, below the radius.
         inner_radius: f64,
     },
-    /// Around the z axis, between two heights.
+    /// A cylinder around the z axis, between two heights.
     Cylinder {
         /// Positive.
         radius: f64,
@@ -49,32 +49,32 @@ pub enum QuadricKind {
     },
 }
 
-/// A quadric in its place.
+/// A quadric with its transform.
 #[derive(Clone, Copy, Debug)]
 pub struct Quadric {
-    /// What it is in its own space.
+    /// Its shape in object space.
     pub kind: QuadricKind,
     /// Swept from +x toward +y: radians in (0, 2π].
     pub phi_max: f64,
-    /// Whether outside and inside change places.
+    /// Whether outside and inside are exchanged.
     pub reverse: bool,
     render_from_object: Affine,
-    /// The linear part of the way back.
+    /// Inverse of the linear part.
     object_from_render: Affine,
 }
 
 /// Quadrics of many shapes.
 #[derive(Clone, Debug, Default)]
 pub struct Quadrics {
-    /// In their places.
+    /// The quadrics.
     pub quadrics: Vec<Quadric>,
     /// The attributes of each.
     pub bindings: Vec<MaterialBinding>,
 }
 
 impl Quadric {
-    /// Puts a quadric into its place; `phi_max` in degrees. Heights may come in any order; those of a sphere are cut to
-    /// ± its radius. None where `matrix` has no inverse.
+    /// Places a quadric by a transform; `phi_max` in degrees. Heights may come in any order; those of a sphere are
+    /// clamped to ± its radius. None where `matrix` has no inverse.
     pub fn new(kind: QuadricKind, phi_max: f64, matrix: &DMat4, reverse: bool) -> Option<Self> {
         let ascending = |[a, b]: [f64; 2]| if a <= b { [a, b] } else { [b, a] };
         let kind = match kind {
@@ -91,7 +91,7 @@ impl Quadric {
         Some(Self { kind, phi_max, reverse, render_from_object, object_from_render })
     }
 
-    /// Whether it is a whole sphere (an ellipsoid, after its map).
+    /// Whether it is a whole sphere (an ellipsoid, after its transform).
     pub fn is_whole_sphere(&self) -> bool {
         matches!(self.kind, QuadricKind::Sphere { radius, z } if z == [-radius, radius])
             && self.is_whole_turn()
@@ -101,28 +101,28 @@ impl Quadric {
         self.phi_max >= 2.0 * PI
     }
 
-    /// A point of render space, in the quadric's own.
+    /// A point of render space, in object space.
     pub fn point_in_object(&self, p: DVec3) -> DVec3 {
         self.vector_in_object(p - DVec3::from_array(self.render_from_object.translation))
     }
 
-    /// A direction of render space, in the quadric's own.
+    /// A direction of render space, in object space.
     pub fn vector_in_object(&self, v: DVec3) -> DVec3 {
         DVec3::from_array(self.object_from_render.vector(v.to_array()))
     }
 
-    /// A direction of the quadric's own space, in render space.
+    /// A direction of object space, in render space.
     pub fn vector_in_render(&self, v: DVec3) -> DVec3 {
         DVec3::from_array(self.render_from_object.vector(v.to_array()))
     }
 
-    /// How much larger a volume is in render space than in the quadric's own.
+    /// Ratio of a volume in render space to that in object space.
     pub fn volume_scale(&self) -> f64 {
         let [x, y, z] = self.render_from_object.matrix.map(DVec3::from_array);
         x.cross(y).dot(z).abs()
     }
 
-    /// How much larger a small piece of the surface is in render space, at a point of it (in the quadric's own space).
+    /// Ratio of the area element in render space to that in object space, at a point of the surface in object space.
     pub fn area_scale(&self, on_surface: DVec3) -> f64 {
         let normal = self.object_from_render.normal_back(self.outward(on_surface).to_array());
         self.volume_scale() * DVec3::from_array(normal).length()
@@ -137,7 +137,7 @@ impl Quadric {
         (is_flat || even.iter().all(|off| off.abs() <= 1e-9 * square)).then(|| self.area_scale(DVec3::X))
     }
 
-    /// Area in the quadric's own space.
+    /// Area in object space.
     pub fn object_area(&self) -> f64 {
         match self.kind {
             QuadricKind::Sphere { radius, z: [low, high] }
@@ -148,7 +148,7 @@ impl Quadric {
         }
     }
 
-    /// A point of the surface, in the quadric's own space, uniform over the area there; `u` in [0, 1)².
+    /// A point of the surface, in object space, uniform over the area there; `u` in [0, 1)².
     pub fn sample_in_object(&self, u: [f32; 2]) -> DVec3 {
         let [u0, u1] = u.map(f64::from);
         let (sin, cos) = libm::sincos(u1 * self.phi_max);
@@ -175,7 +175,7 @@ impl Quadric {
         }
     }
 
-    /// The box around it, in render space.
+    /// The bounding box, in render space.
     pub fn bounds(&self) -> [DVec3; 2] {
         let (radius, [low, high]) = match self.kind {
             QuadricKind::Sphere { radius, z } | QuadricKind::Cylinder { radius, z } => (radius, z),
@@ -183,7 +183,7 @@ impl Quadric {
         };
         let rows = self.render_from_object.matrix.map(DVec3::from_array);
         let translation = DVec3::from_array(self.render_from_object.translation);
-        // Across the z axis the extent is that of a circle, along it that of the two heights.
+        // The extent is that of a circle perpendicular to the z axis, and of the two heights along it.
         let circle = DVec3::from_array(rows.map(|row| radius * row.truncate().length()));
         let along = DVec3::from_array(rows.map(|row| row.z));
         let ends = [translation + low * along, translation + high * along];
@@ -197,7 +197,7 @@ impl Quadric {
         [min - error, max + error]
     }
 
-    /// The nearest point of a surface to one that is on it but for errors, in the quadric's own space.
+    /// The point of the surface nearest to one that is on it up to errors, in object space.
     fn refined(&self, p: DVec3) -> DVec3 {
         match self.kind {
             QuadricKind::Sphere { radius, .. } => p * (radius / p.length()),
@@ -209,7 +209,7 @@ impl Quadric {
         }
     }
 
-    /// Away from the axis or along +z, of unit length, in the quadric's own space, for a point of the surface.
+    /// The unit normal away from the axis (along +z for a disk), in object space, at a point of the surface.
     fn outward(&self, p: DVec3) -> DVec3 {
         match self.kind {
             QuadricKind::Sphere { .. } => p.normalize(),
@@ -218,7 +218,7 @@ impl Quadric {
         }
     }
 
-    /// Whether a point of the whole surface is in the part that is there.
+    /// Whether a point of the whole surface is in the quadric's part of it.
     fn contains(&self, p: DVec3) -> bool {
         let there = match self.kind {
             QuadricKind::Sphere { radius, z: [low, high] } => {
@@ -234,7 +234,7 @@ impl Quadric {
         there && (self.is_whole_turn() || angle(p) <= self.phi_max)
     }
 
-    /// Where a line in the quadric's own space meets the whole surface.
+    /// The intersections of a line in object space with the whole surface.
     fn meetings(&self, origin: DVec3, direction: DVec3) -> Option<[f64; 2]> {
         let across = DVec3::new(1.0, 1.0, 0.0);
         match self.kind {
@@ -247,7 +247,7 @@ impl Quadric {
         }
     }
 
-    /// The point of the surface that is `on_surface` in the quadric's own space.
+    /// The point of the surface that is `on_surface` in object space.
     pub fn point(&self, on_surface: DVec3, binding: MaterialBinding) -> SurfacePoint {
         let p = self.refined(on_surface);
         let phi = angle(p);
@@ -271,7 +271,7 @@ impl Quadric {
             QuadricKind::Disk { radius, inner_radius, .. } => {
                 let ring = p.truncate().length();
                 let (x, y) = if ring > 0.0 { (p.x / ring, p.y / ring) } else { (1.0, 0.0) };
-                // In the very middle, u turns as it does close by.
+                // At the very centre, take the derivative of a point close by.
                 let turned = ring.max(1e-5 * radius) * DVec3::new(x, y, 0.0);
                 let dpdv = (inner_radius - radius) * DVec3::new(x, y, 0.0);
                 ((radius - ring) / (radius - inner_radius), [turning(turned, self.phi_max), dpdv])
@@ -287,8 +287,8 @@ impl Quadric {
         SurfacePoint::plain(point, ng, uv, derivatives.map(|d| self.vector_in_render(d)), binding)
     }
 
-    /// How far the surface bends away from its tangent plane over the distance that rounding to f32 may move the origin of
-    /// a leaving ray. `normal_length` is that of the unit normal on its way to render space.
+    /// The distance by which the surface curves away from its tangent plane over the distance that rounding to f32 may
+    /// move the origin of a leaving ray. `normal_length` is that of the unit normal transformed to render space.
     fn bend(&self, point: &Point, normal_length: f64) -> f64 {
         let (QuadricKind::Sphere { radius, .. } | QuadricKind::Cylinder { radius, .. }) = self.kind else {
             return 0.0;
@@ -302,7 +302,7 @@ impl Quadric {
 }
 
 impl Quadrics {
-    /// The point of a quadric nearest to one that is on it but for errors.
+    /// The point of a quadric nearest to one that is on it up to errors.
     pub(super) fn point(&self, index: usize, near: DVec3) -> SurfacePoint {
         let quadric = &self.quadrics[index];
         quadric.point(quadric.point_in_object(near), self.bindings[index])
@@ -338,8 +338,8 @@ impl Procedural for Quadrics {
     }
 }
 
-/// Derivatives of a sphere's point by u and v; poles on z. `spans` are of the polar angle, from the lowest point to the
-/// highest (hence negative), and of the turn around the axis. At a pole they are those of a point very close to it.
+/// Derivatives of a sphere's point by u and v; poles on z. The array holds the ranges of the polar angle, from the
+/// lowest point to the highest (hence negative), and of φ. At a pole they are those of a point very close to it.
 pub(super) fn sphere_derivatives(p: DVec3, radius: f64, [theta, phi]: [f64; 2]) -> [DVec3; 2] {
     let p = if p.x == 0.0 && p.y == 0.0 { DVec3::new(1e-5 * radius, 0.0, p.z) } else { p };
     let ring = p.truncate().length();
@@ -347,23 +347,23 @@ pub(super) fn sphere_derivatives(p: DVec3, radius: f64, [theta, phi]: [f64; 2]) 
     [turning(p, phi), theta * DVec3::new(p.z * cos, p.z * sin, -ring)]
 }
 
-/// The derivative by u where u is the share of a turn around the z axis.
+/// The derivative by u, where u is φ / `phi_max`.
 fn turning(p: DVec3, phi_max: f64) -> DVec3 {
     phi_max * DVec3::new(-p.y, p.x, 0.0)
 }
 
-/// From the z axis' positive end, in radians.
+/// The polar angle from the +z axis, in radians.
 fn polar(z: f64, radius: f64) -> f64 {
     libm::acos((z / radius).clamp(-1.0, 1.0))
 }
 
-/// Around the z axis from +x toward +y: [0, 2π).
+/// The angle φ around the z axis from +x toward +y: [0, 2π).
 fn angle(p: DVec3) -> f64 {
     let angle = libm::atan2(p.y, p.x);
     if angle < 0.0 { angle + 2.0 * PI } else { angle }
 }
 
-/// Where a line meets the sphere around the origin, the smaller t first; `f` is a point of the line.
+/// The intersections of a line with the sphere around the origin, the smaller t first; `f` is a point of the line.
 fn roots(f: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
     let a = d.length_squared();
     let b = f.dot(d);
@@ -373,7 +373,7 @@ fn roots(f: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
     if !(discriminant >= 0.0) {
         return None;
     }
-    // Both roots without a difference of like numbers.
+    // Both roots without cancellation.
     let length = f.length();
     let c = (length - radius) * (length + radius);
     let q = -(b + discriminant.sqrt().copysign(b));

@@ -1,4 +1,4 @@
-//! Whole spheres, for which the kernel has a test of its own.
+//! Whole spheres, which the kernel intersects itself.
 
 use glam::{DVec3, Mat3, Vec3};
 use lookfrom_bvh::Point;
@@ -10,27 +10,27 @@ use crate::shading::texture;
 /// Spheres of many shapes.
 #[derive(Clone, Debug, Default)]
 pub struct Spheres {
-    /// As the kernel has them.
+    /// In the kernel's form.
     pub spheres: Vec<lookfrom_bvh::Sphere>,
-    /// For each sphere, an index into `looks`.
+    /// For each sphere, an index into `bindings`.
     pub binding_of: Vec<u32>,
-    /// The attributes of a sphere, and its orientation.
+    /// The attributes of spheres, and their orientations.
     pub bindings: Vec<SphereBinding>,
 }
 
-/// What spheres of one shape share.
+/// Attributes shared by the spheres of one shape.
 #[derive(Clone, Copy, Debug)]
 pub struct SphereBinding {
     /// Its attributes.
     pub binding: MaterialBinding,
-    /// The rotation (or mirror) to the shape's own axes, where its poles are on y.
+    /// The rotation (or reflection) to the shape's own axes, where its poles are on y.
     pub object_from_sphere: Mat3,
     /// Whether the outside is the side of the centre.
     pub flip: bool,
 }
 
 impl Spheres {
-    /// The point of a sphere nearest to one that is on it but for errors.
+    /// The point of a sphere nearest to one that is on it up to errors.
     pub(super) fn point(&self, index: usize, near: DVec3) -> SurfacePoint {
         let sphere = self.spheres[index];
         let SphereBinding { binding, object_from_sphere, flip } =

@@ -1,8 +1,8 @@
-//! Warnings about the camera: it sees nothing of the scene, or stands inside something.
+//! Warnings about the camera: it sees nothing of the scene, or is inside a body.
 //!
-//! Rays decide. A body is around the eye where rays to nearly all sides cross its surface an odd number of times and come to
-//! its back first, and where its back is nearly all that the picture shows. Rooms are not meant: their surfaces look inward,
-//! other things stand in them, or a light lights them from within.
+//! Tested by rays. The camera is inside a body if rays in nearly all directions cross its surface an odd number of
+//! times and hit its back first, and if its back is nearly all that the picture shows. Rooms do not count: their
+//! surfaces face inward, other objects are in them, or a light inside lights them.
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
@@ -17,21 +17,21 @@ use crate::shading::material::MaterialKind;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
-/// Camera rays along each side of the picture: at first, and where those meet nothing. Then an odd number: what is small and far is
-/// mostly looked at.
+/// Number of camera rays along each side of the picture: at first, and if those hit nothing. The second is odd, so that
+/// a ray goes through the centre, where small and distant objects mostly are.
 const COARSE: u32 = 16;
 const FINE: u32 = 129;
-/// Rays to all sides are the square of this.
+/// The square root of the number of rays in all directions.
 const AROUND: u32 = 8;
-/// The share of rays that has to agree.
+/// The fraction of rays that has to agree.
 const NEARLY_ALL: f64 = 0.9;
 
-/// What a camera should see.
+/// The scene that a camera should see.
 #[derive(Clone, Debug)]
 pub(crate) struct Subject {
-    /// The box around the scene, in the world.
+    /// The bounding box of the scene, in the world.
     bounds: Bounds,
-    /// Where the camera was written.
+    /// The location of the camera in the scene's file.
     at: Location,
     /// Whether all parts of the scene are one body.
     is_model: bool,
@@ -58,8 +58,8 @@ pub(super) fn check(renderer: &Renderer, subject: &Subject, warnings: &mut Vec<W
         }
         let Bounds { min, max } = bounds;
         format!(
-            "the camera sees nothing of the scene, which lies between {min} and {max}: the picture shows the background alone; \
-             look at it from elsewhere, or in another direction"
+            "the camera sees nothing of the scene, which lies between {min} and {max}: the picture shows only the background; \
+             change the camera's position (lookfrom) or direction (lookat)"
         )
     } else {
         let Some(shape) = body_around_the_eye(renderer, &seen, is_model) else { return };
@@ -71,13 +71,13 @@ pub(super) fn check(renderer: &Renderer, subject: &Subject, warnings: &mut Vec<W
             _ => "the model".to_owned(),
         };
         format!(
-            "the camera stands inside {body}: the picture shows its inner side alone; move the eye (lookfrom) out of it"
+            "the camera stands inside {body}: the picture shows only its inner side; move the camera (lookfrom) out of it"
         )
     };
     warnings.push(Warning::new(at, message));
 }
 
-/// What rays through a grid over the picture meet first.
+/// First hits of rays through a grid over the picture.
 fn seen(renderer: &Renderer, side: u32) -> Vec<Option<SurfaceInteraction>> {
     let (world, camera) = (renderer.world(), renderer.view().camera());
     let [width, height] = camera.size.map(f64::from);
@@ -87,7 +87,7 @@ fn seen(renderer: &Renderer, side: u32) -> Vec<Option<SurfaceInteraction>> {
         let place = [width * middle(cell % side), height * middle(cell / side)];
         let ray = renderer.kernel_ray(&camera.ray(place, [0.5; 2]));
         world.bvh.query().all_hits(&ray, &mut hits);
-        // The camera's rays pass these.
+        // Surfaces that camera rays pass.
         let is_passed = |surface: &SurfaceInteraction| {
             surface.single_sided && !surface.front || world.is_interface(surface)
         };
@@ -96,7 +96,7 @@ fn seen(renderer: &Renderer, side: u32) -> Vec<Option<SurfaceInteraction>> {
     (0..side * side).map(&mut first).collect()
 }
 
-/// The number of a shape that is closed around the eye and fills the picture.
+/// The index of a shape that is closed around the camera and fills the picture.
 fn body_around_the_eye(
     renderer: &Renderer,
     seen: &[Option<SurfaceInteraction>],
@@ -112,7 +112,7 @@ fn body_around_the_eye(
 
     let mut hits: Vec<Hit> = Vec::new();
     let mut is_enclosed = |cell: u32| {
-        // Not through the middle of what is symmetric.
+        // Not through the centre of symmetric shapes.
         let place = |cell: u32| (cell as f32 + 0.37) / AROUND as f32;
         let direction = warp::octahedral_direction([place(cell % AROUND), place(cell / AROUND)]);
         let ray = Ray::new(eye, direction.to_array());
@@ -130,7 +130,7 @@ fn is_nearly_all(count: usize, of: usize) -> bool {
     count as f64 >= NEARLY_ALL * of as f64
 }
 
-/// Whether nothing is seen through a surface, and it does not emit light.
+/// Whether a surface is opaque and does not emit light.
 fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
     surface.alpha.is_none()
         && surface.light.is_none()
@@ -153,7 +153,7 @@ fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
         }
 }
 
-/// Whether a light elsewhere than at the eye is seen from there.
+/// Whether a light is visible from the camera and not at its position.
 fn is_lit_from_within(renderer: &Renderer) -> bool {
     let (world, origin) = (renderer.world(), renderer.eye);
     let eye = LightSampleContext { point: origin, n: Vec3::Z };

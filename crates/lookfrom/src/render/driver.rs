@@ -1,11 +1,11 @@
 //! The render driver: threads, passes, tiles, stop criteria, progress.
 //!
-//! Nothing here decides what a sample brings; that is [`Renderer::render_tile`], and the film of a number of samples is the same
-//! for any division of the work. What decides about *numbers* of samples, other than the clock, is only the film at the ends
-//! of *rounds* (after 1, 2, 4 … 64 samples of a pixel, then every 64): so adaptive pictures, too, are the same for any number
-//! of threads. Whether a tile has enough is decided from the samples that its picture is made of, which favours pictures
-//! that look clean by chance (a bias towards dark of the order of the noise that is left); at least [`FEWEST_SAMPLES`] keep
-//! it small, and that whole tiles are judged, not pixels.
+//! The value of a sample does not depend on anything here: [`Renderer::render_tile`] computes it, and the film of a
+//! number of samples is the same for any division of the work. *Numbers* of samples depend, apart from the clock, only
+//! on the film at the ends of *rounds* (after 1, 2, 4 … 64 samples per pixel, then every 64): so adaptive pictures,
+//! too, are the same for any number of threads. Whether a tile has enough samples is decided from the samples of its
+//! picture, which favours pictures that look clean by chance (a bias towards dark of the order of the remaining noise);
+//! it is kept small by a minimum of [`FEWEST_SAMPLES`], and because whole tiles are judged, not pixels.
 
 use std::ops::Range;
 use std::sync::Mutex;
@@ -20,42 +20,42 @@ use crate::core::clock::Stopwatch;
 use crate::core::parallel;
 use crate::film::{Film, FilmTile, Picture};
 
-/// Pixels on the side of a tile. One sample of each pixel of a tile is a batch.
+/// Side of a tile in pixels. One sample of each pixel of a tile is a batch.
 const TILE: u32 = 32;
 
-/// The greatest number of samples of a pixel between two looks at the picture.
+/// Maximum number of samples per pixel between two evaluations of the stop criteria.
 const LONGEST_ROUND: u32 = 64;
 
-/// A tile or picture of fewer samples a pixel is not taken to be clean, whatever it looks like.
+/// Minimum number of samples per pixel before a tile or picture may count as clean.
 pub const FEWEST_SAMPLES: u32 = 16;
 
-/// When a render ends, besides its number of samples.
+/// Stop criteria, besides the number of samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StopCriteria {
     /// Stop after the pass over the picture that reaches this time. At least one sample of each pixel is taken. Never
     /// reached on wasm32-unknown-unknown, which has no clock.
     pub time: Option<Duration>,
-    /// Give no more samples to a tile whose [relative error](Film::relative_error) is at most this, and stop when
-    /// there is none left.
+    /// Give no more samples to a tile whose [relative error](Film::relative_error) is at most this, and stop when no
+    /// other tile is left.
     pub noise: Option<f64>,
 }
 
-/// Why a render ended.
+/// The reason why a render ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum StopReason {
     /// Every pixel has all its samples.
     Samples,
-    /// The time was over.
+    /// The time limit was reached.
     Time,
     /// Every tile was clean enough.
     Noise,
-    /// It was told to stop.
+    /// It was cancelled.
     Cancelled,
 }
 
 impl StopReason {
-    /// Its word, for summaries.
+    /// A word for summaries.
     pub fn word(self) -> &'static str {
         match self {
             Self::Samples => "samples",
@@ -66,30 +66,30 @@ impl StopReason {
     }
 }
 
-/// A tile that has got more samples.
+/// A tile that has received more samples.
 #[derive(Clone, Debug)]
 pub struct TileDone {
-    /// Which pixels.
+    /// Its pixels.
     pub area: PixelBounds,
-    /// Which samples of each of them.
+    /// The new samples of each of them.
     pub samples: Range<u32>,
     /// Samples taken so far, of all pixels together.
     pub done: u64,
-    /// Samples of all pixels together; an estimate where something else than the number of samples ends the render.
+    /// Samples of all pixels together at the end; an estimate where a stop criterion may end the render.
     pub total: u64,
     /// Rays traced so far.
     pub rays: u64,
-    /// The tile's picture so far, where [`Progress::wants_pixels`] asked for it: as large as `area`, row by row from its top
-    /// left, linear light.
+    /// The tile's picture so far, if [`Progress::wants_pixels`]: of the size of `area`, row by row from its top left,
+    /// linear light.
     pub picture: Option<Picture>,
 }
 
-/// Receives the progress of a render, and decides whether it shall stop. Called from many threads; no lock is held meanwhile.
+/// Receives the progress of a render, and may cancel it. Called from many threads; no lock is held during the call.
 pub trait Progress: Sync {
-    /// A tile has got more samples. Tiles may come in any order, those of one place in the order of their samples.
+    /// A tile has received more samples. Tiles may come in any order, those of one area in the order of their samples.
     fn tile(&self, _done: TileDone) {}
 
-    /// Whether tiles shall come with their pictures.
+    /// Whether tiles should come with their pictures.
     fn wants_pixels(&self) -> bool {
         false
     }
@@ -100,19 +100,19 @@ pub trait Progress: Sync {
     }
 }
 
-/// Nobody is told anything.
+/// Ignores all progress.
 impl Progress for () {}
 
-/// What came of a render.
+/// The result of a render.
 #[derive(Debug)]
 pub struct Rendered {
-    /// The light.
+    /// The film.
     pub film: Film,
-    /// How many rays it took.
+    /// Numbers of rays traced.
     pub rays: Rays,
-    /// Why it ended.
+    /// The reason why it ended.
     pub reason: StopReason,
-    /// How many samples the pixels have that have most, not counting a pass that was broken off.
+    /// Maximum number of samples of a pixel, without a cancelled pass.
     pub samples: u32,
     /// Samples of all pixels together.
     pub samples_taken: u64,
@@ -121,19 +121,19 @@ pub struct Rendered {
 }
 
 impl Renderer {
-    /// Renders the whole picture with all its samples on `threads` threads (all that there are for `None`). Without the
+    /// Renders the whole picture with all its samples on `threads` threads (`None` is one per processor). Without the
     /// feature `parallel` it renders on the caller's thread.
     ///
-    /// The samples of a pixel are taken in passes of 1, 1, 2, 4 … over the whole picture, so that a render that is stopped
-    /// leaves a whole picture behind. The film is the same for any number of threads.
+    /// The samples of a pixel are taken in passes of 1, 1, 2, 4 … over the whole picture, so that a render that is
+    /// stopped leaves a whole picture behind. The film is the same for any number of threads.
     ///
     /// # Errors
-    /// `Limit` when there is no memory for the film or there are no threads to be had.
+    /// `Limit` if memory for the film or threads are not available.
     pub fn render(&self, threads: Option<usize>, progress: &dyn Progress) -> Result<Rendered> {
         self.render_until(&StopCriteria::default(), threads, progress)
     }
 
-    /// As [`Renderer::render`], but ends when a criterion is met, if that comes before the number of samples.
+    /// As [`Renderer::render`], but ends early when a stop criterion is met.
     ///
     /// # Errors
     /// As [`Renderer::render`].
@@ -160,7 +160,7 @@ impl Renderer {
     }
 }
 
-/// A render under way.
+/// A render in progress.
 struct Work<'a> {
     renderer: &'a Renderer,
     progress: &'a dyn Progress,
@@ -170,8 +170,8 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Takes samples until a criterion is met; tiles that have enough leave `tiles`. Returns the samples of the others' pixels
-    /// and why it ended.
+    /// Takes samples until a criterion is met; tiles that have enough are removed from `tiles`. Returns the number of
+    /// samples per pixel of the others and the reason why it ended.
     fn rounds(&self, tiles: &mut Vec<PixelBounds>, stop: &StopCriteria) -> Result<(u32, StopReason)> {
         let started = Stopwatch::start();
         let mut samples = 0;
@@ -202,7 +202,7 @@ impl Work<'_> {
         Ok((samples, StopReason::Samples))
     }
 
-    /// Adds samples to every pixel of the tiles; false if it was broken off.
+    /// Adds samples to every pixel of the tiles; false if it was cancelled.
     fn pass(&self, tiles: &[PixelBounds], samples: Range<u32>) -> Result<bool> {
         let whole = parallel::collect(tiles.len(), |index| -> Result<bool> {
             let tile_area = &tiles[index];
@@ -233,7 +233,7 @@ impl Work<'_> {
         Ok(whole.into_iter().all(|whole| whole))
     }
 
-    /// Leaves out the tiles that are clean enough, and estimates how many samples the others will take.
+    /// Removes the tiles that are clean enough, and estimates the number of samples that the others need.
     fn leave_clean(&self, tiles: &mut Vec<PixelBounds>, samples: u32, noise: f64) {
         if samples < FEWEST_SAMPLES {
             return;
@@ -243,7 +243,7 @@ impl Work<'_> {
         let mut total = self.done.load(Ordering::Relaxed) as f64;
         tiles.retain(|tile| {
             let error = guard.0.relative_error(*tile, mean);
-            // Errors fall with the root of the samples.
+            // Errors fall with the square root of the number of samples.
             let ratio = error / noise;
             let needed = (f64::from(samples) * ratio * ratio).min(f64::from(self.renderer.settings.samples));
             total += area(tile) as f64 * (needed - f64::from(samples)).max(0.0);
@@ -253,8 +253,8 @@ impl Work<'_> {
     }
 }
 
-/// How many samples a pixel may be taken in the next pass, if as many as `samples` took `elapsed`: so many that the time
-/// is reached, not passed by much.
+/// Number of samples per pixel in the next pass, if `samples` took `elapsed`: enough to reach the time limit, not to
+/// pass it by much.
 fn affordable(samples: u32, elapsed: Duration, time: Duration) -> u32 {
     if samples == 0 {
         return 1;

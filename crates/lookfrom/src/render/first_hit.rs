@@ -1,7 +1,7 @@
-//! First hits: what the camera's rays met, gathered once for AOVs and denoiser.
+//! First hits of camera rays, recorded once for AOVs and denoiser.
 //!
-//! Nothing listens to the way of a batch, so it goes as fast as always: first hits are noted as they are traced, and looked at
-//! afterwards. Where a surface lets a ray through as if it were not there, what comes behind it counts.
+//! No probe is needed, so that rendering is not slowed down: first hits are recorded as they are traced, and evaluated
+//! after the batch. Where a ray passes a surface as if it were not there, the hit behind it counts.
 
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_bvh::{Hit, Ray};
@@ -11,7 +11,7 @@ use crate::film::{Aovs, FilmTile};
 use crate::integrator::Path;
 use crate::shading::material;
 
-/// What the camera's ray of a sample met.
+/// The first hit of a sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FirstHit {
     ray: Ray,
@@ -23,7 +23,7 @@ impl FirstHit {
         Self { ray: Ray { origin: [0.0; 3], t_min: 0.0, direction: [0.0; 3], t_max: 0.0 }, hit: Hit::MISS };
 }
 
-/// Notes the hits of those of a batch's paths that come straight from the camera, by slot, where that is asked for.
+/// Records the hits of the paths that come straight from the camera, by slot, if `first_hits` is not empty.
 pub(super) fn note(first_hits: &mut [FirstHit], paths: &[Path], hits: &[Hit]) {
     if first_hits.is_empty() {
         return;
@@ -36,7 +36,7 @@ pub(super) fn note(first_hits: &mut [FirstHit], paths: &[Path], hits: &[Hit]) {
 }
 
 impl Renderer {
-    /// Adds what the rays of samples met to a tile, where that was noted.
+    /// Adds the AOVs of samples to a tile, if first hits were recorded.
     pub(super) fn add_first_hits(&self, ids: &[SampleId], first_hits: &[FirstHit], tile: &mut FilmTile) {
         if first_hits.is_empty() {
             return;
@@ -53,7 +53,7 @@ impl Renderer {
         let world = &self.world;
         let surface = world.surface(&first.ray, &first.hit);
         let point = world.texture_point(&surface);
-        // The camera's own space has x to the left (w, u, v of the notes), that of AOVs to the right.
+        // The view space of the notes (u, v, w) has x to the left, that of AOVs to the right.
         let mirrored = |v: DVec3| [-v.x as f32, v.y as f32, v.z as f32];
         let toward_viewer = |n: Vec3| {
             let n = if n.dot(surface.wo) < 0.0 { -n } else { n };

@@ -1,4 +1,4 @@
-//! Integrators behind a pointer: one virtual call a batch.
+//! Integrators behind a pointer: one virtual call per batch.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ pub(super) trait Transport: std::fmt::Debug + Send + Sync {
 
     fn is_light(&self) -> bool;
 
-    /// Follows samples to their light.
+    /// Computes samples.
     fn trace(&self, renderer: &Renderer, ids: &[SampleId], batch: &mut Batch) -> Rays;
 
     /// The same for the inspector.
@@ -54,7 +54,7 @@ impl<I: Integrator> Transport for I {
     }
 }
 
-/// The integrator that settings name, for a camera that stands at `eye` in render space.
+/// The integrator that the settings name, for a camera at `eye` in render space.
 pub(super) fn of_settings(settings: &RenderSettings, camera: &Camera, eye: DVec3) -> Arc<dyn Transport> {
     let &RenderSettings {
         integrator,

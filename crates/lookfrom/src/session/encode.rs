@@ -18,7 +18,7 @@ use crate::post::develop::{srgb8_before, srgba8};
 pub enum Format {
     /// 8-bit sRGB after exposure and tone map, with alpha where the background is transparent.
     Png,
-    /// Linear light in 32-bit floats, with AOVs, alpha and a header that says how it was made.
+    /// Linear light in 32-bit floats, with AOVs, alpha and a header with the settings.
     Exr,
     /// Linear light in Radiance's shared exponents.
     Hdr,
@@ -33,19 +33,19 @@ impl Format {
     pub const EXTENSIONS: &'static [(&'static str, Self)] =
         &[("png", Self::Png), ("exr", Self::Exr), ("hdr", Self::Hdr), ("pfm", Self::Pfm), ("ppm", Self::Ppm)];
 
-    /// The format that a file's extension names, in any case.
+    /// The format of a file's extension, case-insensitive.
     pub fn of_path(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_string_lossy().to_lowercase();
         Self::EXTENSIONS.iter().find(|(known, _)| *known == extension).map(|&(_, format)| format)
     }
 
-    /// Whether it has room for AOVs.
+    /// Whether the format can hold AOVs.
     pub fn has_layers(self) -> bool {
         self == Self::Exr
     }
 }
 
-/// The background colour behind a picture with alpha, where a format has no room for alpha: its own, or black.
+/// The background colour of a picture with alpha in a format that cannot hold alpha: its own, or black.
 pub(super) fn behind(image: &ImageSettings) -> [f32; 3] {
     match image.background {
         Background::Color(color) => color,
@@ -54,7 +54,7 @@ pub(super) fn behind(image: &ImageSettings) -> [f32; 3] {
 }
 
 impl Finished {
-    /// The bytes of a file of the picture. AOVs and the header are for formats that have room for them.
+    /// The bytes of a file of the picture. AOVs and the header are for formats that can hold them.
     ///
     /// # Errors
     /// `Invalid` or `Limit` where the format cannot hold the picture.

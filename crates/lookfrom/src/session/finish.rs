@@ -11,14 +11,14 @@ use crate::render::{Rendered, StopReason};
 /// A finished picture, ready to be [encoded](Finished::encode).
 #[derive(Debug)]
 pub struct Finished {
-    /// The film, and how it came about.
+    /// The film, with statistics of the render.
     pub rendered: Rendered,
-    /// Linear light, without fireflies and noise where that was asked for.
+    /// Linear light, with firefly suppression and denoising if they are enabled.
     pub picture: Picture,
-    /// Further channels for formats that have room for them, by name: AOVs, and the light before denoising.
+    /// Further channels for formats that can hold them, by name: AOVs, and the light before denoising.
     pub layers: Vec<(String, Vec<f32>)>,
-    /// How the picture was made, as names and values: all that decides its light, and nothing else, so that the same
-    /// picture has the same bytes.
+    /// The settings of the picture, as names and values: everything that determines its light, and nothing else, so
+    /// that the same picture has the same bytes.
     pub header: Vec<(String, String)>,
     /// Whether it is denoised.
     pub denoised: bool,
@@ -26,14 +26,14 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// Samples of a pixel on average, rounded down.
+    /// Mean number of samples per pixel, rounded down.
     pub fn samples_taken(&self) -> u64 {
         let area = self.rendered.film.area();
         let pixels = u64::from(area.x1 - area.x0) * u64::from(area.y1 - area.y0);
         self.rendered.samples_taken / pixels.max(1)
     }
 
-    /// Samples of the pixels that have most: those that were asked for where the render was cancelled.
+    /// Maximum number of samples of a pixel; the number in the settings if the render was cancelled.
     pub fn samples(&self) -> u32 {
         self.rendered.samples
     }

@@ -1,5 +1,5 @@
-//! What an OpenEXR file says of itself: everything that decides its light, and nothing else, so that the same picture is the
-//! same bytes whatever the number of threads, the time and the machine.
+//! The header of an OpenEXR file: everything that determines its light, and nothing else, so that the same picture has
+//! the same bytes whatever the number of threads, the time and the machine.
 
 use glam::DVec3;
 use lookfrom_scene::camera::{Projection, View};
@@ -9,22 +9,22 @@ use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds, S
 use super::Session;
 use crate::core::color;
 
-/// How many samples a picture is made of.
+/// Numbers of samples and post-processing of a picture.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Taken {
-    /// Of the pixels that have most.
+    /// Maximum number of samples of a pixel.
     pub(super) samples: u32,
-    /// Of a pixel on average, rounded down, where not all pixels have the same or it was stopped.
+    /// Mean number of samples per pixel, rounded down, where it differs between pixels or the render was stopped.
     pub(super) mean: Option<u64>,
-    /// What is clean enough for a tile to get no more.
+    /// The relative error at which a tile gets no more samples.
     pub(super) noise: Option<f64>,
     /// Whether fireflies are spread.
     pub(super) fireflies_spread: bool,
-    /// Whether noise is filtered out.
+    /// Whether the picture is denoised.
     pub(super) denoised: bool,
 }
 
-/// The texts for the header, by name.
+/// The texts of the header, by name.
 pub(super) fn header(session: &Session, taken: &Taken) -> Vec<(String, String)> {
     let (image, render) = (session.renderer.view().image(), session.renderer.settings());
     let camera = &session.camera;
@@ -43,7 +43,7 @@ pub(super) fn header(session: &Session, taken: &Taken) -> Vec<(String, String)> 
         ("seed", render.seed.to_string()),
         ("sampler", render.sampler.word().to_owned()),
         ("filter", image.filter.to_string()),
-        // What the scene asks of 8-bit pictures; the light in this file is as it was computed.
+        // The exposure of 8-bit pictures; the light in this file is as it was computed.
         ("exposure", image.exposure.to_string()),
         ("tonemap", "none".to_owned()),
         ("camera.distance", camera.distance.to_string()),
@@ -96,7 +96,7 @@ pub(super) fn header(session: &Session, taken: &Taken) -> Vec<(String, String)> 
     texts.into_iter().map(|(name, text)| (name.to_owned(), text)).collect()
 }
 
-/// What is not as usual of the sensor, and which channels the variances among the layers are of.
+/// Settings of the sensor that differ from the default, and the channels of the variances among the AOVs.
 fn sensor(image: &ImageSettings) -> Vec<(&'static str, String)> {
     let Sensor { camera, imaging_ratio, white_balance, max_component } = image.sensor;
     let default = Sensor::default();

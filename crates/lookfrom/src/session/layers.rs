@@ -5,17 +5,17 @@ use lookfrom_scene::settings::ImageSettings;
 use super::encode::behind;
 use crate::film::{Film, Picture};
 
-/// In the order of [`to_array`](crate::film::Aovs::to_array); `depth` is ours, the others are pbrt's.
+/// Channel names, in the order of [`to_array`](crate::film::Aovs::to_array); `depth` is ours, the others are pbrt's.
 const AOVS: [&str; 15] = [
     "Albedo.R", "Albedo.G", "Albedo.B", "N.X", "N.Y", "N.Z", "Ns.X", "Ns.Y", "Ns.Z", "P.X", "P.Y", "P.Z",
     "depth", "u", "v",
 ];
 
-/// The variances of one sample; in pbrt, and so here, those of the sensor's channels: X, Y and Z, or a camera's red, green and
-/// blue. The header says which (`variance.from_rgb`).
+/// Channel names of the variances of one sample; as in pbrt, those of the sensor's channels: X, Y and Z, or a camera's
+/// red, green and blue. The header states which (`variance.from_rgb`).
 const VARIANCES: [&str; 3] = ["Variance.R", "Variance.G", "Variance.B"];
 
-/// The channels of a film's picture as it is, before the same background as the one that was denoised.
+/// The channels of a film's picture before denoising, over the same background as the denoised one.
 pub(super) fn noisy(image: &ImageSettings, picture: Picture) -> Vec<(String, Vec<f32>)> {
     let picture = picture.before(behind(image));
     let channel = |index: usize| picture.pixels.iter().map(|pixel| pixel[index]).collect();
@@ -24,7 +24,7 @@ pub(super) fn noisy(image: &ImageSettings, picture: Picture) -> Vec<(String, Vec
         .to_vec()
 }
 
-/// The channels of the layers of a film, 0 where there is nothing.
+/// The AOV channels of a film, 0 where there is no hit.
 pub(super) fn channels(film: &Film) -> Vec<(String, Vec<f32>)> {
     let pixels = || (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
     let mut channels: Vec<(String, Vec<f32>)> = AOVS

@@ -1,7 +1,7 @@
-//! Render options: what may be asked of a picture in place of what its file says.
+//! Render options, which override the settings of a scene's file.
 //!
-//! Applied in two steps: the settings first, since a camera is framed for a shape of picture; then the camera, which a bare
-//! model has only by then.
+//! Applied in two steps: the settings first, since auto-framing depends on the aspect ratio of the picture; then the
+//! camera, which a model without one has only after framing.
 
 use glam::{DMat3, DMat4, DVec3};
 use lookfrom_scene::camera::{Camera, Projection, View};
@@ -16,14 +16,14 @@ use super::Format;
 use crate::film::MOST_PIXELS;
 use crate::render::StopCriteria;
 
-/// What is asked of a picture in place of what its file says; `None` leaves the file's word, or the default.
+/// Render options, which override the settings of the file; `None` keeps the file's setting, or the default.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Columns; alone it keeps the shape of the picture.
+    /// Width in pixels; alone it keeps the aspect ratio.
     pub width: Option<u32>,
-    /// Rows; alone it keeps the shape of the picture.
+    /// Height in pixels; alone it keeps the aspect ratio.
     pub height: Option<u32>,
-    /// Only this part is computed.
+    /// Crop window: only this part is rendered.
     pub crop: Option<PixelBounds>,
     /// Samples per pixel.
     pub samples: Option<u32>,
@@ -31,60 +31,61 @@ pub struct Options {
     pub integrator: Option<Integrator>,
     /// RGB or spectral.
     pub color: Option<ColorMode>,
-    /// How one of many lights is chosen.
+    /// The light sampler.
     pub light_sampler: Option<LightSampler>,
     /// AOVs besides the picture.
     pub layers: Option<Layers>,
     /// Whether the picture is denoised.
     pub denoise: Option<bool>,
-    /// The greatest path depth.
+    /// Maximum path depth.
     pub depth: Option<u32>,
-    /// Share of the pixel below which a branch of Whitted's tree is cut off.
+    /// Throughput below which a branch of Whitted's tree is not followed.
     pub min_contribution: Option<f32>,
-    /// Where random numbers come from.
+    /// The sampler.
     pub sampler: Option<Sampler>,
     /// Seed of the random numbers.
     pub seed: Option<u64>,
     /// Pixel filter.
     pub filter: Option<Filter>,
-    /// In stops.
+    /// Exposure in stops.
     pub exposure: Option<f32>,
-    /// From linear light to 8 bits.
+    /// The tone map.
     pub tonemap: Option<Tonemap>,
-    /// What the camera sees where nothing stands.
+    /// The background that camera rays see where they hit nothing.
     pub background: Option<Background>,
-    /// Where the camera is.
+    /// The camera's position.
     pub lookfrom: Option<DVec3>,
-    /// What it looks at.
+    /// The point that it looks at.
     pub lookat: Option<DVec3>,
-    /// What is up: for the camera, and for the surroundings of a model. Any length.
+    /// The up direction: of the camera, and of the environment of a model. Any length.
     pub up: Option<DVec3>,
     /// Vertical field of view in degrees, in (0, 180).
     pub fov: Option<f64>,
-    /// Light from all around, in latitude and longitude, in place of the studio or of a scene's own environments.
+    /// An equirectangular environment map, in place of the studio or of a scene's own environments.
     pub environment: Option<Image>,
-    /// Turns environments around what is up, in degrees, counter-clockwise as seen from above.
+    /// Rotation of environments around the up direction, in degrees, counter-clockwise as seen from above.
     pub rotate_environment: Option<f64>,
-    /// Whether a floor that shows only the shadows on it lies below the model.
+    /// Whether a shadow catcher lies below the model.
     pub floor: bool,
-    /// Turns the camera around the model, in degrees, counter-clockwise as seen from above, and the environments with it.
+    /// Orbit of the camera around the model, in degrees, counter-clockwise as seen from above; environments rotate with
+    /// it.
     pub turn: Option<f64>,
-    /// Which of several animations, variants, scenes and cameras of a file is meant.
+    /// Selection among several animations, variants, scenes and cameras of a file.
     pub import: ImportOptions,
-    /// When the render ends, besides the number of samples. Without `samples`, there is no other limit.
+    /// Stop criteria, besides the number of samples. With them and without `samples`, that number is not limited.
     pub stop: StopCriteria,
-    /// Gives tiles that are clean enough no more samples ([`ADAPTIVE_NOISE`], where `stop` says nothing of noise), with the number
-    /// of samples as a limit.
+    /// Adaptive sampling: tiles that are clean enough get no more samples ([`ADAPTIVE_NOISE`], unless `stop` sets the
+    /// noise), with the number of samples as a limit.
     pub adaptive: bool,
-    /// What becomes of pixels that single samples make far too bright.
+    /// Treatment of fireflies, pixels that single samples make far too bright.
     pub fireflies: Fireflies,
-    /// The format that the picture will be encoded in, where that is known: what it has no room for is not computed.
+    /// The format that the picture will be encoded in, if it is known: AOVs that it cannot hold are not computed.
     pub format: Option<Format>,
-    /// Threads to render with; `None` is as many as there are processors.
+    /// Number of threads; `None` is one per processor.
     pub threads: Option<usize>,
 }
 
-/// What becomes of pixels that single samples make far too bright.
+/// Treatment of fireflies, pixels that single samples make far too bright.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fireflies {
@@ -95,25 +96,25 @@ pub enum Fireflies {
     Spread,
 }
 
-/// The standard error, in shares of the light, that is clean enough for [`Options::adaptive`].
+/// The relative error that is clean enough for [`Options::adaptive`].
 pub const ADAPTIVE_NOISE: f64 = 0.02;
 
-/// The most samples that a pixel can be given.
+/// Maximum number of samples per pixel.
 pub const MOST_SAMPLES: u32 = 1 << 24;
 
-/// The place of what is wrong with options, in [`Location::file`].
+/// The location of errors in options, in [`Location::file`].
 pub const OPTIONS: &str = "the options";
 
-/// An option that does not suit the scene.
+/// The error for an option that does not suit the scene.
 pub(super) fn unsuitable(message: String) -> Error {
     Error::new(ErrorKind::Request, &Location::default(), message)
 }
 
 impl Options {
-    /// Changes the settings of the picture and of the computation.
+    /// Applies the options to image and render settings.
     ///
     /// # Errors
-    /// `Request` for a picture that is too large or a crop that is no part of it.
+    /// `Request` for a picture that is too large or a crop outside of it.
     pub(super) fn apply_to_settings(
         &self,
         image: &mut ImageSettings,
@@ -149,7 +150,7 @@ impl Options {
 
     fn resize(&self, image: &mut ImageSettings) -> Result<()> {
         let (old_width, old_height) = (u64::from(image.width), u64::from(image.height));
-        // One side alone: the other is what keeps the shape, to the nearest pixel.
+        // One side alone: the other one keeps the aspect ratio, to the nearest pixel.
         let (width, height) = match (self.width.map(u64::from), self.height.map(u64::from)) {
             (None, None) => return Ok(()),
             (Some(width), Some(height)) => (width, height),
@@ -162,7 +163,7 @@ impl Options {
                 "a picture of {width} × {height} pixels; at most {MOST_PIXELS} pixels are possible"
             )));
         }
-        // A crop that the scene asks for stays the same part of the picture, to the next pixel outward.
+        // The scene's crop stays the same part of the picture, to the next pixel outward.
         image.crop = image.crop.map(|PixelBounds { x0, y0, x1, y1 }| {
             let down = |edge: u32, new: u64, old: u64| (u64::from(edge) * new / old) as u32;
             let up = |edge: u32, new: u64, old: u64| (u64::from(edge) * new).div_ceil(old) as u32;
@@ -177,10 +178,11 @@ impl Options {
         Ok(())
     }
 
-    /// Changes the camera of a scene that has one.
+    /// Applies the options to the camera of a scene that has one.
     ///
     /// # Errors
-    /// `Request` for a field of view where rays are parallel, and for a new place or direction of a camera that skews or mirrors.
+    /// `Request` for a field of view where rays are parallel, and for a new position or direction of a camera that
+    /// shears or reflects.
     pub(super) fn apply_to_camera(&self, scene: &mut Scene) -> Result<()> {
         let moved = self.lookfrom.is_some() || self.lookat.is_some() || self.up.is_some();
         let middle = scene.bounds().center();
@@ -196,7 +198,7 @@ impl Options {
         }
         if moved {
             self.look(camera, middle)?;
-            // What is wrong with the camera from here on is no line of a file.
+            // Errors of the camera from here on have no line in a file.
             camera.at = Location { file: OPTIONS.into(), ..Location::default() };
         }
         Ok(())
@@ -207,7 +209,8 @@ impl Options {
             View::Look { lookfrom, lookat, up } => (lookfrom, lookat, up),
             View::Matrix(matrix) => look_of_matrix(&matrix, middle).ok_or_else(|| {
                 unsuitable(
-                    "lookfrom, lookat and up cannot change a camera whose matrix skews or mirrors".to_owned(),
+                    "lookfrom, lookat and up cannot change a camera whose matrix shears or reflects"
+                        .to_owned(),
                 )
             })?,
         };
@@ -215,7 +218,7 @@ impl Options {
         replace(&mut lookfrom, self.lookfrom);
         replace(&mut lookat, self.lookat);
         replace(&mut up, self.up);
-        // A lens that was sharp at lookat stays so.
+        // A lens that was focused on lookat stays so.
         if let Some(lens) = &mut camera.lens
             && (lens.focus_distance - distance_before).abs() <= 1e-9 * distance_before
         {
@@ -226,8 +229,8 @@ impl Options {
     }
 }
 
-/// `lookfrom`, `lookat` and `up` of a camera that only turns and scales evenly. It looks at the point of its axis that is
-/// nearest to the middle of the scene, if that lies before it.
+/// `lookfrom`, `lookat` and `up` of a camera matrix that is a rotation with a uniform scale. `lookat` is the point of
+/// the view axis that is nearest to the centre of the scene, if that is in front of the camera.
 fn look_of_matrix(matrix: &DMat4, middle: DVec3) -> Option<(DVec3, DVec3, DVec3)> {
     let linear = DMat3::from_mat4(*matrix);
     let scale = linear.z_axis.length();
@@ -314,7 +317,7 @@ mod tests {
 
     #[test]
     fn a_matrix_that_turns_becomes_a_look_and_one_that_mirrors_does_not() {
-        // stands at (0, 0, 5), looks along −z; x of its space, the viewer's left, is −x
+        // at (0, 0, 5), looks along −z; x of its space, the viewer's left, is −x
         let turned = DMat4::from_cols(
             DVec3::NEG_X.extend(0.0),
             DVec3::Y.extend(0.0),

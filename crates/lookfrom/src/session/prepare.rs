@@ -1,5 +1,4 @@
-//! From a scene as its file says it to one that makes a picture: options applied, framed, lit, with the settings that are left
-//! open decided.
+//! Preparation of a scene for rendering: options, auto-framing, lighting, and defaults for settings that are left open.
 
 use std::path::Path;
 
@@ -9,15 +8,15 @@ use lookfrom_scene::{CameraChoice, ImportOptions, Location, Result, Scene, Warni
 
 use super::options::{MOST_SAMPLES, Options};
 
-/// What else became of a scene that was prepared.
+/// Results of the preparation besides the scene.
 pub(super) struct Prepared {
-    /// What was added to show it.
+    /// Additions to the scene.
     pub(super) added: Vec<&'static str>,
-    /// What turns it, where that is asked for; the scene itself is not turned yet.
+    /// The turntable, if enabled; the scene itself is not turned yet.
     pub(super) turntable: Option<Turntable>,
 }
 
-/// Applies options to a scene, and decides what both leave open.
+/// Applies options to a scene, and chooses defaults for what both leave open.
 ///
 /// # Errors
 /// `Request` where the options do not suit the scene.
@@ -34,24 +33,24 @@ pub(super) fn prepare(
     let origin = scene.source_format;
     decide_settings(scene, options);
     if scene.bounds().is_empty() {
-        warn("nothing stands in this scene: the picture shows the background alone");
+        warn("this scene has no geometry: the picture shows only the background");
     }
-    // Any file's camera can be left aside.
+    // The camera of any file can be ignored.
     let mut of_gltf = options.import.clone();
     if of_gltf.camera == CameraChoice::None {
         of_gltf.camera = CameraChoice::First;
     }
     if of_gltf != ImportOptions::default() && origin != SourceFormat::Gltf {
-        warn("--animation, --at, --variant, --scene and --camera choose from a glTF file; this file is none");
+        warn("--animation, --at, --variant, --scene and --camera are for glTF files; this file is not one");
     }
     if options.floor && !scene.render.integrator.is_path_traced() {
-        warn("a floor that is seen only by its shadows needs the path tracer; here it is grey");
+        warn("a shadow-catching floor needs the path tracer; with this integrator it is grey");
     }
 
     let had_camera = scene.camera.is_some();
     let lights = scene.lights.len();
     let up = options.up;
-    // The camera comes first: inside a room it needs other light.
+    // The camera comes first: inside a room other lights are added.
     let turntable = options.turn.map(|_| Turntable::new(scene, up, options.lookat));
     match &turntable {
         Some(turntable) => turntable.frame(scene),
@@ -61,7 +60,7 @@ pub(super) fn prepare(
     if let Some(environment) = &options.environment {
         studio::surround(scene, environment.clone(), up);
     }
-    // What glows in a glTF file is seldom meant to light it alone.
+    // Emissive materials in a glTF file are seldom meant as its only light.
     if origin == SourceFormat::Gltf || origin == SourceFormat::Model && !studio::shines(scene) {
         studio::add_studio_and_camera(scene, up);
     } else {
@@ -84,21 +83,21 @@ pub(super) fn prepare(
     Ok(Prepared { added, turntable })
 }
 
-/// Decides samples and denoising where nobody says otherwise.
+/// Chooses defaults for samples and denoising.
 fn decide_settings(scene: &mut Scene, options: &Options) {
     let is_model = scene.source_format != SourceFormat::Scene;
     if is_model {
-        // Models are denoised until somebody says otherwise.
+        // Models are denoised by default.
         scene.image.denoise = options.denoise.unwrap_or(scene.render.integrator.is_path_traced());
     }
     if options.samples.is_some() {
         return;
     }
     if options.stop.time.is_some() || options.stop.noise.is_some() {
-        // A limit of time or noise takes the place of the scene's number of samples.
+        // A limit of time or noise replaces the scene's number of samples.
         scene.render.samples = MOST_SAMPLES;
     } else if is_model {
-        // A model's few samples for the denoiser leave nothing to adapt.
+        // The few samples per pixel that suffice for the denoiser leave nothing to adapt.
         scene.render.samples = match options.adaptive {
             true => studio::MODEL_SAMPLES,
             false => studio::samples_for_models(&scene.image),

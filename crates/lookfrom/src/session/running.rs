@@ -9,7 +9,7 @@ use lookfrom_scene::{Error, ErrorKind, Location, Result};
 use super::{Finished, Session};
 use crate::render::{Progress, TileDone};
 
-/// A render in the background. Dropping it lets the render go on, unheard.
+/// A render in the background. Dropping it detaches the render, which goes on.
 #[derive(Debug)]
 pub struct Running {
     cancelled: Arc<AtomicBool>,
@@ -17,11 +17,11 @@ pub struct Running {
 }
 
 impl Session {
-    /// Starts to render in the background. Change the session and start again whenever you like: what runs keeps its own
-    /// view and settings, and shares the world.
+    /// Starts to render in the background. The session may be changed and started again at any time: a running render
+    /// keeps its own view and settings, and shares the world.
     ///
     /// # Errors
-    /// `Limit` where there is no thread to be had.
+    /// `Limit` if no thread is available.
     pub fn start(&self, progress: impl Progress + Send + 'static) -> Result<Running> {
         let cancelled = Arc::new(AtomicBool::new(false));
         let (session, heard) = (self.clone(), Heard { progress, cancelled: cancelled.clone() });
@@ -34,17 +34,17 @@ impl Session {
 }
 
 impl Running {
-    /// Asks the render to stop after the tiles that are being worked on; what there is by then is its picture.
+    /// Stops the render after the tiles that are in progress; its picture consists of the samples so far.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether [`Running::finish`] will not wait.
+    /// Whether the render has ended, so that [`Running::finish`] will not wait.
     pub fn is_finished(&self) -> bool {
         self.thread.is_finished()
     }
 
-    /// Waits for the end, and gives the finished picture.
+    /// Waits for the end, and returns the finished picture.
     ///
     /// # Errors
     /// As [`Session::render`].
@@ -53,7 +53,7 @@ impl Running {
     }
 }
 
-/// Progress that can be cancelled from elsewhere.
+/// Progress with a flag that cancels the render.
 struct Heard<P> {
     progress: P,
     cancelled: Arc<AtomicBool>,

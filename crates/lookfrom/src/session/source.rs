@@ -1,4 +1,4 @@
-//! The source of a session's scene, for building its world again around another camera.
+//! The source of a session's scene, for rebuilding its world around another camera.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -10,19 +10,19 @@ use lookfrom_scene::{Disk, Files, LoadContext, Memory, Result, load};
 use super::{Options, options, prepare};
 use crate::world::World;
 
-/// Where a scene came from, with the options that it was prepared with.
+/// The source of a scene, with the options that it was prepared with.
 #[derive(Clone, Debug)]
 pub(super) enum Source {
     /// A file on disk.
     File(PathBuf, Arc<Options>),
     /// A file in memory, by its name.
     Bytes(PathBuf, Arc<Memory>, Arc<Options>),
-    /// Somewhere that only the caller knows.
+    /// A source that only the caller knows.
     Elsewhere,
 }
 
 impl Source {
-    /// The same world around the eye of another camera.
+    /// The same world with another camera at the origin of render space.
     ///
     /// # Errors
     /// As [`Session::open`](super::Session::open); `Request` where the scene cannot be read again.
@@ -40,7 +40,7 @@ impl Source {
         };
         let mut context = LoadContext { import: options.import.clone(), ..LoadContext::new(files) };
         let mut scene = load::scene(path, &mut context)?;
-        // What there is to warn of was said when the session began.
+        // Its warnings were given when the session was opened.
         prepare::prepare(&mut scene, path, options, &mut Vec::new())?;
         scene.camera = Some(camera.clone());
         scene.render = settings.clone();

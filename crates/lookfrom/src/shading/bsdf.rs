@@ -1,12 +1,11 @@
 //! BSDFs: scattering functions as values in a local frame.
 //!
-//! All scattering functions of the path tracer, as values: no textures, no scene, no shading frame. The frame is local:
-//! z is the shading normal on the outside; `wo` and `wi` are of unit length and both point away from the surface, and
-//! `wo.z < 0` means that it is seen from inside. Lanes are treated alike, whatever they mean. Evaluating textures and
-//! turning directions is left to [`crate::shading::material`] and integrators.
+//! The scattering functions of the path tracer: no textures, no scene, no shading frame. In the local frame, z is the
+//! shading normal on the outside; `wo` and `wi` have unit length and both point away from the surface; `wo.z < 0` means
+//! that the surface is seen from inside. All lanes are treated alike, whatever they mean. Textures and the transformation
+//! of directions are left to [`crate::shading::material`] and the integrators.
 //!
-//! They mean what pbrt-v4's mean (Pharr, Jakob & Humphreys 2023); where it clamps, so do these constructors. glTF's is in
-//! [`principled`].
+//! Definitions and clamping follow pbrt-v4 (Pharr, Jakob & Humphreys 2023). glTF's material is in [`principled`].
 
 pub mod conductor;
 pub mod dielectric;
@@ -34,8 +33,8 @@ use whitted::Whitted;
 
 pub use local_scattering::LocalScattering;
 
-/// What travels from `wo` into the scene: radiance comes the other way on paths from the camera, importance on paths
-/// from lights. Only refraction depends on it.
+/// The transported quantity: radiance on paths from the camera, importance on paths from lights (Veach 1997). Only
+/// refraction depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// Paths that start at the camera.
@@ -48,40 +47,42 @@ pub enum Mode {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Bsdf {
-    /// Lambert's.
+    /// Lambertian reflection.
     Diffuse(Diffuse),
-    /// Lambert's on both sides.
+    /// Lambertian reflection and transmission.
     DiffuseTransmission(DiffuseTransmission),
     /// Metal.
     Conductor(Conductor),
-    /// The boundary of glass.
+    /// The boundary of a dielectric.
     Dielectric(Dielectric),
-    /// A thin pane of glass.
+    /// A thin dielectric sheet.
     ThinDielectric(ThinDielectric),
-    /// Lambert's under a coat.
+    /// Lambertian reflection under a dielectric coat.
     CoatedDiffuse(Layered<Diffuse>),
-    /// Metal under a coat.
+    /// A metal under a dielectric coat.
     CoatedConductor(Layered<Conductor>),
     /// Whitted's model.
     Whitted(Whitted),
-    /// glTF's.
+    /// glTF's metallic-roughness material with its extensions.
     Principled(Principled),
 }
 
-/// A direction chosen by [`Bsdf::sample`].
+/// A direction sampled by [`Bsdf::sample`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BsdfSample {
     /// Unit length.
     pub wi: Vec3,
-    /// Without the cosine. For specular lobes with the factor of the delta function that `pdf` has, too.
+    /// Value of the BSDF, without the cosine. For specular lobes it includes the same delta function
+    /// factor as `pdf`.
     pub f: Spectrum,
     /// Density of `wi` over solid angle; for specular lobes the probability of the lobe.
     pub pdf: f32,
     /// The one lobe that was sampled: a side and a spread.
     pub lobe: Lobes,
-    /// The index beyond the boundary over the one before it where light was bent and scaled by 1/η²; else 1.
+    /// The relative index of refraction (transmitted over incident side) where light was refracted and `f`
+    /// scaled by 1/η²; else 1.
     pub eta: f32,
-    /// Whether only `f / pdf` means anything, and the density to weigh against others is [`Bsdf::pdf`].
+    /// True if only the ratio `f / pdf` is meaningful. The density for MIS is then [`Bsdf::pdf`].
     pub pdf_is_proportional: bool,
 }
 
@@ -91,12 +92,12 @@ impl BsdfSample {
         Self { wi, f, pdf, lobe, eta: 1.0, pdf_is_proportional: false }
     }
 
-    /// A direction that a diffuse surface reflects to.
+    /// A direction sampled from a diffuse surface's reflection.
     pub(crate) fn diffuse(wi: Vec3, f: Spectrum, pdf: f32) -> Self {
         Self::new(wi, f, pdf, Lobes::REFLECTION | Lobes::DIFFUSE)
     }
 
-    /// The same, where light would come from there and all is finite.
+    /// The sample if it carries light and all its values are finite.
     #[inline]
     fn if_useful(self) -> Option<Self> {
         let is_useful = self.pdf > 0.0
@@ -108,13 +109,14 @@ impl BsdfSample {
     }
 }
 
-/// Whether the direction lies in the surface, so nearly that its cosine's square is no use. NaN does.
+/// True if the direction lies so nearly in the surface that the square of its cosine is useless; also
+/// true for NaN.
 #[inline]
 fn is_grazing(w: Vec3) -> bool {
     !(w.z.abs() > 1e-12)
 }
 
-/// Whether both directions are on one side of the surface, neither grazing.
+/// True if both directions are on one side of the surface and neither is grazing.
 #[inline]
 fn same_side(wo: Vec3, wi: Vec3) -> bool {
     wo.z * wi.z > 0.0 && !is_grazing(wo) && !is_grazing(wi)
@@ -126,7 +128,7 @@ impl Bsdf {
         Self::Diffuse(Diffuse::new(reflectance))
     }
 
-    /// pbrt's `diffusetransmission`, both already times its `scale`.
+    /// pbrt's `diffusetransmission`, both already multiplied by its `scale`.
     pub fn diffuse_transmission(reflectance: Spectrum, transmittance: Spectrum) -> Self {
         Self::DiffuseTransmission(DiffuseTransmission::new(reflectance, transmittance))
     }
@@ -141,12 +143,12 @@ impl Bsdf {
         Self::ThinDielectric(ThinDielectric::new(eta))
     }
 
-    /// pbrt's `conductor` by index and extinction.
+    /// pbrt's `conductor` by index of refraction and extinction.
     pub fn conductor(eta: Spectrum, k: Spectrum, roughness: TrowbridgeReitz) -> Self {
         Self::Conductor(Conductor::new(eta, k, roughness))
     }
 
-    /// pbrt's `conductor` by what it reflects straight on.
+    /// pbrt's `conductor` by its reflectance at normal incidence.
     pub fn conductor_of_reflectance(reflectance: Spectrum, roughness: TrowbridgeReitz) -> Self {
         let (eta, k) = fresnel::conductor_of_reflectance(reflectance);
         Self::conductor(eta, k, roughness)
@@ -157,7 +159,8 @@ impl Bsdf {
         Self::CoatedDiffuse(Layered::new(Diffuse::new(reflectance), coat))
     }
 
-    /// pbrt's `coatedconductor` by index and extinction of the metal in air: both are divided by the coat's index.
+    /// pbrt's `coatedconductor` by the metal's index of refraction and extinction in air: both are divided by the
+    /// coat's index.
     pub fn coated_conductor(
         eta: Spectrum,
         k: Spectrum,
@@ -169,7 +172,7 @@ impl Bsdf {
         Self::CoatedConductor(Layered::new(base, coat))
     }
 
-    /// pbrt's `coatedconductor` by what the metal would reflect straight on without a coat.
+    /// pbrt's `coatedconductor` by the metal's reflectance at normal incidence without a coat.
     pub fn coated_conductor_of_reflectance(
         reflectance: Spectrum,
         roughness: TrowbridgeReitz,
@@ -179,8 +182,8 @@ impl Bsdf {
         Self::coated_conductor(eta, k, roughness, coat)
     }
 
-    /// The part of the light from `wi` that leaves along `wo`, per solid angle and without the cosine of `wi`. Black for
-    /// specular lobes and grazing directions.
+    /// The BSDF: the fraction of light from `wi` that leaves along `wo`, per solid angle and without the cosine of
+    /// `wi`. Black for specular lobes and grazing directions.
     #[inline]
     pub fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
         match self {
@@ -196,8 +199,8 @@ impl Bsdf {
         }
     }
 
-    /// Density over solid angle with which [`Self::sample`] chooses `wi`, given the same `lobes`. Specular lobes count
-    /// as nothing; layered surfaces give an estimate.
+    /// Density over solid angle with which [`Self::sample`] chooses `wi`, given the same `lobes`. Specular lobes
+    /// contribute 0; layered surfaces return an estimate.
     #[inline]
     pub fn pdf(&self, wo: Vec3, wi: Vec3, mode: Mode, lobes: Lobes) -> f32 {
         if !self.lobes().intersects(sides(lobes)) {
@@ -216,8 +219,9 @@ impl Bsdf {
         }
     }
 
-    /// Chooses a direction about as dense as `f |cos θ_i|`, by three numbers in [0, 1). Of `lobes` only the sides
-    /// (reflection, transmission) choose. `None` where no light would come; what is `Some` has `pdf > 0` and is finite.
+    /// Samples a direction with a density about proportional to `f |cos θ_i|`, by three numbers in [0, 1). `lobes`
+    /// restricts the sides only (reflection, transmission). `None` where the sample would carry no light; otherwise
+    /// `pdf > 0` and all values are finite.
     #[inline]
     pub fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
         if is_grazing(wo) || !self.lobes().intersects(sides(lobes)) {
@@ -237,7 +241,7 @@ impl Bsdf {
         .if_useful()
     }
 
-    /// The kinds of scattering it has.
+    /// The set of lobes that it has.
     #[inline]
     pub fn lobes(&self) -> Lobes {
         match self {
@@ -253,7 +257,8 @@ impl Bsdf {
         }
     }
 
-    /// Makes what is nearly specular rougher, for the later bounces of a path: less noise for a little blur.
+    /// Increases the roughness of nearly specular lobes, for the later bounces of a path: less noise for a
+    /// little blur.
     pub fn regularize(&mut self) {
         match self {
             Self::Conductor(bsdf) => Base::regularize(bsdf),
@@ -266,7 +271,7 @@ impl Bsdf {
     }
 }
 
-/// The sides that a set names.
+/// The sides (reflection, transmission) in a set.
 #[inline]
 fn sides(lobes: Lobes) -> Lobes {
     lobes.intersection(Lobes::REFLECTION | Lobes::TRANSMISSION)

@@ -8,10 +8,10 @@ use lookfrom_bvh::{OriginPrimitive, Point};
 use crate::shading::interior_stack::MediumInterface;
 use crate::shading::texture::FloatTexture;
 
-/// A point of a surface, seen from a direction.
+/// A point on a surface, seen from a direction.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceInteraction {
-    /// Where, in f64, with its error bound.
+    /// Position in f64, with its error bound.
     pub point: Point,
     /// Geometric normal to the outside, unit length.
     pub ng: DVec3,
@@ -19,41 +19,42 @@ pub struct SurfaceInteraction {
     pub ns: Vec3,
     /// Texture coordinates.
     pub uv: Vec2,
-    /// Derivative of the position by the first texture coordinate: for footprints of textures.
+    /// Derivative ∂p/∂u of the position, for texture footprints.
     pub dpdu: Vec3,
-    /// By the second one.
+    /// Derivative ∂p/∂v of the position.
     pub dpdv: Vec3,
-    /// Those of the smoothed surface, for bump mapping and brushed metal: where there is smoothing, across `ns` and with
-    /// the mesh's tangents in place of `dpdu` where it has some.
+    /// ∂p/∂u of the smoothed surface, for bump mapping and anisotropic metals: perpendicular to `ns` where normals
+    /// are smoothed, and along the mesh's tangents where it has some.
     pub shading_dpdu: Vec3,
-    /// By the second one. Where the mesh has tangents, with it and `ns` this is the tangent frame that normal maps mean:
-    /// along `ns × shading_dpdu`, or against it where the tangents say that texture coordinates are mirrored.
+    /// ∂p/∂v of the smoothed surface. Where the mesh has tangents, it forms with `shading_dpdu` and `ns` the
+    /// tangent frame of normal maps: along `ns × shading_dpdu`, or opposite to it where the tangents mark the
+    /// texture coordinates as mirrored.
     pub shading_dpdv: Vec3,
-    /// The mesh's own linear colour here; white where it has none.
+    /// The mesh's vertex colour (linear) at this point; white where it has none.
     pub color: [f32; 3],
-    /// Back to where the ray came from, unit length.
+    /// Direction back to the origin of the ray, unit length.
     pub wo: Vec3,
-    /// Whether `wo` is on the side of `ng`: the ray met the outside.
+    /// True if `wo` is on the side of `ng`: the ray hit the outside.
     pub front: bool,
     /// Index into the world's materials.
     pub material: u32,
     /// Index into the world's area lights, where the surface emits light.
     pub light: Option<u32>,
-    /// Whether rays from the camera pass its back faces.
+    /// True if rays from the camera pass through its back faces.
     pub single_sided: bool,
-    /// Index into the world's meshes with further texture coordinates or opacities, where this is one.
+    /// Index into the world's meshes with further texture coordinates or vertex opacities, where this is one.
     pub vertex_data: Option<u32>,
-    /// The part of the surface that is there; `None` is all of it.
+    /// Opacity (alpha); `None` is opaque everywhere.
     pub alpha: Option<FloatTexture>,
-    /// What fills space on both sides, where the surface says so.
+    /// The media on both sides, where the surface declares them.
     pub medium_interface: Option<MediumInterface>,
-    /// Which shape of the scene, counted over the whole world.
+    /// Index of the shape, counted over the whole world.
     pub shape: u32,
-    /// Which primitive of its form: of a mesh, the triangle.
+    /// Index of the primitive within its shape: of a mesh, the triangle.
     pub primitive: u32,
-    /// The triangle, as the kernel is told that rays leave it.
+    /// The origin primitive for rays that leave this surface (self-intersection exclusion).
     pub origin_primitive: OriginPrimitive,
-    /// The kernel's u and v: where on the primitive.
+    /// The kernel's u and v coordinates on the primitive.
     pub on_primitive: Vec2,
 }
 
@@ -70,7 +71,7 @@ impl SurfaceInteraction {
         if n.dot(self.wo) > 0.0 { n } else { self.ng_facing() }
     }
 
-    /// Where a ray into `direction` starts: beyond the error bound, on the side that it leaves to.
+    /// Origin of a ray into `direction`: beyond the error bound, on the side to which the ray leaves.
     pub fn origin(&self, direction: Vec3) -> [f32; 3] {
         self.point.leave(self.ng.to_array(), direction.to_array())
     }

@@ -1,53 +1,55 @@
 //! Interior stacks: the nested dielectrics and the medium that a ray is inside of.
 //!
-//! Bodies may be nested or overlap (a drink that reaches a little into its glass): the one that was entered last counts, and
-//! leaving takes a body away wherever it lies. Where it did not lie on top, nothing is to be seen of its surface.
+//! Bodies may be nested or overlap (a drink that reaches a little into its glass). The body that was entered last
+//! is the active one; leaving a body removes it wherever it is in the stack. The surface of a body below the top of
+//! the stack is invisible.
 //!
-//! A surface may also name the media on its two sides itself, as pbrt's `MediumInterface` does: then those count, whatever
-//! the ray was inside of before.
+//! A surface may also declare the media on its two sides, as pbrt's `MediumInterface` does: these then replace the
+//! stack, whatever it held before.
 
 use lookfrom_scene::scene::MediumId;
 
-/// A stack of at most four entries, the last entered first: bodies, told apart by their materials, or space that is filled
-/// with a medium. Of five, the one that was entered first is forgotten.
+/// A stack of at most four entries, the last entered first: bodies, identified by their materials, or space filled
+/// with a medium. A fifth entry drops the oldest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InteriorStack([u32; 4]);
 
-/// What fills the space on the two sides of a surface that says so.
+/// The interior stacks on the two sides of a surface that declares its media.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MediumInterface {
-    /// Behind the outside normal.
+    /// On the side opposite to the outside normal.
     pub inside: InteriorStack,
-    /// Before it.
+    /// On the side of the outside normal.
     pub outside: InteriorStack,
 }
 
-/// Set in the entry of space that is filled with a medium without being a body: its other bits are the medium's index. A
-/// body's entry is its material's index plus one, and 0 is none.
+/// Flag of an entry for space that is filled with a medium without being a body: the other bits are the medium's
+/// index. A body's entry is its material's index plus one; 0 is an empty entry.
 const SPACE: u32 = 1 << 31;
 
 impl InteriorStack {
-    /// More materials or media than this cannot be told apart.
+    /// Maximum number of materials or media that entries can distinguish.
     pub const MOST: usize = SPACE as usize - 1;
 
-    /// In no body, in space that is filled with a medium; `None` is a vacuum.
+    /// In no body, in space filled with a medium; `None` is a vacuum.
     pub fn in_space(medium: Option<MediumId>) -> Self {
         Self([medium.map_or(0, |medium| SPACE | medium.0), 0, 0, 0])
     }
 
-    /// Whether it is in a vacuum.
+    /// True in a vacuum.
     #[inline]
     pub fn is_empty(self) -> bool {
         self.0[0] == 0
     }
 
-    /// After entering a body of a material.
+    /// The stack after entering a body of a material.
     pub fn entered(self, material: u32) -> Self {
         let [first, second, third, _] = self.0;
         Self([material + 1, first, second, third])
     }
 
-    /// After leaving the body of a material that was entered last; nothing changes outside of all of them.
+    /// The stack after leaving the body of a material that was entered last; unchanged if it is inside of
+    /// no such body.
     pub fn left(self, material: u32) -> Self {
         let Some(place) = self.place(material) else { return self };
         let mut entries = self.0;
@@ -56,23 +58,23 @@ impl InteriorStack {
         Self(entries)
     }
 
-    /// How many entries lie over the last body of a material.
+    /// Number of entries above the last entered body of a material.
     fn place(self, material: u32) -> Option<usize> {
         self.0.iter().position(|entry| *entry == material + 1)
     }
 
-    /// Whether it is inside of a body of a material, but of another one that was entered later.
+    /// True if it is inside of a body of this material, but has since entered another one.
     pub fn hides(self, material: u32) -> bool {
         self.place(material).is_some_and(|place| place > 0)
     }
 
-    /// The material of the body that counts; `None` in space.
+    /// The material of the active body; `None` in space.
     pub fn material(self) -> Option<u32> {
         let top = self.0[0];
         (top != 0 && top & SPACE == 0).then(|| top - 1)
     }
 
-    /// The medium that fills space here, where no body does.
+    /// The medium that fills the space here, where no body is active.
     pub fn space(self) -> Option<u32> {
         let top = self.0[0];
         (top & SPACE != 0).then_some(top ^ SPACE)
@@ -90,7 +92,7 @@ mod tests {
         let all = outside.entered(glass).entered(water).entered(ice);
         assert_eq!(all.material(), Some(ice));
         assert!(all.hides(glass) && all.hides(water) && !all.hides(ice) && !all.hides(8));
-        // Nested as it should be, out of turn, and not at all.
+        // Left in the order of nesting, in another order, and without having been entered.
         assert_eq!(all.left(ice).left(water), outside.entered(glass));
         assert_eq!(all.left(ice).material(), Some(water));
         assert_eq!(all.left(water), outside.entered(glass).entered(ice));
@@ -98,7 +100,7 @@ mod tests {
         assert_eq!(all.left(9), all);
         assert_eq!(outside.left(glass), outside);
         assert!(outside.is_empty() && !all.is_empty() && all.left(glass).left(ice).left(water).is_empty());
-        // A body in another of the same material.
+        // A body within another one of the same material.
         assert_eq!(outside.entered(glass).entered(glass).left(glass).material(), Some(glass));
         // Of five, the first is forgotten.
         let five = all.entered(1).entered(2);

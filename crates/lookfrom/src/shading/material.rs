@@ -1,8 +1,8 @@
 //! Materials: from their parameters at a point to a BSDF in a shading frame.
 //!
-//! [`Shading`] is the scattering function of a material at a point, in the frame of the (perhaps bent) shading normal:
-//! for path tracing. [`Coefficients`] are those of Whitted's model, which ray casting and Whitted's tree use for every
-//! material.
+//! [`Shading`] is the scattering function of a material at a point, in the frame of the shading normal (with bump
+//! mapping): for path tracing. [`Coefficients`] are those of Whitted's model, which ray casting and Whitted ray
+//! tracing use for every material.
 
 mod albedo;
 mod approximate;
@@ -36,23 +36,24 @@ pub use whitted::{Branches, Coefficients};
 /// A material of a world.
 #[derive(Clone, Debug)]
 pub struct Material {
-    /// What it is.
+    /// Type and parameters.
     pub kind: MaterialKind,
-    /// What bends the shading normal.
+    /// Perturbation of the shading normal.
     pub bump_mapping: BumpMapping,
-    /// Index into the world's media: what fills a body of this material, where it says so itself.
+    /// Index into the world's media of the medium inside a body of this material, where the
+    /// material declares one.
     pub medium: Option<u32>,
-    /// The nearest thing in Whitted's model, for integrators that know no other.
+    /// The nearest equivalent in Whitted's model, for integrators that support no other.
     pub whitted: Whitted,
 }
 
-/// What a surface does with light at a point.
+/// A BSDF at a point, with its shading frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Shading {
     /// In the local frame.
     pub bsdf: Bsdf,
     frame: Frame,
-    /// The geometric normal to the outside, for what must not leak through where the shading normal is another.
+    /// The geometric normal to the outside, to prevent light leaks where the shading normal differs from it.
     ng: Vec3,
 }
 
@@ -73,7 +74,7 @@ impl Frame {
         v.x * self.s + v.y * self.t + v.z * self.n
     }
 
-    /// With the first axis along a direction.
+    /// The frame with the first axis turned toward a direction.
     fn along(&self, direction: Vec3) -> Self {
         bump::around(self.n, direction)
     }
@@ -95,19 +96,19 @@ impl Shading {
         self.frame.n
     }
 
-    /// The cosine of a unit direction to the shading normal.
+    /// The cosine of the angle between a unit direction and the shading normal.
     pub fn cos(&self, w: Vec3) -> f32 {
         w.dot(self.frame.n)
     }
 
-    /// Whether the surface itself has two directions on the sides on which the shading normal has them. pbrt's materials do
-    /// not ask.
+    /// True if the geometric and the shading normal agree whether two directions are on one side. pbrt's materials
+    /// do without this test.
     fn agrees(&self, wo: Vec3, wi: Vec3) -> bool {
         let on_one_side = |n: Vec3| wo.dot(n) * wi.dot(n) > 0.0;
         !matches!(self.bsdf, Bsdf::Principled(_)) || on_one_side(self.ng) == on_one_side(self.frame.n)
     }
 
-    /// Calls `ask` with the scattering toward a unit direction of render space.
+    /// Calls `ask` with the BSDF for a fixed outgoing direction of unit length in render space.
     #[inline]
     pub fn scattering<R>(&self, wo: Vec3, ask: impl FnOnce(&Scattering<'_>) -> R) -> R {
         self.bsdf.scattering(self.frame.local(wo), Mode::Radiance, Lobes::ALL, |bsdf| {
@@ -116,17 +117,18 @@ impl Shading {
     }
 }
 
-/// What a surface does with light that leaves along ω_o. All directions are of unit length and in render space.
+/// The BSDF of a surface for a fixed outgoing direction ω_o. All directions have unit length and are in render
+/// space.
 pub struct Scattering<'a> {
-    /// The surface's.
+    /// The surface's BSDF and frame.
     pub shading: &'a Shading,
     wo: Vec3,
     bsdf: &'a bsdf::LocalScattering<'a>,
 }
 
 impl Scattering<'_> {
-    /// The scattering function for light from `wi`, without a cosine, and where it is not black the density over solid
-    /// angle with which [`Scattering::sample`] chooses `wi`.
+    /// The BSDF for light from `wi`, without a cosine, and where it is not black the density over solid angle with
+    /// which [`Scattering::sample`] chooses `wi`.
     pub fn f_and_pdf(&self, wi: Vec3) -> (Spectrum, f32) {
         if !self.shading.agrees(self.wo, wi) {
             return (Spectrum::BLACK, 0.0);
@@ -134,19 +136,19 @@ impl Scattering<'_> {
         self.bsdf.f_and_pdf(self.shading.frame.local(wi))
     }
 
-    /// That density alone.
+    /// The density over solid angle with which [`Scattering::sample`] chooses `wi`.
     pub fn pdf(&self, wi: Vec3) -> f32 {
         self.bsdf.pdf(self.shading.frame.local(wi))
     }
 
-    /// A direction by importance.
+    /// A direction by importance sampling.
     pub fn sample(&self, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
         let sample = self.bsdf.sample(lobe, u)?;
         let wi = self.shading.frame.render(sample.wi).normalize();
         self.shading.agrees(self.wo, wi).then_some(BsdfSample { wi, ..sample })
     }
 
-    /// A direction all around, whatever the material: for checking what is chosen by importance.
+    /// A direction uniform over the sphere, whatever the material: to verify importance sampling.
     pub fn uniform(&self, u: [f32; 2]) -> BsdfSample {
         let wi = warp::uniform_sphere(u);
         let lobe = Lobes::REFLECTION.union(Lobes::DIFFUSE);
@@ -155,22 +157,23 @@ impl Scattering<'_> {
     }
 }
 
-/// What comes to a surface, as far as what it does with light depends on that.
+/// The state of a path that the shading of a surface depends on.
 #[derive(Debug)]
 pub struct ShadingContext<'a> {
-    /// What the lanes mean. Where wavelengths go different ways, only the first is left.
+    /// Meaning of the lanes. Where wavelengths are dispersed, only the first is kept.
     pub lanes: &'a mut SpectralMode,
-    /// The path throughput. In RGB mode, where colours go different ways, one of those in it is left, at the
-    /// weight of all.
+    /// The path throughput. In RGB mode, where colours are dispersed, one of its primaries is kept, weighted
+    /// to stand for all.
     pub throughput: &'a mut Spectrum,
-    /// What light comes through.
+    /// The bodies and media that the light travels through.
     pub interior: InteriorStack,
-    /// Chance, in [0, 1): which of mixed materials there is, which colour is left. Used where [`Material::is_stochastic`].
+    /// Random number in [0, 1) that chooses among mixed materials and dispersed colours. Used where
+    /// [`Material::is_stochastic`].
     pub u: f32,
 }
 
 impl Material {
-    /// Whether it takes chance to tell what it does with light.
+    /// True if its scattering function is chosen at random.
     #[inline]
     pub fn is_stochastic(&self) -> bool {
         match &self.kind {
@@ -180,7 +183,7 @@ impl Material {
         }
     }
 
-    /// The frame it is shaded in.
+    /// The shading frame of this material.
     fn frame(&self, textures: &Textures, surface: &SurfaceInteraction, point: &TexturePoint) -> Frame {
         match self.kind {
             MaterialKind::Principled(_) => bump::valid_frame(&self.bump_mapping, textures, surface, point),
@@ -188,7 +191,7 @@ impl Material {
         }
     }
 
-    /// Whether its shapes are bodies that light goes into.
+    /// True if its shapes are solid bodies that light enters.
     #[inline]
     pub fn is_body(&self) -> bool {
         match &self.kind {
@@ -199,8 +202,8 @@ impl Material {
     }
 }
 
-/// The scattering function of a material at a surface; `None` for one that is not there (an interface). A mixed material
-/// is one of its parts.
+/// The scattering function of a material at a surface; `None` for an interface, which has none. A mixed material is
+/// replaced by one of its parts at random.
 pub fn shading(
     materials: &[Material],
     textures: &Textures,
@@ -229,7 +232,7 @@ pub fn shading(
     Some(Shading { bsdf, frame: material.frame(textures, surface, point), ng })
 }
 
-/// The normal that a material is shaded with, to the outside, of unit length: that of [`shading`], of mixed materials the first's.
+/// The shading normal, to the outside, of unit length: that of [`shading`]; for mixed materials that of the first.
 pub fn normal(
     materials: &[Material],
     textures: &Textures,
@@ -304,10 +307,10 @@ impl Evaluator<'_> {
                     }
                 }
             }
-            // It is only seen: see [`unlit`].
+            // Its emission is all that is visible: see [`unlit`].
             MaterialKind::Unlit { .. } => Bsdf::diffuse(Spectrum::BLACK),
-            // A mixture has been decided by now, glTF's material needs the surface, and a floor of shadows is the world's to
-            // shade.
+            // Mixtures are resolved above, glTF's material needs the surface, and shadow catchers are shaded by the
+            // world.
             MaterialKind::Mix { .. }
             | MaterialKind::Principled(_)
             | MaterialKind::ShadowCatcher { .. }
@@ -331,7 +334,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// The index of refraction; one that differs by wavelength leaves only the first.
+    /// The index of refraction; if it varies with wavelength, only the first wavelength is kept.
     fn ior(&mut self, ior: &Ior) -> f32 {
         match ior {
             Ior::Value(eta) => *eta,
@@ -353,8 +356,8 @@ impl Evaluator<'_> {
     }
 }
 
-/// The index of refraction of a curve: of the first wavelength, the only one left afterwards; in RGB mode that of sodium's
-/// yellow line.
+/// The index of refraction of a curve: at the first wavelength, the only one kept afterwards; in RGB mode at
+/// sodium's yellow line.
 fn ior_at(curve: CurveId, textures: &Textures, lanes: &mut SpectralMode) -> f32 {
     let nm = match lanes {
         SpectralMode::Rgb => [589.3; 4],

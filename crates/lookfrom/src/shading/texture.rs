@@ -1,11 +1,12 @@
 //! Textures: from a point of a surface to a spectrum or a number.
 //!
-//! The textures' parameters are those of `lookfrom_scene::texture`; here they only lose their names. What pbrt-v4 has too
-//! (Pharr, Jakob, Humphreys 2023) means here what it means there, but for one thing: there are no ray differentials, so
-//! pictures are not filtered beyond bilinear, squares have sharp edges and noise has all its octaves.
+//! The parameters are those of `lookfrom_scene::texture`; here only the names are resolved. Where pbrt-v4 has the
+//! same texture (Pharr, Jakob, Humphreys 2023), it means the same, except that there are no ray differentials:
+//! images are not filtered beyond bilinear, checkerboards have sharp edges and noise has all its octaves.
 //!
-//! `input`: what materials and lights hold; `node`: the textures themselves; `mapping`: where in a pattern; `picture`, `pattern`: what
-//! is there; `evaluation`: what that becomes.
+//! `input`: the inputs of materials and lights; `node`: the textures themselves; `mapping`: texture coordinates;
+//! `picture`, `pattern`: image lookups and procedural patterns; `evaluation`: conversion to numbers, RGB or
+//! spectra.
 
 mod evaluation;
 mod input;
@@ -37,7 +38,7 @@ use crate::core::color::{DenselySampledSpectrum, Wavelengths};
 use crate::core::noise::{self, perlin};
 use crate::core::spectrum::Spectrum;
 
-/// What the four lanes mean for a sample.
+/// The meaning of a sample's four lanes.
 #[derive(Clone, Copy, Debug)]
 pub enum SpectralMode {
     /// Linear Rec. 709 and a 0.
@@ -46,48 +47,48 @@ pub enum SpectralMode {
     Spectral(Wavelengths),
 }
 
-/// Every texture, picture and curve of a world.
+/// All textures, images and curves of a world.
 #[derive(Clone, Debug, Default)]
 pub struct Textures {
     nodes: Vec<Node>,
     images: Vec<Image>,
     curves: Vec<Measured>,
-    /// Whether constants are lifted to spectra when they are compiled.
+    /// True if constants are uplifted to spectra when they are compiled.
     uplifts: bool,
 }
 
-/// A curve, and what it is in RGB mode.
+/// A measured curve, and its colours in RGB mode.
 #[derive(Clone, Debug)]
 struct Measured {
     dense: DenselySampledSpectrum,
     /// As a reflectance or an index of refraction.
     reflectance: [f32; 3],
-    /// As light.
+    /// As an illuminant.
     emission: [f32; 3],
 }
 
-/// How many sets of texture coordinates there are besides the first.
+/// Number of texture coordinate sets besides the first.
 pub const MORE_UV_SETS: usize = Mesh::MOST_UV_SETS - 1;
 
-/// What a texture may depend on.
+/// The inputs of texture evaluation.
 #[derive(Clone, Copy, Debug)]
 pub struct TexturePoint {
     /// Texture coordinates.
     pub uv: Vec2,
-    /// Those of further sets.
+    /// Texture coordinates of further sets.
     pub more_uvs: [Vec2; MORE_UV_SETS],
-    /// In the world (not render space).
+    /// Position in world space (not render space).
     pub world: DVec3,
-    /// The mesh's own linear colour.
+    /// The mesh's vertex colour (linear).
     pub color: [f32; 3],
-    /// The mesh's own opacity.
+    /// The mesh's vertex opacity.
     pub opacity: f32,
-    /// Normal in the world, of unit length; on which side does not matter. pbrt-v4 takes the geometric one.
+    /// Normal in world space, of unit length, on either side. pbrt-v4 takes the geometric one.
     pub n: Vec3,
 }
 
 impl SpectralMode {
-    /// The factor that changes nothing.
+    /// The multiplicative identity.
     #[inline]
     pub fn one(&self) -> Spectrum {
         match self {
@@ -97,7 +98,7 @@ impl SpectralMode {
     }
 }
 
-/// The spectrum of a colour that is only known when it is asked for, such as a texel's.
+/// The spectrum of a colour that is not known before it is evaluated, such as a texel's.
 #[inline]
 pub fn spectrum_of(rgb: [f32; 3], spectrum_type: SpectrumType, lanes: &SpectralMode) -> Spectrum {
     match lanes {
@@ -109,7 +110,7 @@ pub fn spectrum_of(rgb: [f32; 3], spectrum_type: SpectrumType, lanes: &SpectralM
 }
 
 impl TexturePoint {
-    /// For colours that are the same everywhere.
+    /// For textures that are constant.
     pub const NOWHERE: Self = Self {
         uv: Vec2::ZERO,
         more_uvs: [Vec2::ZERO; MORE_UV_SETS],
@@ -121,8 +122,8 @@ impl TexturePoint {
 }
 
 impl Textures {
-    /// A scene's textures, pictures and curves, whose ids are then indices here. `color` is the mode that pictures will mostly
-    /// be rendered in: constants are made ready for it.
+    /// A scene's textures, images and curves, indexed by their ids. `color` is the mode that most images will be
+    /// rendered in: constants are prepared for it.
     pub fn new(kinds: &[TextureKind], images: Vec<Image>, curves: Vec<Curve>, color: ColorMode) -> Self {
         let measured = |curve: Curve| {
             let dense = DenselySampledSpectrum::from(&curve);
@@ -133,12 +134,12 @@ impl Textures {
         Self { nodes: Node::compile_all(kinds, uplifts), images, curves, uplifts }
     }
 
-    /// A written colour, compiled for what it is used for.
+    /// A colour of the scene, compiled for its spectrum type.
     pub fn spectrum_texture(&self, color: Color, spectrum_type: SpectrumType) -> SpectrumTexture {
         SpectrumTexture::new(Input::new(color, self.uplifts), spectrum_type, &self.curves)
     }
 
-    /// A picture by its index.
+    /// An image by its index.
     pub fn image(&self, index: usize) -> &Image {
         &self.images[index]
     }
@@ -148,18 +149,18 @@ impl Textures {
         &self.curves[id.index()].dense
     }
 
-    /// The spectrum at a point, in the lanes of a sample. Never negative where no texture scales by less than 0 or mixes beyond
-    /// its ends.
+    /// The spectrum at a point, in the lanes of a sample. Never negative unless a texture scales by less than 0 or
+    /// extrapolates a mix.
     #[inline(always)]
     pub fn spectrum(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &SpectralMode) -> Spectrum {
-        // What is asked most often needs no call.
+        // The most frequent case needs no call.
         match lanes {
             SpectralMode::Rgb if !texture.varies() => texture.rgb,
             _ => self.spectrum_of_any(texture, at, lanes),
         }
     }
 
-    /// The same for a reflectance: 0 … 1 in every lane.
+    /// The same for a reflectance: within 0 … 1 in every lane.
     #[inline(always)]
     pub fn albedo(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &SpectralMode) -> Spectrum {
         self.spectrum(texture, at, lanes).map(|lane| lane.clamp(0.0, 1.0))
@@ -187,8 +188,7 @@ impl Textures {
         self.read(&texture.input, at, &RgbEvaluation(texture.spectrum_type)).rgb()
     }
 
-    /// The number at a point. A picture's is the mean of its channels; its first channel, where the nearest texel is asked
-    /// for.
+    /// The number at a point. For an image, the mean of its channels; with nearest filtering, its first channel.
     #[inline]
     pub fn float(&self, texture: FloatTexture, at: &TexturePoint) -> f32 {
         match texture {
@@ -197,8 +197,7 @@ impl Textures {
         }
     }
 
-    /// Whether a number is 1 everywhere on a mesh with or without opacities: as far as that can be told without looking at
-    /// texels.
+    /// True if a number is known to be 1 everywhere on a mesh with or without opacities, without examining texels.
     pub fn is_one(&self, number: FloatTexture, has_opacities: bool) -> bool {
         let FloatTexture::Texture(id) = number else { return number.is(1.0) };
         let is_one = |input: &Input| match input {
@@ -226,14 +225,14 @@ impl Textures {
         }
     }
 
-    // Most colours are the same everywhere: what asks for them stays short.
+    // Out of line: most colours are constant, and their callers stay short.
     #[inline(never)]
     fn texture<R: Evaluation>(&self, id: TextureId, at: &TexturePoint, evaluation: &R) -> R::Value {
         let space = |mapping| mapping::coordinates(mapping, at).as_vec3();
         match &self.nodes[id.index()] {
             Node::Image { image, mapping, wrap, filter, channel, scale, invert } => {
                 let place = space(mapping);
-                // v runs up, rows run down
+                // v runs up, rows run down.
                 let st = [place.x, 1.0 - place.y];
                 let image = &self.images[*image];
                 let rgb = match channel {
@@ -295,7 +294,7 @@ impl Textures {
         }
     }
 
-    /// From `low` at 0 to `high` at 1; what does not count is not looked at.
+    /// Linear interpolation from `low` at 0 to `high` at 1; an input of weight 0 is not evaluated.
     fn blend<R: Evaluation>(
         &self,
         low: &Input,

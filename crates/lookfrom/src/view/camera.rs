@@ -1,20 +1,20 @@
-//! From a pixel back to the world: `P_world = T4 · R3 · S2 · T1 · P_k`, as the lecture notes have it.
+//! The camera, from a pixel back to the world: `P_world = T4 · R3 · S2 · T1 · P_k`, as in the lecture notes.
 //!
-//! `P_k = (x_k, y_k, 0, 1)` with `x_k` to the right and `y_k` *up*: the centre of the pixel in column i, row j (from the
-//! top) is `(i + ½, ny − j − ½)`. The four matrices are kept apart, so that each can be shown:
+//! `P_k = (x_k, y_k, 0, 1)` with `x_k` to the right and `y_k` *up*: the centre of the pixel in column i, row j (from
+//! the top) is `(i + ½, ny − j − ½)`. The four matrices are kept apart, so that each can be shown:
 //!
 //! | matrix | does |
 //! | --- | --- |
-//! | `t1` | moves the image's middle to the axis and the image plane to the distance `d` |
-//! | `s2` | pixels to lengths; x is turned round, since `u` points to the viewer's left |
-//! | `r3` | `[u v w]`: view to world, around the eye |
-//! | `t4` | the eye to its place |
+//! | `t1` | moves the image's centre to the axis and the image plane to the distance `d` |
+//! | `s2` | scales pixels to lengths; x is flipped, since `u` points to the viewer's left |
+//! | `r3` | `[u v w]`: rotates view to world, about the camera |
+//! | `t4` | moves the camera to its position |
 //!
-//! There is no perspective matrix: every ray starts at the eye and fans out through its pixel, so the division by depth
-//! is in the geometry of the rays.
+//! There is no perspective matrix: every ray starts at the camera and passes through its pixel, so the division by
+//! depth is in the geometry of the rays.
 //!
-//! Everything here is f64; the ray that leaves is rounded to f32 in *render space*, the world translated to the eye
-//! (see `world`). First station on the way of a pixel.
+//! Everything here is f64; the resulting ray is rounded to f32 in *render space*, the world translated to the camera
+//! (see `world`). The first step in the computation of a pixel.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 use lookfrom_scene::camera::{Camera as Written, Lens, Projection, View, Window};
@@ -22,20 +22,20 @@ use lookfrom_scene::{Error, Location, Result};
 
 use crate::core::warp;
 
-/// The eye as matrices.
+/// The camera as matrices.
 #[derive(Clone, Debug)]
 pub struct Camera {
-    /// Translates by `(−nx/2, −ny/2, d)`, for a window that is not around the axis by the pixel that is on it.
+    /// Translates by `(−nx/2, −ny/2, d)`; for an off-centre screen window by the pixel that is on the axis.
     pub t1: DMat4,
     /// Scales by `(−w/nx, h/ny, 1)`.
     pub s2: DMat4,
-    /// `[u v w]` by columns. From another format it may scale, shear and mirror as well.
+    /// `[u v w]` by columns. From another format it may scale, shear and reflect as well.
     pub r3: DMat4,
     /// Translates by `lookfrom`.
     pub t4: DMat4,
-    /// How space is flattened.
+    /// The projection.
     pub projection: Projection,
-    /// Where there is one, rays start on it.
+    /// The lens, on which rays start, if there is one.
     pub lens: Option<Lens>,
     /// `d`.
     pub distance: f64,
@@ -43,7 +43,7 @@ pub struct Camera {
     pub size: [u32; 2],
 }
 
-/// A ray through a point of the image, and how it came about.
+/// A ray through a point of the image, with the steps of its computation.
 #[derive(Clone, Copy, Debug)]
 pub struct CameraRay {
     /// `P_k`.
@@ -56,7 +56,7 @@ pub struct CameraRay {
     pub after_r3: DVec4,
     /// `P_world`.
     pub p_world: DVec3,
-    /// `a`, where the ray starts, relative to `lookfrom`: zero for a pinhole.
+    /// `a`, the origin of the ray, relative to `lookfrom`: zero for a pinhole.
     pub a_from_eye: DVec3,
     /// `b − a`; not of unit length: `t = 1` is the image plane.
     pub direction: DVec3,
@@ -67,7 +67,7 @@ impl Camera {
     ///
     /// # Errors
     /// `Invalid` for each degenerate camera: `lookfrom = lookat`, `up` zero or parallel to the view, `θ ∉ (0°, 180°)`,
-    /// `d ≤ 0`, no pixels, a lens or a matrix that cannot be, any value that is not finite.
+    /// `d ≤ 0`, no pixels, an impossible lens or matrix, any value that is not finite.
     pub fn new(written: &Written, width: u32, height: u32) -> Result<Self> {
         let at = &written.at;
         if width == 0 || height == 0 {
@@ -89,7 +89,7 @@ impl Camera {
                 ));
             }
             Projection::Orthographic { height } => positive(at, "height", height)?,
-            // The image plane of the notes is only a name here: 2 × 2.
+            // There is no image plane as in the notes here; it is taken to be 2 × 2.
             Projection::Equirectangular | Projection::EquirectangularPbrt | Projection::Octahedral => 2.0,
         };
         if let Some(Lens { radius, focus_distance }) = written.lens {
@@ -142,12 +142,12 @@ impl Camera {
         })
     }
 
-    /// The eye in the world.
+    /// The camera's position in the world.
     pub fn lookfrom(&self) -> DVec3 {
         self.t4.w_axis.truncate()
     }
 
-    /// `w`: where the eye looks, of unit length where the camera was given by `lookat`.
+    /// `w`: the view direction, of unit length where the camera was given by `lookat`.
     pub fn w(&self) -> DVec3 {
         self.r3.z_axis.truncate()
     }
@@ -165,7 +165,7 @@ impl Camera {
         let after_s2 = self.s2 * after_t1;
         let after_r3 = self.r3 * after_s2;
         let p_world = (self.t4 * after_r3).truncate();
-        // in view space: where the ray starts and where it crosses the image plane
+        // in view space: the origin of the ray and its point on the image plane
         let image_point = after_s2.truncate();
         let (start, straight) = match self.projection {
             Projection::Perspective { .. } => (DVec3::ZERO, image_point),
@@ -184,7 +184,7 @@ impl Camera {
         let (a, direction) = match self.lens {
             None => (start, straight),
             Some(Lens { radius, focus_distance }) => {
-                // every ray from the lens meets the pinhole's ray in the plane of focus
+                // every ray from the lens intersects the pinhole's ray in the plane of focus
                 let pinhole = image_point - start;
                 let focus = start + pinhole * (focus_distance / pinhole.z);
                 let on_lens = warp::concentric_disk(lens).as_dvec2() * radius;
@@ -204,7 +204,7 @@ impl Camera {
     }
 }
 
-/// The direction at `(u, v)` of a picture of everything around, `v` up, in view space: θ = π (1 − v) from the up axis,
+/// The direction at `(u, v)` of an equirectangular picture, `v` up, in view space: θ = π (1 − v) from the up axis,
 /// φ = 2π (u − ½) from the front toward the viewer's right.
 fn equirectangular(u: f64, v: f64) -> DVec3 {
     let (theta, phi) = (std::f64::consts::PI * (1.0 - v), std::f64::consts::TAU * (u - 0.5));
@@ -236,14 +236,14 @@ fn view_axes(at: &Location, lookfrom: DVec3, lookat: DVec3, up: DVec3) -> Result
     }
     let w = (lookat - lookfrom).try_normalize().ok_or_else(|| {
         Error::invalid(at, format!("lookfrom and lookat are the same point {lookfrom}"))
-            .hint("move one of them: the eye must look somewhere")
+            .hint("move one of them: the camera needs a direction")
     })?;
     let up = up.try_normalize().ok_or_else(|| Error::invalid(at, "up is zero").hint("try up = [0, 1, 0]"))?;
     let u = up.cross(w);
     // Below this the direction of up × w is rounding noise.
     if u.length() < 1e-10 {
         return Err(Error::invalid(at, "up is parallel to the direction of view")
-            .hint("choose another up, or look elsewhere"));
+            .hint("choose another up, or another direction of view"));
     }
     let u = u.normalize();
     Ok(DMat3::from_cols(u, w.cross(u), w))

@@ -1,9 +1,10 @@
-//! Shadow catchers: the reflectance with which a floor looks like its background.
+//! Shadow catchers: the reflectance with which an unshadowed floor looks like its background.
 //!
-//! A matte floor of reflectance ρ under the irradiance E emits light with ρ E / π to all sides. Let ρ depend on the direction that
-//! the floor is seen from: π B / E₀, where B is what lies behind the floor in that direction and E₀ what arrives where
-//! nothing is in the way. Then the floor is B · E / E₀: exactly the background where no shadow falls. All light that
-//! counts for E₀ comes from infinitely far, so that E₀ is the same all over the floor, and computed once.
+//! A diffuse floor of reflectance ρ under the irradiance E has the radiance ρ E / π in all directions. Let ρ depend on
+//! the direction of view: π B / E₀, where B is the background's radiance behind the floor in that direction and E₀ the
+//! unoccluded irradiance. Then the floor's radiance is B · E / E₀: exactly the background where no shadow falls. All
+//! light that counts for E₀ comes from infinitely far away, so that E₀ is the same all over the floor, and computed
+//! once.
 
 use glam::Vec3;
 use lookfrom_bvh::Ray;
@@ -15,10 +16,10 @@ use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::MaterialKind;
 use crate::shading::texture::{SpectralMode, SpectrumType, Textures, spectrum_of};
 
-/// The least reflectance that is reckoned with: what the camera sees of a darker floor is multiplied later.
+/// Lower bound of the reflectance: that of a darker floor is corrected by a factor for camera rays.
 const LEAST_REFLECTANCE: f32 = 1e-3;
 
-/// What arrives from infinitely far on a surface with the unit normal `n`.
+/// Irradiance from lights infinitely far away on a surface with the unit normal `n`.
 fn irradiance(lights: &[Light], textures: &Textures, n: Vec3) -> [f32; 3] {
     lights.iter().fold([0.0; 3], |sum, light| {
         let add = match light {
@@ -33,7 +34,7 @@ fn irradiance(lights: &[Light], textures: &Textures, n: Vec3) -> [f32; 3] {
 }
 
 impl World {
-    /// What arrives from infinitely far on the shadow catcher where nothing is in the way; `None` where there is none.
+    /// Unoccluded irradiance of the shadow catcher from lights infinitely far away; `None` where there is no catcher.
     pub(super) fn unoccluded_irradiance(&self) -> Option<[f32; 3]> {
         let normal = self.materials.iter().find_map(|material| match material.kind {
             MaterialKind::ShadowCatcher { normal } => Some(normal),
@@ -42,19 +43,19 @@ impl World {
         normal.map(|n| irradiance(&self.lights, &self.textures, n))
     }
 
-    /// Whether a surface is a floor that is seen only by the shadows on it.
+    /// Whether a surface is a shadow catcher.
     pub(crate) fn is_catcher(&self, surface: &SurfaceInteraction) -> bool {
         self.catcher_irradiance.is_some()
             && matches!(self.materials[surface.material as usize].kind, MaterialKind::ShadowCatcher { .. })
     }
 
-    /// The floor's reflectance: that with which it looks like the environment behind it, as far as matter can.
+    /// The floor's reflectance, with which it looks like the environment behind it, within physical limits (at most 1).
     pub(super) fn catcher_reflectance(&self, surface: &SurfaceInteraction, lanes: &SpectralMode) -> Spectrum {
         self.reflectance_seen_along(-surface.wo, lanes)
     }
 
-    /// What the camera's light from the floor is to be multiplied by for the floor to look like `behind` in place of what
-    /// its reflectance in the path tracer makes of it; `direction` is the camera ray's, of any length.
+    /// Factor of the floor's light for camera rays: with it, the unshadowed floor looks like `behind` instead of what
+    /// its reflectance in the path tracer yields; `direction` is the camera ray's, of any length.
     pub fn catcher_correction(&self, direction: Vec3, behind: Spectrum, lanes: &SpectralMode) -> Spectrum {
         let irradiance = self.light_of(self.catcher_irradiance.unwrap_or_default(), lanes);
         let reflected = self.reflectance_seen_along(direction.normalize(), lanes) * irradiance;

@@ -1,11 +1,11 @@
-//! Classes of geometries: what their hits need, known when the world is compiled.
+//! Classes of geometries, by the shading that their hits need; known when the world is compiled.
 
 use super::World;
 use crate::primitive::{Mesh, Primitives};
 use crate::shading::material::{BumpMapping, MaterialKind};
 use crate::shading::texture::SpectrumTexture;
 
-/// What all hits on a geometry (outside of instances) have in common, which steps are sorted by.
+/// The class of all hits on a geometry (outside of instances), by which integrator steps are sorted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Class {
@@ -16,7 +16,7 @@ pub enum Class {
 }
 
 impl World {
-    /// The class of each geometry, of which the materials are compiled.
+    /// The class of each geometry, by its compiled material.
     pub(super) fn classify(
         primitives: &[Primitives],
         materials: &[crate::shading::material::Material],

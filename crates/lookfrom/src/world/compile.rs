@@ -1,4 +1,4 @@
-//! Compilation of a scene: names become indices, transforms are applied, lights prepared and trees built.
+//! Compilation of a scene: names become indices, transforms are applied, lights prepared and BVHs built.
 
 use std::sync::Arc;
 
@@ -21,12 +21,12 @@ use crate::shading::material::{self, Material, MaterialKind};
 use crate::shading::texture::{SpectrumType, Textures};
 
 impl World {
-    /// Compiles a scene. What can be survived is added to `warnings`. The origin of render space is the eye of the scene's
-    /// camera (of the default camera where it has none).
+    /// Compiles a scene. Problems that do not prevent this are added to `warnings`. The origin of render space is the
+    /// position of the scene's camera (of the default camera where it has none).
     ///
     /// # Errors
-    /// `Invalid` for a camera whose place is not finite or a transform that cannot be inverted; `Limit` for more than 2³²
-    /// vertices or triangles in one shape, or 2³¹ materials and media.
+    /// `Invalid` for a camera whose position is not finite or a transform that cannot be inverted; `Limit` for more
+    /// than 2³² vertices or triangles in one shape, or 2³¹ materials and media.
     pub fn compile(mut scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
         let camera = scene.camera.clone().unwrap_or_default();
         let origin = camera.view.lookfrom();
@@ -60,12 +60,12 @@ impl World {
             vertex_data: Vec::new(),
         };
 
-        // What stands in the world once.
+        // Shapes that are not instanced.
         let mut in_world = Group::default();
         for shape in &scene.shapes {
             compiler.place(shape, &render_from_world, None, &mut in_world)?;
         }
-        // Objects, each with a tree of its own. What emits light in them is left to the instances.
+        // Objects, each with a BVH of its own. Shapes in them that emit light are left to the instances.
         let mut in_objects = Vec::new();
         for (index, object) in scene.objects.iter().enumerate() {
             let mut group = Group::default();
@@ -84,7 +84,7 @@ impl World {
             let material = written.material.map(|id| id.0);
             let matrix = render_from_world * written.world_from_object;
             let instance = Instance::new(&written.at, written.object.0, matrix, material)?;
-            // Each repetition of something that emits light is a light of its own.
+            // Each instance of a shape that emits light is a light of its own.
             for shape in object.shapes.iter().filter(|shape| shape.emission.is_some()) {
                 compiler.place(shape, &matrix, material, &mut in_world)?;
             }
@@ -101,11 +101,11 @@ impl World {
         if let Some(light) = scene.lights.iter().find(|light| matches!(light.kind, LightKind::Ambient { .. }))
             && matches!(scene.render.integrator, Kind::Path | Kind::SimplePath | Kind::RandomWalk)
         {
-            let message = "ambient light belongs to Whitted's model: path tracing leaves it out";
+            let message = "ambient light belongs to Whitted's model: path tracing ignores it";
             warnings.push(Warning::new(&light.at, message));
         }
 
-        // Build the trees: of the objects, and of the world over them.
+        // Build the BVHs: of the objects, and of the world over them.
         let objects: Vec<Vec<Primitives>> = in_objects.into_iter().map(Group::into_primitives).collect();
         let trees = objects
             .iter()
@@ -126,7 +126,7 @@ impl World {
         let mut compiler = material::Compiler::new(&textures);
         for written in scene.materials {
             let (mut material, absorption) = compiler.compile(&written);
-            // A body that absorbs is filled with a medium of its own.
+            // An absorbing body is filled with a medium of its own.
             if absorption != [0.0; 3] {
                 material.medium = Some(media.len() as u32);
                 media.push(medium(Color::Value(absorption), 1.0));
@@ -166,7 +166,7 @@ impl World {
     }
 }
 
-/// By material: whether it matters which way u runs over the surface; of a mixture, for any of its parts.
+/// By material: whether it needs derivatives by texture coordinates; a mixture needs them if any of its parts does.
 fn grains(materials: &[Written]) -> Vec<bool> {
     let mut grains: Vec<bool> = materials.iter().map(Written::has_grain).collect();
     let mut has_changed = true;
@@ -184,7 +184,7 @@ fn grains(materials: &[Written]) -> Vec<bool> {
     grains
 }
 
-/// The tree over forms in their order, then instances.
+/// The BVH over primitives in their order, then instances.
 fn tree(primitives: &[Primitives], instances: &[Instance], objects: &[Arc<Bvh>]) -> Result<Bvh> {
     let mut builder = Builder::new();
     for primitives in primitives {

@@ -16,11 +16,11 @@ use crate::light::{
 };
 use crate::shading::texture::{SpectrumTexture, SpectrumType, TexturePoint, Textures};
 
-/// A world's lights, while they are gathered.
+/// A world's lights, while they are collected.
 pub(super) struct Lights<'a> {
     pub(super) lights: Vec<Light>,
     pub(super) names: Vec<String>,
-    /// By light: its greatest radiance (or intensity), roughly.
+    /// By light: its largest radiance (or intensity), approximately.
     pub(super) brightness: Vec<f32>,
     pub(super) ambient: [f32; 3],
     pub(super) textures: &'a Textures,
@@ -31,7 +31,7 @@ impl<'a> Lights<'a> {
         Self { lights: Vec::new(), names: Vec::new(), brightness: Vec::new(), ambient: [0.0; 3], textures }
     }
 
-    /// Adds a light of a brightness and gives its index.
+    /// Adds a light of a brightness and returns its index.
     pub(super) fn push(&mut self, light: Light, brightness: f32, name: String) -> u32 {
         self.lights.push(light);
         self.names.push(name);
@@ -39,17 +39,17 @@ impl<'a> Lights<'a> {
         self.lights.len() as u32 - 1
     }
 
-    /// The glow of a colour in some power; `per_unit` is what the light comes to as a whole if its colour is white of
-    /// luminance 1.
+    /// The emission spectrum of a colour with the given power; `per_unit` is the total power of the light if its colour
+    /// is white of luminance 1.
     pub(super) fn emission_spectrum(&self, color: Color, power: &Power, per_unit: f32) -> EmissionSpectrum {
         let mut scale = power.scale;
-        // Other colours have luminance 1 where they are white; a curve is as bright as its numbers.
+        // Other colours have luminance 1 if they are white; the luminance of a curve follows from its values.
         if let (Color::Curve(curve), false) = (color, power.absolute) {
             let luminance = self.textures.curve(curve).to_xyz()[1];
             scale = if luminance > 0.0 { scale / luminance } else { 0.0 };
         }
         if let Some(total) = power.total {
-            // By the luminance of the colour: of a curve it is 1 by now.
+            // By the luminance of the colour; that of a curve is 1 by now.
             let luminance = match color {
                 Color::Curve(_) if !power.absolute => 1.0,
                 _ => self.mean_over_places(&self.illuminant(color), math::luminance),
@@ -64,7 +64,7 @@ impl<'a> Lights<'a> {
         self.textures.spectrum_texture(color, SpectrumType::Illuminant)
     }
 
-    /// The greatest of three primaries of a glow, in the mean over its texture.
+    /// The largest of the three components of an emission spectrum, in the mean over its texture.
     pub(super) fn brightness_of(&self, emission_spectrum: &EmissionSpectrum) -> f32 {
         emission_spectrum.scale
             * self.mean_over_places(&emission_spectrum.color, |rgb| rgb.into_iter().fold(0.0, f32::max))
@@ -87,11 +87,11 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Adds a light as it was written; `origin` is where render space begins in the world.
+    /// Adds a light of the scene; `origin` is the origin of render space in the world.
     pub(super) fn add(&mut self, written: &Written, origin: DVec3) {
         let power = &written.power;
-        // Written intensities are those of Whitted's I_j: π times as much in radiometric units, but where the whole is
-        // given.
+        // The scene's intensities are those of Whitted's I_j: π times as much in radiometric units, unless the total
+        // power is given.
         let whitted = |emission_spectrum: EmissionSpectrum| EmissionSpectrum {
             scale: if power.total.is_some() { emission_spectrum.scale } else { emission_spectrum.scale * PI },
             ..emission_spectrum
@@ -176,7 +176,7 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// The power of a projection whose white texels send out 1 W/sr.
+    /// The power of a projection whose white texels have an intensity of 1 W/sr.
     fn power_of(&self, light: &Projection) -> f32 {
         let image = self.textures.image(light.image);
         let [half_x, half_y] = light.half_size;
@@ -205,7 +205,7 @@ impl<'a> Lights<'a> {
                 return (Sky::Constant(emission_spectrum), self.brightness_of(&emission_spectrum));
             }
             WrittenSky::Gradient { zenith, horizon, nadir } => {
-                // Onto a surface that looks up: the integral of ((1 − y) horizon + y zenith) y.
+                // Irradiance on a surface that faces up: the integral of ((1 − y) horizon + y zenith) y.
                 let upward = std::array::from_fn(|c| (horizon[c] + 2.0 * zenith[c]) / 3.0);
                 let scale = self.emission_spectrum(Color::Value(upward), power, PI).scale;
                 let [zenith, horizon, nadir] = [zenith, horizon, nadir]
@@ -227,7 +227,7 @@ impl<'a> Lights<'a> {
         let average =
             weights.iter().map(|&(light, area)| f64::from(light * area)).sum::<f64>() / solid_angles;
         let choice = |light: &dyn Fn(f32) -> f32| {
-            // A portal chooses within what is seen through it.
+            // A portal samples within the part that is visible through it.
             if has_portal {
                 return Piecewise2D::new(&[], 0, 0);
             }
@@ -256,8 +256,8 @@ fn mean(image: &Image) -> f32 {
     (sum / (3 * image.len()) as f64) as f32
 }
 
-/// What a picture of the surroundings, multiplied by `scale`, sends onto a surface that looks up in the light's space: along +y for latitude and
-/// longitude, along +z for the octahedral square.
+/// The illuminance from an environment map, multiplied by `scale`, on a surface that faces up in the light's space:
+/// along +y for latitude and longitude, along +z for the octahedral square.
 fn illuminance(image: &Image, scale: [f32; 3], layout: Layout) -> f32 {
     let (width, height) = (image.width as f32, image.height as f32);
     let mut sum = 0.0;
@@ -274,8 +274,8 @@ fn illuminance(image: &Image, scale: [f32; 3], layout: Layout) -> f32 {
     (sum / f64::from(width * height)) as f32
 }
 
-/// How bright each part of a picture of the surroundings may be, and its relative solid angle. Where a look-up reaches
-/// into the neighbours of a texel, a part is as bright as the brightest around it: nothing that is seen is never chosen.
+/// Upper bound of the brightness of each texel of an environment map, and its relative solid angle. Where a look-up
+/// interpolates with neighbours, it is the brightest of the texels around, so that no visible light has density 0.
 fn weights(image: &Image, layout: Layout) -> Vec<(f32, f32)> {
     let (width, height) = (image.width as usize, image.height as usize);
     let brightness = |x: usize, y: usize| image.texel(y * width + x).into_iter().fold(0.0, f32::max);

@@ -1,7 +1,7 @@
 //! Placement of shapes: transforms applied, primitives and area lights made.
 //!
-//! What consists of vertices (meshes, patches, curves) becomes a form of its own and is in `place/vertices`; round things
-//! of all shapes are gathered in one form a kind.
+//! Shapes of vertices (meshes, patches, curves) become primitives of their own, see `place/vertices`; spheres, disks
+//! and quadrics of all shapes are collected, one geometry per kind.
 
 mod vertices;
 
@@ -26,20 +26,20 @@ use crate::shading::texture::FloatTexture;
 /// From axes with the poles on z to axes with the poles on y: a rotation.
 const Y_FROM_Z: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);
 
-/// Forms that share a tree, while they are gathered.
+/// Primitives that share a BVH, while they are collected.
 #[derive(Default)]
 pub(super) struct Group {
-    /// Meshes, patches and curves: one form a shape.
+    /// Meshes, patches and curves: one geometry per shape.
     own: Vec<Primitives>,
     spheres: Spheres,
     disks: Disks,
     quadrics: Quadrics,
-    /// Repetitions of the scene's objects.
+    /// Instances of the scene's objects.
     pub(super) instances: Vec<Instance>,
 }
 
 impl Group {
-    /// The forms in the order of their geometry ids.
+    /// The primitives in the order of their geometry ids.
     pub(super) fn into_primitives(self) -> Vec<Primitives> {
         let mut primitives = self.own;
         if !self.spheres.spheres.is_empty() {
@@ -56,7 +56,7 @@ impl Group {
 }
 
 impl Instance {
-    /// A repetition of an object. A matrix that cannot be inverted is `Invalid`.
+    /// An instance of an object. A matrix that cannot be inverted is `Invalid`.
     pub(super) fn new(at: &Location, object: u32, matrix: DMat4, material: Option<u32>) -> Result<Self> {
         let object_from_render = inverse(at, &matrix)?;
         Ok(Self { object, render_from_object: matrix, object_from_render, material })
@@ -74,26 +74,26 @@ fn not_invertible(at: &Location) -> Error {
     Error::invalid(at, "the transform cannot be inverted").hint("no scale may be 0, no number infinite")
 }
 
-/// Turns shapes into forms and lights, one after another.
+/// Compiles shapes to primitives and lights, one after another.
 pub(super) struct Compiler<'a> {
     pub(super) scene: &'a Scene,
     pub(super) warnings: &'a mut Vec<Warning>,
     pub(super) lights: Lights<'a>,
     /// Names by shape number.
     pub(super) shapes: Vec<String>,
-    /// By material: whether it has a grain or bump mapping.
+    /// By material: whether it is anisotropic or bump-mapped, and so needs derivatives by texture coordinates.
     pub(super) grains: Vec<bool>,
-    /// Whether an instance gives the object that is being placed a material with a grain or bump mapping.
+    /// Whether an instance gives the object that is being placed such a material.
     pub(super) has_instance_grain: bool,
-    /// Parts of surfaces that are there.
+    /// Alpha textures.
     pub(super) alphas: Vec<FloatTexture>,
-    /// What they say is on their sides.
+    /// Media on the two sides of surfaces.
     pub(super) medium_interfaces: Vec<MediumInterface>,
     /// Meshes with further texture coordinates or opacities.
     pub(super) vertex_data: Vec<Arc<Mesh>>,
 }
 
-/// A shape on its way into a group.
+/// A shape that is being placed in a group.
 #[derive(Clone, Copy)]
 struct Placing<'a> {
     shape: &'a Shape,
@@ -103,14 +103,14 @@ struct Placing<'a> {
 }
 
 impl Placing<'_> {
-    /// Whether the transform exchanges left and right.
+    /// Whether the transform changes handedness.
     fn mirrors(&self) -> bool {
         self.matrix.determinant() < 0.0
     }
 }
 
 impl Compiler<'_> {
-    /// Adds a shape to a group whose space `group_from_parent` leads to.
+    /// Adds a shape to a group; `group_from_parent` transforms to the group's space.
     pub(super) fn place(
         &mut self,
         shape: &Shape,
@@ -138,7 +138,7 @@ impl Compiler<'_> {
             self.medium_interfaces.len() as u32 - 1
         });
         let material = material.unwrap_or(shape.material.0);
-        // Of a body that light goes through, the back is seen from within.
+        // The back of a solid transmissive body is visible from inside.
         let is_body = matches!(
             self.scene.materials.get(material as usize).map(|material| &material.kind),
             Some(MaterialKind::Principled(principled)) if principled.is_solid
@@ -215,7 +215,7 @@ impl Compiler<'_> {
         let Placing { shape, matrix, binding } = placing;
         let linear = DMat3::from_mat4(*matrix);
         let Some(scale) = even_scale(&linear) else {
-            // Unevenly scaled, they are ellipsoids.
+            // With a non-uniform scale they are ellipsoids.
             for sphere in spheres {
                 let own = *matrix * DMat4::from_translation(sphere.center) * DMat4::from_mat3(pole);
                 let own = Placing { matrix: &own, ..placing };
@@ -288,7 +288,7 @@ impl Compiler<'_> {
         Ok(())
     }
 
-    /// The light of a shape that emits light, made from its form.
+    /// The area light of a shape that emits light, of its geometry.
     fn area_light(
         &mut self,
         placing: Placing,
@@ -311,7 +311,7 @@ impl Compiler<'_> {
             coat: coat.filter(|amount| !amount.is(0.0)),
             shape: shape_of_light,
         };
-        // what white radiance of 1 sends out
+        // power of a white radiance of 1
         let sides = if two_sided { 2.0 } else { 1.0 };
         light.radiance = self.lights.emission_spectrum(radiance, &power, sides * PI * light.area() as f32);
         let brightness = match light.mean_of_pattern() {
@@ -326,7 +326,7 @@ impl Compiler<'_> {
         self.lights.lights.len() as u32
     }
 
-    /// Whether it matters which way u runs over a shape.
+    /// Whether a shape needs derivatives by texture coordinates.
     fn has_grain(&self, placing: Placing) -> bool {
         let of_shape = self.grains.get(placing.binding.material as usize).copied();
         self.has_instance_grain || of_shape.unwrap_or(false)
@@ -341,7 +341,7 @@ fn whole_sphere(radius: f64) -> QuadricKind {
     QuadricKind::Sphere { radius, z: [-radius, radius] }
 }
 
-/// The scale of a matrix that only turns, mirrors and scales evenly (to within rounding).
+/// The scale of a matrix that is a rotation or reflection with a uniform scale (up to rounding).
 fn even_scale(linear: &DMat3) -> Option<f64> {
     let scale = linear.x_axis.length();
     let product = linear.transpose() * *linear * (1.0 / (scale * scale));
@@ -350,7 +350,7 @@ fn even_scale(linear: &DMat3) -> Option<f64> {
     (largest.into_iter().all(|e| e < 1e-9)).then_some(scale)
 }
 
-/// The rotation (or mirror) of a matrix with an even scale, free of its rounding.
+/// The rotation (or reflection) of a matrix with a uniform scale, orthonormalised.
 fn orthonormal(linear: &DMat3) -> DMat3 {
     let x = linear.x_axis.normalize();
     let y = (linear.y_axis - linear.y_axis.dot(x) * x).normalize();

@@ -1,4 +1,4 @@
-//! Warnings about reflectances above 1: surfaces that would give off more light than arrives at them, or colours that were
+//! Warnings about reflectances above 1: surfaces that would reflect more light than arrives, or colours that were
 //! written from 0 to 255.
 
 use lookfrom_scene::material::{Color, MaterialKind};
@@ -7,13 +7,13 @@ use lookfrom_scene::spectrum::Curve;
 use lookfrom_scene::texture::TextureKind;
 use lookfrom_scene::{Location, Warning};
 
-/// A reflectance that can only have been meant as a byte's.
+/// Reflectances from here on were probably meant as bytes.
 const BYTES: f32 = 2.0;
 
 /// A value above 1, and where it was written.
 type Excess<'a> = ([f32; 3], &'a Location);
 
-/// Warns of each material with a reflectance above 1, once. What multiplies pictures is left alone.
+/// Warns of each material with a reflectance above 1, once. Factors of image textures are not checked.
 pub(super) fn check(scene: &Scene, warnings: &mut Vec<Warning>) {
     let mut search = Search { scene, of_textures: vec![None; scene.textures.len()] };
     for material in &scene.materials {
@@ -25,7 +25,7 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<Warning>) {
         let name = &material.name;
         let what_becomes_of_it = match material.kind {
             MaterialKind::Whitted(_) => "the surface gives off more light than arrives",
-            _ => "what is above 1 is taken as 1",
+            _ => "values above 1 are taken as 1",
         };
         let remedy = if r.max(g).max(b) >= BYTES { "; if 0 to 255 was meant, divide by 255" } else { "" };
         let message = format!(
@@ -36,10 +36,10 @@ pub(super) fn check(scene: &Scene, warnings: &mut Vec<Warning>) {
     }
 }
 
-/// The search for values above 1, which looks at each texture once.
+/// The search for values above 1, which visits each texture once.
 struct Search<'a> {
     scene: &'a Scene,
-    /// By texture: what was found, where it was looked at.
+    /// By texture: the result, if it was visited.
     of_textures: Vec<Option<Option<Excess<'a>>>>,
 }
 
@@ -54,7 +54,7 @@ impl<'a> Search<'a> {
                 Curve::Tabulated { values, .. } => {
                     value([values.iter().copied().fold(f32::NEG_INFINITY, f32::max); 3])
                 }
-                // Its greatest value is 1.
+                // Its largest value is 1.
                 Curve::Blackbody { .. } => None,
             },
             Color::Texture(id) => {

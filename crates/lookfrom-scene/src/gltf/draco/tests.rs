@@ -1,12 +1,12 @@
-//! Streams that Google's encoder 1.5.7 wrote of a grid, and what is left when they are damaged.
+//! Streams of a grid written by Google's encoder 1.5.7, and damaged copies of them.
 
 use std::path::Path;
 
 use super::*;
 use crate::files::{Disk, LoadContext};
 
-/// A grid of 5 × 5 vertices: positions in 12 bits, texture coordinates in 10, normals in 8, joints in bytes; by
-/// Edgebreaker, and triangle by triangle.
+/// A grid of 5 × 5 vertices: positions in 12 bits, texture coordinates in 10, normals in 8, joints in bytes; encoded by
+/// Edgebreaker, and triangle by triangle (sequentially).
 const STREAMS: [&str; 2] = [
     "445241434f020201010000001920032003000aefd3ea53adea53d5aa1aff0111ff02cc42ff02cc42ff02cc4204ff0000\
     00000001000002000001000903000002010309020001020101090300020301040204000301010101000d0321051bb51e\
@@ -58,7 +58,7 @@ fn a_grid_is_what_was_written() {
             assert_eq!([0, 1, 2, 3].map(|i| at(joints, i)), [x.round(), y.round(), 0.0, 9.0]);
             seen.push((x.round() as i32, y.round() as i32));
         }
-        // Every vertex is there once, and every triangle is half a cell, seen from above.
+        // Every vertex occurs once, and every triangle is half a cell, seen from above.
         seen.sort_unstable();
         seen.dedup();
         assert_eq!(seen.len(), 25);
@@ -101,7 +101,7 @@ fn a_model_of_the_corpus_is_the_same_with_and_without() {
         let mut context = LoadContext::new(&Disk);
         let scene = crate::gltf::read(&corpus.join(name), &mut context).unwrap();
         assert_eq!(context.warnings, []);
-        // Triangles, and the area of all.
+        // The number of triangles, and their total area.
         let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
         let area: f32 = scene
             .meshes

@@ -1,7 +1,7 @@
 //! Conversion of specular-glossiness materials (`KHR_materials_pbrSpecularGlossiness`).
 //!
-//! A dielectric whose index of refraction is 0, which stands for infinite, mirrors by Schlick's formula exactly its
-//! specular colour: that is how `KHR_materials_specular` converts them. Roughness is 1 − glossiness.
+//! A dielectric with the index of refraction 0, which stands for infinity, reflects exactly its specular colour by
+//! Schlick's formula; `KHR_materials_specular` recommends this conversion. Roughness is 1 − glossiness.
 
 use super::{Reader, unit};
 use crate::error::Result;
@@ -11,7 +11,7 @@ use crate::material::{Color, Principled, Scalar};
 use crate::texture::Channel;
 
 impl Reader<'_, '_, '_> {
-    /// `base_color` is the diffuse one.
+    /// `base_color` is the diffuse colour.
     pub(super) fn glossy(&mut self, own: &json::SpecularGlossiness, base_color: Color) -> Result<Principled> {
         let place = "/extensions/KHR_materials_pbrSpecularGlossiness/specularGlossinessTexture";
         let info = own.specular_glossiness_texture.as_ref();

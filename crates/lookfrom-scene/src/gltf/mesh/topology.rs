@@ -3,7 +3,7 @@
 use super::Order;
 use crate::gltf::json::Whole;
 
-/// The topology type.
+/// The topology type of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Topology {
     Points,
@@ -16,7 +16,7 @@ pub(super) enum Topology {
 }
 
 impl Topology {
-    /// By the number that primitives say.
+    /// The topology of a primitive's `mode`.
     pub(super) fn of(mode: Whole) -> Option<Self> {
         Some(match mode.0 {
             0 => Self::Points,
@@ -30,7 +30,7 @@ impl Topology {
         })
     }
 
-    /// The same with each triangle by itself.
+    /// The same as a list of separate triangles.
     pub(super) fn listed(self) -> Self {
         match self {
             Self::TriangleStrip | Self::TriangleFan => Self::Triangles,
@@ -39,7 +39,7 @@ impl Topology {
     }
 }
 
-/// All lines; vertices that make no whole line are passed over.
+/// All lines; incomplete ones are dropped.
 pub(super) fn lines(topology: Topology, order: &Order<'_>) -> Vec<[u32; 2]> {
     let count = order.len();
     let line = |i: usize, j: usize| [order.vertex(i), order.vertex(j)];
@@ -51,7 +51,7 @@ pub(super) fn lines(topology: Topology, order: &Order<'_>) -> Vec<[u32; 2]> {
     }
 }
 
-/// All triangles, counter-clockwise as the first; vertices that make no whole triangle are passed over.
+/// All triangles, with the winding order of the first; incomplete ones are dropped.
 pub(super) fn triangles(topology: Topology, order: &Order<'_>) -> Vec<[u32; 3]> {
     let count = order.len();
     let triangle = |i: usize, j: usize, k: usize| [order.vertex(i), order.vertex(j), order.vertex(k)];

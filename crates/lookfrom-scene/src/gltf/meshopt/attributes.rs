@@ -1,11 +1,11 @@
-//! Elements of 4 to 256 bytes, as differences from one element to the next, byte by byte: mode 0, versions 0 and 1.
+//! Attribute decoder: elements of 4 to 256 bytes as byte-wise deltas from element to element; mode 0, versions 0 and 1.
 
 use super::{Decoded, LEFT_OVER, Stream, TOO_SHORT};
 
-/// Elements that share one header of widths.
+/// Number of elements that share one header of bit widths.
 const GROUP: usize = 16;
 
-/// The widths of a group's differences in bits, by its two header bits.
+/// The bit widths of a group's deltas, by its two header bits.
 const WIDTHS_OF_VERSION_0: [u32; 4] = [0, 2, 4, 8];
 /// The same, by the two control bits of a byte position; the other two controls have no header.
 const WIDTHS_OF_VERSION_1: [[u32; 4]; 2] = [[0, 1, 2, 4], [1, 2, 4, 8]];
@@ -15,7 +15,7 @@ const WIDTHS_OF_VERSION_1: [[u32; 4]; 2] = [[0, 1, 2, 4], [1, 2, 4, 8]];
 enum Channel {
     Bytes,
     Words,
-    /// Exclusive or of 32 bits that were turned to the left by so many.
+    /// Exclusive or of 32 bits, rotated left by this number of bits.
     Turned(u32),
 }
 
@@ -26,7 +26,7 @@ pub(super) fn decode(bytes: &[u8], count: usize, stride: usize) -> Decoded<Vec<u
         0xa1 => true,
         _ => return Err("the compressed stream of attributes does not begin with a0 or a1"),
     };
-    // At the end stands the element before the first, and how each four bytes of elements are coded.
+    // The tail holds the baseline element and, in version 1, the channel mode of every four bytes of an element.
     let (tail, shortest) = if is_new { (stride + stride / 4, 24) } else { (stride, 32) };
     let blocks = body.len().checked_sub(tail.max(shortest)).ok_or(TOO_SHORT)?;
     let (baseline, channels) = body[body.len() - tail..].split_at(stride);
@@ -42,14 +42,14 @@ pub(super) fn decode(bytes: &[u8], count: usize, stride: usize) -> Decoded<Vec<u
     let mut differences = vec![0; most * stride];
     while decoded.len() < count * stride {
         let length = (count - decoded.len() / stride).min(most);
-        // Each byte position of the block's elements has its own run of differences.
+        // Each byte position of the block's elements has its own run of deltas.
         let controls = if is_new { Some(stream.take(stride / 4)?) } else { None };
         for position in 0..stride {
             let control = controls.map(|controls| (controls[position / 4] >> (2 * (position % 4))) & 3);
             let run = &mut differences[position * most..][..most];
             read_run(&mut stream, control, length, run)?;
         }
-        // Sum them up along the elements.
+        // Prefix sums along the elements.
         for index in 0..length {
             for (quad, channel) in channels.iter().enumerate() {
                 let difference = [0, 1, 2, 3].map(|byte| differences[(4 * quad + byte) * most + index]);
@@ -73,7 +73,7 @@ fn channel(code: u8) -> Decoded<Channel> {
 }
 
 impl Channel {
-    /// The four bytes that follow four bytes.
+    /// The next value of the four bytes.
     fn next(self, before: [u8; 4], difference: [u8; 4]) -> [u8; 4] {
         match self {
             Self::Bytes => {
@@ -95,7 +95,7 @@ impl Channel {
     }
 }
 
-/// The differences of one byte position through a block of `length` elements.
+/// The deltas of one byte position for a block of `length` elements.
 fn read_run(stream: &mut Stream<'_>, control: Option<u8>, length: usize, run: &mut [u8]) -> Decoded<()> {
     let widths = match control {
         None => WIDTHS_OF_VERSION_0,
@@ -118,7 +118,7 @@ fn read_run(stream: &mut Stream<'_>, control: Option<u8>, length: usize, run: &m
     Ok(())
 }
 
-/// Sixteen differences of `width` bits each; all ones mean that the difference follows as a byte.
+/// Sixteen deltas of `width` bits each; all ones mean that the delta follows as a byte.
 pub(super) fn read_group(stream: &mut Stream<'_>, width: u32, group: &mut [u8]) -> Decoded<()> {
     match width {
         0 => group.fill(0),
@@ -128,7 +128,7 @@ pub(super) fn read_group(stream: &mut Stream<'_>, width: u32, group: &mut [u8]) 
             let mask = (1u8 << width) - 1;
             let in_a_byte = 8 / width as usize;
             for (i, difference) in group.iter_mut().enumerate() {
-                // Single bits begin with the lowest, others with the highest.
+                // Single bits start at the lowest, wider ones at the highest.
                 let place = (i % in_a_byte) as u32;
                 let shift = if width == 1 { place } else { 8 - width * (place + 1) };
                 let value = (packed[i / in_a_byte] >> shift) & mask;

@@ -2,8 +2,8 @@
 
 use super::Filter;
 
-/// Replaces elements of `stride` bytes by what they stand for. Elements that the extension calls unspecified become
-/// something, but never a panic.
+/// Replaces encoded elements of `stride` bytes by their values. Results that the extension leaves unspecified are
+/// arbitrary, but never cause a panic.
 pub(super) fn apply(filter: Filter, stride: usize, bytes: &mut [u8]) {
     match filter {
         Filter::None => {}
@@ -14,7 +14,7 @@ pub(super) fn apply(filter: Filter, stride: usize, bytes: &mut [u8]) {
     }
 }
 
-/// Applies `f` to every four integers of 8 or 16 bits, sign-extended, with the greatest of their kind.
+/// Applies `f` to every four integers of 8 or 16 bits, sign-extended, with the maximum of their type.
 fn integers(stride: usize, bytes: &mut [u8], f: impl Fn([i32; 4], i32) -> [i32; 4]) {
     if stride == 4 {
         for element in bytes.as_chunks_mut::<4>().0 {
@@ -30,11 +30,11 @@ fn integers(stride: usize, bytes: &mut [u8], f: impl Fn([i32; 4], i32) -> [i32; 
     }
 }
 
-/// A unit vector from two coordinates on an octahedron, in units of the third number (Meyer et al. 2010).
+/// A unit vector from octahedral encoding (Meyer et al. 2010); the third number stands for 1.
 fn octahedral([x, y, one, rest]: [i32; 4], most: i32) -> [i32; 4] {
     let (x, y) = (x as f32 / one as f32, y as f32 / one as f32);
     let z = 1.0 - x.abs() - y.abs();
-    // The lower half is folded over the edges of the upper.
+    // The lower hemisphere is folded over the edges of the upper.
     let fold = z.min(0.0);
     let (x, y) = (x - fold.copysign(x), y - fold.copysign(y));
     let length = (x * x + y * y + z * z).sqrt();
@@ -42,7 +42,7 @@ fn octahedral([x, y, one, rest]: [i32; 4], most: i32) -> [i32; 4] {
     [x, y, z, rest]
 }
 
-/// A unit quaternion from three of its components and the place of the greatest.
+/// A unit quaternion from three of its components and the index of the largest.
 fn quaternion([x, y, z, code]: [i32; 4]) -> [i32; 4] {
     let scale = 1.0 / ((code | 3) as f32 * std::f32::consts::SQRT_2);
     let [x, y, z] = [x, y, z].map(|c| c as f32 * scale);
@@ -58,7 +58,7 @@ fn exponential(bytes: &mut [u8; 4]) {
     *bytes = libm::ldexpf(((bits << 8) >> 8) as f32, bits >> 24).to_le_bytes();
 }
 
-/// Red, green, blue and opacity from luma, two chromas, and an opacity whose highest bit says how wide all are.
+/// Red, green, blue and alpha from YCoCg luma and chroma, and an alpha whose highest bit gives the bit width of all.
 fn color([y, orange, green, alpha]: [i32; 4], most: i32) -> [i32; 4] {
     let unsigned = 2 * most + 1;
     let (y, alpha) = (y & unsigned, alpha & unsigned);

@@ -1,8 +1,8 @@
-//! Indices: of triangles that share edges and vertices with those just seen (mode 1), and of anything (mode 2).
+//! Index decoders: triangles that share edges and vertices with recent ones (mode 1), and any sequence (mode 2).
 
 use super::{Decoded, Stream, TOO_SHORT};
 
-/// The last sixteen of something, the newest at 0.
+/// A ring buffer of the last sixteen items, the newest at 0.
 struct Recent<T> {
     items: [T; 16],
     next: usize,
@@ -22,7 +22,7 @@ impl<T: Copy> Recent<T> {
 /// The placeholder of an empty history entry; no vertex has this index.
 const NOTHING: u32 = u32::MAX;
 
-/// The source of the next index, in half a byte: 0 is a new vertex, 15 a number in the stream, else a recent vertex.
+/// The decoder of vertex indices, by a half byte each: 0 is a new vertex, 15 an index in the stream, others recent ones.
 struct Vertices<'a> {
     stream: Stream<'a>,
     recent: Recent<u32>,
@@ -67,7 +67,7 @@ pub(super) fn triangles(bytes: &[u8], count: usize) -> Decoded<Vec<u32>> {
     for &code in codes {
         let (high, low) = (code >> 4, code & 15);
         let triangle @ [a, b, c] = if high < 15 {
-            // A recent edge and one more vertex.
+            // A recent edge and a third vertex.
             let [a, b] = edges.at(usize::from(high));
             let (c, is_new) = match low {
                 0 => (vertices.fresh(), true),
@@ -84,7 +84,7 @@ pub(super) fn triangles(bytes: &[u8], count: usize) -> Decoded<Vec<u32>> {
             }
             [a, b, c]
         } else {
-            // Three vertices, whose kinds the table or the stream says.
+            // Three vertices, whose codes are in the table or in the stream.
             let kinds = if low < 14 { table[usize::from(low)] } else { vertices.stream.byte()? };
             if low >= 14 && kinds == 0 {
                 vertices.next = 0;
@@ -116,7 +116,7 @@ pub(super) fn sequence(bytes: &[u8], count: usize) -> Decoded<Vec<u32>> {
         return Err("the compressed stream of indices does not begin with d1");
     }
     let (data, _) = body.split_at_checked(body.len().wrapping_sub(4)).ok_or(TOO_SHORT)?;
-    // Every index is at least a byte, so a stream cannot ask for more than it brings.
+    // Every index takes at least a byte, so the count cannot exceed the length of the data.
     if data.len() < count {
         return Err(TOO_SHORT);
     }

@@ -1,4 +1,4 @@
-//! Streams that meshoptimizer 1.3's encoder wrote of data that a formula gives, and what is left when they are damaged.
+//! Streams of procedural data written by meshoptimizer 1.3's encoder, and damaged copies of them.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ fn run(bytes: &[u8], count: u64, stride: u64, mode: Mode) -> Result<Vec<u8>> {
     decode(bytes, &layout, &Location::file(Path::new("model.gltf")), &Limits::default())
 }
 
-/// 37 elements of four words: smooth, then noise.
+/// 37 elements of four 16-bit integers: smooth, then noise.
 fn words() -> Vec<u8> {
     let word = |i: u32, c: u32| if i < 20 { i * (c + 1) * 7 } else { i * i * (c * 977 + 31) };
     (0..37).flat_map(|i| (0..4).flat_map(move |c| (word(i, c) as u16).to_le_bytes())).collect()
@@ -32,7 +32,7 @@ fn floats() -> Vec<u8> {
         .collect()
 }
 
-/// A grid of 4 × 4 cells, then triangles that share little.
+/// A grid of 4 × 4 cells, then triangles that share few vertices.
 fn triangles() -> Vec<u32> {
     let cells = (0..4).flat_map(|y| (0..4).map(move |x| 5 * y + x));
     let grid = cells.flat_map(|a| [a, a + 1, a + 5, a + 5, a + 1, a + 6]);
@@ -81,7 +81,7 @@ fn indices_are_what_was_written() {
     let all = triangles();
     let bytes = run(&hex(TRIANGLES), all.len() as u64, 4, Mode::Triangles).unwrap();
     let decoded: Vec<u32> = bytes.as_chunks().0.iter().map(|&index| u32::from_le_bytes(index)).collect();
-    // The encoder may begin a triangle with any of its corners.
+    // The encoder may rotate the corners of a triangle.
     for (ours, [a, b, c]) in decoded.as_chunks::<3>().0.iter().zip(all.as_chunks().0) {
         assert!([[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]].contains(ours), "{ours:?}, not {:?}", [a, b, c]);
     }
@@ -168,7 +168,7 @@ fn damaged_streams_give_errors_or_other_numbers_but_never_a_panic() {
                 }
             }
         }
-        // Asking for more than there is costs nothing.
+        // A count larger than the stream allocates nothing.
         assert!(run(&whole, 3_000_000, stride, mode).is_err());
         assert_eq!(run(&whole, 3 << 40, stride, mode).unwrap_err().kind, ErrorKind::Limit);
     }

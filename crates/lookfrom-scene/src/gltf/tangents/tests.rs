@@ -1,8 +1,8 @@
-//! Squares with texture coordinates as they are, turned, and mirrored.
+//! Squares with unchanged, rotated and mirrored texture coordinates.
 
 use super::*;
 
-/// A square in the plane z = 0 that faces +z, with u and v by a function of its corners.
+/// A square in the plane z = 0 that faces +z, with texture coordinates as a function of its corners.
 fn square(uv: impl Fn(f32, f32) -> [f32; 2]) -> (Vertices, Vec<[u32; 3]>) {
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let vertices = Vertices {
@@ -14,7 +14,7 @@ fn square(uv: impl Fn(f32, f32) -> [f32; 2]) -> (Vertices, Vec<[u32; 3]>) {
     (vertices, vec![[0, 1, 2], [0, 2, 3]])
 }
 
-/// Where v grows, as tangents have it.
+/// The direction in which v grows, from normal and tangent.
 fn bitangent(vertices: &Vertices, vertex: usize) -> Vec3 {
     let tangent = vertices.tangents[vertex];
     vertices.normals[vertex].cross(tangent.truncate()) * tangent.w
@@ -54,7 +54,7 @@ fn the_seam_of_a_mirrored_picture_is_split() {
     };
     let mut triangles = vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]];
     complete(&mut vertices, &mut triangles, 0);
-    // The two vertices of the edge are there twice, with all that they have.
+    // The two vertices of the edge occur twice, with all their attributes.
     assert_eq!((vertices.positions.len(), vertices.colors.len(), vertices.uvs[0].len()), (8, 8, 8));
     for (triangle, side) in triangles.iter().zip([1.0, 1.0, -1.0, -1.0]) {
         for corner in triangle.map(|vertex| vertex as usize) {
@@ -79,7 +79,7 @@ fn files_that_have_tangents_or_no_coordinates_are_left_alone() {
 #[test]
 fn odd_surfaces_are_survived() {
     let odd = [0.0, 1.0, -1.0, 1e-38, 1e38, -3e38, f32::MIN_POSITIVE, 0.5];
-    // Numbers by a formula that comes around to all pairs.
+    // A formula that goes through all pairs.
     let number = |i: usize| odd[(i * 5 + i / 8 * 3 + i / 64) % 8];
     for shift in 0..400 {
         let count = 3 + shift % 9;

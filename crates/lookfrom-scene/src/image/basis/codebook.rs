@@ -3,7 +3,7 @@
 use super::Damage;
 use super::huffman::{Bits, Code};
 
-/// The modifiers of a block's colour for each of the four selectors, by its intensity (ETC1).
+/// The intensity modifiers of the four selectors, by the block's intensity table (ETC1).
 const MODIFIERS: [[i32; 4]; 8] = [
     [-8, -2, 2, 8],
     [-17, -5, 5, 17],
@@ -15,10 +15,10 @@ const MODIFIERS: [[i32; 4]; 8] = [
     [-183, -47, 47, 183],
 ];
 
-/// The colours that a block chooses from.
+/// An endpoint of the codebook: the base colour and intensity table of a block.
 #[derive(Clone, Copy)]
 pub(super) struct Endpoint {
-    /// Red, green, blue in 5 bits.
+    /// Red, green, blue in 5 bits each.
     color: [u8; 3],
     /// 0 … 7.
     intensity: u8,
@@ -36,32 +36,32 @@ impl Endpoint {
 /// The data that all slices share.
 pub(super) struct Codebook {
     pub(super) endpoints: Vec<Endpoint>,
-    /// A byte for each row of a block, two bits for each texel, the leftmost in the least.
+    /// A byte for each row of a block, two bits per texel, the leftmost in the lowest bits.
     pub(super) selectors: Vec<[u8; 4]>,
     pub(super) codes: Codes,
 }
 
-/// The codes that slices are written in.
+/// The Huffman codes of the slices.
 pub(super) struct Codes {
     /// The endpoint predictors of four blocks.
     pub(super) predictors: Code,
-    /// The delta of an endpoint index from the one before.
+    /// The delta from the previous endpoint index.
     pub(super) endpoints: Code,
-    /// Numbers of selectors, places in the list of recent ones, and a run of the first of these.
+    /// Selector indices, indices into the history of recent selectors, and the symbol for a run of its first entry.
     pub(super) selectors: Code,
-    /// Lengths of such runs.
+    /// Lengths of these runs.
     pub(super) runs: Code,
-    /// The length of the selector history: > 0.
+    /// Length of the selector history: > 0.
     pub(super) recent: usize,
 }
 
 impl Codebook {
-    /// Reads what all slices share, from a file's supercompression global data; `images` is the number of its pictures.
+    /// Reads a file's supercompression global data; `images` is the number of its images.
     ///
     /// # Errors
-    /// If it is not whole.
+    /// If it is damaged or cut off.
     pub(super) fn read(global: &[u8], images: usize) -> Result<Self, Damage> {
-        let short = "what its slices share is cut off";
+        let short = "its global data is cut off";
         let number = |offset: usize, bytes: usize| {
             let bytes = global.get(offset..offset + bytes).ok_or(short)?;
             Ok::<_, Damage>(bytes.iter().rev().fold(0, |number, &byte| number << 8 | usize::from(byte)))
@@ -106,7 +106,7 @@ fn endpoints(bytes: &[u8], count: usize) -> Result<Vec<Endpoint>, Damage> {
 fn selectors(bytes: &[u8], count: usize) -> Result<Vec<[u8; 4]>, Damage> {
     let bits = &mut Bits::new(bytes);
     if bits.take(2) != 0 {
-        return Err("its selectors are of a kind that the format has given up");
+        return Err("its selectors use a deprecated encoding");
     }
     let is_raw = bits.take(1) == 1;
     let code = if is_raw { None } else { Code::read(bits)? };
@@ -132,7 +132,7 @@ fn codes(bytes: &[u8]) -> Result<Codes, Damage> {
     let recent = bits.take(13) as usize;
     match recent {
         _ if bits.is_past_end() => Err("the codes of its slices are cut off"),
-        0 => Err("it has no room for recent selectors"),
+        0 => Err("the length of its selector history is 0"),
         _ => Ok(Codes { predictors, endpoints, selectors, runs, recent }),
     }
 }

@@ -1,19 +1,19 @@
-//! ETC1S: blocks that choose among four colours of one hue, by numbers of a codebook.
+//! ETC1S: blocks of four colours that differ in brightness, as indices into codebooks of endpoints and selectors.
 
 use super::codebook::{Codebook, Endpoint};
 use super::huffman::Bits;
 use super::{Damage, Size, Texel, blocks, lay};
 
-/// The symbol that stands for the predictors of the blocks before, several times.
+/// The symbol for a run of equal predictors.
 const REPEAT: u32 = 256;
 
 /// The shortest runs, of predictors and of selectors.
 const LEAST_RUN: u32 = 3;
 
-/// The longest run of selectors that is a symbol; the symbol itself tells that a number follows.
+/// The run length symbol after which the length follows as a number.
 const LONG_RUN: u32 = 63;
 
-/// The picture of the first image of a file: `global` is what its images share, `level` the first level, `images` their number.
+/// Decodes a file's first image: `global` is the global data, `level` the first level, `images` the number of images.
 ///
 /// # Errors
 /// If it is damaged.
@@ -24,7 +24,7 @@ pub(in crate::image) fn etc1s(
     size: Size,
 ) -> Result<Vec<Texel>, Damage> {
     let codebook = Codebook::read(global, images)?;
-    // The first image: flags, then offset and length of its colours and of its opacities.
+    // The descriptor of the first image: flags, then offset and length of its colour slice and of its alpha slice.
     let field = |index: usize| {
         let bytes = global.get(20 + 4 * index..)?.first_chunk()?;
         usize::try_from(u32::from_le_bytes(*bytes)).ok()
@@ -54,7 +54,7 @@ pub(in crate::image) fn etc1s(
     Ok(texels)
 }
 
-/// The texels of a block.
+/// The texels of a block, from its endpoint and its selectors.
 fn block(endpoint: Endpoint, choices: [u8; 4]) -> [Texel; 16] {
     let colors = endpoint.colors();
     std::array::from_fn(|index| {
@@ -63,7 +63,7 @@ fn block(endpoint: Endpoint, choices: [u8; 4]) -> [Texel; 16] {
     })
 }
 
-/// Selectors that were used lately, those that are used again nearer to the front.
+/// Approximate move-to-front history of selectors: those used again move towards the front.
 struct Recent {
     selectors: Vec<u32>,
     /// The index of the next insertion, in the second half.
@@ -91,7 +91,7 @@ impl Recent {
 }
 
 impl Codebook {
-    /// The blocks of a slice, row by row: their colours and what their texels choose.
+    /// The blocks of a slice, row by row: endpoint and selectors of each.
     fn slice(&self, bytes: &[u8], size: Size) -> Result<Vec<(Endpoint, [u8; 4])>, Damage> {
         let [columns, rows] = blocks(size);
         let bits = &mut Bits::new(bytes);
@@ -99,7 +99,7 @@ impl Codebook {
         let recent = Recent::new(self.codes.recent);
         let mut selectors = Selectors { recent, run: 0, blocks: columns as u64 * rows as u64 };
         let (mut predictors, mut repeats) = (0, 0_u32);
-        // The endpoints of the row above and of this one, and the predictors of this row that were told with the one above.
+        // Endpoint indices of the row above and of this row, and predictors that were coded with the row above.
         let (mut above, mut row) = (vec![0; columns], Vec::with_capacity(columns));
         let mut told = vec![0; columns.div_ceil(2)];
         let mut last = 0;
@@ -127,23 +127,28 @@ impl Codebook {
                 let from_above = if y > 0 { Some(&above) } else { None };
                 last = match predictor & 3 {
                     0 if x > 0 => last,
-                    1 => *from_above.ok_or("a block is like none")?.get(x).ok_or("a block is like none")?,
-                    2 if x > 0 => {
-                        *from_above.and_then(|above| above.get(x - 1)).ok_or("a block is like none")?
-                    }
+                    1 => *from_above
+                        .ok_or("a block is predicted from outside its slice")?
+                        .get(x)
+                        .ok_or("a block is predicted from outside its slice")?,
+                    2 if x > 0 => *from_above
+                        .and_then(|above| above.get(x - 1))
+                        .ok_or("a block is predicted from outside its slice")?,
                     3 => {
                         let endpoint = self.codes.endpoints.symbol(bits)? + last;
                         if endpoint >= count { endpoint - count } else { endpoint }
                     }
-                    _ => return Err("a block is like none"),
+                    _ => return Err("a block is predicted from outside its slice"),
                 };
                 predictor >>= 2;
                 row.push(last);
                 let endpoint =
-                    self.endpoints.get(last as usize).ok_or("an endpoint is none of its codebook")?;
+                    self.endpoints.get(last as usize).ok_or("an endpoint index is outside the codebook")?;
                 let selector = selectors.next(self, bits)?;
-                let choices =
-                    self.selectors.get(selector as usize).ok_or("a selector is none of its codebook")?;
+                let choices = self
+                    .selectors
+                    .get(selector as usize)
+                    .ok_or("a selector index is outside the codebook")?;
                 found.push((*endpoint, *choices));
             }
             if bits.is_past_end() {
@@ -155,12 +160,12 @@ impl Codebook {
     }
 }
 
-/// Selectors of a slice, block after block.
+/// Decoder of a slice's selectors, block after block.
 struct Selectors {
     recent: Recent,
-    /// The remaining run length of the first selector of the history.
+    /// Remaining run length of the first selector of the history.
     run: u32,
-    /// The number of blocks.
+    /// Number of blocks of the slice.
     blocks: u64,
 }
 
@@ -188,6 +193,6 @@ impl Selectors {
                 }
             }
         }
-        self.recent.again(index).ok_or("a selector is none of the recent ones")
+        self.recent.again(index).ok_or("a selector index is outside the history")
     }
 }

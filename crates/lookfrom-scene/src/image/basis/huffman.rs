@@ -2,20 +2,20 @@
 
 use super::Damage;
 
-/// Bits of a code are no more than this.
+/// Maximum length of a code in bits.
 const LONGEST: usize = 16;
 
-/// Symbols of a table that tells the lengths of another's codes.
+/// Number of symbols of the code that encodes another code's lengths.
 const LENGTH_SYMBOLS: usize = 21;
 
-/// The order in which the lengths of that table's codes are written.
+/// The order in which the lengths of that code are stored.
 const ORDER: [usize; LENGTH_SYMBOLS] =
     [17, 18, 19, 20, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15, 16];
 
-/// A row of bits. Beyond its end they are 0.
+/// A bit stream. Beyond its end all bits are 0.
 pub(super) struct Bits<'a> {
     bytes: &'a [u8],
-    /// Bits that were taken.
+    /// Number of bits read.
     taken: usize,
 }
 
@@ -24,14 +24,14 @@ impl<'a> Bits<'a> {
         Self { bytes, taken: 0 }
     }
 
-    /// The next 32 bits, of which at least 25 are those that are there.
+    /// The next bits, at least 25 of the 32 valid.
     fn peek(&self) -> u32 {
         let from = self.taken / 8;
         let byte = |index: usize| self.bytes.get(from + index).copied().unwrap_or(0);
         u32::from_le_bytes(std::array::from_fn(byte)) >> (self.taken % 8)
     }
 
-    /// The next bits as a number: no more than 16.
+    /// The next `count` bits as a number: at most 16.
     pub(super) fn take(&mut self, count: u32) -> u32 {
         debug_assert!(count <= 16);
         let bits = self.peek() & ((1 << count) - 1);
@@ -39,7 +39,7 @@ impl<'a> Bits<'a> {
         bits
     }
 
-    /// A whole number in groups of bits, the least first; a bit before the end of each tells whether there is another.
+    /// A variable-length integer in groups of bits, the lowest first; a bit after each tells whether another follows.
     pub(super) fn number(&mut self, group: u32) -> u32 {
         let (mut number, mut shift) = (0_u32, 0);
         while shift < 32 {
@@ -53,7 +53,7 @@ impl<'a> Bits<'a> {
         number
     }
 
-    /// Whether more bits were taken than there are.
+    /// Whether more bits were read than the stream has.
     pub(super) fn is_past_end(&self) -> bool {
         self.taken > self.bytes.len().saturating_mul(8)
     }
@@ -61,15 +61,15 @@ impl<'a> Bits<'a> {
 
 /// A canonical Huffman code.
 pub(super) struct Code {
-    /// Bits of the longest code.
+    /// Length of the longest code in bits.
     longest: u32,
-    /// By as many bits: a symbol and how many of the bits are its code, 0 where they are none.
+    /// By this many bits: the symbol and the length of its code, 0 for bits that are not a code.
     table: Vec<(u16, u8)>,
 }
 
 impl Code {
-    /// A code by the lengths of its symbols' codes: all bits mean something, or there is but one symbol. `None` where no symbol
-    /// has a code.
+    /// The canonical code with these code lengths, which must be complete or have a single symbol. `None` if no symbol has a
+    /// code.
     fn new(lengths: &[u8]) -> Result<Option<Self>, Damage> {
         let mut counts = [0_u32; LONGEST + 1];
         for &length in lengths {
@@ -77,7 +77,7 @@ impl Code {
         }
         counts[0] = 0;
         let Some(longest) = counts.iter().rposition(|&count| count > 0) else { return Ok(None) };
-        // The first code of each length, and how much of all bits the codes take.
+        // The first code of each length, and a count that shows whether the codes are complete.
         let mut first = [0_u32; LONGEST + 1];
         let mut next = 0_u32;
         for (first, count) in first.iter_mut().zip(counts).skip(1) {
@@ -91,7 +91,7 @@ impl Code {
         let mut table = vec![(0, 0); 1 << longest];
         for (symbol, &length) in lengths.iter().enumerate().filter(|(_, length)| **length > 0) {
             let code = &mut first[usize::from(length)];
-            // A code's first bit is written first.
+            // Codes are stored with their first bit in the lowest place.
             let bits = code.reverse_bits() >> (32 - u32::from(length));
             *code += 1;
             for entry in table.iter_mut().skip(bits as usize).step_by(1 << length) {
@@ -101,10 +101,10 @@ impl Code {
         Ok(Some(Self { longest: longest as u32, table }))
     }
 
-    /// Reads a code; `None` where it has no symbols.
+    /// Reads the description of a code; `None` if it has no symbols.
     ///
     /// # Errors
-    /// If there is no such code.
+    /// If the description is invalid.
     pub(super) fn read(bits: &mut Bits<'_>) -> Result<Option<Self>, Damage> {
         let count = bits.take(14) as usize;
         if count == 0 {
@@ -115,11 +115,16 @@ impl Code {
         for &symbol in ORDER.get(..written).ok_or("a code has too many lengths")? {
             lengths[symbol] = bits.take(3) as u8;
         }
-        let of_lengths = Self::new(&lengths)?.ok_or("a code has no lengths")?;
+        let of_lengths = Self::new(&lengths)?.ok_or("the code of code lengths has no symbols")?;
         let mut lengths: Vec<u8> = Vec::with_capacity(count);
         while lengths.len() < count {
-            let last =
-                || lengths.last().copied().filter(|&last| last > 0).ok_or("a length is repeated before it");
+            let last = || {
+                lengths
+                    .last()
+                    .copied()
+                    .filter(|&last| last > 0)
+                    .ok_or("a code length is repeated before the first")
+            };
             let (length, times) = match of_lengths.symbol(bits)? {
                 length @ ..=16 => (length as u8, 1),
                 17 => (0, bits.take(3) + 3),
@@ -130,15 +135,15 @@ impl Code {
             lengths.resize(lengths.len() + times as usize, length);
         }
         if lengths.len() > count {
-            return Err("a code has more symbols than it says");
+            return Err("a code has more symbols than declared");
         }
         Self::new(&lengths)
     }
 
-    /// The next symbol.
+    /// Decodes the next symbol.
     ///
     /// # Errors
-    /// If the bits are no code.
+    /// If the bits are not a code.
     pub(super) fn symbol(&self, bits: &mut Bits<'_>) -> Result<u32, Damage> {
         let index = bits.peek() & ((1 << self.longest) - 1);
         match self.table.get(index as usize) {
@@ -146,7 +151,7 @@ impl Code {
                 bits.taken += usize::from(length);
                 Ok(u32::from(symbol))
             }
-            _ => Err("bits are no code"),
+            _ => Err("the bits are not a code"),
         }
     }
 }

@@ -1,15 +1,15 @@
 //! UASTC (LDR, 4 × 4): blocks of 16 bytes in one of 19 modes, a subset of ASTC's.
 //!
-//! A block has one to three subsets of texels, each with two ends of a line of colours, and for each texel a weight: how far it is
-//! from the first end to the second. Ends are numbers of some bits and a trit (0 … 2) or quint (0 … 4); Khronos, "Data Format
-//! Specification" 1.3, chapter on ASTC, says how these become bytes, and which texels belong to which subset.
+//! A block has one to three subsets of texels, each with two endpoints of a line of colours, and a weight for each texel
+//! that interpolates between them. Endpoint values consist of some bits and a trit (0 … 2) or quint (0 … 4); Khronos,
+//! "Data Format Specification" 1.3, chapter on ASTC, defines their decoding and the partition patterns.
 
 use super::{Damage, Size, Texel, blocks, lay};
 
-/// Bytes of a block.
+/// Bytes per block.
 pub(in crate::image) const BLOCK: usize = 16;
 
-/// The bits of a block that are left, the first in the least.
+/// The remaining bits of a block, the first in the lowest place.
 struct Bits(u128);
 
 impl Bits {
@@ -24,41 +24,41 @@ impl Bits {
 #[derive(Clone, Copy, PartialEq)]
 enum Second {
     None,
-    /// Two bits say it.
+    /// Selected by two bits of the block.
     Told,
     Opacity,
 }
 
 /// The block layout of a mode.
 struct Mode {
-    /// The bits that a block of it begins with, and how many.
+    /// The first bits of its blocks, and their number.
     prefix: (u32, u32),
     /// Bits of a weight.
     weight: u32,
-    /// Bits of an end's value, and 3 where a trit comes to them, 5 for a quint, else 1.
+    /// Bits of an endpoint value, and its radix: 3 with a trit, 5 with a quint, else 1.
     end: (u32, u32),
-    /// ASTC's seeds of the patterns of subsets, where there are several.
+    /// ASTC's seeds of the partition patterns, if there are several subsets.
     seeds: &'static [u32],
     subsets: u32,
     second: Second,
-    /// 2: brightness and opacity, 3: colour, 4: both.
+    /// 2: luminance and alpha, 3: colour, 4: both.
     channels: usize,
-    /// Bits for transcoders to other formats.
+    /// Bits of hints for transcoders to other formats.
     hints: u32,
 }
 
-/// Patterns of two subsets.
+/// Seeds of patterns with two subsets.
 const TWO: &[u32] = &[
     28, 20, 16, 29, 91, 9, 107, 72, 149, 204, 50, 114, 496, 17, 78, 39, 252, 828, 43, 156, 116, 210, 476,
     273, 684, 359, 246, 195, 694, 524,
 ];
-/// Patterns of three subsets.
+/// Seeds of patterns with three subsets.
 const THREE: &[u32] = &[260, 74, 32, 156, 183, 15, 745, 0, 335, 902, 254];
-/// Further patterns of two subsets.
+/// Seeds of further patterns with two subsets.
 const OTHER_TWO: &[u32] =
     &[36, 48, 61, 137, 161, 183, 226, 281, 302, 307, 479, 495, 593, 594, 605, 799, 812, 988, 993];
 
-/// The mode whose blocks are of one colour.
+/// The prefix of blocks of a single colour.
 const PLAIN: (u32, u32) = (0x17, 5);
 
 const MODES: [Mode; 18] = {
@@ -87,15 +87,15 @@ const MODES: [Mode; 18] = {
     ]
 };
 
-/// The picture in a level's blocks.
+/// Decodes the blocks of a level.
 ///
 /// # Errors
-/// If there are too few, or one is of no mode.
+/// If there are too few blocks, or one has an invalid mode.
 pub(in crate::image) fn uastc(level: &[u8], size: Size) -> Result<Vec<Texel>, Damage> {
     let [columns, rows] = blocks(size);
     let written = level.as_chunks::<BLOCK>().0;
     let written = written.get(..columns * rows).ok_or("its blocks are cut off")?;
-    let damage = "a block is of no mode";
+    let damage = "a block has an invalid mode";
     let [width, height] = size;
     let mut texels = vec![[0; 4]; width * height];
     let mut is_whole = true;
@@ -109,7 +109,7 @@ pub(in crate::image) fn uastc(level: &[u8], size: Size) -> Result<Vec<Texel>, Da
     if is_whole { Ok(texels) } else { Err(damage) }
 }
 
-/// The texels of a block, row by row; `None` where it is of no mode, or of a pattern that its mode has not.
+/// The texels of a block, row by row; `None` if its mode or its partition pattern is invalid.
 fn decode(block: u128) -> Option<[Texel; 16]> {
     let bits = &mut Bits(block);
     let begins = |(prefix, length): (u32, u32)| block & ((1 << length) - 1) == u128::from(prefix);
@@ -144,7 +144,7 @@ fn decode(block: u128) -> Option<[Texel; 16]> {
             };
             let weight = weights[usize::from(second == Some(channel))];
             let at = 2 * (subset * mode.channels + index);
-            // In 16 bits, rounded, of which the upper half counts.
+            // Interpolated in 16 bits, rounded; the upper byte is the result.
             let [from, to] = [ends[at], ends[at + 1]].map(|end| u32::from(end) * 257);
             ((from * (64 - weight) + to * weight + 32) >> 14) as u8
         })
@@ -156,11 +156,11 @@ fn decode(block: u128) -> Option<[Texel; 16]> {
     Some(texels)
 }
 
-/// Values of ends: by subset, by channel, the first and the second.
+/// Endpoint values: by subset, then by channel, the first and the second endpoint.
 fn ends(mode: &Mode, bits: &mut Bits) -> [u8; 18] {
     let count = 2 * mode.channels * mode.subsets as usize;
     let (length, base) = mode.end;
-    // Five trits are written in 8 bits, three quints in 7; fewer of them in as many bits as they need.
+    // Five trits are packed in 8 bits, three quints in 7; fewer of them in as few bits as possible.
     let packed: &[u32] = match base {
         3 => &[0, 2, 4, 5, 7, 8],
         5 => &[0, 3, 5, 7],
@@ -181,9 +181,9 @@ fn ends(mode: &Mode, bits: &mut Bits) -> [u8; 18] {
     ends
 }
 
-/// The byte that bits with a trit or quint stand for.
+/// The byte that some bits with a trit or quint decode to (unquantisation).
 fn byte(value: u32, length: u32, digit: u32, base: u32) -> u8 {
-    // The bits but the least, where they go, and what a trit or quint counts.
+    // The bits but the lowest, spread to their places, and the factor of the trit or quint.
     let high = value >> 1;
     let (spread, factor) = match (length, base) {
         (2, 3) => (high << 8 | high << 4 | high << 2 | high << 1, 93),
@@ -191,7 +191,7 @@ fn byte(value: u32, length: u32, digit: u32, base: u32) -> u8 {
         (6, 3) => (high << 4 | high >> 4, 5),
         (3, 5) => (high << 7 | high << 1 | high >> 1, 26),
         (5, 5) => (high << 5 | high >> 3, 6),
-        // Bits alone are repeated.
+        // Without trits and quints, the bits are replicated.
         (4, _) => return (value * 17) as u8,
         (5, _) => return (value << 3 | value >> 2) as u8,
         _ => return value as u8,
@@ -201,17 +201,17 @@ fn byte(value: u32, length: u32, digit: u32, base: u32) -> u8 {
     (all & 0x80 | sum >> 2) as u8
 }
 
-/// Weights of texels from 0 to 64: all, and those of a channel of its own.
+/// Weights of the texels from 0 to 64: for all channels, and for the channel of the second plane.
 fn weights(mode: &Mode, subsets: &[usize; 16], bits: &mut Bits) -> [[u32; 2]; 16] {
     let planes = if mode.second == Second::None { 1 } else { 2 };
     let mut has_begun = [false; 3];
     let mut weights = [[0; 2]; 16];
     for (weights, &subset) in weights.iter_mut().zip(subsets) {
-        // The highest bit of the first texel of each subset is 0.
+        // The highest bit of the first texel's weight in each subset is 0 and not stored.
         let is_first = !std::mem::replace(&mut has_begun[subset], true);
         let length = mode.weight - u32::from(is_first);
         for weight in weights.iter_mut().take(planes) {
-            // In six bits, the written ones repeated; then 63 becomes 64.
+            // Expanded to six bits by replication; then 63 becomes 64.
             let written = bits.take(length);
             let six = match mode.weight {
                 1 => written * 63,
@@ -226,7 +226,7 @@ fn weights(mode: &Mode, subsets: &[usize; 16], bits: &mut Bits) -> [[u32; 2]; 16
     weights
 }
 
-/// The subset of each texel, of two or three, by ASTC's function of a seed for small blocks.
+/// The subset of each texel, of two or three, by ASTC's partition function for small blocks.
 pub(super) fn subsets(seed: u32, count: u32) -> [usize; 16] {
     let seed = seed + (count - 1) * 1024;
     let mut hash = seed;
@@ -243,13 +243,13 @@ pub(super) fn subsets(seed: u32, count: u32) -> [usize; 16] {
     let by_seed = if seed & 2 == 2 { 4 } else { 5 };
     let by_count = if count == 3 { 6 } else { 5 };
     let shifts = if seed & 1 == 1 { [by_seed, by_count] } else { [by_count, by_seed] };
-    // Slopes of three planes over x and over y.
+    // Gradients of three planes in x and in y.
     let slope = |index: u32| {
         let nibble = hash >> (4 * index) & 15;
         (nibble * nibble) >> shifts[index as usize % 2]
     };
     std::array::from_fn(|texel| {
-        // Blocks of fewer than 31 texels are taken twice as large.
+        // Coordinates are doubled for blocks of fewer than 31 texels.
         let [x, y] = [texel % 4, texel / 4].map(|place| 2 * place as u32);
         let height =
             |index: u32| (slope(2 * index) * x + slope(2 * index + 1) * y + (hash >> (14 - 4 * index))) & 63;

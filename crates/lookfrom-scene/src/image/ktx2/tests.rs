@@ -1,4 +1,4 @@
-//! Files that Basis Universal's encoder 2.5 wrote, files made here, and what is left when they are damaged.
+//! Files written by Basis Universal's encoder 2.5, files made here, and damaged copies of them.
 
 use std::io::Write;
 use std::path::Path;
@@ -10,7 +10,7 @@ fn run(bytes: &[u8]) -> Result<Pixels> {
     decode(bytes, &Location::file(Path::new("picture.ktx2")), &limits)
 }
 
-/// A file of 3 × 2 texels with this format and level.
+/// A file of 3 × 2 texels in this format and with this level.
 fn file(format: u32, packing: u32, level: &[u8], unpacked: usize) -> Vec<u8> {
     let mut bytes = MAGIC.to_vec();
     for field in [format, 1, 3, 2, 0, 0, 1, 1, packing, 0, 0, 0, 0] {
@@ -48,10 +48,10 @@ fn levels_are_unpacked_within_what_they_should_have() {
     };
     let level: Vec<u8> = (1..=6).collect();
     assert_eq!(run(&file(9, ZLIB, &zlib(&level), 6)).unwrap().texels[5], [6, 0, 0, 255]);
-    // Zstandard: a frame of one raw block.
+    // Zstandard: a frame with one raw block.
     let zstandard = [&[0x28, 0xb5, 0x2f, 0xfd, 0x20, 6, 49, 0, 0][..], &level].concat();
     assert_eq!(run(&file(9, ZSTANDARD, &zstandard, 6)).unwrap().texels[5], [6, 0, 0, 255]);
-    // A bomb is stopped one byte behind its end.
+    // A decompression bomb is stopped one byte after the expected end.
     let bomb = run(&file(9, ZLIB, &zlib(&vec![0; 1 << 20]), 6)).unwrap_err();
     assert!(bomb.message.contains("should have 6 bytes, and has 7"), "{bomb}");
 }
@@ -79,7 +79,7 @@ mod basis {
     use super::*;
 
     /// 10 × 6 texels, (40 + 20 x, 30 + 30 y, 100), opaque where x < 5, else 64: in ETC1S, in UASTC, and in UASTC with
-    /// Zstandard and smaller versions.
+    /// Zstandard and mipmaps.
     const ETC1S: &str = "ab4b5458203230bb0d0a1a0a00000000010000000a000000060000000000000000000000010000000100000001000000\
     680000003c000000a400000024000000c800000000000000ab0000000000000073010000000000000800000000000000\
     00000000000000003c0000000000000002003800a301020003030000080800000000000000003f000000000000000000\
@@ -126,7 +126,7 @@ mod basis {
     fn pictures_are_what_was_written_as_far_as_their_format_goes() {
         assert!(farthest(UASTC) <= 24, "{}", farthest(UASTC));
         assert!(farthest(UASTC_ZSTANDARD) <= 24, "{}", farthest(UASTC_ZSTANDARD));
-        // Two colours for each 4 × 4 texels, along one line through grey.
+        // Two colours for each 4 × 4 texels, along one line in the direction of grey.
         assert!(farthest(ETC1S) <= 96, "{}", farthest(ETC1S));
     }
 

@@ -8,7 +8,7 @@ use crate::scene::{MaterialId, MeshId};
 use crate::shape::{Emission, Mesh, Sphere};
 use crate::studio::{FILL, TAN_HALF_FOV, add_studio_and_camera};
 
-/// A scene of boxes, from corner to corner, as one mesh.
+/// A scene of boxes, given by two corners each, as one mesh.
 fn boxes(source_format: SourceFormat, of: &[[[f32; 3]; 2]]) -> Scene {
     let mut mesh = Mesh::default();
     for [min, max] in of {
@@ -70,7 +70,7 @@ fn nothing_is_cut_at_any_angle_and_the_size_stays() {
                     distances.push(lookfrom.distance(turntable.pivot));
                 }
                 assert!(distances.iter().all(|d| (d / distances[0] - 1.0).abs() < 1e-12), "{distances:?}");
-                // It is no farther away than it must be, but for the 10° between two steps.
+                // It is no farther away than necessary, apart from the 10° between two steps.
                 assert!(most > 0.95 * FILL, "{model:?}, up {up}, {width} × {height}: {most}");
             }
         }
@@ -95,7 +95,7 @@ fn a_scene_turns_around_what_its_camera_looks_at() {
     assert!(after.distance(lookat) < 1e-12, "{after}");
     assert!(lookfrom.distance(DVec3::new(8.0, 3.0, -0.5)) < 1e-12, "{lookfrom}");
 
-    // Without a point to look at it is what is visible, with one from elsewhere it is that.
+    // Without a target the axis goes through the visible subject, with a target of another format through that.
     let matrix = DMat4::from_translation(DVec3::new(0.0, 0.0, 5.0));
     scene.camera = Some(Camera { view: View::Matrix(matrix), ..Camera::default() });
     assert_eq!(Turntable::new(&scene, None, None).pivot, DVec3::ZERO);
@@ -113,7 +113,7 @@ fn lamps_domes_and_floors_without_end_do_not_move_the_axis() {
         edge_u: 2000.0 * DVec3::X,
         edge_v: 3001.0 * DVec3::Z,
     };
-    // Tilted, and of triangles.
+    // Tilted, and made of triangles.
     let backdrop = Mesh {
         positions: [[-90.0, -90.0, -30.0], [90.0, -90.0, -10.0], [0.0, 190.0, 5.0]]
             .map(Vec3::from_array)
@@ -131,14 +131,14 @@ fn lamps_domes_and_floors_without_end_do_not_move_the_axis() {
     let middle = |scene: &Scene| Turntable::new(scene, None, None).pivot;
     assert_eq!(middle(&scene), DVec3::splat(2.0));
 
-    // A table top is a thing; and what glows in a model is a part of it.
+    // A table top is part of the subject; and so are emissive shapes of a model.
     scene.shapes[1].geometry =
         Geometry::Quad { corner: DVec3::new(-1.0, 0.0, 1.0), edge_u: 4.0 * DVec3::X, edge_v: 2.0 * DVec3::Z };
     assert_eq!(middle(&scene), DVec3::new(1.0, 1.5, 2.0));
     scene.source_format = SourceFormat::Model;
     assert_eq!(middle(&scene), DVec3::new(1.0, 10.5, 1.0));
 
-    // Where there is nothing but a floor and a lamp, the floor counts; where there are only lamps, they do.
+    // With only a floor and a light, the floor is the subject; with only lights, they are.
     let mut flat = Scene { camera: scene.camera.clone(), ..Scene::default() };
     flat.shapes.push(Shape { emission: Some(Emission::new(Color::gray(1.0), false)), ..shape(lamp) });
     assert_eq!(middle(&flat), DVec3::new(0.0, 20.0, 0.0));

@@ -1,12 +1,12 @@
 //! Synonyms of types and other enumerated values.
 
-/// Words for types and other choices, and ours: those of them that can be chosen. What there is to say besides comes last.
+/// Words for types and other choices; the words of ours that may be meant; and an explanation to append.
 pub(super) const CHOICES: &[(&[&str], &[&str], &str)] = &[
     // Lights.
     (
         &["area", "arealight", "diffuse", "emitter", "mesh", "shape", "diffusearea"],
         &["rectangle", "disk", "sphere"],
-        "; any shape shines that has an `emission`, or a material with one",
+        "; any shape with an `emission`, or with a material that has one, emits light",
     ),
     (&["sun", "sunlight", "directional", "directionallight", "parallel", "distantlight"], &["distant"], ""),
     (&["pointlight", "omni", "bulb", "lamp", "candle"], &["point"], ""),

@@ -1,9 +1,9 @@
 //! Synonyms of keys.
 
-/// Words for keys, without `_` and in lower case, and the keys that may be meant: the first of these groups of which the table
-/// has all.
+/// Words for keys, in lower case without `_`, and groups of keys that may be meant: the first group of which the table has
+/// all keys.
 pub(super) const KEYS: &[(&[&str], &[&[&str]])] = &[
-    // Places and directions.
+    // Positions and directions.
     (&["from", "lower", "low", "minimum", "pmin", "corner1"], &[&["min"]]),
     (&["to", "upper", "high", "maximum", "pmax", "corner2"], &[&["max"]]),
     (&["base", "bottom", "start", "p0"], &[&["from"]]),
@@ -56,7 +56,7 @@ pub(super) const KEYS: &[(&[&str], &[&[&str]])] = &[
     ),
     (&["orthoscale", "screenheight", "viewheight"], &[&["height"]]),
     (&["screenwindow", "frustum"], &[&["window"]]),
-    // The picture and its computation.
+    // Image and render settings.
     (
         &["resolution", "size", "res", "dimensions", "dimension", "imagesize", "extent"],
         &[&["width", "height"], &["radius"], &["min", "max"], &["size"], &["scale"]],
@@ -130,7 +130,7 @@ pub(super) const KEYS: &[(&[&str], &[&[&str]])] = &[
     (&["attenuation", "decay"], &[&["falloff"]]),
     (&["twosided", "doublesided"], &[&["two_sided"]]),
     (&["map", "texture", "hdri", "file", "filename", "mapname", "path"], &[&["image"], &["file"]]),
-    // Surfaces.
+    // Materials.
     (
         &[
             "color",
@@ -210,7 +210,7 @@ pub(super) const KEYS: &[(&[&str], &[&[&str]])] = &[
     (&["bumpmap", "bumpscale", "displacement", "displacementmap", "height", "heightmap"], &[&["bump"]]),
     (&["weight", "fac", "factor", "blend", "t", "ratio"], &[&["amount"]]),
     (&["material1", "material2", "a", "b"], &[&["materials"]]),
-    // Patterns.
+    // Textures.
     (&["color1", "colour1", "tex1", "first", "a", "white"], &[&["even"], &["low"], &["inside"], &["vein"]]),
     (&["color2", "colour2", "tex2", "second", "b", "black"], &[&["odd"], &["high"], &["outside"], &["base"]]),
     (&["frequency", "repeat", "tiling", "uvscale", "uscale"], &[&["scale"], &["size"]]),
@@ -234,7 +234,7 @@ pub(super) const KEYS: &[(&[&str], &[&[&str]])] = &[
     (&["flipnormals", "invertnormals"], &[&["reverse_orientation"]]),
     (&["shape", "ref", "of", "group", "name", "prototype"], &[&["object"]]),
     (&["levels", "recursion"], &[&["depth"]]),
-    // A scene.
+    // Scenes.
     (&["include", "includes", "imports", "use"], &[&["import"]]),
     (&["film", "output", "picture", "screen", "display", "canvas"], &[&["image"]]),
     (&["settings", "integrator", "sampler", "renderer", "options"], &[&["render"]]),

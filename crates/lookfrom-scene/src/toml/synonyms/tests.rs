@@ -1,9 +1,9 @@
-//! Every suggestion is there where it is made.
+//! Every suggestion is valid where it is made.
 
 use super::*;
 use crate::toml::vocabulary::{choices, vocabulary};
 
-/// Each suggestion is one that the table has, and each row is of use to some table.
+/// Each suggestion is a key of its table, and each row applies to some table.
 #[test]
 fn what_is_suggested_is_there() {
     let tables = vocabulary();

@@ -1,7 +1,7 @@
 //! Calibration of camera sensors: matrices by least squares over the swatches of a ColorChecker.
 //!
-//! As pbrt-v4's `PixelSensor` (after PhysLight: Langlands & Fascione 2020): XYZ is what the standard observer sees of the swatches
-//! in D65 where the camera sees them in the light that shall look white.
+//! As pbrt-v4's `PixelSensor` (after PhysLight: Langlands & Fascione 2020): the camera's response to the swatches
+//! under the illuminant that is to appear white is mapped to the standard observer's XYZ of the swatches under D65.
 
 use lookfrom_scene::settings::Sensor as Settings;
 use lookfrom_scene::spectrum::daylight::daylight;
@@ -15,8 +15,9 @@ use super::rgb_from_xyz;
 /// Three functions of the wavelength.
 type Functions = [[f32; SAMPLES]; 3];
 
-/// XYZ of a camera's red, green and blue, by its responses at each nm: daylight of this temperature, in kelvin, looks like D65
-/// of the same luminance. A black body so cold that it tells nothing of colours is replaced by [`Settings::DAYLIGHT`].
+/// The matrix from a camera's red, green and blue to XYZ, by its responses at each nm: daylight of this
+/// temperature, in kelvin, appears as D65 of the same luminance. A black body too cold for a calibration is
+/// replaced by [`Settings::DAYLIGHT`].
 pub(super) fn xyz_from_camera(responses: &Functions, kelvin: f32) -> Matrix {
     let solved = |kelvin: f32| {
         let (white, daylight) = (DenselySampledSpectrum::from(&daylight(kelvin)), standard_illuminant());
@@ -27,7 +28,7 @@ pub(super) fn xyz_from_camera(responses: &Functions, kelvin: f32) -> Matrix {
                 .collect()
         };
         let luminance = |light: &DenselySampledSpectrum| f64::from(light.y_integral());
-        // Both sides in shares of the luminance of their light.
+        // Both sides relative to the luminance of their illuminant.
         let seen = lit(&white, responses).into_iter().map(|rgb| rgb.map(|value| value / luminance(&white)));
         let meant =
             lit(daylight, observer).into_iter().map(|xyz| xyz.map(|value| value / luminance(daylight)));
@@ -38,8 +39,8 @@ pub(super) fn xyz_from_camera(responses: &Functions, kelvin: f32) -> Matrix {
     if is_known { matrix } else { solved(Settings::DAYLIGHT) }
 }
 
-/// What a camera makes of linear Rec. 709 on average, where `rgb_from_camera` is its matrix: by the colours of the swatches in
-/// D65.
+/// The camera's average output for linear Rec. 709, where `rgb_from_camera` is its matrix: by the colours of the
+/// swatches in D65.
 pub(super) fn rgb_by_camera(responses: &Functions, rgb_from_camera: &Matrix) -> Matrix {
     let daylight = standard_illuminant();
     least_squares(swatches().map(|swatch| {
@@ -52,7 +53,7 @@ pub(super) fn rgb_by_camera(responses: &Functions, rgb_from_camera: &Matrix) -> 
     }))
 }
 
-/// The integrals of a reflectance times a light, weighed by three functions.
+/// The integrals of a reflectance times an illuminant, weighted by three functions.
 fn measured(
     reflectance: &DenselySampledSpectrum,
     light: &DenselySampledSpectrum,
@@ -64,7 +65,7 @@ fn measured(
     })
 }
 
-/// The matrix that takes the first of each pair nearest to the second: (Σ b aᵀ)(Σ a aᵀ)⁻¹.
+/// The matrix that maps the first of each pair to the second with least squared error: (Σ b aᵀ)(Σ a aᵀ)⁻¹.
 fn least_squares(pairs: impl Iterator<Item = ([f64; 3], [f64; 3])>) -> Matrix {
     let (mut products, mut squares): (Matrix, Matrix) = Default::default();
     for (a, b) in pairs {

@@ -8,7 +8,7 @@ use lookfrom_scene::spectrum::{Curve, SHORTEST, named};
 use super::rgb_from_xyz;
 use crate::core::spectrum::Spectrum;
 
-/// A curve sampled at each nm from 360 to 830, where the nearest sample counts.
+/// A curve sampled at each nm from 360 to 830, evaluated at the nearest sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DenselySampledSpectrum(Box<[f32; SAMPLES]>);
 
@@ -40,30 +40,30 @@ impl DenselySampledSpectrum {
         Self(Box::new(self.0.map(|value| value * factor)))
     }
 
-    /// The greatest value.
+    /// The largest value.
     pub fn max(&self) -> f32 {
         self.0.iter().copied().fold(f32::NEG_INFINITY, f32::max)
     }
 
-    /// The integral over the wavelengths in nm, weighed by the luminous efficiency y: what pbrt-v4 divides the light of
-    /// spectra by. Light of luminance 1 has [`observer::Y_INTEGRAL`]; divide by that for Y.
+    /// The integral over the wavelengths in nm, weighted by the luminous efficiency y: pbrt-v4's divisor for
+    /// emission spectra. Light of luminance 1 has [`observer::Y_INTEGRAL`]; divide by that for Y.
     pub fn y_integral(&self) -> f32 {
         self.integral(1) as f32
     }
 
-    /// The colour of light with this spectrum; the constant 1 has Y = 1.
+    /// XYZ of light with this spectrum; the constant 1 has Y = 1.
     pub fn to_xyz(&self) -> [f32; 3] {
         [0, 1, 2].map(|i| (self.integral(i) / observer::Y_INTEGRAL) as f32)
     }
 
-    /// Linear Rec. 709 of light with this spectrum, which is what an emission is in RGB mode. Saturated light has negative
+    /// Linear Rec. 709 of light with this spectrum: an emission in RGB mode. Saturated light has negative
     /// components.
     pub fn to_rgb(&self) -> [f32; 3] {
         rgb_from_xyz(self.to_xyz())
     }
 
-    /// What this curve as a reflectance (or transmittance, or index of refraction) is in RGB mode: the colour of daylight D65
-    /// times the curve, so that a constant c gives (c, c, c); never negative.
+    /// The RGB value of this curve as a reflectance (or transmittance, or index of refraction): the colour of
+    /// daylight D65 times the curve, so that a constant c gives (c, c, c); never negative.
     pub fn to_rgb_reflectance(&self) -> [f32; 3] {
         let daylight = standard_illuminant();
         let lit = Self::from_samples(std::array::from_fn(|i| self.0[i] * daylight.0[i]));
@@ -76,9 +76,9 @@ impl DenselySampledSpectrum {
     }
 }
 
-/// The number of the sample that is nearest to a wavelength in nm, if it lies within.
+/// The index of the sample nearest to a wavelength in nm, if the wavelength is in range.
 pub(super) fn nearest(nm: f32) -> Option<usize> {
-    // What is below 0 or not a number becomes 0, which is outside, too.
+    // Negative numbers and NaN become 0, which is out of range, too.
     let i = ((nm + 0.5) as u32).wrapping_sub(SHORTEST) as usize;
     (i < SAMPLES).then_some(i)
 }

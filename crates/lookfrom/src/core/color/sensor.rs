@@ -1,7 +1,8 @@
 //! The sensor of a film: its channels, exposure and white balance.
 //!
-//! pbrt-v4's `PixelSensor`. The standard observer measures X, Y and Z and is balanced by von Kries's scaling of Bradford's
-//! responses. A camera measures its own red, green and blue, and a matrix makes XYZ of them ([`super::calibration`]).
+//! pbrt-v4's `PixelSensor`. The standard observer measures X, Y and Z and is white-balanced by von Kries scaling in
+//! Bradford's cone space. A camera measures its own red, green and blue, which a matrix converts to XYZ
+//! ([`super::calibration`]).
 
 use std::sync::Arc;
 
@@ -17,9 +18,9 @@ use crate::core::spectrum::Spectrum;
 /// The standard observer or a camera, with exposure and white balance. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Sensor {
-    /// At each nm, what light of density 1 in one of four lanes adds to red, green, blue.
+    /// Response in red, green and blue to light of density 1 in one of four lanes, at each nm.
     responses: Arc<[[f32; 3]; SAMPLES]>,
-    /// What becomes of a colour that is RGB already.
+    /// Exposure and white balance for colours that are already RGB.
     balanced_from_rgb: [[f32; 3]; 3],
     channels_from_rgb: Matrix,
     measures_xyz: bool,
@@ -32,7 +33,7 @@ impl Default for Sensor {
 }
 
 impl Sensor {
-    /// The sensor of a picture's settings. Its limit of brightness is left to [`crate::render`].
+    /// The sensor of the image settings. The maximum component value is left to [`crate::render`].
     pub fn new(settings: &Settings) -> Self {
         let (xyz_from_rgb, rgb_from_xyz) = matrices();
         let imaging_ratio = f64::from(settings.imaging_ratio);
@@ -67,7 +68,8 @@ impl Sensor {
         }
     }
 
-    /// Linear Rec. 709 of a sample's radiance: an estimate whose mean is the colour. D65 of luminance 1 is (1, 1, 1).
+    /// Linear Rec. 709 of a sample's radiance: an estimate whose mean is the colour. D65 of luminance 1 is (1, 1,
+    /// 1).
     pub fn rgb(&self, radiance: Spectrum, wavelengths: &Wavelengths) -> [f32; 3] {
         let weighted = wavelengths.weighted(radiance);
         let mut rgb = [0.0; 3];
@@ -80,27 +82,27 @@ impl Sensor {
         rgb
     }
 
-    /// What a colour of RGB mode looks like after exposure and white balance. For a camera, whose response to a colour depends
-    /// on its spectrum, the least squares over the swatches of a ColorChecker in daylight.
+    /// A colour of RGB mode after exposure and white balance. For a camera, whose response to a colour depends on
+    /// its spectrum, by least squares over the swatches of a ColorChecker in daylight.
     pub fn balanced(&self, [r, g, b]: [f32; 3]) -> [f32; 3] {
         self.balanced_from_rgb.map(|[x, y, z]| x * r + y * g + z * b)
     }
 
-    /// What gives the channels that a film knows the variance of, from linear Rec. 709: those of [`Sensor::channels`], where X, Y and
-    /// Z are by [`space::XYZ_FROM_RGB`].
+    /// The matrix from linear Rec. 709 to the channels in which the film estimates variance: those of
+    /// [`Sensor::channels`], with X, Y and Z by [`space::XYZ_FROM_RGB`].
     pub fn variance_from_rgb(&self) -> &Matrix {
         if self.measures_xyz { &space::XYZ_FROM_RGB } else { &self.channels_from_rgb }
     }
 
-    /// The values of the sensor's channels, before white balance, of a colour that it made: the camera's red, green and blue, or X,
-    /// Y and Z. The standard observer sees light of luminance 1 as Y = 1.
+    /// The sensor's channel values, before white balance, of a colour that it produced: the camera's red, green and
+    /// blue, or X, Y and Z. The standard observer measures light of luminance 1 as Y = 1.
     pub fn channels(&self, rgb: [f32; 3]) -> [f32; 3] {
         space::apply(&self.channels_from_rgb, rgb.map(f64::from)).map(|value| value as f32)
     }
 }
 
-/// What makes daylight of that temperature, in kelvin, as white as D65; `None` for a black body too cold to be seen, which
-/// has no colour to balance.
+/// The matrix that adapts daylight of a temperature in kelvin to the white of D65; `None` for a black body too cold
+/// to be visible, which has no colour to adapt.
 fn balance(kelvin: f32) -> Option<Matrix> {
     let from = observer::xyz(&daylight(kelvin));
     let to = space::apply(&matrices().0, [1.0; 3]);

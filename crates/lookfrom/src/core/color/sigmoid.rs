@@ -1,7 +1,7 @@
 //! Smooth spectra of RGB colours: sigmoids of a quadratic (Jakob & Hanika 2019).
 //!
-//! A sigmoid of a quadratic polynomial of the wavelength is smooth, stays within [0, 1], and can have almost every colour a
-//! surface can have (Jakob and Hanika 2019). Colours that are the same in red, green and blue are constants.
+//! A sigmoid of a quadratic polynomial of the wavelength is smooth, stays within [0, 1], and can represent almost
+//! every surface colour (Jakob and Hanika 2019). Colours with equal red, green and blue are constants.
 
 use super::solve::{Measure, solve};
 use super::table::Table;
@@ -9,13 +9,14 @@ use crate::core::spectrum::Spectrum;
 
 /// A smooth spectrum within [0, 1]: s(a t² + b t + c) with s(x) = ½ + x / (2 √(1 + x²)) and t = (λ − 595 nm) / 235 nm.
 ///
-/// pbrt-v4 has the same functions as polynomials of λ itself; the shorter t keeps the digits of single precision.
+/// pbrt-v4 has the same functions as polynomials of λ itself; the normalised t preserves the digits of single
+/// precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sigmoid(pub [f32; 3]);
 
-/// Where t is 0, and how far from there to where it is ±1, in nm.
+/// The wavelength where t is 0, in nm.
 pub(super) const MIDDLE: f32 = 595.0;
-/// See [`MIDDLE`].
+/// The distance from [`MIDDLE`] to where t is ±1, in nm.
 pub(super) const REACH: f32 = 235.0;
 
 /// Beyond this the sigmoid is exactly 0 or 1 and its square is still finite.
@@ -37,8 +38,8 @@ impl Sigmoid {
         }))
     }
 
-    /// The spectrum whose colour under D65 is nearly `rgb`, by a table, for textures. Components are clamped to [0, 1]; what
-    /// is not a number counts as 0.
+    /// The spectrum whose colour under D65 is nearly `rgb`, by a table, for textures. Components are clamped to [0,
+    /// 1]; NaN counts as 0.
     pub fn from_rgb(rgb: [f32; 3]) -> Self {
         let rgb = clamped(rgb);
         if let Some(grey) = grey(rgb) {
@@ -58,12 +59,12 @@ impl Sigmoid {
     }
 }
 
-/// Each component within [0, 1]; what is not a number counts as 0.
+/// Each component clamped to [0, 1]; NaN counts as 0.
 fn clamped(rgb: [f32; 3]) -> [f32; 3] {
     rgb.map(|component| if component > 0.0 { component.min(1.0) } else { 0.0 })
 }
 
-/// The value of a colour without hue. What is so dark that its spectrum would be rounded to 0 is black.
+/// The value of an achromatic colour. A colour so dark that its spectrum would be rounded to 0 is black.
 fn grey([r, g, b]: [f32; 3]) -> Option<f32> {
     if r.max(g).max(b) < 1e-9 {
         return Some(0.0);
@@ -76,14 +77,14 @@ fn grey([r, g, b]: [f32; 3]) -> Option<f32> {
 /// For indices of refraction and the like. For light, multiply by [`super::standard_illuminant`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unbounded {
-    /// Twice the greatest component.
+    /// Twice the largest component.
     pub scale: f32,
-    /// What the scale is multiplied by.
+    /// The spectrum that is scaled.
     pub sigmoid: Sigmoid,
 }
 
 impl Unbounded {
-    /// The spectrum with the colour `rgb` (under D65), by the table. Negative components and what is not a number count as 0.
+    /// The spectrum with the colour `rgb` (under D65), by the table. Negative components and NaN count as 0.
     pub fn from_rgb(rgb: [f32; 3]) -> Self {
         Self::with(rgb, Sigmoid::from_rgb)
     }

@@ -1,7 +1,7 @@
 //! Coefficients of the sigmoid spectrum of a colour, by Newton's method (Jakob & Hanika 2019).
 //!
-//! From a guess, or without one along the straight line from grey, whose solution is known, to the colour, in steps as long as
-//! the method can follow. A [`Measure`] gives the colour of a spectrum.
+//! Starts from a guess, or else follows the straight line to the colour from grey, whose solution is known, in
+//! steps as long as the method converges. A [`Measure`] gives the colour of a spectrum.
 
 use std::sync::OnceLock;
 
@@ -11,23 +11,23 @@ use lookfrom_scene::spectrum::{LONGEST, SHORTEST, space};
 use super::sigmoid::{MIDDLE, REACH};
 use super::{matrices, standard_illuminant};
 
-/// How many wavelengths are summed side by side.
+/// Number of wavelengths that are summed side by side.
 const LANES: usize = 4;
 
-/// A rule that sums what light reflected at each of its wavelengths adds to the colour under D65.
+/// A quadrature rule for the colour of a reflectance under D65.
 pub(super) struct Measure(Vec<Step>);
 
-/// Some wavelengths of a rule.
+/// Four wavelengths of a rule.
 #[derive(Default)]
 struct Step {
-    /// The wavelengths as the polynomial sees them.
+    /// The wavelengths in the polynomial's variable t.
     t: [f64; LANES],
     /// Linear Rec. 709 per reflectance: red, green, blue.
     weights: [[f64; LANES]; 3],
 }
 
 impl Measure {
-    /// Whole nm and the white of D65 itself, as [`super::DenselySampledSpectrum`] measures colours.
+    /// Whole nm and exactly the white of D65, as [`super::DenselySampledSpectrum`] measures colours.
     pub(super) fn exact() -> &'static Self {
         static EXACT: OnceLock<Measure> = OnceLock::new();
         EXACT.get_or_init(|| {
@@ -36,8 +36,8 @@ impl Measure {
         })
     }
 
-    /// As pbrt-v4's table was made: the observer and D65 linear over every 5 nm, Simpson's 3/8 rule within, and a rounded
-    /// matrix. The colours differ from the exact ones by a few 10⁻⁴, most for dark saturated ones.
+    /// The rule of pbrt-v4's table: the observer and D65 piecewise linear over 5 nm, Simpson's 3/8 rule within, and
+    /// a rounded matrix. The colours differ from the exact ones by a few 10⁻⁴, most for dark saturated ones.
     pub(super) fn of_pbrt() -> &'static Self {
         const RGB_FROM_XYZ: space::Matrix = [
             [3.240479, -1.537150, -0.498535],
@@ -59,7 +59,7 @@ impl Measure {
                 (nm, repeats)
             });
             let mut measure = Self::new(steps, &RGB_FROM_XYZ);
-            // White has the luminance 1: the middle row of the inverse matrix weighs red, green and blue.
+            // White has the luminance 1: the middle row of the inverse matrix weights red, green and blue.
             let luminance = space::apply(&space::inverse(&RGB_FROM_XYZ), measure.white())[1];
             for weight in measure.0.iter_mut().flat_map(|step| step.weights.as_flattened_mut()) {
                 *weight /= luminance;
@@ -68,7 +68,7 @@ impl Measure {
         })
     }
 
-    /// The rule with these wavelengths in nm and their weights.
+    /// The rule with these wavelengths in nm and weights.
     fn new(wavelengths: impl Iterator<Item = (f64, f64)>, rgb_from_xyz: &space::Matrix) -> Self {
         let mut steps = Vec::new();
         let weighed = wavelengths.map(|(nm, weight)| {
@@ -96,12 +96,12 @@ impl Measure {
         [0, 1, 2].map(|channel| self.0.iter().flat_map(|step| step.weights[channel]).sum())
     }
 
-    /// The colour of a sigmoid spectrum, and how it changes with each coefficient (row: component, column: coefficient).
+    /// The colour of a sigmoid spectrum, and its Jacobian (row: component, column: coefficient).
     fn color(&self, [a, b, c]: [f64; 3]) -> ([f64; 3], space::Matrix) {
-        // By channel, what is summed, and lane
+        // By channel, term and lane.
         let mut sums = [[[0.0; LANES]; 4]; 3];
         for Step { t, weights } in &self.0 {
-            // The value of the sigmoid, and its slopes by a, b and c
+            // The value of the sigmoid, and its derivatives by a, b and c.
             let mut terms = [[0.0; LANES]; 4];
             for lane in 0..LANES {
                 let t = t[lane];
@@ -126,8 +126,8 @@ impl Measure {
     }
 }
 
-/// The value at `nm` of samples at multiples of 5 nm, between which it is linear. (At those multiples exactly, else between
-/// the two around; a whole nm that is asked for exactly is given as it is.)
+/// The value at `nm`, interpolated linearly between samples at multiples of 5 nm. (A sample at exactly `nm` is
+/// returned as it is.)
 fn linear(samples: &[f32; observer::SAMPLES], nm: f64) -> f64 {
     let at = nm - f64::from(SHORTEST);
     if at == libm::floor(at) {
@@ -138,10 +138,10 @@ fn linear(samples: &[f32; observer::SAMPLES], nm: f64) -> f64 {
     f64::from(samples[below]) * (1.0 - t) + f64::from(samples[below + 5]) * t
 }
 
-/// How near to the colour is near enough, as a part of its greatest component.
+/// Tolerance relative to the largest component.
 const NEAR: f64 = 1e-8;
 
-/// Newton's method; `None` where it does not arrive.
+/// Newton's method; `None` where it does not converge.
 pub(super) fn newton(measure: &Measure, rgb: [f64; 3], guess: [f64; 3]) -> Option<[f64; 3]> {
     let size = rgb[0].max(rgb[1]).max(rgb[2]);
     let mut coefficients = guess;
@@ -155,7 +155,7 @@ pub(super) fn newton(measure: &Measure, rgb: [f64; 3], guess: [f64; 3]) -> Optio
         if !coefficients.iter().all(|coefficient| coefficient.abs() < 1e6) {
             return None;
         }
-        // The error of the step is about the square of the error before.
+        // Convergence is quadratic: the error after the step is about the square of the error before.
         if error.iter().all(|error| error.abs() * error.abs() <= NEAR * size * size) {
             return Some(coefficients);
         }
@@ -163,7 +163,7 @@ pub(super) fn newton(measure: &Measure, rgb: [f64; 3], guess: [f64; 3]) -> Optio
     None
 }
 
-/// The coefficients for a colour within [0, 1]³; the last that were found on the way where there are none.
+/// The coefficients for a colour within [0, 1]³; where the method does not converge, the last ones on the way.
 pub(super) fn solve(measure: &Measure, rgb: [f64; 3]) -> [f64; 3] {
     let middle = 0.5 * (rgb[0].max(rgb[1]).max(rgb[2]) + rgb[0].min(rgb[1]).min(rgb[2]));
     let grey = middle.clamp(1e-12, 1.0 - 1e-6);

@@ -1,37 +1,38 @@
 //! A table of sigmoid coefficients over RGB (Jakob & Hanika 2019).
 //!
-//! The table of pbrt-v4, coefficients over the lattice of the greatest component and the ratios of the other two to it, 3 × 64³
-//! (Jakob and Hanika 2019), with the same interpolation. Between its nodes colours are off by some 5 · 10⁻⁴, dark saturated
-//! ones by a few per cent: to agree with pbrt is to have the same errors. (Not where all components are below 4 · 10⁻⁴: there
-//! its optimisation stops early.) Nodes are solved when they are first asked for, so that nothing is computed at the start and
-//! nothing is stored on disk; a node's solution depends on nothing but its place.
+//! pbrt-v4's table: coefficients over a lattice of the largest component and the ratios of the other two to it, 3 ×
+//! 64³ (Jakob and Hanika 2019), with the same interpolation. Between the nodes, colours are off by some 5 · 10⁻⁴,
+//! dark saturated ones by a few per cent: to agree with pbrt is to have the same errors. (Not where all components
+//! are below 4 · 10⁻⁴: there its optimisation stops early.) Nodes are solved on first use, so that nothing is
+//! computed at the start and nothing is stored on disk; a node's solution depends on its position only.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::solve::{Measure, newton, solve};
 
-/// Nodes along each axis.
+/// Number of nodes along each axis.
 const NODES: usize = 64;
 
-/// The coefficients for greys that reflect all but 2 · 10⁻⁴ of the light and more, where pbrt-v4's optimisation stops.
+/// The coefficients for greys that reflect at least 1 − 2 · 10⁻⁴ of the light, where pbrt-v4's optimisation stops.
 const WHITE: [f32; 3] = [-4.053308, -15.649015, 35.114243];
 /// The first plane with such greys.
 const WHITE_PLANE: usize = 60;
 
-/// The coefficients of a node as bits; the last is 0 until all three are there.
+/// The coefficients of a node as bits; the last is 0 until all three are stored.
 type Node = [AtomicU32; 3];
 
-/// The lattice with the nodes that were asked for so far.
+/// The lattice with the nodes solved so far.
 pub(super) struct Table {
-    /// The greatest component at each plane: denser towards both ends.
+    /// The largest component at each plane: denser toward both ends.
     levels: [f32; NODES],
-    /// By greatest component, plane, and the ratios of the components after it: the second outside, the first inside.
+    /// Indexed by the largest component, plane, and the ratios of the two components after it: the second in the
+    /// outer dimension, the first in the inner one.
     nodes: Vec<Node>,
 }
 
 impl Table {
-    /// The one that all share.
+    /// The table shared by all threads.
     pub(super) fn shared() -> &'static Self {
         static TABLE: OnceLock<Table> = OnceLock::new();
         TABLE.get_or_init(Self::new)
@@ -57,7 +58,7 @@ impl Table {
             2
         };
         let z = rgb[greatest];
-        // Where the colour lies between the nodes
+        // The position of the colour between the nodes.
         let scale = (NODES - 1) as f32 / z;
         let cell = |ratio: f32| (ratio as usize).min(NODES - 2);
         let x = rgb[(greatest + 1) % 3] * scale;
@@ -66,7 +67,7 @@ impl Table {
         let k = self.levels.partition_point(|&level| level < z).saturating_sub(1).min(NODES - 2);
         let (x, y) = (x - i as f32, y - j as f32);
         let z = (z - self.levels[k]) / (self.levels[k + 1] - self.levels[k]);
-        // The mean of the cell's corners, each weighed by how near it is
+        // Trilinear interpolation between the cell's corners.
         let first = number(greatest, k, j, i);
         let mut mean = [0.0; 3];
         for (plane, z) in [1.0 - z, z].into_iter().enumerate() {
@@ -82,11 +83,11 @@ impl Table {
         mean
     }
 
-    /// The coefficients of a node by its number.
+    /// The coefficients of a node by its index.
     #[inline(always)]
     fn node(&self, at: usize) -> [f32; 3] {
         let [a, b, c] = &self.nodes[at];
-        // Whoever finds c finds a and b, too: c is written last and read first.
+        // A thread that sees c also sees a and b: c is written last and read first.
         match c.load(Ordering::Acquire) {
             0 => self.solved(at),
             bits => {
@@ -104,18 +105,18 @@ impl Table {
         let [a, b, c] = &self.nodes[at];
         a.store(solution[0].to_bits(), Ordering::Relaxed);
         b.store(solution[1].to_bits(), Ordering::Relaxed);
-        // A c of +0 would be taken for a node that is not there; −0 means the same.
+        // A c of +0 would mark the node as unsolved; −0 is equivalent.
         let bits = solution[2].to_bits();
         c.store(if bits == 0 { (-0.0_f32).to_bits() } else { bits }, Ordering::Release);
         solution
     }
 
-    /// The coefficients at a place, from its neighbour on a lattice eight times as coarse.
+    /// The coefficients at a node, starting from its neighbour on a lattice eight times as coarse.
     fn solution(&self, greatest: usize, k: usize, j: usize, i: usize) -> [f32; 3] {
         if (j, i) == (NODES - 1, NODES - 1) && k >= WHITE_PLANE {
             return WHITE;
         }
-        // The plane of black has no solution; what is darker than the next plane looks like it.
+        // The plane of black has no solution; colours darker than the next plane take that plane's.
         let k = k.max(1);
         let z = f64::from(self.levels[k]);
         let mut rgb = [z; 3];
@@ -126,7 +127,7 @@ impl Table {
         let found = if coarse == (k, j, i) {
             solve(measure, rgb)
         } else {
-            // Of dark spectra, those that are s times as dark have coefficients 1/√s times as great.
+            // Dark spectra that are darker by a factor s have coefficients larger by a factor 1/√s.
             let darker = (f64::from(self.levels[coarse.0]) / z).sqrt();
             let guess = self
                 .node(number(greatest, coarse.0, coarse.1, coarse.2))
@@ -137,7 +138,7 @@ impl Table {
     }
 }
 
-/// Where a node is kept.
+/// The index of a node.
 fn number(greatest: usize, k: usize, j: usize, i: usize) -> usize {
     ((greatest * NODES + k) * NODES + j) * NODES + i
 }

@@ -7,25 +7,25 @@ use proptest::prelude::*;
 use super::table::Table;
 use super::*;
 
-/// The colour of a spectrum under D65, by summing each nm.
+/// The colour of a reflectance under D65, by summing over each nm.
 fn color_of(at: impl Fn(&[f32; 4]) -> Spectrum) -> [f32; 3] {
     let light = standard_illuminant().samples();
     let lit = std::array::from_fn(|i| at(&[360.0 + i as f32; 4]).0[0] * light[i]);
     DenselySampledSpectrum::from_samples(lit).to_rgb()
 }
 
-/// The greatest difference of two colours.
+/// The largest difference of two colours.
 fn far(a: [f32; 3], b: [f32; 3]) -> f32 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
 
-/// A lattice over the cube with its faces.
+/// A lattice over the cube including its faces.
 fn cube(steps: usize) -> impl Iterator<Item = [f32; 3]> {
     let level = move |i: usize| i as f32 / (steps - 1) as f32;
     (0..steps.pow(3)).map(move |i| [level(i % steps), level(i / steps % steps), level(i / steps / steps)])
 }
 
-/// Numbers evenly over [0, 1).
+/// Evenly spaced numbers in [0, 1).
 fn even(count: usize) -> impl Iterator<Item = f32> {
     (0..count).map(move |i| (i as f32 + 0.5) / count as f32)
 }
@@ -37,7 +37,7 @@ fn exact_spectra_have_their_colors() {
     for rgb in cube(13).chain(hard) {
         let sigmoid = Sigmoid::exact_from_rgb(rgb);
         let error = far(color_of(|lambda| sigmoid.at(lambda)), rgb);
-        // Near white a change of the coefficients in their last digit is more.
+        // Near white, the last digit of the coefficients has a larger effect.
         assert!(error < if rgb[0] < 0.999 { 1e-5 } else { 2e-5 }, "{rgb:?}: {error:e} by {sigmoid:?}");
     }
 }
@@ -84,7 +84,7 @@ fn the_table_agrees_with_the_published_one() {
 fn the_walls_of_the_cornell_box_are_those_of_pbrt() {
     let Some(path) = lookfrom_test_data::shared("reference/cornell-box.exr") else { return };
     let picture = read_exr(&path, &mut LoadContext::new(&Disk)).unwrap();
-    // The mean of all pixels that are nearly of a colour; pbrt's albedo is seen under D65.
+    // The mean of all pixels that are close to a colour; pbrt's albedo is seen under D65.
     let mean = |layer: &str, near: [f32; 3]| {
         let channels = ["R", "G", "B"].map(|name| picture.channel(&format!("{layer}{name}")).unwrap());
         let (mut sum, mut count) = ([0.0; 3], 0.0);
@@ -136,7 +136,7 @@ fn the_table_has_no_seams() {
             Sigmoid::from_rgb(moved).at(&lambda)
         };
         let here = Sigmoid::from_rgb(rgb).at(&lambda);
-        // Greys are exact and their neighbours are not: a step of the size of the table's error is pbrt's.
+        // Greys are exact and their neighbours are not: a step of the size of the table's error is pbrt's, too.
         for shift in 0..6 {
             let step = here.zip(near(shift), |a, b| (a - b).abs()).max_lane();
             assert!(step < 2e-3, "{rgb:?} by {shift}: {step}");
@@ -152,7 +152,7 @@ fn the_order_of_questions_does_not_matter() {
     let mut backwards: Vec<_> = colors.iter().rev().map(|&rgb| second.coefficients(rgb)).collect();
     backwards.reverse();
     assert_eq!(forwards, backwards);
-    // Nor that several ask at once, nor that the answer is known already
+    // Neither do concurrent lookups, nor cached solutions.
     let third = Table::new();
     let ask = || colors.iter().map(|&rgb| third.coefficients(rgb)).collect::<Vec<_>>();
     let (a, b) = rayon::join(ask, ask);
@@ -161,7 +161,7 @@ fn the_order_of_questions_does_not_matter() {
 
 #[test]
 fn colors_have_the_same_bits_everywhere() {
-    // FNV-1a over what reaches a pixel
+    // FNV-1a over everything that reaches a pixel.
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut feed = |values: &[f32]| {
         for byte in values.iter().flat_map(|value| value.to_bits().to_le_bytes()) {
@@ -203,20 +203,20 @@ fn wavelengths_have_their_densities() {
     const CELLS: u16 = 2048;
     for u in (0..CELLS).map(|cell| (f32::from(cell) + 0.5) / f32::from(CELLS)) {
         let wavelengths = Wavelengths::sample_visible(u);
-        // The density is what the way from u to the wavelength is stretched by, the same all over a cell.
+        // The density is the inverse slope of the map from u to the wavelength, constant within a cell.
         let step = 0.4 / f32::from(CELLS);
         let stretched = (lambda_of(u + step) - lambda_of(u - step)) / (2.0 * step);
         assert!((wavelengths.pdf[0] * stretched - 1.0).abs() < 3e-3, "{u}: {wavelengths:?}");
         let cosh = libm::cosh(0.0072 * (f64::from(wavelengths.lambda[0]) - 538.0));
         // It follows the curve up to the width of a cell.
         assert!((f64::from(wavelengths.pdf[0]) * cosh * cosh / 0.003_939_804_2 - 1.0).abs() < 0.01);
-        // The lanes lie a quarter apart.
+        // The lanes are a quarter apart.
         for (lane, shift) in [0.25, 0.5, 0.75].into_iter().enumerate() {
             let other = Wavelengths::sample_visible((u + shift).fract());
             assert!((wavelengths.lambda[lane + 1] - other.lambda[0]).abs() < 2e-3);
         }
     }
-    // The density is one.
+    // The density integrates to one.
     let total: f32 = even(4096).map(|u| 1.0 / Wavelengths::sample_visible(u).pdf[0]).sum::<f32>() / 4096.0;
     assert!((total - 470.0).abs() < 0.1, "{total}");
 }
@@ -263,7 +263,7 @@ fn colors_of_curves_in_rgb_mode() {
     assert!(far(dense("stdillum-D65").to_rgb(), [1.0; 3]) < 1e-6);
     assert!((dense("stdillum-A").y_integral() - 106.856895).abs() < 1e-3);
     assert!(far(DenselySampledSpectrum::from(&Curve::Constant(0.3)).to_rgb_reflectance(), [0.3; 3]) < 1e-6);
-    // Gold as a sketch: little refraction and much absorption of red
+    // A sketch of gold: little refraction and strong absorption of red.
     let (eta, k) = (dense("metal-Au-eta").to_rgb_reflectance(), dense("metal-Au-k").to_rgb_reflectance());
     assert!(far(eta, [0.08, 0.40, 1.56]) < 0.01 && far(k, [3.39, 2.50, 1.77]) < 0.01, "{eta:?} {k:?}");
     let xyz = xyz_from_rgb([1.0; 3]);
@@ -271,7 +271,7 @@ fn colors_of_curves_in_rgb_mode() {
     assert!(far(rgb_from_xyz(xyz_from_rgb([0.1, 0.7, 0.3])), [0.1, 0.7, 0.3]) < 1e-6);
 }
 
-/// Any finite number, all exponents alike, or one within [0, 1].
+/// Any finite number, with all exponents equally likely, or one within [0, 1].
 fn component() -> impl Strategy<Value = f32> {
     prop_oneof![any::<u32>().prop_map(f32::from_bits), 0.0..=1.0_f32, Just(0.0), Just(1.0)]
 }

@@ -6,10 +6,10 @@ use lookfrom_scene::spectrum::{LONGEST, SHORTEST};
 
 use crate::core::spectrum::Spectrum;
 
-/// Cells of equal probability between the shortest and the longest wavelength; a multiple of four.
+/// Number of cells of equal probability between the shortest and the longest wavelength; a multiple of four.
 const CELLS: usize = 2048;
 
-/// Where the cells begin, and the end of the last.
+/// The beginnings of the cells, and the end of the last.
 fn ends() -> &'static [f32; CELLS + 1] {
     static ENDS: OnceLock<[f32; CELLS + 1]> = OnceLock::new();
     ENDS.get_or_init(|| {
@@ -22,19 +22,19 @@ fn ends() -> &'static [f32; CELLS + 1] {
     })
 }
 
-/// Four wavelengths of one sample with their densities. After dispersion only the first counts.
+/// Four wavelengths of one sample with their densities. After dispersion only the first is in use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wavelengths {
     /// In nm, between 360 and 830.
     pub lambda: [f32; 4],
-    /// With which density each was chosen, per nm; 0 for those that no longer count.
+    /// The density of each, per nm; 0 for terminated ones.
     pub pdf: [f32; 4],
 }
 
 impl Wavelengths {
-    /// Wavelengths by how well the eye sees them, with a density about ∝ 1 / cosh²(0.0072 (λ − 538)) on 360 … 830 nm
-    /// (Radziszewski, Boryczko, Alda 2009): constant in each of 2048 cells of equal probability. `u` is in [0, 1); the lanes
-    /// are at u, u + ¼, u + ½, u + ¾ modulo 1.
+    /// Samples wavelengths by the sensitivity of the eye, with a density about ∝ 1 / cosh²(0.0072 (λ − 538)) on 360
+    /// … 830 nm (Radziszewski, Boryczko, Alda 2009): constant in each of 2048 cells of equal probability. `u` is in
+    /// [0, 1); the lanes are at u, u + ¼, u + ½, u + ¾ modulo 1.
     pub fn sample_visible(u: f32) -> Self {
         let ends = ends();
         let place = u * CELLS as f32;
@@ -49,14 +49,14 @@ impl Wavelengths {
         Self { lambda: lanes.map(|(lambda, _)| lambda), pdf: lanes.map(|(_, pdf)| pdf) }
     }
 
-    /// Lets only the first wavelength count from here on, at four times its weight. Doing so twice is doing so once.
+    /// Terminates all wavelengths but the first, which gets four times the weight. Idempotent.
     pub fn terminate_secondary(&mut self) {
         if !self.secondary_terminated() {
             self.pdf = [self.pdf[0] / 4.0, 0.0, 0.0, 0.0];
         }
     }
 
-    /// Whether only the first wavelength counts.
+    /// True if only the first wavelength is in use.
     pub fn secondary_terminated(&self) -> bool {
         self.pdf[1..] == [0.0; 3]
     }

@@ -10,7 +10,7 @@ fn random(i: u32) -> [f32; 2] {
     Sampler::new(lookfrom_scene::settings::Sampler::Independent, 11).two([0, 0], i, 0)
 }
 
-/// Weights of any exponent, some zero, some nonsense.
+/// Weights of any exponent, some zero, some invalid.
 fn any_weight() -> impl Strategy<Value = f32> {
     prop_oneof![
         4 => (1_u32..255, 0_u32..1 << 23).prop_map(|(exponent, fraction)| f32::from_bits(exponent << 23 | fraction)),
@@ -39,7 +39,7 @@ proptest! {
     fn choosing_agrees_with_walking_along(weights in prop::collection::vec(any_weight(), 1..300), u in 0.0_f32..1.0) {
         let discrete = Discrete::new(&weights);
         let (index, probability, rest) = discrete.sample(u);
-        // Slow twin: walk until the sum passes the goal.
+        // Slow reference: linear search until the sum passes the goal.
         let mut usable: Vec<f64> = weights.iter()
             .map(|&w| if w > 0.0 && w < f32::INFINITY { f64::from(w) } else { 0.0 }).collect();
         if usable.iter().all(|&w| w == 0.0) {
@@ -54,7 +54,7 @@ proptest! {
         prop_assert_eq!(index, walked);
         prop_assert!(usable[index] > 0.0 && probability > 0.0 && (0.0..1.0).contains(&rest));
         prop_assert_eq!(probability, discrete.pdf(index));
-        // The new number leads back to the old one.
+        // The new number determines the old one.
         let back = (sum + f64::from(rest) * usable[index]) / total;
         prop_assert!((back - f64::from(u)).abs() < 1e-6, "{} {}", back, u);
     }
@@ -96,7 +96,7 @@ fn a_number_on_an_edge_stays_in_its_cell() {
 
 #[test]
 fn points_are_as_dense_as_they_say() {
-    // A picture with a sun, a dark row and a dark column.
+    // An image with a sun, a dark row and a dark column.
     let (width, height) = (6, 5);
     let weights: Vec<f32> = (0..width * height)
         .map(|i| match (i % width, i / width) {
@@ -106,7 +106,7 @@ fn points_are_as_dense_as_they_say() {
         })
         .collect();
     let grid = Piecewise2D::new(&weights, width, height);
-    // Count in cells that cut those of the grid.
+    // Count in cells that do not align with those of the grid.
     const N: u32 = 200_000;
     const SIDE: usize = 12;
     let (fine_x, fine_y) = (SIDE, 10);
@@ -137,7 +137,7 @@ fn nothing_bright_is_uniform() {
     assert_eq!(Discrete::new(&[0.0; 4]).sample(0.6), (2, 0.25, (0.6_f32 - 0.5) * 4.0));
 }
 
-/// A part of the square; some are nearly nothing.
+/// A window of the square; some are nearly empty.
 fn any_window() -> impl Strategy<Value = Window> {
     let side = || (0.0_f64..1.0, -30.0_f64..0.0).prop_map(|(a, size)| (a, (a + size.exp2()).min(1.0)));
     (side(), side()).prop_map(|(x, y)| Window { min: [x.0, y.0], max: [x.1, y.1] })
@@ -153,7 +153,7 @@ proptest! {
     ) {
         let grid = Windowed2D::new(weights[..width * height].to_vec(), width, height);
         for window in [window, Window::WHOLE] {
-            // Slow twin: cut every cell with the window.
+            // Slow reference: intersect every cell with the window.
             let mut sum = 0.0;
             for (index, weight) in weights[..width * height].iter().enumerate() {
                 let overlap = |axis: usize, cell: usize, cells: usize| {
@@ -193,7 +193,7 @@ fn points_of_windows_are_as_dense_as_they_say() {
     let grid = Windowed2D::new(weights, width, height);
     let window = Window { min: [0.13, 0.27], max: [0.71, 0.98] };
     const N: u32 = 200_000;
-    const SIDE: usize = 60; // cells of the grid and of the counts have common borders
+    const SIDE: usize = 60; // the grid's cells and the counting cells share borders
     let mut counts = vec![0; SIDE * SIDE];
     let of = |x: f64, axis: usize| {
         let share = (x - window.min[axis]) / (window.max[axis] - window.min[axis]);
@@ -206,7 +206,7 @@ fn points_of_windows_are_as_dense_as_they_say() {
     let area = (window.max[0] - window.min[0]) * (window.max[1] - window.min[1]);
     let expected: Vec<f64> = (0..SIDE * SIDE)
         .map(|index| {
-            // the mean over a cell of the counts, by many places in it
+            // The mean over a counting cell, by many points in it.
             let fine = 16;
             let at = |cell: usize, k: usize, axis: usize| {
                 let share = (cell as f64 + (k as f64 + 0.5) / f64::from(fine)) / SIDE as f64;

@@ -1,8 +1,8 @@
-//! Windowed piecewise-constant distributions: sampling a picture within a rectangle that differs for each query.
+//! Windowed piecewise-constant distributions: sampling an image within a rectangle that differs for each query.
 //!
-//! A table of sums over all rectangles from the first corner (Crow 1984) gives the sum over any rectangle by four numbers;
-//! columns and then rows are found in it by bisection (Bitterli, Novák & Jarosz 2015, for portals). Which part is asked for
-//! is left to lights. All in f64: a part may be a small one of a picture with a sun elsewhere in it.
+//! A summed-area table (Crow 1984) gives the sum over any rectangle by four numbers; columns and then rows are
+//! sampled by bisection (Bitterli, Novák & Jarosz 2015, for portals). The choice of windows is left to lights. All
+//! sums are in f64: a window may be a small part of an image with a sun elsewhere in it.
 
 use super::{rounded, usable};
 
@@ -11,18 +11,19 @@ use super::{rounded, usable};
 pub struct Windowed2D {
     width: usize,
     height: usize,
-    /// Row by row.
+    /// Weights, row by row.
     weights: Vec<f32>,
-    /// (`width` + 1) × (`height` + 1) numbers: at column c and row r the sum of the weights left of c and above r.
+    /// The summed-area table of (`width` + 1) × (`height` + 1) numbers: at column c and row r the sum of the
+    /// weights left of c and above r.
     sums: Vec<f64>,
 }
 
 /// A rectangle in the unit square.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// Least corner.
+    /// Smallest coordinates.
     pub min: [f64; 2],
-    /// Greatest corner.
+    /// Largest coordinates.
     pub max: [f64; 2],
 }
 
@@ -30,15 +31,15 @@ impl Window {
     /// The whole square.
     pub const WHOLE: Self = Self { min: [0.0; 2], max: [1.0; 2] };
 
-    /// Whether a point lies in it or on its border.
+    /// True if a point lies inside or on the border.
     pub fn contains(&self, point: [f64; 2]) -> bool {
         (0..2).all(|axis| self.min[axis] <= point[axis] && point[axis] <= self.max[axis])
     }
 }
 
 impl Windowed2D {
-    /// `width` × `height` weights, row by row, as for [`Piecewise2D`](super::Piecewise2D); here nothing is chosen where none
-    /// is positive. Takes 12 bytes a cell.
+    /// `width` × `height` weights, row by row, as for [`Piecewise2D`](super::Piecewise2D), except that nothing can
+    /// be sampled if none is positive. Takes 12 bytes per cell.
     ///
     /// # Panics
     /// If there are not `width` × `height` weights, or none.
@@ -61,8 +62,9 @@ impl Windowed2D {
         Self { width, height, weights, sums }
     }
 
-    /// A point of a window for `u` in [0, 1)², and the density there over the area of the square: the one of
-    /// [`Windowed2D::pdf`]. `None` where nothing in the window has a weight. Each coordinate grows with its own.
+    /// A point of a window for `u` in [0, 1)², and its density over the area of the square (equal to
+    /// [`Windowed2D::pdf`]). `None` if the window has no weight. Each coordinate is monotonic in its coordinate
+    /// of `u`.
     pub fn sample(&self, window: &Window, u: [f32; 2]) -> Option<([f64; 2], f32)> {
         let total = self.total(window);
         let [x, y] = self.in_cells(window);
@@ -73,7 +75,7 @@ impl Windowed2D {
         (pdf > 0.0).then(|| ([place(column, x, self.width), place(row, y, self.height)], pdf))
     }
 
-    /// The density at a point over the area of the square: 0 outside of the window, and 1 in the integral over it.
+    /// The density at a point over the area of the square: 0 outside of the window, with an integral of 1 over it.
     pub fn pdf(&self, window: &Window, point: [f64; 2]) -> f32 {
         if !window.contains(point) {
             return 0.0;
@@ -89,14 +91,14 @@ impl Windowed2D {
         rounded(weight / total * (self.width * self.height) as f64)
     }
 
-    /// The weights in a window, those of cells that it cuts by their share.
+    /// The sum of the weights in a window; cells on its border count by the covered fraction.
     fn total(&self, window: &Window) -> f64 {
         let [[left, right], y] = self.in_cells(window);
         let until = |x| between(|column| self.above(column, y), self.width, x);
         until(right) - until(left)
     }
 
-    /// Beginning and end of a window along both axes.
+    /// Beginning and end of a window along both axes, in cells.
     fn in_cells(&self, window: &Window) -> [[f64; 2]; 2] {
         let size = [self.width, self.height];
         std::array::from_fn(|axis| {
@@ -104,7 +106,7 @@ impl Windowed2D {
         })
     }
 
-    /// The weights left of a column between two heights.
+    /// The sum of the weights left of a column between two heights.
     fn above(&self, column: usize, [top, bottom]: [f64; 2]) -> f64 {
         let until = |y| between(|row| self.sum(column, row), self.height, y);
         until(bottom) - until(top)
@@ -115,14 +117,15 @@ impl Windowed2D {
     }
 }
 
-/// Running sums between two cells: linear.
+/// Cumulative sums interpolated linearly within a cell.
 fn between(sums: impl Fn(usize) -> f64, cells: usize, x: f64) -> f64 {
     let cell = (x as usize).min(cells - 1);
     let (low, high) = (sums(cell), sums(cell + 1));
     low + (x - cell as f64) * (high - low)
 }
 
-/// The cell in whose share of the sums from `begin` to `end` the number `u` lies, and the place there, counted in cells.
+/// The cell whose interval of the sums from `begin` to `end` contains the number `u`, and the position there, in
+/// cells.
 fn choose(sums: impl Fn(usize) -> f64, cells: usize, [begin, end]: [f64; 2], u: f32) -> Option<(usize, f64)> {
     let (low, high) = (between(&sums, cells, begin), between(&sums, cells, end));
     let goal = low + f64::from(u) * (high - low);
@@ -137,7 +140,7 @@ fn choose(sums: impl Fn(usize) -> f64, cells: usize, [begin, end]: [f64; 2], u: 
             first = middle + 1;
         }
     }
-    // Within it the sums are linear.
+    // Within a cell the sums are linear.
     let (left, right) = (begin.max(first as f64), end.min((first + 1) as f64));
     let (low, high) = (between(&sums, cells, left), between(&sums, cells, right));
     (high > low).then(|| (first, left + ((goal - low) / (high - low)).clamp(0.0, 1.0) * (right - left)))
@@ -147,7 +150,7 @@ fn cell(x: f64, cells: usize) -> usize {
     ((x * cells as f64) as usize).min(cells - 1)
 }
 
-/// The number in [0, 1] at a place counted in cells. It is in the cell `index` after rounding too.
+/// The number in [0, 1] at a position counted in cells. It is in the cell `index` after rounding too.
 fn place(index: usize, x: f64, cells: usize) -> f64 {
     let x = x / cells as f64;
     match cell(x, cells).cmp(&index) {

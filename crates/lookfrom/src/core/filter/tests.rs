@@ -1,4 +1,4 @@
-//! Tests that filter samples and weights make the filter.
+//! Tests that filter samples and weights reproduce the filter.
 
 use super::*;
 use crate::core::statistics::chi_square_deviate;
@@ -16,7 +16,7 @@ fn all() -> [Shape; 8] {
     ]
 }
 
-/// Every x of a fine even grid of u, with the signed weight of one axis.
+/// Every x of a fine uniform grid of u, with the signed weight of one axis.
 fn along_x(filter: &Filter) -> impl Iterator<Item = (f64, f64)> {
     const N: u32 = 1 << 18;
     let ([_, _], centre) = filter.sample([0.5, 0.5]);
@@ -77,7 +77,7 @@ fn samples_follow_the_magnitude_of_the_filter() {
         let filter = Filter::new(shape);
         let r = filter.radius();
         let cell = |x: f32| (((x / r + 1.0) * 0.5 * CELLS as f32) as usize).min(CELLS - 1);
-        // Expect ∫|f| over each cell.
+        // Expected: ∫|f| over each cell.
         const FINE: usize = 480;
         let mut expected = vec![0.0; CELLS * CELLS];
         let place = |i: usize| ((i as f32 + 0.5) / FINE as f32 * 2.0 - 1.0) * r;
@@ -99,7 +99,7 @@ fn samples_follow_the_magnitude_of_the_filter() {
         }
         let deviate = chi_square_deviate(&observed, &expected);
         assert!(deviate < 4.5, "{shape:?}: {deviate}");
-        // Only a cell of the table that f crosses zero in may err.
+        // Signs may only be wrong within a table cell in which f crosses zero.
         assert!(wrong_signs < SAMPLES / 1000, "{shape:?}: {wrong_signs}");
     }
 }
@@ -109,7 +109,8 @@ fn tables_agree_with_bisection() {
     for shape in all() {
         let filter = Filter::new(shape);
         let Some(table) = &filter.table else { continue };
-        // Slow twin: running integral of |f| by the midpoint rule, and the first place that reaches a share.
+        // Slow reference: cumulative integral of |f| by the midpoint rule, and the first position that
+        // reaches a fraction.
         const N: u32 = 100_000;
         let place = |i: u32| (f64::from(i) + 0.5) / f64::from(N);
         let mut running: Vec<f64> = Vec::new();

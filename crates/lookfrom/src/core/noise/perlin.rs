@@ -1,24 +1,24 @@
-//! Perlin noise by his permutation table, as in pbrt-v4.
+//! Perlin noise by its original permutation table, as in pbrt-v4.
 //!
-//! It repeats every 256 units, and agrees with the scenes that were made for it; new patterns are better off with the
-//! noise of the parent module.
+//! It repeats every 256 units, and reproduces the scenes that were made for it. New textures should use the noise
+//! of the parent module.
 //!
-//! Perlin 2002, with the sixteen gradients of pbrt (Pharr, Jakob, Humphreys 2023), four of which occur twice. pbrt leaves out
-//! the octaves that are finer than a pixel, by the differentials of its rays. There are none here: all octaves are summed,
-//! and what is finer than a pixel is left to its samples.
+//! Perlin 2002, with pbrt's sixteen gradients (Pharr, Jakob, Humphreys 2023), four of which occur twice. pbrt omits
+//! octaves that are finer than a pixel, by its ray differentials. There are none here: all octaves are summed, and
+//! detail below a pixel is left to the pixel's samples.
 
 use glam::Vec3;
 
 use super::permutation::PERMUTATION;
 use super::{EDGES, fade, mix_linearly};
 
-/// Each octave is finer than the one before by this: not quite two, so that their zeros do not meet.
+/// Ratio of frequencies of successive octaves: not quite two, so that their zeros do not coincide.
 const LACUNARITY: f32 = 1.99;
 
-/// What pbrt takes the magnitude of noise to be on the average.
+/// The mean magnitude of noise assumed by pbrt.
 const MEAN_MAGNITUDE: f32 = 0.2;
 
-/// The directions in which the noise may grow at a lattice point: all edges, and four of them once more.
+/// The gradients at lattice points: all edge directions, four of them twice.
 const GRADIENTS: [Vec3; 16] = {
     let mut gradients = [Vec3::ZERO; 16];
     let mut index = 0;
@@ -33,16 +33,17 @@ const GRADIENTS: [Vec3; 16] = {
     gradients
 };
 
-/// Gradient noise: about −1 … 1, 0 at points of whole coordinates. Finite for every `p`: 0 where a coordinate is not finite.
+/// Gradient noise: about −1 … 1, 0 at points of whole coordinates. Finite for every `p`: 0 where a coordinate is
+/// not finite.
 pub fn noise(p: Vec3) -> f32 {
     if !p.is_finite() {
         return 0.0;
     }
-    // Find the cell of the lattice, of which there are 256 in a row, and the place in it.
+    // Find the cell of the lattice, modulo 256, and the position in it.
     let floor = p.floor();
     let place = p - floor;
     let [x, y, z] = floor.to_array().map(|x| x as i64 as u8);
-    // Each corner slopes along its gradient, and is 0 at itself.
+    // Each corner contributes a linear ramp along its gradient, 0 at the corner.
     let shuffled = |index: u8| PERMUTATION[usize::from(index)];
     let columns = [shuffled(x), shuffled(x.wrapping_add(1))];
     let corner = |i: u8, j: u8, k: u8| {
@@ -51,26 +52,26 @@ pub fn noise(p: Vec3) -> f32 {
         let away = place - Vec3::new(f32::from(i), f32::from(j), f32::from(k));
         GRADIENTS[usize::from(hash % 16)].dot(away)
     };
-    // Fade from corner to corner, along x, then y, then z.
+    // Interpolate between corners, along x, then y, then z.
     let [u, v, w] = place.to_array().map(fade);
     let edge = |j, k| mix_linearly(corner(0, j, k), corner(1, j, k), u);
     let face = |k| mix_linearly(edge(0, k), edge(1, k), v);
     mix_linearly(face(0), face(1), w)
 }
 
-/// Fractional Brownian motion: the sum of `octaves` noises, each finer than the one before by 1.99 and `roughness` times as
-/// strong.
+/// Fractional Brownian motion: the sum of `octaves` noises, each of 1.99 times the frequency and `roughness` times
+/// the amplitude of the one before.
 pub fn fbm(p: Vec3, roughness: f32, octaves: u32) -> f32 {
     sum(p, roughness, octaves, |noise| noise).0
 }
 
-/// [`fbm`] of magnitudes, plus what pbrt adds for the first octave that is left out: its mean.
+/// [`fbm`] of magnitudes, plus the mean of the first omitted octave, as in pbrt.
 pub fn turbulence(p: Vec3, roughness: f32, octaves: u32) -> f32 {
     let (sum, next) = sum(p, roughness, octaves, f32::abs);
     sum + next * MEAN_MAGNITUDE
 }
 
-/// The sum, and the strength of the octave after the last.
+/// The sum, and the amplitude of the octave after the last.
 fn sum(p: Vec3, roughness: f32, octaves: u32, shape: impl Fn(f32) -> f32) -> (f32, f32) {
     let (mut sum, mut frequency, mut strength) = (0.0, 1.0, 1.0);
     for _ in 0..octaves.min(super::MOST_OCTAVES) {

@@ -1,6 +1,6 @@
-//! Perlin's permutation of the numbers 0 to 255, as he published it (2002) and as everyone has used it since.
+//! Perlin's permutation of the numbers 0 to 255, as published (Perlin 2002).
 
-/// Shuffles the lattice points, so that their gradients look unrelated.
+/// Shuffles the lattice points, so that their gradients appear independent.
 #[rustfmt::skip]
 pub(super) const PERMUTATION: [u8; 256] = [
     151, 160, 137,  91,  90,  15, 131,  13, 201,  95,  96,  53, 194, 233,   7, 225,

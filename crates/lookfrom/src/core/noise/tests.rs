@@ -1,4 +1,4 @@
-//! Tests of noise: smooth, bounded, without a mean, always the same.
+//! Tests of noise: smooth, bounded, of mean 0, reproducible.
 
 use super::*;
 use glam::DVec3;
@@ -55,7 +55,7 @@ fn noise_is_zero_at_lattice_points_and_slopes_along_an_edge() {
 
 #[test]
 fn noise_has_no_seams() {
-    // Steps across faces of the lattice, negative coordinates and zero among them, are no larger than elsewhere.
+    // Steps across faces of the lattice, including negative coordinates and zero, are no larger than elsewhere.
     let step = 1.0 / 4096.0;
     for trial in 0..50_000 {
         let mut p = point(trial, 6).to_array();
@@ -86,7 +86,7 @@ fn range_and_mean() {
 
 #[test]
 fn no_choice_of_gradients_leaves_the_stated_range() {
-    // All corners at their steepest towards a point, for points on a grid in an eighth of the cell.
+    // All corners at their steepest toward a point, for points on a grid in an eighth of the cell.
     const N: u32 = 100;
     let mut most = 0.0_f32;
     for i in 0..(N + 1).pow(3) {
@@ -99,7 +99,7 @@ fn no_choice_of_gradients_leaves_the_stated_range() {
                 - Vec3::new((corner & 1) as f32, (corner >> 1 & 1) as f32, (corner >> 2) as f32))
             .abs();
             let weight: f32 = away.to_array().map(|t| fade(1.0 - t)).iter().product();
-            // The steepest edge adds the two longest coordinates.
+            // The steepest edge gradient adds the two largest coordinates.
             sum += weight * (away.element_sum() - away.min_element());
         }
         most = most.max(sum);

@@ -1,4 +1,5 @@
-//! Random numbers of eight samples at once, one in each lane: the twin of [`PixelSampler`], bit for bit.
+//! Random numbers of eight samples at once, one in each lane: the SIMD version of [`PixelSampler`], bit
+//! for bit.
 
 use lookfrom_scene::settings::Sampler as Kind;
 use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, prelude::*, u32x8, u64x8};
@@ -7,7 +8,7 @@ use super::{PixelSampler, Sampler};
 use crate::core::eight::{LANES, by_lane};
 use crate::core::hash::GOLDEN;
 
-/// The numbers of eight pixels (or of the same).
+/// The random numbers of eight pixels, which may be equal.
 #[derive(Clone, Copy)]
 pub(crate) struct PixelSamplers<S: Simd> {
     kind: Kind,
@@ -15,7 +16,7 @@ pub(crate) struct PixelSamplers<S: Simd> {
 }
 
 impl<S: Simd> PixelSamplers<S> {
-    /// Those of one render.
+    /// Samplers of the same render.
     #[inline(always)]
     pub(crate) fn new(simd: S, samplers: &[PixelSampler; LANES]) -> Self {
         Self { kind: samplers[0].kind, keys: u64x8::load_array(simd, by_lane!(lane => samplers[lane].key)) }
@@ -46,7 +47,7 @@ impl<S: Simd> PixelSamplers<S> {
 }
 
 impl Sampler {
-    /// Puts [`Sampler::two`] of one dimension at each of `count` addresses (pixel and sample) in place of `numbers`.
+    /// Replaces `numbers` by [`Sampler::two`] of one dimension at each of `count` addresses (pixel and sample).
     pub(crate) fn two_of_each(
         &self,
         count: usize,
@@ -76,7 +77,7 @@ impl<F: Fn(usize) -> ([u32; 2], u32)> Kernel for Each<'_, F> {
         let dimension = u64x8::splat(simd, u64::from(dimension));
         for (block, numbers) in numbers.chunks_mut(LANES).enumerate() {
             let first = block * LANES;
-            // The last ones fill up with the very last.
+            // Unused lanes of the last batch repeat the last address.
             let addresses = by_lane!(lane => address((first + lane).min(count - 1)));
             let pixels =
                 by_lane!(lane => u64::from(addresses[lane].0[0]) | u64::from(addresses[lane].0[1]) << 32);
@@ -91,7 +92,7 @@ impl<F: Fn(usize) -> ([u32; 2], u32)> Kernel for Each<'_, F> {
     }
 }
 
-/// The twin of [`crate::core::hash::mix`].
+/// The SIMD version of [`crate::core::hash::mix`].
 #[inline(always)]
 pub(crate) fn mix<S: Simd>(mut bits: u64x8<S>) -> u64x8<S> {
     bits = (bits ^ (bits >> 30)) * 0xbf58_476d_1ce4_e5b9_u64;
@@ -108,12 +109,12 @@ pub(crate) fn low_half<S: Simd>(bits: u64x8<S>) -> u32x8<S> {
 
 #[inline(always)]
 fn unit<S: Simd>(simd: S, bits: u32x8<S>) -> f32x8<S> {
-    // Below 2²⁴, so that a signed number holds it too.
+    // Below 2²⁴, so that it fits a signed number too.
     let number: lookfrom_simd::i32x8<S> = (bits >> 8).bitcast();
     number.to_float::<f32x8<S>>() * f32x8::splat(simd, 1.0 / 16_777_216.0)
 }
 
-/// The bits in the opposite order.
+/// Reverses the bits.
 #[inline(always)]
 fn reversed<S: Simd>(x: u32x8<S>) -> u32x8<S> {
     let x = ((x >> 1) & 0x5555_5555_u32) | ((x & 0x5555_5555_u32) << 1);

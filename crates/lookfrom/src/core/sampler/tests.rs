@@ -11,8 +11,7 @@ fn both_kinds() -> [Sampler; 2] {
     [sobol(7), Sampler::new(Kind::Independent, 7)]
 }
 
-/// The second Sobol' dimension as textbooks compute it: direction numbers v₁ = ½, vₖ₊₁ = vₖ ⊕ vₖ/2, one for each set
-/// bit.
+/// The second Sobol' dimension by its direction numbers v₁ = ½, vₖ₊₁ = vₖ ⊕ vₖ/2, one for each set bit.
 fn textbook_second(index: u32) -> u32 {
     let (mut direction, mut sum) = (1_u32 << 31, 0);
     for bit in 0..32 {
@@ -33,8 +32,8 @@ fn second_coordinate_is_that_of_the_textbook() {
     }
 }
 
-/// Owen's scrambling said slowly: in each half, quarter, eighth … of [0, 1) swap the two halves, or do not, as `swap`
-/// says of that interval (its depth, and which of the intervals of that depth it is).
+/// The definition of Owen's scrambling: in each half, quarter, eighth … of [0, 1) the two halves are swapped or
+/// not, depending on `swap` of that interval (its depth, and its index among the intervals of that depth).
 fn owen(bits: u32, swap: &dyn Fn(u32, u32) -> bool) -> u32 {
     let mut scrambled = 0;
     for depth in 0..32 {
@@ -49,7 +48,7 @@ fn hashed(bits: u32, seed: u32) -> u32 {
     scramble_from_the_low_end(bits.reverse_bits(), seed).reverse_bits()
 }
 
-/// Whether the hash swaps the halves of an interval, asked of the least number in it.
+/// True if the hash swaps the halves of an interval, evaluated at the smallest number in it.
 fn hash_swaps(depth: u32, interval: u32, seed: u32) -> bool {
     let least = if depth == 0 { 0 } else { interval << (32 - depth) };
     (hashed(least, seed) ^ least) >> (31 - depth) & 1 == 1
@@ -131,7 +130,7 @@ fn errors_are_those_of_true_owen_scrambling() {
     assert!(independent > 50.0 * fast, "independent {independent:e}, Sobol' {fast:e}");
 }
 
-/// Whether each of the 2ᵐ boxes of each shape holds one point.
+/// True if each of the 2ᵐ boxes of each shape contains one point.
 fn is_net(points: &[[f32; 2]]) -> bool {
     let m = points.len().ilog2();
     (0..=m).all(|a| {
@@ -233,7 +232,7 @@ fn different_addresses_are_uncorrelated() {
         );
         pairs_look_uniform("x and y, over pixels", (0..N).map(|i| s.two(pixel(i), 1, 4)));
     }
-    // Two samples of one Sobol' pattern keep apart, and should.
+    // Two samples of one Sobol' pattern are deliberately not independent.
     let random = Sampler::new(Kind::Independent, 7);
     pairs_look_uniform("two samples", (0..N).map(|i| [random.one([0, 0], 0, i), random.one([0, 0], 9, i)]));
     pairs_look_uniform(

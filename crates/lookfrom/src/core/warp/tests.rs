@@ -33,7 +33,7 @@ fn normals() -> impl Iterator<Item = Vec3> {
     axes.chain(random)
 }
 
-/// Chi-square of numbers that ought to be uniform in [0, 1)², over 16 × 16 cells.
+/// Chi-square of numbers that should be uniform in [0, 1)², over 16 × 16 cells.
 fn look_uniform(what: &str, pairs: impl Iterator<Item = [f64; 2]>) {
     let mut counts = vec![0; 256];
     let mut total = 0.0;
@@ -72,7 +72,7 @@ fn the_disk_agrees_with_the_square_ring_by_ring() {
         let [a, b] = u.map(|u| 2.0 * u - 1.0);
         let p = concentric_disk(u);
         assert!((p.length() - a.abs().max(b.abs())).abs() < 2e-7, "{u:?}");
-        // Corners of the square stay on the diagonals, sides stay in their quarter.
+        // Corners of the square stay on the diagonals, sides stay in their quadrant.
         assert!((p.x.abs() >= p.y.abs() - 1e-6) == (a.abs() >= b.abs()) || (a.abs() - b.abs()).abs() < 1e-5);
         assert!(p.x * a >= 0.0 && p.y * b >= 0.0);
     }
@@ -100,7 +100,7 @@ fn the_hemisphere_is_as_dense_as_the_cosine() {
             directions.map(|d| [f64::from(d.dot(n)).powi(2), turn(d.dot(s), d.dot(t))]),
         );
     }
-    // The density integrates to 1: the mean of 1/pdf is the solid angle of what it covers.
+    // The density integrates to 1: the mean of 1/pdf is the solid angle of the covered domain.
     let mean: f64 = numbers()
         .map(|u| cosine_hemisphere(u, Vec3::Z).z)
         .filter(|&z| z > 0.1)
@@ -117,7 +117,7 @@ fn cones_are_uniform_however_thin() {
         let width = 2.0_f32 / 2_f32.powi(exponent);
         let in_cone = |u: [f32; 2]| {
             let d = uniform_cone(u, width).as_dvec3();
-            // 1 − cos from the sine, without cancellation, for the thin ones.
+            // For thin cones, 1 − cos from the sine, without cancellation.
             let sin2 = d.x * d.x + d.y * d.y;
             let depth = if exponent < 2 { 1.0 - d.z } else { sin2 / (1.0 + (1.0 - sin2).sqrt()) };
             [depth / f64::from(width), d.y.atan2(d.x) / std::f64::consts::TAU + 0.5]

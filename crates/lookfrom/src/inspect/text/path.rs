@@ -4,13 +4,14 @@ use std::fmt::{self, Formatter};
 
 use super::{Inspection, RayReport};
 use super::{amount, full, lanes, vector, vector32, write_candidates, write_met, write_shadow};
-use crate::inspect::scatter::{AskedReport, BounceReport, FoundReport, ScatteringReport};
+use crate::inspect::scatter::{BounceReport, FoundReport, LightSampleReport, ScatteringReport};
 
-/// How many candidates are shown beside what a ray met: the path is the matter here.
+/// Number of candidates that are shown besides the hit of a ray.
 const OTHERS_ALONG_PATH: usize = 0;
 
-/// Why a direction has no density to weigh.
-const ONLY_CHOICE: &str = "it was the only choice (from the camera, or in a mirror or smooth glass)";
+/// The reason why a direction has no density for MIS.
+const ONLY_CHOICE: &str =
+    "the only one possible (from the camera, or after specular reflection or transmission)";
 
 impl Inspection {
     pub(super) fn write_path(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -23,7 +24,7 @@ impl Inspection {
         Ok(())
     }
 
-    /// What the letters mean, as far as this integrator has them.
+    /// Writes the meaning of the letters that this integrator uses.
     fn write_introduction(&self, f: &mut Formatter<'_>) -> fmt::Result {
         if self.integrator == "ambient_occlusion" {
             return writeln!(
@@ -33,37 +34,43 @@ impl Inspection {
         }
         writeln!(
             f,
-            "  Each ray goes on in one direction, chosen by chance; what it finds is divided by the density (pdf, per"
+            "  Each ray goes on in one sampled direction; the light that it finds is divided by the density (pdf, per"
         )?;
-        writeln!(f, "  steradian) of that choice, so that the mean over many samples is right.")?;
         writeln!(
             f,
-            "    β    the path's throughput: what light found here is multiplied by on its way into the pixel"
+            "  steradian) of that direction, so that the mean over many samples converges to the true value."
         )?;
-        writeln!(f, "    f    the scattering function of the surface; cos: of the angle to its normal n")?;
-        writeln!(f, "    L    light that arrives from a direction")?;
+        writeln!(
+            f,
+            "    β    the path's throughput: light found here is multiplied by it on its way into the pixel"
+        )?;
+        writeln!(f, "    f    the BSDF of the surface; cos: of the angle to its normal n")?;
+        writeln!(f, "    L    incident radiance from a direction")?;
         match self.integrator {
             "path" => {
                 writeln!(
                     f,
-                    "    w    light can be found in two ways, by sampling a light and by the path's own direction; each gets a"
+                    "    w    MIS weight: light is found by two techniques, light sampling and BSDF sampling, whose weights add"
                 )?;
                 writeln!(
                     f,
-                    "         weight, the two of them 1 together: w = p² / (p² + q²), with the density p of the way that found"
+                    "         up to 1: w = p² / (p² + q²) (the power heuristic), with the density p of the technique that found"
                 )?;
-                writeln!(f, "         it, and q that the other way would have had (the power heuristic)")?;
+                writeln!(f, "         the light, and q of the other one")?;
             }
             "simple_path" => {
                 writeln!(
                     f,
-                    "    w    light that can be sampled counts only where it is sampled (w = 1), not where the path meets it"
+                    "    w    light that can be sampled counts only where it is sampled (w = 1), not where a path hits it"
                 )?;
-                writeln!(f, "         (w = 0), unless no light could be sampled there")?;
+                writeln!(
+                    f,
+                    "         (w = 0); light that cannot be sampled counts where a path hits it (w = 1)"
+                )?;
             }
-            _ => writeln!(f, "    w    no lights are sampled: all light is found by chance, w = 1")?,
+            _ => writeln!(f, "    w    no lights are sampled: all light is found by paths, w = 1")?,
         }
-        writeln!(f, "  Lines with + are what is added to the pixel.")
+        writeln!(f, "  Lines with + are added to the pixel.")
     }
 
     fn write_ray_of_path(&self, f: &mut Formatter<'_>, ray: &RayReport) -> fmt::Result {
@@ -82,14 +89,14 @@ impl Inspection {
             None => writeln!(f, "{pad}  meets nothing: the sky")?,
             Some(met) => write_met(f, met, pad)?,
         }
-        if let Some(share) = ray.throughput_there.as_ref().filter(|share| **share != ray.throughput) {
+        if let Some(there) = ray.throughput_there.as_ref().filter(|there| **there != ray.throughput) {
             let why = match ray.only_color {
                 Some(color) => {
-                    format!("colours go different ways here: {color} goes on alone, for all of them")
+                    format!("dispersion: {color} goes on alone, with the weight of all colours")
                 }
-                None => "of the light on this way a part is absorbed".into(),
+                None => "after absorption on the way".into(),
             };
-            writeln!(f, "{pad}  {why}: β = {}", lanes(share))?;
+            writeln!(f, "{pad}  {why}: β = {}", lanes(there))?;
         }
         for found in &ray.found {
             self.write_found(f, ray, found)?;
@@ -97,8 +104,8 @@ impl Inspection {
         if let Some(scattering) = &ray.scattering {
             write_scattering(f, scattering)?;
         }
-        if let Some(asked) = &ray.asked {
-            self.write_asked(f, asked)?;
+        if let Some(report) = &ray.light_sample {
+            self.write_light_sample(f, report)?;
         }
         if let Some(openness) = &ray.openness {
             writeln!(f, "{pad}  is anything near?")?;
@@ -112,15 +119,17 @@ impl Inspection {
         if goes_on && ray.bounce.is_none() {
             writeln!(
                 f,
-                "{pad}  this surface is not there (an interface, or cut out by its alpha): the ray goes straight on"
+                "{pad}  the ray passes this surface (an interface, or cut out by its alpha) and goes straight on"
             )?;
         }
         if let Some(why) = ray.ends {
             writeln!(f, "{pad}  the path ends: {why}")?;
         }
         match goes_on {
-            true => writeln!(f, "{pad}  ray {} and all after it bring {}", ray.address, amount(&ray.subtree)),
-            false => writeln!(f, "{pad}  ray {} brings {}", ray.address, amount(&ray.subtree)),
+            true => {
+                writeln!(f, "{pad}  ray {} and all after it contribute {}", ray.address, amount(&ray.subtree))
+            }
+            false => writeln!(f, "{pad}  ray {} contributes {}", ray.address, amount(&ray.subtree)),
         }
     }
 
@@ -128,13 +137,16 @@ impl Inspection {
         writeln!(f, "    finds the light {}: L = {}", found.light, amount(&found.radiance))?;
         let (w, q) = (full(found.weight), full(found.light_pdf));
         match (ray.pdf, self.integrator) {
-            (None, _) => writeln!(
-                f,
-                "      direction: {ONLY_CHOICE}, light sampling could not have found it: w = {w}"
-            )?,
+            (None, _) => {
+                writeln!(f, "      direction: {ONLY_CHOICE}, light sampling cannot find it: w = {w}")?;
+            }
             (Some(p), "path") => {
-                writeln!(f, "      p = {}: pdf with which the surface before chose this direction", full(p))?;
-                writeln!(f, "      q = {q}: pdf with which light sampling would have chosen it")?;
+                writeln!(
+                    f,
+                    "      p = {}: pdf of this direction in BSDF sampling at the surface before",
+                    full(p)
+                )?;
+                writeln!(f, "      q = {q}: pdf of this direction in light sampling there")?;
                 writeln!(f, "      w = p² / (p² + q²) = {w}")?;
             }
             (Some(_), "simple_path") if found.light_pdf > 0.0 => {
@@ -146,66 +158,62 @@ impl Inspection {
         writeln!(f, "      + β L w = {}", amount(&found.added))
     }
 
-    fn write_asked(&self, f: &mut Formatter<'_>, asked: &AskedReport) -> fmt::Result {
+    fn write_light_sample(&self, f: &mut Formatter<'_>, report: &LightSampleReport) -> fmt::Result {
         writeln!(
             f,
             "    samples one light: {}, chosen with probability {}",
-            asked.light,
-            full(asked.probability)
+            report.light,
+            full(report.probability)
         )?;
-        let Some(answer) = &asked.answer else {
+        let Some(sample) = &report.sample else {
             return writeln!(
                 f,
-                "      no light can come from there (it is behind the surface, or faces away)"
+                "      it does not illuminate this point (it is behind the surface, or faces away)"
             );
         };
         writeln!(
             f,
-            "      toward it: wi = {}   arriving if nothing is in the way: L = {}",
-            vector32(&answer.wi),
-            amount(&answer.arrives)
+            "      toward it: wi = {}   unoccluded: L = {}",
+            vector32(&sample.wi),
+            amount(&sample.arrives)
         )?;
-        if answer.f_cos.iter().all(|lane| *lane == 0.0) {
-            return writeln!(f, "      f cos = 0: the surface sends nothing of it this way");
+        if sample.f_cos.iter().all(|lane| *lane == 0.0) {
+            return writeln!(f, "      f cos = 0: the surface scatters none of it along this path");
         }
-        writeln!(f, "      f cos = {}", lanes(&answer.f_cos))?;
-        let (p, pdf) = (full(answer.pdf), full(answer.light_pdf));
-        match answer.bsdf_pdf {
+        writeln!(f, "      f cos = {}", lanes(&sample.f_cos))?;
+        let (p, pdf) = (full(sample.pdf), full(sample.light_pdf));
+        match sample.bsdf_pdf {
             Some(q) => {
                 writeln!(
                     f,
                     "      p = probability × pdf of this direction to it = {} × {pdf} = {p}",
-                    full(asked.probability)
+                    full(report.probability)
                 )?;
-                writeln!(
-                    f,
-                    "      q = {}: pdf with which the surface itself would have chosen this direction",
-                    full(q)
-                )?;
-                writeln!(f, "      w = p² / (p² + q²) = {}", full(answer.weight))?;
+                writeln!(f, "      q = {}: pdf of this direction in BSDF sampling", full(q))?;
+                writeln!(f, "      w = p² / (p² + q²) = {}", full(sample.weight))?;
             }
             None => {
                 writeln!(
                     f,
                     "      p = probability × pdf of this direction to it = {} × {pdf} = {p}",
-                    full(asked.probability)
+                    full(report.probability)
                 )?;
                 let why = match self.integrator {
-                    "path" => "a light without size: no path meets it",
+                    "path" => "a delta light: no path hits it",
                     _ => "light that can be sampled counts only here",
                 };
-                writeln!(f, "      w = {} ({why})", full(answer.weight))?;
+                writeln!(f, "      w = {} ({why})", full(sample.weight))?;
             }
         }
-        write_shadow(f, asked.shadow.as_ref(), "reaches the light", "  ")?;
-        writeln!(f, "      + β f cos L w / p = {}", amount(&asked.added))
+        write_shadow(f, report.shadow.as_ref(), "reaches the light", "  ")?;
+        writeln!(f, "      + β f cos L w / p = {}", amount(&report.added))
     }
 
     fn write_bounce(&self, f: &mut Formatter<'_>, bounce: &BounceReport) -> fmt::Result {
         match self.integrator {
             "random_walk" => writeln!(
                 f,
-                "    goes on in any direction, whatever the surface: wi = {}",
+                "    goes on in a direction sampled uniformly over the sphere: wi = {}",
                 vector32(&bounce.wi)
             )?,
             _ => writeln!(f, "    goes on by {}: wi = {}", bounce.lobe, vector32(&bounce.wi))?,
@@ -220,19 +228,19 @@ impl Inspection {
         if bounce.lobe.starts_with("specular") {
             writeln!(
                 f,
-                "      (one direction only: pdf is the probability of this lobe, and f is over that one direction)"
+                "      (specular: pdf is the probability of this lobe; f and pdf are factors of the same delta function)"
             )?;
         }
         if bounce.pdf_is_proportional {
             writeln!(
                 f,
-                "      (f and pdf are estimated by a random walk between the layers: only their ratio means something)"
+                "      (f and pdf are estimated by a random walk between the layers: only their ratio is meaningful)"
             )?;
         }
         if bounce.eta != 1.0 {
             writeln!(
                 f,
-                "      η = {}: index beyond the surface over the one before it; f has 1/η² in it, which light regains\n           on leaving",
+                "      η = {}: relative index of refraction, beyond the surface over before it; f contains 1/η², which is\n           regained on leaving",
                 full(bounce.eta)
             )?;
         }
@@ -243,11 +251,11 @@ impl Inspection {
                 let survival = full(bounce.survival);
                 write!(
                     f,
-                    "      Russian roulette: goes on with probability {survival} (greatest lane of β, × η² inside glass): "
+                    "      Russian roulette: survives with probability {survival} (largest lane of β, × η² inside glass): "
                 )?;
                 match (survives, &bounce.next_throughput) {
-                    (true, Some(share)) => {
-                        writeln!(f, "it does,\n      and β / {survival} = {}", lanes(share))
+                    (true, Some(next)) => {
+                        writeln!(f, "it does,\n      and β / {survival} = {}", lanes(next))
                     }
                     (true, None) => writeln!(f, "it does"),
                     (false, _) => writeln!(f, "it does not"),

@@ -1,9 +1,9 @@
 //! Shadow catchers in path tracing: surfaces that show the background, less the light that is blocked.
 //!
-//! Paths that leave the floor estimate how much of the light arrives, and the floor's reflectance is such that all of it would
-//! look like the background (see `world::catcher`). With multiple importance sampling the light that a path's samples would find if
-//! nothing stood in the way is a control variate: it is expected, shown and subtracted, so that there is no noise where nothing
-//! casts a shadow.
+//! Paths that leave the catcher estimate the light that arrives there, and its reflectance is such that unshadowed it
+//! would look like the background (see `world::catcher`). With multiple importance sampling the light that a path's
+//! samples would find without any blocker is a control variate: its expectation is shown and the sample subtracted, so
+//! that there is no noise where nothing casts a shadow.
 
 use glam::Vec3;
 use lookfrom_scene::settings::Background;
@@ -16,8 +16,8 @@ use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 impl PathTracer {
-    /// Shows the background to a path from the camera that met a shadow catcher, and weighs the light that the path gathers
-    /// from there on.
+    /// Shows the background to a path from the camera that hit a shadow catcher, and weights the light that the path
+    /// gathers from there on.
     pub(super) fn show_behind<P: Probe>(
         &self,
         world: &World,
@@ -28,7 +28,7 @@ impl PathTracer {
         output.queues.alpha[path.slot as usize] = Alpha::Shadow;
         let behind = match output.background {
             Background::Environment => world.sky(&path.ray, &lanes),
-            // White: the light of the sample is the part that shadows leave.
+            // White: the light of the sample is the unshadowed part.
             Background::Color(_) | Background::Transparent => world.light_of([1.0; 3], &lanes),
         };
         if self.has_control_variate() {
@@ -37,7 +37,7 @@ impl PathTracer {
         path.beta *= world.catcher_correction(Vec3::from_array(path.ray.direction), behind, &lanes);
     }
 
-    /// Subtracts what a sampled light infinitely far brings to a catcher if nothing is in the way.
+    /// Subtracts the unoccluded contribution of an infinite light that was sampled at a catcher.
     pub(super) fn expect_light<P: Probe>(
         &self,
         light: &Light,
@@ -51,7 +51,7 @@ impl PathTracer {
         }
     }
 
-    /// Subtracts what a path that leaves a catcher finds if nothing is in the way.
+    /// Subtracts the light that a path leaving a catcher finds if nothing is in the way.
     pub(super) fn expect_sky<P: Probe>(&self, world: &World, path: &Path, output: &mut StepOutput<'_, P>) {
         if self.has_control_variate() {
             let expected = sky_found(world, path, &output.lanes(path));
@@ -64,7 +64,7 @@ impl PathTracer {
     }
 }
 
-/// What a path adds if it meets nothing.
+/// The light of the environments that a path adds if it hits nothing.
 fn sky_found(world: &World, path: &Path, lanes: &SpectralMode) -> Spectrum {
     let direction = Vec3::from_array(path.ray.direction).normalize();
     let at = path.light_context();

@@ -1,6 +1,6 @@
-//! Eight steps at once, where surfaces are of the commonest kind: flat triangles of a diffuse material of one colour. The twin
-//! of [`PathTracer::step`](crate::integrator::Integrator::step) for them, bit for bit: each operation is its, in its order, eight
-//! times side by side. Which light is sampled, and what cannot go side by side, is in `light_samples`.
+//! SIMD version of [`PathTracer::step`](crate::integrator::Integrator::step) for eight hits on flat triangles of a
+//! diffuse material of one colour, bit for bit the same: each operation is the same, in the same order, in eight lanes.
+//! Light sampling, and what cannot be vectorised, is in `light_samples`.
 
 mod light_samples;
 
@@ -26,7 +26,7 @@ use crate::shading::texture::{SpectralMode, TexturePoint};
 use crate::world::World;
 use light_samples::LightSamples;
 
-/// A path that met a surface of the commonest kind.
+/// A path that hit a flat triangle of a diffuse material of one colour.
 #[derive(Clone, Copy)]
 pub(super) struct FlatDiffuseHit<'a> {
     path: &'a Path,
@@ -37,7 +37,7 @@ pub(super) struct FlatDiffuseHit<'a> {
 }
 
 impl<'a> FlatDiffuseHit<'a> {
-    /// The path, if it met such a surface and is to go on from there.
+    /// The path, if it hit such a surface and its depth allows it to go on from there.
     #[inline]
     pub(super) fn of(
         tracer: &PathTracer,
@@ -61,11 +61,11 @@ impl<'a> FlatDiffuseHit<'a> {
     }
 }
 
-/// The steps of paths.
+/// The steps of up to eight paths.
 pub(super) struct Steps<'a, 'b, 'c, P: Probe> {
     pub(super) tracer: &'a PathTracer,
     pub(super) world: &'a World,
-    /// As many as are to be stepped; the others repeat one of them.
+    /// The hits; lanes from `count` on repeat the last one.
     pub(super) plain: &'a [FlatDiffuseHit<'a>; LANES],
     pub(super) count: usize,
     pub(super) output: &'b mut StepOutput<'c, P>,
@@ -185,7 +185,7 @@ impl<P: Probe> Kernel for Steps<'_, '_, '_, P> {
     }
 }
 
-/// The twin of [`World::surface`] and of the frame that a material is shaded in.
+/// SIMD version of [`World::surface`] and of the shading frame.
 struct Surfaces<S: Simd> {
     points: Points<S>,
     ng: Vectors<Wide<S>>,
@@ -193,7 +193,7 @@ struct Surfaces<S: Simd> {
     n: Vectors<Narrow<S>>,
     s: Vectors<Narrow<S>>,
     t: Vectors<Narrow<S>>,
-    /// The cosine of the direction back to where the ray came from.
+    /// Cosine of the outgoing direction `wo`.
     wo_z: Narrow<S>,
 }
 
@@ -234,7 +234,7 @@ impl<S: Simd> Surfaces<S> {
         }
     }
 
-    /// Whether directions of these cosines are on the side that is looked at, and neither is grazing.
+    /// Whether `wi` of these cosines is on the same side as `wo`, and neither is grazing.
     #[inline(always)]
     fn same_side(&self, simd: S, wi_z: Narrow<S>) -> lookfrom_simd::mask32x8<S> {
         let least = f32x8::splat(simd, 1e-12);
@@ -242,7 +242,7 @@ impl<S: Simd> Surfaces<S> {
         product.simd_gt(f32x8::splat(simd, 0.0)) & self.wo_z.abs().simd_gt(least) & wi_z.abs().simd_gt(least)
     }
 
-    /// The twin of `bsdf::diffuse::cosine_direction`.
+    /// SIMD version of `bsdf::diffuse::cosine_direction`.
     #[inline(always)]
     fn cosine_directions(&self, simd: S, u: [Narrow<S>; 2]) -> Vectors<Narrow<S>> {
         let [x, y] = warp::concentric_disks(simd, u);
@@ -252,7 +252,7 @@ impl<S: Simd> Surfaces<S> {
         Vectors([x + zero, y + zero, height.copysign(self.wo_z)])
     }
 
-    /// From the frame to render space, of unit length.
+    /// A vector from the shading frame to render space, of unit length.
     #[inline(always)]
     fn to_render(&self, simd: S, v: Vectors<Narrow<S>>) -> Vectors<Narrow<S>> {
         let [x, y, z] = v.0;
@@ -260,11 +260,11 @@ impl<S: Simd> Surfaces<S> {
     }
 }
 
-/// The twin of [`SampleStream`].
+/// SIMD version of [`SampleStream`].
 struct SampleStreams<S: Simd> {
     samplers: PixelSamplers<S>,
     sample: u32x8<S>,
-    /// Of the address, before the purpose.
+    /// The hashed address, before the dimension is mixed in.
     mixed: u64x8<S>,
 }
 

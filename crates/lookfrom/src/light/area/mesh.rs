@@ -1,9 +1,9 @@
-//! Triangles as lights: one is chosen by area (and by the emission of a pattern on it), then a direction uniformly over
-//! the solid angle in which it is seen. Triangles without emission are not sampled: a path that hits one finds
-//! what there is.
+//! Triangle mesh lights: a triangle is chosen by area (and by the mean of its emission texture), then a direction
+//! uniformly over its solid angle. Triangles without emission are not sampled: only a path that hits one finds its
+//! light.
 //!
-//! Arvo (1995), "Stratified Sampling of Spherical Triangles"; the solid angle by Van Oosterom & Strackee (1983). Where that
-//! is very small or nearly a hemisphere, the point is chosen by area, which is as good there.
+//! Arvo (1995), "Stratified Sampling of Spherical Triangles"; the solid angle by Van Oosterom & Strackee (1983). Where
+//! that is very small or nearly a hemisphere, the point is sampled by area, which is as good there.
 
 use std::sync::Arc;
 
@@ -18,15 +18,15 @@ use crate::light::toward;
 use crate::primitive::{Mesh, VertexData};
 use crate::shading::texture::TexturePoint;
 
-/// Solid angles in which triangles are chosen from by direction.
+/// Range of solid angles for which triangles are sampled by direction.
 const BY_DIRECTION: std::ops::RangeInclusive<f64> = 3e-4..=6.22;
 
-/// Triangles that seem smaller than this are chosen from by area: less noise than the choice by direction saves is worth
-/// its time from here on (distances and angles over the triangle differ little).
+/// Triangles of a smaller approximate solid angle are sampled by area: distances and angles vary little over them, and
+/// sampling by direction would cost more time than the noise that it saves.
 const WORTH_DIRECTION: f64 = 0.06;
 
-/// About so many places of a mesh are looked at for how bright a pattern is there, but on each triangle at least and at
-/// most so many.
+/// Approximate number of points of a mesh at which its emission texture is evaluated, and the range of their number on
+/// each triangle.
 const PLACES: usize = 1 << 20;
 const PLACES_OF_TRIANGLE: std::ops::RangeInclusive<usize> = 8..=4096;
 
@@ -34,18 +34,18 @@ const PLACES_OF_TRIANGLE: std::ops::RangeInclusive<usize> = 8..=4096;
 #[derive(Clone, Debug)]
 pub struct MeshLight {
     mesh: Arc<Mesh>,
-    /// The triangles that are sampled, in their order; `None` is all.
+    /// Indices of the triangles that are sampled, in ascending order; `None` is all.
     asked: Option<Vec<u32>>,
-    /// Those: what choosing a point takes.
+    /// The triangles that are sampled.
     triangles: Vec<Triangle>,
-    /// Of those, by area and brightness.
+    /// Their distribution, by area and brightness.
     choice: Discrete,
     area: f64,
     /// For a textured emitter, the mean of its brightness over the area.
     brightness: Option<f32>,
 }
 
-/// A triangle, made ready for choosing points of it.
+/// A triangle, prepared for sampling points of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle {
     /// In render space.
@@ -53,15 +53,15 @@ pub(crate) struct Triangle {
     pub(crate) p0: DVec3,
     pub(crate) e1: DVec3,
     pub(crate) e2: DVec3,
-    /// Which of the mesh.
+    /// Index in the mesh.
     pub(crate) index: u32,
-    /// To the outside, of unit length; `None` where the mesh's normals make that differ over the triangle.
+    /// Outward normal, of unit length; `None` where the mesh's normals flip it within the triangle.
     pub(crate) normal: Option<DVec3>,
     pub(crate) area: f64,
 }
 
 impl MeshLight {
-    /// The triangle that a number chooses, if it has one normal, its probability, and what is left of the number.
+    /// The triangle that `u0` chooses, its probability, and the remapped `u0`; only for triangles of one normal.
     #[inline]
     pub(super) fn triangle(&self, u0: f32) -> Option<(&Triangle, f32, f32)> {
         let (index, probability, u0) = self.choice.sample(u0);
@@ -69,11 +69,11 @@ impl MeshLight {
         triangle.normal.is_some().then_some((triangle, probability, u0))
     }
 
-    /// A mesh that emits alike everywhere. None for one without area.
+    /// A mesh of uniform emission. None for one without area.
     pub fn new(mesh: Arc<Mesh>) -> Option<Self> {
         let area = area(&mesh)?;
         let triangles = triangles(&mesh, mesh.triangles.len(), |index| index);
-        // In parts of the whole, which no unit of length makes vanish.
+        // Relative to the whole area, so that no unit of length makes them underflow.
         let weights: Vec<f32> = triangles.iter().map(|triangle| (triangle.area / area) as f32).collect();
         Some(Self { choice: Discrete::new(&weights), asked: None, mesh, triangles, area, brightness: None })
     }
@@ -98,13 +98,13 @@ impl MeshLight {
         let asked: Vec<u32> = (0..count as u32).filter(|&index| powers[index as usize] > 0.0).collect();
         let weights: Vec<f32> = asked.iter().map(|&index| (powers[index as usize] / mean) as f32).collect();
         let triangles = triangles(&mesh, asked.len(), |rank| asked[rank] as usize);
-        // Of nothing there is no choice: `sample` does not come to it.
+        // Without triangles the distribution is never used: `sample` returns before.
         let choice = Discrete::new(if weights.is_empty() { &[1.0] } else { &weights });
         let asked = (asked.len() < count).then_some(asked);
         Some(Self { choice, asked, mesh, triangles, area, brightness: Some(mean as f32) })
     }
 
-    /// Whether any place was found that emits light.
+    /// Whether any triangle was found to emit light.
     pub(super) fn is_sampled(&self) -> bool {
         !self.triangles.is_empty()
     }
@@ -144,7 +144,7 @@ impl MeshLight {
         }
     }
 
-    /// What textures depend on at a point of a triangle, with what its vertices say.
+    /// The texture point of a point of a triangle, completed by its vertex data.
     pub(super) fn with_vertices(&self, at: TexturePoint, index: u32, place: Vec2) -> TexturePoint {
         with_vertices(&self.mesh, at, index as usize, place)
     }
@@ -182,7 +182,7 @@ impl MeshLight {
         Some(LightPoint { primitive: triangle.index, on_primitive: place, ..seen })
     }
 
-    /// A point of a triangle, the normal to the outside and the texture coordinates.
+    /// A point of a triangle, the outward normal and the texture coordinates.
     fn point(&self, triangle: &Triangle, Vec2 { x: beta, y: gamma }: Vec2) -> (Point, DVec3, Vec2) {
         let index = triangle.index as usize;
         let Some(normal) = triangle.normal else {
@@ -195,14 +195,14 @@ impl MeshLight {
         (Point::on_triangle(p0, p1, p2, beta, gamma), normal, uv)
     }
 
-    /// The density over solid angle where points of a triangle are chosen by direction.
+    /// The solid angle density where a triangle is sampled by direction; `None` where it is sampled by area.
     pub(super) fn pdf_by_direction(&self, from: DVec3, index: usize) -> Option<f32> {
         let rank = self.rank(index)?;
         let solid_angle = self.triangles[rank].worth_direction(from)?;
         Some((f64::from(self.choice.pdf(rank)) / solid_angle) as f32)
     }
 
-    /// The density over area where points of a triangle are chosen by area; 0 where it is not sampled.
+    /// The area density where a triangle is sampled by area; 0 where it is not sampled.
     pub(super) fn pdf_by_area(&self, index: usize) -> f64 {
         self.rank(index).map_or(0.0, |rank| f64::from(self.choice.pdf(rank)) / self.triangles[rank].area)
     }
@@ -219,7 +219,7 @@ fn triangles(mesh: &Mesh, count: usize, index: impl Fn(usize) -> usize + Sync + 
     parallel::collect(count, |rank| Triangle::new(mesh, index(rank)))
 }
 
-/// Place number `k` of `count` that are spread evenly over a triangle (Hammersley's points).
+/// Point number `k` of `count` well-distributed points of a triangle (Hammersley's points).
 fn spread(k: usize, count: usize) -> Vec2 {
     let u = (k as f32 + 0.5) / count as f32;
     let v = ((k as u32).reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0) + 0.5 / count as f32;
@@ -227,7 +227,7 @@ fn spread(k: usize, count: usize) -> Vec2 {
     Vec2::new(beta, gamma)
 }
 
-/// How bright a pattern is at a point of a triangle.
+/// The brightness of an emission texture at a point of a triangle.
 fn brightness(
     mesh: &Mesh,
     index: usize,
@@ -258,30 +258,30 @@ impl Triangle {
         area: 0.5,
     };
 
-    /// Triangles that seem smaller are surely chosen from by area.
+    /// Triangles of a smaller approximate solid angle are sampled by area.
     pub(crate) const WORTH_DIRECTION: f64 = WORTH_DIRECTION;
 
     fn new(mesh: &Mesh, index: usize) -> Self {
         let corners = mesh.corners(index);
         let [p0, p1, p2] = corners.map(|p| Vec3::from_array(p).as_dvec3());
         let (e1, e2) = (p1 - p0, p2 - p0);
-        // The middle has the side of all three corners, where they agree.
+        // Where the sides of all three corners agree, so does the whole triangle.
         let normals = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(u, v)| mesh.point(index, u, v).ng);
         let agree = normals[1..].iter().all(|ng| ng.dot(normals[0]) > 0.0);
         let normal = agree.then_some(normals[0]);
         Self { corners, p0, e1, e2, index: index as u32, normal, area: mesh.area(index) }
     }
 
-    /// As it is seen from a point.
+    /// The corners relative to a point.
     fn corners_from(&self, from: DVec3) -> [DVec3; 3] {
         let p0 = self.p0 - from;
         [p0, p0 + self.e1, p0 + self.e2]
     }
 
-    /// The solid angle in which it is seen from a point, if its points are chosen by direction from there.
+    /// The solid angle seen from a point, if the triangle is sampled by direction from there.
     fn worth_direction(&self, from: DVec3) -> Option<f64> {
-        // Roughly, by the middle: area · cos / distance²; near triangles are told by their size. A triangle whose normal
-        // is not known is seen as if it faced the point.
+        // Approximate solid angle, by the centroid: area · cos / distance²; near triangles are recognised by distance²
+        // < area. A triangle without a single normal is treated as if it faced the point.
         let middle = self.p0 - from + (self.e1 + self.e2) * (1.0 / 3.0);
         let distance2 = middle.length_squared();
         let facing = self.normal.map_or(distance2.sqrt(), |normal| normal.dot(middle).abs());
@@ -294,7 +294,7 @@ impl Triangle {
     }
 }
 
-/// The solid angle in which a triangle is seen from the origin.
+/// The solid angle of a triangle seen from the origin.
 fn solid_angle([p0, p1, p2]: [DVec3; 3]) -> f64 {
     let [a, b, c] = [p0, p1, p2].map(DVec3::length);
     let volume = p0.dot(p1.cross(p2)).abs();
@@ -302,7 +302,7 @@ fn solid_angle([p0, p1, p2]: [DVec3; 3]) -> f64 {
     2.0 * libm::atan2(volume, rest)
 }
 
-/// A direction of unit length, uniform over the solid angle in which a triangle is seen from the origin.
+/// A direction of unit length, uniform over the solid angle of a triangle seen from the origin.
 fn sample_spherical_triangle(corners: [DVec3; 3], solid_angle: f64, [u0, u1]: [f64; 2]) -> DVec3 {
     let [a, b, c] = corners.map(DVec3::normalize);
     // The angle at a, between the planes through the sides that meet there.
@@ -311,7 +311,7 @@ fn sample_spherical_triangle(corners: [DVec3; 3], solid_angle: f64, [u0, u1]: [f
     let cos_alpha = to_b.dot(to_c) / size;
     let sin_alpha = a.dot(b.cross(c)).abs() / size;
 
-    // The corner that makes a triangle of only part of the area, on the side from a to c.
+    // The corner on the side from a to c that cuts off the chosen part of the area.
     let (sin_part, cos_part) = libm::sincos(u0 * solid_angle);
     let sin = sin_part * cos_alpha - cos_part * sin_alpha;
     let cos = cos_part * cos_alpha + sin_part * sin_alpha;
@@ -331,7 +331,7 @@ fn off(v: DVec3, axis: DVec3) -> DVec3 {
     (v - v.dot(axis) * axis).normalize_or_zero()
 }
 
-/// β and γ of the triangle's point in a direction from the origin, kept within it.
+/// β and γ of the triangle's point in a direction from the origin, clamped to the triangle.
 fn barycentric([p0, p1, p2]: [DVec3; 3], direction: DVec3) -> [f64; 2] {
     let (e1, e2) = (p1 - p0, p2 - p0);
     let across = direction.cross(e2);

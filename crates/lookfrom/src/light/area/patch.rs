@@ -1,7 +1,7 @@
-//! Bilinear patches as lights: sampled by area.
+//! Bilinear patch lights: sampled by area.
 //!
-//! A point's u and v have the density that blends the patch's stretch at its four corners (Pharr, Jakob, Humphreys,
-//! Physically Based Rendering); what it lacks of the true stretch stands in the density over area.
+//! u and v are sampled with the bilinear interpolant of the area element at the patch's four corners (Pharr, Jakob,
+//! Humphreys, Physically Based Rendering); the area density accounts for its deviation from the true area element.
 
 use std::sync::Arc;
 
@@ -11,14 +11,14 @@ use super::{Cone, LightPoint, seen};
 use crate::core::distribution::Discrete;
 use crate::primitive::Patches;
 
-/// Cells along u and v by which the area of a patch is summed.
+/// Number of cells along u and v in the numerical integration of a patch's area.
 const CELLS: u32 = 16;
 
 /// Bilinear patches that emit light.
 #[derive(Clone, Debug)]
 pub struct PatchLight {
     patches: Arc<Patches>,
-    /// Of a patch, by area.
+    /// Distribution of the patches, by area.
     choice: Discrete,
     area: f64,
 }
@@ -43,7 +43,7 @@ impl PatchLight {
         })
     }
 
-    /// The cone of the normals: each patch's are between those at its corners.
+    /// The cone of the normals: those of each patch lie between those at its corners.
     pub(super) fn normals(&self) -> Cone {
         let patches = (0..self.patches.patches.len()).filter(|&index| self.choice.pdf(index) > 0.0);
         Cone::around(patches.flat_map(|index| {
@@ -61,7 +61,7 @@ impl PatchLight {
         seen(from, at.point, at.ng, at.uv, self.pdf_by_area((index, place)))
     }
 
-    /// The density over area at (u, v) of a patch.
+    /// The area density at (u, v) of a patch.
     pub(super) fn pdf_by_area(&self, (index, place): (usize, Vec2)) -> f64 {
         let (u, v) = (f64::from(place.x), f64::from(place.y));
         let [w00, w10, w01, w11] = self.stretches(index);
@@ -71,7 +71,7 @@ impl PatchLight {
         f64::from(self.choice.pdf(index)) * density / self.patches.area_vector(index, u, v).length()
     }
 
-    /// By how much area is larger than its square in u and v, at the corners.
+    /// The area element `|∂p/∂u × ∂p/∂v|` at the corners.
     fn stretches(&self, index: usize) -> [f64; 4] {
         [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
             .map(|(u, v)| self.patches.area_vector(index, u, v).length())
@@ -87,7 +87,7 @@ fn area(patches: &Patches, index: usize) -> f64 {
     sum / f64::from(CELLS * CELLS)
 }
 
-/// A number in [0, 1] whose density runs straight from `a` at 0 to `b` at 1.
+/// A number in [0, 1] whose density is linear, in proportion to `a` at 0 and `b` at 1.
 fn sample_linear(u: f64, a: f64, b: f64) -> f64 {
     if u == 0.0 && a == 0.0 {
         return 0.0;

@@ -1,8 +1,8 @@
-//! Spheres, cylinders, disks and their parts as lights.
+//! Quadric lights: spheres, cylinders, disks and their parts.
 //!
-//! A whole sphere is chosen from over the cone in which it is seen, or, from inside, over all directions: in its own
-//! space, where it is round. A linear map `A` changes solid angle by `|det A| / |A ω|³` (ω of unit length), so ellipsoids are no
-//! harder. Parts are chosen from by area in their own space, which a map changes by a factor that depends on the place.
+//! A whole sphere is sampled over the cone that it subtends, or, from inside, over all directions: in its object space,
+//! where it is round. A linear map `A` changes solid angle by `|det A| / |A ω|³` (ω of unit length), so ellipsoids are
+//! no harder. Parts are sampled by area in object space, which the map changes by a factor that depends on the point.
 
 use std::f64::consts::PI;
 
@@ -13,16 +13,16 @@ use crate::core::warp;
 use crate::light::toward;
 use crate::primitive::{MaterialBinding, Quadric, QuadricKind};
 
-/// Inside, with room for points on the sphere itself: those that an inward light on it emits light on.
+/// Relative tolerance within which a point counts as inside: for points on the sphere itself, lit by its inner side.
 const ON_SPHERE: f64 = 1e-6;
 
-/// Points nearer than this part of the radius to the point that they are to light are that point itself.
+/// Sampled points nearer than this part of the radius to the reference point are that point itself.
 const NEAREST: f64 = 1e-5;
 
-/// Cells along u and v by which the area of an unevenly scaled quadric is summed.
+/// Number of cells along u and v in the numerical integration of the area of a non-uniformly scaled quadric.
 const CELLS: u32 = 64;
 
-/// Nobody's: a light's point needs none.
+/// An empty binding: a light's point needs none.
 const NO_LOOK: MaterialBinding = MaterialBinding {
     material: 0,
     light: None,
@@ -43,7 +43,7 @@ pub struct QuadricLight {
 impl QuadricLight {
     /// None for a quadric without area.
     pub fn new(quadric: Quadric) -> Option<Self> {
-        // The mean of the factor by which the map changes area, over points that are uniform in the own space.
+        // The mean of the factor by which the map changes area, over points uniform in object space.
         let mean = || {
             let cell = |i: u32| (i as f32 + 0.5) / CELLS as f32;
             let place = |k: u32| quadric.sample_in_object([cell(k % CELLS), cell(k / CELLS)]);
@@ -79,7 +79,7 @@ impl QuadricLight {
             return seen(from, at.point, at.ng, at.uv, density);
         };
 
-        // A direction in the sphere's own space.
+        // A direction in object space.
         let View { from: eye, distance, radius, one_minus_cos } = view;
         let inside = one_minus_cos.is_none();
         let local = warp::uniform_cone(u, one_minus_cos.unwrap_or(2.0) as f32).as_dvec3();
@@ -87,7 +87,7 @@ impl QuadricLight {
         let (s, t) = axis.any_orthonormal_pair();
         let direction = (local.x * s + local.y * t + local.z * axis).normalize();
 
-        // Where it meets the sphere; a direction that rounding made miss touches it.
+        // Its intersection with the sphere; a direction that misses by rounding touches it.
         let along = -eye.dot(direction);
         let nearest = (eye + along * direction).length();
         let half_chord = ((radius - nearest) * (radius + nearest)).max(0.0).sqrt();
@@ -109,17 +109,17 @@ impl QuadricLight {
         })
     }
 
-    /// The density over solid angle where points are chosen by direction.
+    /// The solid angle density where the quadric is sampled by direction.
     pub(super) fn pdf_by_direction(&self, from: DVec3, wi: Vec3, two_sided: bool) -> Option<f32> {
         self.view(from, two_sided).map(|view| self.density(&view, wi))
     }
 
-    /// The density over area, in render space, where points are chosen by area.
+    /// The area density, in render space, where the quadric is sampled by area.
     pub(super) fn pdf_by_area(&self, p: DVec3) -> f64 {
         1.0 / (self.quadric.object_area() * self.quadric.area_scale(self.quadric.point_in_object(p)))
     }
 
-    /// How a whole sphere is seen from a point.
+    /// A whole sphere as seen from a point; `None` if it is not sampled by direction from there.
     fn view(&self, from: DVec3, two_sided: bool) -> Option<View> {
         let QuadricKind::Sphere { radius, .. } = self.quadric.kind else { return None };
         if !self.quadric.is_whole_sphere() {
@@ -144,13 +144,13 @@ impl QuadricLight {
     }
 }
 
-/// How a whole sphere is seen, in its own space.
+/// A whole sphere as seen from a point, in object space.
 #[derive(Clone, Copy, Debug)]
 struct View {
     from: DVec3,
-    /// From its centre.
+    /// Distance from its centre.
     distance: f64,
     radius: f64,
-    /// Of the angle between its middle and its edge; None from inside.
+    /// 1 − cosine of the angle between its centre and its rim; None from inside.
     one_minus_cos: Option<f64>,
 }

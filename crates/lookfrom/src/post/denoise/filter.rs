@@ -1,5 +1,5 @@
-//! The filter's inner loop: for every offset between two pixels, a whole block of pixels at once, so that the machine's vectors
-//! have something to do. The slow twin, which goes pixel by pixel, is in the tests.
+//! The filter's inner loop: for every offset between two pixels, a whole block of pixels at once, so that it is
+//! vectorised. A slow reference implementation, which goes pixel by pixel, is in the tests.
 
 use lookfrom_simd::{Kernel, Simd, dispatch, level};
 
@@ -8,23 +8,23 @@ use super::{PATCH, RADIUS};
 use crate::core::parallel;
 use crate::film::Picture;
 
-/// How much patches may differ, in standard deviations of their difference, before the weight is `exp(−1)`: squared.
+/// Difference of patches, in standard deviations of their difference and squared, at which the weight is `exp(−1)`.
 const TOLERANCE: f32 = 0.42;
 
-/// What keeps a quotient of nothing by nothing from being none.
+/// Added to the denominator, so that 0 over 0 is not NaN.
 const LEAST_VARIANCE: f32 = 1e-12;
 
-/// A block of pixels that are filtered together: columns and rows. Its memory stays in the nearest cache.
+/// Size of a block of pixels that are filtered together: columns and rows. Its memory fits the L1 cache.
 pub(super) const COLUMNS: usize = 64;
 const ROWS: usize = 16;
 
-/// A row of a block with the patches' margins.
+/// Length of a row of a block with the patches' margins.
 const WIDE: usize = COLUMNS + 2 * PATCH;
-/// Rows of a block with the patches' margins.
+/// Number of rows of a block with the patches' margins.
 const HIGH: usize = ROWS + 2 * PATCH;
 
 impl<const N: usize> Planes<N> {
-    /// Adds to the picture's pixels what the filter changes.
+    /// Adds the filter's changes to the picture's pixels.
     pub(super) fn filter_into(&self, picture: &mut Picture) {
         let Picture { width: columns, pixels, alpha, .. } = picture;
         let (width, columns) = (self.width(), *columns as usize);
@@ -59,15 +59,15 @@ impl<const N: usize> Planes<N> {
 #[derive(Clone, Copy)]
 struct Block<'a, const N: usize> {
     planes: &'a Planes<N>,
-    /// The first column and row, of the area.
+    /// The first column and row, in the area.
     left: usize,
     top: usize,
-    /// At most [`ROWS`]; there are always [`COLUMNS`] columns, of which the last may lie in the border.
+    /// Number of rows, at most [`ROWS`]; there are always [`COLUMNS`] columns, of which the last may lie in the border.
     rows: usize,
 }
 
 impl<const N: usize> Block<'_, N> {
-    /// Where in the planes the pixel of this row and column of the block's margins is.
+    /// The index in the planes of the pixel at this row and column of the block with its margins.
     fn start(&self, row: usize, column: usize) -> usize {
         (self.top + row + BORDER - PATCH) * self.planes.stride + self.left + column + BORDER - PATCH
     }
@@ -84,14 +84,14 @@ impl<const N: usize> Block<'_, N> {
 /// The filter for one block.
 struct Filter<'a, const N: usize> {
     block: Block<'a, N>,
-    /// Of the rows of the block, over the whole width.
+    /// The changes of the rows of the block, over the whole width.
     changes: &'a mut [[f32; N]],
 }
 
-/// As many numbers of a plane as a row has.
+/// `LENGTH` numbers of a plane.
 #[inline(always)]
 fn row<const LENGTH: usize>(plane: &[f32], start: usize) -> &[f32; LENGTH] {
-    // The planes have a border as wide as the filter looks.
+    // The planes have a border as wide as the filter reaches.
     plane[start..start + LENGTH].first_chunk().expect("a slice of this length")
 }
 
@@ -108,7 +108,7 @@ impl<const N: usize> Kernel for Filter<'_, N> {
         let mut sums = [[[0.0_f32; COLUMNS]; N]; ROWS];
 
         for offset in offsets(*stride) {
-            // How far apart the light of the two is, less what noise explains.
+            // The distance of the light of the two pixels, less the part that noise explains.
             for y in 0..block.rows + 2 * PATCH {
                 let here = block.start(y, 0);
                 let there = here.wrapping_add_signed(offset);
@@ -126,7 +126,7 @@ impl<const N: usize> Kernel for Filter<'_, N> {
             }
             // The mean over the patches: along rows, then along columns.
             for y in 0..block.rows + 2 * PATCH {
-                // One shift after the other: the other way around the compiler finds no vectors.
+                // The loop over shifts must be the outer one: otherwise the compiler does not vectorise.
                 let sums = &mut sums_of_rows[y];
                 *sums = *row::<COLUMNS>(&distances[y], 0);
                 for next in 1..=2 * PATCH {
@@ -162,7 +162,7 @@ impl<const N: usize> Kernel for Filter<'_, N> {
                         off_plane[x] += (q[x] - p[x]) * n[x];
                     }
                 }
-                // The weight, and what comes of it.
+                // The weight, and the weighted differences.
                 let mut weight = [0.0_f32; COLUMNS];
                 let trust = row::<COLUMNS>(trust, here);
                 for x in 0..COLUMNS {
@@ -191,7 +191,7 @@ impl<const N: usize> Kernel for Filter<'_, N> {
     }
 }
 
-/// From a pixel to each of its neighbours in the planes, in the order of reading.
+/// Offsets in the planes from a pixel to each of its neighbours, row by row.
 fn offsets(stride: usize) -> impl Iterator<Item = isize> {
     let reach = -(RADIUS as isize)..=RADIUS as isize;
     let all = reach.clone().flat_map(move |y| reach.clone().map(move |x| y * stride as isize + x));
@@ -204,15 +204,15 @@ fn lights<const N: usize>(light: &[Vec<f32>; N], start: usize) -> [&[f32; WIDE];
     std::array::from_fn(|c| row(&light[c], start))
 }
 
-/// How far two pixels are apart whose light differs by this (squared, all channels together): 0 in the mean where only noise
-/// differs.
+/// The distance of two pixels whose light differs by this (squared, all channels together): its expectation is 0 where
+/// only noise differs.
 #[inline(always)]
 pub(super) fn distance(square: f32, p_variance: f32, q_variance: f32) -> f32 {
     let less = if p_variance < q_variance { p_variance } else { q_variance };
     (square - (p_variance + less)) / (LEAST_VARIANCE + TOLERANCE * (p_variance + q_variance))
 }
 
-/// The weight of a neighbour: about `exp(−x)` of the sum of its distances, `of_light` over all pixels of the patches.
+/// The weight of a neighbour: about `exp(−x)` of the sum of its distances; `of_light` is the sum over the patches.
 #[inline(always)]
 pub(super) fn falloff(of_light: f32, of_features: f32) -> f32 {
     const SHARE: f32 = 1.0 / ((2 * PATCH + 1) * (2 * PATCH + 1)) as f32;

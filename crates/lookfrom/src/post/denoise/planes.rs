@@ -1,5 +1,5 @@
-//! A film as the filter wants it: each number of a pixel in a plane of its own, scaled so that differences can be added, with
-//! a border as wide as the filter looks.
+//! The film in planes for the filter: each component of a pixel in a plane of its own, scaled so that differences can
+//! be added, with a border as wide as the filter reaches.
 
 use lookfrom_scene::settings::PixelBounds;
 use lookfrom_scene::spectrum::space::xyz_of_rec709;
@@ -12,26 +12,28 @@ use crate::film::{Aovs, DenoiserFeatures, Film, Picture};
 /// The width of the border.
 pub(super) const BORDER: usize = RADIUS + PATCH;
 
-/// Added to an albedo before light is divided by it: what dark things mirror is no multiple of their albedo.
+/// Added to an albedo before light is divided by it: specular reflection of dark surfaces is not proportional to their
+/// albedo.
 const MIRRORED: f32 = 0.1;
 
-/// Standard deviations of features: a difference of so much makes a pixel's weight `exp(−½)`.
+/// Standard deviations of features: a difference of this size makes a pixel's weight `exp(−½)`.
 const NORMAL_DEVIATION: f32 = 0.15;
 const ALBEDO_DEVIATION: f32 = 0.15;
-/// Distance from a pixel's tangent plane, in pixels as far away as the surface is.
+/// Deviation of the distance from a pixel's tangent plane, in the distance between the positions of neighbouring
+/// pixels.
 const PLANE_DEVIATION: f32 = 4.0;
 
-/// A normal in the border and of pixels without samples: like no other.
+/// The normal in the border and of pixels without samples: far from any other.
 const NOWHERE: f32 = 1e6;
 
-/// Features that both pixels have: normal, albedo.
+/// Number of features that are compared directly: normal and albedo.
 pub(super) const COMPARED: usize = 6;
 
-/// The picture with `N` channels: X, Y, Z, whose variances the film knows, and perhaps alpha.
+/// The picture with `N` channels: X, Y, Z, whose variances the film has, and alpha if N is 4.
 pub(super) struct Planes<const N: usize> {
-    /// The part of the picture that is held.
+    /// The part of the picture that the film holds.
     pub(super) area: PixelBounds,
-    /// From one row to the next.
+    /// Offset from one row to the next.
     pub(super) stride: usize,
     /// Light over albedo; alpha times the picture's mean light.
     pub(super) light: [Vec<f32>; N],
@@ -39,17 +41,17 @@ pub(super) struct Planes<const N: usize> {
     pub(super) variance: Vec<f32>,
     /// Normal and albedo over their deviations.
     pub(super) compared: [Vec<f32>; COMPARED],
-    /// The share of a difference in features that counts.
+    /// Weight of a difference in features.
     pub(super) trust: Vec<f32>,
-    /// Where the surface is.
+    /// The position of the first hit.
     pub(super) place: [Vec<f32>; 3],
-    /// The geometric normal over the deviation of distances along it.
+    /// The geometric normal divided by the deviation of distances along it.
     pub(super) plane: [Vec<f32>; 3],
-    /// What red, green, blue and alpha were divided by: without a border.
+    /// The divisors of red, green, blue and alpha: without a border.
     divisors: Vec<[f32; N]>,
 }
 
-/// What the planes hold of a pixel, but for the scale of its plane.
+/// The data of a pixel in the planes, except for the scale of its tangent plane.
 struct Known<const N: usize> {
     light: [f32; N],
     divisor: [f32; N],
@@ -63,7 +65,7 @@ impl<const N: usize> Planes<N> {
     pub(super) fn new(film: &Film, picture: &Picture) -> Self {
         let area = film.area();
         let (width, height) = ((area.x1 - area.x0) as usize, (area.y1 - area.y0) as usize);
-        // Alpha counts as much as light of the picture's mean does.
+        // Alpha is scaled to count as much as the mean light of the picture.
         let mean = film.mean_luminance().abs() as f32;
         let alpha_divisor = if mean > 0.0 { 1.0 / mean } else { 1.0 };
         let known: Vec<Known<N>> = parallel::collect(width * height, |index| {
@@ -89,17 +91,18 @@ impl<const N: usize> Planes<N> {
         Self { area, stride: stride(width), light, variance, compared, trust, place, plane, divisors }
     }
 
-    /// Columns that are held.
+    /// Number of columns of the area.
     pub(super) fn width(&self) -> usize {
         (self.area.x1 - self.area.x0) as usize
     }
 
-    /// Rows that are held.
+    /// Number of rows of the area.
     pub(super) fn height(&self) -> usize {
         (self.area.y1 - self.area.y0) as usize
     }
 
-    /// What is added to red, green, blue (and alpha) of a pixel of the area, counted row by row, by a change of the planes' light.
+    /// The change of red, green, blue (and alpha) of a pixel of the area, by row-major index, for a change of the
+    /// planes' light.
     pub(super) fn change(&self, index: usize, of_light: [f32; N]) -> [f32; N] {
         let divisors = &self.divisors[index];
         let rgb = rgb([of_light[0], of_light[1], of_light[2]]);
@@ -125,7 +128,7 @@ fn known<const N: usize>(film: &Film, picture: &Picture, [x, y]: [u32; 2], alpha
         over_albedo.get(c).copied().unwrap_or_else(|| picture.alpha[index] / divisor[c])
     });
 
-    // The variance of X, Y and Z is known before the division, which makes each smaller by some mean of the divisors.
+    // The variances of X, Y and Z are those before the division, which scales each by a mean of the divisors.
     let rgb_divisors = [divisor[0], divisor[1], divisor[2]];
     let least = rgb_divisors.into_iter().fold(f32::INFINITY, f32::min);
     let greatest = rgb_divisors.into_iter().fold(0.0, f32::max);
@@ -141,7 +144,7 @@ fn known<const N: usize>(film: &Film, picture: &Picture, [x, y]: [u32; 2], alpha
     Known { light, divisor, variance: variance / samples.max(1) as f32, aovs, trust, is_sampled: samples > 0 }
 }
 
-/// The share of a difference in features that counts: less where a pixel sees several things, by the variance of its mean normal.
+/// Weight of a difference in features: less where a pixel covers several surfaces, by the variance of its mean normal.
 fn trust(mean: &DenoiserFeatures) -> f32 {
     let square = mean.aovs.ns.into_iter().fold(0.0, |sum, n| sum + n * n);
     let variance = (mean.coverage - square).max(0.0) / mean.samples as f32;
@@ -168,7 +171,7 @@ impl<const N: usize> Known<N> {
     }
 }
 
-/// From one row of a plane to the next: whole blocks, and the border.
+/// Offset from one row of a plane to the next: whole blocks, and the border.
 fn stride(width: usize) -> usize {
     width.next_multiple_of(COLUMNS) + 2 * BORDER
 }
@@ -189,7 +192,7 @@ impl<const N: usize> Grid<'_, N> {
         parallel::collect(self.pixels.len(), |index| of(index % self.width, index / self.width))
     }
 
-    /// A plane with a border that repeats what is nearest.
+    /// A plane with a border that repeats the nearest pixel.
     fn bordered(&self, of: &(dyn Fn(usize, usize) -> f32 + Sync)) -> Vec<f32> {
         let stride = stride(self.width);
         let mut plane = vec![0.0; stride * (self.height + 2 * BORDER)];
@@ -220,7 +223,7 @@ impl<const N: usize> Grid<'_, N> {
         }
     }
 
-    /// The mean variance of the 3 × 3 pixels around, which is more to be trusted than that of one.
+    /// The mean variance of the 3 × 3 pixels around, which is more reliable than that of one.
     fn smooth_variance(&self, x: usize, y: usize) -> f32 {
         let (mut sum, mut count) = (0.0, 0.0);
         for row in y.saturating_sub(1)..(y + 2).min(self.height) {
@@ -235,7 +238,7 @@ impl<const N: usize> Grid<'_, N> {
         if count > 0.0 { sum / count } else { self.scatter(x, y) }
     }
 
-    /// The variance of a pixel as it seems where there is but one sample: by how much those around it differ.
+    /// An estimate of a pixel's variance where it has only one sample: the variance of the pixels around.
     fn scatter(&self, x: usize, y: usize) -> f32 {
         let mut sums = [0.0; N];
         let mut squares = 0.0;
@@ -258,8 +261,8 @@ impl<const N: usize> Grid<'_, N> {
         if count > 1.0 { ((squares - square_of_mean) / (count - 1.0)).max(0.0) } else { 0.0 }
     }
 
-    /// One over the deviation of distances from a pixel's tangent plane: by how far away the nearest place of a neighbour is. 0 where
-    /// nothing is known.
+    /// One over the deviation of distances from a pixel's tangent plane, in proportion to the distance of the nearest
+    /// neighbour's position. 0 where there is no hit.
     fn plane_scale(&self, x: usize, y: usize) -> f32 {
         let own = self.at(x, y);
         if own.aovs.ng == [0.0; 3] {

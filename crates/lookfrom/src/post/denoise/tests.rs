@@ -1,4 +1,4 @@
-//! Tests of the denoiser against its slow twin, and of its properties.
+//! Tests of the denoiser against its slow reference, and of its properties.
 
 use lookfrom_scene::settings::{Background, ImageSettings, PixelBounds};
 use proptest::prelude::*;
@@ -8,7 +8,7 @@ use super::*;
 use crate::core::hash;
 use crate::film::{Aovs, FilmTile};
 
-/// Numbers in `[0, 1)` from a count.
+/// Pseudorandom numbers in `[0, 1)` from a counter.
 struct Numbers(u64);
 
 impl Numbers {
@@ -22,7 +22,7 @@ fn image(width: u32, height: u32) -> ImageSettings {
     ImageSettings { width, height, denoise: true, ..ImageSettings::default() }
 }
 
-/// A film whose samples and features are what a function says of pixel and sample.
+/// A film whose samples and features are given by a function of pixel and sample.
 fn film(
     image: &ImageSettings,
     samples: u32,
@@ -42,7 +42,7 @@ fn film(
     film
 }
 
-/// A wall of a colour that looks at the eye.
+/// A wall of a colour that faces the camera.
 fn wall(x: u32, y: u32, albedo: [f32; 3]) -> Option<Aovs> {
     let n = [0.0, 0.0, -1.0];
     let position = [0.01 * x as f32, -0.01 * y as f32, 3.0];
@@ -54,7 +54,7 @@ fn means(picture: &Picture) -> [f64; 3] {
         .map(|c| picture.pixels.iter().map(|p| f64::from(p[c])).sum::<f64>() / picture.pixels.len() as f64)
 }
 
-/// The mean square of the distance of a picture's green from what it should be.
+/// The mean square error of a picture's green channel.
 fn error(picture: &Picture, of: impl Fn(usize, usize) -> f32) -> f64 {
     let width = picture.width as usize;
     let square =
@@ -62,7 +62,7 @@ fn error(picture: &Picture, of: impl Fn(usize, usize) -> f32) -> f64 {
     picture.pixels.iter().enumerate().map(square).sum::<f64>() / picture.pixels.len() as f64
 }
 
-/// What the filter adds to a pixel of the planes, by the formula, one neighbour after the other.
+/// The filter's change of a pixel of the planes, by the formula, one neighbour after the other.
 fn change<const N: usize>(planes: &Planes<N>, x: usize, y: usize) -> [f32; N] {
     let at = |x: i64, y: i64| {
         (y + planes::BORDER as i64) as usize * planes.stride + (x + planes::BORDER as i64) as usize
@@ -105,7 +105,7 @@ fn change<const N: usize>(planes: &Planes<N>, x: usize, y: usize) -> [f32; N] {
     sums.map(|sum| sum / weights)
 }
 
-/// A film of noise with exponents of all sizes, with surfaces here and there.
+/// A film of noise over many orders of magnitude, with hits in some pixels.
 fn random(image: &ImageSettings, samples: u32, seed: u64) -> Film {
     let mut numbers = Numbers(seed << 32);
     film(image, samples, |x, y, _| {
@@ -173,7 +173,7 @@ fn noise_on_a_wall_falls_by_a_factor_and_its_mean_stays() {
 
 #[test]
 fn textures_and_edges_stay_and_lose_their_noise() {
-    // A checker of the finest squares, and a shadow's edge that no feature shows.
+    // A checkerboard of single pixels, and a shadow's edge that no feature shows.
     let albedo = |x: u32, y: u32| if (x + y).is_multiple_of(2) { 0.8 } else { 0.2 };
     let lit = |x: u32| if x < 40 { 1.0 } else { 0.25 };
     let truth = |x: usize, y: usize| albedo(x as u32, y as u32) * lit(x as u32);
@@ -214,7 +214,7 @@ fn a_firefly_is_spread_and_its_light_not_doubled() {
 fn the_noise_of_alpha_goes_and_its_edges_stay() {
     let settings = ImageSettings { background: Background::Transparent, ..image(64, 48) };
     let mut numbers = Numbers(8);
-    // A thing, the noisy shadow that it throws, and nothing.
+    // An object, its noisy shadow, and background.
     let film = film(&settings, 8, |x, y, _| match x {
         0..20 => ([0.5; 3], 1.0, wall(x, y, [0.5; 3])),
         20..50 => ([0.0; 3], numbers.next(), wall(x, 500 + y, [1.0; 3])),

@@ -16,12 +16,12 @@ fn develop(rgb: [f32; 3], exposure: f32, tonemap: Tonemap) -> [u8; 3] {
 fn known_values() {
     let grey = |x: f32, exposure, tonemap| develop([x; 3], exposure, tonemap)[1];
     let clamp = |x| grey(x, 0.0, Tonemap::Clamp);
-    // 18 % grey is 118, half the light 188; 10 lies where the line meets the curve.
+    // 18 % grey is 118, half the light 188; 10 lies where the linear part meets the power function.
     assert_eq!([0.0, 0.0031308, 0.18, 0.5, 1.0, 7.0].map(clamp), [0, 10, 118, 188, 255, 255]);
     assert_eq!(grey(0.09, 1.0, Tonemap::Clamp), 118);
     assert_eq!(grey(4.0, -3.0, Tonemap::Clamp), 188);
     assert_eq!(grey(1.0, 0.0, Tonemap::Reinhard), 188);
-    // The filmic curve at 1 is 2.54 / 3.16 = 0.8038, and 255 times the curve of that 231.6.
+    // The filmic curve at 1 is 2.54 / 3.16 = 0.8038, and 255 times the sRGB curve of that is 231.6.
     assert_eq!(grey(1.0, 0.0, Tonemap::Filmic), 232);
 }
 
@@ -44,7 +44,7 @@ fn reinhard_keeps_the_hue() {
 fn thresholds_agree_with_the_curve() {
     let thresholds = thresholds();
     let fast = |value: f32| thresholds.partition_point(|&t| t <= value) as u8;
-    // Around each threshold, and anywhere by random exponents.
+    // Around each threshold, and at values of random exponents.
     for threshold in thresholds {
         for bits in threshold.to_bits() - 200..=(threshold.to_bits() + 200).min(1.0_f32.to_bits()) {
             let value = f32::from_bits(bits);
@@ -94,16 +94,16 @@ fn pbr_neutral_takes_the_offset_away_and_leaves_the_rest_to_the_start_of_compres
     for rgb in [[0.5, 0.2, 0.1], [0.09; 3], [0.8, 0.79, 0.081]] {
         assert!(near(map(rgb), rgb.map(|x| x - 0.04)), "{rgb:?}");
     }
-    // Darker than that it is x − x² / (4 F90): a colour without one of the primaries stays as it is.
+    // Below that it is x − x² / (4 F90): a colour in which one primary is 0 stays as it is.
     assert!(near(map([0.7, 0.3, 0.0]), [0.7, 0.3, 0.0]));
     assert!(near(map([0.04; 3]), [0.01; 3]) && near(map([0.08; 3]), [0.04; 3]));
-    // A white of 1 by hand: p = 0.96, pₙ = 1 − 0.24² / 0.44 = 0.869091, and grey has no colour to lose.
+    // A white of 1 by hand: p = 0.96, pₙ = 1 − 0.24² / 0.44 = 0.869091, and grey has no saturation to lose.
     assert!(near(map([1.0; 3]), [1.0 - 0.0576 / 0.44; 3]));
     // A red of 4: pₙ = 1 − 0.0576 / 3.48, g = 1 / (0.15 (4 − pₙ) + 1).
     let peak = 1.0 - 0.0576 / 3.48;
     let kept = 1.0 / (0.15 * (4.0 - peak) + 1.0);
     assert!(near(map([4.0, 0.0, 0.0]), [peak, peak * (1.0 - kept), peak * (1.0 - kept)]));
-    // Without a jump where compression starts.
+    // Continuous where compression starts.
     let [below, above] = [0.8 - 1e-9, 0.8 + 1e-9].map(|x| map([x, 0.3, 0.2]));
     assert!(below.into_iter().zip(above).all(|(a, b)| (a - b).abs() < 1e-8));
 }
@@ -120,7 +120,7 @@ fn aces_and_agx_at_points_of_their_curves() {
     assert!(near(grey(0.18, Tonemap::Agx), 0.217_638, 0.005), "{:?}", grey(0.18, Tonemap::Agx));
     assert!(near(grey(16.29, Tonemap::Agx), 1.0, 0.01), "{:?}", grey(16.29, Tonemap::Agx));
     assert!(near(grey(0.0001, Tonemap::Agx), 0.0, 1e-3));
-    // Bright saturated light goes to white in both; cut, it would stay pure.
+    // Bright saturated light goes to white in both; clamped, it would stay saturated.
     for tonemap in [Tonemap::Aces, Tonemap::Agx] {
         let [r, g, b] = tonemap::mapped([0.02, 0.02, 50.0], tonemap);
         assert!(r > 0.2 && g > 0.2 && b > g, "{tonemap:?} {r} {g} {b}");
@@ -133,7 +133,7 @@ fn colours_of_a_transparent_picture_are_divided_by_their_alpha() {
     let picture = Picture { width: 2, height: 2, pixels, alpha: vec![0.5, 0.0, -0.01, 1.01] };
     let bytes = srgba8(&picture, 0.0, Tonemap::Clamp);
     assert_eq!(bytes, [188, 255, 0, 128, 0, 0, 0, 0, 0, 0, 0, 0, 188, 188, 188, 255]);
-    // A background is shown as it is, whatever the tone map, as much as alpha leaves of it.
+    // The background is composited by alpha, and not changed by the tone map.
     let before = |tonemap, exposure| srgb8_before(&picture, [1.0, 0.5, 0.0], exposure, tonemap);
     let bytes = before(Tonemap::Clamp, 0.0);
     assert_eq!(bytes, [225, 225, 0, 255, 188, 0, 255, 188, 0, 188, 188, 188]);

@@ -7,7 +7,7 @@
 
 use lookfrom_scene::settings::Tonemap;
 
-/// What is shown of light, each of red, green and blue at least 0 and finite: linear, to be cut to 0 … 1.
+/// The tone-mapped colour, linear, to be clamped to 0 … 1. Red, green and blue must be at least 0 and finite.
 pub(super) fn mapped(rgb: [f64; 3], tonemap: Tonemap) -> [f64; 3] {
     match tonemap {
         Tonemap::Clamp => rgb,
@@ -22,15 +22,16 @@ pub(super) fn mapped(rgb: [f64; 3], tonemap: Tonemap) -> [f64; 3] {
     }
 }
 
-/// Reflectance straight on of most dielectrics, which renderers add to the base colour and this map takes away again.
+/// Reflectance at normal incidence of most dielectrics, which renderers add to the base colour and this map subtracts
+/// again.
 const F90: f64 = 0.04;
-/// From here on highlights are compressed.
+/// The value from which highlights are compressed.
 const COMPRESSION_START: f64 = 0.8 - F90;
-/// How fast they lose their colour.
+/// The rate of their desaturation.
 const DESATURATION: f64 = 0.15;
 
 fn pbr_neutral(rgb: [f64; 3]) -> [f64; 3] {
-    // Take away what was mirrored; of dark colours less, so that none becomes negative.
+    // Subtract the specular reflection; less for dark colours, so that none becomes negative.
     let least = rgb.into_iter().fold(f64::INFINITY, f64::min);
     let offset = if least <= 2.0 * F90 { least - least * least / (4.0 * F90) } else { F90 };
     let rgb = rgb.map(|x| x - offset);
@@ -39,17 +40,17 @@ fn pbr_neutral(rgb: [f64; 3]) -> [f64; 3] {
         return rgb;
     }
 
-    // Bring the greatest channel below 1, and the colour towards white by how far it was above.
+    // Compress the largest channel below 1, and desaturate by the amount of compression.
     let room = 1.0 - COMPRESSION_START;
     let lower_peak = 1.0 - room * room / (peak + room - COMPRESSION_START);
     let kept = 1.0 / (DESATURATION * (peak - lower_peak) + 1.0);
     rgb.map(|x| x * (lower_peak / peak) * kept + lower_peak * (1.0 - kept))
 }
 
-/// From Rec. 709 to the primaries AP1, with the reference transform's desaturation.
+/// From Rec. 709 to the AP1 primaries, with the reference transform's desaturation.
 const ACES_INPUT: [[f64; 3]; 3] =
     [[0.59719, 0.35458, 0.04823], [0.07600, 0.90834, 0.01566], [0.02840, 0.13383, 0.83777]];
-/// And back.
+/// Back to Rec. 709.
 const ACES_OUTPUT: [[f64; 3]; 3] =
     [[1.60475, -0.53108, -0.07367], [-0.10208, 1.10813, -0.00605], [-0.00327, -0.07276, 1.07602]];
 
@@ -62,13 +63,13 @@ const REC2020_FROM_REC709: [[f64; 3]; 3] =
     [[0.6274, 0.3293, 0.0433], [0.0691, 0.9195, 0.0113], [0.0164, 0.0880, 0.8956]];
 const REC709_FROM_REC2020: [[f64; 3]; 3] =
     [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]];
-/// Draws primaries inward and turns them.
+/// Moves primaries inward and rotates them.
 const AGX_INSET: [[f64; 3]; 3] = [
     [0.856_627_153_315_983, 0.095_121_240_538_158_8, 0.048_251_606_145_858_3],
     [0.137_318_972_929_847, 0.761_241_990_602_591, 0.101_439_036_467_562],
     [0.111_898_212_999_95, 0.076_799_418_603_190_3, 0.811_302_368_396_859],
 ];
-/// Draws them outward again, without the turn.
+/// Moves them outward again, without the rotation.
 const AGX_OUTSET: [[f64; 3]; 3] = [
     [1.127_100_581_814_436_8, -0.110_606_643_096_603_23, -0.016_493_938_717_834_573],
     [-0.141_329_763_498_438_3, 1.157_823_702_216_272, -0.016_493_938_717_834_257],

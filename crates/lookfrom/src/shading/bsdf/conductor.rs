@@ -9,24 +9,24 @@ use super::{BsdfSample, Lobes, fresnel, is_grazing, layered::Base, same_side};
 use crate::core::math;
 use crate::core::spectrum::Spectrum;
 
-/// A metal with index of refraction `eta` and extinction `k`, both divided by the index of what lies around it.
+/// A metal with index of refraction `eta` and extinction `k`, both divided by the surrounding index.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conductor {
-    /// Index over that around it.
+    /// Index of refraction over the surrounding one.
     pub(crate) eta: Spectrum,
-    /// Extinction over the index around it.
+    /// Extinction over the surrounding index.
     pub(crate) k: Spectrum,
-    /// Of the surface.
+    /// Roughness of the surface.
     pub(crate) roughness: TrowbridgeReitz,
 }
 
 impl Conductor {
-    /// By index and extinction over the index around it.
+    /// By index and extinction over the surrounding index.
     pub fn new(eta: Spectrum, k: Spectrum, roughness: TrowbridgeReitz) -> Self {
         Self { eta, k, roughness }
     }
 
-    /// `f` where the micro-normal is `wm`; both directions on one side, neither grazing.
+    /// `f` with the half vector `wm`; both directions on one side, neither grazing.
     #[inline]
     fn rough_f(&self, wo: Vec3, wi: Vec3, wm: Vec3) -> Spectrum {
         let fresnel = fresnel::conductor(wo.dot(wm).abs(), self.eta, self.k);
@@ -34,7 +34,7 @@ impl Conductor {
     }
 }
 
-/// The micro-normal halfway between two directions of one side, with z > 0; `None` where there is none.
+/// The half vector of two directions on one side, with z > 0; `None` where there is none.
 #[inline]
 pub(super) fn half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {
     let wm = (wo + wi).try_normalize()?;

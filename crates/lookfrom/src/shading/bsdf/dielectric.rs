@@ -1,6 +1,6 @@
 //! Dielectrics, smooth or rough, and thin dielectrics.
 //!
-//! Walter et al. 2007; Veach 1997, § 5.2 (why radiance is scaled by 1/η² where it passes, and importance is not).
+//! Walter et al. 2007; Veach 1997, § 5.2 (why transmitted radiance is scaled by 1/η² and importance is not).
 
 use glam::Vec3;
 
@@ -14,17 +14,17 @@ use crate::core::spectrum::Spectrum;
 pub struct Dielectric {
     /// Inside over outside.
     pub(crate) eta: f32,
-    /// Of the surface.
+    /// Roughness of the surface.
     pub(crate) roughness: TrowbridgeReitz,
 }
 
-/// What a pair of directions means to a rough boundary.
+/// The microfacet that scatters between a pair of directions at a rough boundary.
 struct Facet {
-    /// The micro-normal that turns one direction into the other, z > 0.
+    /// Its normal, z > 0.
     wm: Vec3,
-    /// The part that it mirrors.
+    /// Its Fresnel reflectance.
     fresnel: f32,
-    /// Whether the directions are on one side.
+    /// True if the directions are on one side.
     reflects: bool,
     /// The index beyond the boundary over the one on the side of `wo`; 1 for reflection.
     eta: f32,
@@ -36,7 +36,8 @@ impl Dielectric {
         Self { eta: fresnel::valid_eta(eta), roughness }
     }
 
-    /// Whether light leaves in single directions only. A boundary between equals is none, however rough.
+    /// True if light leaves in discrete directions only. A boundary between equal indices is specular,
+    /// however rough.
     #[inline]
     fn is_specular(&self) -> bool {
         self.eta == 1.0 || self.roughness.is_smooth()
@@ -53,7 +54,7 @@ impl Dielectric {
         self.roughness.regularize();
     }
 
-    /// The facet that does it, or `None` where no facet does.
+    /// The microfacet that scatters `wo` to `wi`, or `None` where there is none.
     #[inline]
     fn facet(&self, wo: Vec3, wi: Vec3) -> Option<Facet> {
         if self.is_specular() || is_grazing(wo) || is_grazing(wi) {
@@ -63,14 +64,14 @@ impl Dielectric {
         let eta = if reflects { 1.0 } else { fresnel::relative_eta(wo.z, self.eta) };
         let wm = (wi * eta + wo).try_normalize()?;
         let wm = if wm.z < 0.0 { -wm } else { wm };
-        // Light that would meet the facet's back does not.
+        // Facets seen from behind do not scatter.
         if wm.dot(wi) * wi.z < 0.0 || wm.dot(wo) * wo.z < 0.0 {
             return None;
         }
         Some(Facet { wm, fresnel: fresnel::dielectric(wo.dot(wm), self.eta), reflects, eta })
     }
 
-    /// `f` through or off the facet.
+    /// `f` for reflection or refraction by the facet.
     #[inline]
     fn facet_f(&self, wo: Vec3, wi: Vec3, facet: &Facet, mode: Mode) -> Spectrum {
         let &Facet { wm, fresnel, reflects, eta } = facet;
@@ -125,7 +126,7 @@ impl Dielectric {
         if self.is_specular() {
             return self.sample_smooth(wo, uc, mode, lobes);
         }
-        // Choose a facet that is seen, and then a side by what the facet mirrors.
+        // Sample a visible normal, and then a side by the facet's Fresnel reflectance.
         let wm = self.roughness.sample(wo, u);
         let fresnel = fresnel::dielectric(wo.dot(wm), self.eta);
         let [r, t] = lobes.allowed([fresnel, 1.0 - fresnel]);
@@ -184,7 +185,8 @@ pub(super) fn refraction_jacobian(wo: Vec3, wi: Vec3, wm: Vec3, eta: f32) -> f32
     if squared > 0.0 { (wi.dot(wm).abs() / squared).min(f32::MAX) } else { 0.0 }
 }
 
-/// What passes, when it is radiance: it is spread over η² times the solid angle on the side where `wo` looks.
+/// Scale of transmitted light: radiance is spread over η² times the solid angle on the side of `wo`,
+/// importance is not.
 #[inline]
 pub(super) fn radiance_scale(f: f32, eta: f32, mode: Mode) -> f32 {
     match mode {
@@ -193,15 +195,16 @@ pub(super) fn radiance_scale(f: f32, eta: f32, mode: Mode) -> f32 {
     }
 }
 
-/// A pane so thin that light leaves where it came in: all reflections between its two sides are summed.
+/// A dielectric sheet so thin that light leaves at the point where it entered: all internal reflections
+/// are summed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinDielectric {
-    /// The pane's over that around it.
+    /// Index of the sheet over the surrounding one.
     pub(crate) eta: f32,
 }
 
 impl ThinDielectric {
-    /// By the index of refraction of the pane over that around it (0 counts as 1).
+    /// By the index of refraction of the sheet over the surrounding one (0 counts as 1).
     pub fn new(eta: f32) -> Self {
         Self { eta: fresnel::valid_eta(eta) }
     }

@@ -9,7 +9,7 @@ use super::{BsdfSample, Lobes, is_grazing, layered::Base, same_side};
 use crate::core::spectrum::Spectrum;
 use crate::core::warp;
 
-/// Reflects `reflectance` (0 … 1) of all light, evenly.
+/// Lambertian reflection: reflects the fraction `reflectance` (0 … 1) of the light, uniformly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diffuse {
     /// 0 … 1.
@@ -17,7 +17,7 @@ pub struct Diffuse {
 }
 
 impl Diffuse {
-    /// Reflectance is clamped to 0 … 1.
+    /// The reflectance is clamped to 0 … 1.
     pub fn new(reflectance: Spectrum) -> Self {
         Self { reflectance: reflectance.map(|r| r.clamp(0.0, 1.0)) }
     }
@@ -52,7 +52,7 @@ impl Base for Diffuse {
     fn regularize(&mut self) {}
 }
 
-/// Reflects the part `reflectance` of all light evenly and passes the part `transmittance` evenly.
+/// Reflects the fraction `reflectance` of the light and transmits the fraction `transmittance`, both uniformly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiffuseTransmission {
     /// 0 … 1.
@@ -62,7 +62,7 @@ pub struct DiffuseTransmission {
 }
 
 impl DiffuseTransmission {
-    /// Each is clamped to 0 … 1; that their sum is at most 1 is left to the caller, as in pbrt.
+    /// Each is clamped to 0 … 1; the caller ensures that their sum is at most 1, as in pbrt.
     pub fn new(reflectance: Spectrum, transmittance: Spectrum) -> Self {
         let [reflectance, transmittance] =
             [reflectance, transmittance].map(|part| part.map(|lane| lane.clamp(0.0, 1.0)));
@@ -80,7 +80,7 @@ impl DiffuseTransmission {
         }
     }
 
-    /// The probability of reflection; `None` where neither side is left.
+    /// The probability of reflection; `None` where no allowed side carries light.
     #[inline]
     fn reflection_probability(&self, lobes: Lobes) -> Option<f32> {
         let [r, t] = lobes.allowed([self.reflectance.max_lane(), self.transmittance.max_lane()]);
@@ -122,7 +122,7 @@ impl DiffuseTransmission {
     }
 }
 
-/// A direction as dense as its cosine to the z axis, on the side of the sign of `side`.
+/// A cosine-distributed direction about the z axis, on the side of the sign of `side`.
 #[inline]
 pub(super) fn cosine_direction(u: [f32; 2], side: f32) -> Vec3 {
     let up = warp::cosine_hemisphere(u, Vec3::Z);

@@ -7,33 +7,35 @@ use glam::Vec4;
 use crate::core::math;
 use crate::core::spectrum::Spectrum;
 
-/// The greatest index of refraction or extinction that is told from its neighbours; beyond it f32 squares overflow.
+/// The largest index of refraction or extinction that is distinguished; beyond it f32 squares overflow.
 const GREATEST: f32 = 1e8;
 
-/// The index of refraction as the formulas below want it: positive and within 10±⁶; 0 and NaN become 1, as pbrt has it.
+/// The index of refraction clamped to the domain of the formulas below: positive and within 10±⁶; 0 and NaN become
+/// 1, as in pbrt.
 #[inline]
 pub(super) fn valid_eta(eta: f32) -> f32 {
     if eta > 0.0 { eta.clamp(1e-6, 1e6) } else { 1.0 }
 }
 
-/// The part of light that a dielectric mirrors, for the signed cosine on the normal's scale: negative means from
-/// inside. `eta` is the index of refraction inside divided by the one outside.
+/// Fresnel reflectance of a dielectric, for the signed cosine to the normal: negative means from inside. `eta`
+/// is the index of refraction inside divided by the one outside.
 #[inline]
 pub fn dielectric(cos_theta: f32, eta: f32) -> f32 {
     math::fresnel_dielectric(cos_theta.abs(), relative_eta(cos_theta, eta))
 }
 
-/// The index of refraction beyond the surface divided by the one on the side where the cosine says that one is.
+/// The index of refraction beyond the surface divided by the one on the incident side, by the sign of the
+/// cosine.
 #[inline]
 pub(super) fn relative_eta(cos_theta: f32, eta: f32) -> f32 {
     if cos_theta < 0.0 { 1.0 / eta } else { eta }
 }
 
-/// The part of light that a metal of index `eta` and extinction `k` (both over the index outside) mirrors, lane by lane,
+/// Fresnel reflectance of a metal of index `eta` and extinction `k` (both over the index outside), lane by lane,
 /// for the cosine of the angle to the normal; a negative cosine counts as 0.
 #[inline]
 pub fn conductor(cos_theta: f32, eta: Spectrum, k: Spectrum) -> Spectrum {
-    /// Far below anything real; keeps 0 / 0 away where a lane is unused.
+    /// Far below any real value; prevents 0 / 0 in unused lanes.
     const TINY: Vec4 = Vec4::splat(1e-30);
     let valid = |lanes: Spectrum| Vec4::from_array(lanes.0).max(Vec4::ZERO).min(Vec4::splat(GREATEST));
     let (eta, k) = (valid(eta), valid(k));
@@ -44,19 +46,19 @@ pub fn conductor(cos_theta: f32, eta: Spectrum, k: Spectrum) -> Spectrum {
     let difference = (eta - k) * (eta + k) - sin2;
     let product = eta * k;
     let modulus = (difference * difference + 4.0 * product * product).sqrt();
-    // Of a and b take the greater from the sum that does not cancel, the other from a b = η k.
+    // The larger of a and b comes from the sum that does not cancel, the other from a b = η k.
     let greater = (0.5 * (modulus + difference.abs())).sqrt();
     let lesser = product / (greater + TINY);
     let a = Vec4::select(difference.cmpge(Vec4::ZERO), greater, lesser);
     let twice = 2.0 * a * cos;
     let perpendicular = (modulus + cos2 - twice) / (modulus + cos2 + twice);
-    // Looking straight on there is one polarisation only: the factor becomes one.
+    // At normal incidence both polarisations agree: the factor becomes one.
     let (even, odd) = (cos2 * modulus + sin2 * sin2 + TINY, twice * sin2);
     Spectrum((0.5 * perpendicular * (1.0 + (even - odd) / (even + odd))).to_array())
 }
 
-/// The index and extinction `(η, k)` of a metal that mirrors `reflectance` of light that falls straight on it, as pbrt
-/// chooses them: η = 1 and k = 2 √(r / (1 − r)), with r at most 0.9999.
+/// The index and extinction `(η, k)` of a metal with the given `reflectance` at normal incidence, as pbrt chooses
+/// them: η = 1 and k = 2 √(r / (1 − r)), with r at most 0.9999.
 pub fn conductor_of_reflectance(reflectance: Spectrum) -> (Spectrum, Spectrum) {
     let k = reflectance.map(|r| {
         let r = r.clamp(0.0, 0.9999);

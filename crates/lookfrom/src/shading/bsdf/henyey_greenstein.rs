@@ -1,14 +1,14 @@
 //! The phase function of Henyey & Greenstein 1941.
 //!
-//! Henyey & Greenstein 1941. Directions as everywhere here: `wo` and `wi` both point away from the particle, so that
-//! light that goes straight on has `wo·wi = −1`.
+//! Directions follow the convention of this module: `wo` and `wi` both point away from the particle, so that light
+//! that continues straight ahead has `wo·wi = −1`.
 
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, TAU};
 
 use crate::core::warp;
 
-/// The phase function of mean cosine `g` (positive: forwards), within ±0.99.
+/// The phase function with mean cosine `g` (positive: forward scattering), within ±0.99.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HenyeyGreenstein {
     g: f32,
@@ -20,7 +20,7 @@ impl HenyeyGreenstein {
         Self { g: g.clamp(-0.99, 0.99) }
     }
 
-    /// The part of light that is sent from `wo` to `wi`, per solid angle; also the density of [`Self::sample`].
+    /// The value of the phase function, per solid angle; also the density of [`Self::sample`].
     #[inline]
     pub fn p(self, wo: Vec3, wi: Vec3) -> f32 {
         let g2 = self.g * self.g;
@@ -28,7 +28,7 @@ impl HenyeyGreenstein {
         0.25 * FRAC_1_PI * (1.0 - g2) / (denominator * denominator.sqrt())
     }
 
-    /// A direction as dense as [`Self::p`].
+    /// A direction distributed by [`Self::p`].
     #[inline]
     pub fn sample(self, wo: Vec3, [u, v]: [f32; 2]) -> Vec3 {
         let g = self.g;

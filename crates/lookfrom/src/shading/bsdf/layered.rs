@@ -1,17 +1,18 @@
 //! Layered BSDFs: a dielectric coat over an opaque base, by random walks (Guo, Hašan & Zhao 2018).
 //!
 //! Between the coat (a dielectric boundary) and the base lies a slab of `thickness` in units of the mean free path,
-//! which absorbs or scatters. What light does in there has no formula; `f` is one estimate of it by a short random walk
-//! whose random numbers are a hash of the directions, so that it is a function of its arguments that is right on
-//! average. `pdf` is such an estimate too, of single reflections off the base, mixed with a tenth of a uniform density.
-//! `sample` walks until it leaves the coat; of what it returns only `f / pdf` means anything.
+//! which absorbs or scatters. Its scattering has no closed form; `f` estimates it by a short random walk whose
+//! random numbers are a hash of the directions, so that `f` is a deterministic function of its arguments with the
+//! right mean. `pdf` is also an estimate, of single reflections off the base, mixed with a tenth of a uniform
+//! density. `sample` walks until it leaves the coat; only the ratio `f / pdf` of its result is meaningful.
 //!
-//! This is pbrt-v4's model with all that shows in a picture: the slab absorbs even where nothing scatters
-//! (exp(−thickness / cos θ) a crossing), walks are cut off after `max_depth` steps, and both sides look the same. Where
-//! pbrt is not right on average, neither is this: under a rough coat `f` weighs two ways out by weights that do not add
-//! up to one (9 % too much for roughness 0.4 on white), and it misses what a particle sends through a smooth coat by way
-//! of a mirror. `sample` is right in both. (pbrt's issue 187 shows the first.) So the share that light sampling and
-//! `sample` have of a picture must be pbrt's, too, for the pictures to be the same.
+//! This is pbrt-v4's model, including every simplification that is visible in images: the slab absorbs even where
+//! nothing scatters (exp(−thickness / cos θ) per crossing), walks are cut off after `max_depth` steps, and both
+//! sides scatter alike. Where pbrt is biased, so is this: under a rough coat the MIS weights of the two exit
+//! strategies in `f` do not add up to one (9 % too much for roughness 0.4 on white), and `f` misses light from a
+//! particle that is reflected specularly before it leaves through a smooth coat. `sample` is unbiased in both
+//! cases. (pbrt's issue 187 shows the first.) So for equal images, the weights of light sampling and of `sample`
+//! must also be pbrt's.
 //!
 //! Guo, Hašan & Zhao 2018 (position-free Monte Carlo).
 
@@ -25,13 +26,13 @@ use super::{BsdfSample, Lobes, Mode, is_grazing};
 use crate::core::hash;
 use crate::core::spectrum::Spectrum;
 
-/// A surface that lets nothing through: what can lie under a coat.
+/// An opaque BSDF, which can be the base under a coat.
 pub trait Base: Copy {
     /// As [`super::Bsdf::f`].
     fn f(&self, wo: Vec3, wi: Vec3) -> Spectrum;
     /// As [`super::Bsdf::pdf`].
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32;
-    /// As [`super::Bsdf::sample`]; needs no choice between lobes.
+    /// As [`super::Bsdf::sample`], without a choice between lobes.
     fn sample(&self, wo: Vec3, u: [f32; 2]) -> Option<BsdfSample>;
     /// As [`super::Bsdf::lobes`].
     fn lobes(&self) -> Lobes;
@@ -39,22 +40,22 @@ pub trait Base: Copy {
     fn regularize(&mut self);
 }
 
-/// What lies on the base.
+/// A coat: a dielectric boundary and the slab below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatLayer {
-    /// Index of refraction over outside; 0 counts as 1.
+    /// Index of refraction over that outside; 0 counts as 1.
     pub eta: f32,
-    /// How rough the boundary is.
+    /// Roughness of the boundary.
     pub roughness: TrowbridgeReitz,
-    /// Of the slab, in mean free paths.
+    /// Thickness of the slab, in mean free paths.
     pub thickness: f32,
-    /// The part of light that a particle of the slab does not swallow, clamped to 0 … 1; black for no particles.
+    /// Single-scattering albedo of the slab's particles, clamped to 0 … 1; black for no particles.
     pub albedo: Spectrum,
-    /// The mean cosine of its scattering.
+    /// Mean cosine of the phase function.
     pub g: f32,
-    /// Steps after which a walk is given up.
+    /// Maximum number of steps of a walk.
     pub max_depth: u16,
-    /// Walks whose mean is taken, at least one.
+    /// Number of walks that are averaged, at least one.
     pub samples: u16,
 }
 
@@ -76,20 +77,20 @@ impl Default for CoatLayer {
 /// A base under a coat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layered<B> {
-    /// Its boundary.
+    /// The coat's boundary.
     pub(crate) coat: Dielectric,
-    /// What lies below.
+    /// The base's BSDF.
     pub(crate) base: B,
-    /// Of the particles in the slab.
+    /// Single-scattering albedo of the slab.
     pub(crate) albedo: Spectrum,
-    /// In mean free paths.
+    /// Thickness of the slab, in mean free paths.
     pub(crate) thickness: f32,
     phase: HenyeyGreenstein,
     max_depth: u16,
     samples: u16,
 }
 
-/// What the random numbers of a walk are for, so that walks of different use are unrelated.
+/// Purpose of a walk's random numbers, so that walks for different purposes are independent.
 #[derive(Clone, Copy)]
 enum Purpose {
     Value = 1,
@@ -97,7 +98,7 @@ enum Purpose {
     Density,
 }
 
-/// Random numbers in [0, 1) that are a function of what they were started with.
+/// Random numbers in [0, 1) that are a function of their seed.
 struct Random(u64);
 
 impl Random {
@@ -120,14 +121,15 @@ impl Random {
     }
 }
 
-/// Weight of the first of two samples whose densities are given (Veach's power heuristic); the first is positive.
+/// MIS weight of the first of two strategies with the given densities (Veach's power heuristic); the first is
+/// positive.
 #[inline]
 fn power_heuristic(pdf: f32, other: f32) -> f32 {
     let ratio = other / pdf;
     1.0 / (1.0 + ratio * ratio)
 }
 
-/// What a walk carries on at a step; `None` for one that carries little and was given up, at random.
+/// Russian roulette: the throughput after a step, or `None` for a walk that was terminated.
 #[inline]
 fn surviving(beta: Spectrum, depth: u16, random: &mut Random) -> Option<Spectrum> {
     let survival = beta.max_lane();
@@ -137,7 +139,7 @@ fn surviving(beta: Spectrum, depth: u16, random: &mut Random) -> Option<Spectrum
     (random.one() < survival).then(|| beta / survival)
 }
 
-/// The part of light left after crossing `depth` mean free paths of slab along `w`.
+/// Transmittance over `depth` mean free paths of slab along `w`.
 #[inline]
 fn transmittance(depth: f32, w: Vec3) -> f32 {
     if depth.abs() <= f32::MIN_POSITIVE { 1.0 } else { libm::expf(-(depth / w.z).abs()) }
@@ -150,7 +152,7 @@ fn useful(sample: Option<BsdfSample>) -> Option<BsdfSample> {
 }
 
 impl<B: Base> Layered<B> {
-    /// A coat on a base; the base's indices are those over the coat's.
+    /// A coat on a base; the base's indices are relative to the coat's.
     pub fn new(base: B, coat: &CoatLayer) -> Self {
         Self {
             coat: Dielectric::new(coat.eta, coat.roughness),
@@ -183,7 +185,7 @@ impl<B: Base> Layered<B> {
     }
 
     pub(super) fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        // Both sides look the same.
+        // Both sides scatter alike.
         let (wo, wi) = if wo.z < 0.0 { (-wo, -wi) } else { (wo, wi) };
         if is_grazing(wo) || is_grazing(wi) || wi.z < 0.0 || !self.lobes().is_non_specular() {
             return Spectrum::BLACK;
@@ -191,7 +193,8 @@ impl<B: Base> Layered<B> {
         let samples = f32::from(self.samples);
         let mut sum = self.coat.f(wo, wi, mode) * samples;
         let mut random = Random::new(Purpose::Value, wo, wi.to_array());
-        // The density of the way out as pbrt has it: that of `wi` given the way, not of the way given `wi`.
+        // The density of the exit direction as in pbrt: of `wi` given the direction inside, not of the
+        // direction inside given `wi`.
         let exit_density = |w| self.coat.pdf(w, wi, Lobes::TRANSMISSION);
         for _ in 0..self.samples {
             sum += self.walk([wo, wi], mode, &mut random, exit_density).unwrap_or(Spectrum::BLACK);
@@ -199,10 +202,11 @@ impl<B: Base> Layered<B> {
         sum / samples
     }
 
-    /// One estimate of what enters along `wo` and leaves along `wi`; `None` where a side cannot be passed.
+    /// One estimate of the light that enters along `wo` and leaves along `wi`; `None` where a side cannot
+    /// be passed.
     ///
-    /// Two ways of leaving through a rough coat are weighed against one another: `exit_density` of a direction (away
-    /// from the coat, inside) ought to be that of finding it from `wi`.
+    /// Two strategies of leaving through a rough coat are combined by MIS: `exit_density` of a direction (away from
+    /// the coat, inside) should be the density of sampling it from `wi`.
     #[inline]
     fn walk(
         &self,
@@ -218,7 +222,7 @@ impl<B: Base> Layered<B> {
         let coat_is_specular = self.coat.lobes().is_specular();
         let base_is_specular = self.base.lobes().is_specular();
         let scatters = !self.albedo.is_black();
-        // Enter along `wo`, and find the way from which light leaves along `wi`.
+        // Enter along `wo`, and sample the direction inside from which light leaves along `wi`.
         let entry = self.coat.sample(wo, random.one(), random.two(), mode, Lobes::TRANSMISSION);
         let entry = useful(entry)?;
         let exit = self.coat.sample(wi, random.one(), random.two(), adjoint, Lobes::TRANSMISSION);
@@ -236,18 +240,18 @@ impl<B: Base> Layered<B> {
                 None => break,
             }
             if scatters {
-                // Go on to the next particle.
+                // Advance to the next particle.
                 let next = self.next_depth(z, w, random);
                 if next == z {
                     continue;
                 }
                 if 0.0 < next && next < self.thickness {
-                    // Join it with the way out.
+                    // Connect it with the exit.
                     let phase = self.phase.p(-w, to_exit);
                     let weight = if coat_is_specular { 1.0 } else { power_heuristic(exit.pdf, phase) };
                     let out = transmittance(next - self.thickness, to_exit);
                     sum += beta * self.albedo * exit_weight * (phase * weight * out);
-                    // Turn, and look whether this leads out, too.
+                    // Scatter, and connect with the exit by this strategy, too.
                     let turned = self.phase.sample(-w, random.two());
                     let pdf = self.phase.p(-w, turned);
                     if is_grazing(turned) || !(pdf > 0.0) {
@@ -279,7 +283,7 @@ impl<B: Base> Layered<B> {
                 w = sample.wi;
                 continue;
             }
-            // Join the base with the way out.
+            // Connect the base with the exit.
             if !base_is_specular {
                 let weight = if coat_is_specular {
                     1.0
@@ -289,7 +293,7 @@ impl<B: Base> Layered<B> {
                 let out = transmittance(self.thickness, to_exit);
                 sum += beta * self.base.f(-w, to_exit) * exit_weight * (to_exit.z.abs() * weight * out);
             }
-            // Reflect at the base, and look whether this leads out, too.
+            // Reflect at the base, and connect with the exit by this strategy, too.
             let Some(sample) = useful(self.base.sample(-w, random.two())) else { break };
             beta *= sample.f * (sample.wi.z.abs() / sample.pdf);
             w = sample.wi;
@@ -305,7 +309,7 @@ impl<B: Base> Layered<B> {
         Some(sum)
     }
 
-    /// Where along `w` from depth `z` the next particle is, perhaps beyond the slab.
+    /// Depth of the next particle along `w` from depth `z`, perhaps beyond the slab.
     #[inline]
     fn next_depth(&self, z: f32, w: Vec3, random: &mut Random) -> f32 {
         z - libm::log1pf(-random.one()) * w.z
@@ -383,7 +387,7 @@ impl<B: Base> Layered<B> {
         0.9 * (sum / samples) + 0.1 * UNIFORM
     }
 
-    /// One estimate of the density of `wi` by light that enters, is reflected by the base once, and leaves.
+    /// One estimate of the density of `wi` for light that enters, is reflected by the base once, and leaves.
     #[inline]
     fn once_off_the_base(&self, wo: Vec3, wi: Vec3, mode: Mode, random: &mut Random) -> Option<f32> {
         let adjoint = match mode {

@@ -2,76 +2,76 @@
 
 use std::ops::{BitOr, BitOrAssign};
 
-/// A set of the sides on which light leaves (reflection, transmission) and of the ways it is spread (diffuse, glossy,
-/// specular).
+/// A set of sides to which light is scattered (reflection, transmission) and of kinds of scattering (diffuse,
+/// glossy, specular).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lobes(u8);
 
 impl Lobes {
-    /// Nothing.
+    /// The empty set.
     pub const NONE: Self = Self(0);
-    /// To the side that the light came from.
+    /// To the side of the incident light.
     pub const REFLECTION: Self = Self(1);
     /// Through the surface.
     pub const TRANSMISSION: Self = Self(2);
-    /// Into all directions about evenly.
+    /// About uniform in all directions.
     pub const DIFFUSE: Self = Self(4);
-    /// Mostly about one direction.
+    /// Concentrated about one direction.
     pub const GLOSSY: Self = Self(8);
-    /// Into single directions, which only `sample` can find.
+    /// In discrete directions, which only `sample` can find.
     pub const SPECULAR: Self = Self(16);
-    /// Everything.
+    /// All lobes.
     pub const ALL: Self = Self(31);
 
-    /// Whether the sets share anything.
+    /// True if the sets intersect.
     #[inline]
     pub const fn intersects(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// Whether all of `other` is in this set.
+    /// True if all of `other` is in this set.
     #[inline]
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
 
-    /// Both sets together.
+    /// The union of both sets.
     #[inline]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// What both sets have.
+    /// The intersection of both sets.
     #[inline]
     pub const fn intersection(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
-    /// Whether there is a specular part.
+    /// True if it contains specular lobes.
     #[inline]
     pub const fn is_specular(self) -> bool {
         self.intersects(Self::SPECULAR)
     }
 
-    /// Whether there is a part that `f` sees: diffuse or glossy.
+    /// True if it contains lobes that `f` evaluates: diffuse or glossy ones.
     #[inline]
     pub const fn is_non_specular(self) -> bool {
         self.intersects(Self::DIFFUSE.union(Self::GLOSSY))
     }
 
-    /// Whether light stays on its side.
+    /// True if it contains reflection.
     #[inline]
     pub const fn is_reflection(self) -> bool {
         self.intersects(Self::REFLECTION)
     }
 
-    /// Whether light passes through.
+    /// True if it contains transmission.
     #[inline]
     pub const fn is_transmission(self) -> bool {
         self.intersects(Self::TRANSMISSION)
     }
 
-    /// The part `probability` of these sides that the set allows, 0 for the others: `[reflection, transmission]`.
+    /// The probabilities `[reflection, transmission]`, with 0 for sides that the set does not allow.
     #[inline]
     pub(super) fn allowed(self, [reflection, transmission]: [f32; 2]) -> [f32; 2] {
         [

@@ -1,26 +1,26 @@
-//! A BSDF for one outgoing direction ω_o, with what depends on that alone computed once.
+//! A BSDF for one outgoing direction ω_o, with everything that depends on ω_o alone computed once.
 //!
-//! A path needs three things at a surface with the same ω_o: the function and the density for a light's direction, and a
-//! direction of its own. What glTF's layers do toward ω_o is worked out once for them. The answers are those of
-//! [`Bsdf::f`], [`Bsdf::pdf`] and [`Bsdf::sample`], bit for bit.
+//! At a surface a path needs three results for the same ω_o: the value and the density for the direction to a
+//! light, and a sampled direction. For glTF's layers the terms that depend on ω_o are computed once for all three.
+//! The results are those of [`Bsdf::f`], [`Bsdf::pdf`] and [`Bsdf::sample`], bit for bit.
 
 use glam::Vec3;
 
 use super::{Bsdf, BsdfSample, Lobes, Mode, Principled, principled};
 use crate::core::spectrum::Spectrum;
 
-/// See the file's head.
+/// A BSDF for one outgoing direction ω_o.
 pub struct LocalScattering<'a> {
     bsdf: &'a Bsdf,
     wo: Vec3,
     mode: Mode,
     lobes: Lobes,
-    /// Of a principled surface, unless `wo` is grazing.
+    /// The precomputed terms of a principled surface, unless `wo` is grazing.
     principled: Option<&'a principled::LocalScattering>,
 }
 
 impl Bsdf {
-    /// Calls `ask` with the scattering toward the unit direction `wo`, where [`Bsdf::sample`] may choose among `lobes`.
+    /// Calls `ask` with the BSDF for the fixed unit direction `wo`; [`Bsdf::sample`] may choose among `lobes`.
     #[inline]
     pub fn scattering<R>(
         &self,
@@ -37,7 +37,7 @@ impl Bsdf {
     }
 }
 
-/// Apart, so that other surfaces need no room for what is known here.
+/// A separate function, so that other BSDFs need no stack space for the principled one's terms.
 #[inline(never)]
 fn principled_toward<R>(
     look: &Principled,
@@ -49,7 +49,7 @@ fn principled_toward<R>(
 }
 
 impl LocalScattering<'_> {
-    /// [`Bsdf::f`] and [`Bsdf::pdf`]; the density is 0 where the function is black, whatever it would be.
+    /// [`Bsdf::f`] and [`Bsdf::pdf`]; the density is set to 0 where the value is black.
     #[inline]
     pub fn f_and_pdf(&self, wi: Vec3) -> (Spectrum, f32) {
         if let Some(principled) = self.principled {

@@ -1,34 +1,38 @@
-//! glTF's metallic-roughness material with its extensions: metal, glass and matte bodies by parts, under fibres and a clear
-//! coat.
+//! glTF's metallic-roughness material with its extensions: a blend of metal, glass and diffuse bodies, under
+//! sheen and a clear coat.
 //!
 //! The layers are those of glTF 2.0's appendix B and of the extensions' texts:
 //!
 //! ```text
-//! coat      a dielectric mirror of index 1.5 with a normal of its own
+//! coat      a dielectric reflector of index 1.5 with a normal of its own
 //! sheen     fibres (Charlie)
-//! surface   metallic            a mirror, Schlick from the base colour to 1
-//!           1 − metallic        a dielectric mirror over
-//!               1 − transmission    matte, by parts to this side and through
-//!               transmission        straight through a thin sheet, or bent into a body
+//! surface   metallic            a reflector, Schlick from the base colour to 1
+//!           1 − metallic        a dielectric reflector over
+//!               1 − transmission    a diffuse body, reflecting and transmitting
+//!               transmission        straight through a thin sheet, or refracted into a body
 //! ```
 //!
-//! What they leave open is done so that nothing is won and, where the texts allow, nothing lost:
-//! - **More than one bounce** between the facets of a rough mirror is a lobe of Kulla & Conty 2017, for metals, dielectrics
-//!   and thin sheets.
-//! - **Bodies of rough glass** have Walter's facets (2007), each as far as it is seen (Heitz 2018). What a facet sends out is
-//!   never hidden by others: it leaves as it is, and what would go to the wrong side leaves as if mirrored at the surface.
-//!   So nothing is lost, whatever the roughness and the index. This is the one lobe that is not reciprocal.
-//! - **Matte under the mirror** gets what the mirror leaves, on the way in and out, divided by the mean: `(1 − E(ω_o))(1 −
-//!   E(ω_i)) / (1 − Ē)`, with E the mirror's albedo (Kelemen & Szirmay-Kalos 2001). It is reciprocal, and white stays white.
-//!   Where the mirror is coloured, its greatest primary is what counts, as `KHR_materials_specular` says.
-//! - **Coat and sheen** take from what lies below the greater of their albedos along the two directions: one factor, as the
-//!   extensions have it, and reciprocal.
-//! - **Glass** has Fresnel's equations in place of Schlick's curve (the same where it is scaled by `specular`), so that it
-//!   is what `dielectric` is.
-//! - **Anisotropic** mirrors have the albedo of isotropic ones of the same √(α_x α_y).
+//! The specifications leave some points open. They are resolved so that energy is never gained and,
+//! where the texts allow, never lost:
+//! - **Multiple scattering** between the facets of a rough reflector is a lobe of Kulla & Conty 2017, for metals,
+//!   dielectrics and thin sheets.
+//! - **Bodies of rough glass** have Walter's facets (2007), weighted by their visibility (Heitz 2018). Light that
+//!   leaves a facet is never shadowed by others, and light that would leave to the wrong side is mirrored at the
+//!   surface. So no energy is lost, whatever the roughness and the index. This is the only lobe that is not
+//!   reciprocal.
+//! - **The diffuse base below the specular layer** gets what that layer leaves on the way in and out, divided by
+//!   the mean: `(1 − E(ω_o))(1 − E(ω_i)) / (1 − Ē)`, with E the specular albedo (Kelemen & Szirmay-Kalos 2001). It is
+//!   reciprocal, and white stays white. Where the specular colour is not grey, its largest primary counts, as in
+//!   `KHR_materials_specular`.
+//! - **Coat and sheen** attenuate the layers below by the larger of their albedos along the two directions: one
+//!   factor, as in the extensions, and reciprocal.
+//! - **Glass** uses Fresnel's equations instead of Schlick's approximation (rescaled by `specular`), so that it
+//!   agrees with `dielectric`.
+//! - **Anisotropic** reflectors have the albedo of isotropic ones with the same √(α_x α_y).
 //!
-//! Both sides look alike, except that a body is inside below. All is a function of its arguments; nothing is estimated by
-//! chance, and the density is exact. Tangents and anisotropy's rotation are left to the local frame, absorption to media.
+//! Both sides scatter alike, except that the inside of a body is below. Everything is a deterministic function of
+//! its arguments without Monte Carlo estimates, and the density is exact. Tangents and the rotation of anisotropy
+//! are left to the local frame, absorption to media.
 
 mod albedo;
 pub mod film;
@@ -45,51 +49,51 @@ use crate::core::spectrum::Spectrum;
 use film::Film;
 use view::{Choice, View};
 
-/// What a principled surface is made of, in numbers. All shares and colours are within 0 … 1.
+/// The parameters of a principled surface. All weights and colours are within 0 … 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
-    /// The metal's reflectance straight on; the albedo or tint of the rest.
+    /// The metal's reflectance at normal incidence; the albedo or tint of the rest.
     pub base_color: Spectrum,
-    /// The part that is metal.
+    /// Weight of the metal.
     pub metallic: f32,
-    /// Of metal, dielectric and what passes. Its x axis is the local frame's.
+    /// Roughness of metal, dielectric and transmission. Its x axis is the local frame's.
     pub roughness: TrowbridgeReitz,
-    /// Inside over outside; 0 is infinite.
+    /// Index of refraction, inside over outside; 0 is infinite.
     pub eta: f32,
-    /// What the dielectric mirrors straight on, times `f90`.
+    /// The dielectric's reflectance at normal incidence, times `f90`.
     pub f0: Spectrum,
-    /// The greatest of it in red, green and blue.
+    /// The largest of its red, green and blue.
     pub f0_greatest: f32,
-    /// What it mirrors along the surface: `specular`.
+    /// The dielectric's reflectance at grazing incidence: `specular`.
     pub f90: f32,
-    /// How much of what is not mirrored passes.
+    /// Fraction of the light that is not reflected specularly which is transmitted.
     pub transmission: f32,
-    /// Whether the surface bounds a body.
+    /// True if the surface bounds a body.
     pub is_solid: bool,
-    /// The part of matte light that is let through.
+    /// Fraction of the diffuse light that is transmitted.
     pub diffuse_transmission: f32,
-    /// Its colour.
+    /// Colour of the diffuse transmission.
     pub diffuse_transmission_color: Spectrum,
-    /// How much coat there is.
+    /// Weight of the clear coat.
     pub clearcoat: f32,
-    /// Of the coat.
+    /// Roughness of the clear coat.
     pub clearcoat_roughness: TrowbridgeReitz,
     /// The coat's normal in the local frame: of unit length, z > 0.
     pub clearcoat_normal: Vec3,
-    /// Of the fibres.
+    /// Colour of the sheen.
     pub sheen_color: Spectrum,
-    /// The greatest of it in red, green and blue.
+    /// The largest of its red, green and blue.
     pub sheen_greatest: f32,
-    /// The square root of the fibres' α.
+    /// The square root of the sheen's α.
     pub sheen_roughness: f32,
-    /// How much of the mirror is under the film.
+    /// Weight of the thin film on the specular reflection.
     pub iridescence: f32,
-    /// The film.
+    /// The thin film.
     pub film: Film,
 }
 
 impl Default for Parameters {
-    /// A white plastic, smooth, with nothing on it.
+    /// Smooth white plastic without further layers.
     fn default() -> Self {
         Self {
             base_color: Spectrum([1.0; 4]),
@@ -131,7 +135,7 @@ impl Share {
     }
 }
 
-/// Four of them.
+/// Four numbers of 0 … 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Shares([Share; 4]);
 
@@ -150,10 +154,10 @@ impl Shares {
     }
 }
 
-/// Wavelengths are kept in these parts of a nm.
+/// Precision of stored wavelengths: steps per nm.
 const WAVELENGTH_STEPS: f32 = 64.0;
 
-/// glTF's surface. Shares are packed into two bytes each, so that the surfaces that need least memory need not carry more.
+/// glTF's surface. Numbers are packed into two bytes each, to keep the size of all BSDFs small.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Principled {
     base_color: Shares,
@@ -181,7 +185,7 @@ pub struct Principled {
 }
 
 impl Principled {
-    /// Everything is clamped to where it means something; NaN counts as 0.
+    /// Every parameter is clamped to its valid range; NaN counts as 0.
     pub fn new(parameters: &Parameters) -> Self {
         let p = parameters;
         let finite = |value: f32, greatest: f32| if value > 0.0 { value.min(greatest) } else { 0.0 };
@@ -215,7 +219,7 @@ impl Principled {
         }
     }
 
-    /// What it is made of, as far as it is kept.
+    /// The parameters, to the precision with which they are stored.
     pub fn parameters(&self) -> Parameters {
         let [x, y] = self.coat_normal;
         let is_spectral = self.wavelengths != [0; 4];
@@ -268,7 +272,7 @@ impl Principled {
         self.scattering(wo, lobes)?.sample(wo, uc, u, mode)
     }
 
-    /// What is known of it toward a direction; `None` for a grazing one.
+    /// The surface for a fixed outgoing direction; `None` for a grazing one.
     pub(super) fn scattering(&self, wo: Vec3, lobes: Lobes) -> Option<LocalScattering> {
         (!is_grazing(wo)).then(|| LocalScattering::new(View::new(self, wo), lobes))
     }
@@ -310,7 +314,7 @@ impl Principled {
     }
 }
 
-/// A surface toward a direction ω_o, with the choice between its lobes.
+/// A surface for an outgoing direction ω_o, with the probabilities of its lobes.
 pub(super) struct LocalScattering {
     view: View,
     choice: Option<Choice>,
@@ -322,7 +326,7 @@ impl LocalScattering {
         Self { choice: view.choice(lobes), view, lobes }
     }
 
-    /// The function, and where it is not black the density.
+    /// The value, and where it is not black the density.
     pub(super) fn f_and_pdf(&self, wo: Vec3, wi: Vec3, mode: Mode) -> (Spectrum, f32) {
         if is_grazing(wi) {
             return (Spectrum::BLACK, 0.0);
@@ -343,7 +347,7 @@ impl LocalScattering {
     }
 }
 
-/// The direction as it is where `wo` is above: mirrored at the surface if `wo` is below.
+/// The direction in the frame where `wo` is above: mirrored at the surface if `wo` is below.
 #[inline]
 fn towards(wo: Vec3, w: Vec3) -> Vec3 {
     if wo.z < 0.0 { Vec3::new(w.x, w.y, -w.z) } else { w }

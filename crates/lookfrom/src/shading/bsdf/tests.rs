@@ -28,7 +28,7 @@ pub(super) fn uniform_direction(u: [f32; 2]) -> Vec3 {
     crate::core::warp::uniform_sphere(u)
 }
 
-/// A positive number of any size: its exponent is uniform in ±`size`.
+/// A positive number of any magnitude: its exponent is uniform in ±`size`.
 fn any_size(seed: u64, index: u64, size: i32) -> f32 {
     let bits = hash::pair(seed, index);
     let exponent = (bits % (2 * size as u64 + 1)) as i32 - size;
@@ -59,7 +59,7 @@ fn whitted() -> Whitted {
     }
 }
 
-/// What has a density, and a name for failures.
+/// BSDFs that have a density, and their names for failure messages.
 fn with_density() -> Vec<(&'static str, Bsdf)> {
     let (eta, k) = gold();
     let of_gold = |x, y| Bsdf::conductor(eta, k, rough(x, y));
@@ -93,7 +93,7 @@ fn views() -> [Vec3; 6] {
     ]
 }
 
-/// The integral over a cell of the sphere in z and φ, by Gauss's rule of four points, halved where it is not good.
+/// The integral over a cell of the sphere in z and φ, by four-point Gaussian quadrature, subdivided adaptively.
 fn integrate(f: &dyn Fn(Vec3) -> f64, z: [f64; 2], phi: [f64; 2], tolerance: f64, depth: u32) -> f64 {
     const NODES: [(f64, f64); 4] = [
         (-0.861_136_311_594_052_6, 0.347_854_845_137_453_8),
@@ -156,7 +156,7 @@ fn samples_are_as_dense_as_they_say() {
     let bound = corrected_bound(subjects.len() * views().len());
     let mut faults = Vec::new();
     for (subject, (name, bsdf)) in subjects.iter().enumerate() {
-        // Where many lobes are asked for each value, what can be afforded.
+        // BSDFs of many lobes are costly: fewer samples.
         let is_costly = name.starts_with("principled");
         let n: u64 = if is_costly { 300_000 } else { 1_000_000 };
         for (view, wo) in views().into_iter().enumerate() {
@@ -179,7 +179,7 @@ fn samples_are_as_dense_as_they_say() {
                 sum += weight;
                 squares += weight * weight;
             }
-            // Counts against the density, what has no density in a cell of its own.
+            // Counts against the density; samples without a density are counted in a cell of their own.
             let pdf = |wi| f64::from(bsdf.pdf(wo, wi, Mode::Importance, Lobes::ALL));
             let mut expected = over_cells(&pdf, 3e-7);
             expected.push((1.0 - expected.iter().sum::<f64>()).max(1e-9));
@@ -188,7 +188,7 @@ fn samples_are_as_dense_as_they_say() {
             if !(deviate < bound) {
                 faults.push(format!("{what}: {deviate:.1} standard deviations, {bound:.1} are allowed"));
             }
-            // The mean weight against the integral of what it estimates.
+            // The mean weight against the integral that it estimates.
             let value = |wi: Vec3| f64::from(bsdf.f(wo, wi, Mode::Importance).0[0] * wi.z.abs());
             let integral: f64 = over_cells(&value, 3e-7).iter().sum();
             let mean = sum / n as f64;
@@ -238,8 +238,8 @@ fn samples_carry_the_values_of_f_and_pdf() {
 #[test]
 fn light_goes_both_ways() {
     let mut non_zero = 0;
-    // Whitted's highlight is not reciprocal, nor is a coat with a normal of its own where cosines are to another, nor rough
-    // glass of a body that keeps all light.
+    // Not reciprocal: Whitted's highlight, a coat with a normal of its own (whose cosines are to another normal),
+    // and the rough glass of a body, which conserves energy.
     let is_not = |name: &str| {
         name.starts_with("whitted")
             || name.contains("tilted")
@@ -251,10 +251,12 @@ fn light_goes_both_ways() {
             let (wo, wi) = (of(0), of(1));
             let [there, back] = [
                 bsdf.f(wo, wi, Mode::Importance).0[0],
-                // Radiance through a boundary is the adjoint of importance; reflection does not ask.
+                // Radiance through a boundary is the adjoint of importance; reflection does not
+                // depend on the mode.
                 bsdf.f(wi, wo, Mode::Radiance).0[0],
             ];
-            // Where nearly all is mirrored, what passes is a difference of like numbers.
+            // Where nearly all light is reflected, the transmitted part is a difference of almost
+            // equal numbers.
             assert!(
                 (there - back).abs() <= 2e-3 * there.max(back) + 1e-5,
                 "{name} {wo} {wi}: {there} {back}"
@@ -284,7 +286,7 @@ fn refraction_scales_radiance_by_the_index_squared() {
 fn nothing_is_lost_in_a_white_furnace() {
     let weight = |s: &BsdfSample| s.f.0[0] * s.wi.z.abs() / s.pdf;
     for wo in views() {
-        // What reflects everything has weights of one.
+        // BSDFs that reflect all light have weights of one.
         let white = [
             Bsdf::diffuse(grey(1.0)),
             Bsdf::diffuse_transmission(grey(0.4), grey(0.6)),
@@ -302,7 +304,7 @@ fn nothing_is_lost_in_a_white_furnace() {
             }
         }
     }
-    // One side asked for alone has the side's part.
+    // Sampling restricted to one side returns that side's part.
     for bsdf in [Bsdf::dielectric(1.5, TrowbridgeReitz::SMOOTH), Bsdf::thin_dielectric(1.5)] {
         let part = |side| {
             let sample = bsdf.sample(direction(60.0, 0.0), 0.5, [0.5; 2], Mode::Importance, side).unwrap();
@@ -325,7 +327,7 @@ fn a_pane_reflects_the_sum_of_its_two_sides() {
     assert_eq!((through.wi, through.eta), (-wo, 1.0));
 }
 
-/// Fresnel's formulas as they stand, in complex numbers of f64.
+/// Fresnel's formulas in complex arithmetic, in f64.
 fn fresnel_complex(cos: f64, eta: f64, k: f64) -> f64 {
     type Complex = (f64, f64);
     let mul = |a: Complex, b: Complex| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
@@ -364,7 +366,7 @@ fn metals_mirror_what_complex_numbers_say() {
 
 #[test]
 fn known_reflectances() {
-    // ((η − 1)² + k²) / ((η + 1)² + k²), straight on.
+    // ((η − 1)² + k²) / ((η + 1)² + k²), at normal incidence.
     let (eta, k) = gold();
     let straight = fresnel::conductor(1.0, eta, k);
     for (lane, expected) in [0.9662, 0.8009, 0.3232].into_iter().enumerate() {
@@ -373,16 +375,16 @@ fn known_reflectances() {
         assert!((straight.0[lane] - formula).abs() < 1e-5);
         assert!((formula - expected).abs() < 3e-3, "{formula}");
     }
-    // All metals mirror all light that grazes them.
+    // All metals reflect all light at grazing incidence.
     assert!((fresnel::conductor(0.0, eta, k).0[1] - 1.0).abs() < 1e-6);
-    // A metal of a given reflectance has it.
+    // A metal made from a reflectance has that reflectance.
     for r in [0.0, 0.02, 0.5, 0.99] {
         let (eta, k) = fresnel::conductor_of_reflectance(grey(r));
         assert!((fresnel::conductor(1.0, eta, k).0[0] - r).abs() < 1e-5);
     }
-    // An unused lane of zeros is no trap.
+    // An unused lane of zeros stays finite.
     assert!(fresnel::conductor(1.0, Spectrum::BLACK, Spectrum::BLACK).0[3].is_finite());
-    // Glass from inside, straight on and beyond the critical angle.
+    // Glass from inside, at normal incidence and beyond the critical angle.
     assert!((fresnel::dielectric(-1.0, 1.5) - 0.04).abs() < 1e-6);
     assert_eq!(fresnel::dielectric(-0.5, 1.5), 1.0);
 }
@@ -391,7 +393,7 @@ fn known_reflectances() {
 fn roughness_is_as_in_pbrt() {
     let lobe = |x, y| Bsdf::conductor(grey(1.0), grey(3.0), rough(x, y)).lobes();
     assert!(lobe(0.0009, 0.0).is_specular());
-    // One rough direction is enough.
+    // One rough direction is sufficient.
     assert!(!lobe(0.0011, 0.0).is_specular());
     assert_eq!(TrowbridgeReitz::from_roughness([0.25, 0.04], true), rough(0.5, 0.2));
     assert_eq!(TrowbridgeReitz::from_roughness([0.25, 0.04], false), rough(0.25, 0.04));

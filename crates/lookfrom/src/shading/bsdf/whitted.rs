@@ -1,8 +1,9 @@
 //! Whitted's model as a BSDF, so that scenes written for it can be path traced.
 //!
-//! `f |cos θ_i| = k_d cos θ_i / π + k_s (N·H)ⁿ / π` on the side of `wo`; `k_r` into the mirrored and `k_t` into the
-//! refracted direction, with the weights of [`crate::shading::material`]. It is what the tree of rays computes, no more: there
-//! is no 1/η² for what passes, and energy and reciprocity are up to whoever chooses the coefficients.
+//! `f |cos θ_i| = k_d cos θ_i / π + k_s (N·H)ⁿ / π` on the side of `wo`; `k_r` into the reflected and `k_t` into
+//! the refracted direction, with the weights of [`crate::shading::material`]. It computes exactly what Whitted ray
+//! tracing does: there is no 1/η² for transmitted light, and energy conservation and reciprocity depend on the
+//! chosen coefficients.
 //!
 //! Whitted 1980, Blinn 1977.
 
@@ -15,7 +16,7 @@ use crate::core::math;
 use crate::core::spectrum::Spectrum;
 use crate::core::warp;
 
-/// Whitted's coefficients without the ambient one, named as there.
+/// Whitted's coefficients without the ambient one, with the same names.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Whitted {
     /// `k_d`.
@@ -30,17 +31,17 @@ pub struct Whitted {
     pub transmission: Spectrum,
     /// Index of refraction, inside over outside.
     pub ior: f32,
-    /// Whether the angle decides between mirror and refraction.
+    /// True if the angle determines the split between reflection and refraction (Fresnel).
     pub fresnel: bool,
 }
 
-/// How much goes which way, seen from one direction.
+/// Weights of the specular directions, for one outgoing direction.
 struct Branches {
     mirror: Spectrum,
     refracted: Option<(Vec3, Spectrum)>,
 }
 
-/// Probabilities of the four ways on.
+/// Probabilities of the four lobes.
 struct Choice {
     diffuse: f32,
     glossy: f32,
@@ -49,7 +50,7 @@ struct Choice {
 }
 
 impl Whitted {
-    /// The specular ways on, with their weights.
+    /// The specular directions with their weights.
     #[inline]
     fn branches(&self, wo: Vec3) -> Branches {
         if self.mirror.is_black() && self.transmission.is_black() {
@@ -70,10 +71,12 @@ impl Whitted {
         Branches { mirror, refracted }
     }
 
-    /// Each way by about what it carries, among those that `lobes` allows; `None` where nothing is left.
+    /// Each lobe with a probability about proportional to its weight, among those that `lobes` allows;
+    /// `None` where none is left.
     #[inline]
     fn choice(&self, branches: &Branches, lobes: Lobes) -> Option<Choice> {
-        // The highlight's albedo seen from above: ∫ 4 (N·H)ⁿ⁺¹ / π dω_H = 8 / (n + 2), less what lies below.
+        // The highlight's albedo seen from above: ∫ 4 (N·H)ⁿ⁺¹ / π dω_H = 8 / (n + 2), less the part below
+        // the surface.
         let highlight = 8.0 / (self.shininess + 4.0);
         let [diffuse, _] = lobes.allowed([self.diffuse.max_lane(), 0.0]);
         let [glossy, _] = lobes.allowed([self.specular.max_lane() * highlight, 0.0]);
@@ -102,7 +105,7 @@ impl Whitted {
         (self.diffuse + highlight) * FRAC_1_PI
     }
 
-    /// Density of the spread lobes together, given the probabilities of all.
+    /// Density of the non-specular lobes together, given the probabilities of all.
     #[inline]
     fn spread_pdf(&self, wo: Vec3, wi: Vec3, choice: &Choice) -> f32 {
         let mut pdf = choice.diffuse * warp::cosine_hemisphere_pdf(wi.z.abs());
@@ -155,7 +158,7 @@ impl Whitted {
         Some(specular(wi, weight, choice.refraction, Lobes::TRANSMISSION))
     }
 
-    /// A halfway vector as dense as the n-th power of its cosine, on the side of the sign of `side`.
+    /// A half vector distributed by the n-th power of its cosine, on the side of the sign of `side`.
     #[inline]
     fn sample_half(&self, [u, v]: [f32; 2], side: f32) -> Vec3 {
         // sin²θ = 1 − u^(2/(n+1)), without the subtraction.

@@ -1,7 +1,7 @@
-//! Albedo as AOVs and the denoiser have it: the one colour that a surface multiplies light by, more or less.
+//! Albedo for AOVs and the denoiser: one colour per surface.
 //!
-//! A look-up of base colours, as Cycles and Open Image Denoise have it, not an integral over directions: what a coat mirrors on top
-//! is left out, glass is white, a metal has its colour straight on.
+//! A look-up of base colours, as in Cycles and Open Image Denoise, not an integral over directions: the reflection
+//! of a coat is left out, glass is white, a metal has its reflectance at normal incidence.
 
 use super::{Material, MaterialKind, Metal};
 use crate::core::spectrum::Spectrum;

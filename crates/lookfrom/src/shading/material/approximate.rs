@@ -1,4 +1,4 @@
-//! The nearest equivalent in Whitted's model of a physical material. A likeness, not the same.
+//! The nearest equivalent of a physical material in Whitted's model; an approximation.
 
 use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Principled, Roughness, Scalar, Whitted};
 
@@ -6,11 +6,11 @@ use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::fresnel;
 use crate::shading::texture::{SpectralMode, SpectrumType, TexturePoint, Textures};
 
-/// What a dielectric coat reflects at most angles.
+/// Reflectance of a dielectric coat at most angles.
 const COAT: f32 = 0.04;
 
-/// The nearest thing in Whitted's model. `before` holds those of the materials so far: a mixture is its greater part, if that is
-/// known already.
+/// The nearest equivalent in Whitted's model. `before` holds those of the preceding materials: a mixture takes the
+/// part of larger weight, if that is already known.
 pub(super) fn in_whitteds_model(kind: &MaterialKind, before: &[Whitted], textures: &Textures) -> Whitted {
     let plain = Whitted { diffuse: Color::BLACK, ..Whitted::default() };
     match kind {
@@ -38,14 +38,14 @@ pub(super) fn in_whitteds_model(kind: &MaterialKind, before: &[Whitted], texture
             before.get(greater.index()).cloned().unwrap_or_default()
         }
         MaterialKind::Principled(look) => principled(look, textures),
-        // It is seen by its own light.
+        // Its emission is all that is visible.
         MaterialKind::Unlit { .. } => plain,
         MaterialKind::ShadowCatcher { .. } => Whitted { diffuse: Color::gray(0.5), ..plain },
         MaterialKind::Interface => Whitted { transmission: Color::gray(1.0), ior: 1.0, ..plain },
     }
 }
 
-/// Metal, glass or plastic, whichever it is most; of a texture, the corner's number counts.
+/// Metal, glass or plastic, whichever has the largest weight; a texture is evaluated at its corner.
 fn principled(look: &Principled, textures: &Textures) -> Whitted {
     let number = |scalar: Scalar| textures.float(scalar.into(), &TexturePoint::NOWHERE);
     let roughness = look.roughness;
@@ -69,7 +69,7 @@ fn principled(look: &Principled, textures: &Textures) -> Whitted {
     let above = if is_coated { look.clearcoat_roughness } else { roughness };
     let shininess = shininess(&Roughness { u: squared(above), v: squared(above), remap: false });
     let mirror = if shininess > 1e4 { Color::gray(COAT) } else { Color::BLACK };
-    // A broad highlight is a faint one.
+    // A broad highlight is also faint.
     let specular = Color::gray(0.2 * number(look.specular).min(1.0) * (shininess / 50.0).min(1.0));
     let absorption = if look.is_solid { look.absorption } else { [0.0; 3] };
     Whitted { diffuse: look.base_color, specular, shininess, mirror, absorption, ..plain }
@@ -95,12 +95,12 @@ fn metallic(metal: &Metal, roughness: &Roughness, textures: &Textures) -> Whitte
         }
     };
     let shininess = shininess(roughness);
-    // A rough metal shows its lights as highlights, a smooth one everything.
+    // A rough metal reflects lights only, as highlights; a smooth one reflects everything.
     let (mirror, specular) = if shininess > 200.0 { (color, Color::BLACK) } else { (Color::BLACK, color) };
     Whitted { diffuse: Color::BLACK, specular, shininess, mirror, ..Whitted::default() }
 }
 
-/// Blinn's exponent of a Trowbridge–Reitz surface: 2/α² − 2.
+/// Exponent of Blinn's model for a Trowbridge–Reitz surface: 2/α² − 2.
 fn shininess(roughness: &Roughness) -> f32 {
     let Scalar::Value(value) = roughness.u else { return 50.0 };
     let alpha = if roughness.remap { value.max(0.0).sqrt() } else { value }.max(1e-3);

@@ -1,7 +1,8 @@
 //! Bump and normal maps: the shading frame.
 //!
-//! pbrt's materials take the normal as it comes. glTF's take one that is [`valid`], so that what they mirror leaves the
-//! surface: neither black where a mirrored direction would lead inside, nor lit through the surface.
+//! pbrt's materials take the perturbed normal as it is. glTF's take one that is [`valid`], so that reflected
+//! directions leave the surface: the surface neither turns black where a reflection would point inside nor is lit
+//! through itself.
 //!
 //! Blinn 1978 (bumps).
 
@@ -13,10 +14,10 @@ use crate::core::warp;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::texture::{self, FloatTexture, TexturePoint, Textures};
 
-/// How far in u and v heights are compared, as pbrt-v4 does it where it knows no footprint.
+/// Offset in u and v for the finite differences of heights, as in pbrt-v4 without a footprint.
 const STEP: f32 = 0.0005;
 
-/// The frame of the shading normal as it is.
+/// The frame of the shading normal without bump mapping.
 pub(super) fn plain(surface: &SurfaceInteraction) -> Frame {
     around(surface.ns, surface.shading_dpdu)
 }
@@ -43,7 +44,7 @@ pub(super) fn valid_frame(
     around(valid(bent(bump_mapping, textures, surface, at), surface), surface.shading_dpdu)
 }
 
-/// The normal, of unit length.
+/// The perturbed normal, of unit length.
 fn bent(
     bump_mapping: &BumpMapping,
     textures: &Textures,
@@ -66,13 +67,14 @@ fn bent(
     bent.normalize_or(surface.ns)
 }
 
-/// The directions of u and v at a surface, across its shading normal and each other, of unit length.
+/// The directions of u and v at a surface, perpendicular to its shading normal and to each other, of
+/// unit length.
 pub(super) fn tangents(surface: &SurfaceInteraction) -> [Vec3; 2] {
     let Frame { s, t, .. } = around(surface.ns, surface.shading_dpdu);
     [s, if t.dot(surface.shading_dpdv) < 0.0 { -t } else { t }]
 }
 
-/// The normal that a texture says, of unit length.
+/// The normal of a normal map, of unit length.
 pub(super) fn mapped(
     map: &NormalTexture,
     textures: &Textures,
@@ -85,17 +87,17 @@ pub(super) fn mapped(
     (map.scale * x * s + map.scale * y * t + z * surface.ns).normalize_or(surface.ns)
 }
 
-/// The normal nearest to `n`, turned toward the geometric one, about which `wo` is mirrored to outside of the surface.
+/// The nearest normal to `n`, turned toward the geometric one, that reflects `wo` to the outside of the surface.
 ///
-/// Let the geometric normal on the side of `wo` be g, and t the direction across it to which `n` leans by an angle θ. The
-/// mirrored direction then has the height `x sin 2θ + z cos 2θ` over the surface, where `wo` has x along t and z along g:
-/// a wave in 2θ of amplitude `A = √(x² + z²)`, which begins at z and falls to a height h at `2θ = atan2(x, z) + acos(h / A)`.
-/// That is as far as `n` may lean.
+/// Let the geometric normal on the side of `wo` be g, and t the direction perpendicular to it toward which `n`
+/// leans by an angle θ. The reflected direction then has the height `x sin 2θ + z cos 2θ` over the surface, where
+/// `wo` has x along t and z along g: a sinusoid in 2θ of amplitude `A = √(x² + z²)`, which begins at z and falls to
+/// a height h at `2θ = atan2(x, z) + acos(h / A)`. This is the largest lean allowed.
 pub(super) fn valid(n: Vec3, surface: &SurfaceInteraction) -> Vec3 {
     let facing = if surface.front { 1.0 } else { -1.0 };
     let (n, g, wo) = (facing * n, surface.ng_facing(), surface.wo);
     let z = wo.dot(g);
-    // Along the surface a mirrored direction stays nearly so.
+    // For a grazing `wo` the reflected direction stays nearly grazing.
     let least = (0.9 * z).min(0.01);
     let leans = n.dot(g);
     if leans > 0.0 && 2.0 * n.dot(wo) * leans - z >= least {
@@ -111,14 +113,14 @@ pub(super) fn valid(n: Vec3, surface: &SurfaceInteraction) -> Vec3 {
     let rest = (1.0 - height * height).max(0.0).sqrt();
     let cos_twice = height * wave[1] - rest * wave[0];
     let sin_twice = height * wave[0] + rest * wave[1];
-    // Half the angle, by the root that does not cancel.
+    // The half angle, by the root that does not cancel.
     let greater = (0.5 * (1.0 + cos_twice.abs())).sqrt();
     let smaller = 0.5 * sin_twice / greater;
     let (cos, sin) = if cos_twice > 0.0 { (greater, smaller) } else { (smaller, greater) };
     facing * (cos * g + sin * t).normalize_or(g)
 }
 
-/// The normal of the surface moved along its shading normal; not of unit length.
+/// The normal of the surface displaced along its shading normal; not of unit length.
 fn bumped(
     height: FloatTexture,
     textures: &Textures,
@@ -134,7 +136,7 @@ fn bumped(
                 world: at.world + (STEP * along).as_dvec3(),
                 ..*at
             };
-            // in the tangent plane of the shading normal
+            // In the tangent plane of the shading normal.
             let tangent = along - n * n.dot(along);
             tangent + n * ((textures.float(height, &moved) - here) / STEP)
         });

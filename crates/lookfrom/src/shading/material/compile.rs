@@ -10,10 +10,10 @@ use super::{Material, approximate};
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::texture::{SpectrumTexture, SpectrumType, Textures};
 
-/// Compiles materials, of which later ones may mix earlier ones.
+/// Compiles materials. A mix may only refer to earlier ones.
 pub(crate) struct Compiler<'a> {
     textures: &'a Textures,
-    /// By material: its nearest thing in Whitted's model.
+    /// By material: its nearest equivalent in Whitted's model.
     whitted: Vec<written::Whitted>,
 }
 
@@ -22,7 +22,8 @@ impl<'a> Compiler<'a> {
         Self { textures, whitted: Vec::new() }
     }
 
-    /// The next material; and what absorbs in a body of it per unit of length, by primary, 0 for nothing.
+    /// The next material, and the absorption coefficient of a body of it per unit of length, by primary,
+    /// 0 for none.
     pub(crate) fn compile(&mut self, material: &written::Material) -> (Material, [f32; 3]) {
         let whitted = approximate::in_whitteds_model(&material.kind, &self.whitted, self.textures);
         let compiled = Material {
@@ -135,7 +136,7 @@ impl<'a> Compiler<'a> {
         NormalTexture { texture: self.directions(map.texture), scale: map.scale }
     }
 
-    /// A texture of directions, read as linear RGB.
+    /// A texture of directions, evaluated as linear RGB.
     fn directions(&self, texture: TextureId) -> SpectrumTexture {
         self.unbounded(Color::Texture(texture))
     }

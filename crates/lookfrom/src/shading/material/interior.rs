@@ -7,13 +7,14 @@ use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::{InteriorStack, MediumInterface};
 
 impl InteriorStack {
-    /// The medium that is there.
+    /// The current medium.
     pub fn medium(self, materials: &[Material]) -> Option<u32> {
         self.space().or_else(|| materials[self.material()? as usize].medium)
     }
 
-    /// What a ray is inside of that leaves a surface into `direction`, having arrived in this: what the surface says is on
-    /// that side, or else, where the ray goes through (`crosses`), in or out of the body that the surface's material is.
+    /// The stack of a ray that leaves a surface into `direction`, having arrived with this one: the stack that the
+    /// surface declares for that side, or else, where the ray passes through (`crosses`), this one after entering
+    /// or leaving the body of the surface's material.
     #[inline]
     pub fn leaving(
         self,

@@ -6,22 +6,22 @@ use lookfrom_scene::scene::CurveId;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::texture::{FloatTexture, SpectrumTexture, TexturePoint, Textures};
 
-/// The materials there are.
+/// The types of materials.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum MaterialKind {
     /// Whitted's model.
     Whitted(Whitted),
-    /// Reflects the same to all sides (Lambert).
+    /// Diffuse (Lambertian) reflection.
     Diffuse {
-        /// The part of light that is reflected.
+        /// Fraction of light that is reflected.
         reflectance: SpectrumTexture,
     },
-    /// Reflects and lets through, the same to all sides.
+    /// Diffuse reflection and transmission.
     DiffuseTransmission {
-        /// The part that is reflected.
+        /// Fraction of light that is reflected.
         reflectance: SpectrumTexture,
-        /// The part that is let through.
+        /// Fraction of light that is transmitted.
         transmittance: SpectrumTexture,
         /// Multiplies both.
         scale: f32,
@@ -30,24 +30,24 @@ pub enum MaterialKind {
     Conductor {
         /// Its optical constants.
         metal: Metal,
-        /// Of its surface.
+        /// Roughness of its surface.
         roughness: Roughness,
     },
-    /// Glass, water: the inside is a body.
+    /// A dielectric such as glass or water: the inside is a body.
     Dielectric {
         /// Index of refraction, inside over outside.
         eta: Ior,
-        /// Of its surface.
+        /// Roughness of its surface.
         roughness: Roughness,
     },
-    /// A pane so thin that light goes straight on.
+    /// A dielectric sheet so thin that light passes undeviated.
     ThinDielectric {
-        /// Index of refraction of the pane over that around it.
+        /// Index of refraction of the sheet over that of its surroundings.
         eta: Ior,
     },
     /// A diffuse base under a dielectric coat.
     CoatedDiffuse {
-        /// Of the base.
+        /// Reflectance of the base.
         reflectance: SpectrumTexture,
         /// The coat.
         coat: Box<Coat>,
@@ -56,33 +56,33 @@ pub enum MaterialKind {
     CoatedConductor {
         /// The base's optical constants.
         metal: Metal,
-        /// Of the base.
+        /// Roughness of the base.
         roughness: Roughness,
         /// The coat.
         coat: Box<Coat>,
     },
-    /// One or the other, by chance at each meeting.
+    /// One of two materials, chosen at random at each hit.
     Mix {
-        /// Indices of the materials that are mixed; never, through any number of steps, this one.
+        /// Indices of the mixed materials; never this one, directly or through other mixtures.
         materials: [u32; 2],
         /// The probability of the second.
         amount: FloatTexture,
     },
     /// glTF's metallic-roughness material and its extensions.
     Principled(Box<Principled>),
-    /// Seen in its colour whatever the light, which it neither reflects nor lets through.
+    /// Visible in its colour whatever the light, which it neither reflects nor transmits.
     Unlit {
-        /// Radiance that it is seen with.
+        /// Its radiance.
         color: SpectrumTexture,
         /// The same as a reflectance.
         albedo: SpectrumTexture,
     },
-    /// A floor that is seen only by the shadows on it.
+    /// A floor of which only the shadows on it are visible.
     ShadowCatcher {
-        /// Where the floor looks: of unit length, in the world.
+        /// The floor's normal: of unit length, in the world.
         normal: Vec3,
     },
-    /// No surface at all: the border of a medium.
+    /// No scattering at all: the boundary of a medium.
     Interface,
 }
 
@@ -103,7 +103,7 @@ pub struct Whitted {
     pub transmission: SpectrumTexture,
     /// Index of refraction of the inside relative to the outside: > 0.
     pub ior: f32,
-    /// Whether Fresnel's equations share out the light between the mirrored and the refracted ray.
+    /// True if Fresnel's equations divide the light between the reflected and the refracted ray.
     pub fresnel: bool,
 }
 
@@ -118,7 +118,7 @@ pub enum Metal {
         /// k.
         k: SpectrumTexture,
     },
-    /// By the colour at normal incidence: η = 1 and the k that gives it.
+    /// By the reflectance at normal incidence: η = 1 and the k that gives it.
     Reflectance(SpectrumTexture),
 }
 
@@ -131,7 +131,7 @@ pub enum Ior {
     Curve(CurveId),
 }
 
-/// How rough a microfacet surface is.
+/// Roughness of a microfacet surface.
 #[derive(Clone, Copy, Debug)]
 pub enum Roughness {
     /// The same everywhere.
@@ -140,13 +140,13 @@ pub enum Roughness {
     Varying {
         /// Along u and v.
         along: [FloatTexture; 2],
-        /// Whether the numbers are a user's 0 … 1 whose square root is α.
+        /// True if the numbers are a user's 0 … 1 whose square root is α.
         remap: bool,
     },
 }
 
 impl Roughness {
-    /// The distribution of microfacets at a point.
+    /// The microfacet distribution at a point.
     #[inline]
     pub(super) fn at(&self, textures: &Textures, point: &TexturePoint) -> TrowbridgeReitz {
         match self {
@@ -163,21 +163,21 @@ impl Roughness {
 pub struct Coat {
     /// Index of refraction.
     pub eta: Ior,
-    /// Of its outer surface.
+    /// Roughness of its outer surface.
     pub roughness: Roughness,
-    /// Of the layer.
+    /// Thickness of the layer.
     pub thickness: FloatTexture,
-    /// Of the medium in the layer; black is no medium.
+    /// Single-scattering albedo of the medium in the layer; black is no medium.
     pub albedo: SpectrumTexture,
-    /// Henyey & Greenstein's mean cosine.
+    /// Mean cosine of the Henyey–Greenstein phase function.
     pub g: FloatTexture,
-    /// How often light may bounce between coat and base.
+    /// Maximum number of bounces between coat and base.
     pub max_depth: u16,
-    /// How many random walks are averaged.
+    /// Number of random walks that are averaged.
     pub samples: u16,
 }
 
-/// What turns or bends the shading normal.
+/// Perturbations of the shading normal.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum BumpMapping {
@@ -185,59 +185,61 @@ pub enum BumpMapping {
     None,
     /// Heights along the normal, in the shape's unit of length.
     Bump(FloatTexture),
-    /// A picture of normals in the tangent frame (u, v, outward), by its index: x, y, z are 2·texel − 1. Row 0 is v = 1.
+    /// A normal map in the tangent frame (u, v, outward), by its image index: x, y, z are 2·texel − 1. Row 0 is v =
+    /// 1.
     NormalMap(usize),
-    /// The same from a texture, as glTF means it.
+    /// A normal map by a texture, as in glTF.
     NormalTexture(NormalTexture),
 }
 
-/// Normals from a texture in the tangent frame: `(scale, scale, 1) · (2·texel − 1)`, made of unit length.
+/// A normal map in the tangent frame: `(scale, scale, 1) · (2·texel − 1)`, normalised.
 #[derive(Clone, Copy, Debug)]
 pub struct NormalTexture {
-    /// Read as linear RGB.
+    /// Evaluated as linear RGB.
     pub texture: SpectrumTexture,
-    /// Multiplies x and y.
+    /// Scales x and y.
     pub scale: f32,
 }
 
 /// glTF 2.0's metallic-roughness material with its extensions, see [`lookfrom_scene::material::Principled`].
 #[derive(Clone, Debug)]
 pub struct Principled {
-    /// The metal's reflectance straight on; the albedo or tint of what is not metal.
+    /// The metal's reflectance at normal incidence; the albedo or tint of the non-metallic part.
     pub base_color: SpectrumTexture,
     /// 0 is a dielectric, 1 a metal.
     pub metallic: FloatTexture,
     /// Its square is the model's α.
     pub roughness: FloatTexture,
-    /// How the highlight is drawn out.
+    /// Anisotropy of the specular reflection.
     pub anisotropy: Option<Anisotropy>,
     /// Index of refraction; 0 means infinite.
     pub ior: f32,
-    /// 20 over Abbe's number: 0 is none.
+    /// 20 over the Abbe number: 0 is none.
     pub dispersion: f32,
-    /// How much a dielectric mirrors.
+    /// Strength of the dielectric's specular reflection.
     pub specular: FloatTexture,
-    /// The colour of what a dielectric mirrors straight on.
+    /// The dielectric's specular colour at normal incidence.
     pub specular_color: SpectrumTexture,
-    /// How much of what is not mirrored passes through instead of being scattered.
+    /// Fraction of the light that is not reflected specularly which is transmitted instead of
+    /// scattered diffusely.
     pub transmission: FloatTexture,
-    /// Whether the surface bounds a body that bends light; otherwise it is a thin sheet.
+    /// True if the surface bounds a refractive body; otherwise it is a thin sheet.
     pub is_solid: bool,
-    /// How much of the diffuse light is let through instead of reflected.
+    /// Fraction of the diffuse light that is transmitted instead of reflected.
     pub diffuse_transmission: FloatTexture,
-    /// Its colour.
+    /// Colour of the diffuse transmission.
     pub diffuse_transmission_color: SpectrumTexture,
-    /// The strength of a clear coat over all.
+    /// The strength of the clear coat on top.
     pub clearcoat: FloatTexture,
-    /// Its roughness, whose square is α.
+    /// Roughness of the clear coat, whose square is α.
     pub clearcoat_roughness: FloatTexture,
-    /// Its own normals; without, those of the mesh.
+    /// Normal map of the clear coat; without one, the mesh's normals.
     pub clearcoat_normal: Option<NormalTexture>,
-    /// The colour of fibres over all; black is none.
+    /// The colour of the sheen (fibres on top); black is none.
     pub sheen_color: SpectrumTexture,
-    /// Their roughness, whose square is the α of Charlie's distribution.
+    /// Roughness of the sheen, whose square is the α of the Charlie distribution.
     pub sheen_roughness: FloatTexture,
-    /// How much of a thin film there is.
+    /// Weight of the thin film.
     pub iridescence: FloatTexture,
     /// The film's index of refraction.
     pub iridescence_ior: f32,
@@ -245,13 +247,14 @@ pub struct Principled {
     pub iridescence_thickness: FloatTexture,
 }
 
-/// How a highlight is drawn out along a direction of the surface.
+/// Anisotropy of a specular lobe along a direction of the surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Anisotropy {
-    /// 0 is none, 1 as far as it goes.
+    /// 0 is none, 1 is the maximum.
     pub strength: f32,
     /// Sine and cosine of the angle from the tangent (u) toward the bitangent (v).
     pub sin_cos: [f32; 2],
-    /// Red and green, 2·texel − 1, are a direction in the tangent frame, which is then turned; blue multiplies the strength.
+    /// Red and green, 2·texel − 1, are a direction in the tangent frame, which is then rotated; blue multiplies the
+    /// strength.
     pub texture: Option<SpectrumTexture>,
 }

@@ -1,11 +1,11 @@
 //! The parameters of glTF's material at a point.
 //!
-//! Dispersion (`KHR_materials_dispersion`) leaves one wavelength alone, with the index that Cauchy's equation has for it by
-//! Abbe's number. In RGB mode it leaves one of red, green and blue: they stand for the Fraunhofer lines C, d and F, which are
-//! as far apart as Abbe's number says, with d in the middle, as Khronos' sample renderer has it.
+//! Dispersion (`KHR_materials_dispersion`) keeps only one wavelength, with the index of Cauchy's equation for its
+//! Abbe number. In RGB mode it keeps one of red, green and blue, which stand for the Fraunhofer lines C, d and F:
+//! as far apart as the Abbe number says, with d in the middle, as in Khronos' sample renderer.
 //!
-//! Indices are over that of the body around, where light comes through one of this kind: water in a glass is not water in
-//! air. The clear coat and the film are as in air.
+//! Indices are relative to the surrounding body, where light comes through one of this kind: water in a glass has
+//! another relative index than water in air. The clear coat and the film are as in air.
 
 use glam::Vec3;
 
@@ -19,7 +19,7 @@ use crate::shading::bsdf::principled::{Parameters, Principled};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::texture::{SpectralMode, SpectrumTexture};
 
-/// What a dielectric of an index mirrors straight on; an index of 0 is infinite.
+/// Reflectance of a dielectric at normal incidence by its index; an index of 0 means infinite.
 fn straight(ior: f32) -> f32 {
     if ior == 0.0 {
         return 1.0;
@@ -28,13 +28,13 @@ fn straight(ior: f32) -> f32 {
     ratio * ratio
 }
 
-/// Whether colours go different ways in a body.
+/// True if a body of this material disperses light.
 #[inline]
 pub(super) fn disperses(look: &PrincipledMaterial) -> bool {
     look.dispersion > 0.0 && look.is_solid && look.ior > 1.0
 }
 
-/// The index of refraction for the one wavelength or colour that is left; the written one where more are.
+/// The index of refraction for the one wavelength or colour that is kept; the nominal one where there are more.
 fn index_of(look: &PrincipledMaterial, lanes: &SpectralMode, share: Spectrum) -> f32 {
     // Twenty times n_F − n_C.
     let spread = (look.ior - 1.0) * look.dispersion;
@@ -53,7 +53,7 @@ fn index_of(look: &PrincipledMaterial, lanes: &SpectralMode, share: Spectrum) ->
 }
 
 impl Evaluator<'_> {
-    /// The scattering function, and the frame turned to where brushed metal's grain runs.
+    /// The BSDF, and the frame rotated to the direction of anisotropy.
     pub(super) fn principled(
         &mut self,
         look: &PrincipledMaterial,
@@ -69,7 +69,7 @@ impl Evaluator<'_> {
         let is_hidden = around.is_none();
         let eta = around.map_or(1.0, |around| ior / around);
 
-        // Roughness, drawn out along the grain.
+        // Roughness, stretched along the direction of anisotropy.
         let alpha = |roughness: f32| roughness * roughness;
         let across = alpha(share(self, look.roughness));
         let mut along = across;
@@ -88,7 +88,7 @@ impl Evaluator<'_> {
             frame = frame.along((x * cos - y * sin) * s + (x * sin + y * cos) * t);
         }
 
-        // What the dielectric mirrors.
+        // Specular reflection of the dielectric.
         let specular = if is_hidden { 0.0 } else { share(self, look.specular) };
         let (color, greatest) = self.with_greatest(&look.specular_color);
         let mirrored = straight(eta);
@@ -146,8 +146,8 @@ impl Evaluator<'_> {
         (Bsdf::Principled(Principled::new(&parameters)), frame)
     }
 
-    /// The index of refraction; one that differs by wavelength leaves only the first, one that differs by colour only one,
-    /// where light passes.
+    /// The index of refraction. Where light is transmitted, one that varies with wavelength keeps only the first
+    /// wavelength, one that varies with colour only one colour.
     fn index(&mut self, look: &PrincipledMaterial, passing: f32) -> f32 {
         if !disperses(look) || !(passing > 0.0) {
             return look.ior;
@@ -159,8 +159,8 @@ impl Evaluator<'_> {
         index_of(look, self.lanes, *self.throughput)
     }
 
-    /// The index of refraction on the other side of a surface of a material; `None` where that is hidden, since something
-    /// that was entered later is on both of its sides.
+    /// The index of refraction on the other side of a surface of a material; `None` where the surface is hidden
+    /// because a body that was entered later is on both of its sides.
     fn around(&self, look: &PrincipledMaterial, material: u32, front: bool) -> Option<f32> {
         let leaves = look.is_solid && !front;
         if leaves && self.interior.hides(material) {
@@ -176,7 +176,7 @@ impl Evaluator<'_> {
         })
     }
 
-    /// A factor, and its greatest primary. White changes nothing.
+    /// A colour factor and its largest primary. White is the identity.
     fn with_greatest(&self, color: &SpectrumTexture) -> (Spectrum, f32) {
         if color.is_gray(1.0) {
             return (Spectrum([1.0; 4]), 1.0);

@@ -1,7 +1,7 @@
 //! The parameters of Whitted's model at a point.
 //!
-//! Whitted 1980: `I = k_a I_a + k_d Σ (N·L_j) I_j + k_s Σ (N·H_j)ⁿ I_j + k_r S + k_t T`, with Blinn's `H` halfway between
-//! `L` and the eye.
+//! Whitted 1980: `I = k_a I_a + k_d Σ (N·L_j) I_j + k_s Σ (N·H_j)ⁿ I_j + k_r S + k_t T`, with Blinn's half vector
+//! `H` between `L` and the viewing direction.
 //!
 //! ```toml
 //! [materials.glass]
@@ -38,20 +38,20 @@ pub struct Coefficients {
     pub transmission: Spectrum,
     /// Index of refraction, inside over outside.
     pub ior: f32,
-    /// Whether the angle decides between mirror and refraction.
+    /// True if the angle determines the split between reflection and refraction (Fresnel).
     pub fresnel: bool,
 }
 
-/// The two directions in which the tree of rays grows, each with its weight.
+/// The two directions in which the ray tree branches, each with its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Branches {
     /// Toward `S`, unit length, and its weight.
     pub mirrored: (Vec3, Spectrum),
-    /// Toward `T`, unit length, and its weight; `None` where all is reflected or nothing passes.
+    /// Toward `T`, unit length, and its weight; `None` for total reflection or where nothing is transmitted.
     pub refracted: Option<(Vec3, Spectrum)>,
-    /// The part that is mirrored after Fresnel; 1 for total internal reflection, `None` where the angle does not matter.
+    /// The Fresnel reflectance; 1 for total internal reflection, `None` where the angle does not matter.
     pub fresnel: Option<f32>,
-    /// Whether Snell's law has no answer here.
+    /// True for total internal reflection: Snell's law has no solution.
     pub total_reflection: bool,
 }
 
@@ -72,7 +72,7 @@ impl Coefficients {
         }
     }
 
-    /// Whether lights contribute.
+    /// True if direct light contributes.
     pub fn is_lit(&self) -> bool {
         !(self.diffuse.is_black() && self.specular.is_black())
     }
@@ -92,10 +92,10 @@ impl Coefficients {
         (self.diffuse * n_dot_l, specular)
     }
 
-    /// Where the tree of rays grows. `n` and `wo` of unit length on one side; `front` when that is the outside.
+    /// The branches of the ray tree. `n` and `wo` of unit length on one side; `front` if that is the outside.
     ///
-    /// With `fresnel` the part `F` goes into the mirrored direction, of the greater of `k_r` and `k_t`, and `(1 − F) k_t`
-    /// is refracted. Total internal reflection sends all into the mirrored direction.
+    /// With `fresnel` the fraction `F` of the larger of `k_r` and `k_t` is reflected, and `(1 − F) k_t` is
+    /// refracted. Total internal reflection sends everything into the reflected direction.
     pub fn branches(&self, n: Vec3, wo: Vec3, front: bool) -> Option<Branches> {
         if self.mirror.is_black() && self.transmission.is_black() {
             return None;

@@ -1,7 +1,7 @@
 //! Texture evaluation: values as numbers, RGB, or spectra at four wavelengths.
 //!
-//! Leaves (constants, texels, curves) are read by one of these; what stands between them blends what was read. So in
-//! spectral mode it is spectra that are blended, as in pbrt-v4.
+//! An evaluation converts the leaves (constants, texels, curves); the inner nodes blend the results. So in spectral
+//! mode spectra are blended, as in pbrt-v4.
 
 use std::ops::{Add, Mul};
 
@@ -12,31 +12,32 @@ use super::{Measured, SpectrumType};
 use crate::core::color::{Sigmoid, Unbounded, standard_illuminant};
 use crate::core::spectrum::Spectrum;
 
-/// A way to read leaves.
+/// A way to evaluate leaves.
 pub(super) trait Evaluation {
-    /// What they become.
+    /// Result of the evaluation.
     type Value: Copy + Add<Output = Self::Value> + Mul<Output = Self::Value> + Mul<f32, Output = Self::Value>;
 
-    /// The way to read what something read this way is multiplied by: of light, only one of two factors is light.
+    /// The evaluation for the second factor of a product: of an illuminant, only one of the two factors is an
+    /// illuminant.
     fn of_factor(&self) -> Self;
 
     /// A colour in linear Rec. 709, or a number three times.
     fn color(&self, rgb: [f32; 3]) -> Self::Value;
 
-    /// A colour that was compiled.
+    /// A compiled colour.
     fn constant(&self, constant: &Constant) -> Self::Value {
         self.color(constant.rgb)
     }
 
-    /// A colour that is a reflectance, whatever the texture is used for.
+    /// A colour that is a reflectance, whatever the spectrum type of the texture.
     fn reflectance(&self, rgb: [f32; 3]) -> Self::Value;
 
-    /// A pattern's number, which may be negative.
+    /// The number of a procedural pattern, which may be negative.
     fn number(&self, value: f32) -> Self::Value {
         self.color([value; 3])
     }
 
-    /// A place of a picture, already scaled; `invert` stands for 1 − value.
+    /// A texel, already scaled; `invert` stands for 1 − value.
     fn texel(&self, rgb: [f32; 3], invert: bool, _filter: TexelFilter) -> Self::Value {
         self.color(if invert { rgb.map(|c| 1.0 - c) } else { rgb })
     }
@@ -45,7 +46,7 @@ pub(super) trait Evaluation {
     fn curve(&self, curve: &Measured) -> Self::Value;
 }
 
-/// As one number.
+/// Evaluation as one number.
 pub(super) struct FloatEvaluation;
 
 impl Evaluation for FloatEvaluation {
@@ -67,7 +68,7 @@ impl Evaluation for FloatEvaluation {
         value
     }
 
-    /// The mean of the channels; but pbrt's nearest texel is the first of them.
+    /// The mean of the channels; but with pbrt's nearest filtering, the first channel.
     fn texel(&self, rgb: [f32; 3], invert: bool, filter: TexelFilter) -> f32 {
         let value = match filter {
             TexelFilter::Nearest => rgb[0],
@@ -86,7 +87,7 @@ fn mean([r, g, b]: [f32; 3]) -> f32 {
     if r == g && g == b { r } else { (r + g + b) / 3.0 }
 }
 
-/// As linear Rec. 709, for what they are used for.
+/// Evaluation as linear Rec. 709, by spectrum type.
 pub(super) struct RgbEvaluation(pub SpectrumType);
 
 impl Evaluation for RgbEvaluation {
@@ -111,7 +112,7 @@ impl Evaluation for RgbEvaluation {
     }
 }
 
-/// As values at four wavelengths in nm, for what they are used for.
+/// Evaluation at four wavelengths in nm, by spectrum type.
 pub(super) struct SpectralEvaluation<'a> {
     pub(super) spectrum_type: SpectrumType,
     pub(super) lambda: &'a [f32; 4],
@@ -120,7 +121,7 @@ pub(super) struct SpectralEvaluation<'a> {
 impl SpectralEvaluation<'_> {
     fn lift(&self, rgb: [f32; 3], uplifts: Option<&Uplifts>) -> Spectrum {
         let rgb = within(self.spectrum_type, rgb);
-        // A grey is the same at all wavelengths, which needs no table.
+        // A grey is the same at all wavelengths and needs no table.
         let is_gray = rgb[0] == rgb[1] && rgb[1] == rgb[2];
         let values = match self.spectrum_type {
             _ if is_gray => Spectrum([rgb[0]; 4]),
@@ -167,7 +168,7 @@ fn of_factor(spectrum_type: SpectrumType) -> SpectrumType {
     if spectrum_type == SpectrumType::Illuminant { SpectrumType::Unbounded } else { spectrum_type }
 }
 
-/// Not negative, for an albedo at most 1; 0 for what is not a number.
+/// Clamped to at least 0, for an albedo also to at most 1; 0 for NaN.
 #[inline]
 pub(super) fn within(spectrum_type: SpectrumType, rgb: [f32; 3]) -> [f32; 3] {
     let rgb = rgb.map(|c| c.max(0.0));

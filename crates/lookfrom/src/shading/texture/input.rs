@@ -1,7 +1,7 @@
-//! Inputs of materials, lights and textures, compiled.
+//! Compiled inputs of materials, lights and textures.
 //!
-//! pbrt's `SpectrumTexture` and `FloatTexture`. What a scene writes as a colour is compiled for what it is used for; constants are
-//! clamped, and lifted to spectra where the picture is spectral, once.
+//! pbrt's `SpectrumTexture` and `FloatTexture`. Colours of a scene are compiled for their spectrum type; constants
+//! are clamped once and, in spectral mode, uplifted to spectra once.
 
 use lookfrom_scene::material::{Color, Scalar};
 use lookfrom_scene::scene::{CurveId, TextureId};
@@ -11,14 +11,14 @@ use super::{Evaluation, Measured};
 use crate::core::color::{Sigmoid, Unbounded};
 use crate::core::spectrum::Spectrum;
 
-/// What a spectrum is used for, which decides the one that three primaries stand for.
+/// The use of a spectrum, which determines the spectrum that three primaries are uplifted to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpectrumType {
-    /// A part of the light: a smooth spectrum within 0 … 1; components beyond are clamped.
+    /// A reflectance or transmittance: a smooth spectrum within 0 … 1; components beyond are clamped.
     Albedo,
-    /// Any amount, such as an index of refraction: a smooth spectrum.
+    /// An unbounded quantity, such as an index of refraction: a smooth spectrum.
     Unbounded,
-    /// Light: a smooth spectrum times daylight D65, which is white. A curve is the light itself.
+    /// A light source: a smooth spectrum times daylight D65, which is white. A curve is the emission itself.
     Illuminant,
 }
 
@@ -27,14 +27,14 @@ pub enum SpectrumType {
 pub struct SpectrumTexture {
     pub(super) input: Input,
     pub(super) spectrum_type: SpectrumType,
-    /// In RGB mode, where it is the same everywhere.
+    /// The RGB value where it is constant.
     pub(super) rgb: Spectrum,
 }
 
 /// A number that may vary over a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FloatTexture {
-    /// The same everywhere.
+    /// A constant.
     Constant(f32),
     /// The mean of a texture's three channels.
     Texture(TextureId),
@@ -43,22 +43,23 @@ pub enum FloatTexture {
 /// An input of a texture, whose type depends on what the texture is used for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Input {
-    /// The same everywhere.
+    /// A constant.
     Constant(Constant),
-    /// By wavelength, the same everywhere.
+    /// A constant spectrum, given by a curve.
     Curve(CurveId),
     /// From a texture.
     Texture(TextureId),
 }
 
-/// A colour, and in spectral mode the spectra that it is lifted to (otherwise it is lifted when it is asked for).
+/// A colour, and in spectral mode the spectra that it is uplifted to (otherwise it is uplifted at each
+/// evaluation).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Constant {
     pub(super) rgb: [f32; 3],
     pub(super) uplifts: Option<Uplifts>,
 }
 
-/// Spectra of a colour.
+/// The spectra that a colour is uplifted to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Uplifts {
     pub(super) albedo: Sigmoid,
@@ -66,7 +67,7 @@ pub(super) struct Uplifts {
 }
 
 impl SpectrumTexture {
-    /// Nothing.
+    /// Zero everywhere.
     pub const BLACK: Self = Self {
         input: Input::Constant(Constant { rgb: [0.0; 3], uplifts: None }),
         spectrum_type: SpectrumType::Unbounded,
@@ -83,19 +84,19 @@ impl SpectrumTexture {
         Self { input, spectrum_type, rgb }
     }
 
-    /// Whether it is one colour everywhere.
+    /// True if it is one colour everywhere.
     #[inline]
     pub fn is_constant(&self) -> bool {
         matches!(self.input, Input::Constant(_))
     }
 
-    /// Whether it varies over the surface.
+    /// True if it varies over the surface.
     #[inline]
     pub fn varies(&self) -> bool {
         matches!(self.input, Input::Texture(_))
     }
 
-    /// Whether it is this colour, the same in all primaries, everywhere.
+    /// True if it is this grey everywhere.
     #[inline]
     pub fn is_gray(&self, value: f32) -> bool {
         matches!(self.input, Input::Constant(Constant { rgb, .. }) if rgb == [value; 3])
@@ -103,13 +104,13 @@ impl SpectrumTexture {
 }
 
 impl FloatTexture {
-    /// Whether it is this number everywhere.
+    /// True if it is this number everywhere.
     #[inline]
     pub fn is(self, value: f32) -> bool {
         self == Self::Constant(value)
     }
 
-    /// Whether it varies over the surface.
+    /// True if it varies over the surface.
     #[inline]
     pub fn varies(self) -> bool {
         matches!(self, Self::Texture(_))
@@ -126,7 +127,7 @@ impl From<Scalar> for FloatTexture {
 }
 
 impl Input {
-    /// A written colour; `uplifts` where spectra will be asked for.
+    /// Compiles a colour; `uplifts` where spectra will be evaluated.
     pub(super) fn new(written: Color, uplifts: bool) -> Self {
         match written {
             Color::Value(rgb) => Self::Constant(Constant {

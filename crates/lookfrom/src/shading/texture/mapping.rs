@@ -7,7 +7,7 @@ use lookfrom_scene::texture::Mapping;
 
 use super::TexturePoint;
 
-/// Patterns are not followed beyond this; a single-precision number of this size has no fraction long since.
+/// Coordinates are clamped to this; single-precision numbers of this size have long lost their fraction.
 const FARTHEST: f64 = 1_073_741_824.0;
 
 /// The coordinates in the pattern: (s, t, 0), or x, y and z for [`Mapping::World`]. Always finite.
@@ -42,7 +42,7 @@ pub(super) fn coordinates(mapping: &Mapping, at: &TexturePoint) -> DVec3 {
     p.to_array().map(|x| if x.is_nan() { 0.0 } else { x.clamp(-FARTHEST, FARTHEST) }).into()
 }
 
-/// [`coordinates`], where patterns in space are shifted by an odd little amount, so that surfaces which lie exactly on a
+/// [`coordinates`], with patterns in space shifted by a small irregular offset, so that surfaces exactly on the
 /// border of two cells (a floor at y = 0) do not flicker between them.
 pub(super) fn off_border(mapping: &Mapping, at: &TexturePoint) -> DVec3 {
     let p = coordinates(mapping, at);

@@ -1,4 +1,4 @@
-//! Compiled textures: nodes of a graph whose leaves are constants, curves and pictures.
+//! Compiled textures: nodes of a graph whose leaves are constants, curves and images.
 
 use glam::Vec3;
 use lookfrom_scene::material::{Color, Scalar};
@@ -6,7 +6,7 @@ use lookfrom_scene::texture::{Channel, Mapping, TexelFilter, TextureKind, Wrap};
 
 use super::input::{FloatTexture, Input};
 
-/// A texture. The parameters mean what those of [`TextureKind`] do.
+/// A texture with the parameters of its [`TextureKind`].
 #[derive(Clone, Debug)]
 pub(super) enum Node {
     Image {
@@ -94,7 +94,7 @@ pub(super) enum Node {
 }
 
 impl Node {
-    /// Every texture of a scene, in the same order; `uplifts` where spectra will be asked for.
+    /// Every texture of a scene, in the same order; `uplifts` where spectra will be evaluated.
     pub(super) fn compile_all(kinds: &[TextureKind], uplifts: bool) -> Vec<Self> {
         (0..kinds.len())
             .map(|index| match scaled_picture(kinds, index) {
@@ -148,8 +148,8 @@ impl Node {
     }
 }
 
-/// What a picture scaled by constants is: a picture of another scale, as in pbrt-v4, where an albedo beyond 1 is clamped (and
-/// a picture inverted) after that scale. `None` for any other texture.
+/// Folds constant scales into an image texture, as pbrt-v4 does, where an albedo beyond 1 is clamped (and an image
+/// inverted) after the scale. `None` for any other texture.
 fn scaled_picture(kinds: &[TextureKind], index: usize) -> Option<TextureKind> {
     let mut factor = 1.0;
     let mut kind = &kinds[index];

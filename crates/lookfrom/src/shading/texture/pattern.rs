@@ -1,18 +1,18 @@
 //! Procedural patterns.
 //!
-//! Squares, and pbrt-v4's dots, waves and marble (Pharr, Jakob, Humphreys 2023), which Perlin's noise makes.
+//! Checkerboards, and pbrt-v4's dots, waves and marble by Perlin noise (Pharr, Jakob, Humphreys 2023).
 
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::core::noise::perlin;
 
-/// Whether the sum of the whole parts is even.
+/// True if the sum of the integer parts is even.
 pub(super) fn is_even(p: DVec3) -> bool {
     let half = 0.5 * (p.x.floor() + p.y.floor() + p.z.floor());
     half.floor() == half
 }
 
-/// Whether a place lies in a dot. Cells are of size 1 around whole numbers; about half of them have a dot.
+/// True if a point lies in a dot. Cells have size 1 and are centred at integers; about half of them have a dot.
 pub(super) fn is_in_dot(st: Vec2) -> bool {
     const RADIUS: f32 = 0.35;
     let cell = (st + 0.5).floor();
@@ -25,14 +25,14 @@ pub(super) fn is_in_dot(st: Vec2) -> bool {
     st.distance_squared(center) < RADIUS * RADIUS
 }
 
-/// The height of water under a wind that is not the same everywhere.
+/// pbrt's `windy`: the height of water under a wind that varies over the surface.
 pub(super) fn windy(p: Vec3) -> f32 {
     let wind = perlin::fbm(0.1 * p, 0.5, 3);
     let wave = perlin::fbm(p, 0.5, 6);
     wind.abs() * wave
 }
 
-/// pbrt's palette of marble: veins across y, moved by noise. A reflectance.
+/// pbrt's marble: veins across y, displaced by noise. A reflectance.
 pub(super) fn marble(p: Vec3, roughness: f32, octaves: u32, variation: f32) -> [f32; 3] {
     const STONE: [f32; 3] = [0.58, 0.58, 0.6];
     const PALETTE: [[f32; 3]; 9] =
@@ -40,7 +40,7 @@ pub(super) fn marble(p: Vec3, roughness: f32, octaves: u32, variation: f32) -> [
     const SEGMENTS: usize = PALETTE.len() - 3;
     let phase = p.y + variation * perlin::fbm(p, roughness, octaves);
     let t = (0.5 + 0.5 * libm::sinf(phase)) * SEGMENTS as f32;
-    // Each segment is a cubic Bézier curve through four colours of the palette, the next one shares three of them.
+    // Each segment is a cubic Bézier curve through four colours of the palette; the next one shares three of them.
     let first = (t as usize).min(SEGMENTS - 1);
     let t = t - first as f32;
     let s = 1.0 - t;

@@ -3,16 +3,16 @@
 use lookfrom_scene::image::Image;
 use lookfrom_scene::texture::{Channel, TexelFilter, Wrap};
 
-/// Places beyond this many texels are taken to be here; they have long had no fraction.
+/// Coordinates are clamped to this many texels; floats of this size have long lost their fraction.
 const FARTHEST: f32 = 1_073_741_824.0;
 
-/// The colour of a picture at `(s, t)`, with `t` *down* and both from 0 to 1 over the picture. Finite for a picture of finite
-/// texels, wherever: a place that is not a number is taken as 0.
+/// The colour of an image at `(s, t)`, with `t` *down* and both from 0 to 1 over the image. Finite for an image of
+/// finite texels, at any coordinates: NaN is taken as 0.
 pub fn look_up(image: &Image, st: [f32; 2], wraps: [Wrap; 2], filter: TexelFilter) -> [f32; 3] {
     blended(image, &Colors, st, wraps, filter)
 }
 
-/// One channel of a picture, the same way. Beyond the edges of [`Wrap::Black`] it is 0.
+/// One channel of an image, looked up the same way. Beyond the edges of [`Wrap::Black`] it is 0.
 pub(super) fn look_up_channel(
     image: &Image,
     channel: Channel,
@@ -23,7 +23,7 @@ pub(super) fn look_up_channel(
     blended(image, &channel, st, wraps, filter)
 }
 
-/// What is read of texels.
+/// The part of a texel that is read.
 trait Read {
     type Value: Copy + Default;
 
@@ -91,7 +91,7 @@ fn blended<R: Read>(
 fn four_texels<R: Read>(image: &Image, read: &R, [x, y]: [i32; 2], wraps: [Wrap; 2]) -> [R::Value; 4] {
     let inside = |x: i32, size: u32| x >= 0 && (x as u32) < size - 1;
     if inside(x, image.width) && inside(y, image.height) {
-        // nothing to wrap, as nearly always
+        // No wrapping is needed, as nearly always.
         let width = image.width as usize;
         let top = y as usize * width + x as usize;
         return read.texels(image, [top, top + 1, top + width, top + width + 1]);
@@ -113,20 +113,20 @@ fn texel<R: Read>(image: &Image, read: &R, place: (Option<usize>, Option<usize>)
     }
 }
 
-/// The whole number below, and the fraction: by truncation, because `floor` is a call of a function on most processors that
+/// The integer below and the fraction: by truncation, because `floor` is a function call on most target CPUs that
 /// programs are compiled for.
 #[inline]
 fn split(x: f32) -> (i32, f32) {
     let x = x.clamp(-FARTHEST, FARTHEST);
     let toward_zero = x as i32;
     let below = toward_zero - i32::from(toward_zero as f32 > x);
-    // the fraction of what is not a number is not one, and `max` passes over it
+    // The fraction of NaN is NaN, which `max` replaces by 0.
     (below, (x - below as f32).max(0.0))
 }
 
-/// The column (or row) that a whole number means, `None` for one outside that is black.
+/// The column (or row) after wrapping; `None` for a black one outside.
 fn wrapped(x: i32, size: u32, wrap: Wrap) -> Option<usize> {
-    // without a division, where that is known
+    // Without a division in the common case.
     if x >= 0 && (x as u32) < size {
         return Some(x as usize);
     }

@@ -11,7 +11,7 @@ fn textures_of(kinds: &[TextureKind], images: Vec<Image>, curves: Vec<Curve>) ->
     Textures::new(kinds, images, curves, ColorMode::Spectral)
 }
 
-/// What is asked of written colours and numbers.
+/// Shorthands for colours and numbers of a scene.
 impl Textures {
     fn rgb_of(&self, color: Color, spectrum_type: SpectrumType, at: &TexturePoint) -> [f32; 3] {
         self.rgb(&self.spectrum_texture(color, spectrum_type), at)
@@ -73,16 +73,16 @@ fn texels_sit_where_they_should() {
     for filter in [TexelFilter::Nearest, TexelFilter::Bilinear] {
         let textures = textures_of(&[picture(filter, 1.0, false)], vec![two_by_two()], vec![]);
         let rgb = |u, v| textures.rgb_of(color, SpectrumType::Unbounded, &at(u, v));
-        // v runs up: the top row of the picture is at v near 1
+        // v runs up: the top row of the image is at v near 1.
         assert_eq!(rgb(0.25, 0.75), [0.0; 3]);
         assert_eq!(rgb(0.75, 0.75), [1.0; 3]);
         assert_eq!(rgb(0.25, 0.25), [2.0; 3]);
         if filter == TexelFilter::Bilinear {
             assert_eq!(rgb(0.5, 0.5), [1.5; 3]);
-            // a quarter of the way between centres, both ways
+            // A quarter of the way between texel centres, along both axes.
             assert_eq!(rgb(0.375, 0.625), [0.75; 3]);
         }
-        // An albedo is clamped, light is not.
+        // An albedo is clamped, an illuminant is not.
         assert_eq!(textures.rgb_of(color, SpectrumType::Albedo, &at(0.25, 0.25)), [1.0; 3]);
         assert_eq!(textures.rgb_of(color, SpectrumType::Illuminant, &at(0.25, 0.25)), [2.0; 3]);
     }
@@ -197,7 +197,7 @@ fn dots_are_round_and_stay_in_their_cells() {
             let (x, y) = ((step % 20) as f32 / 20.0 - 0.475, (step / 20) as f32 / 20.0 - 0.475);
             area += number(&dots, &at(i + x, j + y)) as u32;
         }
-        // π 0.35² of a cell, or nothing
+        // The area is π 0.35² of a cell, or 0.
         let part = area as f32 / 400.0;
         assert!(part == 0.0 || (part - 0.385).abs() < 0.03, "{part}");
         with += u32::from(area > 0);
@@ -277,7 +277,7 @@ fn spectra_are_blended_and_curves_read() {
     let spectrum = |color| textures.spectrum_of(color, SpectrumType::Albedo, &at(0.0, 0.0), &lanes);
     let expected = spectrum(red) * 0.75 + Spectrum([0.25, 0.5, 0.75, 1.0]) * 0.25;
     assert_eq!(spectrum(Color::Texture(FIRST)), expected);
-    // A grey needs no table, and is what it is; a curve is what it is in RGB, too.
+    // A grey needs no table and stays exact; a curve keeps its value in RGB, too.
     assert_eq!(spectrum(Color::gray(0.3)), Spectrum([0.3; 4]));
     let rgb = textures.rgb_of(Color::Curve(CurveId(0)), SpectrumType::Albedo, &at(0.0, 0.0));
     assert!(rgb.iter().all(|c| (c - 0.5).abs() < 1e-5), "{rgb:?}");
@@ -396,12 +396,12 @@ fn channels_are_greys_and_alpha_is_no_color() {
     let textures = textures_of(&kinds, vec![image], vec![]);
     let number = |index, at: &TexturePoint| textures.scalar(Scalar::Texture(TextureId(index)), at);
     let green = lookfrom_scene::image::linear_from_srgb(0.2);
-    // In the middle between both texels; nothing of the black above and below emits light in at v = 0.5.
+    // In the middle between both texels; the black above and below has no weight at v = 0.5.
     let found: Vec<f32> = (0..4).map(|index| number(index, &at(0.5, 0.5))).collect();
     assert_eq!(found, [2.0, 2.0 * green, 0.0, 2.0 * (0.5 * 0.4 + 0.5 * 0.8)]);
     let gray = textures.rgb_of(Color::Texture(TextureId(3)), SpectrumType::Unbounded, &at(0.0, 0.5));
     assert_eq!(gray, [0.8; 3]);
-    // Each axis wraps by itself.
+    // Each axis wraps on its own.
     assert_eq!((number(3, &at(-3.0, 0.5)), number(3, &at(0.5, 3.0))), (0.8, 0.0));
     assert_eq!(
         textures.rgb_of(Color::Texture(TextureId(4)), SpectrumType::Albedo, &at(0.5, 0.5)),
@@ -458,7 +458,8 @@ fn mappings_choose_a_set_of_coordinates_and_turn_it() {
     let mut here = at(0.4, 0.1);
     here.more_uvs[1] = Vec2::new(0.9, 0.9);
     let number = |id| textures.scalar(Scalar::Texture(TextureId(id)), &here);
-    // (0.35, 0.6): upper left. (0.9, 0.9): upper right. Of no such set (0, 0), turned to (0.25, 1): upper left.
+    // (0.35, 0.6): upper left. (0.9, 0.9): upper right. A missing set is (0, 0), rotated to (0.25, 1): upper
+    // left.
     assert_eq!([number(0), number(1), number(2)], [1.0, 2.0, 1.0]);
 }
 

@@ -13,15 +13,15 @@ use crate::light::{LightShape, MeshLight, PatchLight};
 use crate::primitive::{Curves, Mesh, Patches, Primitives, SEGMENTS};
 use crate::shading::texture::{FloatTexture, MORE_UV_SETS, SpectrumType};
 
-/// A patch is a parallelogram if its fourth corner is off it by less than this part of its distance from the origin (or of
-/// 1, for texture coordinates): the rounding of numbers in f32.
+/// A patch is a parallelogram if its fourth corner deviates from it by less than this part of its distance from the
+/// origin (or of 1, for texture coordinates): the rounding of numbers in f32.
 const FLATNESS: f32 = 4.0 * f32::EPSILON;
 
 impl Compiler<'_> {
     pub(super) fn mesh(&mut self, placing: Placing, mesh: &WrittenMesh, group: &mut Group) -> Result<()> {
         let Placing { shape, matrix, binding } = placing;
         countable(placing, mesh.positions.len().max(mesh.triangles.len()))?;
-        // What was outside before a mirror is outside after it: there the frame of tangent, normal and v is another.
+        // A reflection keeps the outside outside, but changes the handedness of the frame of tangent, normal and v.
         let flip = placing.mirrors() != shape.reverse_orientation;
         let side = if flip { -1.0 } else { 1.0 };
         let tangent = |s: &Vec4| {
@@ -103,7 +103,7 @@ impl Compiler<'_> {
         let Placing { shape, matrix, binding } = placing;
         countable(placing, strands.len().saturating_mul(SEGMENTS as usize))?;
         if shape.emission.is_some() {
-            self.warn(&shape.at, "curves cannot shine; their emission is left out");
+            self.warn(&shape.at, "curves cannot emit light; their emission is ignored");
         }
         let curves = Curves::new(strands, math::affine(matrix), shape.reverse_orientation, binding)
             .ok_or_else(|| not_invertible(&shape.at))?;
@@ -123,7 +123,7 @@ fn moved(matrix: &DMat4, p: Vec3) -> Vec3 {
     matrix.transform_point3(p.as_dvec3()).as_vec3()
 }
 
-/// Unit shading normals after the shape's transform, turned over where the shape is.
+/// Unit shading normals after the shape's transform, flipped where the shape's orientation is reversed.
 fn normals(placing: Placing, written: &[Vec3]) -> Result<Vec<Vec3>> {
     let inverse = inverse(&placing.shape.at, placing.matrix)?;
     let side = if placing.shape.reverse_orientation { -1.0 } else { 1.0 };
@@ -143,8 +143,8 @@ pub(super) fn quad(corner: DVec3, edge_u: DVec3, edge_v: DVec3) -> WrittenMesh {
     }
 }
 
-/// Patches that are all parallelograms, with texture coordinates that run evenly over them, as what is met and sampled
-/// better: two triangles each.
+/// Patches that are all parallelograms, with texture coordinates that are linear over them, as two triangles each,
+/// which are faster to intersect and better to sample.
 fn parallelograms(patches: &WrittenPatches) -> Option<WrittenMesh> {
     if !patches.normals.is_empty() {
         return None;

@@ -18,7 +18,7 @@ fn far(a: [f32; 3], b: [f32; 3]) -> f32 {
     (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max)
 }
 
-/// What a sensor makes of a light, over all wavelengths.
+/// The response of a sensor to a light, by sampled wavelengths.
 fn seen(sensor: &Sensor, light: &DenselySampledSpectrum) -> [f32; 3] {
     let count = 20_000;
     let mut rgb = [0.0; 3];
@@ -38,7 +38,7 @@ fn sensors_balance_and_expose() {
         let light = DenselySampledSpectrum::from(&daylight(kelvin));
         let light = light.scaled(1.0 / light.to_xyz()[1]);
         assert!(far(seen(&sensor, &light), [2.0; 3]) < 5e-3, "{kelvin}: {:?}", seen(&sensor, &light));
-        // A colour of RGB mode goes the same way.
+        // A colour of RGB mode is converted in the same way.
         assert!(far(sensor.balanced(light.to_rgb()), [2.0; 3]) < 1e-4, "{kelvin}");
     }
     let plain = balanced(1.5, None);
@@ -48,7 +48,7 @@ fn sensors_balance_and_expose() {
 
 #[test]
 fn cameras_are_calibrated_as_pbrts() {
-    // By an independent computation in doubles, with other loops.
+    // Computed independently in f64, with other loops.
     for (name, kelvin, expected) in [
         (
             "canon_eos_5d_mkiv",
@@ -78,7 +78,7 @@ fn cameras_are_calibrated_as_pbrts() {
     }
 }
 
-/// As [`seen`], without chance: at each nm in four lanes.
+/// As [`seen`], without sampling: at each nm in four lanes.
 fn integrated(sensor: &Sensor, light: &DenselySampledSpectrum) -> [f32; 3] {
     let at = |i: usize, channel: usize| f64::from(4.0 * sensor.responses[i][channel] * light.samples()[i]);
     [0, 1, 2].map(|channel| (0..SAMPLES).map(|i| at(i, channel)).sum::<f64>() as f32)
@@ -125,14 +125,14 @@ fn channels_are_what_the_camera_measures() {
         Settings { camera: CameraSensor::named("canon_eos_m"), imaging_ratio: 3.0, ..Settings::default() };
     let sensor = Sensor::new(&settings);
     let responses = settings.camera.expect("one").responses();
-    // A laser of luminous density 1 at 540 nm; one lane counts.
+    // A laser of luminous density 1 at 540 nm; only one lane is in use.
     let mut wavelengths = Wavelengths { lambda: [540.0; 4], pdf: [1.0; 4] };
     wavelengths.terminate_secondary();
     let rgb = sensor.rgb(Spectrum([1.0, 0.0, 0.0, 0.0]), &wavelengths);
     assert!(rgb[0] < 0.0 && rgb[1] > 0.0, "{rgb:?}");
     let expected = responses.map(|response| 3.0 * response.at(540.0) / observer::Y_INTEGRAL as f32);
     assert!(far(sensor.channels(rgb), expected) < 1e-6, "{:?} ≠ {expected:?}", sensor.channels(rgb));
-    // The standard observer's are X, Y and Z before the balance.
+    // The standard observer's channels are X, Y and Z before the balance.
     assert_eq!(Sensor::default().variance_from_rgb(), &space::XYZ_FROM_RGB);
     let [plain, warm] = [None, Some(3000.0)].map(|kelvin| balanced(1.0, kelvin));
     let [a, b] =

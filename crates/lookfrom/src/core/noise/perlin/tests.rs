@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// The definition in f64, by pbrt's words: two of the coordinates, each with a sign, chosen by four bits of the hash.
+/// The definition in f64, in pbrt's form: two of the coordinates, each with a sign, selected by four bits of the
+/// hash.
 fn slow([x, y, z]: [f64; 3]) -> f64 {
     let fade = |t: f64| 6.0 * t.powi(5) - 15.0 * t.powi(4) + 10.0 * t.powi(3);
     let at = |i: f64| usize::from(PERMUTATION[i.rem_euclid(256.0) as usize]) as f64;
@@ -47,7 +48,7 @@ fn known_values() {
         let p = Vec3::from([0, 1, 2].map(|k| coordinate(trial * 3 + k, 9))).round();
         assert_eq!(noise(p), 0.0);
     }
-    // Worked out apart from this program, by the published table.
+    // Computed independently of this program, by the published table.
     for (p, expected) in KNOWN {
         let found = noise(Vec3::from(p));
         assert!((found - expected).abs() < 1e-6, "{p:?}: {found}, not {expected}");

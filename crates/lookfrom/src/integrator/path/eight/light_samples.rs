@@ -1,6 +1,7 @@
-//! Next-event estimation for eight paths at once: the twin of `PathTracer::sample_light` up to the shadow ray.
+//! Next-event estimation for eight paths at once: the SIMD version of `PathTracer::sample_light` up to the shadow ray.
 //!
-//! Points of triangles of one colour, chosen by area, go side by side; all else is sampled one by one and takes its lane.
+//! Triangles of one colour, sampled by area, are vectorised; every other light is sampled by scalar code and put into
+//! its lane.
 
 use glam::DVec3;
 use lookfrom_bvh::Point;
@@ -14,7 +15,7 @@ use crate::light::{IncompletePdf, Light, LightSample, LightSampleContext, LightT
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
-/// What a light answered, in one lane.
+/// The light sample of one lane.
 #[derive(Clone, Copy)]
 pub(super) struct LaneSample {
     pub(super) light: u32,
@@ -25,13 +26,13 @@ pub(super) struct LaneSample {
     pub(super) target: Target,
 }
 
-/// What lights answered.
+/// The light samples of eight lanes.
 pub(super) struct LightSamples<S: Simd> {
     /// The light that each lane samples, and the probability of its choice.
     choice: [Option<(u32, f32)>; LANES],
     pub(super) samples: [Option<LaneSample>; LANES],
     pub(super) wi: Vectors<Narrow<S>>,
-    /// Where on the lights, of those that are surfaces, and their normals.
+    /// Points on the lights that are surfaces, and the normals there.
     points: Points<S>,
     normal: Vectors<Wide<S>>,
 }
@@ -66,7 +67,7 @@ impl<S: Simd> LightSamples<S> {
             }
         });
 
-        // Points of triangles, chosen by area.
+        // Points on triangles, sampled by area.
         let of = by_lane!(lane => triangle[lane].map_or(&LightTriangle::NONE, |(triangle, ..)| triangle));
         let corners =
             by_axis!(k => Vectors::<Narrow<S>>::of_rows(simd, &by_lane!(lane => of[lane].corners[k])));
@@ -130,7 +131,7 @@ impl<S: Simd> LightSamples<S> {
                 Some(LaneSample { light: index, probability, pdf, li, is_delta: light.is_delta(), target });
         }
 
-        // Those that were sampled one by one take their lanes.
+        // Put the samples of scalar code into their lanes.
         let (mut points, mut normal) = (points, normal);
         for (lane, place) in place.iter().enumerate() {
             if let Some((point, of_light)) = place {
@@ -157,14 +158,15 @@ impl<S: Simd> LightSamples<S> {
         LightSample { wi: self.wi.lane(lane).into(), li: answer.li, pdf: answer.pdf, target }
     }
 
-    /// The event of a light sample that brings nothing, for a probe; `None` where there is no light.
+    /// The event of a light sample that contributes nothing, for a probe; `None` where there is no light.
     pub(super) fn in_vain(&self, lane: usize, address: u64) -> Option<Event> {
         let (light, probability) = self.choice[lane]?;
         let sample = self.samples[lane].as_ref().map(|answer| self.light_sample(lane, answer));
         Some(Event::LightSampleFailed { address, light, probability, sample })
     }
 
-    /// The directions of shadow rays, from their origins to just before the lights' surfaces: the twin of [`crate::integrator::Shadow::new`].
+    /// Directions of shadow rays, from their origins to just before the lights' surfaces: the SIMD version of
+    /// [`crate::integrator::Shadow::new`].
     #[inline(always)]
     pub(super) fn ends(&self, simd: S, origins: &Vectors<Narrow<S>>) -> Vectors<Narrow<S>> {
         let origins = origins.widen();
@@ -178,7 +180,7 @@ impl<S: Simd> LightSamples<S> {
     }
 }
 
-/// The twin of [`crate::core::warp::uniform_triangle`]: β and γ.
+/// SIMD version of [`crate::core::warp::uniform_triangle`]: β and γ.
 #[inline(always)]
 fn uniform_triangles<S: Simd>(simd: S, u: Narrow<S>, v: Narrow<S>) -> [Narrow<S>; 2] {
     let (half, one) = (f32x8::splat(simd, 0.5), f32x8::splat(simd, 1.0));
@@ -189,8 +191,8 @@ fn uniform_triangles<S: Simd>(simd: S, u: Narrow<S>, v: Narrow<S>) -> [Narrow<S>
     [beta, one - (alpha + beta)]
 }
 
-/// Which lanes may be chosen from by direction, where they are not left out: the twin of the first half of the lights' own
-/// question.
+/// Bit mask of the lanes whose triangles may be sampled by solid angle: the SIMD version of the first half of the test
+/// in `light::area::mesh`.
 #[inline(always)]
 fn worth_direction<S: Simd>(
     simd: S,

@@ -1,5 +1,4 @@
-//! Tests of layered BSDFs: walks against formulas, and `sample` against `f`. Where formulas end, `sample` and `f` check
-//! one another.
+//! Tests of layered BSDFs: random walks against formulas, and `sample` against `f` where there are no formulas.
 
 use super::*;
 use crate::shading::bsdf::Bsdf;
@@ -25,13 +24,13 @@ fn estimate(n: u64, value: impl Fn(u64) -> f64) -> Estimate {
 }
 
 impl Estimate {
-    /// How many standard errors lie between the two.
+    /// Distance of the two in standard errors.
     fn distance(self, other: Self) -> f64 {
         (self.mean - other.mean).abs() / self.error.hypot(other.error).max(1e-9)
     }
 }
 
-/// ∫ f |cos θ_i| over all directions, by cosine-weighted ones.
+/// ∫ f |cos θ_i| over all directions, by cosine-weighted samples.
 fn integral_of_f(f: impl Fn(Vec3, Vec3) -> Spectrum, wo: Vec3, n: u64, seed: u64) -> Estimate {
     estimate(n, |index| {
         let (_, u) = numbers(seed, index);
@@ -40,7 +39,7 @@ fn integral_of_f(f: impl Fn(Vec3, Vec3) -> Spectrum, wo: Vec3, n: u64, seed: u64
     })
 }
 
-/// `f` with the two ways of leaving weighed as they should be, where pbrt's weights do not add up to one.
+/// `f` with unbiased MIS weights of the two exit strategies, where pbrt's do not add up to one.
 fn unbiased_f(bsdf: &Bsdf, wo: Vec3, wi: Vec3) -> Spectrum {
     fn of<B: Base>(layered: &Layered<B>, wo: Vec3, wi: Vec3) -> Spectrum {
         let mut random = Random::new(Purpose::Value, wo, wi.to_array());
@@ -56,7 +55,7 @@ fn unbiased_f(bsdf: &Bsdf, wo: Vec3, wi: Vec3) -> Spectrum {
     }
 }
 
-/// The same by `sample`, of what is (not) specular.
+/// The same by `sample`, of the specular or the other lobes.
 fn mean_weight(bsdf: &Bsdf, wo: Vec3, n: u64, seed: u64, specular: bool) -> Estimate {
     estimate(n, |index| {
         let (uc, u) = numbers(seed, index);
@@ -66,7 +65,7 @@ fn mean_weight(bsdf: &Bsdf, wo: Vec3, n: u64, seed: u64, specular: bool) -> Esti
     })
 }
 
-/// The part of evenly spread light inside that a smooth boundary sends back.
+/// The fraction of diffuse light inside that a smooth boundary reflects back.
 fn internal_reflection(eta: f64) -> f64 {
     let n = 20_000;
     let sum: f64 = (0..n)
@@ -99,7 +98,7 @@ fn a_smooth_coat_on_lambert_is_a_geometric_series() {
             let sum = (1.0 - ratio.powi(reflections)) / (1.0 - ratio);
             (1.0 - mirrored) * f64::from(reflectance) * sum * (1.0 - inside)
         };
-        // `f` joins the base with the way out at each second step, the first included; `sample` must also step out.
+        // `f` connects the base with the exit at every second step, the first included; `sample` must also leave.
         let f = integral_of_f(|wo, wi| bsdf.f(wo, wi, Mode::Radiance), wo, 200_000, 1);
         let expected = Estimate { mean: series(i32::from(max_depth.div_ceil(2))), error: 1e-4 };
         assert!(f.distance(expected) < 4.5, "{coat:?} {theta}: f {f:?}, series {expected:?}");
@@ -111,7 +110,7 @@ fn a_smooth_coat_on_lambert_is_a_geometric_series() {
         );
         let specular = mean_weight(&bsdf, wo, 200_000, 3, true);
         assert!(specular.distance(Estimate { mean: mirrored, error: 1e-5 }) < 4.5, "{specular:?} {mirrored}");
-        // Nothing is lost but what the cut-off drops.
+        // No energy is lost except what the cut-off drops.
         if max_depth == 200 {
             assert!((f.mean + mirrored - 1.0).abs() < 4.5 * f.error + 1e-3);
         }
@@ -120,7 +119,7 @@ fn a_smooth_coat_on_lambert_is_a_geometric_series() {
 
 #[test]
 fn the_slab_absorbs_on_each_crossing() {
-    // An index of 1 leaves Lambert under an absorber: ρ e^(−d/cos θ_o) e^(−d/cos θ_i) / π.
+    // With an index of 1, Lambertian reflection under an absorber remains: ρ e^(−d/cos θ_o) e^(−d/cos θ_i) / π.
     let coat = CoatLayer { eta: 1.0, thickness: 0.3, ..CoatLayer::default() };
     let bsdf = Bsdf::coated_diffuse(grey(0.8), &coat);
     let (wo, wi) = (direction(50.0, 0.0), direction(20.0, 100.0));
@@ -146,7 +145,7 @@ fn single_scattering_in_the_slab_has_a_formula() {
     let phase = HenyeyGreenstein::new(0.4).p(wo, wi);
     let crossing = 0.7 * (1.0 / wo.z + 1.0 / wi.z);
     let expected = f64::from(0.6 * phase * (1.0 - (-crossing).exp()) / (wo.z + wi.z));
-    // The function is one estimate a pair of directions: jitter them.
+    // The function is one estimate per pair of directions: jitter them.
     let f = estimate(200_000, |index| {
         let jitter = |k: u64| 1e-5 * (number(5, index * 6 + k) - 0.5);
         let wo = (wo + Vec3::new(jitter(0), jitter(1), jitter(2))).normalize();
@@ -156,7 +155,7 @@ fn single_scattering_in_the_slab_has_a_formula() {
     assert!(f.distance(Estimate { mean: expected, error: 1e-5 }) < 4.5, "{f:?} {expected}");
 }
 
-/// Coats and bases of all kinds, deep enough that nothing is cut off.
+/// Coats and bases of all kinds, deep enough that no walk is cut off.
 fn deep() -> Vec<(&'static str, Bsdf)> {
     let coat = CoatLayer { max_depth: 300, ..CoatLayer::default() };
     let rough = CoatLayer { roughness: TrowbridgeReitz::new(0.4, 0.4), ..coat };
@@ -191,7 +190,8 @@ fn samples_add_up_to_the_integral_of_f() {
             let f = integral_of_f(|wo, wi| unbiased_f(&bsdf, wo, wi), wo, N, 10 + view as u64);
             let sampled = mean_weight(&bsdf, wo, N, 20 + view as u64, false);
             if name == "smooth milk on smooth metal" {
-                // From a particle by a mirror through a smooth coat: only `sample` finds such ways, as in pbrt.
+                // From a particle by a specular reflection through a smooth coat: only `sample` finds such
+                // paths, as in pbrt.
                 assert!(f.mean < sampled.mean, "{name} {wo}: f {f:?}, sample {sampled:?}");
             } else {
                 assert!(f.distance(sampled) < 4.5, "{name} {wo}: f {f:?}, sample {sampled:?}");
@@ -206,8 +206,8 @@ fn samples_add_up_to_the_integral_of_f() {
 
 #[test]
 fn ways_out_are_weighed_as_in_pbrt() {
-    // pbrt's weights of the two ways out of a rough coat add up to a little more than one. Pictures are compared with
-    // pbrt's, so `f` must keep that; smooth coats have one way out.
+    // pbrt's MIS weights of the two exit strategies of a rough coat add up to a little more than one. Images are
+    // compared with pbrt's, so `f` must keep that; smooth coats have one exit strategy.
     let wo = direction(10.0, 30.0);
     for (name, bsdf) in deep() {
         let kept = integral_of_f(|wo, wi| bsdf.f(wo, wi, Mode::Radiance), wo, 100_000, 60);
@@ -239,7 +239,7 @@ fn light_goes_both_ways_on_average() {
         };
         let (there, back) = (mean(40, false), mean(41, true));
         assert!(there.distance(back) < 4.5, "{name}: {there:?} {back:?}");
-        // And the other side looks the same.
+        // The other side scatters alike.
         let below = bsdf.f(-wo, -wi, Mode::Radiance);
         assert_eq!(below, bsdf.f(wo, wi, Mode::Radiance), "{name}");
         assert!(bsdf.f(wo, -wi, Mode::Radiance).is_black(), "{name}");
@@ -248,7 +248,8 @@ fn light_goes_both_ways_on_average() {
 
 #[test]
 fn radiance_and_importance_are_scattered_alike() {
-    // What 1/η² takes on the way in, η² gives on the way out; shallow, as chances to give up depend on what is carried.
+    // The factor 1/η² on the way in cancels on the way out; shallow, because Russian roulette depends on the
+    // throughput.
     let (wo, wi) = (direction(60.0, 30.0), direction(25.0, 170.0));
     let close = |a: f32, b: f32| (a - b).abs() <= 1e-4 * a.max(b);
     for roughness in [TrowbridgeReitz::SMOOTH, TrowbridgeReitz::new(0.3, 0.3)] {
@@ -282,7 +283,8 @@ fn values_are_functions_of_their_arguments() {
 
 #[test]
 fn the_density_is_never_zero_and_about_normal() {
-    // A tenth is uniform; the rest counts what enters and what the coat mirrors as if each were all, as in pbrt.
+    // A tenth is uniform; the rest counts the light that enters and the coat's reflection as if each were all,
+    // as in pbrt.
     for (name, bsdf) in deep() {
         let wo = direction(40.0, 10.0);
         let total = estimate(50_000, |index| {

@@ -1,12 +1,12 @@
 //! Directional albedos of microfacets and sheen, by tables.
 //!
-//! Layers that share light need to know. There is no formula, so small tables are made by integration when they are first
-//! asked for (a few milliseconds, once a process) and read with linear interpolation.
+//! Needed to divide energy between layers. There is no closed form, so small tables are integrated on first use (a
+//! few milliseconds, once per process) and read with linear interpolation.
 //!
-//! The Fresnel term of a mirror is `F0 + (F90 − F0) s`, where s is 0 straight on and 1 along the surface: so two numbers,
-//! the means of 1 − s and of s over what the direction sees, give its albedo for every F0 and F90 (Karis 2013 calls it the
-//! split sum). With F = 1 their sum is what single scattering leaves; the rest is scattered more than once (Kulla & Conty
-//! 2017).
+//! The Fresnel term of a reflector is `F0 + (F90 − F0) s`, where s is 0 at normal and 1 at grazing incidence. So
+//! two numbers, the means of 1 − s and of s over the visible normals, give its albedo for every F0 and F90 (the
+//! split sum of Karis 2013). With F = 1 their sum is the albedo of single scattering; the rest is multiple
+//! scattering (Kulla & Conty 2017).
 
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -16,14 +16,15 @@ use super::sheen;
 use crate::core::math::{self, schlick};
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 
-/// Rows by the square root of the cosine.
+/// Number of rows, by the square root of the cosine.
 const COSINES: usize = 32;
-/// Columns by the square root of the roughness' α: by what glTF calls roughness.
+/// Number of columns, by the square root of α: glTF's roughness.
 const ROUGHNESSES: usize = 24;
-/// Micro-normals that are asked for one number: turns over half a circle (the other half is its mirror image), and radii.
+/// Number of microfacet normals per table entry: angles over half a circle (the other half is symmetric), and
+/// radii.
 const STEPS: [usize; 2] = [8, 24];
 
-/// What a rough mirror sends back.
+/// The directional albedo of a rough reflector, as a split sum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Split {
     /// The mean of 1 − s.
@@ -32,17 +33,17 @@ pub(super) struct Split {
     pub(super) grazing: f32,
 }
 
-/// The mean of 1 − s and of s for a smooth mirror.
+/// The means of 1 − s and of s for a smooth reflector.
 pub(super) const SMOOTH_MEAN: Split = Split { straight: 20.0 / 21.0, grazing: 1.0 / 21.0 };
 
 impl Split {
-    /// What comes back where everything is mirrored.
+    /// The albedo for a Fresnel term of 1.
     #[inline]
     pub(super) fn all(self) -> f32 {
         self.straight + self.grazing
     }
 
-    /// What comes back.
+    /// The albedo for a given F0 and F90.
     #[inline]
     pub(super) fn of(self, f0: f32, f90: f32) -> f32 {
         f0 * self.straight + f90 * self.grazing
@@ -70,7 +71,7 @@ static MIRRORS: LazyLock<Mirrors> = LazyLock::new(|| {
     Mirrors { albedo, mean }
 });
 
-/// Of fibres: apart, since it takes longest and few ask for it.
+/// The table of the sheen is separate, because it takes longest and few scenes need it.
 static SHEENS: LazyLock<Vec<f32>> =
     LazyLock::new(|| grid().map(|(cos, roughness)| sheen::integrated(cos, roughness)).collect());
 
@@ -83,13 +84,13 @@ fn fraction(index: usize, count: usize) -> f32 {
     index as f32 / (count - 1) as f32
 }
 
-/// The cosine of a row; the first is not 0, where nothing is seen.
+/// The cosine of a row; the first is not 0, where nothing is visible.
 fn cosine(row: usize) -> f32 {
     let x = fraction(row, COSINES);
     (x * x).max(1e-4)
 }
 
-/// Where a value in 0 … 1 lies among `count` columns: the one before, and how far toward the next.
+/// The position of a value in 0 … 1 among `count` columns: the column before, and the fraction toward the next.
 #[inline]
 fn place(value: f32, count: usize) -> (usize, f32) {
     let x = value.clamp(0.0, 1.0) * (count - 1) as f32;
@@ -97,7 +98,7 @@ fn place(value: f32, count: usize) -> (usize, f32) {
     (before, x - before as f32)
 }
 
-/// What a rough mirror of an α sends back, seen from a direction with that cosine.
+/// The directional albedo of a rough reflector with α, for an outgoing direction of the given cosine.
 #[inline]
 pub(super) fn mirror(cos: f32, alpha: f32) -> Split {
     if alpha == 0.0 {
@@ -111,7 +112,7 @@ pub(super) fn mirror(cos: f32, alpha: f32) -> Split {
     left.mixed(next, right)
 }
 
-/// The mean of [`mirror`] over all directions, weighed by their cosines.
+/// The cosine-weighted mean of [`mirror`] over all directions.
 #[inline]
 pub(super) fn mirror_mean(alpha: f32) -> Split {
     let (column, right) = place(alpha.sqrt(), ROUGHNESSES);
@@ -119,7 +120,7 @@ pub(super) fn mirror_mean(alpha: f32) -> Split {
     table[column].mixed(table[column + 1], right)
 }
 
-/// What white fibres of a roughness send back, seen from a direction with that cosine.
+/// The directional albedo of white sheen, for an outgoing direction of the given cosine.
 #[inline]
 pub(super) fn sheen(cos: f32, roughness: f32) -> f32 {
     let (row, down) = place(cos.sqrt(), COSINES);
@@ -129,7 +130,7 @@ pub(super) fn sheen(cos: f32, roughness: f32) -> f32 {
     mix(mix(table[0], table[1], down), mix(table[COSINES], table[COSINES + 1], down), right)
 }
 
-/// By micro-normals that the direction sees: each counts with the part of it that the mirrored direction sees, too.
+/// Integrates over visible normals: each is weighted by the shadowing of the reflected direction.
 fn integrated_mirror(cos: f32, alpha: f32) -> Split {
     let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
     if alpha == 0.0 {
@@ -140,12 +141,12 @@ fn integrated_mirror(cos: f32, alpha: f32) -> Split {
     let mut sum = Split::default();
     let w = Vec3::new(alpha * wo.x, 0.0, wo.z).normalize();
     for radius in 0..STEPS[1] {
-        // Closer together toward the horizon, where the distribution's long tail is.
+        // Denser toward the horizon, where the distribution has its long tail.
         let x = 1.0 - (radius as f32 + 0.5) / STEPS[1] as f32;
         let (depth, weight) = ((1.0 - x * x * x) * (1.0 + w.z), 3.0 * x * x);
         let sin = (depth * (2.0 - depth)).max(0.0).sqrt();
         for turn in 0..STEPS[0] {
-            // A visible normal, as TrowbridgeReitz::sample has it.
+            // A visible normal, as in TrowbridgeReitz::sample.
             let (s, c) = libm::sincosf(PI * (turn as f32 + 0.5) / STEPS[0] as f32);
             let h = Vec3::new(sin * c, sin * s, 1.0 - depth) + w;
             let wm = Vec3::new(alpha * h.x, alpha * h.y, h.z.max(1e-6)).normalize();
@@ -162,7 +163,7 @@ fn integrated_mirror(cos: f32, alpha: f32) -> Split {
     Split { straight: sum.straight / count, grazing: sum.grazing / count }
 }
 
-/// `2 ∫ E(μ) μ dμ` of what the table's rows are when they are read.
+/// `2 ∫ E(μ) μ dμ` of the table's rows with their interpolation.
 fn mean(rows: &[Split]) -> Split {
     const STEPS: usize = 8;
     let mut sum = Split::default();

@@ -1,10 +1,11 @@
 //! Thin-film iridescence (Belcour & Barla 2017).
 //!
-//! Light that goes back and forth in the film meets itself again, later by the film's optical path. The sum over all ways
-//! (Airy 1833) is a Fourier series in that path: Belcour & Barla 2017. For four wavelengths it is summed in closed form;
-//! in RGB mode its first terms are integrated against the eye's sensitivities, which Belcour & Barla fitted with
-//! Gaussians. As `KHR_materials_iridescence` has it, both boundaries are Schlick's, polarisation is ignored, and the base
-//! is a dielectric of the index that its reflectance means.
+//! Light that is reflected back and forth in the film interferes with itself, delayed by the film's optical path.
+//! The sum over all orders of reflection (Airy 1833) is a Fourier series in that path: Belcour & Barla 2017. For
+//! four wavelengths it is summed in closed form; in RGB mode its first terms are integrated against the observer's
+//! sensitivities, which Belcour & Barla fitted with Gaussians. As in `KHR_materials_iridescence`, both boundaries
+//! follow Schlick's approximation, polarisation is ignored, and the base is a dielectric of the index that
+//! corresponds to its reflectance.
 
 use std::f32::consts::{PI, TAU};
 
@@ -16,30 +17,30 @@ use crate::core::spectrum::Spectrum;
 pub struct Film {
     /// Index of refraction, at least 1.
     pub eta: f32,
-    /// In nm.
+    /// Thickness in nm.
     pub thickness: f32,
-    /// What the lanes are: wavelengths in nm, or red, green and blue.
+    /// The lanes' wavelengths in nm; `None` for red, green and blue.
     pub wavelengths: Option<[f32; 4]>,
 }
 
-/// What a boundary between indices mirrors straight on.
+/// Reflectance at normal incidence of a boundary between indices.
 fn straight(eta: f32, around: f32) -> f32 {
     let ratio = (eta - around) / (eta + around);
     ratio * ratio
 }
 
-/// The way of light through the film at an angle, and what the two boundaries mirror.
+/// The reflectances of the two boundaries for light in the film at an angle.
 struct Lane {
-    /// Of the upper boundary.
+    /// Reflectance of the upper boundary.
     upper: f32,
-    /// Of the lower boundary.
+    /// Reflectance of the lower boundary.
     lower: f32,
-    /// Phase that the boundaries add on each round.
+    /// Phase shift by the boundaries per round trip.
     phase: f32,
 }
 
 impl Lane {
-    /// The mean over all phases, and the first coefficient of the series and the ratio of those that follow.
+    /// The mean over all phases, the first coefficient of the series, and the ratio of those that follow.
     fn series(&self) -> (f32, f32, f32) {
         let through = 1.0 - self.upper;
         let both = (self.upper * self.lower).clamp(0.0, 0.9999);
@@ -49,9 +50,10 @@ impl Lane {
 }
 
 impl Film {
-    /// What is mirrored at a cosine, of a surface that mirrors `f0` straight on without the film.
+    /// The reflectance at a cosine, for a surface that has the reflectance `f0` at normal incidence
+    /// without the film.
     pub(super) fn fresnel(&self, cos: f32, f0: Spectrum) -> Spectrum {
-        // A film of no thickness is none: its index becomes that of air.
+        // A film of zero thickness vanishes: its index goes to that of air.
         let t = (self.thickness / 0.03).clamp(0.0, 1.0);
         let eta = 1.0 + (self.eta - 1.0) * t * t * (3.0 - 2.0 * t);
         let sin2 = (1.0 - cos * cos).max(0.0) / (eta * eta);
@@ -62,7 +64,8 @@ impl Film {
         let upper0 = straight(eta, 1.0);
         let upper = upper0 + (1.0 - upper0) * schlick(cos);
         let beyond = schlick(cos_inside);
-        // Half a turn for reflection off what is denser: once of the two here where the base is.
+        // A phase shift of π for reflection off the denser side: at one of the two boundaries here,
+        // for a denser base.
         let lane = |f0: f32| {
             let root = (f0 + 1e-4).clamp(0.0, 0.9999).sqrt();
             let base = (1.0 + root) / (1.0 - root);
@@ -81,7 +84,8 @@ impl Film {
     }
 }
 
-/// The whole series at one wavelength, for the path in wavelengths: `Σ r^m cos mδ = (r cos δ − r²) / (1 − 2 r cos δ + r²)`.
+/// The whole series at one wavelength, for the optical path in wavelengths:
+/// `Σ r^m cos mδ = (r cos δ − r²) / (1 − 2 r cos δ + r²)`.
 fn at_wavelength(lane: &Lane, turns: f32) -> f32 {
     let (mean, first, ratio) = lane.series();
     let cos = libm::cosf(TAU * (turns - turns.floor()) + lane.phase);
@@ -89,7 +93,7 @@ fn at_wavelength(lane: &Lane, turns: f32) -> f32 {
     (mean + 2.0 * first * sum).clamp(0.0, 1.0)
 }
 
-/// Two terms of the series, as the eye sees them.
+/// Two terms of the series, integrated against the observer's sensitivities.
 fn in_rgb(lanes: &[Lane; 3], path: f32) -> Spectrum {
     let series = [0, 1, 2].map(|k| lanes[k].series());
     let mut sum = [0, 1, 2].map(|k| series[k].0);
@@ -104,9 +108,9 @@ fn in_rgb(lanes: &[Lane; 3], path: f32) -> Spectrum {
     Spectrum::from_rgb(sum.map(|c| c.clamp(0.0, 1.0)))
 }
 
-/// The Fourier transform of the eye's sensitivities at an optical path in nm, in linear Rec. 709.
+/// The Fourier transform of the observer's sensitivities at an optical path in nm, in linear Rec. 709.
 fn sensitivity(path: f32, shift: [f32; 3]) -> [f32; 3] {
-    /// Gaussians over wave number: height, middle, variance; the last adds to x.
+    /// Gaussians over wave number: height, mean, variance; the last one adds to x.
     const FIT: [[f32; 3]; 4] = [
         [5.4856e-13, 1.6810e6, 4.3278e9],
         [4.4201e-13, 1.7953e6, 9.3046e9],

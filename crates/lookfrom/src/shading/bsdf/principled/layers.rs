@@ -12,16 +12,16 @@ use crate::shading::bsdf::conductor::half_vector;
 use crate::shading::bsdf::is_grazing;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 
-/// What the coat, of index 1.5, mirrors straight on.
+/// Reflectance of the coat, of index 1.5, at normal incidence.
 const COAT_F0: f32 = 0.04;
 
-/// Fibres over all.
+/// The sheen on top of all layers.
 pub(super) struct Fibres {
     pub(super) fibres: Sheen,
     pub(super) color: Spectrum,
     pub(super) greatest: f32,
     pub(super) roughness: f32,
-    /// What they take from light along `wo`.
+    /// Its albedo along `wo`, which attenuates the layers below.
     pub(super) taken: f32,
 }
 
@@ -60,11 +60,11 @@ pub(super) struct Coat {
     pub(super) amount: f32,
     pub(super) roughness: TrowbridgeReitz,
     pub(super) alpha: f32,
-    /// Axes, the last of them the normal.
+    /// The axes of the coat's frame; the last is its normal.
     pub(super) frame: [Vec3; 3],
-    /// In this frame.
+    /// ω_o in this frame.
     pub(super) wo: Vec3,
-    /// What it takes from light along `wo`.
+    /// Its albedo along `wo`, which attenuates the layers below.
     pub(super) taken: f32,
 }
 
@@ -88,12 +88,12 @@ impl Coat {
         Vec3::from_array(self.frame.map(|axis| w.dot(axis)))
     }
 
-    /// What it takes from light whose cosine to its normal is this: nothing, from behind.
+    /// Its albedo for light of the given cosine to its normal; 0 from behind.
     pub(super) fn taken(&self, cos: f32) -> f32 {
         if cos > 0.0 { self.amount * albedo::mirror(cos.min(1.0), self.alpha).of(COAT_F0, 1.0) } else { 0.0 }
     }
 
-    /// `wi` in its frame and the facet between, where both are above it.
+    /// `wi` in its frame and the half vector, where both directions are above it.
     pub(super) fn facet(&self, wi: Vec3) -> Option<(Vec3, Vec3)> {
         let wi = self.local(wi);
         if self.alpha == 0.0 || self.wo.z <= 0.0 || wi.z <= 0.0 || is_grazing(self.wo) || is_grazing(wi) {
@@ -102,7 +102,7 @@ impl Coat {
         Some((wi, half_vector(self.wo, wi)?))
     }
 
-    /// Per cosine to the normal of the surface below.
+    /// Its BSDF per cosine to the normal of the surface below.
     pub(super) fn f(&self, wi: Vec3) -> f32 {
         let Some((local, wm)) = self.facet(wi) else { return 0.0 };
         let fresnel = COAT_F0 + (1.0 - COAT_F0) * schlick(self.wo.dot(wm));
@@ -114,7 +114,7 @@ impl Coat {
         self.facet(wi).map_or(0.0, |(_, wm)| 0.25 * self.roughness.visible_per_cosine(self.wo, wm))
     }
 
-    /// A direction above it and above the surface.
+    /// Samples a direction above the coat and above the surface.
     pub(super) fn sample(&self, u: [f32; 2]) -> Option<Vec3> {
         if self.wo.z <= 0.0 || is_grazing(self.wo) {
             return None;

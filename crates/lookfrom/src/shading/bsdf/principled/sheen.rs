@@ -1,8 +1,8 @@
-//! Sheen: Charlie's distribution of fibres (Estevez & Kulla 2017).
+//! Sheen: the Charlie distribution (Estevez & Kulla 2017).
 //!
-//! Charlie's distribution of micro-normals and its masking (Estevez & Kulla 2017), as `KHR_materials_sheen` has them:
-//! `f = D / (4 cos θ_o cos θ_i (1 + Λ_o + Λ_i))`, times a colour. Directions are chosen uniformly over the hemisphere: the
-//! lobe is broad, and where it is not, it rises along the horizon, where a uniform density does best.
+//! The distribution of microfacet normals and its masking are those of `KHR_materials_sheen`:
+//! `f = D / (4 cos θ_o cos θ_i (1 + Λ_o + Λ_i))`, times a colour. Directions are sampled uniformly over the hemisphere:
+//! the lobe is broad, and where it is not, it rises toward the horizon, where a uniform density does best.
 
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -10,13 +10,13 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use crate::core::math;
 use crate::shading::bsdf::conductor::half_vector;
 
-/// Below this, fibres would be seen along the horizon only, and brighter than anything.
+/// Smallest roughness: below it, fibres would be visible at the horizon only, and excessively bright there.
 const SMOOTHEST: f32 = 0.07;
 
-/// Density over solid angle of the directions that are chosen.
+/// Density over solid angle of the sampled directions.
 pub(super) const PDF: f32 = 0.5 * FRAC_1_PI;
 
-/// Fibres of a roughness.
+/// Sheen of a given roughness.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sheen {
     alpha: f32,
@@ -40,7 +40,7 @@ impl Sheen {
         a / (1.0 + b * math::power(cos, c)) + d * cos + e
     }
 
-    /// Hidden over visible parts, for a cosine in 0 … 1.
+    /// Λ: masked over visible parts, for a cosine in 0 … 1.
     fn lambda(&self, cos: f32) -> f32 {
         let exponent = if cos < 0.5 {
             self.log_lambda(cos)
@@ -60,14 +60,14 @@ impl Sheen {
     }
 }
 
-/// What white fibres send back of all, seen from a direction with that cosine.
+/// The directional albedo of white sheen, for an outgoing direction of the given cosine.
 pub(super) fn integrated(cos: f32, roughness: f32) -> f32 {
     const STEPS: [usize; 2] = [10, 24];
     let sheen = Sheen::new(roughness);
     let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
     let mut sum = 0.0;
     for row in 0..STEPS[1] {
-        // Closer together along the horizon, where the lobe rises.
+        // Denser toward the horizon, where the lobe rises.
         let x = (row as f32 + 0.5) / STEPS[1] as f32;
         let z = x * x;
         let sin = (1.0 - z * z).sqrt();

@@ -7,43 +7,44 @@ use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::fresnel;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 
-/// The cosine at which a film stands for its mean.
+/// The cosine at which the film's reflectance stands for its mean.
 pub(super) const MEAN_COSINE: f32 = 0.7;
 
-/// What lies under coat and sheen.
+/// The base under coat and sheen.
 pub(super) struct Surface {
     pub(super) base: Spectrum,
     pub(super) f0: Spectrum,
     pub(super) f0_greatest: f32,
     pub(super) f90: f32,
     pub(super) metal: f32,
-    /// Of the whole surface: a matte body, and one that lets pass.
+    /// Weights of the diffuse and the transmissive body in the whole surface.
     pub(super) matte: f32,
     pub(super) glass: f32,
-    /// Of the matte body.
+    /// Diffuse transmission of the diffuse body.
     pub(super) leaf: f32,
     pub(super) leaf_color: Spectrum,
     pub(super) roughness: TrowbridgeReitz,
-    /// Of an isotropic mirror that sends back as much.
+    /// α of the isotropic reflector with the same albedo.
     pub(super) alpha: f32,
-    /// Inside over outside.
+    /// Index of refraction, inside over outside.
     pub(super) eta: f32,
     pub(super) is_solid: bool,
     pub(super) film: Option<(f32, Film)>,
-    /// What the film makes of the dielectric's mirror about everywhere.
+    /// The dielectric's mean reflectance with the film.
     pub(super) filmed: Spectrum,
-    /// The mirror's mean albedo, and what it leaves of light from everywhere.
+    /// The mean albedo of the specular layer, and the mean fraction that it leaves for the body below.
     pub(super) mean: Split,
     pub(super) mean_left: Spectrum,
 }
 
-/// What a facet mirrors and lets pass.
+/// Reflected and transmitted light of a facet.
 pub(super) struct Facet {
     pub(super) mirrored: Spectrum,
     pub(super) passed: Spectrum,
 }
 
-/// The part that leaves a rough mirror after more than one bounce, by Fresnel's mean and the mean albedo of one bounce.
+/// The energy of multiple scattering between facets, by the mean Fresnel reflectance and the mean albedo of one
+/// bounce.
 pub(super) fn multiple(fresnel: f32, mean: f32) -> f32 {
     fresnel * fresnel * mean / (1.0 - fresnel * (1.0 - mean))
 }
@@ -85,7 +86,8 @@ impl Surface {
         surface
     }
 
-    /// With the film over it, what mirrors `f0` straight on.
+    /// The reflectance with the film, for the reflectance `f0` at normal incidence and `plain`
+    /// without the film.
     #[inline]
     pub(super) fn under_film(&self, cos: f32, f0: Spectrum, plain: Spectrum) -> Spectrum {
         match &self.film {
@@ -94,21 +96,21 @@ impl Surface {
         }
     }
 
-    /// What the metal mirrors.
+    /// Reflectance of the metal.
     #[inline]
     pub(super) fn metal(&self, cos: f32) -> Spectrum {
         let s = schlick(cos);
         self.under_film(cos, self.base, self.base.map(|f0| f0 + (1.0 - f0) * s))
     }
 
-    /// What mirrors over the matte body.
+    /// Reflectance of the specular layer over the diffuse body.
     #[inline]
     pub(super) fn lacquer(&self, cos: f32) -> Spectrum {
         let s = schlick(cos);
         self.under_film(cos, self.f0, self.f0.map(|f0| f0 + (self.f90 - f0) * s))
     }
 
-    /// What the lacquer's albedo leaves for the body below.
+    /// The fraction of the light that this layer's albedo leaves for the body below.
     pub(super) fn left(&self, cos: f32, split: Split) -> Spectrum {
         let hidden = 1.0 - split.all();
         let mean = self.mean.all();
@@ -129,10 +131,10 @@ impl Surface {
         }
     }
 
-    /// What the glass does at a cosine to a facet, on the side of `wo`.
+    /// Reflection and transmission of the glass at a cosine to a facet, on the side of `wo`.
     pub(super) fn pane(&self, cos: f32, is_inside: bool) -> Facet {
-        // Between two sides what counts is the angle on that of the lower index: outside, but for what is lighter than what
-        // is around it.
+        // Of the two angles, the one on the side of the lower index counts: outside, unless the body's index is
+        // lower than that of its surroundings.
         let bends = self.is_solid && self.bends();
         let eta = if bends && self.eta < 1.0 { 1.0 / self.eta } else { self.eta };
         let cos = if bends && is_inside == (self.eta > 1.0) {
@@ -144,7 +146,7 @@ impl Surface {
         } else {
             cos
         };
-        // Fresnel's curve from 0 to 1.
+        // Fresnel's curve rescaled to 0 … 1.
         let s = if eta == 0.0 {
             schlick(cos)
         } else {
@@ -166,25 +168,25 @@ impl Surface {
         }
     }
 
-    /// Whether the index of a body changes directions.
+    /// True if the body refracts.
     #[inline]
     pub(super) fn bends(&self) -> bool {
         self.eta != 1.0 && self.eta != 0.0
     }
 
-    /// Whether what passes has one direction only.
+    /// True if transmission is specular.
     #[inline]
     pub(super) fn passes_sharply(&self) -> bool {
         self.alpha == 0.0 || (self.is_solid && !self.bends())
     }
 
-    /// Whether its glass is a body whose facets bend light, each in a direction of its own.
+    /// True if it is a rough refractive body, where each facet refracts into a direction of its own.
     #[inline]
     pub(super) fn is_rough_body(&self) -> bool {
         self.alpha > 0.0 && self.glass > 0.0 && self.is_solid && self.bends()
     }
 
-    /// What the metal and the mirror over the matte body do at a cosine, with their weights.
+    /// Weighted reflectance of the metal and of the specular layer over the diffuse body at a cosine.
     pub(super) fn opaque(&self, cos: f32) -> Spectrum {
         let mut mirrored = Spectrum::BLACK;
         if self.metal > 0.0 {
@@ -196,7 +198,7 @@ impl Surface {
         mirrored
     }
 
-    /// What a facet does at a cosine, each part with its weight and tint.
+    /// Reflection and transmission of a facet at a cosine, each with its weights and tint.
     pub(super) fn facet(&self, cos: f32, is_inside: bool) -> Facet {
         let mut mirrored = self.opaque(cos);
         let mut passed = Spectrum::BLACK;

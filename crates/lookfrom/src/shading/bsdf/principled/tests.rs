@@ -17,7 +17,7 @@ fn of(parameters: Parameters) -> Bsdf {
     Bsdf::Principled(Principled::new(&parameters))
 }
 
-/// What is tested for its density: every lobe alone as far as that goes, and mixtures.
+/// BSDFs for the tests of densities: every lobe alone as far as possible, and mixtures.
 pub(in crate::shading::bsdf) fn subjects() -> Vec<(&'static str, Bsdf)> {
     let base = Parameters { base_color: Spectrum([0.8, 0.5, 0.2, 0.3]), ..Parameters::default() };
     let glass = Parameters { transmission: 1.0, roughness: rough(0.3), ..base };
@@ -72,12 +72,12 @@ pub(in crate::shading::bsdf) fn subjects() -> Vec<(&'static str, Bsdf)> {
     ]
 }
 
-/// The mean weight of what is sampled, with its standard error: the albedo.
+/// The albedo: the mean weight of the samples, with its standard error.
 fn albedo(bsdf: &Bsdf, wo: Vec3, lane: usize) -> (f64, f64) {
     const N: u64 = 20_000;
     let (mut sum, mut squares) = (0.0, 0.0);
     for index in 0..N {
-        // Stratified in the choice of lobe.
+        // Stratified over the choice of lobe.
         let (uc, u) = numbers(29, index);
         let uc = (index as f32 + uc) / N as f32;
         if let Some(s) = bsdf.sample(wo, uc, u, Mode::Importance, Lobes::ALL) {
@@ -141,7 +141,7 @@ fn bodies_of_white_glass_keep_all_light() {
                 let bsdf = of(parameters);
                 for angle in ANGLES.into_iter().flat_map(|angle| [angle, 180.0 - angle]) {
                     for index in 0..100 {
-                        // Not in the mean only: whatever is chosen.
+                        // Not only in the mean: for every sample.
                         let (uc, u) = numbers(37, index);
                         let sample = bsdf.sample(direction(angle, 20.0), uc, u, Mode::Importance, Lobes::ALL);
                         let weight = sample.map_or(0.0, |s| s.f.0[0] * s.wi.z.abs() / s.pdf);
@@ -194,7 +194,8 @@ fn nothing_gives_more_than_it_gets() {
             let bsdf = of(parameters);
             for angle in [0.0, 60.0, 83.0, 120.0] {
                 let (mean, error) = albedo(&bsdf, direction(angle, 70.0), 1);
-                // The albedo of a film over rough facets is one facet's; that of drawn-out ones, that of even ones.
+                // The albedo of a film over rough facets is taken from one facet, that of anisotropic facets from
+                // isotropic ones.
                 let guess = if is_drawn_out || parameters.iridescence > 0.0 { 0.02 } else { 0.005 };
                 if !(mean < 1.0 + guess + 4.0 * error) {
                     faults.push(format!("{trial} {angle}°: {mean:.4} ± {error:.4}: {parameters:?}"));
@@ -224,7 +225,7 @@ fn limits_are_what_is_there_already() {
                 let mode = Mode::Radiance;
                 let [ours, theirs] = [&glass, &pbrt].map(|bsdf| bsdf.sample(wo, uc, u, mode, Lobes::ALL));
                 let (Some(ours), Some(theirs)) = (ours, theirs) else {
-                    // From inside, a rough one takes its micro-normals in another order.
+                    // From inside, a rough one maps random numbers to facet normals in another order.
                     assert!(
                         alpha > 0.0 || ours.is_some() == theirs.is_some(),
                         "{angle}: {ours:?} {theirs:?}"
@@ -232,13 +233,13 @@ fn limits_are_what_is_there_already() {
                     continue;
                 };
                 if ours.lobe != theirs.lobe {
-                    // On the edge between the sides.
+                    // On the boundary between the two sides.
                     assert!((uc - theirs.pdf).abs() < 1e-3 || alpha > 0.0);
                     continue;
                 }
                 assert!(close(ours.eta, theirs.eta, 1e-5));
                 if !ours.lobe.is_specular() {
-                    // But for the light that pbrt's facets hide, and what they send to the wrong side.
+                    // Except for the light that pbrt's facets mask, and what they send to the wrong side.
                     let seen = rough(alpha).g(wo, theirs.wi) / rough(alpha).g1(wo);
                     let [f, pbrts] = [&glass, &pbrt].map(|bsdf| bsdf.f(wo, theirs.wi, mode).0[0]);
                     assert!(f * seen > 0.998 * pbrts, "{angle}: {f} {pbrts}");
@@ -256,7 +257,8 @@ fn limits_are_what_is_there_already() {
         }
     }
     assert!(near.1 > 400 && near.0 * 10 > near.1 * 9, "{near:?}");
-    // A metal of Schlick's is near one of the same reflectance, up to what its curve is.
+    // A metal with Schlick's approximation is close to one of the same reflectance, within the
+    // approximation's error.
     let reflectance = Spectrum([0.9, 0.6, 0.3, 0.5]);
     let metal = of(Parameters {
         metallic: 1.0,
@@ -275,7 +277,7 @@ fn limits_are_what_is_there_already() {
         let [ours, theirs] = [&metal, &pbrt].map(|bsdf| bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL));
         assert!(close(ours, theirs, 0.02), "{ours} {theirs}");
     }
-    // A matte body whose mirror mirrors nothing is Lambert's.
+    // A diffuse body without specular reflection is Lambertian.
     let matte = of(Parameters {
         base_color: reflectance,
         f0: Spectrum::BLACK,
@@ -298,7 +300,8 @@ fn a_film_is_airys_sum_and_the_eye_sees_its_integral() {
     for (eta, f0) in [(1.3_f32, 0.04_f32), (1.8, 0.04), (1.33, 0.6), (2.2, 0.9)] {
         for thickness in [0.0, 150.0, 420.0, 900.0] {
             for cos in [1.0, 0.7, 0.3_f32] {
-                // Ray by ray: the first, and all that come out after more rounds, as complex amplitudes.
+                // Ray by ray: the first reflection, and all that leave after more round trips, as
+                // complex amplitudes.
                 let airy = |nm: f64| {
                     let eta = if thickness > 0.0 { f64::from(eta) } else { 1.0 };
                     let schlick = |f0: f64, cos: f64| f0 + (1.0 - f0) * (1.0 - cos).powi(5);
@@ -308,7 +311,7 @@ fn a_film_is_airys_sum_and_the_eye_sees_its_integral() {
                     let root = (f64::from(f0) + 1e-4).sqrt();
                     let base = (1.0 + root) / (1.0 - root);
                     let upper = schlick(straight(eta, 1.0), cos).sqrt();
-                    // Amplitudes: minus where the boundary is to what is denser.
+                    // Amplitudes: negative at a boundary to a denser side.
                     let below =
                         schlick(straight(base, eta), inside).sqrt() * if base < eta { 1.0 } else { -1.0 };
                     let phase = std::f64::consts::TAU * 2.0 * eta * f64::from(thickness) * inside / nm;
@@ -331,7 +334,7 @@ fn a_film_is_airys_sum_and_the_eye_sees_its_integral() {
                         "{eta} {f0} {thickness} {cos} {nm}: {got} {expected}"
                     );
                 }
-                // In RGB mode: the integral, of an equal-energy light made white.
+                // In RGB mode: the integral, of an equal-energy illuminant white-balanced.
                 let seen = Film { wavelengths: None, ..film }.fresnel(cos, grey(f0)).rgb();
                 let expected = DenselySampledSpectrum::from_samples(std::array::from_fn(|k| {
                     airy(360.0 + k as f64) as f32
@@ -358,7 +361,7 @@ fn tables_agree_with_finer_integration() {
         let roughness = 0.1 + 0.9 * number(32, trial);
         let alpha = roughness * roughness;
         let fibres = sheen::Sheen::new(roughness);
-        // By uniform directions, many of them.
+        // By many uniform directions.
         const N: usize = 250;
         let mut sums = [0.0_f64; 2];
         for k in 0..N * N {
@@ -393,7 +396,7 @@ fn it_is_small_and_keeps_what_it_is_made_of() {
     assert!((kept.f0.0[0] - fresnel::dielectric(1.0, 1.5)).abs() < 1e-5);
     let film = Film { eta: 1.3, thickness: 400.0, wavelengths: Some([400.0, 500.5, 600.0, 780.25]) };
     assert_eq!(Principled::new(&Parameters { film, ..Parameters::default() }).parameters().film, film);
-    // Nonsense is no trap.
+    // Invalid parameters do no harm.
     let nonsense =
         Parameters { metallic: f32::NAN, eta: f32::NAN, base_color: grey(f32::NAN), ..Parameters::default() };
     let kept = Principled::new(&nonsense).parameters();

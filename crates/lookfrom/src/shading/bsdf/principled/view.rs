@@ -1,6 +1,6 @@
-//! A principled BSDF for one outgoing direction: its lobes, and the choice between them.
+//! A principled BSDF for one outgoing direction: its lobes and their probabilities.
 //!
-//! The surface is mirrored where it is seen from below, so that here `wo.z > 0` always and `wi.z < 0` is what passes.
+//! A surface seen from below is mirrored, so that here `wo.z > 0` always and `wi.z < 0` is transmission.
 
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
@@ -18,34 +18,34 @@ use crate::shading::bsdf::dielectric::{radiance_scale, refraction_jacobian};
 use crate::shading::bsdf::diffuse::cosine_direction;
 use crate::shading::bsdf::{BsdfSample, Lobes, Mode, is_grazing};
 
-/// A surface, unpacked, and what is known once `wo` is.
+/// A surface, unpacked, with the terms that depend on `wo` alone.
 pub(super) struct View {
     wo: Vec3,
     is_inside: bool,
     surface: Surface,
-    /// The mirror's albedo along `wo`.
+    /// The specular albedo along `wo`.
     mirror: Split,
-    /// What it leaves of light along `wo`.
+    /// The fraction of light along `wo` that the specular layer leaves for the body below.
     left: Spectrum,
-    /// How many roads there are from the mirror's facets back to its facets.
+    /// Reflected multiple scattering between facets, over the energy that they mask.
     again: Spectrum,
     sheen: Option<Fibres>,
     coat: Option<Coat>,
 }
 
-/// A facet that sends `wo` to some direction.
+/// A facet that scatters `wo` to some direction.
 #[derive(Clone, Copy)]
 struct Facing {
     /// Its normal.
     wm: Vec3,
     /// The cosine of `wo` to it.
     cos: f32,
-    /// How dense it makes that direction, over solid angle, where facets are chosen as `wo` sees them.
+    /// Density of that direction over solid angle when facets are sampled by visible normals.
     density: f32,
 }
 
-/// All facets that send `wo` to a direction. On a rough body there are two: what the second sends goes to the wrong side, and
-/// leaves as if mirrored at the surface.
+/// All facets that scatter `wo` to a direction. A rough body has two: the second one sends light to the wrong side,
+/// which then leaves mirrored at the surface.
 type Facings = [Option<Facing>; 2];
 
 /// The direction mirrored at the surface.
@@ -57,7 +57,7 @@ fn across(w: Vec3) -> Vec3 {
 pub(super) struct Choice {
     coat: f32,
     sheen: f32,
-    /// Mirrored or let through by a facet.
+    /// Reflection or transmission by a facet.
     facet: f32,
     matte: f32,
     matte_through: f32,
@@ -84,7 +84,7 @@ impl View {
         view
     }
 
-    /// What more than one bounce between facets sends back, over the light that they hide.
+    /// Reflected multiple scattering between facets, over the energy that they mask.
     fn again(&self) -> Spectrum {
         let surface = &self.surface;
         let mut sum = Spectrum::BLACK;
@@ -92,7 +92,7 @@ impl View {
             return sum;
         }
         let mean = surface.mean.all();
-        // Schlick's mean over the hemisphere is F0 + (F90 − F0) / 21; a film's is about what it is at 45°.
+        // Schlick's mean over the hemisphere is F0 + (F90 − F0) / 21; a film's is about its value at 45°.
         let of = |f0: Spectrum, f90: f32| {
             let plain = f0.map(|f0| f0 + (f90 - f0) / 21.0);
             surface.under_film(MEAN_COSINE, f0, plain).map(|fresnel| multiple(fresnel, mean))
@@ -109,7 +109,7 @@ impl View {
         sum
     }
 
-    /// What goes through a thin sheet after more than one bounce, likewise.
+    /// Multiple scattering through a thin sheet, likewise.
     fn again_through(&self) -> Spectrum {
         let surface = &self.surface;
         if surface.alpha == 0.0 || surface.glass == 0.0 || surface.is_solid {
@@ -118,7 +118,7 @@ impl View {
         surface.pane(MEAN_COSINE, false).passed * surface.base * surface.glass
     }
 
-    /// π f of all that is sent to this side or through about evenly, where the other direction has this cosine.
+    /// π f of the nearly uniform lobes on a side, where the other direction has this cosine.
     fn matte(&self, cos: f32, through: bool) -> Spectrum {
         let surface = &self.surface;
         let mirror = albedo::mirror(cos, surface.alpha);
@@ -136,7 +136,7 @@ impl View {
         sum
     }
 
-    /// The albedo of the matte body on a side.
+    /// The albedo of the diffuse body on a side.
     fn body(&self, through: bool) -> Spectrum {
         let surface = &self.surface;
         match through {
@@ -151,12 +151,12 @@ impl View {
         again * (1.0 - self.mirror.all()) + self.left * self.body(through)
     }
 
-    /// What coat and sheen leave for the surface.
+    /// The fractions that coat and sheen leave for the surface.
     fn below(&self, wi: Vec3) -> (f32, f32) {
         let coat = self.coat.as_ref().map_or(1.0, |coat| {
             let up = Vec3::new(wi.x, wi.y, wi.z.abs());
             let of_wi = || coat.taken(coat.local(up).z);
-            // What passes meets the coat once, outside.
+            // Transmitted light passes the coat once, outside.
             1.0 - match (wi.z < 0.0, self.is_inside) {
                 (false, _) => coat.taken.max(of_wi()),
                 (true, false) => coat.taken,
@@ -167,7 +167,7 @@ impl View {
         (coat, sheen)
     }
 
-    /// The index beyond the surface over the one before it.
+    /// The index beyond the surface over the one on the side of `wo`.
     fn relative_eta(&self) -> f32 {
         let surface = &self.surface;
         match (surface.is_solid && surface.bends(), self.is_inside) {
@@ -177,7 +177,7 @@ impl View {
         }
     }
 
-    /// The facet that mirrors `wo` to `wi`, or bends it there (`through`). `None` where there is none.
+    /// The facet that reflects `wo` to `wi`, or refracts it there (`through`). `None` where there is none.
     fn facet(&self, wi: Vec3, through: bool) -> Option<Facing> {
         let surface = &self.surface;
         let (wo, roughness) = (self.wo, surface.roughness);
@@ -185,7 +185,7 @@ impl View {
             return None;
         }
         if !through || !surface.is_solid {
-            // A thin sheet sends through what a mirror would send back.
+            // A thin sheet transmits what a reflector would reflect, to the other side.
             let wi = if through { across(wi) } else { wi };
             let wm = half_vector(wo, wi)?;
             let density = 0.25 * roughness.visible_per_cosine(wo, wm);
@@ -214,7 +214,7 @@ impl View {
         self.f_by(wi, mode, &self.facets(wi))
     }
 
-    /// [`Self::f`] and, where it is not black, [`Self::pdf`]: both ask the same facets.
+    /// [`Self::f`] and, where it is not black, [`Self::pdf`]: both use the same facets.
     pub(super) fn f_and_pdf(
         &self,
         wi: Vec3,
@@ -251,7 +251,7 @@ impl View {
         f
     }
 
-    /// What facets mirror and let pass.
+    /// Reflection and transmission by facets.
     fn facets_f(&self, wi: Vec3, mode: Mode, facets: &Facings) -> Spectrum {
         let surface = &self.surface;
         let through = wi.z < 0.0;
@@ -260,7 +260,7 @@ impl View {
         if !(is_rough_body && through)
             && let [Some(Facing { wm, cos, .. }), _] = *facets
         {
-            // The part of this light that other facets do not hide.
+            // With masking-shadowing by other facets.
             let (wo, wi) = (self.wo, Vec3::new(wi.x, wi.y, wi.z.abs()));
             let value = surface.roughness.d(wm) * surface.roughness.g(wo, wi) / (4.0 * wo.z * wi.z);
             sum += match (is_rough_body, through) {
@@ -270,7 +270,7 @@ impl View {
             } * value;
         }
         if is_rough_body {
-            // All of it.
+            // Without shadowing: all of the light leaves.
             let eta = if through { self.relative_eta() } else { 1.0 };
             for Facing { cos, density, .. } in facets.iter().flatten() {
                 let pane = surface.pane(*cos, self.is_inside);
@@ -281,7 +281,7 @@ impl View {
         sum
     }
 
-    /// The probabilities of the lobes among the sides that are allowed; `None` where nothing is left.
+    /// The probabilities of the lobes among the sides that are allowed; `None` where none is left.
     pub(super) fn choice(&self, lobes: Lobes) -> Option<Choice> {
         let surface = &self.surface;
         let coat = self.coat.as_ref().map_or(0.0, |coat| coat.taken);
@@ -313,13 +313,14 @@ impl View {
         })
     }
 
-    /// The probability that a facet mirrors, of what it may do.
+    /// The probability that a facet reflects rather than transmits.
     fn mirrors(&self, facet: &Facet, lobes: Lobes) -> Option<f32> {
         let [r, t] = lobes.allowed([facet.mirrored.max_lane(), facet.passed.max_lane()]);
         (r + t > 0.0).then(|| r / (r + t))
     }
 
-    /// The probability that a facet at a cosine mirrors: by what it does, unless what passes knows no facets.
+    /// The probability that a facet at a cosine reflects: by its reflectance there, unless transmission is
+    /// specular.
     fn mirrors_at(&self, cos: f32, lobes: Lobes) -> Option<f32> {
         let surface = &self.surface;
         if surface.glass == 0.0 {
@@ -329,7 +330,7 @@ impl View {
         self.mirrors(&surface.facet(cos, self.is_inside), lobes)
     }
 
-    /// Density of all lobes that are spread.
+    /// Density of all non-specular lobes.
     pub(super) fn pdf(&self, wi: Vec3, choice: &Choice, lobes: Lobes) -> f32 {
         self.pdf_by(wi, choice, lobes, &self.facets(wi))
     }
@@ -364,7 +365,7 @@ impl View {
         lobes: Lobes,
     ) -> Option<BsdfSample> {
         let (wo, surface) = (self.wo, &self.surface);
-        // What is left of uc chooses on.
+        // The remainder of `uc` is reused for the next choice.
         let mut rest = uc;
         let mut chosen = |probability: f32| {
             let is_chosen = rest < probability;
@@ -408,7 +409,7 @@ impl View {
         Some(BsdfSample { eta, ..BsdfSample::new(wi, f, pdf, lobe) })
     }
 
-    /// Where a facet sends `wo`, if to the side that is meant.
+    /// The direction into which a facet scatters `wo`, if it is on the intended side.
     fn off_facet(&self, wm: Vec3, reflects: bool) -> Option<Vec3> {
         let (wo, surface) = (self.wo, &self.surface);
         let wi = if reflects {
@@ -420,12 +421,12 @@ impl View {
         } else {
             across(math::reflect(wo, wm))
         };
-        let passes_alpha_test = (wi.z > 0.0) == reflects;
-        let wi = if !passes_alpha_test && surface.is_rough_body() { across(wi) } else { wi };
+        let is_on_side = (wi.z > 0.0) == reflects;
+        let wi = if !is_on_side && surface.is_rough_body() { across(wi) } else { wi };
         (!is_grazing(wi) && (wi.z > 0.0) == reflects).then_some(wi)
     }
 
-    /// What a smooth surface sends to `wi`.
+    /// Specular reflection or transmission to `wi`.
     fn sharp(&self, wi: Vec3, probability: f32, mode: Mode) -> Option<BsdfSample> {
         let facet = self.surface.facet(self.wo.z.min(1.0), self.is_inside);
         let (coat, sheen) = self.below(wi);

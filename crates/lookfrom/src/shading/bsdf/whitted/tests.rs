@@ -1,4 +1,4 @@
-//! Tests of Whitted's BSDF against the tree of rays. (Its density is tested with all others.)
+//! Tests of Whitted's BSDF against Whitted ray tracing. (Its density is tested with all others.)
 
 use super::*;
 use crate::shading::bsdf::tests::{direction, number, numbers, uniform_direction};
@@ -48,7 +48,7 @@ fn branches_as_the_tree_of_rays_does() {
         let wo = uniform_direction([number(1, trial), number(2, trial)]);
         let n = Vec3::new(0.0, 0.0, wo.z.signum());
         let branches = coefficients.branches(n, wo, wo.z > 0.0);
-        // Ask for one way at a time; a specular lobe's expectation is f cos.
+        // Restrict the sampling to one side at a time; a specular lobe's expectation is f cos.
         for side in [Lobes::REFLECTION, Lobes::TRANSMISSION] {
             let expected = match (&branches, side) {
                 (None, _) => None,
@@ -58,7 +58,7 @@ fn branches_as_the_tree_of_rays_does() {
             let got = bsdf
                 .sample(wo, 1.0 - f32::EPSILON, [0.5; 2], Mode::Radiance, side)
                 .filter(|sample| sample.lobe.is_specular());
-            // The last number below one finds no lobe of less probability than its distance.
+            // The largest number below one misses lobes whose probability is less than its distance to one.
             if expected.is_none_or(|(_, weight)| weight.max_lane() > 1e-3) {
                 assert_eq!(
                     got.is_some(),

@@ -53,7 +53,8 @@ fn mirrored_directions_stay_outside() {
             assert_eq!(got, n);
             kept += 1;
         } else if wo.dot(surface.ng_facing()) > 0.05 {
-            // It is turned no further than needed: a little on toward n the mirrored direction is too low.
+            // It is turned no further than needed: with a small step toward n, the reflected direction is
+            // too low.
             let toward = (got + 0.01 * n * if n.dot(ng) > 0.0 { 1.0 } else { 0.0 }).normalize();
             assert!(n.dot(ng) <= 0.0 || height(toward) < least + 1e-3, "{wo} {ng} {n}: {got}");
         }
