@@ -28,7 +28,8 @@ trait Question: PacketCollector {
 
     fn answer(&self) -> Self::Answer;
 
-    /// Traces rays as a packet; returns false without doing anything where they cannot form one.
+    /// Traces rays as a packet; returns false where they cannot form one, or it does not pay. The answers mean nothing
+    /// then.
     fn trace_packet<'a, S: Simd, V: Visibility<'a>>(
         simd: S,
         settings: &Settings<'a>,

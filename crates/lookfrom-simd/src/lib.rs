@@ -4,6 +4,7 @@
 mod dispatch;
 mod lane_mask;
 mod level;
+mod real;
 
 pub use dispatch::{Kernel, dispatch};
 pub use fearless_simd::{
@@ -11,3 +12,4 @@ pub use fearless_simd::{
 };
 pub use lane_mask::LaneMask;
 pub use level::level;
+pub use real::{Bits, Float, Mask, Real};

@@ -5,16 +5,27 @@
 //!
 //! Steele, Lea & Flood 2014 (SplitMix), with the multipliers of Stafford's variant 13.
 
+use lookfrom_simd::Bits;
+
 /// 2⁶⁴ divided by the golden ratio, made odd: its multiples are spread evenly over the 64-bit numbers.
 pub(crate) const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// A bijection of the 64-bit numbers in which each bit of the input flips each bit of the output about half the
 /// time. Zero maps to zero.
-#[inline]
-pub(crate) fn mix(mut bits: u64) -> u64 {
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+#[inline(always)]
+pub(crate) fn mix<B: Bits<Scalar = u64>>(bits: B) -> B {
+    let bits = (bits ^ (bits >> 30)).wrapping_mul(bits.like(0xbf58_476d_1ce4_e5b9));
+    let bits = (bits ^ (bits >> 27)).wrapping_mul(bits.like(0x94d0_49bb_1331_11eb));
     bits ^ (bits >> 31)
+}
+
+/// A bijection of the 32-bit numbers, of any width, that is good enough for random walks (Wellons 2018, "lowbias32").
+/// Zero stays zero.
+#[inline(always)]
+pub(crate) fn mix32<B: Bits<Scalar = u32>>(bits: B) -> B {
+    let bits = (bits ^ (bits >> 16)).wrapping_mul(bits.like(0x7feb_352d));
+    let bits = (bits ^ (bits >> 15)).wrapping_mul(bits.like(0x846c_a68b));
+    bits ^ (bits >> 16)
 }
 
 /// A 64-bit hash of two numbers, which depends on their order.
@@ -59,7 +70,7 @@ mod tests {
 
     #[test]
     fn bits_are_pinned() {
-        assert_eq!(mix(0), 0);
+        assert_eq!(mix(0_u64), 0);
         assert_eq!(mix(GOLDEN), 0xe220_a839_7b1d_cdaf);
         assert_eq!(mix(GOLDEN.wrapping_mul(2)), 0x6e78_9e6a_a1b9_65f4);
     }

@@ -3,38 +3,17 @@
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_bvh::Affine;
 
-/// The reflection of `wo` about the unit normal `n`: both directions point away from the surface,
-/// `2 (n·wo) n − wo`.
+use crate::core::optics;
+
+/// [`optics::reflect`] of one direction.
 pub fn reflect(wo: Vec3, n: Vec3) -> Vec3 {
-    2.0 * n.dot(wo) * n - wo
+    optics::reflect(wo.into(), n.into()).into()
 }
 
-/// The direction of refraction by Snell's law for light that arrives along `−wo`, or `None` for total internal
-/// reflection.
-///
-/// `n` has unit length and is on the side of `wo`; `eta` is the index of refraction beyond the surface divided by
-/// the one on the side of `wo`. The result has unit length (up to rounding) for a unit `wo`.
+/// [`optics::refract`] of one direction; `None` for total internal reflection.
 pub fn refract(wo: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
-    let cos_i = n.dot(wo);
-    let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
-    if sin2_t >= 1.0 {
-        return None;
-    }
-    let cos_t = (1.0 - sin2_t).sqrt();
-    Some((cos_i / eta - cos_t) * n - wo / eta)
-}
-
-/// Fresnel reflectance of a dielectric for unpolarised light, for `cos_i = n·wo ≥ 0` and `eta` as in [`refract`].
-pub fn fresnel_dielectric(cos_i: f32, eta: f32) -> f32 {
-    let cos_i = cos_i.clamp(0.0, 1.0);
-    let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
-    if sin2_t >= 1.0 {
-        return 1.0;
-    }
-    let cos_t = (1.0 - sin2_t).sqrt();
-    let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    0.5 * (parallel * parallel + perpendicular * perpendicular)
+    let (wi, is_refracted) = optics::refract(wo.into(), n.into(), eta);
+    is_refracted.then(|| wi.into())
 }
 
 /// Converts an affine matrix to the kernel's type.
@@ -96,12 +75,12 @@ mod tests {
 
     #[test]
     fn fresnel_known_values() {
-        assert!((fresnel_dielectric(1.0, 1.5) - 0.04).abs() < 1e-6);
-        assert!((fresnel_dielectric(0.0, 1.5) - 1.0).abs() < 1e-6);
+        assert!((optics::fresnel_dielectric(1.0, 1.5) - 0.04).abs() < 1e-6);
+        assert!((optics::fresnel_dielectric(0.0, 1.5) - 1.0).abs() < 1e-6);
         // At Brewster's angle only the perpendicular polarisation is reflected: ½ ((η²−1)/(η²+1))².
         let brewster = 1.0 / (1.0f32 + 1.5 * 1.5).sqrt();
         let expected = 0.5 * (1.25f32 / 3.25).powi(2);
-        assert!((fresnel_dielectric(brewster, 1.5) - expected).abs() < 1e-6);
-        assert_eq!(fresnel_dielectric(0.5, 1.0 / 1.5), 1.0);
+        assert!((optics::fresnel_dielectric(brewster, 1.5) - expected).abs() < 1e-6);
+        assert_eq!(optics::fresnel_dielectric(0.5, 1.0 / 1.5), 1.0);
     }
 }

@@ -14,10 +14,12 @@
 //!
 //! *Independent*: random numbers without a pattern, each a hash of its address.
 
-pub(crate) mod eight;
+pub(crate) mod lanes;
+
+use lookfrom_scene::settings::Sampler as Kind;
+use lookfrom_simd::{Bits, Real};
 
 use crate::core::hash::{GOLDEN, mix};
-use lookfrom_scene::settings::Sampler as Kind;
 
 /// The largest f32 below 1, and the largest number of a sampler: 1 − 2⁻²⁴.
 pub const ONE_MINUS_EPSILON: f32 = 1.0 - f32::EPSILON / 2.0;
@@ -71,100 +73,90 @@ impl PixelSampler {
     /// As [`Sampler::one`].
     #[inline]
     pub fn one(&self, sample: u32, dimension: u32) -> f32 {
-        let pattern = self.pattern(dimension);
-        match self.kind {
-            Kind::Sobol => unit(sobol_first(shuffled(sample, pattern), pattern).reverse_bits()),
-            Kind::Independent => unit((independent(sample, pattern) >> 32) as u32),
-        }
+        let [first, _] = self.two(sample, dimension);
+        first
     }
 
     /// As [`Sampler::two`].
     #[inline]
     pub fn two(&self, sample: u32, dimension: u32) -> [f32; 2] {
-        let pattern = self.pattern(dimension);
-        match self.kind {
-            Kind::Sobol => {
-                let index = shuffled(sample, pattern);
-                // Reverse the bits of both at once.
-                let mirrored =
-                    u64::from(sobol_first(index, pattern)) | u64::from(sobol_second(index, pattern)) << 32;
-                let bits = mirrored.reverse_bits();
-                [unit((bits >> 32) as u32), unit(bits as u32)]
-            }
-            Kind::Independent => {
-                let bits = independent(sample, pattern);
-                [unit((bits >> 32) as u32), unit(bits as u32)]
-            }
+        two::<f32>(self.kind, self.key, sample, u64::from(dimension))
+    }
+}
+
+/// A point in [0, 1)² for each pixel's key, sample and dimension (below 2³²).
+#[inline(always)]
+fn two<R: Real>(kind: Kind, key: R::Bits64, sample: R::Bits, dimension: R::Bits64) -> [R; 2] {
+    // The 64 bits that identify the pattern of the pixel in a dimension.
+    let pattern = mix(key ^ dimension);
+    match kind {
+        Kind::Sobol => {
+            let index = reversed(scramble_from_the_low_end(reversed(sample), R::low_half(pattern)));
+            // As an integer the first coordinate is the index itself, whose bits would be mirrored at the binary point
+            // (van der Corput 1935).
+            let first = scramble_from_the_low_end(index, R::low_half(pattern >> 32));
+            let seed = mix(pattern.wrapping_add(pattern.like(GOLDEN)));
+            let second = scramble_from_the_low_end(pascal(index), R::low_half(seed));
+            [unit(reversed(first)), unit(reversed(second))]
+        }
+        Kind::Independent => {
+            let number = R::extend(sample);
+            let number = number.wrapping_add(number.like(1)).wrapping_mul(number.like(GOLDEN));
+            let bits = mix(pattern.wrapping_add(number));
+            [unit(R::low_half(bits >> 32)), unit(R::low_half(bits))]
         }
     }
-
-    /// The 64-bit key of the pixel's pattern in a dimension.
-    #[inline]
-    fn pattern(&self, dimension: u32) -> u64 {
-        mix(self.key ^ u64::from(dimension))
-    }
 }
 
-/// 32 bits after the binary point, truncated to the 24 that an f32 below 1 always holds: never rounded up to 1, and
-/// never out of the net's box that the point belongs to.
-#[inline]
-fn unit(bits: u32) -> f32 {
-    (bits >> 8) as f32 * (1.0 / 16_777_216.0)
+/// 32 bits behind the binary point, truncated to the 24 that an f32 below 1 always holds: never rounded up to 1, and
+/// never out of the box of a net that the point belongs to.
+#[inline(always)]
+fn unit<R: Real>(bits: R::Bits) -> R {
+    R::from_integer(bits >> 8) * (1.0 / 16_777_216.0)
 }
 
-/// 64 random bits for one sample of a pattern.
-#[inline]
-fn independent(sample: u32, pattern: u64) -> u64 {
-    mix(pattern.wrapping_add(u64::from(sample).wrapping_add(1).wrapping_mul(GOLDEN)))
+/// The bits in reverse order.
+#[inline(always)]
+fn reversed<B: Bits<Scalar = u32>>(x: B) -> B {
+    let x = swapped(swapped(x, 1, 0x5555_5555), 2, 0x3333_3333);
+    let x = swapped(swapped(x, 4, 0x0f0f_0f0f), 8, 0x00ff_00ff);
+    (x >> 16) | (x << 16)
 }
 
-/// The sample's index in the Sobol' sequence. Aligned runs of 2ᵐ samples map to aligned runs of 2ᵐ indices.
-#[inline]
-fn shuffled(sample: u32, pattern: u64) -> u32 {
-    scramble_from_the_low_end(sample.reverse_bits(), pattern as u32).reverse_bits()
-}
-
-/// The first Sobol' coordinate, scrambled, with its bits still reversed: as an integer it is the index itself; the
-/// coordinate is its radical inverse (van der Corput 1935).
-#[inline]
-fn sobol_first(index: u32, pattern: u64) -> u32 {
-    scramble_from_the_low_end(index, (pattern >> 32) as u32)
-}
-
-/// The second Sobol' coordinate, scrambled, with its bits still reversed.
-#[inline]
-fn sobol_second(index: u32, pattern: u64) -> u32 {
-    scramble_from_the_low_end(pascal(index), mix(pattern.wrapping_add(GOLDEN)) as u32)
+/// Exchanges the bits of a mask with those that many places higher.
+#[inline(always)]
+fn swapped<B: Bits<Scalar = u32>>(x: B, places: u32, mask: u32) -> B {
+    ((x >> places) & x.like(mask)) | ((x & x.like(mask)) << places)
 }
 
 /// The generator matrix of the second Sobol' dimension, Pascal's triangle modulo 2, times a vector of bits (bit 0
 /// first).
 ///
-/// C(j, i) is odd exactly if the bits of i are among those of j (Lucas 1878). So bit i of the product is the parity
-/// of all bits j ⊇ i, which is summed by one pass for each of the five bits of j.
-#[inline]
-fn pascal(mut bits: u32) -> u32 {
-    bits ^= (bits >> 1) & 0x5555_5555;
-    bits ^= (bits >> 2) & 0x3333_3333;
-    bits ^= (bits >> 4) & 0x0f0f_0f0f;
-    bits ^= (bits >> 8) & 0x00ff_00ff;
+/// C(j, i) is odd just where the bits of i are among those of j (Lucas 1878). So bit i of the product is the parity of
+/// all bits j ⊇ i, which one pass for each of the five bits of j sums up.
+#[inline(always)]
+fn pascal<B: Bits<Scalar = u32>>(bits: B) -> B {
+    let bits = bits ^ ((bits >> 1) & bits.like(0x5555_5555));
+    let bits = bits ^ ((bits >> 2) & bits.like(0x3333_3333));
+    let bits = bits ^ ((bits >> 4) & bits.like(0x0f0f_0f0f));
+    let bits = bits ^ ((bits >> 8) & bits.like(0x00ff_00ff));
     bits ^ (bits >> 16)
 }
 
-/// Owen scrambling of a number with reversed bits (the most significant one is bit 0): each bit is flipped
-/// depending on a hash of all bits below it.
+/// Owen scrambling of a number whose bits are in reverse order (the most significant one is bit 0): each bit is flipped
+/// or not as a hash of all bits below it says.
 ///
-/// In every step bits affect higher bits only: x ^ (x · even), x + seed, x · odd. This is the construction of Laine
-/// & Karras (2011) with the steps and constants of Vegdahl (2021, "Building a Better LK Hash"): with the original
-/// ones, some pairs among the 63 uppermost nodes agree with a probability that is 0.32 off from ½; with these, none
-/// is 0.02 off.
-#[inline]
-fn scramble_from_the_low_end(mut bits: u32, seed: u32) -> u32 {
-    bits ^= bits.wrapping_mul(0x3d20_adea);
-    bits = bits.wrapping_add(seed);
-    bits = bits.wrapping_mul((seed >> 16) | 1);
-    bits ^= bits.wrapping_mul(0x0552_6c56);
-    bits ^ bits.wrapping_mul(0x53a2_2864)
+/// Every step lets bits act upward only: x ^ (x · even), x + seed, x · odd. That is the construction of Laine & Karras
+/// (2011), here with the steps and constants of Vegdahl (2021, "Building a Better LK Hash"): with the original ones,
+/// some pairs among the 63 uppermost nodes agree with a probability that is 0.32 off from ½; with these, none is 0.02
+/// off.
+#[inline(always)]
+fn scramble_from_the_low_end<B: Bits<Scalar = u32>>(bits: B, seed: B) -> B {
+    let bits = bits ^ bits.wrapping_mul(bits.like(0x3d20_adea));
+    let bits = bits.wrapping_add(seed);
+    let bits = bits.wrapping_mul((seed >> 16) | seed.like(1));
+    let bits = bits ^ bits.wrapping_mul(bits.like(0x0552_6c56));
+    bits ^ bits.wrapping_mul(bits.like(0x53a2_2864))
 }
 
 #[cfg(test)]

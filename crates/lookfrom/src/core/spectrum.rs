@@ -6,10 +6,12 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Sub};
 
-/// Radiance, or a factor of it, in four lanes.
+use lookfrom_simd::{Float, Real};
+
+/// Radiance, or a factor of it, in four lanes; of one path, or of eight side by side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(16))]
-pub struct Spectrum(pub [f32; 4]);
+pub struct Spectrum<R = f32>(pub [R; 4]);
 
 impl Spectrum {
     /// No light.
@@ -38,11 +40,6 @@ impl Spectrum {
         Self(std::array::from_fn(|lane| f(self.0[lane], other.0[lane])))
     }
 
-    /// The largest lane.
-    pub fn max_lane(self) -> f32 {
-        self.0.into_iter().fold(f32::NEG_INFINITY, f32::max)
-    }
-
     /// The only lane that is not 0; `None` where there are several or none.
     pub fn only_lane(self) -> Option<usize> {
         let mut lanes = (0..4).filter(|&lane| self.0[lane] != 0.0);
@@ -62,19 +59,53 @@ impl Spectrum {
             }
         }
     }
+}
+
+impl<R: Real> Spectrum<R> {
+    /// The same value in each lane.
+    #[inline(always)]
+    pub(crate) fn splat(value: R) -> Self {
+        Self([value; 4])
+    }
+
+    /// The largest lane.
+    #[inline(always)]
+    pub fn max_lane(self) -> R {
+        let [a, b, c, d] = self.0;
+        Float::max(Float::max(d, c), Float::max(b, a))
+    }
 
     /// True if all lanes are 0.
-    pub fn is_black(self) -> bool {
-        self.0 == [0.0; 4]
+    #[inline(always)]
+    pub fn is_black(self) -> R::Mask {
+        let [a, b, c, d] = self.0;
+        let zero = a.like(0.0);
+        Float::eq(a, zero) & Float::eq(b, zero) & Float::eq(c, zero) & Float::eq(d, zero)
+    }
+
+    /// True if no lane is infinite or NaN.
+    #[inline(always)]
+    pub(crate) fn is_finite(self) -> R::Mask {
+        let [a, b, c, d] = self.0;
+        Float::is_finite(a) & Float::is_finite(b) & Float::is_finite(c) & Float::is_finite(d)
+    }
+
+    /// `yes` where the mask is set, `no` elsewhere.
+    #[inline(always)]
+    pub(crate) fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        let ([a, b, c, d], [e, f, g, h]) = (yes.0, no.0);
+        Self([R::select(mask, a, e), R::select(mask, b, f), R::select(mask, c, g), R::select(mask, d, h)])
     }
 }
 
 macro_rules! lane_wise {
     ($($trait:ident $method:ident $operator:tt)*) => {$(
-        impl $trait for Spectrum {
+        impl<R: Real> $trait for Spectrum<R> {
             type Output = Self;
+            #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                self.zip(other, |a, b| a $operator b)
+                let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+                Self([a $operator e, b $operator f, c $operator g, d $operator h])
             }
         }
     )*};
@@ -82,27 +113,33 @@ macro_rules! lane_wise {
 
 lane_wise! { Add add + Sub sub - Mul mul * }
 
-impl Mul<f32> for Spectrum {
+impl<R: Real> Mul<R> for Spectrum<R> {
     type Output = Self;
-    fn mul(self, factor: f32) -> Self {
-        self.map(|lane| lane * factor)
+    #[inline(always)]
+    fn mul(self, factor: R) -> Self {
+        let [a, b, c, d] = self.0;
+        Self([a * factor, b * factor, c * factor, d * factor])
     }
 }
 
-impl Div<f32> for Spectrum {
+impl<R: Real> Div<R> for Spectrum<R> {
     type Output = Self;
-    fn div(self, divisor: f32) -> Self {
-        self.map(|lane| lane / divisor)
+    #[inline(always)]
+    fn div(self, divisor: R) -> Self {
+        let [a, b, c, d] = self.0;
+        Self([a / divisor, b / divisor, c / divisor, d / divisor])
     }
 }
 
-impl AddAssign for Spectrum {
+impl<R: Real> AddAssign for Spectrum<R> {
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl MulAssign for Spectrum {
+impl<R: Real> MulAssign for Spectrum<R> {
+    #[inline(always)]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }

@@ -7,99 +7,59 @@
 //!
 //! Shirley & Chiu 1997 (disk); Malley (hemisphere by the disk); Heitz 2019 (triangle); Duff et al. 2017 (basis).
 
-use glam::{Vec2, Vec3};
-use lookfrom_simd::{Simd, f32x8, prelude::*};
 use std::f32::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_4, PI};
+
+use glam::Vec3;
+use lookfrom_simd::{Float, Real};
+
+use crate::core::elementary::sin_cos_of_eighths;
+use crate::core::vector::Vector;
 
 /// A uniform point in the unit disk: the density over area is [`CONCENTRIC_DISK_PDF`]. The centre of the square
 /// maps to the centre of the disk, concentric squares to circles.
-pub fn concentric_disk(u: [f32; 2]) -> Vec2 {
-    let [a, b] = u.map(|u| 2.0 * u - 1.0);
-    if a == 0.0 && b == 0.0 {
-        return Vec2::ZERO;
-    }
-    // The radius is half the side of the concentric square through the point, the angle is the
-    // position along that side.
-    let is_wide = a * a > b * b;
-    let (radius, along) = if is_wide { (a, b) } else { (b, a) };
-    let (sin, cos) = sin_cos_of_eighths(along / radius);
-    // Beyond the diagonal the angle is π/2 minus the one before it.
-    if is_wide { Vec2::new(radius * cos, radius * sin) } else { Vec2::new(radius * sin, radius * cos) }
-}
-
-/// Sine and cosine of `t` π/4 for |t| ≤ 1, to 2⁻²², by their Taylor series. Short and without branches, so that
-/// eight can be computed side by side.
-fn sin_cos_of_eighths(t: f32) -> (f32, f32) {
-    let t2 = t * t;
-    let sin = t * (SIN[0] + t2 * (SIN[1] + t2 * (SIN[2] + t2 * (SIN[3] + t2 * SIN[4]))));
-    let cos = COS[0] + t2 * (COS[1] + t2 * (COS[2] + t2 * (COS[3] + t2 * (COS[4] + t2 * COS[5]))));
-    (sin, cos)
-}
-
-/// (π/4)².
-const SQUARE: f64 = std::f64::consts::FRAC_PI_4 * std::f64::consts::FRAC_PI_4;
-
-/// (−1)ᵏ (π/4)²ᵏ⁺¹ / (2k + 1)!
-const SIN: [f32; 5] = {
-    let first = std::f64::consts::FRAC_PI_4;
-    let third = -first * SQUARE / 6.0;
-    let fifth = -third * SQUARE / 20.0;
-    let seventh = -fifth * SQUARE / 42.0;
-    let ninth = -seventh * SQUARE / 72.0;
-    [first as f32, third as f32, fifth as f32, seventh as f32, ninth as f32]
-};
-
-/// (−1)ᵏ (π/4)²ᵏ / (2k)!
-const COS: [f32; 6] = {
-    let second = -SQUARE / 2.0;
-    let fourth = -second * SQUARE / 12.0;
-    let sixth = -fourth * SQUARE / 30.0;
-    let eighth = -sixth * SQUARE / 56.0;
-    let tenth = -eighth * SQUARE / 90.0;
-    [1.0, second as f32, fourth as f32, sixth as f32, eighth as f32, tenth as f32]
-};
-
-/// [`concentric_disk`] for eight points side by side, bit for bit.
 #[inline(always)]
-pub(crate) fn concentric_disks<S: Simd>(simd: S, [u, v]: [f32x8<S>; 2]) -> [f32x8<S>; 2] {
-    let splat = |value: f32| f32x8::splat(simd, value);
-    let (zero, one, two) = (splat(0.0), splat(1.0), splat(2.0));
-    let (a, b) = (two * u - one, two * v - one);
-    let is_wide = (a * a).simd_gt(b * b);
-    let (radius, along) = (is_wide.select(a, b), is_wide.select(b, a));
-    let t = along / radius;
-    let t2 = t * t;
-    let [s0, s1, s2, s3, s4] = SIN;
-    let sin = t * (splat(s0) + t2 * (splat(s1) + t2 * (splat(s2) + t2 * (splat(s3) + t2 * splat(s4)))));
-    let [c0, c1, c2, c3, c4, c5] = COS;
-    let fourth = splat(c3) + t2 * (splat(c4) + t2 * splat(c5));
-    let cos = splat(c0) + t2 * (splat(c1) + t2 * (splat(c2) + t2 * fourth));
-    let (x, y) = (radius * is_wide.select(cos, sin), radius * is_wide.select(sin, cos));
-    let is_middle = radius.simd_eq(zero);
-    [is_middle.select(zero, x), is_middle.select(zero, y)]
+pub fn concentric_disk<R: Real>([u, v]: [R; 2]) -> [R; 2] {
+    let (a, b) = (u * 2.0 - 1.0, v * 2.0 - 1.0);
+    // The radius is the side of the square through the point, the angle the place along that side.
+    let is_wide = (a * a).gt(b * b);
+    let (radius, along) = (R::select(is_wide, a, b), R::select(is_wide, b, a));
+    let (sin, cos) = sin_cos_of_eighths(along / radius);
+    // Beyond the diagonal the angle is π/2 less what it is before.
+    let (x, y) = (radius * R::select(is_wide, cos, sin), radius * R::select(is_wide, sin, cos));
+    let zero = u.like(0.0);
+    let is_centre = Float::eq(radius, zero);
+    [R::select(is_centre, zero, x), R::select(is_centre, zero, y)]
 }
 
 /// Density of [`concentric_disk`] over area: 1/π.
 pub const CONCENTRIC_DISK_PDF: f32 = FRAC_1_PI;
 
-/// A cosine-distributed direction about `n`, with density [`cosine_hemisphere_pdf`]. `n` must have unit length; the
-/// result has unit length up to rounding, and its cosine is always positive.
-pub fn cosine_hemisphere(u: [f32; 2], n: Vec3) -> Vec3 {
-    let disk = concentric_disk(u);
+/// A cosine-distributed direction about +z, with density [`cosine_hemisphere_pdf`], of unit length up to rounding; its
+/// cosine is always positive.
+#[inline(always)]
+pub fn cosine_about_z<R: Real>(u: [R; 2]) -> Vector<R> {
+    let [x, y] = concentric_disk(u);
     // Lift the rim slightly (2⁻¹², far below anything visible), so that no density is 0.
-    let height = (1.0 - disk.length_squared()).max(1.0 / 16_777_216.0).sqrt();
+    let height = Float::sqrt(Float::max(x.like(1.0) - (x * x + y * y), x.like(1.0 / 16_777_216.0)));
+    Vector { x, y, z: height }
+}
+
+/// The same about `n`, which must have unit length.
+pub fn cosine_hemisphere(u: [f32; 2], n: Vec3) -> Vec3 {
+    let Vector { x, y, z } = cosine_about_z(u);
     let (s, t) = orthonormal_basis(n);
-    disk.x * s + disk.y * t + height * n
+    x * s + y * t + z * n
 }
 
 /// Density of [`cosine_hemisphere`] over solid angle, by the cosine to the normal. 0 below.
-pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
-    FRAC_1_PI * cos_theta.max(0.0)
+#[inline(always)]
+pub fn cosine_hemisphere_pdf<R: Real>(cos_theta: R) -> R {
+    Float::max(cos_theta, cos_theta.like(0.0)) * FRAC_1_PI
 }
 
 /// A uniform direction, of unit length up to rounding: the density over solid angle is [`UNIFORM_SPHERE_PDF`].
 pub fn uniform_sphere(u: [f32; 2]) -> Vec3 {
-    uniform_cone(u, 2.0)
+    uniform_cone(u, 2.0).into()
 }
 
 /// Density of [`uniform_sphere`] over solid angle: 1/4π.
@@ -109,13 +69,14 @@ pub const UNIFORM_SPHERE_PDF: f32 = 0.25 * FRAC_1_PI;
 ///
 /// The cone is given by `1 − cos` of the angle between its axis and its side: 0 … 2. This form allows arbitrarily
 /// thin cones; where sin² is known (radius²/distance² of a sphere), `1 − cos = sin² / (1 + √(1 − sin²))`.
-pub fn uniform_cone(u: [f32; 2], one_minus_cos_theta_max: f32) -> Vec3 {
-    let disk = concentric_disk(u);
+#[inline(always)]
+pub fn uniform_cone<R: Real>(u: [R; 2], one_minus_cos_theta_max: R) -> Vector<R> {
+    let [x, y] = concentric_disk(u);
     // The depth below the pole is uniform, like the square of the disk's radius.
-    let depth = disk.length_squared().min(1.0) * one_minus_cos_theta_max;
+    let depth = Float::min(x * x + y * y, x.like(1.0)) * one_minus_cos_theta_max;
     // sin θ = √(depth (2 − depth)), along the disk's direction.
-    let widen = (one_minus_cos_theta_max * (2.0 - depth).max(0.0)).sqrt();
-    Vec3::new(disk.x * widen, disk.y * widen, 1.0 - depth)
+    let widen = Float::sqrt(one_minus_cos_theta_max * Float::max(x.like(2.0) - depth, x.like(0.0)));
+    Vector { x: x * widen, y: y * widen, z: x.like(1.0) - depth }
 }
 
 /// Density of [`uniform_cone`] over solid angle within the cone; infinite for a cone of zero width.
@@ -125,10 +86,14 @@ pub fn uniform_cone_pdf(one_minus_cos_theta_max: f32) -> f32 {
 
 /// Barycentric coordinates α, β, γ ≥ 0 of a uniform point in a triangle; their sum is 1 up to rounding. The density
 /// over area is [`uniform_triangle_pdf`].
-pub fn uniform_triangle([u, v]: [f32; 2]) -> [f32; 3] {
+#[inline(always)]
+pub fn uniform_triangle<R: Real>([u, v]: [R; 2]) -> [R; 3] {
     // Fold the square along its diagonal, each half moving toward the other two corners.
-    let (alpha, beta) = if v > u { (0.5 * u, v - 0.5 * u) } else { (u - 0.5 * v, 0.5 * v) };
-    [alpha, beta, 1.0 - (alpha + beta)]
+    let is_above = v.gt(u);
+    let (half_u, half_v) = (u * 0.5, v * 0.5);
+    let alpha = R::select(is_above, half_u, u - half_v);
+    let beta = R::select(is_above, v - half_u, half_v);
+    [alpha, beta, u.like(1.0) - (alpha + beta)]
 }
 
 /// Density of [`uniform_triangle`] for a triangle of this area.
@@ -175,11 +140,23 @@ pub fn octahedral_square(direction: Vec3) -> [f32; 2] {
 
 /// Two unit vectors that make a right-handed orthonormal basis (s, t, n) with the unit vector `n`, up to rounding.
 pub fn orthonormal_basis(n: Vec3) -> (Vec3, Vec3) {
+    let (s, t) = basis_about(n.into());
+    (s.into(), t.into())
+}
+
+/// The same at any width.
+#[inline(always)]
+pub fn basis_about<R: Real>(n: Vector<R>) -> (Vector<R>, Vector<R>) {
     // The only branch is the sign of z, which keeps the denominator away from 0.
-    let sign = 1.0_f32.copysign(n.z);
-    let a = -1.0 / (sign + n.z);
-    let b = n.x * n.y * a;
-    (Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), Vec3::new(b, sign + n.y * n.y * a, -n.y))
+    let Vector { x, y, z } = n;
+    let one = x.like(1.0);
+    let sign = Float::copysign(one, z);
+    let a = x.like(-1.0) / (sign + z);
+    let b = x * y * a;
+    (
+        Vector { x: one + sign * x * x * a, y: sign * b, z: -sign * x },
+        Vector { x: b, y: sign + y * y * a, z: -y },
+    )
 }
 
 #[cfg(test)]

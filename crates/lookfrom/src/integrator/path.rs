@@ -4,21 +4,20 @@
 //! order of steps is pbrt-v4's, so that the same scene converges to the same picture.
 
 mod catcher;
-mod eight;
+mod lanes;
 
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
-use lookfrom_simd::{dispatch, level};
 
-use eight::{FlatDiffuseHit, Steps};
+use lanes::{FlatDiffuseHit, Waiting};
 
-use crate::core::eight::LANES;
+use crate::core::lanes::LANES;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{Bounce, Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
 use crate::light::{IncompletePdf, LightSampleContext};
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::interaction::SurfaceInteraction;
-use crate::shading::material::{Scattering, ShadingContext};
+use crate::shading::material::{Scattering, Shading, ShadingContext};
 use crate::world::World;
 
 /// Dimensions of the random numbers at a surface.
@@ -115,26 +114,29 @@ impl Integrator for PathTracer {
         output: &mut StepOutput<'_, P>,
     ) {
         let in_lanes = self.light_sampling == LightSampling::MultipleImportance;
-        let mut waiting: Vec<FlatDiffuseHit<'_>> = Vec::with_capacity(LANES);
+        let mut waiting = Waiting::default();
+        let mut flat: Vec<FlatDiffuseHit<'_>> = Vec::with_capacity(LANES);
         for (path, hit) in paths.iter().zip(hits) {
-            let lanes = output.lanes(path);
-            let plain = if in_lanes {
-                FlatDiffuseHit::of(self, world, path, hit, &lanes, || stream(path))
-            } else {
-                None
-            };
             output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
-            let Some(plain) = plain else {
+            if !in_lanes {
                 self.step(world, &stream(path), path, hit, output);
                 continue;
-            };
-            waiting.push(plain);
-            if waiting.len() == LANES {
-                self.step_plain(world, &waiting, output);
-                waiting.clear();
+            }
+            let lanes = output.lanes(path);
+            if let Some(hit) = FlatDiffuseHit::of(self, world, path, hit, &lanes, || stream(path)) {
+                flat.push(hit);
+                if flat.len() == LANES {
+                    self.scatter_flat(world, &flat, output);
+                    flat.clear();
+                }
+            } else if let Some(vertex) = self.arrive(world, &stream(path), path, hit, output)
+                && let Some(vertex) = waiting.push(self, world, vertex, output)
+            {
+                self.scatter_vertex(world, &vertex, output);
             }
         }
-        self.step_plain(world, &waiting, output);
+        self.scatter_flat(world, &flat, output);
+        waiting.flush(self, world, output);
     }
 
     fn step<P: Probe>(
@@ -145,6 +147,33 @@ impl Integrator for PathTracer {
         hit: &Hit,
         output: &mut StepOutput<'_, P>,
     ) {
+        if let Some(vertex) = self.arrive(world, stream, path, hit, output) {
+            self.scatter_vertex(world, &vertex, output);
+        }
+    }
+}
+
+/// A path at a surface that is to scatter it.
+struct Vertex {
+    path: Path,
+    surface: SurfaceInteraction,
+    shading: Shading,
+    stream: SampleStream,
+    is_catcher: bool,
+}
+
+impl PathTracer {
+    /// Brings a path to what it has hit, adds the emission there, and finds the BSDF. `None` where the path ends, or goes
+    /// on through a surface that is not there.
+    #[inline]
+    fn arrive<P: Probe>(
+        &self,
+        world: &World,
+        stream: &SampleStream,
+        path: &Path,
+        hit: &Hit,
+        output: &mut StepOutput<'_, P>,
+    ) -> Option<Vertex> {
         if path.previous.is_catcher {
             self.expect_sky(world, path, output);
         }
@@ -158,7 +187,7 @@ impl Integrator for PathTracer {
             if !output.shows_background(&path) {
                 self.add_sky(world, &path, output);
             }
-            return;
+            return None;
         }
         let surface = world.surface(&path.ray, hit);
 
@@ -169,7 +198,7 @@ impl Integrator for PathTracer {
         };
         if path.goes_through(world, &surface, presence) {
             output.queues.paths.push(path.passed(&surface));
-            return;
+            return None;
         }
 
         // A shadow catcher shows what is behind it, less the light that is blocked.
@@ -191,7 +220,7 @@ impl Integrator for PathTracer {
             let direction = Vec3::from_array(path.ray.direction);
             let interior = path.interior.leaving(&world.materials, &surface, direction, true);
             output.queues.paths.push(Path { interior, ..path.passed(&surface) });
-            return;
+            return None;
         };
         if self.regularize && path.previous.blurred {
             shading.bsdf.regularize();
@@ -203,53 +232,34 @@ impl Integrator for PathTracer {
             beta: path.beta,
         });
         if path.depth >= self.depth {
-            return;
+            return None;
         }
 
-        let at = Vertex { path: &path, surface: &surface, is_catcher };
-        shading.scattering(surface.wo, |scattering| self.scatter(world, stream, at, scattering, output));
+        Some(Vertex { path, surface, shading, stream: *stream, is_catcher })
     }
-}
 
-/// A path at a surface.
-#[derive(Clone, Copy)]
-struct Vertex<'a> {
-    path: &'a Path,
-    surface: &'a SurfaceInteraction,
-    is_catcher: bool,
-}
-
-impl PathTracer {
-    /// Steps of paths that hit flat diffuse triangles, up to eight at once.
-    fn step_plain<P: Probe>(
-        &self,
-        world: &World,
-        plain: &[FlatDiffuseHit<'_>],
-        output: &mut StepOutput<'_, P>,
-    ) {
-        let Some(last) = plain.last() else { return };
-        let eight: [FlatDiffuseHit<'_>; LANES] = std::array::from_fn(|lane| *plain.get(lane).unwrap_or(last));
-        let steps = Steps { tracer: self, world, plain: &eight, count: plain.len(), output };
-        dispatch(level(), steps);
+    /// Scatters one path, by any BSDF.
+    fn scatter_vertex<P: Probe>(&self, world: &World, vertex: &Vertex, output: &mut StepOutput<'_, P>) {
+        vertex.shading.scattering(vertex.surface.wo, |scattering| {
+            self.scatter(world, vertex, scattering, output);
+        });
     }
 
     /// Samples one light, and continues the path in one direction.
     fn scatter<P: Probe>(
         &self,
         world: &World,
-        stream: &SampleStream,
-        at: Vertex<'_>,
+        vertex: &Vertex,
         scattering: &Scattering<'_>,
         output: &mut StepOutput<'_, P>,
     ) {
-        let Vertex { path, surface, is_catcher } = at;
-        let shading = scattering.shading;
+        let Vertex { path, surface, shading, stream, is_catcher } = vertex;
 
         // Sample one light.
         let [which_light, which_lobe] = stream.two(dimension::CHOICE);
         if self.light_sampling != LightSampling::None && shading.bsdf.lobes().is_non_specular() {
             let u = stream.two(dimension::LIGHT);
-            self.sample_light(world, at, scattering, which_light, u, output);
+            self.sample_light(world, vertex, scattering, which_light, u, output);
         }
 
         // Go on in one direction.
@@ -292,7 +302,7 @@ impl PathTracer {
                 n: shading.n(),
                 eta_scale,
                 blurred: path.previous.blurred || !is_sharp,
-                is_catcher,
+                is_catcher: *is_catcher,
             },
         });
     }
@@ -362,13 +372,13 @@ impl PathTracer {
     fn sample_light<P: Probe>(
         &self,
         world: &World,
-        at: Vertex<'_>,
+        vertex: &Vertex,
         scattering: &Scattering<'_>,
         which: f32,
         u: [f32; 2],
         output: &mut StepOutput<'_, P>,
     ) {
-        let Vertex { path, surface, is_catcher } = at;
+        let Vertex { path, surface, is_catcher, .. } = vertex;
         let from = LightSampleContext {
             point: DVec3::from_array(surface.point.position),
             n: scattering.shading.n(),
@@ -405,7 +415,7 @@ impl PathTracer {
         });
         if !contribution.is_black() {
             output.queues.shadows.push(Shadow::new(world, path, surface, &sample, index, contribution));
-            if is_catcher {
+            if *is_catcher {
                 self.expect_light(light, path, contribution, output);
             }
         }

@@ -66,7 +66,7 @@ impl Shadow {
         };
         let Path { slot, address, interior, .. } = *path;
         // A ray through the surface continues in the medium behind it.
-        let crosses = (surface.ng.dot(sample.wi.as_dvec3()) > 0.0) != surface.front;
+        let crosses = surface.crosses(sample.wi);
         let interior = interior.leaving(&world.materials, surface, sample.wi, crosses);
         let origin_primitive = surface.origin_primitive;
         Self { ray, origin_primitive, contribution, slot, address, term: Term::Light(light), interior }

@@ -271,7 +271,7 @@ fn seen(from: DVec3, point: Point, normal: DVec3, uv: Vec2, density: f64) -> Opt
 
 /// A point of a disk, sampled by area.
 fn sample_disk(disk: &Disk, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
-    let on_disk = warp::concentric_disk(u);
+    let on_disk = Vec2::from_array(warp::concentric_disk(u));
     seen(from, disk.at(on_disk), disk.normal().normalize(), 0.5 + 0.5 * on_disk, 1.0 / disk_area(disk))
 }
 

@@ -5,10 +5,12 @@
 //! probability 0.
 
 use lookfrom_scene::settings::LightSampler as Kind;
+use lookfrom_simd::{Float, Simd, f32x8, prelude::*};
 
 use super::tree::{LightBounds, Tree};
 use super::{Light, LightSampleContext};
 use crate::core::distribution::Discrete;
+use crate::core::lanes::{LANES, by_lane, gather};
 use crate::core::sampler::ONE_MINUS_EPSILON;
 
 /// A distribution over lights.
@@ -70,6 +72,37 @@ impl LightChoice {
         let u = ((u - in_list) / (1.0 - in_list)).min(ONE_MINUS_EPSILON);
         let (light, probability) = self.tree.sample(at.point.as_vec3(), at.n, u)?;
         Some((light, probability * (1.0 - in_list)))
+    }
+
+    /// [`LightChoice::sample`] for eight surfaces at once, in the lanes of a mask.
+    #[inline(always)]
+    pub(crate) fn sample_lanes<S: Simd>(
+        &self,
+        simd: S,
+        at: &[LightSampleContext; LANES],
+        u: f32x8<S>,
+        mask: u32,
+    ) -> [Option<(u32, f32)>; LANES] {
+        if self.tree.is_empty() || self.weights.is_some() {
+            return by_lane!(lane => match mask & 1 << lane {
+                0 => None,
+                _ => self.sample(&at[lane], u[lane]),
+            });
+        }
+        let in_list = self.share_of_list();
+        let listed = u.simd_lt(in_list).to_bitmask() as u32;
+        let rest = (u - in_list) / (1.0 - in_list);
+        let rest = Float::min(rest, rest.like(ONE_MINUS_EPSILON));
+        let p = gather(simd, &by_lane!(lane => at[lane].point.as_vec3().to_array()));
+        let n = gather(simd, &by_lane!(lane => at[lane].n.to_array()));
+        let mut chosen = self.tree.sample_lanes(simd, p, n, rest, mask & !listed);
+        for (lane, chosen) in chosen.iter_mut().enumerate() {
+            *chosen = match mask & listed & 1 << lane {
+                0 => chosen.map(|(light, probability)| (light, probability * (1.0 - in_list))),
+                _ => self.sample(&at[lane], u[lane]),
+            };
+        }
+        chosen
     }
 
     /// The only light that is sampled, if there is only one.

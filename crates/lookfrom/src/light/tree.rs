@@ -3,11 +3,17 @@
 //! Conty Estevez & Kulla 2018 (importance of light clusters, surface area orientation heuristic); the bounds of an
 //! importance as in pbrt-v4.
 
+mod sight;
+
 use glam::Vec3;
+use lookfrom_simd::{Float, LaneMask, Simd, f32x8, prelude::*};
 
 use super::cone::{Cone, angle};
+use crate::core::lanes::{LANES, by_lane};
 use crate::core::parallel;
 use crate::core::sampler::ONE_MINUS_EPSILON;
+use crate::core::vector::Vector;
+use sight::{Sight, probability_of_first, sin_of};
 
 /// Number of buckets per axis for candidate splits.
 const BUCKETS: usize = 12;
@@ -49,20 +55,6 @@ struct Node {
 enum Link {
     Light(u32),
     Second(u32),
-}
-
-/// Light bounds in the form that importances are computed from.
-#[derive(Clone, Copy, Debug)]
-struct Sight {
-    center: Vec3,
-    /// Radius of the sphere around the box.
-    radius: f32,
-    axis: Vec3,
-    cos_normals: f32,
-    sin_normals: f32,
-    cos_emission: f32,
-    power: f32,
-    two_sided: bool,
 }
 
 impl Tree {
@@ -113,7 +105,10 @@ impl Tree {
             match self.nodes.get(node)?.link {
                 Link::Light(light) => return Some((light, probability)),
                 Link::Second(second) => {
-                    let share = self.first_share(node, second as usize, p, n)?;
+                    let (share, exists) = self.first_share(node, second as usize, p, n);
+                    if !exists {
+                        return None;
+                    }
                     let first = u < share;
                     let of_this = if first { share } else { 1.0 - share };
                     u = (if first { u / share } else { (u - share) / of_this }).min(ONE_MINUS_EPSILON);
@@ -133,7 +128,10 @@ impl Tree {
             match self.nodes[node].link {
                 Link::Light(_) => return probability,
                 Link::Second(second) => {
-                    let Some(share) = self.first_share(node, second as usize, p, n) else { return 0.0 };
+                    let (share, exists) = self.first_share(node, second as usize, p, n);
+                    if !exists {
+                        return 0.0;
+                    }
                     let first = way & 1 == 0;
                     probability *= if first { share } else { 1.0 - share };
                     if probability == 0.0 {
@@ -146,18 +144,58 @@ impl Tree {
         }
     }
 
-    fn first_share(&self, node: usize, second: usize, p: Vec3, n: Vec3) -> Option<f32> {
-        let first = self.nodes[node + 1].sight.importance(p, n);
-        let second = self.nodes[second].sight.importance(p, n);
-        /// Least probability of a child of positive importance: the other one may be hidden.
-        const LEAST: f32 = 1.0 / 65536.0;
-        let sum = first + second;
-        let share = first / sum;
-        if first > 0.0 && second > 0.0 {
-            Some(share.clamp(LEAST, 1.0 - LEAST))
-        } else {
-            (sum > 0.0).then_some(share)
+    /// The probability of the first of two children, and whether either can be chosen.
+    fn first_share(&self, node: usize, second: usize, p: Vec3, n: Vec3) -> (f32, bool) {
+        let children = [&self.nodes[node + 1].sight, &self.nodes[second].sight];
+        probability_of_first(children.map(|child| child.importance(p.into(), n.into())))
+    }
+
+    /// [`Tree::sample`] for eight points at once, in the lanes of a mask.
+    #[inline(always)]
+    pub(super) fn sample_lanes<S: Simd>(
+        &self,
+        simd: S,
+        p: Vector<f32x8<S>>,
+        n: Vector<f32x8<S>>,
+        mut u: f32x8<S>,
+        mask: u32,
+    ) -> [Option<(u32, f32)>; LANES] {
+        let mut chosen = [None; LANES];
+        let Some(root) = self.nodes.first() else { return chosen };
+        let mut probability = f32x8::splat(simd, 1.0);
+        // The first and the second child of the node that each lane has come to; done lanes stay where they are.
+        let mut below = match root.link {
+            Link::Light(light) => {
+                return by_lane!(lane => (mask & 1 << lane != 0).then_some((light, 1.0)));
+            }
+            Link::Second(second) => [[1, second as usize]; LANES],
+        };
+        let mut active = mask;
+        while active != 0 {
+            let first = by_lane!(lane => &self.nodes[below[lane][0]].sight);
+            let second = by_lane!(lane => &self.nodes[below[lane][1]].sight);
+            let importances =
+                [Sight::gather(simd, &first).importance(p, n), Sight::gather(simd, &second).importance(p, n)];
+            let (share, exists) = probability_of_first(importances);
+            let is_first = u.simd_lt(share);
+            let of_this = is_first.select(share, -share + 1.0);
+            let rest = is_first.select(u, u - share) / of_this;
+            u = Float::min(rest, rest.like(ONE_MINUS_EPSILON));
+            probability *= of_this;
+            let (is_first, exists) = (is_first.to_bitmask() as u32, exists.to_bitmask() as u32);
+            active &= exists;
+            for lane in LaneMask(active) {
+                let node = below[lane][usize::from(is_first & 1 << lane == 0)];
+                match self.nodes[node].link {
+                    Link::Light(light) => {
+                        chosen[lane] = Some((light, probability[lane]));
+                        active &= !(1 << lane);
+                    }
+                    Link::Second(second) => below[lane] = [node + 1, second as usize],
+                }
+            }
         }
+        chosen
     }
 }
 
@@ -204,14 +242,14 @@ impl LightBounds {
 
     fn sight(&self) -> Sight {
         Sight {
-            center: self.center(),
+            center: self.center().into(),
             radius: 0.5 * (self.max - self.min).length(),
-            axis: self.normals.axis,
+            axis: self.normals.axis.into(),
             cos_normals: self.normals.cos,
             sin_normals: sin_of(self.normals.cos),
             cos_emission: self.cos_emission,
             power: self.power,
-            two_sided: self.two_sided,
+            two_sided: if self.two_sided { 1.0 } else { 0.0 },
         }
     }
 
@@ -231,60 +269,6 @@ impl LightBounds {
         let extent = d.x * d.y + d.y * d.z + d.z * d.x + 1e-3 * d.length_squared();
         self.power * spread * 2.0 * extent
     }
-}
-
-impl Sight {
-    /// An upper bound, up to the variation of distance within the bounds, of the light that arrives at `p` with normal
-    /// `n`. Finite, and positive where any light may arrive.
-    #[inline]
-    fn importance(&self, p: Vec3, n: Vec3) -> f32 {
-        /// Range in which neither the sum nor the ratio of two importances leaves that of f32.
-        const RANGE: [f32; 2] = [1e-30, 1e30];
-        let to_p = p - self.center;
-        let length2 = to_p.length_squared();
-        // Near and inside the box, the distance to its centre is meaningless.
-        let by_distance = self.power / length2.max(self.radius);
-        if !(1e-36..1e36).contains(&length2) {
-            return by_distance.clamp(RANGE[0], RANGE[1]);
-        }
-        let wi = to_p * (1.0 / length2.sqrt());
-
-        // θ to the axis, less the spread of the normals, less the angle that the box subtends.
-        let mut cos_axis = self.axis.dot(wi);
-        if self.two_sided {
-            cos_axis = cos_axis.abs();
-        }
-        let radius2 = self.radius * self.radius;
-        let (cos_box, sin_box) = if length2 <= radius2 {
-            (-1.0, 0.0)
-        } else {
-            let sin2 = radius2 / length2;
-            ((1.0 - sin2).max(0.0).sqrt(), sin2.sqrt())
-        };
-        let to_normals = angle_less((cos_axis, sin_of(cos_axis)), (self.cos_normals, self.sin_normals));
-        let least = angle_less(to_normals, (cos_box, sin_box));
-        if least.0 <= self.cos_emission {
-            return 0.0;
-        }
-        // At the surface: the smallest angle between its normal and the box, on either side.
-        let cos_surface = wi.dot(n).abs();
-        let at_surface = angle_less((cos_surface, sin_of(cos_surface)), (cos_box, sin_box)).0;
-        let at_surface = if n == Vec3::ZERO { 1.0 } else { at_surface };
-        (by_distance * least.0 * at_surface).clamp(RANGE[0], RANGE[1])
-    }
-}
-
-fn sin_of(cos: f32) -> f32 {
-    (1.0 - cos * cos).max(0.0).sqrt()
-}
-
-/// Cosine and sine of max(0, a − b), for angles given by cosine and sine.
-#[inline]
-fn angle_less((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
-    if cos_a > cos_b {
-        return (1.0, 0.0);
-    }
-    (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b)
 }
 
 /// Orders the lights for the best split and returns its index, neither 0 nor their number.
@@ -351,7 +335,11 @@ fn partition(lights: &mut [(u32, LightBounds)], comes_first: impl Fn(&LightBound
 
 #[cfg(test)]
 mod tests {
+    use lookfrom_simd::{Kernel, dispatch, level};
+
     use super::*;
+    use crate::core::hash;
+    use crate::core::lanes::gather;
 
     fn bundles(count: u32) -> Vec<(u32, LightBounds)> {
         let mut seed = 7_u32;
@@ -376,6 +364,53 @@ mod tests {
                 (light, bounds)
             })
             .collect()
+    }
+
+    /// Choices at eight points.
+    struct Eight<'a>(&'a Tree, &'a [(Vec3, Vec3, f32); LANES], u32);
+
+    impl Kernel for Eight<'_> {
+        type Output = [Option<(u32, f32)>; LANES];
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
+            let Self(tree, at, mask) = self;
+            let p = gather(simd, &by_lane!(lane => at[lane].0.to_array()));
+            let n = gather(simd, &by_lane!(lane => at[lane].1.to_array()));
+            let u = f32x8::load_array(simd, by_lane!(lane => at[lane].2));
+            tree.sample_lanes(simd, p, n, u, mask)
+        }
+    }
+
+    #[test]
+    fn eight_choices_at_once_are_eight_one_by_one() {
+        let number = |k: u64, of: u64| (hash::pair(k, of) >> 40) as f32 / 16_777_216.0;
+        let (mut chosen, mut none) = (0, 0);
+        for count in [1, 2, 9, 300] {
+            let tree = Tree::new(&bundles(count), count as usize);
+            for round in 0..2000 {
+                let at: [(Vec3, Vec3, f32); LANES] = std::array::from_fn(|lane| {
+                    let k = 8 * round + lane as u64;
+                    // From inside the boxes to far away, and also without a normal.
+                    let size = libm::exp2(f64::from(number(k, 0)) * 80.0 - 20.0) as f32;
+                    let p = Vec3::new(number(k, 1), number(k, 2), number(k, 3)) * size;
+                    let n = if k.is_multiple_of(5) {
+                        Vec3::ZERO
+                    } else {
+                        crate::core::warp::uniform_sphere([number(k, 4), number(k, 5)])
+                    };
+                    (p, n, number(k, 6))
+                });
+                let mask = hash::pair(round, 7) as u32 & 0xff;
+                let together = dispatch(level(), Eight(&tree, &at, mask));
+                for (lane, (p, n, u)) in at.into_iter().enumerate() {
+                    let alone = (mask & 1 << lane != 0).then(|| tree.sample(p, n, u)).flatten();
+                    assert_eq!(together[lane], alone, "{p} {n} {u}");
+                    chosen += u32::from(alone.is_some());
+                    none += u32::from(alone.is_none());
+                }
+            }
+        }
+        assert!(chosen > 10_000 && none > 10_000, "{chosen} chosen, {none} not");
     }
 
     #[test]
@@ -476,7 +511,8 @@ mod tests {
             let (light, bounds) = lights[(next() * 60.0) as usize];
             // a normal in the cone, and a direction in which it emits light
             let (s, t) = crate::core::warp::orthonormal_basis(bounds.normals.axis);
-            let local = crate::core::warp::uniform_cone([next(), next()], 1.0 - bounds.normals.cos);
+            let local =
+                Vec3::from(crate::core::warp::uniform_cone([next(), next()], 1.0 - bounds.normals.cos));
             let mut normal = s * local.x + t * local.y + bounds.normals.axis * local.z;
             if bounds.two_sided && next() < 0.5 {
                 normal = -normal;

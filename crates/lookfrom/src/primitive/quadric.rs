@@ -164,7 +164,7 @@ impl Quadric {
             QuadricKind::Disk { height, radius, inner_radius }
                 if inner_radius == 0.0 && self.is_whole_turn() =>
             {
-                let disk = warp::concentric_disk(u).as_dvec2() * radius;
+                let disk = Vec2::from_array(warp::concentric_disk(u)).as_dvec2() * radius;
                 DVec3::new(disk.x, disk.y, height)
             }
             QuadricKind::Disk { height, radius, inner_radius } => {

@@ -12,6 +12,7 @@ pub mod dielectric;
 pub mod diffuse;
 pub mod fresnel;
 pub mod henyey_greenstein;
+pub(crate) mod lanes;
 pub mod layered;
 pub mod lobes;
 mod local_scattering;
@@ -20,8 +21,10 @@ pub mod principled;
 pub mod whitted;
 
 use glam::Vec3;
+use lookfrom_simd::{Float, Mask, Real};
 
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 use conductor::Conductor;
 use dielectric::{Dielectric, ThinDielectric};
 use diffuse::{Diffuse, DiffuseTransmission};
@@ -92,11 +95,6 @@ impl BsdfSample {
         Self { wi, f, pdf, lobe, eta: 1.0, pdf_is_proportional: false }
     }
 
-    /// A direction sampled from a diffuse surface's reflection.
-    pub(crate) fn diffuse(wi: Vec3, f: Spectrum, pdf: f32) -> Self {
-        Self::new(wi, f, pdf, Lobes::REFLECTION | Lobes::DIFFUSE)
-    }
-
     /// The sample if it carries light and all its values are finite.
     #[inline]
     fn if_useful(self) -> Option<Self> {
@@ -109,17 +107,77 @@ impl BsdfSample {
     }
 }
 
-/// True if the direction lies so nearly in the surface that the square of its cosine is useless; also
-/// true for NaN.
-#[inline]
-fn is_grazing(w: Vec3) -> bool {
-    !(w.z.abs() > 1e-12)
+/// A direction chosen by a BSDF of any width: what [`BsdfSample`] is for one.
+#[derive(Clone, Copy, Debug)]
+pub struct DirectionSample<R: Real> {
+    /// Unit length.
+    pub wi: Vector<R>,
+    /// Without the cosine.
+    pub f: Spectrum<R>,
+    /// Density over solid angle; for specular lobes the probability of the lobe.
+    pub pdf: R,
+    /// As [`BsdfSample::eta`].
+    pub eta: R,
+    /// True for a specular lobe.
+    pub is_specular: R::Mask,
+    /// True if light passes through the surface.
+    pub is_transmission: R::Mask,
+    /// True if there is such a direction; elsewhere the rest means nothing.
+    pub is_valid: R::Mask,
 }
 
-/// True if both directions are on one side of the surface and neither is grazing.
-#[inline]
-fn same_side(wo: Vec3, wi: Vec3) -> bool {
-    wo.z * wi.z > 0.0 && !is_grazing(wo) && !is_grazing(wi)
+impl<R: Real> DirectionSample<R> {
+    /// `yes` where the mask is set, `no` elsewhere.
+    #[inline(always)]
+    pub(crate) fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            wi: Vector::select(mask, yes.wi, no.wi),
+            f: Spectrum::select(mask, yes.f, no.f),
+            pdf: R::select(mask, yes.pdf, no.pdf),
+            eta: R::select(mask, yes.eta, no.eta),
+            is_specular: select_mask(mask, yes.is_specular, no.is_specular),
+            is_transmission: select_mask(mask, yes.is_transmission, no.is_transmission),
+            is_valid: select_mask(mask, yes.is_valid, no.is_valid),
+        }
+    }
+
+    /// Valid only where light would come from the direction.
+    #[inline(always)]
+    pub(crate) fn if_lit(self) -> Self {
+        let is_lit = self.pdf.gt(self.pdf.like(0.0)) & !is_grazing(self.wi) & !self.f.is_black();
+        Self { is_valid: self.is_valid & is_lit, ..self }
+    }
+}
+
+impl DirectionSample<f32> {
+    /// As a scalar sample, given how lobes that are not specular spread.
+    #[inline]
+    fn scalar(self, spread: Lobes) -> Option<BsdfSample> {
+        let side = if self.is_transmission { Lobes::TRANSMISSION } else { Lobes::REFLECTION };
+        let lobe = side | if self.is_specular { Lobes::SPECULAR } else { spread };
+        let Self { wi, f, pdf, eta, .. } = self;
+        self.is_valid.then(|| BsdfSample { eta, ..BsdfSample::new(wi.into(), f, pdf, lobe) })
+    }
+}
+
+/// `yes` where the mask is set, `no` elsewhere.
+#[inline(always)]
+fn select_mask<M: Mask>(mask: M, yes: M, no: M) -> M {
+    (mask & yes) | (!mask & no)
+}
+
+/// True if the direction lies in the surface, or so nearly that the square of its cosine is useless; also for NaN.
+#[inline(always)]
+pub(crate) fn is_grazing<R: Real>(w: impl Into<Vector<R>>) -> R::Mask {
+    let z = w.into().z;
+    !Float::abs(z).gt(z.like(1e-12))
+}
+
+/// True if both directions are on the same side of the surface, neither grazing.
+#[inline(always)]
+pub(crate) fn same_side<R: Real>(wo: impl Into<Vector<R>>, wi: impl Into<Vector<R>>) -> R::Mask {
+    let (wo, wi) = (wo.into(), wi.into());
+    (wo.z * wi.z).gt(wo.z.like(0.0)) & !is_grazing(wo) & !is_grazing(wi)
 }
 
 impl Bsdf {
@@ -187,13 +245,13 @@ impl Bsdf {
     #[inline]
     pub fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
         match self {
-            Self::Diffuse(bsdf) => bsdf.f(wo, wi),
+            Self::Diffuse(bsdf) => bsdf.f(wo.into(), wi.into()),
             Self::DiffuseTransmission(bsdf) => bsdf.f(wo, wi),
-            Self::Conductor(bsdf) => bsdf.f(wo, wi),
-            Self::Dielectric(bsdf) => bsdf.f(wo, wi, mode),
+            Self::Conductor(bsdf) => bsdf.f(wo.into(), wi.into()),
+            Self::Dielectric(bsdf) => bsdf.f(wo.into(), wi.into(), mode),
             Self::ThinDielectric(_) => Spectrum::BLACK,
-            Self::CoatedDiffuse(bsdf) => bsdf.f(wo, wi, mode),
-            Self::CoatedConductor(bsdf) => bsdf.f(wo, wi, mode),
+            Self::CoatedDiffuse(bsdf) => bsdf.f(wo.into(), wi.into(), mode),
+            Self::CoatedConductor(bsdf) => bsdf.f(wo.into(), wi.into(), mode),
             Self::Whitted(bsdf) => bsdf.f(wo, wi),
             Self::Principled(bsdf) => bsdf.f(wo, wi, mode),
         }
@@ -207,13 +265,13 @@ impl Bsdf {
             return 0.0;
         }
         match self {
-            Self::Diffuse(bsdf) => Base::pdf(bsdf, wo, wi),
+            Self::Diffuse(bsdf) => bsdf.pdf(wo.into(), wi.into()),
             Self::DiffuseTransmission(bsdf) => bsdf.pdf(wo, wi, lobes),
-            Self::Conductor(bsdf) => Base::pdf(bsdf, wo, wi),
-            Self::Dielectric(bsdf) => bsdf.pdf(wo, wi, lobes),
+            Self::Conductor(bsdf) => bsdf.pdf(wo.into(), wi.into()),
+            Self::Dielectric(bsdf) => bsdf.pdf(wo.into(), wi.into(), lobes),
             Self::ThinDielectric(_) => 0.0,
-            Self::CoatedDiffuse(bsdf) => bsdf.pdf(wo, wi, mode),
-            Self::CoatedConductor(bsdf) => bsdf.pdf(wo, wi, mode),
+            Self::CoatedDiffuse(bsdf) => bsdf.pdf(wo.into(), wi.into(), mode),
+            Self::CoatedConductor(bsdf) => bsdf.pdf(wo.into(), wi.into(), mode),
             Self::Whitted(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::Principled(bsdf) => bsdf.pdf(wo, wi, lobes),
         }
@@ -228,13 +286,13 @@ impl Bsdf {
             return None;
         }
         match self {
-            Self::Diffuse(bsdf) => Base::sample(bsdf, wo, u),
+            Self::Diffuse(bsdf) => bsdf.sample(wo.into(), u).scalar(Lobes::DIFFUSE),
             Self::DiffuseTransmission(bsdf) => bsdf.sample(wo, uc, u, lobes),
-            Self::Conductor(bsdf) => Base::sample(bsdf, wo, u),
-            Self::Dielectric(bsdf) => bsdf.sample(wo, uc, u, mode, lobes),
+            Self::Conductor(bsdf) => bsdf.sample(wo.into(), u).scalar(Lobes::GLOSSY),
+            Self::Dielectric(bsdf) => bsdf.sample(wo.into(), uc, u, mode, lobes).scalar(Lobes::GLOSSY),
             Self::ThinDielectric(bsdf) => bsdf.sample(wo, uc, lobes),
-            Self::CoatedDiffuse(bsdf) => bsdf.sample(wo, uc, u, mode),
-            Self::CoatedConductor(bsdf) => bsdf.sample(wo, uc, u, mode),
+            Self::CoatedDiffuse(bsdf) => proportional(bsdf.sample(wo.into(), uc, u, mode)),
+            Self::CoatedConductor(bsdf) => proportional(bsdf.sample(wo.into(), uc, u, mode)),
             Self::Whitted(bsdf) => bsdf.sample(wo, uc, u, lobes),
             Self::Principled(bsdf) => bsdf.sample(wo, uc, u, mode, lobes),
         }?
@@ -245,13 +303,13 @@ impl Bsdf {
     #[inline]
     pub fn lobes(&self) -> Lobes {
         match self {
-            Self::Diffuse(bsdf) => Base::lobes(bsdf),
+            Self::Diffuse(bsdf) => bsdf.lobes(),
             Self::DiffuseTransmission(bsdf) => bsdf.lobes(),
-            Self::Conductor(bsdf) => Base::lobes(bsdf),
+            Self::Conductor(bsdf) => bsdf.lobes(),
             Self::Dielectric(bsdf) => bsdf.lobes(),
             Self::ThinDielectric(bsdf) => bsdf.lobes(),
-            Self::CoatedDiffuse(bsdf) => bsdf.lobes(),
-            Self::CoatedConductor(bsdf) => bsdf.lobes(),
+            Self::CoatedDiffuse(bsdf) => bsdf.lobes(bsdf.base.lobes()),
+            Self::CoatedConductor(bsdf) => bsdf.lobes(bsdf.base.lobes()),
             Self::Whitted(bsdf) => bsdf.lobes(),
             Self::Principled(bsdf) => bsdf.lobes(),
         }
@@ -261,14 +319,24 @@ impl Bsdf {
     /// little blur.
     pub fn regularize(&mut self) {
         match self {
-            Self::Conductor(bsdf) => Base::regularize(bsdf),
+            Self::Conductor(bsdf) => bsdf.regularize(),
             Self::Dielectric(bsdf) => bsdf.regularize(),
-            Self::CoatedDiffuse(bsdf) => bsdf.regularize(),
-            Self::CoatedConductor(bsdf) => bsdf.regularize(),
+            Self::CoatedDiffuse(bsdf) => bsdf.coat.regularize(),
+            Self::CoatedConductor(bsdf) => {
+                bsdf.coat.regularize();
+                bsdf.base.regularize();
+            }
             Self::Principled(bsdf) => bsdf.regularize(),
             Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::ThinDielectric(_) | Self::Whitted(_) => {}
         }
     }
+}
+
+/// A sample of which only `f / pdf` means anything.
+#[inline]
+fn proportional(sample: DirectionSample<f32>) -> Option<BsdfSample> {
+    let sample = sample.scalar(Lobes::GLOSSY)?;
+    Some(BsdfSample { pdf_is_proportional: true, ..sample })
 }
 
 /// The sides (reflection, transmission) in a set.

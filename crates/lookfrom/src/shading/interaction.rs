@@ -71,6 +71,11 @@ impl SurfaceInteraction {
         if n.dot(self.wo) > 0.0 { n } else { self.ng_facing() }
     }
 
+    /// True if light toward `wi` leaves on the other side of the surface than `wo`.
+    pub(crate) fn crosses(&self, wi: Vec3) -> bool {
+        (self.ng.dot(wi.as_dvec3()) > 0.0) != self.front
+    }
+
     /// Origin of a ray into `direction`: beyond the error bound, on the side to which the ray leaves.
     pub fn origin(&self, direction: Vec3) -> [f32; 3] {
         self.point.leave(self.ng.to_array(), direction.to_array())

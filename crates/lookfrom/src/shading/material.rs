@@ -13,7 +13,7 @@ mod kind;
 mod principled;
 mod whitted;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use lookfrom_scene::scene::CurveId;
 
 use crate::core::spectrum::Spectrum;
@@ -86,14 +86,14 @@ impl Shading {
         Self { bsdf: Bsdf::diffuse(reflectance), frame: bump::plain(surface), ng: surface.ng.as_vec3() }
     }
 
-    /// A diffuse surface in an orthonormal frame whose third axis is the shading normal.
-    pub(crate) fn diffuse(reflectance: Spectrum, [s, t, n]: [Vec3; 3], ng: DVec3) -> Self {
-        Self { bsdf: Bsdf::diffuse(reflectance), frame: Frame { s, t, n }, ng: ng.as_vec3() }
-    }
-
     /// The shading normal to the outside, unit length.
     pub fn n(&self) -> Vec3 {
         self.frame.n
+    }
+
+    /// The axes of the shading frame; the third is the shading normal.
+    pub(crate) fn axes(&self) -> [[f32; 3]; 3] {
+        [self.frame.s, self.frame.t, self.frame.n].map(|axis| axis.to_array())
     }
 
     /// The cosine of the angle between a unit direction and the shading normal.

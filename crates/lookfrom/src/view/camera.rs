@@ -16,7 +16,7 @@
 //! Everything here is f64; the resulting ray is rounded to f32 in *render space*, the world translated to the camera
 //! (see `world`). The first step in the computation of a pixel.
 
-use glam::{DMat3, DMat4, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use lookfrom_scene::camera::{Camera as Written, Lens, Projection, View, Window};
 use lookfrom_scene::{Error, Location, Result};
 
@@ -187,7 +187,7 @@ impl Camera {
                 // every ray from the lens intersects the pinhole's ray in the plane of focus
                 let pinhole = image_point - start;
                 let focus = start + pinhole * (focus_distance / pinhole.z);
-                let on_lens = warp::concentric_disk(lens).as_dvec2() * radius;
+                let on_lens = DVec2::from(warp::concentric_disk(lens).map(f64::from)) * radius;
                 let a = start + on_lens.extend(0.0);
                 (a, (focus - a) * (self.distance / focus_distance))
             }

@@ -174,9 +174,9 @@ fn one_is_the_first_of_two() {
 
 #[test]
 fn numbers_are_below_one_and_reach_both_ends() {
-    assert_eq!(unit(u32::MAX), ONE_MINUS_EPSILON);
-    assert_eq!(unit(0), 0.0);
-    assert!(unit(0xff) == 0.0 && unit(0x100) > 0.0);
+    assert_eq!(unit::<f32>(u32::MAX), ONE_MINUS_EPSILON);
+    assert_eq!(unit::<f32>(0), 0.0);
+    assert!(unit::<f32>(0xff) == 0.0 && unit::<f32>(0x100) > 0.0);
 }
 
 /// Chi-square of pairs over 16 × 16 cells.

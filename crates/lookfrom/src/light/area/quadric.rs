@@ -82,7 +82,7 @@ impl QuadricLight {
         // A direction in object space.
         let View { from: eye, distance, radius, one_minus_cos } = view;
         let inside = one_minus_cos.is_none();
-        let local = warp::uniform_cone(u, one_minus_cos.unwrap_or(2.0) as f32).as_dvec3();
+        let local = Vec3::from(warp::uniform_cone(u, one_minus_cos.unwrap_or(2.0) as f32)).as_dvec3();
         let axis = if distance > 0.0 { -eye / distance } else { DVec3::Z };
         let (s, t) = axis.any_orthonormal_pair();
         let direction = (local.x * s + local.y * t + local.z * axis).normalize();

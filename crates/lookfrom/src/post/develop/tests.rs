@@ -51,7 +51,7 @@ fn thresholds_agree_with_the_curve() {
             assert_eq!(fast(value), encode(value), "{value}");
         }
     }
-    for trial in 0..200_000 {
+    for trial in 0..200_000_u64 {
         let value = f32::from_bits(mix(trial) as u32 % (1.0_f32.to_bits() + 1));
         assert_eq!(fast(value), encode(value), "{value}");
     }

@@ -3,21 +3,23 @@
 //! Cook & Torrance 1982; Walter et al. 2007; Heitz 2014.
 
 use glam::Vec3;
+use lookfrom_simd::{Float, Mask, Real};
 
 use super::microfacet::TrowbridgeReitz;
-use super::{BsdfSample, Lobes, fresnel, is_grazing, layered::Base, same_side};
-use crate::core::math;
+use super::{DirectionSample, Lobes, fresnel, is_grazing, layered::Base, same_side};
+use crate::core::optics;
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 
 /// A metal with index of refraction `eta` and extinction `k`, both divided by the surrounding index.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conductor {
+pub struct Conductor<R = f32> {
     /// Index of refraction over the surrounding one.
-    pub(crate) eta: Spectrum,
+    pub(crate) eta: Spectrum<R>,
     /// Extinction over the surrounding index.
-    pub(crate) k: Spectrum,
+    pub(crate) k: Spectrum<R>,
     /// Roughness of the surface.
-    pub(crate) roughness: TrowbridgeReitz,
+    pub(crate) roughness: TrowbridgeReitz<R>,
 }
 
 impl Conductor {
@@ -26,63 +28,105 @@ impl Conductor {
         Self { eta, k, roughness }
     }
 
-    /// `f` with the half vector `wm`; both directions on one side, neither grazing.
-    #[inline]
-    fn rough_f(&self, wo: Vec3, wi: Vec3, wm: Vec3) -> Spectrum {
-        let fresnel = fresnel::conductor(wo.dot(wm).abs(), self.eta, self.k);
-        fresnel * (self.roughness.d(wm) * self.roughness.g(wo, wi) / (4.0 * wo.z * wi.z))
-    }
-}
-
-/// The half vector of two directions on one side, with z > 0; `None` where there is none.
-#[inline]
-pub(super) fn half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {
-    let wm = (wo + wi).try_normalize()?;
-    Some(if wm.z < 0.0 { -wm } else { wm })
-}
-
-impl Base for Conductor {
-    #[inline]
-    fn f(&self, wo: Vec3, wi: Vec3) -> Spectrum {
-        if self.roughness.is_smooth() || !same_side(wo, wi) {
-            return Spectrum::BLACK;
-        }
-        half_vector(wo, wi).map_or(Spectrum::BLACK, |wm| self.rough_f(wo, wi, wm))
-    }
-
-    #[inline]
-    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if self.roughness.is_smooth() || !same_side(wo, wi) {
-            return 0.0;
-        }
-        half_vector(wo, wi).map_or(0.0, |wm| 0.25 * self.roughness.visible_per_cosine(wo, wm))
-    }
-
-    #[inline]
-    fn sample(&self, wo: Vec3, u: [f32; 2]) -> Option<BsdfSample> {
-        if is_grazing(wo) {
-            return None;
-        }
-        if self.roughness.is_smooth() {
-            let wi = Vec3::new(-wo.x, -wo.y, wo.z);
-            let f = fresnel::conductor(wi.z.abs(), self.eta, self.k) / wi.z.abs();
-            return Some(BsdfSample::new(wi, f, 1.0, Lobes::REFLECTION | Lobes::SPECULAR));
-        }
-        let wm = self.roughness.sample(wo, u);
-        let wi = math::reflect(wo, wm);
-        if !same_side(wo, wi) {
-            return None;
-        }
-        let pdf = 0.25 * self.roughness.visible_per_cosine(wo, wm);
-        Some(BsdfSample::new(wi, self.rough_f(wo, wi, wm), pdf, Lobes::REFLECTION | Lobes::GLOSSY))
-    }
-
-    #[inline]
-    fn lobes(&self) -> Lobes {
+    /// The kinds of scattering.
+    pub(super) fn lobes(&self) -> Lobes {
         Lobes::REFLECTION | if self.roughness.is_smooth() { Lobes::SPECULAR } else { Lobes::GLOSSY }
     }
 
-    fn regularize(&mut self) {
+    pub(super) fn regularize(&mut self) {
         self.roughness.regularize();
+    }
+}
+
+impl<R: Real> Conductor<R> {
+    /// `f` with the half vector `wm`; both directions on one side, neither grazing.
+    #[inline(always)]
+    fn rough_f(&self, wo: Vector<R>, wi: Vector<R>, wm: Vector<R>) -> Spectrum<R> {
+        let fresnel = fresnel::conductor(Float::abs(wo.dot(wm)), self.eta, self.k);
+        fresnel * (self.roughness.d(wm) * self.roughness.g(wo, wi) / (wo.z * 4.0 * wi.z))
+    }
+
+    #[inline(always)]
+    fn sample_smooth(&self, wo: Vector<R>) -> DirectionSample<R> {
+        let is_valid = !is_grazing(wo);
+        let wi = Vector { x: -wo.x, y: -wo.y, z: wo.z };
+        let cos = Float::abs(wi.z);
+        let f = fresnel::conductor(cos, self.eta, self.k) / cos;
+        let (is_specular, is_transmission) = (is_valid | !is_valid, is_valid & !is_valid);
+        DirectionSample {
+            wi,
+            f,
+            pdf: cos.like(1.0),
+            eta: cos.like(1.0),
+            is_specular,
+            is_transmission,
+            is_valid,
+        }
+    }
+
+    #[inline(always)]
+    fn sample_rough(&self, wo: Vector<R>, u: [R; 2]) -> DirectionSample<R> {
+        let wm = self.roughness.sample(wo, u);
+        let wi = optics::reflect(wo, wm);
+        let pdf = self.roughness.visible_per_cosine(wo, wm) * 0.25;
+        let is_valid = same_side(wo, wi);
+        let no = is_valid & !is_valid;
+        let f = self.rough_f(wo, wi, wm);
+        DirectionSample { wi, f, pdf, eta: pdf.like(1.0), is_specular: no, is_transmission: no, is_valid }
+    }
+}
+
+/// The normal of the microfacets that reflect `wi` toward `wo`, with z ≥ 0, and whether there is one.
+#[inline(always)]
+pub(super) fn half_vector<R: Real>(wo: Vector<R>, wi: Vector<R>) -> (Vector<R>, R::Mask) {
+    let (wm, exists) = (wo + wi).try_normalize();
+    (wm.negate_where(wm.z.lt(wm.z.like(0.0))), exists)
+}
+
+/// The same for one pair of directions.
+pub(super) fn try_half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {
+    let (wm, exists) = half_vector(wo.into(), wi.into());
+    exists.then(|| wm.into())
+}
+
+impl<R: Real> Base<R> for Conductor<R> {
+    #[inline(always)]
+    fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+        let (wm, exists) = half_vector(wo, wi);
+        let is_lit = exists & same_side(wo, wi) & !self.roughness.is_smooth();
+        let black = Spectrum::splat(wo.z.like(0.0));
+        if !is_lit.any() {
+            return black;
+        }
+        Spectrum::select(is_lit, self.rough_f(wo, wi, wm), black)
+    }
+
+    #[inline(always)]
+    fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R {
+        let (wm, exists) = half_vector(wo, wi);
+        let is_lit = exists & same_side(wo, wi) & !self.roughness.is_smooth();
+        R::select(is_lit, self.roughness.visible_per_cosine(wo, wm) * 0.25, wo.z.like(0.0))
+    }
+
+    #[inline(always)]
+    fn sample(&self, wo: Vector<R>, u: [R; 2]) -> DirectionSample<R> {
+        let is_smooth = self.roughness.is_smooth();
+        if is_smooth.all() {
+            self.sample_smooth(wo)
+        } else if is_smooth.any() {
+            DirectionSample::select(is_smooth, self.sample_smooth(wo), self.sample_rough(wo, u))
+        } else {
+            self.sample_rough(wo, u)
+        }
+    }
+
+    #[inline(always)]
+    fn is_specular(&self) -> R::Mask {
+        self.roughness.is_smooth()
+    }
+
+    #[inline(always)]
+    fn has_density(&self) -> R::Mask {
+        !self.roughness.is_smooth()
     }
 }

@@ -3,46 +3,43 @@
 //! Walter et al. 2007; Veach 1997, § 5.2 (why transmitted radiance is scaled by 1/η² and importance is not).
 
 use glam::Vec3;
+use lookfrom_simd::{Float, Mask, Real};
 
 use super::microfacet::TrowbridgeReitz;
-use super::{BsdfSample, Lobes, Mode, fresnel, is_grazing};
-use crate::core::math;
+use super::{BsdfSample, DirectionSample, Lobes, Mode, fresnel, is_grazing};
+use crate::core::optics;
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 
-/// The boundary of a dielectric whose index of refraction is `eta` times that outside.
+/// A dielectric boundary; `eta` is the index of refraction inside divided by the one outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dielectric {
+pub struct Dielectric<R = f32> {
     /// Inside over outside.
-    pub(crate) eta: f32,
-    /// Roughness of the surface.
-    pub(crate) roughness: TrowbridgeReitz,
+    pub(crate) eta: R,
+    /// Roughness of the boundary.
+    pub(crate) roughness: TrowbridgeReitz<R>,
 }
 
-/// The microfacet that scatters between a pair of directions at a rough boundary.
-struct Facet {
-    /// Its normal, z > 0.
-    wm: Vec3,
+/// A microfacet that scatters light between two directions.
+#[derive(Clone, Copy)]
+struct Facet<R: Real> {
+    /// Its normal, z ≥ 0.
+    wm: Vector<R>,
     /// Its Fresnel reflectance.
-    fresnel: f32,
-    /// True if the directions are on one side.
-    reflects: bool,
-    /// The index beyond the boundary over the one on the side of `wo`; 1 for reflection.
-    eta: f32,
+    fresnel: R,
+    /// True for reflection, false for refraction.
+    reflects: R::Mask,
+    /// The index of refraction on the side of `wi` over the one on the side of `wo`.
+    eta: R,
 }
 
 impl Dielectric {
-    /// By the index of refraction inside over outside (0 counts as 1).
+    /// By its relative index and its roughness. Index 0 and NaN count as 1, as in pbrt.
     pub fn new(eta: f32, roughness: TrowbridgeReitz) -> Self {
         Self { eta: fresnel::valid_eta(eta), roughness }
     }
 
-    /// True if light leaves in discrete directions only. A boundary between equal indices is specular,
-    /// however rough.
-    #[inline]
-    fn is_specular(&self) -> bool {
-        self.eta == 1.0 || self.roughness.is_smooth()
-    }
-
+    /// The kinds of scattering. With equal indices nothing is reflected or refracted.
     #[inline]
     pub(super) fn lobes(&self) -> Lobes {
         let sides =
@@ -53,142 +50,167 @@ impl Dielectric {
     pub(super) fn regularize(&mut self) {
         self.roughness.regularize();
     }
+}
 
-    /// The microfacet that scatters `wo` to `wi`, or `None` where there is none.
-    #[inline]
-    fn facet(&self, wo: Vec3, wi: Vec3) -> Option<Facet> {
-        if self.is_specular() || is_grazing(wo) || is_grazing(wi) {
-            return None;
-        }
-        let reflects = wo.z * wi.z > 0.0;
-        let eta = if reflects { 1.0 } else { fresnel::relative_eta(wo.z, self.eta) };
-        let wm = (wi * eta + wo).try_normalize()?;
-        let wm = if wm.z < 0.0 { -wm } else { wm };
-        // Facets seen from behind do not scatter.
-        if wm.dot(wi) * wi.z < 0.0 || wm.dot(wo) * wo.z < 0.0 {
-            return None;
-        }
-        Some(Facet { wm, fresnel: fresnel::dielectric(wo.dot(wm), self.eta), reflects, eta })
+impl<R: Real> Dielectric<R> {
+    /// True if it only reflects and refracts in single directions.
+    #[inline(always)]
+    pub(super) fn is_specular(&self) -> R::Mask {
+        Float::eq(self.eta, self.eta.like(1.0)) | self.roughness.is_smooth()
     }
 
-    /// `f` for reflection or refraction by the facet.
-    #[inline]
-    fn facet_f(&self, wo: Vec3, wi: Vec3, facet: &Facet, mode: Mode) -> Spectrum {
+    /// The facet that scatters light between two directions, and whether there is one.
+    #[inline(always)]
+    fn facet(&self, wo: Vector<R>, wi: Vector<R>) -> (Facet<R>, R::Mask) {
+        let (zero, one) = (self.eta.like(0.0), self.eta.like(1.0));
+        let reflects = (wo.z * wi.z).gt(zero);
+        let eta = R::select(reflects, one, fresnel::relative_eta(wo.z, self.eta));
+        let (wm, exists) = (wi * eta + wo).try_normalize();
+        let wm = wm.negate_where(wm.z.lt(zero));
+        // The backs of facets do not scatter.
+        let is_back = (wm.dot(wi) * wi.z).lt(zero) | (wm.dot(wo) * wo.z).lt(zero);
+        let is_usable = exists & !is_back & !self.is_specular() & !is_grazing(wo) & !is_grazing(wi);
+        (Facet { wm, fresnel: fresnel::dielectric(wo.dot(wm), self.eta), reflects, eta }, is_usable)
+    }
+
+    /// `f` by a facet, in each lane of a spectrum.
+    #[inline(always)]
+    fn facet_f(&self, wo: Vector<R>, wi: Vector<R>, facet: &Facet<R>, mode: Mode) -> R {
         let &Facet { wm, fresnel, reflects, eta } = facet;
-        let visible = self.roughness.d(wm) * self.roughness.g(wo, wi) / (wo.z * wi.z).abs();
-        let f = if reflects {
-            0.25 * visible * fresnel
-        } else {
-            let transmitted =
-                visible * (1.0 - fresnel) * wo.dot(wm).abs() * refraction_jacobian(wo, wi, wm, eta);
-            radiance_scale(transmitted, eta, mode)
-        };
-        Spectrum([f; 4])
-    }
-
-    /// Density of `wi` by way of the facet, given the probability of its side.
-    #[inline]
-    fn facet_pdf(&self, wo: Vec3, wi: Vec3, facet: &Facet, probability: f32) -> f32 {
-        let visible = self.roughness.visible_per_cosine(wo, facet.wm);
-        let jacobian = if facet.reflects {
-            0.25
-        } else {
-            wo.dot(facet.wm).abs() * refraction_jacobian(wo, wi, facet.wm, facet.eta)
-        };
-        visible * jacobian * probability
-    }
-
-    pub(super) fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        self.facet(wo, wi).map_or(Spectrum::BLACK, |facet| self.facet_f(wo, wi, &facet, mode))
-    }
-
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3, lobes: Lobes) -> f32 {
-        let Some(facet) = self.facet(wo, wi) else { return 0.0 };
-        let [r, t] = lobes.allowed([facet.fresnel, 1.0 - facet.fresnel]);
-        if r + t == 0.0 {
-            return 0.0;
+        let visible = self.roughness.d(wm) * self.roughness.g(wo, wi) / Float::abs(wo.z * wi.z);
+        let reflected = visible * 0.25 * fresnel;
+        if reflects.all() {
+            return reflected;
         }
-        let part = if facet.reflects { r } else { t };
-        self.facet_pdf(wo, wi, &facet, part / (r + t))
+        let jacobian = refraction_jacobian(wo, wi, wm, eta);
+        let transmitted = visible * (fresnel.like(1.0) - fresnel) * Float::abs(wo.dot(wm)) * jacobian;
+        R::select(reflects, reflected, radiance_scale(transmitted, eta, mode))
     }
 
+    /// The density of `wi` by a facet whose side is chosen with a probability.
+    #[inline(always)]
+    fn facet_pdf(&self, wo: Vector<R>, wi: Vector<R>, facet: &Facet<R>, probability: R) -> R {
+        let &Facet { wm, reflects, eta, .. } = facet;
+        let visible = self.roughness.visible_per_cosine(wo, wm);
+        let refraction = Float::abs(wo.dot(wm)) * refraction_jacobian(wo, wi, wm, eta);
+        visible * R::select(reflects, eta.like(0.25), refraction) * probability
+    }
+
+    /// As [`super::Bsdf::f`].
+    #[inline(always)]
+    pub(super) fn f(&self, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> Spectrum<R> {
+        let (facet, is_usable) = self.facet(wo, wi);
+        let zero = wo.z.like(0.0);
+        if !is_usable.any() {
+            return Spectrum::splat(zero);
+        }
+        Spectrum::splat(R::select(is_usable, self.facet_f(wo, wi, &facet, mode), zero))
+    }
+
+    /// As [`super::Bsdf::pdf`].
+    #[inline(always)]
+    pub(super) fn pdf(&self, wo: Vector<R>, wi: Vector<R>, lobes: Lobes) -> R {
+        let (facet, is_usable) = self.facet(wo, wi);
+        let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
+        if !is_usable.any() {
+            return zero;
+        }
+        let [r, t] = lobes.allowed([facet.fresnel, one - facet.fresnel]);
+        let part = R::select(facet.reflects, r, t);
+        let pdf = self.facet_pdf(wo, wi, &facet, part / (r + t));
+        R::select(is_usable & (r + t).gt(zero), pdf, zero)
+    }
+
+    /// As [`super::Bsdf::sample`].
+    #[inline(always)]
     pub(super) fn sample(
         &self,
-        wo: Vec3,
-        uc: f32,
-        u: [f32; 2],
+        wo: Vector<R>,
+        uc: R,
+        u: [R; 2],
         mode: Mode,
         lobes: Lobes,
-    ) -> Option<BsdfSample> {
-        if is_grazing(wo) {
-            return None;
-        }
-        if self.is_specular() {
-            return self.sample_smooth(wo, uc, mode, lobes);
-        }
-        // Sample a visible normal, and then a side by the facet's Fresnel reflectance.
-        let wm = self.roughness.sample(wo, u);
-        let fresnel = fresnel::dielectric(wo.dot(wm), self.eta);
-        let [r, t] = lobes.allowed([fresnel, 1.0 - fresnel]);
-        if r + t == 0.0 {
-            return None;
-        }
-        let reflection = r / (r + t);
-        let reflects = uc < reflection;
-        let (wi, eta) = if reflects {
-            (math::reflect(wo, wm), 1.0)
+    ) -> DirectionSample<R> {
+        let is_specular = self.is_specular();
+        if is_specular.all() {
+            self.sample_smooth(wo, uc, mode, lobes)
+        } else if is_specular.any() {
+            let smooth = self.sample_smooth(wo, uc, mode, lobes);
+            DirectionSample::select(is_specular, smooth, self.sample_rough(wo, uc, u, mode, lobes))
         } else {
-            let towards = if wo.dot(wm) < 0.0 { -wm } else { wm };
-            let eta = fresnel::relative_eta(wo.dot(wm), self.eta);
-            (math::refract(wo, towards, eta)?, eta)
-        };
-        if is_grazing(wi) || (wo.z * wi.z > 0.0) != reflects {
-            return None;
+            self.sample_rough(wo, uc, u, mode, lobes)
         }
-        let facet = Facet { wm, fresnel, reflects, eta };
-        let (probability, side) =
-            if reflects { (reflection, Lobes::REFLECTION) } else { (1.0 - reflection, Lobes::TRANSMISSION) };
-        let f = self.facet_f(wo, wi, &facet, mode);
-        let pdf = self.facet_pdf(wo, wi, &facet, probability);
-        Some(BsdfSample { eta, ..BsdfSample::new(wi, f, pdf, side | Lobes::GLOSSY) })
     }
 
-    #[inline]
-    fn sample_smooth(&self, wo: Vec3, uc: f32, mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        let fresnel = fresnel::dielectric(wo.z, self.eta);
-        let [r, t] = lobes.allowed([fresnel, 1.0 - fresnel]);
-        if r + t == 0.0 {
-            return None;
-        }
+    #[inline(always)]
+    fn sample_rough(&self, wo: Vector<R>, uc: R, u: [R; 2], mode: Mode, lobes: Lobes) -> DirectionSample<R> {
+        let (zero, one) = (uc.like(0.0), uc.like(1.0));
+        // Choose a visible facet, and then a side by its reflectance.
+        let wm = self.roughness.sample(wo, u);
+        let cos = wo.dot(wm);
+        let fresnel = fresnel::dielectric(cos, self.eta);
+        let [r, t] = lobes.allowed([fresnel, one - fresnel]);
         let reflection = r / (r + t);
-        if uc < reflection {
-            let wi = Vec3::new(-wo.x, -wo.y, wo.z);
-            let f = Spectrum([fresnel / wi.z.abs(); 4]);
-            return Some(BsdfSample::new(wi, f, reflection, Lobes::REFLECTION | Lobes::SPECULAR));
+        let reflects = uc.lt(reflection);
+        let eta = fresnel::relative_eta(cos, self.eta);
+        let (refracted, is_refracted) = optics::refract(wo, wm.negate_where(cos.lt(zero)), eta);
+        let wi = Vector::select(reflects, optics::reflect(wo, wm), refracted);
+        let eta = R::select(reflects, one, eta);
+        let stays = (wo.z * wi.z).gt(zero);
+        let is_on_side = (stays & reflects) | (!stays & !reflects & is_refracted);
+        let is_valid = is_on_side & (r + t).gt(zero) & !is_grazing(wo) & !is_grazing(wi);
+        let facet = Facet { wm, fresnel, reflects, eta };
+        let probability = R::select(reflects, reflection, one - reflection);
+        DirectionSample {
+            wi,
+            f: Spectrum::splat(self.facet_f(wo, wi, &facet, mode)),
+            pdf: self.facet_pdf(wo, wi, &facet, probability),
+            eta,
+            is_specular: reflects & !reflects,
+            is_transmission: !reflects,
+            is_valid,
         }
+    }
+
+    #[inline(always)]
+    fn sample_smooth(&self, wo: Vector<R>, uc: R, mode: Mode, lobes: Lobes) -> DirectionSample<R> {
+        let (zero, one) = (uc.like(0.0), uc.like(1.0));
+        let fresnel = fresnel::dielectric(wo.z, self.eta);
+        let [r, t] = lobes.allowed([fresnel, one - fresnel]);
+        let reflection = r / (r + t);
+        let reflects = uc.lt(reflection);
         let eta = fresnel::relative_eta(wo.z, self.eta);
-        let wi = math::refract(wo, Vec3::new(0.0, 0.0, 1.0_f32.copysign(wo.z)), eta)?;
-        if is_grazing(wi) {
-            return None;
+        let normal = Vector { x: zero, y: zero, z: Float::copysign(one, wo.z) };
+        let (refracted, is_refracted) = optics::refract(wo, normal, eta);
+        let wi = Vector::select(reflects, Vector { x: -wo.x, y: -wo.y, z: wo.z }, refracted);
+        let cos = Float::abs(wi.z);
+        let f = R::select(reflects, fresnel / cos, radiance_scale((one - fresnel) / cos, eta, mode));
+        DirectionSample {
+            wi,
+            f: Spectrum::splat(f),
+            pdf: R::select(reflects, reflection, one - reflection),
+            eta: R::select(reflects, one, eta),
+            is_specular: reflects | !reflects,
+            is_transmission: !reflects,
+            is_valid: (reflects | (is_refracted & !is_grazing(wi))) & (r + t).gt(zero) & !is_grazing(wo),
         }
-        let f = Spectrum([radiance_scale((1.0 - fresnel) / wi.z.abs(), eta, mode); 4]);
-        let lobe = Lobes::TRANSMISSION | Lobes::SPECULAR;
-        Some(BsdfSample { eta, ..BsdfSample::new(wi, f, 1.0 - reflection, lobe) })
     }
 }
 
-/// `|dω_m / dω_i|` of refraction by a facet; 0 where it has no finite value.
-#[inline]
-pub(super) fn refraction_jacobian(wo: Vec3, wi: Vec3, wm: Vec3, eta: f32) -> f32 {
+/// Solid angle of half vectors over solid angle of refracted directions, divided by `|wo·wm|`; 0 where it is
+/// undefined.
+#[inline(always)]
+pub(super) fn refraction_jacobian<R: Real>(wo: Vector<R>, wi: Vector<R>, wm: Vector<R>, eta: R) -> R {
+    let zero = eta.like(0.0);
     let sum = wi.dot(wm) + wo.dot(wm) / eta;
     let squared = sum * sum;
-    if squared > 0.0 { (wi.dot(wm).abs() / squared).min(f32::MAX) } else { 0.0 }
+    let jacobian = Float::min(Float::abs(wi.dot(wm)) / squared, eta.like(f32::MAX));
+    R::select(squared.gt(zero), jacobian, zero)
 }
 
-/// Scale of transmitted light: radiance is spread over η² times the solid angle on the side of `wo`,
-/// importance is not.
-#[inline]
-pub(super) fn radiance_scale(f: f32, eta: f32, mode: Mode) -> f32 {
+/// Radiance is scaled by 1/η² on refraction.
+#[inline(always)]
+pub(super) fn radiance_scale<R: Real>(f: R, eta: R, mode: Mode) -> R {
     match mode {
         Mode::Radiance => f / (eta * eta),
         Mode::Importance => f,
@@ -212,7 +234,7 @@ impl ThinDielectric {
     #[inline]
     pub(super) fn sample(&self, wo: Vec3, uc: f32, lobes: Lobes) -> Option<BsdfSample> {
         // R + T R T + T R³ T + … = R + T² R / (1 − R²)
-        let once = math::fresnel_dielectric(wo.z.abs(), self.eta);
+        let once = optics::fresnel_dielectric(wo.z.abs(), self.eta);
         let fresnel =
             if once < 1.0 { once + (1.0 - once) * (1.0 - once) * once / (1.0 - once * once) } else { once };
         let [r, t] = lobes.allowed([fresnel, 1.0 - fresnel]);

@@ -2,54 +2,74 @@
 //!
 //! Lambert 1760.
 
-use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
-use super::{BsdfSample, Lobes, is_grazing, layered::Base, same_side};
+use glam::Vec3;
+use lookfrom_simd::{Float, Real};
+
+use super::{BsdfSample, DirectionSample, Lobes, is_grazing, layered::Base, same_side};
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 use crate::core::warp;
 
-/// Lambertian reflection: reflects the fraction `reflectance` (0 … 1) of the light, uniformly.
+/// Lambertian reflection, on both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Diffuse {
-    /// 0 … 1.
-    pub(crate) reflectance: Spectrum,
+pub struct Diffuse<R = f32> {
+    /// Albedo.
+    pub(crate) reflectance: Spectrum<R>,
 }
 
 impl Diffuse {
-    /// The reflectance is clamped to 0 … 1.
+    /// By its reflectance, clamped to 0 … 1.
     pub fn new(reflectance: Spectrum) -> Self {
         Self { reflectance: reflectance.map(|r| r.clamp(0.0, 1.0)) }
     }
-}
 
-impl Base for Diffuse {
-    #[inline]
-    fn f(&self, wo: Vec3, wi: Vec3) -> Spectrum {
-        if same_side(wo, wi) { self.reflectance * FRAC_1_PI } else { Spectrum::BLACK }
-    }
-
-    #[inline]
-    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if same_side(wo, wi) { warp::cosine_hemisphere_pdf(wi.z.abs()) } else { 0.0 }
-    }
-
-    #[inline]
-    fn sample(&self, wo: Vec3, u: [f32; 2]) -> Option<BsdfSample> {
-        if is_grazing(wo) {
-            return None;
-        }
-        let wi = cosine_direction(u, wo.z);
-        let pdf = warp::cosine_hemisphere_pdf(wi.z.abs());
-        Some(BsdfSample::diffuse(wi, self.reflectance * FRAC_1_PI, pdf))
-    }
-
-    #[inline]
-    fn lobes(&self) -> Lobes {
+    /// The kinds of scattering.
+    pub(super) fn lobes(&self) -> Lobes {
         if self.reflectance.is_black() { Lobes::NONE } else { Lobes::REFLECTION | Lobes::DIFFUSE }
     }
+}
 
-    fn regularize(&mut self) {}
+impl<R: Real> Base<R> for Diffuse<R> {
+    #[inline(always)]
+    fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+        let black = Spectrum::splat(wo.z.like(0.0));
+        Spectrum::select(same_side(wo, wi), self.reflectance * wo.z.like(FRAC_1_PI), black)
+    }
+
+    #[inline(always)]
+    fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R {
+        let pdf = warp::cosine_hemisphere_pdf(Float::abs(wi.z));
+        R::select(same_side(wo, wi), pdf, wo.z.like(0.0))
+    }
+
+    #[inline(always)]
+    fn sample(&self, wo: Vector<R>, u: [R; 2]) -> DirectionSample<R> {
+        let wi = cosine_direction(u, wo.z);
+        let is_valid = !is_grazing(wo);
+        let no = is_valid & !is_valid;
+        DirectionSample {
+            wi,
+            f: self.reflectance * wo.z.like(FRAC_1_PI),
+            pdf: warp::cosine_hemisphere_pdf(Float::abs(wi.z)),
+            eta: wo.z.like(1.0),
+            is_specular: no,
+            is_transmission: no,
+            is_valid,
+        }
+    }
+
+    #[inline(always)]
+    fn is_specular(&self) -> R::Mask {
+        let black = self.reflectance.is_black();
+        black & !black
+    }
+
+    #[inline(always)]
+    fn has_density(&self) -> R::Mask {
+        !self.reflectance.is_black()
+    }
 }
 
 /// Reflects the fraction `reflectance` of the light and transmits the fraction `transmittance`, both uniformly.
@@ -105,7 +125,7 @@ impl DiffuseTransmission {
         } else {
             (-wo.z, 1.0 - reflection, Lobes::TRANSMISSION)
         };
-        let wi = cosine_direction(u, side);
+        let wi = Vec3::from(cosine_direction(u, side));
         let pdf = probability * warp::cosine_hemisphere_pdf(wi.z.abs());
         Some(BsdfSample::new(wi, self.f(wo, wi), pdf, lobe | Lobes::DIFFUSE))
     }
@@ -123,8 +143,10 @@ impl DiffuseTransmission {
 }
 
 /// A cosine-distributed direction about the z axis, on the side of the sign of `side`.
-#[inline]
-pub(super) fn cosine_direction(u: [f32; 2], side: f32) -> Vec3 {
-    let up = warp::cosine_hemisphere(u, Vec3::Z);
-    Vec3::new(up.x, up.y, up.z.copysign(side))
+#[inline(always)]
+pub(super) fn cosine_direction<R: Real>(u: [R; 2], side: R) -> Vector<R> {
+    let up = warp::cosine_about_z(u);
+    // Zeros are positive, so that a direction has the same bits however it is composed.
+    let zero = side.like(0.0);
+    Vector { x: up.x + zero, y: up.y + zero, z: Float::copysign(up.z, side) }
 }

@@ -2,9 +2,9 @@
 //!
 //! Fresnel 1823, for unpolarised light; the form for a complex index of refraction follows Born & Wolf 1959.
 
-use glam::Vec4;
+use lookfrom_simd::{Float, Real};
 
-use crate::core::math;
+use crate::core::optics;
 use crate::core::spectrum::Spectrum;
 
 /// The largest index of refraction or extinction that is distinguished; beyond it f32 squares overflow.
@@ -19,42 +19,49 @@ pub(super) fn valid_eta(eta: f32) -> f32 {
 
 /// Fresnel reflectance of a dielectric, for the signed cosine to the normal: negative means from inside. `eta`
 /// is the index of refraction inside divided by the one outside.
-#[inline]
-pub fn dielectric(cos_theta: f32, eta: f32) -> f32 {
-    math::fresnel_dielectric(cos_theta.abs(), relative_eta(cos_theta, eta))
+#[inline(always)]
+pub fn dielectric<R: Real>(cos_theta: R, eta: R) -> R {
+    optics::fresnel_dielectric(Float::abs(cos_theta), relative_eta(cos_theta, eta))
 }
 
 /// The index of refraction beyond the surface divided by the one on the incident side, by the sign of the
 /// cosine.
-#[inline]
-pub(super) fn relative_eta(cos_theta: f32, eta: f32) -> f32 {
-    if cos_theta < 0.0 { 1.0 / eta } else { eta }
+#[inline(always)]
+pub(super) fn relative_eta<R: Real>(cos_theta: R, eta: R) -> R {
+    R::select(cos_theta.lt(eta.like(0.0)), eta.like(1.0) / eta, eta)
 }
 
 /// Fresnel reflectance of a metal of index `eta` and extinction `k` (both over the index outside), lane by lane,
 /// for the cosine of the angle to the normal; a negative cosine counts as 0.
-#[inline]
-pub fn conductor(cos_theta: f32, eta: Spectrum, k: Spectrum) -> Spectrum {
+#[inline(always)]
+pub fn conductor<R: Real>(cos_theta: R, eta: Spectrum<R>, k: Spectrum<R>) -> Spectrum<R> {
+    let cos = Float::clamp(cos_theta, 0.0, 1.0);
+    let ([eta0, eta1, eta2, eta3], [k0, k1, k2, k3]) = (eta.0, k.0);
+    let [a, b] = [conductor_at(cos, eta0, k0), conductor_at(cos, eta1, k1)];
+    Spectrum([a, b, conductor_at(cos, eta2, k2), conductor_at(cos, eta3, k3)])
+}
+
+/// The same for one wavelength, for a cosine within 0 … 1.
+#[inline(always)]
+fn conductor_at<R: Real>(cos: R, eta: R, k: R) -> R {
     /// Far below any real value; prevents 0 / 0 in unused lanes.
-    const TINY: Vec4 = Vec4::splat(1e-30);
-    let valid = |lanes: Spectrum| Vec4::from_array(lanes.0).max(Vec4::ZERO).min(Vec4::splat(GREATEST));
-    let (eta, k) = (valid(eta), valid(k));
-    let cos = cos_theta.clamp(0.0, 1.0);
+    const TINY: f32 = 1e-30;
+    let (eta, k) = (Float::clamp(eta, 0.0, GREATEST), Float::clamp(k, 0.0, GREATEST));
     let cos2 = cos * cos;
-    let sin2 = 1.0 - cos2;
+    let sin2 = cos.like(1.0) - cos2;
     // (a + ib)² = (η + ik)² − sin²θ, so a is the real part of the index times the refracted cosine.
     let difference = (eta - k) * (eta + k) - sin2;
     let product = eta * k;
-    let modulus = (difference * difference + 4.0 * product * product).sqrt();
-    // The larger of a and b comes from the sum that does not cancel, the other from a b = η k.
-    let greater = (0.5 * (modulus + difference.abs())).sqrt();
+    let modulus = Float::sqrt(difference * difference + product * 4.0 * product);
+    // Compute the larger of a and b from the sum that does not cancel, the other from a b = η k.
+    let greater = Float::sqrt((modulus + Float::abs(difference)) * 0.5);
     let lesser = product / (greater + TINY);
-    let a = Vec4::select(difference.cmpge(Vec4::ZERO), greater, lesser);
-    let twice = 2.0 * a * cos;
+    let a = R::select(difference.lt(cos.like(0.0)), lesser, greater);
+    let twice = a * 2.0 * cos;
     let perpendicular = (modulus + cos2 - twice) / (modulus + cos2 + twice);
-    // At normal incidence both polarisations agree: the factor becomes one.
+    // At normal incidence there is one polarisation only: the factor becomes one.
     let (even, odd) = (cos2 * modulus + sin2 * sin2 + TINY, twice * sin2);
-    Spectrum((0.5 * perpendicular * (1.0 + (even - odd) / (even + odd))).to_array())
+    perpendicular * 0.5 * ((even - odd) / (even + odd) + 1.0)
 }
 
 /// The index and extinction `(η, k)` of a metal with the given `reflectance` at normal incidence, as pbrt chooses

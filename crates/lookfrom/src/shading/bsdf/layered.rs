@@ -16,28 +16,31 @@
 //!
 //! Guo, Hašan & Zhao 2018 (position-free Monte Carlo).
 
-use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
+
+use lookfrom_simd::{Bits, Float, Mask, Real};
 
 use super::dielectric::Dielectric;
 use super::henyey_greenstein::HenyeyGreenstein;
 use super::microfacet::TrowbridgeReitz;
-use super::{BsdfSample, Lobes, Mode, is_grazing};
+use super::{DirectionSample, Lobes, Mode, is_grazing};
+use crate::core::elementary::{exp, ln};
 use crate::core::hash;
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 
 /// An opaque BSDF, which can be the base under a coat.
-pub trait Base: Copy {
+pub trait Base<R: Real>: Copy {
     /// As [`super::Bsdf::f`].
-    fn f(&self, wo: Vec3, wi: Vec3) -> Spectrum;
+    fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R>;
     /// As [`super::Bsdf::pdf`].
-    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32;
+    fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R;
     /// As [`super::Bsdf::sample`], without a choice between lobes.
-    fn sample(&self, wo: Vec3, u: [f32; 2]) -> Option<BsdfSample>;
-    /// As [`super::Bsdf::lobes`].
-    fn lobes(&self) -> Lobes;
-    /// As [`super::Bsdf::regularize`].
-    fn regularize(&mut self);
+    fn sample(&self, wo: Vector<R>, u: [R; 2]) -> DirectionSample<R>;
+    /// True if it reflects in single directions.
+    fn is_specular(&self) -> R::Mask;
+    /// True if it has a lobe that is not specular.
+    fn has_density(&self) -> R::Mask;
 }
 
 /// A coat: a dielectric boundary and the slab below it.
@@ -76,18 +79,19 @@ impl Default for CoatLayer {
 
 /// A base under a coat.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Layered<B> {
+pub struct Layered<B, R = f32> {
     /// The coat's boundary.
-    pub(crate) coat: Dielectric,
+    pub(crate) coat: Dielectric<R>,
     /// The base's BSDF.
     pub(crate) base: B,
     /// Single-scattering albedo of the slab.
-    pub(crate) albedo: Spectrum,
+    pub(crate) albedo: Spectrum<R>,
     /// Thickness of the slab, in mean free paths.
-    pub(crate) thickness: f32,
-    phase: HenyeyGreenstein,
-    max_depth: u16,
-    samples: u16,
+    pub(crate) thickness: R,
+    pub(crate) phase: HenyeyGreenstein<R>,
+    /// A whole number, as `samples` is.
+    pub(crate) max_depth: R,
+    pub(crate) samples: R,
 }
 
 /// Purpose of a walk's random numbers, so that walks for different purposes are independent.
@@ -99,60 +103,71 @@ enum Purpose {
 }
 
 /// Random numbers in [0, 1) that are a function of their seed.
-struct Random(u64);
+struct Random<R: Real>(R::Bits);
 
-impl Random {
-    #[inline]
-    fn new(purpose: Purpose, wo: Vec3, rest: [f32; 3]) -> Self {
-        let [x, y, z] = wo.to_array().map(|c| u64::from(c.to_bits()));
-        let [a, b, c] = rest.map(|c| u64::from(c.to_bits()));
-        Self(hash::pair(hash::pair(hash::pair(purpose as u64, x << 32 | y), z << 32 | a), b << 32 | c))
+impl<R: Real> Random<R> {
+    /// 2³² divided by the golden ratio, made odd.
+    const GOLDEN: u32 = 0x9e37_79b9;
+
+    #[inline(always)]
+    fn new(purpose: Purpose, wo: Vector<R>, [a, b, c]: [R; 3]) -> Self {
+        let seed = a.to_bits().like(purpose as u32);
+        let bits = Self::add(Self::add(Self::add(seed, wo.x), wo.y), wo.z);
+        Self(hash::mix32(Self::add(Self::add(Self::add(bits, a), b), c)))
     }
 
-    #[inline]
-    fn one(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(hash::GOLDEN);
-        (hash::mix(self.0) >> 40) as f32 * (1.0 / 16_777_216.0)
+    #[inline(always)]
+    fn add(bits: R::Bits, number: R) -> R::Bits {
+        hash::mix32(bits.wrapping_add(bits.like(Self::GOLDEN))) ^ number.to_bits()
     }
 
-    #[inline]
-    fn two(&mut self) -> [f32; 2] {
-        [self.one(), self.one()]
+    /// A number for the lanes of a mask; the others' sequences stay where they are.
+    #[inline(always)]
+    fn one(&mut self, mask: R::Mask) -> R {
+        self.0 = R::select_bits(mask, self.0.wrapping_add(self.0.like(Self::GOLDEN)), self.0);
+        R::from_integer(hash::mix32(self.0) >> 8) * (1.0 / 16_777_216.0)
+    }
+
+    #[inline(always)]
+    fn two(&mut self, mask: R::Mask) -> [R; 2] {
+        [self.one(mask), self.one(mask)]
     }
 }
 
 /// MIS weight of the first of two strategies with the given densities (Veach's power heuristic); the first is
 /// positive.
-#[inline]
-fn power_heuristic(pdf: f32, other: f32) -> f32 {
+#[inline(always)]
+fn power_heuristic<R: Real>(pdf: R, other: R) -> R {
     let ratio = other / pdf;
-    1.0 / (1.0 + ratio * ratio)
+    pdf.like(1.0) / (ratio * ratio + 1.0)
 }
 
-/// Russian roulette: the throughput after a step, or `None` for a walk that was terminated.
-#[inline]
-fn surviving(beta: Spectrum, depth: u16, random: &mut Random) -> Option<Spectrum> {
+/// Russian roulette: the throughput after a step, and the walks that go on.
+#[inline(always)]
+fn surviving<R: Real>(
+    beta: Spectrum<R>,
+    depth: u32,
+    alive: R::Mask,
+    random: &mut Random<R>,
+) -> (Spectrum<R>, R::Mask) {
     let survival = beta.max_lane();
-    if depth <= 3 || survival >= 0.25 {
-        return Some(beta);
+    let in_doubt = alive & survival.lt(survival.like(0.25));
+    if depth <= 3 || !in_doubt.any() {
+        return (beta, alive);
     }
-    (random.one() < survival).then(|| beta / survival)
+    let survives = random.one(in_doubt).lt(survival);
+    (Spectrum::select(in_doubt, beta / survival, beta), alive & (!in_doubt | survives))
 }
 
-/// Transmittance over `depth` mean free paths of slab along `w`.
-#[inline]
-fn transmittance(depth: f32, w: Vec3) -> f32 {
-    if depth.abs() <= f32::MIN_POSITIVE { 1.0 } else { libm::expf(-(depth / w.z).abs()) }
+/// Transmittance along `w` through `depth` mean free paths of the slab.
+#[inline(always)]
+fn transmittance<R: Real>(depth: R, w: Vector<R>) -> R {
+    let is_empty = !Float::abs(depth).gt(depth.like(f32::MIN_POSITIVE));
+    R::select(is_empty, depth.like(1.0), exp(-Float::abs(depth / w.z)))
 }
 
-/// A sample that carries light.
-#[inline]
-fn useful(sample: Option<BsdfSample>) -> Option<BsdfSample> {
-    sample.filter(|s| s.pdf > 0.0 && !is_grazing(s.wi) && !s.f.is_black())
-}
-
-impl<B: Base> Layered<B> {
-    /// A coat on a base; the base's indices are relative to the coat's.
+impl<B> Layered<B> {
+    /// A coat on a base; the base's indices are those over the coat's.
     pub fn new(base: B, coat: &CoatLayer) -> Self {
         Self {
             coat: Dielectric::new(coat.eta, coat.roughness),
@@ -160,18 +175,14 @@ impl<B: Base> Layered<B> {
             albedo: coat.albedo.map(|lane| lane.clamp(0.0, 1.0)),
             thickness: coat.thickness.max(f32::MIN_POSITIVE),
             phase: HenyeyGreenstein::new(coat.g),
-            max_depth: coat.max_depth,
-            samples: coat.samples.max(1),
+            max_depth: f32::from(coat.max_depth),
+            samples: f32::from(coat.samples.max(1)),
         }
     }
 
-    pub(super) fn regularize(&mut self) {
-        self.coat.regularize();
-        self.base.regularize();
-    }
-
-    pub(super) fn lobes(&self) -> Lobes {
-        let (coat, base) = (self.coat.lobes(), self.base.lobes());
+    /// The kinds of scattering, given the base's.
+    pub(super) fn lobes(&self, base: Lobes) -> Lobes {
+        let coat = self.coat.lobes();
         let mut lobes = Lobes::REFLECTION;
         if coat.is_specular() {
             lobes |= Lobes::SPECULAR;
@@ -183,232 +194,378 @@ impl<B: Base> Layered<B> {
         }
         lobes
     }
+}
 
-    pub(super) fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        // Both sides scatter alike.
-        let (wo, wi) = if wo.z < 0.0 { (-wo, -wi) } else { (wo, wi) };
-        if is_grazing(wo) || is_grazing(wi) || wi.z < 0.0 || !self.lobes().is_non_specular() {
-            return Spectrum::BLACK;
-        }
-        let samples = f32::from(self.samples);
-        let mut sum = self.coat.f(wo, wi, mode) * samples;
-        let mut random = Random::new(Purpose::Value, wo, wi.to_array());
-        // The density of the exit direction as in pbrt: of `wi` given the direction inside, not of the
-        // direction inside given `wi`.
-        let exit_density = |w| self.coat.pdf(w, wi, Lobes::TRANSMISSION);
-        for _ in 0..self.samples {
-            sum += self.walk([wo, wi], mode, &mut random, exit_density).unwrap_or(Spectrum::BLACK);
-        }
-        sum / samples
+/// [`Dielectric::sample`], where it carries light.
+///
+/// Not inlined, as the next two: in all their places they would take compilers minutes.
+#[inline(never)]
+fn sample_coat<R: Real>(
+    coat: &Dielectric<R>,
+    wo: Vector<R>,
+    uc: R,
+    u: [R; 2],
+    mode: Mode,
+    lobes: Lobes,
+) -> DirectionSample<R> {
+    uc.at_level(
+        #[inline(always)]
+        || coat.sample(wo, uc, u, mode, lobes).if_lit(),
+    )
+}
+
+/// [`Dielectric::f`], which is the same in all lanes of a spectrum.
+#[inline(never)]
+fn coat_f<R: Real>(coat: &Dielectric<R>, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> R {
+    coat.eta.at_level(
+        #[inline(always)]
+        || coat.f(wo, wi, mode).0[0],
+    )
+}
+
+/// [`Dielectric::pdf`].
+#[inline(never)]
+fn coat_pdf<R: Real>(coat: &Dielectric<R>, wo: Vector<R>, wi: Vector<R>, lobes: Lobes) -> R {
+    coat.eta.at_level(
+        #[inline(always)]
+        || coat.pdf(wo, wi, lobes),
+    )
+}
+
+/// The steps of a walk through the slab.
+struct Walk<R: Real> {
+    beta: Spectrum<R>,
+    /// Direction of travel.
+    w: Vector<R>,
+    /// Height above the base.
+    z: R,
+    alive: R::Mask,
+}
+
+/// Where a step of a walk has led.
+struct Step<R: Real> {
+    /// Walks that are at the coat.
+    at_coat: R::Mask,
+    /// Walks that are at the base.
+    at_base: R::Mask,
+    /// Walks that have met a particle, at the height `next`.
+    at_particle: R::Mask,
+    next: R,
+    /// Walks that are where they were.
+    stays: R::Mask,
+}
+
+impl<R: Real, B: Base<R>> Layered<B, R> {
+    /// True if there is a lobe that is not specular.
+    #[inline(always)]
+    pub(super) fn has_density(&self) -> R::Mask {
+        self.base.has_density() | !self.albedo.is_black() | !self.coat.is_specular()
     }
 
-    /// One estimate of the light that enters along `wo` and leaves along `wi`; `None` where a side cannot
-    /// be passed.
-    ///
-    /// Two strategies of leaving through a rough coat are combined by MIS: `exit_density` of a direction (away from
-    /// the coat, inside) should be the density of sampling it from `wi`.
-    #[inline]
-    fn walk(
-        &self,
-        [wo, wi]: [Vec3; 2],
-        mode: Mode,
-        random: &mut Random,
-        exit_density: impl Fn(Vec3) -> f32,
-    ) -> Option<Spectrum> {
-        let adjoint = match mode {
-            Mode::Radiance => Mode::Importance,
-            Mode::Importance => Mode::Radiance,
-        };
-        let coat_is_specular = self.coat.lobes().is_specular();
-        let base_is_specular = self.base.lobes().is_specular();
+    /// Moves walks to the next boundary or particle, and attenuates those that nothing scatters.
+    #[inline(always)]
+    fn step(&self, walk: &mut Walk<R>, random: &mut Random<R>) -> Step<R> {
+        let zero = walk.z.like(0.0);
+        let none = walk.alive & !walk.alive;
+        let mut step = Step { at_coat: none, at_base: none, at_particle: none, next: walk.z, stays: none };
         let scatters = !self.albedo.is_black();
-        // Enter along `wo`, and sample the direction inside from which light leaves along `wi`.
-        let entry = self.coat.sample(wo, random.one(), random.two(), mode, Lobes::TRANSMISSION);
-        let entry = useful(entry)?;
-        let exit = self.coat.sample(wi, random.one(), random.two(), adjoint, Lobes::TRANSMISSION);
-        let exit = useful(exit)?;
+        let mut at_boundary = walk.alive;
+        if scatters.any() {
+            let moves = walk.alive & scatters;
+            // 1 − u is exact.
+            step.next = walk.z - ln(zero.like(1.0) - random.one(moves)) * walk.w.z;
+            step.stays = moves & Float::eq(step.next, walk.z);
+            step.at_particle = moves & step.next.gt(zero) & step.next.lt(self.thickness) & !step.stays;
+            at_boundary = at_boundary & !step.at_particle & !step.stays;
+            let within = Float::min(Float::max(step.next, zero), self.thickness);
+            walk.z = R::select(moves & at_boundary, within, walk.z);
+        }
+        let crosses = at_boundary & !scatters;
+        let other_side = R::select(Float::eq(walk.z, self.thickness), zero, self.thickness);
+        walk.z = R::select(crosses, other_side, walk.z);
+        let attenuated = walk.beta * transmittance(self.thickness, walk.w);
+        walk.beta = Spectrum::select(crosses, attenuated, walk.beta);
+        let is_top = Float::eq(walk.z, self.thickness);
+        step.at_coat = at_boundary & is_top;
+        step.at_base = at_boundary & !is_top;
+        step
+    }
+
+    /// Goes on in a sampled direction; walks without one end.
+    #[inline(always)]
+    fn turn(walk: &mut Walk<R>, mask: R::Mask, sample: &DirectionSample<R>) {
+        walk.alive = walk.alive & (!mask | sample.is_valid);
+        let mask = mask & sample.is_valid;
+        let beta = walk.beta * sample.f * (Float::abs(sample.wi.z) / sample.pdf);
+        walk.beta = Spectrum::select(mask, beta, walk.beta);
+        walk.w = Vector::select(mask, sample.wi, walk.w);
+    }
+
+    /// As [`super::Bsdf::f`].
+    #[inline(always)]
+    pub(super) fn f(&self, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> Spectrum<R> {
+        let zero = wo.z.like(0.0);
+        // Both sides scatter alike.
+        let is_below = wo.z.lt(zero);
+        let (wo, wi) = (wo.negate_where(is_below), wi.negate_where(is_below));
+        let black = Spectrum::splat(zero);
+        let is_lit = !is_grazing(wo) & !is_grazing(wi) & wi.z.gt(zero) & self.has_density();
+        if !is_lit.any() {
+            return black;
+        }
+        let mut sum = Spectrum::splat(coat_f(&self.coat, wo, wi, mode)) * self.samples;
+        let mut random = Random::new(Purpose::Value, wo, [wi.x, wi.y, wi.z]);
+        let mut taken = 0.0;
+        loop {
+            let active = is_lit & self.samples.gt(zero.like(taken));
+            if !active.any() {
+                return Spectrum::select(is_lit, sum / self.samples, black);
+            }
+            sum += self.walk::<false>([wo, wi], mode, &mut random, active);
+            taken += 1.0;
+        }
+    }
+
+    /// One estimate of what enters along `wo` and leaves along `wi`, above the coat; black where a side cannot be
+    /// passed.
+    ///
+    /// Two strategies of leaving through a rough coat are combined by MIS: by the density of sampling the way inside from
+    /// `wi` (`UNBIASED`), or as pbrt has it: that of `wi` given the way.
+    #[inline(always)]
+    fn walk<const UNBIASED: bool>(
+        &self,
+        [wo, wi]: [Vector<R>; 2],
+        mode: Mode,
+        random: &mut Random<R>,
+        active: R::Mask,
+    ) -> Spectrum<R> {
+        let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
+        let black = Spectrum::splat(zero);
+        let coat_is_specular = self.coat.is_specular();
+        let base_is_specular = self.base.is_specular();
+        // Enter along `wo`, and find the direction from which light leaves along `wi`.
+        let [entry, exit] = self.entry_and_exit([wo, wi], mode, random, active);
         let to_exit = -exit.wi;
         let exit_weight = exit.f / exit.pdf;
 
-        let mut sum = Spectrum::BLACK;
-        let mut beta = entry.f * (entry.wi.z.abs() / entry.pdf);
-        let mut w = entry.wi;
-        let mut z = self.thickness;
-        for depth in 0..self.max_depth {
-            match surviving(beta, depth, random) {
-                Some(survivor) => beta = survivor,
-                None => break,
+        let mut sum = black;
+        let beta = entry.f * (Float::abs(entry.wi.z) / entry.pdf);
+        let mut walk = Walk { beta, w: entry.wi, z: self.thickness, alive: active & exit.is_valid };
+        for depth in 0_u32.. {
+            walk.alive = walk.alive & self.max_depth.gt(zero.like(depth as f32));
+            if !walk.alive.any() {
+                break;
             }
-            if scatters {
-                // Advance to the next particle.
-                let next = self.next_depth(z, w, random);
-                if next == z {
-                    continue;
+            (walk.beta, walk.alive) = surviving(walk.beta, depth, walk.alive, random);
+            let step = self.step(&mut walk, random);
+            if step.at_particle.any() {
+                // Join the particle with the exit.
+                let phase = self.phase.p(-walk.w, to_exit);
+                let weight = R::select(coat_is_specular, one, power_heuristic(exit.pdf, phase));
+                let out = transmittance(step.next - self.thickness, to_exit);
+                let joined = walk.beta * self.albedo * exit_weight * (phase * weight * out);
+                sum += Spectrum::select(step.at_particle, joined, black);
+                // Scatter, and see whether this leads out, too.
+                let wi_in = self.phase.sample(-walk.w, random.two(step.at_particle));
+                let pdf = self.phase.p(-walk.w, wi_in);
+                let scatters = step.at_particle & !is_grazing(wi_in) & pdf.gt(zero);
+                walk.beta = Spectrum::select(scatters, walk.beta * self.albedo, walk.beta);
+                walk.w = Vector::select(scatters, wi_in, walk.w);
+                walk.z = R::select(scatters, step.next, walk.z);
+                let leaves = scatters & walk.w.z.gt(zero) & !coat_is_specular;
+                if leaves.any() {
+                    let leaving = coat_f(&self.coat, -walk.w, wi, mode);
+                    let weight = power_heuristic(pdf, self.exit_density::<UNBIASED>(-walk.w, wi));
+                    let out = transmittance(walk.z - self.thickness, walk.w);
+                    let light = walk.beta * (leaving * (out * weight));
+                    sum += Spectrum::select(leaves & leaving.gt(zero), light, black);
                 }
-                if 0.0 < next && next < self.thickness {
-                    // Connect it with the exit.
-                    let phase = self.phase.p(-w, to_exit);
-                    let weight = if coat_is_specular { 1.0 } else { power_heuristic(exit.pdf, phase) };
-                    let out = transmittance(next - self.thickness, to_exit);
-                    sum += beta * self.albedo * exit_weight * (phase * weight * out);
-                    // Scatter, and connect with the exit by this strategy, too.
-                    let turned = self.phase.sample(-w, random.two());
-                    let pdf = self.phase.p(-w, turned);
-                    if is_grazing(turned) || !(pdf > 0.0) {
-                        continue;
-                    }
-                    beta *= self.albedo;
-                    w = turned;
-                    z = next;
-                    if w.z > 0.0 && !coat_is_specular {
-                        let leaving = self.coat.f(-w, wi, mode);
-                        if !leaving.is_black() {
-                            let weight = power_heuristic(pdf, exit_density(-w));
-                            let out = transmittance(z - self.thickness, w);
-                            sum += beta * leaving * (out * weight);
-                        }
-                    }
-                    continue;
-                }
-                z = next.clamp(0.0, self.thickness);
-            } else {
-                z = if z == self.thickness { 0.0 } else { self.thickness };
-                beta = beta * transmittance(self.thickness, w);
             }
-            if z == self.thickness {
+            if step.at_coat.any() {
                 // Reflect at the coat, from inside.
-                let sample = self.coat.sample(-w, random.one(), random.two(), mode, Lobes::REFLECTION);
-                let Some(sample) = useful(sample) else { break };
-                beta *= sample.f * (sample.wi.z.abs() / sample.pdf);
-                w = sample.wi;
-                continue;
+                let u = (random.one(step.at_coat), random.two(step.at_coat));
+                let sample = sample_coat(&self.coat, -walk.w, u.0, u.1, mode, Lobes::REFLECTION);
+                Self::turn(&mut walk, step.at_coat, &sample);
             }
-            // Connect the base with the exit.
-            if !base_is_specular {
-                let weight = if coat_is_specular {
-                    1.0
-                } else {
-                    power_heuristic(exit.pdf, self.base.pdf(-w, to_exit))
-                };
-                let out = transmittance(self.thickness, to_exit);
-                sum += beta * self.base.f(-w, to_exit) * exit_weight * (to_exit.z.abs() * weight * out);
-            }
-            // Reflect at the base, and connect with the exit by this strategy, too.
-            let Some(sample) = useful(self.base.sample(-w, random.two())) else { break };
-            beta *= sample.f * (sample.wi.z.abs() / sample.pdf);
-            w = sample.wi;
-            if !coat_is_specular {
-                let leaving = self.coat.f(-w, wi, mode);
-                if !leaving.is_black() {
-                    let weight =
-                        if base_is_specular { 1.0 } else { power_heuristic(sample.pdf, exit_density(-w)) };
-                    sum += beta * leaving * (weight * transmittance(self.thickness, w));
+            if step.at_base.any() {
+                // Join the base with the exit.
+                let joins = step.at_base & !base_is_specular;
+                if joins.any() {
+                    let weight = power_heuristic(exit.pdf, self.base.pdf(-walk.w, to_exit));
+                    let weight = R::select(coat_is_specular, one, weight);
+                    let out = transmittance(self.thickness, to_exit);
+                    let factor = Float::abs(to_exit.z) * weight * out;
+                    let joined = walk.beta * self.base.f(-walk.w, to_exit) * exit_weight * factor;
+                    sum += Spectrum::select(joins, joined, black);
+                }
+                // Reflect at the base, and see whether this leads out, too.
+                let sample = self.base.sample(-walk.w, random.two(step.at_base)).if_lit();
+                Self::turn(&mut walk, step.at_base, &sample);
+                let leaves = step.at_base & walk.alive & !coat_is_specular;
+                if leaves.any() {
+                    let leaving = coat_f(&self.coat, -walk.w, wi, mode);
+                    let weight = power_heuristic(sample.pdf, self.exit_density::<UNBIASED>(-walk.w, wi));
+                    let weight = R::select(base_is_specular, one, weight);
+                    let light = walk.beta * (leaving * (weight * transmittance(self.thickness, walk.w)));
+                    sum += Spectrum::select(leaves & leaving.gt(zero), light, black);
                 }
             }
         }
-        Some(sum)
+        sum
     }
 
-    /// Depth of the next particle along `w` from depth `z`, perhaps beyond the slab.
-    #[inline]
-    fn next_depth(&self, z: f32, w: Vec3, random: &mut Random) -> f32 {
-        z - libm::log1pf(-random.one()) * w.z
+    /// The density of leaving along `wi` by a direction `w` inside, away from the coat.
+    #[inline(always)]
+    fn exit_density<const UNBIASED: bool>(&self, w: Vector<R>, wi: Vector<R>) -> R {
+        let (from, to) = if UNBIASED { (wi, w) } else { (w, wi) };
+        coat_pdf(&self.coat, from, to, Lobes::TRANSMISSION)
     }
 
-    pub(super) fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode) -> Option<BsdfSample> {
-        let flipped = wo.z < 0.0;
-        let wo = if flipped { -wo } else { wo };
-        let turn_back = |wi: Vec3| if flipped { -wi } else { wi };
-        let first = useful(self.coat.sample(wo, uc, u, mode, Lobes::ALL))?;
-        if first.lobe.is_reflection() {
-            return Some(BsdfSample { wi: turn_back(first.wi), pdf_is_proportional: true, ..first });
-        }
-        let mut random = Random::new(Purpose::Sample, wo, [uc, u[0], u[1]]);
-        let scatters = !self.albedo.is_black();
-        let mut all_specular = first.lobe.is_specular();
-        let mut beta = first.f * (first.wi.z.abs() / first.pdf);
-        let mut w = first.wi;
-        let mut z = self.thickness;
-        for depth in 0..self.max_depth {
-            beta = surviving(beta, depth, &mut random)?;
-            if scatters {
-                let next = self.next_depth(z, w, &mut random);
-                if next == z {
-                    return None;
-                }
-                if 0.0 < next && next < self.thickness {
-                    w = self.phase.sample(-w, random.two());
-                    if is_grazing(w) {
-                        return None;
-                    }
-                    beta *= self.albedo;
-                    all_specular = false;
-                    z = next;
-                    continue;
-                }
-                z = next.clamp(0.0, self.thickness);
-            } else {
-                z = if z == self.thickness { 0.0 } else { self.thickness };
-                beta = beta * transmittance(self.thickness, w);
-            }
-            let sample = if z == 0.0 {
-                self.base.sample(-w, random.two())
-            } else {
-                self.coat.sample(-w, random.one(), random.two(), mode, Lobes::ALL)
-            };
-            let sample = useful(sample)?;
-            beta *= sample.f * (sample.wi.z.abs() / sample.pdf);
-            all_specular &= sample.lobe.is_specular();
-            w = sample.wi;
-            if sample.lobe.is_transmission() {
-                let spread = if all_specular { Lobes::SPECULAR } else { Lobes::GLOSSY };
-                let left = BsdfSample::new(turn_back(w), beta / w.z.abs(), 1.0, Lobes::REFLECTION | spread);
-                return Some(BsdfSample { pdf_is_proportional: true, ..left });
-            }
-        }
-        None
-    }
-
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3, mode: Mode) -> f32 {
-        let (wo, wi) = if wo.z < 0.0 { (-wo, -wi) } else { (wo, wi) };
-        const UNIFORM: f32 = 0.25 * FRAC_1_PI;
-        if is_grazing(wo) || is_grazing(wi) {
-            return 0.0;
-        }
-        if wi.z < 0.0 {
-            return 0.1 * UNIFORM;
-        }
-        let samples = f32::from(self.samples);
-        let mut sum = samples * self.coat.pdf(wo, wi, Lobes::REFLECTION);
-        let mut random = Random::new(Purpose::Density, wi, wo.to_array());
-        for _ in 0..self.samples {
-            sum += self.once_off_the_base(wo, wi, mode, &mut random).unwrap_or(0.0);
-        }
-        0.9 * (sum / samples) + 0.1 * UNIFORM
-    }
-
-    /// One estimate of the density of `wi` for light that enters, is reflected by the base once, and leaves.
-    #[inline]
-    fn once_off_the_base(&self, wo: Vec3, wi: Vec3, mode: Mode, random: &mut Random) -> Option<f32> {
+    /// The directions in which light enters along `wo` and comes from below to leave along `wi`; the second is valid
+    /// where both are.
+    #[inline(always)]
+    fn entry_and_exit(
+        &self,
+        [wo, wi]: [Vector<R>; 2],
+        mode: Mode,
+        random: &mut Random<R>,
+        active: R::Mask,
+    ) -> [DirectionSample<R>; 2] {
         let adjoint = match mode {
             Mode::Radiance => Mode::Importance,
             Mode::Importance => Mode::Radiance,
         };
-        let entry = useful(self.coat.sample(wo, random.one(), random.two(), mode, Lobes::TRANSMISSION))?;
-        let exit = useful(self.coat.sample(wi, random.one(), random.two(), adjoint, Lobes::TRANSMISSION))?;
-        if self.coat.lobes().is_specular() {
-            return Some(self.base.pdf(-entry.wi, -exit.wi));
+        let u = (random.one(active), random.two(active));
+        let entry = sample_coat(&self.coat, wo, u.0, u.1, mode, Lobes::TRANSMISSION);
+        let enters = active & entry.is_valid;
+        let u = (random.one(enters), random.two(enters));
+        let exit = sample_coat(&self.coat, wi, u.0, u.1, adjoint, Lobes::TRANSMISSION);
+        let is_valid = exit.is_valid & enters;
+        [entry, DirectionSample { is_valid, ..exit }]
+    }
+
+    /// As [`super::Bsdf::sample`]; only `f / pdf` means anything.
+    #[inline(always)]
+    pub(super) fn sample(&self, wo: Vector<R>, uc: R, u: [R; 2], mode: Mode) -> DirectionSample<R> {
+        let (zero, one) = (uc.like(0.0), uc.like(1.0));
+        let is_below = wo.z.lt(zero);
+        let wo = wo.negate_where(is_below);
+        let first = sample_coat(&self.coat, wo, uc, u, mode, Lobes::ALL);
+        let none = is_below & !is_below;
+        let mut result = DirectionSample {
+            is_valid: first.is_valid & !first.is_transmission,
+            is_transmission: none,
+            ..first
+        };
+
+        let mut random = Random::new(Purpose::Sample, wo, [uc, u[0], u[1]]);
+        let mut is_specular = first.is_specular;
+        let beta = first.f * (Float::abs(first.wi.z) / first.pdf);
+        let alive = first.is_valid & first.is_transmission;
+        let mut walk = Walk { beta, w: first.wi, z: self.thickness, alive };
+        for depth in 0_u32.. {
+            walk.alive = walk.alive & self.max_depth.gt(zero.like(depth as f32));
+            if !walk.alive.any() {
+                break;
+            }
+            (walk.beta, walk.alive) = surviving(walk.beta, depth, walk.alive, &mut random);
+            let step = self.step(&mut walk, &mut random);
+            walk.alive = walk.alive & !step.stays;
+            if step.at_particle.any() {
+                let w = self.phase.sample(-walk.w, random.two(step.at_particle));
+                walk.alive = walk.alive & !(step.at_particle & is_grazing(w));
+                walk.w = Vector::select(step.at_particle, w, walk.w);
+                walk.beta = Spectrum::select(step.at_particle, walk.beta * self.albedo, walk.beta);
+                walk.z = R::select(step.at_particle, step.next, walk.z);
+                is_specular = is_specular & !step.at_particle;
+            }
+            if step.at_base.any() {
+                let sample = self.base.sample(-walk.w, random.two(step.at_base)).if_lit();
+                Self::turn(&mut walk, step.at_base, &sample);
+                is_specular = is_specular & (!step.at_base | sample.is_specular);
+            }
+            if step.at_coat.any() {
+                let u = (random.one(step.at_coat), random.two(step.at_coat));
+                let sample = sample_coat(&self.coat, -walk.w, u.0, u.1, mode, Lobes::ALL);
+                Self::turn(&mut walk, step.at_coat, &sample);
+                is_specular = is_specular & (!step.at_coat | sample.is_specular);
+                let leaves = step.at_coat & walk.alive & sample.is_transmission;
+                walk.alive = walk.alive & !leaves;
+                let left = DirectionSample {
+                    wi: walk.w,
+                    f: walk.beta / Float::abs(walk.w.z),
+                    pdf: one,
+                    eta: one,
+                    is_specular,
+                    is_transmission: none,
+                    is_valid: leaves,
+                };
+                result = DirectionSample::select(leaves, left, result);
+            }
         }
-        let reflected = useful(self.base.sample(-entry.wi, random.two()))?;
-        let leaving = self.coat.pdf(-reflected.wi, wi, Lobes::ALL);
-        if self.base.lobes().is_specular() {
-            return Some(leaving);
-        }
-        let reflecting = self.base.pdf(-entry.wi, -exit.wi);
-        Some(
-            power_heuristic(exit.pdf, reflecting) * reflecting
-                + power_heuristic(reflected.pdf, leaving) * leaving,
+        DirectionSample { wi: result.wi.negate_where(is_below), ..result }
+    }
+
+    /// As [`super::Bsdf::pdf`]. Not inlined, since it is needed twice.
+    #[inline(never)]
+    pub(super) fn pdf(&self, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> R {
+        wo.x.at_level(
+            #[inline(always)]
+            || self.density(wo, wi, mode),
         )
+    }
+
+    #[inline(always)]
+    fn density(&self, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> R {
+        const UNIFORM: f32 = 0.25 * FRAC_1_PI;
+        let zero = wo.z.like(0.0);
+        let is_below = wo.z.lt(zero);
+        let (wo, wi) = (wo.negate_where(is_below), wi.negate_where(is_below));
+        let is_usable = !is_grazing(wo) & !is_grazing(wi);
+        let reflects = is_usable & wi.z.gt(zero);
+        let uniform = R::select(is_usable, zero.like(0.1 * UNIFORM), zero);
+        if !reflects.any() {
+            return uniform;
+        }
+        let mut sum = coat_pdf(&self.coat, wo, wi, Lobes::REFLECTION) * self.samples;
+        let mut random = Random::new(Purpose::Density, wi, [wo.x, wo.y, wo.z]);
+        let mut taken = 0.0;
+        loop {
+            let active = reflects & self.samples.gt(zero.like(taken));
+            if !active.any() {
+                return R::select(reflects, sum / self.samples * 0.9 + 0.1 * UNIFORM, uniform);
+            }
+            sum = sum + self.once_off_the_base(wo, wi, mode, &mut random, active);
+            taken += 1.0;
+        }
+    }
+
+    /// One estimate of the density of `wi` for light that enters, is reflected by the base once, and leaves.
+    #[inline(always)]
+    fn once_off_the_base(
+        &self,
+        wo: Vector<R>,
+        wi: Vector<R>,
+        mode: Mode,
+        random: &mut Random<R>,
+        active: R::Mask,
+    ) -> R {
+        let zero = wo.z.like(0.0);
+        let [entry, exit] = self.entry_and_exit([wo, wi], mode, random, active);
+        let passes = active & exit.is_valid;
+        let reflecting = self.base.pdf(-entry.wi, -exit.wi);
+        let coat_is_specular = self.coat.is_specular();
+        let density = R::select(passes & coat_is_specular, reflecting, zero);
+        let scatters = passes & !coat_is_specular;
+        if !scatters.any() {
+            return density;
+        }
+        let reflected = self.base.sample(-entry.wi, random.two(scatters)).if_lit();
+        let leaving = coat_pdf(&self.coat, -reflected.wi, wi, Lobes::ALL);
+        let both = power_heuristic(exit.pdf, reflecting) * reflecting
+            + power_heuristic(reflected.pdf, leaving) * leaving;
+        let both = R::select(self.base.is_specular(), leaving, both);
+        R::select(scatters & reflected.is_valid, both, density)
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::ops::{BitOr, BitOrAssign};
 
+use lookfrom_simd::Real;
+
 /// A set of sides to which light is scattered (reflection, transmission) and of kinds of scattering (diffuse,
 /// glossy, specular).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -72,11 +74,12 @@ impl Lobes {
     }
 
     /// The probabilities `[reflection, transmission]`, with 0 for sides that the set does not allow.
-    #[inline]
-    pub(super) fn allowed(self, [reflection, transmission]: [f32; 2]) -> [f32; 2] {
+    #[inline(always)]
+    pub(super) fn allowed<R: Real>(self, [reflection, transmission]: [R; 2]) -> [R; 2] {
+        let zero = reflection.like(0.0);
         [
-            if self.is_reflection() { reflection } else { 0.0 },
-            if self.is_transmission() { transmission } else { 0.0 },
+            if self.is_reflection() { reflection } else { zero },
+            if self.is_transmission() { transmission } else { zero },
         ]
     }
 }

@@ -6,19 +6,21 @@
 //! Trowbridge & Reitz 1975; Walter et al. 2007; Heitz 2014 (masking), 2018 (visible normals); Dupuy & Benyoub 2023
 //! (visible normals by a spherical cap).
 
-use glam::Vec3;
 use std::f32::consts::PI;
 
+use lookfrom_simd::{Float, Real};
+
+use crate::core::vector::Vector;
 use crate::core::warp;
 
 /// The Trowbridge–Reitz distribution of microfacet normals. They have unit length and z > 0; directions may be on
 /// either side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TrowbridgeReitz {
+pub struct TrowbridgeReitz<R = f32> {
     /// α along x: the spread of the slopes.
-    pub(crate) alpha_x: f32,
+    pub(crate) alpha_x: R,
     /// α along y.
-    pub(crate) alpha_y: f32,
+    pub(crate) alpha_y: R,
 }
 
 impl TrowbridgeReitz {
@@ -43,12 +45,6 @@ impl TrowbridgeReitz {
         roughness.max(0.0).sqrt()
     }
 
-    /// True if it is so smooth that it counts as specular.
-    #[inline]
-    pub fn is_smooth(self) -> bool {
-        self.alpha_x.max(self.alpha_y) < 1e-3
-    }
-
     /// Increases the roughness for the later bounces of a path, as pbrt's `regularize`: below 0.3 it is doubled,
     /// within 0.1 … 0.3.
     pub fn regularize(&mut self) {
@@ -58,56 +54,63 @@ impl TrowbridgeReitz {
             }
         }
     }
+}
+
+impl<R: Real> TrowbridgeReitz<R> {
+    /// True if it is so smooth that it counts as specular.
+    #[inline(always)]
+    pub fn is_smooth(self) -> R::Mask {
+        Float::max(self.alpha_x, self.alpha_y).lt(self.alpha_x.like(1e-3))
+    }
 
     /// D(ω_m): area of microfacets with normals about `wm`, per solid angle and per area of the surface. 0 at the
     /// horizon, as in pbrt.
-    #[inline]
-    pub fn d(self, wm: Vec3) -> f32 {
+    #[inline(always)]
+    pub fn d(self, wm: Vector<R>) -> R {
         let cos2 = wm.z * wm.z;
-        if cos2 < 1e-8 {
-            return 0.0;
-        }
         let (x, y) = (wm.x / self.alpha_x, wm.y / self.alpha_y);
         let stretched = x * x + y * y + cos2;
-        1.0 / (PI * self.alpha_x * self.alpha_y * stretched * stretched)
+        let density = cos2.like(1.0) / (self.alpha_x * PI * self.alpha_y * stretched * stretched);
+        R::select(cos2.lt(cos2.like(1e-8)), cos2.like(0.0), density)
     }
 
     /// Smith's Λ: masked over visible area of the microsurface as seen from `w`, which must not lie in the
     /// surface.
-    #[inline]
-    fn lambda(self, w: Vec3) -> f32 {
+    #[inline(always)]
+    fn lambda(self, w: Vector<R>) -> R {
         let (x, y) = (self.alpha_x * w.x, self.alpha_y * w.y);
-        0.5 * ((1.0 + (x * x + y * y) / (w.z * w.z)).sqrt() - 1.0)
+        (Float::sqrt((x * x + y * y) / (w.z * w.z) + 1.0) - 1.0) * 0.5
     }
 
     /// Masking: the fraction of the microfacets facing `w` that is visible from `w`.
-    #[inline]
-    pub fn g1(self, w: Vec3) -> f32 {
-        1.0 / (1.0 + self.lambda(w))
+    #[inline(always)]
+    pub fn g1(self, w: Vector<R>) -> R {
+        w.z.like(1.0) / (self.lambda(w) + 1.0)
     }
 
     /// Masking-shadowing: the fraction that is visible from both directions.
-    #[inline]
-    pub fn g(self, wo: Vec3, wi: Vec3) -> f32 {
-        1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
+    #[inline(always)]
+    pub fn g(self, wo: Vector<R>, wi: Vector<R>) -> R {
+        wo.z.like(1.0) / (self.lambda(wo) + 1.0 + self.lambda(wi))
     }
 
     /// Density of [`Self::sample`] over the solid angle of microfacet normals, divided by `|wo·wm|`: the form in
     /// which it is needed. `wm` must face `wo`.
-    #[inline]
-    pub fn visible_per_cosine(self, wo: Vec3, wm: Vec3) -> f32 {
-        self.d(wm) * self.g1(wo) / wo.z.abs()
+    #[inline(always)]
+    pub fn visible_per_cosine(self, wo: Vector<R>, wm: Vector<R>) -> R {
+        self.d(wm) * self.g1(wo) / Float::abs(wo.z)
     }
 
     /// Samples a microfacet normal with z > 0 among those visible from `wo` (from its mirror image above, where
     /// it is below).
-    #[inline]
-    pub fn sample(self, wo: Vec3, u: [f32; 2]) -> Vec3 {
+    #[inline(always)]
+    pub fn sample(self, wo: Vector<R>, u: [R; 2]) -> Vector<R> {
         // Stretch the ellipsoid of normals to a hemisphere: there the reflected direction is uniform in a cap.
-        let up = if wo.z < 0.0 { -wo } else { wo };
-        let w = Vec3::new(self.alpha_x * up.x, self.alpha_y * up.y, up.z).normalize();
-        let h = warp::uniform_cone(u, 1.0 + w.z) + w;
+        let up = wo.negate_where(wo.z.lt(wo.z.like(0.0)));
+        let w = Vector { x: self.alpha_x * up.x, y: self.alpha_y * up.y, z: up.z }.normalize();
+        let h = warp::uniform_cone(u, w.z + 1.0) + w;
         // Transform back, and stay off the horizon.
-        Vec3::new(self.alpha_x * h.x, self.alpha_y * h.y, h.z.max(1e-6)).normalize()
+        let z = Float::max(h.z, h.z.like(1e-6));
+        Vector { x: self.alpha_x * h.x, y: self.alpha_y * h.y, z }.normalize()
     }
 }

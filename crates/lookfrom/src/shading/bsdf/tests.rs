@@ -410,7 +410,7 @@ fn roughness_is_as_in_pbrt() {
 #[test]
 fn facets_cover_the_surface_and_what_is_seen_of_it() {
     for roughness in [rough(0.5, 0.5), rough(0.2, 0.7), rough(0.1, 0.1)] {
-        let projected = |wm: Vec3| f64::from(roughness.d(wm) * wm.z.max(0.0));
+        let projected = |wm: Vec3| f64::from(roughness.d(wm.into()) * wm.z.max(0.0));
         let sum: f64 = over_cells(&projected, 1e-6).iter().sum();
         assert!((sum - 1.0).abs() < 1e-4, "{sum}");
         for wo in [direction(20.0, 10.0), direction(75.0, 80.0)] {
@@ -418,7 +418,7 @@ fn facets_cover_the_surface_and_what_is_seen_of_it() {
                 if wm.z <= 0.0 {
                     return 0.0;
                 }
-                f64::from(roughness.visible_per_cosine(wo, wm) * wo.dot(wm).max(0.0))
+                f64::from(roughness.visible_per_cosine(wo.into(), wm.into()) * wo.dot(wm).max(0.0))
             };
             let sum: f64 = over_cells(&seen, 1e-6).iter().sum();
             assert!((sum - 1.0).abs() < 1e-4, "{wo}: {sum}");
@@ -432,15 +432,16 @@ fn phases_are_normal_and_of_mean_cosine_g() {
     for g in [-0.7, 0.0, 0.0005, 0.4, 0.9] {
         let phase = HenyeyGreenstein::new(g);
         let wo = direction(40.0, 70.0);
-        let sum: f64 = over_cells(&|wi| f64::from(phase.p(wo, wi)), 1e-6).iter().sum();
+        let sum: f64 = over_cells(&|wi| f64::from(phase.p(wo.into(), wi.into())), 1e-6).iter().sum();
         assert!((sum - 1.0).abs() < 1e-4, "{g}: {sum}");
         let n = 100_000;
         let mean =
-            (0..n).map(|i| f64::from(-phase.sample(wo, numbers(17, i).1).dot(wo))).sum::<f64>() / n as f64;
+            (0..n).map(|i| f64::from(-phase.sample(wo.into(), numbers(17, i).1).dot(wo.into()))).sum::<f64>()
+                / n as f64;
         assert!((mean - f64::from(g)).abs() < 0.01, "{g}: {mean}");
         let mut counts = vec![0; ROWS * COLUMNS];
-        (0..n).for_each(|i| counts[cell(phase.sample(wo, numbers(19, i).1))] += 1);
-        let expected = over_cells(&|wi| f64::from(phase.p(wo, wi)) * n as f64, 1e-2);
+        (0..n).for_each(|i| counts[cell(phase.sample(wo.into(), numbers(19, i).1).into())] += 1);
+        let expected = over_cells(&|wi| f64::from(phase.p(wo.into(), wi.into())) * n as f64, 1e-2);
         assert!(chi_square_deviate(&counts, &expected) < corrected_bound(5), "{g}");
     }
 }

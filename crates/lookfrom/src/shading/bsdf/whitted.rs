@@ -11,8 +11,9 @@ use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, TAU};
 
 use super::diffuse::cosine_direction;
-use super::{BsdfSample, Lobes, conductor::half_vector, is_grazing, same_side};
+use super::{BsdfSample, Lobes, conductor::try_half_vector, is_grazing, same_side};
 use crate::core::math;
+use crate::core::optics;
 use crate::core::spectrum::Spectrum;
 use crate::core::warp;
 
@@ -60,7 +61,7 @@ impl Whitted {
         let eta = if wo.z > 0.0 { self.ior } else { 1.0 / self.ior };
         let bent = math::refract(wo, n, eta).filter(|&wi| !is_grazing(wi));
         let (mirror, transmission) = if self.fresnel {
-            let part = math::fresnel_dielectric(n.dot(wo), eta);
+            let part = optics::fresnel_dielectric(n.dot(wo), eta);
             (self.mirror.zip(self.transmission, f32::max) * part, self.transmission * (1.0 - part))
         } else if bent.is_none() {
             (self.mirror + self.transmission, Spectrum::BLACK)
@@ -99,7 +100,7 @@ impl Whitted {
         let highlight = if self.specular.is_black() {
             Spectrum::BLACK
         } else {
-            let cos = half_vector(wo, wi).map_or(0.0, |h| h.z);
+            let cos = try_half_vector(wo, wi).map_or(0.0, |h| h.z);
             self.specular * (math::power(cos, self.shininess) / wi.z.abs())
         };
         (self.diffuse + highlight) * FRAC_1_PI
@@ -110,7 +111,7 @@ impl Whitted {
     fn spread_pdf(&self, wo: Vec3, wi: Vec3, choice: &Choice) -> f32 {
         let mut pdf = choice.diffuse * warp::cosine_hemisphere_pdf(wi.z.abs());
         if choice.glossy > 0.0
-            && let Some(h) = half_vector(wo, wi)
+            && let Some(h) = try_half_vector(wo, wi)
         {
             let of_half = (self.shininess + 1.0) / TAU * math::power(h.z, self.shininess);
             pdf += choice.glossy * of_half / (4.0 * wo.dot(h).abs().max(f32::MIN_POSITIVE));
@@ -137,7 +138,7 @@ impl Whitted {
         if uc < spread {
             let is_diffuse = uc < choice.diffuse;
             let wi = if is_diffuse {
-                cosine_direction(u, wo.z)
+                cosine_direction(u, wo.z).into()
             } else {
                 math::reflect(wo, self.sample_half(u, wo.z)).normalize()
             };

@@ -18,6 +18,7 @@ use glam::Vec3;
 
 use super::kind::Whitted;
 use crate::core::math;
+use crate::core::optics;
 use crate::core::spectrum::Spectrum;
 use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint, Textures};
 
@@ -103,7 +104,7 @@ impl Coefficients {
         let eta = if front { self.ior } else { 1.0 / self.ior };
         let bent = math::refract(wo, n, eta);
         let total_reflection = bent.is_none() && !self.transmission.is_black();
-        let fresnel = self.fresnel.then(|| math::fresnel_dielectric(n.dot(wo), eta));
+        let fresnel = self.fresnel.then(|| optics::fresnel_dielectric(n.dot(wo), eta));
         let (mirror, transmission) = match fresnel {
             Some(part) => {
                 (self.mirror.zip(self.transmission, f32::max) * part, self.transmission * (1.0 - part))

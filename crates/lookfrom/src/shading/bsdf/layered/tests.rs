@@ -1,5 +1,7 @@
 //! Tests of layered BSDFs: random walks against formulas, and `sample` against `f` where there are no formulas.
 
+use glam::Vec3;
+
 use super::*;
 use crate::shading::bsdf::Bsdf;
 use crate::shading::bsdf::tests::{direction, number, numbers};
@@ -34,18 +36,18 @@ impl Estimate {
 fn integral_of_f(f: impl Fn(Vec3, Vec3) -> Spectrum, wo: Vec3, n: u64, seed: u64) -> Estimate {
     estimate(n, |index| {
         let (_, u) = numbers(seed, index);
-        let wi = cosine_direction(u, wo.z);
+        let wi = cosine_direction(u, wo.z).into();
         f64::from(f(wo, wi).0[0]) * std::f64::consts::PI
     })
 }
 
 /// `f` with unbiased MIS weights of the two exit strategies, where pbrt's do not add up to one.
 fn unbiased_f(bsdf: &Bsdf, wo: Vec3, wi: Vec3) -> Spectrum {
-    fn of<B: Base>(layered: &Layered<B>, wo: Vec3, wi: Vec3) -> Spectrum {
-        let mut random = Random::new(Purpose::Value, wo, wi.to_array());
-        let exit_density = |w| layered.coat.pdf(wi, w, Lobes::TRANSMISSION);
-        let walk = layered.walk([wo, wi], Mode::Radiance, &mut random, exit_density);
-        layered.coat.f(wo, wi, Mode::Radiance) + walk.unwrap_or(Spectrum::BLACK)
+    fn of<B: Base<f32>>(layered: &Layered<B>, wo: Vec3, wi: Vec3) -> Spectrum {
+        let (wo, wi): (Vector<f32>, Vector<f32>) = (wo.into(), wi.into());
+        let mut random = Random::new(Purpose::Value, wo, [wi.x, wi.y, wi.z]);
+        let walk = layered.walk::<true>([wo, wi], Mode::Radiance, &mut random, true);
+        layered.coat.f(wo, wi, Mode::Radiance) + walk
     }
     let (wo, wi) = if wo.z < 0.0 { (-wo, -wi) } else { (wo, wi) };
     match bsdf {
@@ -142,7 +144,7 @@ fn single_scattering_in_the_slab_has_a_formula() {
     };
     let bsdf = Bsdf::coated_diffuse(Spectrum::BLACK, &coat);
     let (wo, wi) = (direction(50.0, 0.0), direction(20.0, 100.0));
-    let phase = HenyeyGreenstein::new(0.4).p(wo, wi);
+    let phase = HenyeyGreenstein::new(0.4).p(wo.into(), wi.into());
     let crossing = 0.7 * (1.0 / wo.z + 1.0 / wi.z);
     let expected = f64::from(0.6 * phase * (1.0 - (-crossing).exp()) / (wo.z + wi.z));
     // The function is one estimate per pair of directions: jitter them.

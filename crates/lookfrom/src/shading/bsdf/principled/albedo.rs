@@ -137,7 +137,7 @@ fn integrated_mirror(cos: f32, alpha: f32) -> Split {
         return mirror(cos, 0.0);
     }
     let roughness = TrowbridgeReitz { alpha_x: alpha, alpha_y: alpha };
-    let g1 = roughness.g1(wo);
+    let g1 = roughness.g1(wo.into());
     let mut sum = Split::default();
     let w = Vec3::new(alpha * wo.x, 0.0, wo.z).normalize();
     for radius in 0..STEPS[1] {
@@ -152,7 +152,7 @@ fn integrated_mirror(cos: f32, alpha: f32) -> Split {
             let wm = Vec3::new(alpha * h.x, alpha * h.y, h.z.max(1e-6)).normalize();
             let wi = math::reflect(wo, wm);
             if wi.z > 0.0 {
-                let seen = weight * roughness.g(wo, wi) / g1;
+                let seen = weight * roughness.g(wo.into(), wi.into()) / g1;
                 let s = schlick(wo.dot(wm));
                 sum.straight += (1.0 - s) * seen;
                 sum.grazing += s * seen;

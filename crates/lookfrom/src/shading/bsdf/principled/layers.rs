@@ -8,7 +8,7 @@ use super::sheen::Sheen;
 use crate::core::math::{self, schlick};
 use crate::core::spectrum::Spectrum;
 use crate::core::warp;
-use crate::shading::bsdf::conductor::half_vector;
+use crate::shading::bsdf::conductor::try_half_vector;
 use crate::shading::bsdf::is_grazing;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 
@@ -99,19 +99,20 @@ impl Coat {
         if self.alpha == 0.0 || self.wo.z <= 0.0 || wi.z <= 0.0 || is_grazing(self.wo) || is_grazing(wi) {
             return None;
         }
-        Some((wi, half_vector(self.wo, wi)?))
+        Some((wi, try_half_vector(self.wo, wi)?))
     }
 
     /// Its BSDF per cosine to the normal of the surface below.
     pub(super) fn f(&self, wi: Vec3) -> f32 {
         let Some((local, wm)) = self.facet(wi) else { return 0.0 };
         let fresnel = COAT_F0 + (1.0 - COAT_F0) * schlick(self.wo.dot(wm));
-        let visible = self.roughness.d(wm) * self.roughness.g(self.wo, local);
+        let visible = self.roughness.d(wm.into()) * self.roughness.g(self.wo.into(), local.into());
         self.amount * fresnel * visible / (4.0 * self.wo.z * wi.z)
     }
 
     pub(super) fn pdf(&self, wi: Vec3) -> f32 {
-        self.facet(wi).map_or(0.0, |(_, wm)| 0.25 * self.roughness.visible_per_cosine(self.wo, wm))
+        self.facet(wi)
+            .map_or(0.0, |(_, wm)| 0.25 * self.roughness.visible_per_cosine(self.wo.into(), wm.into()))
     }
 
     /// Samples a direction above the coat and above the surface.
@@ -119,7 +120,7 @@ impl Coat {
         if self.wo.z <= 0.0 || is_grazing(self.wo) {
             return None;
         }
-        let wm = if self.alpha == 0.0 { Vec3::Z } else { self.roughness.sample(self.wo, u) };
+        let wm = if self.alpha == 0.0 { Vec3::Z } else { self.roughness.sample(self.wo.into(), u).into() };
         let local = math::reflect(self.wo, wm);
         let [s, t, n] = self.frame;
         let wi = (local.x * s + local.y * t + local.z * n).normalize();

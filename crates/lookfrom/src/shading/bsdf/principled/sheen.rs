@@ -8,7 +8,7 @@ use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
 
 use crate::core::math;
-use crate::shading::bsdf::conductor::half_vector;
+use crate::shading::bsdf::conductor::try_half_vector;
 
 /// Smallest roughness: below it, fibres would be visible at the horizon only, and excessively bright there.
 const SMOOTHEST: f32 = 0.07;
@@ -52,7 +52,7 @@ impl Sheen {
 
     /// `f` of white fibres, for two directions above the surface.
     pub(super) fn f(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let Some(wm) = half_vector(wo, wi) else { return 0.0 };
+        let Some(wm) = try_half_vector(wo, wi) else { return 0.0 };
         let sin2 = (1.0 - wm.z * wm.z).max(0.0);
         let d = (2.0 + 1.0 / self.alpha) * math::power(sin2, 0.5 / self.alpha) / (2.0 * PI);
         let [o, i] = [wo.z.min(1.0), wi.z.min(1.0)];

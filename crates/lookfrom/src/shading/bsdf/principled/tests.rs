@@ -240,7 +240,7 @@ fn limits_are_what_is_there_already() {
                 assert!(close(ours.eta, theirs.eta, 1e-5));
                 if !ours.lobe.is_specular() {
                     // Except for the light that pbrt's facets mask, and what they send to the wrong side.
-                    let seen = rough(alpha).g(wo, theirs.wi) / rough(alpha).g1(wo);
+                    let seen = rough(alpha).g(wo.into(), theirs.wi.into()) / rough(alpha).g1(wo.into());
                     let [f, pbrts] = [&glass, &pbrt].map(|bsdf| bsdf.f(wo, theirs.wi, mode).0[0]);
                     assert!(f * seen > 0.998 * pbrts, "{angle}: {f} {pbrts}");
                     near.0 += u32::from(close(f * seen, pbrts, 5e-3));
@@ -366,13 +366,13 @@ fn tables_agree_with_finer_integration() {
         let mut sums = [0.0_f64; 2];
         for k in 0..N * N {
             let u = [((k % N) as f32 + 0.5) / N as f32, ((k / N) as f32 + 0.5) / N as f32];
-            let wi = crate::core::warp::uniform_cone(u, 1.0);
+            let wi = Vec3::from(crate::core::warp::uniform_cone(u, 1.0));
             sums[0] += f64::from(fibres.f(wo, wi) * wi.z) * std::f64::consts::TAU;
             let facets = rough(alpha);
-            let wm = facets.sample(wo, u);
+            let wm = facets.sample(wo.into(), u).into();
             let mirrored = crate::core::math::reflect(wo, wm);
             if mirrored.z > 0.0 {
-                sums[1] += f64::from(facets.g(wo, mirrored) / facets.g1(wo));
+                sums[1] += f64::from(facets.g(wo.into(), mirrored.into()) / facets.g1(wo.into()));
             }
         }
         let [of_sheen, of_mirror] = sums.map(|sum| sum / (N * N) as f64);

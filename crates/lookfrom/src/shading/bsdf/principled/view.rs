@@ -13,7 +13,7 @@ use super::{Principled, towards};
 use crate::core::math;
 use crate::core::spectrum::Spectrum;
 use crate::core::warp;
-use crate::shading::bsdf::conductor::half_vector;
+use crate::shading::bsdf::conductor::try_half_vector;
 use crate::shading::bsdf::dielectric::{radiance_scale, refraction_jacobian};
 use crate::shading::bsdf::diffuse::cosine_direction;
 use crate::shading::bsdf::{BsdfSample, Lobes, Mode, is_grazing};
@@ -187,8 +187,8 @@ impl View {
         if !through || !surface.is_solid {
             // A thin sheet transmits what a reflector would reflect, to the other side.
             let wi = if through { across(wi) } else { wi };
-            let wm = half_vector(wo, wi)?;
-            let density = 0.25 * roughness.visible_per_cosine(wo, wm);
+            let wm = try_half_vector(wo, wi)?;
+            let density = 0.25 * roughness.visible_per_cosine(wo.into(), wm.into());
             let cos = wo.dot(wm);
             return (cos > 0.0).then_some(Facing { wm, cos, density });
         }
@@ -199,8 +199,8 @@ impl View {
         if cos <= 0.0 || wi.dot(wm) >= 0.0 {
             return None;
         }
-        let jacobian = cos * refraction_jacobian(wo, wi, wm, eta);
-        Some(Facing { wm, cos, density: roughness.visible_per_cosine(wo, wm) * jacobian })
+        let jacobian = cos * refraction_jacobian(wo.into(), wi.into(), wm.into(), eta);
+        Some(Facing { wm, cos, density: roughness.visible_per_cosine(wo.into(), wm.into()) * jacobian })
     }
 
     fn facets(&self, wi: Vec3) -> Facings {
@@ -262,7 +262,8 @@ impl View {
         {
             // With masking-shadowing by other facets.
             let (wo, wi) = (self.wo, Vec3::new(wi.x, wi.y, wi.z.abs()));
-            let value = surface.roughness.d(wm) * surface.roughness.g(wo, wi) / (4.0 * wo.z * wi.z);
+            let value = surface.roughness.d(wm.into()) * surface.roughness.g(wo.into(), wi.into())
+                / (4.0 * wo.z * wi.z);
             sum += match (is_rough_body, through) {
                 (true, _) => surface.opaque(cos),
                 (false, true) => surface.facet(cos, self.is_inside).passed,
@@ -373,11 +374,11 @@ impl View {
             is_chosen
         };
         let (wi, side) = if chosen(choice.matte) {
-            (cosine_direction(u, 1.0), Lobes::DIFFUSE)
+            (cosine_direction(u, 1.0).into(), Lobes::DIFFUSE)
         } else if chosen(choice.matte_through) {
-            (cosine_direction(u, -1.0), Lobes::DIFFUSE)
+            (cosine_direction(u, -1.0).into(), Lobes::DIFFUSE)
         } else if chosen(choice.sheen) {
-            (warp::uniform_cone(u, 1.0), Lobes::GLOSSY)
+            (warp::uniform_cone(u, 1.0).into(), Lobes::GLOSSY)
         } else if chosen(choice.coat) {
             let coat = self.coat.as_ref()?;
             let wi = coat.sample(u)?;
@@ -390,7 +391,8 @@ impl View {
             if choice.facet == 0.0 {
                 return None;
             }
-            let wm = if surface.alpha == 0.0 { Vec3::Z } else { surface.roughness.sample(wo, u) };
+            let wm =
+                if surface.alpha == 0.0 { Vec3::Z } else { surface.roughness.sample(wo.into(), u).into() };
             let mirrors = self.mirrors_at(wo.dot(wm), lobes)?;
             let reflects = rest < choice.facet * mirrors;
             let wi = self.off_facet(wm, reflects)?;

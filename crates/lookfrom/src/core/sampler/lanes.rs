@@ -1,12 +1,11 @@
-//! Random numbers of eight samples at once, one in each lane: the SIMD version of [`PixelSampler`], bit
-//! for bit.
+//! Random numbers of eight samples at once, one in each lane.
 
 use lookfrom_scene::settings::Sampler as Kind;
 use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, prelude::*, u32x8, u64x8};
 
-use super::{PixelSampler, Sampler};
-use crate::core::eight::{LANES, by_lane};
-use crate::core::hash::GOLDEN;
+use super::{PixelSampler, Sampler, two};
+use crate::core::hash::mix;
+use crate::core::lanes::{LANES, by_lane};
 
 /// The random numbers of eight pixels, which may be equal.
 #[derive(Clone, Copy)]
@@ -16,7 +15,7 @@ pub(crate) struct PixelSamplers<S: Simd> {
 }
 
 impl<S: Simd> PixelSamplers<S> {
-    /// Samplers of the same render.
+    /// Those of one render.
     #[inline(always)]
     pub(crate) fn new(simd: S, samplers: &[PixelSampler; LANES]) -> Self {
         Self { kind: samplers[0].kind, keys: u64x8::load_array(simd, by_lane!(lane => samplers[lane].key)) }
@@ -24,25 +23,8 @@ impl<S: Simd> PixelSamplers<S> {
 
     /// As [`PixelSampler::two`], for a sample and a dimension (below 2³²) in each lane.
     #[inline(always)]
-    pub(crate) fn two(&self, simd: S, sample: u32x8<S>, dimension: u64x8<S>) -> [f32x8<S>; 2] {
-        let pattern = mix(self.keys ^ dimension);
-        match self.kind {
-            Kind::Sobol => {
-                let mirrored = scramble_from_the_low_end(reversed(sample), low_half(pattern));
-                let index = reversed(mirrored);
-                let first = scramble_from_the_low_end(index, low_half(pattern >> 32));
-                let second = scramble_from_the_low_end(pascal(index), low_half(mix(pattern + GOLDEN)));
-                [unit(simd, reversed(first)), unit(simd, reversed(second))]
-            }
-            Kind::Independent => {
-                let number = u64x8::load_array(simd, {
-                    let samples: [u32; LANES] = sample.into();
-                    by_lane!(lane => u64::from(samples[lane]))
-                });
-                let bits = mix(pattern + (number + 1) * GOLDEN);
-                [unit(simd, low_half(bits >> 32)), unit(simd, low_half(bits))]
-            }
-        }
+    pub(crate) fn two(&self, sample: u32x8<S>, dimension: u64x8<S>) -> [f32x8<S>; 2] {
+        two(self.kind, self.keys, sample, dimension)
     }
 }
 
@@ -83,63 +65,13 @@ impl<F: Fn(usize) -> ([u32; 2], u32)> Kernel for Each<'_, F> {
                 by_lane!(lane => u64::from(addresses[lane].0[0]) | u64::from(addresses[lane].0[1]) << 32);
             let keys = mix(u64x8::load_array(simd, pixels) ^ sampler.key);
             let sample = u32x8::load_array(simd, by_lane!(lane => addresses[lane].1));
-            let [a, b] = PixelSamplers { kind: sampler.kind, keys }.two(simd, sample, dimension);
+            let [a, b] = PixelSamplers { kind: sampler.kind, keys }.two(sample, dimension);
             let (a, b): ([f32; LANES], [f32; LANES]) = (a.into(), b.into());
             for (lane, number) in numbers.iter_mut().enumerate() {
                 *number = [a[lane], b[lane]];
             }
         }
     }
-}
-
-/// The SIMD version of [`crate::core::hash::mix`].
-#[inline(always)]
-pub(crate) fn mix<S: Simd>(mut bits: u64x8<S>) -> u64x8<S> {
-    bits = (bits ^ (bits >> 30)) * 0xbf58_476d_1ce4_e5b9_u64;
-    bits = (bits ^ (bits >> 27)) * 0x94d0_49bb_1331_11eb_u64;
-    bits ^ (bits >> 31)
-}
-
-/// The lower 32 bits.
-#[inline(always)]
-pub(crate) fn low_half<S: Simd>(bits: u64x8<S>) -> u32x8<S> {
-    let (low, high) = bits.split();
-    low.narrow(high)
-}
-
-#[inline(always)]
-fn unit<S: Simd>(simd: S, bits: u32x8<S>) -> f32x8<S> {
-    // Below 2²⁴, so that it fits a signed number too.
-    let number: lookfrom_simd::i32x8<S> = (bits >> 8).bitcast();
-    number.to_float::<f32x8<S>>() * f32x8::splat(simd, 1.0 / 16_777_216.0)
-}
-
-/// Reverses the bits.
-#[inline(always)]
-fn reversed<S: Simd>(x: u32x8<S>) -> u32x8<S> {
-    let x = ((x >> 1) & 0x5555_5555_u32) | ((x & 0x5555_5555_u32) << 1);
-    let x = ((x >> 2) & 0x3333_3333_u32) | ((x & 0x3333_3333_u32) << 2);
-    let x = ((x >> 4) & 0x0f0f_0f0f_u32) | ((x & 0x0f0f_0f0f_u32) << 4);
-    let x = ((x >> 8) & 0x00ff_00ff_u32) | ((x & 0x00ff_00ff_u32) << 8);
-    (x >> 16) | (x << 16)
-}
-
-#[inline(always)]
-fn pascal<S: Simd>(mut bits: u32x8<S>) -> u32x8<S> {
-    bits = bits ^ ((bits >> 1) & 0x5555_5555_u32);
-    bits = bits ^ ((bits >> 2) & 0x3333_3333_u32);
-    bits = bits ^ ((bits >> 4) & 0x0f0f_0f0f_u32);
-    bits = bits ^ ((bits >> 8) & 0x00ff_00ff_u32);
-    bits ^ (bits >> 16)
-}
-
-#[inline(always)]
-fn scramble_from_the_low_end<S: Simd>(mut bits: u32x8<S>, seed: u32x8<S>) -> u32x8<S> {
-    bits = bits ^ (bits * 0x3d20_adea_u32);
-    bits += seed;
-    bits *= (seed >> 16) | 1_u32;
-    bits = bits ^ (bits * 0x0552_6c56_u32);
-    bits ^ (bits * 0x53a2_2864_u32)
 }
 
 #[cfg(test)]
@@ -155,7 +87,7 @@ mod tests {
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let samplers = PixelSamplers::new(simd, self.0);
             let dimension = u64x8::load_array(simd, by_lane!(lane => u64::from(self.2[lane])));
-            let [a, b] = samplers.two(simd, u32x8::load_array(simd, self.1), dimension);
+            let [a, b] = samplers.two(u32x8::load_array(simd, self.1), dimension);
             [a.into(), b.into()]
         }
     }

@@ -1,0 +1,179 @@
+//! Elementary functions of any width: exponential, logarithm, sine and cosine.
+//!
+//! Additions, multiplications and divisions in a fixed order and no tables, so that the bits are the same at every width and
+//! on every machine. Error bounds are stated in units in the last place (ulp) of the result and tested.
+
+use lookfrom_simd::{Bits, Real};
+
+/// 1.5 · 2²³: a number plus this, as an f32, has the nearest integer in its last bits.
+const ROUNDER: f32 = 12_582_912.0;
+
+/// eˣ to 1 ulp. Below −87.3, where it would be less than the least normal number, 0; above 88.3 infinite; NaN stays.
+#[inline(always)]
+pub(crate) fn exp<R: Real>(x: R) -> R {
+    // x = n ln 2 + r, |r| ≤ ½ ln 2; n ln 2 in two parts, of which the first is exact.
+    let shifted = x * std::f32::consts::LOG2_E + ROUNDER;
+    let n = shifted - ROUNDER;
+    let r = x - n * 0.693_359_4 + n * 2.121_944_4e-4;
+    // eʳ − 1 − r by its series, to r⁷.
+    let tail =
+        ((((r * (1.0 / 5040.0) + 1.0 / 720.0) * r + 1.0 / 120.0) * r + 1.0 / 24.0) * r + 1.0 / 6.0) * r + 0.5;
+    let power = r + r * r * tail + 1.0;
+    let bits = shifted.to_bits();
+    let scale = R::from_bits((bits << 23).wrapping_add(bits.like(0x3f80_0000)));
+    let is_small = x.lt(x.like(-87.3));
+    let is_large = x.gt(x.like(88.3));
+    R::select(is_small, x.like(0.0), R::select(is_large, x.like(f32::INFINITY), power * scale))
+}
+
+/// The natural logarithm of a positive normal number, to 2 ulp; of 0, −88 or so.
+#[inline(always)]
+pub(crate) fn ln<R: Real>(x: R) -> R {
+    // x = 2ᵉ m with m in [√½, √2).
+    const ROOT_HALF: u32 = 0x3f35_04f3;
+    let bits = x.to_bits();
+    let moved = bits.wrapping_add(bits.like(0x3f80_0000 - ROOT_HALF));
+    let mantissa = (moved & bits.like(0x007f_ffff)).wrapping_add(bits.like(ROOT_HALF));
+    let e = R::from_integer(moved >> 23) - 127.0;
+    let m = R::from_bits(mantissa);
+    // ln m = 2 artanh s with s = (m − 1) / (m + 1), by its series; m − 1 is exact.
+    let f = m - 1.0;
+    let s = f / (m + 1.0);
+    let s2 = s * s;
+    let tail = (((s2 * (2.0 / 11.0) + 2.0 / 9.0) * s2 + 2.0 / 7.0) * s2 + 2.0 / 5.0) * s2 + 2.0 / 3.0;
+    // 2 s = f − s f, which keeps the bits of f.
+    let rest = s * (s2 * tail - f) + e * -2.121_944_4e-4;
+    e * 0.693_359_4 + (f + rest)
+}
+
+/// Sine and cosine of `t` eighths of a turn (π/4), for |t| ≤ 1, to 2⁻²²: their Taylor series.
+#[inline(always)]
+pub(crate) fn sin_cos_of_eighths<R: Real>(t: R) -> (R, R) {
+    let t2 = t * t;
+    let sin = t * ((((t2 * SIN[4] + SIN[3]) * t2 + SIN[2]) * t2 + SIN[1]) * t2 + SIN[0]);
+    let cos = ((((t2 * COS[5] + COS[4]) * t2 + COS[3]) * t2 + COS[2]) * t2 + COS[1]) * t2 + COS[0];
+    (sin, cos)
+}
+
+/// Sine and cosine of `turns` whole turns (2π), for |turns| < 2¹⁸, to 2⁻²².
+#[inline(always)]
+pub(crate) fn sin_cos_of_turns<R: Real>(turns: R) -> (R, R) {
+    // The nearest quarter, and what is left in eighths: exact.
+    let quarters = turns * 4.0;
+    let shifted = quarters + ROUNDER;
+    let (sin, cos) = sin_cos_of_eighths((quarters - (shifted - ROUNDER)) * 2.0);
+    // Each quarter turns (cos, sin) into (−sin, cos).
+    let bits = shifted.to_bits();
+    let is_odd = R::from_integer(bits & bits.like(1)).gt(turns.like(0.0));
+    let (x, y) = (R::select(is_odd, sin, cos), R::select(is_odd, cos, sin));
+    let sign_of_sin = (bits & bits.like(2)) << 30;
+    let sign_of_cos = (bits.wrapping_add(bits.like(1)) & bits.like(2)) << 30;
+    (R::from_bits(y.to_bits() ^ sign_of_sin), R::from_bits(x.to_bits() ^ sign_of_cos))
+}
+
+/// π/4, squared.
+const SQUARE: f64 = std::f64::consts::FRAC_PI_4 * std::f64::consts::FRAC_PI_4;
+
+/// (−1)ᵏ (π/4)²ᵏ⁺¹ / (2k + 1)!
+const SIN: [f32; 5] = {
+    let first = std::f64::consts::FRAC_PI_4;
+    let third = -first * SQUARE / 6.0;
+    let fifth = -third * SQUARE / 20.0;
+    let seventh = -fifth * SQUARE / 42.0;
+    let ninth = -seventh * SQUARE / 72.0;
+    [first as f32, third as f32, fifth as f32, seventh as f32, ninth as f32]
+};
+
+/// (−1)ᵏ (π/4)²ᵏ / (2k)!
+const COS: [f32; 6] = {
+    let second = -SQUARE / 2.0;
+    let fourth = -second * SQUARE / 12.0;
+    let sixth = -fourth * SQUARE / 30.0;
+    let eighth = -sixth * SQUARE / 56.0;
+    let tenth = -eighth * SQUARE / 90.0;
+    [1.0, second as f32, fourth as f32, sixth as f32, eighth as f32, tenth as f32]
+};
+
+#[cfg(test)]
+mod tests {
+    use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, prelude::*};
+
+    use super::*;
+    use crate::core::hash;
+
+    /// A number below 2ᵐᵃˣ in size, of any exponent from 2⁻³⁰.
+    fn number(count: u64, max: i32) -> f32 {
+        let bits = hash::pair(count, 9);
+        let mantissa = 1.0 + (bits >> 40) as f64 / 16_777_216.0;
+        let exponent = (bits % (max + 30) as u64) as i32 - 30;
+        let sign = if bits & 1 << 39 == 0 { 1.0 } else { -1.0 };
+        (sign * mantissa * libm::exp2(f64::from(exponent))) as f32
+    }
+
+    /// The distance from the true value in units in the last place of that.
+    fn ulps(value: f32, truth: f64) -> f64 {
+        let (_, exponent) = libm::frexp(truth);
+        (f64::from(value) - truth).abs() / libm::exp2(f64::from(exponent.max(-125) - 24))
+    }
+
+    #[test]
+    fn errors_are_within_their_bounds() {
+        for count in 0..400_000 {
+            let x = number(count, 7);
+            if (-87.3..88.3).contains(&x) {
+                let error = ulps(exp(x), libm::exp(f64::from(x)));
+                assert!(error <= 1.0, "exp({x}): {error} ulp");
+            }
+            let x = number(count, 126).abs();
+            let error = ulps(ln(x), libm::log(f64::from(x)));
+            assert!(error <= 2.0, "ln({x}): {error} ulp");
+            // Near 1, where the logarithm is small.
+            let x = 1.0 + number(count, -2);
+            let error = ulps(ln(x), libm::log(f64::from(x)));
+            assert!(error <= 2.0, "ln({x}): {error} ulp");
+            let x = number(count, 10);
+            let (sin, cos) = sin_cos_of_turns(x);
+            let angle = (f64::from(x) - f64::from(x).round()) * std::f64::consts::TAU;
+            let error =
+                (f64::from(sin) - libm::sin(angle)).abs().max((f64::from(cos) - libm::cos(angle)).abs());
+            assert!(error <= 1.0 / 4_194_304.0, "{x} turns: {error}");
+        }
+    }
+
+    #[test]
+    fn ends_of_the_exponential() {
+        assert_eq!(exp(0.0), 1.0);
+        assert_eq!((exp(-88.0), exp(f32::NEG_INFINITY), exp(90.0)), (0.0, 0.0, f32::INFINITY));
+        assert!(exp(88.29).is_finite() && exp(-87.29) > f32::MIN_POSITIVE && exp(f32::NAN).is_nan());
+    }
+
+    struct All([f32; 8]);
+
+    impl Kernel for All {
+        type Output = [[f32; 8]; 4];
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
+            let x = f32x8::load_array(simd, self.0);
+            let (sin, cos) = sin_cos_of_turns(x);
+            [exp(x).into(), ln(SimdBase::abs(x)).into(), sin.into(), cos.into()]
+        }
+    }
+
+    #[test]
+    fn eight_at_once_are_eight_one_by_one() {
+        for round in 0..20_000 {
+            let x: [f32; 8] = std::array::from_fn(|lane| match number(8 * round + lane as u64, 8) {
+                _ if round == 0 => {
+                    [0.0, -0.0, f32::INFINITY, f32::NEG_INFINITY, 1e-40, 88.3, -87.3, 1.0][lane]
+                }
+                x => x,
+            });
+            let [e, l, s, c] = dispatch(level(), All(x));
+            for (lane, &x) in x.iter().enumerate() {
+                let (sin, cos) = sin_cos_of_turns(x);
+                let expected = [exp(x), ln(x.abs()), sin, cos].map(f32::to_bits);
+                assert_eq!([e[lane], l[lane], s[lane], c[lane]].map(f32::to_bits), expected, "{x}");
+            }
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Points on surfaces with bounds of their errors, at any width: [`lookfrom_bvh::Point`] in lanes, bit for bit.
+
+use lookfrom_simd::{Bits, Float, Real};
+
+use crate::core::vector::Vector;
+
+/// Unit of rounding of f64, 2⁻⁵³, as in [`lookfrom_bvh::Point`].
+const UNIT: f64 = f64::EPSILON / 2.0;
+
+/// Points and bounds of their errors, in double precision.
+#[derive(Clone, Copy)]
+pub(crate) struct Points<R: Real> {
+    pub(crate) position: Vector<R::Double>,
+    pub(crate) error: Vector<R::Double>,
+}
+
+impl<R: Real> Points<R> {
+    /// As [`lookfrom_bvh::Point::on_triangle_with_normal`].
+    #[inline(always)]
+    pub(crate) fn on_triangles(corners: [Vector<R>; 3], u: R, v: R) -> (Self, Vector<R::Double>) {
+        let [p0, p1, p2] = [corners[0].widen(), corners[1].widen(), corners[2].widen()];
+        let (u, v) = (u.widen(), v.widen());
+        let (e1, e2) = (p1 - p0, p2 - p0);
+        let n = e1.cross(e2);
+        let (a1, a2) = (e1.abs(), e2.abs());
+        let reach = a1 + a2;
+        let length = n.length();
+        let magnitude = Vector {
+            x: a1.y * a2.z + a1.z * a2.y,
+            y: a1.z * a2.x + a1.x * a2.z,
+            z: a1.x * a2.y + a1.y * a2.x,
+        };
+        let decision = magnitude.dot(reach) * (8.0 * UNIT) / length;
+        let decision = Float::select(Float::is_finite(decision), decision, decision.like(0.0));
+        let position = p0 + e1 * u + e2 * v;
+        let magnitude = p0.abs() + (e1 * u).abs() + (e2 * v).abs() + reach;
+        let error =
+            magnitude * magnitude.x.like(8.0 * UNIT) + Vector { x: decision, y: decision, z: decision };
+        (Self { position, error }, n)
+    }
+
+    /// As [`lookfrom_bvh::Point::leave`].
+    #[inline(always)]
+    pub(crate) fn leave(&self, unit_normal: Vector<R::Double>, direction: Vector<R>) -> Vector<R> {
+        let cos = unit_normal.dot(direction.widen());
+        let side = Float::select(cos.lt(cos.like(0.0)), cos.like(-1.0), cos.like(1.0));
+        let normal = unit_normal * side;
+        let Self { position, error } = *self;
+        let reach = normal.abs().times(error + position.abs() * cos.like(4.0 * UNIT));
+        let step = (reach.x + reach.y + reach.z) * (1.0 + 1e-6);
+        let moved = position + normal * step;
+        Vector {
+            x: round_away(moved.x, normal.x, direction.x),
+            y: round_away(moved.y, normal.y, direction.y),
+            z: round_away(moved.z, normal.z, direction.z),
+        }
+    }
+}
+
+/// As the nearest f32 that is not before `x` on the way along a normal; simply the nearest where that is 0. `like` is
+/// any number as wide.
+#[inline(always)]
+fn round_away<R: Real>(x: R::Double, normal: R::Double, like: R) -> R {
+    let nearest = R::narrow(x);
+    let wide = nearest.widen();
+    let zero = x.like(0.0);
+    let (up, down) = (normal.gt(zero), normal.lt(zero));
+    let falls_short = like.narrow_mask((up & wide.lt(x)) | (down & wide.gt(x)));
+    let up = like.narrow_mask(up);
+    // One step in the order of the numbers is one step of the bits, forward or back by sign; from zero it is the least
+    // number of that side.
+    let bits = nearest.to_bits();
+    let is_positive = nearest.gt(nearest.like(0.0));
+    let grows = (is_positive & up) | (!is_positive & !up);
+    let stepped = bits.wrapping_add(R::select_bits(grows, bits.like(1), bits.like(u32::MAX)));
+    let least = R::select_bits(up, bits.like(1), bits.like(0x8000_0001));
+    let stepped = R::select_bits(Float::eq(nearest, nearest.like(0.0)), least, stepped);
+    R::from_bits(R::select_bits(falls_short, stepped, bits))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use lookfrom_bvh::Point;
+    use lookfrom_simd::{Kernel, Level, Simd, dispatch, f32x8, prelude::*};
+
+    use super::*;
+    use crate::core::lanes::{LANES, by_lane, gather, scatter, scatter_f64};
+    use crate::core::{hash, warp};
+
+    /// The input of a test case: corners, u and v, a direction, a point of the square.
+    #[derive(Clone, Copy, Debug)]
+    struct Question {
+        corners: [[f32; 3]; 3],
+        on: [f32; 2],
+        direction: [f32; 3],
+    }
+
+    #[derive(Debug, PartialEq)]
+    struct Answer {
+        position: [f64; 3],
+        error: [f64; 3],
+        origin: [f32; 3],
+        basis: [[f32; 3]; 2],
+        disk: [f32; 2],
+    }
+
+    struct Ask<'a>(&'a [Question; LANES]);
+
+    impl Kernel for Ask<'_> {
+        type Output = [Answer; LANES];
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
+            let corners =
+                [0, 1, 2].map(|corner| gather(simd, &by_lane!(lane => self.0[lane].corners[corner])));
+            let [u, v] = [0, 1].map(|k| f32x8::load_array(simd, by_lane!(lane => self.0[lane].on[k])));
+            let (points, across) = Points::on_triangles(corners, u, v);
+            let ng = across.normalize();
+            let directions = gather(simd, &by_lane!(lane => self.0[lane].direction));
+            let origins = scatter(points.leave(ng, directions));
+            let (s, t) = warp::basis_about(Vector::narrow(ng));
+            let basis = [scatter(s), scatter(t)];
+            let (positions, errors) = (scatter_f64(points.position), scatter_f64(points.error));
+            let disks = warp::concentric_disk([u, v]);
+            std::array::from_fn(|lane| Answer {
+                position: positions[lane],
+                error: errors[lane],
+                origin: origins[lane],
+                basis: basis.map(|axis| axis[lane]),
+                disk: disks.map(|x| x[lane]),
+            })
+        }
+    }
+
+    fn one_by_one(question: &Question) -> Answer {
+        let Question { corners: [p0, p1, p2], on: [u, v], direction } = *question;
+        let (point, across) = Point::on_triangle_with_normal(p0, p1, p2, u, v);
+        let ng = glam::DVec3::from_array(across).normalize();
+        let (s, t) = warp::orthonormal_basis(ng.as_vec3());
+        Answer {
+            position: point.position,
+            error: point.error,
+            origin: point.leave(ng.to_array(), direction),
+            basis: [s, t].map(|v: Vec3| v.to_array()),
+            disk: warp::concentric_disk([u, v]),
+        }
+    }
+
+    #[test]
+    fn eight_at_once_are_eight_one_by_one() {
+        let mut levels = vec![Level::baseline(), Level::new()];
+        #[cfg(target_arch = "x86_64")]
+        levels.extend(Level::new().as_avx2().map(Level::Avx2));
+        let mut count = 0_u64;
+        let mut number = || {
+            count += 1;
+            hash::pair(count, 5)
+        };
+        for round in 0..4000 {
+            let mut real = |least: i32, greatest: i32| {
+                let bits = number();
+                let mantissa = (bits >> 40) as f64 / 16_777_216.0 - 0.5;
+                let exponent = least + (bits % (greatest - least + 1) as u64) as i32;
+                (mantissa * libm::exp2(f64::from(exponent))) as f32
+            };
+            let questions: [Question; LANES] = std::array::from_fn(|lane| {
+                let mut corners = [[0.0; 3]; 3].map(|corner: [f32; 3]| corner.map(|_| real(-20, 20)));
+                // Some lie in an axis-aligned plane, as walls do.
+                if (round + lane) % 3 == 0 {
+                    corners.iter_mut().for_each(|corner| corner[lane % 3] = 1.5);
+                }
+                let on =
+                    if lane == 7 && round % 5 == 0 { [0.5; 2] } else { [0.5 + real(0, 0), 0.5 + real(0, 0)] };
+                Question { corners, on, direction: [0.0; 3].map(|_: f32| real(-20, 20)) }
+            });
+            for &level in &levels {
+                let answers = dispatch(level, Ask(&questions));
+                for (question, answer) in questions.iter().zip(answers) {
+                    let expected = one_by_one(question);
+                    // A triangle of zero area gives NaN, whose bits do not matter.
+                    if expected.origin.iter().all(|x| x.is_finite()) {
+                        assert_eq!(answer, expected, "{question:?}");
+                    }
+                }
+            }
+        }
+    }
+}

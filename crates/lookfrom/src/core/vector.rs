@@ -1,0 +1,165 @@
+//! Vectors of three components, of any width and precision: one vector, or eight side by side.
+//!
+//! The operations are glam's in glam's order, so that code which is generic over [`Real`] and code that uses
+//! [`Vec3`] agree bit for bit.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+use glam::Vec3;
+use lookfrom_simd::{Float, Real};
+
+/// Three components, each as wide as `F`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vector<F> {
+    /// The first component.
+    pub x: F,
+    /// The second.
+    pub y: F,
+    /// The third.
+    pub z: F,
+}
+
+impl<F: Float> Vector<F> {
+    /// By its components.
+    #[inline(always)]
+    pub fn new(x: F, y: F, z: F) -> Self {
+        Self { x, y, z }
+    }
+
+    /// The scalar product.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> F {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// The square of the length.
+    #[inline(always)]
+    pub fn length_squared(self) -> F {
+        self.dot(self)
+    }
+
+    /// The vector product.
+    #[inline(always)]
+    pub(crate) fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
+    /// The length.
+    #[inline(always)]
+    pub(crate) fn length(self) -> F {
+        Float::sqrt(self.dot(self))
+    }
+
+    /// The product, component by component.
+    #[inline(always)]
+    pub(crate) fn times(self, other: Self) -> Self {
+        Self { x: self.x * other.x, y: self.y * other.y, z: self.z * other.z }
+    }
+
+    /// Component by component without its sign.
+    #[inline(always)]
+    pub(crate) fn abs(self) -> Self {
+        Self { x: Float::abs(self.x), y: Float::abs(self.y), z: Float::abs(self.z) }
+    }
+
+    /// `yes` where the mask is set, `no` elsewhere.
+    #[inline(always)]
+    pub fn select(mask: F::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            x: F::select(mask, yes.x, no.x),
+            y: F::select(mask, yes.y, no.y),
+            z: F::select(mask, yes.z, no.z),
+        }
+    }
+
+    /// The opposite vector where the mask is set.
+    #[inline(always)]
+    pub fn negate_where(self, mask: F::Mask) -> Self {
+        Self::select(mask, -self, self)
+    }
+}
+
+impl<F: Float<Scalar: From<f32>>> Vector<F> {
+    /// Of unit length. A vector without a length, or too short to tell, becomes NaN.
+    #[inline(always)]
+    pub fn normalize(self) -> Self {
+        self * self.length_recip()
+    }
+
+    #[inline(always)]
+    fn length_recip(self) -> F {
+        let length = self.length();
+        length.like(F::Scalar::from(1.0)) / length
+    }
+}
+
+impl<R: Real> Vector<R> {
+    /// Of unit length, and whether there is such a vector.
+    #[inline(always)]
+    pub fn try_normalize(self) -> (Self, R::Mask) {
+        let recip = self.length_recip();
+        (self * recip, Float::is_finite(recip) & recip.gt(recip.like(0.0)))
+    }
+
+    /// In double precision.
+    #[inline(always)]
+    pub(crate) fn widen(self) -> Vector<R::Double> {
+        Vector { x: self.x.widen(), y: self.y.widen(), z: self.z.widen() }
+    }
+
+    /// Rounded to single precision.
+    #[inline(always)]
+    pub(crate) fn narrow(wide: Vector<R::Double>) -> Self {
+        Self { x: R::narrow(wide.x), y: R::narrow(wide.y), z: R::narrow(wide.z) }
+    }
+}
+
+impl<F: Float> Add for Vector<F> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
+    }
+}
+
+impl<F: Float> Sub for Vector<F> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+}
+
+impl<F: Float> Mul<F> for Vector<F> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: F) -> Self {
+        Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
+    }
+}
+
+impl<F: Float> Neg for Vector<F> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { x: -self.x, y: -self.y, z: -self.z }
+    }
+}
+
+impl From<Vec3> for Vector<f32> {
+    #[inline(always)]
+    fn from(v: Vec3) -> Self {
+        Self { x: v.x, y: v.y, z: v.z }
+    }
+}
+
+impl From<Vector<f32>> for Vec3 {
+    #[inline(always)]
+    fn from(v: Vector<f32>) -> Self {
+        Self::new(v.x, v.y, v.z)
+    }
+}

@@ -1,0 +1,116 @@
+//! The importance of a cluster of lights at a point, at any width (Conty Estevez & Kulla 2018).
+
+use lookfrom_simd::{Float, Real, Simd, f32x8, prelude::*};
+
+use crate::core::lanes::{LANES, by_lane};
+use crate::core::vector::Vector;
+
+/// Light bounds in the form that importances are computed from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight<R = f32> {
+    pub(super) center: Vector<R>,
+    /// Radius of the sphere around the box.
+    pub(super) radius: R,
+    pub(super) axis: Vector<R>,
+    pub(super) cos_normals: R,
+    pub(super) sin_normals: R,
+    pub(super) cos_emission: R,
+    pub(super) power: R,
+    /// 1 where both sides emit light, else 0.
+    pub(super) two_sided: R,
+}
+
+impl Sight {
+    /// One in each lane.
+    #[inline(always)]
+    pub(super) fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Sight<f32x8<S>> {
+        Sight {
+            center: Vector {
+                x: f32x8::load_array(simd, by_lane!(lane => rows[lane].center.x)),
+                y: f32x8::load_array(simd, by_lane!(lane => rows[lane].center.y)),
+                z: f32x8::load_array(simd, by_lane!(lane => rows[lane].center.z)),
+            },
+            radius: f32x8::load_array(simd, by_lane!(lane => rows[lane].radius)),
+            axis: Vector {
+                x: f32x8::load_array(simd, by_lane!(lane => rows[lane].axis.x)),
+                y: f32x8::load_array(simd, by_lane!(lane => rows[lane].axis.y)),
+                z: f32x8::load_array(simd, by_lane!(lane => rows[lane].axis.z)),
+            },
+            cos_normals: f32x8::load_array(simd, by_lane!(lane => rows[lane].cos_normals)),
+            sin_normals: f32x8::load_array(simd, by_lane!(lane => rows[lane].sin_normals)),
+            cos_emission: f32x8::load_array(simd, by_lane!(lane => rows[lane].cos_emission)),
+            power: f32x8::load_array(simd, by_lane!(lane => rows[lane].power)),
+            two_sided: f32x8::load_array(simd, by_lane!(lane => rows[lane].two_sided)),
+        }
+    }
+}
+
+impl<R: Real> Sight<R> {
+    /// An upper bound, up to the variation of distance within the bounds, of the light that arrives at `p` with normal
+    /// `n`. Finite, and positive where any light may arrive.
+    #[inline(always)]
+    pub(super) fn importance(&self, p: Vector<R>, n: Vector<R>) -> R {
+        let (zero, one) = (p.x.like(0.0), p.x.like(1.0));
+        let to_p = p - self.center;
+        let length2 = to_p.length_squared();
+        // Near and inside the box, the distance to its centre is meaningless.
+        let by_distance = self.power / Float::max(length2, self.radius);
+        let wi = to_p * (one / Float::sqrt(length2));
+
+        // θ to the axis, less the spread of the normals, less the angle that the box subtends.
+        let cos_axis = self.axis.dot(wi);
+        let cos_axis = R::select(self.two_sided.gt(zero), Float::abs(cos_axis), cos_axis);
+        let radius2 = self.radius * self.radius;
+        let is_outside = length2.gt(radius2);
+        let sin2 = radius2 / length2;
+        let cos_box = R::select(is_outside, Float::sqrt(Float::max(one - sin2, zero)), -one);
+        let sin_box = R::select(is_outside, Float::sqrt(sin2), zero);
+        let to_normals = angle_less((cos_axis, sin_of(cos_axis)), (self.cos_normals, self.sin_normals));
+        let (least, _) = angle_less(to_normals, (cos_box, sin_box));
+        // At the surface: the smallest angle between its normal and the box, on either side.
+        let cos_surface = Float::abs(wi.dot(n));
+        let (at_surface, _) = angle_less((cos_surface, sin_of(cos_surface)), (cos_box, sin_box));
+        let has_normal = n.length_squared().gt(zero);
+        let at_surface = R::select(has_normal, at_surface, one);
+        let directed =
+            R::select(least.gt(self.cos_emission), bounded(by_distance * least * at_surface), zero);
+        let is_usual = !length2.lt(length2.like(1e-36)) & length2.lt(length2.like(1e36));
+        R::select(is_usual, directed, bounded(by_distance))
+    }
+}
+
+/// Within the range in which neither the sum nor the ratio of two importances leaves that of f32.
+#[inline(always)]
+fn bounded<R: Real>(importance: R) -> R {
+    Float::clamp(importance, 1e-30, 1e30)
+}
+
+/// The probability of the first of two children, given their importances, and whether either can be chosen.
+#[inline(always)]
+pub(super) fn probability_of_first<R: Real>([first, second]: [R; 2]) -> (R, R::Mask) {
+    /// Least probability of a child of positive importance: the other one may be hidden.
+    const LEAST: f32 = 1.0 / 65536.0;
+    let zero = first.like(0.0);
+    let sum = first + second;
+    let share = first / sum;
+    let both = first.gt(zero) & second.gt(zero);
+    (R::select(both, Float::clamp(share, LEAST, 1.0 - LEAST), share), sum.gt(zero))
+}
+
+/// The sine of an angle within 0 … π, by its cosine.
+#[inline(always)]
+pub(super) fn sin_of<R: Real>(cos: R) -> R {
+    let one = cos.like(1.0);
+    Float::sqrt(Float::max(one - cos * cos, cos.like(0.0)))
+}
+
+/// Cosine and sine of max(0, a − b), for angles given by cosine and sine.
+#[inline(always)]
+fn angle_less<R: Real>((cos_a, sin_a): (R, R), (cos_b, sin_b): (R, R)) -> (R, R) {
+    let (zero, one) = (cos_a.like(0.0), cos_a.like(1.0));
+    let is_within = cos_a.gt(cos_b);
+    (
+        R::select(is_within, one, cos_a * cos_b + sin_a * sin_b),
+        R::select(is_within, zero, sin_a * cos_b - cos_a * sin_b),
+    )
+}

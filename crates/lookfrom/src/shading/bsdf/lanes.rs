@@ -1,0 +1,216 @@
+//! BSDFs of eight paths side by side: what the path tracer asks of a class of them, and how their rows are gathered.
+
+use lookfrom_simd::{Real, Simd, f32x8, prelude::*};
+
+use super::conductor::Conductor;
+use super::dielectric::Dielectric;
+use super::diffuse::Diffuse;
+use super::henyey_greenstein::HenyeyGreenstein;
+use super::layered::{Base, Layered};
+use super::lobes::Lobes;
+use super::microfacet::TrowbridgeReitz;
+use super::{Bsdf, DirectionSample, Mode};
+use crate::core::lanes::{LANES, by_lane, gather_spectrum};
+use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
+
+/// What all BSDFs of a class have in common.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kind {
+    /// How lobes that are not specular spread.
+    pub(crate) spread: Lobes,
+    /// As [`super::BsdfSample::pdf_is_proportional`].
+    pub(crate) pdf_is_proportional: bool,
+    /// Whether sampling takes a number to choose a lobe.
+    pub(crate) needs_lobe: bool,
+}
+
+impl Kind {
+    /// The lobe of a sample.
+    pub(crate) fn lobe(self, is_specular: bool, is_transmission: bool) -> Lobes {
+        let side = if is_transmission { Lobes::TRANSMISSION } else { Lobes::REFLECTION };
+        side | if is_specular { Lobes::SPECULAR } else { self.spread }
+    }
+}
+
+/// BSDFs of one class at any width, for paths from the camera. Directions are those of [`Bsdf`].
+pub(crate) trait LaneBsdf<R: Real> {
+    const KIND: Kind;
+
+    /// As [`Bsdf::f`].
+    fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R>;
+    /// As [`Bsdf::pdf`].
+    fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R;
+    /// As [`Bsdf::sample`].
+    fn sample(&self, wo: Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R>;
+    /// True if there is a lobe that is not specular.
+    fn has_density(&self) -> R::Mask;
+}
+
+/// A class of BSDFs, as scalars.
+pub(crate) trait RowBsdf: Sized {
+    /// Eight of them.
+    type Lanes<S: Simd>: LaneBsdf<f32x8<S>>;
+
+    /// The BSDF, if it is of this class.
+    fn of(bsdf: &Bsdf) -> Option<&Self>;
+
+    /// One in each lane.
+    fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S>;
+}
+
+macro_rules! base_class {
+    ($base:ident, $spread:expr) => {
+        impl<R: Real> LaneBsdf<R> for $base<R> {
+            const KIND: Kind = Kind { spread: $spread, pdf_is_proportional: false, needs_lobe: false };
+
+            #[inline(always)]
+            fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+                Base::f(self, wo, wi)
+            }
+            #[inline(always)]
+            fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R {
+                Base::pdf(self, wo, wi)
+            }
+            #[inline(always)]
+            fn sample(&self, wo: Vector<R>, _: R, u: [R; 2]) -> DirectionSample<R> {
+                Base::sample(self, wo, u)
+            }
+            #[inline(always)]
+            fn has_density(&self) -> R::Mask {
+                Base::has_density(self)
+            }
+        }
+    };
+}
+
+base_class!(Diffuse, Lobes::DIFFUSE);
+base_class!(Conductor, Lobes::GLOSSY);
+
+impl<R: Real> LaneBsdf<R> for Dielectric<R> {
+    const KIND: Kind = Kind { spread: Lobes::GLOSSY, pdf_is_proportional: false, needs_lobe: true };
+
+    #[inline(always)]
+    fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+        self.f(wo, wi, Mode::Radiance)
+    }
+    #[inline(always)]
+    fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R {
+        self.pdf(wo, wi, Lobes::ALL)
+    }
+    #[inline(always)]
+    fn sample(&self, wo: Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
+        self.sample(wo, uc, u, Mode::Radiance, Lobes::ALL)
+    }
+    #[inline(always)]
+    fn has_density(&self) -> R::Mask {
+        !self.is_specular()
+    }
+}
+
+impl<R: Real, B: Base<R>> LaneBsdf<R> for Layered<B, R> {
+    const KIND: Kind = Kind { spread: Lobes::GLOSSY, pdf_is_proportional: true, needs_lobe: true };
+
+    #[inline(always)]
+    fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+        self.f(wo, wi, Mode::Radiance)
+    }
+    #[inline(always)]
+    fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R {
+        self.pdf(wo, wi, Mode::Radiance)
+    }
+    #[inline(always)]
+    fn sample(&self, wo: Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
+        self.sample(wo, uc, u, Mode::Radiance)
+    }
+    #[inline(always)]
+    fn has_density(&self) -> R::Mask {
+        self.has_density()
+    }
+}
+
+#[inline(always)]
+fn gather_roughness<S: Simd>(simd: S, rows: &[TrowbridgeReitz; LANES]) -> TrowbridgeReitz<f32x8<S>> {
+    TrowbridgeReitz {
+        alpha_x: f32x8::load_array(simd, by_lane!(lane => rows[lane].alpha_x)),
+        alpha_y: f32x8::load_array(simd, by_lane!(lane => rows[lane].alpha_y)),
+    }
+}
+
+impl RowBsdf for Diffuse {
+    type Lanes<S: Simd> = Diffuse<f32x8<S>>;
+
+    fn of(bsdf: &Bsdf) -> Option<&Self> {
+        if let Bsdf::Diffuse(bsdf) = bsdf { Some(bsdf) } else { None }
+    }
+
+    #[inline(always)]
+    fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
+        Diffuse { reflectance: gather_spectrum(simd, &by_lane!(lane => rows[lane].reflectance)) }
+    }
+}
+
+impl RowBsdf for Conductor {
+    type Lanes<S: Simd> = Conductor<f32x8<S>>;
+
+    fn of(bsdf: &Bsdf) -> Option<&Self> {
+        if let Bsdf::Conductor(bsdf) = bsdf { Some(bsdf) } else { None }
+    }
+
+    #[inline(always)]
+    fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
+        Conductor {
+            eta: gather_spectrum(simd, &by_lane!(lane => rows[lane].eta)),
+            k: gather_spectrum(simd, &by_lane!(lane => rows[lane].k)),
+            roughness: gather_roughness(simd, &by_lane!(lane => rows[lane].roughness)),
+        }
+    }
+}
+
+impl RowBsdf for Dielectric {
+    type Lanes<S: Simd> = Dielectric<f32x8<S>>;
+
+    fn of(bsdf: &Bsdf) -> Option<&Self> {
+        if let Bsdf::Dielectric(bsdf) = bsdf { Some(bsdf) } else { None }
+    }
+
+    #[inline(always)]
+    fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
+        Dielectric {
+            eta: f32x8::load_array(simd, by_lane!(lane => rows[lane].eta)),
+            roughness: gather_roughness(simd, &by_lane!(lane => rows[lane].roughness)),
+        }
+    }
+}
+
+macro_rules! layered_class {
+    ($base:ident, $variant:ident) => {
+        impl RowBsdf for Layered<$base> {
+            type Lanes<S: Simd> = Layered<$base<f32x8<S>>, f32x8<S>>;
+
+            fn of(bsdf: &Bsdf) -> Option<&Self> {
+                if let Bsdf::$variant(bsdf) = bsdf { Some(bsdf) } else { None }
+            }
+
+            #[inline(always)]
+            fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
+                let g = f32x8::load_array(simd, by_lane!(lane => rows[lane].phase.g));
+                Layered {
+                    coat: Dielectric::gather(simd, &by_lane!(lane => &rows[lane].coat)),
+                    base: $base::gather(simd, &by_lane!(lane => &rows[lane].base)),
+                    albedo: gather_spectrum(simd, &by_lane!(lane => rows[lane].albedo)),
+                    thickness: f32x8::load_array(simd, by_lane!(lane => rows[lane].thickness)),
+                    phase: HenyeyGreenstein { g },
+                    max_depth: f32x8::load_array(simd, by_lane!(lane => rows[lane].max_depth)),
+                    samples: f32x8::load_array(simd, by_lane!(lane => rows[lane].samples)),
+                }
+            }
+        }
+    };
+}
+
+layered_class!(Diffuse, CoatedDiffuse);
+layered_class!(Conductor, CoatedConductor);
+
+#[cfg(test)]
+mod tests;

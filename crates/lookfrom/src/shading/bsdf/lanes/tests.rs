@@ -1,0 +1,178 @@
+//! Eight BSDFs side by side against each on its own, bit for bit.
+
+use glam::Vec3;
+use lookfrom_simd::{Kernel, Level, dispatch};
+
+use super::*;
+use crate::core::hash;
+use crate::core::lanes::{gather, scatter, scatter_spectrum};
+use crate::shading::bsdf::BsdfSample;
+use crate::shading::bsdf::layered::CoatLayer;
+
+/// Two directions and three numbers.
+#[derive(Clone, Copy, Debug)]
+struct Query {
+    wo: Vec3,
+    wi: Vec3,
+    uc: f32,
+    u: [f32; 2],
+}
+
+/// `f`, the density and a sample, as bits.
+#[derive(Debug, PartialEq)]
+struct Values {
+    f: [u32; 4],
+    pdf: u32,
+    sample: Option<([u32; 9], Lobes)>,
+}
+
+/// NaN has any bits.
+fn bits(x: f32) -> u32 {
+    if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() }
+}
+
+impl Values {
+    fn new(f: Spectrum, pdf: f32, sample: Option<BsdfSample>) -> Self {
+        let sample = sample.map(|BsdfSample { wi, f, pdf, eta, lobe, .. }| {
+            let ([x, y, z], [a, b, c, d]) = (wi.to_array(), f.0);
+            ([x, y, z, a, b, c, d, pdf, eta].map(bits), lobe)
+        });
+        Self { f: f.0.map(bits), pdf: bits(pdf), sample }
+    }
+}
+
+struct Eight<'a, B>(&'a [&'a B; LANES], &'a [Query; LANES]);
+
+impl<B: RowBsdf> Kernel for Eight<'_, B> {
+    type Output = [Values; LANES];
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let bsdf = B::gather(simd, self.0);
+        let query = self.1;
+        let wo = gather(simd, &by_lane!(lane => query[lane].wo.to_array()));
+        let wi = gather(simd, &by_lane!(lane => query[lane].wi.to_array()));
+        let load = |values: [f32; LANES]| f32x8::load_array(simd, values);
+        let u = [load(by_lane!(lane => query[lane].u[0])), load(by_lane!(lane => query[lane].u[1]))];
+        let sample = bsdf.sample(wo, load(by_lane!(lane => query[lane].uc)), u).if_lit();
+        let (f, pdf) = (scatter_spectrum(bsdf.f(wo, wi)), bsdf.pdf(wo, wi));
+        let (sampled_f, sampled_wi) = (scatter_spectrum(sample.f), scatter(sample.wi));
+        let is_valid = sample.is_valid & sample.f.is_finite() & sample.pdf.simd_lt(f32::INFINITY);
+        let mask = |mask: lookfrom_simd::mask32x8<S>, lane: usize| mask.to_bitmask() & 1 << lane != 0;
+        let kind = <B::Lanes<S> as LaneBsdf<f32x8<S>>>::KIND;
+        std::array::from_fn(|lane| {
+            let scalar = mask(is_valid, lane).then(|| BsdfSample {
+                wi: sampled_wi[lane].into(),
+                f: sampled_f[lane],
+                pdf: sample.pdf[lane],
+                lobe: kind.lobe(mask(sample.is_specular, lane), mask(sample.is_transmission, lane)),
+                eta: sample.eta[lane],
+                pdf_is_proportional: kind.pdf_is_proportional,
+            });
+            Values::new(f[lane], pdf[lane], scalar)
+        })
+    }
+}
+
+/// A number of random exponent within 2^±`size`.
+fn any(seed: u64, index: u64, size: i32) -> f32 {
+    let bits = hash::pair(seed, index);
+    let exponent = (bits % (2 * size as u64 + 1)) as i32 - size;
+    (libm::exp2(f64::from(exponent)) * (1.0 + (bits >> 40) as f64 / 16_777_216.0)) as f32
+}
+
+fn unit(seed: u64, index: u64) -> f32 {
+    (hash::pair(seed, index) >> 40) as f32 / 16_777_216.0
+}
+
+/// A direction, often near the axes or the surface, on either side.
+fn direction(seed: u64, index: u64) -> Vec3 {
+    let component = |k: u64| {
+        let sign = if hash::pair(seed + k, index) >> 50 & 1 == 0 { 1.0 } else { -1.0 };
+        f64::from(sign * any(seed + k, index, 6))
+    };
+    glam::DVec3::new(component(1), component(2), component(3)).normalize().as_vec3()
+}
+
+fn roughness(seed: u64, index: u64) -> TrowbridgeReitz {
+    TrowbridgeReitz::new(any(seed, index, 12), any(seed + 1, index, 12))
+}
+
+fn spectrum(seed: u64, index: u64) -> Spectrum {
+    Spectrum(std::array::from_fn(|lane| any(seed + lane as u64, index, 4).min(1.0)))
+}
+
+fn coat(index: u64) -> CoatLayer {
+    CoatLayer {
+        eta: if index.is_multiple_of(5) { 1.0 } else { any(31, index, 1) },
+        roughness: roughness(33, index),
+        thickness: any(35, index, 8),
+        albedo: if index.is_multiple_of(3) { spectrum(37, index) } else { Spectrum::BLACK },
+        g: 2.0 * unit(41, index) - 1.0,
+        max_depth: 1 + (index % 12) as u16,
+        samples: 1 + (index % 2) as u16,
+    }
+}
+
+/// Compares eight BSDFs of a class with `Bsdf`'s own answers, at every level.
+fn compare<B: RowBsdf>(bsdf: impl Fn(u64) -> Bsdf) {
+    let mut levels = vec![Level::baseline(), Level::new()];
+    #[cfg(target_arch = "x86_64")]
+    levels.extend(Level::new().as_avx2().map(Level::Avx2));
+    let (mut samples, mut values) = (0, 0);
+    for round in 0..4000 {
+        let index = |lane: usize| 8 * round + lane as u64;
+        let bsdfs: [Bsdf; LANES] = std::array::from_fn(|lane| bsdf(index(lane)));
+        let rows: [&B; LANES] = std::array::from_fn(|lane| B::of(&bsdfs[lane]).unwrap());
+        let queries: [Query; LANES] = std::array::from_fn(|lane| {
+            let index = index(lane);
+            let u = [unit(3, index), unit(4, index)];
+            Query { wo: direction(10, index), wi: direction(20, index), uc: unit(5, index), u }
+        });
+        for &level in &levels {
+            for (lane, together) in dispatch(level, Eight(&rows, &queries)).into_iter().enumerate() {
+                let Query { wo, wi, uc, u } = queries[lane];
+                let bsdf = &bsdfs[lane];
+                let alone = Values::new(
+                    bsdf.f(wo, wi, Mode::Radiance),
+                    bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL),
+                    bsdf.sample(wo, uc, u, Mode::Radiance, Lobes::ALL),
+                );
+                assert_eq!(together, alone, "{bsdf:?} {:?}", queries[lane]);
+                samples += u32::from(alone.sample.is_some());
+                values += u32::from(alone.f != [0; 4]);
+            }
+        }
+    }
+    assert!(samples > 10_000 && values > 1000, "{samples} samples, {values} values");
+}
+
+#[test]
+fn diffuse_in_lanes() {
+    compare::<Diffuse>(|index| Bsdf::diffuse(spectrum(50, index)));
+}
+
+#[test]
+fn conductors_in_lanes() {
+    compare::<Conductor>(|index| {
+        let lanes = |seed| Spectrum(std::array::from_fn(|lane| any(seed + lane as u64, index, 20)));
+        Bsdf::conductor(lanes(60), lanes(64), roughness(68, index))
+    });
+}
+
+#[test]
+fn dielectrics_in_lanes() {
+    compare::<Dielectric>(|index| {
+        let eta = if index.is_multiple_of(7) { 1.0 } else { any(70, index, 3) };
+        Bsdf::dielectric(eta, roughness(71, index))
+    });
+}
+
+#[test]
+fn layered_surfaces_in_lanes() {
+    compare::<Layered<Diffuse>>(|index| Bsdf::coated_diffuse(spectrum(80, index), &coat(index)));
+    compare::<Layered<Conductor>>(|index| {
+        let (eta, k) = (spectrum(90, index), spectrum(94, index) * 4.0);
+        Bsdf::coated_conductor(eta, k, roughness(98, index), &coat(index))
+    });
+}
