@@ -16,18 +16,22 @@
 //!
 //! Guo, Hašan & Zhao 2018 (position-free Monte Carlo).
 
+mod coat;
+mod random;
+
 use std::f32::consts::FRAC_1_PI;
 
-use lookfrom_simd::{Bits, Float, Mask, Real};
+use lookfrom_simd::{Float, Mask, Real};
 
 use super::dielectric::Dielectric;
 use super::henyey_greenstein::HenyeyGreenstein;
-use super::microfacet::TrowbridgeReitz;
 use super::{DirectionSample, Lobes, Mode, is_grazing};
 use crate::core::elementary::{exp, ln};
-use crate::core::hash;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
+pub use coat::CoatLayer;
+use coat::{coat_f, coat_pdf, sample_coat};
+use random::{Purpose, Random};
 
 /// An opaque BSDF, which can be the base under a coat.
 pub trait Base<R: Real>: Copy {
@@ -41,40 +45,6 @@ pub trait Base<R: Real>: Copy {
     fn is_specular(&self) -> R::Mask;
     /// True if it has a lobe that is not specular.
     fn has_density(&self) -> R::Mask;
-}
-
-/// A coat: a dielectric boundary and the slab below it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoatLayer {
-    /// Index of refraction over that outside; 0 counts as 1.
-    pub eta: f32,
-    /// Roughness of the boundary.
-    pub roughness: TrowbridgeReitz,
-    /// Thickness of the slab, in mean free paths.
-    pub thickness: f32,
-    /// Single-scattering albedo of the slab's particles, clamped to 0 … 1; black for no particles.
-    pub albedo: Spectrum,
-    /// Mean cosine of the phase function.
-    pub g: f32,
-    /// Maximum number of steps of a walk.
-    pub max_depth: u16,
-    /// Number of walks that are averaged, at least one.
-    pub samples: u16,
-}
-
-impl Default for CoatLayer {
-    /// pbrt's defaults.
-    fn default() -> Self {
-        Self {
-            eta: 1.5,
-            roughness: TrowbridgeReitz::SMOOTH,
-            thickness: 0.01,
-            albedo: Spectrum::BLACK,
-            g: 0.0,
-            max_depth: 10,
-            samples: 1,
-        }
-    }
 }
 
 /// A base under a coat.
@@ -92,46 +62,6 @@ pub struct Layered<B, R = f32> {
     /// A whole number, as `samples` is.
     pub(crate) max_depth: R,
     pub(crate) samples: R,
-}
-
-/// Purpose of a walk's random numbers, so that walks for different purposes are independent.
-#[derive(Clone, Copy)]
-enum Purpose {
-    Value = 1,
-    Sample,
-    Density,
-}
-
-/// Random numbers in [0, 1) that are a function of their seed.
-struct Random<R: Real>(R::Bits);
-
-impl<R: Real> Random<R> {
-    /// 2³² divided by the golden ratio, made odd.
-    const GOLDEN: u32 = 0x9e37_79b9;
-
-    #[inline(always)]
-    fn new(purpose: Purpose, wo: Vector<R>, [a, b, c]: [R; 3]) -> Self {
-        let seed = a.to_bits().like(purpose as u32);
-        let bits = Self::add(Self::add(Self::add(seed, wo.x), wo.y), wo.z);
-        Self(hash::mix32(Self::add(Self::add(Self::add(bits, a), b), c)))
-    }
-
-    #[inline(always)]
-    fn add(bits: R::Bits, number: R) -> R::Bits {
-        hash::mix32(bits.wrapping_add(bits.like(Self::GOLDEN))) ^ number.to_bits()
-    }
-
-    /// A number for the lanes of a mask; the others' sequences stay where they are.
-    #[inline(always)]
-    fn one(&mut self, mask: R::Mask) -> R {
-        self.0 = R::select_bits(mask, self.0.wrapping_add(self.0.like(Self::GOLDEN)), self.0);
-        R::from_integer(hash::mix32(self.0) >> 8) * (1.0 / 16_777_216.0)
-    }
-
-    #[inline(always)]
-    fn two(&mut self, mask: R::Mask) -> [R; 2] {
-        [self.one(mask), self.one(mask)]
-    }
 }
 
 /// MIS weight of the first of two strategies with the given densities (Veach's power heuristic); the first is
@@ -194,42 +124,6 @@ impl<B> Layered<B> {
         }
         lobes
     }
-}
-
-/// [`Dielectric::sample`], where it carries light.
-///
-/// Not inlined, as the next two: in all their places they would take compilers minutes.
-#[inline(never)]
-fn sample_coat<R: Real>(
-    coat: &Dielectric<R>,
-    wo: Vector<R>,
-    uc: R,
-    u: [R; 2],
-    mode: Mode,
-    lobes: Lobes,
-) -> DirectionSample<R> {
-    uc.at_level(
-        #[inline(always)]
-        || coat.sample(wo, uc, u, mode, lobes).if_lit(),
-    )
-}
-
-/// [`Dielectric::f`], which is the same in all lanes of a spectrum.
-#[inline(never)]
-fn coat_f<R: Real>(coat: &Dielectric<R>, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> R {
-    coat.eta.at_level(
-        #[inline(always)]
-        || coat.f(wo, wi, mode).0[0],
-    )
-}
-
-/// [`Dielectric::pdf`].
-#[inline(never)]
-fn coat_pdf<R: Real>(coat: &Dielectric<R>, wo: Vector<R>, wi: Vector<R>, lobes: Lobes) -> R {
-    coat.eta.at_level(
-        #[inline(always)]
-        || coat.pdf(wo, wi, lobes),
-    )
 }
 
 /// The steps of a walk through the slab.

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::*;
 use crate::shading::bsdf::Bsdf;
+use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::tests::{direction, number, numbers};
 use crate::shading::bsdf::{diffuse::cosine_direction, fresnel};
 
