@@ -1,4 +1,4 @@
-//! Whether packets pay: how many rays of a group meet a block of triangles together.
+//! Coherence of packets: the number of rays of a group that meet a block of triangles together.
 //!
 //! Where it is one or two, as with triangles smaller than the distance between rays, single rays are faster, since they
 //! test eight triangles at once. A packet that finds this is given up, and after it fewer are tried.

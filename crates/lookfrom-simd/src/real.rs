@@ -22,6 +22,18 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
     fn all(self) -> bool {
         !(!self).any()
     }
+
+    /// The same answer in each lane of a mask as wide as this one.
+    #[inline(always)]
+    fn like(self, value: bool) -> Self {
+        if value { self | !self } else { self & !self }
+    }
+
+    /// `yes` where the mask is set, `no` elsewhere.
+    #[inline(always)]
+    fn choose(self, yes: Self, no: Self) -> Self {
+        (self & yes) | (!self & no)
+    }
 }
 
 /// Floating-point numbers of a width and a precision.
@@ -36,7 +48,7 @@ pub trait Float:
 {
     /// One of them.
     type Scalar: Copy;
-    /// What comparisons give.
+    /// The result of comparisons.
     type Mask: Mask;
 
     /// The same number in each lane of a value as wide as this one.
@@ -121,8 +133,6 @@ pub trait Real:
     fn from_integer(integer: Self::Bits) -> Self;
     /// `yes` where the mask is set, `no` elsewhere.
     fn select_bits(mask: Self::Mask, yes: Self::Bits, no: Self::Bits) -> Self::Bits;
-    /// `yes` where the mask is set, `no` elsewhere.
-    fn select_bits64(mask: Self::Mask, yes: Self::Bits64, no: Self::Bits64) -> Self::Bits64;
     /// The same integers with 64 bits.
     fn extend(bits: Self::Bits) -> Self::Bits64;
     /// The lower 32 bits.
@@ -236,10 +246,6 @@ impl Real for f32 {
     }
     #[inline(always)]
     fn select_bits(mask: bool, yes: u32, no: u32) -> u32 {
-        if mask { yes } else { no }
-    }
-    #[inline(always)]
-    fn select_bits64(mask: bool, yes: u64, no: u64) -> u64 {
         if mask { yes } else { no }
     }
     #[inline(always)]
@@ -374,10 +380,6 @@ impl<S: Simd> Real for f32x8<S> {
     #[inline(always)]
     fn select_bits(mask: mask32x8<S>, yes: u32x8<S>, no: u32x8<S>) -> u32x8<S> {
         mask.select(yes, no)
-    }
-    #[inline(always)]
-    fn select_bits64(mask: mask32x8<S>, yes: u64x8<S>, no: u64x8<S>) -> u64x8<S> {
-        mask64x8::from_bitmask(yes.simd, mask.to_bitmask()).select(yes, no)
     }
     #[inline(always)]
     fn extend(bits: u32x8<S>) -> u64x8<S> {

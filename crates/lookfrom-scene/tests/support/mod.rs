@@ -1,4 +1,4 @@
-//! What several test files of this crate share.
+//! Helpers shared by several test files of this crate.
 
 use lookfrom_scene::excerpt::Excerpts;
 use lookfrom_scene::{Error, Memory};

@@ -2,6 +2,7 @@
 
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_bvh::Affine;
+use lookfrom_simd::Real;
 
 use crate::core::optics;
 
@@ -14,6 +15,15 @@ pub fn reflect(wo: Vec3, n: Vec3) -> Vec3 {
 pub fn refract(wo: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     let (wi, is_refracted) = optics::refract(wo.into(), n.into(), eta);
     is_refracted.then(|| wi.into())
+}
+
+/// The power heuristic (Veach & Guibas 1995, β = 2): weight of a sample of density `this`, where the other strategy has
+/// density `other`.
+#[inline(always)]
+pub(crate) fn power_heuristic<R: Real>(this: R, other: R) -> R {
+    // In this form nothing overflows.
+    let ratio = other / this;
+    this.like(1.0) / (ratio * ratio + 1.0)
 }
 
 /// Converts an affine matrix to the kernel's type.

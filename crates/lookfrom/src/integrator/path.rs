@@ -12,6 +12,7 @@ use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lanes::{FlatDiffuseHit, Waiting};
 
 use crate::core::lanes::LANES;
+use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{Bounce, Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
 use crate::light::{IncompletePdf, LightSampleContext};
@@ -441,12 +442,4 @@ impl PathTracer {
         let [u, _] = stream.two(dimension::ROULETTE);
         (survival, u < survival)
     }
-}
-
-/// The power heuristic (Veach & Guibas 1995, β = 2): weight of a sample of density `this`, where the other strategy has
-/// density `other`.
-pub(crate) fn power_heuristic(this: f32, other: f32) -> f32 {
-    // In this form nothing overflows.
-    let ratio = other / this;
-    1.0 / (1.0 + ratio * ratio)
 }

@@ -12,7 +12,7 @@ pub mod dielectric;
 pub mod diffuse;
 pub mod fresnel;
 pub mod henyey_greenstein;
-pub(crate) mod lanes;
+pub mod lanes;
 pub mod layered;
 pub mod lobes;
 mod local_scattering;
@@ -28,7 +28,8 @@ use crate::core::vector::Vector;
 use conductor::Conductor;
 use dielectric::{Dielectric, ThinDielectric};
 use diffuse::{Diffuse, DiffuseTransmission};
-use layered::{Base, CoatLayer, Layered};
+use lanes::{Kind, LaneBsdf};
+use layered::{CoatLayer, Layered};
 use lobes::Lobes;
 use microfacet::TrowbridgeReitz;
 use principled::Principled;
@@ -135,9 +136,9 @@ impl<R: Real> DirectionSample<R> {
             f: Spectrum::select(mask, yes.f, no.f),
             pdf: R::select(mask, yes.pdf, no.pdf),
             eta: R::select(mask, yes.eta, no.eta),
-            is_specular: select_mask(mask, yes.is_specular, no.is_specular),
-            is_transmission: select_mask(mask, yes.is_transmission, no.is_transmission),
-            is_valid: select_mask(mask, yes.is_valid, no.is_valid),
+            is_specular: mask.choose(yes.is_specular, no.is_specular),
+            is_transmission: mask.choose(yes.is_transmission, no.is_transmission),
+            is_valid: mask.choose(yes.is_valid, no.is_valid),
         }
     }
 
@@ -147,23 +148,24 @@ impl<R: Real> DirectionSample<R> {
         let is_lit = self.pdf.gt(self.pdf.like(0.0)) & !is_grazing(self.wi) & !self.f.is_black();
         Self { is_valid: self.is_valid & is_lit, ..self }
     }
-}
 
-impl DirectionSample<f32> {
-    /// As a scalar sample, given how lobes that are not specular spread.
-    #[inline]
-    fn scalar(self, spread: Lobes) -> Option<BsdfSample> {
-        let side = if self.is_transmission { Lobes::TRANSMISSION } else { Lobes::REFLECTION };
-        let lobe = side | if self.is_specular { Lobes::SPECULAR } else { spread };
-        let Self { wi, f, pdf, eta, .. } = self;
-        self.is_valid.then(|| BsdfSample { eta, ..BsdfSample::new(wi.into(), f, pdf, lobe) })
+    /// Valid only where it carries light and all its values are finite.
+    #[inline(always)]
+    pub(crate) fn if_useful(self) -> Self {
+        let Self { is_valid, f, pdf, .. } = self.if_lit();
+        Self { is_valid: is_valid & f.is_finite() & pdf.lt(pdf.like(f32::INFINITY)), ..self }
     }
 }
 
-/// `yes` where the mask is set, `no` elsewhere.
-#[inline(always)]
-fn select_mask<M: Mask>(mask: M, yes: M, no: M) -> M {
-    (mask & yes) | (!mask & no)
+impl DirectionSample<f32> {
+    /// As a scalar sample of a class of BSDFs.
+    #[inline]
+    fn scalar(self, kind: Kind) -> Option<BsdfSample> {
+        let Self { wi, f, pdf, eta, is_specular, is_transmission, is_valid } = self;
+        let lobe = kind.lobe(is_specular, is_transmission);
+        let pdf_is_proportional = kind.pdf_is_proportional;
+        is_valid.then(|| BsdfSample { wi: wi.into(), f, pdf, lobe, eta, pdf_is_proportional })
+    }
 }
 
 /// True if the direction lies in the surface, or so nearly that the square of its cosine is useless; also for NaN.
@@ -286,13 +288,13 @@ impl Bsdf {
             return None;
         }
         match self {
-            Self::Diffuse(bsdf) => bsdf.sample(wo.into(), u).scalar(Lobes::DIFFUSE),
+            Self::Diffuse(bsdf) => bsdf.sample(wo.into(), 0.0, u).scalar(kind(bsdf)),
             Self::DiffuseTransmission(bsdf) => bsdf.sample(wo, uc, u, lobes),
-            Self::Conductor(bsdf) => bsdf.sample(wo.into(), u).scalar(Lobes::GLOSSY),
-            Self::Dielectric(bsdf) => bsdf.sample(wo.into(), uc, u, mode, lobes).scalar(Lobes::GLOSSY),
+            Self::Conductor(bsdf) => bsdf.sample(wo.into(), 0.0, u).scalar(kind(bsdf)),
+            Self::Dielectric(bsdf) => bsdf.sample(wo.into(), uc, u, mode, lobes).scalar(kind(bsdf)),
             Self::ThinDielectric(bsdf) => bsdf.sample(wo, uc, lobes),
-            Self::CoatedDiffuse(bsdf) => proportional(bsdf.sample(wo.into(), uc, u, mode)),
-            Self::CoatedConductor(bsdf) => proportional(bsdf.sample(wo.into(), uc, u, mode)),
+            Self::CoatedDiffuse(bsdf) => bsdf.sample(wo.into(), uc, u, mode).scalar(kind(bsdf)),
+            Self::CoatedConductor(bsdf) => bsdf.sample(wo.into(), uc, u, mode).scalar(kind(bsdf)),
             Self::Whitted(bsdf) => bsdf.sample(wo, uc, u, lobes),
             Self::Principled(bsdf) => bsdf.sample(wo, uc, u, mode, lobes),
         }?
@@ -332,11 +334,10 @@ impl Bsdf {
     }
 }
 
-/// A sample of which only `f / pdf` means anything.
+/// The properties of a BSDF's class.
 #[inline]
-fn proportional(sample: DirectionSample<f32>) -> Option<BsdfSample> {
-    let sample = sample.scalar(Lobes::GLOSSY)?;
-    Some(BsdfSample { pdf_is_proportional: true, ..sample })
+fn kind<B: LaneBsdf<f32>>(_: &B) -> Kind {
+    B::KIND
 }
 
 /// The sides (reflection, transmission) in a set.

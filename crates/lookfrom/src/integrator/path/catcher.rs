@@ -8,7 +8,8 @@
 use glam::Vec3;
 use lookfrom_scene::settings::Background;
 
-use super::{LightSampling, PathTracer, power_heuristic};
+use super::{LightSampling, PathTracer};
+use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{Alpha, Path, Probe, StepOutput, Term};
 use crate::light::Light;

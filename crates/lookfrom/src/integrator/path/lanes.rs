@@ -1,8 +1,8 @@
 //! Path tracing eight paths at a time: paths wait until eight of them have met BSDFs of one class, and are then scattered
 //! side by side.
 //!
-//! What is computed in lanes is in `kernel` (light samples, BSDF, densities, origins of rays), here its results become rays
-//! and events, path by path. Which paths are together does not affect a result: lanes do not depend on one another.
+//! `kernel` computes in lanes (light samples, BSDF, densities, origins of rays); here its results become rays and events,
+//! path by path. Which paths are together does not affect a result: lanes do not depend on one another.
 //!
 //! Binning by material: Laine, Karras & Aila 2013; Áfra et al. 2016 (local shading coherence on CPUs).
 
@@ -16,8 +16,9 @@ use lookfrom_bvh::{OriginPrimitive, Ray};
 pub(super) use flat_diffuse::FlatDiffuseHit;
 use kernel::{ScatterKernel, Scattered};
 
-use super::{PathTracer, PreviousVertex, Vertex, power_heuristic};
+use super::{PathTracer, PreviousVertex, Vertex};
 use crate::core::lanes::{LANES, by_lane};
+use crate::core::math::power_heuristic;
 use crate::integrator::shadow;
 use crate::integrator::{Bounce, Event, Path, Probe, SampleStream, Shadow, StepOutput, Term};
 use crate::light::Target;
@@ -101,7 +102,7 @@ struct Item<'a> {
 }
 
 impl Item<'_> {
-    /// What light travels in after it has left to `wi`, passing through the surface or not.
+    /// The media around light that has left to `wi`, passing through the surface or not.
     fn interior(&self, world: &World, wi: Vec3, passes: bool) -> InteriorStack {
         match self.surface {
             Some(surface) => self.path.interior.leaving(&world.materials, surface, wi, passes),

@@ -6,7 +6,12 @@ use glam::Vec3;
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::microfacet::TrowbridgeReitz;
-use super::{DirectionSample, Lobes, fresnel, is_grazing, layered::Base, same_side};
+use super::{
+    DirectionSample, Lobes, fresnel, is_grazing,
+    lanes::{Kind, LaneBsdf},
+    layered::Base,
+    same_side,
+};
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -52,7 +57,7 @@ impl<R: Real> Conductor<R> {
         let wi = Vector { x: -wo.x, y: -wo.y, z: wo.z };
         let cos = Float::abs(wi.z);
         let f = fresnel::conductor(cos, self.eta, self.k) / cos;
-        let (is_specular, is_transmission) = (is_valid | !is_valid, is_valid & !is_valid);
+        let (is_specular, is_transmission) = (is_valid.like(true), is_valid.like(false));
         DirectionSample {
             wi,
             f,
@@ -70,7 +75,7 @@ impl<R: Real> Conductor<R> {
         let wi = optics::reflect(wo, wm);
         let pdf = self.roughness.visible_per_cosine(wo, wm) * 0.25;
         let is_valid = same_side(wo, wi);
-        let no = is_valid & !is_valid;
+        let no = is_valid.like(false);
         let f = self.rough_f(wo, wi, wm);
         DirectionSample { wi, f, pdf, eta: pdf.like(1.0), is_specular: no, is_transmission: no, is_valid }
     }
@@ -89,7 +94,9 @@ pub(super) fn try_half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {
     exists.then(|| wm.into())
 }
 
-impl<R: Real> Base<R> for Conductor<R> {
+impl<R: Real> LaneBsdf<R> for Conductor<R> {
+    const KIND: Kind = Kind { spread: Lobes::GLOSSY, pdf_is_proportional: false, needs_lobe: false };
+
     #[inline(always)]
     fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
         let (wm, exists) = half_vector(wo, wi);
@@ -109,7 +116,7 @@ impl<R: Real> Base<R> for Conductor<R> {
     }
 
     #[inline(always)]
-    fn sample(&self, wo: Vector<R>, u: [R; 2]) -> DirectionSample<R> {
+    fn sample(&self, wo: Vector<R>, _: R, u: [R; 2]) -> DirectionSample<R> {
         let is_smooth = self.roughness.is_smooth();
         if is_smooth.all() {
             self.sample_smooth(wo)
@@ -121,12 +128,14 @@ impl<R: Real> Base<R> for Conductor<R> {
     }
 
     #[inline(always)]
-    fn is_specular(&self) -> R::Mask {
-        self.roughness.is_smooth()
-    }
-
-    #[inline(always)]
     fn has_density(&self) -> R::Mask {
         !self.roughness.is_smooth()
+    }
+}
+
+impl<R: Real> Base<R> for Conductor<R> {
+    #[inline(always)]
+    fn is_specular(&self) -> R::Mask {
+        self.roughness.is_smooth()
     }
 }

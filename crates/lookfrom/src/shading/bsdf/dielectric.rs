@@ -166,7 +166,7 @@ impl<R: Real> Dielectric<R> {
             f: Spectrum::splat(self.facet_f(wo, wi, &facet, mode)),
             pdf: self.facet_pdf(wo, wi, &facet, probability),
             eta,
-            is_specular: reflects & !reflects,
+            is_specular: reflects.like(false),
             is_transmission: !reflects,
             is_valid,
         }
@@ -190,7 +190,7 @@ impl<R: Real> Dielectric<R> {
             f: Spectrum::splat(f),
             pdf: R::select(reflects, reflection, one - reflection),
             eta: R::select(reflects, one, eta),
-            is_specular: reflects | !reflects,
+            is_specular: reflects.like(true),
             is_transmission: !reflects,
             is_valid: (reflects | (is_refracted & !is_grazing(wi))) & (r + t).gt(zero) & !is_grazing(wo),
         }

@@ -5,9 +5,14 @@
 use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
-use lookfrom_simd::{Float, Real};
+use lookfrom_simd::{Float, Mask, Real};
 
-use super::{BsdfSample, DirectionSample, Lobes, is_grazing, layered::Base, same_side};
+use super::{
+    BsdfSample, DirectionSample, Lobes, is_grazing,
+    lanes::{Kind, LaneBsdf},
+    layered::Base,
+    same_side,
+};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::core::warp;
@@ -31,7 +36,9 @@ impl Diffuse {
     }
 }
 
-impl<R: Real> Base<R> for Diffuse<R> {
+impl<R: Real> LaneBsdf<R> for Diffuse<R> {
+    const KIND: Kind = Kind { spread: Lobes::DIFFUSE, pdf_is_proportional: false, needs_lobe: false };
+
     #[inline(always)]
     fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
         let black = Spectrum::splat(wo.z.like(0.0));
@@ -45,10 +52,10 @@ impl<R: Real> Base<R> for Diffuse<R> {
     }
 
     #[inline(always)]
-    fn sample(&self, wo: Vector<R>, u: [R; 2]) -> DirectionSample<R> {
+    fn sample(&self, wo: Vector<R>, _: R, u: [R; 2]) -> DirectionSample<R> {
         let wi = cosine_direction(u, wo.z);
         let is_valid = !is_grazing(wo);
-        let no = is_valid & !is_valid;
+        let no = is_valid.like(false);
         DirectionSample {
             wi,
             f: self.reflectance * wo.z.like(FRAC_1_PI),
@@ -61,14 +68,15 @@ impl<R: Real> Base<R> for Diffuse<R> {
     }
 
     #[inline(always)]
-    fn is_specular(&self) -> R::Mask {
-        let black = self.reflectance.is_black();
-        black & !black
-    }
-
-    #[inline(always)]
     fn has_density(&self) -> R::Mask {
         !self.reflectance.is_black()
+    }
+}
+
+impl<R: Real> Base<R> for Diffuse<R> {
+    #[inline(always)]
+    fn is_specular(&self) -> R::Mask {
+        self.reflectance.is_black().like(false)
     }
 }
 

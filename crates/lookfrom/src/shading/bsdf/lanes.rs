@@ -14,15 +14,15 @@ use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 
-/// What all BSDFs of a class have in common.
+/// Properties that all BSDFs of a class have in common.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Kind {
-    /// How lobes that are not specular spread.
-    pub(crate) spread: Lobes,
+pub struct Kind {
+    /// The spread of lobes that are not specular.
+    pub spread: Lobes,
     /// As [`super::BsdfSample::pdf_is_proportional`].
-    pub(crate) pdf_is_proportional: bool,
+    pub pdf_is_proportional: bool,
     /// Whether sampling takes a number to choose a lobe.
-    pub(crate) needs_lobe: bool,
+    pub needs_lobe: bool,
 }
 
 impl Kind {
@@ -34,7 +34,8 @@ impl Kind {
 }
 
 /// BSDFs of one class at any width, for paths from the camera. Directions are those of [`Bsdf`].
-pub(crate) trait LaneBsdf<R: Real> {
+pub trait LaneBsdf<R: Real> {
+    /// The properties of the class.
     const KIND: Kind;
 
     /// As [`Bsdf::f`].
@@ -58,34 +59,6 @@ pub(crate) trait RowBsdf: Sized {
     /// One in each lane.
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S>;
 }
-
-macro_rules! base_class {
-    ($base:ident, $spread:expr) => {
-        impl<R: Real> LaneBsdf<R> for $base<R> {
-            const KIND: Kind = Kind { spread: $spread, pdf_is_proportional: false, needs_lobe: false };
-
-            #[inline(always)]
-            fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
-                Base::f(self, wo, wi)
-            }
-            #[inline(always)]
-            fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R {
-                Base::pdf(self, wo, wi)
-            }
-            #[inline(always)]
-            fn sample(&self, wo: Vector<R>, _: R, u: [R; 2]) -> DirectionSample<R> {
-                Base::sample(self, wo, u)
-            }
-            #[inline(always)]
-            fn has_density(&self) -> R::Mask {
-                Base::has_density(self)
-            }
-        }
-    };
-}
-
-base_class!(Diffuse, Lobes::DIFFUSE);
-base_class!(Conductor, Lobes::GLOSSY);
 
 impl<R: Real> LaneBsdf<R> for Dielectric<R> {
     const KIND: Kind = Kind { spread: Lobes::GLOSSY, pdf_is_proportional: false, needs_lobe: true };

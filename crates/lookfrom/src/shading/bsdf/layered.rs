@@ -25,26 +25,20 @@ use lookfrom_simd::{Float, Mask, Real};
 
 use super::dielectric::Dielectric;
 use super::henyey_greenstein::HenyeyGreenstein;
+use super::lanes::LaneBsdf;
 use super::{DirectionSample, Lobes, Mode, is_grazing};
 use crate::core::elementary::{exp, ln};
+use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 pub use coat::CoatLayer;
 use coat::{coat_f, coat_pdf, sample_coat};
 use random::{Purpose, Random};
 
-/// An opaque BSDF, which can be the base under a coat.
-pub trait Base<R: Real>: Copy {
-    /// As [`super::Bsdf::f`].
-    fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R>;
-    /// As [`super::Bsdf::pdf`].
-    fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R;
-    /// As [`super::Bsdf::sample`], without a choice between lobes.
-    fn sample(&self, wo: Vector<R>, u: [R; 2]) -> DirectionSample<R>;
+/// An opaque BSDF of one lobe, which can be the base under a coat.
+pub trait Base<R: Real>: LaneBsdf<R> + Copy {
     /// True if it reflects in single directions.
     fn is_specular(&self) -> R::Mask;
-    /// True if it has a lobe that is not specular.
-    fn has_density(&self) -> R::Mask;
 }
 
 /// A base under a coat.
@@ -62,14 +56,6 @@ pub struct Layered<B, R = f32> {
     /// A whole number, as `samples` is.
     pub(crate) max_depth: R,
     pub(crate) samples: R,
-}
-
-/// MIS weight of the first of two strategies with the given densities (Veach's power heuristic); the first is
-/// positive.
-#[inline(always)]
-fn power_heuristic<R: Real>(pdf: R, other: R) -> R {
-    let ratio = other / pdf;
-    pdf.like(1.0) / (ratio * ratio + 1.0)
 }
 
 /// Russian roulette: the throughput after a step, and the walks that go on.
@@ -136,7 +122,7 @@ struct Walk<R: Real> {
     alive: R::Mask,
 }
 
-/// Where a step of a walk has led.
+/// The places that walks have reached in a step.
 struct Step<R: Real> {
     /// Walks that are at the coat.
     at_coat: R::Mask,
@@ -160,7 +146,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
     #[inline(always)]
     fn step(&self, walk: &mut Walk<R>, random: &mut Random<R>) -> Step<R> {
         let zero = walk.z.like(0.0);
-        let none = walk.alive & !walk.alive;
+        let none = walk.alive.like(false);
         let mut step = Step { at_coat: none, at_base: none, at_particle: none, next: walk.z, stays: none };
         let scatters = !self.albedo.is_black();
         let mut at_boundary = walk.alive;
@@ -293,7 +279,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
                     sum += Spectrum::select(joins, joined, black);
                 }
                 // Reflect at the base, and see whether this leads out, too.
-                let sample = self.base.sample(-walk.w, random.two(step.at_base)).if_lit();
+                let sample = self.base.sample(-walk.w, zero, random.two(step.at_base)).if_lit();
                 Self::turn(&mut walk, step.at_base, &sample);
                 let leaves = step.at_base & walk.alive & !coat_is_specular;
                 if leaves.any() {
@@ -345,7 +331,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
         let is_below = wo.z.lt(zero);
         let wo = wo.negate_where(is_below);
         let first = sample_coat(&self.coat, wo, uc, u, mode, Lobes::ALL);
-        let none = is_below & !is_below;
+        let none = is_below.like(false);
         let mut result = DirectionSample {
             is_valid: first.is_valid & !first.is_transmission,
             is_transmission: none,
@@ -374,7 +360,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
                 is_specular = is_specular & !step.at_particle;
             }
             if step.at_base.any() {
-                let sample = self.base.sample(-walk.w, random.two(step.at_base)).if_lit();
+                let sample = self.base.sample(-walk.w, zero, random.two(step.at_base)).if_lit();
                 Self::turn(&mut walk, step.at_base, &sample);
                 is_specular = is_specular & (!step.at_base | sample.is_specular);
             }
@@ -454,7 +440,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
         if !scatters.any() {
             return density;
         }
-        let reflected = self.base.sample(-entry.wi, random.two(scatters)).if_lit();
+        let reflected = self.base.sample(-entry.wi, zero, random.two(scatters)).if_lit();
         let leaving = coat_pdf(&self.coat, -reflected.wi, wi, Lobes::ALL);
         let both = power_heuristic(exit.pdf, reflecting) * reflecting
             + power_heuristic(reflected.pdf, leaving) * leaving;

@@ -1,5 +1,5 @@
-//! What eight paths do at surfaces, side by side: one light sampled, one direction sampled by the BSDF, and where the rays
-//! start. Numbers only; what becomes of them is in the parent module.
+//! Scattering of eight paths side by side: one light sampled, one direction sampled by the BSDF, and the origins of the
+//! rays. Numbers only; the parent module makes rays and events of them.
 
 use lookfrom_simd::{Float, Kernel, Mask, Simd, dispatch, f32x8, f64x8, level, prelude::*, u32x8, u64x8};
 
@@ -16,7 +16,7 @@ use crate::shading::bsdf::lanes::{Kind, LaneBsdf, RowBsdf};
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
-/// What became of eight paths. Masks have bit i for lane i.
+/// The samples of eight paths. Masks have bit i for lane i.
 pub(super) struct Scattered {
     pub(super) kind: Kind,
     /// Lanes whose BSDF has a density, for which a light was sampled.
@@ -124,8 +124,7 @@ impl<S: Simd> Surfaces<S> {
             true => streams.two(dimension::CHOICE),
             false => [zero; 2],
         };
-        let sample = bsdf.sample(self.wo, which_lobe, streams.two(dimension::DIRECTION)).if_lit();
-        let is_valid = sample.is_valid & sample.f.is_finite() & sample.pdf.lt(zero.like(f32::INFINITY));
+        let sample = bsdf.sample(self.wo, which_lobe, streams.two(dimension::DIRECTION)).if_useful();
         let wi = self.render(sample.wi);
         let mis_pdf = match B::KIND.pdf_is_proportional {
             true => bsdf.pdf(self.wo, self.local(wi)),
@@ -139,7 +138,7 @@ impl<S: Simd> Surfaces<S> {
             light_bsdf_pdf,
             shadow_origin,
             shadow_end,
-            is_valid: is_valid.to_bitmask() as u32,
+            is_valid: sample.is_valid.to_bitmask() as u32,
             is_specular: sample.is_specular.to_bitmask() as u32,
             is_transmission: sample.is_transmission.to_bitmask() as u32,
             wi: scatter(wi),

@@ -54,14 +54,13 @@ impl<B: RowBsdf> Kernel for Eight<'_, B> {
         let wi = gather(simd, &by_lane!(lane => query[lane].wi.to_array()));
         let load = |values: [f32; LANES]| f32x8::load_array(simd, values);
         let u = [load(by_lane!(lane => query[lane].u[0])), load(by_lane!(lane => query[lane].u[1]))];
-        let sample = bsdf.sample(wo, load(by_lane!(lane => query[lane].uc)), u).if_lit();
+        let sample = bsdf.sample(wo, load(by_lane!(lane => query[lane].uc)), u).if_useful();
         let (f, pdf) = (scatter_spectrum(bsdf.f(wo, wi)), bsdf.pdf(wo, wi));
         let (sampled_f, sampled_wi) = (scatter_spectrum(sample.f), scatter(sample.wi));
-        let is_valid = sample.is_valid & sample.f.is_finite() & sample.pdf.simd_lt(f32::INFINITY);
         let mask = |mask: lookfrom_simd::mask32x8<S>, lane: usize| mask.to_bitmask() & 1 << lane != 0;
         let kind = <B::Lanes<S> as LaneBsdf<f32x8<S>>>::KIND;
         std::array::from_fn(|lane| {
-            let scalar = mask(is_valid, lane).then(|| BsdfSample {
+            let scalar = mask(sample.is_valid, lane).then(|| BsdfSample {
                 wi: sampled_wi[lane].into(),
                 f: sampled_f[lane],
                 pdf: sample.pdf[lane],
