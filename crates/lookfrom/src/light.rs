@@ -24,8 +24,8 @@ use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint, Textu
 use cone::Cone;
 use tree::LightBounds;
 
-pub(crate) use area::LightTriangle;
 pub use area::{AreaLight, EmitterBounds, LightPoint, LightShape, MeshLight, PatchLight, QuadricLight};
+pub(crate) use area::{AreaSamples, gather_spheres, sample_triangles};
 pub use choice::LightChoice;
 pub use environment::{Environment, Layout, Sky, SkyImage};
 pub use picture::{Goniometric, Projection};

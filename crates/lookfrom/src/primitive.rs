@@ -12,6 +12,7 @@ mod mesh;
 mod patch;
 mod quadric;
 mod sphere;
+mod triangle;
 
 use std::sync::Arc;
 
@@ -20,9 +21,11 @@ use lookfrom_bvh::{Hit, Point};
 
 pub use curve::{Curves, SEGMENTS};
 pub use disk::{Disk, Disks};
+pub(crate) use mesh::lanes::gather_triangles;
 pub use mesh::{Mesh, VertexData};
 pub use patch::Patches;
 pub use quadric::{Quadric, QuadricKind, Quadrics};
+pub(crate) use quadric::{QuadricFrames, gather_frames};
 pub use sphere::{SphereBinding, Spheres};
 
 /// The material, light and other attributes of a primitive's surface.

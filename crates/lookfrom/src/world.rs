@@ -17,10 +17,10 @@ pub use class::Class;
 use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
-use lookfrom_bvh::{Bvh, Hit, NONE, OriginPrimitive, Ray};
+use lookfrom_bvh::{Bvh, Hit, NONE, OriginPrimitive, Point, Ray};
 use lookfrom_scene::scene::MediumId;
 
-use crate::core::math;
+use crate::core::points::{Placement, Points};
 use crate::core::spectrum::Spectrum;
 use crate::light::{IncompletePdf, Light, LightChoice, LightSampleContext};
 use crate::primitive::{Mesh, Primitives, SurfacePoint, VertexData};
@@ -46,6 +46,8 @@ pub struct World {
     pub(crate) objects: Arc<[Vec<Primitives>]>,
     /// Classes of the primitives that are not instanced, by the kernel's geometry id.
     pub(crate) classes: Arc<[Class]>,
+    /// The same of the objects.
+    pub(crate) object_classes: Arc<[Vec<Class>]>,
     /// Instances, by the kernel's instance id.
     pub(crate) instances: Arc<[Instance]>,
     /// Materials of surfaces.
@@ -115,6 +117,8 @@ pub struct Instance {
     pub render_from_object: DMat4,
     /// The inverse.
     pub object_from_render: DMat4,
+    /// Both, for points of the object.
+    pub(crate) placement: Placement<f32>,
     /// Replaces the materials of the object.
     pub material: Option<u32>,
 }
@@ -343,12 +347,14 @@ impl Instance {
 
     /// A surface point of the object, in render space.
     fn place(&self, of_object: SurfacePoint) -> SurfacePoint {
-        let vector = |v: DVec3| self.render_from_object.transform_vector3(v);
-        let normal = |n: DVec3| math::transform_normal(&self.object_from_render, n).normalize();
+        let vector = |v: DVec3| self.placement.vector(v.into()).into();
+        let normal = |n: DVec3| self.placement.normal(n.into()).normalize().into();
         let mut binding = of_object.binding;
         binding.material = self.material.unwrap_or(binding.material);
+        let Point { position, error } = of_object.point;
+        let points = Points { position: position.into(), error: error.into() }.placed(&self.placement);
         SurfacePoint {
-            point: of_object.point.transformed(&math::affine(&self.render_from_object)),
+            point: Point { position: points.position.into(), error: points.error.into() },
             ng: normal(of_object.ng),
             ns: normal(of_object.ns),
             dpdu: vector(of_object.dpdu),

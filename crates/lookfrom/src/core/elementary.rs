@@ -1,9 +1,11 @@
-//! Elementary functions of any width: exponential, logarithm, sine and cosine.
+//! Elementary functions of any width: exponential, logarithm, sine, cosine and arc tangent.
 //!
 //! Additions, multiplications and divisions in a fixed order and no tables, so that the bits are the same at every width and
 //! on every machine. Error bounds are stated in units in the last place (ulp) of the result and tested.
 
-use lookfrom_simd::{Bits, Real};
+use std::f32::consts::{FRAC_PI_2, PI};
+
+use lookfrom_simd::{Bits, Float, Real};
 
 /// 1.5 · 2²³: a number plus this, as an f32, has the nearest integer in its last bits.
 const ROUNDER: f32 = 12_582_912.0;
@@ -69,6 +71,23 @@ pub(crate) fn sin_cos_of_turns<R: Real>(turns: R) -> (R, R) {
     let sign_of_sin = (bits & bits.like(2)) << 30;
     let sign_of_cos = (bits.wrapping_add(bits.like(1)) & bits.like(2)) << 30;
     (R::from_bits(y.to_bits() ^ sign_of_sin), R::from_bits(x.to_bits() ^ sign_of_cos))
+}
+
+/// The angle of the point (x, y), y ≥ 0, from the x axis in [0, π], to 2⁻²¹ of itself; 0 for the origin.
+#[inline(always)]
+pub(crate) fn atan2<R: Real>(y: R, x: R) -> R {
+    let width = Float::abs(x);
+    let is_steep = y.gt(width);
+    let slope = R::select(is_steep, width, y) / R::select(is_steep, y, width);
+    // tan of half the angle, at most √2 − 1; the series of its angle, to the 17th power.
+    let t = slope / (Float::sqrt(slope * slope + 1.0) + 1.0);
+    let t2 = t * t;
+    let tail = (((t2 * (1.0 / 17.0) - 1.0 / 15.0) * t2 + 1.0 / 13.0) * t2 - 1.0 / 11.0) * t2 + 1.0 / 9.0;
+    let tail = (((tail * t2 - 1.0 / 7.0) * t2 + 1.0 / 5.0) * t2 - 1.0 / 3.0) * t2;
+    let angle = (t + t * tail) * 2.0;
+    let angle = R::select(is_steep, angle.like(FRAC_PI_2) - angle, angle);
+    let angle = R::select(x.lt(x.like(0.0)), angle.like(PI) - angle, angle);
+    R::select(Float::eq(slope, slope), angle, angle.like(0.0))
 }
 
 /// π/4, squared.
@@ -137,7 +156,17 @@ mod tests {
             let error =
                 (f64::from(sin) - libm::sin(angle)).abs().max((f64::from(cos) - libm::cos(angle)).abs());
             assert!(error <= 1.0 / 4_194_304.0, "{x} turns: {error}");
+            let (y, x) = (number(count, 60).abs(), number(count + 1, 60));
+            let angle = libm::atan2(f64::from(y), f64::from(x));
+            let error = (f64::from(atan2(y, x)) - angle).abs() / angle;
+            assert!(error <= 1.0 / 2_097_152.0, "angle of ({x}, {y}): {error}");
         }
+    }
+
+    #[test]
+    fn angles_on_the_axes() {
+        let angles = [[0.0, 1.0], [1.0, 0.0], [0.0, -1.0], [0.0, 0.0]].map(|[y, x]| atan2(y, x));
+        assert_eq!(angles, [0.0, FRAC_PI_2, PI, 0.0]);
     }
 
     #[test]
@@ -150,12 +179,13 @@ mod tests {
     struct All([f32; 8]);
 
     impl Kernel for All {
-        type Output = [[f32; 8]; 4];
+        type Output = [[f32; 8]; 5];
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let x = f32x8::load_array(simd, self.0);
             let (sin, cos) = sin_cos_of_turns(x);
-            [exp(x).into(), ln(SimdBase::abs(x)).into(), sin.into(), cos.into()]
+            let size = SimdBase::abs(x);
+            [exp(x).into(), ln(size).into(), sin.into(), cos.into(), atan2(size, x - 1.0).into()]
         }
     }
 
@@ -168,11 +198,13 @@ mod tests {
                 }
                 x => x,
             });
-            let [e, l, s, c] = dispatch(level(), All(x));
+            let [e, l, s, c, a] = dispatch(level(), All(x));
             for (lane, &x) in x.iter().enumerate() {
                 let (sin, cos) = sin_cos_of_turns(x);
-                let expected = [exp(x), ln(x.abs()), sin, cos].map(f32::to_bits);
-                assert_eq!([e[lane], l[lane], s[lane], c[lane]].map(f32::to_bits), expected, "{x}");
+                let angle = atan2(x.abs(), x - 1.0);
+                let expected = [exp(x), ln(x.abs()), sin, cos, angle].map(f32::to_bits);
+                let lanes = [e[lane], l[lane], s[lane], c[lane], a[lane]];
+                assert_eq!(lanes.map(f32::to_bits), expected, "{x}");
             }
         }
     }

@@ -26,6 +26,17 @@ macro_rules! by_lane {
 
 pub(crate) use by_lane;
 
+/// The answers of the lanes: that of lane i in bit i.
+#[inline(always)]
+pub(crate) fn bitmask(lanes: &[bool; LANES]) -> u32 {
+    let (mut bits, mut lane) = (0, 0);
+    while lane < LANES {
+        bits |= u32::from(lanes[lane]) << lane;
+        lane += 1;
+    }
+    bits
+}
+
 /// A vector in each lane.
 #[inline(always)]
 pub(crate) fn gather<S: Simd>(simd: S, rows: &[[f32; 3]; LANES]) -> Vector<f32x8<S>> {

@@ -1,11 +1,16 @@
 //! Points on surfaces with bounds of their errors, at any width: [`lookfrom_bvh::Point`] in lanes, bit for bit.
 
-use lookfrom_simd::{Bits, Float, Real};
+use lookfrom_bvh::Affine;
+use lookfrom_simd::{Bits, Float, Real, Simd, f32x8};
 
+use crate::core::lanes::{LANES, by_lane, gather_f64};
 use crate::core::vector::Vector;
 
 /// Unit of rounding of f64, 2⁻⁵³, as in [`lookfrom_bvh::Point`].
 const UNIT: f64 = f64::EPSILON / 2.0;
+
+/// Unit of rounding of f32, 2⁻²⁴.
+const UNIT32: f64 = f32::EPSILON as f64 / 2.0;
 
 /// Points and bounds of their errors, in double precision.
 #[derive(Clone, Copy)]
@@ -57,6 +62,118 @@ impl<R: Real> Points<R> {
     }
 }
 
+/// Affine maps at any width, with what bounds of errors need.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placement<R: Real> {
+    /// The linear part, by rows.
+    pub(crate) matrix: [Vector<R::Double>; 3],
+    /// The image of the origin.
+    pub(crate) translation: Vector<R::Double>,
+    /// The inverse of the linear part, by rows.
+    pub(crate) inverse: [Vector<R::Double>; 3],
+    /// The amplification of errors by the map and its inverse: a bound of |M M⁻¹ − 1| and of the rounding in it.
+    pub(crate) amplification: [Vector<R::Double>; 3],
+}
+
+impl Placement<f32> {
+    /// Of one map and the inverse of its linear part.
+    pub(crate) fn new(affine: &Affine, inverse_matrix: &[[f64; 3]; 3]) -> Self {
+        let matrix = &affine.matrix;
+        let inverse = affine.inverse().map_or([[0.0; 3]; 3], |inverse| inverse.matrix);
+        let amplification = [0, 1, 2].map(|i| {
+            [0, 1, 2].map(|j| {
+                let mut product = if i == j { -1.0 } else { 0.0 };
+                let mut magnitude = 0.0;
+                for k in 0..3 {
+                    product += matrix[i][k] * inverse[k][j];
+                    magnitude += (matrix[i][k] * inverse[k][j]).abs();
+                }
+                product.abs() + 8.0 * UNIT * magnitude
+            })
+        });
+        Self {
+            matrix: matrix.map(Vector::from),
+            translation: affine.translation.into(),
+            inverse: inverse_matrix.map(Vector::from),
+            amplification: amplification.map(Vector::from),
+        }
+    }
+}
+
+impl<R: Real> Placement<R> {
+    /// The images of directions.
+    #[inline(always)]
+    pub(crate) fn vector(&self, v: Vector<R::Double>) -> Vector<R::Double> {
+        let [x, y, z] = self.matrix;
+        Vector { x: x.dot(v), y: y.dot(v), z: z.dot(v) }
+    }
+
+    /// The directions whose images these are.
+    #[inline(always)]
+    pub(crate) fn vector_back(&self, v: Vector<R::Double>) -> Vector<R::Double> {
+        let [x, y, z] = self.inverse;
+        Vector { x: x.dot(v), y: y.dot(v), z: z.dot(v) }
+    }
+
+    /// The images of surface normals; not of unit length.
+    #[inline(always)]
+    pub(crate) fn normal(&self, n: Vector<R::Double>) -> Vector<R::Double> {
+        let [x, y, z] = self.inverse;
+        x * n.x + y * n.y + z * n.z
+    }
+}
+
+/// One map in each lane.
+#[inline(always)]
+pub(crate) fn gather_placements<S: Simd>(simd: S, rows: &[&Placement<f32>; LANES]) -> Placement<f32x8<S>> {
+    macro_rules! gathered {
+        ($field:ident, $row:literal) => {
+            gather_f64(simd, &by_lane!(lane => <[f64; 3]>::from(rows[lane].$field[$row])))
+        };
+        ($field:ident) => {
+            [gathered!($field, 0), gathered!($field, 1), gathered!($field, 2)]
+        };
+    }
+    let translation = gather_f64(simd, &by_lane!(lane => <[f64; 3]>::from(rows[lane].translation)));
+    let (matrix, inverse) = (gathered!(matrix), gathered!(inverse));
+    Placement { matrix, translation, inverse, amplification: gathered!(amplification) }
+}
+
+impl<R: Real> Points<R> {
+    /// As [`lookfrom_bvh::Point::transformed`].
+    #[inline(always)]
+    pub(crate) fn placed(&self, placement: &Placement<R>) -> Self {
+        let Placement { matrix: [a, b, c], translation, amplification: [d, e, f], .. } = *placement;
+        let relative = placement.vector(self.position);
+        let position = relative + translation;
+        let size = self.position.abs();
+        let way = relative.abs() * size.x.like(1.0 + 1e-6);
+        // Per coordinate of the object: the error there, with the rounding of the ray's origin to f32.
+        let unit = way.x.like(UNIT32 * (1.0 + 1e-6));
+        let own = [
+            self.error.x + size.x * (8.0 * UNIT) + unit * size.x,
+            self.error.y + size.y * (8.0 * UNIT) + unit * size.y,
+            self.error.z + size.z * (8.0 * UNIT) + unit * size.z,
+        ];
+        let ends = way + translation.abs() + position.abs();
+        let error = Vector {
+            x: carried(d, way, a, own) + ends.x * (4.0 * UNIT),
+            y: carried(e, way, b, own) + ends.y * (4.0 * UNIT),
+            z: carried(f, way, c, own) + ends.z * (4.0 * UNIT),
+        };
+        Self { position, error }
+    }
+}
+
+/// One coordinate of the error that a map carries over: of rows of its amplification and of its matrix.
+#[inline(always)]
+fn carried<D: Float>(amplification: Vector<D>, way: Vector<D>, row: Vector<D>, own: [D; 3]) -> D {
+    let row = row.abs();
+    let x = amplification.x * way.x + row.x * own[0];
+    let y = x + amplification.y * way.y + row.y * own[1];
+    y + amplification.z * way.z + row.z * own[2]
+}
+
 /// As the nearest f32 that is not before `x` on the way along a normal; simply the nearest where that is 0. `like` is
 /// any number as wide.
 #[inline(always)]
@@ -85,7 +202,7 @@ mod tests {
     use lookfrom_simd::{Kernel, Level, Simd, dispatch, f32x8, prelude::*};
 
     use super::*;
-    use crate::core::lanes::{LANES, by_lane, gather, scatter, scatter_f64};
+    use crate::core::lanes::{gather, scatter, scatter_f64};
     use crate::core::{hash, warp};
 
     /// The input of a test case: corners, u and v, a direction, a point of the square.
@@ -143,6 +260,25 @@ mod tests {
             origin: point.leave(ng.to_array(), direction),
             basis: [s, t].map(|v: Vec3| v.to_array()),
             disk: warp::concentric_disk([u, v]),
+        }
+    }
+
+    #[test]
+    fn placed_points_are_those_of_the_kernel() {
+        for count in 0..20_000_u64 {
+            let number = |k: u64| {
+                let bits = hash::pair(count, k);
+                let exponent = (bits % 41) as i32 - 20;
+                ((bits >> 40) as f64 / 16_777_216.0 - 0.5) * libm::exp2(f64::from(exponent))
+            };
+            let vector = |k: u64| [number(k), number(k + 1), number(k + 2)];
+            let map = Affine { matrix: [vector(0), vector(3), vector(6)], translation: vector(9) };
+            let point = Point { position: vector(12), error: vector(15).map(f64::abs) };
+            let points = Points::<f32> { position: point.position.into(), error: point.error.into() };
+            let placed = points.placed(&Placement::new(&map, &map.matrix));
+            let expected = point.transformed(&map);
+            let placed = Point { position: placed.position.into(), error: placed.error.into() };
+            assert_eq!(placed, expected);
         }
     }
 

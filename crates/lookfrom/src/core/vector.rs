@@ -5,7 +5,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lookfrom_simd::{Float, Real};
 
 /// Three components, each as wide as `F`.
@@ -95,16 +95,16 @@ impl<F: Float<Scalar: From<f32>>> Vector<F> {
         let length = self.length();
         length.like(F::Scalar::from(1.0)) / length
     }
+
+    /// Of unit length, and whether there is such a vector.
+    #[inline(always)]
+    pub fn try_normalize(self) -> (Self, F::Mask) {
+        let recip = self.length_recip();
+        (self * recip, Float::is_finite(recip) & recip.gt(recip.like(F::Scalar::from(0.0))))
+    }
 }
 
 impl<R: Real> Vector<R> {
-    /// Of unit length, and whether there is such a vector.
-    #[inline(always)]
-    pub fn try_normalize(self) -> (Self, R::Mask) {
-        let recip = self.length_recip();
-        (self * recip, Float::is_finite(recip) & recip.gt(recip.like(0.0)))
-    }
-
     /// In double precision.
     #[inline(always)]
     pub(crate) fn widen(self) -> Vector<R::Double> {
@@ -147,6 +147,34 @@ impl<F: Float> Neg for Vector<F> {
     #[inline(always)]
     fn neg(self) -> Self {
         Self { x: -self.x, y: -self.y, z: -self.z }
+    }
+}
+
+impl<F> From<Vector<F>> for [F; 3] {
+    #[inline(always)]
+    fn from(v: Vector<F>) -> Self {
+        [v.x, v.y, v.z]
+    }
+}
+
+impl<F> From<[F; 3]> for Vector<F> {
+    #[inline(always)]
+    fn from([x, y, z]: [F; 3]) -> Self {
+        Self { x, y, z }
+    }
+}
+
+impl From<DVec3> for Vector<f64> {
+    #[inline(always)]
+    fn from(v: DVec3) -> Self {
+        Self { x: v.x, y: v.y, z: v.z }
+    }
+}
+
+impl From<Vector<f64>> for DVec3 {
+    #[inline(always)]
+    fn from(v: Vector<f64>) -> Self {
+        Self::new(v.x, v.y, v.z)
     }
 }
 

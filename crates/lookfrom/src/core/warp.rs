@@ -146,12 +146,12 @@ pub fn orthonormal_basis(n: Vec3) -> (Vec3, Vec3) {
 
 /// The same at any width.
 #[inline(always)]
-pub fn basis_about<R: Real>(n: Vector<R>) -> (Vector<R>, Vector<R>) {
+pub fn basis_about<F: Float<Scalar: From<f32>>>(n: Vector<F>) -> (Vector<F>, Vector<F>) {
     // The only branch is the sign of z, which keeps the denominator away from 0.
     let Vector { x, y, z } = n;
-    let one = x.like(1.0);
+    let one = x.like(F::Scalar::from(1.0));
     let sign = Float::copysign(one, z);
-    let a = x.like(-1.0) / (sign + z);
+    let a = -one / (sign + z);
     let b = x * y * a;
     (
         Vector { x: one + sign * x * x * a, y: sign * b, z: -sign * x },

@@ -9,9 +9,8 @@ mod lanes;
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 
-use lanes::{FlatDiffuseHit, Waiting};
+use lanes::{HitBatch, Waiting};
 
-use crate::core::lanes::LANES;
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{Bounce, Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
@@ -116,28 +115,20 @@ impl Integrator for PathTracer {
     ) {
         let in_lanes = self.light_sampling == LightSampling::MultipleImportance;
         let mut waiting = Waiting::default();
-        let mut flat: Vec<FlatDiffuseHit<'_>> = Vec::with_capacity(LANES);
-        for (path, hit) in paths.iter().zip(hits) {
+        let batch = HitBatch { world, paths, hits, stream };
+        for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
             output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
             if !in_lanes {
-                self.step(world, &stream(path), path, hit, output);
-                continue;
-            }
-            let lanes = output.lanes(path);
-            if let Some(hit) = FlatDiffuseHit::of(self, world, path, hit, &lanes, || stream(path)) {
-                flat.push(hit);
-                if flat.len() == LANES {
-                    self.scatter_flat(world, &flat, output);
-                    flat.clear();
-                }
-            } else if let Some(vertex) = self.arrive(world, &stream(path), path, hit, output)
-                && let Some(vertex) = waiting.push(self, world, vertex, output)
+                self.step(world, &(batch.stream)(path), path, hit, output);
+            } else if let Some(class) = batch.mesh_class(self, index) {
+                waiting.push_hit(self, &batch, (class, index), output);
+            } else if let Some(vertex) = self.arrive(world, &(batch.stream)(path), path, hit, output)
+                && let Some(vertex) = waiting.push_vertex(self, world, vertex, output)
             {
                 self.scatter_vertex(world, &vertex, output);
             }
         }
-        self.scatter_flat(world, &flat, output);
-        waiting.flush(self, world, output);
+        waiting.flush(self, &batch, output);
     }
 
     fn step<P: Probe>(

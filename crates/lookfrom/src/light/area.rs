@@ -9,19 +9,23 @@ mod quadric;
 
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
+use lookfrom_simd::{Float, Mask, Real};
 
 use super::{EmissionSpectrum, LightSample, Target, toward};
 use crate::core::math;
+use crate::core::points::Points;
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 use crate::core::warp;
 use crate::primitive::Disk;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::texture::{FloatTexture, SpectralMode, TexturePoint, Textures};
 
 pub use mesh::MeshLight;
-pub(crate) use mesh::Triangle as LightTriangle;
+pub(crate) use mesh::{Triangle as LightTriangle, sample_triangles};
 pub use patch::PatchLight;
 pub use quadric::QuadricLight;
+pub(crate) use quadric::{SphereLights, gather_spheres};
 
 /// An area light.
 #[derive(Clone, Debug)]
@@ -69,6 +73,56 @@ pub struct LightPoint {
     pub wi: Vec3,
     /// Solid angle density, finite and positive.
     pub pdf: f32,
+}
+
+/// Points of area lights as seen from other points, at any width: as [`LightPoint`].
+#[derive(Clone, Copy)]
+pub(crate) struct AreaSamples<R: Real> {
+    pub(crate) points: Points<R>,
+    pub(crate) normal: Vector<R::Double>,
+    pub(crate) wi: Vector<R>,
+    /// Finite and positive where there is a point.
+    pub(crate) pdf: R,
+    /// Where there is a point.
+    pub(crate) is_valid: R::Mask,
+}
+
+impl<R: Real> AreaSamples<R> {
+    /// Of the directions and distances to the points.
+    #[inline(always)]
+    fn new(
+        points: Points<R>,
+        normal: Vector<R::Double>,
+        (wi, distance): (Vector<R>, R::Double),
+        pdf: R,
+    ) -> Self {
+        let is_apart = pdf.narrow_mask(distance.gt(distance.like(0.0)));
+        let is_valid = is_apart & Float::is_finite(pdf) & pdf.gt(pdf.like(0.0));
+        Self { points, normal, wi, pdf, is_valid }
+    }
+
+    /// `yes` where the mask is set, `no` elsewhere.
+    #[inline(always)]
+    pub(crate) fn select(mask: R::Mask, wide_mask: <R::Double as Float>::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            points: Points {
+                position: Vector::select(wide_mask, yes.points.position, no.points.position),
+                error: Vector::select(wide_mask, yes.points.error, no.points.error),
+            },
+            normal: Vector::select(wide_mask, yes.normal, no.normal),
+            wi: Vector::select(mask, yes.wi, no.wi),
+            pdf: R::select(mask, yes.pdf, no.pdf),
+            is_valid: mask.choose(yes.is_valid, no.is_valid),
+        }
+    }
+}
+
+/// The unit directions from points to others, and the distances.
+#[inline(always)]
+fn toward_all<R: Real>(from: Vector<R::Double>, to: Vector<R::Double>) -> (Vector<R>, R::Double) {
+    let way = to - from;
+    let length = way.length();
+    (Vector::narrow(Vector { x: way.x / length, y: way.y / length, z: way.z / length }), length)
 }
 
 /// Bounds of an area light and of its normals.
@@ -145,13 +199,23 @@ impl AreaLight {
     #[inline]
     pub(crate) fn triangle(&self, u0: f32) -> Option<(&LightTriangle, f32, f32)> {
         match &self.shape {
-            LightShape::Mesh(light)
-                if self.radiance.color.is_constant() && self.alpha.or(self.coat).is_none() =>
-            {
-                light.triangle(u0)
-            }
+            LightShape::Mesh(light) if self.is_uniform() => light.triangle(u0),
             _ => None,
         }
+    }
+
+    /// The whole sphere that it is, which is sampled by direction; only one of uniform emission.
+    #[inline]
+    pub(crate) fn sphere(&self) -> Option<&SphereLights<f32>> {
+        match &self.shape {
+            LightShape::Quadric(light) if self.is_uniform() => light.sphere(),
+            _ => None,
+        }
+    }
+
+    /// Whether its emission is the same everywhere and in all directions.
+    fn is_uniform(&self) -> bool {
+        self.radiance.color.is_constant() && self.alpha.or(self.coat).is_none()
     }
 
     /// The inputs of an emission texture; the position in the world is not among them.
@@ -181,7 +245,7 @@ impl AreaLight {
     /// behind other points of the light, or face away.
     pub fn sample_point(&self, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
         let point = match &self.shape {
-            LightShape::Quadric(light) => light.sample(from, u, self.two_sided),
+            LightShape::Quadric(light) => light.sample(from, u),
             LightShape::Disk(disk) => sample_disk(disk, from, u),
             LightShape::Mesh(light) => light.sample(from, u),
             LightShape::Patches(light) => light.sample(from, u),
@@ -198,7 +262,7 @@ impl AreaLight {
         };
         let place = (surface.primitive as usize, surface.on_primitive);
         let pdf = match &self.shape {
-            LightShape::Quadric(light) => match light.pdf_by_direction(from, wi, self.two_sided) {
+            LightShape::Quadric(light) => match light.pdf_by_direction(from, wi) {
                 Some(pdf) => pdf,
                 None => by_area(light.pdf_by_area(DVec3::from_array(surface.point.position))),
             },
@@ -278,3 +342,6 @@ fn sample_disk(disk: &Disk, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
 fn disk_area(disk: &Disk) -> f64 {
     std::f64::consts::PI * disk.normal().length()
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,13 +1,13 @@
 //! Triangle meshes.
-//!
-//! Derivatives by texture coordinates are those of the triangle's plane, as in Pharr, Jakob, Humphreys, Physically
-//! Based Rendering; a mesh's tangents replace `∂p/∂u` in shading.
 
-use glam::{DVec3, Vec2, Vec3, Vec4};
+pub(crate) mod lanes;
+
+use glam::{Vec2, Vec3, Vec4};
 use lookfrom_bvh::Point;
 
+use super::triangle::{Tangent, TrianglePoints, Triangles};
 use super::{MaterialBinding, SurfacePoint};
-use crate::core::warp;
+use crate::core::vector::Vector;
 use crate::shading::texture::MORE_UV_SETS;
 
 /// Triangles of one shape.
@@ -48,10 +48,10 @@ pub struct VertexData {
     pub opacity: f32,
 }
 
-/// Determinants of texture coordinates below this count as degenerate.
-const LEAST_DETERMINANT: f64 = 1e-9;
-
 impl Mesh {
+    /// The texture coordinates of each triangle's corners in a mesh without any.
+    const NO_UVS: [[f32; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
+
     /// The corners of a triangle.
     #[inline]
     pub fn corners(&self, index: usize) -> [[f32; 3]; 3] {
@@ -61,7 +61,7 @@ impl Mesh {
     /// The texture coordinates of a triangle's corners; a mesh without any has (0, 0), (1, 0), (1, 1) on each.
     pub fn corner_uvs(&self, index: usize) -> [Vec2; 3] {
         if self.uvs.is_empty() {
-            [Vec2::ZERO, Vec2::X, Vec2::ONE]
+            Self::NO_UVS.map(Vec2::from_array)
         } else {
             self.triangles[index].map(|vertex| self.uvs[vertex as usize])
         }
@@ -105,101 +105,37 @@ impl Mesh {
 
     /// The point with weight `u` of a triangle's second corner and `v` of its third.
     pub fn point(&self, index: usize, u: f32, v: f32) -> SurfacePoint {
-        let corners = self.corners(index);
-        let [p0, p1, p2] = corners;
-        let (point, across) = Point::on_triangle_with_normal(p0, p1, p2, u, v);
-        let winding = DVec3::from_array(across).normalize();
-        let mut ng = if self.flip { -winding } else { winding };
-        let weights = [1.0 - u - v, u, v];
-        let vertices = self.triangles[index].map(|vertex| vertex as usize);
-        let mix = |values: &[Vec3]| -> DVec3 {
-            (weights[0] * values[vertices[0]]
-                + weights[1] * values[vertices[1]]
-                + weights[2] * values[vertices[2]])
-                .as_dvec3()
-        };
-
-        let smooth = (!self.normals.is_empty()).then(|| mix(&self.normals).try_normalize()).flatten();
-        // The mesh's normals, not the winding, decide which side is outside.
-        if smooth.is_some_and(|ns| ns.dot(ng) < 0.0) {
-            ng = -ng;
-        }
-        let ns = smooth.unwrap_or(ng);
-        let uvs = self.corner_uvs(index);
-        let uv = weights[0] * uvs[0] + weights[1] * uvs[1] + weights[2] * uvs[2];
-        let color = self.color(index, u, v);
-        if !self.wants_derivatives {
-            let none = DVec3::ZERO;
-            let binding = self.binding;
-            return SurfacePoint {
-                point,
-                ng,
-                ns,
-                uv,
-                dpdu: none,
-                dpdv: none,
-                shading_dpdu: none,
-                shading_dpdv: none,
-                color,
-                binding,
-            };
-        }
-        let corners = corners.map(|p| Vec3::from_array(p).as_dvec3());
-        let [dpdu, dpdv] = derivatives(corners, uvs, winding);
-
-        // Rotate the derivatives into the plane perpendicular to the interpolated normal.
-        let tangent = self.tangent(weights, vertices).filter(|(s, _)| *s != DVec3::ZERO);
-        let (mut shading_dpdu, mut shading_dpdv) = (dpdu, dpdv);
-        if smooth.is_some() || tangent.is_some() {
-            let (along, is_left) = tangent.unwrap_or((dpdu, true));
-            let across = ns.cross(along);
-            if across.length_squared() > 0.0 {
-                (shading_dpdu, shading_dpdv) = (across.cross(ns), if is_left { across } else { -across });
-            } else {
-                let (s, t) = warp::orthonormal_basis(ns.as_vec3());
-                (shading_dpdu, shading_dpdv) = (s.as_dvec3(), t.as_dvec3());
-            }
-        }
+        let TrianglePoints { points, ng, ns, uv: [s, t], dpdu, dpdv, shading_dpdu, shading_dpdv } =
+            self.triangle(index).points(u, v);
+        let point = Point { position: points.position.into(), error: points.error.into() };
         SurfacePoint {
             point,
-            ng,
-            ns,
-            uv,
-            dpdu,
-            dpdv,
-            shading_dpdu,
-            shading_dpdv,
-            color,
+            ng: ng.into(),
+            ns: ns.into(),
+            uv: Vec2::new(s, t),
+            dpdu: dpdu.into(),
+            dpdv: dpdv.into(),
+            shading_dpdu: shading_dpdu.into(),
+            shading_dpdv: shading_dpdv.into(),
+            color: self.color(index, u, v),
             binding: self.binding,
         }
     }
-}
 
-impl Mesh {
-    /// The interpolated tangent, and whether v grows to the left of it, seen from outside.
-    fn tangent(&self, weights: [f32; 3], vertices: [usize; 3]) -> Option<(DVec3, bool)> {
-        if self.tangents.is_empty() {
-            return None;
-        }
-        let [a, b, c] = vertices.map(|vertex| self.tangents[vertex]);
-        let mixed = weights[0] * a + weights[1] * b + weights[2] * c;
-        Some((mixed.truncate().as_dvec3(), mixed.w >= 0.0))
-    }
-}
-
-/// `∂p/∂u` and `∂p/∂v` of a triangle; any two directions in its plane where its texture coordinates are degenerate.
-fn derivatives([p0, p1, p2]: [DVec3; 3], uvs: [Vec2; 3], winding: DVec3) -> [DVec3; 2] {
-    let [uv0, uv1, uv2] = uvs.map(Vec2::as_dvec2);
-    let (along0, along1) = (uv0 - uv2, uv1 - uv2);
-    let (edge0, edge1) = (p0 - p2, p1 - p2);
-    let determinant = along0.x * along1.y - along0.y * along1.x;
-    if determinant.abs() >= LEAST_DETERMINANT {
-        let dpdu = (along1.y * edge0 - along0.y * edge1) / determinant;
-        let dpdv = (along0.x * edge1 - along1.x * edge0) / determinant;
-        if dpdu.is_finite() && dpdv.is_finite() {
-            return [dpdu, dpdv];
+    /// A triangle with what its vertices have.
+    fn triangle(&self, index: usize) -> Triangles<f32> {
+        let vertices = self.triangles[index].map(|vertex| vertex as usize);
+        let vector = |[x, y, z]: [f32; 3]| Vector { x, y, z };
+        let tangent = |tangent: Vec4| Tangent { along: tangent.truncate().into(), sign: tangent.w };
+        Triangles {
+            positions: vertices.map(|vertex| vector(self.positions[vertex])),
+            orientation: if self.flip { -1.0 } else { 1.0 },
+            normals: vertices.map(|vertex| self.normals.get(vertex).copied().unwrap_or_default().into()),
+            uvs: self.corner_uvs(index).map(|uv| uv.to_array()),
+            tangents: vertices.map(|vertex| tangent(self.tangents.get(vertex).copied().unwrap_or_default())),
+            have_normals: !self.normals.is_empty(),
+            have_tangents: !self.tangents.is_empty(),
+            want_derivatives: self.wants_derivatives,
         }
     }
-    let (s, t) = warp::orthonormal_basis(-winding.as_vec3());
-    [s.as_dvec3(), t.as_dvec3()]
 }

@@ -8,13 +8,19 @@
 //! Conventions of u, v and their derivatives: Pharr, Jakob, Humphreys, Physically Based Rendering. The intersection
 //! after Haines et al. (2019), "Precision Improvements for Ray/Sphere Intersection".
 
+mod frame;
+
 use std::f64::consts::PI;
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Affine, Point, Procedural, ProceduralHit, Ray};
 
+pub(crate) use frame::{QuadricFrames, gather_frames};
+
 use super::{MaterialBinding, SurfacePoint};
 use crate::core::math;
+use crate::core::points::Points;
+use crate::core::vector::Vector;
 use crate::core::warp;
 
 /// Unit of rounding of f64, 2⁻⁵³.
@@ -61,6 +67,8 @@ pub struct Quadric {
     render_from_object: Affine,
     /// Inverse of the linear part.
     object_from_render: Affine,
+    /// Both.
+    frame: QuadricFrames<f32>,
 }
 
 /// Quadrics of many shapes.
@@ -88,7 +96,8 @@ impl Quadric {
         let inverse = render_from_object.inverse()?;
         let object_from_render = Affine { translation: [0.0; 3], ..inverse };
         let phi_max = if phi_max >= 360.0 { 2.0 * PI } else { phi_max.max(0.0).to_radians() };
-        Some(Self { kind, phi_max, reverse, render_from_object, object_from_render })
+        let frame = QuadricFrames::new(&render_from_object, &object_from_render, reverse);
+        Some(Self { kind, phi_max, reverse, render_from_object, object_from_render, frame })
     }
 
     /// Whether it is a whole sphere (an ellipsoid, after its transform).
@@ -99,6 +108,11 @@ impl Quadric {
 
     fn is_whole_turn(&self) -> bool {
         self.phi_max >= 2.0 * PI
+    }
+
+    /// The transforms between object space and render space.
+    pub(crate) fn frame(&self) -> &QuadricFrames<f32> {
+        &self.frame
     }
 
     /// A point of render space, in object space.
@@ -250,15 +264,16 @@ impl Quadric {
     /// The point of the surface that is `on_surface` in object space.
     pub fn point(&self, on_surface: DVec3, binding: MaterialBinding) -> SurfacePoint {
         let p = self.refined(on_surface);
+        let (uv, derivatives) = self.coordinates(p);
+        let (points, ng) = self.place(p);
+        let point = Point { position: points.position.into(), error: points.error.into() };
+        SurfacePoint::plain(point, ng.into(), uv, derivatives.map(|d| self.vector_in_render(d)), binding)
+    }
+
+    /// The texture coordinates of a point of the surface, and the derivatives by them, in object space.
+    pub(crate) fn coordinates(&self, p: DVec3) -> (Vec2, [DVec3; 2]) {
         let phi = angle(p);
         let u = if self.phi_max > 0.0 { phi / self.phi_max } else { 0.0 };
-        let own_error = match self.kind {
-            QuadricKind::Sphere { radius, .. } => DVec3::splat(16.0 * UNIT * radius),
-            QuadricKind::Cylinder { radius, .. } => {
-                DVec3::new(16.0 * UNIT * radius, 16.0 * UNIT * radius, 0.0)
-            }
-            QuadricKind::Disk { height, .. } => DVec3::new(0.0, 0.0, 4.0 * UNIT * height.abs()),
-        };
         let (v, derivatives) = match self.kind {
             QuadricKind::Sphere { radius, z } => {
                 let [from, to] = z.map(|z| polar(z, radius));
@@ -277,27 +292,24 @@ impl Quadric {
                 ((radius - ring) / (radius - inner_radius), [turning(turned, self.phi_max), dpdv])
             }
         };
-        let uv = Vec2::new(u as f32, v as f32).clamp(Vec2::ZERO, Vec2::ONE);
-        let of_object = Point { position: p.to_array(), error: own_error.to_array() };
-        let mut point = of_object.transformed(&self.render_from_object);
-        let normal = DVec3::from_array(self.object_from_render.normal_back(self.outward(p).to_array()));
-        let bend = self.bend(&point, normal.length());
-        point.error = point.error.map(|error| error + bend);
-        let ng = normal.normalize() * if self.reverse { -1.0 } else { 1.0 };
-        SurfacePoint::plain(point, ng, uv, derivatives.map(|d| self.vector_in_render(d)), binding)
+        (Vec2::new(u as f32, v as f32).clamp(Vec2::ZERO, Vec2::ONE), derivatives)
     }
 
-    /// The distance by which the surface curves away from its tangent plane over the distance that rounding to f32 may
-    /// move the origin of a leaving ray. `normal_length` is that of the unit normal transformed to render space.
-    fn bend(&self, point: &Point, normal_length: f64) -> f64 {
-        let (QuadricKind::Sphere { radius, .. } | QuadricKind::Cylinder { radius, .. }) = self.kind else {
-            return 0.0;
-        };
-        let rounding = DVec3::from_array(point.position).abs() * f64::from(f32::EPSILON)
-            + DVec3::splat(f64::from(f32::MIN_POSITIVE));
-        let rows = self.object_from_render.matrix.map(|row| DVec3::from_array(row).abs());
-        let sideways = DVec3::from_array(rows.map(|row| row.dot(rounding))).length_squared();
-        0.5 * sideways / (radius * normal_length)
+    /// The point of render space and the outward unit normal there, by the point of the surface in object space.
+    fn place(&self, p: DVec3) -> (Points<f32>, Vector<f64>) {
+        let error = |x: f64, y: f64, z: f64| Vector::new(x, y, z);
+        let outward = || self.outward(p).into();
+        match self.kind {
+            QuadricKind::Sphere { radius, .. } => self.frame.place_on_spheres(p.into(), radius),
+            QuadricKind::Cylinder { radius, .. } => {
+                let own = 16.0 * UNIT * radius;
+                self.frame.place(p.into(), outward(), error(own, own, 0.0), radius)
+            }
+            QuadricKind::Disk { height, .. } => {
+                let own = 4.0 * UNIT * height.abs();
+                self.frame.place(p.into(), outward(), error(0.0, 0.0, own), f64::INFINITY)
+            }
+        }
     }
 }
 

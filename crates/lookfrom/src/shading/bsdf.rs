@@ -28,7 +28,7 @@ use crate::core::vector::Vector;
 use conductor::Conductor;
 use dielectric::{Dielectric, ThinDielectric};
 use diffuse::{Diffuse, DiffuseTransmission};
-use lanes::{Kind, LaneBsdf};
+use lanes::{Kind, LaneBsdf, RowBsdf};
 use layered::{CoatLayer, Layered};
 use lobes::Lobes;
 use microfacet::TrowbridgeReitz;
@@ -227,19 +227,7 @@ impl Bsdf {
         roughness: TrowbridgeReitz,
         coat: &CoatLayer,
     ) -> Self {
-        let coat_eta = fresnel::valid_eta(coat.eta);
-        let base = Conductor::new(eta / coat_eta, k / coat_eta, roughness);
-        Self::CoatedConductor(Layered::new(base, coat))
-    }
-
-    /// pbrt's `coatedconductor` by the metal's reflectance at normal incidence without a coat.
-    pub fn coated_conductor_of_reflectance(
-        reflectance: Spectrum,
-        roughness: TrowbridgeReitz,
-        coat: &CoatLayer,
-    ) -> Self {
-        let (eta, k) = fresnel::conductor_of_reflectance(reflectance);
-        Self::coated_conductor(eta, k, roughness, coat)
+        Self::CoatedConductor(Layered::coated_conductor(eta, k, roughness, coat))
     }
 
     /// The BSDF: the fraction of light from `wi` that leaves along `wo`, per solid angle and without the cosine of
@@ -323,11 +311,8 @@ impl Bsdf {
         match self {
             Self::Conductor(bsdf) => bsdf.regularize(),
             Self::Dielectric(bsdf) => bsdf.regularize(),
-            Self::CoatedDiffuse(bsdf) => bsdf.coat.regularize(),
-            Self::CoatedConductor(bsdf) => {
-                bsdf.coat.regularize();
-                bsdf.base.regularize();
-            }
+            Self::CoatedDiffuse(bsdf) => bsdf.regularize(),
+            Self::CoatedConductor(bsdf) => bsdf.regularize(),
             Self::Principled(bsdf) => bsdf.regularize(),
             Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::ThinDielectric(_) | Self::Whitted(_) => {}
         }

@@ -11,6 +11,7 @@ mod compile;
 mod interior;
 mod kind;
 mod principled;
+mod rows;
 mod whitted;
 
 use glam::Vec3;
@@ -18,19 +19,24 @@ use lookfrom_scene::scene::CurveId;
 
 use crate::core::spectrum::Spectrum;
 use crate::core::warp;
-use crate::shading::bsdf::layered::CoatLayer;
+use crate::shading::bsdf::conductor::Conductor;
+use crate::shading::bsdf::dielectric::Dielectric;
+use crate::shading::bsdf::diffuse::Diffuse;
+use crate::shading::bsdf::layered::{CoatLayer, Layered};
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::bsdf::whitted::Whitted as WhittedBsdf;
-use crate::shading::bsdf::{self, Bsdf, BsdfSample, Mode};
+use crate::shading::bsdf::{self, Bsdf, BsdfSample, Mode, fresnel};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::{FloatTexture, SpectralMode, SpectrumTexture, TexturePoint, Textures};
 
 pub use albedo::albedo;
+pub(crate) use bump::frame_about;
 pub(crate) use compile::Compiler;
 pub use kind::{
     Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled, Roughness, Whitted,
 };
+pub(crate) use rows::MaterialRow;
 pub use whitted::{Branches, Coefficients};
 
 /// A material of a world.
@@ -211,7 +217,7 @@ pub fn shading(
     point: &TexturePoint,
     arrival: ShadingContext<'_>,
 ) -> Option<Shading> {
-    let ShadingContext { lanes, throughput, interior, mut u } = arrival;
+    let mut u = arrival.u;
     let mut index = surface.material;
     let mut material = &materials[index as usize];
     while let MaterialKind::Mix { materials: [first, second], amount } = &material.kind {
@@ -221,7 +227,7 @@ pub fn shading(
         index = *chosen;
         material = &materials[index as usize];
     }
-    let mut at = Evaluator { materials, textures, point, lanes, throughput, interior, u };
+    let mut at = Evaluator::new(materials, textures, point, ShadingContext { u, ..arrival });
     let ng = surface.ng.as_vec3();
     if let MaterialKind::Principled(look) = &material.kind {
         let frame = material.frame(textures, surface, point);
@@ -250,7 +256,7 @@ pub fn normal(
 }
 
 /// The evaluation of a material at a point.
-struct Evaluator<'a> {
+pub(crate) struct Evaluator<'a> {
     materials: &'a [Material],
     textures: &'a Textures,
     point: &'a TexturePoint,
@@ -258,6 +264,18 @@ struct Evaluator<'a> {
     throughput: &'a mut Spectrum,
     interior: InteriorStack,
     u: f32,
+}
+
+impl<'a> Evaluator<'a> {
+    fn new(
+        materials: &'a [Material],
+        textures: &'a Textures,
+        point: &'a TexturePoint,
+        context: ShadingContext<'a>,
+    ) -> Self {
+        let ShadingContext { lanes, throughput, interior, u } = context;
+        Self { materials, textures, point, lanes, throughput, interior, u }
+    }
 }
 
 impl Evaluator<'_> {
@@ -275,7 +293,7 @@ impl Evaluator<'_> {
                     fresnel: k.fresnel,
                 })
             }
-            MaterialKind::Diffuse { reflectance } => Bsdf::diffuse(self.albedo(reflectance)),
+            MaterialKind::Diffuse { reflectance } => Bsdf::Diffuse(self.diffuse(reflectance)),
             MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
                 let [reflected, transmitted] = [reflectance, transmittance].map(|color| {
                     let color = self.textures.spectrum(color, self.point, self.lanes);
@@ -283,29 +301,14 @@ impl Evaluator<'_> {
                 });
                 Bsdf::diffuse_transmission(reflected, transmitted)
             }
-            MaterialKind::Conductor { metal, roughness } => {
-                let roughness = roughness.at(self.textures, self.point);
-                match self.metal(metal) {
-                    Constants::Indices(eta, k) => Bsdf::conductor(eta, k, roughness),
-                    Constants::Reflectance(color) => Bsdf::conductor_of_reflectance(color, roughness),
-                }
-            }
-            MaterialKind::Dielectric { eta, roughness } => {
-                Bsdf::dielectric(self.ior(eta), roughness.at(self.textures, self.point))
-            }
+            MaterialKind::Conductor { metal, roughness } => Bsdf::Conductor(self.conductor(metal, roughness)),
+            MaterialKind::Dielectric { eta, roughness } => Bsdf::Dielectric(self.dielectric(eta, roughness)),
             MaterialKind::ThinDielectric { eta } => Bsdf::thin_dielectric(self.ior(eta)),
             MaterialKind::CoatedDiffuse { reflectance, coat } => {
-                let coat = self.coat(coat);
-                Bsdf::coated_diffuse(self.albedo(reflectance), &coat)
+                Bsdf::CoatedDiffuse(self.coated_diffuse(reflectance, coat))
             }
             MaterialKind::CoatedConductor { metal, roughness, coat } => {
-                let (coat, roughness) = (self.coat(coat), roughness.at(self.textures, self.point));
-                match self.metal(metal) {
-                    Constants::Indices(eta, k) => Bsdf::coated_conductor(eta, k, roughness, &coat),
-                    Constants::Reflectance(color) => {
-                        Bsdf::coated_conductor_of_reflectance(color, roughness, &coat)
-                    }
-                }
+                Bsdf::CoatedConductor(self.coated_conductor(metal, roughness, coat))
             }
             // Its emission is all that is visible: see [`unlit`].
             MaterialKind::Unlit { .. } => Bsdf::diffuse(Spectrum::BLACK),
@@ -318,6 +321,30 @@ impl Evaluator<'_> {
         })
     }
 
+    fn diffuse(&self, reflectance: &SpectrumTexture) -> Diffuse {
+        Diffuse::new(self.albedo(reflectance))
+    }
+
+    fn conductor(&self, metal: &Metal, roughness: &Roughness) -> Conductor {
+        let (eta, k) = self.indices(metal);
+        Conductor::new(eta, k, roughness.at(self.textures, self.point))
+    }
+
+    fn dielectric(&mut self, eta: &Ior, roughness: &Roughness) -> Dielectric {
+        Dielectric::new(self.ior(eta), roughness.at(self.textures, self.point))
+    }
+
+    fn coated_diffuse(&mut self, reflectance: &SpectrumTexture, coat: &Coat) -> Layered<Diffuse> {
+        let coat = self.coat(coat);
+        Layered::new(self.diffuse(reflectance), &coat)
+    }
+
+    fn coated_conductor(&mut self, metal: &Metal, roughness: &Roughness, coat: &Coat) -> Layered<Conductor> {
+        let coat = self.coat(coat);
+        let (eta, k) = self.indices(metal);
+        Layered::coated_conductor(eta, k, roughness.at(self.textures, self.point), &coat)
+    }
+
     fn albedo(&self, color: &SpectrumTexture) -> Spectrum {
         self.textures.albedo(color, self.point, self.lanes)
     }
@@ -326,11 +353,12 @@ impl Evaluator<'_> {
         self.textures.float(texture, self.point)
     }
 
-    fn metal(&self, metal: &Metal) -> Constants {
+    /// η and k.
+    fn indices(&self, metal: &Metal) -> (Spectrum, Spectrum) {
         let spectrum = |texture| self.textures.spectrum(texture, self.point, self.lanes);
         match metal {
-            Metal::Indices { eta, k } => Constants::Indices(spectrum(eta), spectrum(k)),
-            Metal::Reflectance(color) => Constants::Reflectance(spectrum(color)),
+            Metal::Indices { eta, k } => (spectrum(eta), spectrum(k)),
+            Metal::Reflectance(color) => fresnel::conductor_of_reflectance(spectrum(color)),
         }
     }
 
@@ -368,10 +396,4 @@ fn ior_at(curve: CurveId, textures: &Textures, lanes: &mut SpectralMode) -> f32 
     };
     let [eta, ..] = textures.curve(curve).at(&nm).0;
     if eta > 0.0 { eta } else { 1.0 }
-}
-
-/// Optical constants of a metal at a point.
-enum Constants {
-    Indices(Spectrum, Spectrum),
-    Reflectance(Spectrum),
 }

@@ -153,9 +153,10 @@ impl Textures {
     /// extrapolates a mix.
     #[inline(always)]
     pub fn spectrum(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &SpectralMode) -> Spectrum {
-        // The most frequent case needs no call.
-        match lanes {
-            SpectralMode::Rgb if !texture.varies() => texture.rgb,
+        // The most frequent cases need no call.
+        match (lanes, &texture.constant) {
+            (SpectralMode::Rgb, _) if !texture.varies() => texture.rgb,
+            (SpectralMode::Spectral(wavelengths), Some(constant)) => constant.at(&wavelengths.lambda),
             _ => self.spectrum_of_any(texture, at, lanes),
         }
     }

@@ -1,54 +1,63 @@
 //! Classes of geometries, by the shading that their hits need; known when the world is compiled.
 
-use super::World;
-use crate::primitive::{Mesh, Primitives};
-use crate::shading::material::{BumpMapping, MaterialKind};
-use crate::shading::texture::SpectrumTexture;
+use lookfrom_bvh::{Hit, NONE};
 
-/// The class of all hits on a geometry (outside of instances), by which integrator steps are sorted.
+use super::World;
+use crate::core::points::Placement;
+use crate::primitive::{Mesh, Primitives};
+use crate::shading::bsdf::lanes::BsdfClass;
+use crate::shading::material::Material;
+
+/// The class of all hits on a geometry, by which integrator steps are sorted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Class {
-    /// Flat triangles of a diffuse material of one colour, without emission, alpha, bump mapping or media of their own.
-    FlatDiffuse,
+    /// Triangles without emission, alpha or media of their own, whose material has BSDFs of a class.
+    Mesh(BsdfClass),
     /// Anything else.
     General,
 }
 
 impl World {
     /// The class of each geometry, by its compiled material.
-    pub(super) fn classify(
-        primitives: &[Primitives],
-        materials: &[crate::shading::material::Material],
-    ) -> Vec<Class> {
+    pub(super) fn classify(primitives: &[Primitives], materials: &[Material]) -> Vec<Class> {
         let class = |primitives: &Primitives| {
             let Primitives::Mesh(mesh) = primitives else { return Class::General };
             let binding = &mesh.binding;
-            let is_flat = mesh.normals.is_empty() && !mesh.wants_derivatives;
             let is_plain = binding.light.is_none()
                 && binding.alpha.is_none()
                 && binding.medium_interface.is_none()
+                && binding.vertex_data.is_none()
                 && !binding.single_sided;
-            let material = &materials[binding.material as usize];
-            let is_even = match (&material.kind, &material.bump_mapping) {
-                (MaterialKind::Diffuse { reflectance }, BumpMapping::None) => reflectance.is_constant(),
-                _ => false,
-            };
-            if is_flat && is_plain && is_even { Class::FlatDiffuse } else { Class::General }
+            let class = materials[binding.material as usize].class();
+            class.filter(|_| is_plain).map_or(Class::General, Class::Mesh)
         };
         primitives.iter().map(class).collect()
     }
 
-    /// The mesh and the reflectance of a geometry of the class [`Class::FlatDiffuse`]; `None` for others.
+    /// The class of a hit on a [`Class::Mesh`]; `None` for others, and for instances with a material of their own.
     #[inline]
-    pub(crate) fn flat_diffuse(&self, geometry: u32) -> Option<(&Mesh, &SpectrumTexture)> {
-        if self.classes[geometry as usize] != Class::FlatDiffuse {
-            return None;
+    pub(crate) fn mesh_class(&self, hit: &Hit) -> Option<BsdfClass> {
+        let class = match hit.instance {
+            NONE => self.classes[hit.geometry as usize],
+            instance => {
+                let instance = &self.instances[instance as usize];
+                let class = self.object_classes[instance.object as usize][hit.geometry as usize];
+                if instance.material.is_none() { class } else { Class::General }
+            }
+        };
+        match class {
+            Class::Mesh(class) => Some(class),
+            Class::General => None,
         }
-        let Primitives::Mesh(mesh) = &self.primitives[geometry as usize] else { return None };
-        match &self.materials[mesh.binding.material as usize].kind {
-            MaterialKind::Diffuse { reflectance } => Some((mesh, reflectance)),
-            _ => None,
-        }
+    }
+
+    /// The mesh of a hit, its material, and the placement of the instance that it is in; `None` for other geometries.
+    #[inline]
+    pub(crate) fn mesh(&self, hit: &Hit) -> Option<(&Mesh, &Material, Option<&Placement<f32>>)> {
+        let (primitives, instance) = self.primitives(hit);
+        let Primitives::Mesh(mesh) = primitives else { return None };
+        let material = &self.materials[mesh.binding.material as usize];
+        Some((mesh, material, instance.map(|instance| &instance.placement)))
     }
 }

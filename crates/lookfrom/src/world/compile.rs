@@ -139,6 +139,7 @@ impl World {
             origin,
             bvh: Arc::new(bvh),
             classes: Self::classify(&primitives, &materials).into(),
+            object_classes: objects.iter().map(|object| Self::classify(object, &materials)).collect(),
             primitives: primitives.into(),
             objects: objects.into(),
             instances: instances.into(),

@@ -16,6 +16,8 @@ use lookfrom_scene::{Error, Location, Result, Warning};
 
 use super::Instance;
 use super::lights::Lights;
+use crate::core::math;
+use crate::core::points::Placement;
 use crate::light::{AreaLight, EmissionSpectrum, Light, LightShape, QuadricLight};
 use crate::primitive::{
     Disk, Disks, MaterialBinding, Mesh, Primitives, Quadric, QuadricKind, Quadrics, SphereBinding, Spheres,
@@ -59,7 +61,8 @@ impl Instance {
     /// An instance of an object. A matrix that cannot be inverted is `Invalid`.
     pub(super) fn new(at: &Location, object: u32, matrix: DMat4, material: Option<u32>) -> Result<Self> {
         let object_from_render = inverse(at, &matrix)?;
-        Ok(Self { object, render_from_object: matrix, object_from_render, material })
+        let placement = Placement::new(&math::affine(&matrix), &math::affine(&object_from_render).matrix);
+        Ok(Self { object, render_from_object: matrix, object_from_render, placement, material })
     }
 }
 
@@ -235,12 +238,11 @@ impl Compiler<'_> {
         for sphere in spheres {
             let center = matrix.transform_point3(sphere.center).as_vec3();
             let radius = (sphere.radius * scale) as f32;
-            let light = self.area_light(placing, || {
+            let light = self.area_light(placing, |two_sided| {
                 let kind = whole_sphere(f64::from(radius));
                 let own = DMat4::from_translation(center.as_dvec3()) * DMat4::from_mat3(render_from_z);
-                Some(LightShape::Quadric(Box::new(QuadricLight::new(Quadric::new(
-                    kind, 360.0, &own, flip,
-                )?)?)))
+                let quadric = Quadric::new(kind, 360.0, &own, flip)?;
+                Some(LightShape::Quadric(Box::new(QuadricLight::new(quadric, two_sided)?)))
             });
             let mut own_binding = first_binding;
             if light.is_some() {
@@ -265,7 +267,7 @@ impl Compiler<'_> {
             axis_v: matrix.transform_vector3(radius * axis_v),
             flip: placing.mirrors() != shape.reverse_orientation,
         };
-        let light = self.area_light(placing, || Some(LightShape::Disk(disk)));
+        let light = self.area_light(placing, |_| Some(LightShape::Disk(disk)));
         group.disks.disks.push(disk);
         group.disks.bindings.push(MaterialBinding { light, ..binding });
     }
@@ -280,26 +282,26 @@ impl Compiler<'_> {
         let Placing { shape, matrix, binding } = placing;
         let quadric = Quadric::new(kind, phi_max, matrix, shape.reverse_orientation)
             .ok_or_else(|| not_invertible(&shape.at))?;
-        let light = self.area_light(placing, || {
-            QuadricLight::new(quadric).map(|light| LightShape::Quadric(Box::new(light)))
+        let light = self.area_light(placing, |two_sided| {
+            QuadricLight::new(quadric, two_sided).map(|light| LightShape::Quadric(Box::new(light)))
         });
         group.quadrics.quadrics.push(quadric);
         group.quadrics.bindings.push(MaterialBinding { light, ..binding });
         Ok(())
     }
 
-    /// The area light of a shape that emits light, of its geometry.
+    /// The area light of a shape that emits light, of its geometry, given whether both sides do.
     fn area_light(
         &mut self,
         placing: Placing,
-        shape_of_light: impl FnOnce() -> Option<LightShape>,
+        shape_of_light: impl FnOnce(bool) -> Option<LightShape>,
     ) -> Option<u32> {
         let Placing { shape, binding, .. } = placing;
         let Emission { radiance, power, two_sided } = shape.emission?;
         if radiance == Color::BLACK {
             return None;
         }
-        let shape_of_light = shape_of_light()?;
+        let shape_of_light = shape_of_light(two_sided)?;
         let coat = match self.scene.materials.get(binding.material as usize).map(|material| &material.kind) {
             Some(MaterialKind::Principled(principled)) => Some(FloatTexture::from(principled.clearcoat)),
             _ => None,

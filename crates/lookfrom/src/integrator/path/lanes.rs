@@ -6,95 +6,119 @@
 //!
 //! Binning by material: Laine, Karras & Aila 2013; Áfra et al. 2016 (local shading coherence on CPUs).
 
-mod flat_diffuse;
 mod kernel;
 mod light_samples;
+mod mesh_hits;
+mod surfaces;
 
 use glam::Vec3;
 use lookfrom_bvh::{OriginPrimitive, Ray};
 
-pub(super) use flat_diffuse::FlatDiffuseHit;
-use kernel::{ScatterKernel, Scattered};
+use kernel::{LanePaths, ScatterKernel, Scattered};
+pub(super) use mesh_hits::HitBatch;
+use surfaces::SurfaceColumns;
 
 use super::{PathTracer, PreviousVertex, Vertex};
 use crate::core::lanes::{LANES, by_lane};
-use crate::core::math::power_heuristic;
 use crate::integrator::shadow;
 use crate::integrator::{Bounce, Event, Path, Probe, SampleStream, Shadow, StepOutput, Term};
 use crate::light::Target;
+use crate::shading::bsdf::BsdfSample;
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
-use crate::shading::bsdf::lanes::RowBsdf;
+use crate::shading::bsdf::lanes::{BsdfClass, RowBsdf};
 use crate::shading::bsdf::layered::Layered;
-use crate::shading::bsdf::{Bsdf, BsdfSample};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
 
-/// Number of classes of BSDFs that are scattered in lanes.
-const CLASSES: usize = 5;
-
-/// The class of a BSDF, if it is scattered in lanes.
-#[inline]
-fn class(bsdf: &Bsdf) -> Option<usize> {
-    match bsdf {
-        Bsdf::Diffuse(_) => Some(0),
-        Bsdf::Conductor(_) => Some(1),
-        Bsdf::Dielectric(_) => Some(2),
-        Bsdf::CoatedDiffuse(_) => Some(3),
-        Bsdf::CoatedConductor(_) => Some(4),
-        _ => None,
-    }
+/// Paths that wait for others of their class: hits on meshes, by index in the batch, and all others as vertices.
+#[derive(Default)]
+pub(super) struct Waiting {
+    mesh_hits: [Vec<u32>; BsdfClass::COUNT],
+    vertices: [Vec<Vertex>; BsdfClass::COUNT],
 }
 
-/// Vertices of paths that wait for others of their class.
-#[derive(Default)]
-pub(super) struct Waiting([Vec<Vertex>; CLASSES]);
+/// Calls a generic method of a path tracer with the BSDF of a class.
+macro_rules! with_class {
+    ($class:expr, $tracer:ident.$method:ident($($argument:expr),*)) => {
+        match $class {
+            BsdfClass::Diffuse => $tracer.$method::<Diffuse, P>($($argument),*),
+            BsdfClass::Conductor => $tracer.$method::<Conductor, P>($($argument),*),
+            BsdfClass::Dielectric => $tracer.$method::<Dielectric, P>($($argument),*),
+            BsdfClass::CoatedDiffuse => $tracer.$method::<Layered<Diffuse>, P>($($argument),*),
+            BsdfClass::CoatedConductor => $tracer.$method::<Layered<Conductor>, P>($($argument),*),
+        }
+    };
+}
 
 impl Waiting {
+    /// Adds a hit, and scatters the hits of its class where they fill the lanes.
+    #[inline]
+    pub(super) fn push_hit<P: Probe>(
+        &mut self,
+        tracer: &PathTracer,
+        batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
+        (class, index): (BsdfClass, usize),
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let hits = &mut self.mesh_hits[class as usize];
+        if fills_lanes(hits, index as u32) {
+            with_class!(class, tracer.scatter_mesh_hits(batch, hits, output));
+            hits.clear();
+        }
+    }
+
     /// Adds a vertex, and scatters the vertices of its class where they fill the lanes. Gives the vertex back where its BSDF
     /// has no class.
     #[inline]
-    pub(super) fn push<P: Probe>(
+    pub(super) fn push_vertex<P: Probe>(
         &mut self,
         tracer: &PathTracer,
         world: &World,
         vertex: Vertex,
         output: &mut StepOutput<'_, P>,
     ) -> Option<Vertex> {
-        let Some(class) = class(&vertex.shading.bsdf) else { return Some(vertex) };
-        let vertices = &mut self.0[class];
-        if vertices.capacity() == 0 {
-            vertices.reserve_exact(LANES);
-        }
-        vertices.push(vertex);
-        if vertices.len() == LANES {
-            tracer.scatter_class(world, class, vertices, output);
+        let Some(class) = BsdfClass::of(&vertex.shading.bsdf) else { return Some(vertex) };
+        let vertices = &mut self.vertices[class as usize];
+        if fills_lanes(vertices, vertex) {
+            with_class!(class, tracer.scatter_vertices(world, vertices, output));
             vertices.clear();
         }
         None
     }
 
-    /// Scatters the vertices that are left.
+    /// Scatters the paths that are left.
     pub(super) fn flush<P: Probe>(
-        &mut self,
+        self,
         tracer: &PathTracer,
-        world: &World,
+        batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
         output: &mut StepOutput<'_, P>,
     ) {
-        for (class, vertices) in self.0.iter_mut().enumerate() {
-            tracer.scatter_class(world, class, vertices, output);
-            vertices.clear();
+        for (class, (hits, vertices)) in
+            BsdfClass::ALL.into_iter().zip(self.mesh_hits.iter().zip(&self.vertices))
+        {
+            with_class!(class, tracer.scatter_mesh_hits(batch, hits, output));
+            with_class!(class, tracer.scatter_vertices(batch.world, vertices, output));
         }
     }
+}
+
+/// Adds a path to those of its class; true where they fill the lanes.
+#[inline]
+fn fills_lanes<T>(waiting: &mut Vec<T>, path: T) -> bool {
+    if waiting.capacity() == 0 {
+        waiting.reserve_exact(LANES);
+    }
+    waiting.push(path);
+    waiting.len() == LANES
 }
 
 /// What is known of a path before its surface scatters it, in one lane.
 #[derive(Clone, Copy)]
 struct Item<'a> {
     path: &'a Path,
-    stream: &'a SampleStream,
     origin_primitive: OriginPrimitive,
     /// The surface, where it may change what the path travels in.
     surface: Option<&'a SurfaceInteraction>,
@@ -112,22 +136,6 @@ impl Item<'_> {
 }
 
 impl PathTracer {
-    fn scatter_class<P: Probe>(
-        &self,
-        world: &World,
-        class: usize,
-        vertices: &[Vertex],
-        output: &mut StepOutput<'_, P>,
-    ) {
-        match class {
-            0 => self.scatter_vertices::<Diffuse, P>(world, vertices, output),
-            1 => self.scatter_vertices::<Conductor, P>(world, vertices, output),
-            2 => self.scatter_vertices::<Dielectric, P>(world, vertices, output),
-            3 => self.scatter_vertices::<Layered<Diffuse>, P>(world, vertices, output),
-            _ => self.scatter_vertices::<Layered<Conductor>, P>(world, vertices, output),
-        }
-    }
-
     /// Scatters up to eight paths by BSDFs of one class.
     fn scatter_vertices<B: RowBsdf, P: Probe>(
         &self,
@@ -141,11 +149,15 @@ impl PathTracer {
         let vertices: [&Vertex; LANES] = by_lane!(lane => vertices.get(lane).unwrap_or(last));
         let Some(last_bsdf) = B::of(&last.shading.bsdf) else { return };
         let bsdfs = by_lane!(lane => B::of(&vertices[lane].shading.bsdf).unwrap_or(last_bsdf));
-        let kernel = ScatterKernel { world, vertices: &vertices, bsdfs: &bsdfs, modes: &output.queues.lanes };
-        let scattered = kernel.scatter();
+        let surfaces = SurfaceColumns::of_vertices(&vertices);
+        let paths = LanePaths {
+            paths: by_lane!(lane => &vertices[lane].path),
+            streams: by_lane!(lane => &vertices[lane].stream),
+            modes: by_lane!(lane => &output.queues.lanes[vertices[lane].path.slot as usize]),
+        };
+        let scattered = ScatterKernel { world, surfaces: &surfaces, bsdfs: &bsdfs, paths }.scatter();
         let items = by_lane!(lane => Item {
             path: &vertices[lane].path,
-            stream: &vertices[lane].stream,
             origin_primitive: vertices[lane].surface.origin_primitive,
             surface: Some(&vertices[lane].surface),
             is_catcher: vertices[lane].is_catcher,
@@ -180,34 +192,32 @@ impl PathTracer {
         scattered: &Scattered,
         output: &mut StepOutput<'_, P>,
     ) {
-        let Path { beta, slot, address, .. } = *item.path;
-        let (f, lights) = (scattered.light_f[lane], &scattered.lights);
-        let Some(sample) = lights.samples[lane].as_ref().filter(|_| !f.is_black()) else {
+        let Path { slot, address, .. } = *item.path;
+        let (connections, lights) = (&scattered.connections, &scattered.lights);
+        let is = |mask: u32| mask & 1 << lane != 0;
+        let Some((light, probability)) = lights.light(lane).filter(|_| is(connections.is_sampled)) else {
             output.probe.notice_some(|| lights.failed(lane, address));
             return;
         };
-        let light_pdf = sample.probability * sample.pdf;
-        let bsdf_pdf = if sample.is_delta { 0.0 } else { scattered.light_bsdf_pdf[lane] };
-        let weight = if sample.is_delta { 1.0 } else { power_heuristic(light_pdf, bsdf_pdf) };
-        let contribution = beta * f * sample.li * (weight / light_pdf);
         output.probe.notice(|| Event::LightSampled {
             address,
-            light: sample.light,
-            probability: sample.probability,
-            sample: lights.light_sample(lane, sample),
-            f,
-            bsdf_pdf,
-            weight,
+            light,
+            probability,
+            sample: lights.light_sample(lane),
+            f: connections.f[lane],
+            bsdf_pdf: connections.bsdf_pdf[lane],
+            weight: connections.weight[lane],
         });
-        if contribution.is_black() {
+        if !is(connections.is_lit) {
             return;
         }
-        let (origin, wi) = (scattered.shadow_origin[lane], lights.wi[lane]);
-        let ray = match sample.target {
+        let (origin, wi) = (connections.origin[lane], lights.wi[lane]);
+        let ray = match lights.target(lane) {
             Target::Infinity => Ray::new(origin, wi),
             Target::Point(position) => shadow::toward(origin, position.to_array()),
-            Target::Surface(..) => Ray { t_max: 1.0, ..Ray::new(origin, scattered.shadow_end[lane]) },
+            Target::Surface(..) => Ray { t_max: 1.0, ..Ray::new(origin, connections.end[lane]) },
         };
+        let contribution = connections.contribution[lane];
         // Through the surface of a body it travels in what is behind.
         let crosses = item.surface.is_some_and(|surface| surface.crosses(wi.into()));
         output.queues.shadows.push(Shadow {
@@ -216,11 +226,11 @@ impl PathTracer {
             contribution,
             slot,
             address,
-            term: Term::Light(sample.light),
+            term: Term::Light(light),
             interior: item.interior(world, wi.into(), crosses),
         });
         if item.is_catcher {
-            self.expect_light(&world.lights[sample.light as usize], item.path, contribution, output);
+            self.expect_light(&world.lights[light as usize], item.path, contribution, output);
         }
     }
 
@@ -234,43 +244,45 @@ impl PathTracer {
         scattered: &Scattered,
         output: &mut StepOutput<'_, P>,
     ) {
-        let Item { path, stream, origin_primitive, is_catcher, .. } = *item;
+        let Item { path, origin_primitive, is_catcher, .. } = *item;
         let is = |mask: u32| mask & 1 << lane != 0;
-        if !is(scattered.is_valid) {
-            return;
-        }
-        let (wi, f, pdf) = (Vec3::from_array(scattered.wi[lane]), scattered.f[lane], scattered.pdf[lane]);
         let (is_specular, is_transmission) = (is(scattered.is_specular), is(scattered.is_transmission));
-        let beta = path.beta * f * (scattered.cos[lane] / pdf);
-        let eta = scattered.eta[lane];
-        let eta_scale = path.previous.eta_scale * if is_transmission { eta * eta } else { 1.0 };
-
-        // End paths that carry little, by chance.
-        let depth = path.depth + 1;
-        let (survival, survives) = self.roulette(stream, beta, eta_scale, depth);
-        output.probe.notice(|| {
-            let lobe = scattered.kind.lobe(is_specular, is_transmission);
-            let pdf_is_proportional = scattered.kind.pdf_is_proportional;
-            let sample = BsdfSample { wi, f, pdf, lobe, eta, pdf_is_proportional };
-            let bounce = Bounce { wi, cos: scattered.cos[lane], sample, beta, survival, survives };
-            Event::Bounced { address: path.address, bounce: Box::new(bounce) }
-        });
-        if !survives || beta.is_black() {
+        let wi = Vec3::from_array(scattered.wi[lane]);
+        if P::LISTENS && is(scattered.is_valid) {
+            let sample = BsdfSample {
+                wi,
+                f: scattered.f[lane],
+                pdf: scattered.pdf[lane],
+                lobe: scattered.kind.lobe(is_specular, is_transmission),
+                eta: scattered.eta[lane],
+                pdf_is_proportional: scattered.kind.pdf_is_proportional,
+            };
+            let bounce = Bounce {
+                wi,
+                cos: scattered.cos[lane],
+                sample,
+                beta: scattered.beta[lane],
+                survival: scattered.survival[lane],
+                survives: is(scattered.survives),
+            };
+            output.probe.notice(|| Event::Bounced { address: path.address, bounce: Box::new(bounce) });
+        }
+        if !is(scattered.goes_on) {
             return;
         }
         output.queues.paths.push(Path {
             ray: Ray::new(scattered.origin[lane], scattered.wi[lane]),
-            beta: beta / survival,
+            beta: scattered.next_beta[lane],
             slot: path.slot,
-            depth,
+            depth: path.depth + 1,
             address: path.address + 1,
             interior: item.interior(world, wi, is_transmission),
             previous: PreviousVertex {
-                pdf: if is_specular { f32::INFINITY } else { scattered.mis_pdf[lane] },
+                pdf: scattered.mis_pdf[lane],
                 origin_primitive,
                 point: scattered.point[lane].into(),
                 n: scattered.n[lane].into(),
-                eta_scale,
+                eta_scale: scattered.eta_scale[lane],
                 blurred: path.previous.blurred || !is_specular,
                 is_catcher,
             },

@@ -1,25 +1,25 @@
 //! Triangle mesh lights: a triangle is chosen by area (and by the mean of its emission texture), then a direction
-//! uniformly over its solid angle. Triangles without emission are not sampled: only a path that hits one finds its
-//! light.
-//!
-//! Arvo (1995), "Stratified Sampling of Spherical Triangles"; the solid angle by Van Oosterom & Strackee (1983). Where
-//! that is very small or nearly a hemisphere, the point is sampled by area, which is as good there.
+//! uniformly over its solid angle; where that is small or nearly a hemisphere, a point by area, which is as good there.
+//! Triangles without emission are not sampled: only a path that hits one finds its light.
+
+mod lanes;
+mod spherical_triangle;
 
 use std::sync::Arc;
 
 use glam::{DVec3, Vec2, Vec3};
+pub(crate) use lanes::sample_triangles;
 use lookfrom_bvh::Point;
+use spherical_triangle::SphericalTriangles;
 
 use super::{Cone, LightPoint, seen};
 use crate::core::distribution::Discrete;
 use crate::core::parallel;
+use crate::core::vector::Vector;
 use crate::core::warp;
 use crate::light::toward;
 use crate::primitive::{Mesh, VertexData};
 use crate::shading::texture::TexturePoint;
-
-/// Range of solid angles for which triangles are sampled by direction.
-const BY_DIRECTION: std::ops::RangeInclusive<f64> = 3e-4..=6.22;
 
 /// Triangles of a smaller approximate solid angle are sampled by area: distances and angles vary little over them, and
 /// sampling by direction would cost more time than the noise that it saves.
@@ -157,14 +157,11 @@ impl MeshLight {
     pub(super) fn sample(&self, from: DVec3, [u0, u1]: [f32; 2]) -> Option<LightPoint> {
         let (rank, probability, u0) = self.choice.sample(u0);
         let triangle = self.triangles.get(rank)?;
-        if let Some(solid_angle) = triangle.worth_direction(from) {
-            let corners = triangle.corners_from(from);
-            let direction = sample_spherical_triangle(corners, solid_angle, [u0, u1].map(f64::from));
-            let [beta, gamma] = barycentric(corners, direction);
-            let place = Vec2::new(beta as f32, gamma as f32);
+        if let Some((spherical, solid_angle)) = triangle.worth_direction(from) {
+            let place = Vec2::from_array(spherical.sample([u0, u1]));
             let (point, normal, uv) = self.point(triangle, place);
             let (wi, _) = toward(from, DVec3::from_array(point.position))?;
-            let pdf = (f64::from(probability) / solid_angle) as f32;
+            let pdf = probability / solid_angle;
             return Some(LightPoint {
                 point,
                 normal,
@@ -198,8 +195,8 @@ impl MeshLight {
     /// The solid angle density where a triangle is sampled by direction; `None` where it is sampled by area.
     pub(super) fn pdf_by_direction(&self, from: DVec3, index: usize) -> Option<f32> {
         let rank = self.rank(index)?;
-        let solid_angle = self.triangles[rank].worth_direction(from)?;
-        Some((f64::from(self.choice.pdf(rank)) / solid_angle) as f32)
+        let (_, solid_angle) = self.triangles[rank].worth_direction(from)?;
+        Some(self.choice.pdf(rank) / solid_angle)
     }
 
     /// The area density where a triangle is sampled by area; 0 where it is not sampled.
@@ -247,20 +244,6 @@ fn with_vertices(mesh: &Mesh, at: TexturePoint, index: usize, place: Vec2) -> Te
 }
 
 impl Triangle {
-    /// In place of one.
-    pub(crate) const NONE: Self = Self {
-        corners: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-        p0: DVec3::ZERO,
-        e1: DVec3::X,
-        e2: DVec3::Y,
-        index: 0,
-        normal: Some(DVec3::Z),
-        area: 0.5,
-    };
-
-    /// Triangles of a smaller approximate solid angle are sampled by area.
-    pub(crate) const WORTH_DIRECTION: f64 = WORTH_DIRECTION;
-
     fn new(mesh: &Mesh, index: usize) -> Self {
         let corners = mesh.corners(index);
         let [p0, p1, p2] = corners.map(|p| Vec3::from_array(p).as_dvec3());
@@ -272,14 +255,8 @@ impl Triangle {
         Self { corners, p0, e1, e2, index: index as u32, normal, area: mesh.area(index) }
     }
 
-    /// The corners relative to a point.
-    fn corners_from(&self, from: DVec3) -> [DVec3; 3] {
-        let p0 = self.p0 - from;
-        [p0, p0 + self.e1, p0 + self.e2]
-    }
-
-    /// The solid angle seen from a point, if the triangle is sampled by direction from there.
-    fn worth_direction(&self, from: DVec3) -> Option<f64> {
+    /// The triangle as seen from a point and its solid angle, if it is sampled by direction from there.
+    fn worth_direction(&self, from: DVec3) -> Option<(SphericalTriangles<f32>, f32)> {
         // Approximate solid angle, by the centroid: area · cos / distance²; near triangles are recognised by distance²
         // < area. A triangle without a single normal is treated as if it faced the point.
         let middle = self.p0 - from + (self.e1 + self.e2) * (1.0 / 3.0);
@@ -289,55 +266,10 @@ impl Triangle {
         if !(seems > WORTH_DIRECTION || distance2 < self.area) {
             return None;
         }
-        let solid_angle = solid_angle(self.corners_from(from));
-        BY_DIRECTION.contains(&solid_angle).then_some(solid_angle)
+        let p0 = self.p0 - from;
+        let corners = [p0, p0 + self.e1, p0 + self.e2].map(|p| Vector::new(p.x, p.y, p.z));
+        let triangle = SphericalTriangles::<f32>::new(corners);
+        let (solid_angle, is_usable) = triangle.solid_angle();
+        is_usable.then_some((triangle, solid_angle))
     }
-}
-
-/// The solid angle of a triangle seen from the origin.
-fn solid_angle([p0, p1, p2]: [DVec3; 3]) -> f64 {
-    let [a, b, c] = [p0, p1, p2].map(DVec3::length);
-    let volume = p0.dot(p1.cross(p2)).abs();
-    let rest = a * b * c + p0.dot(p1) * c + p1.dot(p2) * a + p2.dot(p0) * b;
-    2.0 * libm::atan2(volume, rest)
-}
-
-/// A direction of unit length, uniform over the solid angle of a triangle seen from the origin.
-fn sample_spherical_triangle(corners: [DVec3; 3], solid_angle: f64, [u0, u1]: [f64; 2]) -> DVec3 {
-    let [a, b, c] = corners.map(DVec3::normalize);
-    // The angle at a, between the planes through the sides that meet there.
-    let (to_b, to_c) = (a.cross(b), a.cross(c));
-    let size = to_b.length() * to_c.length();
-    let cos_alpha = to_b.dot(to_c) / size;
-    let sin_alpha = a.dot(b.cross(c)).abs() / size;
-
-    // The corner on the side from a to c that cuts off the chosen part of the area.
-    let (sin_part, cos_part) = libm::sincos(u0 * solid_angle);
-    let sin = sin_part * cos_alpha - cos_part * sin_alpha;
-    let cos = cos_part * cos_alpha + sin_part * sin_alpha;
-    let x = cos - cos_alpha;
-    let y = sin + sin_alpha * a.dot(b);
-    let q = ((y * cos - x * sin) * cos_alpha - y) / ((y * sin + x * cos) * sin_alpha);
-    let q = if q.is_nan() { 1.0 } else { q.clamp(-1.0, 1.0) };
-    let corner = q * a + (1.0 - q * q).max(0.0).sqrt() * off(c, a);
-
-    // A point between b and that corner.
-    let z = 1.0 - u1 * (1.0 - corner.dot(b));
-    (z * b + (1.0 - z * z).max(0.0).sqrt() * off(corner, b)).normalize()
-}
-
-/// The unit vector across `axis` (of unit length) in the plane with `v`.
-fn off(v: DVec3, axis: DVec3) -> DVec3 {
-    (v - v.dot(axis) * axis).normalize_or_zero()
-}
-
-/// β and γ of the triangle's point in a direction from the origin, clamped to the triangle.
-fn barycentric([p0, p1, p2]: [DVec3; 3], direction: DVec3) -> [f64; 2] {
-    let (e1, e2) = (p1 - p0, p2 - p0);
-    let across = direction.cross(e2);
-    let scale = 1.0 / e1.dot(across);
-    let beta = -p0.dot(across) * scale;
-    let gamma = direction.dot((-p0).cross(e1)) * scale;
-    let beta = beta.clamp(0.0, 1.0);
-    [beta, gamma.clamp(0.0, 1.0 - beta)]
 }

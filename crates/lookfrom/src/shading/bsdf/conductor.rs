@@ -37,10 +37,6 @@ impl Conductor {
     pub(super) fn lobes(&self) -> Lobes {
         Lobes::REFLECTION | if self.roughness.is_smooth() { Lobes::SPECULAR } else { Lobes::GLOSSY }
     }
-
-    pub(super) fn regularize(&mut self) {
-        self.roughness.regularize();
-    }
 }
 
 impl<R: Real> Conductor<R> {

@@ -46,10 +46,6 @@ impl Dielectric {
             if self.eta == 1.0 { Lobes::TRANSMISSION } else { Lobes::REFLECTION | Lobes::TRANSMISSION };
         sides | if self.is_specular() { Lobes::SPECULAR } else { Lobes::GLOSSY }
     }
-
-    pub(super) fn regularize(&mut self) {
-        self.roughness.regularize();
-    }
 }
 
 impl<R: Real> Dielectric<R> {

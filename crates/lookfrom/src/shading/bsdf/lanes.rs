@@ -48,13 +48,53 @@ pub trait LaneBsdf<R: Real> {
     fn has_density(&self) -> R::Mask;
 }
 
+/// The classes of BSDFs that are computed in lanes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BsdfClass {
+    /// [`Diffuse`].
+    Diffuse,
+    /// [`Conductor`].
+    Conductor,
+    /// [`Dielectric`].
+    Dielectric,
+    /// [`Layered`], on a diffuse base.
+    CoatedDiffuse,
+    /// [`Layered`], on a conductor.
+    CoatedConductor,
+}
+
+impl BsdfClass {
+    /// Number of classes.
+    pub(crate) const COUNT: usize = 5;
+
+    /// All of them, in their order.
+    pub(crate) const ALL: [Self; Self::COUNT] =
+        [Self::Diffuse, Self::Conductor, Self::Dielectric, Self::CoatedDiffuse, Self::CoatedConductor];
+
+    /// The class of a BSDF, if it is computed in lanes.
+    #[inline]
+    pub(crate) fn of(bsdf: &Bsdf) -> Option<Self> {
+        match bsdf {
+            Bsdf::Diffuse(_) => Some(Self::Diffuse),
+            Bsdf::Conductor(_) => Some(Self::Conductor),
+            Bsdf::Dielectric(_) => Some(Self::Dielectric),
+            Bsdf::CoatedDiffuse(_) => Some(Self::CoatedDiffuse),
+            Bsdf::CoatedConductor(_) => Some(Self::CoatedConductor),
+            _ => None,
+        }
+    }
+}
+
 /// A class of BSDFs, as scalars.
-pub(crate) trait RowBsdf: Sized {
+pub(crate) trait RowBsdf: Copy {
     /// Eight of them.
     type Lanes<S: Simd>: LaneBsdf<f32x8<S>>;
 
     /// The BSDF, if it is of this class.
     fn of(bsdf: &Bsdf) -> Option<&Self>;
+
+    /// As [`Bsdf::regularize`].
+    fn regularize(&mut self);
 
     /// One in each lane.
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S>;
@@ -117,6 +157,8 @@ impl RowBsdf for Diffuse {
         if let Bsdf::Diffuse(bsdf) = bsdf { Some(bsdf) } else { None }
     }
 
+    fn regularize(&mut self) {}
+
     #[inline(always)]
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
         Diffuse { reflectance: gather_spectrum(simd, &by_lane!(lane => rows[lane].reflectance)) }
@@ -128,6 +170,10 @@ impl RowBsdf for Conductor {
 
     fn of(bsdf: &Bsdf) -> Option<&Self> {
         if let Bsdf::Conductor(bsdf) = bsdf { Some(bsdf) } else { None }
+    }
+
+    fn regularize(&mut self) {
+        self.roughness.regularize();
     }
 
     #[inline(always)]
@@ -147,6 +193,10 @@ impl RowBsdf for Dielectric {
         if let Bsdf::Dielectric(bsdf) = bsdf { Some(bsdf) } else { None }
     }
 
+    fn regularize(&mut self) {
+        self.roughness.regularize();
+    }
+
     #[inline(always)]
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
         Dielectric {
@@ -163,6 +213,11 @@ macro_rules! layered_class {
 
             fn of(bsdf: &Bsdf) -> Option<&Self> {
                 if let Bsdf::$variant(bsdf) = bsdf { Some(bsdf) } else { None }
+            }
+
+            fn regularize(&mut self) {
+                self.coat.regularize();
+                self.base.regularize();
             }
 
             #[inline(always)]

@@ -23,9 +23,12 @@ use std::f32::consts::FRAC_1_PI;
 
 use lookfrom_simd::{Float, Mask, Real};
 
+use super::conductor::Conductor;
 use super::dielectric::Dielectric;
+use super::fresnel;
 use super::henyey_greenstein::HenyeyGreenstein;
 use super::lanes::LaneBsdf;
+use super::microfacet::TrowbridgeReitz;
 use super::{DirectionSample, Lobes, Mode, is_grazing};
 use crate::core::elementary::{exp, ln};
 use crate::core::math::power_heuristic;
@@ -56,6 +59,19 @@ pub struct Layered<B, R = f32> {
     /// A whole number, as `samples` is.
     pub(crate) max_depth: R,
     pub(crate) samples: R,
+}
+
+impl Layered<Conductor> {
+    /// A coat on a metal, given by its index of refraction and extinction in air: both are divided by the coat's index.
+    pub fn coated_conductor(
+        eta: Spectrum,
+        k: Spectrum,
+        roughness: TrowbridgeReitz,
+        coat: &CoatLayer,
+    ) -> Self {
+        let coat_eta = fresnel::valid_eta(coat.eta);
+        Self::new(Conductor::new(eta / coat_eta, k / coat_eta, roughness), coat)
+    }
 }
 
 /// Russian roulette: the throughput after a step, and the walks that go on.

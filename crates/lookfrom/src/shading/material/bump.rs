@@ -8,8 +8,10 @@
 
 use glam::Vec3;
 use lookfrom_scene::texture::{TexelFilter, Wrap};
+use lookfrom_simd::{Mask, Real};
 
 use super::{BumpMapping, Frame, NormalTexture};
+use crate::core::vector::Vector;
 use crate::core::warp;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::texture::{self, FloatTexture, TexturePoint, Textures};
@@ -144,15 +146,23 @@ fn bumped(
     if surface.shading_dpdu.cross(surface.shading_dpdv).dot(n) < 0.0 { -across } else { across }
 }
 
+/// The frame about a normal with the first axis along ∂p/∂u.
 pub(super) fn around(n: Vec3, dpdu: Vec3) -> Frame {
-    let across = dpdu - n * n.dot(dpdu);
-    match across.try_normalize() {
-        Some(s) => Frame { s, t: n.cross(s), n },
-        None => {
-            let (s, t) = warp::orthonormal_basis(n);
-            Frame { s, t, n }
-        }
+    let (s, t) = frame_about(n.into(), dpdu.into());
+    Frame { s: s.into(), t: t.into(), n }
+}
+
+/// The other axes of the frame about a unit normal: the first along a direction, or any where that has no part
+/// perpendicular to the normal.
+#[inline(always)]
+pub(crate) fn frame_about<R: Real>(n: Vector<R>, direction: Vector<R>) -> (Vector<R>, Vector<R>) {
+    let (along, has_length) = (direction - n * n.dot(direction)).try_normalize();
+    let across = n.cross(along);
+    if has_length.all() {
+        return (along, across);
     }
+    let (s, t) = warp::basis_about(n);
+    (Vector::select(has_length, along, s), Vector::select(has_length, across, t))
 }
 
 #[cfg(test)]

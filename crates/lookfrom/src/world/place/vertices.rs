@@ -46,7 +46,7 @@ impl Compiler<'_> {
         placed.binding.light = Some(self.next_light());
         let mut placed = Arc::new(placed);
         let textures = self.lights.textures;
-        let light = self.area_light(placing, || {
+        let light = self.area_light(placing, |_| {
             let light = match shape.emission.map(|emission| emission.radiance) {
                 Some(pattern @ Color::Texture(_)) => {
                     let pattern = textures.spectrum_texture(pattern, SpectrumType::Illuminant);
@@ -91,7 +91,7 @@ impl Compiler<'_> {
         };
         placed.binding.light = Some(self.next_light());
         let mut placed = Arc::new(placed);
-        let light = self.area_light(placing, || PatchLight::new(placed.clone()).map(LightShape::Patches));
+        let light = self.area_light(placing, |_| PatchLight::new(placed.clone()).map(LightShape::Patches));
         if light.is_none() {
             Arc::make_mut(&mut placed).binding.light = None;
         }

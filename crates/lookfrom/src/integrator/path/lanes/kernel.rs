@@ -1,17 +1,18 @@
 //! Scattering of eight paths side by side: one light sampled, one direction sampled by the BSDF, and the origins of the
 //! rays. Numbers only; the parent module makes rays and events of them.
 
-use lookfrom_simd::{Float, Kernel, Mask, Simd, dispatch, f32x8, f64x8, level, prelude::*, u32x8, u64x8};
+use lookfrom_simd::{Float, Kernel, Mask, Simd, dispatch, f32x8, level, mask32x8, prelude::*, u32x8, u64x8};
 
 use super::light_samples::LightSamples;
+use super::surfaces::{SurfaceColumns, Surfaces};
 use crate::core::hash;
-use crate::core::lanes::{LANES, by_lane, gather, gather_f64, scatter, scatter_spectrum};
-use crate::core::points::Points;
+use crate::core::lanes::{LANES, by_lane, gather, gather_spectrum, scatter, scatter_spectrum};
+use crate::core::math::power_heuristic;
 use crate::core::sampler::lanes::PixelSamplers;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::integrator::SampleStream;
-use crate::integrator::path::{Vertex, dimension};
+use crate::integrator::path::{SAFE_BOUNCES, dimension};
+use crate::integrator::{Path, SampleStream};
 use crate::shading::bsdf::lanes::{Kind, LaneBsdf, RowBsdf};
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
@@ -22,13 +23,7 @@ pub(super) struct Scattered {
     /// Lanes whose BSDF has a density, for which a light was sampled.
     pub(super) has_density: u32,
     pub(super) lights: LightSamples,
-    /// The BSDF for the direction to the light, times the cosine.
-    pub(super) light_f: [Spectrum; LANES],
-    /// The density with which the BSDF samples that direction.
-    pub(super) light_bsdf_pdf: [f32; LANES],
-    pub(super) shadow_origin: [[f32; 3]; LANES],
-    /// From there to the light, where that is a surface.
-    pub(super) shadow_end: [[f32; 3]; LANES],
+    pub(super) connections: Connections,
     /// Lanes whose BSDF has sampled a direction.
     pub(super) is_valid: u32,
     pub(super) is_specular: u32,
@@ -42,81 +37,107 @@ pub(super) struct Scattered {
     pub(super) eta: [f32; LANES],
     pub(super) cos: [f32; LANES],
     pub(super) origin: [[f32; 3]; LANES],
+    /// The throughputs, before Russian roulette.
+    pub(super) beta: [Spectrum; LANES],
+    /// The throughputs of the paths that go on.
+    pub(super) next_beta: [Spectrum; LANES],
+    /// Products of η².
+    pub(super) eta_scale: [f32; LANES],
+    /// Probabilities of surviving Russian roulette, and the lanes that survive it.
+    pub(super) survival: [f32; LANES],
+    pub(super) survives: u32,
+    /// Lanes whose path goes on.
+    pub(super) goes_on: u32,
     /// The points and the shading normals, in single precision.
     pub(super) point: [[f32; 3]; LANES],
     pub(super) n: [[f32; 3]; LANES],
 }
 
-/// Eight surfaces and the frames that they are shaded in.
-pub(super) struct Surfaces<S: Simd> {
-    pub(super) points: Points<f32x8<S>>,
-    /// Geometric normals, of unit length.
-    pub(super) ng: Vector<f64x8<S>>,
-    pub(super) s: Vector<f32x8<S>>,
-    pub(super) t: Vector<f32x8<S>>,
-    /// Shading normals.
-    pub(super) n: Vector<f32x8<S>>,
-    /// In the frame.
-    pub(super) wo: Vector<f32x8<S>>,
+/// What light sampling finds in eight lanes, if nothing is in between.
+pub(super) struct Connections {
+    /// The BSDF for the direction to the light, times the cosine.
+    pub(super) f: [Spectrum; LANES],
+    /// The density with which the BSDF samples that direction: 0 for light from a single direction.
+    pub(super) bsdf_pdf: [f32; LANES],
+    /// Weights of multiple importance sampling.
+    pub(super) weight: [f32; LANES],
+    pub(super) contribution: [Spectrum; LANES],
+    /// Lanes that have a light sample for which the BSDF is not black.
+    pub(super) is_sampled: u32,
+    /// Lanes whose contribution is not black.
+    pub(super) is_lit: u32,
+    pub(super) origin: [[f32; 3]; LANES],
+    /// From there to the light, where that is a surface.
+    pub(super) end: [[f32; 3]; LANES],
+}
+
+impl Connections {
+    /// Of no lane.
+    const NONE: Self = Self {
+        f: [Spectrum::BLACK; LANES],
+        bsdf_pdf: [0.0; LANES],
+        weight: [0.0; LANES],
+        contribution: [Spectrum::BLACK; LANES],
+        is_sampled: 0,
+        is_lit: 0,
+        origin: [[0.0; 3]; LANES],
+        end: [[0.0; 3]; LANES],
+    };
 }
 
 impl<S: Simd> Surfaces<S> {
+    /// The light samples of the surfaces, weighted.
     #[inline(always)]
-    fn of_vertices(simd: S, vertices: &[&Vertex; LANES]) -> Self {
-        let axis = by_lane!(lane => vertices[lane].shading.axes());
-        let [s, t, n] = [
-            gather(simd, &by_lane!(lane => axis[lane][0])),
-            gather(simd, &by_lane!(lane => axis[lane][1])),
-            gather(simd, &by_lane!(lane => axis[lane][2])),
-        ];
-        let wo = gather(simd, &by_lane!(lane => vertices[lane].surface.wo.to_array()));
-        let position = gather_f64(simd, &by_lane!(lane => vertices[lane].surface.point.position));
-        let error = gather_f64(simd, &by_lane!(lane => vertices[lane].surface.point.error));
-        let ng = gather_f64(simd, &by_lane!(lane => vertices[lane].surface.ng.to_array()));
-        let wo = Vector { x: wo.dot(s), y: wo.dot(t), z: wo.dot(n) };
-        Self { points: Points { position, error }, ng, s, t, n, wo }
-    }
-
-    /// From render space to the frames.
-    #[inline(always)]
-    fn local(&self, w: Vector<f32x8<S>>) -> Vector<f32x8<S>> {
-        Vector { x: w.dot(self.s), y: w.dot(self.t), z: w.dot(self.n) }
-    }
-
-    /// From the frames to render space, of unit length.
-    #[inline(always)]
-    fn render(&self, w: Vector<f32x8<S>>) -> Vector<f32x8<S>> {
-        (self.s * w.x + self.t * w.y + self.n * w.z).normalize()
+    fn connect<B: LaneBsdf<f32x8<S>>>(
+        &self,
+        simd: S,
+        bsdf: &B,
+        beta: Spectrum<f32x8<S>>,
+        lights: &LightSamples,
+    ) -> Connections {
+        let wi = gather(simd, &lights.wi);
+        let local = self.local(wi);
+        let f = bsdf.f(self.wo, local) * Float::abs(local.z);
+        let zero = f32x8::splat(simd, 0.0);
+        let is_delta = mask32x8::from_bitmask(simd, lights.is_delta.into());
+        let bsdf_pdf = Float::select(is_delta, zero, bsdf.pdf(self.wo, local));
+        let light_pdf = f32x8::load_array(simd, lights.probability) * f32x8::load_array(simd, lights.pdf);
+        let weight = Float::select(is_delta, zero.like(1.0), power_heuristic(light_pdf, bsdf_pdf));
+        let contribution = beta * f * gather_spectrum(simd, &lights.li) * (weight / light_pdf);
+        let is_sampled = lights.is_valid & !f.is_black().to_bitmask() as u32;
+        let origin = self.points.leave(self.ng, wi);
+        Connections {
+            f: scatter_spectrum(f),
+            bsdf_pdf: bsdf_pdf.into(),
+            weight: weight.into(),
+            contribution: scatter_spectrum(contribution),
+            is_sampled,
+            is_lit: is_sampled & !contribution.is_black().to_bitmask() as u32,
+            origin: scatter(origin),
+            end: lights.ends(simd, origin),
+        }
     }
 
     /// Samples lights and directions at the surfaces.
     #[inline(always)]
-    pub(super) fn scatter<B: LaneBsdf<f32x8<S>>>(
+    fn scatter<B: LaneBsdf<f32x8<S>>>(
         &self,
         simd: S,
         world: &World,
         bsdf: &B,
-        streams: &[&SampleStream; LANES],
-        modes: &[&SpectralMode; LANES],
+        paths: &LanePaths<'_>,
     ) -> Scattered {
-        let streams = SampleStreams::new(simd, streams);
+        let streams = SampleStreams::new(simd, &paths.streams);
         let zero = f32x8::splat(simd, 0.0);
+        let beta = gather_spectrum(simd, &by_lane!(lane => paths.paths[lane].beta));
 
         // Sample one light.
         let has_density = bsdf.has_density();
-        let (mut lights, mut light_f, mut light_bsdf_pdf) =
-            (LightSamples::NONE, [Spectrum::BLACK; LANES], [0.0; LANES]);
-        let (mut shadow_origin, mut shadow_end) = ([[0.0; 3]; LANES], [[0.0; 3]; LANES]);
+        let (mut lights, mut connections) = (LightSamples::NONE, Connections::NONE);
         if has_density.any() {
-            lights = LightSamples::new(simd, world, self, &streams, modes, has_density.to_bitmask() as u32);
-            let wi = gather(simd, &lights.wi);
-            let local = self.local(wi);
-            let f = bsdf.f(self.wo, local) * Float::abs(local.z);
-            light_bsdf_pdf = bsdf.pdf(self.wo, local).into();
-            light_f = scatter_spectrum(f);
-            let origin = self.points.leave(self.ng, wi);
-            shadow_end = lights.ends(simd, origin);
-            shadow_origin = scatter(origin);
+            lights =
+                LightSamples::new(simd, world, self, &streams, &paths.modes, has_density.to_bitmask() as u32);
+            connections = self.connect(simd, bsdf, beta, &lights);
         }
 
         // Go on in one direction.
@@ -130,37 +151,62 @@ impl<S: Simd> Surfaces<S> {
             true => bsdf.pdf(self.wo, self.local(wi)),
             false => sample.pdf,
         };
+        let cos = Float::abs(wi.dot(self.n));
+        let beta = beta * sample.f * (cos / sample.pdf);
+        let eta_scale = f32x8::load_array(simd, by_lane!(lane => paths.paths[lane].previous.eta_scale))
+            * Float::select(sample.is_transmission, sample.eta * sample.eta, zero.like(1.0));
+
+        // End paths of small throughput by Russian roulette.
+        let mut survival = beta.max_lane() * eta_scale;
+        let depth = u32x8::load_array(simd, by_lane!(lane => paths.paths[lane].depth));
+        let is_safe = survival.simd_ge(1.0) | depth.simd_lt(SAFE_BOUNCES);
+        let mut survives = is_safe;
+        survival = Float::select(is_safe, zero.like(1.0), survival);
+        if !(is_safe | !sample.is_valid).all() {
+            let [u, _] = streams.two(dimension::ROULETTE);
+            survives = is_safe | u.simd_lt(survival);
+        }
+        let goes_on = sample.is_valid & survives & !beta.is_black();
         Scattered {
             kind: B::KIND,
             has_density: has_density.to_bitmask() as u32,
             lights,
-            light_f,
-            light_bsdf_pdf,
-            shadow_origin,
-            shadow_end,
+            connections,
             is_valid: sample.is_valid.to_bitmask() as u32,
             is_specular: sample.is_specular.to_bitmask() as u32,
             is_transmission: sample.is_transmission.to_bitmask() as u32,
             wi: scatter(wi),
             f: scatter_spectrum(sample.f),
             pdf: sample.pdf.into(),
-            mis_pdf: mis_pdf.into(),
+            mis_pdf: Float::select(sample.is_specular, zero.like(f32::INFINITY), mis_pdf).into(),
             eta: sample.eta.into(),
-            cos: Float::abs(wi.dot(self.n)).into(),
+            cos: cos.into(),
             origin: scatter(self.points.leave(self.ng, wi)),
+            beta: scatter_spectrum(beta),
+            next_beta: scatter_spectrum(beta / survival),
+            eta_scale: eta_scale.into(),
+            survival: survival.into(),
+            survives: survives.to_bitmask() as u32,
+            goes_on: goes_on.to_bitmask() as u32,
             point: scatter(Vector::narrow(self.points.position)),
             n: scatter(self.n),
         }
     }
 }
 
+/// What the path tracer knows of eight paths.
+pub(super) struct LanePaths<'a> {
+    pub(super) paths: [&'a Path; LANES],
+    pub(super) streams: [&'a SampleStream; LANES],
+    pub(super) modes: [&'a SpectralMode; LANES],
+}
+
 /// Scatters eight paths at surfaces whose BSDFs are of one class.
 pub(super) struct ScatterKernel<'a, B> {
     pub(super) world: &'a World,
-    pub(super) vertices: &'a [&'a Vertex; LANES],
+    pub(super) surfaces: &'a SurfaceColumns,
     pub(super) bsdfs: &'a [&'a B; LANES],
-    /// By slot.
-    pub(super) modes: &'a [SpectralMode],
+    pub(super) paths: LanePaths<'a>,
 }
 
 impl<B: RowBsdf> ScatterKernel<'_, B> {
@@ -176,12 +222,9 @@ impl<B: RowBsdf> Kernel for ScatterKernel<'_, B> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Scattered {
-        let Self { world, vertices, bsdfs, modes } = self;
-        let surfaces = Surfaces::of_vertices(simd, vertices);
+        let Self { world, surfaces, bsdfs, paths } = self;
         let bsdf = B::gather(simd, bsdfs);
-        let streams = by_lane!(lane => &vertices[lane].stream);
-        let modes = by_lane!(lane => &modes[vertices[lane].path.slot as usize]);
-        surfaces.scatter(simd, world, &bsdf, &streams, &modes)
+        surfaces.load(simd).scatter(simd, world, &bsdf, &paths)
     }
 }
 

@@ -1,42 +1,40 @@
 //! Next-event estimation for eight paths at once, up to the shadow ray.
 //!
-//! Triangles of one colour, sampled by area, are vectorised; every other light is sampled by scalar code and put into
-//! its lane.
+//! Triangles and spheres of one colour are vectorised; every other light is sampled by scalar code and put into its lane.
 
 use glam::DVec3;
 use lookfrom_bvh::Point;
-use lookfrom_simd::{Float, Simd, f32x8, f64x8, prelude::*};
+use lookfrom_simd::{Float, Simd, f32x8, f64x8, mask32x8, mask64x8, prelude::*};
 
-use super::kernel::{SampleStreams, Surfaces};
-use crate::core::lanes::{LANES, by_lane, gather, gather_f64, scatter, scatter_f64};
+use super::kernel::SampleStreams;
+use super::surfaces::Surfaces;
+use crate::core::lanes::{LANES, bitmask, by_lane, gather, gather_f64, scatter, scatter_f64};
 use crate::core::points::Points;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::core::warp;
 use crate::integrator::Event;
 use crate::integrator::path::dimension;
-use crate::light::{IncompletePdf, Light, LightSample, LightSampleContext, LightTriangle, Target};
+use crate::light::{
+    AreaLight, AreaSamples, IncompletePdf, Light, LightSample, LightSampleContext, Target, gather_spheres,
+    sample_triangles,
+};
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
-/// The light sample of one lane; the point of a [`Target::Surface`] is in [`LightSamples`].
-#[derive(Clone, Copy)]
-pub(super) struct LaneSample {
-    pub(super) light: u32,
-    pub(super) probability: f32,
-    pub(super) pdf: f32,
-    pub(super) li: Spectrum,
-    pub(super) is_delta: bool,
-    pub(super) target: Target,
-}
-
-/// The light samples of eight lanes.
+/// The light samples of eight lanes. Masks have bit i for lane i.
 pub(super) struct LightSamples {
     /// The light that each lane samples, and the probability of its choice.
     choice: [Option<(u32, f32)>; LANES],
-    pub(super) samples: [Option<LaneSample>; LANES],
+    /// Lanes that have a sample.
+    pub(super) is_valid: u32,
+    /// Lanes whose light comes from a single direction.
+    pub(super) is_delta: u32,
+    pub(super) probability: [f32; LANES],
+    pub(super) pdf: [f32; LANES],
+    pub(super) li: [Spectrum; LANES],
     pub(super) wi: [[f32; 3]; LANES],
-    /// Points on the lights that are surfaces, and the normals there.
+    /// Of a [`Target::Surface`], the point and the normal are in the fields below.
+    target: [Target; LANES],
     position: [[f64; 3]; LANES],
     error: [[f64; 3]; LANES],
     normal: [[f64; 3]; LANES],
@@ -46,8 +44,13 @@ impl LightSamples {
     /// No lane has a sample.
     pub(super) const NONE: Self = Self {
         choice: [None; LANES],
-        samples: [None; LANES],
+        is_valid: 0,
+        is_delta: 0,
+        probability: [0.0; LANES],
+        pdf: [0.0; LANES],
+        li: [Spectrum::BLACK; LANES],
         wi: [[0.0; 3]; LANES],
+        target: [Target::Infinity; LANES],
         position: [[0.0; 3]; LANES],
         error: [[0.0; 3]; LANES],
         normal: [[0.0; 3]; LANES],
@@ -94,62 +97,34 @@ impl LightSamples {
         for (lane, choice) in choice.iter_mut().enumerate() {
             *choice = choice.filter(|_| mask & 1 << lane != 0);
         }
-        let triangle = by_lane!(lane => {
+        let mut sampled = Self { choice, ..Self::NONE };
+        let area_lights = by_lane!(lane => {
             match choice[lane].map(|(index, _)| &world.lights[index as usize]) {
-                Some(Light::Area(light)) => light.triangle(u0[lane]),
+                Some(Light::Area(light)) => Some(light),
                 _ => None,
             }
         });
-
-        // Points on triangles, sampled by area.
-        let mut sampled = Self { choice, ..Self::NONE };
-        let (mut pdf, mut cos, mut distance, mut by_direction) =
-            ([0.0; LANES], [0.0; LANES], [0.0; LANES], 0);
-        if triangle.iter().any(Option::is_some) {
-            let of = by_lane!(lane => triangle[lane].map_or(&LightTriangle::NONE, |(triangle, ..)| triangle));
-            let corners = [
-                gather(simd, &by_lane!(lane => of[lane].corners[0])),
-                gather(simd, &by_lane!(lane => of[lane].corners[1])),
-                gather(simd, &by_lane!(lane => of[lane].corners[2])),
-            ];
-            let normal = gather_f64(simd, &by_lane!(lane => of[lane].normal.unwrap_or(DVec3::Z).to_array()));
-            let area = f64x8::load_array(simd, by_lane!(lane => of[lane].area));
-            let fraction = by_lane!(lane => triangle[lane].map_or(1.0, |(_, fraction, _)| fraction));
-            let probability = f64x8::load_array(simd, by_lane!(lane => f64::from(fraction[lane])));
-            let rest =
-                f32x8::load_array(simd, by_lane!(lane => triangle[lane].map_or(0.0, |(_, _, rest)| rest)));
-            let [_, beta, gamma] = warp::uniform_triangle([rest, u1]);
-            let (points, _) = Points::on_triangles(corners, beta, gamma);
-            let to = points.position - surfaces.points.position;
-            let length = to.length();
-            let wi: Vector<f32x8<S>> =
-                Vector::narrow(Vector { x: to.x / length, y: to.y / length, z: to.z / length });
-            let cosine = normal.dot(wi.widen());
-            let density = probability / area * length * length / Float::abs(cosine);
-            pdf = <f32x8<S> as lookfrom_simd::Real>::narrow(density).into();
-            cos = cosine.into();
-            distance = length.into();
-            by_direction = worth_direction(simd, &of, normal, area, surfaces.points.position);
-            sampled.wi = scatter(wi);
-            sampled.position = scatter_f64(points.position);
-            sampled.error = scatter_f64(points.error);
-            sampled.normal = scatter_f64(normal);
+        let mut facing = [0.0; LANES];
+        let (on_surfaces, in_lanes) =
+            sample_area_lights(simd, &area_lights, [u0, u1], surfaces.points.position);
+        if let Some(AreaSamples { points, normal, wi, pdf, .. }) = &on_surfaces {
+            facing = normal.dot(wi.widen()).into();
+            (sampled.wi, sampled.pdf) = (scatter(*wi), (*pdf).into());
+            (sampled.position, sampled.error) = (scatter_f64(points.position), scatter_f64(points.error));
+            sampled.normal = scatter_f64(*normal);
         }
+        let is_valid = on_surfaces.map_or(0, |samples| samples.is_valid.to_bitmask() as u32);
 
         for lane in 0..LANES {
             let Some((index, probability)) = choice[lane] else { continue };
+            sampled.probability[lane] = probability;
             let light = &world.lights[index as usize];
-            if let (Some(_), Light::Area(area_light)) = (&triangle[lane], light)
-                && by_direction & 1 << lane == 0
-            {
-                let emits = cos[lane] < 0.0 || area_light.two_sided;
-                let usable = distance[lane] > 0.0 && pdf[lane].is_finite() && pdf[lane] > 0.0;
-                if emits && usable {
-                    let li = area_light.radiance.even(&world.textures, modes[lane]);
-                    let target = Target::Surface(Point { position: [0.0; 3], error: [0.0; 3] }, DVec3::ZERO);
-                    let (light, pdf) = (index, pdf[lane]);
-                    sampled.samples[lane] =
-                        Some(LaneSample { light, probability, pdf, li, is_delta: false, target });
+            if let Some(area_light) = area_lights[lane].filter(|_| in_lanes & 1 << lane != 0) {
+                let emits = facing[lane] < 0.0 || area_light.two_sided;
+                if emits && is_valid & 1 << lane != 0 {
+                    sampled.li[lane] = area_light.radiance.even(&world.textures, modes[lane]);
+                    sampled.target[lane] = ON_SURFACE;
+                    sampled.is_valid |= 1 << lane;
                 }
                 continue;
             }
@@ -160,33 +135,51 @@ impl LightSamples {
                 continue;
             };
             sampled.wi[lane] = wi.to_array();
-            if let Target::Surface(point, normal) = target {
-                sampled.position[lane] = point.position;
-                sampled.error[lane] = point.error;
-                sampled.normal[lane] = normal.to_array();
-            }
-            let is_delta = light.is_delta();
-            sampled.samples[lane] = Some(LaneSample { light: index, probability, pdf, li, is_delta, target });
+            sampled.pdf[lane] = pdf;
+            sampled.li[lane] = li;
+            sampled.is_valid |= 1 << lane;
+            sampled.is_delta |= u32::from(light.is_delta()) << lane;
+            sampled.target[lane] = match target {
+                Target::Surface(point, normal) => {
+                    sampled.position[lane] = point.position;
+                    sampled.error[lane] = point.error;
+                    sampled.normal[lane] = normal.to_array();
+                    ON_SURFACE
+                }
+                target => target,
+            };
         }
         sampled
     }
 
+    /// The light that a lane samples, and the probability of its choice.
+    #[inline]
+    pub(super) fn light(&self, lane: usize) -> Option<(u32, f32)> {
+        self.choice[lane]
+    }
+
+    /// The target of a lane's shadow ray; a [`Target::Surface`] is [`LightSamples::ends`].
+    #[inline]
+    pub(super) fn target(&self, lane: usize) -> &Target {
+        &self.target[lane]
+    }
+
     /// The light sample of a lane, for a probe.
-    pub(super) fn light_sample(&self, lane: usize, sample: &LaneSample) -> LightSample {
-        let target = match sample.target {
+    pub(super) fn light_sample(&self, lane: usize) -> LightSample {
+        let target = match self.target[lane] {
             Target::Surface(..) => {
                 let point = Point { position: self.position[lane], error: self.error[lane] };
                 Target::Surface(point, self.normal[lane].into())
             }
             target => target,
         };
-        LightSample { wi: self.wi[lane].into(), li: sample.li, pdf: sample.pdf, target }
+        LightSample { wi: self.wi[lane].into(), li: self.li[lane], pdf: self.pdf[lane], target }
     }
 
     /// The event of a light sample that contributes nothing, for a probe; `None` where no light was sampled.
     pub(super) fn failed(&self, lane: usize, address: u64) -> Option<Event> {
         let (light, probability) = self.choice[lane]?;
-        let sample = self.samples[lane].as_ref().map(|sample| self.light_sample(lane, sample));
+        let sample = (self.is_valid & 1 << lane != 0).then(|| self.light_sample(lane));
         Some(Event::LightSampleFailed { address, light, probability, sample })
     }
 
@@ -207,22 +200,42 @@ impl LightSamples {
     }
 }
 
-/// The lanes whose triangles are large enough, as seen from the surfaces, to be sampled by direction: as the lights
-/// decide it themselves.
+/// A point of a surface, which is stored beside.
+const ON_SURFACE: Target = Target::Surface(Point { position: [0.0; 3], error: [0.0; 3] }, DVec3::ZERO);
+
+/// Points of the area lights that are sampled in lanes, and which those are: triangles and whole spheres of uniform
+/// emission.
 #[inline(always)]
-fn worth_direction<S: Simd>(
+fn sample_area_lights<S: Simd>(
     simd: S,
-    of: &[&LightTriangle; LANES],
-    normal: Vector<f64x8<S>>,
-    area: f64x8<S>,
+    lights: &[Option<&AreaLight>; LANES],
+    [u0, u1]: [f32x8<S>; 2],
     from: Vector<f64x8<S>>,
-) -> u32 {
-    let p0 = gather_f64(simd, &by_lane!(lane => of[lane].p0.to_array()));
-    let e1 = gather_f64(simd, &by_lane!(lane => of[lane].e1.to_array()));
-    let e2 = gather_f64(simd, &by_lane!(lane => of[lane].e2.to_array()));
-    let middle = p0 - from + (e1 + e2) * area.like(1.0 / 3.0);
-    let distance2 = middle.dot(middle);
-    let seems = area * Float::abs(normal.dot(middle)) / (distance2 * Float::sqrt(distance2));
-    let is_large = Float::gt(seems, area.like(LightTriangle::WORTH_DIRECTION)) | Float::lt(distance2, area);
-    is_large.to_bitmask() as u32
+) -> (Option<AreaSamples<f32x8<S>>>, u32) {
+    let triangles = by_lane!(lane => lights[lane].and_then(|light| light.triangle(u0[lane])));
+    let (mut samples, mut in_lanes) = (None, 0);
+    if let Some((first, ..)) = triangles.iter().flatten().next() {
+        let of = by_lane!(lane => triangles[lane].map_or(*first, |(triangle, ..)| triangle));
+        let probability = by_lane!(lane => triangles[lane].map_or(1.0, |(_, probability, _)| probability));
+        let rest = by_lane!(lane => triangles[lane].map_or(0.0, |(_, _, rest)| rest));
+        let [probability, rest] = [f32x8::load_array(simd, probability), f32x8::load_array(simd, rest)];
+        samples = Some(sample_triangles(simd, &of, probability, [rest, u1], from));
+        in_lanes = bitmask(&by_lane!(lane => triangles[lane].is_some()));
+    }
+    let spheres = by_lane!(lane => lights[lane].and_then(AreaLight::sphere));
+    if let Some(first) = spheres.iter().flatten().next() {
+        let of = gather_spheres(simd, &by_lane!(lane => spheres[lane].unwrap_or(first)));
+        let (on_spheres, _) = of.sample(from, [u0, u1]);
+        let are_spheres = bitmask(&by_lane!(lane => spheres[lane].is_some()));
+        let masks = (
+            mask32x8::from_bitmask(simd, are_spheres.into()),
+            mask64x8::from_bitmask(simd, are_spheres.into()),
+        );
+        samples = Some(match samples {
+            Some(samples) => AreaSamples::select(masks.0, masks.1, on_spheres, samples),
+            None => on_spheres,
+        });
+        in_lanes |= are_spheres;
+    }
+    (samples, in_lanes)
 }

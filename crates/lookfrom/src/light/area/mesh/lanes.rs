@@ -1,0 +1,81 @@
+//! Points of triangle lights as seen from eight points, side by side: as [`super::MeshLight`] samples them.
+
+use glam::DVec3;
+use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask32x8, prelude::*};
+
+use super::spherical_triangle::SphericalTriangles;
+use super::{Triangle, WORTH_DIRECTION};
+use crate::core::lanes::{LANES, by_lane, gather, gather_f64};
+use crate::core::points::Points;
+use crate::core::vector::Vector;
+use crate::core::warp;
+use crate::light::area::{AreaSamples, toward_all};
+
+/// Points of the triangle in each lane, which was chosen with a probability; `u ∈ [0, 1)²`. The triangles have one normal
+/// each.
+#[inline(always)]
+pub(crate) fn sample_triangles<S: Simd>(
+    simd: S,
+    of: &[&Triangle; LANES],
+    probability: f32x8<S>,
+    u: [f32x8<S>; 2],
+    from: Vector<f64x8<S>>,
+) -> AreaSamples<f32x8<S>> {
+    let corners = [
+        gather(simd, &by_lane!(lane => of[lane].corners[0])),
+        gather(simd, &by_lane!(lane => of[lane].corners[1])),
+        gather(simd, &by_lane!(lane => of[lane].corners[2])),
+    ];
+    let normal = gather_f64(simd, &by_lane!(lane => of[lane].normal.unwrap_or(DVec3::Z).to_array()));
+    let area = f64x8::load_array(simd, by_lane!(lane => of[lane].area));
+    let [_, mut beta, mut gamma] = warp::uniform_triangle(u);
+
+    // Large ones are sampled by direction.
+    let seen = Seen::new(simd, of, normal, area, from);
+    let (mut by_direction, mut direction_pdf) = (seen.is_large, probability);
+    if by_direction.any_true() {
+        let spherical = SphericalTriangles::new(seen.corners);
+        let (solid_angle, is_usable) = spherical.solid_angle();
+        by_direction = by_direction & is_usable;
+        direction_pdf = probability / solid_angle;
+        let [b, c] = spherical.sample(u);
+        beta = Float::select(by_direction, b, beta);
+        gamma = Float::select(by_direction, c, gamma);
+    }
+
+    let (points, _) = Points::on_triangles(corners, beta, gamma);
+    let (wi, length) = toward_all(from, points.position);
+    let cosine = Float::abs(normal.dot(wi.widen()));
+    let density = Real::narrow(Real::widen(probability) / area * length * length / cosine);
+    let pdf = Float::select(by_direction, direction_pdf, density);
+    AreaSamples::new(points, normal, (wi, length), pdf)
+}
+
+/// Triangles as seen from points.
+struct Seen<S: Simd> {
+    /// From the points.
+    corners: [Vector<f64x8<S>>; 3],
+    /// Where they are large enough to be sampled by direction: as [`Triangle::worth_direction`] decides it.
+    is_large: mask32x8<S>,
+}
+
+impl<S: Simd> Seen<S> {
+    #[inline(always)]
+    fn new(
+        simd: S,
+        of: &[&Triangle; LANES],
+        normal: Vector<f64x8<S>>,
+        area: f64x8<S>,
+        from: Vector<f64x8<S>>,
+    ) -> Self {
+        let p0 = gather_f64(simd, &by_lane!(lane => of[lane].p0.to_array())) - from;
+        let e1 = gather_f64(simd, &by_lane!(lane => of[lane].e1.to_array()));
+        let e2 = gather_f64(simd, &by_lane!(lane => of[lane].e2.to_array()));
+        let middle = p0 + (e1 + e2) * area.like(1.0 / 3.0);
+        let distance2 = middle.dot(middle);
+        let seems = area * Float::abs(normal.dot(middle)) / (distance2 * Float::sqrt(distance2));
+        let is_large = Float::gt(seems, area.like(WORTH_DIRECTION)) | Float::lt(distance2, area);
+        let is_large = mask32x8::from_bitmask(simd, is_large.to_bitmask());
+        Self { corners: [p0, p0 + e1, p0 + e2], is_large }
+    }
+}

@@ -1,0 +1,154 @@
+//! Area lights in lanes agree with area lights one by one.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DMat4, DVec3};
+use lookfrom_simd::{Kernel, Level, Simd, dispatch, f32x8, prelude::*};
+
+use super::{
+    AreaSamples, LightPoint, MeshLight, QuadricLight, SphereLights, gather_spheres, sample_triangles,
+};
+use crate::core::hash;
+use crate::core::lanes::{LANES, by_lane, gather_f64, scatter, scatter_f64};
+use crate::primitive::{MaterialBinding, Mesh, Quadric, QuadricKind};
+
+/// What a sample consists of: direction, density, position, error, normal.
+type Numbers = Option<([f32; 3], f32, [[f64; 3]; 3])>;
+
+/// A number of any exponent from 2⁻⁸ to 2⁸.
+fn number(count: u64) -> f64 {
+    let bits = hash::pair(count, 21);
+    let mantissa = (bits >> 40) as f64 / 16_777_216.0 - 0.5;
+    mantissa * libm::exp2((bits % 17) as f64 - 8.0)
+}
+
+fn vector(count: u64) -> [f64; 3] {
+    [number(4 * count), number(4 * count + 1), number(4 * count + 2)]
+}
+
+fn unit(count: u64) -> f32 {
+    (hash::pair(count, 22) >> 40) as f32 / 16_777_216.0
+}
+
+fn one(sample: Option<LightPoint>) -> Numbers {
+    let LightPoint { point, normal, wi, pdf, .. } = sample.filter(|at| at.pdf.is_finite() && at.pdf > 0.0)?;
+    Some((wi.to_array(), pdf, [point.position, point.error, normal.to_array()]))
+}
+
+#[inline(always)]
+fn eight<S: Simd>(samples: AreaSamples<f32x8<S>>) -> [Numbers; LANES] {
+    let AreaSamples { points, normal, wi, pdf, is_valid } = samples;
+    let (wi, vectors) = (scatter(wi), [points.position, points.error, normal].map(scatter_f64));
+    std::array::from_fn(|lane| {
+        let is_valid = is_valid.to_bitmask() & 1 << lane != 0;
+        is_valid.then(|| (wi[lane], pdf[lane], vectors.map(|vector| vector[lane])))
+    })
+}
+
+fn check(kernel: impl Fn(Level) -> [Numbers; LANES], alone: &[Numbers; LANES]) {
+    let mut levels = vec![Level::baseline(), Level::new()];
+    #[cfg(target_arch = "x86_64")]
+    levels.extend(Level::new().as_avx2().map(Level::Avx2));
+    for level in levels {
+        assert_eq!(&kernel(level), alone);
+    }
+}
+
+struct OnTriangles<'a> {
+    lights: &'a [MeshLight; LANES],
+    from: [[f64; 3]; LANES],
+    u: [[f32; LANES]; 2],
+}
+
+impl Kernel for OnTriangles<'_> {
+    type Output = [Numbers; LANES];
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let chosen = by_lane!(lane => self.lights[lane].triangle(self.u[0][lane]).expect("one normal"));
+        let probability = f32x8::load_array(simd, by_lane!(lane => chosen[lane].1));
+        let u = [by_lane!(lane => chosen[lane].2), self.u[1]].map(|u| f32x8::load_array(simd, u));
+        let of = by_lane!(lane => chosen[lane].0);
+        eight(sample_triangles(simd, &of, probability, u, gather_f64(simd, &self.from)))
+    }
+}
+
+struct OnSpheres<'a> {
+    spheres: [&'a SphereLights<f32>; LANES],
+    from: [[f64; 3]; LANES],
+    u: [[f32; LANES]; 2],
+}
+
+impl Kernel for OnSpheres<'_> {
+    type Output = [Numbers; LANES];
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let u = self.u.map(|u| f32x8::load_array(simd, u));
+        let (samples, _) = gather_spheres(simd, &self.spheres).sample(gather_f64(simd, &self.from), u);
+        eight(samples)
+    }
+}
+
+#[test]
+fn eight_triangles_are_eight_one_by_one() {
+    let binding = MaterialBinding {
+        material: 0,
+        light: None,
+        shape: 0,
+        alpha: None,
+        medium_interface: None,
+        vertex_data: None,
+        single_sided: false,
+    };
+    let light = |seed: u64| {
+        let mesh = Mesh {
+            positions: (0..4).map(|k| vector(4 * seed + k).map(|x| x as f32)).collect(),
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            normals: Vec::new(),
+            uvs: Vec::new(),
+            colors: Vec::new(),
+            tangents: Vec::new(),
+            more_uvs: Vec::new(),
+            opacities: Vec::new(),
+            wants_derivatives: false,
+            flip: seed.is_multiple_of(2),
+            binding,
+        };
+        MeshLight::new(Arc::new(mesh)).expect("an area")
+    };
+    for round in 0..2000_u64 {
+        let seed = |lane: usize| 8 * round + lane as u64;
+        let lights: [MeshLight; LANES] = std::array::from_fn(|lane| light(seed(lane)));
+        let from = std::array::from_fn(|lane| vector(seed(lane) + 1_000_000));
+        let u: [[f32; LANES]; 2] =
+            std::array::from_fn(|k| std::array::from_fn(|lane| unit(2 * seed(lane) + k as u64)));
+        let alone = std::array::from_fn(|lane| {
+            one(lights[lane].sample(DVec3::from_array(from[lane]), [u[0][lane], u[1][lane]]))
+        });
+        check(|level| dispatch(level, OnTriangles { lights: &lights, from, u }), &alone);
+    }
+}
+
+#[test]
+fn eight_spheres_are_eight_one_by_one() {
+    let light = |seed: u64| {
+        let radius = number(seed).abs();
+        let axes = DMat3::from_cols_array_2d(&[vector(3 * seed), vector(3 * seed + 1), vector(3 * seed + 2)]);
+        let matrix = DMat4::from_translation(DVec3::from_array(vector(seed + 77))) * DMat4::from_mat3(axes);
+        let kind = QuadricKind::Sphere { radius, z: [-radius, radius] };
+        let quadric = Quadric::new(kind, 360.0, &matrix, seed % 3 == 0)?;
+        QuadricLight::new(quadric, seed.is_multiple_of(2))
+    };
+    let mut lights = (0_u64..).filter_map(light);
+    for round in 0..2000_u64 {
+        let seed = |lane: usize| 8 * round + lane as u64;
+        let lights: [QuadricLight; LANES] = std::array::from_fn(|_| lights.next().expect("more"));
+        let from = std::array::from_fn(|lane| vector(seed(lane) + 2_000_000));
+        let u: [[f32; LANES]; 2] =
+            std::array::from_fn(|k| std::array::from_fn(|lane| unit(2 * seed(lane) + k as u64)));
+        let alone = std::array::from_fn(|lane| {
+            one(lights[lane].sample(DVec3::from_array(from[lane]), [u[0][lane], u[1][lane]]))
+        });
+        let spheres = std::array::from_fn(|lane| lights[lane].sphere().expect("whole"));
+        check(|level| dispatch(level, OnSpheres { spheres, from, u }), &alone);
+    }
+}

@@ -1,0 +1,190 @@
+//! Triangles of eight meshes side by side.
+
+use lookfrom_simd::{Simd, f32x8, f64x8, mask64x8, prelude::*};
+
+use super::Mesh;
+use crate::core::lanes::{LANES, bitmask, by_lane, gather};
+use crate::core::vector::Vector;
+use crate::primitive::triangle::{Tangent, Triangles};
+
+/// A triangle in each lane: its mesh and its index there.
+#[inline(always)]
+pub(crate) fn gather_triangles<S: Simd>(
+    simd: S,
+    meshes: &[&Mesh; LANES],
+    indices: &[u32; LANES],
+) -> Triangles<f32x8<S>> {
+    let vertices = by_lane!(lane => meshes[lane].triangles[indices[lane] as usize]);
+    let zero = f32x8::splat(simd, 0.0);
+    let none = Vector { x: zero, y: zero, z: zero };
+    macro_rules! mask {
+        ($lane:ident => $answer:expr) => {
+            mask64x8::from_bitmask(simd, bitmask(&by_lane!($lane => $answer)).into())
+        };
+    }
+    let mut triangles = Triangles {
+        positions: [none; 3],
+        orientation: f64x8::load_array(simd, by_lane!(lane => if meshes[lane].flip { -1.0 } else { 1.0 })),
+        normals: [none; 3],
+        uvs: [[zero; 2]; 3],
+        tangents: [Tangent { along: none, sign: zero }; 3],
+        have_normals: mask!(lane => !meshes[lane].normals.is_empty()),
+        have_tangents: mask!(lane => !meshes[lane].tangents.is_empty()),
+        want_derivatives: mask!(lane => meshes[lane].wants_derivatives),
+    };
+    let (have_normals, have_tangents) =
+        (triangles.have_normals.any_true(), triangles.have_tangents.any_true());
+    let mut corner = 0;
+    while corner < 3 {
+        let at = by_lane!(lane => vertices[lane][corner] as usize);
+        triangles.positions[corner] = gather(simd, &by_lane!(lane => meshes[lane].positions[at[lane]]));
+        if have_normals {
+            let normals =
+                by_lane!(lane => meshes[lane].normals.get(at[lane]).map_or([0.0; 3], |n| n.to_array()));
+            triangles.normals[corner] = gather(simd, &normals);
+        }
+        let uvs =
+            by_lane!(lane => meshes[lane].uvs.get(at[lane]).map_or(Mesh::NO_UVS[corner], |uv| uv.to_array()));
+        triangles.uvs[corner] = [
+            f32x8::load_array(simd, by_lane!(lane => uvs[lane][0])),
+            f32x8::load_array(simd, by_lane!(lane => uvs[lane][1])),
+        ];
+        if have_tangents {
+            let tangents =
+                by_lane!(lane => meshes[lane].tangents.get(at[lane]).map_or([0.0; 4], |t| t.to_array()));
+            triangles.tangents[corner] = Tangent {
+                along: gather(
+                    simd,
+                    &by_lane!(lane => [tangents[lane][0], tangents[lane][1], tangents[lane][2]]),
+                ),
+                sign: f32x8::load_array(simd, by_lane!(lane => tangents[lane][3])),
+            };
+        }
+        corner += 1;
+    }
+    triangles
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Vec2, Vec3, Vec4};
+    use lookfrom_simd::{Kernel, Level, dispatch};
+
+    use super::*;
+    use crate::core::hash;
+    use crate::core::lanes::{scatter, scatter_f64};
+    use crate::core::points::{Placement, gather_placements};
+    use crate::primitive::MaterialBinding;
+    use crate::primitive::triangle::TrianglePoints;
+
+    const BINDING: MaterialBinding = MaterialBinding {
+        material: 0,
+        light: None,
+        shape: 0,
+        alpha: None,
+        medium_interface: None,
+        vertex_data: None,
+        single_sided: false,
+    };
+
+    /// A number of any exponent from 2⁻²⁰ to 2²⁰.
+    fn number(count: u64) -> f32 {
+        let bits = hash::pair(count, 11);
+        let mantissa = (bits >> 40) as f64 / 16_777_216.0 - 0.5;
+        (mantissa * libm::exp2((bits % 41) as f64 - 20.0)) as f32
+    }
+
+    /// A triangle with some of what meshes may have.
+    fn mesh(seed: u64) -> Mesh {
+        let vector =
+            |k: u64| Vec3::new(number(64 * seed + k), number(64 * seed + k + 1), number(64 * seed + k + 2));
+        let three = |first: u64| [0, 3, 6].map(|k| vector(first + k));
+        let uvs = three(9).map(|v| Vec2::new(v.x, v.y)).to_vec();
+        let normals = three(18).map(|v| v.normalize_or_zero()).to_vec();
+        let tangents = three(27).map(|v| v.extend(if v.x > 0.0 { 1.0 } else { -1.0 })).to_vec();
+        let has = |bit: u64| hash::pair(seed, 5) & 1 << bit != 0;
+        Mesh {
+            positions: three(0).map(|v| v.to_array()).to_vec(),
+            triangles: vec![[0, 1, 2]],
+            normals: if has(0) { normals } else { Vec::new() },
+            uvs: if has(1) { uvs } else { Vec::new() },
+            colors: Vec::new(),
+            tangents: if has(2) { tangents } else { Vec::<Vec4>::new() },
+            more_uvs: Vec::new(),
+            opacities: Vec::new(),
+            wants_derivatives: has(3),
+            flip: has(4),
+            binding: BINDING,
+        }
+    }
+
+    /// The numbers of a point.
+    type Numbers = ([[f64; 3]; 8], [f32; 2]);
+
+    fn numbers(at: TrianglePoints<f32>) -> Numbers {
+        let TrianglePoints { points, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv } = at;
+        let vectors = [points.position, points.error, ng, ns, dpdu, dpdv, shading_dpdu, shading_dpdv];
+        (vectors.map(<[f64; 3]>::from), uv)
+    }
+
+    struct Eight<'a> {
+        meshes: &'a [Mesh; LANES],
+        on: [[f32; LANES]; 2],
+        placements: &'a [Placement<f32>; LANES],
+    }
+
+    impl Kernel for Eight<'_> {
+        type Output = [Numbers; LANES];
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
+            let triangles = gather_triangles(simd, &by_lane!(lane => &self.meshes[lane]), &[0; LANES]);
+            let [u, v] = self.on.map(|on| f32x8::load_array(simd, on));
+            let placements = gather_placements(simd, &by_lane!(lane => &self.placements[lane]));
+            // Every other lane is an instance.
+            let at = triangles.points(u, v).placed(mask64x8::from_bitmask(simd, 0xaa), &placements);
+            let vectors = [
+                at.points.position,
+                at.points.error,
+                at.ng,
+                at.ns,
+                at.dpdu,
+                at.dpdv,
+                at.shading_dpdu,
+                at.shading_dpdv,
+            ]
+            .map(scatter_f64);
+            let uv = scatter(Vector { x: at.uv[0], y: at.uv[1], z: at.uv[0] });
+            std::array::from_fn(|lane| (vectors.map(|v| v[lane]), [uv[lane][0], uv[lane][1]]))
+        }
+    }
+
+    #[test]
+    fn eight_at_once_are_eight_one_by_one() {
+        let mut levels = vec![Level::baseline(), Level::new()];
+        #[cfg(target_arch = "x86_64")]
+        levels.extend(Level::new().as_avx2().map(Level::Avx2));
+        for round in 0..4000_u64 {
+            let seed = |lane: usize| 8 * round + lane as u64;
+            let meshes = std::array::from_fn(|lane| mesh(seed(lane)));
+            let on: [[f32; LANES]; 2] = std::array::from_fn(|k| {
+                std::array::from_fn(|lane| (hash::pair(seed(lane), k as u64) >> 41) as f32 / 16_777_216.0)
+            });
+            let placements = std::array::from_fn(|lane| {
+                let row = |k: u64| [0, 1, 2].map(|j| f64::from(number(64 * seed(lane) + 40 + 3 * k + j)));
+                let map = lookfrom_bvh::Affine { matrix: [row(0), row(1), row(2)], translation: row(3) };
+                let inverse = map.inverse().map_or(map.matrix, |inverse| inverse.matrix);
+                Placement::new(&map, &inverse)
+            });
+            for &level in &levels {
+                let eight = dispatch(level, Eight { meshes: &meshes, on, placements: &placements });
+                for lane in 0..LANES {
+                    let alone = meshes[lane].triangle(0).points(on[0][lane], on[1][lane]);
+                    let alone = numbers(alone.placed(lane % 2 == 1, &placements[lane]));
+                    // The bits of NaN, of triangles without an area, do not matter.
+                    let is_number = alone.0.iter().flatten().all(|x| !x.is_nan());
+                    assert!(!is_number || eight[lane] == alone, "{:?}\n{alone:?}", eight[lane]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! Points on triangles with vertex normals, texture coordinates and tangents, at any width.
+//!
+//! Derivatives by texture coordinates are those of the triangle's plane, as in Pharr, Jakob, Humphreys, Physically
+//! Based Rendering; tangents replace `∂p/∂u` in shading.
+
+use lookfrom_simd::{Float, Mask, Real};
+
+use crate::core::points::{Placement, Points};
+use crate::core::vector::Vector;
+use crate::core::warp;
+
+/// The mask of comparisons in double precision.
+type WideMask<R> = <<R as Real>::Double as Float>::Mask;
+
+/// Determinants of texture coordinates below this count as degenerate.
+const LEAST_DETERMINANT: f64 = 1e-9;
+
+/// Triangles with what their vertices have.
+pub(crate) struct Triangles<R: Real> {
+    pub(crate) positions: [Vector<R>; 3],
+    /// −1 where the outside is the side from which they are clockwise, otherwise 1.
+    pub(crate) orientation: R::Double,
+    /// Unit shading normals, zero where unknown.
+    pub(crate) normals: [Vector<R>; 3],
+    pub(crate) uvs: [[R; 2]; 3],
+    pub(crate) tangents: [Tangent<R>; 3],
+    /// Where there are normals at all.
+    pub(crate) have_normals: WideMask<R>,
+    /// Where there are tangents at all.
+    pub(crate) have_tangents: WideMask<R>,
+    /// Where derivatives by texture coordinates are wanted; elsewhere they are 0.
+    pub(crate) want_derivatives: WideMask<R>,
+}
+
+/// A tangent in the direction of u, and the sign of the bitangent.
+#[derive(Clone, Copy)]
+pub(crate) struct Tangent<R> {
+    pub(crate) along: Vector<R>,
+    pub(crate) sign: R,
+}
+
+/// Points on triangles: as [`super::SurfacePoint`].
+pub(crate) struct TrianglePoints<R: Real> {
+    pub(crate) points: Points<R>,
+    pub(crate) ng: Vector<R::Double>,
+    pub(crate) ns: Vector<R::Double>,
+    pub(crate) uv: [R; 2],
+    pub(crate) dpdu: Vector<R::Double>,
+    pub(crate) dpdv: Vector<R::Double>,
+    pub(crate) shading_dpdu: Vector<R::Double>,
+    pub(crate) shading_dpdv: Vector<R::Double>,
+}
+
+impl<R: Real> Triangles<R> {
+    /// The points with weight `u` of the second corners and `v` of the third.
+    #[inline(always)]
+    pub(crate) fn points(&self, u: R, v: R) -> TrianglePoints<R> {
+        let (points, across) = Points::on_triangles(self.positions, u, v);
+        let winding = across.normalize();
+        let mut ng = winding * self.orientation;
+        let weights = [u.like(1.0) - u - v, u, v];
+
+        // The normals of the vertices, not the winding, decide which side is outside.
+        let mut ns = ng;
+        let mut is_smooth = self.have_normals;
+        if is_smooth.any() {
+            let (mixed, has_length) = mix(weights, self.normals).widen().try_normalize();
+            is_smooth = is_smooth & has_length;
+            ng = ng.negate_where(is_smooth & mixed.dot(ng).lt(ng.x.like(0.0)));
+            ns = Vector::select(is_smooth, mixed, ng);
+        }
+        let [uv0, uv1, uv2] = self.uvs;
+        let uv = [
+            weights[0] * uv0[0] + weights[1] * uv1[0] + weights[2] * uv2[0],
+            weights[0] * uv0[1] + weights[1] * uv1[1] + weights[2] * uv2[1],
+        ];
+        let zero = ng.x.like(0.0);
+        let none = Vector { x: zero, y: zero, z: zero };
+        let mut result = TrianglePoints {
+            points,
+            ng,
+            ns,
+            uv,
+            dpdu: none,
+            dpdv: none,
+            shading_dpdu: none,
+            shading_dpdv: none,
+        };
+        if self.want_derivatives.any() {
+            self.derive(&mut result, winding, weights, is_smooth);
+        }
+        result
+    }
+
+    /// Adds the derivatives.
+    #[inline(always)]
+    fn derive(
+        &self,
+        at: &mut TrianglePoints<R>,
+        winding: Vector<R::Double>,
+        weights: [R; 3],
+        is_smooth: WideMask<R>,
+    ) {
+        let [dpdu, dpdv] = self.plane_derivatives(winding);
+        let zero = dpdu.x.like(0.0);
+
+        // Rotate the derivatives into the plane perpendicular to the interpolated normal.
+        let (mut along, mut is_left) = (dpdu, is_smooth.like(true));
+        let mut is_turned = is_smooth;
+        if self.have_tangents.any() {
+            let [a, b, c] = self.tangents;
+            let tangent = mix(weights, [a.along, b.along, c.along]).widen();
+            let sign = (weights[0] * a.sign + weights[1] * b.sign + weights[2] * c.sign).widen();
+            let has_tangent = self.have_tangents & !is_zero(tangent);
+            along = Vector::select(has_tangent, tangent, along);
+            is_left = !has_tangent | sign.gt(zero) | Float::eq(sign, zero);
+            is_turned = is_turned | has_tangent;
+        }
+        let (mut shading_dpdu, mut shading_dpdv) = (dpdu, dpdv);
+        if is_turned.any() {
+            let across = at.ns.cross(along);
+            let is_across = across.length_squared().gt(zero);
+            let (s, t) = warp::basis_about(Vector::<R>::narrow(at.ns));
+            let turned_dpdu = Vector::select(is_across, across.cross(at.ns), s.widen());
+            let turned_dpdv = Vector::select(is_across, across.negate_where(!is_left), t.widen());
+            shading_dpdu = Vector::select(is_turned, turned_dpdu, shading_dpdu);
+            shading_dpdv = Vector::select(is_turned, turned_dpdv, shading_dpdv);
+        }
+        let wanted = self.want_derivatives;
+        at.dpdu = Vector::select(wanted, dpdu, at.dpdu);
+        at.dpdv = Vector::select(wanted, dpdv, at.dpdv);
+        at.shading_dpdu = Vector::select(wanted, shading_dpdu, at.shading_dpdu);
+        at.shading_dpdv = Vector::select(wanted, shading_dpdv, at.shading_dpdv);
+    }
+
+    /// `∂p/∂u` and `∂p/∂v` in the triangles' planes; any two directions there where texture coordinates are degenerate.
+    #[inline(always)]
+    fn plane_derivatives(&self, winding: Vector<R::Double>) -> [Vector<R::Double>; 2] {
+        let [p0, p1, p2] = [self.positions[0].widen(), self.positions[1].widen(), self.positions[2].widen()];
+        let [uv0, uv1, uv2] = self.uvs;
+        let [u2, v2] = [uv2[0].widen(), uv2[1].widen()];
+        let along0 = [uv0[0].widen() - u2, uv0[1].widen() - v2];
+        let along1 = [uv1[0].widen() - u2, uv1[1].widen() - v2];
+        let (edge0, edge1) = (p0 - p2, p1 - p2);
+        let determinant = along0[0] * along1[1] - along0[1] * along1[0];
+        let dpdu = over(edge0 * along1[1] - edge1 * along0[1], determinant);
+        let dpdv = over(edge1 * along0[0] - edge0 * along1[0], determinant);
+        let is_small = Float::abs(determinant).lt(determinant.like(LEAST_DETERMINANT));
+        let is_regular = !is_small & is_finite(dpdu) & is_finite(dpdv);
+        if is_regular.all() {
+            return [dpdu, dpdv];
+        }
+        let (s, t) = warp::basis_about(-Vector::<R>::narrow(winding));
+        [Vector::select(is_regular, dpdu, s.widen()), Vector::select(is_regular, dpdv, t.widen())]
+    }
+}
+
+impl<R: Real> TrianglePoints<R> {
+    /// The same points in instances, where the mask is set.
+    #[inline(always)]
+    pub(crate) fn placed(self, mask: WideMask<R>, placement: &Placement<R>) -> Self {
+        let points = self.points.placed(placement);
+        Self {
+            points: Points {
+                position: Vector::select(mask, points.position, self.points.position),
+                error: Vector::select(mask, points.error, self.points.error),
+            },
+            ng: Vector::select(mask, placement.normal(self.ng).normalize(), self.ng),
+            ns: Vector::select(mask, placement.normal(self.ns).normalize(), self.ns),
+            uv: self.uv,
+            dpdu: Vector::select(mask, placement.vector(self.dpdu), self.dpdu),
+            dpdv: Vector::select(mask, placement.vector(self.dpdv), self.dpdv),
+            shading_dpdu: Vector::select(mask, placement.vector(self.shading_dpdu), self.shading_dpdu),
+            shading_dpdv: Vector::select(mask, placement.vector(self.shading_dpdv), self.shading_dpdv),
+        }
+    }
+}
+
+#[inline(always)]
+fn mix<R: Real>(weights: [R; 3], [a, b, c]: [Vector<R>; 3]) -> Vector<R> {
+    a * weights[0] + b * weights[1] + c * weights[2]
+}
+
+#[inline(always)]
+fn over<F: Float>(v: Vector<F>, divisor: F) -> Vector<F> {
+    Vector { x: v.x / divisor, y: v.y / divisor, z: v.z / divisor }
+}
+
+#[inline(always)]
+fn is_zero<F: Float<Scalar = f64>>(v: Vector<F>) -> F::Mask {
+    let zero = v.x.like(0.0);
+    Float::eq(v.x, zero) & Float::eq(v.y, zero) & Float::eq(v.z, zero)
+}
+
+#[inline(always)]
+fn is_finite<F: Float>(v: Vector<F>) -> F::Mask {
+    Float::is_finite(v.x) & Float::is_finite(v.y) & Float::is_finite(v.z)
+}
