@@ -131,5 +131,5 @@ fn surfaces<S: Simd>(simd: S, flat: &[FlatDiffuseHit<'_>; LANES]) -> Surfaces<S>
     let wo = Vector::narrow(-direction.widen().normalize());
     let (s, t) = warp::basis_about(n);
     let wo = Vector { x: wo.dot(s), y: wo.dot(t), z: wo.dot(n) };
-    Surfaces { points, ng, s, t, n, wo }
+    Surfaces { points, ng, s, t, n, wo, cos_ng: wo.z }
 }

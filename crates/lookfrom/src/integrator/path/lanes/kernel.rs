@@ -1,7 +1,9 @@
 //! Scattering of eight paths side by side: one light sampled, one direction sampled by the BSDF, and the origins of the
 //! rays. Numbers only; the parent module makes rays and events of them.
 
-use lookfrom_simd::{Float, Kernel, Mask, Simd, dispatch, f32x8, f64x8, level, prelude::*, u32x8, u64x8};
+use lookfrom_simd::{
+    Float, Kernel, Mask, Simd, dispatch, f32x8, f64x8, level, mask32x8, prelude::*, u32x8, u64x8,
+};
 
 use super::light_samples::LightSamples;
 use crate::core::hash;
@@ -58,6 +60,8 @@ pub(super) struct Surfaces<S: Simd> {
     pub(super) n: Vector<f32x8<S>>,
     /// In the frame.
     pub(super) wo: Vector<f32x8<S>>,
+    /// The cosines of `wo` to the geometric normals.
+    pub(super) cos_ng: f32x8<S>,
 }
 
 impl<S: Simd> Surfaces<S> {
@@ -73,8 +77,9 @@ impl<S: Simd> Surfaces<S> {
         let position = gather_f64(simd, &by_lane!(lane => vertices[lane].surface.point.position));
         let error = gather_f64(simd, &by_lane!(lane => vertices[lane].surface.point.error));
         let ng = gather_f64(simd, &by_lane!(lane => vertices[lane].surface.ng.to_array()));
+        let cos_ng = wo.dot(Vector::narrow(ng));
         let wo = Vector { x: wo.dot(s), y: wo.dot(t), z: wo.dot(n) };
-        Self { points: Points { position, error }, ng, s, t, n, wo }
+        Self { points: Points { position, error }, ng, s, t, n, wo, cos_ng }
     }
 
     /// From render space to the frames.
@@ -89,6 +94,14 @@ impl<S: Simd> Surfaces<S> {
         (self.s * w.x + self.t * w.y + self.n * w.z).normalize()
     }
 
+    /// True where the geometric and the shading normal agree whether `wo` and `wi`, in render space, are on one side.
+    #[inline(always)]
+    fn agrees(&self, wi: Vector<f32x8<S>>) -> mask32x8<S> {
+        let zero = self.cos_ng.like(0.0);
+        let is_beside = (self.wo.z * wi.dot(self.n)).gt(zero);
+        (self.cos_ng * wi.dot(Vector::narrow(self.ng))).gt(zero).choose(is_beside, !is_beside)
+    }
+
     /// Samples lights and directions at the surfaces.
     #[inline(always)]
     pub(super) fn scatter<B: LaneBsdf<f32x8<S>>>(
@@ -101,6 +114,7 @@ impl<S: Simd> Surfaces<S> {
     ) -> Scattered {
         let streams = SampleStreams::new(simd, streams);
         let zero = f32x8::splat(simd, 0.0);
+        let view = bsdf.view(self.wo);
 
         // Sample one light.
         let has_density = bsdf.has_density();
@@ -111,9 +125,12 @@ impl<S: Simd> Surfaces<S> {
             lights = LightSamples::new(simd, world, self, &streams, modes, has_density.to_bitmask() as u32);
             let wi = gather(simd, &lights.wi);
             let local = self.local(wi);
-            let f = bsdf.f(self.wo, local) * Float::abs(local.z);
-            light_bsdf_pdf = bsdf.pdf(self.wo, local).into();
-            light_f = scatter_spectrum(f);
+            let (mut f, pdf) = bsdf.f_and_pdf(&view, local);
+            if B::KIND.needs_agreement {
+                f = Spectrum::select(self.agrees(wi), f, Spectrum::splat(zero));
+            }
+            light_bsdf_pdf = pdf.into();
+            light_f = scatter_spectrum(f * Float::abs(local.z));
             let origin = self.points.leave(self.ng, wi);
             shadow_end = lights.ends(simd, origin);
             shadow_origin = scatter(origin);
@@ -124,10 +141,13 @@ impl<S: Simd> Surfaces<S> {
             true => streams.two(dimension::CHOICE),
             false => [zero; 2],
         };
-        let sample = bsdf.sample(self.wo, which_lobe, streams.two(dimension::DIRECTION)).if_useful();
+        let mut sample = bsdf.sample(&view, which_lobe, streams.two(dimension::DIRECTION)).if_useful();
         let wi = self.render(sample.wi);
+        if B::KIND.needs_agreement {
+            sample.is_valid &= self.agrees(wi);
+        }
         let mis_pdf = match B::KIND.pdf_is_proportional {
-            true => bsdf.pdf(self.wo, self.local(wi)),
+            true => bsdf.pdf(&view, self.local(wi)),
             false => sample.pdf,
         };
         Scattered {
