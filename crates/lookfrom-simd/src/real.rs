@@ -57,6 +57,8 @@ pub trait Float:
     fn sqrt(self) -> Self;
     /// Without its sign.
     fn abs(self) -> Self;
+    /// The greatest integer that is not greater.
+    fn floor(self) -> Self;
     /// With the sign of another.
     fn copysign(self, sign: Self) -> Self;
     /// Whether they are equal.
@@ -131,6 +133,14 @@ pub trait Real:
     fn from_bits(bits: Self::Bits) -> Self;
     /// Integers below 2²⁴ as numbers, exactly.
     fn from_integer(integer: Self::Bits) -> Self;
+    /// Numbers of 0 … 2³¹ without their fractions; any integers for others.
+    fn to_integer(self) -> Self::Bits;
+    /// What a table has at each index.
+    fn lookup(index: Self::Bits, at: impl Fn(usize) -> f32) -> Self;
+    /// A function of each number, one by one.
+    fn map(self, f: impl Fn(f32) -> f32) -> Self;
+    /// A function of each pair of numbers, one by one.
+    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self;
     /// `yes` where the mask is set, `no` elsewhere.
     fn select_bits(mask: Self::Mask, yes: Self::Bits, no: Self::Bits) -> Self::Bits;
     /// The same integers with 64 bits.
@@ -171,6 +181,10 @@ macro_rules! one {
             #[inline(always)]
             fn abs(self) -> Self {
                 self.abs()
+            }
+            #[inline(always)]
+            fn floor(self) -> Self {
+                self.floor()
             }
             #[inline(always)]
             fn copysign(self, sign: Self) -> Self {
@@ -245,6 +259,22 @@ impl Real for f32 {
         integer as Self
     }
     #[inline(always)]
+    fn to_integer(self) -> u32 {
+        self as u32
+    }
+    #[inline(always)]
+    fn lookup(index: u32, at: impl Fn(usize) -> f32) -> Self {
+        at(index as usize)
+    }
+    #[inline(always)]
+    fn map(self, f: impl Fn(f32) -> f32) -> Self {
+        f(self)
+    }
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
+        f(self, other)
+    }
+    #[inline(always)]
     fn select_bits(mask: bool, yes: u32, no: u32) -> u32 {
         if mask { yes } else { no }
     }
@@ -302,6 +332,10 @@ macro_rules! eight {
             #[inline(always)]
             fn abs(self) -> Self {
                 SimdBase::abs(self)
+            }
+            #[inline(always)]
+            fn floor(self) -> Self {
+                SimdFloat::floor(self)
             }
             #[inline(always)]
             fn copysign(self, sign: Self) -> Self {
@@ -376,6 +410,36 @@ impl<S: Simd> Real for f32x8<S> {
         // Below 2²⁴, so that a signed number holds it too.
         let integer: i32x8<S> = integer.bitcast();
         integer.to_float()
+    }
+    #[inline(always)]
+    fn to_integer(self) -> u32x8<S> {
+        let integer: i32x8<S> = self.to_int();
+        integer.bitcast()
+    }
+    #[inline(always)]
+    fn lookup(index: u32x8<S>, at: impl Fn(usize) -> f32) -> Self {
+        let indices: [u32; 8] = index.into();
+        let mut all = [0.0; 8];
+        for (number, index) in all.iter_mut().zip(indices) {
+            *number = at(index as usize);
+        }
+        Self::load_array(index.simd, all)
+    }
+    #[inline(always)]
+    fn map(self, f: impl Fn(f32) -> f32) -> Self {
+        let mut all: [f32; 8] = self.into();
+        for number in &mut all {
+            *number = f(*number);
+        }
+        Self::load_array(self.simd, all)
+    }
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
+        let (mut all, others): ([f32; 8], [f32; 8]) = (self.into(), other.into());
+        for (number, other) in all.iter_mut().zip(others) {
+            *number = f(*number, other);
+        }
+        Self::load_array(self.simd, all)
     }
     #[inline(always)]
     fn select_bits(mask: mask32x8<S>, yes: u32x8<S>, no: u32x8<S>) -> u32x8<S> {

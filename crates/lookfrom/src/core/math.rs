@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_bvh::Affine;
-use lookfrom_simd::Real;
+use lookfrom_simd::{Float, Real};
 
 use crate::core::optics;
 
@@ -51,9 +51,9 @@ pub fn power(x: f32, n: f32) -> f32 {
 }
 
 /// Schlick's (1 − cos θ)⁵: 0 at normal, 1 at grazing incidence.
-#[inline]
-pub fn schlick(cos: f32) -> f32 {
-    let x = (1.0 - cos).clamp(0.0, 1.0);
+#[inline(always)]
+pub fn schlick<R: Real>(cos: R) -> R {
+    let x = Float::clamp(cos.like(1.0) - cos, 0.0, 1.0);
     let x2 = x * x;
     x2 * x2 * x
 }

@@ -30,16 +30,6 @@ impl Spectrum {
         [r, g, b]
     }
 
-    /// Applies `f` to each lane.
-    pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
-        Self(self.0.map(f))
-    }
-
-    /// Applies `f` to each pair of lanes.
-    pub fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
-        Self(std::array::from_fn(|lane| f(self.0[lane], other.0[lane])))
-    }
-
     /// The only lane that is not 0; `None` where there are several or none.
     pub fn only_lane(self) -> Option<usize> {
         let mut lanes = (0..4).filter(|&lane| self.0[lane] != 0.0);
@@ -62,6 +52,20 @@ impl Spectrum {
 }
 
 impl<R: Real> Spectrum<R> {
+    /// Applies `f` to each lane.
+    #[inline(always)]
+    pub fn map(self, f: impl Fn(R) -> R) -> Self {
+        let [a, b, c, d] = self.0;
+        Self([f(a), f(b), f(c), f(d)])
+    }
+
+    /// Applies `f` to each pair of lanes.
+    #[inline(always)]
+    pub fn zip(self, other: Self, f: impl Fn(R, R) -> R) -> Self {
+        let ([a, b, c, d], [e, g, h, i]) = (self.0, other.0);
+        Self([f(a, e), f(b, g), f(c, h), f(d, i)])
+    }
+
     /// The same value in each lane.
     #[inline(always)]
     pub(crate) fn splat(value: R) -> Self {

@@ -235,9 +235,9 @@ impl Bsdf {
     #[inline]
     pub fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
         match self {
-            Self::Diffuse(bsdf) => bsdf.f(wo.into(), wi.into()),
+            Self::Diffuse(bsdf) => bsdf.f(&wo.into(), wi.into()),
             Self::DiffuseTransmission(bsdf) => bsdf.f(wo, wi),
-            Self::Conductor(bsdf) => bsdf.f(wo.into(), wi.into()),
+            Self::Conductor(bsdf) => bsdf.f(&wo.into(), wi.into()),
             Self::Dielectric(bsdf) => bsdf.f(wo.into(), wi.into(), mode),
             Self::ThinDielectric(_) => Spectrum::BLACK,
             Self::CoatedDiffuse(bsdf) => bsdf.f(wo.into(), wi.into(), mode),
@@ -255,9 +255,9 @@ impl Bsdf {
             return 0.0;
         }
         match self {
-            Self::Diffuse(bsdf) => bsdf.pdf(wo.into(), wi.into()),
+            Self::Diffuse(bsdf) => bsdf.pdf(&wo.into(), wi.into()),
             Self::DiffuseTransmission(bsdf) => bsdf.pdf(wo, wi, lobes),
-            Self::Conductor(bsdf) => bsdf.pdf(wo.into(), wi.into()),
+            Self::Conductor(bsdf) => bsdf.pdf(&wo.into(), wi.into()),
             Self::Dielectric(bsdf) => bsdf.pdf(wo.into(), wi.into(), lobes),
             Self::ThinDielectric(_) => 0.0,
             Self::CoatedDiffuse(bsdf) => bsdf.pdf(wo.into(), wi.into(), mode),
@@ -276,9 +276,9 @@ impl Bsdf {
             return None;
         }
         match self {
-            Self::Diffuse(bsdf) => bsdf.sample(wo.into(), 0.0, u).scalar(kind(bsdf)),
+            Self::Diffuse(bsdf) => bsdf.sample(&wo.into(), 0.0, u).scalar(kind(bsdf)),
             Self::DiffuseTransmission(bsdf) => bsdf.sample(wo, uc, u, lobes),
-            Self::Conductor(bsdf) => bsdf.sample(wo.into(), 0.0, u).scalar(kind(bsdf)),
+            Self::Conductor(bsdf) => bsdf.sample(&wo.into(), 0.0, u).scalar(kind(bsdf)),
             Self::Dielectric(bsdf) => bsdf.sample(wo.into(), uc, u, mode, lobes).scalar(kind(bsdf)),
             Self::ThinDielectric(bsdf) => bsdf.sample(wo, uc, lobes),
             Self::CoatedDiffuse(bsdf) => bsdf.sample(wo.into(), uc, u, mode).scalar(kind(bsdf)),

@@ -29,6 +29,7 @@ use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
 use crate::shading::bsdf::lanes::{BsdfClass, RowBsdf};
 use crate::shading::bsdf::layered::Layered;
+use crate::shading::bsdf::principled::Principled;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
@@ -40,15 +41,16 @@ pub(super) struct Waiting {
     vertices: [Vec<Vertex>; BsdfClass::COUNT],
 }
 
-/// Calls a generic method of a path tracer with the BSDF of a class.
+/// Calls a generic method of a path tracer with the BSDF of a class; `principled` where that is not one of them.
 macro_rules! with_class {
-    ($class:expr, $tracer:ident.$method:ident($($argument:expr),*)) => {
+    ($class:expr, $tracer:ident.$method:ident($($argument:expr),*), $principled:expr) => {
         match $class {
             BsdfClass::Diffuse => $tracer.$method::<Diffuse, P>($($argument),*),
             BsdfClass::Conductor => $tracer.$method::<Conductor, P>($($argument),*),
             BsdfClass::Dielectric => $tracer.$method::<Dielectric, P>($($argument),*),
             BsdfClass::CoatedDiffuse => $tracer.$method::<Layered<Diffuse>, P>($($argument),*),
             BsdfClass::CoatedConductor => $tracer.$method::<Layered<Conductor>, P>($($argument),*),
+            BsdfClass::Principled => $principled,
         }
     };
 }
@@ -65,7 +67,8 @@ impl Waiting {
     ) {
         let hits = &mut self.mesh_hits[class as usize];
         if fills_lanes(hits, index as u32) {
-            with_class!(class, tracer.scatter_mesh_hits(batch, hits, output));
+            // Principled materials are evaluated at vertices: their frames depend on more of the surface.
+            with_class!(class, tracer.scatter_mesh_hits(batch, hits, output), ());
             hits.clear();
         }
     }
@@ -83,7 +86,11 @@ impl Waiting {
         let Some(class) = BsdfClass::of(&vertex.shading.bsdf) else { return Some(vertex) };
         let vertices = &mut self.vertices[class as usize];
         if fills_lanes(vertices, vertex) {
-            with_class!(class, tracer.scatter_vertices(world, vertices, output));
+            with_class!(
+                class,
+                tracer.scatter_vertices(world, vertices, output),
+                tracer.scatter_vertices::<Principled, P>(world, vertices, output)
+            );
             vertices.clear();
         }
         None
@@ -99,8 +106,13 @@ impl Waiting {
         for (class, (hits, vertices)) in
             BsdfClass::ALL.into_iter().zip(self.mesh_hits.iter().zip(&self.vertices))
         {
-            with_class!(class, tracer.scatter_mesh_hits(batch, hits, output));
-            with_class!(class, tracer.scatter_vertices(batch.world, vertices, output));
+            with_class!(class, tracer.scatter_mesh_hits(batch, hits, output), ());
+            let world = batch.world;
+            with_class!(
+                class,
+                tracer.scatter_vertices(world, vertices, output),
+                tracer.scatter_vertices::<Principled, P>(world, vertices, output)
+            );
         }
     }
 }

@@ -91,10 +91,17 @@ pub(super) fn try_half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {
 }
 
 impl<R: Real> LaneBsdf<R> for Conductor<R> {
-    const KIND: Kind = Kind { spread: Lobes::GLOSSY, pdf_is_proportional: false, needs_lobe: false };
+    const KIND: Kind =
+        Kind { spread: Lobes::GLOSSY, pdf_is_proportional: false, needs_lobe: false, needs_agreement: false };
+    type View = Vector<R>;
 
     #[inline(always)]
-    fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+    fn view(&self, wo: Vector<R>) -> Vector<R> {
+        wo
+    }
+
+    #[inline(always)]
+    fn f(&self, &wo: &Vector<R>, wi: Vector<R>) -> Spectrum<R> {
         let (wm, exists) = half_vector(wo, wi);
         let is_lit = exists & same_side(wo, wi) & !self.roughness.is_smooth();
         let black = Spectrum::splat(wo.z.like(0.0));
@@ -105,14 +112,14 @@ impl<R: Real> LaneBsdf<R> for Conductor<R> {
     }
 
     #[inline(always)]
-    fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R {
+    fn pdf(&self, &wo: &Vector<R>, wi: Vector<R>) -> R {
         let (wm, exists) = half_vector(wo, wi);
         let is_lit = exists & same_side(wo, wi) & !self.roughness.is_smooth();
         R::select(is_lit, self.roughness.visible_per_cosine(wo, wm) * 0.25, wo.z.like(0.0))
     }
 
     #[inline(always)]
-    fn sample(&self, wo: Vector<R>, _: R, u: [R; 2]) -> DirectionSample<R> {
+    fn sample(&self, &wo: &Vector<R>, _: R, u: [R; 2]) -> DirectionSample<R> {
         let is_smooth = self.roughness.is_smooth();
         if is_smooth.all() {
             self.sample_smooth(wo)

@@ -37,22 +37,33 @@ impl Diffuse {
 }
 
 impl<R: Real> LaneBsdf<R> for Diffuse<R> {
-    const KIND: Kind = Kind { spread: Lobes::DIFFUSE, pdf_is_proportional: false, needs_lobe: false };
+    const KIND: Kind = Kind {
+        spread: Lobes::DIFFUSE,
+        pdf_is_proportional: false,
+        needs_lobe: false,
+        needs_agreement: false,
+    };
+    type View = Vector<R>;
 
     #[inline(always)]
-    fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+    fn view(&self, wo: Vector<R>) -> Vector<R> {
+        wo
+    }
+
+    #[inline(always)]
+    fn f(&self, &wo: &Vector<R>, wi: Vector<R>) -> Spectrum<R> {
         let black = Spectrum::splat(wo.z.like(0.0));
         Spectrum::select(same_side(wo, wi), self.reflectance * wo.z.like(FRAC_1_PI), black)
     }
 
     #[inline(always)]
-    fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R {
+    fn pdf(&self, &wo: &Vector<R>, wi: Vector<R>) -> R {
         let pdf = warp::cosine_hemisphere_pdf(Float::abs(wi.z));
         R::select(same_side(wo, wi), pdf, wo.z.like(0.0))
     }
 
     #[inline(always)]
-    fn sample(&self, wo: Vector<R>, _: R, u: [R; 2]) -> DirectionSample<R> {
+    fn sample(&self, &wo: &Vector<R>, _: R, u: [R; 2]) -> DirectionSample<R> {
         let wi = cosine_direction(u, wo.z);
         let is_valid = !is_grazing(wo);
         let no = is_valid.like(false);

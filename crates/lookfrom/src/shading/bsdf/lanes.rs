@@ -9,6 +9,7 @@ use super::henyey_greenstein::HenyeyGreenstein;
 use super::layered::{Base, Layered};
 use super::lobes::Lobes;
 use super::microfacet::TrowbridgeReitz;
+use super::principled::{Look, Principled};
 use super::{Bsdf, DirectionSample, Mode};
 use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::spectrum::Spectrum;
@@ -23,6 +24,9 @@ pub struct Kind {
     pub pdf_is_proportional: bool,
     /// Whether sampling takes a number to choose a lobe.
     pub needs_lobe: bool,
+    /// Whether light passes only between directions for which the geometric and the shading normal agree whether they
+    /// are on one side. pbrt's materials do without this test.
+    pub needs_agreement: bool,
 }
 
 impl Kind {
@@ -37,13 +41,22 @@ impl Kind {
 pub trait LaneBsdf<R: Real> {
     /// The properties of the class.
     const KIND: Kind;
+    /// What is computed once for an outgoing direction: that direction itself, where there is nothing to compute.
+    type View;
 
+    /// The view from the outgoing direction `wo`, which the other methods take.
+    fn view(&self, wo: Vector<R>) -> Self::View;
     /// As [`Bsdf::f`].
-    fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R>;
+    fn f(&self, view: &Self::View, wi: Vector<R>) -> Spectrum<R>;
     /// As [`Bsdf::pdf`].
-    fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R;
+    fn pdf(&self, view: &Self::View, wi: Vector<R>) -> R;
+    /// [`Self::f`] and [`Self::pdf`]; the density means nothing where the value is black.
+    #[inline(always)]
+    fn f_and_pdf(&self, view: &Self::View, wi: Vector<R>) -> (Spectrum<R>, R) {
+        (self.f(view, wi), self.pdf(view, wi))
+    }
     /// As [`Bsdf::sample`].
-    fn sample(&self, wo: Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R>;
+    fn sample(&self, view: &Self::View, uc: R, u: [R; 2]) -> DirectionSample<R>;
     /// True if there is a lobe that is not specular.
     fn has_density(&self) -> R::Mask;
 }
@@ -61,15 +74,23 @@ pub enum BsdfClass {
     CoatedDiffuse,
     /// [`Layered`], on a conductor.
     CoatedConductor,
+    /// [`Principled`].
+    Principled,
 }
 
 impl BsdfClass {
     /// Number of classes.
-    pub(crate) const COUNT: usize = 5;
+    pub(crate) const COUNT: usize = 6;
 
     /// All of them, in their order.
-    pub(crate) const ALL: [Self; Self::COUNT] =
-        [Self::Diffuse, Self::Conductor, Self::Dielectric, Self::CoatedDiffuse, Self::CoatedConductor];
+    pub(crate) const ALL: [Self; Self::COUNT] = [
+        Self::Diffuse,
+        Self::Conductor,
+        Self::Dielectric,
+        Self::CoatedDiffuse,
+        Self::CoatedConductor,
+        Self::Principled,
+    ];
 
     /// The class of a BSDF, if it is computed in lanes.
     #[inline]
@@ -80,6 +101,7 @@ impl BsdfClass {
             Bsdf::Dielectric(_) => Some(Self::Dielectric),
             Bsdf::CoatedDiffuse(_) => Some(Self::CoatedDiffuse),
             Bsdf::CoatedConductor(_) => Some(Self::CoatedConductor),
+            Bsdf::Principled(_) => Some(Self::Principled),
             _ => None,
         }
     }
@@ -101,18 +123,24 @@ pub(crate) trait RowBsdf: Copy {
 }
 
 impl<R: Real> LaneBsdf<R> for Dielectric<R> {
-    const KIND: Kind = Kind { spread: Lobes::GLOSSY, pdf_is_proportional: false, needs_lobe: true };
+    const KIND: Kind =
+        Kind { spread: Lobes::GLOSSY, pdf_is_proportional: false, needs_lobe: true, needs_agreement: false };
+    type View = Vector<R>;
 
     #[inline(always)]
-    fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+    fn view(&self, wo: Vector<R>) -> Vector<R> {
+        wo
+    }
+    #[inline(always)]
+    fn f(&self, &wo: &Vector<R>, wi: Vector<R>) -> Spectrum<R> {
         self.f(wo, wi, Mode::Radiance)
     }
     #[inline(always)]
-    fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R {
+    fn pdf(&self, &wo: &Vector<R>, wi: Vector<R>) -> R {
         self.pdf(wo, wi, Lobes::ALL)
     }
     #[inline(always)]
-    fn sample(&self, wo: Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
+    fn sample(&self, &wo: &Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
         self.sample(wo, uc, u, Mode::Radiance, Lobes::ALL)
     }
     #[inline(always)]
@@ -122,18 +150,24 @@ impl<R: Real> LaneBsdf<R> for Dielectric<R> {
 }
 
 impl<R: Real, B: Base<R>> LaneBsdf<R> for Layered<B, R> {
-    const KIND: Kind = Kind { spread: Lobes::GLOSSY, pdf_is_proportional: true, needs_lobe: true };
+    const KIND: Kind =
+        Kind { spread: Lobes::GLOSSY, pdf_is_proportional: true, needs_lobe: true, needs_agreement: false };
+    type View = Vector<R>;
 
     #[inline(always)]
-    fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+    fn view(&self, wo: Vector<R>) -> Vector<R> {
+        wo
+    }
+    #[inline(always)]
+    fn f(&self, &wo: &Vector<R>, wi: Vector<R>) -> Spectrum<R> {
         self.f(wo, wi, Mode::Radiance)
     }
     #[inline(always)]
-    fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R {
+    fn pdf(&self, &wo: &Vector<R>, wi: Vector<R>) -> R {
         self.pdf(wo, wi, Mode::Radiance)
     }
     #[inline(always)]
-    fn sample(&self, wo: Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
+    fn sample(&self, &wo: &Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
         self.sample(wo, uc, u, Mode::Radiance)
     }
     #[inline(always)]
@@ -203,6 +237,23 @@ impl RowBsdf for Dielectric {
             eta: f32x8::load_array(simd, by_lane!(lane => rows[lane].eta)),
             roughness: gather_roughness(simd, &by_lane!(lane => rows[lane].roughness)),
         }
+    }
+}
+
+impl RowBsdf for Principled {
+    type Lanes<S: Simd> = Look<f32x8<S>>;
+
+    fn of(bsdf: &Bsdf) -> Option<&Self> {
+        if let Bsdf::Principled(bsdf) = bsdf { Some(bsdf) } else { None }
+    }
+
+    fn regularize(&mut self) {
+        self.regularize();
+    }
+
+    #[inline(always)]
+    fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
+        Look::gather(simd, rows)
     }
 }
 

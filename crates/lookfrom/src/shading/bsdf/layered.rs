@@ -39,7 +39,7 @@ use coat::{coat_f, coat_pdf, sample_coat};
 use random::{Purpose, Random};
 
 /// An opaque BSDF of one lobe, which can be the base under a coat.
-pub trait Base<R: Real>: LaneBsdf<R> + Copy {
+pub trait Base<R: Real>: LaneBsdf<R, View = Vector<R>> + Copy {
     /// True if it reflects in single directions.
     fn is_specular(&self) -> R::Mask;
 }
@@ -287,15 +287,15 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
                 // Join the base with the exit.
                 let joins = step.at_base & !base_is_specular;
                 if joins.any() {
-                    let weight = power_heuristic(exit.pdf, self.base.pdf(-walk.w, to_exit));
+                    let weight = power_heuristic(exit.pdf, self.base.pdf(&-walk.w, to_exit));
                     let weight = R::select(coat_is_specular, one, weight);
                     let out = transmittance(self.thickness, to_exit);
                     let factor = Float::abs(to_exit.z) * weight * out;
-                    let joined = walk.beta * self.base.f(-walk.w, to_exit) * exit_weight * factor;
+                    let joined = walk.beta * self.base.f(&-walk.w, to_exit) * exit_weight * factor;
                     sum += Spectrum::select(joins, joined, black);
                 }
                 // Reflect at the base, and see whether this leads out, too.
-                let sample = self.base.sample(-walk.w, zero, random.two(step.at_base)).if_lit();
+                let sample = self.base.sample(&-walk.w, zero, random.two(step.at_base)).if_lit();
                 Self::turn(&mut walk, step.at_base, &sample);
                 let leaves = step.at_base & walk.alive & !coat_is_specular;
                 if leaves.any() {
@@ -376,7 +376,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
                 is_specular = is_specular & !step.at_particle;
             }
             if step.at_base.any() {
-                let sample = self.base.sample(-walk.w, zero, random.two(step.at_base)).if_lit();
+                let sample = self.base.sample(&-walk.w, zero, random.two(step.at_base)).if_lit();
                 Self::turn(&mut walk, step.at_base, &sample);
                 is_specular = is_specular & (!step.at_base | sample.is_specular);
             }
@@ -449,14 +449,14 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
         let zero = wo.z.like(0.0);
         let [entry, exit] = self.entry_and_exit([wo, wi], mode, random, active);
         let passes = active & exit.is_valid;
-        let reflecting = self.base.pdf(-entry.wi, -exit.wi);
+        let reflecting = self.base.pdf(&-entry.wi, -exit.wi);
         let coat_is_specular = self.coat.is_specular();
         let density = R::select(passes & coat_is_specular, reflecting, zero);
         let scatters = passes & !coat_is_specular;
         if !scatters.any() {
             return density;
         }
-        let reflected = self.base.sample(-entry.wi, zero, random.two(scatters)).if_lit();
+        let reflected = self.base.sample(&-entry.wi, zero, random.two(scatters)).if_lit();
         let leaving = coat_pdf(&self.coat, -reflected.wi, wi, Lobes::ALL);
         let both = power_heuristic(exit.pdf, reflecting) * reflecting
             + power_heuristic(reflected.pdf, leaving) * leaving;

@@ -15,7 +15,7 @@ pub struct LocalScattering<'a> {
     wo: Vec3,
     mode: Mode,
     lobes: Lobes,
-    /// The precomputed terms of a principled surface, unless `wo` is grazing.
+    /// The precomputed terms of a principled surface.
     principled: Option<&'a principled::LocalScattering>,
 }
 
@@ -45,7 +45,7 @@ fn principled_toward<R>(
     ask: impl FnOnce(&LocalScattering<'_>) -> R,
 ) -> R {
     let principled = look.scattering(plain.wo, plain.lobes);
-    ask(&LocalScattering { principled: principled.as_ref(), ..*plain })
+    ask(&LocalScattering { principled: Some(&principled), ..*plain })
 }
 
 impl LocalScattering<'_> {
@@ -53,7 +53,7 @@ impl LocalScattering<'_> {
     #[inline]
     pub fn f_and_pdf(&self, wi: Vec3) -> (Spectrum, f32) {
         if let Some(principled) = self.principled {
-            return principled.f_and_pdf(self.wo, wi, self.mode);
+            return principled.f_and_pdf(wi.into(), self.mode);
         }
         let f = self.bsdf.f(self.wo, wi, self.mode);
         (f, if f.is_black() { 0.0 } else { self.pdf(wi) })
@@ -63,7 +63,7 @@ impl LocalScattering<'_> {
     #[inline]
     pub fn pdf(&self, wi: Vec3) -> f32 {
         match self.principled {
-            Some(principled) => principled.pdf(self.wo, wi),
+            Some(principled) => principled.pdf(wi.into()),
             None => self.bsdf.pdf(self.wo, wi, self.mode, self.lobes),
         }
     }
@@ -72,7 +72,7 @@ impl LocalScattering<'_> {
     #[inline]
     pub fn sample(&self, uc: f32, u: [f32; 2]) -> Option<BsdfSample> {
         match self.principled {
-            Some(principled) => principled.sample(self.wo, uc, u, self.mode)?.if_useful(),
+            Some(principled) => principled.sample_one(uc, u, self.mode)?.if_useful(),
             None => self.bsdf.sample(self.wo, uc, u, self.mode, self.lobes),
         }
     }

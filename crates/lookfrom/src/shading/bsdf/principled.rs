@@ -35,19 +35,27 @@
 //! are left to the local frame, absorption to media.
 
 mod albedo;
+mod choice;
+mod facing;
 pub mod film;
 mod layers;
+mod look;
+mod scattering;
 mod sheen;
 mod surface;
 mod view;
 
 use glam::Vec3;
+use lookfrom_simd::Real;
 
+use super::lanes::{Kind, LaneBsdf};
 use super::microfacet::TrowbridgeReitz;
-use super::{BsdfSample, Lobes, Mode, fresnel, is_grazing};
+use super::{BsdfSample, DirectionSample, Lobes, Mode, fresnel};
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 use film::Film;
-use view::{Choice, View};
+pub(crate) use look::Look;
+pub(crate) use scattering::LocalScattering;
 
 /// The parameters of a principled surface. All weights and colours are within 0 … 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -251,14 +259,11 @@ impl Principled {
     }
 
     pub(super) fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        if is_grazing(wo) || is_grazing(wi) {
-            return Spectrum::BLACK;
-        }
-        View::new(self, wo).f(towards(wo, wi), mode)
+        self.scattering(wo, Lobes::ALL).f(wi.into(), mode)
     }
 
     pub(super) fn pdf(&self, wo: Vec3, wi: Vec3, lobes: Lobes) -> f32 {
-        self.scattering(wo, lobes).map_or(0.0, |scattering| scattering.pdf(wo, wi))
+        self.scattering(wo, lobes).pdf(wi.into())
     }
 
     pub(super) fn sample(
@@ -269,12 +274,12 @@ impl Principled {
         mode: Mode,
         lobes: Lobes,
     ) -> Option<BsdfSample> {
-        self.scattering(wo, lobes)?.sample(wo, uc, u, mode)
+        self.scattering(wo, lobes).sample_one(uc, u, mode)
     }
 
-    /// The surface for a fixed outgoing direction; `None` for a grazing one.
-    pub(super) fn scattering(&self, wo: Vec3, lobes: Lobes) -> Option<LocalScattering> {
-        (!is_grazing(wo)).then(|| LocalScattering::new(View::new(self, wo), lobes))
+    /// The surface for a fixed outgoing direction.
+    pub(super) fn scattering(&self, wo: Vec3, lobes: Lobes) -> LocalScattering {
+        LocalScattering::new(&Look::new(self), wo.into(), lobes)
     }
 
     pub(super) fn lobes(&self) -> Lobes {
@@ -314,43 +319,35 @@ impl Principled {
     }
 }
 
-/// A surface for an outgoing direction ω_o, with the probabilities of its lobes.
-pub(super) struct LocalScattering {
-    view: View,
-    choice: Option<Choice>,
-    lobes: Lobes,
-}
+impl<R: Real> LaneBsdf<R> for Look<R> {
+    const KIND: Kind =
+        Kind { spread: Lobes::GLOSSY, pdf_is_proportional: false, needs_lobe: true, needs_agreement: true };
+    type View = LocalScattering<R>;
 
-impl LocalScattering {
-    fn new(view: View, lobes: Lobes) -> Self {
-        Self { choice: view.choice(lobes), view, lobes }
+    #[inline(always)]
+    fn view(&self, wo: Vector<R>) -> LocalScattering<R> {
+        LocalScattering::new(self, wo, Lobes::ALL)
     }
-
-    /// The value, and where it is not black the density.
-    pub(super) fn f_and_pdf(&self, wo: Vec3, wi: Vec3, mode: Mode) -> (Spectrum, f32) {
-        if is_grazing(wi) {
-            return (Spectrum::BLACK, 0.0);
-        }
-        self.view.f_and_pdf(towards(wo, wi), mode, self.choice.as_ref(), self.lobes)
+    #[inline(always)]
+    fn f(&self, view: &LocalScattering<R>, wi: Vector<R>) -> Spectrum<R> {
+        view.f(wi, Mode::Radiance)
     }
-
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        match &self.choice {
-            Some(choice) if !is_grazing(wi) => self.view.pdf(towards(wo, wi), choice, self.lobes),
-            _ => 0.0,
-        }
+    #[inline(always)]
+    fn pdf(&self, view: &LocalScattering<R>, wi: Vector<R>) -> R {
+        view.pdf(wi)
     }
-
-    pub(super) fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode) -> Option<BsdfSample> {
-        let sample = self.view.sample(uc, u, mode, self.choice.as_ref()?, self.lobes)?;
-        Some(BsdfSample { wi: towards(wo, sample.wi), ..sample })
+    #[inline(always)]
+    fn f_and_pdf(&self, view: &LocalScattering<R>, wi: Vector<R>) -> (Spectrum<R>, R) {
+        view.f_and_pdf(wi, Mode::Radiance)
     }
-}
-
-/// The direction in the frame where `wo` is above: mirrored at the surface if `wo` is below.
-#[inline]
-fn towards(wo: Vec3, w: Vec3) -> Vec3 {
-    if wo.z < 0.0 { Vec3::new(w.x, w.y, -w.z) } else { w }
+    #[inline(always)]
+    fn sample(&self, view: &LocalScattering<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
+        view.sample(uc, u, Mode::Radiance).0
+    }
+    #[inline(always)]
+    fn has_density(&self) -> R::Mask {
+        self.has_density()
+    }
 }
 
 #[cfg(test)]

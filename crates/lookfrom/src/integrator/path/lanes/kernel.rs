@@ -91,16 +91,20 @@ impl<S: Simd> Surfaces<S> {
     fn connect<B: LaneBsdf<f32x8<S>>>(
         &self,
         simd: S,
-        bsdf: &B,
+        (bsdf, view): (&B, &B::View),
         beta: Spectrum<f32x8<S>>,
         lights: &LightSamples,
     ) -> Connections {
         let wi = gather(simd, &lights.wi);
         let local = self.local(wi);
-        let f = bsdf.f(self.wo, local) * Float::abs(local.z);
         let zero = f32x8::splat(simd, 0.0);
+        let (mut f, bsdf_pdf) = bsdf.f_and_pdf(view, local);
+        if B::KIND.needs_agreement {
+            f = Spectrum::select(self.agrees(wi), f, Spectrum::splat(zero));
+        }
+        let f = f * Float::abs(local.z);
         let is_delta = mask32x8::from_bitmask(simd, lights.is_delta.into());
-        let bsdf_pdf = Float::select(is_delta, zero, bsdf.pdf(self.wo, local));
+        let bsdf_pdf = Float::select(is_delta, zero, bsdf_pdf);
         let light_pdf = f32x8::load_array(simd, lights.probability) * f32x8::load_array(simd, lights.pdf);
         let weight = Float::select(is_delta, zero.like(1.0), power_heuristic(light_pdf, bsdf_pdf));
         let contribution = beta * f * gather_spectrum(simd, &lights.li) * (weight / light_pdf);
@@ -118,6 +122,14 @@ impl<S: Simd> Surfaces<S> {
         }
     }
 
+    /// True where the geometric and the shading normal agree whether `wo` and `wi`, in render space, are on one side.
+    #[inline(always)]
+    fn agrees(&self, wi: Vector<f32x8<S>>) -> mask32x8<S> {
+        let zero = self.cos_ng.like(0.0);
+        let is_beside = (self.wo.z * wi.dot(self.n)).gt(zero);
+        (self.cos_ng * wi.dot(Vector::narrow(self.ng))).gt(zero).choose(is_beside, !is_beside)
+    }
+
     /// Samples lights and directions at the surfaces.
     #[inline(always)]
     fn scatter<B: LaneBsdf<f32x8<S>>>(
@@ -129,6 +141,7 @@ impl<S: Simd> Surfaces<S> {
     ) -> Scattered {
         let streams = SampleStreams::new(simd, &paths.streams);
         let zero = f32x8::splat(simd, 0.0);
+        let view = bsdf.view(self.wo);
         let beta = gather_spectrum(simd, &by_lane!(lane => paths.paths[lane].beta));
 
         // Sample one light.
@@ -137,7 +150,7 @@ impl<S: Simd> Surfaces<S> {
         if has_density.any() {
             lights =
                 LightSamples::new(simd, world, self, &streams, &paths.modes, has_density.to_bitmask() as u32);
-            connections = self.connect(simd, bsdf, beta, &lights);
+            connections = self.connect(simd, (bsdf, &view), beta, &lights);
         }
 
         // Go on in one direction.
@@ -145,10 +158,13 @@ impl<S: Simd> Surfaces<S> {
             true => streams.two(dimension::CHOICE),
             false => [zero; 2],
         };
-        let sample = bsdf.sample(self.wo, which_lobe, streams.two(dimension::DIRECTION)).if_useful();
+        let mut sample = bsdf.sample(&view, which_lobe, streams.two(dimension::DIRECTION)).if_useful();
         let wi = self.render(sample.wi);
+        if B::KIND.needs_agreement {
+            sample.is_valid &= self.agrees(wi);
+        }
         let mis_pdf = match B::KIND.pdf_is_proportional {
-            true => bsdf.pdf(self.wo, self.local(wi)),
+            true => bsdf.pdf(&view, self.local(wi)),
             false => sample.pdf,
         };
         let cos = Float::abs(wi.dot(self.n));

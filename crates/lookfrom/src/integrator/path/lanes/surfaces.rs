@@ -73,13 +73,15 @@ impl SurfaceColumns {
     pub(super) fn load<S: Simd>(&self, simd: S) -> Surfaces<S> {
         let [s, t, n] = [load(simd, &self.frame[0]), load(simd, &self.frame[1]), load(simd, &self.frame[2])];
         let wo = load(simd, &self.wo);
+        let ng = load_f64(simd, &self.ng);
         Surfaces {
             points: Points { position: load_f64(simd, &self.position), error: load_f64(simd, &self.error) },
-            ng: load_f64(simd, &self.ng),
+            ng,
             s,
             t,
             n,
             wo: Vector { x: wo.dot(s), y: wo.dot(t), z: wo.dot(n) },
+            cos_ng: wo.dot(Vector::narrow(ng)),
         }
     }
 }
@@ -95,6 +97,8 @@ pub(super) struct Surfaces<S: Simd> {
     pub(super) n: Vector<f32x8<S>>,
     /// In the frame.
     pub(super) wo: Vector<f32x8<S>>,
+    /// The cosines of `wo` to the geometric normals.
+    pub(super) cos_ng: f32x8<S>,
 }
 
 impl<S: Simd> Surfaces<S> {

@@ -8,6 +8,8 @@ use crate::core::hash;
 use crate::core::lanes::{gather, scatter, scatter_spectrum};
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::bsdf::layered::CoatLayer;
+use crate::shading::bsdf::principled::Parameters;
+use crate::shading::bsdf::principled::film::Film;
 
 /// Two directions and three numbers.
 #[derive(Clone, Copy, Debug)]
@@ -32,9 +34,11 @@ fn bits(x: f32) -> u32 {
 }
 
 impl Values {
-    fn new(f: Spectrum, pdf: f32, sample: Option<BsdfSample>) -> Self {
+    fn new(kind: Kind, f: Spectrum, pdf: f32, sample: Option<BsdfSample>) -> Self {
         let sample = sample.map(|BsdfSample { wi, f, pdf, eta, lobe, .. }| {
             let ([x, y, z], [a, b, c, d]) = (wi.to_array(), f.0);
+            // In lanes, the kind of scattering is that of the class.
+            let lobe = kind.lobe(lobe.is_specular(), lobe.is_transmission());
             ([x, y, z, a, b, c, d, pdf, eta].map(bits), lobe)
         });
         Self { f: f.0.map(bits), pdf: bits(pdf), sample }
@@ -44,7 +48,7 @@ impl Values {
 struct Eight<'a, B>(&'a [&'a B; LANES], &'a [Query; LANES]);
 
 impl<B: RowBsdf> Kernel for Eight<'_, B> {
-    type Output = [Values; LANES];
+    type Output = (Kind, [Values; LANES]);
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
@@ -54,12 +58,15 @@ impl<B: RowBsdf> Kernel for Eight<'_, B> {
         let wi = gather(simd, &by_lane!(lane => query[lane].wi.to_array()));
         let load = |values: [f32; LANES]| f32x8::load_array(simd, values);
         let u = [load(by_lane!(lane => query[lane].u[0])), load(by_lane!(lane => query[lane].u[1]))];
-        let sample = bsdf.sample(wo, load(by_lane!(lane => query[lane].uc)), u).if_useful();
-        let (f, pdf) = (scatter_spectrum(bsdf.f(wo, wi)), bsdf.pdf(wo, wi));
+        let view = bsdf.view(wo);
+        let sample = bsdf.sample(&view, load(by_lane!(lane => query[lane].uc)), u).if_useful();
+        let (f, pdf) = (scatter_spectrum(bsdf.f(&view, wi)), bsdf.pdf(&view, wi));
+        let both = bsdf.f_and_pdf(&view, wi);
+        let both = (scatter_spectrum(both.0), both.1);
         let (sampled_f, sampled_wi) = (scatter_spectrum(sample.f), scatter(sample.wi));
         let mask = |mask: lookfrom_simd::mask32x8<S>, lane: usize| mask.to_bitmask() & 1 << lane != 0;
         let kind = <B::Lanes<S> as LaneBsdf<f32x8<S>>>::KIND;
-        std::array::from_fn(|lane| {
+        let values = std::array::from_fn(|lane| {
             let scalar = mask(sample.is_valid, lane).then(|| BsdfSample {
                 wi: sampled_wi[lane].into(),
                 f: sampled_f[lane],
@@ -68,8 +75,12 @@ impl<B: RowBsdf> Kernel for Eight<'_, B> {
                 eta: sample.eta[lane],
                 pdf_is_proportional: kind.pdf_is_proportional,
             });
-            Values::new(f[lane], pdf[lane], scalar)
-        })
+            let values = Values::new(kind, f[lane], pdf[lane], scalar);
+            assert_eq!(both.0[lane].0.map(bits), values.f);
+            assert!(f[lane].is_black() || bits(both.1[lane]) == values.pdf);
+            values
+        });
+        (kind, values)
     }
 }
 
@@ -129,10 +140,12 @@ fn compare<B: RowBsdf>(bsdf: impl Fn(u64) -> Bsdf) {
             Query { wo: direction(10, index), wi: direction(20, index), uc: unit(5, index), u }
         });
         for &level in &levels {
-            for (lane, together) in dispatch(level, Eight(&rows, &queries)).into_iter().enumerate() {
+            let (kind, values_together) = dispatch(level, Eight(&rows, &queries));
+            for (lane, together) in values_together.into_iter().enumerate() {
                 let Query { wo, wi, uc, u } = queries[lane];
                 let bsdf = &bsdfs[lane];
                 let alone = Values::new(
+                    kind,
                     bsdf.f(wo, wi, Mode::Radiance),
                     bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL),
                     bsdf.sample(wo, uc, u, Mode::Radiance, Lobes::ALL),
@@ -144,6 +157,59 @@ fn compare<B: RowBsdf>(bsdf: impl Fn(u64) -> Bsdf) {
         }
     }
     assert!(samples > 10_000 && values > 1000, "{samples} samples, {values} values");
+}
+
+/// A number of 0 … 1, often one of both.
+fn share(seed: u64, index: u64) -> f32 {
+    match hash::pair(seed, index) >> 30 & 3 {
+        0 => 0.0,
+        1 => 1.0,
+        2 => unit(seed, index),
+        _ => any(seed, index, 12).min(1.0),
+    }
+}
+
+/// Surfaces with any of the features of glTF's material.
+fn principled(index: u64) -> Bsdf {
+    let has = |seed| hash::pair(seed, index).is_multiple_of(3);
+    let greatest = |color: Spectrum| color.max_lane();
+    let normal = direction(100, index);
+    let f0 = spectrum(104, index);
+    let sheen_color = if has(108) { spectrum(109, index) } else { Spectrum::BLACK };
+    let alpha = any(113, index, 12);
+    // Eight are in one mode.
+    let is_spectral = (index / 8).is_multiple_of(2);
+    let lambda = std::array::from_fn(|k| 380.0 + 400.0 * unit(114 + k as u64, index));
+    Bsdf::Principled(Principled::new(&Parameters {
+        base_color: spectrum(118, index),
+        metallic: share(122, index),
+        roughness: if has(123) { TrowbridgeReitz::SMOOTH } else { roughness(124, index) },
+        eta: [1.0, 0.0, any(126, index, 3), any(127, index, 1)][(index % 4) as usize],
+        f0,
+        f0_greatest: greatest(f0),
+        f90: share(128, index),
+        transmission: share(129, index),
+        is_solid: hash::pair(130, index).is_multiple_of(2),
+        diffuse_transmission: share(131, index),
+        diffuse_transmission_color: spectrum(132, index),
+        clearcoat: if has(136) { share(137, index) } else { 0.0 },
+        clearcoat_roughness: TrowbridgeReitz::new(alpha, alpha),
+        clearcoat_normal: if has(138) { Vec3::Z } else { Vec3 { z: normal.z.abs(), ..normal } },
+        sheen_color,
+        sheen_greatest: greatest(sheen_color),
+        sheen_roughness: share(139, index),
+        iridescence: if has(140) { share(141, index) } else { 0.0 },
+        film: Film {
+            eta: 1.0 + any(142, index, 3),
+            thickness: any(143, index, 11),
+            wavelengths: is_spectral.then_some(lambda),
+        },
+    }))
+}
+
+#[test]
+fn principled_surfaces_in_lanes() {
+    compare::<Principled>(principled);
 }
 
 #[test]

@@ -8,9 +8,11 @@
 //! split sum of Karis 2013). With F = 1 their sum is the albedo of single scattering; the rest is multiple
 //! scattering (Kulla & Conty 2017).
 
-use glam::Vec3;
 use std::f32::consts::PI;
 use std::sync::LazyLock;
+
+use glam::Vec3;
+use lookfrom_simd::{Float, Mask, Real};
 
 use super::sheen;
 use crate::core::math::{self, schlick};
@@ -26,35 +28,61 @@ const STEPS: [usize; 2] = [8, 24];
 
 /// The directional albedo of a rough reflector, as a split sum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Split {
+pub(super) struct Split<R = f32> {
     /// The mean of 1 − s.
-    pub(super) straight: f32,
+    pub(super) straight: R,
     /// The mean of s.
-    pub(super) grazing: f32,
+    pub(super) grazing: R,
 }
 
-/// The means of 1 − s and of s for a smooth reflector.
-pub(super) const SMOOTH_MEAN: Split = Split { straight: 20.0 / 21.0, grazing: 1.0 / 21.0 };
-
-impl Split {
+impl<R: Real> Split<R> {
     /// The albedo for a Fresnel term of 1.
-    #[inline]
-    pub(super) fn all(self) -> f32 {
+    #[inline(always)]
+    pub(super) fn all(self) -> R {
         self.straight + self.grazing
     }
 
     /// The albedo for a given F0 and F90.
-    #[inline]
-    pub(super) fn of(self, f0: f32, f90: f32) -> f32 {
+    #[inline(always)]
+    pub(super) fn of(self, f0: R, f90: R) -> R {
         f0 * self.straight + f90 * self.grazing
     }
 
-    fn mixed(self, other: Self, t: f32) -> Self {
+    /// `yes` where the mask is set, `no` elsewhere.
+    #[inline(always)]
+    fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
         Self {
-            straight: self.straight + t * (other.straight - self.straight),
-            grazing: self.grazing + t * (other.grazing - self.grazing),
+            straight: R::select(mask, yes.straight, no.straight),
+            grazing: R::select(mask, yes.grazing, no.grazing),
         }
     }
+
+    #[inline(always)]
+    fn mixed(self, other: Self, t: R) -> Self {
+        Self { straight: mix(self.straight, other.straight, t), grazing: mix(self.grazing, other.grazing, t) }
+    }
+
+    /// The entries of a table at some distance from each index.
+    #[inline(always)]
+    fn lookup(table: &[Split], index: R::Bits, distance: usize) -> Self {
+        Self {
+            straight: R::lookup(
+                index,
+                #[inline(always)]
+                |index| table[index + distance].straight,
+            ),
+            grazing: R::lookup(
+                index,
+                #[inline(always)]
+                |index| table[index + distance].grazing,
+            ),
+        }
+    }
+}
+
+#[inline(always)]
+fn mix<R: Real>(a: R, b: R, t: R) -> R {
+    a + t * (b - a)
 }
 
 struct Mirrors {
@@ -91,43 +119,86 @@ fn cosine(row: usize) -> f32 {
 }
 
 /// The position of a value in 0 … 1 among `count` columns: the column before, and the fraction toward the next.
-#[inline]
-fn place(value: f32, count: usize) -> (usize, f32) {
-    let x = value.clamp(0.0, 1.0) * (count - 1) as f32;
-    let before = (x as usize).min(count - 2);
-    (before, x - before as f32)
+#[inline(always)]
+fn place<R: Real>(value: R, count: usize) -> (R, R) {
+    let x = Float::clamp(value, 0.0, 1.0) * (count - 1) as f32;
+    let before = Float::min(Float::floor(x), x.like((count - 2) as f32));
+    (before, x - before)
+}
+
+/// The index of an entry of a table, from its row and its column.
+#[inline(always)]
+fn index<R: Real>(row: R, column: R) -> R::Bits {
+    (column * COSINES as f32 + row).to_integer()
 }
 
 /// The directional albedo of a rough reflector with α, for an outgoing direction of the given cosine.
-#[inline]
-pub(super) fn mirror(cos: f32, alpha: f32) -> Split {
-    if alpha == 0.0 {
-        let grazing = schlick(cos);
-        return Split { straight: 1.0 - grazing, grazing };
-    }
-    let (row, down) = place(cos.sqrt(), COSINES);
-    let (column, right) = place(alpha.sqrt(), ROUGHNESSES);
-    let table = &MIRRORS.albedo[column * COSINES + row..];
-    let (left, next) = (table[0].mixed(table[1], down), table[COSINES].mixed(table[COSINES + 1], down));
-    left.mixed(next, right)
+///
+/// Not inlined, as the next two, since it is needed in many places.
+#[inline(never)]
+pub(super) fn mirror<R: Real>(cos: R, alpha: R) -> Split<R> {
+    cos.at_level(
+        #[inline(always)]
+        || {
+            let grazing = schlick(cos);
+            let smooth = Split { straight: cos.like(1.0) - grazing, grazing };
+            let is_smooth = Float::eq(alpha, alpha.like(0.0));
+            if is_smooth.all() {
+                return smooth;
+            }
+            let (row, down) = place(Float::sqrt(cos), COSINES);
+            let (column, right) = place(Float::sqrt(alpha), ROUGHNESSES);
+            let (table, at) = (&MIRRORS.albedo, index(row, column));
+            let left = Split::lookup(table, at, 0).mixed(Split::lookup(table, at, 1), down);
+            let next = Split::lookup(table, at, COSINES).mixed(Split::lookup(table, at, COSINES + 1), down);
+            Split::select(is_smooth, smooth, left.mixed(next, right))
+        },
+    )
 }
 
 /// The cosine-weighted mean of [`mirror`] over all directions.
-#[inline]
-pub(super) fn mirror_mean(alpha: f32) -> Split {
-    let (column, right) = place(alpha.sqrt(), ROUGHNESSES);
-    let table = &MIRRORS.mean;
-    table[column].mixed(table[column + 1], right)
+#[inline(never)]
+pub(super) fn mirror_mean<R: Real>(alpha: R) -> Split<R> {
+    alpha.at_level(
+        #[inline(always)]
+        || {
+            let smooth = Split { straight: alpha.like(20.0 / 21.0), grazing: alpha.like(1.0 / 21.0) };
+            let is_smooth = Float::eq(alpha, alpha.like(0.0));
+            if is_smooth.all() {
+                return smooth;
+            }
+            let (column, right) = place(Float::sqrt(alpha), ROUGHNESSES);
+            let (table, at) = (&MIRRORS.mean, column.to_integer());
+            let rough = Split::lookup(table, at, 0).mixed(Split::lookup(table, at, 1), right);
+            Split::select(is_smooth, smooth, rough)
+        },
+    )
 }
 
 /// The directional albedo of white sheen, for an outgoing direction of the given cosine.
-#[inline]
-pub(super) fn sheen(cos: f32, roughness: f32) -> f32 {
-    let (row, down) = place(cos.sqrt(), COSINES);
-    let (column, right) = place(roughness, ROUGHNESSES);
-    let table = &SHEENS[column * COSINES + row..];
-    let mix = |a: f32, b: f32, t: f32| a + t * (b - a);
-    mix(mix(table[0], table[1], down), mix(table[COSINES], table[COSINES + 1], down), right)
+#[inline(never)]
+pub(super) fn sheen<R: Real>(cos: R, roughness: R) -> R {
+    cos.at_level(
+        #[inline(always)]
+        || {
+            let (row, down) = place(Float::sqrt(cos), COSINES);
+            let (column, right) = place(roughness, ROUGHNESSES);
+            let at = index(row, column);
+            let left = mix(sheen_at(at, 0), sheen_at(at, 1), down);
+            mix(left, mix(sheen_at(at, COSINES), sheen_at(at, COSINES + 1), down), right)
+        },
+    )
+}
+
+/// The entries of the sheen's table at some distance from each index.
+#[inline(always)]
+fn sheen_at<R: Real>(index: R::Bits, distance: usize) -> R {
+    let table = &*SHEENS;
+    R::lookup(
+        index,
+        #[inline(always)]
+        |index| table[index + distance],
+    )
 }
 
 /// Integrates over visible normals: each is weighted by the shadowing of the reflected direction.
@@ -138,7 +209,7 @@ fn integrated_mirror(cos: f32, alpha: f32) -> Split {
     }
     let roughness = TrowbridgeReitz { alpha_x: alpha, alpha_y: alpha };
     let g1 = roughness.g1(wo.into());
-    let mut sum = Split::default();
+    let mut sum = Split::<f32>::default();
     let w = Vec3::new(alpha * wo.x, 0.0, wo.z).normalize();
     for radius in 0..STEPS[1] {
         // Denser toward the horizon, where the distribution has its long tail.
@@ -166,7 +237,7 @@ fn integrated_mirror(cos: f32, alpha: f32) -> Split {
 /// `2 ∫ E(μ) μ dμ` of the table's rows with their interpolation.
 fn mean(rows: &[Split]) -> Split {
     const STEPS: usize = 8;
-    let mut sum = Split::default();
+    let mut sum = Split::<f32>::default();
     for row in 0..COSINES - 1 {
         for step in 0..STEPS {
             let t = (step as f32 + 0.5) / STEPS as f32;

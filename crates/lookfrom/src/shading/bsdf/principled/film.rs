@@ -9,107 +9,163 @@
 
 use std::f32::consts::{PI, TAU};
 
+use lookfrom_simd::{Float, Mask, Real};
+
 use crate::core::math::schlick;
 use crate::core::spectrum::Spectrum;
 
 /// A film over a surface, air above it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Film {
+pub struct Film<R = f32> {
     /// Index of refraction, at least 1.
-    pub eta: f32,
+    pub eta: R,
     /// Thickness in nm.
-    pub thickness: f32,
+    pub thickness: R,
     /// The lanes' wavelengths in nm; `None` for red, green and blue.
-    pub wavelengths: Option<[f32; 4]>,
+    pub wavelengths: Option<[R; 4]>,
 }
 
 /// Reflectance at normal incidence of a boundary between indices.
-fn straight(eta: f32, around: f32) -> f32 {
+#[inline(always)]
+fn straight<R: Real>(eta: R, around: R) -> R {
     let ratio = (eta - around) / (eta + around);
     ratio * ratio
 }
 
 /// The reflectances of the two boundaries for light in the film at an angle.
-struct Lane {
+#[derive(Clone, Copy)]
+struct Lane<R> {
     /// Reflectance of the upper boundary.
-    upper: f32,
+    upper: R,
     /// Reflectance of the lower boundary.
-    lower: f32,
+    lower: R,
     /// Phase shift by the boundaries per round trip.
-    phase: f32,
+    phase: R,
 }
 
-impl Lane {
-    /// The mean over all phases, the first coefficient of the series, and the ratio of those that follow.
-    fn series(&self) -> (f32, f32, f32) {
-        let through = 1.0 - self.upper;
-        let both = (self.upper * self.lower).clamp(0.0, 0.9999);
-        let sent = through * through * self.lower / (1.0 - both);
-        (self.upper + sent, sent - through, both.sqrt())
+/// A Fourier series.
+#[derive(Clone, Copy)]
+struct Series<R> {
+    /// The mean over all phases.
+    mean: R,
+    /// The first coefficient.
+    first: R,
+    /// The ratio of those that follow.
+    ratio: R,
+}
+
+impl<R: Real> Lane<R> {
+    #[inline(always)]
+    fn series(&self) -> Series<R> {
+        let one = self.upper.like(1.0);
+        let through = one - self.upper;
+        let both = Float::clamp(self.upper * self.lower, 0.0, 0.9999);
+        let sent = through * through * self.lower / (one - both);
+        Series { mean: self.upper + sent, first: sent - through, ratio: Float::sqrt(both) }
     }
 }
 
-impl Film {
-    /// The reflectance at a cosine, for a surface that has the reflectance `f0` at normal incidence
-    /// without the film.
-    pub(super) fn fresnel(&self, cos: f32, f0: Spectrum) -> Spectrum {
-        // A film of zero thickness vanishes: its index goes to that of air.
-        let t = (self.thickness / 0.03).clamp(0.0, 1.0);
-        let eta = 1.0 + (self.eta - 1.0) * t * t * (3.0 - 2.0 * t);
-        let sin2 = (1.0 - cos * cos).max(0.0) / (eta * eta);
-        if sin2 >= 1.0 {
-            return Spectrum([1.0; 4]);
-        }
-        let cos_inside = (1.0 - sin2).sqrt();
-        let upper0 = straight(eta, 1.0);
-        let upper = upper0 + (1.0 - upper0) * schlick(cos);
-        let beyond = schlick(cos_inside);
+/// Light in the film at an angle.
+struct Inside<R> {
+    /// The film's index.
+    eta: R,
+    /// Reflectance of the upper boundary.
+    upper: R,
+    /// Schlick's weight of grazing incidence on the lower boundary.
+    beyond: R,
+}
+
+impl<R: Real> Inside<R> {
+    /// For a surface of a reflectance at normal incidence.
+    #[inline(always)]
+    fn over(&self, f0: R) -> Lane<R> {
+        let (zero, one, pi) = (f0.like(0.0), f0.like(1.0), f0.like(PI));
+        let root = Float::sqrt(Float::clamp(f0 + 1e-4, 0.0, 0.9999));
+        let base = (one + root) / (one - root);
+        let lower0 = straight(base, self.eta);
         // A phase shift of π for reflection off the denser side: at one of the two boundaries here,
         // for a denser base.
-        let lane = |f0: f32| {
-            let root = (f0 + 1e-4).clamp(0.0, 0.9999).sqrt();
-            let base = (1.0 + root) / (1.0 - root);
-            let lower0 = straight(base, eta);
-            let inner = if eta < 1.0 { 0.0 } else { PI };
-            let phase = inner + if base < eta { PI } else { 0.0 };
-            Lane { upper, lower: lower0 + (1.0 - lower0) * beyond, phase }
-        };
-        let path = 2.0 * eta * self.thickness * cos_inside;
-        match self.wavelengths {
-            Some(lambda) => {
-                Spectrum(std::array::from_fn(|k| at_wavelength(&lane(f0.0[k]), path / lambda[k])))
-            }
-            None => in_rgb(&[0, 1, 2].map(|k| lane(f0.0[k])), path),
-        }
+        let inner = R::select(self.eta.lt(one), zero, pi);
+        let phase = inner + R::select(base.lt(self.eta), pi, zero);
+        Lane { upper: self.upper, lower: lower0 + (one - lower0) * self.beyond, phase }
+    }
+}
+
+impl<R: Real> Film<R> {
+    /// The reflectance at a cosine, for a surface that has the reflectance `f0` at normal incidence
+    /// without the film; always within 0 … 1. Not inlined, since it is needed in many places.
+    #[inline(never)]
+    pub(super) fn fresnel(&self, cos: R, f0: Spectrum<R>) -> Spectrum<R> {
+        cos.at_level(
+            #[inline(always)]
+            || {
+                let (zero, one) = (cos.like(0.0), cos.like(1.0));
+                // A film of zero thickness vanishes: its index goes to that of air.
+                let t = Float::clamp(self.thickness / 0.03, 0.0, 1.0);
+                let eta = (self.eta - 1.0) * t * t * (cos.like(3.0) - t * 2.0) + 1.0;
+                let sin2 = Float::max(one - cos * cos, zero) / (eta * eta);
+                let is_total = !sin2.lt(one);
+                if is_total.all() {
+                    return Spectrum::splat(one);
+                }
+                let cos_inside = Float::sqrt(one - sin2);
+                let upper0 = straight(eta, one);
+                let upper = upper0 + (one - upper0) * schlick(cos);
+                let inside = Inside { eta, upper, beyond: schlick(cos_inside) };
+                let [a, b, c, d] = f0.0;
+                let lanes = [inside.over(a), inside.over(b), inside.over(c)];
+                let path = eta * 2.0 * self.thickness * cos_inside;
+                let reflected = match self.wavelengths {
+                    Some(lambda) => Spectrum([
+                        at_wavelength(&lanes[0], path / lambda[0]),
+                        at_wavelength(&lanes[1], path / lambda[1]),
+                        at_wavelength(&lanes[2], path / lambda[2]),
+                        at_wavelength(&inside.over(d), path / lambda[3]),
+                    ]),
+                    None => in_rgb(&lanes, path),
+                };
+                Spectrum::select(is_total, Spectrum::splat(one), reflected)
+            },
+        )
     }
 }
 
 /// The whole series at one wavelength, for the optical path in wavelengths:
 /// `Σ r^m cos mδ = (r cos δ − r²) / (1 − 2 r cos δ + r²)`.
-fn at_wavelength(lane: &Lane, turns: f32) -> f32 {
-    let (mean, first, ratio) = lane.series();
-    let cos = libm::cosf(TAU * (turns - turns.floor()) + lane.phase);
-    let sum = ratio * (cos - ratio) / (1.0 - 2.0 * ratio * cos + ratio * ratio);
-    (mean + 2.0 * first * sum).clamp(0.0, 1.0)
+#[inline(always)]
+fn at_wavelength<R: Real>(lane: &Lane<R>, turns: R) -> R {
+    let Series { mean, first, ratio } = lane.series();
+    let cos = ((turns - Float::floor(turns)) * TAU + lane.phase).map(libm::cosf);
+    let sum = ratio * (cos - ratio) / (ratio.like(1.0) - ratio * 2.0 * cos + ratio * ratio);
+    Float::clamp(mean + first * 2.0 * sum, 0.0, 1.0)
 }
 
 /// Two terms of the series, integrated against the observer's sensitivities.
-fn in_rgb(lanes: &[Lane; 3], path: f32) -> Spectrum {
-    let series = [0, 1, 2].map(|k| lanes[k].series());
-    let mut sum = [0, 1, 2].map(|k| series[k].0);
-    let mut power = [1.0; 3];
-    for m in 1..=2 {
-        let seen = sensitivity(m as f32 * path, [0, 1, 2].map(|k| m as f32 * lanes[k].phase));
-        for k in 0..3 {
-            power[k] *= series[k].2;
-            sum[k] += 2.0 * series[k].1 * power[k] * seen[k];
-        }
-    }
-    Spectrum::from_rgb(sum.map(|c| c.clamp(0.0, 1.0)))
+#[inline(always)]
+fn in_rgb<R: Real>(lanes: &[Lane<R>; 3], path: R) -> Spectrum<R> {
+    let series = [lanes[0].series(), lanes[1].series(), lanes[2].series()];
+    let phase = [lanes[0].phase, lanes[1].phase, lanes[2].phase];
+    let once = sensitivity(path, phase);
+    let twice = sensitivity(path * 2.0, [phase[0] * 2.0, phase[1] * 2.0, phase[2] * 2.0]);
+    Spectrum([
+        two_terms(&series[0], once[0], twice[0]),
+        two_terms(&series[1], once[1], twice[1]),
+        two_terms(&series[2], once[2], twice[2]),
+        path.like(0.0),
+    ])
+}
+
+/// A series by its mean and two terms, each with what is seen of it.
+#[inline(always)]
+fn two_terms<R: Real>(series: &Series<R>, once: R, twice: R) -> R {
+    let &Series { mean, first, ratio } = series;
+    let sum = mean + first * 2.0 * ratio * once + first * 2.0 * (ratio * ratio) * twice;
+    Float::clamp(sum, 0.0, 1.0)
 }
 
 /// The Fourier transform of the observer's sensitivities at an optical path in nm, in linear Rec. 709.
-fn sensitivity(path: f32, shift: [f32; 3]) -> [f32; 3] {
+#[inline(always)]
+fn sensitivity<R: Real>(path: R, shift: [R; 3]) -> [R; 3] {
     /// Gaussians over wave number: height, mean, variance; the last one adds to x.
     const FIT: [[f32; 3]; 4] = [
         [5.4856e-13, 1.6810e6, 4.3278e9],
@@ -117,16 +173,20 @@ fn sensitivity(path: f32, shift: [f32; 3]) -> [f32; 3] {
         [5.2481e-13, 2.2084e6, 6.6121e9],
         [9.7470e-14, 2.2399e6, 4.5282e9],
     ];
-    let phase = TAU * path * 1e-9;
-    let term = |[height, middle, variance]: [f32; 3], shift: f32| {
-        let spread = libm::expf(-phase * phase * variance);
-        height * (TAU * variance).sqrt() * libm::cosf(middle * phase + shift) * spread / 1.0685e-7
-    };
-    let [x, y, z] = [0, 1, 2].map(|k| term(FIT[k], shift[k]));
-    let x = x + term(FIT[3], shift[0]);
+    let phase = path * TAU * 1e-9;
+    let [x, y, z] =
+        [term(FIT[0], phase, shift[0]), term(FIT[1], phase, shift[1]), term(FIT[2], phase, shift[2])];
+    let x = x + term(FIT[3], phase, shift[0]);
     [
-        3.240_454_2 * x - 1.537_138_5 * y - 0.498_531_4 * z,
-        -0.969_266 * x + 1.876_010_8 * y + 0.041_556 * z,
-        0.055_643_4 * x - 0.204_025_9 * y + 1.057_225_2 * z,
+        x * 3.240_454_2 - y * 1.537_138_5 - z * 0.498_531_4,
+        x * -0.969_266 + y * 1.876_010_8 + z * 0.041_556,
+        x * 0.055_643_4 - y * 0.204_025_9 + z * 1.057_225_2,
     ]
+}
+
+/// The Fourier transform of a Gaussian.
+#[inline(always)]
+fn term<R: Real>([height, middle, variance]: [f32; 3], phase: R, shift: R) -> R {
+    let spread = (-phase * phase * variance).map(libm::expf);
+    (phase * middle + shift).map(libm::cosf) * (height * (TAU * variance).sqrt()) * spread / 1.0685e-7
 }

@@ -1,14 +1,16 @@
 //! Sheen and clear coat over a principled surface, for one outgoing direction.
 
-use glam::Vec3;
+use lookfrom_simd::{Float, Mask, Real};
 
-use super::Principled;
 use super::albedo;
+use super::look::Look;
 use super::sheen::Sheen;
-use crate::core::math::{self, schlick};
+use crate::core::math::schlick;
+use crate::core::optics;
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 use crate::core::warp;
-use crate::shading::bsdf::conductor::try_half_vector;
+use crate::shading::bsdf::conductor::half_vector;
 use crate::shading::bsdf::is_grazing;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 
@@ -16,114 +18,148 @@ use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 const COAT_F0: f32 = 0.04;
 
 /// The sheen on top of all layers.
-pub(super) struct Fibres {
-    pub(super) fibres: Sheen,
-    pub(super) color: Spectrum,
-    pub(super) greatest: f32,
-    pub(super) roughness: f32,
-    /// Its albedo along `wo`, which attenuates the layers below.
-    pub(super) taken: f32,
+pub(super) struct Fibres<R: Real> {
+    fibres: Sheen<R>,
+    pub(super) color: Spectrum<R>,
+    greatest: R,
+    roughness: R,
+    exists: R::Mask,
+    /// Its albedo along `wo`, which attenuates the layers below; 0 where there is no sheen.
+    pub(super) taken: R,
 }
 
-impl Fibres {
-    pub(super) fn new(look: &Principled, cos: f32) -> Option<Self> {
-        if look.sheen_color.is_black() {
+impl<R: Real> Fibres<R> {
+    /// `None` where no surface has a sheen.
+    #[inline(always)]
+    pub(super) fn new(look: &Look<R>, cos: R) -> Option<Self> {
+        let exists = !look.sheen_color.is_black();
+        if !exists.any() {
             return None;
         }
-        let roughness = look.sheen_roughness.value();
+        let roughness = look.sheen_roughness;
         let mut fibres = Self {
             fibres: Sheen::new(roughness),
-            color: look.sheen_color.lanes(),
-            greatest: look.sheen_greatest.value(),
+            color: look.sheen_color,
+            greatest: R::select(exists, look.sheen_greatest, cos.like(0.0)),
             roughness,
-            taken: 0.0,
+            exists,
+            taken: cos.like(0.0),
         };
         fibres.taken = fibres.taken(cos);
         Some(fibres)
     }
 
-    pub(super) fn albedo(&self, cos: f32) -> f32 {
+    #[inline(always)]
+    pub(super) fn albedo(&self, cos: R) -> R {
         albedo::sheen(cos, self.roughness)
     }
 
-    pub(super) fn taken(&self, cos: f32) -> f32 {
-        (self.greatest * self.albedo(cos)).min(1.0)
+    #[inline(always)]
+    pub(super) fn taken(&self, cos: R) -> R {
+        Float::min(self.greatest * self.albedo(cos), cos.like(1.0))
     }
 
-    pub(super) fn f(&self, wo: Vec3, wi: Vec3) -> f32 {
-        self.fibres.f(wo, wi)
+    /// Its BSDF for two directions above the surface.
+    #[inline(always)]
+    pub(super) fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+        let f = R::select(self.exists, self.fibres.f(wo, wi), wo.z.like(0.0));
+        self.color * f
     }
 }
 
 /// A clear coat.
-pub(super) struct Coat {
-    pub(super) amount: f32,
-    pub(super) roughness: TrowbridgeReitz,
-    pub(super) alpha: f32,
+pub(super) struct Coat<R: Real> {
+    amount: R,
+    roughness: TrowbridgeReitz<R>,
+    alpha: R,
     /// The axes of the coat's frame; the last is its normal.
-    pub(super) frame: [Vec3; 3],
+    frame: [Vector<R>; 3],
     /// ω_o in this frame.
-    pub(super) wo: Vec3,
-    /// Its albedo along `wo`, which attenuates the layers below.
-    pub(super) taken: f32,
+    wo: Vector<R>,
+    /// Its albedo along `wo`, which attenuates the layers below; 0 where there is no coat.
+    pub(super) taken: R,
 }
 
-impl Coat {
-    pub(super) fn new(look: &Principled, wo: Vec3) -> Option<Self> {
-        let amount = look.coat.value();
-        if amount == 0.0 {
+impl<R: Real> Coat<R> {
+    /// `None` where no surface has a coat.
+    #[inline(always)]
+    pub(super) fn new(look: &Look<R>, wo: Vector<R>) -> Option<Self> {
+        let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
+        let amount = look.clearcoat;
+        if !amount.gt(zero).any() {
             return None;
         }
-        let roughness = TrowbridgeReitz { alpha_x: look.coat_alpha, alpha_y: look.coat_alpha };
-        let n = look.parameters().clearcoat_normal;
-        let (s, t) = warp::orthonormal_basis(n);
-        let alpha = if roughness.is_smooth() { 0.0 } else { look.coat_alpha.min(1.0) };
-        let mut coat = Self { amount, roughness, alpha, frame: [s, t, n], wo, taken: 0.0 };
+        let roughness = look.clearcoat_roughness;
+        let n = look.clearcoat_normal;
+        let (s, t) = warp::basis_about(n);
+        let alpha = R::select(roughness.is_smooth(), zero, Float::min(roughness.alpha_x, one));
+        let mut coat = Self { amount, roughness, alpha, frame: [s, t, n], wo, taken: zero };
         coat.wo = coat.local(wo);
         coat.taken = coat.taken(coat.wo.z);
         Some(coat)
     }
 
-    pub(super) fn local(&self, w: Vec3) -> Vec3 {
-        Vec3::from_array(self.frame.map(|axis| w.dot(axis)))
+    #[inline(always)]
+    pub(super) fn local(&self, w: Vector<R>) -> Vector<R> {
+        let [s, t, n] = self.frame;
+        Vector { x: w.dot(s), y: w.dot(t), z: w.dot(n) }
+    }
+
+    /// True where it reflects in a single direction.
+    #[inline(always)]
+    pub(super) fn is_sharp(&self) -> R::Mask {
+        Float::eq(self.alpha, self.alpha.like(0.0))
     }
 
     /// Its albedo for light of the given cosine to its normal; 0 from behind.
-    pub(super) fn taken(&self, cos: f32) -> f32 {
-        if cos > 0.0 { self.amount * albedo::mirror(cos.min(1.0), self.alpha).of(COAT_F0, 1.0) } else { 0.0 }
+    #[inline(always)]
+    pub(super) fn taken(&self, cos: R) -> R {
+        let (zero, one) = (cos.like(0.0), cos.like(1.0));
+        let mirror = albedo::mirror(Float::min(cos, one), self.alpha);
+        R::select(cos.gt(zero), self.amount * mirror.of(cos.like(COAT_F0), one), zero)
     }
 
-    /// `wi` in its frame and the half vector, where both directions are above it.
-    pub(super) fn facet(&self, wi: Vec3) -> Option<(Vec3, Vec3)> {
+    /// `wi` in its frame, the half vector, and whether both directions are above it.
+    #[inline(always)]
+    fn facet(&self, wi: Vector<R>) -> (Vector<R>, Vector<R>, R::Mask) {
+        let zero = wi.z.like(0.0);
         let wi = self.local(wi);
-        if self.alpha == 0.0 || self.wo.z <= 0.0 || wi.z <= 0.0 || is_grazing(self.wo) || is_grazing(wi) {
-            return None;
-        }
-        Some((wi, try_half_vector(self.wo, wi)?))
+        let is_lit = self.wo.z.gt(zero) & wi.z.gt(zero) & !is_grazing(self.wo) & !is_grazing(wi);
+        let (wm, exists) = half_vector(self.wo, wi);
+        (wi, wm, exists & is_lit & !self.is_sharp())
     }
 
     /// Its BSDF per cosine to the normal of the surface below.
-    pub(super) fn f(&self, wi: Vec3) -> f32 {
-        let Some((local, wm)) = self.facet(wi) else { return 0.0 };
-        let fresnel = COAT_F0 + (1.0 - COAT_F0) * schlick(self.wo.dot(wm));
-        let visible = self.roughness.d(wm.into()) * self.roughness.g(self.wo.into(), local.into());
-        self.amount * fresnel * visible / (4.0 * self.wo.z * wi.z)
-    }
-
-    pub(super) fn pdf(&self, wi: Vec3) -> f32 {
-        self.facet(wi)
-            .map_or(0.0, |(_, wm)| 0.25 * self.roughness.visible_per_cosine(self.wo.into(), wm.into()))
-    }
-
-    /// Samples a direction above the coat and above the surface.
-    pub(super) fn sample(&self, u: [f32; 2]) -> Option<Vec3> {
-        if self.wo.z <= 0.0 || is_grazing(self.wo) {
-            return None;
+    #[inline(always)]
+    pub(super) fn f(&self, wi: Vector<R>) -> R {
+        let zero = wi.z.like(0.0);
+        let (local, wm, is_lit) = self.facet(wi);
+        let is_lit = is_lit & self.amount.gt(zero);
+        if !is_lit.any() {
+            return zero;
         }
-        let wm = if self.alpha == 0.0 { Vec3::Z } else { self.roughness.sample(self.wo.into(), u).into() };
-        let local = math::reflect(self.wo, wm);
+        let fresnel = schlick(self.wo.dot(wm)) * (1.0 - COAT_F0) + COAT_F0;
+        let visible = self.roughness.d(wm) * self.roughness.g(self.wo, local);
+        R::select(is_lit, self.amount * fresnel * visible / (self.wo.z * 4.0 * wi.z), zero)
+    }
+
+    #[inline(always)]
+    pub(super) fn pdf(&self, wi: Vector<R>) -> R {
+        let (_, wm, is_lit) = self.facet(wi);
+        let pdf = self.roughness.visible_per_cosine(self.wo, wm) * 0.25;
+        R::select(is_lit, pdf, wi.z.like(0.0))
+    }
+
+    /// Samples a direction above the coat and above the surface; also whether there is one.
+    #[inline(always)]
+    pub(super) fn sample(&self, u: [R; 2]) -> (Vector<R>, R::Mask) {
+        let (zero, one) = (self.alpha.like(0.0), self.alpha.like(1.0));
+        let up = Vector { x: zero, y: zero, z: one };
+        let wm = Vector::select(self.is_sharp(), up, self.roughness.sample(self.wo, u));
+        let local = optics::reflect(self.wo, wm);
         let [s, t, n] = self.frame;
-        let wi = (local.x * s + local.y * t + local.z * n).normalize();
-        (local.z > 0.0 && wi.z > 0.0 && !is_grazing(wi)).then_some(wi)
+        let wi = (s * local.x + t * local.y + n * local.z).normalize();
+        let is_above = local.z.gt(zero) & wi.z.gt(zero) & !is_grazing(wi);
+        (wi, is_above & self.wo.z.gt(zero) & !is_grazing(self.wo))
     }
 }

@@ -4,11 +4,14 @@
 //! `f = D / (4 cos θ_o cos θ_i (1 + Λ_o + Λ_i))`, times a colour. Directions are sampled uniformly over the hemisphere:
 //! the lobe is broad, and where it is not, it rises toward the horizon, where a uniform density does best.
 
-use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
 
+use glam::Vec3;
+use lookfrom_simd::{Float, Mask, Real};
+
 use crate::core::math;
-use crate::shading::bsdf::conductor::try_half_vector;
+use crate::core::vector::Vector;
+use crate::shading::bsdf::conductor::half_vector;
 
 /// Smallest roughness: below it, fibres would be visible at the horizon only, and excessively bright there.
 const SMOOTHEST: f32 = 0.07;
@@ -18,46 +21,81 @@ pub(super) const PDF: f32 = 0.5 * FRAC_1_PI;
 
 /// Sheen of a given roughness.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sheen {
-    alpha: f32,
+pub(super) struct Sheen<R = f32> {
+    alpha: R,
     /// Coefficients of the fit of ln Λ.
-    fit: [f32; 5],
+    fit: [R; 5],
 }
 
-impl Sheen {
+impl<R: Real> Sheen<R> {
     /// By glTF's roughness, whose square is α.
-    pub(super) fn new(roughness: f32) -> Self {
-        const SHARP: [f32; 5] = [25.3245, 3.32435, 0.16801, -1.27393, -4.85967];
-        const ROUGH: [f32; 5] = [21.5473, 3.82987, 0.19823, -1.97760, -4.32054];
-        let roughness = roughness.clamp(SMOOTHEST, 1.0);
+    #[inline(always)]
+    pub(super) fn new(roughness: R) -> Self {
+        let roughness = Float::clamp(roughness, SMOOTHEST, 1.0);
         let alpha = roughness * roughness;
-        let t = (1.0 - alpha) * (1.0 - alpha);
-        Self { alpha, fit: std::array::from_fn(|k| ROUGH[k] + t * (SHARP[k] - ROUGH[k])) }
+        let t = (alpha.like(1.0) - alpha) * (alpha.like(1.0) - alpha);
+        Self {
+            alpha,
+            fit: [
+                coefficient(t, 0),
+                coefficient(t, 1),
+                coefficient(t, 2),
+                coefficient(t, 3),
+                coefficient(t, 4),
+            ],
+        }
     }
 
-    fn log_lambda(&self, cos: f32) -> f32 {
+    #[inline(always)]
+    fn log_lambda(&self, cos: R) -> R {
         let [a, b, c, d, e] = self.fit;
-        a / (1.0 + b * math::power(cos, c)) + d * cos + e
+        a / (b * cos.zip(c, math::power) + 1.0) + d * cos + e
     }
 
     /// Λ: masked over visible parts, for a cosine in 0 … 1.
-    fn lambda(&self, cos: f32) -> f32 {
-        let exponent = if cos < 0.5 {
-            self.log_lambda(cos)
-        } else {
-            2.0 * self.log_lambda(0.5) - self.log_lambda(1.0 - cos)
+    #[inline(always)]
+    fn lambda(&self, cos: R) -> R {
+        let half = cos.like(0.5);
+        let is_low = cos.lt(half);
+        let near = self.log_lambda(R::select(is_low, cos, cos.like(1.0) - cos));
+        let exponent = match is_low.all() {
+            true => near,
+            false => R::select(is_low, near, self.log_lambda(half) * 2.0 - near),
         };
-        libm::expf(exponent)
+        exponent.map(libm::expf)
     }
 
     /// `f` of white fibres, for two directions above the surface.
-    pub(super) fn f(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let Some(wm) = try_half_vector(wo, wi) else { return 0.0 };
-        let sin2 = (1.0 - wm.z * wm.z).max(0.0);
-        let d = (2.0 + 1.0 / self.alpha) * math::power(sin2, 0.5 / self.alpha) / (2.0 * PI);
-        let [o, i] = [wo.z.min(1.0), wi.z.min(1.0)];
-        d / (4.0 * o * i * (1.0 + self.lambda(o) + self.lambda(i)))
+    #[inline(always)]
+    pub(super) fn f(&self, wo: impl Into<Vector<R>>, wi: impl Into<Vector<R>>) -> R {
+        self.f_by(wo.into(), wi.into())
     }
+
+    /// Not inlined, since it is long.
+    #[inline(never)]
+    fn f_by(&self, wo: Vector<R>, wi: Vector<R>) -> R {
+        self.alpha.at_level(
+            #[inline(always)]
+            || {
+                let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
+                let (wm, exists) = half_vector(wo, wi);
+                let sin2 = Float::max(one - wm.z * wm.z, zero);
+                let power = sin2.zip(one.like(0.5) / self.alpha, math::power);
+                let d = (one / self.alpha + 2.0) * power / (2.0 * PI);
+                let (o, i) = (Float::min(wo.z, one), Float::min(wi.z, one));
+                let f = d / (o * 4.0 * i * (self.lambda(o) + 1.0 + self.lambda(i)));
+                R::select(exists, f, zero)
+            },
+        )
+    }
+}
+
+/// A coefficient between those of the sharpest fibres and of the roughest.
+#[inline(always)]
+fn coefficient<R: Real>(t: R, k: usize) -> R {
+    const SHARP: [f32; 5] = [25.3245, 3.32435, 0.16801, -1.27393, -4.85967];
+    const ROUGH: [f32; 5] = [21.5473, 3.82987, 0.19823, -1.97760, -4.32054];
+    t * (SHARP[k] - ROUGH[k]) + ROUGH[k]
 }
 
 /// The directional albedo of white sheen, for an outgoing direction of the given cosine.

@@ -1,7 +1,10 @@
 //! The base of a principled surface: a microfacet boundary over a metal, a diffuse body or a transmissive one.
 
+use lookfrom_simd::{Float, Mask, Real};
+
 use super::albedo::{self, Split};
-use super::{Film, Principled};
+use super::film::Film;
+use super::look::Look;
 use crate::core::math::schlick;
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::fresnel;
@@ -11,202 +14,236 @@ use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 pub(super) const MEAN_COSINE: f32 = 0.7;
 
 /// The base under coat and sheen.
-pub(super) struct Surface {
-    pub(super) base: Spectrum,
-    pub(super) f0: Spectrum,
-    pub(super) f0_greatest: f32,
-    pub(super) f90: f32,
-    pub(super) metal: f32,
+pub(super) struct Surface<R: Real> {
+    pub(super) base: Spectrum<R>,
+    pub(super) f0: Spectrum<R>,
+    f0_greatest: R,
+    pub(super) f90: R,
+    pub(super) metal: R,
     /// Weights of the diffuse and the transmissive body in the whole surface.
-    pub(super) matte: f32,
-    pub(super) glass: f32,
+    pub(super) matte: R,
+    pub(super) glass: R,
     /// Diffuse transmission of the diffuse body.
-    pub(super) leaf: f32,
-    pub(super) leaf_color: Spectrum,
-    pub(super) roughness: TrowbridgeReitz,
-    /// α of the isotropic reflector with the same albedo.
-    pub(super) alpha: f32,
+    pub(super) leaf: R,
+    pub(super) leaf_color: Spectrum<R>,
+    pub(super) roughness: TrowbridgeReitz<R>,
+    /// α of the isotropic reflector with the same albedo; 0 where it is smooth.
+    pub(super) alpha: R,
     /// Index of refraction, inside over outside.
-    pub(super) eta: f32,
-    pub(super) is_solid: bool,
-    pub(super) film: Option<(f32, Film)>,
+    pub(super) eta: R,
+    pub(super) is_solid: R::Mask,
+    /// Its weight and itself; `None` where no surface has one.
+    film: Option<(R, Film<R>)>,
     /// The dielectric's mean reflectance with the film.
-    pub(super) filmed: Spectrum,
+    filmed: Spectrum<R>,
     /// The mean albedo of the specular layer, and the mean fraction that it leaves for the body below.
-    pub(super) mean: Split,
-    pub(super) mean_left: Spectrum,
+    pub(super) mean: Split<R>,
+    pub(super) mean_left: Spectrum<R>,
 }
 
 /// Reflected and transmitted light of a facet.
-pub(super) struct Facet {
-    pub(super) mirrored: Spectrum,
-    pub(super) passed: Spectrum,
+pub(super) struct Facet<R> {
+    pub(super) mirrored: Spectrum<R>,
+    pub(super) passed: Spectrum<R>,
 }
 
 /// The energy of multiple scattering between facets, by the mean Fresnel reflectance and the mean albedo of one
 /// bounce.
-pub(super) fn multiple(fresnel: f32, mean: f32) -> f32 {
-    fresnel * fresnel * mean / (1.0 - fresnel * (1.0 - mean))
+#[inline(always)]
+pub(super) fn multiple<R: Real>(fresnel: R, mean: R) -> R {
+    let one = fresnel.like(1.0);
+    fresnel * fresnel * mean / (one - fresnel * (one - mean))
 }
 
-impl Surface {
-    pub(super) fn new(look: &Principled) -> Self {
-        let p = look.parameters();
-        let roughness = p.roughness;
-        let alpha =
-            if roughness.is_smooth() { 0.0 } else { (roughness.alpha_x * roughness.alpha_y).sqrt().min(1.0) };
-        let body = 1.0 - p.metallic;
+/// Between a reflectance at normal and one at grazing incidence.
+#[inline(always)]
+fn toward<R: Real>(f0: Spectrum<R>, f90: R, s: R) -> Spectrum<R> {
+    f0 + (Spectrum::splat(f90) - f0) * s
+}
+
+impl<R: Real> Surface<R> {
+    #[inline(always)]
+    pub(super) fn new(look: &Look<R>) -> Self {
+        let roughness = look.roughness;
+        let (zero, one) = (look.eta.like(0.0), look.eta.like(1.0));
+        let black = Spectrum::splat(zero);
+        let alpha = Float::min(Float::sqrt(roughness.alpha_x * roughness.alpha_y), one);
+        let alpha = R::select(roughness.is_smooth(), zero, alpha);
+        let body = one - look.metallic;
         let mut surface = Self {
-            base: p.base_color,
-            f0: p.f0,
-            f0_greatest: p.f0_greatest,
-            f90: p.f90,
-            metal: p.metallic,
-            matte: body * (1.0 - p.transmission),
-            glass: body * p.transmission,
-            leaf: p.diffuse_transmission,
-            leaf_color: p.diffuse_transmission_color,
+            base: look.base_color,
+            f0: look.f0,
+            f0_greatest: look.f0_greatest,
+            f90: look.f90,
+            metal: look.metallic,
+            matte: body * (one - look.transmission),
+            glass: body * look.transmission,
+            leaf: look.diffuse_transmission,
+            leaf_color: look.diffuse_transmission_color,
             roughness,
             alpha,
-            eta: p.eta,
-            is_solid: p.is_solid,
-            film: (p.iridescence > 0.0).then_some((p.iridescence, p.film)),
-            mean: if alpha == 0.0 { albedo::SMOOTH_MEAN } else { albedo::mirror_mean(alpha) },
-            filmed: Spectrum::BLACK,
-            mean_left: Spectrum::BLACK,
+            eta: look.eta,
+            is_solid: look.is_solid,
+            film: look.iridescence.gt(zero).any().then_some((look.iridescence, look.film)),
+            mean: albedo::mirror_mean(alpha),
+            filmed: black,
+            mean_left: black,
         };
-        if let Some((_, film)) = &surface.film
-            && surface.matte > 0.0
-        {
-            surface.filmed = film.fresnel(MEAN_COSINE, surface.f0);
-        }
-        if surface.matte > 0.0 {
-            surface.mean_left = surface.left(MEAN_COSINE, surface.mean);
+        if surface.matte.gt(zero).any() {
+            let cos = zero.like(MEAN_COSINE);
+            if let Some((_, film)) = &surface.film {
+                surface.filmed = film.fresnel(cos, surface.f0);
+            }
+            surface.mean_left = surface.left(cos, surface.mean);
         }
         surface
     }
 
     /// The reflectance with the film, for the reflectance `f0` at normal incidence and `plain`
     /// without the film.
-    #[inline]
-    pub(super) fn under_film(&self, cos: f32, f0: Spectrum, plain: Spectrum) -> Spectrum {
+    #[inline(always)]
+    pub(super) fn under_film(&self, cos: R, f0: Spectrum<R>, plain: Spectrum<R>) -> Spectrum<R> {
         match &self.film {
-            Some((amount, film)) => plain * (1.0 - amount) + film.fresnel(cos, f0) * *amount,
+            Some((amount, film)) => plain * (amount.like(1.0) - *amount) + film.fresnel(cos, f0) * *amount,
             None => plain,
         }
     }
 
-    /// Reflectance of the metal.
-    #[inline]
-    pub(super) fn metal(&self, cos: f32) -> Spectrum {
-        let s = schlick(cos);
-        self.under_film(cos, self.base, self.base.map(|f0| f0 + (1.0 - f0) * s))
-    }
-
-    /// Reflectance of the specular layer over the diffuse body.
-    #[inline]
-    pub(super) fn lacquer(&self, cos: f32) -> Spectrum {
-        let s = schlick(cos);
-        self.under_film(cos, self.f0, self.f0.map(|f0| f0 + (self.f90 - f0) * s))
-    }
-
     /// The fraction of the light that this layer's albedo leaves for the body below.
-    pub(super) fn left(&self, cos: f32, split: Split) -> Spectrum {
-        let hidden = 1.0 - split.all();
+    #[inline(always)]
+    pub(super) fn left(&self, cos: R, split: Split<R>) -> Spectrum<R> {
+        let (zero, one) = (cos.like(0.0), cos.like(1.0));
+        let hidden = one - split.all();
         let mean = self.mean.all();
-        let plain = {
-            let again = multiple(self.f0_greatest + (self.f90 - self.f0_greatest) / 21.0, mean);
-            1.0 - split.of(self.f0_greatest, self.f90) - again * hidden
-        };
-        let plain = plain.max(0.0);
-        match &self.film {
-            None => Spectrum([plain; 4]),
-            Some((amount, film)) => {
-                let here = if cos == MEAN_COSINE { self.filmed } else { film.fresnel(cos, self.f0) };
-                let filmed = here.zip(self.filmed, |here, around| {
-                    (1.0 - here * split.all() - multiple(around, mean) * hidden).max(0.0)
-                });
-                filmed * *amount + Spectrum([plain * (1.0 - amount); 4])
-            }
-        }
+        let again = multiple(self.f0_greatest + (self.f90 - self.f0_greatest) / 21.0, mean);
+        let plain = Float::max(one - split.of(self.f0_greatest, self.f90) - again * hidden, zero);
+        let Some((amount, film)) = &self.film else { return Spectrum::splat(plain) };
+        let is_mean = Float::eq(cos, cos.like(MEAN_COSINE)).all();
+        let here = if is_mean { self.filmed } else { film.fresnel(cos, self.f0) };
+        let filmed = here.zip(
+            self.filmed,
+            #[inline(always)]
+            |here, around| Float::max(one - here * split.all() - multiple(around, mean) * hidden, zero),
+        );
+        filmed * *amount + Spectrum::splat(plain * (one - *amount))
     }
 
-    /// Reflection and transmission of the glass at a cosine to a facet, on the side of `wo`.
-    pub(super) fn pane(&self, cos: f32, is_inside: bool) -> Facet {
+    /// Reflection and transmission of the glass at a cosine to a facet, on the side of `wo`. Not inlined, since it is
+    /// needed in many places.
+    #[inline(never)]
+    pub(super) fn pane(&self, cos: R, is_inside: R::Mask) -> Facet<R> {
+        cos.at_level(
+            #[inline(always)]
+            || self.pane_of(cos, is_inside),
+        )
+    }
+
+    #[inline(always)]
+    fn pane_of(&self, cos: R, is_inside: R::Mask) -> Facet<R> {
+        let (zero, one) = (cos.like(0.0), cos.like(1.0));
         // Of the two angles, the one on the side of the lower index counts: outside, unless the body's index is
         // lower than that of its surroundings.
-        let bends = self.is_solid && self.bends();
-        let eta = if bends && self.eta < 1.0 { 1.0 / self.eta } else { self.eta };
-        let cos = if bends && is_inside == (self.eta > 1.0) {
-            let sin2 = eta * eta * (1.0 - cos * cos).max(0.0);
-            if sin2 >= 1.0 {
-                return Facet { mirrored: Spectrum([1.0; 4]), passed: Spectrum::BLACK };
-            }
-            (1.0 - sin2).sqrt()
-        } else {
-            cos
-        };
+        let bends = self.is_solid & self.bends();
+        let eta = R::select(bends & self.eta.lt(one), one / self.eta, self.eta);
+        let is_dense = self.eta.gt(one);
+        let is_beyond = bends & is_inside.choose(is_dense, !is_dense);
+        let sin2 = eta * eta * Float::max(one - cos * cos, zero);
+        let is_total = is_beyond & !sin2.lt(one);
+        let cos = R::select(is_beyond, Float::sqrt(one - sin2), cos);
         // Fresnel's curve rescaled to 0 … 1.
-        let s = if eta == 0.0 {
-            schlick(cos)
-        } else {
-            let straight = ((eta - 1.0) / (eta + 1.0)) * ((eta - 1.0) / (eta + 1.0));
-            (fresnel::dielectric(cos, eta) - straight) / (1.0 - straight).max(1e-6)
-        };
-        let s = s.clamp(0.0, 1.0);
-        let of = |f0: f32| f0 + (self.f90 - f0) * s;
-        let (mirrored, passed) = (self.f0.map(of), 1.0 - of(self.f0_greatest));
-        match &self.film {
-            None => Facet { mirrored, passed: Spectrum([passed; 4]) },
+        let straight = ((eta - 1.0) / (eta + 1.0)) * ((eta - 1.0) / (eta + 1.0));
+        let curve = (fresnel::dielectric(cos, eta) - straight) / Float::max(one - straight, one.like(1e-6));
+        let s = R::select(Float::eq(eta, zero), schlick(cos), curve);
+        let s = Float::clamp(s, 0.0, 1.0);
+        let plain = toward(self.f0, self.f90, s);
+        let left = one - (self.f0_greatest + (self.f90 - self.f0_greatest) * s);
+        let (mirrored, passed) = match &self.film {
+            None => (plain, Spectrum::splat(left)),
             Some((amount, film)) => {
                 let filmed = film.fresnel(cos, self.f0);
-                Facet {
-                    mirrored: mirrored * (1.0 - amount) + filmed * *amount,
-                    passed: filmed.map(|f| passed * (1.0 - amount) + (1.0 - f) * amount),
-                }
+                let (plainly, ones) = (one - *amount, Spectrum::splat(one));
+                let passed = Spectrum::splat(left * plainly) + (ones - filmed) * *amount;
+                (plain * plainly + filmed * *amount, passed)
             }
+        };
+        Facet {
+            mirrored: Spectrum::select(is_total, Spectrum::splat(one), mirrored),
+            passed: Spectrum::select(is_total, Spectrum::splat(zero), passed),
         }
     }
 
     /// True if the body refracts.
-    #[inline]
-    pub(super) fn bends(&self) -> bool {
-        self.eta != 1.0 && self.eta != 0.0
+    #[inline(always)]
+    pub(super) fn bends(&self) -> R::Mask {
+        !Float::eq(self.eta, self.eta.like(1.0)) & !Float::eq(self.eta, self.eta.like(0.0))
+    }
+
+    /// True if it has no facets.
+    #[inline(always)]
+    pub(super) fn is_smooth(&self) -> R::Mask {
+        Float::eq(self.alpha, self.alpha.like(0.0))
+    }
+
+    /// True if a part of it is transmissive.
+    #[inline(always)]
+    pub(super) fn has_glass(&self) -> R::Mask {
+        self.glass.gt(self.glass.like(0.0))
+    }
+
+    /// True if a part of it is diffuse.
+    #[inline(always)]
+    pub(super) fn has_matte(&self) -> R::Mask {
+        self.matte.gt(self.matte.like(0.0))
     }
 
     /// True if transmission is specular.
-    #[inline]
-    pub(super) fn passes_sharply(&self) -> bool {
-        self.alpha == 0.0 || (self.is_solid && !self.bends())
+    #[inline(always)]
+    pub(super) fn passes_sharply(&self) -> R::Mask {
+        self.is_smooth() | (self.is_solid & !self.bends())
     }
 
     /// True if it is a rough refractive body, where each facet refracts into a direction of its own.
-    #[inline]
-    pub(super) fn is_rough_body(&self) -> bool {
-        self.alpha > 0.0 && self.glass > 0.0 && self.is_solid && self.bends()
+    #[inline(always)]
+    pub(super) fn is_rough_body(&self) -> R::Mask {
+        !self.is_smooth() & self.has_glass() & self.is_solid & self.bends()
     }
 
     /// Weighted reflectance of the metal and of the specular layer over the diffuse body at a cosine.
-    pub(super) fn opaque(&self, cos: f32) -> Spectrum {
-        let mut mirrored = Spectrum::BLACK;
-        if self.metal > 0.0 {
-            mirrored += self.metal(cos) * self.metal;
+    #[inline(always)]
+    fn opaque(&self, cos: R) -> Spectrum<R> {
+        let (zero, one) = (cos.like(0.0), cos.like(1.0));
+        let s = schlick(cos);
+        let mut mirrored = Spectrum::splat(zero);
+        if self.metal.gt(zero).any() {
+            mirrored += self.under_film(cos, self.base, toward(self.base, one, s)) * self.metal;
         }
-        if self.matte > 0.0 {
-            mirrored += self.lacquer(cos) * self.matte;
+        if self.has_matte().any() {
+            mirrored += self.under_film(cos, self.f0, toward(self.f0, self.f90, s)) * self.matte;
         }
         mirrored
     }
 
     /// Reflection and transmission of a facet at a cosine, each with its weights and tint.
-    pub(super) fn facet(&self, cos: f32, is_inside: bool) -> Facet {
-        let mut mirrored = self.opaque(cos);
-        let mut passed = Spectrum::BLACK;
-        if self.glass > 0.0 {
-            let pane = self.pane(cos, is_inside);
-            mirrored += pane.mirrored * self.glass;
-            passed = pane.passed * self.base * self.glass;
-        }
-        Facet { mirrored, passed }
+    #[inline(always)]
+    pub(super) fn facet(&self, cos: R, is_inside: R::Mask) -> Facet<R> {
+        self.facet_with(self.glass, cos, is_inside)
+    }
+
+    /// The same for another weight of the transmissive part. Not inlined, since it is needed in many places.
+    #[inline(never)]
+    pub(super) fn facet_with(&self, glass: R, cos: R, is_inside: R::Mask) -> Facet<R> {
+        cos.at_level(
+            #[inline(always)]
+            || {
+                let mut mirrored = self.opaque(cos);
+                let mut passed = Spectrum::splat(cos.like(0.0));
+                if glass.gt(cos.like(0.0)).any() {
+                    let pane = self.pane(cos, is_inside);
+                    mirrored += pane.mirrored * glass;
+                    passed = pane.passed * self.base * glass;
+                }
+                Facet { mirrored, passed }
+            },
+        )
     }
 }

@@ -1,81 +1,64 @@
-//! A principled BSDF for one outgoing direction: its lobes and their probabilities.
+//! A principled BSDF for one outgoing direction: its lobes.
 //!
 //! A surface seen from below is mirrored, so that here `wo.z > 0` always and `wi.z < 0` is transmission.
 
-use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
+use lookfrom_simd::{Float, Mask, Real};
+
 use super::albedo::{self, Split};
+use super::facing::{Facing, Facings};
 use super::layers::{Coat, Fibres};
-use super::sheen;
-use super::surface::{Facet, MEAN_COSINE, Surface, multiple};
-use super::{Principled, towards};
-use crate::core::math;
+use super::look::Look;
+use super::surface::{MEAN_COSINE, Surface, multiple};
 use crate::core::spectrum::Spectrum;
-use crate::core::warp;
-use crate::shading::bsdf::conductor::try_half_vector;
-use crate::shading::bsdf::dielectric::{radiance_scale, refraction_jacobian};
-use crate::shading::bsdf::diffuse::cosine_direction;
-use crate::shading::bsdf::{BsdfSample, Lobes, Mode, is_grazing};
+use crate::core::vector::Vector;
+use crate::shading::bsdf::Mode;
+use crate::shading::bsdf::dielectric::radiance_scale;
 
-/// A surface, unpacked, with the terms that depend on `wo` alone.
-pub(super) struct View {
-    wo: Vec3,
-    is_inside: bool,
-    surface: Surface,
+/// A surface with the terms that depend on `wo` alone.
+pub(super) struct View<R: Real> {
+    pub(super) wo: Vector<R>,
+    pub(super) is_inside: R::Mask,
+    pub(super) surface: Surface<R>,
     /// The specular albedo along `wo`.
-    mirror: Split,
+    pub(super) mirror: Split<R>,
     /// The fraction of light along `wo` that the specular layer leaves for the body below.
-    left: Spectrum,
+    left: Spectrum<R>,
     /// Reflected multiple scattering between facets, over the energy that they mask.
-    again: Spectrum,
-    sheen: Option<Fibres>,
-    coat: Option<Coat>,
+    again: Spectrum<R>,
+    pub(super) sheen: Option<Fibres<R>>,
+    pub(super) coat: Option<Coat<R>>,
 }
-
-/// A facet that scatters `wo` to some direction.
-#[derive(Clone, Copy)]
-struct Facing {
-    /// Its normal.
-    wm: Vec3,
-    /// The cosine of `wo` to it.
-    cos: f32,
-    /// Density of that direction over solid angle when facets are sampled by visible normals.
-    density: f32,
-}
-
-/// All facets that scatter `wo` to a direction. A rough body has two: the second one sends light to the wrong side,
-/// which then leaves mirrored at the surface.
-type Facings = [Option<Facing>; 2];
 
 /// The direction mirrored at the surface.
-fn across(w: Vec3) -> Vec3 {
-    Vec3::new(w.x, w.y, -w.z)
+#[inline(always)]
+pub(super) fn across<R: Real>(w: Vector<R>) -> Vector<R> {
+    Vector { x: w.x, y: w.y, z: -w.z }
 }
 
-/// Probabilities of the lobes.
-pub(super) struct Choice {
-    coat: f32,
-    sheen: f32,
-    /// Reflection or transmission by a facet.
-    facet: f32,
-    matte: f32,
-    matte_through: f32,
+/// True where light passes through the surface.
+#[inline(always)]
+pub(super) fn is_below<R: Real>(wi: Vector<R>) -> R::Mask {
+    wi.z.lt(wi.z.like(0.0))
 }
 
-impl View {
-    pub(super) fn new(look: &Principled, from: Vec3) -> Self {
-        let wo = towards(from, from);
+impl<R: Real> View<R> {
+    #[inline(always)]
+    pub(super) fn new(look: &Look<R>, from: Vector<R>) -> Self {
+        let is_inside = is_below(from);
+        let wo = Vector::select(is_inside, across(from), from);
         let surface = Surface::new(look);
-        let cos = wo.z.min(1.0);
+        let cos = Float::min(wo.z, wo.z.like(1.0));
         let mirror = albedo::mirror(cos, surface.alpha);
-        let left = if surface.matte > 0.0 { surface.left(cos, mirror) } else { Spectrum::BLACK };
+        let black = Spectrum::splat(cos.like(0.0));
+        let left = if surface.has_matte().any() { surface.left(cos, mirror) } else { black };
         let mut view = Self {
             wo,
-            is_inside: from.z < 0.0,
+            is_inside,
             mirror,
             left,
-            again: Spectrum::BLACK,
+            again: black,
             sheen: Fibres::new(look, cos),
             coat: Coat::new(look, wo),
             surface,
@@ -85,358 +68,200 @@ impl View {
     }
 
     /// Reflected multiple scattering between facets, over the energy that they mask.
-    fn again(&self) -> Spectrum {
+    #[inline(always)]
+    fn again(&self) -> Spectrum<R> {
         let surface = &self.surface;
-        let mut sum = Spectrum::BLACK;
-        if surface.alpha == 0.0 {
+        let zero = self.wo.z.like(0.0);
+        let mut sum = Spectrum::splat(zero);
+        if surface.is_smooth().all() {
             return sum;
         }
-        let mean = surface.mean.all();
+        if surface.metal.gt(zero).any() {
+            sum += self.again_by(surface.base, zero.like(1.0)) * surface.metal;
+        }
+        if surface.has_matte().any() {
+            sum += self.again_by(surface.f0, surface.f90) * surface.matte;
+        }
+        let sheets = R::select(surface.is_solid, zero, surface.glass);
+        if sheets.gt(zero).any() {
+            let pane = surface.pane(zero.like(MEAN_COSINE), self.is_inside.like(false));
+            sum += pane.mirrored * sheets;
+        }
+        Spectrum::select(surface.is_smooth(), Spectrum::splat(zero), sum)
+    }
+
+    /// The same of a reflector of which all is made.
+    #[inline(always)]
+    fn again_by(&self, f0: Spectrum<R>, f90: R) -> Spectrum<R> {
+        let mean = self.surface.mean.all();
         // Schlick's mean over the hemisphere is F0 + (F90 − F0) / 21; a film's is about its value at 45°.
-        let of = |f0: Spectrum, f90: f32| {
-            let plain = f0.map(|f0| f0 + (f90 - f0) / 21.0);
-            surface.under_film(MEAN_COSINE, f0, plain).map(|fresnel| multiple(fresnel, mean))
-        };
-        if surface.metal > 0.0 {
-            sum += of(surface.base, 1.0) * surface.metal;
-        }
-        if surface.matte > 0.0 {
-            sum += of(surface.f0, surface.f90) * surface.matte;
-        }
-        if surface.glass > 0.0 && !surface.is_solid {
-            sum += surface.pane(MEAN_COSINE, false).mirrored * surface.glass;
-        }
-        sum
+        let plain = f0 + (Spectrum::splat(f90) - f0) / f90.like(21.0);
+        self.surface.under_film(f90.like(MEAN_COSINE), f0, plain).map(
+            #[inline(always)]
+            |fresnel| multiple(fresnel, mean),
+        )
     }
 
     /// Multiple scattering through a thin sheet, likewise.
-    fn again_through(&self) -> Spectrum {
+    #[inline(always)]
+    fn again_through(&self) -> Spectrum<R> {
         let surface = &self.surface;
-        if surface.alpha == 0.0 || surface.glass == 0.0 || surface.is_solid {
-            return Spectrum::BLACK;
+        let zero = self.wo.z.like(0.0);
+        let black = Spectrum::splat(zero);
+        let scatters = !surface.is_smooth() & surface.has_glass() & !surface.is_solid;
+        if !scatters.any() {
+            return black;
         }
-        surface.pane(MEAN_COSINE, false).passed * surface.base * surface.glass
+        let pane = surface.pane(zero.like(MEAN_COSINE), self.is_inside.like(false));
+        Spectrum::select(scatters, pane.passed * surface.base * surface.glass, black)
+    }
+
+    /// [`Self::again`] on a side.
+    #[inline(always)]
+    fn again_on(&self, through: R::Mask) -> Spectrum<R> {
+        if !through.any() {
+            return self.again;
+        }
+        Spectrum::select(through, self.again_through(), self.again)
     }
 
     /// π f of the nearly uniform lobes on a side, where the other direction has this cosine.
-    fn matte(&self, cos: f32, through: bool) -> Spectrum {
+    #[inline(always)]
+    fn matte(&self, cos: R, through: R::Mask) -> Spectrum<R> {
         let surface = &self.surface;
+        let (zero, one) = (cos.like(0.0), cos.like(1.0));
+        let black = Spectrum::splat(zero);
         let mirror = albedo::mirror(cos, surface.alpha);
-        let mut sum = Spectrum::BLACK;
-        let hidden = 1.0 - surface.mean.all();
-        if hidden > 0.0 {
-            let both = (1.0 - self.mirror.all()) * (1.0 - mirror.all()) / hidden;
-            sum += if through { self.again_through() } else { self.again } * both;
+        let mut sum = black;
+        let hidden = one - surface.mean.all();
+        let is_hidden = hidden.gt(zero);
+        if is_hidden.any() {
+            let both = (one - self.mirror.all()) * (one - mirror.all()) / hidden;
+            sum = Spectrum::select(is_hidden, self.again_on(through) * both, black);
         }
-        if surface.matte > 0.0 {
+        let has_matte = surface.has_matte();
+        if has_matte.any() {
             let left = surface.left(cos, mirror) * self.left;
-            let left = left.zip(surface.mean_left, |left, mean| if mean > 0.0 { left / mean } else { 0.0 });
-            sum += left * self.body(through);
+            let left = left.zip(
+                surface.mean_left,
+                #[inline(always)]
+                |left, mean| R::select(mean.gt(zero), left / mean, zero),
+            );
+            sum += Spectrum::select(has_matte, left * self.body(through), black);
         }
         sum
     }
 
     /// The albedo of the diffuse body on a side.
-    fn body(&self, through: bool) -> Spectrum {
+    #[inline(always)]
+    fn body(&self, through: R::Mask) -> Spectrum<R> {
         let surface = &self.surface;
-        match through {
-            false => surface.base * (surface.matte * (1.0 - surface.leaf)),
-            true => surface.leaf_color * (surface.matte * surface.leaf),
-        }
+        let one = surface.leaf.like(1.0);
+        let reflected = surface.base * (surface.matte * (one - surface.leaf));
+        Spectrum::select(through, surface.leaf_color * (surface.matte * surface.leaf), reflected)
     }
 
     /// The albedo of [`Self::matte`].
-    fn matte_albedo(&self, through: bool) -> Spectrum {
-        let again = if through { self.again_through() } else { self.again };
-        again * (1.0 - self.mirror.all()) + self.left * self.body(through)
+    #[inline(always)]
+    pub(super) fn matte_albedo(&self, through: R::Mask) -> Spectrum<R> {
+        let one = self.wo.z.like(1.0);
+        self.again_on(through) * (one - self.mirror.all()) + self.left * self.body(through)
     }
 
     /// The fractions that coat and sheen leave for the surface.
-    fn below(&self, wi: Vec3) -> (f32, f32) {
-        let coat = self.coat.as_ref().map_or(1.0, |coat| {
-            let up = Vec3::new(wi.x, wi.y, wi.z.abs());
-            let of_wi = || coat.taken(coat.local(up).z);
-            // Transmitted light passes the coat once, outside.
-            1.0 - match (wi.z < 0.0, self.is_inside) {
-                (false, _) => coat.taken.max(of_wi()),
-                (true, false) => coat.taken,
-                (true, true) => of_wi(),
+    #[inline(always)]
+    pub(super) fn below(&self, wi: Vector<R>) -> (R, R) {
+        let one = wi.z.like(1.0);
+        let through = is_below(wi);
+        let up = Vector { x: wi.x, y: wi.y, z: Float::abs(wi.z) };
+        let coat = match &self.coat {
+            None => one,
+            Some(coat) => {
+                // Transmitted light passes the coat once, outside.
+                let of_wi = coat.taken(coat.local(up).z);
+                let passing = R::select(self.is_inside, of_wi, coat.taken);
+                one - R::select(through, passing, Float::max(coat.taken, of_wi))
             }
-        });
-        let sheen = self.sheen.as_ref().map_or(1.0, |sheen| 1.0 - sheen.taken.max(sheen.taken(wi.z.abs())));
+        };
+        let sheen = match &self.sheen {
+            None => one,
+            Some(sheen) => one - Float::max(sheen.taken, sheen.taken(up.z)),
+        };
         (coat, sheen)
     }
 
     /// The index beyond the surface over the one on the side of `wo`.
-    fn relative_eta(&self) -> f32 {
+    #[inline(always)]
+    pub(super) fn relative_eta(&self) -> R {
         let surface = &self.surface;
-        match (surface.is_solid && surface.bends(), self.is_inside) {
-            (false, _) => 1.0,
-            (true, true) => 1.0 / surface.eta,
-            (true, false) => surface.eta,
-        }
+        let one = surface.eta.like(1.0);
+        let eta = R::select(self.is_inside, one / surface.eta, surface.eta);
+        R::select(surface.is_solid & surface.bends(), eta, one)
     }
 
-    /// The facet that reflects `wo` to `wi`, or refracts it there (`through`). `None` where there is none.
-    fn facet(&self, wi: Vec3, through: bool) -> Option<Facing> {
-        let surface = &self.surface;
-        let (wo, roughness) = (self.wo, surface.roughness);
-        if surface.alpha == 0.0 || (through && (surface.glass == 0.0 || surface.passes_sharply())) {
-            return None;
-        }
-        if !through || !surface.is_solid {
-            // A thin sheet transmits what a reflector would reflect, to the other side.
-            let wi = if through { across(wi) } else { wi };
-            let wm = try_half_vector(wo, wi)?;
-            let density = 0.25 * roughness.visible_per_cosine(wo.into(), wm.into());
-            let cos = wo.dot(wm);
-            return (cos > 0.0).then_some(Facing { wm, cos, density });
-        }
-        let eta = self.relative_eta();
-        let wm = (wi * eta + wo).try_normalize()?;
-        let wm = if wm.z < 0.0 { -wm } else { wm };
-        let cos = wo.dot(wm);
-        if cos <= 0.0 || wi.dot(wm) >= 0.0 {
-            return None;
-        }
-        let jacobian = cos * refraction_jacobian(wo.into(), wi.into(), wm.into(), eta);
-        Some(Facing { wm, cos, density: roughness.visible_per_cosine(wo.into(), wm.into()) * jacobian })
-    }
-
-    fn facets(&self, wi: Vec3) -> Facings {
-        let through = wi.z < 0.0;
-        let back = self.surface.is_rough_body().then(|| self.facet(across(wi), through)).flatten();
-        [self.facet(wi, through), back]
-    }
-
-    /// As [`crate::shading::bsdf::Bsdf::f`], for `wi` in the mirrored frame and not grazing.
-    pub(super) fn f(&self, wi: Vec3, mode: Mode) -> Spectrum {
-        self.f_by(wi, mode, &self.facets(wi))
-    }
-
-    /// [`Self::f`] and, where it is not black, [`Self::pdf`]: both use the same facets.
-    pub(super) fn f_and_pdf(
-        &self,
-        wi: Vec3,
-        mode: Mode,
-        choice: Option<&Choice>,
-        lobes: Lobes,
-    ) -> (Spectrum, f32) {
-        let facets = self.facets(wi);
-        let f = self.f_by(wi, mode, &facets);
-        let pdf = match choice {
-            Some(choice) if !f.is_black() => self.pdf_by(wi, choice, lobes, &facets),
-            _ => 0.0,
-        };
-        (f, pdf)
-    }
-
-    fn f_by(&self, wi: Vec3, mode: Mode, facets: &Facings) -> Spectrum {
-        let through = wi.z < 0.0;
+    /// As [`crate::shading::bsdf::Bsdf::f`], for `wi` in the mirrored frame and not grazing, by its facets.
+    #[inline(always)]
+    pub(super) fn f_by(&self, wi: Vector<R>, mode: Mode, facets: &Facings<R>) -> Spectrum<R> {
+        let zero = wi.z.like(0.0);
+        let through = is_below(wi);
         let (below_coat, below_sheen) = self.below(wi);
-        let mut f = self.matte(wi.z.abs(), through) * FRAC_1_PI;
+        let mut f = self.matte(Float::abs(wi.z), through) * zero.like(FRAC_1_PI);
         f += self.facets_f(wi, mode, facets);
         f = f * below_sheen;
         if let Some(sheen) = &self.sheen
-            && !through
+            && !through.all()
         {
-            f += sheen.color * sheen.f(self.wo, wi);
+            f += Spectrum::select(through, Spectrum::splat(zero), sheen.f(self.wo, wi));
         }
         f = f * below_coat;
         if let Some(coat) = &self.coat
-            && !through
+            && !through.all()
         {
-            f += Spectrum([coat.f(wi); 4]);
+            f += Spectrum::splat(R::select(through, zero, coat.f(wi)));
         }
         f
     }
 
     /// Reflection and transmission by facets.
-    fn facets_f(&self, wi: Vec3, mode: Mode, facets: &Facings) -> Spectrum {
+    #[inline(always)]
+    fn facets_f(&self, wi: Vector<R>, mode: Mode, facets: &Facings<R>) -> Spectrum<R> {
         let surface = &self.surface;
-        let through = wi.z < 0.0;
+        let zero = wi.z.like(0.0);
+        let black = Spectrum::splat(zero);
+        let through = is_below(wi);
         let is_rough_body = surface.is_rough_body();
-        let mut sum = Spectrum::BLACK;
-        if !(is_rough_body && through)
-            && let [Some(Facing { wm, cos, .. }), _] = *facets
-        {
+        let mut sum = black;
+        let (first, back) = facets;
+        let is_seen = first.exists & !(is_rough_body & through);
+        if is_seen.any() {
             // With masking-shadowing by other facets.
-            let (wo, wi) = (self.wo, Vec3::new(wi.x, wi.y, wi.z.abs()));
-            let value = surface.roughness.d(wm.into()) * surface.roughness.g(wo.into(), wi.into())
-                / (4.0 * wo.z * wi.z);
-            sum += match (is_rough_body, through) {
-                (true, _) => surface.opaque(cos),
-                (false, true) => surface.facet(cos, self.is_inside).passed,
-                (false, false) => surface.facet(cos, self.is_inside).mirrored,
-            } * value;
+            let up = Vector { x: wi.x, y: wi.y, z: Float::abs(wi.z) };
+            let value =
+                surface.roughness.d(first.wm) * surface.roughness.g(self.wo, up) / (self.wo.z * 4.0 * up.z);
+            let glass = R::select(is_rough_body, zero, surface.glass);
+            let facet = surface.facet_with(glass, first.cos, self.is_inside);
+            let part = Spectrum::select(through, facet.passed, facet.mirrored);
+            sum += Spectrum::select(is_seen, part * value, black);
         }
-        if is_rough_body {
-            // Without shadowing: all of the light leaves.
-            let eta = if through { self.relative_eta() } else { 1.0 };
-            for Facing { cos, density, .. } in facets.iter().flatten() {
-                let pane = surface.pane(*cos, self.is_inside);
-                let part = if through { pane.passed * surface.base } else { pane.mirrored };
-                sum += part * (surface.glass * radiance_scale(density / wi.z.abs(), eta, mode));
-            }
-        }
+        let Some(back) = back else { return sum };
+        // Without shadowing: all of the light leaves.
+        let eta = R::select(through, self.relative_eta(), zero.like(1.0));
+        self.add_pane(&mut sum, wi, first, eta, mode);
+        self.add_pane(&mut sum, wi, back, eta, mode);
         sum
     }
 
-    /// The probabilities of the lobes among the sides that are allowed; `None` where none is left.
-    pub(super) fn choice(&self, lobes: Lobes) -> Option<Choice> {
+    /// Adds reflection and transmission by a facet of a rough body.
+    #[inline(always)]
+    fn add_pane(&self, sum: &mut Spectrum<R>, wi: Vector<R>, facing: &Facing<R>, eta: R, mode: Mode) {
         let surface = &self.surface;
-        let coat = self.coat.as_ref().map_or(0.0, |coat| coat.taken);
-        let sheen = self.sheen.as_ref().map_or(0.0, |sheen| sheen.taken);
-        let below = (1.0 - coat) * (1.0 - sheen);
-        let facet = surface.facet(self.wo.z.min(1.0), self.is_inside);
-        let all = self.mirror.all() * below;
-        let [mirrored, passed] =
-            lobes.allowed([facet.mirrored.max_lane() * all, facet.passed.max_lane() * all]);
-        let [matte, matte_through] = lobes.allowed([
-            self.matte_albedo(false).max_lane() * below,
-            if surface.leaf > 0.0 || surface.glass > 0.0 {
-                self.matte_albedo(true).max_lane() * below
-            } else {
-                0.0
-            },
-        ]);
-        let sheen_color = self.sheen.as_ref().map_or(0.0, |sheen| sheen.color.max_lane());
-        let of_sheen = self.sheen.as_ref().map_or(0.0, |fibres| fibres.albedo(self.wo.z) * sheen_color);
-        let [coat, sheen] = [coat, of_sheen * (1.0 - coat)].map(|part| lobes.allowed([part, 0.0])[0]);
-        let facet = mirrored + passed;
-        let sum = coat + sheen + facet + matte + matte_through;
-        (sum > 0.0).then(|| Choice {
-            coat: coat / sum,
-            sheen: sheen / sum,
-            facet: facet / sum,
-            matte: matte / sum,
-            matte_through: matte_through / sum,
-        })
-    }
-
-    /// The probability that a facet reflects rather than transmits.
-    fn mirrors(&self, facet: &Facet, lobes: Lobes) -> Option<f32> {
-        let [r, t] = lobes.allowed([facet.mirrored.max_lane(), facet.passed.max_lane()]);
-        (r + t > 0.0).then(|| r / (r + t))
-    }
-
-    /// The probability that a facet at a cosine reflects: by its reflectance there, unless transmission is
-    /// specular.
-    fn mirrors_at(&self, cos: f32, lobes: Lobes) -> Option<f32> {
-        let surface = &self.surface;
-        if surface.glass == 0.0 {
-            return lobes.is_reflection().then_some(1.0);
+        let is_seen = facing.exists & surface.is_rough_body();
+        if !is_seen.any() {
+            return;
         }
-        let cos = if surface.passes_sharply() { self.wo.z.min(1.0) } else { cos };
-        self.mirrors(&surface.facet(cos, self.is_inside), lobes)
-    }
-
-    /// Density of all non-specular lobes.
-    pub(super) fn pdf(&self, wi: Vec3, choice: &Choice, lobes: Lobes) -> f32 {
-        self.pdf_by(wi, choice, lobes, &self.facets(wi))
-    }
-
-    fn pdf_by(&self, wi: Vec3, choice: &Choice, lobes: Lobes, facets: &Facings) -> f32 {
-        let through = wi.z < 0.0;
-        let even = if through { choice.matte_through } else { choice.matte };
-        let mut pdf = even * warp::cosine_hemisphere_pdf(wi.z.abs());
-        if choice.facet > 0.0 {
-            for Facing { cos, density, .. } in facets.iter().flatten() {
-                if let Some(mirrors) = self.mirrors_at(*cos, lobes) {
-                    pdf += choice.facet * if through { 1.0 - mirrors } else { mirrors } * density;
-                }
-            }
-        }
-        if !through {
-            if let Some(coat) = &self.coat {
-                pdf += choice.coat * coat.pdf(wi);
-            }
-            pdf += choice.sheen * sheen::PDF;
-        }
-        pdf
-    }
-
-    /// As [`crate::shading::bsdf::Bsdf::sample`], in the mirrored frame.
-    pub(super) fn sample(
-        &self,
-        uc: f32,
-        u: [f32; 2],
-        mode: Mode,
-        choice: &Choice,
-        lobes: Lobes,
-    ) -> Option<BsdfSample> {
-        let (wo, surface) = (self.wo, &self.surface);
-        // The remainder of `uc` is reused for the next choice.
-        let mut rest = uc;
-        let mut chosen = |probability: f32| {
-            let is_chosen = rest < probability;
-            rest = if is_chosen { rest / probability } else { rest - probability };
-            is_chosen
-        };
-        let (wi, side) = if chosen(choice.matte) {
-            (cosine_direction(u, 1.0).into(), Lobes::DIFFUSE)
-        } else if chosen(choice.matte_through) {
-            (cosine_direction(u, -1.0).into(), Lobes::DIFFUSE)
-        } else if chosen(choice.sheen) {
-            (warp::uniform_cone(u, 1.0).into(), Lobes::GLOSSY)
-        } else if chosen(choice.coat) {
-            let coat = self.coat.as_ref()?;
-            let wi = coat.sample(u)?;
-            if coat.alpha == 0.0 {
-                let f = Spectrum([coat.taken / wi.z; 4]);
-                return Some(BsdfSample::new(wi, f, choice.coat, Lobes::REFLECTION | Lobes::SPECULAR));
-            }
-            (wi, Lobes::GLOSSY)
-        } else {
-            if choice.facet == 0.0 {
-                return None;
-            }
-            let wm =
-                if surface.alpha == 0.0 { Vec3::Z } else { surface.roughness.sample(wo.into(), u).into() };
-            let mirrors = self.mirrors_at(wo.dot(wm), lobes)?;
-            let reflects = rest < choice.facet * mirrors;
-            let wi = self.off_facet(wm, reflects)?;
-            let is_sharp = if reflects { surface.alpha == 0.0 } else { surface.passes_sharply() };
-            if is_sharp {
-                return self.sharp(wi, choice.facet * if reflects { mirrors } else { 1.0 - mirrors }, mode);
-            }
-            (wi, Lobes::GLOSSY)
-        };
-        if is_grazing(wi) {
-            return None;
-        }
-        let eta = if wi.z < 0.0 && side == Lobes::GLOSSY { self.relative_eta() } else { 1.0 };
-        let lobe = side | if wi.z < 0.0 { Lobes::TRANSMISSION } else { Lobes::REFLECTION };
-        let (f, pdf) = self.f_and_pdf(wi, mode, Some(choice), lobes);
-        Some(BsdfSample { eta, ..BsdfSample::new(wi, f, pdf, lobe) })
-    }
-
-    /// The direction into which a facet scatters `wo`, if it is on the intended side.
-    fn off_facet(&self, wm: Vec3, reflects: bool) -> Option<Vec3> {
-        let (wo, surface) = (self.wo, &self.surface);
-        let wi = if reflects {
-            math::reflect(wo, wm)
-        } else if surface.passes_sharply() && self.relative_eta() == 1.0 {
-            -wo
-        } else if surface.is_solid {
-            math::refract(wo, wm, self.relative_eta())?
-        } else {
-            across(math::reflect(wo, wm))
-        };
-        let is_on_side = (wi.z > 0.0) == reflects;
-        let wi = if !is_on_side && surface.is_rough_body() { across(wi) } else { wi };
-        (!is_grazing(wi) && (wi.z > 0.0) == reflects).then_some(wi)
-    }
-
-    /// Specular reflection or transmission to `wi`.
-    fn sharp(&self, wi: Vec3, probability: f32, mode: Mode) -> Option<BsdfSample> {
-        let facet = self.surface.facet(self.wo.z.min(1.0), self.is_inside);
-        let (coat, sheen) = self.below(wi);
-        let (part, eta, side) = match wi.z < 0.0 {
-            false => (facet.mirrored, 1.0, Lobes::REFLECTION),
-            true => (facet.passed, self.relative_eta(), Lobes::TRANSMISSION),
-        };
-        let f = part * radiance_scale(coat * sheen / wi.z.abs(), eta, mode);
-        Some(BsdfSample { eta, ..BsdfSample::new(wi, f, probability, side | Lobes::SPECULAR) })
+        let pane = surface.pane(facing.cos, self.is_inside);
+        let part = Spectrum::select(is_below(wi), pane.passed * surface.base, pane.mirrored);
+        let value = surface.glass * radiance_scale(facing.density / Float::abs(wi.z), eta, mode);
+        *sum += Spectrum::select(is_seen, part * value, Spectrum::splat(value.like(0.0)));
     }
 }

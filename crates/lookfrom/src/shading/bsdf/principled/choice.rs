@@ -1,0 +1,60 @@
+//! The probabilities of the lobes of a principled BSDF.
+
+use lookfrom_simd::{Float, Mask, Real};
+
+use super::view::View;
+use crate::shading::bsdf::Lobes;
+
+/// Probabilities of the lobes.
+pub(super) struct Choice<R: Real> {
+    pub(super) coat: R,
+    pub(super) sheen: R,
+    /// Reflection or transmission by a facet.
+    pub(super) facet: R,
+    pub(super) matte: R,
+    pub(super) matte_through: R,
+    /// Whether there is a lobe on the sides that are allowed.
+    pub(super) exists: R::Mask,
+}
+
+impl<R: Real> Choice<R> {
+    #[inline(always)]
+    pub(super) fn new(view: &View<R>, lobes: Lobes) -> Self {
+        let surface = &view.surface;
+        let (zero, one) = (view.wo.z.like(0.0), view.wo.z.like(1.0));
+        let coat = match &view.coat {
+            Some(coat) => coat.taken,
+            None => zero,
+        };
+        let (sheen, of_sheen) = match &view.sheen {
+            Some(sheen) => (sheen.taken, sheen.albedo(view.wo.z) * sheen.color.max_lane()),
+            None => (zero, zero),
+        };
+        let below = (one - coat) * (one - sheen);
+        let facet = surface.facet(Float::min(view.wo.z, one), view.is_inside);
+        let all = view.mirror.all() * below;
+        let [mirrored, passed] =
+            lobes.allowed([facet.mirrored.max_lane() * all, facet.passed.max_lane() * all]);
+        let through = view.is_inside.like(true);
+        let passes = surface.leaf.gt(zero) | surface.has_glass();
+        let mut matte_through = zero;
+        if passes.any() {
+            let albedo = view.matte_albedo(through).max_lane();
+            matte_through = R::select(passes, albedo * below, zero);
+        }
+        let matte = view.matte_albedo(!through).max_lane() * below;
+        let [matte, matte_through] = lobes.allowed([matte, matte_through]);
+        let [sheen, _] = lobes.allowed([of_sheen * (one - coat), zero]);
+        let [coat, _] = lobes.allowed([coat, zero]);
+        let facet = mirrored + passed;
+        let sum = coat + sheen + facet + matte + matte_through;
+        Self {
+            coat: coat / sum,
+            sheen: sheen / sum,
+            facet: facet / sum,
+            matte: matte / sum,
+            matte_through: matte_through / sum,
+            exists: sum.gt(zero),
+        }
+    }
+}
