@@ -121,6 +121,8 @@ pub struct DirectionSample<R: Real> {
     pub eta: R,
     /// True for a specular lobe.
     pub is_specular: R::Mask,
+    /// True for a diffuse lobe; one that is neither is glossy.
+    pub is_diffuse: R::Mask,
     /// True if light passes through the surface.
     pub is_transmission: R::Mask,
     /// True if there is such a direction; elsewhere the rest means nothing.
@@ -137,6 +139,7 @@ impl<R: Real> DirectionSample<R> {
             pdf: R::select(mask, yes.pdf, no.pdf),
             eta: R::select(mask, yes.eta, no.eta),
             is_specular: mask.choose(yes.is_specular, no.is_specular),
+            is_diffuse: mask.choose(yes.is_diffuse, no.is_diffuse),
             is_transmission: mask.choose(yes.is_transmission, no.is_transmission),
             is_valid: mask.choose(yes.is_valid, no.is_valid),
         }
@@ -161,8 +164,8 @@ impl DirectionSample<f32> {
     /// As a scalar sample of a class of BSDFs.
     #[inline]
     fn scalar(self, kind: Kind) -> Option<BsdfSample> {
-        let Self { wi, f, pdf, eta, is_specular, is_transmission, is_valid } = self;
-        let lobe = kind.lobe(is_specular, is_transmission);
+        let Self { wi, f, pdf, eta, is_specular, is_diffuse, is_transmission, is_valid } = self;
+        let lobe = Lobes::sampled(is_specular, is_diffuse, is_transmission);
         let pdf_is_proportional = kind.pdf_is_proportional;
         is_valid.then(|| BsdfSample { wi: wi.into(), f, pdf, lobe, eta, pdf_is_proportional })
     }

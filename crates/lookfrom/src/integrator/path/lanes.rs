@@ -29,6 +29,7 @@ use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
 use crate::shading::bsdf::lanes::{BsdfClass, RowBsdf};
 use crate::shading::bsdf::layered::Layered;
+use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::bsdf::principled::Principled;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
@@ -265,7 +266,7 @@ impl PathTracer {
                 wi,
                 f: scattered.f[lane],
                 pdf: scattered.pdf[lane],
-                lobe: scattered.kind.lobe(is_specular, is_transmission),
+                lobe: Lobes::sampled(is_specular, is(scattered.is_diffuse), is_transmission),
                 eta: scattered.eta[lane],
                 pdf_is_proportional: scattered.kind.pdf_is_proportional,
             };

@@ -53,14 +53,15 @@ impl<R: Real> Conductor<R> {
         let wi = Vector { x: -wo.x, y: -wo.y, z: wo.z };
         let cos = Float::abs(wi.z);
         let f = fresnel::conductor(cos, self.eta, self.k) / cos;
-        let (is_specular, is_transmission) = (is_valid.like(true), is_valid.like(false));
+        let (is_specular, no) = (is_valid.like(true), is_valid.like(false));
         DirectionSample {
             wi,
             f,
             pdf: cos.like(1.0),
             eta: cos.like(1.0),
             is_specular,
-            is_transmission,
+            is_diffuse: no,
+            is_transmission: no,
             is_valid,
         }
     }
@@ -73,7 +74,16 @@ impl<R: Real> Conductor<R> {
         let is_valid = same_side(wo, wi);
         let no = is_valid.like(false);
         let f = self.rough_f(wo, wi, wm);
-        DirectionSample { wi, f, pdf, eta: pdf.like(1.0), is_specular: no, is_transmission: no, is_valid }
+        DirectionSample {
+            wi,
+            f,
+            pdf,
+            eta: pdf.like(1.0),
+            is_specular: no,
+            is_diffuse: no,
+            is_transmission: no,
+            is_valid,
+        }
     }
 }
 
@@ -91,8 +101,7 @@ pub(super) fn try_half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {
 }
 
 impl<R: Real> LaneBsdf<R> for Conductor<R> {
-    const KIND: Kind =
-        Kind { spread: Lobes::GLOSSY, pdf_is_proportional: false, needs_lobe: false, needs_agreement: false };
+    const KIND: Kind = Kind { pdf_is_proportional: false, needs_lobe: false, needs_agreement: false };
     type View = Vector<R>;
 
     #[inline(always)]

@@ -163,6 +163,7 @@ impl<R: Real> Dielectric<R> {
             pdf: self.facet_pdf(wo, wi, &facet, probability),
             eta,
             is_specular: reflects.like(false),
+            is_diffuse: reflects.like(false),
             is_transmission: !reflects,
             is_valid,
         }
@@ -187,6 +188,7 @@ impl<R: Real> Dielectric<R> {
             pdf: R::select(reflects, reflection, one - reflection),
             eta: R::select(reflects, one, eta),
             is_specular: reflects.like(true),
+            is_diffuse: reflects.like(false),
             is_transmission: !reflects,
             is_valid: (reflects | (is_refracted & !is_grazing(wi))) & (r + t).gt(zero) & !is_grazing(wo),
         }

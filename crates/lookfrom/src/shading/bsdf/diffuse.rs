@@ -37,12 +37,7 @@ impl Diffuse {
 }
 
 impl<R: Real> LaneBsdf<R> for Diffuse<R> {
-    const KIND: Kind = Kind {
-        spread: Lobes::DIFFUSE,
-        pdf_is_proportional: false,
-        needs_lobe: false,
-        needs_agreement: false,
-    };
+    const KIND: Kind = Kind { pdf_is_proportional: false, needs_lobe: false, needs_agreement: false };
     type View = Vector<R>;
 
     #[inline(always)]
@@ -73,6 +68,7 @@ impl<R: Real> LaneBsdf<R> for Diffuse<R> {
             pdf: warp::cosine_hemisphere_pdf(Float::abs(wi.z)),
             eta: wo.z.like(1.0),
             is_specular: no,
+            is_diffuse: !no,
             is_transmission: no,
             is_valid,
         }

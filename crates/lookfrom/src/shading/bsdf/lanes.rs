@@ -18,8 +18,6 @@ use crate::core::vector::Vector;
 /// Properties that all BSDFs of a class have in common.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
-    /// The spread of lobes that are not specular.
-    pub spread: Lobes,
     /// As [`super::BsdfSample::pdf_is_proportional`].
     pub pdf_is_proportional: bool,
     /// Whether sampling takes a number to choose a lobe.
@@ -27,14 +25,6 @@ pub struct Kind {
     /// Whether light passes only between directions for which the geometric and the shading normal agree whether they
     /// are on one side. pbrt's materials do without this test.
     pub needs_agreement: bool,
-}
-
-impl Kind {
-    /// The lobe of a sample.
-    pub(crate) fn lobe(self, is_specular: bool, is_transmission: bool) -> Lobes {
-        let side = if is_transmission { Lobes::TRANSMISSION } else { Lobes::REFLECTION };
-        side | if is_specular { Lobes::SPECULAR } else { self.spread }
-    }
 }
 
 /// BSDFs of one class at any width, for paths from the camera. Directions are those of [`Bsdf`].
@@ -123,8 +113,7 @@ pub(crate) trait RowBsdf: Copy {
 }
 
 impl<R: Real> LaneBsdf<R> for Dielectric<R> {
-    const KIND: Kind =
-        Kind { spread: Lobes::GLOSSY, pdf_is_proportional: false, needs_lobe: true, needs_agreement: false };
+    const KIND: Kind = Kind { pdf_is_proportional: false, needs_lobe: true, needs_agreement: false };
     type View = Vector<R>;
 
     #[inline(always)]
@@ -150,8 +139,7 @@ impl<R: Real> LaneBsdf<R> for Dielectric<R> {
 }
 
 impl<R: Real, B: Base<R>> LaneBsdf<R> for Layered<B, R> {
-    const KIND: Kind =
-        Kind { spread: Lobes::GLOSSY, pdf_is_proportional: true, needs_lobe: true, needs_agreement: false };
+    const KIND: Kind = Kind { pdf_is_proportional: true, needs_lobe: true, needs_agreement: false };
     type View = Vector<R>;
 
     #[inline(always)]

@@ -393,6 +393,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
                     pdf: one,
                     eta: one,
                     is_specular,
+                    is_diffuse: none,
                     is_transmission: none,
                     is_valid: leaves,
                 };

@@ -25,6 +25,17 @@ impl Lobes {
     /// All lobes.
     pub const ALL: Self = Self(31);
 
+    /// The one lobe of a sample.
+    #[inline]
+    pub(crate) fn sampled(is_specular: bool, is_diffuse: bool, is_transmission: bool) -> Self {
+        let side = if is_transmission { Self::TRANSMISSION } else { Self::REFLECTION };
+        side | match (is_specular, is_diffuse) {
+            (true, _) => Self::SPECULAR,
+            (false, true) => Self::DIFFUSE,
+            (false, false) => Self::GLOSSY,
+        }
+    }
+
     /// True if the sets intersect.
     #[inline]
     pub const fn intersects(self, other: Self) -> bool {

@@ -98,6 +98,8 @@ pub struct Parameters {
     pub iridescence: f32,
     /// The thin film.
     pub film: Film,
+    /// Weights of the spectrum's lanes, of sum 1, by which lobes are chosen: positive wherever light matters.
+    pub lane_weights: Spectrum,
 }
 
 impl Default for Parameters {
@@ -123,6 +125,7 @@ impl Default for Parameters {
             sheen_roughness: 0.0,
             iridescence: 0.0,
             film: Film { eta: 1.3, thickness: 400.0, wavelengths: None },
+            lane_weights: Spectrum([0.25; 4]),
         }
     }
 }
@@ -172,11 +175,13 @@ pub struct Principled {
     f0: Shares,
     sheen_color: Shares,
     diffuse_transmission_color: Shares,
+    /// In 255ths.
+    lane_weights: [u8; 4],
     /// In 64ths of a nm; 0 in RGB mode.
     wavelengths: [u16; 4],
     pub(crate) roughness: TrowbridgeReitz,
     pub(crate) eta: f32,
-    f0_greatest: f32,
+    f0_greatest: Share,
     coat_alpha: f32,
     coat_normal: [f32; 2],
     film_eta: f32,
@@ -204,13 +209,15 @@ impl Principled {
             f0: Shares::new(p.f0),
             sheen_color: Shares::new(p.sheen_color),
             diffuse_transmission_color: Shares::new(p.diffuse_transmission_color),
+            // A positive weight stays positive.
+            lane_weights: p.lane_weights.0.map(|w| (w.clamp(0.0, 1.0) * 255.0).ceil() as u8),
             wavelengths: p
                 .film
                 .wavelengths
                 .map_or([0; 4], |lambda| lambda.map(|nm| (nm * WAVELENGTH_STEPS + 0.5) as u16)),
             roughness: p.roughness,
             eta: if p.eta > 0.0 { fresnel::valid_eta(p.eta) } else { 0.0 },
-            f0_greatest: finite(p.f0_greatest, 1.0),
+            f0_greatest: Share::new(p.f0_greatest),
             coat_alpha: p.clearcoat_roughness.alpha_x,
             coat_normal: if is_usable { [normal.x, normal.y] } else { [0.0; 2] },
             film_eta: finite(p.film.eta, 1e3).max(1.0),
@@ -237,7 +244,7 @@ impl Principled {
             roughness: self.roughness,
             eta: self.eta,
             f0: self.f0.lanes(),
-            f0_greatest: self.f0_greatest,
+            f0_greatest: self.f0_greatest.value(),
             f90: self.f90.value(),
             transmission: self.transmission.value(),
             is_solid: self.is_solid,
@@ -255,6 +262,7 @@ impl Principled {
                 thickness: self.film_thickness,
                 wavelengths: is_spectral.then(|| self.wavelengths.map(|w| f32::from(w) / WAVELENGTH_STEPS)),
             },
+            lane_weights: Spectrum(self.lane_weights.map(|w| f32::from(w) * (1.0 / 255.0))),
         }
     }
 
@@ -320,8 +328,7 @@ impl Principled {
 }
 
 impl<R: Real> LaneBsdf<R> for Look<R> {
-    const KIND: Kind =
-        Kind { spread: Lobes::GLOSSY, pdf_is_proportional: false, needs_lobe: true, needs_agreement: true };
+    const KIND: Kind = Kind { pdf_is_proportional: false, needs_lobe: true, needs_agreement: true };
     type View = LocalScattering<R>;
 
     #[inline(always)]
@@ -342,7 +349,7 @@ impl<R: Real> LaneBsdf<R> for Look<R> {
     }
     #[inline(always)]
     fn sample(&self, view: &LocalScattering<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
-        view.sample(uc, u, Mode::Radiance).0
+        view.sample(uc, u, Mode::Radiance)
     }
     #[inline(always)]
     fn has_density(&self) -> R::Mask {

@@ -142,8 +142,21 @@ impl Evaluator<'_> {
                     SpectralMode::Spectral(wavelengths) => Some(wavelengths.lambda),
                 },
             },
+            lane_weights: self.lane_weights(),
         };
         (Bsdf::Principled(Principled::new(&parameters)), frame)
+    }
+
+    /// The weights of the lanes in the choice of lobes: the path's throughput, so that a lobe whose colour can no longer
+    /// matter is seldom chosen.
+    fn lane_weights(&self) -> Spectrum {
+        if let SpectralMode::Spectral(wavelengths) = &self.lanes
+            && wavelengths.secondary_terminated()
+        {
+            return Spectrum([1.0, 0.0, 0.0, 0.0]);
+        }
+        let sum: f32 = self.throughput.0.iter().sum();
+        if sum > 0.0 && sum.is_finite() { *self.throughput / sum } else { Spectrum([0.25; 4]) }
     }
 
     /// The index of refraction. Where light is transmitted, one that varies with wavelength keeps only the first

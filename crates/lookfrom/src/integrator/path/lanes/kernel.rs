@@ -27,6 +27,7 @@ pub(super) struct Scattered {
     /// Lanes whose BSDF has sampled a direction.
     pub(super) is_valid: u32,
     pub(super) is_specular: u32,
+    pub(super) is_diffuse: u32,
     pub(super) is_transmission: u32,
     /// That direction, in render space, of unit length.
     pub(super) wi: [[f32; 3]; LANES],
@@ -190,6 +191,7 @@ impl<S: Simd> Surfaces<S> {
             connections,
             is_valid: sample.is_valid.to_bitmask() as u32,
             is_specular: sample.is_specular.to_bitmask() as u32,
+            is_diffuse: sample.is_diffuse.to_bitmask() as u32,
             is_transmission: sample.is_transmission.to_bitmask() as u32,
             wi: scatter(wi),
             f: scatter_spectrum(sample.f),

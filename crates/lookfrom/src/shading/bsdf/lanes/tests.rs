@@ -34,11 +34,9 @@ fn bits(x: f32) -> u32 {
 }
 
 impl Values {
-    fn new(kind: Kind, f: Spectrum, pdf: f32, sample: Option<BsdfSample>) -> Self {
+    fn new(f: Spectrum, pdf: f32, sample: Option<BsdfSample>) -> Self {
         let sample = sample.map(|BsdfSample { wi, f, pdf, eta, lobe, .. }| {
             let ([x, y, z], [a, b, c, d]) = (wi.to_array(), f.0);
-            // In lanes, the kind of scattering is that of the class.
-            let lobe = kind.lobe(lobe.is_specular(), lobe.is_transmission());
             ([x, y, z, a, b, c, d, pdf, eta].map(bits), lobe)
         });
         Self { f: f.0.map(bits), pdf: bits(pdf), sample }
@@ -48,7 +46,7 @@ impl Values {
 struct Eight<'a, B>(&'a [&'a B; LANES], &'a [Query; LANES]);
 
 impl<B: RowBsdf> Kernel for Eight<'_, B> {
-    type Output = (Kind, [Values; LANES]);
+    type Output = [Values; LANES];
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
@@ -66,21 +64,24 @@ impl<B: RowBsdf> Kernel for Eight<'_, B> {
         let (sampled_f, sampled_wi) = (scatter_spectrum(sample.f), scatter(sample.wi));
         let mask = |mask: lookfrom_simd::mask32x8<S>, lane: usize| mask.to_bitmask() & 1 << lane != 0;
         let kind = <B::Lanes<S> as LaneBsdf<f32x8<S>>>::KIND;
-        let values = std::array::from_fn(|lane| {
+        std::array::from_fn(|lane| {
             let scalar = mask(sample.is_valid, lane).then(|| BsdfSample {
                 wi: sampled_wi[lane].into(),
                 f: sampled_f[lane],
                 pdf: sample.pdf[lane],
-                lobe: kind.lobe(mask(sample.is_specular, lane), mask(sample.is_transmission, lane)),
+                lobe: Lobes::sampled(
+                    mask(sample.is_specular, lane),
+                    mask(sample.is_diffuse, lane),
+                    mask(sample.is_transmission, lane),
+                ),
                 eta: sample.eta[lane],
                 pdf_is_proportional: kind.pdf_is_proportional,
             });
-            let values = Values::new(kind, f[lane], pdf[lane], scalar);
+            let values = Values::new(f[lane], pdf[lane], scalar);
             assert_eq!(both.0[lane].0.map(bits), values.f);
             assert!(f[lane].is_black() || bits(both.1[lane]) == values.pdf);
             values
-        });
-        (kind, values)
+        })
     }
 }
 
@@ -140,12 +141,11 @@ fn compare<B: RowBsdf>(bsdf: impl Fn(u64) -> Bsdf) {
             Query { wo: direction(10, index), wi: direction(20, index), uc: unit(5, index), u }
         });
         for &level in &levels {
-            let (kind, values_together) = dispatch(level, Eight(&rows, &queries));
+            let values_together = dispatch(level, Eight(&rows, &queries));
             for (lane, together) in values_together.into_iter().enumerate() {
                 let Query { wo, wi, uc, u } = queries[lane];
                 let bsdf = &bsdfs[lane];
                 let alone = Values::new(
-                    kind,
                     bsdf.f(wo, wi, Mode::Radiance),
                     bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL),
                     bsdf.sample(wo, uc, u, Mode::Radiance, Lobes::ALL),
@@ -204,6 +204,7 @@ fn principled(index: u64) -> Bsdf {
             thickness: any(143, index, 11),
             wavelengths: is_spectral.then_some(lambda),
         },
+        lane_weights: spectrum(144, index),
     }))
 }
 

@@ -1,4 +1,5 @@
-//! The probabilities of the lobes of a principled BSDF.
+//! The probabilities of the lobes of a principled BSDF: in proportion to their albedos, as far as the path's throughput
+//! lets their colours matter.
 
 use lookfrom_simd::{Float, Mask, Real};
 
@@ -27,22 +28,22 @@ impl<R: Real> Choice<R> {
             None => zero,
         };
         let (sheen, of_sheen) = match &view.sheen {
-            Some(sheen) => (sheen.taken, sheen.albedo(view.wo.z) * sheen.color.max_lane()),
+            Some(sheen) => (sheen.taken, sheen.albedo(view.wo.z) * view.weigh(sheen.color)),
             None => (zero, zero),
         };
         let below = (one - coat) * (one - sheen);
         let facet = surface.facet(Float::min(view.wo.z, one), view.is_inside);
         let all = view.mirror.all() * below;
         let [mirrored, passed] =
-            lobes.allowed([facet.mirrored.max_lane() * all, facet.passed.max_lane() * all]);
+            lobes.allowed([view.weigh(facet.mirrored) * all, view.weigh(facet.passed) * all]);
         let through = view.is_inside.like(true);
         let passes = surface.leaf.gt(zero) | surface.has_glass();
         let mut matte_through = zero;
         if passes.any() {
-            let albedo = view.matte_albedo(through).max_lane();
+            let albedo = view.weigh(view.matte_albedo(through));
             matte_through = R::select(passes, albedo * below, zero);
         }
-        let matte = view.matte_albedo(!through).max_lane() * below;
+        let matte = view.weigh(view.matte_albedo(!through)) * below;
         let [matte, matte_through] = lobes.allowed([matte, matte_through]);
         let [sheen, _] = lobes.allowed([of_sheen * (one - coat), zero]);
         let [coat, _] = lobes.allowed([coat, zero]);

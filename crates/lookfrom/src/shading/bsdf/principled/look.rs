@@ -31,6 +31,7 @@ pub(crate) struct Look<R: Real = f32> {
     pub(super) sheen_roughness: R,
     pub(super) iridescence: R,
     pub(super) film: Film<R>,
+    pub(super) lane_weights: Spectrum<R>,
 }
 
 impl Look {
@@ -57,6 +58,7 @@ impl Look {
             sheen_roughness: p.sheen_roughness,
             iridescence: p.iridescence,
             film: p.film,
+            lane_weights: p.lane_weights,
         }
     }
 }
@@ -108,6 +110,7 @@ impl<S: Simd> Look<f32x8<S>> {
             sheen_roughness: load!(sheen_roughness),
             iridescence: load!(iridescence),
             film: gather_films(simd, &by_lane!(lane => p[lane].film)),
+            lane_weights: spectrum!(lane_weights),
         }
     }
 }

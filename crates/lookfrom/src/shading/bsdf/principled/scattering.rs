@@ -14,7 +14,7 @@ use crate::core::vector::Vector;
 use crate::core::warp;
 use crate::shading::bsdf::dielectric::radiance_scale;
 use crate::shading::bsdf::diffuse::cosine_direction;
-use crate::shading::bsdf::lanes::{Kind, LaneBsdf};
+use crate::shading::bsdf::lanes::LaneBsdf;
 use crate::shading::bsdf::{BsdfSample, DirectionSample, Lobes, Mode, is_grazing};
 
 /// A principled BSDF for an outgoing direction ω_o. Other directions are those of [`crate::shading::bsdf::Bsdf`].
@@ -155,14 +155,14 @@ impl<R: Real> LocalScattering<R> {
         }
         let cos = R::select(surface.passes_sharply(), Float::min(wo.z, one), cos);
         let Facet { mirrored, passed } = surface.facet(cos, *is_inside);
-        let [r, t] = self.lobes.allowed([mirrored.max_lane(), passed.max_lane()]);
+        let [r, t] = self.lobes.allowed([self.view.weigh(mirrored), self.view.weigh(passed)]);
         let mirrors = R::select(has_glass, r / (r + t), one);
         (mirrors, has_glass.choose((r + t).gt(zero), may_reflect))
     }
 
-    /// As [`crate::shading::bsdf::Bsdf::sample`], and whether the lobe is diffuse.
+    /// As [`crate::shading::bsdf::Bsdf::sample`].
     #[inline(always)]
-    pub(super) fn sample(&self, uc: R, u: [R; 2], mode: Mode) -> (DirectionSample<R>, R::Mask) {
+    pub(super) fn sample(&self, uc: R, u: [R; 2], mode: Mode) -> DirectionSample<R> {
         let choice = &self.choice;
         let (zero, one) = (uc.like(0.0), uc.like(1.0));
         // What is left of `uc` is used for the next choice.
@@ -184,6 +184,7 @@ impl<R: Real> LocalScattering<R> {
             pdf: zero,
             eta: one,
             is_specular: no,
+            is_diffuse,
             is_transmission: no,
             is_valid: choice.exists & self.is_usable,
         };
@@ -207,7 +208,7 @@ impl<R: Real> LocalScattering<R> {
             sample.eta = R::select(sample.is_specular, sample.eta, eta);
         }
         sample.wi = self.towards(sample.wi);
-        (sample, is_diffuse)
+        sample
     }
 
     #[inline(always)]
@@ -302,8 +303,6 @@ impl LocalScattering {
         u: [f32; 2],
         mode: Mode,
     ) -> Option<BsdfSample> {
-        let (sample, is_diffuse) = self.sample(uc, u, mode);
-        let spread = if is_diffuse { Lobes::DIFFUSE } else { Lobes::GLOSSY };
-        sample.scalar(Kind { spread, ..<Look as LaneBsdf<f32>>::KIND })
+        self.sample(uc, u, mode).scalar(<Look as LaneBsdf<f32>>::KIND)
     }
 }

@@ -29,6 +29,7 @@ pub(super) struct View<R: Real> {
     again: Spectrum<R>,
     pub(super) sheen: Option<Fibres<R>>,
     pub(super) coat: Option<Coat<R>>,
+    lane_weights: Spectrum<R>,
 }
 
 /// The direction mirrored at the surface.
@@ -61,10 +62,18 @@ impl<R: Real> View<R> {
             again: black,
             sheen: Fibres::new(look, cos),
             coat: Coat::new(look, wo),
+            lane_weights: look.lane_weights,
             surface,
         };
         view.again = view.again();
         view
+    }
+
+    /// The weight of a coloured lobe in the choice among lobes.
+    #[inline(always)]
+    pub(super) fn weigh(&self, lobe: Spectrum<R>) -> R {
+        let [a, b, c, d] = (lobe * self.lane_weights).0;
+        a + b + c + d
     }
 
     /// Reflected multiple scattering between facets, over the energy that they mask.
