@@ -2,7 +2,8 @@
 //! measurement.
 //!
 //! The formats and keys are those of the project's comparison with Embree:
-//! `kernel_bench MESH.bin NAME --rays DIR [--reps N] [--threads N] [--save DIR] [--quality fast|balanced|best]`.
+//! `kernel_bench MESH.bin NAME --rays DIR [--reps N] [--threads N] [--save DIR] [--quality fast|balanced|best]
+//! [--kinds primary,primary16,...]`.
 //! CPU time is read from /proc, and taken to be wall time where there is none.
 
 use std::error::Error;
@@ -29,6 +30,8 @@ struct Options {
     threads: usize,
     quality: Quality,
     quality_name: String,
+    /// The kinds of rays to trace; empty for all.
+    kinds: String,
 }
 
 fn options() -> Result<Options, Box<dyn Error>> {
@@ -41,6 +44,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
         threads: 1,
         quality: Quality::Best,
         quality_name: "high".into(),
+        kinds: String::new(),
     };
     let mut places = Vec::new();
     let mut arguments = std::env::args().skip(1);
@@ -51,6 +55,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
             "--save" => options.save = Some(value()?.into()),
             "--reps" => options.reps = value()?.parse()?,
             "--threads" => options.threads = value()?.parse()?,
+            "--kinds" => options.kinds = value()?,
             "--quality" => {
                 options.quality_name = value()?;
                 options.quality = match options.quality_name.as_str() {
@@ -136,6 +141,7 @@ enum Way {
     Batch,
 }
 
+#[inline(never)]
 fn trace(bvh: &Bvh, rays: &[Ray], way: Way, answers: &mut [Answer]) {
     if way == Way::Batch {
         let mut hits = [Hit::MISS; 256];
@@ -261,6 +267,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("primary16", "primary", Way::Batch),
         ("bounce16", "bounce", Way::Batch),
     ] {
+        if !options.kinds.is_empty() && options.kinds.split(',').all(|wanted| wanted != kind) {
+            continue;
+        }
         let rays = read_rays(&folder.join(format!("{}.{file}.rays", options.name)))?;
         if way == Way::Closest {
             let mut counts = Counts::default();

@@ -1,15 +1,25 @@
-//! Coherence of packets: the number of rays of a group that meet a block of triangles together.
+//! Coherence of packets: the tests that a packet takes, compared with the rays that gain from them.
 //!
-//! Where it is one or two, as with triangles smaller than the distance between rays, single rays are faster, since they
-//! test eight triangles at once. A packet that finds this is given up, and after it fewer are tried.
+//! Where one or two rays of a group meet a block of triangles together, as with triangles smaller than the distance
+//! between rays, single rays are faster, since they test eight triangles at once. A packet that finds this is given up,
+//! and after it fewer are tried.
+//!
+//! The unit of cost is the test of eight rays from a common origin and one triangle (see `common_origin`).
 
 use crate::ray8::GROUPS;
 
-/// Rays per group with which a packet is about as fast as single rays.
-const WORTHWHILE: f32 = 2.5;
+/// Cost per ray with which a packet is about as fast as single rays.
+const WORTHWHILE: f32 = 6.4;
 
-/// Groups that have met a block before a packet is judged, and again after four times as many.
-const FIRST_JUDGEMENT: u32 = 24;
+/// Cost of a block for a group of any rays.
+const GROUP: u32 = 16;
+
+/// Cost of a block for rays from a common origin before any triangle is tested: as seen by the packet, and by its groups.
+const SEEN: u32 = 4;
+const ENTERED: u32 = 6;
+
+/// Cost after which a packet is judged, and again after four times as much.
+const FIRST_JUDGEMENT: u32 = 10 * GROUP;
 
 /// Largest number of packets that are left out before another one is tried.
 const MOST_SKIPPED: u32 = 15;
@@ -17,7 +27,7 @@ const MOST_SKIPPED: u32 = 15;
 /// Counts of the packets of a batch.
 #[derive(Default)]
 pub(crate) struct Coherence {
-    groups: u32,
+    cost: u32,
     rays: u32,
     judgement: u32,
     to_skip: u32,
@@ -44,17 +54,25 @@ impl Coherence {
             groups += u32::from(*rays != 0);
             self.rays += rays.count_ones();
         }
-        self.groups += groups.max(1);
+        self.cost += GROUP * groups.max(1);
+    }
+
+    /// Counts a block for rays from a common origin: whether the packet enters it, the tests of eight rays and a
+    /// triangle, and the rays that may hit one.
+    #[inline(always)]
+    pub(crate) fn count_common(&mut self, is_entered: bool, tests: u32, rays: u32) {
+        self.cost += SEEN + ENTERED * u32::from(is_entered) + tests;
+        self.rays += rays;
     }
 
     /// Whether the packet pays, as far as it has come.
     #[inline(always)]
     pub(crate) fn pays(&mut self) -> bool {
-        if self.groups < self.judgement {
+        if self.cost < self.judgement {
             return true;
         }
         self.judgement *= 4;
-        self.rays as f32 >= WORTHWHILE * self.groups as f32
+        self.rays as f32 * WORTHWHILE >= self.cost as f32
     }
 
     /// Ends a packet.

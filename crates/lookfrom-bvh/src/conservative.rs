@@ -165,9 +165,23 @@ impl TriangleBlock {
         block
     }
 
+    /// The corners of all triangles, `[corner][axis]`, and their extents.
+    #[inline(always)]
+    pub(crate) fn lanes<S: Simd>(&self, simd: S) -> TriangleLanes<S> {
+        let corners =
+            [load(simd, &self.corners[0]), load(simd, &self.corners[1]), load(simd, &self.corners[2])];
+        TriangleLanes { corners, extent: Lanes::load_array_ref(simd, &self.extent) }
+    }
+
     /// Number of triangles.
     pub(crate) fn count(&self) -> usize {
         self.primitive.iter().filter(|&&primitive| primitive != NONE).count()
+    }
+
+    /// One coordinate of a corner.
+    #[inline(always)]
+    pub(crate) fn coordinate(&self, corner: usize, axis: usize, lane: usize) -> f32 {
+        self.corners[corner][axis][lane & (BLOCK - 1)]
     }
 
     #[inline(always)]
@@ -202,17 +216,13 @@ impl TriangleBlock {
         ray: &RayLanes<S>,
         end: f32,
     ) -> ConservativeTest<S> {
-        let corners =
-            [load(simd, &self.corners[0]), load(simd, &self.corners[1]), load(simd, &self.corners[2])];
-        let extent = Lanes::load_array_ref(simd, &self.extent);
-        TriangleLanes { corners, extent }.test_conservatively(simd, ray, Lanes::splat(simd, end))
+        self.lanes(simd).test_conservatively(simd, ray, Lanes::splat(simd, end))
     }
 
     /// The box around the triangles.
     #[inline(always)]
     pub(crate) fn bounds<S: Simd>(&self, simd: S) -> Aabb {
-        let [a, b, c] =
-            [load(simd, &self.corners[0]), load(simd, &self.corners[1]), load(simd, &self.corners[2])];
+        let [a, b, c] = self.lanes(simd).corners;
         let mut bounds = Aabb::EMPTY;
         for axis in 0..3 {
             let [min, max] = [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])];
@@ -228,8 +238,9 @@ impl TriangleBlock {
 /// Triangles in lanes: several, or one in all of them.
 pub(crate) struct TriangleLanes<S: Simd> {
     /// `corners[corner][axis]`.
-    corners: [[Lanes<S>; 3]; 3],
-    extent: Lanes<S>,
+    pub(crate) corners: [[Lanes<S>; 3]; 3],
+    /// Negative in unused lanes.
+    pub(crate) extent: Lanes<S>,
 }
 
 impl<S: Simd> TriangleLanes<S> {
@@ -338,82 +349,6 @@ impl<S: Simd> Determinants<S> {
             size_room,
             determinant,
         }
-    }
-}
-
-/// A triangle block with the terms of the test that are the same for all rays from one origin.
-pub(crate) struct CommonOriginBlock {
-    /// `normal[axis][lane]`, and likewise the vectors whose dot products with the direction are the edge functions.
-    normal: [[f32; BLOCK]; 3],
-    u: [[f32; BLOCK]; 3],
-    v: [[f32; BLOCK]; 3],
-    distance: [f32; BLOCK],
-    /// Error bounds, without the direction's factor.
-    bound: [f32; BLOCK],
-    size_error: [f32; BLOCK],
-    distance_error: [f32; BLOCK],
-}
-
-impl CommonOriginBlock {
-    #[inline(always)]
-    pub(crate) fn new<S: Simd>(simd: S, block: &TriangleBlock, origin: [f32; 3]) -> Self {
-        let [a, b, c] = [0, 1, 2].map(
-            #[inline(always)]
-            |corner| load(simd, &block.corners[corner]),
-        );
-        let extent = Lanes::load_array_ref(simd, &block.extent).abs();
-        let minus = |p: [Lanes<S>; 3], q: [Lanes<S>; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-        let cross = |p: [Lanes<S>; 3], q: [Lanes<S>; 3]| {
-            [
-                p[1].mul_sub(q[2], p[2] * q[1]),
-                p[2].mul_sub(q[0], p[0] * q[2]),
-                p[0].mul_sub(q[1], p[1] * q[0]),
-            ]
-        };
-        let (e, f) = (minus(b, a), minus(c, a));
-        let way = [a[0] - origin[0], a[1] - origin[1], a[2] - origin[2]];
-        let normal = cross(e, f);
-        let reach = way[0].abs().max(way[1].abs()).max(way[2].abs());
-        let relative = extent.mul_add(ERROR, Lanes::splat(simd, prepared::USUAL_UNDERFLOW));
-        let [u, v] = [cross(f, way), cross(way, e)];
-        let arrays = |x: [Lanes<S>; 3]| [x[0].into(), x[1].into(), x[2].into()];
-        Self {
-            normal: arrays(normal),
-            u: arrays(u),
-            v: arrays(v),
-            distance: normal[0].mul_add(way[0], normal[1].mul_add(way[1], normal[2] * way[2])).into(),
-            bound: ((reach + extent) * relative).into(),
-            size_error: (extent * relative).into(),
-            distance_error: (extent.mul_add(relative, prepared::USUAL_UNDERFLOW) * reach).into(),
-        }
-    }
-
-    /// [`TriangleLanes::test_conservatively`] for one of the triangles and rays from that origin; `length` is the
-    /// largest component of each ray's direction. d·(f × c) replaces f·(c × d): the same products, so the same
-    /// errors.
-    #[inline(always)]
-    pub(crate) fn test_conservatively<S: Simd>(
-        &self,
-        simd: S,
-        lane: usize,
-        ray: &RayLanes<S>,
-        length: Lanes<S>,
-        t_max: Lanes<S>,
-    ) -> ConservativeTest<S> {
-        let lane = lane & (BLOCK - 1);
-        let [dx, dy, dz] = ray.direction;
-        let along = |n: &[[f32; BLOCK]; 3]| dx.mul_add(n[0][lane], dy.mul_add(n[1][lane], dz * n[2][lane]));
-        let (determinant, u, v) = (along(&self.normal), along(&self.u), along(&self.v));
-        let w = determinant - (u + v);
-        let determinants = Determinants {
-            edges: [u, v, w],
-            bound: length.mul_add(self.bound[lane], ray.underflow),
-            determinant,
-            size_error: length.mul_add(self.size_error[lane], ray.underflow),
-            distance: Lanes::splat(simd, self.distance[lane]),
-            distance_error: Lanes::splat(simd, self.distance_error[lane]),
-        };
-        determinants.test(simd, ray, t_max, mask32x8::splat(simd, false))
     }
 }
 

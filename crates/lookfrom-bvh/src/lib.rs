@@ -10,6 +10,7 @@ mod bvh;
 mod closest_point;
 mod coherence;
 mod collector;
+mod common_origin;
 mod conservative;
 mod dispatch;
 mod ellipsoid;

@@ -3,30 +3,35 @@
 //! The packet traverses the tree as a whole, through every box that it may hit, by intervals of its rays' origins
 //! and directions: Boulos, Wald, Shirley (2006), "Geometric and Arithmetic Culling Methods for Entire Ray Packets".
 //! In a leaf the rays are processed in groups of eight, a ray in each lane: those that hit the leaf's box are
-//! tested against one triangle after the other, by the same tests as single rays. Spheres, procedural shapes and
-//! instances are left to the single-ray code, ray by ray. So the results are those of single rays, bit for bit.
+//! tested against one triangle or sphere after the other, by the same tests as single rays. From a common origin most
+//! triangles are excluded for a whole group first (see `common_origin`). Procedural shapes and instances are left to
+//! the single-ray code, ray by ray. So the results are those of single rays, bit for bit.
+//!
+//! Trees of very few primitives need no traversal: any rays form packets, which are tested against everything.
 
 use std::marker::PhantomData;
 
 use crate::Bvh;
+use crate::aabb::Aabb;
+use crate::bvh::Leaf;
 use crate::coherence::Coherence;
 use crate::collector::PacketCollector;
-use crate::conservative::{CommonOriginBlock, ConservativeTest, LARGEST_FILTERED, TriangleLanes};
+use crate::conservative::LARGEST_FILTERED;
 use crate::exact::ExactRay;
 use crate::leaf::other_leaf;
-use crate::node::{Child, Content};
+use crate::node::{Child, Content, WIDTH};
 use crate::packet_bounds::{PacketBounds, seem_alike};
 use crate::query::Settings;
 use crate::ray::{Hit, NONE, Ray};
-use crate::ray8::{GROUPS, LANES, NO_BLOCK, RAYS, Ray8, least};
+use crate::ray8::{GROUPS, LANES, NO_BLOCK, RAYS, Ray8, Slabs8, least_of_each};
 use crate::stack::{Stack, TraversalStack};
-use crate::traverse::{TraversalState, intersect_sure, report};
-use crate::triangle;
-use crate::visibility::{Faces, Visibility};
-use lookfrom_simd::{LaneMask, Simd, i32x8, prelude::*};
+use crate::traverse::TraversalState;
+use crate::validate::Statistics;
+use crate::visibility::Visibility;
+use lookfrom_simd::{LaneMask, Simd, prelude::*};
 
-/// Traces rays as a packet. Returns the rays that hit anything, bit i for ray i; closest hits are written to
-/// `hits`. Returns `None` where the rays are too few, not coherent, or out of the usual range, or meet triangles one
+/// Traces rays as a packet. Writes closest hits to `hits`, or returns the rays of an any-hit query that hit anything, bit i
+/// for ray i. Returns `None` where the rays are too few, not coherent, or out of the usual range, or meet triangles one
 /// by one; `hits` mean nothing then.
 #[inline(never)]
 pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
@@ -38,10 +43,11 @@ pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
     stack: &mut Stack,
 ) -> Option<u64> {
     let bvh = settings.bvh;
-    if rays.len() < RAYS || !seem_alike(rays) || bvh.nodes.is_empty() || !(bvh.largest < LARGEST_FILTERED) {
+    if rays.len() < RAYS || bvh.nodes.is_empty() || !(bvh.largest < LARGEST_FILTERED) {
         return None;
     }
-    if !coherence.start() {
+    let is_tiny = is_tiny(bvh);
+    if !(is_tiny || seem_alike(rays) && coherence.start()) {
         return None;
     }
     simd.vectorize(
@@ -54,25 +60,56 @@ pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
                     group.set_origins(simd, |lane| settings.origin_of(index * LANES + lane));
                 }
             }
-            let packet_bounds = PacketBounds::around(simd, &groups, bvh.largest)?;
+            let are_usual = groups.iter().all(|group| group.usual == 0xff);
+            let packet_bounds = PacketBounds::around(simd, &groups, bvh.largest);
+            if !are_usual || packet_bounds.is_none() && !is_tiny {
+                return None;
+            }
             if !C::ANY_HIT {
                 hits[..RAYS].fill(Hit::MISS);
             }
-            let mut packet =
-                Packet::<S, C, V> { settings, rays, groups, hits, coherence, question: PhantomData };
+            let mut packet = Packet::<S, C, V> {
+                settings,
+                rays,
+                groups: &mut groups,
+                slabs: None,
+                hits,
+                coherence,
+                question: PhantomData,
+            };
             let stack = &mut TraversalStack { entries: stack, bottom: 0, height: 0 };
-            let has_paid = packet.traverse(simd, &packet_bounds, stack);
-            packet.coherence.end(has_paid);
-            has_paid.then(|| packet.finish())
+            match packet_bounds {
+                Some(packet_bounds) => {
+                    let has_paid = packet.traverse(simd, &packet_bounds, stack, is_tiny);
+                    if !is_tiny {
+                        packet.coherence.end(has_paid);
+                    }
+                    if !has_paid {
+                        return None;
+                    }
+                }
+                None => packet.visit_all(simd, stack),
+            }
+            Some(packet.finish(simd))
         },
     )
+}
+
+/// Trees with so few primitives that it is fastest to test any eight rays at once against all of them.
+const FEW: usize = 16;
+
+fn is_tiny(bvh: &Bvh) -> bool {
+    let Statistics { triangles, spheres, procedurals, instances, .. } = bvh.statistics;
+    bvh.nodes.len() == 1 && triangles + spheres <= FEW && procedurals + instances == 0
 }
 
 /// A packet during traversal.
 struct Packet<'a, 'b, S: Simd, C, V> {
     settings: &'b Settings<'a>,
     rays: &'b [Ray],
-    groups: [Ray8<S>; GROUPS],
+    groups: &'b mut [Ray8<S>; GROUPS],
+    /// For the tests of boxes, when the first one comes.
+    slabs: Option<[Slabs8<S>; GROUPS]>,
     /// The closest hits that are exact; empty for any-hit queries.
     hits: &'b mut [Hit],
     coherence: &'b mut Coherence,
@@ -85,20 +122,26 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         self.settings.bvh
     }
 
-    /// The end of the longest ray; −∞ when all are done.
+    /// The end of each group's longest ray; −∞ when all are done.
     #[inline(always)]
-    fn end(&self) -> f32 {
-        let mut longest = self.groups[0].end;
-        for group in &self.groups[1..] {
-            longest = longest.max(group.end);
-        }
-        -least(-longest)
+    fn ends(&self) -> [f32; GROUPS] {
+        let [a, b, c, d, e, f, g, h] = &*self.groups;
+        let ends = [-a.end, -b.end, -c.end, -d.end, -e.end, -f.end, -g.end, -h.end];
+        (-least_of_each(ends)).into()
     }
 
     /// Returns false, before the end, where the packet does not pay.
     #[inline(always)]
-    fn traverse(&mut self, simd: S, packet_bounds: &PacketBounds<S>, stack: &mut TraversalStack<'_>) -> bool {
-        let mut end = self.end();
+    fn traverse(
+        &mut self,
+        simd: S,
+        packet_bounds: &PacketBounds<S>,
+        stack: &mut TraversalStack<'_>,
+        pays_anyway: bool,
+    ) -> bool {
+        let longest = |ends: [f32; GROUPS]| ends.into_iter().fold(f32::NEG_INFINITY, f32::max);
+        let mut ends = self.ends();
+        let mut end = longest(ends);
         let mut current = Some(Child::ROOT);
         while let Some(child) = current {
             let shortened = match child.content() {
@@ -111,144 +154,61 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                     }
                     false
                 }
-                Content::Triangles(number) => self.triangles(simd, packet_bounds, number),
+                Content::Triangles(number) => match packet_bounds.common_origin {
+                    // Occlusion rays rarely have a common origin.
+                    Some(origin) if !C::ANY_HIT => {
+                        self.triangles_from(simd, origin, packet_bounds, number, &ends, end)
+                    }
+                    _ => self.triangles(simd, number),
+                },
                 Content::Leaf(number) => self.other_leaf(simd, number, stack),
             };
-            if !self.coherence.pays() {
+            if !pays_anyway && !self.coherence.pays() {
                 return false;
             }
             if shortened {
-                end = self.end();
+                ends = self.ends();
+                end = longest(ends);
             }
             current = stack.pop(end);
         }
         true
     }
 
-    /// Tests a block of triangles. Returns false where no ray hits its box.
+    /// Visits all children of the root, which are leaves.
     #[inline(always)]
-    fn triangles(&mut self, simd: S, packet_bounds: &PacketBounds<S>, number: usize) -> bool {
-        let block = &self.bvh().triangles[number];
-        let bounds = block.bounds(simd).padded();
+    fn visit_all(&mut self, simd: S, stack: &mut TraversalStack<'_>) {
+        let root = &self.bvh().nodes[0];
+        for slot in 0..WIDTH {
+            match root.child(slot).content() {
+                Content::Triangles(number) => self.triangles(simd, number),
+                Content::Leaf(number) => self.other_leaf(simd, number, stack),
+                Content::Node(_) => false,
+            };
+        }
+    }
+
+    /// The rays of each group that hit a box before their ends.
+    #[inline(always)]
+    fn meet(&mut self, simd: S, bounds: &Aabb) -> [u32; GROUPS] {
+        let groups = &*self.groups;
+        let slabs = self.slabs.get_or_insert_with(
+            #[inline(always)]
+            || {
+                let [a, b, c, d, e, f, g, h] = groups;
+                let of = |group: &Ray8<S>| Slabs8::new(simd, group);
+                [of(a), of(b), of(c), of(d), of(e), of(f), of(g), of(h)]
+            },
+        );
         let mut meeting = [0; GROUPS];
-        let mut any = 0;
-        for (meeting, group) in meeting.iter_mut().zip(&self.groups) {
-            *meeting = group.meet(&bounds);
-            any |= *meeting;
-        }
-        self.coherence.count(&meeting);
-        if any == 0 {
-            return false;
-        }
-        // Occlusion rays rarely have a common origin.
-        if !C::ANY_HIT
-            && let Some(origin) = packet_bounds.common_origin
-        {
-            let common = CommonOriginBlock::new(simd, block, origin);
-            self.test(simd, number, &mut meeting, |of, group| {
-                common.test_conservatively(simd, of, &group.ray_lanes, group.length, group.end)
-            });
-        } else {
-            self.test(simd, number, &mut meeting, |of, group| {
-                TriangleLanes::splat(simd, block, of).test_conservatively(simd, &group.ray_lanes, group.end)
-            });
-        }
-        true
-    }
-
-    /// Tests a block of triangles against those rays of each group that may hit it. For closest hits nothing here
-    /// branches on the outcome of a test, because it could not be predicted.
-    #[inline(always)]
-    fn test(
-        &mut self,
-        simd: S,
-        number: usize,
-        meeting: &mut [u32; GROUPS],
-        test_conservatively: impl Fn(usize, &Ray8<S>) -> ConservativeTest<S>,
-    ) {
-        let block = &self.bvh().triangles[number];
-        let (visibility, count) = (V::of(self.settings, 0), block.count());
         for index in 0..GROUPS {
-            for of in 0..count {
-                let rays = meeting[index];
-                if rays == 0 {
-                    break;
-                }
-                let (geometry, primitive) = block.ids(of);
-                if V::SELECTS && !visibility.shows(geometry, primitive) {
-                    continue;
-                }
-                let group = &mut self.groups[index];
-                let tested = test_conservatively(of, group);
-                let (mut sure, mut kept) = (tested.sure, tested.kept.0 & rays);
-                if V::HAS_ORIGIN {
-                    let is_other = !group.start_on(simd, geometry, primitive);
-                    sure &= is_other;
-                    kept &= is_other.to_bitmask() as u32;
-                }
-                if V::SELECTS && visibility.faces() != Faces::Both {
-                    // The sign of a sure hit's determinant is also sure.
-                    let is_front = tested.looks_at_front();
-                    sure &= if visibility.faces() == Faces::Front { is_front } else { !is_front };
-                }
-                let open = kept & !tested.surely_hit.0;
-                if C::ANY_HIT {
-                    // A ray that is surely occluded is done.
-                    group.retire(simd, sure);
-                    meeting[index] &= !(sure.to_bitmask() as u32);
-                    for lane in LaneMask(open) {
-                        if self.intersect_exact((number, of), index, lane) {
-                            meeting[index] &= !(1 << lane);
-                        }
-                    }
-                    continue;
-                }
-
-                // Defer the exact test of a sure hit, unless another hit is surely nearer.
-                let [first, last] = tested.between();
-                let nearer = sure & first.simd_le(group.last);
-                let unclear = nearer & last.simd_ge(group.first);
-                let (blocks, lanes) = (group.block, group.lane);
-                group.first = nearer.select(first, group.first);
-                group.last = nearer.select(last, group.last);
-                group.end = nearer.select(last.min(group.end), group.end);
-                group.block = nearer.select(i32x8::splat(simd, number as i32), blocks);
-                group.lane = nearer.select(i32x8::splat(simd, of as i32), lanes);
-
-                // Test exactly the hits that are not sure, and sure hits whose distances overlap.
-                let unclear = unclear.to_bitmask() as u32 & rays;
-                if open | unclear != 0 {
-                    for lane in LaneMask(open) {
-                        self.intersect_exact((number, of), index, lane);
-                    }
-                    for lane in LaneMask(unclear) {
-                        self.intersect_exact((blocks[lane] as usize, lanes[lane] as usize), index, lane);
-                    }
-                }
-            }
+            meeting[index] = slabs[index].meet(&groups[index], bounds);
         }
+        meeting
     }
 
-    /// Tests a ray exactly against a triangle that is not its origin primitive. Returns true if the ray is done.
-    #[cold]
-    #[inline(never)]
-    fn intersect_exact(&mut self, (block, of): (usize, usize), index: usize, lane: usize) -> bool {
-        let place = index * LANES + lane;
-        let ray = ExactRay::new(&self.rays[place]);
-        let block = &self.bvh().triangles[block];
-        let corners = block.corners(of);
-        let Some(crossing) = triangle::intersect_exact(&ray, &corners, block.extent(of)) else {
-            return false;
-        };
-        let mut state = self.state(place);
-        if V::SELECTS && !state.visibility.faces().shows(|| triangle::is_front(&ray, &corners)) {
-            return false;
-        }
-        report(crossing, block, of, &mut state);
-        self.update(place, &state.collector)
-    }
-
-    /// Tests the rays that hit the box of a leaf without triangles, one by one. Returns false if none does.
+    /// Tests the rays that hit the box of a leaf without triangles: spheres in lanes, other shapes ray by ray. Returns
+    /// false if none does.
     #[inline(never)]
     fn other_leaf(&mut self, simd: S, number: usize, stack: &mut TraversalStack<'_>) -> bool {
         simd.vectorize(
@@ -256,10 +216,14 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
             || {
                 let bvh = self.bvh();
                 let (leaf, bounds) = (&bvh.leaves[number], &bvh.leaf_bounds[number]);
-                let mut any = false;
+                let meeting = self.meet(simd, bounds);
+                if let Leaf::Spheres { first, count } = *leaf {
+                    let spheres = &bvh.spheres[first as usize..(first + count) as usize];
+                    self.spheres(simd, spheres, &meeting);
+                    return meeting != [0; GROUPS];
+                }
                 for index in 0..GROUPS {
-                    for lane in LaneMask(self.groups[index].meet(bounds)) {
-                        any = true;
+                    for lane in LaneMask(meeting[index]) {
                         let place = index * LANES + lane;
                         let ray = ExactRay::new(&self.rays[place]);
                         let mut state = self.state(place);
@@ -267,7 +231,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                         self.update(place, &state.collector);
                     }
                 }
-                any
+                meeting != [0; GROUPS]
             },
         )
     }
@@ -295,28 +259,24 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         C::ANY_HIT && collector.found()
     }
 
-    /// Intersects the deferred sure hits exactly. Returns the rays that hit anything.
+    /// Intersects the deferred sure hits exactly. Returns the rays of an any-hit query that hit anything.
     #[inline(always)]
-    fn finish(&mut self) -> u64 {
+    fn finish(&mut self, simd: S) -> u64 {
         let mut found = 0;
-        for place in 0..RAYS {
-            let group = &self.groups[place / LANES];
+        for index in 0..GROUPS {
             if C::ANY_HIT {
-                found |= u64::from(group.end[place % LANES] == f32::NEG_INFINITY) << place;
-                continue;
+                let done = self.groups[index].end.simd_eq(f32::NEG_INFINITY);
+                found |= (done.to_bitmask() & 0xff) << (index * LANES);
+            } else {
+                let deferred = !self.groups[index].block.simd_eq(NO_BLOCK);
+                self.intersect_sure(simd, index, deferred);
             }
-            let (block, lane) = (group.block[place % LANES], group.lane[place % LANES]);
-            if block != NO_BLOCK {
-                let mut state = self.state(place);
-                let block = &self.bvh().triangles[block as usize];
-                intersect_sure(block, lane as usize, || ExactRay::new(&self.rays[place]), &mut state);
-                self.hits[place] = state.collector.hit();
-            }
-            found |= u64::from(self.hits[place].is_hit()) << place;
         }
         found
     }
 }
 
+mod spheres;
 #[cfg(test)]
 mod tests;
+mod triangles;

@@ -2,10 +2,11 @@
 //! Shirley (2006).
 
 use crate::aabb::Aabb;
+use crate::common_origin::Beam;
 use crate::node::{Entered, Node};
 use crate::prepared::{self, SHORT};
 use crate::ray::Ray;
-use crate::ray8::{GROUPS, RAYS, Ray8, least};
+use crate::ray8::{GROUPS, RAYS, Ray8, least, least_of_each};
 use lookfrom_simd::{Simd, f32x8, i32x8, prelude::*};
 
 /// Largest difference of directions in a packet, relative to their length.
@@ -32,6 +33,11 @@ pub(crate) struct PacketBounds<S: Simd> {
     origin: [f32; 3],
     /// The common origin of all rays, if they have one.
     pub(crate) common_origin: Option<[f32; 3]>,
+    /// The center of the directions, and half of their extents: of each group, and of all rays.
+    pub(crate) groups: [[[f32; GROUPS]; 3]; 2],
+    pub(crate) all: [[f32; 3]; 2],
+    /// The largest component of a direction.
+    pub(crate) length: f32,
     near_side: [usize; 3],
     /// Minimum and maximum of 1 / direction, with a margin.
     reciprocal: [[f32x8<S>; 2]; 3],
@@ -41,35 +47,32 @@ pub(crate) struct PacketBounds<S: Simd> {
 }
 
 impl<S: Simd> PacketBounds<S> {
-    /// Returns `None` where the rays are too different for a packet, or not usual ones.
+    /// Returns `None` where the rays, which must be usual ones, are too different for a packet.
     #[inline(always)]
     pub(crate) fn around(simd: S, groups: &[Ray8<S>; GROUPS], largest: f32) -> Option<Self> {
-        let mut usual = groups[0].usual;
-        let mut t_min = groups[0].ray_lanes.t_min;
-        let (mut origins, mut directions) =
-            ([groups[0].ray_lanes.origin; 2], [groups[0].ray_lanes.direction; 2]);
+        let mut t_min = groups[0].start;
+        let mut origins = [groups[0].origin; 2];
         for group in &groups[1..] {
-            usual &= group.usual;
-            t_min = t_min.min(group.ray_lanes.t_min);
+            t_min = t_min.min(group.start);
             for axis in 0..3 {
-                let (o, d) = (group.ray_lanes.origin[axis], group.ray_lanes.direction[axis]);
+                let o = group.origin[axis];
                 origins[0][axis] = origins[0][axis].min(o);
                 origins[1][axis] = origins[1][axis].max(o);
-                directions[0][axis] = directions[0][axis].min(d);
-                directions[1][axis] = directions[1][axis].max(d);
             }
         }
+        let [x, y, z] = [extremes(groups, 0), extremes(groups, 1), extremes(groups, 2)];
+        let (min, max) = ([x[0], y[0], z[0]], [x[1], y[1], z[1]]);
         let boxed = |[min, max]: [[f32x8<S>; 3]; 2]| Aabb {
             min: [least(min[0]), least(min[1]), least(min[2])],
             max: [-least(-max[0]), -least(-max[1]), -least(-max[2])],
         };
-        let (origins, directions) = (boxed(origins), boxed(directions));
+        let (origins, directions) = (boxed(origins), boxed([min, max]));
         let greatest = |x: [f32; 3]| x.iter().fold(0.0_f32, |greatest, x| greatest.max(x.abs()));
         let spread = [0, 1, 2].map(|axis| directions.max[axis] - directions.min[axis]);
         let apart = [0, 1, 2].map(|axis| origins.max[axis] - origins.min[axis]);
         let alike = greatest(spread) < SPREAD * greatest(directions.min).min(greatest(directions.max))
             && greatest(apart) <= NEARNESS * largest;
-        if usual != 0xff || !alike {
+        if !alike {
             return None;
         }
 
@@ -90,7 +93,18 @@ impl<S: Simd> PacketBounds<S> {
                 offset[axis] = apart[axis] * least.abs().max(most.abs()) * (1.0 + 2.0 * room);
             }
         }
+        let (mut center, mut half) = ([[0.0; GROUPS]; 3], [[0.0; GROUPS]; 3]);
+        let (mut middle, mut rest) = ([0.0; 3], [0.0; 3]);
+        for axis in 0..3 {
+            let between = (min[axis] + max[axis]) * 0.5;
+            (center[axis], half[axis]) = (between.into(), (max[axis] - between).into());
+            middle[axis] = (directions.min[axis] + directions.max[axis]) * 0.5;
+            rest[axis] = directions.max[axis] - middle[axis];
+        }
         Some(Self {
+            groups: [center, half],
+            all: [middle, rest],
+            length: greatest(directions.min).max(greatest(directions.max)),
             origin,
             common_origin: (apart == [0.0; 3]).then_some(origin),
             near_side,
@@ -98,6 +112,20 @@ impl<S: Simd> PacketBounds<S> {
             offset: offset.map(|offset| f32x8::splat(simd, offset)),
             t_min: i32x8::splat(simd, least(t_min).to_bits() as i32),
         })
+    }
+
+    /// The directions of a group, whose longest ray has an end.
+    #[inline(always)]
+    pub(crate) fn beam(&self, group: usize, end: f32) -> Beam {
+        let [center, half] = [0, 1].map(|i| [0, 1, 2].map(|axis| self.groups[i][axis][group]));
+        Beam { center, half, end }
+    }
+
+    /// The directions of all rays.
+    #[inline(always)]
+    pub(crate) fn whole_beam(&self, end: f32) -> Beam {
+        let [center, half] = self.all;
+        Beam { center, half, end }
     }
 
     /// The children that some ray may hit before the end, and a lower bound of the distances. As [`Node::enter`]
@@ -120,4 +148,14 @@ impl<S: Simd> PacketBounds<S> {
         let missed = near.simd_gt(far).to_bitmask() as u32;
         Entered { children: missed ^ 0xff, near: near.bitcast() }
     }
+}
+
+/// The minimum and the maximum of each group's directions on an axis.
+#[inline(always)]
+fn extremes<S: Simd>(groups: &[Ray8<S>; GROUPS], axis: usize) -> [f32x8<S>; 2] {
+    let [a, b, c, d, e, f, g, h] = groups;
+    let of = |group: &Ray8<S>| group.direction[axis];
+    let directions = [of(a), of(b), of(c), of(d), of(e), of(f), of(g), of(h)];
+    let [a, b, c, d, e, f, g, h] = directions;
+    [least_of_each(directions), -least_of_each([-a, -b, -c, -d, -e, -f, -g, -h])]
 }

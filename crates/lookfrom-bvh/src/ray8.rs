@@ -22,20 +22,19 @@ pub(crate) const NO_BLOCK: i32 = -1;
 /// Eight rays, one in each lane, and their closest hits so far.
 #[derive(Clone, Copy)]
 pub(crate) struct Ray8<S: Simd> {
-    pub(crate) ray_lanes: RayLanes<S>,
+    pub(crate) origin: [f32x8<S>; 3],
+    pub(crate) direction: [f32x8<S>; 3],
+    /// Where each ray starts, with a margin.
+    pub(crate) start: f32x8<S>,
     /// The lanes of usual rays; the contents of the others are meaningless.
     pub(crate) usual: u32,
-    /// The largest component of each direction.
-    pub(crate) length: f32x8<S>,
-    pub(crate) near_reciprocal: [f32x8<S>; 3],
-    pub(crate) far_reciprocal: [f32x8<S>; 3],
-    pub(crate) near_product: [f32x8<S>; 3],
-    pub(crate) far_product: [f32x8<S>; 3],
+    /// The rays' `t_min` and `t_max`.
+    pub(crate) range: [f32x8<S>; 2],
+    /// `t_max` or the nearest hit so far, with a margin; −∞ for a ray that is done.
     pub(crate) end: f32x8<S>,
-    /// Bounds of the distance of a sure hit whose exact test is deferred; ∞ where there is none.
-    pub(crate) first: f32x8<S>,
-    pub(crate) last: f32x8<S>,
-    /// That hit's block and its lane in it.
+    /// What is surely nearer than this is surely nearer than all hits so far.
+    pub(crate) limit: f32x8<S>,
+    /// The block of a sure hit whose exact test is deferred, and its lane in it.
     pub(crate) block: i32x8<S>,
     pub(crate) lane: i32x8<S>,
     /// Geometry and primitive of the rays' origin triangles that are not in instances.
@@ -49,16 +48,13 @@ impl<S: Simd> Ray8<S> {
         let zero = f32x8::splat(simd, 0.0);
         let (zeros, number) = ([zero; 3], i32x8::splat(simd, NO_BLOCK));
         Self {
-            ray_lanes: RayLanes::of_rays(simd, zeros, zeros, zero, zero),
+            origin: zeros,
+            direction: zeros,
+            start: zero,
             usual: 0,
-            length: zero,
-            near_reciprocal: zeros,
-            far_reciprocal: zeros,
-            near_product: zeros,
-            far_product: zeros,
+            range: [zero; 2],
             end: zero,
-            first: zero,
-            last: zero,
+            limit: zero,
             block: number,
             lane: number,
             origin_ids: [number; 2],
@@ -88,7 +84,6 @@ impl<S: Simd> Ray8<S> {
         }
         let [ox, oy, oz, t_min, dx, dy, dz, t_max] = v;
         let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);
-        let greatest = |[x, y, z]: [f32x8<S>; 3]| x.abs().max(y.abs()).max(z.abs());
         let length = greatest(direction);
         let usual = greatest(origin).simd_lt(FAR)
             & length.simd_lt(1.0 / SHORT)
@@ -98,26 +93,26 @@ impl<S: Simd> Ray8<S> {
         let zero = f32x8::splat(simd, 0.0);
         let sum = |[x, y, z]: [f32x8<S>; 3]| x + y + z;
         let finite = ((sum(origin) + sum(direction)) * zero).simd_eq(zero);
-        let cap = f32x8::splat(simd, LARGEST_RECIPROCAL);
-        let slabs = |axis: usize| prepared::slabs(simd, origin[axis], direction[axis], cap, 0.0);
-        let [x, y, z] = [slabs(0), slabs(1), slabs(2)];
-        let first = (t_min - (t_min * prepared::ROOM + prepared::TINY)).max(0.0);
-        let none = f32x8::splat(simd, f32::INFINITY);
+        let end = t_max + (t_max.abs() * prepared::ROOM + prepared::TINY);
         Self {
             usual: (usual & finite).to_bitmask() as u32 & 0xff,
-            ray_lanes: RayLanes::of_rays(simd, origin, direction, first, length * conservative::ERROR),
-            length,
-            near_reciprocal: [x[0], y[0], z[0]],
-            far_reciprocal: [x[1], y[1], z[1]],
-            near_product: [x[2], y[2], z[2]],
-            far_product: [x[3], y[3], z[3]],
-            end: t_max + (t_max.abs() * prepared::ROOM + prepared::TINY),
-            first: none,
-            last: none,
+            origin,
+            direction,
+            start: (t_min - (t_min * prepared::ROOM + prepared::TINY)).max(0.0),
+            range: [t_min, t_max],
+            end,
+            limit: end,
             block: i32x8::splat(simd, NO_BLOCK),
             lane: i32x8::splat(simd, 0),
             origin_ids: [i32x8::splat(simd, NONE as i32); 2],
         }
+    }
+
+    /// The rays for the conservative test.
+    #[inline(always)]
+    pub(crate) fn ray_lanes(&self, simd: S) -> RayLanes<S> {
+        let error = greatest(self.direction) * conservative::ERROR;
+        RayLanes::of_rays(simd, self.origin, self.direction, self.start, error)
     }
 
     /// Sets the origin primitives of the rays, lane by lane.
@@ -151,22 +146,64 @@ impl<S: Simd> Ray8<S> {
     pub(crate) fn shorten(&mut self, lane: usize, t: f32) {
         let end = t + (t.abs() * prepared::ROOM + prepared::TINY);
         self.end[lane] = smaller(end, self.end[lane]);
+        self.limit[lane] = smaller(end, self.limit[lane]);
     }
 
-    /// The rays that hit a box before their ends.
+    /// Takes note of a triangle, the one of a block, that some rays surely hit between `first` and `last`. Returns
+    /// the rays of which it is surely the nearest hit so far.
     #[inline(always)]
-    pub(crate) fn meet(&self, bounds: &Aabb) -> u32 {
-        let mut near = self.ray_lanes.t_min;
-        let mut far = self.end;
+    pub(crate) fn defer(
+        &mut self,
+        simd: S,
+        (block, of): (usize, usize),
+        sure: mask32x8<S>,
+        [first, last]: [f32x8<S>; 2],
+    ) -> mask32x8<S> {
+        let nearest = sure & last.simd_lt(self.limit);
+        self.limit = nearest.select(first, self.limit);
+        self.end = nearest.select(last, self.end);
+        self.block = nearest.select(i32x8::splat(simd, block as i32), self.block);
+        self.lane = nearest.select(i32x8::splat(simd, of as i32), self.lane);
+        nearest
+    }
+}
+
+/// Eight rays for the test of one box.
+pub(crate) struct Slabs8<S: Simd> {
+    /// By axis: the reciprocal of the direction near and far, and its products with the origin.
+    axes: [[f32x8<S>; 4]; 3],
+}
+
+impl<S: Simd> Slabs8<S> {
+    #[inline(always)]
+    pub(crate) fn new(simd: S, group: &Ray8<S>) -> Self {
+        let Ray8 { origin: [ox, oy, oz], direction: [dx, dy, dz], .. } = *group;
+        let cap = f32x8::splat(simd, LARGEST_RECIPROCAL);
+        let slabs = |origin, direction| prepared::slabs(simd, origin, direction, cap, 0.0);
+        Self { axes: [slabs(ox, dx), slabs(oy, dy), slabs(oz, dz)] }
+    }
+
+    /// The rays of the group that hit a box before their ends.
+    #[inline(always)]
+    pub(crate) fn meet(&self, group: &Ray8<S>, bounds: &Aabb) -> u32 {
+        let mut near = group.start;
+        let mut far = group.end;
         for axis in 0..3 {
+            let [near_reciprocal, far_reciprocal, near_product, far_product] = self.axes[axis];
             let [a, b] = [bounds.min[axis], bounds.max[axis]];
-            let at = |face: f32| self.near_reciprocal[axis] * face - self.near_product[axis];
+            let at = |face: f32| near_reciprocal * face - near_product;
             near = near.max(at(a).min(at(b)));
-            let at = |face: f32| self.far_reciprocal[axis] * face - self.far_product[axis];
+            let at = |face: f32| far_reciprocal * face - far_product;
             far = far.min(at(a).max(at(b)));
         }
         near.simd_le(far).to_bitmask() as u32 & 0xff
     }
+}
+
+/// The largest magnitude, lane by lane.
+#[inline(always)]
+fn greatest<S: Simd>([x, y, z]: [f32x8<S>; 3]) -> f32x8<S> {
+    x.abs().max(y.abs()).max(z.abs())
 }
 
 /// The minimum of the lanes.
@@ -177,7 +214,35 @@ pub(crate) fn least<S: Simd>(numbers: f32x8<S>) -> f32 {
     smaller(smaller(a, b), smaller(c, d))
 }
 
+/// The minimum of each of eight vectors.
+#[inline(always)]
+pub(crate) fn least_of_each<S: Simd>([a, b, c, d, e, f, g, h]: [f32x8<S>; GROUPS]) -> f32x8<S> {
+    let [[a, b], [c, d]] = [[halve(a, e), halve(c, g)], [halve(b, f), halve(d, h)]];
+    halve(halve(a, b), halve(c, d))
+}
+
+/// The lesser ones of each vector's halves; the lanes of the two vectors alternate.
+#[inline(always)]
+fn halve<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
+    a.zip_low(b).min(a.zip_high(b))
+}
+
 #[inline(always)]
 fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_of_each_vector_is_in_its_lane() {
+        let simd = fearless_simd::Fallback::new();
+        let lanes = |i: usize| (0..LANES).map(move |lane| ((37 * i + 11 * lane) % 64) as f32);
+        let vectors: [_; GROUPS] =
+            std::array::from_fn(|i| f32x8::from_fn(simd, |lane| lanes(i).nth(lane).unwrap()));
+        let least: [f32; GROUPS] = least_of_each(vectors).into();
+        assert_eq!(least, std::array::from_fn(|i| lanes(i).fold(99.0, f32::min)));
+    }
 }

@@ -6,6 +6,7 @@
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
 use crate::exact::{ExactRay, Rounded};
 use crate::vector::{dot, subtract, wide};
+use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask32x8};
 
 /// A sphere's surface: rays hit it from both sides.
 ///
@@ -47,30 +48,70 @@ impl Sphere {
 
 /// Both hits of the whole line with the sphere, the smaller t first. `None` where the line misses it.
 pub(crate) fn intersect_exact<T: Rounded>(ray: &ExactRay<T>, sphere: &Sphere) -> Option<[T; 2]> {
-    let f = subtract(ray.origin, wide(sphere.center));
-    let d = ray.direction;
     let radius = f64::from(sphere.radius);
-    let a = dot(d, d);
-    let b = dot(f, d);
-
-    // The discriminant from the line's point nearest to the centre: no cancellation for small or distant
-    // spheres.
-    let s = b / a;
-    let nearest = [f[0] - s * d[0], f[1] - s * d[1], f[2] - s * d[2]];
-    let discriminant = a * (radius * radius - dot(nearest, nearest));
-    if !(discriminant >= 0.0) {
+    let quadratic = Quadratic::new(ray.origin, ray.direction, wide(sphere.center), radius);
+    if !(quadratic.discriminant >= 0.0) {
         return None;
     }
-
-    // Both roots without cancellation.
-    let length = dot(f, f).sqrt();
-    let c = (length - radius) * (length + radius);
-    let q = -(b + discriminant.sqrt().copysign(b));
-    if q == 0.0 {
-        return Some([T::rounded(0.0); 2]);
-    }
-    let [t1, t2] = [T::rounded(q / a), T::rounded(c / q)];
+    let [t1, t2] = quadratic.roots(radius).map(T::rounded);
     Some(if t1 <= t2 { [t1, t2] } else { [t2, t1] })
+}
+
+/// The same for eight rays: those whose lines hit the sphere, and both hits.
+#[inline(always)]
+pub(crate) fn intersect_lanes<S: Simd>(
+    origin: [f32x8<S>; 3],
+    direction: [f32x8<S>; 3],
+    sphere: &Sphere,
+) -> (mask32x8<S>, [f32x8<S>; 2]) {
+    let [ox, oy, oz]: [f64x8<S>; 3] =
+        [Real::widen(origin[0]), Real::widen(origin[1]), Real::widen(origin[2])];
+    let direction = [Real::widen(direction[0]), Real::widen(direction[1]), Real::widen(direction[2])];
+    let [x, y, z] = sphere.center.map(f64::from);
+    let radius = ox.like(f64::from(sphere.radius));
+    let quadratic = Quadratic::new([ox, oy, oz], direction, [ox.like(x), ox.like(y), ox.like(z)], radius);
+    let hit = Float::lt(quadratic.discriminant, ox.like(0.0));
+    let hit = Float::eq(quadratic.discriminant, quadratic.discriminant) & !hit;
+    let [t1, t2] = quadratic.roots(radius);
+    let [t1, t2]: [f32x8<S>; 2] = [Real::narrow(t1), Real::narrow(t2)];
+    let turned = Float::gt(t1, t2);
+    (origin[0].narrow_mask(hit), [Float::select(turned, t2, t1), Float::select(turned, t1, t2)])
+}
+
+/// The quadratic equation of a line and a sphere.
+struct Quadratic<T> {
+    /// From the centre to the line's origin.
+    f: [T; 3],
+    a: T,
+    b: T,
+    discriminant: T,
+}
+
+impl<T: Float<Scalar = f64>> Quadratic<T> {
+    #[inline(always)]
+    fn new(origin: [T; 3], d: [T; 3], center: [T; 3], radius: T) -> Self {
+        let f = subtract(origin, center);
+        let a = dot(d, d);
+        let b = dot(f, d);
+
+        // The discriminant from the line's point nearest to the centre: no cancellation for small or distant
+        // spheres.
+        let s = b / a;
+        let nearest = [f[0] - s * d[0], f[1] - s * d[1], f[2] - s * d[2]];
+        Self { f, a, b, discriminant: a * (radius * radius - dot(nearest, nearest)) }
+    }
+
+    /// Both roots without cancellation, in any order.
+    #[inline(always)]
+    fn roots(&self, radius: T) -> [T; 2] {
+        let Self { f, a, b, discriminant } = *self;
+        let length = dot(f, f).sqrt();
+        let c = (length - radius) * (length + radius);
+        let q = -(b + discriminant.sqrt().copysign(b));
+        let zero = a.like(0.0);
+        let is_zero = q.eq(zero);
+        [T::select(is_zero, zero, q / a), T::select(is_zero, zero, c / q)]
+    }
 }
 
 #[cfg(test)]

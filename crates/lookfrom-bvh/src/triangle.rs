@@ -13,8 +13,11 @@
 //! `t` is that of the plane, `n·(p0 − o) / n·d`, from differences of f32 values that f64 holds (nearly) exactly:
 //! its sign is right to about 10⁻¹⁵ of the triangle's size, however near the origin is to the plane.
 
+use std::ops::Neg;
+
 use crate::exact::{ExactRay, Rounded};
-use crate::vector::{cross, cross_magnitude, dot, subtract, wide};
+use crate::vector::{Number, cross, cross_magnitude, dot, subtract, wide};
+use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8};
 
 /// The intersection with a triangle: `t`, and the barycentric weights of its second and third corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +40,7 @@ pub(crate) fn intersect_exact<T: Rounded>(
     if !sheared.is_met() {
         return None;
     }
-    let meeting = meet(ray, corners);
+    let meeting = meet_exactly(ray, corners);
     let extent = f64::from(extent);
     let product = extent * widest(ray.direction);
     let determinant = meeting.determinant.abs();
@@ -64,7 +67,32 @@ fn widest([x, y, z]: [f64; 3]) -> f64 {
 /// error is `conservative::ERROR` relative to the same product as [`CLEAR`].
 #[inline(always)]
 pub(crate) fn intersect_sure(ray: &ExactRay, corners: &[[f32; 3]; 3]) -> Crossing {
-    meet(ray, corners).round()
+    meet_exactly(ray, corners).round()
+}
+
+/// The same for eight rays and their triangles: t, and the weights of the second and third corners.
+#[inline(always)]
+pub(crate) fn intersect_sure_lanes<S: Simd>(
+    origin: [f32x8<S>; 3],
+    direction: [f32x8<S>; 3],
+    [p0, p1, p2]: [[f32x8<S>; 3]; 3],
+) -> [f32x8<S>; 3] {
+    let corners = [wide_lanes(p0), wide_lanes(p1), wide_lanes(p2)];
+    let Meeting { t, u, v, .. } =
+        meet(wide_lanes(origin), wide_lanes(direction), corners, |x: f64x8<S>| x.like(1.0) / x);
+    [Real::narrow(t), Real::narrow(positive(u)), Real::narrow(positive(v))]
+}
+
+#[inline(always)]
+fn wide_lanes<S: Simd>([x, y, z]: [f32x8<S>; 3]) -> [f64x8<S>; 3] {
+    [Real::widen(x), Real::widen(y), Real::widen(z)]
+}
+
+/// A weight: less than 0 only because of rounding.
+#[inline(always)]
+fn positive<T: Float<Scalar = f64>>(x: T) -> T {
+    let zero = x.like(0.0);
+    T::select(x.gt(zero), x, zero)
 }
 
 /// True if the ray hits the front face of a triangle: the face from which its corners are seen counter-clockwise.
@@ -76,33 +104,41 @@ pub(crate) fn is_front<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -
 }
 
 /// An intersection before it is rounded.
-struct Meeting {
-    determinant: f64,
-    t: f64,
-    u: f64,
-    v: f64,
+struct Meeting<T> {
+    determinant: T,
+    t: T,
+    u: T,
+    v: T,
 }
 
-impl Meeting {
-    /// Weights less than 0 can only result from rounding.
+impl Meeting<f64> {
     #[inline(always)]
     fn round<T: Rounded>(&self) -> Crossing<T> {
-        let weight = |x: f64| T::rounded(if x > 0.0 { x } else { 0.0 });
-        Crossing { t: T::rounded(self.t), u: weight(self.u), v: weight(self.v) }
+        Crossing { t: T::rounded(self.t), u: T::rounded(positive(self.u)), v: T::rounded(positive(self.v)) }
     }
+}
+
+#[inline(always)]
+fn meet_exactly<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -> Meeting<f64> {
+    let corners = [wide(corners[0]), wide(corners[1]), wide(corners[2])];
+    meet(ray.origin, ray.direction, corners, |x| 1.0 / x)
 }
 
 /// The intersection of a ray with the plane of a triangle: Cramer's rule in the form of Möller and
 /// Trumbore (1997).
 #[inline(always)]
-fn meet<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -> Meeting {
-    let (p0, p1, p2) = (wide(corners[0]), wide(corners[1]), wide(corners[2]));
+fn meet<T: Number + Neg<Output = T>>(
+    origin: [T; 3],
+    direction: [T; 3],
+    [p0, p1, p2]: [[T; 3]; 3],
+    invert: impl Fn(T) -> T,
+) -> Meeting<T> {
     let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
-    let c = subtract(p0, ray.origin);
+    let c = subtract(p0, origin);
     let n = cross(e1, e2);
-    let r = cross(c, ray.direction);
-    let determinant = dot(n, ray.direction);
-    let inverse = 1.0 / determinant;
+    let r = cross(c, direction);
+    let determinant = dot(n, direction);
+    let inverse = invert(determinant);
     Meeting { determinant, t: dot(n, c) * inverse, u: dot(e2, r) * inverse, v: -dot(e1, r) * inverse }
 }
 

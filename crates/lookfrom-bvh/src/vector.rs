@@ -1,4 +1,11 @@
-//! The vector operations of the exact tests.
+//! The vector operations of the tests, for numbers and for lanes of numbers.
+
+use std::ops::{Add, Mul, Sub};
+
+/// Numbers, or lanes of numbers.
+pub(crate) trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+
+impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}
 
 #[inline(always)]
 pub(crate) fn wide(a: [f32; 3]) -> [f64; 3] {
@@ -6,17 +13,17 @@ pub(crate) fn wide(a: [f32; 3]) -> [f64; 3] {
 }
 
 #[inline(always)]
-pub(crate) fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(crate) fn subtract<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 #[inline(always)]
-pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(crate) fn dot<T: Number>(a: [T; 3], b: [T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]
-pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(crate) fn cross<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 

@@ -9,13 +9,12 @@ use crate::origin_primitive::OriginPrimitive;
 use crate::stack::with_stack;
 use crate::testing::Random;
 use crate::visibility::Everything;
-use crate::{Aabb, Affine, Builder, Procedural, ProceduralHit, Query, Sphere, Triangles};
+use crate::{Aabb, Affine, Builder, Faces, Procedural, ProceduralHit, Query, Sphere, Triangles};
 use lookfrom_simd::Kernel;
 
-/// Neighbouring rays toward a target, from one origin or several; some have an end, some are invalid or
+/// Neighbouring rays toward a target, from one origin or several around a point; some have an end, some are invalid or
 /// unusual.
-fn neighbours(random: &mut Random, target: [f32; 3], size: f32) -> Vec<Ray> {
-    let from = random.near(target, 4.0 * size);
+fn neighbours(random: &mut Random, from: [f32; 3], target: [f32; 3], size: f32) -> Vec<Ray> {
     let (lens, opening) = (random.unit() < 0.3, size * random.size(-3, 0));
     let ends = random.unit() < 0.3;
     let odd = random.unit() < 0.1;
@@ -48,7 +47,12 @@ fn packets_say_what_single_rays_say() {
         let mut bvh = builder.build().unwrap();
         for _ in 0..10 {
             let target = positions[random.below(600) as usize];
-            let rays = neighbours(&mut random, target, size);
+            // Some start in the planes of triangles.
+            let from = match random.below(5) {
+                0 => positions[random.below(600) as usize],
+                _ => random.near(target, 4.0 * size),
+            };
+            let rays = neighbours(&mut random, from, target, size);
             for level in levels() {
                 bvh.level = level;
                 let mut together = vec![Hit::MISS; rays.len()];
@@ -150,14 +154,28 @@ impl Kernel for GoTogether<'_> {
 fn packets_of_every_query_say_what_single_rays_say() {
     let mut random = Random::new(10);
     let (mut hits, mut misses, mut packets, mut excluded) = (0, 0, 0, 0);
-    for round in 0..40 {
+    for round in 0..56 {
         let (center, size) = (random.point_with_exponents(-6, 6), random.size(-6, 6));
-        let counts =
-            [[300, 0, 0, 0], [200, 1, 0, 0], [100, 20, 20, 0], [60, 5, 5, 4], [0, 0, 0, 6]][round % 5];
+        // The last ones are so few that any rays form packets.
+        let counts = [
+            [300, 0, 0, 0],
+            [200, 1, 0, 0],
+            [100, 20, 20, 0],
+            [60, 5, 5, 4],
+            [0, 0, 0, 6],
+            [2, 3, 0, 0],
+            [12, 4, 0, 0],
+        ][round % 7];
         let mut bvh = mixture(&mut random, center, size, counts);
         for _ in 0..6 {
             let target = random.near(center, size);
-            let rays = neighbours(&mut random, target, size);
+            let from = random.near(target, 4.0 * size);
+            let mut rays = neighbours(&mut random, from, target, size);
+            if random.unit() < 0.3 {
+                for ray in &mut rays {
+                    (ray.origin, ray.direction) = (random.near(center, 2.0 * size), random.direction());
+                }
+            }
             let faces = [Faces::Both, Faces::Front, Faces::Back][random.below(3) as usize];
             let mask = 1 << random.below(4);
             // Exclude the triangle that is hit first, so that the exclusion has an effect.

@@ -1,0 +1,59 @@
+//! Packets against spheres: eight rays and one sphere in f64.
+
+use super::Packet;
+use crate::bvh::SphereItem;
+use crate::collector::PacketCollector;
+use crate::ray::{Hit, NONE};
+use crate::ray8::{GROUPS, LANES, Ray8};
+use crate::sphere;
+use crate::visibility::{Faces, Visibility};
+use lookfrom_simd::{LaneMask, Simd, mask32x8, prelude::*};
+
+impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V> {
+    /// Tests spheres against those rays of each group that hit their box.
+    #[inline(always)]
+    pub(super) fn spheres(&mut self, simd: S, spheres: &[SphereItem], meeting: &[u32; GROUPS]) {
+        for item in spheres {
+            if V::SELECTS && !V::of(self.settings, 0).shows(item.geometry, item.primitive) {
+                continue;
+            }
+            for index in 0..GROUPS {
+                if meeting[index] != 0 {
+                    self.sphere(simd, item, index, meeting[index]);
+                }
+            }
+        }
+    }
+
+    /// Tests a sphere against some rays of a group.
+    #[inline(always)]
+    fn sphere(&mut self, simd: S, item: &SphereItem, index: usize, rays: u32) {
+        let group = &mut self.groups[index];
+        let Ray8 { origin, direction, .. } = *group;
+        let (is_hit, [near, far]) = sphere::intersect_lanes(origin, direction, &item.shape);
+        let [t_min, t_max] = group.range;
+        let (mut enters, mut leaves) = (near.simd_gt(t_min), far.simd_gt(t_min) & near.simd_lt(far));
+        if V::SELECTS {
+            let faces = V::of(self.settings, 0).faces();
+            enters &= mask32x8::splat(simd, faces != Faces::Back);
+            leaves &= mask32x8::splat(simd, faces != Faces::Front);
+        }
+        let t = enters.select(near, far);
+        let rays = mask32x8::from_bitmask(simd, u64::from(rays));
+        let found = rays & is_hit & (enters | leaves) & t.simd_lt(t_max) & t.simd_le(group.end);
+        if C::ANY_HIT {
+            group.retire(simd, found);
+            return;
+        }
+        let t: [f32; LANES] = t.into();
+        let SphereItem { geometry, primitive, .. } = *item;
+        for lane in LaneMask(found.to_bitmask() as u32) {
+            let place = index * LANES + lane;
+            let hit = Hit { t: t[lane], u: 0.0, v: 0.0, primitive, geometry, instance: NONE };
+            if hit.precedes(&self.hits[place]) {
+                self.hits[place] = hit;
+                self.groups[index].shorten(lane, hit.t);
+            }
+        }
+    }
+}

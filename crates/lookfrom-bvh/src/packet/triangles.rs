@@ -1,0 +1,221 @@
+//! Packets against blocks of triangles.
+
+use super::Packet;
+use crate::collector::PacketCollector;
+use crate::common_origin::CommonOriginBlock;
+use crate::conservative::TriangleLanes;
+use crate::exact::ExactRay;
+use crate::packet_bounds::PacketBounds;
+use crate::ray::{Hit, NONE};
+use crate::ray8::{GROUPS, LANES, Ray8};
+use crate::traverse::report;
+use crate::triangle;
+use crate::visibility::{Faces, Visibility};
+use lookfrom_simd::{LaneMask, Simd, f32x8, mask32x8, prelude::*};
+
+impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V> {
+    /// The triangles of a block that the rays see.
+    #[inline(always)]
+    fn shown(&self, number: usize) -> u32 {
+        let block = &self.bvh().triangles[number];
+        let all = (1 << block.count()) - 1;
+        if !V::SELECTS {
+            return all;
+        }
+        let visibility = V::of(self.settings, 0);
+        LaneMask(all).fold(0, |shown, lane| {
+            let (geometry, primitive) = block.ids(lane);
+            shown | u32::from(visibility.shows(geometry, primitive)) << lane
+        })
+    }
+
+    /// Tests a block of triangles. Returns false where no ray hits its box.
+    #[inline(always)]
+    pub(super) fn triangles(&mut self, simd: S, number: usize) -> bool {
+        self.test(simd, number, self.shown(number))
+    }
+
+    /// Tests a block of triangles against rays from one origin. Returns false where no ray hits it.
+    #[inline(always)]
+    pub(super) fn triangles_from(
+        &mut self,
+        simd: S,
+        origin: [f32; 3],
+        packet_bounds: &PacketBounds<S>,
+        number: usize,
+        ends: &[f32; GROUPS],
+        end: f32,
+    ) -> bool {
+        let block = &self.bvh().triangles[number];
+        let mut shown = self.shown(number);
+        let seen = CommonOriginBlock::new(simd, block, origin, packet_bounds.length);
+        let unclear = shown & !seen.clear;
+        if V::SELECTS {
+            shown &= match V::of(self.settings, 0).faces() {
+                Faces::Both => !0,
+                Faces::Front => seen.front,
+                Faces::Back => !seen.front,
+            };
+        }
+        let (mut tests, mut rays) = (0, 0);
+        let is_entered = shown & seen.enter(simd, &packet_bounds.whole_beam(end)) != 0;
+        if is_entered {
+            for index in 0..GROUPS {
+                let triangles = shown & seen.enter(simd, &packet_bounds.beam(index, ends[index]));
+                tests += triangles.count_ones();
+                let mut hitting = 0;
+                for of in LaneMask(triangles) {
+                    let group = &self.groups[index];
+                    let tested = seen.test(simd, of, group.direction, group.start, group.end);
+                    hitting |= tested.kept.to_bitmask() & 0xff;
+                    self.take(
+                        simd,
+                        (number, of),
+                        index,
+                        tested.kept,
+                        tested.sure,
+                        [tested.first, tested.last],
+                    );
+                }
+                rays += hitting.count_ones();
+            }
+        }
+        self.coherence.count_common(is_entered, tests, rays);
+        let mut any = tests != 0;
+        if unclear != 0 {
+            any |= self.test(simd, number, unclear);
+        }
+        any
+    }
+
+    /// Takes the outcome of a conservative test: the rays of a group that may hit a triangle, and those that surely
+    /// do, between two distances. The exact tests of sure hits are deferred.
+    #[inline(always)]
+    fn take(
+        &mut self,
+        simd: S,
+        place @ (block, of): (usize, usize),
+        index: usize,
+        mut kept: mask32x8<S>,
+        mut sure: mask32x8<S>,
+        between: [f32x8<S>; 2],
+    ) {
+        let group = &mut self.groups[index];
+        if V::HAS_ORIGIN {
+            let (geometry, primitive) = self.settings.bvh.triangles[block].ids(of);
+            let is_other = !group.start_on(simd, geometry, primitive);
+            sure &= is_other;
+            kept &= is_other;
+        }
+        let nearest = group.defer(simd, place, sure, between);
+        let open = kept & !nearest;
+        if open.any_true() {
+            for lane in LaneMask(open.to_bitmask() as u32 & 0xff) {
+                self.intersect_exact(place, index, lane);
+            }
+        }
+    }
+
+    /// Tests some of a block's triangles against those rays that hit its box. Returns false where none does.
+    #[inline(always)]
+    fn test(&mut self, simd: S, number: usize, triangles: u32) -> bool {
+        let block = &self.bvh().triangles[number];
+        let visibility = V::of(self.settings, 0);
+        let bounds = block.bounds(simd).padded();
+        let meeting = &mut self.meet(simd, &bounds);
+        self.coherence.count(meeting);
+        let any = *meeting != [0; GROUPS];
+        for index in 0..GROUPS {
+            for of in LaneMask(triangles) {
+                let rays = meeting[index];
+                if rays == 0 {
+                    break;
+                }
+                let group = &mut self.groups[index];
+                let tested = TriangleLanes::splat(simd, block, of).test_conservatively(
+                    simd,
+                    &group.ray_lanes(simd),
+                    group.end,
+                );
+                let (mut sure, mut kept) = (tested.sure, tested.kept.0 & rays);
+                if V::SELECTS && visibility.faces() != Faces::Both {
+                    // The sign of a sure hit's determinant is also sure.
+                    let is_front = tested.looks_at_front();
+                    sure &= if visibility.faces() == Faces::Front { is_front } else { !is_front };
+                    kept &= !(tested.surely_hit.0 & !(sure.to_bitmask() as u32));
+                }
+                if !C::ANY_HIT {
+                    let kept = mask32x8::from_bitmask(simd, u64::from(kept));
+                    self.take(simd, (number, of), index, kept, sure, tested.between());
+                    continue;
+                }
+                let mut open = kept & !tested.surely_hit.0;
+                if V::HAS_ORIGIN {
+                    let (geometry, primitive) = block.ids(of);
+                    let is_other = !group.start_on(simd, geometry, primitive);
+                    sure &= is_other;
+                    open &= is_other.to_bitmask() as u32;
+                }
+                // A ray that is surely occluded is done.
+                group.retire(simd, sure);
+                meeting[index] &= !(sure.to_bitmask() as u32);
+                for lane in LaneMask(open) {
+                    if self.intersect_exact((number, of), index, lane) {
+                        meeting[index] &= !(1 << lane);
+                    }
+                }
+            }
+        }
+        any
+    }
+
+    /// Tests a ray exactly against a triangle that is not its origin primitive. Returns true if the ray is done.
+    #[cold]
+    #[inline(never)]
+    fn intersect_exact(&mut self, (block, of): (usize, usize), index: usize, lane: usize) -> bool {
+        let place = index * LANES + lane;
+        let ray = ExactRay::new(&self.rays[place]);
+        let block = &self.bvh().triangles[block];
+        let corners = block.corners(of);
+        let Some(crossing) = triangle::intersect_exact(&ray, &corners, block.extent(of)) else {
+            return false;
+        };
+        let mut state = self.state(place);
+        if V::SELECTS && !state.visibility.faces().shows(|| triangle::is_front(&ray, &corners)) {
+            return false;
+        }
+        report(crossing, block, of, &mut state);
+        self.update(place, &state.collector)
+    }
+
+    /// Intersects the deferred sure hits of a group exactly.
+    #[inline(always)]
+    pub(super) fn intersect_sure(&mut self, simd: S, index: usize, deferred: mask32x8<S>) {
+        let deferred = LaneMask(deferred.to_bitmask() as u32 & 0xff);
+        if deferred == LaneMask(0) {
+            return;
+        }
+        // The other lanes have any triangle.
+        let group = &self.groups[index];
+        let bvh = self.bvh();
+        let block = |lane: usize| &bvh.triangles[group.block[lane].max(0) as usize];
+        let blocks = [0, 1, 2, 3, 4, 5, 6, 7].map(block);
+        let of: [i32; LANES] = group.lane.into();
+        let column = |corner: usize, axis: usize| {
+            let at = |lane: usize| blocks[lane].coordinate(corner, axis, of[lane] as usize);
+            f32x8::load_array(simd, [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
+        };
+        let corner = |corner: usize| [column(corner, 0), column(corner, 1), column(corner, 2)];
+        let Ray8 { origin, direction, .. } = *group;
+        let [t, u, v] = triangle::intersect_sure_lanes(origin, direction, [corner(0), corner(1), corner(2)]);
+        let [t, u, v]: [[f32; LANES]; 3] = [t.into(), u.into(), v.into()];
+        for lane in deferred {
+            let place = index * LANES + lane;
+            let (geometry, primitive) = blocks[lane].ids(of[lane] as usize);
+            let hit = Hit { t: t[lane], u: u[lane], v: v[lane], primitive, geometry, instance: NONE };
+            if hit.t < self.rays[place].t_max && hit.precedes(&self.hits[place]) {
+                self.hits[place] = hit;
+            }
+        }
+    }
+}
