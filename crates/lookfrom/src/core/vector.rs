@@ -5,7 +5,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lookfrom_simd::{Float, Real};
 
 /// Three components, each as wide as `F`.
@@ -90,6 +90,13 @@ impl<F: Float<Scalar: From<f32>>> Vector<F> {
         self * self.length_recip()
     }
 
+    /// Of unit length, and whether there is such a vector.
+    #[inline(always)]
+    pub fn try_normalize(self) -> (Self, F::Mask) {
+        let recip = self.length_recip();
+        (self * recip, Float::is_finite(recip) & recip.gt(recip.like(F::Scalar::from(0.0))))
+    }
+
     #[inline(always)]
     fn length_recip(self) -> F {
         let length = self.length();
@@ -98,13 +105,6 @@ impl<F: Float<Scalar: From<f32>>> Vector<F> {
 }
 
 impl<R: Real> Vector<R> {
-    /// Of unit length, and whether there is such a vector.
-    #[inline(always)]
-    pub fn try_normalize(self) -> (Self, R::Mask) {
-        let recip = self.length_recip();
-        (self * recip, Float::is_finite(recip) & recip.gt(recip.like(0.0)))
-    }
-
     /// In double precision.
     #[inline(always)]
     pub(crate) fn widen(self) -> Vector<R::Double> {
@@ -160,6 +160,20 @@ impl From<Vec3> for Vector<f32> {
 impl From<Vector<f32>> for Vec3 {
     #[inline(always)]
     fn from(v: Vector<f32>) -> Self {
+        Self::new(v.x, v.y, v.z)
+    }
+}
+
+impl From<DVec3> for Vector<f64> {
+    #[inline(always)]
+    fn from(v: DVec3) -> Self {
+        Self { x: v.x, y: v.y, z: v.z }
+    }
+}
+
+impl From<Vector<f64>> for DVec3 {
+    #[inline(always)]
+    fn from(v: Vector<f64>) -> Self {
         Self::new(v.x, v.y, v.z)
     }
 }
