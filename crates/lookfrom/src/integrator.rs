@@ -174,9 +174,10 @@ pub struct Queues {
     pub paths: Vec<Path>,
     /// Shadow rays, to be traced before them.
     pub shadows: Vec<Shadow>,
-    /// The rays of `shadows`, their origin primitives, and whether they are blocked: memory that is reused.
+    /// The rays of `shadows`, their origin primitives, their hits, and whether they are blocked: memory that is reused.
     rays: Vec<Ray>,
     origin_primitives: Vec<OriginPrimitive>,
+    hits: Vec<Hit>,
     blocked: Vec<bool>,
 }
 
