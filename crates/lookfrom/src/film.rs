@@ -13,11 +13,13 @@ mod channels;
 mod fireflies;
 mod noise;
 mod pixel;
+mod sums;
 mod tile;
 
 pub use self::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
 use self::channels::ChannelSums;
 use self::pixel::{Pixel, TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square, unbiased_variance};
+pub(crate) use self::sums::SampleSums;
 pub use self::tile::FilmTile;
 
 use lookfrom_scene::settings::{ImageSettings, Layers, PixelBounds};

@@ -119,6 +119,9 @@ impl Path {
     /// The same path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed,
     /// to infinity.
     fn absorbed(&self, world: &World, hit: &Hit, lanes: &SpectralMode) -> Self {
+        if self.interior.is_empty() {
+            return *self;
+        }
         let length = match hit.is_hit() {
             true => Vec3::from_array(self.ray.direction).length() * hit.t,
             false => f32::INFINITY,
@@ -171,27 +174,24 @@ pub struct Queues {
     pub paths: Vec<Path>,
     /// Shadow rays, to be traced before them.
     pub shadows: Vec<Shadow>,
-    /// The rays of `shadows`, their origin primitives, and whether they are blocked: memory that is reused.
+    /// The rays of `shadows`, their origin primitives, their hits, and whether they are blocked: memory that is reused.
     rays: Vec<Ray>,
     origin_primitives: Vec<OriginPrimitive>,
+    hits: Vec<Hit>,
     blocked: Vec<bool>,
 }
 
 impl Queues {
-    /// Removes all samples.
-    pub fn clear(&mut self) {
+    /// Replaces all samples by `count` new ones, whose spectral modes are `lanes` of their slots.
+    pub fn start(&mut self, count: usize, lanes: impl Fn(usize) -> SpectralMode) {
         self.radiance.clear();
+        self.radiance.resize(count, Spectrum::BLACK);
         self.lanes.clear();
+        self.lanes.extend((0..count).map(lanes));
         self.alpha.clear();
+        self.alpha.resize(count, Alpha::Opaque);
         self.paths.clear();
         self.shadows.clear();
-    }
-
-    /// Adds a sample, in the next slot.
-    pub fn start(&mut self, lanes: SpectralMode) {
-        self.radiance.push(Spectrum::BLACK);
-        self.lanes.push(lanes);
-        self.alpha.push(Alpha::Opaque);
     }
 }
 

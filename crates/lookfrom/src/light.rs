@@ -284,7 +284,8 @@ fn toward(from: DVec3, to: DVec3) -> Option<(Vec3, f64)> {
     (distance > 0.0).then(|| (((to - from) / distance).as_vec3(), distance))
 }
 
-fn fade(falloff: Falloff, distance: f64) -> f32 {
+/// The attenuation of a light at a distance.
+pub(crate) fn fade(falloff: Falloff, distance: f64) -> f32 {
     match falloff {
         Falloff::None => 1.0,
         Falloff::Linear => (1.0 / distance) as f32,

@@ -111,6 +111,16 @@ impl SurfacePoint {
 }
 
 impl Primitives {
+    /// The attributes of a primitive, where they are quickly told: of meshes and spheres.
+    #[inline]
+    pub(crate) fn binding(&self, index: usize) -> Option<&MaterialBinding> {
+        match self {
+            Self::Mesh(mesh) => Some(&mesh.binding),
+            Self::Spheres(spheres) => Some(&spheres.bindings[spheres.binding_of[index] as usize].binding),
+            _ => None,
+        }
+    }
+
     /// The point of `hit` on a ray from `origin` in `direction` (the one that was traced, in this primitive's space).
     pub fn point(&self, hit: &Hit, origin: DVec3, direction: DVec3) -> SurfacePoint {
         let index = hit.primitive as usize;

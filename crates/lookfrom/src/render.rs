@@ -7,6 +7,7 @@
 mod camera_warnings;
 mod driver;
 mod first_hit;
+mod start;
 mod transport;
 
 use std::ops::Range;
@@ -24,26 +25,21 @@ use crate::core::filter::Filter;
 use crate::core::math;
 use crate::core::sampler::Sampler;
 use crate::core::spectrum::Spectrum;
-use crate::film::FilmTile;
 pub use crate::film::SampleId;
+use crate::film::{FilmTile, SampleSums};
 use crate::integrator::{
     Alpha, Event, Integrator, Path, PreviousVertex, Probe, Queues, SampleStream, StepOutput, resolve_shadows,
 };
 use crate::shading::texture::SpectralMode;
 use crate::view::View;
-use crate::view::camera::CameraRay;
 use crate::world::World;
 
 pub(crate) use camera_warnings::Subject;
 use first_hit::FirstHit;
+use start::Start;
 use transport::Transport;
 
 pub use driver::{FEWEST_SAMPLES, Progress, Rendered, StopCriteria, StopReason, TileDone};
-
-/// Dimensions of a sample's random numbers that the camera uses; rays use hashes of their address and dimension.
-const FILTER_DIMENSION: u32 = 0;
-const LENS_DIMENSION: u32 = 1;
-const WAVELENGTH_DIMENSION: u32 = 2;
 
 /// A world, a view of it and the render settings: everything that determines the light of a picture.
 ///
@@ -61,6 +57,8 @@ pub struct Renderer {
     filter: Filter,
     sampler: Sampler,
     sensor: Sensor,
+    /// Whether the sensor leaves light in RGB as it is.
+    keeps_rgb: bool,
 }
 
 /// Numbers of rays traced.
@@ -104,27 +102,21 @@ pub struct Traced {
     pub alpha: f32,
 }
 
-/// Random numbers for the camera rays of a batch, by slot. Empty where they are not needed.
-#[derive(Debug, Default)]
-struct StartNumbers {
-    filter: Vec<[f32; 2]>,
-    lens: Vec<[f32; 2]>,
-    wavelengths: Vec<[f32; 2]>,
-}
-
 /// The memory of a batch, reused by the next one.
 #[derive(Debug, Default)]
 struct Batch {
-    numbers: StartNumbers,
+    ids: Vec<SampleId>,
+    start: Start,
     queues: Queues,
-    weights: Vec<f32>,
     paths: Vec<Path>,
     rays: Vec<Ray>,
     origin_primitives: Vec<OriginPrimitive>,
     hits: Vec<Hit>,
     /// First hits, by slot; only where AOVs or the denoiser need them.
     first_hits: Vec<FirstHit>,
-    traced: Vec<Traced>,
+    /// The samples' light in RGB, by slot.
+    light: Vec<[f32; 3]>,
+    sums: SampleSums,
 }
 
 impl Renderer {
@@ -151,6 +143,7 @@ impl Renderer {
             filter: Filter::new(image.filter),
             sampler: Sampler::new(settings.sampler, settings.seed),
             sensor: Sensor::new(&image.sensor),
+            keeps_rgb: image.sensor == SensorSettings::default(),
             integrator: transport::of_settings(&settings, &view.camera, eye),
             is_plugged_in: false,
             world,
@@ -241,33 +234,18 @@ impl Renderer {
         &self.view.image
     }
 
-    /// The camera ray of a sample and the filter weight.
-    pub fn camera_ray(&self, id: SampleId) -> (CameraRay, f32) {
-        let two = |dimension| self.sampler.two(id.pixel, id.sample, dimension);
-        self.camera_ray_by(id, two(FILTER_DIMENSION), two(LENS_DIMENSION))
-    }
-
-    #[inline]
-    fn camera_ray_by(&self, id: SampleId, u: [f32; 2], lens: [f32; 2]) -> (CameraRay, f32) {
-        let [column, row] = id.pixel.map(f64::from);
-        let (offset, weight) = self.filter.sample(u);
-        let x_k = column + 0.5 + f64::from(offset[0]);
-        let y_k = f64::from(self.image().height) - (row + 0.5 + f64::from(offset[1]));
-        (self.view.camera.ray([x_k, y_k], lens), weight)
-    }
-
     /// Computes samples. The result for a sample does not depend on the others.
     pub fn trace(&self, ids: &[SampleId]) -> (Vec<Traced>, Rays) {
         let mut batch = Batch::default();
         let rays = self.integrator.trace(self, ids, &mut batch);
-        (batch.traced, rays)
+        (self.traced(&batch).collect(), rays)
     }
 
     /// As [`Renderer::trace`], and adds all events of the computation to `events`.
     pub fn trace_events(&self, ids: &[SampleId], events: &mut Vec<Event>) -> (Vec<Traced>, Rays) {
         let mut batch = Batch::default();
         let rays = self.integrator.trace_events(self, ids, events, &mut batch);
-        (batch.traced, rays)
+        (self.traced(&batch).collect(), rays)
     }
 
     fn trace_with<I: Integrator, P: Probe>(
@@ -278,41 +256,24 @@ impl Renderer {
         batch: &mut Batch,
     ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
-        let Batch {
-            numbers: start,
-            queues,
-            weights,
-            paths,
-            rays,
-            origin_primitives,
-            hits,
-            first_hits,
-            traced,
-        } = batch;
+        let Batch { start, queues, paths, rays, origin_primitives, hits, first_hits, .. } = batch;
         let mut output =
             StepOutput { queues: std::mem::take(queues), background: self.image().background, probe };
-        output.queues.clear();
 
         // Start: a ray from the camera for each sample.
-        let around_camera = self.world.space_of(self.view.medium);
-        self.prepare_start(ids, start);
-        weights.clear();
-        for (slot, id) in ids.iter().enumerate() {
-            let lens = start.lens.get(slot).copied().unwrap_or_default();
-            let (ray, weight) = self.camera_ray_by(*id, start.filter[slot], lens);
-            weights.push(weight);
-            let lanes = start.wavelengths.get(slot).map_or(SpectralMode::Rgb, |u| lanes_by(*u));
-            output.queues.start(lanes);
-            output.queues.paths.push(Path {
-                ray: self.kernel_ray(&ray),
-                beta: lanes.one(),
-                slot: slot as u32,
-                depth: 0,
-                address: Path::ROOT,
-                interior: around_camera,
-                previous: PreviousVertex::default(),
-            });
-        }
+        self.start(ids, start);
+        output.queues.start(ids.len(), |slot| start.lanes(slot));
+        let interior = self.world.space_of(self.view.medium);
+        let Queues { paths: started, lanes, .. } = &mut output.queues;
+        started.extend(start.rays.iter().zip(&*lanes).enumerate().map(|(slot, (ray, lanes))| Path {
+            ray: *ray,
+            beta: lanes.one(),
+            slot: slot as u32,
+            depth: 0,
+            address: Path::ROOT,
+            interior,
+            previous: PreviousVertex::default(),
+        }));
 
         while !output.queues.paths.is_empty() {
             // Hit: the nearest surface for every ray of the batch.
@@ -340,32 +301,17 @@ impl Renderer {
         }
 
         *queues = output.queues;
-        traced.clear();
-        for (slot, &weight) in weights.iter().enumerate() {
-            let (radiance, lanes) = (queues.radiance[slot], queues.lanes[slot]);
-            let (rgb, alpha) = self.with_alpha(radiance, weight, &lanes, queues.alpha[slot]);
-            traced.push(Traced { rgb, radiance, lanes, weight, alpha });
-        }
         rays_traced
     }
 
-    /// A camera ray as a ray of the kernel, with `t` of the notes: 1 on the image plane.
-    #[inline]
-    fn kernel_ray(&self, ray: &CameraRay) -> Ray {
-        let a = self.eye + ray.a_from_eye;
-        Ray::new(a.as_vec3().to_array(), ray.direction.as_vec3().to_array())
-    }
-
-    /// Draws the random numbers that the camera rays of a batch need.
-    fn prepare_start(&self, ids: &[SampleId], numbers: &mut StartNumbers) {
-        let StartNumbers { filter, lens, wavelengths } = numbers;
-        let draw = |is_sampled: bool, dimension: u32, numbers: &mut Vec<[f32; 2]>| {
-            let count = if is_sampled { ids.len() } else { 0 };
-            self.sampler.two_of_each(count, |k| (ids[k].pixel, ids[k].sample), dimension, numbers);
-        };
-        draw(true, FILTER_DIMENSION, filter);
-        draw(self.view.camera.lens.is_some(), LENS_DIMENSION, lens);
-        draw(self.is_spectral(), WAVELENGTH_DIMENSION, wavelengths);
+    /// The samples of a batch that was traced.
+    fn traced(&self, batch: &Batch) -> impl Iterator<Item = Traced> {
+        let Batch { queues: Queues { radiance, lanes, alpha, .. }, start, .. } = batch;
+        let samples = radiance.iter().zip(lanes).zip(alpha).zip(&start.weights);
+        samples.map(|(((&radiance, lanes), &alpha), &weight)| {
+            let (rgb, alpha) = self.with_alpha(radiance, weight, lanes, alpha);
+            Traced { rgb, radiance, lanes: *lanes, weight, alpha }
+        })
     }
 
     /// Whether the lanes of samples are wavelengths.
@@ -394,7 +340,7 @@ impl Renderer {
     /// The colour that the sensor measures: linear Rec. 709.
     pub fn rgb(&self, light: Spectrum, lanes: &SpectralMode) -> [f32; 3] {
         let rgb = match lanes {
-            SpectralMode::Rgb if self.image().sensor == SensorSettings::default() => return light.rgb(),
+            SpectralMode::Rgb if self.keeps_rgb => return light.rgb(),
             SpectralMode::Rgb => self.sensor.balanced(light.rgb()),
             SpectralMode::Spectral(wavelengths) => self.sensor.rgb(light, wavelengths),
         };
@@ -415,18 +361,31 @@ impl Renderer {
 
     /// Adds the given samples of every pixel of a tile to the tile.
     pub fn render_tile(&self, samples: Range<u32>, tile: &mut FilmTile) -> Rays {
+        self.render_tile_in(&mut Batch::default(), samples, tile)
+    }
+
+    /// As [`Renderer::render_tile`], in the memory of earlier batches.
+    fn render_tile_in(&self, batch: &mut Batch, samples: Range<u32>, tile: &mut FilmTile) -> Rays {
         let mut rays = Rays::default();
-        let mut batch = Batch::default();
-        let mut ids: Vec<SampleId> = Vec::new();
+        let mut ids = std::mem::take(&mut batch.ids);
+        ids.clear();
+        ids.extend(blocks(tile.area()).map(|pixel| SampleId { pixel, sample: samples.start }));
         for sample in samples {
-            ids.clear();
-            ids.extend(blocks(tile.area()).map(|pixel| SampleId { pixel, sample }));
+            ids.iter_mut().for_each(|id| id.sample = sample);
             let wanted = if tile.wants_first_hit(sample) { ids.len() } else { 0 };
             batch.first_hits.clear();
             batch.first_hits.resize(wanted, FirstHit::MISS);
-            rays += self.integrator.trace(self, &ids, &mut batch);
+            rays += self.integrator.trace(self, &ids, batch);
             self.add_first_hits(&ids, &batch.first_hits, tile);
-            for (id, traced) in ids.iter().zip(&batch.traced) {
+            if tile.is_of_light() {
+                let mut light = std::mem::take(&mut batch.light);
+                light.clear();
+                light.extend(self.traced(batch).map(|traced| traced.rgb));
+                tile.add_samples(&ids, &light, &mut batch.sums);
+                batch.light = light;
+                continue;
+            }
+            for (id, traced) in ids.iter().zip(self.traced(batch)) {
                 let [x, y] = id.pixel;
                 tile.add_with_alpha(x, y, id.sample, traced.rgb, traced.alpha * traced.weight);
                 if tile.has_channels() {
@@ -434,6 +393,8 @@ impl Renderer {
                 }
             }
         }
+        tile.add_sums(&ids, &mut batch.sums);
+        batch.ids = ids;
         rays
     }
 }

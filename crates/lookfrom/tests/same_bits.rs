@@ -5,7 +5,8 @@ mod support;
 use lookfrom::film::FilmTile;
 use lookfrom::inspect::{inspect, svg};
 use lookfrom::integrator::{
-    Integrator as Transport, LightSampling, Path, PathTracer, Probe, SampleStream, StepOutput,
+    Integrator as Transport, LightSampling, Path, PathTracer, Probe, SampleStream, ShadowTransparency,
+    StepOutput, Whitted,
 };
 use lookfrom::render::SampleId;
 use lookfrom::world::World;
@@ -187,13 +188,17 @@ fn room(lights: &[&str], settings: &str) -> Scene {
     scene
 }
 
-/// The path tracer without its steps in lanes: the slow, obviously right twin.
+/// An integrator without its steps in lanes: the slow, obviously right twin.
 #[derive(Debug)]
-struct OneByOne(PathTracer);
+struct OneByOne<I>(I);
 
-impl Transport for OneByOne {
+impl<I: Transport> Transport for OneByOne<I> {
     fn name(&self) -> &'static str {
         "one by one"
+    }
+
+    fn shadow_transparency(&self) -> ShadowTransparency {
+        self.0.shadow_transparency()
     }
 
     fn step<P: Probe>(
@@ -253,6 +258,37 @@ fn steps_eight_at_once_are_steps_one_by_one() {
                 assert_eq!(watched[0].radiance, unwatched.radiance);
             }
             assert!(lit > 600, "{lit} samples see light of {lights:?}");
+        }
+    }
+}
+
+#[test]
+fn trees_grow_eight_at_once_as_one_by_one() {
+    let benchmarks = ["spheres", "glass", "textures", "mesh"]
+        .map(|name| format!("../docs/benchmarks/whitted/{name}.toml"));
+    let own = ["whitted1980.toml", "glass-and-mirror.toml", "textures.toml", "notes-exercise.toml"];
+    for name in own.into_iter().chain(benchmarks.iter().map(String::as_str)) {
+        for spectral in [false, true] {
+            let mut scene = small(name);
+            scene.render.integrator = Integrator::Whitted;
+            if spectral {
+                scene.render.color = lookfrom_scene::settings::ColorMode::Spectral;
+            }
+            let whitted = Whitted {
+                depth: scene.render.depth,
+                min_contribution: scene.render.min_contribution,
+                transparent_shadows: scene.render.transparent_shadows,
+            };
+            let compiled = Compiled::new(scene);
+            let renderer = compiled.renderer();
+            let one_by_one = renderer.clone().with_integrator(OneByOne(whitted));
+            let pixels = (0..50).flat_map(|y| (0..72).map(move |x| [x, y]));
+            let ids: Vec<SampleId> = pixels.map(|pixel| SampleId { pixel, sample: 1 }).collect();
+            let ((traced, rays), (expected, same_rays)) = (renderer.trace(&ids), one_by_one.trace(&ids));
+            assert_eq!(rays, same_rays, "{name}");
+            for ((a, b), id) in traced.iter().zip(&expected).zip(&ids) {
+                assert_eq!(a.radiance, b.radiance, "{name} {id:?}");
+            }
         }
     }
 }

@@ -44,6 +44,18 @@ impl<R: Real> Points<R> {
         (Self { position, error }, n)
     }
 
+    /// As [`lookfrom_bvh::Point::on_sphere`].
+    #[inline(always)]
+    pub(crate) fn on_spheres(center: Vector<R::Double>, radius: R::Double, hit: Vector<R::Double>) -> Self {
+        let zero = radius.like(0.0);
+        let f = hit - center;
+        let length = f.length();
+        let stretch = Float::select(length.gt(zero), radius / length, zero);
+        let reach = radius * 2.0;
+        let error = (center.abs() + Vector { x: reach, y: reach, z: reach }) * radius.like(8.0 * UNIT);
+        Self { position: center + f * stretch, error }
+    }
+
     /// As [`lookfrom_bvh::Point::leave`].
     #[inline(always)]
     pub(crate) fn leave(&self, unit_normal: Vector<R::Double>, direction: Vector<R>) -> Vector<R> {

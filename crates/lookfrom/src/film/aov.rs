@@ -5,6 +5,8 @@
 //! numbers, as those of light, do not depend on the order of the samples. The denoiser's take 96 bytes per pixel, those
 //! of AOVs 208.
 
+use super::pixel::{TWO_TO_64, fixed_point};
+
 /// Number of samples of a pixel that count for the denoiser.
 pub const FEATURE_SAMPLES: u32 = 16;
 
@@ -39,11 +41,7 @@ pub struct DenoiserFeatures {
     pub coverage: f32,
 }
 
-/// Bound to which coordinates of positions are clamped: 2⁴⁰.
-const FARTHEST: f32 = 1_099_511_627_776.0;
-
 const TWO_TO_32: f64 = 4_294_967_296.0;
-const TWO_TO_64: f64 = TWO_TO_32 * TWO_TO_32;
 
 /// Sums over the samples of a pixel. Additions wrap, after at least 2²³ of the largest values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +67,7 @@ pub(super) struct LayerSums {
     shared: AovSums,
     /// Multiples of 2⁻³².
     ng: [i64; 3],
-    /// Position, then uv: multiples of 2⁻⁶⁴.
+    /// Position, then uv: multiples of 2⁻⁶⁴, clamped as light is.
     places: [i128; 5],
 }
 
@@ -163,8 +161,7 @@ impl LayerSums {
         let Some(aovs) = met.filter(|aovs| aovs.is_finite()) else { return };
         add_narrow(&mut self.ng, aovs.ng.map(|c| c.clamp(-1.0, 1.0)));
         for (sum, value) in self.places.iter_mut().zip(aovs.position.iter().chain(&aovs.uv)) {
-            let value = f64::from(value.clamp(-FARTHEST, FARTHEST)) * TWO_TO_64;
-            *sum = sum.wrapping_add(value as i128);
+            *sum = sum.wrapping_add(fixed_point(*value));
         }
     }
 

@@ -58,8 +58,8 @@ pub(super) fn unbiased_variance(n: f64, mean: f64, mean_of_squares: f64) -> f64 
 /// The square of a finite number, rounded to f64, as a multiple of 2⁻⁴⁸; saturates.
 pub(super) fn fixed_point_square(value: f64) -> u128 {
     let square = value * value * TWO_TO_48;
-    // The cast saturates; 64 bits nearly always suffice, and take a fraction of the time.
-    if square < TWO_TO_63 { u128::from(square as u64) } else { square as u128 }
+    // The cast saturates; 63 bits nearly always suffice, and take a fraction of the time.
+    if square < TWO_TO_63 { u128::from(square as i64 as u64) } else { square as u128 }
 }
 
 /// A finite number as a multiple of 2⁻⁶⁴, truncated towards zero.

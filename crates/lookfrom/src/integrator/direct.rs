@@ -1,12 +1,51 @@
 //! Direct lighting of Whitted's model: one shadow ray to each light.
 
-use glam::DVec3;
+mod branches;
+mod lanes;
+mod plain;
+mod surfaces;
 
-use crate::integrator::{Event, Path, Probe, SampleStream, Shadow, StepOutput, Term};
+use glam::DVec3;
+use lookfrom_bvh::Hit;
+
+use crate::core::lanes::LANES;
+use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
 use crate::light::{IncompletePdf, LightSampleContext};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::Coefficients;
 use crate::world::World;
+
+pub(super) use branches::same_side;
+pub(super) use lanes::PlainBranch;
+use lanes::PlainSteps;
+
+/// [`Integrator::step`] for all paths of a batch, in their order; plain hits of eight consecutive paths are shaded side
+/// by side, and `grow` is called with the branches there. A probe that listens is told of each step by itself.
+pub(super) fn step_all<I: Integrator, P: Probe>(
+    integrator: &I,
+    world: &World,
+    stream: impl Fn(&Path) -> SampleStream,
+    paths: &[Path],
+    hits: &[Hit],
+    output: &mut StepOutput<'_, P>,
+    grow: impl Fn(&Path, &PlainBranch, &mut Vec<Path>),
+) {
+    let in_lanes = !P::LISTENS && PlainSteps::are_for(world);
+    let mut steps = PlainSteps::default();
+    for (paths, hits) in paths.chunks(LANES).zip(hits.chunks(LANES)) {
+        if in_lanes {
+            steps.compute(world, paths, hits, &output.queues.lanes);
+        }
+        for (lane, (path, hit)) in paths.iter().zip(hits).enumerate() {
+            if steps.add_light(world, lane, path, hit, output) {
+                steps.branches(lane).for_each(|branch| grow(path, &branch, &mut output.queues.paths));
+            } else {
+                output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
+                integrator.step(world, &stream(path), path, hit, output);
+            }
+        }
+    }
+}
 
 /// Adds the surface's emission and `k_a I_a`, and from every light `k_d (N·L) I_j + k_s (N·H)ⁿ I_j`.
 pub(super) fn local_light<P: Probe>(
@@ -35,7 +74,8 @@ pub(super) fn local_light<P: Probe>(
     for (index, light) in world.lights.iter().enumerate() {
         let index = index as u32;
         let at = LightSampleContext { point: DVec3::from_array(surface.point.position), n };
-        let u = stream.two(index);
+        let is_random = light.illuminates() && !light.is_delta();
+        let u = if is_random { stream.two(index) } else { [0.0; 2] };
         let sample = light.sample(&world.textures, &at, u, &lanes, IncompletePdf::Forbidden);
         // Light from behind the surface does not reach its front, whatever the interpolated normal says.
         let sample = sample.filter(|sample| ng.dot(sample.wi) > 0.0);

@@ -2,7 +2,7 @@
 
 use lookfrom_bvh::Hit;
 
-use crate::integrator::direct::local_light;
+use crate::integrator::direct::{self, local_light};
 use crate::integrator::{Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput};
 use crate::world::World;
 
@@ -20,6 +20,17 @@ impl Integrator for Raycast {
 
     fn shadow_transparency(&self) -> ShadowTransparency {
         ShadowTransparency::of_whitted(self.transparent_shadows)
+    }
+
+    fn step_all<P: Probe>(
+        &self,
+        world: &World,
+        stream: impl Fn(&Path) -> SampleStream,
+        paths: &[Path],
+        hits: &[Hit],
+        output: &mut StepOutput<'_, P>,
+    ) {
+        direct::step_all(self, world, stream, paths, hits, output, |_, _, _| {});
     }
 
     fn step<P: Probe>(

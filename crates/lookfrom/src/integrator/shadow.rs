@@ -5,7 +5,7 @@
 //! ignored, as in most renderers of this kind since Whitted's.
 
 use glam::Vec3;
-use lookfrom_bvh::{Hit, OriginPrimitive, Point, Ray};
+use lookfrom_bvh::{Hit, NONE, OriginPrimitive, Point, Ray};
 
 use crate::core::hash;
 use crate::core::spectrum::Spectrum;
@@ -13,7 +13,7 @@ use crate::integrator::{Event, Path, Probe, Queues, StepOutput, Term};
 use crate::light::{LightSample, Target};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
-use crate::shading::material::Coefficients;
+use crate::shading::material::{Coefficients, Material, MaterialKind};
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
@@ -94,6 +94,21 @@ impl ShadowTransparency {
     pub(super) fn of_whitted(transparent_shadows: bool) -> Self {
         if transparent_shadows { Self::Transparent } else { Self::AlphaTested }
     }
+
+    /// Whether it is plain, without the surface interaction, that a hit lets no light pass.
+    #[inline]
+    fn is_blocked(self, world: &World, hit: &Hit) -> bool {
+        if !hit.is_hit() || hit.instance != NONE {
+            return false;
+        }
+        let Some(binding) = world.primitives[hit.geometry as usize].binding(hit.primitive as usize) else {
+            return false;
+        };
+        let Material { kind, whitted, .. } = &world.materials[binding.material as usize];
+        binding.alpha.is_none()
+            && !matches!(kind, MaterialKind::Interface)
+            && (self == Self::AlphaTested || whitted.transmission.is_gray(0.0))
+    }
 }
 
 /// Traces all shadow rays of a batch and adds their contributions, in their order. Returns the number of rays traced.
@@ -146,27 +161,28 @@ fn let_through<P: Probe>(
     queues: &mut Queues,
     probe: &mut P,
 ) -> u64 {
-    let Queues { shadows, lanes, .. } = queues;
+    let Queues { shadows, lanes, rays, origin_primitives, hits, .. } = queues;
     let mut traced = 0;
     let mut active: Vec<usize> = (0..shadows.len()).collect();
     for crossings in 0.. {
-        let rays: Vec<Ray> = active.iter().map(|&index| shadows[index].ray).collect();
-        let origins: Vec<OriginPrimitive> =
-            active.iter().map(|&index| shadows[index].origin_primitive).collect();
-        let mut hits = vec![Hit::MISS; rays.len()];
-        world.bvh.query().origins(&origins).closest_hits(&rays, &mut hits);
+        rays.clear();
+        rays.extend(active.iter().map(|&index| shadows[index].ray));
+        origin_primitives.clear();
+        origin_primitives.extend(active.iter().map(|&index| shadows[index].origin_primitive));
+        hits.clear();
+        hits.resize(rays.len(), Hit::MISS);
+        world.bvh.query().origins(origin_primitives).closest_hits(rays, hits);
         traced += rays.len() as u64;
-        let mut hits = hits.into_iter();
+        let mut hits = hits.iter();
         active.retain(|&index| {
-            let hit = hits.next().unwrap_or(Hit::MISS);
+            let hit = hits.next().copied().unwrap_or(Hit::MISS);
             let shadow = &mut shadows[index];
-            let surface = hit.is_hit().then(|| world.surface(&shadow.ray, &hit));
+            let is_blocked = crossings >= MOST_CROSSINGS || shadow_transparency.is_blocked(world, &hit);
+            let surface = (hit.is_hit() && !is_blocked).then(|| world.surface(&shadow.ray, &hit));
             let lanes = &lanes[shadow.slot as usize];
             let passed = match surface.as_ref() {
-                Some(surface) if crossings < MOST_CROSSINGS => {
-                    shadow.passed(world, shadow_transparency, &hit, surface, lanes)
-                }
-                Some(_) => Spectrum::BLACK,
+                Some(surface) => shadow.passed(world, shadow_transparency, &hit, surface, lanes),
+                None if hit.is_hit() => Spectrum::BLACK,
                 None => shadow.reached(world, lanes),
             };
             probe.notice(|| Event::Shadow { shadow: *shadow, hit, passed });
@@ -189,6 +205,9 @@ fn let_through<P: Probe>(
 impl Shadow {
     /// Transmittance of the medium on the rest of the way.
     fn reached(&self, world: &World, lanes: &SpectralMode) -> Spectrum {
+        if self.interior.is_empty() {
+            return lanes.one();
+        }
         let length = Vec3::from_array(self.ray.direction).length() * self.ray.t_max;
         // Lights infinitely far emit light from twice the scene's radius away, as far as media are concerned, as in
         // pbrt.

@@ -7,11 +7,12 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
 
 use crate::core::spectrum::Spectrum;
-use crate::integrator::direct::local_light;
+use crate::integrator::direct::{self, PlainBranch, local_light, same_side};
 use crate::integrator::{
     Branch, Cut, Event, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput,
 };
 use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
 
 /// The depth of the deepest tree that [`Path::address`] can number.
@@ -35,6 +36,19 @@ impl Integrator for Whitted {
 
     fn shadow_transparency(&self) -> ShadowTransparency {
         ShadowTransparency::of_whitted(self.transparent_shadows)
+    }
+
+    fn step_all<P: Probe>(
+        &self,
+        world: &World,
+        stream: impl Fn(&Path) -> SampleStream,
+        paths: &[Path],
+        hits: &[Hit],
+        output: &mut StepOutput<'_, P>,
+    ) {
+        direct::step_all(self, world, stream, paths, hits, output, |path, branch, paths| {
+            paths.extend(self.grown(world, path, branch));
+        });
     }
 
     fn step<P: Probe>(
@@ -100,33 +114,51 @@ impl Whitted {
         weight: Spectrum,
     ) -> Result<Path, Cut> {
         let beta = path.beta * weight;
-        if beta.max_lane() < self.min_contribution || beta.is_black() {
-            return Err(Cut::Contribution);
+        if let Some(cut) = self.cut(path, beta) {
+            return Err(cut);
         }
-        if path.depth >= self.depth || path.address >= 1 << DEEPEST {
-            return Err(Cut::Depth);
-        }
-        let ng = surface.ng_facing();
-        let (direction, last_bit) = match branch {
-            Branch::Mirrored => (same_side(direction, ng, 1.0), 0),
-            Branch::Refracted => (same_side(direction, ng, -1.0), 1),
-        };
         let crosses = branch == Branch::Refracted;
-        Ok(Path {
-            ray: Ray::new(surface.origin(direction), direction.to_array()),
-            beta,
-            slot: path.slot,
-            depth: path.depth + 1,
-            address: path.address << 1 | last_bit,
-            interior: path.interior.leaving(&world.materials, surface, direction, crosses),
-            previous: path.previous,
-        })
+        let side = if crosses { -1.0 } else { 1.0 };
+        let direction: Vec3 = same_side(direction.into(), surface.ng_facing().into(), side).into();
+        let ray = Ray::new(surface.origin(direction), direction.to_array());
+        let interior = path.interior.leaving(&world.materials, surface, direction, crosses);
+        Ok(path.branched(branch, ray, beta, interior))
+    }
+
+    /// The path that goes on from a plain surface, if there is one.
+    #[inline]
+    fn grown(&self, world: &World, path: &Path, plain: &PlainBranch) -> Option<Path> {
+        let PlainBranch { branch, beta, ray, material, front } = *plain;
+        if self.cut(path, beta).is_some() {
+            return None;
+        }
+        let crosses = branch == Branch::Refracted && world.materials[material as usize].is_body();
+        let interior = match (crosses, front) {
+            (true, true) => path.interior.entered(material),
+            (true, false) => path.interior.left(material),
+            (false, _) => path.interior,
+        };
+        Some(path.branched(branch, ray, beta, interior))
+    }
+
+    /// The reason why a path does not go on with this throughput.
+    #[inline]
+    fn cut(&self, path: &Path, beta: Spectrum) -> Option<Cut> {
+        if beta.max_lane() < self.min_contribution || beta.is_black() {
+            Some(Cut::Contribution)
+        } else if path.depth >= self.depth || path.address >= 1 << DEEPEST {
+            Some(Cut::Depth)
+        } else {
+            None
+        }
     }
 }
 
-/// The direction, reflected at the tangent plane if it points to the wrong side of it: an interpolated normal can send
-/// a reflected ray into the surface or a refracted one out of it. `side` is 1 for the side of `ng`, −1 for the other.
-fn same_side(direction: Vec3, ng: Vec3, side: f32) -> Vec3 {
-    let cos = direction.dot(ng);
-    if cos * side >= 0.0 { direction } else { direction - 2.0 * cos * ng }
+impl Path {
+    /// Its child in the tree of rays.
+    #[inline]
+    fn branched(&self, branch: Branch, ray: Ray, beta: Spectrum, interior: InteriorStack) -> Self {
+        let last_bit = u64::from(branch == Branch::Refracted);
+        Self { ray, beta, depth: self.depth + 1, address: self.address << 1 | last_bit, interior, ..*self }
+    }
 }

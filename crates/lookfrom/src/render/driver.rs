@@ -8,14 +8,14 @@
 //! it is kept small by a minimum of [`FEWEST_SAMPLES`], and because whole tiles are judged, not pixels.
 
 use std::ops::Range;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use lookfrom_scene::Result;
 use lookfrom_scene::settings::PixelBounds;
 
-use super::{Rays, Renderer};
+use super::{Batch, Rays, Renderer};
 use crate::core::clock::Stopwatch;
 use crate::core::parallel;
 use crate::film::{Film, FilmTile, Picture};
@@ -150,11 +150,12 @@ impl Renderer {
             renderer: self,
             progress,
             film: Mutex::new((film, Rays::default())),
+            batches: Mutex::default(),
             done: AtomicU64::new(0),
             total: AtomicU64::new(all * u64::from(self.settings.samples)),
         };
         let (samples, reason) = parallel::on_threads(threads, || work.rounds(&mut tiles, stop))??;
-        let (film, rays) = work.film.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let (film, rays) = work.film.into_inner().unwrap_or_else(PoisonError::into_inner);
         let error = film.relative_error(film.area(), film.mean_luminance());
         Ok(Rendered { film, rays, reason, samples, samples_taken: work.done.into_inner(), error })
     }
@@ -165,6 +166,8 @@ struct Work<'a> {
     renderer: &'a Renderer,
     progress: &'a dyn Progress,
     film: Mutex<(Film, Rays)>,
+    /// The memory of batches that no thread is using.
+    batches: Mutex<Vec<Batch>>,
     done: AtomicU64,
     total: AtomicU64,
 }
@@ -210,10 +213,12 @@ impl Work<'_> {
                 return Ok(false);
             }
             let mut tile = FilmTile::for_image(*tile_area, self.renderer.image())?;
-            let rays = self.renderer.render_tile(samples.clone(), &mut tile);
+            let mut batch = locked(&self.batches).pop().unwrap_or_default();
+            let rays = self.renderer.render_tile_in(&mut batch, samples.clone(), &mut tile);
+            locked(&self.batches).push(batch);
             let wants_pixels = self.progress.wants_pixels();
             let (rays, picture) = {
-                let mut guard = self.film.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                let mut guard = locked(&self.film);
                 guard.0.add_tile(&tile);
                 guard.1 += rays;
                 (guard.1.total(), wants_pixels.then(|| guard.0.picture_of(*tile_area)))
@@ -238,7 +243,7 @@ impl Work<'_> {
         if samples < FEWEST_SAMPLES {
             return;
         }
-        let guard = self.film.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let guard = locked(&self.film);
         let mean = guard.0.mean_luminance();
         let mut total = self.done.load(Ordering::Relaxed) as f64;
         tiles.retain(|tile| {
@@ -251,6 +256,11 @@ impl Work<'_> {
         });
         self.total.store(total as u64, Ordering::Relaxed);
     }
+}
+
+/// What a mutex guards, though a thread may have panicked while it held it.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Number of samples per pixel in the next pass, if `samples` took `elapsed`: enough to reach the time limit, not to

@@ -19,7 +19,9 @@
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use lookfrom_scene::camera::{Camera as Written, Lens, Projection, View, Window};
 use lookfrom_scene::{Error, Location, Result};
+use lookfrom_simd::Float;
 
+use crate::core::vector::Vector;
 use crate::core::warp;
 
 /// The camera as matrices.
@@ -157,6 +159,52 @@ impl Camera {
         self.t4 * self.r3
     }
 
+    /// Whether its rays are those of [`Camera::linear_ray`].
+    pub(crate) fn is_linear(&self) -> bool {
+        let is_panoramic =
+            !matches!(self.projection, Projection::Perspective { .. } | Projection::Orthographic { .. });
+        self.lens.is_none() && !is_panoramic
+    }
+
+    /// The rays of a perspective or orthographic camera without a lens, as [`Camera::ray`] gives them, at any width:
+    /// origins relative to `lookfrom`, and directions.
+    #[inline(always)]
+    pub(crate) fn linear_ray<F: Float<Scalar = f64>>(&self, [x_k, y_k]: [F; 2]) -> [Vector<F>; 2] {
+        let zero = x_k.like(0.0);
+        // S2 · T1 · P_k; its other terms are zero
+        let image_point = Vector {
+            x: (x_k + x_k.like(self.t1.w_axis.x)) * x_k.like(self.s2.x_axis.x) + zero,
+            y: (y_k + y_k.like(self.t1.w_axis.y)) * y_k.like(self.s2.y_axis.y) + zero,
+            z: x_k.like(self.distance),
+        };
+        let [a, direction] = self.linear_ray_in_view(image_point);
+        [self.rotated(a), self.rotated(direction)]
+    }
+
+    /// The rays through points of the image plane, in view space: origins and directions. Parallel ones if the camera
+    /// is orthographic, else from a pinhole.
+    #[inline(always)]
+    fn linear_ray_in_view<F: Float<Scalar = f64>>(&self, image_point: Vector<F>) -> [Vector<F>; 2] {
+        let zero = image_point.x.like(0.0);
+        match self.projection {
+            Projection::Orthographic { .. } => {
+                [Vector { z: zero, ..image_point }, Vector { x: zero, y: zero, z: image_point.z }]
+            }
+            _ => [Vector { x: zero, y: zero, z: zero }, image_point],
+        }
+    }
+
+    /// `R3` times vectors of view space.
+    #[inline(always)]
+    fn rotated<F: Float<Scalar = f64>>(&self, v: Vector<F>) -> Vector<F> {
+        let [x, y, z] = [self.r3.x_axis, self.r3.y_axis, self.r3.z_axis];
+        Vector {
+            x: v.x * v.x.like(x.x) + v.y * v.x.like(y.x) + v.z * v.x.like(z.x),
+            y: v.x * v.x.like(x.y) + v.y * v.x.like(y.y) + v.z * v.x.like(z.y),
+            z: v.x * v.x.like(x.z) + v.y * v.x.like(y.z) + v.z * v.x.like(z.z),
+        }
+    }
+
     /// The ray through the point `(x_k, y_k)` of the image, `y_k` up; `lens` in `[0, 1)²` chooses a point of the lens.
     #[inline]
     pub fn ray(&self, [x_k, y_k]: [f64; 2], lens: [f32; 2]) -> CameraRay {
@@ -168,8 +216,10 @@ impl Camera {
         // in view space: the origin of the ray and its point on the image plane
         let image_point = after_s2.truncate();
         let (start, straight) = match self.projection {
-            Projection::Perspective { .. } => (DVec3::ZERO, image_point),
-            Projection::Orthographic { .. } => (image_point.with_z(0.0), DVec3::Z * image_point.z),
+            Projection::Perspective { .. } | Projection::Orthographic { .. } => {
+                let [start, straight] = self.linear_ray_in_view(image_point.into());
+                (start.into(), straight.into())
+            }
             Projection::Equirectangular | Projection::EquirectangularPbrt => {
                 let [u, v] = [x_k / f64::from(self.size[0]), y_k / f64::from(self.size[1])];
                 let is_pbrts = self.projection == Projection::EquirectangularPbrt;
@@ -198,8 +248,8 @@ impl Camera {
             after_s2,
             after_r3,
             p_world,
-            a_from_eye: self.r3.transform_vector3(a),
-            direction: self.r3.transform_vector3(direction),
+            a_from_eye: self.rotated(a.into()).into(),
+            direction: self.rotated(direction.into()).into(),
         }
     }
 }
@@ -311,6 +361,20 @@ mod tests {
         let corner = camera.ray([200.0, 100.0], [0.5; 2]);
         assert!((corner.a_from_eye - DVec3::new(4.0, 2.0, 0.0)).length() < 1e-14);
         assert!((corner.direction - DVec3::new(0.0, 0.0, -1.0)).length() < 1e-14);
+    }
+
+    #[test]
+    fn linear_rays_are_the_same() {
+        let mut written = look([3.0, 1.0, -4.0], [-2.0, 5.0, 7.0], [0.1, 1.0, 0.2]);
+        for projection in [Projection::Perspective { fov: 40.0 }, Projection::Orthographic { height: 3.0 }] {
+            written.projection = projection;
+            let camera = Camera::new(&written, 300, 200).unwrap();
+            assert!(camera.is_linear());
+            for point in [[0.25, 199.5], [150.0, 100.0], [-0.75, 0.0], [299.1, 13.7]] {
+                let (ray, [a, direction]) = (camera.ray(point, [0.5; 2]), camera.linear_ray(point));
+                assert_eq!([ray.a_from_eye, ray.direction], [a.into(), direction.into()]);
+            }
+        }
     }
 
     #[test]

@@ -8,8 +8,15 @@ use crate::core::noise::perlin;
 
 /// True if the sum of the integer parts is even.
 pub(super) fn is_even(p: DVec3) -> bool {
-    let half = 0.5 * (p.x.floor() + p.y.floor() + p.z.floor());
-    half.floor() == half
+    (whole(p.x) ^ whole(p.y) ^ whole(p.z)) & 1 == 0
+}
+
+/// The greatest integer that is not above a number; the last one that there is for numbers beyond. `f64::floor` is a
+/// call where the instruction set is not known to have it.
+#[inline]
+fn whole(x: f64) -> i64 {
+    let cut = x as i64;
+    cut.wrapping_sub(i64::from(cut as f64 > x))
 }
 
 /// True if a point lies in a dot. Cells have size 1 and are centred at integers; about half of them have a dot.

@@ -1,0 +1,276 @@
+//! Steps of Whitted's model for eight plain hits side by side, from the hit on: direct light and branches. The bits are
+//! those of [`super::local_light`] and of Whitted's step.
+
+use std::f32::consts::PI;
+
+use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
+use lookfrom_simd::{Float, Kernel, Real, Simd, dispatch, f32x8, f64x8, level, prelude::*};
+
+use super::branches::Branches;
+use super::plain::PlainHit;
+use super::surfaces::Surfaces;
+use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64, scatter_spectrum};
+use crate::core::math;
+use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
+use crate::integrator::{Branch, Path, Probe, Shadow, StepOutput, Term};
+use crate::light::{Light, fade};
+use crate::shading::material::Coefficients;
+use crate::shading::texture::SpectralMode;
+use crate::world::World;
+
+/// The steps of eight paths, of which only those with plain hits count: memory that is reused.
+#[derive(Default)]
+pub(in crate::integrator) struct PlainSteps {
+    /// Bit i for lane i: whether its hit is plain.
+    plain: u32,
+    /// `k_a I_a` times the throughput.
+    ambient: [Spectrum; LANES],
+    /// For each light that illuminates any of them.
+    lights: Vec<FromLight>,
+    branches: Option<Branches>,
+    materials: [u32; LANES],
+    /// Whether the ray hit the outside.
+    front: u32,
+}
+
+/// A path that may go on from a plain surface.
+pub(in crate::integrator) struct PlainBranch {
+    /// Its kind.
+    pub(in crate::integrator) branch: Branch,
+    /// The path throughput.
+    pub(in crate::integrator) beta: Spectrum,
+    /// The ray.
+    pub(in crate::integrator) ray: Ray,
+    /// Index of the surface's material.
+    pub(in crate::integrator) material: u32,
+    /// Whether the path met the surface's outside.
+    pub(in crate::integrator) front: bool,
+}
+
+/// The light of one source on eight surfaces.
+struct FromLight {
+    light: u32,
+    /// Bit i for lane i: whether it contributes light, unless it is occluded.
+    lit: u32,
+    /// Whether the way to it crosses the surface.
+    crosses: u32,
+    contribution: [Spectrum; LANES],
+    origin: [[f32; 3]; LANES],
+    /// To the light, where `t` is `t_max`.
+    direction: [[f32; 3]; LANES],
+    t_max: f32,
+}
+
+impl PlainSteps {
+    /// Whether steps are computed in lanes at all: if all lights come from a single direction that is easily
+    /// told.
+    pub(in crate::integrator) fn are_for(world: &World) -> bool {
+        world.lights.iter().all(|light| match light {
+            Light::Point { .. } | Light::Distant { .. } => true,
+            _ => !light.illuminates(),
+        })
+    }
+
+    /// Computes the steps of up to eight paths; `modes` by slot.
+    #[inline]
+    pub(in crate::integrator) fn compute(
+        &mut self,
+        world: &World,
+        paths: &[Path],
+        hits: &[Hit],
+        modes: &[SpectralMode],
+    ) {
+        self.plain = 0;
+        self.lights.clear();
+        let mut found = [None; LANES];
+        for (lane, (path, hit)) in paths.iter().zip(hits).enumerate() {
+            found[lane] = PlainHit::of(world, path, hit, &modes[path.slot as usize]);
+            self.plain |= u32::from(found[lane].is_some()) << lane;
+        }
+        let Some(any) = found.iter().flatten().next() else { return };
+        // Other lanes repeat one that is plain.
+        let eight = by_lane!(lane => found[lane].unwrap_or(*any));
+        PlainKernel { world, eight: &eight, modes, steps: self }.run_at_level();
+    }
+
+    /// Adds the light of a lane to the sample of its path; false if its hit is not plain.
+    #[inline]
+    pub(in crate::integrator) fn add_light<P: Probe>(
+        &self,
+        world: &World,
+        lane: usize,
+        path: &Path,
+        hit: &Hit,
+        output: &mut StepOutput<'_, P>,
+    ) -> bool {
+        let bit = 1 << lane;
+        if self.plain & bit == 0 {
+            return false;
+        }
+        output.add(path, Term::Ambient, self.ambient[lane]);
+        for from in self.lights.iter().filter(|from| from.lit & bit != 0) {
+            let mut interior = path.interior;
+            if from.crosses & bit != 0 {
+                let surface = world.surface(&path.ray, hit);
+                interior = interior.leaving(&world.materials, &surface, from.direction[lane].into(), true);
+            }
+            output.queues.shadows.push(Shadow {
+                ray: Ray { t_max: from.t_max, ..Ray::new(from.origin[lane], from.direction[lane]) },
+                origin_primitive: OriginPrimitive::of(hit),
+                contribution: from.contribution[lane],
+                slot: path.slot,
+                address: path.address,
+                term: Term::Light(from.light),
+                interior,
+            });
+        }
+        true
+    }
+
+    /// The paths that may go on from a lane with a plain hit: first the reflected one.
+    #[inline]
+    pub(in crate::integrator) fn branches(&self, lane: usize) -> impl Iterator<Item = PlainBranch> {
+        let kinds = self.branches.iter().flat_map(|branches| {
+            [(Branch::Mirrored, &branches.mirrored), (Branch::Refracted, &branches.refracted)]
+        });
+        kinds.filter(move |(_, rays)| rays.exist & 1 << lane != 0).map(move |(branch, rays)| PlainBranch {
+            branch,
+            beta: rays.beta[lane],
+            ray: Ray::new(rays.origin[lane], rays.direction[lane]),
+            material: self.materials[lane],
+            front: self.front & 1 << lane != 0,
+        })
+    }
+}
+
+struct PlainKernel<'a> {
+    world: &'a World,
+    eight: &'a [PlainHit<'a>; LANES],
+    /// By slot.
+    modes: &'a [SpectralMode],
+    steps: &'a mut PlainSteps,
+}
+
+impl PlainKernel<'_> {
+    #[inline(never)]
+    fn run_at_level(self) {
+        dispatch(level(), self);
+    }
+}
+
+impl Kernel for PlainKernel<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { world, eight, modes, steps } = self;
+        let modes = by_lane!(lane => &modes[eight[lane].path.slot as usize]);
+        let surfaces = Surfaces::of(simd, eight);
+        let Surfaces { points, ng, ng_facing, ns_facing, wo, front } = surfaces;
+        steps.materials = by_lane!(lane => eight[lane].material);
+        steps.front = front.to_bitmask() as u32;
+        let (positions, normals) = (scatter_f64(points.position), scatter(Vector::<f32x8<S>>::narrow(ng)));
+        // Groups of one material whose coefficients are the same everywhere are common.
+        let is_even = matches!(modes[0], SpectralMode::Rgb) && PlainHit::are_even(world, eight);
+        let coefficients = match is_even {
+            true => [eight[0].coefficients(world, positions[0], normals[0], modes[0]); LANES],
+            false => {
+                by_lane!(lane => eight[lane].coefficients(world, positions[lane], normals[lane], modes[lane]))
+            }
+        };
+        steps.ambient = by_lane!(lane =>
+            eight[lane].beta * coefficients[lane].ambient * world.ambient(modes[lane]));
+        let beta = gather_spectrum(simd, &by_lane!(lane => eight[lane].beta));
+        steps.branches = Branches::of(simd, &coefficients, &surfaces, beta);
+        let (diffuse, specular) = match is_even {
+            true => {
+                let Coefficients { diffuse, specular, .. } = coefficients[0];
+                (splat_spectrum(simd, diffuse), splat_spectrum(simd, specular))
+            }
+            false => (
+                gather_spectrum(simd, &by_lane!(lane => coefficients[lane].diffuse)),
+                gather_spectrum(simd, &by_lane!(lane => coefficients[lane].specular)),
+            ),
+        };
+        let zero = f32x8::splat(simd, 0.0);
+
+        for (index, source) in world.lights.iter().enumerate() {
+            let (wi, distance, position) = match source {
+                Light::Point { position, .. } => {
+                    let position = splat(simd, position.to_array());
+                    let way = position - points.position;
+                    let distance = way.length();
+                    let wi = Vector { x: way.x / distance, y: way.y / distance, z: way.z / distance };
+                    (Vector::<f32x8<S>>::narrow(wi), distance, Some(position))
+                }
+                Light::Distant { toward, .. } => {
+                    let wi = Vector::<f32x8<S>>::narrow(splat(simd, toward.as_dvec3().to_array()));
+                    (wi, f64x8::splat(simd, 1.0), None)
+                }
+                _ => continue,
+            };
+            let n_dot_l = ns_facing.dot(wi);
+            let distances: [f64; LANES] = distance.into();
+            let mut lit = zero.narrow_mask(distance.gt(f64x8::splat(simd, 0.0)))
+                & ng_facing.dot(wi).gt(zero)
+                & !(n_dot_l.lt(zero) | Float::eq(n_dot_l, zero));
+            let (half, has_half) = (wo + wi).try_normalize();
+            let cos = f32x8::select(has_half, Float::max(ns_facing.dot(half), zero), zero);
+            let cos: [f32; LANES] = cos.into();
+            let may_be = lit.to_bitmask() as u32;
+            if may_be == 0 {
+                continue;
+            }
+            let highlight = by_lane!(lane =>
+            if may_be & 1 << lane == 0 || coefficients[lane].specular.is_black() {
+                0.0
+            } else {
+                math::power(cos[lane], coefficients[lane].shininess)
+            });
+            let li = by_lane!(lane => arriving(world, source, distances[lane], modes[lane]));
+            let reflected = diffuse * n_dot_l + specular * f32x8::load_array(simd, highlight);
+            let contribution = beta * reflected * (gather_spectrum(simd, &li) / f32x8::splat(simd, PI));
+            lit &= !contribution.is_black();
+            let wide = wi.widen();
+            let origin = points.leave(ng, wi);
+            let direction = match position {
+                Some(position) => Vector::narrow(position - origin.widen()),
+                None => wi,
+            };
+            let is_outside = ng.dot(wide).gt(f64x8::splat(simd, 0.0));
+            steps.lights.push(FromLight {
+                light: index as u32,
+                lit: lit.to_bitmask() as u32,
+                crosses: (is_outside.to_bitmask() ^ front.to_bitmask()) as u32,
+                contribution: scatter_spectrum(contribution),
+                origin: scatter(origin),
+                direction: scatter(direction),
+                t_max: if position.is_some() { 1.0 } else { f32::INFINITY },
+            });
+        }
+    }
+}
+
+/// The light of a source without occlusion at a distance: radiance times π, as [`Light::sample`] has it.
+#[inline]
+fn arriving(world: &World, source: &Light, distance: f64, lanes: &SpectralMode) -> Spectrum {
+    match source {
+        Light::Point { intensity, falloff, .. } => {
+            intensity.even(&world.textures, lanes) * fade(*falloff, distance)
+        }
+        Light::Distant { irradiance, .. } => irradiance.even(&world.textures, lanes),
+        _ => Spectrum::BLACK,
+    }
+}
+
+#[inline(always)]
+fn splat<S: Simd>(simd: S, [x, y, z]: [f64; 3]) -> Vector<f64x8<S>> {
+    Vector { x: f64x8::splat(simd, x), y: f64x8::splat(simd, y), z: f64x8::splat(simd, z) }
+}
+
+/// The same spectrum in each lane.
+#[inline(always)]
+fn splat_spectrum<S: Simd>(simd: S, Spectrum([a, b, c, d]): Spectrum) -> Spectrum<f32x8<S>> {
+    Spectrum([f32x8::splat(simd, a), f32x8::splat(simd, b), f32x8::splat(simd, c), f32x8::splat(simd, d)])
+}
