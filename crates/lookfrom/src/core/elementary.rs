@@ -3,7 +3,7 @@
 //! Additions, multiplications and divisions in a fixed order and no tables, so that the bits are the same at every width and
 //! on every machine. Error bounds are stated in units in the last place (ulp) of the result and tested.
 
-use std::f32::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI};
 
 use lookfrom_simd::{Bits, Float, Real};
 
@@ -73,21 +73,92 @@ pub(crate) fn sin_cos_of_turns<R: Real>(turns: R) -> (R, R) {
     (R::from_bits(y.to_bits() ^ sign_of_sin), R::from_bits(x.to_bits() ^ sign_of_cos))
 }
 
-/// The angle of the point (x, y), y ≥ 0, from the x axis in [0, π], to 2⁻²¹ of itself; 0 for the origin.
+/// Sine and cosine of an angle of 0 … 2π in double precision, to 2⁻⁵⁰.
 #[inline(always)]
-pub(crate) fn atan2<R: Real>(y: R, x: R) -> R {
+pub(crate) fn sin_cos<F: Float<Scalar = f64>>(angle: F) -> (F, F) {
+    // The nearest quarter of a turn, and what is left: |rest| ≤ π/4.
+    let quarters = angle * angle.like(FRAC_2_PI) + angle.like(ROUNDER_F64) - angle.like(ROUNDER_F64);
+    let rest = angle - quarters * angle.like(HALF_PI[0]) - quarters * angle.like(HALF_PI[1]);
+    let square = rest * rest;
+    let (sin, cos) = (rest * series(square, &SINE), series(square, &COSINE));
+    let [first, second, third] = [1.0, 2.0, 3.0].map(|quarter| angle.like(quarter));
+    let (first, second, third) =
+        (Float::eq(quarters, first), Float::eq(quarters, second), Float::eq(quarters, third));
+    (
+        F::select(first, cos, F::select(second, -sin, F::select(third, -cos, sin))),
+        F::select(first, -sin, F::select(second, -cos, F::select(third, sin, cos))),
+    )
+}
+
+/// The angle of the point (x, y), y ≥ 0, from the x axis in [0, π] in double precision, to 2⁻⁵⁰ of itself; 0 for the origin.
+#[inline(always)]
+pub(crate) fn atan2<F: Float<Scalar = f64>>(y: F, x: F) -> F {
     let width = Float::abs(x);
     let is_steep = y.gt(width);
-    let slope = R::select(is_steep, width, y) / R::select(is_steep, y, width);
-    // tan of half the angle, at most √2 − 1; the series of its angle, to the 17th power.
-    let t = slope / (Float::sqrt(slope * slope + 1.0) + 1.0);
-    let t2 = t * t;
-    let tail = (((t2 * (1.0 / 17.0) - 1.0 / 15.0) * t2 + 1.0 / 13.0) * t2 - 1.0 / 11.0) * t2 + 1.0 / 9.0;
-    let tail = (((tail * t2 - 1.0 / 7.0) * t2 + 1.0 / 5.0) * t2 - 1.0 / 3.0) * t2;
-    let angle = (t + t * tail) * 2.0;
-    let angle = R::select(is_steep, angle.like(FRAC_PI_2) - angle, angle);
-    let angle = R::select(x.lt(x.like(0.0)), angle.like(PI) - angle, angle);
-    R::select(Float::eq(slope, slope), angle, angle.like(0.0))
+    let slope = F::select(is_steep, width, y) / F::select(is_steep, y, width);
+    // The tangent of a quarter of the angle, at most tan(π/16), and the series of that angle.
+    let t = halved(halved(slope));
+    let angle = t * series(t * t, &ARC_TANGENT) * t.like(4.0);
+    let angle = F::select(is_steep, angle.like(FRAC_PI_2) - angle, angle);
+    let angle = F::select(x.lt(x.like(0.0)), angle.like(PI) - angle, angle);
+    F::select(Float::eq(slope, slope), angle, angle.like(0.0))
+}
+
+/// The tangent of half the angle, from that of the angle.
+#[inline(always)]
+fn halved<F: Float<Scalar = f64>>(tangent: F) -> F {
+    let one = tangent.like(1.0);
+    tangent / (Float::sqrt(tangent * tangent + one) + one)
+}
+
+/// The power series with these coefficients, the lowest first.
+#[inline(always)]
+fn series<F: Float<Scalar = f64>, const N: usize>(x: F, coefficients: &[f64; N]) -> F {
+    let mut sum = x.like(coefficients[N - 1]);
+    let mut k = N - 1;
+    while k > 0 {
+        k -= 1;
+        sum = sum * x + x.like(coefficients[k]);
+    }
+    sum
+}
+
+/// 1.5 · 2⁵²: a number plus this, less this, is the nearest integer.
+const ROUNDER_F64: f64 = 6_755_399_441_055_744.0;
+
+/// π/2 in two parts; products of the first with small integers are exact.
+const HALF_PI: [f64; 2] = {
+    let first = f64::from_bits(FRAC_PI_2.to_bits() & !0xff_ffff);
+    [first, FRAC_PI_2 - first + 6.123_233_995_736_766e-17]
+};
+
+/// (−1)ᵏ / (2k + 1)!
+const SINE: [f64; 9] = factorials(1);
+
+/// (−1)ᵏ / (2k)!
+const COSINE: [f64; 9] = factorials(0);
+
+/// (−1)ᵏ / (2k + 1)
+const ARC_TANGENT: [f64; 12] = {
+    let mut terms = [1.0; 12];
+    let mut k = 1;
+    while k < 12 {
+        terms[k] = if k % 2 == 0 { 1.0 } else { -1.0 } / (2 * k + 1) as f64;
+        k += 1;
+    }
+    terms
+};
+
+/// (−1)ᵏ / (2k + first)!
+const fn factorials(first: usize) -> [f64; 9] {
+    let mut terms = [1.0; 9];
+    let mut k = 1;
+    while k < 9 {
+        let n = 2 * k + first;
+        terms[k] = -terms[k - 1] / (n * (n - 1)) as f64;
+        k += 1;
+    }
+    terms
 }
 
 /// π/4, squared.
@@ -156,10 +227,14 @@ mod tests {
             let error =
                 (f64::from(sin) - libm::sin(angle)).abs().max((f64::from(cos) - libm::cos(angle)).abs());
             assert!(error <= 1.0 / 4_194_304.0, "{x} turns: {error}");
-            let (y, x) = (number(count, 60).abs(), number(count + 1, 60));
-            let angle = libm::atan2(f64::from(y), f64::from(x));
-            let error = (f64::from(atan2(y, x)) - angle).abs() / angle;
-            assert!(error <= 1.0 / 2_097_152.0, "angle of ({x}, {y}): {error}");
+            let bound = libm::exp2(-50.0);
+            let (y, x) = (f64::from(number(count, 60).abs()), f64::from(number(count + 1, 60)));
+            let angle = libm::atan2(y, x);
+            let error = (atan2(y, x) - angle).abs() / angle;
+            assert!(error <= bound, "angle of ({x}, {y}): {error}");
+            let (s, c) = sin_cos(2.0 * angle);
+            let error = (s - libm::sin(2.0 * angle)).abs().max((c - libm::cos(2.0 * angle)).abs());
+            assert!(error <= bound, "sine and cosine of {angle}: {error}");
         }
     }
 
@@ -179,13 +254,16 @@ mod tests {
     struct All([f32; 8]);
 
     impl Kernel for All {
-        type Output = [[f32; 8]; 5];
+        type Output = ([[f32; 8]; 4], [[f64; 8]; 3]);
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let x = f32x8::load_array(simd, self.0);
             let (sin, cos) = sin_cos_of_turns(x);
             let size = SimdBase::abs(x);
-            [exp(x).into(), ln(size).into(), sin.into(), cos.into(), atan2(size, x - 1.0).into()]
+            let wide = Real::widen(size);
+            let angle = atan2(wide, Real::widen(x));
+            let (s, c) = sin_cos(angle);
+            ([exp(x).into(), ln(size).into(), sin.into(), cos.into()], [angle.into(), s.into(), c.into()])
         }
     }
 
@@ -198,13 +276,15 @@ mod tests {
                 }
                 x => x,
             });
-            let [e, l, s, c, a] = dispatch(level(), All(x));
+            let ([e, l, s, c], wide) = dispatch(level(), All(x));
             for (lane, &x) in x.iter().enumerate() {
                 let (sin, cos) = sin_cos_of_turns(x);
-                let angle = atan2(x.abs(), x - 1.0);
-                let expected = [exp(x), ln(x.abs()), sin, cos, angle].map(f32::to_bits);
-                let lanes = [e[lane], l[lane], s[lane], c[lane], a[lane]];
-                assert_eq!(lanes.map(f32::to_bits), expected, "{x}");
+                let expected = [exp(x), ln(x.abs()), sin, cos].map(f32::to_bits);
+                assert_eq!([e[lane], l[lane], s[lane], c[lane]].map(f32::to_bits), expected, "{x}");
+                let angle = atan2(f64::from(x.abs()), f64::from(x));
+                let (sin, cos) = sin_cos(angle);
+                let expected = [angle, sin, cos].map(f64::to_bits);
+                assert_eq!(wide.map(|of| of[lane].to_bits()), expected, "{x}");
             }
         }
     }

@@ -1,12 +1,12 @@
 //! Eight plain surfaces side by side, from their hits.
 
-use lookfrom_bvh::Hit;
 use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask64x8, prelude::*};
 
 use super::plain::{PlainHit, PlainShape};
-use crate::core::lanes::{LANES, by_lane, gather};
+use crate::core::lanes::{LANES, bitmask, by_lane, gather};
 use crate::core::points::Points;
 use crate::core::vector::Vector;
+use crate::primitive::{Mesh, gather_triangles};
 
 /// Eight surfaces, as [`World::surface`] has them.
 pub(super) struct Surfaces<S: Simd> {
@@ -22,20 +22,20 @@ impl<S: Simd> Surfaces<S> {
     #[inline(always)]
     pub(super) fn of(simd: S, eight: &[PlainHit<'_>; LANES]) -> Self {
         let direction = gather(simd, &by_lane!(lane => eight[lane].path.ray.direction)).widen();
-        let mut spheres = 0;
-        for (lane, plain) in eight.iter().enumerate() {
-            spheres |= u64::from(matches!(plain.shape, PlainShape::Sphere(..))) << lane;
-        }
-        let (points, ng, ns) = match spheres {
-            0 => on_triangles(simd, eight),
-            0xff => on_spheres(simd, eight, direction),
-            _ => {
-                let (flat, round) = (on_triangles(simd, eight), on_spheres(simd, eight, direction));
-                let is_sphere = mask64x8::from_bitmask(simd, spheres);
-                let position = Vector::select(is_sphere, round.0.position, flat.0.position);
-                let error = Vector::select(is_sphere, round.0.error, flat.0.error);
-                let ng = Vector::select(is_sphere, round.1, flat.1);
-                (Points { position, error }, ng, Vector::select(is_sphere, round.2, flat.2))
+        let triangles = by_lane!(lane => match eight[lane].shape {
+            PlainShape::Triangle(mesh) => Some((mesh, eight[lane].hit.primitive)),
+            PlainShape::Sphere(..) => None,
+        });
+        let spheres = bitmask(&by_lane!(lane => triangles[lane].is_none()));
+        let (points, ng, ns) = match triangles.iter().flatten().next() {
+            None => on_spheres(simd, eight, direction),
+            Some(any) => {
+                let flat = on_triangles(simd, eight, &by_lane!(lane => triangles[lane].unwrap_or(*any)));
+                if spheres == 0 {
+                    flat
+                } else {
+                    blended(simd, spheres, on_spheres(simd, eight, direction), flat)
+                }
             }
         };
         let wo = -direction.normalize();
@@ -52,56 +52,28 @@ impl<S: Simd> Surfaces<S> {
 /// Points, geometric and shading normals.
 type Shapes<S> = (Points<f32x8<S>>, Vector<f64x8<S>>, Vector<f64x8<S>>);
 
-/// The points of lanes that hit triangles, as [`Mesh::point`](crate::primitive::Mesh::point) has them.
+/// The first where a bit of the mask is set, the second elsewhere.
 #[inline(always)]
-fn on_triangles<S: Simd>(simd: S, eight: &[PlainHit<'_>; LANES]) -> Shapes<S> {
-    let rows = by_lane!(lane => Corners::of(&eight[lane]));
-    let corners = [
-        gather(simd, &by_lane!(lane => rows[lane].positions[0])),
-        gather(simd, &by_lane!(lane => rows[lane].positions[1])),
-        gather(simd, &by_lane!(lane => rows[lane].positions[2])),
-    ];
+fn blended<S: Simd>(simd: S, mask: u32, yes: Shapes<S>, no: Shapes<S>) -> Shapes<S> {
+    let mask = mask64x8::from_bitmask(simd, mask.into());
+    let position = Vector::select(mask, yes.0.position, no.0.position);
+    let error = Vector::select(mask, yes.0.error, no.0.error);
+    (Points { position, error }, Vector::select(mask, yes.1, no.1), Vector::select(mask, yes.2, no.2))
+}
+
+/// The points of hits on triangles of meshes.
+#[inline(always)]
+fn on_triangles<S: Simd>(
+    simd: S,
+    eight: &[PlainHit<'_>; LANES],
+    triangles: &[(&Mesh, u32); LANES],
+) -> Shapes<S> {
+    let meshes = by_lane!(lane => triangles[lane].0);
+    let indices = by_lane!(lane => triangles[lane].1);
     let u = f32x8::load_array(simd, by_lane!(lane => eight[lane].hit.u));
     let v = f32x8::load_array(simd, by_lane!(lane => eight[lane].hit.v));
-    let (points, across) = Points::on_triangles(corners, u, v);
-    let flip = f64x8::load_array(simd, by_lane!(lane => rows[lane].flip));
-    let ng = across.normalize() * flip;
-    if rows.iter().all(|row| row.normal == [0.0; 3]) {
-        return (points, ng, ng);
-    }
-    let mixed = gather(simd, &by_lane!(lane => rows[lane].normal)).widen();
-    let (smooth, is_smooth) = mixed.try_normalize();
-    // The mesh's normals, not the winding, decide which side is outside.
-    let ng = ng.negate_where(is_smooth & smooth.dot(ng).lt(f64x8::splat(simd, 0.0)));
-    (points, ng, Vector::select(is_smooth, smooth, ng))
-}
-
-/// A triangle's corners, its interpolated normal of any length (zero for none), and −1 if it is flipped.
-#[derive(Clone, Copy)]
-struct Corners {
-    positions: [[f32; 3]; 3],
-    normal: [f32; 3],
-    flip: f64,
-}
-
-impl Corners {
-    #[inline(always)]
-    fn of(plain: &PlainHit<'_>) -> Self {
-        let PlainShape::Triangle(mesh) = plain.shape else {
-            return Self { positions: [[0.0; 3]; 3], normal: [0.0; 3], flip: 1.0 };
-        };
-        let Hit { primitive, u, v, .. } = *plain.hit;
-        let normal = match mesh.normals.as_slice() {
-            [] => [0.0; 3],
-            normals => {
-                let [a, b, c] = mesh.triangles[primitive as usize];
-                let mixed =
-                    (1.0 - u - v) * normals[a as usize] + u * normals[b as usize] + v * normals[c as usize];
-                mixed.to_array()
-            }
-        };
-        Self { positions: mesh.corners(primitive as usize), normal, flip: if mesh.flip { -1.0 } else { 1.0 } }
-    }
+    let at = gather_triangles(simd, &meshes, &indices).points(u, v);
+    (at.points, at.ng, at.ns)
 }
 
 /// The points of lanes that hit spheres.

@@ -161,7 +161,7 @@ impl MeshLight {
             let place = Vec2::from_array(spherical.sample([u0, u1]));
             let (point, normal, uv) = self.point(triangle, place);
             let (wi, _) = toward(from, DVec3::from_array(point.position))?;
-            let pdf = probability / solid_angle;
+            let pdf = (f64::from(probability) / solid_angle) as f32;
             return Some(LightPoint {
                 point,
                 normal,
@@ -196,7 +196,7 @@ impl MeshLight {
     pub(super) fn pdf_by_direction(&self, from: DVec3, index: usize) -> Option<f32> {
         let rank = self.rank(index)?;
         let (_, solid_angle) = self.triangles[rank].worth_direction(from)?;
-        Some(self.choice.pdf(rank) / solid_angle)
+        Some((f64::from(self.choice.pdf(rank)) / solid_angle) as f32)
     }
 
     /// The area density where a triangle is sampled by area; 0 where it is not sampled.
@@ -256,7 +256,7 @@ impl Triangle {
     }
 
     /// The triangle as seen from a point and its solid angle, if it is sampled by direction from there.
-    fn worth_direction(&self, from: DVec3) -> Option<(SphericalTriangles<f32>, f32)> {
+    fn worth_direction(&self, from: DVec3) -> Option<(SphericalTriangles<f32>, f64)> {
         // Approximate solid angle, by the centroid: area · cos / distance²; near triangles are recognised by distance²
         // < area. A triangle without a single normal is treated as if it faced the point.
         let middle = self.p0 - from + (self.e1 + self.e2) * (1.0 / 3.0);

@@ -1,17 +1,14 @@
 //! Spherical triangles, uniform sampling of their solid angle, at any width.
 //!
-//! Arvo (1995), "Stratified Sampling of Spherical Triangles"; the solid angle by Van Oosterom & Strackee (1983). Sines,
-//! cosines and solid angles are in single precision: 2⁻²¹ of a solid angle of the [allowed range](BY_DIRECTION).
-
-use std::f32::consts::TAU;
+//! Arvo (1995), "Stratified Sampling of Spherical Triangles"; the solid angle by Van Oosterom & Strackee (1983).
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use crate::core::elementary::{atan2, sin_cos_of_turns};
+use crate::core::elementary::{atan2, sin_cos};
 use crate::core::vector::Vector;
 
 /// Range of solid angles for which triangles are sampled by direction.
-const BY_DIRECTION: std::ops::RangeInclusive<f32> = 3e-4..=6.22;
+const BY_DIRECTION: std::ops::RangeInclusive<f64> = 3e-4..=6.22;
 
 /// Triangles as seen from a point each.
 #[derive(Clone, Copy)]
@@ -20,7 +17,7 @@ pub(crate) struct SphericalTriangles<R: Real> {
     corners: [Vector<R::Double>; 3],
     /// The directions to them, of unit length.
     directions: [Vector<R::Double>; 3],
-    solid_angle: R,
+    solid_angle: R::Double,
 }
 
 impl<R: Real> SphericalTriangles<R> {
@@ -31,13 +28,13 @@ impl<R: Real> SphericalTriangles<R> {
         let [a, b, c] = directions;
         let volume = Float::abs(a.dot(b.cross(c)));
         let rest = a.dot(b) + b.dot(c) + c.dot(a);
-        let solid_angle = atan2(R::narrow(volume), R::narrow(rest + rest.like(1.0))) * 2.0;
+        let solid_angle = atan2(volume, rest + rest.like(1.0)) * 2.0;
         Self { corners, directions, solid_angle }
     }
 
     /// The solid angles, and where they are neither too small nor too close to a hemisphere to be sampled.
     #[inline(always)]
-    pub(crate) fn solid_angle(&self) -> (R, R::Mask) {
+    pub(crate) fn solid_angle(&self) -> (R::Double, <R::Double as Float>::Mask) {
         let angle = self.solid_angle;
         let is_outside =
             angle.lt(angle.like(*BY_DIRECTION.start())) | angle.gt(angle.like(*BY_DIRECTION.end()));
@@ -61,8 +58,7 @@ impl<R: Real> SphericalTriangles<R> {
         let sin_alpha = Float::abs(a.dot(b.cross(c))) / size;
 
         // The corner on the side from a to c that cuts off the chosen part of the area.
-        let (sin_part, cos_part) = sin_cos_of_turns(u0 * self.solid_angle * (1.0 / TAU));
-        let (sin_part, cos_part) = (sin_part.widen(), cos_part.widen());
+        let (sin_part, cos_part) = sin_cos(u0.widen() * self.solid_angle);
         let sin = sin_part * cos_alpha - cos_part * sin_alpha;
         let cos = cos_part * cos_alpha + sin_part * sin_alpha;
         let x = cos - cos_alpha;
