@@ -153,10 +153,9 @@ impl Textures {
     /// extrapolates a mix.
     #[inline(always)]
     pub fn spectrum(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &SpectralMode) -> Spectrum {
-        // The most frequent cases need no call.
-        match (lanes, &texture.constant) {
-            (SpectralMode::Rgb, _) if !texture.varies() => texture.rgb,
-            (SpectralMode::Spectral(wavelengths), Some(constant)) => constant.at(&wavelengths.lambda),
+        // The most frequent case needs no call.
+        match lanes {
+            SpectralMode::Rgb if !texture.varies() => texture.rgb,
             _ => self.spectrum_of_any(texture, at, lanes),
         }
     }

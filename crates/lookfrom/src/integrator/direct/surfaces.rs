@@ -8,7 +8,7 @@ use crate::core::points::Points;
 use crate::core::vector::Vector;
 use crate::primitive::{Mesh, gather_triangles};
 
-/// Eight surfaces, as [`World::surface`] has them.
+/// Eight surfaces, as [`World::surface`](crate::world::World::surface) has them.
 pub(super) struct Surfaces<S: Simd> {
     pub(super) points: Points<f32x8<S>>,
     pub(super) ng: Vector<f64x8<S>>,

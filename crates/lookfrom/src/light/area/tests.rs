@@ -135,7 +135,7 @@ fn eight_spheres_are_eight_one_by_one() {
         let axes = DMat3::from_cols_array_2d(&[vector(3 * seed), vector(3 * seed + 1), vector(3 * seed + 2)]);
         let matrix = DMat4::from_translation(DVec3::from_array(vector(seed + 77))) * DMat4::from_mat3(axes);
         let kind = QuadricKind::Sphere { radius, z: [-radius, radius] };
-        let quadric = Quadric::new(kind, 360.0, &matrix, seed % 3 == 0)?;
+        let quadric = Quadric::new(kind, 360.0, &matrix, seed.is_multiple_of(3))?;
         QuadricLight::new(quadric, seed.is_multiple_of(2))
     };
     let mut lights = (0_u64..).filter_map(light);

@@ -1,5 +1,6 @@
 //! Triangles of eight meshes side by side.
 
+use glam::{Vec2, Vec3, Vec4};
 use lookfrom_simd::{Simd, f32x8, f64x8, mask64x8, prelude::*};
 
 use super::Mesh;
@@ -40,18 +41,18 @@ pub(crate) fn gather_triangles<S: Simd>(
         triangles.positions[corner] = gather(simd, &by_lane!(lane => meshes[lane].positions[at[lane]]));
         if have_normals {
             let normals =
-                by_lane!(lane => meshes[lane].normals.get(at[lane]).map_or([0.0; 3], |n| n.to_array()));
+                by_lane!(lane => meshes[lane].normals.get(at[lane]).map_or([0.0; 3], Vec3::to_array));
             triangles.normals[corner] = gather(simd, &normals);
         }
         let uvs =
-            by_lane!(lane => meshes[lane].uvs.get(at[lane]).map_or(Mesh::NO_UVS[corner], |uv| uv.to_array()));
+            by_lane!(lane => meshes[lane].uvs.get(at[lane]).map_or(Mesh::NO_UVS[corner], Vec2::to_array));
         triangles.uvs[corner] = [
             f32x8::load_array(simd, by_lane!(lane => uvs[lane][0])),
             f32x8::load_array(simd, by_lane!(lane => uvs[lane][1])),
         ];
         if have_tangents {
             let tangents =
-                by_lane!(lane => meshes[lane].tangents.get(at[lane]).map_or([0.0; 4], |t| t.to_array()));
+                by_lane!(lane => meshes[lane].tangents.get(at[lane]).map_or([0.0; 4], Vec4::to_array));
             triangles.tangents[corner] = Tangent {
                 along: gather(
                     simd,
@@ -67,7 +68,6 @@ pub(crate) fn gather_triangles<S: Simd>(
 
 #[cfg(test)]
 mod tests {
-    use glam::{Vec2, Vec3, Vec4};
     use lookfrom_simd::{Kernel, Level, dispatch};
 
     use super::*;
@@ -100,7 +100,7 @@ mod tests {
             |k: u64| Vec3::new(number(64 * seed + k), number(64 * seed + k + 1), number(64 * seed + k + 2));
         let three = |first: u64| [0, 3, 6].map(|k| vector(first + k));
         let uvs = three(9).map(|v| Vec2::new(v.x, v.y)).to_vec();
-        let normals = three(18).map(|v| v.normalize_or_zero()).to_vec();
+        let normals = three(18).map(Vec3::normalize_or_zero).to_vec();
         let tangents = three(27).map(|v| v.extend(if v.x > 0.0 { 1.0 } else { -1.0 })).to_vec();
         let has = |bit: u64| hash::pair(seed, 5) & 1 << bit != 0;
         Mesh {
@@ -121,8 +121,8 @@ mod tests {
     /// The numbers of a point.
     type Numbers = ([[f64; 3]; 8], [f32; 2]);
 
-    fn numbers(at: TrianglePoints<f32>) -> Numbers {
-        let TrianglePoints { points, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv } = at;
+    fn numbers(at: &TrianglePoints<f32>) -> Numbers {
+        let TrianglePoints { points, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv } = *at;
         let vectors = [points.position, points.error, ng, ns, dpdu, dpdv, shading_dpdu, shading_dpdv];
         (vectors.map(<[f64; 3]>::from), uv)
     }
@@ -179,7 +179,7 @@ mod tests {
                 let eight = dispatch(level, Eight { meshes: &meshes, on, placements: &placements });
                 for lane in 0..LANES {
                     let alone = meshes[lane].triangle(0).points(on[0][lane], on[1][lane]);
-                    let alone = numbers(alone.placed(lane % 2 == 1, &placements[lane]));
+                    let alone = numbers(&alone.placed(lane % 2 == 1, &placements[lane]));
                     // The bits of NaN, of triangles without an area, do not matter.
                     let is_number = alone.0.iter().flatten().all(|x| !x.is_nan());
                     assert!(!is_number || eight[lane] == alone, "{:?}\n{alone:?}", eight[lane]);

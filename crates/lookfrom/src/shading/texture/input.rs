@@ -8,7 +8,7 @@ use lookfrom_scene::scene::{CurveId, TextureId};
 
 use super::evaluation::{RgbEvaluation, within};
 use super::{Evaluation, Measured};
-use crate::core::color::{Sigmoid, Unbounded, standard_illuminant};
+use crate::core::color::{Sigmoid, Unbounded};
 use crate::core::spectrum::Spectrum;
 
 /// The use of a spectrum, which determines the spectrum that three primaries are uplifted to.
@@ -29,43 +29,6 @@ pub struct SpectrumTexture {
     pub(super) spectrum_type: SpectrumType,
     /// The RGB value where it is constant.
     pub(super) rgb: Spectrum,
-    /// The spectrum where it is a constant of a scene that is rendered in spectral mode.
-    pub(super) constant: Option<ConstantSpectrum>,
-}
-
-/// The spectrum of a constant colour.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ConstantSpectrum {
-    /// `None` for a grey, which is the same at all wavelengths.
-    sigmoid: Option<Sigmoid>,
-    /// Its factor, or the grey.
-    scale: f32,
-    /// Whether it is multiplied by daylight D65.
-    is_illuminant: bool,
-}
-
-impl ConstantSpectrum {
-    fn new(constant: &Constant, spectrum_type: SpectrumType) -> Option<Self> {
-        let Uplifts { albedo, unbounded } = constant.uplifts?;
-        let [r, g, b] = within(spectrum_type, constant.rgb);
-        let is_illuminant = spectrum_type == SpectrumType::Illuminant;
-        let (sigmoid, scale) = match spectrum_type {
-            _ if r == g && g == b => (None, r),
-            SpectrumType::Albedo => (Some(albedo), 1.0),
-            SpectrumType::Unbounded | SpectrumType::Illuminant => (Some(unbounded.sigmoid), unbounded.scale),
-        };
-        Some(Self { sigmoid, scale, is_illuminant: is_illuminant && scale != 0.0 })
-    }
-
-    /// The values at wavelengths in nm.
-    #[inline]
-    pub(super) fn at(&self, lambda: &[f32; 4]) -> Spectrum {
-        let values = match &self.sigmoid {
-            Some(sigmoid) => sigmoid.at(lambda) * self.scale,
-            None => Spectrum([self.scale; 4]),
-        };
-        if self.is_illuminant { values * standard_illuminant().at(lambda) } else { values }
-    }
 }
 
 /// A number that may vary over a surface.
@@ -109,7 +72,6 @@ impl SpectrumTexture {
         input: Input::Constant(Constant { rgb: [0.0; 3], uplifts: None }),
         spectrum_type: SpectrumType::Unbounded,
         rgb: Spectrum::BLACK,
-        constant: None,
     };
 
     pub(super) fn new(input: Input, spectrum_type: SpectrumType, curves: &[Measured]) -> Self {
@@ -119,11 +81,7 @@ impl SpectrumTexture {
             Input::Curve(id) => evaluation.curve(&curves[id.index()]),
             Input::Texture(_) => Spectrum::BLACK,
         };
-        let constant = match &input {
-            Input::Constant(constant) => ConstantSpectrum::new(constant, spectrum_type),
-            Input::Curve(_) | Input::Texture(_) => None,
-        };
-        Self { input, spectrum_type, rgb, constant }
+        Self { input, spectrum_type, rgb }
     }
 
     /// True if it is one colour everywhere.

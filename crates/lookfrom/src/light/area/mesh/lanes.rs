@@ -36,7 +36,7 @@ pub(crate) fn sample_triangles<S: Simd>(
     if by_direction.any_true() {
         let spherical = SphericalTriangles::new(seen.corners);
         let (solid_angle, is_usable) = spherical.solid_angle();
-        by_direction = by_direction & probability.narrow_mask(is_usable);
+        by_direction &= probability.narrow_mask(is_usable);
         direction_pdf = Real::narrow(Real::widen(probability) / solid_angle);
         let [b, c] = spherical.sample(u);
         beta = Float::select(by_direction, b, beta);
