@@ -47,6 +47,30 @@ pub struct MaterialBinding {
     pub single_sided: bool,
 }
 
+impl MaterialBinding {
+    /// The first material and nothing else: for primitives whose attributes do not matter.
+    pub(crate) const NONE: Self = Self {
+        material: 0,
+        light: None,
+        shape: 0,
+        alpha: None,
+        medium_interface: None,
+        vertex_data: None,
+        single_sided: false,
+    };
+
+    /// Whether its surfaces are nothing but their material: without emission, alpha, media or vertex data of their own, seen
+    /// from both sides.
+    #[inline]
+    pub(crate) fn is_plain(&self) -> bool {
+        self.light.is_none()
+            && self.alpha.is_none()
+            && self.medium_interface.is_none()
+            && self.vertex_data.is_none()
+            && !self.single_sided
+    }
+}
+
 /// The primitives that share a geometry id of the kernel.
 #[derive(Clone, Debug)]
 #[non_exhaustive]

@@ -83,7 +83,7 @@ pub(crate) struct AreaSamples<R: Real> {
     pub(crate) wi: Vector<R>,
     /// Finite and positive where there is a point.
     pub(crate) pdf: R,
-    /// Where there is a point.
+    /// The lanes that have a point.
     pub(crate) is_valid: R::Mask,
 }
 

@@ -24,11 +24,11 @@ pub(crate) struct Triangles<R: Real> {
     pub(crate) normals: [Vector<R>; 3],
     pub(crate) uvs: [[R; 2]; 3],
     pub(crate) tangents: [Tangent<R>; 3],
-    /// Where there are normals at all.
+    /// The lanes whose meshes have normals.
     pub(crate) have_normals: WideMask<R>,
-    /// Where there are tangents at all.
+    /// The lanes whose meshes have tangents.
     pub(crate) have_tangents: WideMask<R>,
-    /// Where derivatives by texture coordinates are wanted; elsewhere they are 0.
+    /// The lanes that need derivatives by texture coordinates; in others they are 0.
     pub(crate) want_derivatives: WideMask<R>,
 }
 

@@ -23,14 +23,8 @@ impl World {
     pub(super) fn classify(primitives: &[Primitives], materials: &[Material]) -> Vec<Class> {
         let class = |primitives: &Primitives| {
             let Primitives::Mesh(mesh) = primitives else { return Class::General };
-            let binding = &mesh.binding;
-            let is_plain = binding.light.is_none()
-                && binding.alpha.is_none()
-                && binding.medium_interface.is_none()
-                && binding.vertex_data.is_none()
-                && !binding.single_sided;
-            let class = materials[binding.material as usize].class();
-            class.filter(|_| is_plain).map_or(Class::General, Class::Mesh)
+            let class = materials[mesh.binding.material as usize].class();
+            class.filter(|_| mesh.binding.is_plain()).map_or(Class::General, Class::Mesh)
         };
         primitives.iter().map(class).collect()
     }

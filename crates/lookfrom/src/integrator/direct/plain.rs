@@ -106,11 +106,7 @@ impl<'a> PlainHit<'a> {
 }
 
 fn is_plain(world: &World, binding: &MaterialBinding) -> bool {
-    binding.light.is_none()
-        && binding.alpha.is_none()
-        && binding.medium_interface.is_none()
-        && binding.vertex_data.is_none()
-        && !binding.single_sided
+    binding.is_plain()
         && !matches!(world.materials[binding.material as usize].kind, MaterialKind::Unlit { .. })
 }
 

@@ -15,23 +15,12 @@ use crate::primitive::{MaterialBinding, Quadric, QuadricKind};
 /// Number of cells along u and v in the numerical integration of the area of a non-uniformly scaled quadric.
 const CELLS: u32 = 64;
 
-/// An empty binding: a light's point needs none.
-const NO_LOOK: MaterialBinding = MaterialBinding {
-    material: 0,
-    light: None,
-    shape: 0,
-    alpha: None,
-    medium_interface: None,
-    vertex_data: None,
-    single_sided: false,
-};
-
 /// A quadric that emits light.
 #[derive(Clone, Debug)]
 pub struct QuadricLight {
     quadric: Quadric,
     area: f64,
-    /// Where it is a whole sphere.
+    /// The whole sphere that it is, if it is one.
     sphere: Option<SphereLights<f32>>,
 }
 
@@ -68,7 +57,7 @@ impl QuadricLight {
     pub(super) fn normals(&self) -> Cone {
         match self.quadric.kind {
             QuadricKind::Disk { .. } => {
-                let at = self.quadric.point(self.quadric.sample_in_object([0.5; 2]), NO_LOOK);
+                let at = self.quadric.point(self.quadric.sample_in_object([0.5; 2]), MaterialBinding::NONE);
                 Cone { axis: at.ng, cos: 1.0 }
             }
             QuadricKind::Sphere { .. } | QuadricKind::Cylinder { .. } => Cone::ALL,
@@ -78,7 +67,7 @@ impl QuadricLight {
     pub(super) fn sample(&self, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
         let Some(sphere) = &self.sphere else {
             let on_quadric = self.quadric.sample_in_object(u);
-            let at = self.quadric.point(on_quadric, NO_LOOK);
+            let at = self.quadric.point(on_quadric, MaterialBinding::NONE);
             let density = self.pdf_by_area(DVec3::from_array(at.point.position));
             return seen(from, at.point, at.ng, at.uv, density);
         };

@@ -90,15 +90,6 @@ impl Kernel for OnSpheres<'_> {
 
 #[test]
 fn eight_triangles_are_eight_one_by_one() {
-    let binding = MaterialBinding {
-        material: 0,
-        light: None,
-        shape: 0,
-        alpha: None,
-        medium_interface: None,
-        vertex_data: None,
-        single_sided: false,
-    };
     let light = |seed: u64| {
         let mesh = Mesh {
             positions: (0..4).map(|k| vector(4 * seed + k).map(|x| x as f32)).collect(),
@@ -111,7 +102,7 @@ fn eight_triangles_are_eight_one_by_one() {
             opacities: Vec::new(),
             wants_derivatives: false,
             flip: seed.is_multiple_of(2),
-            binding,
+            binding: MaterialBinding::NONE,
         };
         MeshLight::new(Arc::new(mesh)).expect("an area")
     };

@@ -77,16 +77,6 @@ mod tests {
     use crate::primitive::MaterialBinding;
     use crate::primitive::triangle::TrianglePoints;
 
-    const BINDING: MaterialBinding = MaterialBinding {
-        material: 0,
-        light: None,
-        shape: 0,
-        alpha: None,
-        medium_interface: None,
-        vertex_data: None,
-        single_sided: false,
-    };
-
     /// A number of any exponent from 2⁻²⁰ to 2²⁰.
     fn number(count: u64) -> f32 {
         let bits = hash::pair(count, 11);
@@ -114,7 +104,7 @@ mod tests {
             opacities: Vec::new(),
             wants_derivatives: has(3),
             flip: has(4),
-            binding: BINDING,
+            binding: MaterialBinding::NONE,
         }
     }
 

@@ -62,7 +62,7 @@ struct MeshHit<'a> {
     hit: &'a Hit,
     mesh: &'a Mesh,
     material: &'a Material,
-    /// Where it is an instance.
+    /// The placement of the instance that the mesh is in.
     placement: Option<&'a Placement<f32>>,
 }
 
@@ -178,7 +178,7 @@ impl Kernel for MeshKernel<'_> {
         let u = f32x8::load_array(simd, by_lane!(lane => hits[lane].hit.u));
         let v = f32x8::load_array(simd, by_lane!(lane => hits[lane].hit.v));
         let mut at = triangles.points(u, v);
-        if let Some(first) = first_placement(hits) {
+        if let Some(first) = hits.iter().find_map(|hit| hit.placement) {
             let are_placed = bitmask(&by_lane!(lane => hits[lane].placement.is_some()));
             let placements =
                 gather_placements(simd, &by_lane!(lane => hits[lane].placement.unwrap_or(first)));
@@ -192,17 +192,4 @@ impl Kernel for MeshKernel<'_> {
         let surfaces = SurfaceColumns::new(at.points, at.ng, [s, t, n], wo);
         MeshPoints { surfaces, uv: [at.uv[0].into(), at.uv[1].into()] }
     }
-}
-
-/// The first placement of an instance.
-#[inline(always)]
-fn first_placement<'a>(hits: &[MeshHit<'a>; LANES]) -> Option<&'a Placement<f32>> {
-    let mut lane = 0;
-    while lane < LANES {
-        if hits[lane].placement.is_some() {
-            return hits[lane].placement;
-        }
-        lane += 1;
-    }
-    None
 }
