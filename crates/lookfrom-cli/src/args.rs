@@ -2,8 +2,11 @@
 //!
 //! The doc comments of the fields are the help texts.
 
+mod farm;
+mod film;
 mod model;
 
+use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -17,6 +20,8 @@ use lookfrom_scene::settings::{
 
 use crate::values;
 
+pub(crate) use farm::FarmArguments;
+pub(crate) use film::{DevelopArguments, FilesArguments, KeepArguments, MergeArguments, ResumeArguments};
 pub(crate) use model::ModelArguments;
 
 const EXAMPLES: &str = "\
@@ -25,6 +30,7 @@ Examples:
   lookfrom render bunny.ply -o bunny.exr         render a bare model, framed and lit
   lookfrom inspect scene.toml 320 200            trace one sample of that pixel, step by step
   lookfrom render scene.pbrt -o p.exr --time 1m  as many samples per pixel as fit into a minute
+  lookfrom resume a.exr --samples 4096           more samples for a picture that was rendered with --film
   lookfrom compare p.exr reference.exr           differences between a picture and its reference
   lookfrom info scene.toml                       contents of a scene
 
@@ -48,6 +54,8 @@ Examples:
   lookfrom render scene.toml -o - | display
   lookfrom render scene.pbrt --noise 0.02 --write-every 10s
   lookfrom render scene.pbrt --samples 16 --denoise
+  lookfrom render scene.pbrt -o a.exr --film --checkpoint 30s     go on after any stop: lookfrom resume a.exr
+  lookfrom render scene.pbrt -o part-3.exr --film --part 3/64     one of 64 machines: lookfrom merge part-*.exr
 
 Ctrl-C finishes the tiles in progress and writes the picture so far; a second Ctrl-C exits at once.
 Exit codes: 0 done, 1 scene, 2 usage, 3 output, 130 interrupted.";
@@ -95,10 +103,24 @@ pub(crate) enum Command {
     /// Render pictures of scenes and models
     #[command(after_help = RENDER_EXAMPLES)]
     Render(RenderArguments),
+    /// Go on with a render that was stopped, or take more samples
+    #[command(after_help = film::RESUME_EXAMPLES)]
+    Resume(ResumeArguments),
+    /// Add up films: parts of one picture, from any machines
+    #[command(after_help = film::MERGE_EXAMPLES)]
+    Merge(MergeArguments),
+    /// Make pictures from films and other linear pictures, with another exposure, tone map or denoising, without rendering
+    #[command(after_help = film::DEVELOP_EXAMPLES)]
+    Develop(DevelopArguments),
+    /// List all files that scenes are read from
+    Files(FilesArguments),
+    /// Write the files by which a scheduler renders pictures on many machines: OpenJD, Slurm, Dask, HyperQueue
+    #[command(after_help = farm::EXAMPLES)]
+    Farm(FarmArguments),
     /// Trace one sample of a pixel and show every step: intersections, BSDFs, light samples, throughput
     #[command(after_help = INSPECT_EXAMPLES)]
     Inspect(InspectArguments),
-    /// List the contents of scenes and models
+    /// List the contents of scenes, models, pictures and films
     #[command(after_help = INFO_EXAMPLES)]
     Info(InfoArguments),
     /// Compare pictures with references: errors, noise, FLIP
@@ -164,6 +186,9 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "N", value_parser = values::whole(1u32, 100_000))]
     pub(crate) turntable: Option<u32>,
 
+    #[command(flatten)]
+    pub(crate) keep: KeepArguments,
+
     /// Print nothing but errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
@@ -214,7 +239,7 @@ pub(crate) struct InspectArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct InfoArguments {
-    /// Scenes (.toml, .pbrt) or models (.gltf, .glb, .obj, .ply, .stl)
+    /// Scenes (.toml, .pbrt), models (.gltf, .glb, .obj, .ply, .stl) or pictures and films (.exr)
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
@@ -294,7 +319,7 @@ pub(crate) struct BenchArguments {
     pub(crate) overrides: Overrides,
 }
 
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct Common {
     /// Number of threads to build and render with [default: the number of processors]
     #[arg(long, value_name = "N", value_parser = values::whole(1u16, 1024))]
@@ -321,9 +346,9 @@ pub(crate) struct Overrides {
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = values::crop, allow_hyphen_values = true)]
     pub(crate) crop: Option<PixelBounds>,
 
-    /// Samples per pixel
-    #[arg(long, value_name = "N", value_parser = values::whole(1u32, 1 << 24))]
-    pub(crate) samples: Option<u32>,
+    /// Samples per pixel; FROM..BEFORE are some of them by number, as a part of a picture, to be merged with others
+    #[arg(long, value_name = "N|FROM..BEFORE", value_parser = values::samples)]
+    pub(crate) samples: Option<Range<u32>>,
 
     /// Integrator (light transport algorithm); the last four show the first hit in false colours
     #[arg(long, value_name = "NAME", value_parser = values::word(Integrator::WORDS))]

@@ -69,7 +69,7 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
     let environment = prepare::environment(&arguments.overrides, &inputs)?;
     let most = if arguments.time.is_some() { MOST_SAMPLES } else { SAMPLES };
     let options = Options {
-        samples: Some(arguments.overrides.samples.unwrap_or(most)),
+        samples: Some(arguments.overrides.samples.as_ref().map_or(most, |samples| samples.end)),
         // Light transport is measured, without the denoiser.
         denoise: Some(false),
         stop: StopCriteria { time: arguments.time, noise: None },

@@ -1,12 +1,13 @@
-//! `lookfrom info`: contents of scenes and models, their settings, and statistics of the BVH.
+//! `lookfrom info`: contents of scenes and models, their settings, and statistics of the BVH; contents of pictures and films.
 
 mod object;
+mod picture;
 
 use std::fmt::Write;
 use std::path::Path;
 
 use glam::DVec3;
-use lookfrom::session::Session;
+use lookfrom::session::{Format, Session};
 use lookfrom_scene::Inputs;
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::contents::{AnimationEntry, CameraEntry, Contents};
@@ -43,6 +44,9 @@ pub(crate) fn run(arguments: &InfoArguments) -> u8 {
 }
 
 fn info(path: &Path, arguments: &InfoArguments) -> Result<(), Failure> {
+    if Format::of_path(path) == Some(Format::Exr) {
+        return picture::info(path, arguments.json);
+    }
     let options = Overrides::default().options(&arguments.common, None);
     let session = prepare(path, &arguments.common, &options, &Inputs::default())?;
     if arguments.json {

@@ -7,13 +7,18 @@ mod args;
 mod bench;
 mod compare;
 mod completions;
+mod develop;
 mod diagnostic;
 mod exit;
+mod farm;
+mod files;
+mod film;
 mod html;
 mod info;
 mod inspect;
 mod interrupt;
 mod json;
+mod merge;
 mod naming;
 mod output;
 mod overrides;
@@ -22,21 +27,35 @@ mod preview;
 mod progress;
 mod render;
 mod report;
+mod resume;
 mod values;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 
 use crate::args::{Arguments, Command};
 
 fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
-        Ok(arguments) => arguments,
+    let matches = Arguments::command().try_get_matches();
+    let parsed = matches.and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?, matches)));
+    let (arguments, matches) = match parsed {
+        Ok(parsed) => parsed,
         Err(error) => return ExitCode::from(exit::not_parsed(&error)),
     };
     let code = match arguments.command {
-        Command::Render(arguments) => render::run(&arguments),
+        Command::Render(arguments) => {
+            let typed = matches.subcommand_matches("render").map(film::arguments).unwrap_or_default();
+            render::run(&arguments, &typed)
+        }
+        Command::Resume(arguments) => resume::run(&arguments),
+        Command::Merge(arguments) => merge::run(&arguments),
+        Command::Develop(arguments) => develop::run(&arguments),
+        Command::Files(arguments) => files::run(&arguments),
+        Command::Farm(arguments) => {
+            let typed = matches.subcommand_matches("farm").unwrap_or(&matches);
+            farm::run(&arguments, typed)
+        }
         Command::Info(arguments) => info::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),

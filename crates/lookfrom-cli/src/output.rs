@@ -2,8 +2,9 @@
 //! files are never overwritten.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::Write;
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use lookfrom::session::Format;
 use lookfrom_scene::{Disk, Inputs};
@@ -25,6 +26,14 @@ impl Target {
         match self {
             Self::Stdout => "-".to_owned(),
             Self::File(path, _) => path.display().to_string(),
+        }
+    }
+
+    /// The folder of the file; the current one for stdout.
+    pub(crate) fn folder(&self) -> &Path {
+        match self {
+            Self::Stdout => Path::new("."),
+            Self::File(path, _) => folder_or_here(path.parent()),
         }
     }
 
@@ -121,13 +130,40 @@ pub(crate) fn keep_inputs(path: &Path, inputs: &Inputs, option: &str) -> Result<
 /// # Errors
 /// `Output` where it cannot be written or would overwrite an input; `option` as for [`keep_inputs`].
 pub(crate) fn replace_file(path: &Path, bytes: &[u8], inputs: &Inputs, option: &str) -> Result<(), Failure> {
+    replace_file_by(path, inputs, option, |file| {
+        file.write_all(bytes).map_err(|error| error.to_string())?;
+        Ok(())
+    })
+}
+
+/// As [`replace_file`], with a function that writes the temporary file; its error is text. At any moment, the file at
+/// `path` is the old one or the new one, whole.
+///
+/// # Errors
+/// As [`replace_file`].
+pub(crate) fn replace_file_by(
+    path: &Path,
+    inputs: &Inputs,
+    option: &str,
+    write: impl FnOnce(&mut BufWriter<File>) -> Result<(), String>,
+) -> Result<(), Failure> {
     keep_inputs(path, inputs, option)?;
     let folder = folder_or_here(path.parent());
     let partial = folder.join(partial());
-    let written = fs::create_dir_all(folder)
-        .and_then(|()| OpenOptions::new().write(true).create(true).truncate(true).open(&partial))
-        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
-        .and_then(|()| fs::rename(&partial, path));
+    let text = |error: std::io::Error| error.to_string();
+    let written = || {
+        fs::create_dir_all(folder).map_err(text)?;
+        let file = OpenOptions::new().write(true).create(true).truncate(true).open(&partial).map_err(text)?;
+        let mut file = BufWriter::with_capacity(1 << 20, file);
+        write(&mut file)?;
+        let file = file.into_inner().map_err(|error| error.to_string())?;
+        file.sync_all().map_err(text)?;
+        fs::rename(&partial, path).map_err(text)?;
+        // The new name is on disk only when the folder is; systems that cannot sync folders need not.
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+        Ok(())
+    };
+    let written: Result<(), String> = written();
     if let Err(error) = written {
         // The first error is reported; one of the clean-up is not.
         let _ = fs::remove_file(&partial);
@@ -137,9 +173,10 @@ pub(crate) fn replace_file(path: &Path, bytes: &[u8], inputs: &Inputs, option: &
     Ok(())
 }
 
-/// Name of the temporary file, unique to this process.
+/// Name of the temporary file, unique to this process and moment, also where machines share a folder.
 fn partial() -> String {
-    format!(".lookfrom-{}.partial", std::process::id())
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    format!(".lookfrom-{}-{}.partial", std::process::id(), now.as_nanos())
 }
 
 /// The folder of a file, from the parent of its path: `.` where that is empty.

@@ -4,31 +4,39 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lookfrom::film::Film;
 use lookfrom::render::{Progress, TileDone};
 
 use crate::exit::stderr_is_terminal;
+use crate::film::Checkpoints;
 use crate::interrupt;
 use crate::preview::Preview;
 
-/// Progress of a render: the bar on stderr, the count of samples, and the preview.
-pub(crate) struct Watcher {
+/// Progress of a render: the bar on stderr, the count of samples, the preview and checkpoints.
+pub(crate) struct Watcher<'a> {
     bar: Option<ProgressBar>,
     started: Instant,
     done: AtomicU64,
     /// The time limit of the render.
     time: Option<Duration>,
     preview: Option<Preview>,
+    checkpoints: Option<&'a Checkpoints<'a>>,
 }
 
-impl Watcher {
+impl<'a> Watcher<'a> {
     /// Starts the clock. A bar is shown unless `quiet` or where stderr is not a terminal; it ends at `time` if there is one.
-    pub(crate) fn start(quiet: bool, time: Option<Duration>, preview: Option<Preview>) -> Self {
+    pub(crate) fn start(
+        quiet: bool,
+        time: Option<Duration>,
+        preview: Option<Preview>,
+        checkpoints: Option<&'a Checkpoints<'a>>,
+    ) -> Self {
         let bar = (!quiet && stderr_is_terminal()).then(|| {
             let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
             let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
             bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
-        Self { bar, started: Instant::now(), done: AtomicU64::new(0), time, preview }
+        Self { bar, started: Instant::now(), done: AtomicU64::new(0), time, preview, checkpoints }
     }
 
     /// Removes the bar and returns the number of samples taken.
@@ -40,7 +48,7 @@ impl Watcher {
     }
 }
 
-impl Progress for Watcher {
+impl Progress for Watcher<'_> {
     fn tile(&self, tile: TileDone) {
         let TileDone { done, total, rays, .. } = tile;
         // Threads may report out of order; the largest count is the latest.
@@ -71,5 +79,15 @@ impl Progress for Watcher {
 
     fn cancelled(&self) -> bool {
         interrupt::asked()
+    }
+
+    fn wants_checkpoint(&self) -> bool {
+        self.checkpoints.is_some_and(Checkpoints::is_due)
+    }
+
+    fn checkpoint(&self, film: &Film) {
+        if let Some(checkpoints) = self.checkpoints {
+            checkpoints.write(film);
+        }
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use lookfrom::film::SampleId;
-use lookfrom::render::Rays;
+use lookfrom::render::{Rays, StopReason};
 use lookfrom::session::{Finished, Session};
 use lookfrom_scene::WarningKind;
 use serde::Serialize;
@@ -93,12 +93,13 @@ impl Summary {
     pub(crate) fn new(session: &Session, finished: &Finished) -> Self {
         let (info, rendered) = (session.info(), &finished.rendered);
         let film = &rendered.film;
+        let is_cancelled = rendered.reason == StopReason::Cancelled;
         Self {
             scene: session.name().to_owned(),
             output: None,
             width: session.image().width,
             height: session.image().height,
-            samples: finished.samples(),
+            samples: if is_cancelled { session.settings().samples } else { rendered.samples },
             samples_taken: finished.samples_taken(),
             ended_by: rendered.reason.word(),
             relative_error: rendered.error.is_finite().then_some(rendered.error),
@@ -118,7 +119,7 @@ impl Summary {
             instances: info.counts.instances,
             warnings: exit::lines(session.warnings(), WarningKind::Warning),
             notices: exit::lines(session.warnings(), WarningKind::Notice),
-            cancelled: false,
+            cancelled: is_cancelled,
             dropped_samples: Dropped { count: film.dropped(), first: film.first_dropped().map(Into::into) },
         }
     }

@@ -1,6 +1,7 @@
 //! Values of command-line options, spelled as in scene files.
 
 use std::fmt::Display;
+use std::ops::Range;
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -9,7 +10,7 @@ use glam::DVec3;
 use lookfrom_scene::image::linear_from_srgb;
 use lookfrom_scene::settings::{Background, Filter, Layers, PixelBounds};
 
-use lookfrom::session::Fireflies;
+use lookfrom::session::{Fireflies, MOST_SAMPLES};
 
 /// AOVs of an EXR.
 pub(crate) const LAYERS: &[(&str, Layers)] = &[("none", Layers::None), ("geometry", Layers::Geometry)];
@@ -44,6 +45,25 @@ pub(crate) fn word<T: Copy + Send + Sync>(
         let known = words.iter().find(|(word, _)| *word == typed);
         known.map(|&(_, value)| value).ok_or_else(|| format!("unknown value {typed:?}"))
     })
+}
+
+/// `N`, the samples from 0 on, or `FROM..BEFORE`.
+pub(crate) fn samples(typed: &str) -> Result<Range<u32>, String> {
+    let (start, end) = typed.split_once("..").unwrap_or(("0", typed));
+    let number = |typed: &str| typed.trim().parse::<u32>().ok().filter(|&number| number <= MOST_SAMPLES);
+    match (number(start), number(end)) {
+        (Some(start), Some(end)) if start < end => Ok(start..end),
+        _ => Err(format!("expected a whole number from 1 to {MOST_SAMPLES}, or two, such as 256..512")),
+    }
+}
+
+/// `I/N`: part I of N, from 1.
+pub(crate) fn part(typed: &str) -> Result<[u32; 2], String> {
+    let parts = typed.split_once('/').and_then(|(part, parts)| {
+        Some([part.trim().parse::<u32>().ok()?, parts.trim().parse::<u32>().ok()?])
+    });
+    let parts = parts.filter(|&[part, parts]| (1..=parts).contains(&part) && parts <= MOST_SAMPLES);
+    parts.ok_or_else(|| "expected a part and the number of parts, from 1/64 to 64/64".to_owned())
 }
 
 /// `X,Y,Z`: three finite numbers.
@@ -209,6 +229,18 @@ mod tests {
         }
         for wrong in ["", "#fff", "#gggggg", "red"] {
             assert!(background(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn samples_and_parts() {
+        assert_eq!((samples("64"), samples("256..512")), (Ok(0..64), Ok(256..512)));
+        for wrong in ["", "0", "-1", "1..1", "2..1", "1..", "..4", "0..16777217", "x..y", "1..2..3"] {
+            assert!(samples(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!((part("3/64"), part("1/1")), (Ok([3, 64]), Ok([1, 1])));
+        for wrong in ["", "0/4", "5/4", "1", "1/0", "-1/4", "1/2/3"] {
+            assert!(part(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -12,7 +12,7 @@ mod texels;
 mod write;
 
 pub use self::encoding::Encoding;
-pub use self::openexr::{Channels, encode_exr, read_exr};
+pub use self::openexr::{Channels, ExrChannel, ExrHeader, ExrRows, encode_exr, read_exr, write_exr};
 pub use self::read::{decode, read, read_data, read_encoded, read_opacity};
 pub use self::srgb::{linear_from_srgb, srgb_from_linear};
 pub use self::texels::Image;

@@ -6,6 +6,7 @@
 pub mod camera;
 pub mod contents;
 pub mod count;
+pub mod digest;
 pub mod error;
 pub mod excerpt;
 pub mod files;

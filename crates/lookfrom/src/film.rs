@@ -4,20 +4,23 @@
 //! sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the variance; any division of the
 //! work among threads, tiles, passes or machines ends in the same bytes *by construction*. AOVs, for layers and
 //! denoiser, are in [`aov`]; variances in the sensor's channels in `channels`; noise estimates in `noise`; firefly
-//! suppression in `fireflies`. Conversion for display is in [`crate::post::develop`].
+//! suppression in `fireflies`; which samples it holds, in `ledger`; its numbers as channels of a file, in `stored`. Conversion for display is in [`crate::post::develop`].
 //!
 //! A pixel takes 112 bytes, and those of [`aov`] and `channels` where they are enabled.
 
 pub mod aov;
 mod channels;
 mod fireflies;
+mod ledger;
 mod noise;
 mod pixel;
+mod stored;
 mod sums;
 mod tile;
 
 pub use self::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
 use self::channels::ChannelSums;
+pub use self::ledger::{Overlap, SampleLedger};
 use self::pixel::{Pixel, TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square, unbiased_variance};
 pub(crate) use self::sums::SampleSums;
 pub use self::tile::FilmTile;
@@ -152,7 +155,7 @@ impl Film {
         self.tile.area
     }
 
-    /// Adds the light of one sample to its pixel, as [`FilmTile::add`] does.
+    /// Adds the light of one sample to its pixel, as [`FilmTile::add`] does; it is not recorded in the ledger.
     ///
     /// # Panics
     /// If the pixel is outside of [`Film::area`].
@@ -160,15 +163,19 @@ impl Film {
         self.tile.add(x, y, sample, rgb);
     }
 
-    /// Adds the sums of a tile. Pixels outside of [`Film::area`] are left out; samples that the tile dropped are
-    /// counted nevertheless.
-    pub fn add_tile(&mut self, tile: &FilmTile) {
-        self.tile.merge(tile);
+    /// Adds the sums of a tile, which is within [`Film::area`].
+    ///
+    /// # Errors
+    /// As [`Film::merge`].
+    pub fn add_tile(&mut self, tile: &FilmTile) -> Result<()> {
+        self.tile.merge(tile)
     }
 
     /// Adds the sums of another film of the same picture: other samples, or other pixels.
     ///
-    /// An error if the pictures differ in size.
+    /// # Errors
+    /// `Invalid` if the pictures differ in size or in what is summed, if the other has pixels outside of
+    /// [`Film::area`], or both have a [recorded](FilmTile::record) sample; then nothing has changed.
     pub fn merge(&mut self, other: &Self) -> Result<()> {
         if (self.width, self.height) != (other.width, other.height) {
             let message = format!(
@@ -178,8 +185,48 @@ impl Film {
             return Err(Error::invalid(&Location::default(), message)
                 .hint("merge only renders of the same scene at the same size"));
         }
-        self.add_tile(&other.tile);
+        self.add_tile(&other.tile)
+    }
+
+    /// Which samples of which pixels it holds.
+    pub fn ledger(&self) -> &SampleLedger {
+        &self.tile.ledger
+    }
+
+    pub(crate) fn set_dropped(&mut self, count: u64, first: Option<SampleId>) {
+        (self.tile.dropped, self.tile.first_dropped) = (count, first);
+    }
+
+    /// Makes room for all pixels of an area, which contains its own.
+    ///
+    /// # Errors
+    /// `Limit` if there is no memory for it; then nothing has changed.
+    pub fn enlarge(&mut self, area: PixelBounds) -> Result<()> {
+        if area != self.area() {
+            let mut enlarged = self.tile.empty_like(area)?;
+            enlarged.merge(&self.tile)?;
+            self.tile = enlarged;
+        }
         Ok(())
+    }
+
+    /// Whether it is as [`Film::for_image`] makes it: of these pixels, with these kinds of sums.
+    pub fn is_for(&self, image: &ImageSettings) -> bool {
+        let PixelBounds { x0, y0, .. } = self.area();
+        let one = PixelBounds { x0, y0, x1: x0 + 1, y1: y0 + 1 };
+        let like = Self::for_image(&ImageSettings { crop: Some(one), ..image.clone() });
+        let whole = PixelBounds { x0: 0, y0: 0, x1: image.width, y1: image.height };
+        (self.width, self.height, self.area()) == (image.width, image.height, image.crop.unwrap_or(whole))
+            && like.is_ok_and(|like| like.stored_channels() == self.stored_channels())
+    }
+
+    /// Forgets which tiles were clean enough to get no more samples.
+    pub(crate) fn forget_clean(&mut self) {
+        self.tile.ledger.forget_clean();
+    }
+
+    pub(crate) fn ledger_mut(&mut self) -> &mut SampleLedger {
+        &mut self.tile.ledger
     }
 
     /// The mean of a pixel's samples: exact up to one rounding to f64 for the sum, one for the quotient and one to f32.

@@ -41,6 +41,10 @@ use transport::Transport;
 
 pub use driver::{FEWEST_SAMPLES, Progress, Rendered, StopCriteria, StopReason, TileDone};
 
+/// The version of the code that computes samples: raised by every change of the bits of any sample, so that films of
+/// different versions are not merged. `tests/command/pinned.txt` holds both together.
+pub const SAMPLING_VERSION: u32 = 1;
+
 /// A world, a view of it and the render settings: everything that determines the light of a picture.
 ///
 /// Owns what it needs and is cheap to clone; the world is shared.
@@ -359,13 +363,17 @@ impl Renderer {
         if brightest > most { rgb.map(|c| c * (most / brightest)) } else { rgb }
     }
 
-    /// Adds the given samples of every pixel of a tile to the tile.
-    pub fn render_tile(&self, samples: Range<u32>, tile: &mut FilmTile) -> Rays {
+    /// Adds the given samples of every pixel of a tile to the tile, and records them in its ledger.
+    ///
+    /// # Errors
+    /// `Invalid` where the tile has one of them already.
+    pub fn render_tile(&self, samples: Range<u32>, tile: &mut FilmTile) -> Result<Rays> {
         self.render_tile_in(&mut Batch::default(), samples, tile)
     }
 
     /// As [`Renderer::render_tile`], in the memory of earlier batches.
-    fn render_tile_in(&self, batch: &mut Batch, samples: Range<u32>, tile: &mut FilmTile) -> Rays {
+    fn render_tile_in(&self, batch: &mut Batch, samples: Range<u32>, tile: &mut FilmTile) -> Result<Rays> {
+        tile.record(samples.clone())?;
         let mut rays = Rays::default();
         let mut ids = std::mem::take(&mut batch.ids);
         ids.clear();
@@ -395,7 +403,7 @@ impl Renderer {
         }
         tile.add_sums(&ids, &mut batch.sums);
         batch.ids = ids;
-        rays
+        Ok(rays)
     }
 }
 

@@ -14,8 +14,10 @@
 //! ```
 
 mod encode;
+mod film_file;
 mod finish;
 mod header;
+mod identity;
 mod layers;
 mod options;
 mod prepare;
@@ -30,20 +32,23 @@ use glam::DMat3;
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::contents::Contents;
 use lookfrom_scene::count::Counts;
+use lookfrom_scene::digest::Digested;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
 use lookfrom_scene::studio::Turntable;
 use lookfrom_scene::{Disk, Error, Files, LoadContext, Location, Memory, Result, Scene, Warning, load};
 
 use crate::core::clock::Stopwatch;
-use crate::film::Picture;
+use crate::film::{Film, Picture};
 use crate::integrator::Integrator;
 use crate::render::{Progress, Renderer, StopCriteria, Subject};
 use crate::view::View;
 use crate::world::World;
 
 pub use encode::Format;
-pub use finish::Finished;
+pub use film_file::{FilmFile, Provenance};
+pub use finish::{Developed, Development, Finished};
+use identity::Identity;
 pub use options::{ADAPTIVE_NOISE, Fireflies, MOST_SAMPLES, OPTIONS, Options};
 use prepare::Prepared;
 pub use running::Running;
@@ -62,9 +67,13 @@ pub struct Session {
     /// The turntable, if enabled by the options.
     turntable: Option<Turning>,
     stop: StopCriteria,
+    /// The number of the first sample.
+    first_sample: u32,
     fireflies: Fireflies,
     threads: Option<usize>,
     format: Option<Format>,
+    /// What the scene was read from, if the film is to be kept.
+    identity: Option<Identity>,
     info: SceneInfo,
     warnings: Vec<Warning>,
 }
@@ -134,9 +143,13 @@ impl Session {
 
     fn read_from(source: Source, path: &Path, files: &dyn Files, options: &Options) -> Result<Self> {
         let started = Stopwatch::start();
+        let digested = Digested::new(files);
+        let files: &dyn Files = if options.film { &digested } else { files };
         let mut context = LoadContext { import: options.import.clone(), ..LoadContext::new(files) };
         let scene = load::scene(path, &mut context)?;
-        Self::prepare(scene, path, source, context.warnings, started, options)
+        let warnings = context.warnings;
+        let identity = options.film.then(|| Identity::of_files(digested, path, options));
+        Self::prepare(scene, path, source, identity, warnings, started, options)
     }
 
     /// A session of a scene that was made or read elsewhere.
@@ -144,13 +157,23 @@ impl Session {
     /// # Errors
     /// As [`Session::open`].
     pub fn of_scene(scene: Scene, options: &Options) -> Result<Self> {
-        Self::prepare(scene, Path::new(""), Source::Elsewhere, Vec::new(), Stopwatch::start(), options)
+        let identity = options.film.then(|| Identity::of_scene(&scene, options));
+        Self::prepare(
+            scene,
+            Path::new(""),
+            Source::Elsewhere,
+            identity,
+            Vec::new(),
+            Stopwatch::start(),
+            options,
+        )
     }
 
     fn prepare(
         mut scene: Scene,
         path: &Path,
         source: Source,
+        identity: Option<Identity>,
         mut warnings: Vec<Warning>,
         started: Stopwatch,
         options: &Options,
@@ -164,6 +187,8 @@ impl Session {
         if options.format.is_some_and(|format| !format.has_layers()) {
             scene.image.layers = Layers::None;
         }
+        let range = options.range(scene.render.samples)?;
+        scene.render.samples = range.end;
         let camera = scene.camera.clone().unwrap_or_default();
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
         let subject = Subject::of_scene(&scene);
@@ -182,9 +207,11 @@ impl Session {
             source,
             turntable,
             stop: StopCriteria { noise, ..options.stop },
+            first_sample: range.start,
             fireflies: options.fireflies,
             threads: options.threads,
             format: options.format,
+            identity,
             info: SceneInfo { counts, contents, bounds, added, read, build: started.elapsed() },
             warnings,
         };
@@ -308,8 +335,60 @@ impl Session {
     /// # Errors
     /// `Limit` if memory for the film or threads are not available.
     pub fn render(&self, progress: &dyn Progress) -> Result<Finished> {
-        let rendered = self.renderer.render_until(&self.stop, self.threads, progress)?;
+        self.render_onto(Film::for_image(self.image())?, progress)
+    }
+
+    /// Goes on with a film of this session's picture: renders the samples that it lacks, and finishes the picture, which
+    /// is the same as if the film had not been interrupted. Where the limit of noise is another one than that of the
+    /// film, tiles that were clean enough may get other numbers of samples than in one render with the new limit.
+    ///
+    /// # Errors
+    /// `Invalid` for a film of another picture; `Request` for one with samples that this session would not take; as
+    /// [`Session::render`].
+    pub fn resume(&self, file: FilmFile, progress: &dyn Progress) -> Result<Finished> {
+        let provenance = self.provenance()?;
+        provenance.check_same(&file.provenance)?;
+        let FilmFile { mut film, provenance: before } = file;
+        if !film.is_for(self.image()) {
+            let message = "a film of another size, crop or other layers than this picture".to_owned();
+            return Err(Error::invalid(&Location::default(), message));
+        }
+        let wanted = self.first_sample..self.settings().samples;
+        if let Some(range) = film.ledger().range()
+            && (range.start < wanted.start || range.end > wanted.end)
+        {
+            return Err(options::unsuitable(format!(
+                "the film has samples {}..{}, and samples {}..{} are asked for: it is one of another part, or has more already",
+                range.start, range.end, wanted.start, wanted.end
+            )));
+        }
+        if provenance.noise() != before.noise() {
+            film.forget_clean();
+        }
+        self.render_onto(film, progress)
+    }
+
+    fn render_onto(&self, film: Film, progress: &dyn Progress) -> Result<Finished> {
+        let rendered =
+            self.renderer.render_onto(film, self.first_sample, &self.stop, self.threads, progress)?;
         Ok(self.finish(rendered))
+    }
+
+    /// What the film of this session's picture is of, for its file.
+    ///
+    /// # Errors
+    /// `Request` for a session without [`Options::film`].
+    pub fn provenance(&self) -> Result<Provenance> {
+        let Some(identity) = &self.identity else {
+            let message = "this session keeps no film: enable it by the option `film`";
+            return Err(options::unsuitable(message.to_owned()));
+        };
+        Ok(identity.provenance(self))
+    }
+
+    /// How pictures of this session are developed.
+    pub fn development(&self) -> Development {
+        Development::of_image(self.image(), self.fireflies)
     }
 
     /// The bytes of a file of an unfinished picture, after `mean_samples` samples per pixel: without AOVs, firefly
@@ -318,9 +397,9 @@ impl Session {
     /// # Errors
     /// As [`Finished::encode`].
     pub fn encode_preview(&self, picture: &Picture, mean_samples: u64, format: Format) -> Result<Vec<u8>> {
-        let samples = self.settings().samples;
-        let taken = header::Taken { samples, mean: Some(mean_samples), ..header::Taken::default() };
-        encode::encode(format, picture, &[], self.image(), &header::header(self, &taken))
+        let (samples, mean) = (self.settings().samples.to_string(), mean_samples.to_string());
+        let header = header::with_samples(&header::header(self), samples, Some(mean));
+        encode::encode(format, picture, &[], &self.development(), &header)
     }
 
     /// Whether the picture's format, if it is known, can hold AOVs.

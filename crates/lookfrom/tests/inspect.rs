@@ -161,9 +161,9 @@ fn what_is_shown_of_a_path_adds_up_to_what_the_film_received() {
             let renderer = compiled.renderer();
             let area = PixelBounds { x0: 0, y0: 0, x1: 48, y1: 32 };
             let mut tile = FilmTile::new(area).expect("a small tile");
-            renderer.render_tile(2..3, &mut tile);
+            renderer.render_tile(2..3, &mut tile).expect("an empty tile");
             let mut film = Film::new(48, 32, None).expect("a small film");
-            film.add_tile(&tile);
+            film.add_tile(&tile).expect("of this film");
 
             let mut light_was_seen = false;
             for [x, y] in pixels() {

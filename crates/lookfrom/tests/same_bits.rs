@@ -75,8 +75,8 @@ fn any_split_of_pixels_and_samples() {
     for (samples, columns) in [(2..3, 0..41), (0..2, 41..72), (0..1, 0..41), (2..3, 41..72), (1..2, 0..41)] {
         let area = PixelBounds { x0: columns.start, y0: 0, x1: columns.end, y1: 50 };
         let mut tile = FilmTile::new(area).expect("a small tile");
-        renderer.render_tile(samples, &mut tile);
-        merged.add_tile(&tile);
+        renderer.render_tile(samples, &mut tile).expect("an empty tile");
+        merged.add_tile(&tile).expect("samples that it lacks");
     }
     assert!(whole == merged);
 }
@@ -115,9 +115,9 @@ fn what_the_inspector_shows_adds_up_to_what_the_film_received() {
                 // … are what a tile with all of its other pixels gave to the film
                 let area = PixelBounds { x0: x / 32 * 32, y0: 0, x1: (x / 32 * 32 + 32).min(72), y1: 50 };
                 let mut tile = FilmTile::new(area).expect("a small tile");
-                renderer.render_tile(2..3, &mut tile);
+                renderer.render_tile(2..3, &mut tile).expect("an empty tile");
                 let mut film = lookfrom::film::Film::new(72, 50, None).expect("a small film");
-                film.add_tile(&tile);
+                film.add_tile(&tile).expect("of this film");
                 assert_eq!(film.mean(x, y), inspection.film, "{name} at {x} {y}");
                 let text = inspection.to_string();
                 assert!(text.contains("the same, bit for bit"), "{text}");

@@ -4,6 +4,20 @@ use std::path::Path;
 
 use super::stage::Stage;
 
+const COMMANDS: [&str; 11] = [
+    "render",
+    "resume",
+    "merge",
+    "develop",
+    "files",
+    "farm",
+    "inspect",
+    "info",
+    "compare",
+    "bench",
+    "completions",
+];
+
 fn guide() -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide/command.md");
     std::fs::read_to_string(path).unwrap()
@@ -14,7 +28,7 @@ fn every_option_is_in_the_guide() {
     let stage = Stage::new("guide");
     let guide = guide();
     let mut options = 0;
-    for command in ["render", "inspect", "info", "compare", "bench", "completions"] {
+    for command in COMMANDS {
         assert!(guide.contains(&format!("## lookfrom {command}")), "{command}");
         let help = String::from_utf8(stage.done(&format!("{command} --help")).stdout).unwrap();
         // An option's own line in the help begins with it; others only mention it.
@@ -30,7 +44,7 @@ fn every_option_is_in_the_guide() {
 #[test]
 fn every_option_of_the_guide_is_there() {
     let stage = Stage::new("guide-back");
-    let help: String = ["render", "inspect", "info", "compare", "bench", "completions"]
+    let help: String = COMMANDS
         .map(|command| String::from_utf8(stage.done(&format!("{command} --help")).stdout).unwrap())
         .concat();
     for word in guide().split(|c: char| !(c.is_ascii_alphanumeric() || c == '-')) {
@@ -46,6 +60,8 @@ fn every_key_of_the_answers_is_in_the_guide() {
     let answers = [
         stage.json("render scene.toml --json"),
         stage.json("info scene.toml --json"),
+        stage.done("render scene.toml -o a.exr --film").json(),
+        stage.json("info a.exr --json"),
         stage.json("compare scene.png scene.png --json"),
         stage.json("bench scene.toml --json --samples 1 --reference-samples 1"),
     ]

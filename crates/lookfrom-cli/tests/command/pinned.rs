@@ -1,9 +1,12 @@
 //! Pinned pictures: hashes of small pictures that must be the same on any machine, at any SIMD level, with any number of
 //! threads.
 //!
-//! `LOOKFROM_UPDATE_PINS=1 cargo test -p lookfrom-cli pinned` writes the hashes anew. A commit that changes them says why.
+//! `LOOKFROM_UPDATE_PINS=1 cargo test -p lookfrom-cli pinned` writes the hashes anew. A commit that changes them says why,
+//! and raises `lookfrom::render::SAMPLING_VERSION`, so that films of different bits are never merged.
 
 use std::path::{Path, PathBuf};
+
+use lookfrom::render::SAMPLING_VERSION;
 
 use super::stage::Stage;
 
@@ -41,7 +44,7 @@ fn hash(bytes: &[u8]) -> u64 {
 #[test]
 fn pinned_pictures_are_the_same_at_every_level_and_on_any_number_of_threads() {
     let stage = Stage::new("pinned");
-    let mut lines = String::new();
+    let mut lines = format!("sampling version {SAMPLING_VERSION}\n");
     for scene in SCENES {
         for (name, settings) in SETTINGS {
             let path = root().join("scenes").join(scene);
@@ -65,6 +68,9 @@ fn pinned_pictures_are_the_same_at_every_level_and_on_any_number_of_threads() {
     }
     let pins = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/command/pinned.txt");
     if std::env::var_os("LOOKFROM_UPDATE_PINS").is_some() {
+        let before = std::fs::read_to_string(&pins).unwrap_or_default();
+        let is_same_version = before.lines().next() == lines.lines().next();
+        assert!(!is_same_version || before == lines, "other bits need another SAMPLING_VERSION");
         std::fs::write(&pins, &lines).unwrap();
     }
     let pinned = std::fs::read_to_string(&pins).unwrap_or_default();

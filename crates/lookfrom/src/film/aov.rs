@@ -6,6 +6,7 @@
 //! of AOVs 208.
 
 use super::pixel::{TWO_TO_64, fixed_point};
+use super::stored::{Named, Stored, channels_of, store_fields};
 
 /// Number of samples of a pixel that count for the denoiser.
 pub const FEATURE_SAMPLES: u32 = 16;
@@ -69,6 +70,39 @@ pub(super) struct LayerSums {
     ng: [i64; 3],
     /// Position, then uv: multiples of 2⁻⁶⁴, clamped as light is.
     places: [i128; 5],
+}
+
+store_fields!(AovSums {
+    albedo: [i64; 3] = ["albedo.R", "albedo.G", "albedo.B"],
+    ns: [i64; 3] = ["ns.X", "ns.Y", "ns.Z"],
+    samples: u64 = ["samples"],
+    hits: u64 = ["hits"],
+    first: u32 = ["first"],
+    ng: [u32; 3] = ["first_ng.X", "first_ng.Y", "first_ng.Z"],
+    position: [u32; 3] = ["first_p.X", "first_p.Y", "first_p.Z"],
+});
+
+impl Stored for LayerSums {
+    const WORDS: usize = AovSums::WORDS + <[i64; 3]>::WORDS + <[i128; 5]>::WORDS;
+
+    fn store(&self, put: &mut impl FnMut(u32)) {
+        self.shared.store(put);
+        self.ng.store(put);
+        self.places.store(put);
+    }
+
+    fn load(take: &mut impl FnMut() -> u32) -> Self {
+        Self { shared: Stored::load(take), ng: Stored::load(take), places: Stored::load(take) }
+    }
+}
+
+impl Named for LayerSums {
+    fn channels(prefix: &str) -> Vec<String> {
+        let mut channels = AovSums::channels(prefix);
+        channels.extend(channels_of(prefix, &["ng.X", "ng.Y", "ng.Z"], <[i64; 3]>::WORDS));
+        channels.extend(channels_of(prefix, &["p.X", "p.Y", "p.Z", "u", "v"], <[i128; 5]>::WORDS));
+        channels
+    }
 }
 
 impl Default for AovSums {

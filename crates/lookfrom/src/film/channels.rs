@@ -2,6 +2,7 @@
 //!
 //! Sums of fixed-point numbers, as those of light. A pixel takes 112 bytes.
 
+use super::stored::{Named, Stored, channels_of, store_fields};
 use super::{BRIGHTEST, TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square, unbiased_variance};
 
 /// Sums over the samples of a pixel.
@@ -13,6 +14,12 @@ pub(super) struct ChannelSums {
     squares: [u128; 3],
     samples: u64,
 }
+
+store_fields!(ChannelSums {
+    sums: [i128; 3] = ["sum.0", "sum.1", "sum.2"],
+    squares: [u128; 3] = ["square.0", "square.1", "square.2"],
+    samples: u64 = ["samples"],
+});
 
 impl ChannelSums {
     /// Adds one sample, unless it is not finite.

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::core::hash::mix;
+use lookfrom_scene::settings::Background;
 use proptest::prelude::*;
 
 const SIZE: u32 = 4;
@@ -120,7 +121,7 @@ proptest! {
                         tile.add(x, y, sample, rgb);
                     }
                 }
-                tiled.add_tile(&tile);
+                tiled.add_tile(&tile).unwrap();
             }
         }
         prop_assert_eq!(tiled, whole);
@@ -205,21 +206,42 @@ fn a_crop_holds_its_part_of_the_whole_picture() {
     // A crop outside of the picture, or one that ends before it begins, is empty.
     for (x0, y0, x1, y1) in [(7, 0, 9, 4), (0, 7, 4, 9), (3, 0, 1, 4), (4, 4, 4, 4)] {
         let mut film = Film::new(4, 4, Some(PixelBounds { x0, y0, x1, y1 })).unwrap();
-        film.add_tile(&FilmTile::new(PixelBounds { x0, y0, x1, y1 }).unwrap());
-        film.merge(&Film::new(4, 4, None).unwrap()).unwrap();
+        film.add_tile(&FilmTile::new(PixelBounds { x0, y0, x1: x0, y1: y0 }).unwrap()).unwrap();
+        assert!(film.merge(&Film::new(4, 4, None).unwrap()).is_err());
         assert_eq!(film.picture().pixels, [[0.0; 3]; 16]);
     }
 }
 
 #[test]
-fn parts_of_tiles_outside_of_a_crop_are_left_out() {
-    let mut tile = FilmTile::new(PixelBounds { x0: 0, y0: 0, x1: 4, y1: 4 }).unwrap();
-    for i in 0..16 {
-        tile.add(i % 4, i / 4, 0, [i as f32; 3]);
-    }
+fn nothing_is_left_out_in_silence() {
+    let area = PixelBounds { x0: 0, y0: 0, x1: 4, y1: 4 };
+    let mut tile = FilmTile::new(area).unwrap();
+    (0..16).for_each(|i| tile.add(i % 4, i / 4, 0, [i as f32; 3]));
+    tile.record(0..1).unwrap();
+    assert!(tile.record(0..1).is_err());
+    // Pixels outside of a crop.
     let mut film = Film::new(8, 8, Some(PixelBounds { x0: 2, y0: 3, x1: 8, y1: 8 })).unwrap();
-    film.add_tile(&tile);
-    assert_eq!([film.mean(2, 3), film.mean(3, 3), film.mean(4, 4)], [[14.0; 3], [15.0; 3], [0.0; 3]]);
+    let before = film.clone();
+    assert!(film.add_tile(&tile).is_err() && film == before);
+    // The same samples twice, and others.
+    let mut film = Film::new(8, 8, None).unwrap();
+    film.add_tile(&tile).unwrap();
+    let before = film.clone();
+    let error = film.add_tile(&tile).unwrap_err();
+    assert!(error.message.contains("samples 0..1 of pixel 0 0") && film == before, "{error}");
+    let mut later = FilmTile::new(area).unwrap();
+    later.record(1..2).unwrap();
+    film.add_tile(&later).unwrap();
+    // Other kinds of sums.
+    let image = ImageSettings {
+        width: 8,
+        height: 8,
+        background: Background::Transparent,
+        ..ImageSettings::default()
+    };
+    let other = Film::for_image(&image).unwrap();
+    let error = film.merge(&other).unwrap_err();
+    assert!(error.message.contains("a film of light and alpha cannot be added to one of light"), "{error}");
 }
 
 #[test]
@@ -293,7 +315,7 @@ fn layers_are_means_whatever_the_order() {
             let mut tile = FilmTile::with_layers(whole, Layers::Geometry).unwrap();
             tile.add(0, 0, k, [1.0; 3]);
             tile.add_first_hit(0, 0, k, Some(&of(k as f32)));
-            film.add_tile(&tile);
+            film.add_tile(&tile).unwrap();
         }
         // One more sample, whose position is NaN: it counts as a miss.
         film.tile.add_first_hit(0, 0, 3, Some(&Aovs { position: [f32::NAN; 3], ..of(1.0) }));
@@ -309,7 +331,7 @@ fn layers_are_means_whatever_the_order() {
     let other = Aovs { ng: [0.0, 0.0, 1.0], ns: [0.0, 1.0, 0.0], ..of(0.0) };
     tile.add_first_hit(0, 0, 1, Some(&other));
     let mut film = film_with_layers();
-    film.add_tile(&tile);
+    film.add_tile(&tile).unwrap();
     let mean = film.aovs(0, 0).unwrap();
     let diagonal = std::f32::consts::FRAC_1_SQRT_2;
     assert_eq!((mean.ng, mean.ns), ([0.0; 3], [diagonal, diagonal, 0.0]));
@@ -373,7 +395,7 @@ fn channels_have_their_variance() {
         let mut tile = FilmTile::for_image(film.area(), &image).unwrap();
         assert!(tile.has_channels());
         samples.iter().for_each(|&channels| tile.add_channels(0, 0, channels));
-        film.add_tile(&tile);
+        film.add_tile(&tile).unwrap();
         film
     };
     let mut film = film_of(&samples[2..]);

@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
-use lookfrom_scene::Result;
 use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds};
+use lookfrom_scene::{Error, Location, Result};
 
 use super::aov::{AovSums, LayerSums};
 use super::channels::ChannelSums;
+use super::ledger::{Overlap, SampleLedger};
 use super::pixel::{Pixel, fixed_point, fixed_point_square};
 use super::{Aovs, BRIGHTEST, FEATURE_SAMPLES, MOST_PIXELS, SampleId, common, too_large, xyz};
 
@@ -27,6 +28,8 @@ pub struct FilmTile {
     pub(super) alpha_squares: Vec<u128>,
     pub(super) dropped: u64,
     pub(super) first_dropped: Option<SampleId>,
+    /// The samples that were [recorded](FilmTile::record).
+    pub(super) ledger: SampleLedger,
 }
 
 impl FilmTile {
@@ -67,8 +70,35 @@ impl FilmTile {
                 (empty(count)?, if image.denoise { empty(count)? } else { Vec::new() })
             }
         };
-        let (dropped, first_dropped) = (0, None);
-        Ok(Self { area, pixels, layers, channels, features, alphas, alpha_squares, dropped, first_dropped })
+        let (dropped, first_dropped, ledger) = (0, None, SampleLedger::default());
+        Ok(Self {
+            area,
+            pixels,
+            layers,
+            channels,
+            features,
+            alphas,
+            alpha_squares,
+            dropped,
+            first_dropped,
+            ledger,
+        })
+    }
+
+    /// An empty tile of other pixels, with sums of the same kinds.
+    pub(super) fn empty_like(&self, area: PixelBounds) -> Result<Self> {
+        let Self { area: _, pixels: _, layers, channels, features, alphas, alpha_squares, .. } = self;
+        let plain = Self::new(area)?;
+        let count = plain.pixels.len() as u64;
+        let of = |is_empty: bool| if is_empty { 0 } else { count };
+        Ok(Self {
+            layers: empty(of(layers.is_empty()))?,
+            channels: empty(of(channels.is_empty()))?,
+            features: empty(of(features.is_empty()))?,
+            alphas: empty(of(alphas.is_empty()))?,
+            alpha_squares: empty(of(alpha_squares.is_empty()))?,
+            ..plain
+        })
     }
 
     /// Whether the tile has AOVs.
@@ -160,9 +190,36 @@ impl FilmTile {
         }
     }
 
-    /// Adds the sums of another tile within the area of this one.
-    pub(super) fn merge(&mut self, other: &Self) {
-        let PixelBounds { x0, y0, x1, y1 } = common(self.area, other.area);
+    /// Records that the tile has these samples of all its pixels, those that were dropped included. Films of recorded
+    /// tiles know what they hold; [`Renderer::render_tile`](crate::render::Renderer::render_tile) records what it adds.
+    ///
+    /// # Errors
+    /// `Invalid` where it has one of them already.
+    pub fn record(&mut self, samples: Range<u32>) -> Result<()> {
+        self.ledger.add(self.area, samples).map_err(|overlap| twice(&overlap))
+    }
+
+    /// Adds the sums of another tile, whose pixels are all within this one.
+    ///
+    /// # Errors
+    /// `Invalid` for other pixels, other kinds of sums, or samples that both have; then nothing has changed.
+    pub(super) fn merge(&mut self, other: &Self) -> Result<()> {
+        let PixelBounds { x0, y0, x1, y1 } = other.area;
+        if x0 < x1 && y0 < y1 && common(self.area, other.area) != other.area {
+            let mine = self.area;
+            return Err(invalid(format!(
+                "pixels {x0},{y0},{x1},{y1} cannot be added to a film of the pixels {},{},{},{}",
+                mine.x0, mine.y0, mine.x1, mine.y1
+            )));
+        }
+        if x0 < x1 && y0 < y1 && !self.pixels.is_empty() && self.kinds() != other.kinds() {
+            return Err(invalid(format!(
+                "a film of {} cannot be added to one of {}",
+                other.kinds(),
+                self.kinds()
+            )));
+        }
+        self.ledger.merge(&other.ledger).map_err(|overlap| twice(&overlap))?;
         for y in y0..y1 {
             let rows = [self.row(y, x0, x1), other.row(y, x0, x1)];
             merge_row(&mut self.pixels, &other.pixels, &rows, Pixel::merge);
@@ -175,6 +232,19 @@ impl FilmTile {
             merge_row(&mut self.features, &other.features, &rows, AovSums::merge);
         }
         self.drop_samples(other.dropped, other.first_dropped);
+        Ok(())
+    }
+
+    /// The kinds of sums, for messages.
+    fn kinds(&self) -> String {
+        let kinds = [
+            ("alpha", !self.alphas.is_empty()),
+            ("AOVs", !self.layers.is_empty()),
+            ("variances in the sensor's channels", !self.channels.is_empty()),
+            ("denoiser features", !self.features.is_empty()),
+        ];
+        let kinds = kinds.iter().filter(|(_, has)| *has).map(|(kind, _)| format!(" and {kind}"));
+        std::iter::once("light".to_owned()).chain(kinds).collect()
     }
 
     pub(super) fn drop_samples(&mut self, count: u64, first: Option<SampleId>) {
@@ -205,7 +275,21 @@ impl FilmTile {
     }
 }
 
-/// Adds a range of `theirs` to one of `mine`, unless one of the two films has none.
+fn invalid(message: String) -> Error {
+    Error::invalid(&Location::default(), message)
+        .hint("merge only renders of the same scene, of the same size and with the same layers")
+}
+
+fn twice(Overlap { pixel: [x, y], samples }: &Overlap) -> Error {
+    let Range { start, end } = samples;
+    Error::invalid(
+        &Location::default(),
+        format!("samples {start}..{end} of pixel {x} {y} would be there twice"),
+    )
+    .hint("merge every part once")
+}
+
+/// Adds a range of `theirs` to one of `mine`, where there are such sums.
 fn merge_row<T>(mine: &mut [T], theirs: &[T], [to, from]: &[Range<usize>; 2], add: impl Fn(&mut T, &T)) {
     if let (Some(mine), Some(theirs)) = (mine.get_mut(to.clone()), theirs.get(from.clone())) {
         mine.iter_mut().zip(theirs).for_each(|(mine, theirs)| add(mine, theirs));

@@ -98,6 +98,14 @@ pub trait Progress: Sync {
     fn cancelled(&self) -> bool {
         false
     }
+
+    /// Whether to pause before the next tile for [`Progress::checkpoint`].
+    fn wants_checkpoint(&self) -> bool {
+        false
+    }
+
+    /// The film so far. No thread works on it meanwhile; a parallel loop of rayon runs on the threads of the render.
+    fn checkpoint(&self, _film: &Film) {}
 }
 
 /// Ignores all progress.
@@ -143,21 +151,42 @@ impl Renderer {
         threads: Option<usize>,
         progress: &dyn Progress,
     ) -> Result<Rendered> {
-        let film = Film::for_image(self.image())?;
-        let mut tiles = tiles(film.area());
+        self.render_onto(Film::for_image(self.image())?, 0, stop, threads, progress)
+    }
+
+    /// Adds samples to a film of this picture that may have some already: those from number `first` to the number in the
+    /// settings (exclusive) that its [ledger](Film::ledger) lacks. The film is the same as if it had not been
+    /// interrupted. That holds for a limit of noise, too, if the film comes from a
+    /// [checkpoint](Progress::checkpoint) or the end of a render with the same limit.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn render_onto(
+        &self,
+        film: Film,
+        first: u32,
+        stop: &StopCriteria,
+        threads: Option<usize>,
+        progress: &dyn Progress,
+    ) -> Result<Rendered> {
+        let tiles = tiles(film.area());
         let all: u64 = tiles.iter().map(area).sum();
+        let end = self.settings.samples;
         let work = Work {
             renderer: self,
             progress,
+            tiles,
+            wanted: first..end,
+            done: AtomicU64::new(film.ledger().total()),
+            total: AtomicU64::new(all * u64::from(end.saturating_sub(first))),
             film: Mutex::new((film, Rays::default())),
             batches: Mutex::default(),
-            done: AtomicU64::new(0),
-            total: AtomicU64::new(all * u64::from(self.settings.samples)),
         };
-        let (samples, reason) = parallel::on_threads(threads, || work.rounds(&mut tiles, stop))??;
+        let (samples, reason) = parallel::on_threads(threads, || work.rounds(stop))??;
         let (film, rays) = work.film.into_inner().unwrap_or_else(PoisonError::into_inner);
         let error = film.relative_error(film.area(), film.mean_luminance());
-        Ok(Rendered { film, rays, reason, samples, samples_taken: work.done.into_inner(), error })
+        let samples_taken = film.ledger().total();
+        Ok(Rendered { film, rays, reason, samples, samples_taken, error })
     }
 }
 
@@ -165,6 +194,9 @@ impl Renderer {
 struct Work<'a> {
     renderer: &'a Renderer,
     progress: &'a dyn Progress,
+    tiles: Vec<PixelBounds>,
+    /// Numbers of the samples that each pixel shall have.
+    wanted: Range<u32>,
     film: Mutex<(Film, Rays)>,
     /// The memory of batches that no thread is using.
     batches: Mutex<Vec<Batch>>,
@@ -173,89 +205,136 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Takes samples until a criterion is met; tiles that have enough are removed from `tiles`. Returns the number of
-    /// samples per pixel of the others and the reason why it ended.
-    fn rounds(&self, tiles: &mut Vec<PixelBounds>, stop: &StopCriteria) -> Result<(u32, StopReason)> {
+    /// Takes samples until a criterion is met. Returns the number of samples per pixel of tiles that are not clean, and
+    /// the reason why it ended.
+    fn rounds(&self, stop: &StopCriteria) -> Result<(u32, StopReason)> {
         let started = Stopwatch::start();
+        let Range { start: first, end } = self.wanted;
         let mut samples = 0;
-        for round in rounds(self.renderer.settings.samples) {
-            while samples < round.end {
+        let mut taken_now = 0;
+        for round in rounds(end).filter(|round| round.end > first) {
+            let mut start = round.start.max(first);
+            while start < round.end {
                 let length = match stop.time {
-                    Some(time) => affordable(samples, started.elapsed(), time),
+                    Some(time) => affordable(taken_now, started.elapsed(), time),
                     None => u32::MAX,
                 };
-                let pass = samples..round.end.min(samples.saturating_add(length));
-                if !self.pass(tiles, pass.clone())? {
-                    return Ok((samples, StopReason::Cancelled));
+                let pass = start..round.end.min(start.saturating_add(length));
+                match self.pass(pass.clone())? {
+                    Pass::Cancelled => return Ok((samples, StopReason::Cancelled)),
+                    Pass::Complete => {}
+                    Pass::Done => taken_now += pass.end - pass.start,
                 }
-                samples = pass.end;
-                if stop.time.is_some_and(|time| started.elapsed() >= time)
-                    && samples < self.renderer.settings.samples
-                {
+                (start, samples) = (pass.end, pass.end - first);
+                if stop.time.is_some_and(|time| started.elapsed() >= time) && start < end {
                     return Ok((samples, StopReason::Time));
                 }
             }
-            if let Some(noise) = stop.noise {
-                self.leave_clean(tiles, samples, noise);
-                if tiles.is_empty() {
-                    return Ok((samples, StopReason::Noise));
-                }
+            if let Some(noise) = stop.noise
+                && self.leave_clean(round.end, noise)
+            {
+                return Ok((samples, StopReason::Noise));
             }
         }
         Ok((samples, StopReason::Samples))
     }
 
-    /// Adds samples to every pixel of the tiles; false if it was cancelled.
-    fn pass(&self, tiles: &[PixelBounds], samples: Range<u32>) -> Result<bool> {
-        let whole = parallel::collect(tiles.len(), |index| -> Result<bool> {
-            let tile_area = &tiles[index];
-            if self.progress.cancelled() {
-                return Ok(false);
-            }
-            let mut tile = FilmTile::for_image(*tile_area, self.renderer.image())?;
-            let mut batch = locked(&self.batches).pop().unwrap_or_default();
-            let rays = self.renderer.render_tile_in(&mut batch, samples.clone(), &mut tile);
-            locked(&self.batches).push(batch);
-            let wants_pixels = self.progress.wants_pixels();
-            let (rays, picture) = {
-                let mut guard = locked(&self.film);
-                guard.0.add_tile(&tile);
-                guard.1 += rays;
-                (guard.1.total(), wants_pixels.then(|| guard.0.picture_of(*tile_area)))
-            };
-            let of_tile = area(tile_area) * u64::from(samples.end - samples.start);
-            self.progress.tile(TileDone {
-                area: *tile_area,
-                samples: samples.clone(),
-                done: self.done.fetch_add(of_tile, Ordering::Relaxed) + of_tile,
-                total: self.total.load(Ordering::Relaxed),
-                rays,
-                picture,
+    /// Adds the samples to every pixel that lacks them and is not clean.
+    fn pass(&self, samples: Range<u32>) -> Result<Pass> {
+        let missing = || -> Vec<(PixelBounds, Range<u32>)> {
+            let guard = locked(&self.film);
+            self.tiles.iter().flat_map(|tile| guard.0.ledger().missing(*tile, &samples)).collect()
+        };
+        let mut parts = missing();
+        if parts.is_empty() {
+            return Ok(Pass::Complete);
+        }
+        while !parts.is_empty() {
+            let done = parallel::collect(parts.len(), |index| -> Result<bool> {
+                // A part is done between two checkpoints in any case, so that the render comes to its end.
+                if self.progress.cancelled() || index > 0 && self.progress.wants_checkpoint() {
+                    return Ok(false);
+                }
+                let (area, samples) = &parts[index];
+                self.part(area, samples).map(|()| true)
             });
-            Ok(true)
-        });
-        let whole = whole.into_iter().collect::<Result<Vec<bool>>>()?;
-        Ok(whole.into_iter().all(|whole| whole))
+            let done = done.into_iter().collect::<Result<Vec<bool>>>()?;
+            if done.into_iter().all(|done| done) {
+                break;
+            }
+            if self.progress.cancelled() {
+                return Ok(Pass::Cancelled);
+            }
+            self.progress.checkpoint(&locked(&self.film).0);
+            parts = missing();
+        }
+        Ok(Pass::Done)
     }
 
-    /// Removes the tiles that are clean enough, and estimates the number of samples that the others need.
-    fn leave_clean(&self, tiles: &mut Vec<PixelBounds>, samples: u32, noise: f64) {
-        if samples < FEWEST_SAMPLES {
-            return;
-        }
-        let guard = locked(&self.film);
-        let mean = guard.0.mean_luminance();
-        let mut total = self.done.load(Ordering::Relaxed) as f64;
-        tiles.retain(|tile| {
-            let error = guard.0.relative_error(*tile, mean);
-            // Errors fall with the square root of the number of samples.
-            let ratio = error / noise;
-            let needed = (f64::from(samples) * ratio * ratio).min(f64::from(self.renderer.settings.samples));
-            total += area(tile) as f64 * (needed - f64::from(samples)).max(0.0);
-            !(error <= noise)
+    /// Adds samples to the pixels of an area.
+    fn part(&self, part: &PixelBounds, samples: &Range<u32>) -> Result<()> {
+        let mut tile = FilmTile::for_image(*part, self.renderer.image())?;
+        let mut batch = locked(&self.batches).pop().unwrap_or_default();
+        let rays = self.renderer.render_tile_in(&mut batch, samples.clone(), &mut tile)?;
+        locked(&self.batches).push(batch);
+        let wants_pixels = self.progress.wants_pixels();
+        let (rays, picture) = {
+            let mut guard = locked(&self.film);
+            guard.0.add_tile(&tile)?;
+            guard.1 += rays;
+            (guard.1.total(), wants_pixels.then(|| guard.0.picture_of(*part)))
+        };
+        let of_part = area(part) * u64::from(samples.end - samples.start);
+        self.progress.tile(TileDone {
+            area: *part,
+            samples: samples.clone(),
+            done: self.done.fetch_add(of_part, Ordering::Relaxed) + of_part,
+            total: self.total.load(Ordering::Relaxed),
+            rays,
+            picture,
         });
-        self.total.store(total as u64, Ordering::Relaxed);
+        Ok(())
     }
+
+    /// At the end of a round: marks the tiles that are clean enough, and estimates the number of samples that the
+    /// others need. Returns whether all are clean.
+    fn leave_clean(&self, samples: u32, noise: f64) -> bool {
+        let mut guard = locked(&self.film);
+        let film = &mut guard.0;
+        // An interrupted render has decided already where samples of a later round are there.
+        if samples >= FEWEST_SAMPLES && film.ledger().range().is_none_or(|range| range.end <= samples) {
+            let mean = film.mean_luminance();
+            let mut total = self.done.load(Ordering::Relaxed) as f64;
+            let mut clean = Vec::new();
+            for tile in &self.tiles {
+                if film.ledger().is_clean(*tile) {
+                    continue;
+                }
+                let error = film.relative_error(*tile, mean);
+                // Errors fall with the square root of the number of samples.
+                let ratio = error / noise;
+                let needed = (f64::from(samples) * ratio * ratio).min(f64::from(self.wanted.end));
+                total += area(tile) as f64 * (needed - f64::from(samples)).max(0.0);
+                if error <= noise {
+                    clean.push(*tile);
+                }
+            }
+            clean.into_iter().for_each(|tile| film.ledger_mut().mark_clean(tile));
+            self.total.store(total as u64, Ordering::Relaxed);
+        }
+        self.tiles.iter().all(|tile| film.ledger().is_clean(*tile))
+    }
+}
+
+/// The end of a pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pass {
+    /// It has added samples.
+    Done,
+    /// All samples were there already.
+    Complete,
+    /// The render was cancelled.
+    Cancelled,
 }
 
 /// What a mutex guards, though a thread may have panicked while it held it.

@@ -1,14 +1,15 @@
 //! Picture formats and their encoding.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use lookfrom_scene::Result;
 use lookfrom_scene::image::{
     encode_exr, encode_hdr, encode_pfm, encode_png, encode_png_with_alpha, encode_ppm,
 };
-use lookfrom_scene::settings::{Background, ImageSettings};
+use lookfrom_scene::settings::Background;
 
-use super::Finished;
+use super::{Developed, Development};
 use crate::film::Picture;
 use crate::post::develop::{srgb8_before, srgba8};
 
@@ -46,20 +47,20 @@ impl Format {
 }
 
 /// The background colour of a picture with alpha in a format that cannot hold alpha: its own, or black.
-pub(super) fn behind(image: &ImageSettings) -> [f32; 3] {
-    match image.background {
+pub(super) fn behind(background: Background) -> [f32; 3] {
+    match background {
         Background::Color(color) => color,
         Background::Transparent | Background::Environment => [0.0; 3],
     }
 }
 
-impl Finished {
+impl Developed {
     /// The bytes of a file of the picture. AOVs and the header are for formats that can hold them.
     ///
     /// # Errors
     /// `Invalid` or `Limit` where the format cannot hold the picture.
     pub fn encode(&self, format: Format) -> Result<Vec<u8>> {
-        encode(format, &self.picture, &self.layers, &self.image, &self.header)
+        encode(format, &self.picture, &self.layers, &self.development, &self.header)
     }
 }
 
@@ -67,33 +68,48 @@ pub(super) fn encode(
     format: Format,
     picture: &Picture,
     layers: &[(String, Vec<f32>)],
-    image: &ImageSettings,
+    development: &Development,
     header: &[(String, String)],
 ) -> Result<Vec<u8>> {
     let (width, height) = (picture.width, picture.height);
-    let is_transparent = image.background == Background::Transparent;
-    let background = behind(image);
-    let developed = || srgb8_before(picture, background, image.exposure, image.tonemap);
+    let &Development { exposure, tonemap, background, .. } = development;
+    let is_transparent = background == Background::Transparent;
+    let background = behind(background);
+    let developed = || srgb8_before(picture, background, exposure, tonemap);
     let linear = || picture.clone().before(background).pixels;
     match format {
         Format::Png if is_transparent => {
-            encode_png_with_alpha(width, height, &srgba8(picture, image.exposure, image.tonemap))
+            encode_png_with_alpha(width, height, &srgba8(picture, exposure, tonemap))
         }
         Format::Png => encode_png(width, height, &developed()),
         Format::Ppm => encode_ppm(width, height, &developed()),
         Format::Hdr => encode_hdr(width, height, &linear()),
         Format::Pfm => encode_pfm(width, height, &linear()),
         Format::Exr => {
-            let pixels = linear();
-            let channel = |index: usize| pixels.iter().map(|pixel| pixel[index]).collect::<Vec<f32>>();
-            let [r, g, b] = [channel(0), channel(1), channel(2)];
-            let channels = [("R", &r), ("G", &g), ("B", &b)];
-            let channels = channels.map(|(name, values)| (name.to_owned(), values.as_slice()));
-            let alpha: Vec<f32> = picture.alpha.iter().map(|alpha| alpha.clamp(0.0, 1.0)).collect();
-            let alpha = is_transparent.then(|| ("A".to_owned(), alpha.as_slice()));
-            let layers = layers.iter().map(|(name, values)| (name.clone(), values.as_slice()));
-            let channels: Vec<_> = channels.into_iter().chain(alpha).chain(layers).collect();
+            let channels = channels(picture, layers, development.background);
+            let channels: Vec<_> =
+                channels.iter().map(|(name, values)| (name.clone(), values.as_ref())).collect();
             encode_exr(width, height, &channels, header)
         }
     }
+}
+
+/// The channels of a picture in an EXR: red, green and blue, alpha before a transparent background, and layers.
+pub(super) fn channels<'a>(
+    picture: &Picture,
+    layers: &'a [(String, Vec<f32>)],
+    background: Background,
+) -> Vec<(String, Cow<'a, [f32]>)> {
+    let pixels = picture.clone().before(behind(background)).pixels;
+    let mut channels: Vec<(String, Cow<'a, [f32]>)> = ["R", "G", "B"]
+        .iter()
+        .enumerate()
+        .map(|(index, name)| ((*name).to_owned(), pixels.iter().map(|pixel| pixel[index]).collect()))
+        .collect();
+    if background == Background::Transparent {
+        let alpha = picture.alpha.iter().map(|alpha| alpha.clamp(0.0, 1.0));
+        channels.push(("A".to_owned(), alpha.collect()));
+    }
+    channels.extend(layers.iter().map(|(name, values)| (name.clone(), Cow::Borrowed(values.as_slice()))));
+    channels
 }

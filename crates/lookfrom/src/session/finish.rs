@@ -1,18 +1,38 @@
 //! From the film of a render to a finished picture: fireflies, denoising, AOVs, header, in this order.
 
-use lookfrom_scene::settings::ImageSettings;
+use lookfrom_scene::settings::{Background, ImageSettings, Tonemap};
 
-use super::header::{Taken, header};
-use super::{Fireflies, Session, layers};
-use crate::film::Picture;
+use super::{Fireflies, Session, header, layers};
+use crate::film::{Film, Picture};
 use crate::post::denoise::denoised;
-use crate::render::{Rendered, StopReason};
+use crate::render::Rendered;
 
-/// A finished picture, ready to be [encoded](Finished::encode).
-#[derive(Debug)]
-pub struct Finished {
-    /// The film, with statistics of the render.
-    pub rendered: Rendered,
+/// How a film becomes a picture: what can be changed without rendering anew.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Development {
+    /// In stops: 8-bit pictures are multiplied by 2^exposure before tone mapping.
+    pub exposure: f32,
+    /// The tone mapping of 8-bit pictures.
+    pub tonemap: Tonemap,
+    /// What is behind a film with alpha.
+    pub background: Background,
+    /// Whether the picture is denoised; guided by the first hits if the film has denoiser features.
+    pub denoise: bool,
+    /// Treatment of fireflies.
+    pub fireflies: Fireflies,
+}
+
+impl Development {
+    /// The development that image settings ask for.
+    pub fn of_image(image: &ImageSettings, fireflies: Fireflies) -> Self {
+        let &ImageSettings { exposure, tonemap, background, denoise, .. } = image;
+        Self { exposure, tonemap, background, denoise, fireflies }
+    }
+}
+
+/// A developed picture, ready to be [encoded](Developed::encode).
+#[derive(Clone, Debug)]
+pub struct Developed {
     /// Linear light, with firefly suppression and denoising if they are enabled.
     pub picture: Picture,
     /// Further channels for formats that can hold them, by name: AOVs, and the light before denoising.
@@ -22,7 +42,25 @@ pub struct Finished {
     pub header: Vec<(String, String)>,
     /// Whether it is denoised.
     pub denoised: bool,
-    pub(super) image: ImageSettings,
+    /// How it was developed, and will be encoded.
+    pub development: Development,
+}
+
+/// A finished picture, with the film that it was developed from.
+#[derive(Debug)]
+pub struct Finished {
+    /// The film, with statistics of the render.
+    pub rendered: Rendered,
+    /// The picture.
+    pub developed: Developed,
+}
+
+impl std::ops::Deref for Finished {
+    type Target = Developed;
+
+    fn deref(&self) -> &Developed {
+        &self.developed
+    }
 }
 
 impl Finished {
@@ -32,41 +70,35 @@ impl Finished {
         let pixels = u64::from(area.x1 - area.x0) * u64::from(area.y1 - area.y0);
         self.rendered.samples_taken / pixels.max(1)
     }
-
-    /// Maximum number of samples of a pixel; the number in the settings if the render was cancelled.
-    pub fn samples(&self) -> u32 {
-        self.rendered.samples
-    }
 }
 
 impl Session {
     /// Finishes the picture of a film that its renderer has rendered.
     pub fn finish(&self, rendered: Rendered) -> Finished {
-        let film = &rendered.film;
-        let image = self.renderer.view().image().clone();
-        let spread = self.fireflies == Fireflies::Spread;
-        let mut picture = if spread { film.picture_without_fireflies() } else { film.picture() };
-        let mut layers = if film.has_layers() { layers::channels(film) } else { Vec::new() };
-        if image.denoise {
-            picture = denoised(film, &picture);
-            if self.has_room_for_layers() {
-                layers.extend(layers::noisy(&image, film.picture()));
-            }
-        }
-        let cancelled = rendered.reason == StopReason::Cancelled;
-        let mut finished =
-            Finished { denoised: image.denoise, picture, layers, header: Vec::new(), image, rendered };
-        if cancelled {
-            finished.rendered.samples = self.renderer.settings().samples;
-        }
-        let taken = Taken {
-            samples: finished.samples(),
-            mean: (cancelled || self.stop.noise.is_some()).then(|| finished.samples_taken()),
-            noise: self.stop.noise,
-            fireflies_spread: spread,
-            denoised: finished.denoised,
-        };
-        finished.header = header(self, &taken);
-        finished
+        let developed =
+            develop(&rendered.film, &self.development(), &header::header(self), self.has_room_for_layers());
+        Finished { rendered, developed }
     }
+}
+
+/// Develops a film, whose header has the `common` texts. `has_layers` is whether anyone will see the light before
+/// denoising. A film of a part of the samples, whose noise is nobody's picture, is not denoised.
+pub(super) fn develop(
+    film: &Film,
+    development: &Development,
+    common: &[(String, String)],
+    has_layers: bool,
+) -> Developed {
+    let spread = development.fireflies == Fireflies::Spread;
+    let mut picture = if spread { film.picture_without_fireflies() } else { film.picture() };
+    let mut layers = if film.has_layers() { layers::channels(film) } else { Vec::new() };
+    let is_denoised = development.denoise && film.ledger().is_from_start(film.area());
+    if is_denoised {
+        picture = denoised(film, &picture);
+        if has_layers {
+            layers.extend(layers::noisy(development.background, film.picture()));
+        }
+    }
+    let header = header::finished(common, film, development, is_denoised);
+    Developed { picture, layers, header, denoised: is_denoised, development: *development }
 }

@@ -1,39 +1,26 @@
 //! The header of an OpenEXR file: everything that determines its light, and nothing else, so that the same picture has
 //! the same bytes whatever the number of threads, the time and the machine.
 
+use std::path::Path;
+
 use glam::DVec3;
 use lookfrom_scene::camera::{Projection, View};
 use lookfrom_scene::image::compare::{CHANNELS_ATTRIBUTE, channels_text};
 use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds, Sensor};
 
-use super::Session;
+use super::{Development, Fireflies, Session};
 use crate::core::color;
+use crate::film::Film;
 
-/// Numbers of samples and post-processing of a picture.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Taken {
-    /// Maximum number of samples of a pixel.
-    pub(super) samples: u32,
-    /// Mean number of samples per pixel, rounded down, where it differs between pixels or the render was stopped.
-    pub(super) mean: Option<u64>,
-    /// The relative error at which a tile gets no more samples.
-    pub(super) noise: Option<f64>,
-    /// Whether fireflies are spread.
-    pub(super) fireflies_spread: bool,
-    /// Whether the picture is denoised.
-    pub(super) denoised: bool,
-}
-
-/// The texts of the header, by name.
-pub(super) fn header(session: &Session, taken: &Taken) -> Vec<(String, String)> {
+/// The texts of the header that any number of samples has in common, sorted by name.
+pub(super) fn header(session: &Session) -> Vec<(String, String)> {
     let (image, render) = (session.renderer.view().image(), session.renderer.settings());
     let camera = &session.camera;
     let mut texts = vec![
         ("software", format!("lookfrom {}", env!("CARGO_PKG_VERSION"))),
-        ("scene", session.name.clone()),
+        ("scene", file_name(&session.name)),
         ("size", format!("{} {}", image.width, image.height)),
         ("integrator", session.renderer.integrator().to_owned()),
-        ("samples", taken.samples.to_string()),
         ("depth", render.depth.to_string()),
         ("color", render.color.word().to_owned()),
         ("light_sampler", render.light_sampler.word().to_owned()),
@@ -43,32 +30,12 @@ pub(super) fn header(session: &Session, taken: &Taken) -> Vec<(String, String)> 
         ("seed", render.seed.to_string()),
         ("sampler", render.sampler.word().to_owned()),
         ("filter", image.filter.to_string()),
-        // The exposure of 8-bit pictures; the light in this file is as it was computed.
-        ("exposure", image.exposure.to_string()),
         ("tonemap", "none".to_owned()),
         ("camera.distance", camera.distance.to_string()),
     ];
     texts.extend(sensor(image));
-    if image.background != Background::Environment {
-        texts.push(("background", image.background.to_string()));
-    }
-    if let Some(mean) = taken.mean {
-        texts.push(("samples_taken", mean.to_string()));
-    }
-    if let Some(noise) = taken.noise {
-        texts.push(("noise", noise.to_string()));
-    }
-    if taken.fireflies_spread {
-        texts.push(("fireflies", "median".to_owned()));
-    }
-    if taken.denoised {
-        texts.push((
-            "denoised",
-            "non-local means; noisy.R, noisy.G and noisy.B are the light as it was computed".to_owned(),
-        ));
-    }
-    if let Some(PixelBounds { x0, y0, x1, y1 }) = image.crop {
-        texts.push(("crop", format!("{x0} {y0} {x1} {y1}")));
+    if let Some(noise) = session.stop.noise {
+        texts.push((NOISE, noise.to_string()));
     }
     match camera.view {
         View::Look { lookfrom, lookat, up } => {
@@ -93,7 +60,73 @@ pub(super) fn header(session: &Session, taken: &Taken) -> Vec<(String, String)> 
         texts.push(("camera.lens_radius", lens.radius.to_string()));
         texts.push(("camera.focus_distance", lens.focus_distance.to_string()));
     }
-    texts.into_iter().map(|(name, text)| (name.to_owned(), text)).collect()
+    let mut texts: Vec<_> = texts.into_iter().map(|(name, text)| (name.to_owned(), text)).collect();
+    texts.sort();
+    texts
+}
+
+/// The name of the text with the relative error at which a tile gets no more samples.
+pub(super) const NOISE: &str = "noise";
+
+/// Names of the texts that [`finished`] adds.
+const OF_FINISHED: [&str; 7] =
+    ["samples", "samples_taken", "exposure", "background", "fireflies", "denoised", "crop"];
+
+/// The texts of a finished picture: those that all have in common, which samples it has, and its post-processing.
+pub(super) fn finished(
+    common: &[(String, String)],
+    film: &Film,
+    development: &Development,
+    is_denoised: bool,
+) -> Vec<(String, String)> {
+    let (area, ledger) = (film.area(), film.ledger());
+    let pixels = u64::from(area.x1 - area.x0) * u64::from(area.y1 - area.y0);
+    let mean = (ledger.total() / pixels.max(1)).to_string();
+    let (samples, mean) = match ledger.uniform(area).as_deref() {
+        Some([samples]) if samples.start == 0 => (samples.end.to_string(), None),
+        Some([samples]) => (format!("{}..{}", samples.start, samples.end), None),
+        _ => (ledger.most().to_string(), Some(mean)),
+    };
+    let mut texts = with_samples(common, samples, mean);
+    let mut add = |name: &str, text: String| texts.push((name.to_owned(), text));
+    // The exposure of 8-bit pictures; the light in this file is as it was computed.
+    add("exposure", development.exposure.to_string());
+    if development.background != Background::Environment {
+        add("background", development.background.to_string());
+    }
+    if development.fireflies == Fireflies::Spread {
+        add("fireflies", "median".to_owned());
+    }
+    if is_denoised {
+        add(
+            "denoised",
+            "non-local means; noisy.R, noisy.G and noisy.B are the light as it was computed".to_owned(),
+        );
+    }
+    let PixelBounds { x0, y0, x1, y1 } = area;
+    if (x0, y0, x1, y1) != (0, 0, film.width(), film.height()) {
+        add("crop", format!("{x0} {y0} {x1} {y1}"));
+    }
+    texts.sort();
+    texts
+}
+
+/// The common texts with numbers of samples: of a pixel, at most, and in the mean where it differs between pixels.
+pub(super) fn with_samples(
+    common: &[(String, String)],
+    samples: String,
+    mean: Option<String>,
+) -> Vec<(String, String)> {
+    let mut texts = common.to_vec();
+    texts.push(("samples".to_owned(), samples));
+    texts.extend(mean.map(|mean| ("samples_taken".to_owned(), mean)));
+    texts
+}
+
+/// The common texts among those of a finished picture.
+pub(super) fn common(mut texts: Vec<(String, String)>) -> Vec<(String, String)> {
+    texts.retain(|(name, _)| !OF_FINISHED.contains(&name.as_str()));
+    texts
 }
 
 /// Settings of the sensor that differ from the default, and the channels of the variances among the AOVs.
@@ -118,6 +151,11 @@ fn sensor(image: &ImageSettings) -> Vec<(&'static str, String)> {
         texts.push((CHANNELS_ATTRIBUTE, channels_text(&channels)));
     }
     texts
+}
+
+/// The name of a file without its folder, which may be another one on another machine.
+fn file_name(path: &str) -> String {
+    Path::new(path).file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Three numbers with spaces between them.

@@ -1,6 +1,6 @@
 //! AOVs of a film as EXR channels, with the names of pbrt's `gbuffer` film.
 
-use lookfrom_scene::settings::ImageSettings;
+use lookfrom_scene::settings::Background;
 
 use super::encode::behind;
 use crate::film::{Film, Picture};
@@ -16,8 +16,8 @@ const AOVS: [&str; 15] = [
 const VARIANCES: [&str; 3] = ["Variance.R", "Variance.G", "Variance.B"];
 
 /// The channels of a film's picture before denoising, over the same background as the denoised one.
-pub(super) fn noisy(image: &ImageSettings, picture: Picture) -> Vec<(String, Vec<f32>)> {
-    let picture = picture.before(behind(image));
+pub(super) fn noisy(background: Background, picture: Picture) -> Vec<(String, Vec<f32>)> {
+    let picture = picture.before(behind(background));
     let channel = |index: usize| picture.pixels.iter().map(|pixel| pixel[index]).collect();
     [("noisy.R", 0), ("noisy.G", 1), ("noisy.B", 2)]
         .map(|(name, index)| (name.to_owned(), channel(index)))

@@ -3,6 +3,8 @@
 //! Applied in two steps: the settings first, since auto-framing depends on the aspect ratio of the picture; then the
 //! camera, which a model without one has only after framing.
 
+use std::ops::Range;
+
 use glam::{DMat3, DMat4, DVec3};
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::image::Image;
@@ -25,8 +27,16 @@ pub struct Options {
     pub height: Option<u32>,
     /// Crop window: only this part is rendered.
     pub crop: Option<PixelBounds>,
-    /// Samples per pixel.
+    /// Samples per pixel: numbers from [`first_sample`](Self::first_sample) to this one, exclusive.
     pub samples: Option<u32>,
+    /// The number of the first sample: not 0 in a part of a picture, to be merged with others.
+    pub first_sample: u32,
+    /// Only part `i` of `n` of these samples, from 1: ranges of nearly equal length, so that the parts take nearly equal
+    /// time, whatever the picture shows.
+    pub part: Option<[u32; 2]>,
+    /// Whether the film will be kept in a file ([`Session::provenance`](super::Session::provenance)): the files of the
+    /// scene are digested as they are read.
+    pub film: bool,
     /// The light transport algorithm.
     pub integrator: Option<Integrator>,
     /// RGB or spectral.
@@ -146,6 +156,31 @@ impl Options {
         replace(&mut render.sampler, self.sampler);
         replace(&mut render.seed, self.seed);
         Ok(())
+    }
+
+    /// The samples to take, of a picture with this number of samples per pixel.
+    ///
+    /// # Errors
+    /// `Request` where there are none, and for a part of an adaptive picture.
+    pub(super) fn range(&self, samples: u32) -> Result<Range<u32>> {
+        let all = self.first_sample..samples;
+        let [part, parts] = self.part.map(|part| part.map(u64::from)).unwrap_or([1, 1]);
+        let length = u64::from(all.end.saturating_sub(all.start));
+        let edge = |part: u64| all.start + (length * part / parts) as u32;
+        let range = edge(part - 1)..edge(part);
+        if range.is_empty() {
+            return Err(unsuitable(format!(
+                "part {part} of {parts} of the samples {}..{} has no sample; expected at least one for each part",
+                all.start, all.end
+            )));
+        }
+        if range != (0..samples) && (self.stop.noise.is_some() || self.adaptive) {
+            return Err(unsuitable(
+                "adaptive sampling decides by all samples of a picture; a part of the samples cannot be adaptive"
+                    .to_owned(),
+            ));
+        }
+        Ok(range)
     }
 
     fn resize(&self, image: &mut ImageSettings) -> Result<()> {
@@ -290,6 +325,23 @@ mod tests {
         let half = Options { width: Some(50), ..Options::default() };
         let image = resized(&half, image(100, 100, crop)).unwrap();
         assert_eq!(image.crop, Some(PixelBounds { x0: 5, y0: 0, x1: 15, y1: 25 }));
+    }
+
+    #[test]
+    fn parts_make_the_whole() {
+        for (first, samples, parts) in [(0, 64, 3), (16, 64, 7), (0, 5, 5), (3, 4, 1)] {
+            let part =
+                |part| Options { first_sample: first, part: Some([part, parts]), ..Options::default() };
+            let ranges: Vec<_> = (1..=parts).map(|k| part(k).range(samples).unwrap()).collect();
+            assert_eq!((ranges[0].start, ranges[ranges.len() - 1].end), (first, samples));
+            assert!(ranges.windows(2).all(|pair| pair[0].end == pair[1].start));
+            let [least, most] = [ranges.iter().map(Range::len).min(), ranges.iter().map(Range::len).max()];
+            assert!(most.unwrap() - least.unwrap() <= 1);
+        }
+        let none = Options { part: Some([2, 6]), ..Options::default() };
+        assert!(none.range(5).is_ok() && Options { part: Some([1, 6]), ..none }.range(5).is_err());
+        assert!(Options { first_sample: 5, ..Options::default() }.range(5).is_err());
+        assert!(Options { first_sample: 1, adaptive: true, ..Options::default() }.range(5).is_err());
     }
 
     #[test]

@@ -7,6 +7,7 @@ use std::thread::JoinHandle;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
 use super::{Finished, Session};
+use crate::film::Film;
 use crate::render::{Progress, TileDone};
 
 /// A render in the background. Dropping it detaches the render, which goes on.
@@ -66,6 +67,14 @@ impl<P: Progress> Progress for Heard<P> {
 
     fn wants_pixels(&self) -> bool {
         self.progress.wants_pixels()
+    }
+
+    fn wants_checkpoint(&self) -> bool {
+        self.progress.wants_checkpoint()
+    }
+
+    fn checkpoint(&self, film: &Film) {
+        self.progress.checkpoint(film);
     }
 
     fn cancelled(&self) -> bool {

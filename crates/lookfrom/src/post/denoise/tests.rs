@@ -38,7 +38,7 @@ fn film(
             tile.add_first_hit(x, y, sample, aovs.as_ref());
         }
     }
-    film.add_tile(&tile);
+    film.add_tile(&tile).unwrap();
     film
 }
 

@@ -1,0 +1,55 @@
+//! Arguments of `lookfrom farm`.
+//!
+//! The doc comments here are the help texts.
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::Overrides;
+use crate::farm::Scheduler;
+use crate::values;
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  lookfrom farm slurm scene.pbrt --parts 64 --samples 4096 -o /shared/job && sh /shared/job/submit.sh
+  lookfrom farm openjd scene.toml --parts 16 -o job && openjd run job/template.json --step Render
+  lookfrom farm hyperqueue chair.glb --turntable 120 --parts 1 --floor -o job
+  lookfrom farm dask robot.glb --frames 0..48 --fps 24 --parts 4 -o job
+
+Each ends in pictures with the same bytes as those of one machine. Guide: docs/guide/farm.md";
+
+#[derive(Args, Debug)]
+pub(crate) struct FarmArguments {
+    /// Scheduler to write files for
+    #[arg(value_name = "SCHEDULER", value_parser = values::word(Scheduler::WORDS))]
+    pub(crate) scheduler: Scheduler,
+
+    /// A scene (.toml, .pbrt) or a model (.gltf, .glb, .obj, .ply, .stl)
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: PathBuf,
+
+    /// Folder of the job, which all machines share: scripts, parts and pictures
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(crate) output: PathBuf,
+
+    /// Number of parts of each picture; --samples should be a multiple of it
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = values::whole(1u32, 100_000))]
+    pub(crate) parts: u32,
+
+    /// This many pictures, evenly around the scene, as lookfrom render --turntable
+    #[arg(long, value_name = "N", value_parser = values::whole(1u32, 100_000))]
+    pub(crate) turntable: Option<u32>,
+
+    /// Frames of a glTF animation, FROM..BEFORE: --at FRAME / FPS
+    #[arg(long, value_name = "FROM..BEFORE", value_parser = values::samples, conflicts_with_all = ["turntable", "at"])]
+    pub(crate) frames: Option<Range<u32>>,
+
+    /// Frames per second
+    #[arg(long, value_name = "N", default_value_t = 24.0, value_parser = values::between(1e-3f64, 1e6))]
+    pub(crate) fps: f64,
+
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+}

@@ -1,0 +1,140 @@
+//! `lookfrom develop`: pictures of films and of other linear pictures, without rendering.
+
+use std::path::Path;
+
+use lookfrom::film::Picture;
+use lookfrom::session::{Developed, Development, FilmFile, Fireflies};
+use lookfrom_scene::image::{self, Channels};
+use lookfrom_scene::settings::{Background, Tonemap};
+use lookfrom_scene::{Disk, Inputs, LoadContext};
+
+use crate::args::DevelopArguments;
+use crate::exit::{DONE, Failure};
+use crate::naming;
+use crate::output::Target;
+
+/// Develops every picture and returns the exit code. One that fails does not stop the others; its code is kept.
+pub(crate) fn run(arguments: &DevelopArguments) -> u8 {
+    let targets = match naming::targets(&arguments.pictures, arguments.output.as_deref(), false) {
+        Ok(targets) => targets,
+        Err(failure) => return failure.report(),
+    };
+    let mut code = DONE;
+    for (path, target) in arguments.pictures.iter().zip(&targets) {
+        if let Err(failure) = develop(path, target, arguments) {
+            let of_failure = failure.report();
+            if code == DONE {
+                code = of_failure;
+            }
+        }
+    }
+    code
+}
+
+fn develop(path: &Path, target: &Target, arguments: &DevelopArguments) -> Result<(), Failure> {
+    let inputs = Inputs::default();
+    let files = inputs.record(&Disk, path.display().to_string());
+    let mut context = LoadContext::new(&files);
+    let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
+    let developed = if is_exr {
+        let bytes = context.read(path)?;
+        match FilmFile::is_film(&bytes) {
+            true => of_film(&FilmFile::read(&bytes, path)?, path, arguments)?,
+            false => {
+                of_picture(picture_of_exr(image::read_exr(path, &mut context)?, path)?, path, arguments)?
+            }
+        }
+    } else {
+        let image = image::read(path, &mut context)?;
+        let alpha =
+            if image.has_alpha() { (0..image.len()).map(|k| image.alpha(k)).collect() } else { Vec::new() };
+        let picture =
+            Picture { width: image.width, height: image.height, pixels: image.texels().collect(), alpha };
+        of_picture((picture, Vec::new(), Vec::new()), path, arguments)?
+    };
+    let bytes = developed.encode(target.format());
+    let bytes = bytes.map_err(|error| Failure::Output(format!("{}: {}", target.name(), error.message)))?;
+    target.write(&bytes, &inputs)
+}
+
+fn of_film(file: &FilmFile, path: &Path, arguments: &DevelopArguments) -> Result<Developed, Failure> {
+    let mut development = file.provenance.development;
+    let has_alpha = development.background != Background::Environment;
+    change(&mut development, arguments, has_alpha, path)?;
+    if let Some(denoise) = arguments.denoise {
+        development.denoise = denoise;
+    }
+    if let Some(fireflies) = arguments.fireflies {
+        development.fireflies = fireflies;
+    }
+    Ok(file.develop(&development))
+}
+
+/// A picture, its other channels and the texts of its header.
+type Plain = (Picture, Vec<(String, Vec<f32>)>, Vec<(String, String)>);
+
+fn of_picture(
+    (picture, layers, header): Plain,
+    path: &Path,
+    arguments: &DevelopArguments,
+) -> Result<Developed, Failure> {
+    if arguments.denoise.is_some() || arguments.fireflies.is_some() {
+        return Err(Failure::Usage(format!(
+            "{} is no film: without the sums of its samples nothing is known of its noise\n  help: render it with --film",
+            path.display()
+        )));
+    }
+    let has_alpha = !picture.alpha.is_empty();
+    let mut development = Development {
+        exposure: 0.0,
+        tonemap: Tonemap::Clamp,
+        background: if has_alpha { Background::Transparent } else { Background::Environment },
+        denoise: false,
+        fireflies: Fireflies::Keep,
+    };
+    change(&mut development, arguments, has_alpha, path)?;
+    Ok(Developed { picture, layers, header, denoised: false, development })
+}
+
+/// Applies what can be changed of any linear picture.
+fn change(
+    development: &mut Development,
+    arguments: &DevelopArguments,
+    has_alpha: bool,
+    path: &Path,
+) -> Result<(), Failure> {
+    if let Some(background) = arguments.background {
+        if !has_alpha || background == Background::Environment {
+            return Err(Failure::Usage(format!(
+                "{} has {}: its background cannot become {background}",
+                path.display(),
+                if has_alpha { "no environment any more" } else { "no alpha" }
+            )));
+        }
+        development.background = background;
+    }
+    if let Some(exposure) = arguments.exposure {
+        development.exposure = exposure;
+    }
+    if let Some(tonemap) = arguments.tonemap {
+        development.tonemap = tonemap;
+    }
+    Ok(())
+}
+
+/// The picture of an OpenEXR file: R, G and B, or Y; alpha A; and its other channels.
+fn picture_of_exr(exr: Channels, path: &Path) -> Result<Plain, Failure> {
+    let Channels { width, height, mut channels, attributes } = exr;
+    let mut take = |name: &str| {
+        let index = channels.iter().position(|(known, _)| known == name)?;
+        Some(channels.remove(index).1)
+    };
+    let (r, g, b, alpha) = (take("R"), take("G"), take("B"), take("A").unwrap_or_default());
+    let [r, g, b] = match (r, g, b, take("Y")) {
+        (Some(r), Some(g), Some(b), _) => [r, g, b],
+        (_, _, _, Some(y)) => [y.clone(), y.clone(), y],
+        _ => return Err(Failure::Usage(format!("{} has no channels R, G and B, or Y", path.display()))),
+    };
+    let pixels = r.into_iter().zip(g).zip(b).map(|((r, g), b)| [r, g, b]).collect();
+    Ok((Picture { width, height, pixels, alpha }, channels, attributes))
+}

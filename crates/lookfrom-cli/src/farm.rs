@@ -1,0 +1,158 @@
+//! `lookfrom farm`: files for the schedulers that people have, so that many machines render one picture, or many.
+//!
+//! Every scheduler runs the same script, job.sh ([`script`]), once for each task, a part of a frame, and once to merge.
+//! The script is safe to repeat: parts that are complete stay, those that were killed go on, damaged ones are rendered
+//! again. So whatever a scheduler does, retries included, the pictures are the same.
+
+mod dask;
+mod hyperqueue;
+mod openjd;
+mod script;
+mod slurm;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::ArgMatches;
+
+use crate::args::FarmArguments;
+use crate::exit::{DONE, Failure, say};
+use crate::{files, film};
+
+/// A scheduler that we write files for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scheduler {
+    /// Open Job Description: AWS Deadline Cloud, and `openjd run`.
+    OpenJd,
+    /// Slurm: an array job and a dependent merge.
+    Slurm,
+    /// Dask's `distributed`.
+    Dask,
+    /// HyperQueue, on its own or inside Slurm and PBS.
+    HyperQueue,
+}
+
+impl Scheduler {
+    /// The words for them.
+    pub(crate) const WORDS: &'static [(&'static str, Self)] = &[
+        ("openjd", Self::OpenJd),
+        ("slurm", Self::Slurm),
+        ("dask", Self::Dask),
+        ("hyperqueue", Self::HyperQueue),
+    ];
+}
+
+/// What the files of all schedulers are made from.
+#[derive(Debug)]
+struct Job {
+    /// The name of the scene without extension, which pictures have.
+    name: String,
+    /// The absolute path of the scene.
+    scene: PathBuf,
+    /// The path of the scene relative to the job's folder.
+    scene_from_folder: String,
+    /// All files that it is read from, absolute.
+    inputs: Vec<PathBuf>,
+    /// Options of `lookfrom render` for all frames.
+    options: Vec<String>,
+    /// Options of each frame: one picture, or those of a turntable or an animation.
+    frames: Vec<String>,
+    /// Parts of each frame.
+    parts: u32,
+}
+
+impl Job {
+    /// Number of tasks.
+    fn tasks(&self) -> u64 {
+        self.frames.len() as u64 * u64::from(self.parts)
+    }
+}
+
+/// Writes the files and returns the exit code.
+pub(crate) fn run(arguments: &FarmArguments, matches: &ArgMatches) -> u8 {
+    write(arguments, matches).map_or_else(|failure| failure.report(), |()| DONE)
+}
+
+fn write(arguments: &FarmArguments, matches: &ArgMatches) -> Result<(), Failure> {
+    let job = job(arguments, matches)?;
+    let folder = &arguments.output;
+    let mut all = script::files(&job);
+    let (of_scheduler, next) = match arguments.scheduler {
+        Scheduler::OpenJd => {
+            (openjd::files(&job), "openjd run FOLDER/template.json --step Merge --run-dependencies")
+        }
+        Scheduler::Slurm => (slurm::files(&job), "sh FOLDER/submit.sh"),
+        Scheduler::Dask => (dask::files(&job), "python3 FOLDER/submit.py tcp://SCHEDULER:8786"),
+        Scheduler::HyperQueue => (hyperqueue::files(&job), "python3 FOLDER/submit.py"),
+    };
+    all.extend(of_scheduler);
+    for (name, text) in all {
+        let path = folder.join(name);
+        let written = fs::create_dir_all(folder).and_then(|()| fs::write(&path, text));
+        written.map_err(|error| Failure::Output(format!("cannot write {}: {error}", path.display())))?;
+    }
+    let next = next.replace("FOLDER", &folder.display().to_string());
+    say(&format!(
+        "{}: {} frames × {} parts = {} tasks\n  next: {next}",
+        folder.display(),
+        job.frames.len(),
+        job.parts,
+        job.tasks()
+    ));
+    Ok(())
+}
+
+fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> {
+    let scene = &arguments.scene;
+    let inputs = files::read(scene)?.into_iter().map(|(path, _)| path);
+    let environment = arguments.overrides.model.environment.iter().cloned();
+    let inputs = inputs.chain(environment).map(|path| film::absolute(&path)).collect();
+    let mut options = film::arguments(matches);
+    options.extend(
+        arguments
+            .overrides
+            .crop
+            .map(|crop| format!("--crop={},{},{},{}", crop.x0, crop.y0, crop.x1, crop.y1)),
+    );
+    if let Some(samples) = &arguments.overrides.samples {
+        if samples.end - samples.start < arguments.parts {
+            return Err(Failure::Usage(format!(
+                "{} samples in {} parts: each part needs at least one",
+                samples.end - samples.start,
+                arguments.parts
+            )));
+        }
+        options.push(format!("--samples={}..{}", samples.start, samples.end));
+    }
+    let start = arguments.overrides.model.turn.unwrap_or(0.0);
+    let frames = match (arguments.turntable, &arguments.frames) {
+        (Some(count), _) => {
+            options.retain(|option| !option.starts_with("--turn="));
+            (0..count)
+                .map(|k| format!("--turn={}", start + 360.0 * f64::from(k) / f64::from(count)))
+                .collect()
+        }
+        (None, Some(frames)) => {
+            frames.clone().map(|frame| format!("--at={}", f64::from(frame) / arguments.fps)).collect()
+        }
+        (None, None) => vec![String::new()],
+    };
+    let name = scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(Job {
+        name,
+        scene: film::absolute(scene),
+        scene_from_folder: film::rebased(&scene.display().to_string(), Path::new(""), &arguments.output),
+        inputs,
+        options: options
+            .iter()
+            .map(|option| film::rebased_argument(option, Path::new(""), &arguments.output))
+            .collect(),
+        frames,
+        parts: arguments.parts,
+    })
+}
+
+/// A word of a POSIX shell.
+fn quoted(word: &str) -> String {
+    format!("'{}'", word.replace('\'', r"'\''"))
+}

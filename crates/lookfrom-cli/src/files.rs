@@ -1,0 +1,52 @@
+//! `lookfrom files`: all files that a scene is read from, for packing and for job descriptions.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use lookfrom_scene::digest::Digested;
+use lookfrom_scene::{Disk, LoadContext, load};
+use serde::Serialize;
+
+use crate::args::FilesArguments;
+use crate::exit::{DONE, Failure, answer};
+use crate::json;
+
+/// Lists the files of every scene, each once, and returns the exit code.
+pub(crate) fn run(arguments: &FilesArguments) -> u8 {
+    list(arguments).map_or_else(|failure| failure.report(), |()| DONE)
+}
+
+/// A line of `--json`.
+#[derive(Serialize)]
+struct Line {
+    path: String,
+    sha256: String,
+}
+
+fn list(arguments: &FilesArguments) -> Result<(), Failure> {
+    let mut files: BTreeMap<PathBuf, String> = BTreeMap::new();
+    for scene in &arguments.scenes {
+        files.extend(read(scene)?);
+    }
+    for (path, sha256) in files {
+        if arguments.null {
+            let mut stdout = std::io::stdout().lock();
+            let written =
+                stdout.write_all(path.as_os_str().as_encoded_bytes()).and_then(|()| stdout.write_all(&[0]));
+            written.map_err(|error| Failure::Output(format!("cannot write to stdout: {error}")))?;
+        } else if arguments.json {
+            answer(&json::line(&Line { path: path.display().to_string(), sha256 }))?;
+        } else {
+            answer(&path.display().to_string())?;
+        }
+    }
+    Ok(())
+}
+
+/// The files of a scene, with their digests.
+pub(crate) fn read(scene: &Path) -> Result<Vec<(PathBuf, String)>, Failure> {
+    let files = Digested::new(&Disk);
+    load::scene(scene, &mut LoadContext::new(&files))?;
+    Ok(files.digests(Path::new("")))
+}

@@ -1,0 +1,210 @@
+//! Films in files: written at intervals and at the end, and read to go on.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Component, Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use clap::parser::ValueSource;
+use clap::{ArgAction, ArgMatches, Args, Command};
+use lookfrom::film::Film;
+use lookfrom::session::{Developed, FilmFile, Finished, Provenance};
+use lookfrom_scene::{Disk, ErrorKind, Inputs, LoadContext, Result as SceneResult};
+
+use crate::args::Overrides;
+use crate::exit::{Failure, say};
+use crate::output::{Target, replace_file_by};
+
+/// The interval between checkpoints unless another one is asked for.
+pub(crate) const INTERVAL: Duration = Duration::from_secs(60);
+
+/// Options that say which samples of a picture to render, not which picture: a film states its samples itself.
+const OF_SAMPLES: [&str; 2] = ["samples", "crop"];
+
+/// The typed arguments of `lookfrom render` that a session with the same picture needs, one an element, in a fixed order.
+pub(crate) fn arguments(matches: &ArgMatches) -> Vec<String> {
+    let known =
+        Overrides::augment_args(Command::new("render")).arg(clap::Arg::new("fireflies").long("fireflies"));
+    let mut typed = Vec::new();
+    for argument in known.get_arguments() {
+        let id = argument.get_id().as_str();
+        let Some(name) = argument.get_long() else { continue };
+        if OF_SAMPLES.contains(&id) || matches.value_source(id) != Some(ValueSource::CommandLine) {
+            continue;
+        }
+        if matches!(argument.get_action(), ArgAction::SetTrue) {
+            typed.push(format!("--{name}"));
+            continue;
+        }
+        let values = matches.get_raw(id).into_iter().flatten();
+        typed.extend(values.map(|value| format!("--{name}={}", value.to_string_lossy())));
+    }
+    typed
+}
+
+/// Paths of a film's scene and environment map, relative to one folder, from what they are relative to another.
+pub(crate) fn rebase(provenance: &mut Provenance, from: &Path, to: &Path) {
+    if let Some(scene) = &mut provenance.scene {
+        *scene = rebased(scene, from, to);
+    }
+    for argument in &mut provenance.arguments {
+        *argument = rebased_argument(argument, from, to);
+    }
+}
+
+/// The one argument that is a path.
+pub(crate) const ENVIRONMENT: &str = "--environment=";
+
+/// An argument, relative to a folder if it is a path, from what is relative to another.
+pub(crate) fn rebased_argument(argument: &str, from: &Path, to: &Path) -> String {
+    match argument.strip_prefix(ENVIRONMENT) {
+        Some(path) => format!("{ENVIRONMENT}{}", rebased(path, from, to)),
+        None => argument.to_owned(),
+    }
+}
+
+/// A path relative to a folder, from what is relative to another.
+pub(crate) fn rebased(path: &str, from: &Path, to: &Path) -> String {
+    let [path, to] = [&from.join(path), to].map(absolute);
+    let common = path.components().zip(to.components()).take_while(|(a, b)| a == b).count();
+    if common == 0 {
+        return path.display().to_string();
+    }
+    let up = to.components().skip(common).map(|_| Component::ParentDir);
+    let relative: PathBuf = up.chain(path.components().skip(common)).collect();
+    relative.display().to_string()
+}
+
+/// The absolute path without `.` and `..`.
+pub(crate) fn absolute(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for component in std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                plain.pop();
+            }
+            other => plain.push(other),
+        }
+    }
+    plain
+}
+
+/// Writes the film so far at intervals.
+pub(crate) struct Checkpoints<'a> {
+    every: Duration,
+    target: &'a Target,
+    provenance: &'a Provenance,
+    inputs: &'a Inputs,
+    /// The end of the last one.
+    last: Mutex<Instant>,
+}
+
+impl<'a> Checkpoints<'a> {
+    /// Starts the clock.
+    pub(crate) fn new(
+        every: Duration,
+        target: &'a Target,
+        provenance: &'a Provenance,
+        inputs: &'a Inputs,
+    ) -> Self {
+        Self { every, target, provenance, inputs, last: Mutex::new(Instant::now()) }
+    }
+
+    /// Whether the interval has passed since the last checkpoint.
+    pub(crate) fn is_due(&self) -> bool {
+        self.last.lock().unwrap_or_else(PoisonError::into_inner).elapsed() >= self.every
+    }
+
+    /// Writes the film. A failure is a warning: the render goes on, and the next checkpoint may succeed.
+    pub(crate) fn write(&self, film: &Film) {
+        let written = write_by(self.target, self.inputs, |file| self.provenance.write_checkpoint(film, file));
+        if let Err(failure) = written {
+            say(&format!("warning: no checkpoint: {failure}"));
+        }
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
+    }
+}
+
+/// Writes the film of a finished picture.
+///
+/// # Errors
+/// `Output` where that fails.
+pub(crate) fn write(
+    target: &Target,
+    provenance: &Provenance,
+    finished: &Finished,
+    inputs: &Inputs,
+) -> Result<(), Failure> {
+    let Finished { rendered, developed } = finished;
+    write_by(target, inputs, |file| provenance.write(&rendered.film, developed, file))
+}
+
+/// Writes a film from a file, with its picture.
+///
+/// # Errors
+/// `Output` where that fails.
+pub(crate) fn write_file(
+    target: &Target,
+    film: &FilmFile,
+    developed: &Developed,
+    inputs: &Inputs,
+) -> Result<(), Failure> {
+    write_by(target, inputs, |file| film.write(developed, file))
+}
+
+fn write_by(
+    target: &Target,
+    inputs: &Inputs,
+    write: impl FnOnce(&mut BufWriter<File>) -> SceneResult<()>,
+) -> Result<(), Failure> {
+    let Target::File(path, _) = target else {
+        return Err(Failure::Usage("a film needs a file; -o - is stdout".to_owned()));
+    };
+    replace_file_by(path, inputs, "-o", |file| write(file).map_err(|error| error.message))
+}
+
+/// Reads a film.
+///
+/// # Errors
+/// `Scene` where it cannot be read, is damaged, or is no film.
+pub(crate) fn read(path: &Path) -> Result<FilmFile, Failure> {
+    let bytes = LoadContext::new(&Disk).read(path)?;
+    Ok(FilmFile::read(&bytes, path)?)
+}
+
+/// The film that a target has already, to go on with. One that is damaged is none, with a warning.
+///
+/// # Errors
+/// `Scene` where there is a file that is no film.
+pub(crate) fn existing(target: &Target) -> Result<Option<FilmFile>, Failure> {
+    let Target::File(path, _) = target else { return Ok(None) };
+    if !target.exists() {
+        return Ok(None);
+    }
+    match read(path) {
+        Ok(film) => Ok(Some(film)),
+        Err(Failure::Scene(error)) if error.kind == ErrorKind::Syntax => {
+            say(&format!("warning: {error}\n  it is rendered again"));
+            Ok(None)
+        }
+        Err(failure) => Err(failure),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_lead_to_the_same_file_from_another_folder() {
+        let of = |path: &str, from: &str, to: &str| rebased(path, Path::new(from), Path::new(to));
+        assert_eq!(of("a/s.toml", "/w", "/w"), "a/s.toml");
+        assert_eq!(of("a/s.toml", "/w", "/w/out/parts"), "../../a/s.toml");
+        assert_eq!(of("../../a/s.toml", "/w/out/parts", "/w/out"), "../a/s.toml");
+        assert_eq!(of("/x/./y/../s.toml", "/w", "/x/y"), "../s.toml");
+        assert_eq!(of("s.toml", "a", "a"), "s.toml");
+        assert_eq!(of("s.toml", "", "b"), "../s.toml");
+    }
+}

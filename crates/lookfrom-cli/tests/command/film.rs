@@ -1,0 +1,159 @@
+//! Films: kept, killed, resumed, merged and developed by the command.
+
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use super::stage::{SCENE, Stage};
+
+#[test]
+fn parts_in_any_order_are_the_film_of_one_render() {
+    let stage = Stage::new("film-parts");
+    stage.done("render scene.toml -o whole.exr --film");
+    for part in ["1/3", "2/3", "3/3"] {
+        stage.done(&format!("render scene.toml -o part-{}.exr --film --part {part}", &part[..1]));
+    }
+    stage.done("merge part-3.exr part-1.exr part-2.exr -o merged.exr");
+    assert!(stage.bytes("merged.exr") == stage.bytes("whole.exr"));
+    stage.done("render scene.toml -o a.exr --film --samples 0..1");
+    stage.done("render scene.toml -o b.exr --film --samples 1..4");
+    stage.done("merge b.exr a.exr -o merged.exr");
+    assert!(stage.bytes("merged.exr") == stage.bytes("whole.exr"));
+    stage
+        .run("merge a.exr a.exr -o x.exr")
+        .fails(1, &["a.exr: samples 0..1 of pixel 0 0 would be there twice"]);
+    stage.done("render scene.toml -o c.exr --film --seed 3 --samples 1..4");
+    stage.run("merge a.exr c.exr -o x.exr").fails(1, &["c.exr", "seed is 3 there, 0 here"]);
+    assert!(!stage.path("x.exr").exists());
+}
+
+#[test]
+fn a_damaged_part_is_named_and_rendered_again() {
+    let stage = Stage::new("film-damaged");
+    stage.done("render scene.toml -o whole.exr --film");
+    for part in [1, 2] {
+        stage.done(&format!("render scene.toml -o part-{part}.exr --film --part {part}/2"));
+    }
+    let mut bytes = stage.bytes("part-2.exr");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 4;
+    std::fs::write(stage.path("part-2.exr"), bytes).unwrap();
+    stage.run("merge part-1.exr part-2.exr -o merged.exr").fails(1, &["part-2.exr: this file is damaged"]);
+    let check = stage.run("merge part-1.exr part-2.exr part-3.exr --check");
+    assert_eq!(String::from_utf8_lossy(&check.stdout), "part-2.exr\npart-3.exr\n");
+    assert_eq!(check.code, Some(1));
+    let again = stage.done("render scene.toml -o part-2.exr --film --part 2/2 --continue");
+    assert!(again.stderr.contains("damaged"), "{}", again.stderr);
+    stage.done("merge part-1.exr part-2.exr -o merged.exr");
+    assert!(stage.bytes("merged.exr") == stage.bytes("whole.exr"));
+    // A part that is complete is not rendered again.
+    let before = stage.bytes("part-1.exr");
+    let again = stage.json("render scene.toml -o part-1.exr --film --part 1/2 --continue --json");
+    assert_eq!(again[0]["rays"]["total"], 0);
+    assert!(stage.bytes("part-1.exr") == before);
+    // Another part is not added to it.
+    stage
+        .run("render scene.toml -o part-1.exr --film --part 2/2 --continue")
+        .fails(2, &["samples 0..2", "2..4"]);
+}
+
+#[test]
+#[cfg(unix)]
+fn killed_fifty_times_it_is_the_same_film() {
+    let stage = Stage::new("film-killed");
+    let scene = SCENE.replace("samples = 4", "samples = 4000");
+    stage.write("scene.toml", &scene);
+    stage.done("render scene.toml -o whole.exr --film");
+    let mut kills = 0;
+    let go_on = "render scene.toml -o a.exr --film --checkpoint 1ms --continue -q";
+    for run in 0..400_u64 {
+        let mut child = stage.command(go_on).stdout(Stdio::null()).spawn().unwrap();
+        // Moments all over a render, its checkpoints and its end.
+        std::thread::sleep(Duration::from_millis(20 + run * 37 % 90));
+        if child.try_wait().unwrap().is_none() {
+            child.kill().unwrap();
+            kills += 1;
+        }
+        child.wait().unwrap();
+        let is_whole = stage.path("a.exr").exists() && stage.bytes("a.exr") == stage.bytes("whole.exr");
+        if is_whole && kills >= 50 {
+            break;
+        }
+        if is_whole {
+            std::fs::remove_file(stage.path("a.exr")).unwrap();
+        }
+    }
+    assert!(kills >= 50, "{kills} kills");
+    stage.done(go_on);
+    assert!(stage.bytes("a.exr") == stage.bytes("whole.exr"));
+}
+
+#[test]
+#[cfg(unix)]
+fn interrupted_renders_are_resumed() {
+    let stage = Stage::new("film-interrupted");
+    stage.write("scene.toml", &SCENE.replace("samples = 4", "samples = 3000"));
+    stage.done("render scene.toml -o whole.exr --film --width 80 --exposure 1");
+    let mut command = stage.command("render scene.toml -o a.exr --film --width 80 --exposure 1 --threads 1");
+    let child = command.stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(400));
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+    let code = child.wait_with_output().unwrap().status.code();
+    assert!(matches!(code, Some(0 | 130)), "{code:?}");
+    if code == Some(130) && stage.path("a.exr").exists() {
+        stage.done("resume a.exr");
+        assert!(stage.bytes("a.exr") == stage.bytes("whole.exr"));
+    }
+    // A film that is complete takes more samples, and says so if it is asked for no more.
+    stage.run("resume whole.exr").fails(2, &["has all its samples", "--samples"]);
+    stage.done("render scene.toml -o few.exr --film --samples 3 --width 80 --exposure 1");
+    stage.done("resume few.exr --samples 3000 -o more.exr");
+    assert!(stage.bytes("more.exr") == stage.bytes("whole.exr"));
+    stage.run("resume whole.exr --samples 5 -o x.exr").fails(2, &["the film has samples 0..3000", "0..5"]);
+    // The scene is another one now.
+    stage.write("scene.toml", &SCENE.replace("radius = 0.5", "radius = 0.6"));
+    stage.run("resume few.exr --samples 5").fails(1, &["scene.toml has another content"]);
+}
+
+#[test]
+fn films_are_developed_without_rendering() {
+    let stage = Stage::new("film-developed");
+    stage.done("render scene.toml -o a.exr --film --denoise on");
+    stage.done("render scene.toml -o a.png --denoise on --exposure 1 --tonemap agx");
+    stage.done("develop a.exr -o b.png --exposure 1 --tonemap agx");
+    assert!(stage.bytes("a.png") == stage.bytes("b.png"));
+    stage.done("render scene.toml -o plain.exr");
+    stage.done("develop a.exr -o noisy.exr --denoise off");
+    assert!(stage.bytes("noisy.exr") == stage.bytes("plain.exr"));
+    // Any EXR can be developed, but not denoised.
+    stage.done("develop plain.exr -o plain.png");
+    stage.done("render scene.toml -o same.png");
+    assert!(stage.bytes("plain.png") == stage.bytes("same.png"));
+    stage.run("develop plain.exr -o x.png --denoise").fails(2, &["plain.exr is no film"]);
+    stage.run("develop a.exr -o x.png --background white").fails(2, &["no alpha"]);
+}
+
+#[test]
+fn what_cannot_be_a_film_is_told_before_rendering() {
+    let stage = Stage::new("film-usage");
+    stage.run("render scene.toml -o a.png --film").fails(2, &["--film needs an .exr", "develop"]);
+    stage.run("render scene.toml -o a.exr --checkpoint 1s").fails(2, &["--film"]);
+    stage.run("render scene.toml -o a.exr --film --part 2/9").fails(2, &["part 2 of 9 of the samples 0..4"]);
+    stage.run("render scene.toml -o a.exr --film --part 1/2 --noise 0.1").fails(2, &["cannot be adaptive"]);
+    stage.run("merge scene.toml -o a.png").fails(2, &["a.png is no .exr"]);
+    stage.run("resume missing.exr").fails(1, &["missing.exr: no such file"]);
+    stage.done("render scene.toml -o plain.exr");
+    stage.run("resume plain.exr").fails(1, &["plain.exr", "has no film", "--film"]);
+    stage.run("render scene.toml -o plain.exr --film --continue").fails(1, &["has no film"]);
+    assert_eq!(stage.names().len(), 3);
+}
+
+#[test]
+fn the_files_of_a_scene_are_listed() {
+    let stage = Stage::new("film-files");
+    stage.write("scene.toml", &format!("{SCENE}\n[[mesh]]\nfile = \"model.obj\"\n"));
+    let run = stage.done("files scene.toml");
+    assert_eq!(String::from_utf8_lossy(&run.stdout), "model.obj\nscene.toml\n");
+    let objects = stage.json("files scene.toml --json");
+    assert_eq!((objects.len(), objects[0]["sha256"].as_str().unwrap().len()), (2, 64));
+    assert_eq!(stage.done("files scene.toml -0").stdout, b"model.obj\0scene.toml\0");
+}

@@ -1,0 +1,205 @@
+//! The sums of a film as words of 32 bits, for the channels of its file.
+//!
+//! Each number of a pixel is one channel or several: of `sum.R`, which has 128 bits, `film.sum.R.0` has the lowest 32, and
+//! `film.sum.R.3` the highest, in two's complement. The names of all channels are in [`Film::stored_channels`]; what the
+//! numbers mean is said at the fields of the sums.
+
+use lookfrom_scene::settings::PixelBounds;
+
+use super::{Film, Pixel};
+
+/// A number, or several, that are stored as words, the lowest first.
+pub(super) trait Stored: Sized {
+    /// Number of words.
+    const WORDS: usize;
+
+    /// Passes the words on.
+    fn store(&self, put: &mut impl FnMut(u32));
+
+    /// The inverse of [`Stored::store`].
+    fn load(take: &mut impl FnMut() -> u32) -> Self;
+}
+
+macro_rules! store_integers {
+    ($($integer:ty),*) => {$(
+        impl Stored for $integer {
+            const WORDS: usize = size_of::<$integer>() / 4;
+
+            fn store(&self, put: &mut impl FnMut(u32)) {
+                self.to_le_bytes().chunks_exact(4).for_each(|word| put(u32::from_le_bytes([word[0], word[1], word[2], word[3]])));
+            }
+
+            fn load(take: &mut impl FnMut() -> u32) -> Self {
+                let mut bytes = [0; size_of::<$integer>()];
+                bytes.chunks_exact_mut(4).for_each(|word| word.copy_from_slice(&take().to_le_bytes()));
+                Self::from_le_bytes(bytes)
+            }
+        }
+    )*};
+}
+
+store_integers!(u32, u64, i64, u128, i128);
+
+impl<T: Stored, const N: usize> Stored for [T; N] {
+    const WORDS: usize = N * T::WORDS;
+
+    fn store(&self, put: &mut impl FnMut(u32)) {
+        self.iter().for_each(|number| number.store(put));
+    }
+
+    fn load(take: &mut impl FnMut() -> u32) -> Self {
+        std::array::from_fn(|_| T::load(take))
+    }
+}
+
+/// Implements [`Stored`] for a struct, field by field, and lists the names of its numbers.
+macro_rules! store_fields {
+    ($sums:ty { $($field:ident: $kind:ty = [$($name:literal),*]),* $(,)? }) => {
+        impl Stored for $sums {
+            const WORDS: usize = 0 $(+ <$kind>::WORDS)*;
+
+            fn store(&self, put: &mut impl FnMut(u32)) {
+                $(self.$field.store(put);)*
+            }
+
+            fn load(take: &mut impl FnMut() -> u32) -> Self {
+                Self { $($field: <$kind>::load(take)),* }
+            }
+        }
+
+        impl Named for $sums {
+            fn channels(prefix: &str) -> Vec<String> {
+                let mut channels = Vec::new();
+                $(channels.extend(channels_of(prefix, &[$($name),*], <$kind>::WORDS));)*
+                channels
+            }
+        }
+    };
+}
+pub(super) use store_fields;
+
+/// Sums of a pixel whose numbers have names.
+pub(super) trait Named: Stored {
+    /// The names of the channels, in the order of the words.
+    fn channels(prefix: &str) -> Vec<String>;
+}
+
+/// The channels of numbers that have `words` words together.
+pub(super) fn channels_of(prefix: &str, names: &[&str], words: usize) -> Vec<String> {
+    let each = words / names.len();
+    names.iter().flat_map(|name| (0..each).map(move |word| format!("{prefix}.{name}.{word}"))).collect()
+}
+
+store_fields!(Pixel {
+    sums: [i128; 3] = ["sum.R", "sum.G", "sum.B"],
+    squares: [u128; 3] = ["square.X", "square.Y", "square.Z"],
+    samples: u64 = ["samples"],
+});
+
+/// Evaluates an expression for each kind of sums that a tile may have: with its vector, borrowed by `&` or `&mut`, and
+/// the prefix of its channels.
+macro_rules! for_each_plane {
+    ([$($borrow:tt)+] $tile:expr, $plane:ident, $prefix:ident => $body:expr) => {{
+        { let ($plane, $prefix) = ($($borrow)+ $tile.pixels, "film"); $body }
+        { let ($plane, $prefix) = ($($borrow)+ $tile.alphas, "film.alpha"); $body }
+        { let ($plane, $prefix) = ($($borrow)+ $tile.alpha_squares, "film.alpha"); $body }
+        { let ($plane, $prefix) = ($($borrow)+ $tile.channels, "film.sensor"); $body }
+        { let ($plane, $prefix) = ($($borrow)+ $tile.layers, "film.aov"); $body }
+        { let ($plane, $prefix) = ($($borrow)+ $tile.features, "film.feature"); $body }
+    }};
+}
+
+impl Named for i128 {
+    fn channels(prefix: &str) -> Vec<String> {
+        channels_of(prefix, &["sum"], Self::WORDS)
+    }
+}
+
+impl Named for u128 {
+    fn channels(prefix: &str) -> Vec<String> {
+        channels_of(prefix, &["square"], Self::WORDS)
+    }
+}
+
+impl Film {
+    /// The names of the channels that hold its sums exactly, each of 32-bit unsigned integers.
+    pub fn stored_channels(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        for_each_plane!([&] self.tile, plane, prefix => {
+            if !plane.is_empty() {
+                names.extend(names_of(plane, prefix));
+            }
+        });
+        names
+    }
+
+    /// Writes a row of all channels: the bytes of `width` numbers of the first, in little endian, of the second … Pixels
+    /// outside of [`Film::area`] are left as they are.
+    pub(crate) fn store_row(&self, row: u32, bytes: &mut [u8]) {
+        let PixelBounds { x0, y0, x1, y1 } = self.tile.area;
+        if !(y0..y1).contains(&row) {
+            return;
+        }
+        let pixels = self.tile.row(row, x0, x1);
+        let mut row = Row { bytes, width: self.width as usize, x0: x0 as usize, first: 0 };
+        for_each_plane!([&] self.tile, plane, _prefix => row.store(plane.get(pixels.clone())));
+    }
+
+    /// Reads what [`Film::store_row`] wrote: `numbers(k)` are those of channel `k`.
+    pub(crate) fn load_row<'a>(&mut self, row: u32, numbers: impl Fn(usize) -> &'a [u32]) {
+        let PixelBounds { x0, y0, x1, y1 } = self.tile.area;
+        if !(y0..y1).contains(&row) {
+            return;
+        }
+        let pixels = self.tile.row(row, x0, x1);
+        let mut first = 0;
+        for_each_plane!([&mut] self.tile, plane, _prefix => {
+            load(plane.get_mut(pixels.clone()), x0 as usize, &mut first, &numbers);
+        });
+    }
+}
+
+/// A row of all channels, which is filled plane by plane.
+struct Row<'a> {
+    bytes: &'a mut [u8],
+    width: usize,
+    /// The column of the first pixel.
+    x0: usize,
+    /// The first channel of the next plane.
+    first: usize,
+}
+
+impl Row<'_> {
+    fn store<T: Stored>(&mut self, plane: Option<&[T]>) {
+        let Some(plane) = plane else { return };
+        let Self { bytes, width, x0, first } = self;
+        for (x, sums) in (*x0..).zip(plane) {
+            let mut at = (*first * *width + x) * 4;
+            sums.store(&mut |word| {
+                bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
+                at += *width * 4;
+            });
+        }
+        *first += T::WORDS;
+    }
+}
+
+/// Fills a row of a plane, if there is such a plane, from channel `first` on, and moves `first` behind its channels.
+fn load<'a, T: Stored>(
+    plane: Option<&mut [T]>,
+    x0: usize,
+    first: &mut usize,
+    numbers: &impl Fn(usize) -> &'a [u32],
+) {
+    let Some(plane) = plane else { return };
+    let channels: Vec<&[u32]> = (*first..*first + T::WORDS).map(numbers).collect();
+    for (x, sums) in (x0..).zip(plane) {
+        let mut words = channels.iter().map(|channel| channel[x]);
+        *sums = T::load(&mut || words.next().unwrap_or(0));
+    }
+    *first += T::WORDS;
+}
+
+fn names_of<T: Named>(_plane: &[T], prefix: &str) -> Vec<String> {
+    T::channels(prefix)
+}
