@@ -13,7 +13,7 @@ use crate::packet::trace_packet;
 use crate::query::{Needs, Settings};
 use crate::ray::{Hit, Ray};
 use crate::ray8::RAYS;
-use crate::stack::{Stack, TraversalStack, with_stack};
+use crate::stack::{Stack, with_stack};
 use crate::traverse::trace;
 use crate::visibility::{Everything, ExceptOrigin, Masked, Visibility};
 use lookfrom_simd::{Kernel, Simd};
@@ -211,7 +211,6 @@ fn answer_left<'a, S: Simd, C: Question, V: Visibility<'a>>(
         || {
             for (number, (ray, answer)) in rays.iter().zip(answers).enumerate() {
                 let visibility = V::of(settings, number);
-                let stack = TraversalStack::above(stack, 0);
                 *answer = trace(simd, settings.bvh, ray, C::ask, visibility, (), stack).answer();
             }
         },

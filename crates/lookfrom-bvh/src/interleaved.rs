@@ -17,7 +17,7 @@ use crate::prepared::PreparedRay;
 use crate::query::Settings;
 use crate::ray::{NONE, Ray};
 use crate::stack::{REST, SEGMENT, SEGMENTS, Stack, TraversalStack, fits_a_segment};
-use crate::traverse::{TraversalState, TreePath, trace};
+use crate::traverse::{TraversalState, TreePath, trace_any};
 use crate::visibility::Visibility;
 use lookfrom_simd::Simd;
 
@@ -160,7 +160,12 @@ fn answer_alone<'a, S: Simd, C: Question, V: Visibility<'a>>(
     visibility: V,
     stack: &mut Stack,
 ) -> C::Answer {
-    trace(simd, bvh, ray, C::ask, visibility, (), TraversalStack::above(stack, REST)).answer()
+    let mut state = TraversalState { instance: NONE, collector: C::ask(ray), visibility, observer: () };
+    if ray.t_min < ray.t_max {
+        let rest = &mut TraversalStack::above(stack, REST);
+        trace_any(simd, bvh, &ExactRay::new(ray), &mut state, rest);
+    }
+    state.collector.answer()
 }
 
 #[cfg(test)]

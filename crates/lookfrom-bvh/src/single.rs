@@ -7,7 +7,7 @@ use crate::dispatch::dispatch;
 use crate::observer::Observer;
 use crate::query::{Needs, Settings};
 use crate::ray::{Hit, Ray};
-use crate::stack::{TraversalStack, with_stack};
+use crate::stack::with_stack;
 use crate::traverse::trace;
 use crate::visibility::{Everything, Masked, Visibility};
 use lookfrom_simd::{Kernel, Simd};
@@ -29,7 +29,7 @@ impl<'a, C: Collector, F: FnOnce(&Ray) -> C, V: Visibility<'a>, O: Observer> Ker
         let Self { bvh, ray, ask, visibility, observer } = self;
         with_stack(
             #[inline(always)]
-            |stack| trace(simd, bvh, ray, ask, visibility, observer, TraversalStack::above(stack, 0)),
+            |stack| trace(simd, bvh, ray, ask, visibility, observer, stack),
         )
     }
 }

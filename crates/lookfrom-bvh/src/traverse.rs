@@ -14,7 +14,7 @@ use crate::node::{Child, Content, Slabs};
 use crate::observer::Observer;
 use crate::prepared::PreparedRay;
 use crate::ray::{Hit, NONE, Ray};
-use crate::stack::TraversalStack;
+use crate::stack::{Stack, TraversalStack};
 use crate::triangle;
 use crate::triangle::Crossing;
 use crate::visibility::{Visibility, shown};
@@ -38,13 +38,13 @@ pub(crate) fn trace<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     ask: impl FnOnce(&Ray) -> C,
     visibility: V,
     observer: O,
-    mut stack: TraversalStack<'_>,
+    stack: &mut Stack,
 ) -> C {
     let mut state = TraversalState { instance: NONE, collector: ask(ray), visibility, observer };
     if bvh.nodes.is_empty() || !(ray.t_min < ray.t_max) {
         return state.collector;
     }
-    let stack = &mut stack;
+    let stack = &mut TraversalStack::above(stack, 0);
     if let Some(prepared) = PreparedRay::usual(simd, ray, bvh.largest) {
         // Recomputed where it is needed: few rays need it, and the black box prevents computing it for all.
         let exact = || ExactRay::new(std::hint::black_box(ray));
