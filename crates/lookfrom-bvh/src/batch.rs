@@ -1,11 +1,13 @@
 //! Batches of rays: divided among threads, then traced in packets where they are coherent,
-//! otherwise one by one.
+//! otherwise one by one, or several in turn where the tree is large.
 
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use crate::coherence::Coherence;
 use crate::collector::{AnyHit, ClosestHit, PacketCollector};
 use crate::dispatch::dispatch;
+use crate::interleaved::{self, answer_in_turn};
 use crate::origin_primitive::OriginPrimitive;
 use crate::packet::trace_packet;
 use crate::query::{Needs, Settings};
@@ -21,7 +23,7 @@ use lookfrom_simd::{Kernel, Simd};
 const BATCH: usize = 4096;
 
 /// A query for many rays, with one result for each.
-trait Question: PacketCollector {
+pub(crate) trait Question: PacketCollector {
     type Answer: Send;
 
     fn ask(ray: &Ray) -> Self;
@@ -143,32 +145,39 @@ impl<'a, C: Question, V: Visibility<'a>> Kernel for Batch<'a, '_, C, V> {
         with_stack(
             #[inline(always)]
             |stack| {
+                let count = rays.len().min(answers.len());
                 let mut coherence = Coherence::default();
-                for (packet, (rays, answers)) in rays.chunks(RAYS).zip(answers.chunks_mut(RAYS)).enumerate() {
-                    let settings = settings.from(packet * RAYS);
-                    let is_traced = if is_about_everything::<V>(&settings) {
+                // The rays from here on that no packet has traced.
+                let mut first_left = 0;
+                for first in (0..count).step_by(RAYS) {
+                    let last = (first + RAYS).min(count);
+                    let of_packet = settings.from(first);
+                    let (rays_of, answers_of) = (&rays[first..last], &mut answers[first..last]);
+                    let is_traced = if is_about_everything::<V>(&of_packet) {
                         C::trace_packet::<S, Everything>(
                             simd,
-                            &settings,
-                            rays,
-                            answers,
+                            &of_packet,
+                            rays_of,
+                            answers_of,
                             &mut coherence,
                             stack,
                         )
                     } else {
                         C::trace_packet::<S, Masked<'_>>(
                             simd,
-                            &settings,
-                            rays,
-                            answers,
+                            &of_packet,
+                            rays_of,
+                            answers_of,
                             &mut coherence,
                             stack,
                         )
                     };
-                    if !is_traced {
-                        answer_singly::<S, C, V>(simd, &settings, rays, answers, stack);
+                    if is_traced {
+                        answer_left::<S, C, V>(simd, &settings, rays, answers, first_left..first, stack);
+                        first_left = last;
                     }
                 }
+                answer_left::<S, C, V>(simd, &settings, rays, answers, first_left..count, stack);
             },
         );
     }
@@ -182,14 +191,21 @@ fn is_about_everything<'a, V: Visibility<'a>>(settings: &Settings<'_>) -> bool {
         || !V::SELECTS && (0..RAYS).all(|number| settings.origin_of(number) == OriginPrimitive::NONE)
 }
 
+/// Answers a range of rays that form no packets.
 #[inline(never)]
-fn answer_singly<'a, S: Simd, C: Question, V: Visibility<'a>>(
+fn answer_left<'a, S: Simd, C: Question, V: Visibility<'a>>(
     simd: S,
     settings: &Settings<'a>,
     rays: &[Ray],
     answers: &mut [C::Answer],
+    left: Range<usize>,
     stack: &mut Stack,
 ) {
+    let settings = &settings.from(left.start);
+    let (rays, answers) = (&rays[left.clone()], &mut answers[left]);
+    if rays.len() > 1 && interleaved::pays(settings.bvh) {
+        return answer_in_turn::<S, C, V>(simd, settings, rays, answers, stack);
+    }
     simd.vectorize(
         #[inline(always)]
         || {

@@ -16,6 +16,7 @@ mod dispatch;
 mod ellipsoid;
 mod exact;
 mod instance;
+mod interleaved;
 mod leaf;
 mod masks;
 mod node;

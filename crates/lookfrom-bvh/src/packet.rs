@@ -77,7 +77,7 @@ pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
                 coherence,
                 question: PhantomData,
             };
-            let stack = &mut TraversalStack { entries: stack, bottom: 0, height: 0 };
+            let stack = &mut TraversalStack::above(stack, 0);
             match packet_bounds {
                 Some(packet_bounds) => {
                     let has_paid = packet.traverse(simd, &packet_bounds, stack, is_tiny);

@@ -63,7 +63,30 @@ pub(crate) struct TraversalStack<'a> {
     pub(crate) height: usize,
 }
 
-impl TraversalStack<'_> {
+/// Number of rays in flight that share one stack, each with a segment of it.
+pub(crate) const SEGMENTS: usize = 8;
+
+/// Entries of a segment. An odd number of cache lines, so that the segments do not compete for the same places of a
+/// cache.
+pub(crate) const SEGMENT: usize = 31 * (64 / size_of::<StackEntry>());
+
+/// Bottom of the rest of the stack, for what is traced alone beside the rays in flight.
+pub(crate) const REST: usize = SEGMENTS * SEGMENT;
+
+const _: () = assert!(REST + SEGMENT + LARGEST_DEPTH * (WIDTH - 1) <= STACK);
+
+/// Whether the entries of a tree of this depth fit into a segment.
+pub(crate) fn fits_a_segment(depth: usize) -> bool {
+    depth * (WIDTH - 1) <= SEGMENT
+}
+
+impl<'a> TraversalStack<'a> {
+    /// An empty stack above other entries.
+    #[inline(always)]
+    pub(crate) fn above(entries: &'a mut Stack, bottom: usize) -> Self {
+        Self { entries, bottom, height: bottom }
+    }
+
     /// The next child that is not beyond the end.
     #[inline(always)]
     pub(crate) fn pop(&mut self, end: f32) -> Option<Child> {

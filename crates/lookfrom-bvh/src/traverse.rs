@@ -1,4 +1,4 @@
-//! Traversal of single rays.
+//! Traversal of rays, one at a time; its steps serve the traversal of several rays in turn too (see `interleaved`).
 //!
 //! Generic over the query ([`Collector`]: the closest hit, any hit, all hits), over the part of the geometry that
 //! the ray sees ([`Visibility`]) and over an [`Observer`]. Children are visited from near to far; subtrees beyond
@@ -44,7 +44,7 @@ pub(crate) fn trace<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     if bvh.nodes.is_empty() || !(ray.t_min < ray.t_max) {
         return state.collector;
     }
-    let stack = &mut TraversalStack { entries: stack, bottom: 0, height: 0 };
+    let stack = &mut TraversalStack::above(stack, 0);
     if let Some(prepared) = PreparedRay::usual(simd, ray, bvh.largest) {
         // Recomputed where it is needed: few rays need it, and the black box prevents computing it for all.
         let exact = || ExactRay::new(std::hint::black_box(ray));
@@ -87,47 +87,109 @@ fn traverse<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     stack: &mut TraversalStack<'_>,
 ) -> bool {
     let slabs = Slabs::new(simd, ray);
-    let mut current = Child::ROOT;
-    let mut end = ray.end(state.collector.end());
-    let mut deferred = None;
+    let mut path = TreePath::new(ray, state);
     'ray: loop {
-        // Descend, each time to the nearest child that the ray enters; the others go on the stack.
-        while let Content::Node(number) = current.content() {
-            state.observer.node(state.instance, number as u32);
-            let node = &bvh.nodes[number];
-            let entered = node.enter(simd, &slabs, end);
-            let next = if entered.children == 0 {
-                stack.pop(end)
-            } else {
-                Some(stack.push_all_but_nearest::<S, C>(node, &entered))
-            };
-            match next {
-                Some(child) => current = child,
+        // Descend, each time to the nearest child that the ray enters.
+        while let Content::Node(number) = path.current.content() {
+            match path.enter(simd, bvh, number, &slabs, state, stack) {
+                Some(child) => path.current = child,
                 None => break 'ray,
             }
         }
-
-        // Test the primitives of a leaf.
-        let stop = match current.content() {
-            Content::Triangles(number) => {
-                let block = &bvh.triangles[number];
-                let ray_lanes = RayLanes::new(simd, ray);
-                triangles(simd, block, &ray_lanes, exact, &mut end, &mut deferred, state)
-            }
-            Content::Leaf(number) => other_leaf(simd, bvh, &bvh.leaves[number], &exact(), state, stack),
-            Content::Node(_) => false,
-        };
-        if stop {
+        if path.test_leaf(simd, bvh, ray, exact, state, stack) {
             return true;
         }
-        let decided = ray.end(state.collector.end());
-        end = if decided < end { decided } else { end };
-        match stack.pop(end) {
-            Some(child) => current = child,
+        match path.leave_leaf(ray, state, stack) {
+            Some(child) => path.current = child,
             None => break,
         }
     }
-    deferred.is_some_and(|DeferredHit { block, lane, .. }| intersect_sure(block, lane, exact, state))
+    path.finish(exact, state)
+}
+
+/// A ray's path through one tree: the visits of which all traversals of rays consist.
+pub(crate) struct TreePath<'t> {
+    /// The node or leaf to visit next.
+    pub(crate) current: Child,
+    /// The scaled distance beyond which nothing is visited.
+    end: f32,
+    deferred: Option<DeferredHit<'t>>,
+}
+
+impl<'t> TreePath<'t> {
+    #[inline(always)]
+    pub(crate) fn new<C: Collector, V, O>(ray: &PreparedRay, state: &TraversalState<C, V, O>) -> Self {
+        Self { current: Child::ROOT, end: ray.end(state.collector.end()), deferred: None }
+    }
+
+    /// Visits a node. Returns the nearest child that the ray enters, after which the others go on the stack; if it
+    /// enters none, the next from the stack.
+    #[inline(always)]
+    pub(crate) fn enter<S: Simd, C: Collector, V, O: Observer>(
+        &self,
+        simd: S,
+        bvh: &Bvh,
+        number: usize,
+        slabs: &Slabs<S>,
+        state: &mut TraversalState<C, V, O>,
+        stack: &mut TraversalStack<'_>,
+    ) -> Option<Child> {
+        state.observer.node(state.instance, number as u32);
+        let node = &bvh.nodes[number];
+        let entered = node.enter(simd, slabs, self.end);
+        if entered.children == 0 {
+            stack.pop(self.end)
+        } else {
+            Some(stack.push_all_but_nearest::<S, C>(node, &entered))
+        }
+    }
+
+    /// Tests the primitives of a leaf. Returns true if no more hits are needed. `stack` is for the trees of instances.
+    #[inline(always)]
+    pub(crate) fn test_leaf<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+        &mut self,
+        simd: S,
+        bvh: &'t Bvh,
+        ray: &PreparedRay,
+        exact: impl Fn() -> ExactRay + Copy,
+        state: &mut TraversalState<C, V, O>,
+        stack: &mut TraversalStack<'_>,
+    ) -> bool {
+        match self.current.content() {
+            Content::Triangles(number) => {
+                let block = &bvh.triangles[number];
+                let ray_lanes = RayLanes::new(simd, ray);
+                triangles(simd, block, &ray_lanes, exact, &mut self.end, &mut self.deferred, state)
+            }
+            Content::Leaf(number) => other_leaf(simd, bvh, &bvh.leaves[number], &exact(), state, stack),
+            Content::Node(_) => false,
+        }
+    }
+
+    /// The next child from the stack, after a leaf.
+    #[inline(always)]
+    pub(crate) fn leave_leaf<C: Collector, V, O>(
+        &mut self,
+        ray: &PreparedRay,
+        state: &TraversalState<C, V, O>,
+        stack: &mut TraversalStack<'_>,
+    ) -> Option<Child> {
+        let decided = ray.end(state.collector.end());
+        self.end = if decided < self.end { decided } else { self.end };
+        stack.pop(self.end)
+    }
+
+    /// Ends the path with the exact test that was deferred. Returns true if no more hits are needed.
+    #[inline(always)]
+    pub(crate) fn finish<C: Collector, V, O>(
+        &self,
+        exact: impl Fn() -> ExactRay,
+        state: &mut TraversalState<C, V, O>,
+    ) -> bool {
+        self.deferred
+            .as_ref()
+            .is_some_and(|&DeferredHit { block, lane, .. }| intersect_sure(block, lane, exact, state))
+    }
 }
 
 #[inline(always)]
