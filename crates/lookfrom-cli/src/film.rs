@@ -30,7 +30,10 @@ pub(crate) fn arguments(matches: &ArgMatches) -> Vec<String> {
     for argument in known.get_arguments() {
         let id = argument.get_id().as_str();
         let Some(name) = argument.get_long() else { continue };
-        if OF_SAMPLES.contains(&id) || matches.value_source(id) != Some(ValueSource::CommandLine) {
+        // Not every subcommand has all of them.
+        let is_typed =
+            matches.try_contains_id(id).is_ok() && matches.value_source(id) == Some(ValueSource::CommandLine);
+        if OF_SAMPLES.contains(&id) || !is_typed {
             continue;
         }
         if matches!(argument.get_action(), ArgAction::SetTrue) {

@@ -5,6 +5,7 @@ mod command {
     mod denoise;
     mod enough;
     mod errors;
+    mod farm;
     mod film;
     mod guide;
     mod info;

@@ -395,7 +395,7 @@ impl Session {
     /// suppression and denoising.
     ///
     /// # Errors
-    /// As [`Finished::encode`].
+    /// As [`Developed::encode`].
     pub fn encode_preview(&self, picture: &Picture, mean_samples: u64, format: Format) -> Result<Vec<u8>> {
         let (samples, mean) = (self.settings().samples.to_string(), mean_samples.to_string());
         let header = header::with_samples(&header::header(self), samples, Some(mean));

@@ -87,7 +87,7 @@ impl SampleLedger {
         Ok(())
     }
 
-    /// The parts of `wanted` that pixels of an area lack and that are not [clean](Self::mark_clean), as disjoint
+    /// The parts of `wanted` that pixels of an area lack and that adaptive sampling has not found clean, as disjoint
     /// rectangles from the top left.
     pub fn missing(&self, area: PixelBounds, wanted: &Range<u32>) -> Vec<(PixelBounds, Range<u32>)> {
         let mut missing = Vec::new();
@@ -554,7 +554,7 @@ mod tests {
         assert_eq!(text.parse(), Ok(ledger.clone()));
         assert_eq!(ledger.missing(PixelBounds { x0: 3, y0: 3, x1: 6, y1: 4 }, &(0..9)).len(), 1);
         ledger.forget_clean();
-        assert_eq!(ledger.uniform(WHOLE), Some(vec![0..8]));
+        assert_eq!(ledger.uniform(WHOLE).as_deref(), Some(std::slice::from_ref(&(0..8))));
         for wrong in
             ["x", "0..1", "0..1:", "0..1: 0..1", "0..1: 1..0 0..1", "0..1: 0..1 0..2,1..3", "1..0: 0..1 0..1"]
         {
