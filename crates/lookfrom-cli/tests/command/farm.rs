@@ -1,0 +1,90 @@
+//! Job files: the script that all schedulers run, and what each of them is given.
+
+use std::process::Command;
+
+use super::stage::Stage;
+
+/// Runs the script of a job, as a scheduler would.
+fn job(stage: &Stage, arguments: &[&str]) -> String {
+    let mut command = Command::new("sh");
+    command.arg(stage.path("a job/job.sh")).args(arguments).env("LOOKFROM", env!("CARGO_BIN_EXE_lookfrom"));
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+#[cfg(unix)]
+fn tasks_and_their_merge_are_one_render() {
+    let stage = Stage::new("farm");
+    let farm =
+        ["farm", "slurm", "scene.toml", "--parts", "3", "--exposure=0.5", "--samples", "5", "-o", "a job"];
+    let output = stage.command("").args(farm).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    job(&stage, &["part", "2-3"]);
+    job(&stage, &["part", "3"]);
+    // One part is damaged, one is missing: the merge renders both.
+    let film = stage.path("a job/parts/00001-000003.exr");
+    let mut bytes = std::fs::read(&film).unwrap();
+    bytes.truncate(bytes.len() / 2);
+    std::fs::write(&film, bytes).unwrap();
+    assert!(job(&stage, &["merge"]).ends_with("a job/scene.exr\n"));
+    let one = ["render", "scene.toml", "--exposure=0.5", "--samples", "5", "--film", "-o", "a job/one.exr"];
+    assert!(stage.command("").args(one).status().unwrap().success());
+    assert!(stage.bytes("a job/one.exr") == stage.bytes("a job/scene.exr"));
+}
+
+#[test]
+#[cfg(unix)]
+fn frames_are_those_of_a_turntable() {
+    let stage = Stage::new("farm-frames");
+    let farm = [
+        "farm",
+        "dask",
+        "model.obj",
+        "--parts",
+        "1",
+        "--turntable",
+        "2",
+        "--size=24",
+        "--floor",
+        "-o",
+        "a job",
+    ];
+    assert!(stage.command("").args(farm).status().unwrap().success());
+    job(&stage, &["part", "1-2"]);
+    job(&stage, &["merge"]);
+    let one =
+        ["render", "model.obj", "--turntable", "2", "--size=24", "--floor", "--film", "-o", "a job/one.exr"];
+    assert!(stage.command("").args(one).status().unwrap().success());
+    for frame in [0, 1] {
+        let [one, merged] =
+            [format!("a job/one-00{frame}.exr"), format!("a job/model-0000{}.exr", frame + 1)];
+        assert!(stage.bytes(&one) == stage.bytes(&merged), "frame {frame}");
+    }
+}
+
+#[test]
+fn every_scheduler_gets_its_files() {
+    let stage = Stage::new("farm-files");
+    let files = |scheduler: &str| {
+        stage.done(&format!("farm {scheduler} scene.toml --parts 4 -o {scheduler}"));
+        let entries = std::fs::read_dir(stage.path(scheduler)).unwrap();
+        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names.join(" ")
+    };
+    assert_eq!(files("slurm"), "frames.txt job.sh submit.sh");
+    assert_eq!(files("dask"), "frames.txt job.sh submit.py");
+    assert_eq!(files("hyperqueue"), "frames.txt job.sh submit.py");
+    assert_eq!(files("openjd"), "asset_references.json frames.txt job.sh template.json");
+    let template: serde_json::Value = serde_json::from_slice(&stage.bytes("openjd/template.json")).unwrap();
+    let task = &template["steps"][0]["parameterSpace"]["taskParameterDefinitions"][0];
+    assert_eq!((task["type"].as_str(), task["range"].as_str()), (Some("CHUNK[INT]"), Some("1-4")));
+    assert_eq!(template["steps"][1]["dependencies"][0]["dependsOn"], "Render");
+    let inputs: serde_json::Value =
+        serde_json::from_slice(&stage.bytes("openjd/asset_references.json")).unwrap();
+    assert_eq!(inputs["assetReferences"]["inputs"]["filenames"].as_array().unwrap().len(), 1);
+    stage.run("farm slurm scene.toml --parts 4 --samples 3 -o x").fails(2, &["3 samples in 4 parts"]);
+    stage.run("farm slurm missing.toml -o x").fails(1, &["missing.toml: no such file"]);
+}
