@@ -69,26 +69,50 @@ fn octave(p: Vec3, octave: u32) -> f32 {
         return 0.0;
     }
     // Find the cell of the lattice and the position in it.
-    let floor = p.floor();
-    let place = p - floor;
-    let cell = floor.to_array().map(|x| x as i32);
-    // Each corner contributes a linear ramp along its gradient, 0 at the corner.
-    let corner = |x: i32, y: i32, z: i32| {
-        let [i, j, k] = cell;
-        let gradient = gradient([i.wrapping_add(x), j.wrapping_add(y), k.wrapping_add(z)], octave);
-        gradient.dot(place - Vec3::new(x as f32, y as f32, z as f32))
-    };
-    // Interpolate between corners, along x, then y, then z.
+    let below = Vec3::from_array(p.to_array().map(floor));
+    let place = p - below;
+    let [x, y, z] = below.to_array().map(|x| [x as i32, (x as i32).wrapping_add(1)]);
+    // Interpolate between corners, along x, then y, then z. The hashes of x and y serve two corners each.
     let [u, v, w] = place.to_array().map(fade);
-    let edge = |y, z| mix_linearly(corner(0, y, z), corner(1, y, z), u);
-    let face = |z| mix_linearly(edge(0, z), edge(1, z), v);
-    mix_linearly(face(0), face(1), w)
+    let columns = [[column(x[0], y[0]), column(x[1], y[0])], [column(x[0], y[1]), column(x[1], y[1])]];
+    let mut faces = [0.0; 2];
+    for (k, face) in faces.iter_mut().enumerate() {
+        let mut edges = [0.0; 2];
+        for (j, edge) in edges.iter_mut().enumerate() {
+            // Each corner contributes a linear ramp along its gradient, 0 at the corner.
+            let corner = |i: usize| {
+                let offset = place - Vec3::new(i as f32, j as f32, k as f32);
+                gradient(columns[j][i], z[k], octave).dot(offset)
+            };
+            *edge = mix_linearly(corner(0), corner(1), u);
+        }
+        *face = mix_linearly(edges[0], edges[1], v);
+    }
+    mix_linearly(faces[0], faces[1], w)
+}
+
+/// The greatest integer that is not greater; without a function call, which `f32::floor` is on most target CPUs that programs
+/// are compiled for.
+#[inline]
+fn floor(x: f32) -> f32 {
+    const WHOLE: f32 = 8_388_608.0;
+    if x.abs() >= WHOLE {
+        return x;
+    }
+    let toward_zero = x as i32 as f32;
+    if toward_zero > x { toward_zero - 1.0 } else { toward_zero }
+}
+
+/// The hash of the lattice points above one of the plane.
+#[inline]
+fn column(x: i32, y: i32) -> u64 {
+    mix(u64::from(x as u32) | u64::from(y as u32) << 32)
 }
 
 /// The gradient at a lattice point.
-fn gradient([x, y, z]: [i32; 3], octave: u32) -> Vec3 {
-    let bits = |coordinate: i32| u64::from(coordinate as u32);
-    let hash = mix(mix(bits(x) | bits(y) << 32) ^ (bits(z) | u64::from(octave) << 32));
+#[inline]
+fn gradient(column: u64, z: i32, octave: u32) -> Vec3 {
+    let hash = mix(column ^ (u64::from(z as u32) | u64::from(octave) << 32));
     EDGES[(((hash >> 32) * EDGES.len() as u64) >> 32) as usize]
 }
 
