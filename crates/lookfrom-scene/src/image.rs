@@ -15,5 +15,5 @@ pub use self::encoding::Encoding;
 pub use self::openexr::{Channels, ExrChannel, ExrHeader, ExrRows, encode_exr, read_exr, write_exr};
 pub use self::read::{decode, read, read_data, read_encoded, read_opacity};
 pub use self::srgb::{linear_from_srgb, srgb_from_linear};
-pub use self::texels::Image;
+pub use self::texels::{Image, Quad};
 pub use self::write::{encode_hdr, encode_pfm, encode_png, encode_png_with_alpha, encode_ppm};

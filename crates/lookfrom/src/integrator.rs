@@ -12,6 +12,7 @@ mod first_hit;
 mod occlusion;
 mod path;
 mod raycast;
+mod sample_streams;
 mod shadow;
 mod whitted;
 

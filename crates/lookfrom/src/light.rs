@@ -25,7 +25,7 @@ use cone::Cone;
 use tree::LightBounds;
 
 pub use area::{AreaLight, EmitterBounds, LightPoint, LightShape, MeshLight, PatchLight, QuadricLight};
-pub(crate) use area::{AreaSamples, gather_spheres, sample_triangles};
+pub(crate) use area::{AreaSamples, sample_area_lights};
 pub use choice::LightChoice;
 pub use environment::{Environment, Layout, Sky, SkyImage};
 pub use picture::{Goniometric, Projection};

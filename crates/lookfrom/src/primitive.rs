@@ -59,15 +59,16 @@ impl MaterialBinding {
         single_sided: false,
     };
 
-    /// Whether its surfaces are nothing but their material: without emission, alpha, media or vertex data of their own, seen
-    /// from both sides.
+    /// Whether its surfaces are nothing but their material: without emission, alpha or media of their own.
+    #[inline]
+    pub(crate) fn is_only_material(&self) -> bool {
+        self.light.is_none() && self.alpha.is_none() && self.medium_interface.is_none()
+    }
+
+    /// Whether its surfaces are besides without vertex data of their own, and seen from both sides.
     #[inline]
     pub(crate) fn is_plain(&self) -> bool {
-        self.light.is_none()
-            && self.alpha.is_none()
-            && self.medium_interface.is_none()
-            && self.vertex_data.is_none()
-            && !self.single_sided
+        self.is_only_material() && self.vertex_data.is_none() && !self.single_sided
     }
 }
 

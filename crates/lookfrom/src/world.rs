@@ -197,7 +197,7 @@ impl World {
     }
 
     /// The inputs of texture evaluation at a surface.
-    pub fn texture_point(&self, surface: &SurfaceInteraction) -> TexturePoint {
+    pub fn texture_point(&self, surface: &SurfaceInteraction) -> TexturePoint<'_> {
         let world = self.origin + DVec3::from_array(surface.point.position);
         let point = TexturePoint {
             uv: surface.uv,

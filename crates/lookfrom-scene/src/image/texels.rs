@@ -4,7 +4,6 @@
 //! advance would give.
 
 use super::encoding::{Encoding, Table};
-use crate::texture::Channel;
 
 /// An image of linear colours and optional alpha, row 0 on top.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,6 +25,16 @@ enum Texels {
     Bytes { texels: Vec<[u8; 4]>, table: Table },
     /// Linear Rec. 709; `alpha` is empty if the image is opaque.
     Floats { texels: Vec<[f32; 3]>, alpha: Vec<f32> },
+}
+
+/// Four texels, as an image stores them: fetched from memory before they are decoded, so that the waits of several fetches overlap.
+#[derive(Clone, Copy, Debug)]
+pub struct Quad(Stored);
+
+#[derive(Clone, Copy, Debug)]
+enum Stored {
+    Bytes([[u8; 4]; 4]),
+    Floats([[f32; 4]; 4]),
 }
 
 impl Default for Texels {
@@ -105,40 +114,40 @@ impl Image {
     /// If there is no such texel.
     #[inline]
     pub fn texel(&self, index: usize) -> [f32; 3] {
-        let [texel] = self.texels_at([index]);
-        texel
-    }
-
-    /// The colours of several texels.
-    ///
-    /// # Panics
-    /// If there is no such texel.
-    #[inline]
-    pub fn texels_at<const N: usize>(&self, indices: [usize; N]) -> [[f32; 3]; N] {
         match &self.texels {
-            Texels::Bytes { texels, table } => indices.map(|index| {
+            Texels::Bytes { texels, table } => {
                 let [r, g, b, _] = texels[index];
                 [r, g, b].map(|byte| table[usize::from(byte)])
-            }),
-            Texels::Floats { texels, .. } => indices.map(|index| texels[index]),
+            }
+            Texels::Floats { texels, .. } => texels[index],
         }
     }
 
-    /// One channel of several texels; red for [`Channel::Rgb`].
+    /// Four texels as they are stored.
     ///
     /// # Panics
     /// If there is no such texel.
     #[inline]
-    pub fn channel_at<const N: usize>(&self, indices: [usize; N], channel: Channel) -> [f32; N] {
-        let place = match channel {
-            Channel::Alpha => return indices.map(|index| self.alpha(index)),
-            Channel::Rgb | Channel::Red => 0,
-            Channel::Green => 1,
-            Channel::Blue => 2,
-        };
+    pub fn quad(&self, indices: [usize; 4]) -> Quad {
         match &self.texels {
-            Texels::Bytes { texels, table } => indices.map(|index| table[usize::from(texels[index][place])]),
-            Texels::Floats { texels, .. } => indices.map(|index| texels[index][place]),
+            Texels::Bytes { texels, .. } => Quad(Stored::Bytes(indices.map(|index| texels[index]))),
+            Texels::Floats { texels, alpha } => Quad(Stored::Floats(indices.map(|index| {
+                let [r, g, b] = texels[index];
+                [r, g, b, alpha.get(index).copied().unwrap_or(1.0)]
+            }))),
+        }
+    }
+
+    /// The linear colours and opacities of four texels of this image.
+    #[inline]
+    pub fn decoded(&self, quad: &Quad) -> [[f32; 4]; 4] {
+        match (quad.0, &self.texels) {
+            (Stored::Bytes(quad), Texels::Bytes { table, .. }) => quad.map(|[r, g, b, a]| {
+                let [r, g, b] = [r, g, b].map(|byte| table[usize::from(byte)]);
+                [r, g, b, f32::from(a) / 255.0]
+            }),
+            (Stored::Bytes(quad), _) => quad.map(|texel| texel.map(|byte| f32::from(byte) / 255.0)),
+            (Stored::Floats(quad), _) => quad,
         }
     }
 
@@ -194,9 +203,10 @@ mod tests {
                     Encoding::Curve(_) => [r, g, b].map(square),
                 };
                 assert_eq!((image.texel(index), image.alpha(index)), (expected, a), "{encoding:?}");
-                let channels = [Channel::Red, Channel::Green, Channel::Blue, Channel::Alpha];
-                let read = channels.map(|channel| image.channel_at([index], channel)[0]);
-                assert_eq!(read, [expected[0], expected[1], expected[2], a]);
+                assert_eq!(
+                    image.decoded(&image.quad([index; 4])),
+                    [[expected[0], expected[1], expected[2], a]; 4]
+                );
             }
         }
     }

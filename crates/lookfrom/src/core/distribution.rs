@@ -4,8 +4,10 @@
 //! there, [`Windowed2D`] a point within a window of it. All invert cumulative sums, which is monotonic:
 //! well-distributed samples stay well distributed. Entries and weights are up to the lights.
 
+mod piecewise;
 mod window;
 
+pub use piecewise::Piecewise2D;
 pub use window::{Window, Windowed2D};
 
 use crate::core::sampler::ONE_MINUS_EPSILON;
@@ -46,76 +48,6 @@ impl Discrete {
     /// The probability of an entry; 0 for one of weight 0 or an index out of range.
     pub fn pdf(&self, index: usize) -> f32 {
         rounded(share(&self.sums, index))
-    }
-}
-
-/// A density over the unit square that is constant in each cell of a grid.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Piecewise2D {
-    width: usize,
-    height: usize,
-    /// Cumulative sums of the weights of whole rows.
-    rows: Vec<f64>,
-    row_guide: Vec<u32>,
-    /// Cumulative sums of the weights within each row: `width + 1` numbers per row.
-    columns: Vec<f64>,
-    /// Guide tables of all rows, of equal length.
-    column_guide: Vec<u32>,
-}
-
-impl Piecewise2D {
-    /// `width` × `height` weights, row by row: the first cell is the one at (0, 0), the first coordinate runs along
-    /// rows. Weights that are negative or not finite count as zero; if none is positive or there are no cells, the
-    /// density is uniform. Takes 9 to 10 bytes per cell.
-    ///
-    /// # Panics
-    /// If there are not `width` × `height` weights.
-    pub fn new(weights: &[f32], width: usize, height: usize) -> Self {
-        assert_eq!(weights.len(), width * height, "weights of a grid of {width} × {height}");
-        if !weights.iter().any(|&weight| usable(weight) > 0.0) {
-            return Self::new(&[1.0], 1, 1);
-        }
-        let (mut rows, mut columns) = (vec![0.0], Vec::with_capacity((width + 1) * height));
-        let mut column_guide = Vec::new();
-        let mut sum = 0.0;
-        for row in weights.chunks_exact(width) {
-            sum += push_sums(&mut columns, row);
-            push_guide(&mut column_guide, &columns[columns.len() - width - 1..]);
-            rows.push(sum);
-        }
-        let mut row_guide = Vec::new();
-        push_guide(&mut row_guide, &rows);
-        Self { width, height, rows, row_guide, columns, column_guide }
-    }
-
-    /// A point for `u` in [0, 1)², and its density over the area of the unit square (equal to
-    /// [`Piecewise2D::pdf`]). Each coordinate is monotonic in its coordinate of `u`. A cell of weight
-    /// 0 is never sampled.
-    pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
-        let (row, v) = choose(&self.rows, &self.row_guide, u[1]);
-        let stride = self.column_guide.len() / self.height;
-        let guide = &self.column_guide[row * stride..(row + 1) * stride];
-        let (column, u) = choose(self.row(row), guide, u[0]);
-        let point = [place(column, u, self.width), place(row, v, self.height)];
-        (point, self.density(column, row))
-    }
-
-    /// The density at a point, over the area of the unit square: its integral is 1. 0 outside of the square.
-    pub fn pdf(&self, uv: [f32; 2]) -> f32 {
-        if !uv.iter().all(|x| (0.0..=1.0).contains(x)) {
-            return 0.0;
-        }
-        self.density(cell(uv[0], self.width), cell(uv[1], self.height))
-    }
-
-    fn density(&self, column: usize, row: usize) -> f32 {
-        let probability = share(&self.rows, row) * share(self.row(row), column);
-        rounded(probability * (self.width * self.height) as f64)
-    }
-
-    fn row(&self, row: usize) -> &[f64] {
-        let stride = self.width + 1;
-        &self.columns[row * stride..(row + 1) * stride]
     }
 }
 

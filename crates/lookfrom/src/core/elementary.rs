@@ -73,6 +73,27 @@ pub(crate) fn sin_cos_of_turns<R: Real>(turns: R) -> (R, R) {
     (R::from_bits(y.to_bits() ^ sign_of_sin), R::from_bits(x.to_bits() ^ sign_of_cos))
 }
 
+/// The angle of the point (x, y) from the x axis in whole turns (2π), from −½ to ½, to 2⁻²²; 0 for the origin.
+#[inline(always)]
+pub(crate) fn angle_in_turns<R: Real>(y: R, x: R) -> R {
+    let (width, height) = (Float::abs(x), Float::abs(y));
+    let is_steep = height.gt(width);
+    let slope = R::select(is_steep, width, height) / R::select(is_steep, height, width);
+    // The tangent of half the angle, at most tan(π/8), and the series of that angle.
+    let t = slope / (Float::sqrt(slope * slope + 1.0) + 1.0);
+    let t2 = t * t;
+    let mut sum = t2.like(ARC_TANGENT[9] as f32);
+    let mut k = 9;
+    while k > 0 {
+        k -= 1;
+        sum = sum * t2 + ARC_TANGENT[k] as f32;
+    }
+    let angle = t * sum * (1.0 / PI) as f32;
+    let angle = R::select(is_steep, -angle + 0.25, angle);
+    let angle = R::select(x.lt(x.like(0.0)), -angle + 0.5, angle);
+    Float::copysign(R::select(Float::eq(slope, slope), angle, x.like(0.0)), y)
+}
+
 /// Sine and cosine of an angle of 0 … 2π in double precision, to 2⁻⁵⁰.
 #[inline(always)]
 pub(crate) fn sin_cos<F: Float<Scalar = f64>>(angle: F) -> (F, F) {
@@ -227,6 +248,10 @@ mod tests {
             let error =
                 (f64::from(sin) - libm::sin(angle)).abs().max((f64::from(cos) - libm::cos(angle)).abs());
             assert!(error <= 1.0 / 4_194_304.0, "{x} turns: {error}");
+            let (x, y) = (number(count, 60), number(count + 7, 60));
+            let turns = libm::atan2(f64::from(y), f64::from(x)) / std::f64::consts::TAU;
+            let error = (f64::from(angle_in_turns(y, x)) - turns).abs();
+            assert!(error <= 1.0 / 4_194_304.0, "turns of ({x}, {y}): {error}");
             let bound = libm::exp2(-50.0);
             let (y, x) = (f64::from(number(count, 60).abs()), f64::from(number(count + 1, 60)));
             let angle = libm::atan2(y, x);
@@ -242,6 +267,8 @@ mod tests {
     fn angles_on_the_axes() {
         let angles = [[0.0, 1.0], [1.0, 0.0], [0.0, -1.0], [0.0, 0.0]].map(|[y, x]| atan2(y, x));
         assert_eq!(angles, [0.0, FRAC_PI_2, PI, 0.0]);
+        let turns = [[0.0, 1.0], [1.0, 0.0], [-1.0, 0.0], [0.0, -1.0], [0.0, 0.0], [-2.0, -2.0]];
+        assert_eq!(turns.map(|[y, x]| angle_in_turns(y, x)), [0.0, 0.25, -0.25, 0.5, 0.0, -0.375]);
     }
 
     #[test]
@@ -254,7 +281,7 @@ mod tests {
     struct All([f32; 8]);
 
     impl Kernel for All {
-        type Output = ([[f32; 8]; 4], [[f64; 8]; 3]);
+        type Output = ([[f32; 8]; 5], [[f64; 8]; 3]);
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let x = f32x8::load_array(simd, self.0);
@@ -263,7 +290,11 @@ mod tests {
             let wide = Real::widen(size);
             let angle = atan2(wide, Real::widen(x));
             let (s, c) = sin_cos(angle);
-            ([exp(x).into(), ln(size).into(), sin.into(), cos.into()], [angle.into(), s.into(), c.into()])
+            let turns = angle_in_turns(x, size - 1.0);
+            (
+                [exp(x).into(), ln(size).into(), sin.into(), cos.into(), turns.into()],
+                [angle.into(), s.into(), c.into()],
+            )
         }
     }
 
@@ -276,11 +307,12 @@ mod tests {
                 }
                 x => x,
             });
-            let ([e, l, s, c], wide) = dispatch(level(), All(x));
+            let ([e, l, s, c, t], wide) = dispatch(level(), All(x));
             for (lane, &x) in x.iter().enumerate() {
                 let (sin, cos) = sin_cos_of_turns(x);
-                let expected = [exp(x), ln(x.abs()), sin, cos].map(f32::to_bits);
-                assert_eq!([e[lane], l[lane], s[lane], c[lane]].map(f32::to_bits), expected, "{x}");
+                let turns = angle_in_turns(x, x.abs() - 1.0);
+                let expected = [exp(x), ln(x.abs()), sin, cos, turns].map(f32::to_bits);
+                assert_eq!([e[lane], l[lane], s[lane], c[lane], t[lane]].map(f32::to_bits), expected, "{x}");
                 let angle = atan2(f64::from(x.abs()), f64::from(x));
                 let (sin, cos) = sin_cos(angle);
                 let expected = [angle, sin, cos].map(f64::to_bits);

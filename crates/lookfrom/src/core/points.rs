@@ -44,6 +44,24 @@ impl<R: Real> Points<R> {
         (Self { position, error }, n)
     }
 
+    /// The ways from origins to just before these points, which have a normal and are seen from there in the direction `wi`:
+    /// so that a ray ends before the surface of the points, although its direction is rounded.
+    #[inline(always)]
+    pub(crate) fn just_before(
+        self,
+        normal: Vector<R::Double>,
+        wi: Vector<R>,
+        origins: Vector<R>,
+    ) -> Vector<R> {
+        let origins = origins.widen();
+        let Vector { x, y, z } = (self.position - origins).abs();
+        let length = Float::max(Float::max(Float::max(x.like(0.0), x), y), z);
+        let slack = length * f64::from(f32::EPSILON);
+        let error = Vector { x: self.error.x + slack, y: self.error.y + slack, z: self.error.z + slack };
+        let end = Self { position: self.position, error }.leave(normal, -wi);
+        Vector::narrow(end.widen() - origins)
+    }
+
     /// As [`lookfrom_bvh::Point::on_sphere`].
     #[inline(always)]
     pub(crate) fn on_spheres(center: Vector<R::Double>, radius: R::Double, hit: Vector<R::Double>) -> Self {

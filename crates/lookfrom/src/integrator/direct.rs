@@ -1,5 +1,6 @@
 //! Direct lighting of Whitted's model: one shadow ray to each light.
 
+mod arriving;
 mod branches;
 mod lanes;
 mod plain;
@@ -34,7 +35,7 @@ pub(super) fn step_all<I: Integrator, P: Probe>(
     let mut steps = PlainSteps::default();
     for (paths, hits) in paths.chunks(LANES).zip(hits.chunks(LANES)) {
         if in_lanes {
-            steps.compute(world, paths, hits, &output.queues.lanes);
+            steps.compute(world, &stream, paths, hits, &output.queues.lanes);
         }
         for (lane, (path, hit)) in paths.iter().zip(hits).enumerate() {
             if steps.add_light(world, lane, path, hit, output) {

@@ -120,6 +120,8 @@ impl Integrator for PathTracer {
             output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
             if !in_lanes {
                 self.step(world, &(batch.stream)(path), path, hit, output);
+            } else if batch.has_escaped(index) {
+                waiting.push_escaped(self, &batch, index, output);
             } else if let Some(class) = batch.mesh_class(self, index) {
                 waiting.push_hit(self, &batch, (class, index), output);
             } else if let Some(vertex) = self.arrive(world, &(batch.stream)(path), path, hit, output)

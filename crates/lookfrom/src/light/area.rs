@@ -3,6 +3,7 @@
 //! [`AreaLight::sample_point`] and [`AreaLight::pdf`] have the same solid angle density, as multiple importance
 //! sampling requires. The sampling of each kind of shape is in a file of its own.
 
+mod lanes;
 mod mesh;
 mod patch;
 mod quadric;
@@ -21,11 +22,12 @@ use crate::primitive::Disk;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::texture::{FloatTexture, SpectralMode, TexturePoint, Textures};
 
+pub(crate) use lanes::sample_area_lights;
 pub use mesh::MeshLight;
-pub(crate) use mesh::{Triangle as LightTriangle, sample_triangles};
+use mesh::{Triangle as LightTriangle, sample_triangles};
 pub use patch::PatchLight;
 pub use quadric::QuadricLight;
-pub(crate) use quadric::{SphereLights, gather_spheres};
+use quadric::{SphereLights, gather_spheres};
 
 /// An area light.
 #[derive(Clone, Debug)]
@@ -195,31 +197,13 @@ impl AreaLight {
         (!li.is_black()).then_some(LightSample { wi, li, pdf, target: Target::Surface(point, normal) })
     }
 
-    /// The triangle that `u0` chooses, its probability, and the remapped `u0`; only for meshes of uniform emission.
-    #[inline]
-    pub(crate) fn triangle(&self, u0: f32) -> Option<(&LightTriangle, f32, f32)> {
-        match &self.shape {
-            LightShape::Mesh(light) if self.is_uniform() => light.triangle(u0),
-            _ => None,
-        }
-    }
-
-    /// The whole sphere that it is, which is sampled by direction; only one of uniform emission.
-    #[inline]
-    pub(crate) fn sphere(&self) -> Option<&SphereLights<f32>> {
-        match &self.shape {
-            LightShape::Quadric(light) if self.is_uniform() => light.sphere(),
-            _ => None,
-        }
-    }
-
     /// Whether its emission is the same everywhere and in all directions.
     fn is_uniform(&self) -> bool {
         self.radiance.color.is_constant() && self.alpha.or(self.coat).is_none()
     }
 
     /// The inputs of an emission texture; the position in the world is not among them.
-    fn texture_point(&self, point: &LightPoint) -> TexturePoint {
+    fn texture_point(&self, point: &LightPoint) -> TexturePoint<'_> {
         let at = TexturePoint { uv: point.uv, n: point.normal.as_vec3(), ..TexturePoint::NOWHERE };
         let is_even = self.alpha.is_none()
             && !self.coat.is_some_and(FloatTexture::varies)

@@ -1,15 +1,22 @@
 //! Environment lights: a constant, a gradient or an environment map, optionally with a portal.
+//!
+//! `lanes`: environment maps for eight paths at once.
+
+mod lanes;
 
 use std::f32::consts::PI;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
+use lookfrom_simd::{Float, Real};
 
 use super::portal::{Opening, Portal};
 use super::{EmissionSpectrum, IncompletePdf, LightSample, LightSampleContext, Target};
 use crate::core::distribution::Piecewise2D;
+use crate::core::elementary;
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 use crate::core::warp;
 use crate::shading::texture::{self, SpectralMode, SpectrumType, Textures};
 
@@ -97,7 +104,7 @@ impl Environment {
             }
             Sky::Image(sky) => {
                 let through = self.portal.as_ref().and_then(|portal| portal.texel(direction));
-                let rgb = through.unwrap_or_else(|| sky.texel(textures, sky.uv(direction)));
+                let rgb = through.unwrap_or_else(|| sky.texel(textures, sky.uv(direction).0));
                 sky.radiance(rgb, lanes)
             }
         }
@@ -131,9 +138,10 @@ impl Environment {
         for (index, texel) in (0..).zip(image.texels()) {
             let place = [(index % image.width) as f32 + 0.5, (index / image.width) as f32 + 0.5];
             let uv = [place[0] / width, place[1] / height];
-            let cos = sky.direction(uv).dot(n);
+            let (direction, per_solid_angle) = sky.direction(uv);
+            let cos = direction.dot(n);
             if cos > 0.0 {
-                let share = f64::from(cos / sky.per_solid_angle(uv));
+                let share = f64::from(cos / per_solid_angle);
                 sum = std::array::from_fn(|c| sum[c] + share * f64::from((texel[c] * sky.scale[c]).max(0.0)));
             }
         }
@@ -165,7 +173,8 @@ impl Environment {
             (None, Sky::Image(sky), _) => {
                 let (uv, pdf) = sky.choice(incomplete_pdf).sample(u);
                 let li = sky.radiance(sky.texel(textures, uv), lanes);
-                (sky.direction(uv), pdf * sky.per_solid_angle(uv), li)
+                let (wi, per_solid_angle) = sky.direction(uv);
+                (wi, pdf * per_solid_angle, li)
             }
             (None, _, IncompletePdf::Allowed) => return None,
             (None, _, IncompletePdf::Forbidden) => {
@@ -183,8 +192,8 @@ impl Environment {
             _ if !self.illuminates => 0.0,
             (Some(portal), ..) => finite(portal.pdf(at.point, wi)),
             (None, Sky::Image(sky), _) => {
-                let uv = sky.uv(wi);
-                finite(sky.choice(incomplete_pdf).pdf(uv) * sky.per_solid_angle(uv))
+                let (uv, per_solid_angle) = sky.uv(wi);
+                finite(sky.choice(incomplete_pdf).pdf(uv) * per_solid_angle)
             }
             (None, _, IncompletePdf::Allowed) => 0.0,
             (None, _, IncompletePdf::Forbidden) => warp::cosine_hemisphere_pdf(at.n.dot(wi)),
@@ -224,7 +233,7 @@ impl SkyImage {
 
     /// The map's colour in a unit direction, bilinearly interpolated between texel centres.
     pub fn blended(&self, textures: &Textures, direction: Vec3) -> [f32; 3] {
-        let uv = self.uv(direction);
+        let (uv, _) = self.uv(direction);
         match self.layout {
             Layout::LatitudeLongitude => self.texel(textures, uv),
             Layout::Octahedral => {
@@ -252,37 +261,75 @@ impl SkyImage {
         texture::spectrum_of(rgb, SpectrumType::Illuminant, lanes)
     }
 
-    /// Factor from a density over the unit square of the map to one over solid angle.
-    fn per_solid_angle(&self, [_, v]: [f32; 2]) -> f32 {
+    /// The (u, v) of a unit direction, and the factor there from a density over the unit square to one over solid angle.
+    fn uv(&self, direction: Vec3) -> ([f32; 2], f32) {
         match self.layout {
-            // the sphere's area element is 2π² sin θ times that of the unit square
-            Layout::LatitudeLongitude => 1.0 / (2.0 * PI * PI * libm::sinf(v * PI)),
-            Layout::Octahedral => 0.25 / PI,
-        }
-    }
-
-    /// The (u, v) of a unit direction.
-    fn uv(&self, direction: Vec3) -> [f32; 2] {
-        let d = self.world_from_light.transpose() * direction;
-        match self.layout {
-            Layout::LatitudeLongitude => {
-                let u = 0.5 + libm::atan2f(d.x, -d.z) / (2.0 * PI);
-                [u, libm::acosf(d.y.clamp(-1.0, 1.0)) / PI]
+            Layout::LatitudeLongitude => latitude_longitude(self.of_light(direction.into())),
+            Layout::Octahedral => {
+                (warp::octahedral_square(self.world_from_light.transpose() * direction), OCTAHEDRAL_DENSITY)
             }
-            Layout::Octahedral => warp::octahedral_square(d),
         }
     }
 
     /// The inverse of [`SkyImage::uv`].
-    fn direction(&self, [u, v]: [f32; 2]) -> Vec3 {
-        let of_light = match self.layout {
+    fn direction(&self, uv: [f32; 2]) -> (Vec3, f32) {
+        match self.layout {
             Layout::LatitudeLongitude => {
-                let (phi, theta) = ((u - 0.5) * 2.0 * PI, v * PI);
-                let sin_theta = libm::sinf(theta);
-                Vec3::new(libm::sinf(phi) * sin_theta, libm::cosf(theta), -libm::cosf(phi) * sin_theta)
+                let (of_light, per_solid_angle) = latitude_longitude_direction(uv);
+                (self.in_world(of_light).into(), per_solid_angle)
             }
-            Layout::Octahedral => warp::octahedral_direction([u, v]),
-        };
-        self.world_from_light * of_light
+            Layout::Octahedral => {
+                (self.world_from_light * warp::octahedral_direction(uv), OCTAHEDRAL_DENSITY)
+            }
+        }
     }
+
+    /// From the world to the light's axes.
+    #[inline(always)]
+    fn of_light<R: Real>(&self, v: Vector<R>) -> Vector<R> {
+        let [x, y, z] = self.axes(v.x);
+        Vector { x: x.dot(v), y: y.dot(v), z: z.dot(v) }
+    }
+
+    /// From the light's axes to the world.
+    #[inline(always)]
+    fn in_world<R: Real>(&self, v: Vector<R>) -> Vector<R> {
+        let [x, y, z] = self.axes(v.x);
+        x * v.x + y * v.y + z * v.z
+    }
+
+    /// The light's axes in the world.
+    #[inline(always)]
+    fn axes<R: Real>(&self, like: R) -> [Vector<R>; 3] {
+        let [x, y, z] = self.world_from_light.to_cols_array_2d();
+        [splat(like, x), splat(like, y), splat(like, z)]
+    }
+}
+
+/// The density over solid angle of a uniform one over an octahedral square.
+const OCTAHEDRAL_DENSITY: f32 = 0.25 / PI;
+
+/// The same vector in each lane.
+#[inline(always)]
+fn splat<R: Real>(like: R, [x, y, z]: [f32; 3]) -> Vector<R> {
+    Vector { x: like.like(x), y: like.like(y), z: like.like(z) }
+}
+
+/// The (u, v) of a unit direction in an equirectangular picture, and the factor there from a density over the unit square to
+/// one over solid angle: the sphere's area element is 2π² sin θ times that of the square.
+#[inline(always)]
+fn latitude_longitude<R: Real>(d: Vector<R>) -> ([R; 2], R) {
+    let sin_theta = Float::sqrt(d.x * d.x + d.z * d.z);
+    let u = elementary::angle_in_turns(d.x, -d.z) + 0.5;
+    let v = elementary::angle_in_turns(sin_theta, d.y) * 2.0;
+    ([u, v], sin_theta.like(1.0) / (sin_theta * (2.0 * PI * PI)))
+}
+
+/// The inverse of [`latitude_longitude`].
+#[inline(always)]
+fn latitude_longitude_direction<R: Real>([u, v]: [R; 2]) -> (Vector<R>, R) {
+    let (sin_phi, cos_phi) = elementary::sin_cos_of_turns(u - 0.5);
+    let (sin_theta, cos_theta) = elementary::sin_cos_of_turns(v * 0.5);
+    let direction = Vector { x: sin_phi * sin_theta, y: cos_theta, z: -cos_phi * sin_theta };
+    (direction, u.like(1.0) / (sin_theta * (2.0 * PI * PI)))
 }

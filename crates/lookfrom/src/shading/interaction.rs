@@ -58,11 +58,40 @@ pub struct SurfaceInteraction {
     pub on_primitive: Vec2,
 }
 
+/// The directions at a surface that its shading frame depends on, of unit length but for the derivatives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShadingGeometry {
+    /// [`SurfaceInteraction::ng`].
+    pub(crate) ng: Vec3,
+    /// [`SurfaceInteraction::ns`].
+    pub(crate) ns: Vec3,
+    /// [`SurfaceInteraction::shading_dpdu`].
+    pub(crate) dpdu: Vec3,
+    /// [`SurfaceInteraction::shading_dpdv`].
+    pub(crate) dpdv: Vec3,
+    /// [`SurfaceInteraction::wo`].
+    pub(crate) wo: Vec3,
+    /// [`SurfaceInteraction::front`].
+    pub(crate) front: bool,
+}
+
+impl ShadingGeometry {
+    /// The geometric normal on the side of `wo`.
+    pub(crate) fn ng_facing(&self) -> Vec3 {
+        if self.front { self.ng } else { -self.ng }
+    }
+}
+
 impl SurfaceInteraction {
+    /// What the shading frame depends on.
+    pub(crate) fn shading_geometry(&self) -> ShadingGeometry {
+        let Self { ns, wo, front, shading_dpdu: dpdu, shading_dpdv: dpdv, .. } = *self;
+        ShadingGeometry { ng: self.ng.as_vec3(), ns, dpdu, dpdv, wo, front }
+    }
+
     /// The geometric normal on the side of `wo`.
     pub fn ng_facing(&self) -> Vec3 {
-        let n = self.ng.as_vec3();
-        if self.front { n } else { -n }
+        self.shading_geometry().ng_facing()
     }
 
     /// The shading normal on the side of `wo`; where smoothing turned it away from `wo`, the geometric one.

@@ -10,6 +10,7 @@ mod bump;
 mod compile;
 mod interior;
 mod kind;
+mod pictures;
 mod principled;
 mod rows;
 mod whitted;
@@ -26,9 +27,11 @@ use crate::shading::bsdf::layered::{CoatLayer, Layered};
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::bsdf::whitted::Whitted as WhittedBsdf;
 use crate::shading::bsdf::{self, Bsdf, BsdfSample, Mode, fresnel};
-use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interaction::{ShadingGeometry, SurfaceInteraction};
 use crate::shading::interior_stack::InteriorStack;
-use crate::shading::texture::{FloatTexture, SpectralMode, SpectrumTexture, TexturePoint, Textures};
+use crate::shading::texture::{
+    FloatTexture, PictureSet, SpectralMode, SpectrumTexture, TexturePoint, Textures,
+};
 
 pub use albedo::albedo;
 pub(crate) use bump::frame_about;
@@ -51,6 +54,8 @@ pub struct Material {
     pub medium: Option<u32>,
     /// The nearest equivalent in Whitted's model, for integrators that support no other.
     pub whitted: Whitted,
+    /// The pictures that its scattering function depends on.
+    pub pictures: PictureSet,
 }
 
 /// A BSDF at a point, with its shading frame.
@@ -65,7 +70,7 @@ pub struct Shading {
 
 /// An orthonormal frame of unit vectors in render space.
 #[derive(Clone, Copy, Debug)]
-struct Frame {
+pub(crate) struct Frame {
     s: Vec3,
     t: Vec3,
     n: Vec3,
@@ -80,6 +85,10 @@ impl Frame {
         v.x * self.s + v.y * self.t + v.z * self.n
     }
 
+    fn axes(&self) -> [[f32; 3]; 3] {
+        [self.s, self.t, self.n].map(|axis| axis.to_array())
+    }
+
     /// The frame with the first axis turned toward a direction.
     fn along(&self, direction: Vec3) -> Self {
         bump::around(self.n, direction)
@@ -89,7 +98,11 @@ impl Frame {
 impl Shading {
     /// A matte surface without bump mapping.
     pub fn matte(surface: &SurfaceInteraction, reflectance: Spectrum) -> Self {
-        Self { bsdf: Bsdf::diffuse(reflectance), frame: bump::plain(surface), ng: surface.ng.as_vec3() }
+        Self {
+            bsdf: Bsdf::diffuse(reflectance),
+            frame: bump::plain(&surface.shading_geometry()),
+            ng: surface.ng.as_vec3(),
+        }
     }
 
     /// The shading normal to the outside, unit length.
@@ -99,7 +112,7 @@ impl Shading {
 
     /// The axes of the shading frame; the third is the shading normal.
     pub(crate) fn axes(&self) -> [[f32; 3]; 3] {
-        [self.frame.s, self.frame.t, self.frame.n].map(|axis| axis.to_array())
+        self.frame.axes()
     }
 
     /// The cosine of the angle between a unit direction and the shading normal.
@@ -190,7 +203,7 @@ impl Material {
     }
 
     /// The shading frame of this material.
-    fn frame(&self, textures: &Textures, surface: &SurfaceInteraction, point: &TexturePoint) -> Frame {
+    fn frame(&self, textures: &Textures, surface: &ShadingGeometry, point: &TexturePoint) -> Frame {
         match self.kind {
             MaterialKind::Principled(_) => bump::valid_frame(&self.bump_mapping, textures, surface, point),
             _ => bump::frame(&self.bump_mapping, textures, surface, point),
@@ -228,14 +241,15 @@ pub fn shading(
         material = &materials[index as usize];
     }
     let mut at = Evaluator::new(materials, textures, point, ShadingContext { u, ..arrival });
-    let ng = surface.ng.as_vec3();
+    let geometry = surface.shading_geometry();
+    let ng = geometry.ng;
     if let MaterialKind::Principled(look) = &material.kind {
-        let frame = material.frame(textures, surface, point);
-        let (bsdf, frame) = at.principled(look, index, surface, frame);
-        return Some(Shading { bsdf, frame, ng });
+        let frame = material.frame(textures, &geometry, point);
+        let (bsdf, frame) = at.principled(look, index, &geometry, frame);
+        return Some(Shading { bsdf: Bsdf::Principled(bsdf), frame, ng });
     }
     let bsdf = at.bsdf(material)?;
-    Some(Shading { bsdf, frame: material.frame(textures, surface, point), ng })
+    Some(Shading { bsdf, frame: material.frame(textures, &geometry, point), ng })
 }
 
 /// The shading normal, to the outside, of unit length: that of [`shading`]; for mixed materials that of the first.
@@ -251,7 +265,7 @@ pub fn normal(
     }
     match material.bump_mapping {
         BumpMapping::None => surface.ns,
-        _ => material.frame(textures, surface, point).n,
+        _ => material.frame(textures, &surface.shading_geometry(), point).n,
     }
 }
 
@@ -259,7 +273,7 @@ pub fn normal(
 pub(crate) struct Evaluator<'a> {
     materials: &'a [Material],
     textures: &'a Textures,
-    point: &'a TexturePoint,
+    point: &'a TexturePoint<'a>,
     lanes: &'a mut SpectralMode,
     throughput: &'a mut Spectrum,
     interior: InteriorStack,

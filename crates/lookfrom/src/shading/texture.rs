@@ -5,11 +5,12 @@
 //! images are not filtered beyond bilinear, checkerboards have sharp edges and noise has all its octaves.
 //!
 //! `input`: the inputs of materials and lights; `node`: the textures themselves; `mapping`: texture coordinates;
-//! `picture`, `pattern`: image lookups and procedural patterns; `evaluation`: conversion to numbers, RGB or
-//! spectra.
+//! `picture`, `pattern`: image lookups and procedural patterns; `look_ups`: those of eight points at once; `evaluation`:
+//! conversion to numbers, RGB or spectra.
 
 mod evaluation;
 mod input;
+mod look_ups;
 mod mapping;
 mod node;
 mod pattern;
@@ -27,13 +28,15 @@ use lookfrom_scene::spectrum::Curve;
 use lookfrom_scene::texture::{Channel, TextureKind, Wrap};
 
 pub use self::input::{FloatTexture, SpectrumTexture, SpectrumType};
+pub use self::look_ups::{LookUps, LookedUp, PictureSet};
 pub use self::mapping::sphere_uv;
 pub use self::picture::look_up;
+pub(crate) use self::picture::look_up_lanes;
 
 use self::evaluation::{Evaluation, FloatEvaluation, RgbEvaluation, SpectralEvaluation};
 use self::input::Input;
+use self::look_ups::Picture;
 use self::node::Node;
-use self::picture::look_up_channel;
 use crate::core::color::{DenselySampledSpectrum, Wavelengths};
 use crate::core::noise::{self, perlin};
 use crate::core::spectrum::Spectrum;
@@ -51,6 +54,8 @@ pub enum SpectralMode {
 #[derive(Clone, Debug, Default)]
 pub struct Textures {
     nodes: Vec<Node>,
+    /// Pictures as the nodes read them.
+    pictures: Vec<Picture>,
     images: Vec<Image>,
     curves: Vec<Measured>,
     /// True if constants are uplifted to spectra when they are compiled.
@@ -72,7 +77,7 @@ pub const MORE_UV_SETS: usize = Mesh::MOST_UV_SETS - 1;
 
 /// The inputs of texture evaluation.
 #[derive(Clone, Copy, Debug)]
-pub struct TexturePoint {
+pub struct TexturePoint<'a> {
     /// Texture coordinates.
     pub uv: Vec2,
     /// Texture coordinates of further sets.
@@ -85,6 +90,8 @@ pub struct TexturePoint {
     pub opacity: f32,
     /// Normal in world space, of unit length, on either side. pbrt-v4 takes the geometric one.
     pub n: Vec3,
+    /// Pictures that were looked up here beforehand.
+    pub looked_up: Option<LookedUp<'a>>,
 }
 
 impl SpectralMode {
@@ -109,7 +116,7 @@ pub fn spectrum_of(rgb: [f32; 3], spectrum_type: SpectrumType, lanes: &SpectralM
     }
 }
 
-impl TexturePoint {
+impl TexturePoint<'_> {
     /// For textures that are constant.
     pub const NOWHERE: Self = Self {
         uv: Vec2::ZERO,
@@ -118,6 +125,7 @@ impl TexturePoint {
         color: [1.0; 3],
         opacity: 1.0,
         n: Vec3::Z,
+        looked_up: None,
     };
 }
 
@@ -131,7 +139,8 @@ impl Textures {
         };
         let curves = curves.into_iter().map(measured).collect();
         let uplifts = color == ColorMode::Spectral;
-        Self { nodes: Node::compile_all(kinds, uplifts), images, curves, uplifts }
+        let (nodes, pictures) = Node::compile_all(kinds, uplifts);
+        Self { nodes, pictures, images, curves, uplifts }
     }
 
     /// A colour of the scene, compiled for its spectrum type.
@@ -206,8 +215,9 @@ impl Textures {
             Input::Texture(id) => self.is_one(FloatTexture::Texture(*id), has_opacities),
         };
         match &self.nodes[id.index()] {
-            Node::Image { image, wrap, channel: Channel::Alpha, scale, invert: false, .. } => {
-                *scale == 1.0 && !wrap.contains(&Wrap::Black) && !self.images[*image].has_alpha()
+            Node::Image { picture, channel: Channel::Alpha, scale, invert: false } => {
+                let Picture { image, wraps, .. } = &self.pictures[*picture as usize];
+                *scale == 1.0 && !wraps.contains(&Wrap::Black) && !self.images[*image].has_alpha()
             }
             Node::VertexAlpha => !has_opacities,
             Node::Product { a, b } => is_one(a) && is_one(b),
@@ -230,16 +240,17 @@ impl Textures {
     fn texture<R: Evaluation>(&self, id: TextureId, at: &TexturePoint, evaluation: &R) -> R::Value {
         let space = |mapping| mapping::coordinates(mapping, at).as_vec3();
         match &self.nodes[id.index()] {
-            Node::Image { image, mapping, wrap, filter, channel, scale, invert } => {
-                let place = space(mapping);
-                // v runs up, rows run down.
-                let st = [place.x, 1.0 - place.y];
-                let image = &self.images[*image];
+            Node::Image { picture, channel, scale, invert } => {
+                let [r, g, b, alpha] = self.look_up(*picture, at);
                 let rgb = match channel {
-                    Channel::Rgb => look_up(image, st, *wrap, *filter),
-                    channel => [look_up_channel(image, *channel, st, *wrap, *filter); 3],
+                    Channel::Rgb => [r, g, b],
+                    Channel::Red => [r; 3],
+                    Channel::Green => [g; 3],
+                    Channel::Blue => [b; 3],
+                    Channel::Alpha => [alpha; 3],
                 };
-                evaluation.texel(rgb.map(|c| scale * c), *invert, *filter)
+                let filter = self.pictures[*picture as usize].filter;
+                evaluation.texel(rgb.map(|c| scale * c), *invert, filter)
             }
             Node::Checker { even, odd, mapping } => {
                 let is_even = pattern::is_even(mapping::off_border(mapping, at));

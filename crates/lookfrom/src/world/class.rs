@@ -24,7 +24,7 @@ impl World {
         let class = |primitives: &Primitives| {
             let Primitives::Mesh(mesh) = primitives else { return Class::General };
             let class = materials[mesh.binding.material as usize].class();
-            class.filter(|_| mesh.binding.is_plain()).map_or(Class::General, Class::Mesh)
+            class.filter(|_| mesh.binding.is_only_material()).map_or(Class::General, Class::Mesh)
         };
         primitives.iter().map(class).collect()
     }

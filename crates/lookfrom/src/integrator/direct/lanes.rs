@@ -1,11 +1,10 @@
 //! Steps of Whitted's model for eight plain hits side by side, from the hit on: direct light and branches. The bits are
 //! those of [`super::local_light`] and of Whitted's step.
 
-use std::f32::consts::PI;
-
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
-use lookfrom_simd::{Float, Kernel, Real, Simd, dispatch, f32x8, f64x8, level, prelude::*};
+use lookfrom_simd::{Float, Kernel, Simd, dispatch, f32x8, f64x8, level, prelude::*};
 
+use super::arriving::{Arriving, Ends};
 use super::branches::Branches;
 use super::plain::PlainHit;
 use super::surfaces::Surfaces;
@@ -13,8 +12,8 @@ use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64, 
 use crate::core::math;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::integrator::{Branch, Path, Probe, Shadow, StepOutput, Term};
-use crate::light::{Light, fade};
+use crate::integrator::{Branch, Path, Probe, SampleStream, Shadow, StepOutput, Term};
+use crate::light::Light;
 use crate::shading::material::Coefficients;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
@@ -63,11 +62,11 @@ struct FromLight {
 }
 
 impl PlainSteps {
-    /// Whether steps are computed in lanes at all: if all lights come from a single direction that is easily
-    /// told.
+    /// Whether steps are computed in lanes at all: if all lights are of kinds that are sampled there.
     pub(in crate::integrator) fn are_for(world: &World) -> bool {
         world.lights.iter().all(|light| match light {
             Light::Point { .. } | Light::Distant { .. } => true,
+            Light::Area(light) => light.is_in_lanes(),
             _ => !light.illuminates(),
         })
     }
@@ -77,6 +76,7 @@ impl PlainSteps {
     pub(in crate::integrator) fn compute(
         &mut self,
         world: &World,
+        stream: &impl Fn(&Path) -> SampleStream,
         paths: &[Path],
         hits: &[Hit],
         modes: &[SpectralMode],
@@ -91,7 +91,8 @@ impl PlainSteps {
         let Some(any) = found.iter().flatten().next() else { return };
         // Other lanes repeat one that is plain.
         let eight = by_lane!(lane => found[lane].unwrap_or(*any));
-        PlainKernel { world, eight: &eight, modes, steps: self }.run_at_level();
+        let streams = by_lane!(lane => stream(eight[lane].path));
+        PlainKernel { world, eight: &eight, streams: &streams, modes, steps: self }.run_at_level();
     }
 
     /// Adds the light of a lane to the sample of its path; false if its hit is not plain.
@@ -147,6 +148,7 @@ impl PlainSteps {
 struct PlainKernel<'a> {
     world: &'a World,
     eight: &'a [PlainHit<'a>; LANES],
+    streams: &'a [SampleStream; LANES],
     /// By slot.
     modes: &'a [SpectralMode],
     steps: &'a mut PlainSteps,
@@ -164,7 +166,7 @@ impl Kernel for PlainKernel<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { world, eight, modes, steps } = self;
+        let Self { world, eight, streams, modes, steps } = self;
         let modes = by_lane!(lane => &modes[eight[lane].path.slot as usize]);
         let surfaces = Surfaces::of(simd, eight);
         let Surfaces { points, ng, ng_facing, ns_facing, wo, front } = surfaces;
@@ -196,25 +198,14 @@ impl Kernel for PlainKernel<'_> {
         let zero = f32x8::splat(simd, 0.0);
 
         for (index, source) in world.lights.iter().enumerate() {
-            let (wi, distance, position) = match source {
-                Light::Point { position, .. } => {
-                    let position = splat(simd, position.to_array());
-                    let way = position - points.position;
-                    let distance = way.length();
-                    let wi = Vector { x: way.x / distance, y: way.y / distance, z: way.z / distance };
-                    (Vector::<f32x8<S>>::narrow(wi), distance, Some(position))
-                }
-                Light::Distant { toward, .. } => {
-                    let wi = Vector::<f32x8<S>>::narrow(splat(simd, toward.as_dvec3().to_array()));
-                    (wi, f64x8::splat(simd, 1.0), None)
-                }
-                _ => continue,
+            let Some(Arriving { wi, li, exists, target }) =
+                Arriving::from(simd, (source, index as u32), world, streams, points.position, &modes)
+            else {
+                continue;
             };
             let n_dot_l = ns_facing.dot(wi);
-            let distances: [f64; LANES] = distance.into();
-            let mut lit = zero.narrow_mask(distance.gt(f64x8::splat(simd, 0.0)))
-                & ng_facing.dot(wi).gt(zero)
-                & !(n_dot_l.lt(zero) | Float::eq(n_dot_l, zero));
+            let mut lit =
+                exists & ng_facing.dot(wi).gt(zero) & !(n_dot_l.lt(zero) | Float::eq(n_dot_l, zero));
             let (half, has_half) = (wo + wi).try_normalize();
             let cos = f32x8::select(has_half, Float::max(ns_facing.dot(half), zero), zero);
             let cos: [f32; LANES] = cos.into();
@@ -228,15 +219,15 @@ impl Kernel for PlainKernel<'_> {
             } else {
                 math::power(cos[lane], coefficients[lane].shininess)
             });
-            let li = by_lane!(lane => arriving(world, source, distances[lane], modes[lane]));
             let reflected = diffuse * n_dot_l + specular * f32x8::load_array(simd, highlight);
-            let contribution = beta * reflected * (gather_spectrum(simd, &li) / f32x8::splat(simd, PI));
+            let contribution = beta * reflected * li;
             lit &= !contribution.is_black();
             let wide = wi.widen();
             let origin = points.leave(ng, wi);
-            let direction = match position {
-                Some(position) => Vector::narrow(position - origin.widen()),
-                None => wi,
+            let (direction, t_max) = match target {
+                Ends::Nowhere => (wi, f32::INFINITY),
+                Ends::Points(position) => (Vector::narrow(position - origin.widen()), 1.0),
+                Ends::Surfaces(points, normal) => (points.just_before(normal, wi, origin), 1.0),
             };
             let is_outside = ng.dot(wide).gt(f64x8::splat(simd, 0.0));
             steps.lights.push(FromLight {
@@ -246,27 +237,10 @@ impl Kernel for PlainKernel<'_> {
                 contribution: scatter_spectrum(contribution),
                 origin: scatter(origin),
                 direction: scatter(direction),
-                t_max: if position.is_some() { 1.0 } else { f32::INFINITY },
+                t_max,
             });
         }
     }
-}
-
-/// The light of a source without occlusion at a distance: radiance times π, as [`Light::sample`] has it.
-#[inline]
-fn arriving(world: &World, source: &Light, distance: f64, lanes: &SpectralMode) -> Spectrum {
-    match source {
-        Light::Point { intensity, falloff, .. } => {
-            intensity.even(&world.textures, lanes) * fade(*falloff, distance)
-        }
-        Light::Distant { irradiance, .. } => irradiance.even(&world.textures, lanes),
-        _ => Spectrum::BLACK,
-    }
-}
-
-#[inline(always)]
-fn splat<S: Simd>(simd: S, [x, y, z]: [f64; 3]) -> Vector<f64x8<S>> {
-    Vector { x: f64x8::splat(simd, x), y: f64x8::splat(simd, y), z: f64x8::splat(simd, z) }
 }
 
 /// The same spectrum in each lane.

@@ -91,7 +91,7 @@ impl<'a> PlainHit<'a> {
     }
 
     #[inline(never)]
-    fn texture_point(&self, world: &World, position: [f64; 3], ng: [f32; 3]) -> TexturePoint {
+    fn texture_point(&self, world: &World, position: [f64; 3], ng: [f32; 3]) -> TexturePoint<'_> {
         let is_flipped = matches!(self.shape, PlainShape::Sphere(_, binding) if binding.flip);
         let outward = if is_flipped { ng.map(|x| -x) } else { ng };
         let (uv, color) = self.uv_and_color(outward);

@@ -9,6 +9,7 @@
 mod kernel;
 mod light_samples;
 mod mesh_hits;
+mod skies;
 mod surfaces;
 
 use glam::Vec3;
@@ -35,28 +36,45 @@ use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
 
-/// Paths that wait for others of their class: hits on meshes, by index in the batch, and all others as vertices.
+/// Paths that wait for others of their class: those that hit nothing and those that hit meshes, by index in the batch, and
+/// all others as vertices.
 #[derive(Default)]
 pub(super) struct Waiting {
+    escaped: Vec<u32>,
     mesh_hits: [Vec<u32>; BsdfClass::COUNT],
     vertices: [Vec<Vertex>; BsdfClass::COUNT],
 }
 
-/// Calls a generic method of a path tracer with the BSDF of a class; `principled` where that is not one of them.
+/// Calls a generic method of a path tracer with the BSDF of a class.
 macro_rules! with_class {
-    ($class:expr, $tracer:ident.$method:ident($($argument:expr),*), $principled:expr) => {
+    ($class:expr, $tracer:ident.$method:ident($($argument:expr),*)) => {
         match $class {
             BsdfClass::Diffuse => $tracer.$method::<Diffuse, P>($($argument),*),
             BsdfClass::Conductor => $tracer.$method::<Conductor, P>($($argument),*),
             BsdfClass::Dielectric => $tracer.$method::<Dielectric, P>($($argument),*),
             BsdfClass::CoatedDiffuse => $tracer.$method::<Layered<Diffuse>, P>($($argument),*),
             BsdfClass::CoatedConductor => $tracer.$method::<Layered<Conductor>, P>($($argument),*),
-            BsdfClass::Principled => $principled,
+            BsdfClass::Principled => $tracer.$method::<Principled, P>($($argument),*),
         }
     };
 }
 
 impl Waiting {
+    /// Adds a path that hit nothing, and ends the paths of its kind where they fill the lanes.
+    #[inline]
+    pub(super) fn push_escaped<P: Probe>(
+        &mut self,
+        tracer: &PathTracer,
+        batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
+        index: usize,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        if fills_lanes(&mut self.escaped, index as u32) {
+            tracer.escape(batch, &self.escaped, output);
+            self.escaped.clear();
+        }
+    }
+
     /// Adds a hit, and scatters the hits of its class where they fill the lanes.
     #[inline]
     pub(super) fn push_hit<P: Probe>(
@@ -68,8 +86,7 @@ impl Waiting {
     ) {
         let hits = &mut self.mesh_hits[class as usize];
         if fills_lanes(hits, index as u32) {
-            // Principled materials are evaluated at vertices: their frames depend on more of the surface.
-            with_class!(class, tracer.scatter_mesh_hits(batch, hits, output), ());
+            with_class!(class, tracer.scatter_mesh_hits(batch, hits, output));
             hits.clear();
         }
     }
@@ -87,11 +104,7 @@ impl Waiting {
         let Some(class) = BsdfClass::of(&vertex.shading.bsdf) else { return Some(vertex) };
         let vertices = &mut self.vertices[class as usize];
         if fills_lanes(vertices, vertex) {
-            with_class!(
-                class,
-                tracer.scatter_vertices(world, vertices, output),
-                tracer.scatter_vertices::<Principled, P>(world, vertices, output)
-            );
+            with_class!(class, tracer.scatter_vertices(world, vertices, output));
             vertices.clear();
         }
         None
@@ -104,16 +117,13 @@ impl Waiting {
         batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
         output: &mut StepOutput<'_, P>,
     ) {
+        tracer.escape(batch, &self.escaped, output);
         for (class, (hits, vertices)) in
             BsdfClass::ALL.into_iter().zip(self.mesh_hits.iter().zip(&self.vertices))
         {
-            with_class!(class, tracer.scatter_mesh_hits(batch, hits, output), ());
+            with_class!(class, tracer.scatter_mesh_hits(batch, hits, output));
             let world = batch.world;
-            with_class!(
-                class,
-                tracer.scatter_vertices(world, vertices, output),
-                tracer.scatter_vertices::<Principled, P>(world, vertices, output)
-            );
+            with_class!(class, tracer.scatter_vertices(world, vertices, output));
         }
     }
 }
@@ -157,7 +167,7 @@ impl PathTracer {
         output: &mut StepOutput<'_, P>,
     ) {
         let Some(last) = vertices.last() else { return };
-        let count = vertices.len();
+        let active = (1 << vertices.len()) - 1;
         // Unused lanes repeat the last vertex.
         let vertices: [&Vertex; LANES] = by_lane!(lane => vertices.get(lane).unwrap_or(last));
         let Some(last_bsdf) = B::of(&last.shading.bsdf) else { return };
@@ -175,19 +185,19 @@ impl PathTracer {
             surface: Some(&vertices[lane].surface),
             is_catcher: vertices[lane].is_catcher,
         });
-        self.go_on(world, &items, count, &scattered, output);
+        self.go_on(world, &items, active, &scattered, output);
     }
 
-    /// The shadow rays and further paths of scattered paths.
+    /// The shadow rays and further paths of scattered paths, in the lanes of a mask.
     fn go_on<P: Probe>(
         &self,
         world: &World,
         items: &[Item<'_>; LANES],
-        count: usize,
+        active: u32,
         scattered: &Scattered,
         output: &mut StepOutput<'_, P>,
     ) {
-        for (lane, item) in items.iter().enumerate().take(count) {
+        for (lane, item) in items.iter().enumerate().filter(|(lane, _)| active & 1 << lane != 0) {
             if scattered.has_density & 1 << lane != 0 {
                 self.shadow_ray(world, item, lane, scattered, output);
             }

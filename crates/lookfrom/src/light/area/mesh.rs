@@ -41,6 +41,8 @@ pub struct MeshLight {
     /// Their distribution, by area and brightness.
     choice: Discrete,
     area: f64,
+    /// Whether each triangle has one normal.
+    is_flat: bool,
     /// For a textured emitter, the mean of its brightness over the area.
     brightness: Option<f32>,
 }
@@ -69,13 +71,19 @@ impl MeshLight {
         triangle.normal.is_some().then_some((triangle, probability, u0))
     }
 
+    /// Whether [`MeshLight::triangle`] is known for every number.
+    pub(super) fn has_one_normal_per_triangle(&self) -> bool {
+        self.is_flat
+    }
+
     /// A mesh of uniform emission. None for one without area.
     pub fn new(mesh: Arc<Mesh>) -> Option<Self> {
         let area = area(&mesh)?;
         let triangles = triangles(&mesh, mesh.triangles.len(), |index| index);
         // Relative to the whole area, so that no unit of length makes them underflow.
         let weights: Vec<f32> = triangles.iter().map(|triangle| (triangle.area / area) as f32).collect();
-        Some(Self { choice: Discrete::new(&weights), asked: None, mesh, triangles, area, brightness: None })
+        let (choice, is_flat) = (Discrete::new(&weights), is_flat(&triangles));
+        Some(Self { choice, asked: None, mesh, triangles, area, is_flat, brightness: None })
     }
 
     /// A mesh with textured emission, whose brightness at a point is `emission_spectrum`. None for one without area.
@@ -101,7 +109,8 @@ impl MeshLight {
         // Without triangles the distribution is never used: `sample` returns before.
         let choice = Discrete::new(if weights.is_empty() { &[1.0] } else { &weights });
         let asked = (asked.len() < count).then_some(asked);
-        Some(Self { choice, asked, mesh, triangles, area, brightness: Some(mean as f32) })
+        let is_flat = is_flat(&triangles);
+        Some(Self { choice, asked, mesh, triangles, area, is_flat, brightness: Some(mean as f32) })
     }
 
     /// Whether any triangle was found to emit light.
@@ -145,7 +154,12 @@ impl MeshLight {
     }
 
     /// The texture point of a point of a triangle, completed by its vertex data.
-    pub(super) fn with_vertices(&self, at: TexturePoint, index: u32, place: Vec2) -> TexturePoint {
+    pub(super) fn with_vertices<'a>(
+        &self,
+        at: TexturePoint<'a>,
+        index: u32,
+        place: Vec2,
+    ) -> TexturePoint<'a> {
         with_vertices(&self.mesh, at, index as usize, place)
     }
 
@@ -216,6 +230,10 @@ fn triangles(mesh: &Mesh, count: usize, index: impl Fn(usize) -> usize + Sync + 
     parallel::collect(count, |rank| Triangle::new(mesh, index(rank)))
 }
 
+fn is_flat(triangles: &[Triangle]) -> bool {
+    triangles.iter().all(|triangle| triangle.normal.is_some())
+}
+
 /// Point number `k` of `count` well-distributed points of a triangle (Hammersley's points).
 fn spread(k: usize, count: usize) -> Vec2 {
     let u = (k as f32 + 0.5) / count as f32;
@@ -237,7 +255,7 @@ fn brightness(
     f64::from(emission_spectrum(&at).max(0.0))
 }
 
-fn with_vertices(mesh: &Mesh, at: TexturePoint, index: usize, place: Vec2) -> TexturePoint {
+fn with_vertices<'a>(mesh: &Mesh, at: TexturePoint<'a>, index: usize, place: Vec2) -> TexturePoint<'a> {
     let color = mesh.color(index, place.x, place.y);
     let VertexData { more_uvs, opacity } = mesh.vertex_data(index, place.x, place.y);
     TexturePoint { color, more_uvs, opacity, ..at }

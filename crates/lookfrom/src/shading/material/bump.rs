@@ -13,44 +13,44 @@ use lookfrom_simd::{Mask, Real};
 use super::{BumpMapping, Frame, NormalTexture};
 use crate::core::vector::Vector;
 use crate::core::warp;
-use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interaction::ShadingGeometry;
 use crate::shading::texture::{self, FloatTexture, TexturePoint, Textures};
 
 /// Offset in u and v for the finite differences of heights, as in pbrt-v4 without a footprint.
 const STEP: f32 = 0.0005;
 
 /// The frame of the shading normal without bump mapping.
-pub(super) fn plain(surface: &SurfaceInteraction) -> Frame {
-    around(surface.ns, surface.shading_dpdu)
+pub(super) fn plain(surface: &ShadingGeometry) -> Frame {
+    around(surface.ns, surface.dpdu)
 }
 
 /// The shading frame at a surface: its normal on the side of the geometric one, its first axis along ∂p/∂u.
 pub(super) fn frame(
     bump_mapping: &BumpMapping,
     textures: &Textures,
-    surface: &SurfaceInteraction,
+    surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Frame {
     let bent = bent(bump_mapping, textures, surface, at);
-    let side = if bent.dot(surface.ng.as_vec3()) < 0.0 { -bent } else { bent };
-    around(side, surface.shading_dpdu)
+    let side = if bent.dot(surface.ng) < 0.0 { -bent } else { bent };
+    around(side, surface.dpdu)
 }
 
 /// The same for glTF's material, with a normal that is [`valid`].
 pub(super) fn valid_frame(
     bump_mapping: &BumpMapping,
     textures: &Textures,
-    surface: &SurfaceInteraction,
+    surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Frame {
-    around(valid(bent(bump_mapping, textures, surface, at), surface), surface.shading_dpdu)
+    around(valid(bent(bump_mapping, textures, surface, at), surface), surface.dpdu)
 }
 
 /// The perturbed normal, of unit length.
 fn bent(
     bump_mapping: &BumpMapping,
     textures: &Textures,
-    surface: &SurfaceInteraction,
+    surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Vec3 {
     let plain = || plain(surface);
@@ -71,16 +71,16 @@ fn bent(
 
 /// The directions of u and v at a surface, perpendicular to its shading normal and to each other, of
 /// unit length.
-pub(super) fn tangents(surface: &SurfaceInteraction) -> [Vec3; 2] {
-    let Frame { s, t, .. } = around(surface.ns, surface.shading_dpdu);
-    [s, if t.dot(surface.shading_dpdv) < 0.0 { -t } else { t }]
+pub(super) fn tangents(surface: &ShadingGeometry) -> [Vec3; 2] {
+    let Frame { s, t, .. } = around(surface.ns, surface.dpdu);
+    [s, if t.dot(surface.dpdv) < 0.0 { -t } else { t }]
 }
 
 /// The normal of a normal map, of unit length.
 pub(super) fn mapped(
     map: &NormalTexture,
     textures: &Textures,
-    surface: &SurfaceInteraction,
+    surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Vec3 {
     let texel = textures.rgb(&map.texture, at);
@@ -95,7 +95,7 @@ pub(super) fn mapped(
 /// leans by an angle θ. The reflected direction then has the height `x sin 2θ + z cos 2θ` over the surface, where
 /// `wo` has x along t and z along g: a sinusoid in 2θ of amplitude `A = √(x² + z²)`, which begins at z and falls to
 /// a height h at `2θ = atan2(x, z) + acos(h / A)`. This is the largest lean allowed.
-pub(super) fn valid(n: Vec3, surface: &SurfaceInteraction) -> Vec3 {
+pub(super) fn valid(n: Vec3, surface: &ShadingGeometry) -> Vec3 {
     let facing = if surface.front { 1.0 } else { -1.0 };
     let (n, g, wo) = (facing * n, surface.ng_facing(), surface.wo);
     let z = wo.dot(g);
@@ -123,27 +123,22 @@ pub(super) fn valid(n: Vec3, surface: &SurfaceInteraction) -> Vec3 {
 }
 
 /// The normal of the surface displaced along its shading normal; not of unit length.
-fn bumped(
-    height: FloatTexture,
-    textures: &Textures,
-    surface: &SurfaceInteraction,
-    at: &TexturePoint,
-) -> Vec3 {
+fn bumped(height: FloatTexture, textures: &Textures, surface: &ShadingGeometry, at: &TexturePoint) -> Vec3 {
     let n = surface.ns;
     let here = textures.float(height, at);
-    let [dpdu, dpdv] =
-        [(surface.shading_dpdu, Vec3::X), (surface.shading_dpdv, Vec3::Y)].map(|(along, uv)| {
-            let moved = TexturePoint {
-                uv: at.uv + STEP * uv.truncate(),
-                world: at.world + (STEP * along).as_dvec3(),
-                ..*at
-            };
-            // In the tangent plane of the shading normal.
-            let tangent = along - n * n.dot(along);
-            tangent + n * ((textures.float(height, &moved) - here) / STEP)
-        });
+    let [dpdu, dpdv] = [(surface.dpdu, Vec3::X), (surface.dpdv, Vec3::Y)].map(|(along, uv)| {
+        let moved = TexturePoint {
+            uv: at.uv + STEP * uv.truncate(),
+            world: at.world + (STEP * along).as_dvec3(),
+            looked_up: None,
+            ..*at
+        };
+        // In the tangent plane of the shading normal.
+        let tangent = along - n * n.dot(along);
+        tangent + n * ((textures.float(height, &moved) - here) / STEP)
+    });
     let across = dpdu.cross(dpdv);
-    if surface.shading_dpdu.cross(surface.shading_dpdv).dot(n) < 0.0 { -across } else { across }
+    if surface.dpdu.cross(surface.dpdv).dot(n) < 0.0 { -across } else { across }
 }
 
 /// The frame about a normal with the first axis along ∂p/∂u.

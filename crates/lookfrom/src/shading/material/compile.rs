@@ -6,7 +6,7 @@ use lookfrom_scene::scene::TextureId;
 
 use super::kind::{Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled};
 use super::kind::{Roughness, Whitted};
-use super::{Material, approximate};
+use super::{Material, approximate, pictures};
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::texture::{SpectrumTexture, SpectrumType, Textures};
 
@@ -26,9 +26,11 @@ impl<'a> Compiler<'a> {
     /// 0 for none.
     pub(crate) fn compile(&mut self, material: &written::Material) -> (Material, [f32; 3]) {
         let whitted = approximate::in_whitteds_model(&material.kind, &self.whitted, self.textures);
+        let (kind, bump_mapping) = (self.kind(&material.kind), self.bump_mapping(&material.bump_mapping));
         let compiled = Material {
-            kind: self.kind(&material.kind),
-            bump_mapping: self.bump_mapping(&material.bump_mapping),
+            pictures: pictures::of(&kind, &bump_mapping, self.textures),
+            kind,
+            bump_mapping,
             medium: None,
             whitted: self.whitted(&whitted),
         };

@@ -12,11 +12,10 @@ use glam::Vec3;
 use super::kind::Principled as PrincipledMaterial;
 use super::{Evaluator, Frame, MaterialKind, bump};
 use crate::core::spectrum::Spectrum;
-use crate::shading::bsdf::Bsdf;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::principled::film::Film;
 use crate::shading::bsdf::principled::{Parameters, Principled};
-use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interaction::ShadingGeometry;
 use crate::shading::texture::{SpectralMode, SpectrumTexture};
 
 /// Reflectance of a dielectric at normal incidence by its index; an index of 0 means infinite.
@@ -58,9 +57,9 @@ impl Evaluator<'_> {
         &mut self,
         look: &PrincipledMaterial,
         material: u32,
-        surface: &SurfaceInteraction,
+        surface: &ShadingGeometry,
         mut frame: Frame,
-    ) -> (Bsdf, Frame) {
+    ) -> (Principled, Frame) {
         let share = |at: &Self, texture| at.float(texture).clamp(0.0, 1.0);
         let transmission = share(self, look.transmission);
         let metallic = share(self, look.metallic);
@@ -144,7 +143,7 @@ impl Evaluator<'_> {
             },
             lane_weights: self.lane_weights(),
         };
-        (Bsdf::Principled(Principled::new(&parameters)), frame)
+        (Principled::new(&parameters), frame)
     }
 
     /// The weights of the lanes in the choice of lobes: the path's throughput, so that a lobe whose colour can no longer

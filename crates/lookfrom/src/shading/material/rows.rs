@@ -1,44 +1,64 @@
 //! Materials whose BSDFs are computed in lanes: their classes, and their evaluation to a BSDF of a class.
 
-use super::{BumpMapping, Evaluator, Material, MaterialKind, ShadingContext};
-use crate::core::spectrum::Spectrum;
+use super::principled::disperses;
+use super::{BumpMapping, Evaluator, Frame, Material, MaterialKind, ShadingContext};
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
 use crate::shading::bsdf::lanes::{BsdfClass, RowBsdf};
 use crate::shading::bsdf::layered::Layered;
-use crate::shading::interior_stack::InteriorStack;
-use crate::shading::texture::{SpectralMode, TexturePoint, Textures};
+use crate::shading::bsdf::principled::Principled;
+use crate::shading::interaction::ShadingGeometry;
+use crate::shading::texture::{TexturePoint, Textures};
 
 impl Material {
-    /// The class of its BSDFs, if they are computed in lanes: neither chosen at random nor around a perturbed normal, and
-    /// the same in all media.
+    /// The class of its BSDFs, if they are computed in lanes: not chosen at random, and the same in all media.
     pub(crate) fn class(&self) -> Option<BsdfClass> {
-        if !matches!(self.bump_mapping, BumpMapping::None) {
-            return None;
-        }
-        match self.kind {
+        match &self.kind {
             MaterialKind::Diffuse { .. } => Some(BsdfClass::Diffuse),
             MaterialKind::Conductor { .. } => Some(BsdfClass::Conductor),
             MaterialKind::Dielectric { .. } => Some(BsdfClass::Dielectric),
             MaterialKind::CoatedDiffuse { .. } => Some(BsdfClass::CoatedDiffuse),
             MaterialKind::CoatedConductor { .. } => Some(BsdfClass::CoatedConductor),
+            MaterialKind::Principled(look) => {
+                (!look.is_solid && !disperses(look)).then_some(BsdfClass::Principled)
+            }
             _ => None,
         }
     }
 
-    /// The BSDF at a point, as [`super::shading`] has it; `None` where the material is of another class. Where wavelengths
-    /// are dispersed, only the first is kept.
+    /// Whether its shading frame is another than that of the surface.
+    #[inline]
+    pub(crate) fn bends_frames(&self) -> bool {
+        !matches!(self.bump_mapping, BumpMapping::None) || matches!(self.kind, MaterialKind::Principled(_))
+    }
+
+    /// The BSDF at a point, as [`super::shading`] has it; `None` where the material is of another class, or
+    /// [bends frames](Material::bends_frames) and has a BSDF that depends on them. Where wavelengths are dispersed, only the
+    /// first is kept.
     #[inline]
     pub(crate) fn row<B: MaterialRow>(
         &self,
         textures: &Textures,
         point: &TexturePoint,
-        mode: &mut SpectralMode,
+        context: ShadingContext<'_>,
     ) -> Option<B> {
-        let (mut throughput, interior) = (Spectrum::ONE, InteriorStack::default());
-        let context = ShadingContext { lanes: mode, throughput: &mut throughput, interior, u: 0.0 };
         B::at(&mut Evaluator::new(&[], textures, point, context), &self.kind)
+    }
+
+    /// The same where frames are bent, and the axes of the frame; the third is the shading normal.
+    #[inline(never)]
+    pub(crate) fn bent_row<B: MaterialRow>(
+        &self,
+        textures: &Textures,
+        geometry: &ShadingGeometry,
+        point: &TexturePoint,
+        context: ShadingContext<'_>,
+    ) -> Option<(B, [[f32; 3]; 3])> {
+        let mut frame = self.frame(textures, geometry, point);
+        let mut evaluator = Evaluator::new(&[], textures, point, context);
+        let row = B::in_frame(&mut evaluator, &self.kind, geometry, &mut frame)?;
+        Some((row, frame.axes()))
     }
 }
 
@@ -46,6 +66,36 @@ impl Material {
 pub(crate) trait MaterialRow: RowBsdf {
     /// The BSDF of a material of this class.
     fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self>;
+
+    /// The same in a frame, which it may turn.
+    #[inline]
+    fn in_frame(
+        evaluator: &mut Evaluator<'_>,
+        kind: &MaterialKind,
+        _geometry: &ShadingGeometry,
+        _frame: &mut Frame,
+    ) -> Option<Self> {
+        Self::at(evaluator, kind)
+    }
+}
+
+impl MaterialRow for Principled {
+    fn at(_: &mut Evaluator<'_>, _: &MaterialKind) -> Option<Self> {
+        None
+    }
+
+    fn in_frame(
+        evaluator: &mut Evaluator<'_>,
+        kind: &MaterialKind,
+        geometry: &ShadingGeometry,
+        frame: &mut Frame,
+    ) -> Option<Self> {
+        let MaterialKind::Principled(look) = kind else { return None };
+        // Which material it is matters only where light enters its body.
+        let (bsdf, turned) = evaluator.principled(look, 0, geometry, *frame);
+        *frame = turned;
+        Some(bsdf)
+    }
 }
 
 macro_rules! material_row {

@@ -4,6 +4,7 @@ use std::f32::consts::PI;
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use lookfrom_scene::texture::Mapping;
+use lookfrom_simd::{Float, Real};
 
 use super::TexturePoint;
 
@@ -40,6 +41,13 @@ pub(super) fn coordinates(mapping: &Mapping, at: &TexturePoint) -> DVec3 {
         Mapping::World { texture_from_world } => texture_from_world.transform_point3(at.world),
     };
     p.to_array().map(|x| if x.is_nan() { 0.0 } else { x.clamp(-FARTHEST, FARTHEST) }).into()
+}
+
+/// A coordinate within the bounds of [`coordinates`]; 0 for NaN.
+#[inline(always)]
+pub(super) fn bounded<R: Real>(x: R) -> R {
+    let is_number = Float::eq(x, x);
+    Float::clamp(R::select(is_number, x, x.like(0.0)), -FARTHEST as f32, FARTHEST as f32)
 }
 
 /// [`coordinates`], with patterns in space shifted by a small irregular offset, so that surfaces exactly on the

@@ -2,18 +2,17 @@
 
 use glam::Vec3;
 use lookfrom_scene::material::{Color, Scalar};
-use lookfrom_scene::texture::{Channel, Mapping, TexelFilter, TextureKind, Wrap};
+use lookfrom_scene::texture::{Channel, Mapping, TextureKind};
 
 use super::input::{FloatTexture, Input};
+use super::look_ups::Picture;
 
 /// A texture with the parameters of its [`TextureKind`].
 #[derive(Clone, Debug)]
 pub(super) enum Node {
     Image {
-        image: usize,
-        mapping: Mapping,
-        wrap: [Wrap; 2],
-        filter: TexelFilter,
+        /// Index of the picture.
+        picture: u32,
         channel: Channel,
         scale: f32,
         invert: bool,
@@ -94,21 +93,30 @@ pub(super) enum Node {
 }
 
 impl Node {
-    /// Every texture of a scene, in the same order; `uplifts` where spectra will be evaluated.
-    pub(super) fn compile_all(kinds: &[TextureKind], uplifts: bool) -> Vec<Self> {
-        (0..kinds.len())
+    /// Every texture of a scene, in the same order, and the pictures that they read; `uplifts` where spectra will be
+    /// evaluated.
+    pub(super) fn compile_all(kinds: &[TextureKind], uplifts: bool) -> (Vec<Self>, Vec<Picture>) {
+        let mut pictures = Vec::new();
+        let nodes = (0..kinds.len())
             .map(|index| match scaled_picture(kinds, index) {
-                Some(picture) => Self::compile(&picture, uplifts),
-                None => Self::compile(&kinds[index], uplifts),
+                Some(picture) => Self::compile(&picture, &mut pictures, uplifts),
+                None => Self::compile(&kinds[index], &mut pictures, uplifts),
             })
-            .collect()
+            .collect();
+        (nodes, pictures)
     }
 
-    fn compile(kind: &TextureKind, uplifts: bool) -> Self {
+    fn compile(kind: &TextureKind, pictures: &mut Vec<Picture>, uplifts: bool) -> Self {
         let input = |color: Color| Input::new(color, uplifts);
         match *kind {
             TextureKind::Image { image, mapping, wrap, filter, channel, scale, invert } => {
-                Self::Image { image: image.index(), mapping, wrap, filter, channel, scale, invert }
+                let picture = Picture::new(image.index(), mapping, wrap, filter);
+                // Textures of one picture follow one another.
+                let known = pictures.iter().rposition(|known| *known == picture).unwrap_or_else(|| {
+                    pictures.push(picture);
+                    pictures.len() - 1
+                });
+                Self::Image { picture: known as u32, channel, scale, invert }
             }
             TextureKind::Checker { even, odd, mapping } => {
                 Self::Checker { even: input(even), odd: input(odd), mapping }

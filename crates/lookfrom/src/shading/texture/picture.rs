@@ -1,7 +1,10 @@
 //! Image lookups: filtering and wrapping.
 
-use lookfrom_scene::image::Image;
-use lookfrom_scene::texture::{Channel, TexelFilter, Wrap};
+use lookfrom_scene::image::{Image, Quad};
+use lookfrom_scene::texture::{TexelFilter, Wrap};
+use lookfrom_simd::{Float, Real, Simd, f32x8, prelude::*};
+
+use crate::core::lanes::{LANES, by_lane};
 
 /// Coordinates are clamped to this many texels; floats of this size have long lost their fraction.
 const FARTHEST: f32 = 1_073_741_824.0;
@@ -9,107 +12,136 @@ const FARTHEST: f32 = 1_073_741_824.0;
 /// The colour of an image at `(s, t)`, with `t` *down* and both from 0 to 1 over the image. Finite for an image of
 /// finite texels, at any coordinates: NaN is taken as 0.
 pub fn look_up(image: &Image, st: [f32; 2], wraps: [Wrap; 2], filter: TexelFilter) -> [f32; 3] {
-    blended(image, &Colors, st, wraps, filter)
+    let [r, g, b, _] = Footprint::new(image, st, wraps, filter).blend(image);
+    [r, g, b]
 }
 
-/// One channel of an image, looked up the same way. Beyond the edges of [`Wrap::Black`] it is 0.
-pub(super) fn look_up_channel(
+/// The colours at eight places of an image, bilinearly blended: as [`look_up`].
+#[inline(always)]
+pub(crate) fn look_up_lanes<S: Simd>(
+    simd: S,
     image: &Image,
-    channel: Channel,
-    st: [f32; 2],
+    [s, t]: [f32x8<S>; 2],
     wraps: [Wrap; 2],
-    filter: TexelFilter,
-) -> f32 {
-    blended(image, &channel, st, wraps, filter)
+) -> [[f32; 3]; LANES] {
+    let size = [image.width, image.height].map(|size| f32x8::splat(simd, size as f32));
+    let ([column, row], weights) = bilinear(s * size[0], t * size[1]);
+    let (column, row): ([f32; LANES], [f32; LANES]) = (column.into(), row.into());
+    let [a, b, c, d]: [[f32; LANES]; 4] =
+        [weights[0].into(), weights[1].into(), weights[2].into(), weights[3].into()];
+    let footprints = by_lane!(lane =>
+        Footprint::of_cell(image, [column[lane], row[lane]], [a[lane], b[lane], c[lane], d[lane]], wraps));
+    // All texels are fetched together, so that the waits for memory overlap.
+    let quads = by_lane!(lane => footprints[lane].fetch(image));
+    by_lane!(lane => {
+        let [r, g, b, _] = footprints[lane].blend_quad(image, &quads[lane]);
+        [r, g, b]
+    })
 }
 
-/// The part of a texel that is read.
-trait Read {
-    type Value: Copy + Default;
-
-    fn texels<const N: usize>(&self, image: &Image, places: [usize; N]) -> [Self::Value; N];
-
-    fn sum(weights: [f32; 4], values: [Self::Value; 4]) -> Self::Value;
+/// The texels of an image that are blended at a point, and their weights.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Footprint {
+    places: [usize; 4],
+    weights: [f32; 4],
 }
 
-/// Red, green and blue.
-struct Colors;
+impl Footprint {
+    /// Of nothing.
+    pub(super) const NONE: Self = Self { places: [0; 4], weights: [0.0; 4] };
 
-impl Read for Colors {
-    type Value = [f32; 3];
-
+    /// The texels at `(s, t)`. Those beyond the edges of [`Wrap::Black`] have the weight 0.
     #[inline]
-    fn texels<const N: usize>(&self, image: &Image, places: [usize; N]) -> [[f32; 3]; N] {
-        image.texels_at(places)
-    }
-
-    #[inline]
-    fn sum(weights: [f32; 4], [a, b, c, d]: [[f32; 3]; 4]) -> [f32; 3] {
-        std::array::from_fn(|i| weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i] + weights[3] * d[i])
-    }
-}
-
-impl Read for Channel {
-    type Value = f32;
-
-    #[inline]
-    fn texels<const N: usize>(&self, image: &Image, places: [usize; N]) -> [f32; N] {
-        image.channel_at(places, *self)
-    }
-
-    #[inline]
-    fn sum(weights: [f32; 4], [a, b, c, d]: [f32; 4]) -> f32 {
-        weights[0] * a + weights[1] * b + weights[2] * c + weights[3] * d
-    }
-}
-
-#[inline]
-fn blended<R: Read>(
-    image: &Image,
-    read: &R,
-    [s, t]: [f32; 2],
-    wraps: [Wrap; 2],
-    filter: TexelFilter,
-) -> R::Value {
-    let (x, y) = (s * image.width as f32, t * image.height as f32);
-    match filter {
-        TexelFilter::Nearest => {
-            let column = wrapped(split(x).0, image.width, wraps[0]);
-            texel(image, read, (column, wrapped(split(y).0, image.height, wraps[1])))
-        }
-        TexelFilter::Bilinear => {
-            // texel centres are at halves
-            let ((x, fx), (y, fy)) = (split(x - 0.5), split(y - 0.5));
-            let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
-            R::sum(weights, four_texels(image, read, [x, y], wraps))
+    pub(super) fn new(image: &Image, [s, t]: [f32; 2], wraps: [Wrap; 2], filter: TexelFilter) -> Self {
+        let (x, y) = (s * image.width as f32, t * image.height as f32);
+        match filter {
+            TexelFilter::Nearest => {
+                let column = wrapped(split(x).0, image.width, wraps[0]);
+                let row = wrapped(split(y).0, image.height, wraps[1]);
+                let (place, weight) = place(image, column, row);
+                Self { places: [place; 4], weights: [weight, 0.0, 0.0, 0.0] }
+            }
+            TexelFilter::Bilinear => {
+                // texel centres are at halves
+                let ((x, fx), (y, fy)) = (split(x - 0.5), split(y - 0.5));
+                let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
+                Self { places: [0; 4], weights }.around(image, [x, y], wraps)
+            }
         }
     }
-}
 
-/// The texels at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
-#[inline]
-fn four_texels<R: Read>(image: &Image, read: &R, [x, y]: [i32; 2], wraps: [Wrap; 2]) -> [R::Value; 4] {
-    let inside = |x: i32, size: u32| x >= 0 && (x as u32) < size - 1;
-    if inside(x, image.width) && inside(y, image.height) {
-        // No wrapping is needed, as nearly always.
-        let width = image.width as usize;
-        let top = y as usize * width + x as usize;
-        return read.texels(image, [top, top + 1, top + width, top + width + 1]);
+    /// Bilinear footprints from the cells and weights that [`bilinear`] computes.
+    #[inline]
+    pub(super) fn of_cell(image: &Image, cell: [f32; 2], weights: [f32; 4], wraps: [Wrap; 2]) -> Self {
+        Self { places: [0; 4], weights }.around(image, cell.map(|x| x as i32), wraps)
     }
-    let [left, right] = [x, x + 1].map(|x| wrapped(x, image.width, wraps[0]));
-    let [top, bottom] = [y, y + 1].map(|y| wrapped(y, image.height, wraps[1]));
-    [(left, top), (right, top), (left, bottom), (right, bottom)].map(|place| texel(image, read, place))
+
+    /// The same weights for the texels at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
+    #[inline]
+    fn around(self, image: &Image, [x, y]: [i32; 2], wraps: [Wrap; 2]) -> Self {
+        let inside = |x: i32, size: u32| x >= 0 && (x as u32) < size - 1;
+        if inside(x, image.width) && inside(y, image.height) {
+            // No wrapping is needed, as nearly always.
+            let width = image.width as usize;
+            let top = y as usize * width + x as usize;
+            return Self { places: [top, top + 1, top + width, top + width + 1], ..self };
+        }
+        self.around_edge(image, [x, y], wraps)
+    }
+
+    #[inline(never)]
+    fn around_edge(mut self, image: &Image, [x, y]: [i32; 2], wraps: [Wrap; 2]) -> Self {
+        let [left, right] = [x, x + 1].map(|x| wrapped(x, image.width, wraps[0]));
+        let [top, bottom] = [y, y + 1].map(|y| wrapped(y, image.height, wraps[1]));
+        for (k, (column, row)) in
+            [(left, top), (right, top), (left, bottom), (right, bottom)].into_iter().enumerate()
+        {
+            let (place, weight) = place(image, column, row);
+            self.places[k] = place;
+            self.weights[k] *= weight;
+        }
+        self
+    }
+
+    /// The texels, as they are stored.
+    #[inline(always)]
+    pub(super) fn fetch(&self, image: &Image) -> Quad {
+        image.quad(self.places)
+    }
+
+    /// The blended colour and opacity of texels that were fetched.
+    #[inline(always)]
+    pub(super) fn blend_quad(&self, image: &Image, quad: &Quad) -> [f32; 4] {
+        let [a, b, c, d] = image.decoded(quad);
+        let w = &self.weights;
+        std::array::from_fn(|i| w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i])
+    }
+
+    /// The blended colour and opacity.
+    #[inline]
+    pub(super) fn blend(&self, image: &Image) -> [f32; 4] {
+        self.blend_quad(image, &self.fetch(image))
+    }
 }
 
-/// The texel at a column and a row; black where there is none.
+/// The column and row, as whole numbers, of the first of the four texels around (x, y), measured in texels, and the weights
+/// of the four: as [`Footprint::new`] has them, at any width.
+#[inline(always)]
+pub(super) fn bilinear<R: Real>(x: R, y: R) -> ([R; 2], [R; 4]) {
+    // texel centres are at halves
+    let [x, y] = [Float::clamp(x - 0.5, -FARTHEST, FARTHEST), Float::clamp(y - 0.5, -FARTHEST, FARTHEST)];
+    let cell = [Float::floor(x), Float::floor(y)];
+    let (fx, fy) = (x - cell[0], y - cell[1]);
+    let (gx, gy) = (x.like(1.0) - fx, x.like(1.0) - fy);
+    (cell, [gx * gy, fx * gy, gx * fy, fx * fy])
+}
+
+/// The index of the texel at a column and a row, and the weight 1; the weight 0 where there is none.
 #[inline]
-fn texel<R: Read>(image: &Image, read: &R, place: (Option<usize>, Option<usize>)) -> R::Value {
-    match place {
-        (Some(x), Some(y)) => {
-            let [texel] = read.texels(image, [y * image.width as usize + x]);
-            texel
-        }
-        _ => R::Value::default(),
+fn place(image: &Image, column: Option<usize>, row: Option<usize>) -> (usize, f32) {
+    match (column, row) {
+        (Some(x), Some(y)) => (y * image.width as usize + x, 1.0),
+        _ => (0, 0.0),
     }
 }
 
@@ -169,10 +201,18 @@ mod tests {
         let image = Image::from_linear("", 4, 3, texels);
         for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black] {
             for (x, y) in (-9..9).flat_map(|x| (-9..9).map(move |y| (x, y))) {
-                let long = [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]];
-                let long =
-                    long.map(|[x, y]| texel(&image, &Colors, (wrapped(x, 4, wrap), wrapped(y, 3, wrap))));
-                assert_eq!(four_texels(&image, &Colors, [x, y], [wrap; 2]), long, "{wrap:?} at {x}, {y}");
+                let weights = Footprint { places: [0; 4], weights: [0.5, 0.25, 0.125, 0.0625] };
+                let blended = weights.around(&image, [x, y], [wrap; 2]).blend(&image);
+                // The long way: each texel by itself, black beyond the edges.
+                let mut expected = [0.0; 4];
+                for (k, [x, y]) in [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]].into_iter().enumerate() {
+                    let (Some(x), Some(y)) = (wrapped(x, 4, wrap), wrapped(y, 3, wrap)) else { continue };
+                    let [r, g, b] = image.texel(4 * y + x);
+                    for (sum, value) in expected.iter_mut().zip([r, g, b, 1.0]) {
+                        *sum += weights.weights[k] * value;
+                    }
+                }
+                assert_eq!(blended, expected, "{wrap:?} at {x}, {y}");
             }
         }
     }

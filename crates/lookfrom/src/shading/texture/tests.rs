@@ -32,11 +32,11 @@ impl Textures {
     }
 }
 
-fn at(u: f32, v: f32) -> TexturePoint {
+fn at(u: f32, v: f32) -> TexturePoint<'static> {
     TexturePoint { uv: Vec2::new(u, v), n: Vec3::Y, ..TexturePoint::NOWHERE }
 }
 
-fn in_world(x: f64, y: f64, z: f64) -> TexturePoint {
+fn in_world(x: f64, y: f64, z: f64) -> TexturePoint<'static> {
     TexturePoint { world: DVec3::new(x, y, z), ..at(0.0, 0.0) }
 }
 

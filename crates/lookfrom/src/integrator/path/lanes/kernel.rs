@@ -1,17 +1,16 @@
 //! Scattering of eight paths side by side: one light sampled, one direction sampled by the BSDF, and the origins of the
 //! rays. Numbers only; the parent module makes rays and events of them.
 
-use lookfrom_simd::{Float, Kernel, Mask, Simd, dispatch, f32x8, level, mask32x8, prelude::*, u32x8, u64x8};
+use lookfrom_simd::{Float, Kernel, Mask, Simd, dispatch, f32x8, level, mask32x8, prelude::*, u32x8};
 
 use super::light_samples::LightSamples;
 use super::surfaces::{SurfaceColumns, Surfaces};
-use crate::core::hash;
 use crate::core::lanes::{LANES, by_lane, gather, gather_spectrum, scatter, scatter_spectrum};
 use crate::core::math::power_heuristic;
-use crate::core::sampler::lanes::PixelSamplers;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::path::{SAFE_BOUNCES, dimension};
+use crate::integrator::sample_streams::SampleStreams;
 use crate::integrator::{Path, SampleStream};
 use crate::shading::bsdf::lanes::{Kind, LaneBsdf, RowBsdf};
 use crate::shading::texture::SpectralMode;
@@ -243,32 +242,5 @@ impl<B: RowBsdf> Kernel for ScatterKernel<'_, B> {
         let Self { world, surfaces, bsdfs, paths } = self;
         let bsdf = B::gather(simd, bsdfs);
         surfaces.load(simd).scatter(simd, world, &bsdf, &paths)
-    }
-}
-
-/// [`SampleStream`] in lanes.
-pub(super) struct SampleStreams<S: Simd> {
-    samplers: PixelSamplers<S>,
-    sample: u32x8<S>,
-    /// Of the address, before the dimension.
-    mixed: u64x8<S>,
-}
-
-impl<S: Simd> SampleStreams<S> {
-    #[inline(always)]
-    fn new(simd: S, streams: &[&SampleStream; LANES]) -> Self {
-        let address = u64x8::load_array(simd, by_lane!(lane => streams[lane].address));
-        Self {
-            samplers: PixelSamplers::new(simd, &by_lane!(lane => streams[lane].sampler)),
-            sample: u32x8::load_array(simd, by_lane!(lane => streams[lane].sample)),
-            mixed: hash::mix(address + hash::GOLDEN),
-        }
-    }
-
-    /// As [`SampleStream::two`].
-    #[inline(always)]
-    pub(super) fn two(&self, dimension: u32) -> [f32x8<S>; 2] {
-        let dimension = hash::mix(self.mixed ^ u64::from(dimension)) & u64::from(u32::MAX);
-        self.samplers.two(self.sample, dimension)
     }
 }

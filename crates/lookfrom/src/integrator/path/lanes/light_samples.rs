@@ -4,9 +4,8 @@
 
 use glam::DVec3;
 use lookfrom_bvh::Point;
-use lookfrom_simd::{Float, Simd, f32x8, f64x8, mask32x8, mask64x8, prelude::*};
+use lookfrom_simd::{Simd, f32x8, prelude::*};
 
-use super::kernel::SampleStreams;
 use super::surfaces::Surfaces;
 use crate::core::lanes::{LANES, bitmask, by_lane, gather, gather_f64, scatter, scatter_f64};
 use crate::core::points::Points;
@@ -14,9 +13,9 @@ use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::Event;
 use crate::integrator::path::dimension;
+use crate::integrator::sample_streams::SampleStreams;
 use crate::light::{
-    AreaLight, AreaSamples, IncompletePdf, Light, LightSample, LightSampleContext, Target, gather_spheres,
-    sample_triangles,
+    AreaSamples, IncompletePdf, Light, LightSample, LightSampleContext, Target, sample_area_lights,
 };
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
@@ -113,11 +112,15 @@ impl LightSamples {
             (sampled.position, sampled.error) = (scatter_f64(points.position), scatter_f64(points.error));
             sampled.normal = scatter_f64(*normal);
         }
+        let on_skies = sampled.sample_skies(simd, world, [u0.into(), u1.into()], modes);
         let is_valid = on_surfaces.map_or(0, |samples| samples.is_valid.to_bitmask() as u32);
 
         for lane in 0..LANES {
             let Some((index, probability)) = choice[lane] else { continue };
             sampled.probability[lane] = probability;
+            if on_skies & 1 << lane != 0 {
+                continue;
+            }
             let light = &world.lights[index as usize];
             if let Some(area_light) = area_lights[lane].filter(|_| in_lanes & 1 << lane != 0) {
                 let emits = facing[lane] < 0.0 || area_light.two_sided;
@@ -148,6 +151,35 @@ impl LightSamples {
                 }
                 target => target,
             };
+        }
+        sampled
+    }
+
+    /// Samples the environment maps in the lanes that have chosen them, and returns these lanes.
+    #[inline(always)]
+    fn sample_skies<S: Simd>(
+        &mut self,
+        simd: S,
+        world: &World,
+        u: [[f32; LANES]; 2],
+        modes: &[&SpectralMode; LANES],
+    ) -> u32 {
+        let mut sampled = 0;
+        for &index in &world.environments {
+            let chosen =
+                bitmask(&by_lane!(lane => self.choice[lane].is_some_and(|(light, _)| light == index)));
+            let Light::Environment(environment) = &world.lights[index as usize] else { continue };
+            let Some(sky) = environment.map_in_lanes().filter(|_| chosen != 0 && environment.illuminates)
+            else {
+                continue;
+            };
+            let samples = sky.sample_lanes(simd, &world.textures, u, modes);
+            for lane in (0..LANES).filter(|lane| chosen & 1 << lane != 0) {
+                (self.wi[lane], self.li[lane], self.pdf[lane]) =
+                    (samples.wi[lane], samples.li[lane], samples.pdf[lane]);
+                self.is_valid |= u32::from(samples.is_usable(lane)) << lane;
+            }
+            sampled |= chosen;
         }
         sampled
     }
@@ -187,55 +219,12 @@ impl LightSamples {
     /// [`crate::integrator::Shadow::new`] has them.
     #[inline(always)]
     pub(super) fn ends<S: Simd>(&self, simd: S, origins: Vector<f32x8<S>>) -> [[f32; 3]; LANES] {
-        let (position, error) = (gather_f64(simd, &self.position), gather_f64(simd, &self.error));
-        let origins = origins.widen();
-        let Vector { x, y, z } = (position - origins).abs();
-        let length = Float::max(Float::max(Float::max(x.like(0.0), x), y), z);
-        let slack = length * f64::from(f32::EPSILON);
-        let error = Vector { x: error.x + slack, y: error.y + slack, z: error.z + slack };
-        let guarded = Points::<f32x8<S>> { position, error };
-        let back = -gather(simd, &self.wi);
-        let end = guarded.leave(gather_f64(simd, &self.normal), back);
-        scatter(Vector::narrow(end.widen() - origins))
+        let points =
+            Points { position: gather_f64(simd, &self.position), error: gather_f64(simd, &self.error) };
+        let normal = gather_f64(simd, &self.normal);
+        scatter(points.just_before(normal, gather(simd, &self.wi), origins))
     }
 }
 
 /// A point of a surface, which is stored beside.
 const ON_SURFACE: Target = Target::Surface(Point { position: [0.0; 3], error: [0.0; 3] }, DVec3::ZERO);
-
-/// Points of the area lights that are sampled in lanes, and which those are: triangles and whole spheres of uniform
-/// emission.
-#[inline(always)]
-fn sample_area_lights<S: Simd>(
-    simd: S,
-    lights: &[Option<&AreaLight>; LANES],
-    [u0, u1]: [f32x8<S>; 2],
-    from: Vector<f64x8<S>>,
-) -> (Option<AreaSamples<f32x8<S>>>, u32) {
-    let triangles = by_lane!(lane => lights[lane].and_then(|light| light.triangle(u0[lane])));
-    let (mut samples, mut in_lanes) = (None, 0);
-    if let Some((first, ..)) = triangles.iter().flatten().next() {
-        let of = by_lane!(lane => triangles[lane].map_or(*first, |(triangle, ..)| triangle));
-        let probability = by_lane!(lane => triangles[lane].map_or(1.0, |(_, probability, _)| probability));
-        let rest = by_lane!(lane => triangles[lane].map_or(0.0, |(_, _, rest)| rest));
-        let [probability, rest] = [f32x8::load_array(simd, probability), f32x8::load_array(simd, rest)];
-        samples = Some(sample_triangles(simd, &of, probability, [rest, u1], from));
-        in_lanes = bitmask(&by_lane!(lane => triangles[lane].is_some()));
-    }
-    let spheres = by_lane!(lane => lights[lane].and_then(AreaLight::sphere));
-    if let Some(first) = spheres.iter().flatten().next() {
-        let of = gather_spheres(simd, &by_lane!(lane => spheres[lane].unwrap_or(first)));
-        let (on_spheres, _) = of.sample(from, [u0, u1]);
-        let are_spheres = bitmask(&by_lane!(lane => spheres[lane].is_some()));
-        let masks = (
-            mask32x8::from_bitmask(simd, are_spheres.into()),
-            mask64x8::from_bitmask(simd, are_spheres.into()),
-        );
-        samples = Some(match samples {
-            Some(samples) => AreaSamples::select(masks.0, masks.1, on_spheres, samples),
-            None => on_spheres,
-        });
-        in_lanes |= are_spheres;
-    }
-    (samples, in_lanes)
-}

@@ -7,13 +7,14 @@ use lookfrom_simd::{Float, Kernel, Simd, dispatch, f32x8, level, mask64x8, prelu
 use super::Item;
 use super::kernel::{LanePaths, ScatterKernel};
 use super::surfaces::SurfaceColumns;
-use crate::core::lanes::{LANES, bitmask, by_lane, gather};
+use crate::core::lanes::{LANES, bitmask, by_lane, gather, scatter};
 use crate::core::points::{Placement, gather_placements};
 use crate::core::vector::Vector;
 use crate::integrator::path::PathTracer;
-use crate::integrator::{Event, Path, Probe, SampleStream, StepOutput};
-use crate::primitive::{Mesh, gather_triangles};
+use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, StepOutput};
+use crate::primitive::{Mesh, VertexData, gather_triangles};
 use crate::shading::bsdf::lanes::BsdfClass;
+use crate::shading::interaction::ShadingGeometry;
 use crate::shading::material::{Material, MaterialRow, ShadingContext, frame_about};
 use crate::shading::texture::TexturePoint;
 use crate::world::World;
@@ -28,6 +29,13 @@ pub(in crate::integrator::path) struct HitBatch<'a, F> {
 }
 
 impl<'a, F: Fn(&Path) -> SampleStream> HitBatch<'a, F> {
+    /// Whether a path has left the scene, in no medium and not from a shadow catcher.
+    #[inline]
+    pub(in crate::integrator::path) fn has_escaped(&self, index: usize) -> bool {
+        let (path, hit) = (&self.paths[index], &self.hits[index]);
+        !hit.is_hit() && path.interior.is_empty() && !path.previous.is_catcher
+    }
+
     /// The class of a path that met a mesh whose material has BSDFs of a class, and is to go on from there, in no medium.
     #[inline]
     pub(in crate::integrator::path) fn mesh_class(
@@ -66,6 +74,38 @@ struct MeshHit<'a> {
     placement: Option<&'a Placement<f32>>,
 }
 
+impl MeshHit<'_> {
+    /// Whether the path passes the surface where it hit the back of it.
+    #[inline]
+    fn passes_back_faces(&self) -> bool {
+        self.mesh.binding.single_sided && !self.path.previous.blurred
+    }
+
+    /// The inputs of texture evaluation in a lane.
+    #[inline]
+    fn texture_point(
+        &self,
+        world: &World,
+        surfaces: &SurfaceColumns,
+        [u, v]: [f32; 2],
+        lane: usize,
+    ) -> TexturePoint<'_> {
+        let Hit { primitive, u: b1, v: b2, .. } = *self.hit;
+        let point = TexturePoint {
+            uv: Vec2::new(u, v),
+            world: world.origin + DVec3::from_array(surfaces.position(lane)),
+            color: self.mesh.color(primitive as usize, b1, b2),
+            n: DVec3::from_array(surfaces.ng(lane)).as_vec3(),
+            ..TexturePoint::NOWHERE
+        };
+        if !self.mesh.has_vertex_data() {
+            return point;
+        }
+        let VertexData { more_uvs, opacity } = self.mesh.vertex_data(primitive as usize, b1, b2);
+        TexturePoint { more_uvs, opacity, ..point }
+    }
+}
+
 impl PathTracer {
     /// Scatters up to eight paths of a batch that met meshes of one class.
     pub(super) fn scatter_mesh_hits<B: MaterialRow, P: Probe>(
@@ -75,28 +115,58 @@ impl PathTracer {
         output: &mut StepOutput<'_, P>,
     ) {
         let Some(last) = indices.last() else { return };
-        if P::LISTENS {
-            self.notice_shading(batch, indices, output);
-        }
         // Unused lanes repeat the last hit.
         let Some(last) = batch.mesh_hit(*last) else { return };
         let hits =
             by_lane!(lane => indices.get(lane).and_then(|index| batch.mesh_hit(*index)).unwrap_or(last));
-        let MeshPoints { surfaces, uv } = MeshKernel(&hits).points();
+        let MeshPoints { mut surfaces, uv, front, bent } = MeshKernel(&hits).points();
+
+        // Paths from the camera pass the back faces of single-sided meshes.
+        let mut active = (1 << indices.len()) - 1;
+        for (lane, index) in indices.iter().enumerate() {
+            if hits[lane].passes_back_faces() && front & 1 << lane == 0 {
+                let (path, hit) = (&batch.paths[*index as usize], &batch.hits[*index as usize]);
+                self.step(batch.world, &(batch.stream)(path), path, hit, output);
+                active &= !(1 << lane);
+            } else if P::LISTENS {
+                self.notice_shading(batch, *index, output);
+            }
+        }
+        if active == 0 {
+            return;
+        }
 
         // Evaluate the materials.
         let world = batch.world;
+        let mut points: [_; LANES] = std::array::from_fn(|lane| {
+            hits[lane].texture_point(world, &surfaces, [uv[0][lane], uv[1][lane]], lane)
+        });
+        let pictures = by_lane!(lane => &hits[lane].material.pictures);
+        let look_ups = world.textures.look_up_lanes(&pictures, &points);
+        for (lane, point) in points.iter_mut().enumerate() {
+            point.looked_up = Some(look_ups.of(pictures[lane], lane));
+        }
         let mut rows = [None; LANES];
-        for (lane, MeshHit { path, hit, mesh, material, .. }) in hits.iter().enumerate() {
-            let point = TexturePoint {
-                uv: Vec2::new(uv[0][lane], uv[1][lane]),
-                world: world.origin + DVec3::from_array(surfaces.position(lane)),
-                color: mesh.color(hit.primitive as usize, hit.u, hit.v),
-                n: DVec3::from_array(surfaces.ng(lane)).as_vec3(),
-                ..TexturePoint::NOWHERE
+        for (lane, MeshHit { path, material, .. }) in hits.iter().enumerate() {
+            let mut throughput = path.beta;
+            let context = ShadingContext {
+                lanes: &mut output.queues.lanes[path.slot as usize],
+                throughput: &mut throughput,
+                interior: path.interior,
+                u: 0.0,
             };
-            let mode = &mut output.queues.lanes[path.slot as usize];
-            let mut row: Option<B> = material.row(&world.textures, &point, mode);
+            let mut row: Option<B> = match &bent {
+                Some(bent) if material.bends_frames() => {
+                    let geometry = bent.geometry(&surfaces, lane, front & 1 << lane != 0);
+                    material.bent_row(&world.textures, &geometry, &points[lane], context).map(
+                        |(row, axes)| {
+                            surfaces.set_frame(lane, axes);
+                            row
+                        },
+                    )
+                }
+                _ => material.row(&world.textures, &points[lane], context),
+            };
             if self.regularize && path.previous.blurred {
                 row.iter_mut().for_each(B::regularize);
             }
@@ -118,34 +188,32 @@ impl PathTracer {
             surface: None,
             is_catcher: false,
         });
-        self.go_on(world, &items, indices.len(), &scattered, output);
+        self.go_on(world, &items, active, &scattered, output);
     }
 
-    /// Tells the probe of the surfaces and their shading, as scalar code has them.
+    /// Tells the probe of a surface and its shading, as scalar code has them.
     #[cold]
     fn notice_shading<P: Probe>(
         &self,
         batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
-        indices: &[u32],
+        index: u32,
         output: &mut StepOutput<'_, P>,
     ) {
-        for index in indices {
-            let (path, hit) = (&batch.paths[*index as usize], &batch.hits[*index as usize]);
-            let surface = batch.world.surface(&path.ray, hit);
-            let (mut mode, mut beta) = (output.queues.lanes[path.slot as usize], path.beta);
-            let arrival =
-                ShadingContext { lanes: &mut mode, throughput: &mut beta, interior: path.interior, u: 0.0 };
-            let Some(mut shading) = batch.world.shading(&surface, arrival) else { continue };
-            if self.regularize && path.previous.blurred {
-                shading.bsdf.regularize();
-            }
-            output.probe.notice(|| Event::Shaded {
-                address: path.address,
-                surface: Box::new(surface),
-                shading: Box::new(shading),
-                beta: path.beta,
-            });
+        let (path, hit) = (&batch.paths[index as usize], &batch.hits[index as usize]);
+        let surface = batch.world.surface(&path.ray, hit);
+        let (mut mode, mut beta) = (output.queues.lanes[path.slot as usize], path.beta);
+        let arrival =
+            ShadingContext { lanes: &mut mode, throughput: &mut beta, interior: path.interior, u: 0.0 };
+        let Some(mut shading) = batch.world.shading(&surface, arrival) else { return };
+        if self.regularize && path.previous.blurred {
+            shading.bsdf.regularize();
         }
+        output.probe.notice(|| Event::Shaded {
+            address: path.address,
+            surface: Box::new(surface),
+            shading: Box::new(shading),
+            beta: path.beta,
+        });
     }
 }
 
@@ -153,6 +221,32 @@ impl PathTracer {
 struct MeshPoints {
     surfaces: SurfaceColumns,
     uv: [[f32; LANES]; 2],
+    /// Bit i for lane i: whether the ray hit the outside.
+    front: u32,
+    /// Where materials bend frames.
+    bent: Option<BentFrames>,
+}
+
+/// The directions from which bent frames are made.
+struct BentFrames {
+    ns: [[f32; 3]; LANES],
+    dpdu: [[f32; 3]; LANES],
+    dpdv: [[f32; 3]; LANES],
+}
+
+impl BentFrames {
+    /// The geometry of a lane.
+    #[inline]
+    fn geometry(&self, surfaces: &SurfaceColumns, lane: usize, front: bool) -> ShadingGeometry {
+        ShadingGeometry {
+            ng: DVec3::from_array(surfaces.ng(lane)).as_vec3(),
+            ns: self.ns[lane].into(),
+            dpdu: self.dpdu[lane].into(),
+            dpdv: self.dpdv[lane].into(),
+            wo: surfaces.wo(lane).into(),
+            front,
+        }
+    }
 }
 
 struct MeshKernel<'a>(&'a [MeshHit<'a>; LANES]);
@@ -185,11 +279,19 @@ impl Kernel for MeshKernel<'_> {
             at = at.placed(mask64x8::from_bitmask(simd, are_placed.into()), &placements);
         }
         let direction = gather(simd, &by_lane!(lane => hits[lane].path.ray.direction));
-        let wo = Vector::narrow(-direction.widen().normalize());
+        let wide_wo = -direction.widen().normalize();
+        let wo = Vector::narrow(wide_wo);
         let [ng, ns]: [Vector<f32x8<S>>; 2] = [Vector::narrow(at.ng), Vector::narrow(at.ns)];
         let n = ns.negate_where(ns.dot(ng).lt(ns.x.like(0.0)));
-        let (s, t) = frame_about(n, Vector::narrow(at.shading_dpdu));
+        let dpdu = Vector::narrow(at.shading_dpdu);
+        let (s, t) = frame_about(n, dpdu);
         let surfaces = SurfaceColumns::new(at.points, at.ng, [s, t, n], wo);
-        MeshPoints { surfaces, uv: [at.uv[0].into(), at.uv[1].into()] }
+        let front = at.ng.dot(wide_wo).gt(wide_wo.x.like(0.0)).to_bitmask() as u32;
+        let mut bent = None;
+        if hits.iter().any(|hit| hit.material.bends_frames()) {
+            let dpdv = Vector::narrow(at.shading_dpdv);
+            bent = Some(BentFrames { ns: scatter(ns), dpdu: scatter(dpdu), dpdv: scatter(dpdv) });
+        }
+        MeshPoints { surfaces, uv: [at.uv[0].into(), at.uv[1].into()], front, bent }
     }
 }

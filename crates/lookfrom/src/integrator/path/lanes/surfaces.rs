@@ -56,6 +56,22 @@ impl SurfaceColumns {
         columns
     }
 
+    /// Replaces the axes of a lane's frame.
+    #[inline]
+    pub(super) fn set_frame(&mut self, lane: usize, axes: [[f32; 3]; 3]) {
+        for (column, axis) in self.frame.iter_mut().zip(axes) {
+            for k in 0..3 {
+                column[k][lane] = axis[k];
+            }
+        }
+    }
+
+    /// The direction back along a lane's ray.
+    #[inline]
+    pub(super) fn wo(&self, lane: usize) -> [f32; 3] {
+        self.wo.map(|column| column[lane])
+    }
+
     /// The position of a lane.
     #[inline]
     pub(super) fn position(&self, lane: usize) -> [f64; 3] {

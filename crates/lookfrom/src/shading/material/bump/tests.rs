@@ -3,33 +3,9 @@
 use super::*;
 use crate::core::hash;
 use crate::core::math;
-use glam::{DVec3, Vec2};
-use lookfrom_bvh::{OriginPrimitive, Point};
 
-fn surface(wo: Vec3, ng: Vec3, ns: Vec3) -> SurfaceInteraction {
-    SurfaceInteraction {
-        point: Point { position: [0.0; 3], error: [0.0; 3] },
-        ng: ng.as_dvec3(),
-        ns,
-        uv: Vec2::ZERO,
-        dpdu: Vec3::X,
-        dpdv: Vec3::Y,
-        shading_dpdu: Vec3::X,
-        shading_dpdv: Vec3::Y,
-        color: [1.0; 3],
-        wo,
-        front: DVec3::dot(ng.as_dvec3(), wo.as_dvec3()) > 0.0,
-        material: 0,
-        light: None,
-        shape: 0,
-        primitive: 0,
-        origin_primitive: OriginPrimitive::NONE,
-        on_primitive: Vec2::ZERO,
-        alpha: None,
-        vertex_data: None,
-        single_sided: false,
-        medium_interface: None,
-    }
+fn surface(wo: Vec3, ng: Vec3, ns: Vec3) -> ShadingGeometry {
+    ShadingGeometry { ng, ns, dpdu: Vec3::X, dpdv: Vec3::Y, wo, front: ng.dot(wo) > 0.0 }
 }
 
 #[test]

@@ -1,0 +1,114 @@
+//! The light of one source at eight points, without occlusion: as `Light::sample` has it.
+
+use std::f32::consts::PI;
+
+use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask32x8, prelude::*};
+
+use crate::core::lanes::{LANES, bitmask, by_lane, gather_spectrum};
+use crate::core::points::Points;
+use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
+use crate::integrator::SampleStream;
+use crate::integrator::sample_streams::SampleStreams;
+use crate::light::{AreaLight, Light, fade, sample_area_lights};
+use crate::shading::texture::SpectralMode;
+use crate::world::World;
+
+/// Light that arrives at eight points.
+pub(super) struct Arriving<S: Simd> {
+    /// Toward the source, of unit length.
+    pub(super) wi: Vector<f32x8<S>>,
+    /// I_j of the notes: radiance over π and over the density of the direction.
+    pub(super) li: Spectrum<f32x8<S>>,
+    /// The lanes at which light arrives.
+    pub(super) exists: mask32x8<S>,
+    /// Where shadow rays end.
+    pub(super) target: Ends<S>,
+}
+
+/// The ends of shadow rays.
+pub(super) enum Ends<S: Simd> {
+    /// The source is infinitely far away.
+    Nowhere,
+    /// Points in space.
+    Points(Vector<f64x8<S>>),
+    /// Points of surfaces, with their normals.
+    Surfaces(Points<f32x8<S>>, Vector<f64x8<S>>),
+}
+
+impl<S: Simd> Arriving<S> {
+    /// The light of a source, by its index; `None` for kinds that are not sampled in lanes.
+    #[inline(always)]
+    pub(super) fn from(
+        simd: S,
+        (source, index): (&Light, u32),
+        world: &World,
+        streams: &[SampleStream; LANES],
+        points: Vector<f64x8<S>>,
+        modes: &[&SpectralMode; LANES],
+    ) -> Option<Self> {
+        let pi = f32x8::splat(simd, PI);
+        match source {
+            Light::Point { position, intensity, falloff } => {
+                let position = splat(simd, position.to_array());
+                let way = position - points;
+                let distance = way.length();
+                let wi = Vector { x: way.x / distance, y: way.y / distance, z: way.z / distance };
+                let distances: [f64; LANES] = distance.into();
+                let li = by_lane!(lane =>
+                    intensity.even(&world.textures, modes[lane]) * fade(*falloff, distances[lane]));
+                Some(Self {
+                    wi: Vector::narrow(wi),
+                    li: gather_spectrum(simd, &li) / pi,
+                    exists: pi.narrow_mask(distance.gt(f64x8::splat(simd, 0.0))),
+                    target: Ends::Points(position),
+                })
+            }
+            Light::Distant { toward, irradiance } => {
+                let li = by_lane!(lane => irradiance.even(&world.textures, modes[lane]));
+                Some(Self {
+                    wi: Vector::narrow(splat(simd, toward.as_dvec3().to_array())),
+                    li: gather_spectrum(simd, &li) / pi,
+                    exists: mask32x8::splat(simd, true),
+                    target: Ends::Nowhere,
+                })
+            }
+            Light::Area(light) => {
+                let streams = SampleStreams::new(simd, &by_lane!(lane => &streams[lane]));
+                Self::from_area(simd, light, world, streams.two(index), points, modes)
+            }
+            _ => None,
+        }
+    }
+
+    #[inline(always)]
+    fn from_area(
+        simd: S,
+        light: &AreaLight,
+        world: &World,
+        u: [f32x8<S>; 2],
+        points: Vector<f64x8<S>>,
+        modes: &[&SpectralMode; LANES],
+    ) -> Option<Self> {
+        let (samples, in_lanes) = sample_area_lights(simd, &[Some(light); LANES], u, points);
+        let samples = samples?;
+        let li = by_lane!(lane => light.radiance.even(&world.textures, modes[lane]));
+        let is_front = samples.normal.dot(samples.wi.widen()).lt(f64x8::splat(simd, 0.0));
+        let is_bright = bitmask(&by_lane!(lane => !li[lane].is_black())) & in_lanes;
+        let mut exists = samples.is_valid & mask32x8::from_bitmask(simd, is_bright.into());
+        if !light.two_sided {
+            exists &= samples.pdf.narrow_mask(is_front);
+        }
+        Some(Self {
+            wi: samples.wi,
+            li: gather_spectrum(simd, &li) / (samples.pdf * PI),
+            exists,
+            target: Ends::Surfaces(samples.points, samples.normal),
+        })
+    }
+}
+
+#[inline(always)]
+fn splat<S: Simd>(simd: S, [x, y, z]: [f64; 3]) -> Vector<f64x8<S>> {
+    Vector { x: f64x8::splat(simd, x), y: f64x8::splat(simd, y), z: f64x8::splat(simd, z) }
+}

@@ -1,0 +1,57 @@
+//! Paths that leave the scene, eight at a time: the light of the environments.
+
+use glam::Vec3;
+
+use super::mesh_hits::HitBatch;
+use crate::core::lanes::by_lane;
+use crate::integrator::path::PathTracer;
+use crate::integrator::{Path, Probe, SampleStream, StepOutput};
+use crate::light::Light;
+
+impl PathTracer {
+    /// Adds the light of the environments to up to eight paths of a batch that hit nothing, in no medium.
+    pub(super) fn escape<P: Probe>(
+        &self,
+        batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
+        indices: &[u32],
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let Some(last) = indices.last() else { return };
+        let world = batch.world;
+        // Unused lanes repeat the last path.
+        let paths = by_lane!(lane => &batch.paths[*indices.get(lane).unwrap_or(last) as usize]);
+        let mut sees_sky = 0;
+        for (lane, path) in paths.iter().enumerate().take(indices.len()) {
+            sees_sky |= u32::from(!output.shows_background(path)) << lane;
+        }
+        let directions = by_lane!(lane => Vec3::from_array(paths[lane].ray.direction).normalize());
+        for &index in &world.environments {
+            let Light::Environment(environment) = &world.lights[index as usize] else { continue };
+            // Some skies do not illuminate: they are only visible to the camera, in mirrors and through glass.
+            let is_lit = |path: &Path| environment.illuminates || !path.previous.blurred;
+            let mut lanes = 0;
+            for (lane, path) in paths.iter().enumerate() {
+                lanes |= u32::from(is_lit(path)) << lane & sees_sky;
+            }
+            let Some(sky) = environment.map_in_lanes() else {
+                for (lane, path) in paths.iter().enumerate().filter(|(lane, _)| lanes & 1 << lane != 0) {
+                    let radiance = world.sky_of(index, &path.ray, &output.lanes(path));
+                    let pdf = || world.light_pdf(index, &path.light_context(), directions[lane], None);
+                    self.add_found(path, index, radiance, pdf, output);
+                }
+                continue;
+            };
+            let mut with_density = 0;
+            for (lane, path) in paths.iter().enumerate() {
+                let is_weighted = P::LISTENS || !path.previous.pdf.is_infinite();
+                with_density |= u32::from(is_weighted && environment.illuminates) << lane & lanes;
+            }
+            let modes = by_lane!(lane => &output.queues.lanes[paths[lane].slot as usize]);
+            let seen = sky.seen(&world.textures, &directions, &modes, with_density);
+            for (lane, path) in paths.iter().enumerate().filter(|(lane, _)| lanes & 1 << lane != 0) {
+                let pdf = || world.light_choice.probability(&path.light_context(), index) * seen.pdf[lane];
+                self.add_found(path, index, seen.li[lane], pdf, output);
+            }
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Environment maps in lanes against one by one.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Mat3};
+use lookfrom_scene::image::Image;
+use lookfrom_scene::settings::ColorMode;
+
+use super::*;
+use crate::core::distribution::Piecewise2D;
+use crate::core::hash;
+use crate::light::{Light, LightSampleContext};
+
+struct Sample<'a> {
+    sky: &'a SkyImage,
+    textures: &'a Textures,
+    u: [[f32; LANES]; 2],
+}
+
+impl Kernel for Sample<'_> {
+    type Output = SkySamples;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> SkySamples {
+        self.sky.sample_lanes(simd, self.textures, self.u, &[&SpectralMode::Rgb; LANES])
+    }
+}
+
+#[test]
+fn eight_at_once_are_eight_one_by_one() {
+    let (width, height) = (13, 7);
+    let number = |k: u64| (hash::pair(k, 5) >> 40) as f32 / 16_777_216.0;
+    let texels: Vec<[f32; 3]> =
+        (0..width * height).map(|k| [number(3 * k), number(3 * k + 1), number(3 * k + 2) - 0.2]).collect();
+    let weights: Vec<f32> = texels.iter().map(|texel| (texel[0] - 0.3).max(0.0)).collect();
+    let image = Image::from_linear("", width as u32, height as u32, texels);
+    let textures = Textures::new(&[], vec![image], Vec::new(), ColorMode::Rgb);
+    let choice = Arc::new(Piecewise2D::new(&weights, width as usize, height as usize));
+    let sky = SkyImage {
+        image: 0,
+        scale: [1.0, 2.0, 0.5],
+        layout: Layout::LatitudeLongitude,
+        world_from_light: Mat3::from_rotation_x(0.7) * Mat3::from_rotation_y(2.0),
+        complete: choice.clone(),
+        compensated: choice,
+    };
+    let environment = Environment { sky: Sky::Image(Box::new(sky.clone())), portal: None, illuminates: true };
+    let light = Light::Environment(environment.clone());
+    let at = LightSampleContext { point: DVec3::ZERO, n: Vec3::Z };
+    for round in 0..2000 {
+        let u = [0, 1].map(|axis| by_lane!(lane => number(1000 + 16 * round + 2 * lane as u64 + axis)));
+        let samples = dispatch(level(), Sample { sky: &sky, textures: &textures, u });
+        let directions = by_lane!(lane => Vec3::from_array(samples.wi[lane]));
+        let seen = sky.seen(&textures, &directions, &[&SpectralMode::Rgb; LANES], 0xff);
+        for lane in 0..LANES {
+            let alone = light.sample(
+                &textures,
+                &at,
+                [u[0][lane], u[1][lane]],
+                &SpectralMode::Rgb,
+                IncompletePdf::Allowed,
+            );
+            assert_eq!(samples.is_usable(lane), alone.is_some());
+            if let Some(alone) = alone {
+                let one_of_eight = (samples.wi[lane], samples.li[lane], samples.pdf[lane]);
+                assert_eq!(one_of_eight, (alone.wi.to_array(), alone.li, alone.pdf));
+            }
+            let wi = directions[lane];
+            let alone = environment.radiance(&textures, DVec3::ZERO, wi, &SpectralMode::Rgb);
+            assert_eq!(
+                (seen.li[lane], seen.pdf[lane]),
+                (alone, light.pdf(&at, wi, None, IncompletePdf::Allowed))
+            );
+        }
+    }
+}

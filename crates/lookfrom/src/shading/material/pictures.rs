@@ -1,0 +1,79 @@
+//! The pictures that a material's scattering function depends on, to be looked up before it is evaluated.
+
+use super::{BumpMapping, Coat, MaterialKind, Metal, Roughness};
+use crate::shading::texture::{FloatTexture, PictureSet, SpectrumTexture, Textures};
+
+/// The pictures of a material.
+pub(super) fn of(kind: &MaterialKind, bump_mapping: &BumpMapping, textures: &Textures) -> PictureSet {
+    let mut walk = Walk { textures, pictures: PictureSet::EMPTY };
+    match kind {
+        MaterialKind::Diffuse { reflectance } => walk.color(reflectance),
+        MaterialKind::DiffuseTransmission { reflectance, transmittance, .. } => {
+            walk.color(reflectance);
+            walk.color(transmittance);
+        }
+        MaterialKind::Conductor { metal, roughness } => {
+            walk.metal(metal);
+            walk.roughness(roughness);
+        }
+        MaterialKind::Dielectric { roughness, .. } => walk.roughness(roughness),
+        MaterialKind::CoatedDiffuse { reflectance, coat } => {
+            walk.color(reflectance);
+            walk.coat(coat);
+        }
+        MaterialKind::CoatedConductor { metal, roughness, coat } => {
+            walk.metal(metal);
+            walk.roughness(roughness);
+            walk.coat(coat);
+        }
+        MaterialKind::Principled(look) => {
+            walk.color(&look.base_color);
+            walk.number(look.metallic);
+            walk.number(look.roughness);
+            walk.number(look.transmission);
+            walk.number(look.clearcoat);
+        }
+        _ => {}
+    }
+    if let BumpMapping::NormalTexture(map) = bump_mapping {
+        walk.color(&map.texture);
+    }
+    walk.pictures
+}
+
+/// A walk through a material's inputs.
+struct Walk<'a> {
+    textures: &'a Textures,
+    pictures: PictureSet,
+}
+
+impl Walk<'_> {
+    fn color(&mut self, color: &SpectrumTexture) {
+        self.textures.add_pictures(color, &mut self.pictures);
+    }
+
+    fn number(&mut self, number: FloatTexture) {
+        self.textures.add_pictures_of_float(number, &mut self.pictures);
+    }
+
+    fn metal(&mut self, metal: &Metal) {
+        match metal {
+            Metal::Indices { eta, k } => {
+                self.color(eta);
+                self.color(k);
+            }
+            Metal::Reflectance(color) => self.color(color),
+        }
+    }
+
+    fn roughness(&mut self, roughness: &Roughness) {
+        if let Roughness::Varying { along, .. } = roughness {
+            along.iter().for_each(|number| self.number(*number));
+        }
+    }
+
+    fn coat(&mut self, coat: &Coat) {
+        self.roughness(&coat.roughness);
+        self.color(&coat.albedo);
+    }
+}

@@ -1,0 +1,261 @@
+//! Pictures looked up at eight points at once, before textures ask for them.
+//!
+//! Texels are seldom in the cache. One look-up after another waits for each; here the places of all are computed first and
+//! all texels are fetched together, so that the waits overlap. Textures of one picture and mapping (the roughness and the
+//! metalness of glTF's material) share a look-up.
+
+mod places;
+
+use lookfrom_scene::texture::{Mapping, TexelFilter, Wrap};
+
+use self::places::{Places, UvMap};
+use super::input::{FloatTexture, Input, SpectrumTexture};
+use super::node::Node;
+use super::picture::Footprint;
+use super::{TexturePoint, Textures, mapping};
+use crate::core::lanes::LANES;
+
+/// A picture on a surface: what is looked up there for all textures that read it in the same way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Picture {
+    /// Index of the image.
+    pub(super) image: usize,
+    pub(super) mapping: Mapping,
+    pub(super) wraps: [Wrap; 2],
+    pub(super) filter: TexelFilter,
+    /// The mapping, where it is one of texture coordinates, and the filter is bilinear.
+    uv_map: Option<UvMap>,
+}
+
+impl Picture {
+    pub(super) fn new(image: usize, mapping: Mapping, wraps: [Wrap; 2], filter: TexelFilter) -> Self {
+        let uv_map = match mapping {
+            _ if filter != TexelFilter::Bilinear => None,
+            Mapping::Uv { scale: [s, t], offset } => {
+                Some(UvMap { set: 0, matrix: [[s, 0.0, offset[0]], [0.0, t, offset[1]]] })
+            }
+            Mapping::Affine { set, matrix } => Some(UvMap { set: set as usize, matrix }),
+            _ => None,
+        };
+        Self { image, mapping, wraps, filter, uv_map }
+    }
+}
+
+/// Greatest number of pictures that are looked up beforehand; others are looked up when a texture asks for them.
+const MOST: usize = 4;
+
+/// No picture.
+const NONE: u32 = u32::MAX;
+
+/// The pictures that a material will ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureSet([u32; MOST]);
+
+impl PictureSet {
+    /// No pictures.
+    pub const EMPTY: Self = Self([NONE; MOST]);
+
+    fn insert(&mut self, picture: u32) {
+        let free = self.0.iter_mut().find(|place| **place == NONE || **place == picture);
+        if let Some(place) = free {
+            *place = picture;
+        }
+    }
+}
+
+/// The colours and opacities of pictures at eight points, by place in the points' sets and by point.
+#[derive(Clone, Copy, Debug)]
+pub struct LookUps([[[f32; 4]; LANES]; MOST]);
+
+/// What was looked up at one of eight points.
+#[derive(Clone, Copy, Debug)]
+pub struct LookedUp<'a> {
+    pictures: &'a PictureSet,
+    look_ups: &'a LookUps,
+    lane: usize,
+}
+
+impl LookUps {
+    /// Those of a set at a point.
+    #[inline]
+    pub(crate) fn of<'a>(&'a self, pictures: &'a PictureSet, lane: usize) -> LookedUp<'a> {
+        LookedUp { pictures, look_ups: self, lane }
+    }
+}
+
+impl LookedUp<'_> {
+    /// The colour and opacity of a picture, if it was looked up.
+    #[inline]
+    fn find(&self, picture: u32) -> Option<[f32; 4]> {
+        let place = self.pictures.0.iter().position(|looked_up| *looked_up == picture)?;
+        Some(self.look_ups.0[place][self.lane])
+    }
+}
+
+impl Textures {
+    /// Looks up the pictures of sets at their points.
+    #[inline]
+    pub(crate) fn look_up_lanes(
+        &self,
+        sets: &[&PictureSet; LANES],
+        points: &[TexturePoint<'_>; LANES],
+    ) -> LookUps {
+        let mut look_ups = LookUps([[[0.0; 4]; LANES]; MOST]);
+        for (place, texels) in look_ups.0.iter_mut().enumerate() {
+            if sets.iter().all(|set| set.0[place] == NONE) {
+                break;
+            }
+            self.look_up_place(place, sets, points, texels);
+        }
+        look_ups
+    }
+
+    /// The pictures at one place of the sets.
+    fn look_up_place(
+        &self,
+        place: usize,
+        sets: &[&PictureSet; LANES],
+        points: &[TexturePoint<'_>; LANES],
+        texels: &mut [[f32; 4]; LANES],
+    ) {
+        let pictures: [_; LANES] =
+            std::array::from_fn(|lane| self.pictures.get(sets[lane].0[place] as usize));
+        // Footprints of texture coordinates are computed side by side.
+        let mut places = Places::NONE;
+        for (lane, picture) in pictures.iter().enumerate() {
+            if let Some(Picture { image, uv_map: Some(map), wraps, .. }) = picture {
+                places.set(lane, map, &points[lane], &self.images[*image], *wraps);
+            }
+        }
+        let cells = places.cells();
+        let footprints: [_; LANES] = std::array::from_fn(|lane| match pictures[lane] {
+            Some(Picture { image, uv_map: Some(_), wraps, .. }) => {
+                let (cell, weights) = (cells.cell.map(|of| of[lane]), cells.weights.map(|of| of[lane]));
+                Footprint::of_cell(&self.images[*image], cell, weights, *wraps)
+            }
+            Some(picture) => self.footprint(picture, &points[lane]),
+            None => Footprint::NONE,
+        });
+        // All texels are fetched before they are decoded.
+        let quads: [_; LANES] = std::array::from_fn(|lane| {
+            pictures[lane].map(|picture| footprints[lane].fetch(&self.images[picture.image]))
+        });
+        for (lane, picture) in pictures.iter().enumerate() {
+            if let (Some(picture), Some(quad)) = (picture, &quads[lane]) {
+                texels[lane] = footprints[lane].blend_quad(&self.images[picture.image], quad);
+            }
+        }
+    }
+
+    /// The colour and opacity of a picture at a point, by its index.
+    #[inline]
+    pub(super) fn look_up(&self, picture: u32, at: &TexturePoint<'_>) -> [f32; 4] {
+        at.looked_up.and_then(|looked_up| looked_up.find(picture)).unwrap_or_else(|| {
+            let picture = &self.pictures[picture as usize];
+            self.footprint(picture, at).blend(&self.images[picture.image])
+        })
+    }
+
+    #[inline]
+    fn footprint(&self, picture: &Picture, at: &TexturePoint<'_>) -> Footprint {
+        let [s, t] = mapping::coordinates(&picture.mapping, at).as_vec3().truncate().to_array();
+        // v runs up, rows run down.
+        Footprint::new(&self.images[picture.image], [s, 1.0 - t], picture.wraps, picture.filter)
+    }
+
+    /// Adds the pictures of a colour.
+    pub fn add_pictures(&self, color: &SpectrumTexture, pictures: &mut PictureSet) {
+        self.add_of_input(&color.input, pictures);
+    }
+
+    /// Adds the pictures of a number.
+    pub fn add_pictures_of_float(&self, number: FloatTexture, pictures: &mut PictureSet) {
+        if let FloatTexture::Texture(id) = number {
+            self.add_of_input(&Input::Texture(id), pictures);
+        }
+    }
+
+    fn add_of_input(&self, input: &Input, pictures: &mut PictureSet) {
+        let Input::Texture(id) = input else { return };
+        match &self.nodes[id.index()] {
+            Node::Image { picture, .. } => pictures.insert(*picture),
+            Node::Product { a, b } => {
+                self.add_of_input(a, pictures);
+                self.add_of_input(b, pictures);
+            }
+            Node::Scale { color, by } => {
+                self.add_of_input(color, pictures);
+                self.add_pictures_of_float(*by, pictures);
+            }
+            Node::Threshold { value, .. } => self.add_pictures_of_float(*value, pictures),
+            // Of others it is not known before which of their inputs they will read.
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lookfrom_scene::image::Image;
+    use lookfrom_scene::scene::{ImageId, TextureId};
+    use lookfrom_scene::settings::ColorMode;
+    use lookfrom_scene::texture::{Channel, TextureKind};
+
+    use super::*;
+    use crate::core::hash;
+
+    #[test]
+    fn eight_at_once_are_eight_one_by_one() {
+        let bytes = (0..35).map(|k| [k * 7, 255 - k, k, 200 + k]).collect();
+        let images = vec![
+            Image::from_bytes("", 7, 5, bytes, lookfrom_scene::image::Encoding::Srgb),
+            Image::from_linear("", 3, 2, (0..6).map(|k| [k as f32, -1.0, 0.1]).collect()),
+        ];
+        let kinds: Vec<TextureKind> = (0..8)
+            .map(|k| TextureKind::Image {
+                image: ImageId(k % 2),
+                mapping: match k % 3 {
+                    0 => Mapping::Uv { scale: [1.0 + (k / 2) as f32; 2], offset: [0.25; 2] },
+                    1 => Mapping::Affine { set: k / 3, matrix: [[0.5, 1.0, -0.25], [2.0, -0.5, 0.75]] },
+                    _ => Mapping::Spherical { texture_from_world: glam::DMat4::IDENTITY },
+                },
+                wrap: [[Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black][k as usize / 2]; 2],
+                filter: [TexelFilter::Bilinear, TexelFilter::Nearest][k as usize / 4],
+                channel: Channel::Rgb,
+                scale: 1.0,
+                invert: false,
+            })
+            .collect();
+        let textures = Textures::new(&kinds, images, Vec::new(), ColorMode::Rgb);
+        for round in 0..500 {
+            let number = |k: u64| (hash::pair(round, k) >> 40) as f32 / 1_048_576.0 - 8.0;
+            let points: [_; LANES] = std::array::from_fn(|lane| TexturePoint {
+                uv: glam::Vec2::new(number(2 * lane as u64), number(2 * lane as u64 + 1)),
+                more_uvs: [glam::Vec2::splat(number(100 + lane as u64)); super::super::MORE_UV_SETS],
+                world: glam::DVec3::new(0.5, f64::from(number(200 + lane as u64)), 1.0),
+                ..TexturePoint::NOWHERE
+            });
+            let sets: [_; LANES] = std::array::from_fn(|lane| {
+                let mut set = PictureSet::EMPTY;
+                for k in 0..lane as u32 % 4 {
+                    textures.add_pictures_of_float(
+                        FloatTexture::Texture(TextureId((lane as u32 + 3 * k) % 8)),
+                        &mut set,
+                    );
+                }
+                set
+            });
+            let look_ups = textures.look_up_lanes(&sets.each_ref(), &points);
+            for (lane, alone) in points.iter().enumerate() {
+                let looked_up = look_ups.of(&sets[lane], lane);
+                let point = TexturePoint { looked_up: Some(looked_up), ..*alone };
+                let mut found = 0;
+                for picture in 0..textures.pictures.len() as u32 {
+                    found += usize::from(looked_up.find(picture).is_some());
+                    assert_eq!(textures.look_up(picture, &point), textures.look_up(picture, alone));
+                }
+                assert_eq!(found, lane % 4);
+            }
+        }
+    }
+}
