@@ -93,13 +93,16 @@ impl LookedUp<'_> {
 }
 
 impl Textures {
-    /// Looks up the pictures of sets at their points.
+    /// Looks up the pictures of sets at their points; `None` where all sets are empty.
     #[inline]
     pub(crate) fn look_up_lanes(
         &self,
         sets: &[&PictureSet; LANES],
         points: &[TexturePoint<'_>; LANES],
-    ) -> LookUps {
+    ) -> Option<LookUps> {
+        if sets.iter().all(|set| **set == PictureSet::EMPTY) {
+            return None;
+        }
         let mut look_ups = LookUps([[[0.0; 4]; LANES]; MOST]);
         for (place, texels) in look_ups.0.iter_mut().enumerate() {
             if sets.iter().all(|set| set.0[place] == NONE) {
@@ -107,7 +110,7 @@ impl Textures {
             }
             self.look_up_place(place, sets, points, texels);
         }
-        look_ups
+        Some(look_ups)
     }
 
     /// The pictures at one place of the sets.
@@ -245,7 +248,7 @@ mod tests {
                 }
                 set
             });
-            let look_ups = textures.look_up_lanes(&sets.each_ref(), &points);
+            let look_ups = textures.look_up_lanes(&sets.each_ref(), &points).expect("some are not empty");
             for (lane, alone) in points.iter().enumerate() {
                 let looked_up = look_ups.of(&sets[lane], lane);
                 let point = TexturePoint { looked_up: Some(looked_up), ..*alone };

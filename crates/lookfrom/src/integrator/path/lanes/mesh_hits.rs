@@ -143,8 +143,10 @@ impl PathTracer {
         });
         let pictures = by_lane!(lane => &hits[lane].material.pictures);
         let look_ups = world.textures.look_up_lanes(&pictures, &points);
-        for (lane, point) in points.iter_mut().enumerate() {
-            point.looked_up = Some(look_ups.of(pictures[lane], lane));
+        if let Some(look_ups) = &look_ups {
+            for (lane, point) in points.iter_mut().enumerate() {
+                point.looked_up = Some(look_ups.of(pictures[lane], lane));
+            }
         }
         let mut rows = [None; LANES];
         for (lane, MeshHit { path, material, .. }) in hits.iter().enumerate() {
