@@ -31,7 +31,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("distribution", &["sampler"]),
     ("camera", &["math", "vector", "warp"]),
     ("interior_stack", &[]),
-    ("texture", &["color", "hash", "noise", "spectrum"]),
+    ("texture", &["color", "hash", "lanes", "noise", "spectrum"]),
     ("interaction", &["interior_stack", "math", "texture"]),
     (
         "material",
