@@ -78,9 +78,10 @@ fn write(arguments: &FarmArguments, matches: &ArgMatches) -> Result<(), Failure>
     let folder = &arguments.output;
     let mut all = script::files(&job);
     let (of_scheduler, next) = match arguments.scheduler {
-        Scheduler::OpenJd => {
-            (openjd::files(&job), "openjd run FOLDER/template.json --step Merge --run-dependencies")
-        }
+        Scheduler::OpenJd => (
+            openjd::files(&job),
+            "openjd run FOLDER/template.json -p file://FOLDER/parameters.json --step Merge --run-dependencies",
+        ),
         Scheduler::Slurm => (slurm::files(&job), "sh FOLDER/submit.sh"),
         Scheduler::Dask => (dask::files(&job), "python3 FOLDER/submit.py tcp://SCHEDULER:8786"),
         Scheduler::HyperQueue => (hyperqueue::files(&job), "python3 FOLDER/submit.py"),

@@ -61,7 +61,7 @@ for recipe in "${recipes[@]}"; do
     openjd)
         if ! python openjd-cli; then skipped openjd "PyPI is out of reach"; continue; fi
         "$LOOKFROM" farm openjd "$scene" "${options[@]}" --parts 8 -o "$job" 2> /dev/null
-        run=("$venv/bin/openjd" run "$job/template.json" --step Merge --run-dependencies -p "Lookfrom=$LOOKFROM" -p TasksPerChunk=3)
+        run=("$venv/bin/openjd" run "$job/template.json" -p "file://$job/parameters.json" --step Merge --run-dependencies -p "Lookfrom=$LOOKFROM" -p TasksPerChunk=3)
         "$venv/bin/openjd" check "$job/template.json" > /dev/null
         "${run[@]}" > openjd.log
         same "OpenJD, chunks of 3" one/cornell.exr "$job/cornell.exr"

@@ -14,7 +14,7 @@ use crate::values;
 pub(super) const EXAMPLES: &str = "\
 Examples:
   lookfrom farm slurm scene.pbrt --parts 64 --samples 4096 -o /shared/job && sh /shared/job/submit.sh
-  lookfrom farm openjd scene.toml --parts 16 -o job && openjd run job/template.json --step Render
+  lookfrom farm openjd scene.toml --parts 16 -o job
   lookfrom farm hyperqueue chair.glb --turntable 120 --parts 1 --floor -o job
   lookfrom farm dask robot.glb --frames 0..48 --fps 24 --parts 4 -o job
 

@@ -5,12 +5,15 @@ use serde_json::json;
 use super::Job;
 use crate::json::document;
 
-/// The job template, and the files that a job bundle of Deadline Cloud uploads.
+/// The job template; the parameter that has no default, for `openjd run` and for a job bundle of Deadline Cloud; and the
+/// files that the bundle uploads.
 pub(super) fn files(job: &Job) -> Vec<(&'static str, String)> {
-    let path = |name: &str, kind: &str, flow: &str, default: &str, about: &str| {
-        json!({
-            "name": name, "type": "PATH", "objectType": kind, "dataFlow": flow, "default": default, "description": about,
-        })
+    // Defaults of paths are inside the job's folder; the scene is not, and is a parameter without one.
+    let path = |name: &str, kind: &str, flow: &str, about: &str| json!({ "name": name, "type": "PATH", "objectType": kind, "dataFlow": flow, "description": about });
+    let folder = |name: &str, flow: &str, about: &str| {
+        let mut folder = path(name, "DIRECTORY", flow, about);
+        folder["default"] = ".".into();
+        folder
     };
     let action = |arguments: [&str; 2]| {
         let [what, argument] = arguments;
@@ -33,9 +36,9 @@ pub(super) fn files(job: &Job) -> Vec<(&'static str, String)> {
         "extensions": ["TASK_CHUNKING"],
         "name": job.name,
         "parameterDefinitions": [
-            path("Scene", "FILE", "IN", &job.scene.to_string_lossy(), "The scene"),
-            path("JobFolder", "DIRECTORY", "IN", ".", "The folder of job.sh"),
-            path("Pictures", "DIRECTORY", "INOUT", ".", "The folder of parts and pictures"),
+            path("Scene", "FILE", "IN", "The scene"),
+            folder("JobFolder", "IN", "The folder of job.sh"),
+            folder("Pictures", "INOUT", "The folder of parts and pictures"),
             { "name": "Lookfrom", "type": "STRING", "default": "lookfrom", "description": "The program" },
             { "name": "TasksPerChunk", "type": "INT", "default": 1, "minValue": 1, "description": "Parts that one machine renders in a row" },
         ],
@@ -60,5 +63,13 @@ pub(super) fn files(job: &Job) -> Vec<(&'static str, String)> {
     let references = json!({ "assetReferences": {
         "inputs": { "filenames": inputs, "directories": [] }, "outputs": { "directories": [] }, "referencedPaths": [],
     } });
-    vec![("template.json", document(&template)), ("asset_references.json", document(&references))]
+    let scene = job.scene.to_string_lossy();
+    let parameters = json!({ "Scene": scene });
+    let of_bundle = json!({ "parameterValues": [{ "name": "Scene", "value": scene }] });
+    vec![
+        ("template.json", document(&template)),
+        ("parameters.json", document(&parameters)),
+        ("parameter_values.json", document(&of_bundle)),
+        ("asset_references.json", document(&references)),
+    ]
 }

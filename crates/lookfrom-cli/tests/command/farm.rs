@@ -77,7 +77,10 @@ fn every_scheduler_gets_its_files() {
     assert_eq!(files("slurm"), "frames.txt job.sh submit.sh");
     assert_eq!(files("dask"), "frames.txt job.sh submit.py");
     assert_eq!(files("hyperqueue"), "frames.txt job.sh submit.py");
-    assert_eq!(files("openjd"), "asset_references.json frames.txt job.sh template.json");
+    assert_eq!(
+        files("openjd"),
+        "asset_references.json frames.txt job.sh parameter_values.json parameters.json template.json"
+    );
     let template: serde_json::Value = serde_json::from_slice(&stage.bytes("openjd/template.json")).unwrap();
     let task = &template["steps"][0]["parameterSpace"]["taskParameterDefinitions"][0];
     assert_eq!((task["type"].as_str(), task["range"].as_str()), (Some("CHUNK[INT]"), Some("1-4")));
