@@ -29,17 +29,15 @@ same() {
     if cmp -s "$2" "$3"; then say "same bytes: $1"; else say "DIFFERENT: $1"; failed=1; fi
 }
 
-python() {
-    if [[ ! -x $venv/bin/python ]]; then
-        python3 -m venv "$venv"
-    fi
+packages() {
+    [[ -x $venv/bin/python ]] || python3 -m venv "$venv" || return
     "$venv/bin/pip" install -q "$@"
 }
 
-# Kills renders at random moments until a file exists.
+# Kills all renders of parts, five times.
 killer() {
-    while [[ ! -e $1 ]]; do
-        sleep 0.7
+    for _ in 1 2 3 4 5; do
+        sleep 0.5
         pkill -KILL -f -- "$LOOKFROM render .*--continue" || true
     done
 }
@@ -59,7 +57,7 @@ for recipe in "${recipes[@]}"; do
         same "by hand, with a damaged part and a missing one" one/cornell.exr "$job/cornell.exr"
         ;;
     openjd)
-        if ! python openjd-cli; then skipped openjd "PyPI is out of reach"; continue; fi
+        if ! packages openjd-cli; then skipped openjd "PyPI is out of reach"; continue; fi
         "$LOOKFROM" farm openjd "$scene" "${options[@]}" --parts 8 -o "$job" 2> /dev/null
         run=("$venv/bin/openjd" run "$job/template.json" -p "file://$job/parameters.json" --step Merge --run-dependencies -p "Lookfrom=$LOOKFROM" -p TasksPerChunk=3)
         "$venv/bin/openjd" check "$job/template.json" > /dev/null
@@ -77,23 +75,25 @@ for recipe in "${recipes[@]}"; do
         same "OpenJD, with path mapping (the light)" a.pfm b.pfm
         ;;
     dask)
-        if ! python distributed; then skipped dask "PyPI is out of reach"; continue; fi
+        if ! packages distributed; then skipped dask "PyPI is out of reach"; continue; fi
         "$LOOKFROM" farm dask "$scene" "${options[@]}" --parts 12 -o "$job" 2> /dev/null
         "$venv/bin/dask" scheduler --port 18786 --dashboard-address :0 > dask.log 2>&1 &
         scheduler=$!
+        workers=()
         for _ in 1 2 3; do
-            "$venv/bin/dask" worker tcp://127.0.0.1:18786 --nthreads 1 --nworkers 1 >> dask.log 2>&1 &
+            "$venv/bin/dask" worker tcp://127.0.0.1:18786 --nthreads 1 --nworkers 1 --no-dashboard >> dask.log 2>&1 &
+            workers+=($!)
         done
-        (sleep 6; pkill -KILL -f -- "dask worker tcp://127.0.0.1:18786" -o || true) &
+        sleep 8
+        (sleep 2; kill -KILL "${workers[1]}"; pkill -KILL -P "${workers[1]}" || true) &
         "$venv/bin/python" "$job/submit.py" tcp://127.0.0.1:18786 2>> dask.log
-        pkill -f "dask worker tcp://127.0.0.1:18786" || true
-        kill $scheduler || true
+        kill "${workers[0]}" "${workers[2]}" $scheduler 2> /dev/null || true
         same "Dask, a worker killed" one/cornell.exr "$job/cornell.exr"
         ;;
     hyperqueue)
-        if ! python hyperqueue; then skipped hyperqueue "PyPI is out of reach"; continue; fi
+        if ! packages hyperqueue; then skipped hyperqueue "PyPI is out of reach"; continue; fi
         "$LOOKFROM" farm hyperqueue "$scene" "${options[@]}" --parts 10 -o "$job" 2> /dev/null
-        killer "$job/cornell.exr" &
+        killer &
         "$venv/bin/python" - "$job" << 'END' > hyperqueue.log 2>&1
 import sys
 sys.path.insert(0, sys.argv[1])
@@ -105,7 +105,6 @@ with LocalCluster() as cluster:
         cluster.start_worker(WorkerConfig(cores=1))
     assert submit.run(cluster.client())
 END
-        wait %% || true
         same "HyperQueue, renders killed" one/cornell.exr "$job/cornell.exr"
         ;;
     slurm)
