@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -102,6 +103,8 @@ pub(crate) struct Checkpoints<'a> {
     inputs: &'a Inputs,
     /// The end of the last one.
     last: Mutex<Instant>,
+    /// Whether a failure has been told.
+    told: AtomicBool,
 }
 
 impl<'a> Checkpoints<'a> {
@@ -112,7 +115,14 @@ impl<'a> Checkpoints<'a> {
         provenance: &'a Provenance,
         inputs: &'a Inputs,
     ) -> Self {
-        Self { every, target, provenance, inputs, last: Mutex::new(Instant::now()) }
+        Self {
+            every,
+            target,
+            provenance,
+            inputs,
+            last: Mutex::new(Instant::now()),
+            told: AtomicBool::new(false),
+        }
     }
 
     /// Whether the interval has passed since the last checkpoint.
@@ -120,10 +130,12 @@ impl<'a> Checkpoints<'a> {
         self.last.lock().unwrap_or_else(PoisonError::into_inner).elapsed() >= self.every
     }
 
-    /// Writes the film. A failure is a warning: the render goes on, and the next checkpoint may succeed.
+    /// Writes the film. The first failure is a warning: the render goes on, and the next checkpoint may succeed.
     pub(crate) fn write(&self, film: &Film) {
         let written = write_by(self.target, self.inputs, |file| self.provenance.write_checkpoint(film, file));
-        if let Err(failure) = written {
+        if let Err(failure) = written
+            && !self.told.swap(true, Ordering::Relaxed)
+        {
             say(&format!("warning: no checkpoint: {failure}"));
         }
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();

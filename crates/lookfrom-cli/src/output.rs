@@ -4,7 +4,7 @@
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use lookfrom::session::Format;
 use lookfrom_scene::{Disk, Inputs};
@@ -98,7 +98,7 @@ impl Target {
             return wrong(format!("cannot write {}: {} is not a folder", path.display(), folder.display()));
         }
         // Permissions, full disks, read-only disks: trying is the only way to know.
-        let trial = folder.join(partial());
+        let trial = folder.join(partial(path));
         if let Err(error) = File::create(&trial).and_then(|_| fs::remove_file(&trial)) {
             return wrong(format!("cannot write into the folder {}: {error}", folder.display()));
         }
@@ -149,7 +149,7 @@ pub(crate) fn replace_file_by(
 ) -> Result<(), Failure> {
     keep_inputs(path, inputs, option)?;
     let folder = folder_or_here(path.parent());
-    let partial = folder.join(partial());
+    let partial = folder.join(partial(path));
     let text = |error: std::io::Error| error.to_string();
     let written = || {
         fs::create_dir_all(folder).map_err(text)?;
@@ -161,6 +161,7 @@ pub(crate) fn replace_file_by(
         fs::rename(&partial, path).map_err(text)?;
         // The new name is on disk only when the folder is; systems that cannot sync folders need not.
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
+        remove_left_partials(path, folder);
         Ok(())
     };
     let written: Result<(), String> = written();
@@ -173,13 +174,59 @@ pub(crate) fn replace_file_by(
     Ok(())
 }
 
-/// Name of the temporary file, unique to this process and moment, also where machines share a folder.
-fn partial() -> String {
+/// Name of the temporary file of a file, unique to this process and moment, also where machines share a folder.
+fn partial(path: &Path) -> String {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    format!(".lookfrom-{}-{}.partial", std::process::id(), now.as_nanos())
+    format!("{}{}-{}{PARTIAL}", partial_prefix(path), std::process::id(), now.as_nanos())
+}
+
+const PARTIAL: &str = ".partial";
+
+/// The begin of that name; file systems limit the length of the whole.
+fn partial_prefix(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    format!(".{}-", name.chars().take(50).collect::<String>())
+}
+
+/// Removes what processes that were killed while they wrote this file have left: its temporary files that nobody has
+/// written to for ten minutes.
+fn remove_left_partials(path: &Path, folder: &Path) {
+    const LEFT: Duration = Duration::from_secs(600);
+    let prefix = partial_prefix(path);
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let age =
+            entry.metadata().and_then(|metadata| metadata.modified()).ok().and_then(|at| at.elapsed().ok());
+        if name.starts_with(&prefix) && name.ends_with(PARTIAL) && age.is_some_and(|age| age > LEFT) {
+            // Whoever else removes it at the same time has done so.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// The folder of a file, from the parent of its path: `.` where that is empty.
 pub(crate) fn folder_or_here(parent: Option<&Path>) -> &Path {
     parent.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_killed_have_left_is_removed_and_nothing_else() {
+        let folder = std::env::temp_dir().join(format!("lookfrom-partials-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a temporary folder");
+        let path = folder.join("a.exr");
+        let files = [".a.exr-1-2.partial", ".a.exr-3-4.partial", ".b.exr-1-2.partial", "a.exr"];
+        for (index, name) in files.iter().enumerate() {
+            let file = File::create(folder.join(name)).expect("a temporary file");
+            let age = Duration::from_secs(if index == 1 { 60 } else { 3600 });
+            file.set_modified(SystemTime::now() - age).expect("a time");
+        }
+        remove_left_partials(&path, &folder);
+        let left: Vec<bool> = files.iter().map(|name| folder.join(name).exists()).collect();
+        assert_eq!(left, [false, true, true, true]);
+        fs::remove_dir_all(&folder).expect("it is ours");
+    }
 }
