@@ -5,6 +5,8 @@ use serde::ser::{
     Serialize, SerializeMap, SerializeSeq, SerializeStruct, SerializeStructVariant, SerializeTuple,
     SerializeTupleStruct, SerializeTupleVariant, Serializer,
 };
+/// A document written out in the source.
+pub(crate) use serde_json::json;
 
 /// A value on one line.
 pub(crate) fn line(value: &impl Serialize) -> String {

@@ -1,11 +1,15 @@
 //! HyperQueue, by its Python interface (PyPI `hyperqueue`): a task for each part, then a merge.
 
 use super::Job;
+use crate::json::line;
 
 /// The Python script that submits the job and waits for it.
 pub(super) fn files(job: &Job) -> Vec<(&'static str, String)> {
-    let name = serde_json::Value::from(job.name.as_str()).to_string();
-    vec![("submit.py", SUBMIT.replace("@NAME@", &name).replace("@TASKS@", &job.tasks().to_string()))]
+    // A JSON string is a Python string.
+    vec![(
+        "submit.py",
+        SUBMIT.replace("@NAME@", &line(&job.name)).replace("@TASKS@", &job.tasks().to_string()),
+    )]
 }
 
 const SUBMIT: &str = r##"#!/usr/bin/env python3
