@@ -21,6 +21,7 @@ mod identity;
 mod layers;
 mod options;
 mod prepare;
+mod provenance;
 mod running;
 mod source;
 
@@ -46,11 +47,12 @@ use crate::view::View;
 use crate::world::World;
 
 pub use encode::Format;
-pub use film_file::{FilmFile, Provenance};
+pub use film_file::FilmFile;
 pub use finish::{Developed, Development, Finished};
 use identity::Identity;
 pub use options::{ADAPTIVE_NOISE, Fireflies, MOST_SAMPLES, OPTIONS, Options};
 use prepare::Prepared;
+pub use provenance::Provenance;
 pub use running::Running;
 use source::Source;
 

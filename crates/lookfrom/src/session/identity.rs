@@ -9,8 +9,7 @@ use lookfrom_scene::camera::Camera;
 use lookfrom_scene::digest::{Digest, Digested};
 use lookfrom_scene::settings::RenderSettings;
 
-use super::film_file::Provenance;
-use super::{Options, Session, header};
+use super::{Options, Provenance, Session, header};
 
 /// The files and options of a session, digested when it was opened.
 #[derive(Clone, Debug)]
