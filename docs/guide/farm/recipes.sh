@@ -16,7 +16,8 @@ recipes=("${@:-}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 scene=$root/scenes/cornell.toml
-options=(--width 160 --height 120 --samples 64)
+size=(--width 160 --height 120)
+options=("${size[@]}" --samples 64)
 cd "$work"
 venv=$work/venv
 failed=0
@@ -113,8 +114,8 @@ END
             continue
         fi
         "$root/docs/guide/farm/one-node-slurm.sh" start
-        "$LOOKFROM" farm slurm "$scene" "${options[@]}" --samples 256 --parts 6 -o "$job" 2> /dev/null
-        "$LOOKFROM" render "$scene" "${options[@]}" --samples 256 -q --film -o one/more.exr
+        "$LOOKFROM" farm slurm "$scene" "${size[@]}" --samples 256 --parts 6 -o "$job" 2> /dev/null
+        "$LOOKFROM" render "$scene" "${size[@]}" --samples 256 -q --film -o one/more.exr
         ids=$(sh "$job/submit.sh")
         say "$ids"
         array=$(sed 's/parts: job \([0-9]*\).*/\1/' <<< "$ids")
