@@ -6,12 +6,15 @@ use std::time::Duration;
 
 use lookfrom::film::SampleId;
 use lookfrom::render::{Rays, StopReason};
-use lookfrom::session::{Finished, Session};
+use lookfrom::session::{Finished, Outlier, Outliers, Session};
 use lookfrom_scene::WarningKind;
 use serde::Serialize;
 
 use crate::exit::{self, Failure};
 use crate::json;
+
+/// Number of fireflies that are listed.
+const MOST_FIREFLIES: usize = 3;
 
 /// Summary of the render of one scene. The names are those of the JSON object, which docs/guide/command.md explains.
 #[derive(Debug, Serialize)]
@@ -41,6 +44,7 @@ pub(crate) struct Summary {
     pub(crate) notices: Vec<String>,
     pub(crate) cancelled: bool,
     pub(crate) dropped_samples: Dropped,
+    pub(crate) fireflies: Outliers,
 }
 
 /// Wall-clock times.
@@ -121,6 +125,7 @@ impl Summary {
             notices: exit::lines(session.warnings(), WarningKind::Notice),
             cancelled: is_cancelled,
             dropped_samples: Dropped { count: film.dropped(), first: film.first_dropped().map(Into::into) },
+            fireflies: session.fireflies(film, MOST_FIREFLIES),
         }
     }
 
@@ -179,17 +184,33 @@ impl Summary {
                 )
             }
         };
+        // The inspector knows the scene's number of samples, not the number that a time or noise limit led to.
+        let of = match self.ended_by {
+            "time" | "noise" => format!(" --samples {samples}"),
+            _ => String::new(),
+        };
         if let Dropped { count, first: Some(DroppedAddress { x, y, sample }) } = self.dropped_samples {
-            // The inspector knows the scene's number of samples, not the number that a time or noise limit led to.
-            let of = match self.ended_by {
-                "time" | "noise" => format!(" --samples {samples}"),
-                _ => String::new(),
-            };
             let _ = write!(
                 text,
                 "\nwarning: {count} samples were not finite and were left out; to replay the first, with the same options:\n  \
                  lookfrom inspect {scene} {x} {y} --sample {sample}{of}"
             );
+        }
+        // The denoiser removes them.
+        let Outliers { count, brightest } = &self.fireflies;
+        if *count > 0 && !self.denoised {
+            let _ = write!(
+                text,
+                "\n  {} pixels are made far brighter than those around them by single samples:",
+                thousands(*count as u64)
+            );
+            for Outlier { x, y, sample, expression } in brightest {
+                let sample = sample.map_or("all".to_owned(), |sample| sample.to_string());
+                let _ = write!(text, "\n    lookfrom inspect {scene} {x} {y} --sample {sample}{of}");
+                if let Some(expression) = expression {
+                    let _ = write!(text, "   {expression}");
+                }
+            }
         }
         text
     }
@@ -267,6 +288,7 @@ mod tests {
             notices: Vec::new(),
             cancelled: false,
             dropped_samples: Dropped { count: 0, first: None },
+            fireflies: Outliers::default(),
         }
     }
 

@@ -3,7 +3,7 @@
 //! Triangles without shared vertices, in text or binary (3D Systems, "StereoLithography Interface Specification", 1989).
 //! Vertices with equal bits are merged. The normals of facets are ignored: they are often wrong, and flat shading follows
 //! from the triangles. Colours in the attribute bytes of binary files are read in both dialects: VisCAM's and, if the
-//! header contains `COLOR=`, Magics'.
+//! header contains `COLOR=`, Magics'. Where no facet has a colour, that of the header counts, if it is not black.
 
 use std::path::Path;
 
@@ -199,11 +199,18 @@ fn read_binary(
     let default_color = magics.and_then(|at| header.get(at + 6..at + 9)).map_or(NO_COLOR, |rgb| {
         u32::from(rgb[0] >> 3) << 10 | u32::from(rgb[1] >> 3) << 5 | u32::from(rgb[2] >> 3)
     });
-    for facet in body[..used].chunks_exact(TRIANGLE) {
+    let attributes = |facet: &[u8]| u16::from_le_bytes([facet[48], facet[49]]);
+    let facets = || body[..used].chunks_exact(TRIANGLE);
+    // Writers that know no colours leave all attributes 0, or set the bit of validity alone: none is meant to be black.
+    let first = facets().next().map_or(0, attributes);
+    let has_colors = first & 0x7fff != 0 || facets().any(|facet| attributes(facet) != first);
+    let default_color = if default_color == 0 && !has_colors { NO_COLOR } else { default_color };
+    for facet in facets() {
         let value = |i: usize| f32::from_le_bytes([facet[i], facet[i + 1], facet[i + 2], facet[i + 3]]);
         let point = |i: usize| Vec3::new(value(i), value(i + 4), value(i + 8));
-        let bits = u32::from(u16::from_le_bytes([facet[48], facet[49]]));
+        let bits = u32::from(attributes(facet));
         let color = match (magics.is_some(), bits >> 15 == 1) {
+            _ if !has_colors => default_color,
             (true, true) => default_color,
             (true, false) => (bits & 31) << 10 | (bits & 0x3e0) | bits >> 10,
             (false, true) => bits & 0x7fff,

@@ -4,6 +4,7 @@
 //! light from all directions.
 
 mod framing;
+mod lamps;
 mod surroundings;
 mod turntable;
 
@@ -19,6 +20,7 @@ use crate::scene::{Bounds, Instance, Scene};
 use crate::settings::{ImageSettings, Integrator, RenderSettings, Tonemap};
 use crate::shape::{Emission, Geometry, Shape};
 
+pub use lamps::has_lamps;
 pub use surroundings::{add_floor, surround, turn_environments};
 pub use turntable::Turntable;
 
@@ -67,12 +69,12 @@ pub fn add_lights_and_camera(scene: &mut Scene, up: Option<DVec3>) {
     stage.add_light(scene);
 }
 
-/// Adds what a model lacks: a camera that frames its bounds, if there is none, and a studio around it, if there are no
-/// lights; where the camera is inside, a point light at the camera as well. `up` as in [`add_lights_and_camera`].
+/// Adds what a model lacks: a camera that frames its bounds, if there is none, and a studio around it, if there are neither
+/// lights nor lamps ([`has_lamps`]); where the camera is inside, a point light at the camera as well. `up` as in [`add_lights_and_camera`].
 pub fn add_studio_and_camera(scene: &mut Scene, up: Option<DVec3>) {
     let stage = StudioFrame::of(scene, up);
     stage.add_camera(scene);
-    if scene.lights.is_empty() {
+    if scene.lights.is_empty() && !has_lamps(scene) {
         stage.add_studio(scene);
         if let Some(position) = stage.eye_inside(scene) {
             add_lamp(scene, position);
@@ -81,7 +83,7 @@ pub fn add_studio_and_camera(scene: &mut Scene, up: Option<DVec3>) {
 }
 
 /// Whether any shape emits light.
-pub fn shines(scene: &Scene) -> bool {
+fn shines(scene: &Scene) -> bool {
     let in_objects = scene.objects.iter().flat_map(|object| &object.shapes);
     scene.shapes.iter().chain(in_objects).any(|shape| shape.emission.is_some())
 }

@@ -307,6 +307,56 @@ fn stl_colours_in_both_dialects() {
     assert_eq!(file(b"VisCAM", 31 << 10), None);
     assert_eq!(file(b"COLOR=\xff\0\0\xff", 31 << 10), blue);
     assert_eq!(file(b"COLOR=\xff\0\0\xff", 1 << 15), red);
+    // Attributes without a colour in them are none, whatever their bit of validity says.
+    assert_eq!(file(b"COLOR=\0\0\0\xff", 0), None);
+    assert_eq!(file(b"COLOR=\xff\0\0\xff", 0), red);
+    assert_eq!(file(b"VisCAM", 1 << 15), None);
+    assert_eq!(file(b"VisCAM", 0), None);
+}
+
+#[test]
+fn ply_colours_of_faces_and_rows_that_are_too_long() {
+    let ply = b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 2\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\n\
+        property uchar blue\nend_header\n0 0 0 9 9\n1 0 0\n1 1 0\n0 1 0 7\n3 0 1 2 255 0 0\n3 0 2 3 0 0 255 255\n";
+    let model = Model::of(&[("a.ply", ply)]);
+    let mesh = model.mesh(0);
+    assert_eq!(mesh.triangles, [[0, 1, 2], [3, 4, 5]]);
+    assert_eq!((mesh.colors[0], mesh.colors[4]), ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]));
+    assert!(
+        model.warnings[0].contains("3 rows with more values than the header declares"),
+        "{:?}",
+        model.warnings
+    );
+}
+
+#[test]
+fn mtl_tr_means_what_its_writer_means() {
+    let covers = |mtl: &str| {
+        let model = with_material(mtl, &[]);
+        let Color::Value([r, ..]) = model.look(0).diffuse else { panic!("not a constant") };
+        (r, model.warnings.join("\n"))
+    };
+    assert_eq!(covers("Kd 1 1 1\nTr 0.75\n").0, 0.25);
+    assert_eq!(
+        covers("# Wavefront material file\n# Converted by Meshlab Group\nKd 1 1 1\nTr 0.75\n").0,
+        0.75
+    );
+    assert_eq!(covers("Kd 1 1 1\nTr 1\n").0, 1.0);
+    assert_eq!(covers("Kd 1 1 1\nd 0.5\nTr 1\n").0, 0.5);
+    let (invisible, warnings) = covers("Kd 1 1 1\nd 0\n");
+    assert!(invisible == 0.0 && warnings.contains("every material is fully transparent"), "{warnings}");
+}
+
+#[test]
+fn obj_corners_without_their_attributes() {
+    for corners in ["1//1 2//2 3//3", "1/4 2/5 3/6", "1/1/1 2/2/2 3/3/3", "1//-1 2//-2 3//-3"] {
+        let obj = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf {corners}\n");
+        let model = Model::of(&[("a.obj", obj.as_bytes())]);
+        assert_eq!(model.mesh(0).triangles, [[0, 1, 2]]);
+        assert!(model.mesh(0).uvs.is_empty());
+        assert!(model.warnings[0].contains("but the file has none"), "{:?}", model.warnings);
+    }
 }
 
 proptest! {

@@ -20,6 +20,7 @@ mod tile;
 
 pub use self::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
 use self::channels::ChannelSums;
+pub use self::fireflies::Firefly;
 pub use self::ledger::{Overlap, SampleLedger};
 use self::pixel::{Pixel, TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square, unbiased_variance};
 pub(crate) use self::sums::SampleSums;

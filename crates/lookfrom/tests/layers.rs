@@ -139,7 +139,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "world",
         ],
     ),
-    ("session", &["clock", "color", "denoise", "develop", "film", "integrator", "render", "view", "world"]),
+    (
+        "session",
+        &["clock", "color", "denoise", "develop", "film", "inspect", "integrator", "render", "view", "world"],
+    ),
 ];
 
 /// Folders that gather modules without being one.

@@ -154,6 +154,7 @@ fn the_summary_has_its_keys() {
             "denoised",
             "dropped_samples",
             "ended_by",
+            "fireflies",
             "height",
             "instances",
             "integrator",
@@ -222,4 +223,59 @@ fn quiet_is_quiet() {
     let stage = Stage::new("quiet");
     let run = stage.done("render scene.toml --quiet");
     assert!(run.stdout.is_empty() && run.stderr.is_empty(), "{}", run.stderr);
+}
+
+/// A small lamp that paths find by chance alone makes fireflies.
+const LAMP: &str = r#"
+[camera]
+lookfrom = [0, 1, 4]
+lookat = [0, 0.5, 0]
+
+[image]
+width = 40
+height = 30
+
+[render]
+integrator = "random_walk"
+samples = 8
+
+[[quad]]
+corner = [-5, 0, 5]
+edge_u = [10, 0, 0]
+edge_v = [0, 0, -10]
+
+[[sphere]]
+center = [0, 3, 0]
+radius = 0.3
+emission = [50, 50, 50]
+"#;
+
+#[test]
+fn fireflies_are_listed_with_the_sample_that_made_them() {
+    let stage = Stage::new("fireflies");
+    stage.write("lamp.toml", LAMP);
+    let summary = &stage.json("render lamp.toml --denoise off --json")[0];
+    let listed = &summary["fireflies"];
+    assert!(listed["count"].as_u64().unwrap() >= 3, "{listed}");
+    assert_eq!(listed["brightest"].as_array().unwrap().len(), 3);
+    let worst = &listed["brightest"][0];
+    let pixel =
+        &stage.json(&format!("inspect lamp.toml {} {} --sample all --json", worst["x"], worst["y"]))[0];
+    assert_eq!(
+        (&worst["sample"], &worst["expression"]),
+        (&pixel["all"][0]["sample"], &pixel["all"][0]["expression"])
+    );
+    // The pixel is nearly all of its brightest sample.
+    let sum = |value: &serde_json::Value| {
+        value.as_array().unwrap().iter().map(|c| c.as_f64().unwrap()).sum::<f64>()
+    };
+    assert!(sum(&pixel["all"][0]["film"]) / 8.0 > 0.5 * sum(&pixel["mean"]), "{pixel}");
+    let told = stage.run("render lamp.toml --denoise off").stderr;
+    assert!(
+        told.contains(&format!(
+            "lookfrom inspect lamp.toml {} {} --sample {}",
+            worst["x"], worst["y"], worst["sample"]
+        )),
+        "{told}"
+    );
 }

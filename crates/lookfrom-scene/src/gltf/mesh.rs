@@ -10,6 +10,7 @@ use super::material::Brought;
 use super::tangents;
 use crate::error::Result;
 use crate::files::LoadContext;
+use crate::model::points::radius as point_radius;
 use crate::model::polygon::has_area;
 use crate::scene::{Bounds, MeshId, Scene};
 use crate::shape::{Geometry, Mesh, Profile, Sphere, Strand};
@@ -17,7 +18,7 @@ use crate::warning::Warning;
 
 use self::topology::Topology;
 
-/// The radius of points and lines, relative to that of the primitive's bounding sphere.
+/// The radius of lines, relative to that of the primitive's bounding sphere.
 const THINNESS: f64 = 0.004;
 
 /// The attributes of a primitive's vertices as in the file, except for v, which runs up.
@@ -219,7 +220,7 @@ pub(crate) fn geometry(
             let mut used: Vec<u32> = (0..order.len()).map(|i| order.vertex(i)).collect();
             used.retain(|&vertex| usable(&[vertex]));
             let centers = used.iter().map(|&vertex| vertices.positions[vertex as usize].as_dvec3());
-            let radius = radius(centers.clone());
+            let radius = point_radius(centers.clone().collect());
             let spheres: Vec<Sphere> = centers.map(|center| Sphere { center, radius }).collect();
             (!spheres.is_empty()).then(|| Geometry::Spheres(spheres.into()))
         }
@@ -291,7 +292,7 @@ fn push_mesh(scene: &mut Scene, name: &str, vertices: Vertices, triangles: Vec<[
     MeshId(scene.meshes.len() as u32 - 1)
 }
 
-/// The radius of points and lines, for a primitive with these positions.
+/// The radius of lines, for a primitive with these positions.
 fn radius(places: impl Iterator<Item = DVec3>) -> f64 {
     let bounds = places.fold(Bounds::EMPTY, Bounds::with);
     let size = if bounds.radius() > 0.0 { bounds.radius() } else { bounds.center().abs().max_element() };

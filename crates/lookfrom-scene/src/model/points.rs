@@ -1,9 +1,7 @@
 //! Point clouds as spheres.
 //!
 //! The radius follows from the distances between points. Spheres of one part share a material, so coloured clouds are
-//! split by colour.
-
-use std::collections::BTreeMap;
+//! split by colour: into at most [`MOST_COLORS`] boxes of colours (median cut, Heckbert 1982), each with its mean.
 
 use glam::{DVec3, Vec3};
 
@@ -15,8 +13,8 @@ use crate::material::{Color, Whitted};
 use crate::scene::Scene;
 use crate::shape::{Geometry, Part, Sphere};
 
-/// Number of steps per primary by which coloured points are split.
-const COLOR_STEPS: f32 = 8.0;
+/// Number of different colours.
+const MOST_COLORS: usize = 512;
 
 /// Number of points whose nearest neighbour is searched.
 const SAMPLES: usize = 256;
@@ -48,15 +46,10 @@ pub(crate) fn cloud(
     if colors.is_empty() {
         return vec![part(&mut finite.iter().map(|&(point, _)| point), None)];
     }
-    // Split by colour; steps are finer in the dark, where the eye distinguishes more of them.
-    let mut by_color: BTreeMap<[u8; 3], Vec<usize>> = BTreeMap::new();
-    let color_of = |index: usize| colors.get(index).copied().unwrap_or([1.0; 3]);
-    for (order, &(_, index)) in finite.iter().enumerate() {
-        let step = color_of(index).map(|c| (c.clamp(0.0, 1.0).sqrt() * (COLOR_STEPS - 1.0) + 0.5) as u8);
-        by_color.entry(step).or_default().push(order);
-    }
-    let parts = by_color.into_values().map(|members| {
-        let sum = members.iter().fold(Vec3::ZERO, |sum, &i| sum + Vec3::from(color_of(finite[i].1)));
+    let color_of = |order: usize| colors.get(finite[order].1).copied().unwrap_or([1.0; 3]);
+    let parts = boxes((0..finite.len()).collect(), &color_of).into_iter().map(|mut members| {
+        members.sort_unstable();
+        let sum = members.iter().fold(Vec3::ZERO, |sum, &i| sum + Vec3::from(color_of(i)));
         let mean = sum / members.len() as f32;
         let whitted = Whitted { diffuse: Color::Value(mean.to_array()), ..Whitted::default() };
         let material = push_material(scene, "points", file, whitted);
@@ -65,8 +58,47 @@ pub(crate) fn cloud(
     parts.collect()
 }
 
-/// A radius for spheres around these points: a multiple of the median distance to the nearest neighbour.
-fn radius(mut points: Vec<DVec3>) -> f64 {
+/// Splits points by colour. The box that is widest, as the eye sees it, is split at its middle colour again and again.
+fn boxes(points: Vec<usize>, color_of: &impl Fn(usize) -> [f32; 3]) -> Vec<Vec<usize>> {
+    // Steps are finer in the dark, where the eye distinguishes more of them.
+    let seen = |point: usize, channel: usize| color_of(point)[channel].max(0.0).sqrt();
+    let widest = |points: &[usize]| {
+        let width = |channel: usize| {
+            let range = points.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), &point| {
+                (low.min(seen(point, channel)), high.max(seen(point, channel)))
+            });
+            range.1 - range.0
+        };
+        let widths = [width(0), width(1), width(2)];
+        let channel = (0..3).fold(0, |best, other| if widths[other] > widths[best] { other } else { best });
+        (widths[channel], channel)
+    };
+    let measured = |points: Vec<usize>| (widest(&points), points);
+    let mut boxes = vec![measured(points)];
+    while boxes.len() < MOST_COLORS {
+        let widths = boxes.iter().map(|((width, _), points)| width * (points.len() as f32).cbrt());
+        let Some((index, _)) = widths.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b)) else { break };
+        let ((width, channel), points) = &mut boxes[index];
+        if *width == 0.0 {
+            break;
+        }
+        let channel = *channel;
+        points.sort_by(|&a, &b| seen(a, channel).total_cmp(&seen(b, channel)));
+        // Equal colours stay together: the first of them that leaves two boxes with points.
+        let middle = seen(points[points.len() / 2], channel);
+        let below = points.partition_point(|&point| seen(point, channel) < middle);
+        let split =
+            if below > 0 { below } else { points.partition_point(|&point| seen(point, channel) <= middle) };
+        let upper = points.split_off(split);
+        let lower = std::mem::take(points);
+        boxes[index] = measured(lower);
+        boxes.push(measured(upper));
+    }
+    boxes.into_iter().map(|(_, points)| points).collect()
+}
+
+/// A radius for spheres around finite points: a multiple of the median distance to the nearest neighbour.
+pub(crate) fn radius(mut points: Vec<DVec3>) -> f64 {
     let (min, max) = points
         .iter()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), &point| (min.min(point), max.max(point)));
@@ -117,6 +149,29 @@ mod tests {
             let grid = (0..1000)
                 .map(|i| scale * DVec3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64));
             assert!((radius(grid.collect()) / (RADIUS * scale) - 1.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn few_colours_stay_as_they_are_and_many_are_close() {
+        let few: Vec<[f32; 3]> =
+            (0..1000).map(|i| [(i % 7) as f32 / 6.0, 0.5, (i % 3) as f32 / 2.0]).collect();
+        let split = boxes((0..few.len()).collect(), &|i| few[i]);
+        assert_eq!(split.len(), 21);
+        assert!(split.iter().all(|points| points.iter().all(|&i| few[i] == few[points[0]])));
+
+        let many: Vec<[f32; 3]> = (0..20_000_u32)
+            .map(|i| [i % 31, i % 29, i % 23].map(|step| (step as f32 / 31.0).powi(2)))
+            .collect();
+        let split = boxes((0..many.len()).collect(), &|i| many[i]);
+        assert_eq!(split.len(), MOST_COLORS);
+        assert_eq!(split.iter().map(Vec::len).sum::<usize>(), many.len());
+        for points in split {
+            let mean = points.iter().map(|&i| Vec3::from(many[i])).sum::<Vec3>() / points.len() as f32;
+            for i in points {
+                let step = mean.to_array().map(f32::sqrt);
+                assert!((0..3).all(|c| (many[i][c].sqrt() - step[c]).abs() < 0.16), "{:?} {mean}", many[i]);
+            }
         }
     }
 

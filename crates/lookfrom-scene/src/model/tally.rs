@@ -30,6 +30,11 @@ impl Tally {
         self.count
     }
 
+    /// The line of the first.
+    pub(crate) fn first_line(self) -> u32 {
+        self.first
+    }
+
     /// Warns if there were any: "3 triangles `what`".
     pub(crate) fn warn(self, noun: &str, what: &str, file: &Location, context: &mut LoadContext<'_>) {
         self.tell(WarningKind::Warning, noun, what, file, context);

@@ -33,8 +33,10 @@ pub struct MtlMaterial {
     pub shininess: Option<f32>,
     /// `Ni`: the index of refraction.
     pub ior: Option<f32>,
-    /// `d`, or 1 − `Tr`: 1 is opaque.
+    /// `d`, or what [`parse`] makes of `Tr`: 1 is opaque.
     pub opacity: Option<f32>,
+    /// `Tr`, in [0, 1], on whose meaning programs disagree.
+    pub transparency: Option<f32>,
     /// `illum`: the number of the illumination model.
     pub illumination: Option<u32>,
     /// `Pm`: 1 is metal.
@@ -91,6 +93,7 @@ pub fn parse(bytes: &[u8], path: &Path, context: &mut LoadContext<'_>) -> Vec<Mt
             break;
         }
     }
+    resolve_transparency(&mut materials, is_of_meshlab(&text), &file, context);
     unreadable.warn("line", "ignored: the values are not what the keyword expects", &file, context);
     orphans.warn("line", "before the first `newmtl` ignored", &file, context);
     for (name, tally) in ignored {
@@ -103,6 +106,45 @@ pub fn parse(bytes: &[u8], path: &Path, context: &mut LoadContext<'_>) -> Vec<Mt
         }
     }
     materials
+}
+
+/// Whether MeshLab wrote the library; it says so in a comment.
+fn is_of_meshlab(text: &[u8]) -> bool {
+    let comments = text.split(|byte| *byte == b'\n').filter(|line| line.trim_ascii_start().starts_with(b"#"));
+    comments.take(64).any(|line| line.to_ascii_lowercase().windows(7).any(|word| word == b"meshlab"))
+}
+
+/// Decides what `Tr` means where there is no `d`: 1 − opacity, but opacity itself in libraries of MeshLab. A material that
+/// would be invisible by `Tr 1` alone is opaque: exporters on MeshLab's library (VCGlib) write it for opaque ones.
+fn resolve_transparency(
+    materials: &mut [MtlMaterial],
+    is_of_meshlab: bool,
+    file: &Location,
+    context: &mut LoadContext<'_>,
+) {
+    let mut invisible = Tally::default();
+    for material in &mut *materials {
+        material.opacity =
+            material.opacity.or(material.transparency.map(|tr| match is_of_meshlab || tr == 1.0 {
+                true => tr,
+                false => 1.0 - tr,
+            }));
+        if material.transparency == Some(1.0) && material.opacity == Some(1.0) && !is_of_meshlab {
+            invisible.add(material.at.line);
+        }
+    }
+    invisible.notice(
+        "material",
+        "with `Tr 1`, taken to be opaque as VCGlib means it: write `d 0` for invisible",
+        file,
+        context,
+    );
+    if !materials.is_empty() && materials.iter().all(|material| material.opacity == Some(0.0)) {
+        context.warn(
+            file,
+            "every material is fully transparent (`d 0`): nothing of the model is visible, but reflections",
+        );
+    }
 }
 
 enum Outcome {
@@ -142,12 +184,8 @@ impl MtlMaterial {
                     word = scanner.word();
                 }
                 let value = parse_f32(word).filter(|value| value.is_finite());
-                // If both are given, `d` counts: programs disagree on the meaning of `Tr`.
-                match value {
-                    Some(d) if keyword == b"d" => self.opacity = Some(d.clamp(0.0, 1.0)),
-                    Some(tr) => self.opacity = self.opacity.or(Some(1.0 - tr.clamp(0.0, 1.0))),
-                    None => {}
-                }
+                let to = if keyword == b"d" { &mut self.opacity } else { &mut self.transparency };
+                *to = value.map(|value| value.clamp(0.0, 1.0)).or(*to);
                 return done(value.is_some());
             }
             b"illum" => {

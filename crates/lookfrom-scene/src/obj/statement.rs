@@ -81,6 +81,8 @@ struct Parser<'a> {
     calls: Tally,
     unknown: Tally,
     unknown_name: String,
+    /// Indices of texture coordinates or normals in a file without any.
+    missing: [Tally; 3],
 }
 
 /// Parses the statements of a file.
@@ -106,6 +108,7 @@ pub(super) fn parse(text: &[u8], file: &Location, context: &mut LoadContext<'_>)
         calls: Tally::default(),
         unknown: Tally::default(),
         unknown_name: String::new(),
+        missing: [Tally::default(); 3],
     };
     parser.use_material(None);
     loop {
@@ -114,6 +117,7 @@ pub(super) fn parse(text: &[u8], file: &Location, context: &mut LoadContext<'_>)
             break;
         }
     }
+    parser.drop_missing();
     parser.check_indices()?;
     parser.warn(context);
     Ok(parser.statements)
@@ -267,6 +271,10 @@ impl Parser<'_> {
             return Err(self.bad_corner(word));
         }
         let value = digits.iter().fold(0_usize, |value, digit| 10 * value + usize::from(digit - b'0'));
+        if back && count == 0 && kind > 0 {
+            self.missing[kind].add(self.scanner.line());
+            return Ok(NONE);
+        }
         if value == 0 || (back && value > count) {
             return Err(self.out_of_range(&self.scanner.at(self.file), &shown(number), kind, count));
         }
@@ -307,6 +315,22 @@ impl Parser<'_> {
         });
     }
 
+    /// Corners lose texture coordinates or normals that the file has none of: exporters write their indices all the same.
+    fn drop_missing(&mut self) {
+        let counts = [self.statements.uvs.len(), self.statements.normals.len()];
+        for (kind, count) in (1..).zip(counts) {
+            let largest = &mut self.largest[kind];
+            if count > 0 || largest.count == 0 {
+                continue;
+            }
+            largest.count = 0;
+            self.missing[kind].add(largest.at.line);
+            for corner in self.statements.groups.iter_mut().flat_map(|group| &mut group.corners) {
+                *(if kind == 1 { &mut corner.uv } else { &mut corner.normal }) = NONE;
+            }
+        }
+    }
+
     fn check_indices(&self) -> Result<()> {
         let statements = &self.statements;
         let counts = [statements.positions.len(), statements.uvs.len(), statements.normals.len()];
@@ -325,6 +349,11 @@ impl Parser<'_> {
             self.loose.warn("point or line element", "left out: only faces are drawn", file, context);
         }
         self.thin.notice("face", "left out: fewer than three corners", file, context);
+        let kinds = [(1, "texture coordinates (vt)"), (2, "normals (vn)")];
+        for (kind, name) in kinds.into_iter().filter(|(kind, _)| self.missing[*kind].count() > 0) {
+            let at = file.at(self.missing[kind].first_line(), 0);
+            context.warn(&at, format!("faces name {name}, but the file has none: they are ignored"));
+        }
         self.curves.warn("curve or surface", "left out: free-form geometry is not supported", file, context);
         self.calls.warn(
             "`call` or `csh` statement",

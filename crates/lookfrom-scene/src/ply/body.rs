@@ -11,6 +11,7 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Limits;
 use crate::image::linear_from_srgb;
 use crate::model::scan::shown;
+use crate::model::tally::Tally;
 
 /// The supported content of a file.
 #[derive(Default)]
@@ -28,6 +29,10 @@ pub(super) struct Content {
     pub(super) corners: Vec<u32>,
     /// Empty, or the texture coordinates of each corner.
     pub(super) corner_uvs: Vec<Vec2>,
+    /// Empty, or one per face; linear.
+    pub(super) face_colors: Vec<[f32; 3]>,
+    /// Rows of a text with more values than the header declares.
+    pub(super) longer: Tally,
     /// The number of faces with fewer than three corners, and the line of the first.
     pub(super) thin: (u64, u32),
 }
@@ -85,6 +90,7 @@ pub(super) fn read(bytes: &[u8], header: &Header, file: &Location, limits: &Limi
             _ => skip(element, least, &mut reader)?,
         }
     }
+    content.longer = reader.longer;
     Ok(content)
 }
 
@@ -117,8 +123,7 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
             slots[column] = slot;
         }
     }
-    let color_type = columns[8].map(|column| element.properties[column].kind);
-    let decode = color_decoder(color_type);
+    let decode = color_decoder(columns[8].map(|column| element.properties[column].kind));
     for _ in 0..count {
         // One slot more than there are names, for properties that are skipped.
         let mut row = [0.0_f64; VERTEX.len() + 1];
@@ -139,6 +144,7 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
         if colors {
             content.colors.push([decode(row[8]), decode(row[9]), decode(row[10])]);
         }
+        reader.end_row();
     }
     Ok(())
 }
@@ -176,14 +182,24 @@ fn read_faces(
         return Err(Error::syntax(&element.at, message));
     };
     let texcoords = element.find(&["texcoord"]).filter(is_list);
+    let is_one = |index: &usize| matches!(element.properties[*index].kind, Kind::One(_));
+    let columns = [8, 9, 10].map(|slot| element.find(VERTEX[slot]).filter(is_one));
+    let has_colors = columns.iter().all(Option::is_some);
+    let decode = color_decoder(columns[0].map(|column| element.properties[column].kind));
     let (mut face, mut uvs) = (Vec::new(), Vec::new());
     for _ in 0..element.count {
         let mut line = 0;
         let mut place = 0;
         uvs.clear();
+        let mut color = [0.0; 3];
         for (index, property) in element.properties.iter().enumerate() {
             match property.kind {
-                Kind::One(scalar) => drop(reader.value(scalar)?),
+                Kind::One(scalar) => {
+                    let value = reader.value(scalar)?;
+                    if let Some(channel) = columns.iter().position(|column| *column == Some(index)) {
+                        color[channel] = decode(value);
+                    }
+                }
                 Kind::List { count, item } if index == indices => {
                     face.clear();
                     place = reader.position();
@@ -203,10 +219,14 @@ fn read_faces(
                 return Err(reader.error_at(line, place, ErrorKind::Invalid, message));
             }
         }
+        reader.end_row();
         if strips {
             content.push_strips(&face, line);
         } else {
             content.push_face(&face, &uvs, line);
+        }
+        if has_colors {
+            content.face_colors.resize(content.faces.len(), color);
         }
         if content.corners.len() as u64 > limits.elements.min(u64::from(u32::MAX) / 4) {
             return Err(Error::new(
@@ -264,6 +284,7 @@ fn skip(element: &Element, least: u64, reader: &mut Reader<'_>) -> Result<()> {
                 Kind::List { count, item } => reader.list(count, item, |_| {})?,
             }
         }
+        reader.end_row();
     }
     Ok(())
 }

@@ -32,6 +32,12 @@ pub(super) fn parts(
     let mut thin = Tally::default();
     thin.add_many(content.thin.0, content.thin.1);
     thin.notice("face", "left out: fewer than three corners", &file, context);
+    content.longer.warn(
+        "row",
+        "with more values than the header declares: the rest of the line is skipped",
+        &file,
+        context,
+    );
     if content.positions.is_empty() {
         context.warn(&file, "there are no vertices");
         return Ok(Vec::new());
@@ -65,14 +71,18 @@ fn make_values_finite(content: &mut Content, file: &Location, context: &mut Load
 }
 
 fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> Mesh {
-    let Content { mut positions, normals, uvs, colors, faces, corners, corner_uvs, .. } = content;
+    let Content { mut positions, normals, uvs, colors, faces, corners, corner_uvs, face_colors, .. } =
+        content;
     let mut triangulator = Triangulator::new();
     let (mut not_finite, mut flat) = (Tally::default(), Tally::default());
-    // Triangles, as indices of corners.
+    // Colours of vertices are finer than those of faces.
+    let face_colors = if colors.is_empty() { face_colors } else { Vec::new() };
+    // Triangles, as indices of corners, and the colours of their faces.
     let mut triangles: Vec<[u32; 3]> = Vec::with_capacity(faces.len());
+    let mut triangle_colors: Vec<[f32; 3]> = Vec::new();
     let (mut points, mut cut) = (Vec::new(), Vec::new());
     let mut start = 0;
-    for face in &faces {
+    for (index, face) in faces.iter().enumerate() {
         points.clear();
         let end = start + face.corners as usize;
         points.extend(corners[start..end].iter().map(|&vertex| positions[vertex as usize]));
@@ -82,6 +92,7 @@ fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> Mes
             for triangle in &cut {
                 if has_area(triangle.map(|i| points[i as usize])) {
                     triangles.push(triangle.map(|i| start as u32 + i));
+                    triangle_colors.extend(face_colors.get(index));
                 } else {
                     flat.add(face.line);
                 }
@@ -99,7 +110,7 @@ fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> Mes
             "concave polygons with very many corners: some were triangulated as if they were convex",
         );
     }
-    if corner_uvs.is_empty() {
+    if corner_uvs.is_empty() && face_colors.is_empty() {
         for triangle in &mut triangles {
             *triangle = triangle.map(|corner| corners[corner as usize]);
         }
@@ -109,26 +120,36 @@ fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> Mes
         }
         return Mesh { positions, triangles, normals, uvs, colors, ..Mesh::default() };
     }
-    // A vertex with different texture coordinates in different faces is split.
+    // A vertex with different texture coordinates or colours in different faces is split.
     let mut weld = Weld::new();
-    for triangle in &mut triangles {
+    for (index, triangle) in triangles.iter_mut().enumerate() {
+        let [r, g, b] = triangle_colors.get(index).copied().unwrap_or_default().map(f32::to_bits);
         *triangle = triangle.map(|corner| {
-            let uv = corner_uvs[corner as usize];
-            weld.id([corners[corner as usize], uv.x.to_bits(), uv.y.to_bits()])
+            let uv = corner_uvs.get(corner as usize).copied().unwrap_or_default();
+            weld.id([corners[corner as usize], uv.x.to_bits(), uv.y.to_bits(), r, g, b])
         });
     }
     let keys = weld.keys();
+    let uv_of = |key: &Key| Vec2::new(f32::from_bits(key[1]), f32::from_bits(key[2]));
+    let color_of = |key: &Key| [key[3], key[4], key[5]].map(f32::from_bits);
     Mesh {
         positions: keys.iter().map(|key| positions[key[0] as usize]).collect(),
         triangles,
         normals: select(&normals, keys),
-        uvs: keys.iter().map(|key| Vec2::new(f32::from_bits(key[1]), f32::from_bits(key[2]))).collect(),
-        colors: select(&colors, keys),
+        uvs: if corner_uvs.is_empty() { select(&uvs, keys) } else { keys.iter().map(uv_of).collect() },
+        colors: if face_colors.is_empty() {
+            select(&colors, keys)
+        } else {
+            keys.iter().map(color_of).collect()
+        },
         ..Mesh::default()
     }
 }
 
-fn select<T: Copy>(values: &[T], keys: &[[u32; 3]]) -> Vec<T> {
+/// A vertex, its texture coordinates and its colour, as bits.
+type Key = [u32; 6];
+
+fn select<T: Copy>(values: &[T], keys: &[Key]) -> Vec<T> {
     keys.iter().filter_map(|key| values.get(key[0] as usize).copied()).collect()
 }
 

@@ -4,6 +4,7 @@ use super::header::{Format, Header, Scalar};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::model::number::{parse_f32, parse_f64};
 use crate::model::scan::{Scanner, shown};
+use crate::model::tally::Tally;
 
 /// A cursor over values.
 pub(super) struct Reader<'a> {
@@ -16,6 +17,12 @@ pub(super) struct Reader<'a> {
     scanner: Scanner<'a>,
     header_bytes: usize,
     header_lines: u32,
+    /// Number of rows that the header declares.
+    rows: u64,
+    /// Whether each row of a text has a line of its own; `None` until it matters.
+    by_lines: Option<bool>,
+    /// Rows of a text with more values than the header declares.
+    pub(super) longer: Tally,
 }
 
 impl<'a> Reader<'a> {
@@ -23,7 +30,19 @@ impl<'a> Reader<'a> {
     pub(super) fn new(bytes: &'a [u8], header: &Header, file: &'a Location) -> Self {
         let scanner = Scanner::new(bytes);
         let (header_bytes, header_lines) = (header.length, header.lines);
-        Self { file, bytes, format: header.format, position: 0, scanner, header_bytes, header_lines }
+        let rows = header.elements.iter().fold(0_u64, |rows, element| rows.saturating_add(element.count));
+        Self {
+            file,
+            bytes,
+            format: header.format,
+            position: 0,
+            scanner,
+            header_bytes,
+            header_lines,
+            rows,
+            by_lines: None,
+            longer: Tally::default(),
+        }
     }
 
     /// Number of bytes read after the header.
@@ -124,6 +143,22 @@ impl<'a> Reader<'a> {
             each(self.value(item)?);
         }
         Ok(())
+    }
+
+    /// Ends a row. In a text with a line for each row, what the line has beyond the declared values is skipped.
+    pub(super) fn end_row(&mut self) {
+        if self.format != Format::Ascii || self.scanner.clone().word().is_empty() {
+            return;
+        }
+        let (bytes, rows) = (self.bytes, self.rows);
+        let has_lines = || {
+            let lines = bytes.split(|byte| matches!(byte, b'\n' | b'\r'));
+            lines.filter(|line| !line.trim_ascii().is_empty()).count() as u64 >= rows
+        };
+        if *self.by_lines.get_or_insert_with(has_lines) {
+            self.longer.add(self.line());
+            self.scanner.rest_of_line();
+        }
     }
 
     /// Skips bytes of a binary format; returns false in ASCII.

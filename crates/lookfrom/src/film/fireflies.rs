@@ -18,7 +18,30 @@ const STANDARD_ERRORS: f64 = 3.0;
 /// The radius in pixels over which an excess is spread.
 const RADIUS: u32 = 2;
 
+/// A pixel that single samples make far too bright.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Firefly {
+    /// Column and row from the top left.
+    pub pixel: [u32; 2],
+    /// Its luminance beyond the median of its neighbours.
+    pub excess: f64,
+}
+
 impl Film {
+    /// The fireflies of the film, those with the largest excess first.
+    pub fn fireflies(&self) -> Vec<Firefly> {
+        let area = self.area();
+        let places = (area.y0..area.y1).flat_map(|y| (area.x0..area.x1).map(move |x| [x, y]));
+        let mut found: Vec<Firefly> = places
+            .filter_map(|pixel @ [x, y]| {
+                let [own, median] = self.outlier(x, y)?;
+                Some(Firefly { pixel, excess: own - median })
+            })
+            .collect();
+        found.sort_by(|a, b| b.excess.total_cmp(&a.excess));
+        found
+    }
+
     /// The means of all pixels, as in [`Film::picture`], with the excess of fireflies spread over their neighbours. The
     /// sum over the picture is the same up to rounding.
     pub fn picture_without_fireflies(&self) -> Picture {
@@ -57,25 +80,30 @@ impl Film {
 
     /// The fraction of its light that a pixel keeps: 1 unless it is a firefly.
     fn kept(&self, x: u32, y: u32) -> f64 {
+        self.outlier(x, y).map_or(1.0, |[own, median]| median / own)
+    }
+
+    /// The luminance of a firefly, and the median of its neighbours; `None` for other pixels.
+    fn outlier(&self, x: u32, y: u32) -> Option<[f64; 2]> {
         let at = |x, y| {
             let pixel = self.tile.pixel(x, y)?;
             Some((pixel.luminance(), pixel.standard_error()))
         };
-        let Some((own, own_error)) = at(x, y) else { return 1.0 };
+        let (own, own_error) = at(x, y)?;
         let area = around(self.area(), x, y, 1);
         let (mut lights, mut errors): (Vec<f64>, Vec<f64>) = (area.y0..area.y1)
             .flat_map(|row| (area.x0..area.x1).map(move |column| (column, row)))
             .filter(|&place| place != (x, y))
             .filter_map(|(column, row)| at(column, row))
             .unzip();
-        let (Some(median), Some(error)) = (median(&mut lights), median(&mut errors)) else { return 1.0 };
+        let (median, error) = (median(&mut lights)?, median(&mut errors)?);
         let excess = own - median;
         // The error of a pixel with one sample is infinite; infinities compare as they should.
-        let firefly = own > 0.0
+        let is_firefly = own > 0.0
             && median >= 0.0
             && excess > STANDARD_ERRORS * error
             && excess < STANDARD_ERRORS * own_error;
-        if firefly { median / own } else { 1.0 }
+        is_firefly.then_some([own, median])
     }
 }
 

@@ -60,11 +60,9 @@ pub(super) fn prepare(
     if let Some(environment) = &options.environment {
         studio::surround(scene, environment.clone(), up);
     }
-    // Emissive materials in a glTF file are seldom meant as its only light.
-    if origin == SourceFormat::Gltf || origin == SourceFormat::Model && !studio::shines(scene) {
-        studio::add_studio_and_camera(scene, up);
-    } else {
-        studio::add_lights_and_camera(scene, up);
+    match origin {
+        SourceFormat::Scene => studio::add_lights_and_camera(scene, up),
+        _ => studio::add_studio_and_camera(scene, up),
     }
     let mut added = Vec::new();
     if !had_camera {
