@@ -247,6 +247,9 @@ edge_v = [0, 0, -10]
 [[sphere]]
 center = [0, 3, 0]
 radius = 0.3
+material = "lamp"
+
+[materials.lamp]
 emission = [50, 50, 50]
 "#;
 
@@ -259,8 +262,8 @@ fn fireflies_are_listed_with_the_sample_that_made_them() {
     assert!(listed["count"].as_u64().unwrap() >= 3, "{listed}");
     assert_eq!(listed["brightest"].as_array().unwrap().len(), 3);
     let worst = &listed["brightest"][0];
-    let pixel =
-        &stage.json(&format!("inspect lamp.toml {} {} --sample all --json", worst["x"], worst["y"]))[0];
+    let inspect = format!("inspect lamp.toml {} {} --sample all --json", worst["x"], worst["y"]);
+    let pixel = &stage.json_document(&inspect);
     assert_eq!(
         (&worst["sample"], &worst["expression"]),
         (&pixel["all"][0]["sample"], &pixel["all"][0]["expression"])
@@ -270,7 +273,7 @@ fn fireflies_are_listed_with_the_sample_that_made_them() {
         value.as_array().unwrap().iter().map(|c| c.as_f64().unwrap()).sum::<f64>()
     };
     assert!(sum(&pixel["all"][0]["film"]) / 8.0 > 0.5 * sum(&pixel["mean"]), "{pixel}");
-    let told = stage.run("render lamp.toml --denoise off").stderr;
+    let told = stage.done("render lamp.toml --denoise off").stderr;
     assert!(
         told.contains(&format!(
             "lookfrom inspect lamp.toml {} {} --sample {}",
