@@ -144,6 +144,9 @@ impl Files for Memory {
     }
 }
 
+/// Pointers of Git LFS are shorter than this (its specification, version 1).
+const LONGEST_POINTER: usize = 1024;
+
 /// The context of a load: file access, limits, import options and warnings.
 pub struct LoadContext<'a> {
     /// File access.
@@ -194,9 +197,15 @@ impl<'a> LoadContext<'a> {
     /// The whole content of a file within the limits.
     ///
     /// # Errors
-    /// `Io` when it cannot be read, `Limit` when it is too long.
+    /// `Io` when it cannot be read, or is a pointer of Git LFS to a file that is elsewhere; `Limit` when it is too long.
     pub fn read(&self, path: &Path) -> Result<Vec<u8>> {
-        self.files.read(path, self.limits.file_bytes)
+        let bytes = self.files.read(path, self.limits.file_bytes)?;
+        if bytes.len() < LONGEST_POINTER && bytes.starts_with(b"version https://git-lfs") {
+            let message = "this is a pointer of Git LFS, not the file itself";
+            return Err(Error::new(ErrorKind::Io, &Location::file(path), message)
+                .hint("`git lfs pull` brings the file"));
+        }
+        Ok(bytes)
     }
 
     /// Adds a warning: reading continues, but the picture may differ from the intended one.

@@ -61,6 +61,8 @@ fn the_first_version_is_told_by_name() {
 fn what_stands_in_place_of_a_model_is_told() {
     let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 12\n";
     assert!(error("a.glb", pointer).contains("`git lfs pull`"));
+    let first = error("a.gltf", br#"{"asset": {"version": 1}, "scene": "all"}"#);
+    assert!(first.contains("glTF 1 is not read, only glTF 2.0"), "{first}");
     assert!(error("a.glb", b"<!DOCTYPE html><html></html>").contains("web page"));
     assert!(error("a.gltf", b"").starts_with("a.gltf: the file is empty"));
     assert!(error("a.gltf", b" \n").starts_with("a.gltf: the file contains only spaces"));

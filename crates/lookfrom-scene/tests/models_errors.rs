@@ -189,3 +189,12 @@ fn stl() {
     );
     assert_eq!(said("a.stl", "solid x\nendsolid x\n"), "a.stl: there are no triangles");
 }
+
+#[test]
+fn pointers_of_git_lfs_are_told_in_place_of_any_model() {
+    let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 12\n";
+    for name in ["a.obj", "a.ply", "a.stl", "a.xyz"] {
+        let said = said(name, pointer);
+        assert!(said.contains("pointer of Git LFS") && said.contains("`git lfs pull`"), "{name}: {said}");
+    }
+}

@@ -387,7 +387,7 @@ fn parse(bytes: &[u8], what: &str, at: &Location, context: &mut LoadContext<'_>)
         };
         // Other versions have other names, so a JSON error may be due to the version.
         match json::version(text) {
-            Some(version) if !version.starts_with("2.") => {
+            Some(version) if !version.starts_with('2') => {
                 unsupported(&at.pointer("/asset/version"), &format!("glTF {version}"))
             }
             _ => Error::invalid(&at.pointer(&pointer), wrong.message)
@@ -398,9 +398,7 @@ fn parse(bytes: &[u8], what: &str, at: &Location, context: &mut LoadContext<'_>)
 
 /// The hint for a file that is not JSON.
 fn instead_of_json(text: &str) -> &'static str {
-    if text.starts_with("version https://git-lfs") {
-        "this is a pointer of Git LFS, not the model: `git lfs pull` brings the model"
-    } else if text.starts_with('<') {
+    if text.starts_with('<') {
         "this is a web page or XML: download the model itself"
     } else {
         "check that the file is whole"

@@ -646,9 +646,18 @@ pub(super) fn parse(text: &str) -> Result<Root, Wrong> {
 pub(super) fn version(text: &str) -> Option<String> {
     #[derive(Deserialize)]
     struct Versioned {
-        asset: Asset,
+        asset: AnyAsset,
     }
-    serde_json::from_str::<Versioned>(text).ok().map(|found| found.asset.version)
+    // Files of the first version have it as a number, too.
+    #[derive(Deserialize)]
+    struct AnyAsset {
+        version: serde_json::Value,
+    }
+    match serde_json::from_str::<Versioned>(text).ok()?.asset.version {
+        serde_json::Value::String(version) => Some(version),
+        serde_json::Value::Number(version) => Some(version.to_string()),
+        _ => None,
+    }
 }
 
 /// The message of serde with JSON's terms instead of the names of our types.
