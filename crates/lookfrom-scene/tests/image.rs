@@ -205,14 +205,37 @@ fn errors_say_what_to_do() {
     assert_eq!(said("a.png", b""), format!("a.png: the file is empty; expected a picture{whole}"));
     assert!(said("a.xyz", b"what is this").starts_with("a.xyz: the picture format is not known"));
     assert!(said("a.xyz", b"what is this").contains("save it as one of PNG, JPEG"));
-    let exr = image::encode_exr(1, 1, &[("Z".to_owned(), &[0.0])], &[]).expect("EXR");
+    let exr =
+        image::encode_exr(1, 1, &[("X".to_owned(), &[0.0]), ("Z".to_owned(), &[0.0])], &[]).expect("EXR");
     assert_eq!(
         said("a.exr", &exr),
-        "a.exr: has the channels Z; expected R, G and B, or Y\n  help: write the picture again with channels of these names"
+        "a.exr: has the channels X, Z; expected R, G and B, or Y\n  help: write the picture again with channels of these names"
     );
     let nan = image::encode_pfm(2, 1, &[[f32::NAN, 1.0, f32::INFINITY], [0.5; 3]]).expect("PFM");
     let (read, warnings) = read_as("a.pfm", &nan, None).expect("bad values are survived");
     assert_eq!((read.texel(0), warnings), ([0.0, 1.0, 0.0], 1));
+}
+
+#[test]
+fn pictures_of_other_programs() {
+    let exr = image::encode_exr(2, 1, &[("weight".to_owned(), &[0.25, 2.0])], &[]).expect("EXR");
+    let (gray, _) = read_as("a.exr", &exr, None).expect("its only channel is grey");
+    assert_eq!((gray.texel(0), gray.texel(1)), ([0.25; 3], [2.0; 3]));
+
+    // One block of DXT1 (S3TC): red and blue as 5, 6 and 5 bits, the rows take the first and the second in turn.
+    let mut dds = b"DDS ".to_vec();
+    let mut words = [0_u32; 31];
+    words[..4].copy_from_slice(&[124, 0x1007, 4, 4]);
+    words[18..21].copy_from_slice(&[32, 4, u32::from_le_bytes(*b"DXT1")]);
+    words[26] = 0x1000;
+    dds.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+    dds.extend([0x00, 0xf8, 0x1f, 0x00, 0x00, 0x55, 0x00, 0x55]);
+    let (blocks, _) = read_as("a.dds", &dds, None).expect("DXT1");
+    let [red, blue] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+    assert_eq!(blocks.len(), 16);
+    for row in 0..4 {
+        assert_eq!(blocks.texel(4 * row), if row % 2 == 0 { red } else { blue }, "row {row}");
+    }
 }
 
 fn samples() -> Vec<Vec<u8>> {

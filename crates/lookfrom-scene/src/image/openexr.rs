@@ -57,10 +57,14 @@ pub fn read_exr(path: &Path, context: &mut LoadContext<'_>) -> Result<Channels> 
     decode_channels(&bytes, &Location::file(path), &context.limits)
 }
 
-/// The colours of an OpenEXR file: R, G, B if present, else Y.
+/// The colours of an OpenEXR file: R, G, B if present, else Y, or its only channel.
 pub(super) fn decode_rgb(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Floats> {
     let found = decode_channels(bytes, at, limits)?;
-    let rgb = ["R", "G", "B"].map(|name| found.channel(name).or_else(|| found.channel("Y")));
+    let gray = match found.channels.as_slice() {
+        [(_, only)] => Some(only.as_slice()),
+        _ => found.channel("Y"),
+    };
+    let rgb = ["R", "G", "B"].map(|name| found.channel(name).or(gray));
     let [Some(r), Some(g), Some(b)] = rgb else {
         let names: Vec<&str> = found.channels.iter().map(|(name, _)| name.as_str()).collect();
         return Err(Error::invalid(

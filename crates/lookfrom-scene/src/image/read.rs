@@ -12,7 +12,7 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, LoadContext};
 
 /// The names of the readable formats, for messages.
-const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, KTX2";
+const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, DDS (DXT1 to DXT5), KTX2";
 
 /// Reads a colour image: 8- and 16-bit formats are taken to be sRGB-encoded and become linear, floating-point formats are
 /// linear already. Values that are not finite become 0, with a warning.
