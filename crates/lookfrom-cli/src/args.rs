@@ -5,6 +5,8 @@
 mod farm;
 mod film;
 mod model;
+#[cfg(feature = "view")]
+mod view;
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -23,6 +25,8 @@ use crate::values;
 pub(crate) use farm::FarmArguments;
 pub(crate) use film::{DevelopArguments, FilesArguments, KeepArguments, MergeArguments, ResumeArguments};
 pub(crate) use model::ModelArguments;
+#[cfg(feature = "view")]
+pub(crate) use view::ViewArguments;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -120,6 +124,10 @@ pub(crate) enum Command {
     /// Trace one sample of a pixel and show every step: intersections, BSDFs, light samples, throughput
     #[command(after_help = INSPECT_EXAMPLES)]
     Inspect(InspectArguments),
+    /// Show a scene in the browser while it renders, and why every pixel is as it is
+    #[cfg(feature = "view")]
+    #[command(after_help = view::EXAMPLES)]
+    View(ViewArguments),
     /// List the contents of scenes, models, pictures and films
     #[command(after_help = INFO_EXAMPLES)]
     Info(InfoArguments),

@@ -11,7 +11,7 @@ use lookfrom_scene::WarningKind;
 use serde::Serialize;
 
 use crate::exit::{self, Failure};
-use crate::json;
+use lookfrom_scene::json;
 
 /// Summary of the render of one scene. The names are those of the JSON object, which docs/guide/command.md explains.
 #[derive(Debug, Serialize)]

@@ -1,0 +1,459 @@
+//! The thread of a window: renders its view, coarse at first, then pass by pass, and answers its page meanwhile.
+//!
+//! A message interrupts a pass at the next tile; it is answered, and the pass goes on with the tiles that it lacks. Only
+//! coarse pictures are not interrupted: they are chosen to take no longer than a frame, and a hand that moves the camera
+//! would never see one.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use lookfrom::film::Film;
+use lookfrom::inspect;
+use lookfrom::render::{Progress, SampleId, StopCriteria, StopReason};
+use lookfrom::session::{Format, MOST_SAMPLES, Session};
+use lookfrom_scene::settings::{ImageSettings, RenderSettings};
+use lookfrom_scene::{Error, Result};
+
+use crate::develop::{self, Shown};
+use crate::document::{Document, Loaded, panicked};
+use crate::mailbox::{Letter, Mailbox, Task};
+use crate::message::{Answer, FileFormat, Header, Request, Wish};
+use crate::space;
+use crate::view::{Variation, refused};
+use crate::words;
+
+/// The time that a coarse picture may take while the camera is moved.
+const FRAME: Duration = Duration::from_millis(50);
+
+/// The time that a pass shall take.
+const PASS: Duration = Duration::from_millis(400);
+
+/// Pixels of the view per pixel of the first coarse picture, while nothing is known of its cost.
+const FIRST_SCALE: u32 = 8;
+
+/// The coarsest picture.
+const COARSEST: u32 = 32;
+
+/// Runs until the window is closed.
+pub(crate) fn run(mailbox: &Mailbox, document: &Document) {
+    let mut window =
+        Window { mailbox, document, loaded: None, variation: None, wish: None, shot: None, is_paused: false };
+    while let Some(tasks) = mailbox.take(!window.has_work()) {
+        for task in tasks {
+            let id = match &task {
+                Task::Request(request) => request.id(),
+                Task::SceneChanged => None,
+            };
+            window.guarded(id, |window| window.answer(task));
+        }
+        window.guarded(None, Window::step);
+    }
+}
+
+/// A window: what it shows.
+struct Window<'a> {
+    mailbox: &'a Mailbox,
+    document: &'a Document,
+    loaded: Option<Arc<Loaded>>,
+    /// The scene as this window alone wants it.
+    variation: Option<(Variation, Session)>,
+    wish: Option<Wish>,
+    shot: Option<Shot>,
+    is_paused: bool,
+}
+
+/// A view and its films.
+struct Shot {
+    session: Session,
+    /// The last coarse picture.
+    coarse: Option<Coarse>,
+    film: Option<Film>,
+    /// Samples that every pixel of the film has.
+    samples: u32,
+    /// Samples of the next pass.
+    pass: u32,
+    rays: u64,
+    spent: Duration,
+    /// Seconds for one sample of one pixel, if known.
+    pace: Option<f64>,
+    /// When a denoised picture may be made again: it takes time that the render then has not.
+    denoised_until: Option<Instant>,
+    stage: Stage,
+}
+
+struct Coarse {
+    scale: u32,
+    session: Session,
+    film: Film,
+}
+
+/// What is to be rendered next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    Coarse(u32),
+    Full,
+    Done,
+}
+
+impl Window<'_> {
+    /// Does something; its failure becomes an answer, a panic too.
+    fn guarded(&mut self, id: Option<u64>, act: impl FnOnce(&mut Self) -> Result<()>) {
+        let done = catch_unwind(AssertUnwindSafe(|| act(self))).unwrap_or_else(|_| Err(panicked()));
+        if let Err(error) = done {
+            if id.is_none()
+                && let Some(shot) = &mut self.shot
+            {
+                shot.stage = Stage::Done;
+            }
+            self.mailbox.say(&Answer::of_error(id, &error));
+        }
+    }
+
+    /// Whether there is something to render.
+    fn has_work(&self) -> bool {
+        !self.is_paused && self.shot.as_ref().is_some_and(|shot| shot.stage != Stage::Done)
+    }
+
+    fn answer(&mut self, task: Task) -> Result<()> {
+        match task {
+            Task::SceneChanged => self.scene_changed(),
+            Task::Request(Request::View(wish)) => self.look(*wish),
+            Task::Request(Request::Pause { paused }) => {
+                self.is_paused = paused;
+                Ok(())
+            }
+            Task::Request(Request::Inspect { id, x, y, sample, depth, min_contribution }) => {
+                self.inspect(id, [x, y], sample, depth, min_contribution)
+            }
+            Task::Request(Request::Value { id, x, y }) => self.value(id, x, y),
+            Task::Request(Request::Space { id, camera, size }) => {
+                let loaded = self.loaded.as_ref().ok_or_else(nothing_yet)?;
+                let session = self.shot.as_ref().map_or(&loaded.session, |shot| &shot.session);
+                self.mailbox.send(Letter::Binary(space::frame(session, id, &camera, size)?));
+                Ok(())
+            }
+            Task::Request(Request::Save { id, format }) => self.save(id, format),
+            Task::Request(Request::Words { id }) => {
+                let (Some(shot), Some(wish)) = (&self.shot, &self.wish) else { return Err(nothing_yet()) };
+                let toml = words::toml(&shot.session, wish);
+                let command = words::command(&shot.session, wish, &self.document.settings().typed);
+                self.mailbox.say(&Answer::Words { id, toml, command });
+                Ok(())
+            }
+        }
+    }
+
+    /// Shows the scene as it is now, in the same view.
+    fn scene_changed(&mut self) -> Result<()> {
+        let (loaded, error) = self.document.now();
+        if let Some(loaded) = loaded
+            && self.loaded.as_ref().is_none_or(|before| before.generation != loaded.generation)
+        {
+            self.mailbox.say(&Answer::Scene(Box::new(loaded.told())));
+            (self.loaded, self.variation, self.shot) = (Some(loaded), None, None);
+            if let Some(wish) = self.wish.take() {
+                self.look(wish)?;
+            }
+        }
+        if let Some(error) = error {
+            self.mailbox.say(&error);
+        }
+        Ok(())
+    }
+
+    /// Shows another view, or the same one developed anew.
+    fn look(&mut self, wish: Wish) -> Result<()> {
+        let Some(loaded) = self.loaded.clone() else {
+            self.wish = Some(wish);
+            return Ok(());
+        };
+        develop::check(&wish, &loaded)?;
+        let before = self.wish.replace(wish.clone());
+        if let Some(shot) = &mut self.shot
+            && before.is_some_and(|before| before.light() == wish.light())
+        {
+            shot.take_samples(&wish, &loaded)?;
+            if !wish.moving && shot.stage == Stage::Done && shot.film.is_none() {
+                shot.stage = shot.after_coarse();
+            }
+            shot.denoised_until = None;
+            return self.show();
+        }
+        let pace = self.shot.take().and_then(|shot| shot.pace);
+        let session = self.base(&wish, &loaded)?;
+        let session = wish.applied(session)?;
+        let shot = Shot::new(session, pace);
+        self.shot = Some(shot);
+        Ok(())
+    }
+
+    /// The session of the scene in the variation that is asked for.
+    fn base(&mut self, wish: &Wish, loaded: &Loaded) -> Result<Session> {
+        let Some(variation) = wish.variation(loaded) else { return Ok(loaded.session.clone()) };
+        if let Some((known, session)) = &self.variation
+            && *known == variation
+        {
+            return Ok(session.clone());
+        }
+        let session = variation.open(loaded)?;
+        self.variation = Some((variation, session.clone()));
+        Ok(session)
+    }
+
+    /// Renders a little more.
+    fn step(&mut self) -> Result<()> {
+        if !self.has_work() {
+            return Ok(());
+        }
+        let (Some(shot), Some(wish)) = (&mut self.shot, &self.wish) else { return Ok(()) };
+        let has_more = match shot.stage {
+            Stage::Coarse(scale) => shot.render_coarse(scale, wish.moving, self.mailbox)?,
+            Stage::Full => shot.render_pass(self.mailbox)?,
+            Stage::Done => false,
+        };
+        if has_more { self.show() } else { Ok(()) }
+    }
+
+    /// Sends the picture as it is.
+    fn show(&mut self) -> Result<()> {
+        let (Some(shot), Some(wish), Some(loaded)) = (&mut self.shot, &self.wish, &self.loaded) else {
+            return Ok(());
+        };
+        let of = shot.session.settings().samples;
+        let is_done = shot.film.is_some() && shot.stage == Stage::Done;
+        let seconds = shot.spent.as_secs_f64();
+        self.mailbox.say(&Answer::Progress {
+            view: wish.id,
+            samples: shot.samples,
+            of,
+            seconds,
+            rays_per_second: shot.rays as f64 / seconds.max(1e-9),
+            done: is_done,
+        });
+        let started = Instant::now();
+        let denoises = wish.denoise && shot.samples > 0;
+        if denoises && !is_done && shot.denoised_until.is_some_and(|until| started < until) {
+            return Ok(());
+        }
+        let (session, film, scale) = match (&shot.film, &shot.coarse) {
+            (Some(film), _) if shot.samples > 0 => (&shot.session, film, 1),
+            (_, Some(coarse)) => (&coarse.session, &coarse.film, coarse.scale),
+            _ => return Ok(()),
+        };
+        let shown = Shown { session, film, is_coarse: scale > 1, loaded, wish };
+        let pictures = shown.pictures()?;
+        if denoises {
+            shot.denoised_until = Some(Instant::now() + 3 * started.elapsed());
+        }
+        let header = Header::Picture {
+            view: wish.id,
+            width: film.width(),
+            height: film.height(),
+            scale,
+            samples: shot.samples.max(1),
+            of,
+            done: is_done,
+            layer: wish.layer.clone().unwrap_or_else(|| "color".to_owned()),
+            seconds,
+            sizes: pictures.iter().map(Vec::len).collect(),
+        };
+        let parts: Vec<&[u8]> = pictures.iter().map(Vec::as_slice).collect();
+        self.mailbox.show(header.frame(&parts));
+        Ok(())
+    }
+
+    fn inspect(
+        &self,
+        id: u64,
+        pixel: [u32; 2],
+        sample: u32,
+        depth: Option<u32>,
+        min_contribution: Option<f32>,
+    ) -> Result<()> {
+        let shot = self.shot.as_ref().ok_or_else(nothing_yet)?;
+        shot.check_pixel(pixel)?;
+        let own = shot.session.settings();
+        if sample >= MOST_SAMPLES {
+            return Err(refused(format!("there is no sample {sample}")));
+        }
+        let mut session = shot.session.clone();
+        session.set_settings(RenderSettings {
+            depth: depth.unwrap_or(own.depth).min(256),
+            min_contribution: min_contribution.unwrap_or(own.min_contribution),
+            ..own.clone()
+        })?;
+        let inspection = inspect::inspect(session.renderer(), SampleId { pixel, sample });
+        let text = inspection.to_string();
+        self.mailbox.say(&Answer::Inspection { id, inspection: Box::new(inspection), text });
+        Ok(())
+    }
+
+    fn value(&self, id: u64, x: u32, y: u32) -> Result<()> {
+        let shot = self.shot.as_ref().ok_or_else(nothing_yet)?;
+        shot.check_pixel([x, y])?;
+        let film = shot.film.as_ref().ok_or_else(nothing_yet)?;
+        let reference = self.loaded.as_ref().and_then(|loaded| loaded.reference.as_ref());
+        let reference = reference.filter(|image| x < image.width && y < image.height);
+        self.mailbox.say(&Answer::Value {
+            id,
+            x,
+            y,
+            rgb: film.mean(x, y),
+            samples: film.samples(x, y),
+            variance: film.variance(x, y),
+            reference: reference.map(|image| image.texel(y as usize * image.width as usize + x as usize)),
+        });
+        Ok(())
+    }
+
+    fn save(&self, id: u64, format: FileFormat) -> Result<()> {
+        let (Some(shot), Some(wish), Some(loaded)) = (&self.shot, &self.wish, &self.loaded) else {
+            return Err(nothing_yet());
+        };
+        let film = shot.film.as_ref().ok_or_else(nothing_yet)?;
+        let (format, extension, mime) = match format {
+            FileFormat::Png => (Format::Png, "png", "image/png"),
+            FileFormat::Exr => (Format::Exr, "exr", "image/x-exr"),
+        };
+        let shown = Shown { session: &shot.session, film, is_coarse: false, loaded, wish };
+        let bytes = shown.file(format)?;
+        let stem = self.document.settings().scene.file_stem().unwrap_or_default().to_string_lossy();
+        let header = Header::File { id, name: format!("{stem}.{extension}"), mime };
+        self.mailbox.send(Letter::Binary(header.frame(&[&bytes])));
+        Ok(())
+    }
+}
+
+impl Shot {
+    fn new(session: Session, pace: Option<f64>) -> Self {
+        let scale = pace.map_or(FIRST_SCALE, |pace| scale_of(session.image(), pace));
+        Self {
+            session,
+            coarse: None,
+            film: None,
+            samples: 0,
+            pass: 1,
+            rays: 0,
+            spent: Duration::ZERO,
+            pace,
+            denoised_until: None,
+            stage: Stage::Coarse(scale),
+        }
+    }
+
+    /// Takes over the number of samples of a wish for the same light.
+    fn take_samples(&mut self, wish: &Wish, loaded: &Loaded) -> Result<()> {
+        let samples = wish.samples.unwrap_or(loaded.session.settings().samples);
+        if samples == self.session.settings().samples {
+            return Ok(());
+        }
+        self.session.set_settings(RenderSettings { samples, ..self.session.settings().clone() })?;
+        if samples < self.samples {
+            (self.film, self.samples, self.pass, self.rays, self.spent) = (None, 0, 1, 0, Duration::ZERO);
+        }
+        if self.stage == Stage::Done && samples != self.samples {
+            self.stage = Stage::Full;
+        }
+        Ok(())
+    }
+
+    /// Renders one sample of each pixel of a smaller picture.
+    fn render_coarse(&mut self, scale: u32, moving: bool, mailbox: &Mailbox) -> Result<bool> {
+        let mut session = self.session.clone();
+        let mut image = session.image().clone();
+        image.resize(image.width.div_ceil(scale), image.height.div_ceil(scale));
+        session.set_image(ImageSettings { denoise: false, ..image })?;
+        session.set_settings(RenderSettings { samples: 1, ..session.settings().clone() })?;
+        let film = Film::for_image(session.image())?;
+        let pixels = film.width() as f64 * film.height() as f64;
+        let started = Instant::now();
+        let rendered = session.renderer().render_onto(
+            film,
+            0,
+            &StopCriteria::default(),
+            None,
+            &Watch { mailbox, is_interruptible: false },
+        )?;
+        self.pace = Some(started.elapsed().as_secs_f64() / pixels);
+        self.coarse = Some(Coarse { scale, session, film: rendered.film });
+        self.stage = if moving { Stage::Done } else { self.after_coarse() };
+        Ok(rendered.reason != StopReason::Cancelled)
+    }
+
+    /// What follows the coarse picture, if the camera stands still.
+    fn after_coarse(&self) -> Stage {
+        let finer = self.pace.map_or(FIRST_SCALE, |pace| scale_of(self.session.image(), pace / 4.0));
+        match &self.coarse {
+            None => Stage::Coarse(FIRST_SCALE),
+            Some(coarse) if coarse.scale > 2 && finer > 1 => Stage::Coarse(2),
+            Some(_) => Stage::Full,
+        }
+    }
+
+    /// Adds samples to the film. Whether there is a whole pass more.
+    fn render_pass(&mut self, mailbox: &Mailbox) -> Result<bool> {
+        let of = self.session.settings().samples;
+        let end = of.min(self.samples.saturating_add(self.pass));
+        let film = match self.film.take() {
+            Some(film) => film,
+            None => Film::for_image(self.session.image())?,
+        };
+        let settings = RenderSettings { samples: end, ..self.session.settings().clone() };
+        let renderer = self.session.renderer().with_settings(settings)?;
+        let started = Instant::now();
+        let watch = Watch { mailbox, is_interruptible: true };
+        let rendered = renderer.render_onto(film, 0, &StopCriteria::default(), None, &watch)?;
+        let elapsed = started.elapsed();
+        self.film = Some(rendered.film);
+        self.rays += rendered.rays.total();
+        self.spent += elapsed;
+        if rendered.reason == StopReason::Cancelled {
+            return Ok(false);
+        }
+        self.samples = end;
+        if elapsed < PASS / 2 {
+            self.pass = self.pass.saturating_mul(2);
+        }
+        if end == of {
+            self.stage = Stage::Done;
+        }
+        Ok(true)
+    }
+
+    fn check_pixel(&self, [x, y]: [u32; 2]) -> Result<()> {
+        let ImageSettings { width, height, .. } = *self.session.image();
+        if x >= width || y >= height {
+            return Err(refused(format!(
+                "pixel {x} {y} is outside of the picture of {width} × {height} pixels"
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// The finest scale whose picture takes no longer than a frame.
+fn scale_of(image: &ImageSettings, pace: f64) -> u32 {
+    let whole = f64::from(image.width) * f64::from(image.height) * pace;
+    let mut scale = 1;
+    while scale < COARSEST && whole / f64::from(scale * scale) > FRAME.as_secs_f64() {
+        scale *= 2;
+    }
+    scale
+}
+
+fn nothing_yet() -> Error {
+    refused("there is no picture yet")
+}
+
+/// Ends a render when its window is closed, and a pass when there is a message.
+struct Watch<'a> {
+    mailbox: &'a Mailbox,
+    is_interruptible: bool,
+}
+
+impl Progress for Watch<'_> {
+    fn cancelled(&self) -> bool {
+        self.mailbox.is_closed() || self.is_interruptible && self.mailbox.has_tasks()
+    }
+}

@@ -1,0 +1,219 @@
+//! A server of a scene in a temporary folder, and pages without a browser.
+
+use std::io::{Read, Write};
+use std::net::{Ipv4Addr, TcpStream};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use futures_util::{SinkExt, StreamExt};
+use lookfrom::session::Options;
+use lookfrom_view::{Server, Settings};
+use serde_json::{Value, json};
+use tokio::net::TcpStream as AsyncStream;
+use tokio::runtime::Runtime;
+use tokio_tungstenite::tungstenite::Message;
+use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
+
+/// The longest wait for anything.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A small scene.
+pub const SCENE: &str = r#"
+[camera]
+lookfrom = [0, 1, 5]
+lookat = [0, 0, 0]
+
+[image]
+width = 64
+height = 48
+
+[render]
+samples = 4
+
+[[sphere]]
+center = [0, 0, 0]
+radius = 1
+
+[[light]]
+type = "point"
+position = [3, 4, 5]
+intensity = [20, 20, 20]
+"#;
+
+/// A server that ends when it is dropped.
+pub struct Served {
+    pub url: String,
+    pub scene: PathBuf,
+    pub windows: Arc<AtomicUsize>,
+    stopped: Arc<AtomicBool>,
+    thread: Option<JoinHandle<std::io::Result<()>>>,
+}
+
+impl Served {
+    /// Serves a scene file of this text.
+    pub fn new(name: &str, text: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("lookfrom-view-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a temporary folder");
+        let scene = folder.join("scene.toml");
+        std::fs::write(&scene, text).expect("a temporary file");
+        let settings = Settings {
+            scene: scene.clone(),
+            options: Options::default(),
+            environment: None,
+            reference: None,
+            typed: Vec::new(),
+            host: Ipv4Addr::LOCALHOST.into(),
+            port: 0,
+        };
+        let server = Server::bind(settings).expect("a free port");
+        let (url, windows) = (server.url(), server.windows());
+        let stopped = Arc::new(AtomicBool::new(false));
+        let thread = {
+            let stopped = stopped.clone();
+            std::thread::spawn(move || server.run(|| stopped.load(Ordering::Relaxed)))
+        };
+        Self { url, scene, windows, stopped, thread: Some(thread) }
+    }
+
+    /// Replaces the scene's file.
+    pub fn write(&self, text: &str) {
+        std::fs::write(&self.scene, text).expect("the file is ours");
+    }
+
+    /// `127.0.0.1:port`.
+    pub fn host(&self) -> &str {
+        self.url.trim_start_matches("http://").split('/').next().expect("a host")
+    }
+
+    pub fn token(&self) -> &str {
+        self.url.split('=').nth(1).expect("a token")
+    }
+
+    /// The first line of the answer to a request with these headers.
+    pub fn status(&self, path: &str, headers: &str) -> String {
+        let mut stream = TcpStream::connect(self.host()).expect("it listens");
+        let request = format!("GET {path} HTTP/1.1\r\nConnection: close\r\n{headers}\r\n");
+        stream.write_all(request.as_bytes()).expect("it reads");
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).expect("it answers");
+        answer.lines().next().unwrap_or_default().to_owned()
+    }
+
+    /// Opens a window.
+    pub fn open(&self) -> Page {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
+        let url = format!("ws://{}/socket?token={}", self.host(), self.token());
+        let (socket, _) = runtime.block_on(connect_async(url)).expect("a socket");
+        Page { runtime, socket }
+    }
+
+    /// Waits until this many windows have threads.
+    pub fn wait_for_windows(&self, count: usize) {
+        let started = Instant::now();
+        while self.windows.load(Ordering::Acquire) != count {
+            assert!(started.elapsed() < PATIENCE, "{} windows", self.windows.load(Ordering::Acquire));
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        self.stopped.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let ended = thread.join().expect("it does not panic");
+            assert!(ended.is_ok() || std::thread::panicking(), "{ended:?}");
+        }
+        let _ = std::fs::remove_dir_all(self.scene.parent().unwrap_or(Path::new("")));
+    }
+}
+
+/// A window of a page.
+pub struct Page {
+    runtime: Runtime,
+    socket: WebSocketStream<MaybeTlsStream<AsyncStream>>,
+}
+
+/// A binary frame.
+#[derive(Debug)]
+pub struct Frame {
+    pub header: Value,
+    pub payload: Vec<u8>,
+}
+
+/// Anything from the server.
+#[derive(Debug)]
+pub enum Heard {
+    Text(Value),
+    Frame(Frame),
+}
+
+impl Page {
+    pub fn say(&mut self, message: &Value) {
+        self.say_text(message.to_string());
+    }
+
+    pub fn say_text(&mut self, text: String) {
+        self.runtime.block_on(self.socket.send(Message::text(text))).expect("it reads");
+    }
+
+    /// The next message; `None` once the socket is closed.
+    pub fn hear(&mut self) -> Option<Heard> {
+        let next = self.runtime.block_on(async { tokio::time::timeout(PATIENCE, self.socket.next()).await });
+        match next.expect("an answer in time") {
+            Some(Ok(Message::Text(text))) => {
+                Some(Heard::Text(serde_json::from_str(&text).expect("it is JSON")))
+            }
+            Some(Ok(Message::Binary(bytes))) => {
+                let length = u32::from_le_bytes(bytes[..4].try_into().expect("four bytes")) as usize;
+                let header = serde_json::from_slice(&bytes[4..4 + length]).expect("it is JSON");
+                Some(Heard::Frame(Frame { header, payload: bytes[4 + length..].to_vec() }))
+            }
+            _ => None,
+        }
+    }
+
+    /// The next text of a type; others are passed over.
+    pub fn text(&mut self, kind: &str) -> Value {
+        loop {
+            match self.hear().expect("the socket is open") {
+                Heard::Text(text) if text["type"] == kind => return text,
+                _ => {}
+            }
+        }
+    }
+
+    /// The next frame of a kind; others are passed over.
+    pub fn frame(&mut self, kind: &str) -> Frame {
+        loop {
+            match self.hear().expect("the socket is open") {
+                Heard::Frame(frame) if frame.header["kind"] == kind => return frame,
+                _ => {}
+            }
+        }
+    }
+
+    /// The finished picture of a view.
+    pub fn finished(&mut self, view: u64) -> Frame {
+        loop {
+            let frame = self.frame("picture");
+            if frame.header["view"] == view && frame.header["done"] == true {
+                return frame;
+            }
+        }
+    }
+}
+
+/// The message for a view of the scene as it is.
+pub fn view(id: u64) -> Value {
+    json!({ "type": "view", "id": id })
+}
+
+/// The message for a view from somewhere.
+pub fn view_from(id: u64, lookfrom: [f64; 3], moving: bool) -> Value {
+    let camera = json!({ "lookfrom": lookfrom, "lookat": [0, 0, 0], "up": [0, 1, 0], "fov": null });
+    json!({ "type": "view", "id": id, "camera": camera, "moving": moving, "tonemap": "clamp", "layer": "color" })
+}
