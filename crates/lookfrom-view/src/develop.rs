@@ -6,6 +6,7 @@ use lookfrom_scene::Result;
 use lookfrom_scene::image::encode_png;
 
 use crate::compare;
+use crate::cost::Counted;
 use crate::document::Loaded;
 use crate::message::Wish;
 use crate::view::{named, refused};
@@ -32,6 +33,8 @@ enum Layer {
     Uv,
     Error,
     Samples,
+    /// Not of the film.
+    Cost(Counted),
 }
 
 impl Layer {
@@ -45,6 +48,9 @@ impl Layer {
         ("uv", Self::Uv),
         ("error", Self::Error),
         ("samples", Self::Samples),
+        ("bounces", Self::Cost(Counted::Rays)),
+        ("nodes", Self::Cost(Counted::Nodes)),
+        ("tests", Self::Cost(Counted::Candidates)),
     ];
 
     fn title(self) -> &'static str {
@@ -58,6 +64,9 @@ impl Layer {
             Self::Uv => "Texture coordinates",
             Self::Error => "Relative standard error, 0.1 % to 100 %",
             Self::Samples => "Samples",
+            Self::Cost(Counted::Rays) => "Rays of the first sample",
+            Self::Cost(Counted::Nodes) => "BVH nodes visited by the camera ray",
+            Self::Cost(Counted::Candidates) => "Primitives tested by the camera ray",
         }
     }
 }
@@ -96,6 +105,17 @@ pub(crate) fn check(wish: &Wish, loaded: &Loaded) -> Result<()> {
 
 fn layer_of(wish: &Wish) -> Result<Layer> {
     wish.layer.as_deref().map_or(Ok(Layer::Color), |word| named(Layer::WORDS, word, "layer"))
+}
+
+/// What a heat map of the cost shows, if the wish is for one.
+///
+/// # Errors
+/// `Request` for an unknown layer.
+pub(crate) fn counted(wish: &Wish) -> Result<Option<Counted>> {
+    Ok(match layer_of(wish)? {
+        Layer::Cost(counted) => Some(counted),
+        _ => None,
+    })
 }
 
 impl Shown<'_> {

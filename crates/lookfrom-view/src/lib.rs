@@ -9,8 +9,10 @@
 
 mod assets;
 mod compare;
+mod cost;
 mod develop;
 mod document;
+mod lobe;
 mod mailbox;
 mod message;
 mod render;

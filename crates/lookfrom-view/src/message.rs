@@ -21,6 +21,8 @@ pub(crate) enum Request {
     Space { id: u64, camera: CameraWish, size: [u32; 2] },
     /// The numbers of a pixel of the film as it is.
     Value { id: u64, x: u32, y: u32 },
+    /// The scattering at a vertex of a sample.
+    Lobe { id: u64, x: u32, y: u32, sample: u32, address: u64 },
     /// A file of the picture.
     Save { id: u64, format: FileFormat },
     /// The view in words.
@@ -129,6 +131,20 @@ pub(crate) enum Answer {
         /// Of one sample.
         variance: [f32; 3],
         reference: Option<[f32; 3]>,
+    },
+    Lobe {
+        id: u64,
+        address: u64,
+        point: [f64; 3],
+        normal: [f32; 3],
+        /// Toward the origin of the ray that arrives, for which the balloon is.
+        wi: [f32; 3],
+        /// Toward where the path goes on.
+        chosen: Option<[f32; 3]>,
+        theta: usize,
+        phi: usize,
+        values: Vec<f32>,
+        directions: Vec<[f32; 3]>,
     },
     Words {
         id: u64,
@@ -258,7 +274,8 @@ impl Request {
             | Self::Space { id, .. }
             | Self::Value { id, .. }
             | Self::Save { id, .. }
-            | Self::Words { id } => Some(id),
+            | Self::Words { id }
+            | Self::Lobe { id, .. } => Some(id),
             Self::Pause { .. } => None,
         }
     }

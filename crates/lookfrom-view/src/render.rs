@@ -15,13 +15,13 @@ use lookfrom::session::{Format, MOST_SAMPLES, Session};
 use lookfrom_scene::settings::{ImageSettings, RenderSettings};
 use lookfrom_scene::{Error, Result};
 
+use crate::cost::{CostMap, Counted};
 use crate::develop::{self, Shown};
 use crate::document::{Document, Loaded, panicked};
 use crate::mailbox::{Letter, Mailbox, Task};
 use crate::message::{Answer, FileFormat, Header, Request, Wish};
-use crate::space;
 use crate::view::{Variation, refused};
-use crate::words;
+use crate::{lobe, space, words};
 
 /// The time that a coarse picture may take while the camera is moved.
 const FRAME: Duration = Duration::from_millis(50);
@@ -69,6 +69,7 @@ struct Shot {
     /// The last coarse picture.
     coarse: Option<Coarse>,
     film: Option<Film>,
+    cost: Option<CostMap>,
     /// Samples that every pixel of the film has.
     samples: u32,
     /// Samples of the next pass.
@@ -125,6 +126,12 @@ impl Window<'_> {
             }
             Task::Request(Request::Inspect { id, x, y, sample, depth, min_contribution }) => {
                 self.inspect(id, [x, y], sample, depth, min_contribution)
+            }
+            Task::Request(Request::Lobe { id, x, y, sample, address }) => {
+                let shot = self.shot.as_ref().ok_or_else(nothing_yet)?;
+                let sample = shot.checked([x, y], sample)?;
+                self.mailbox.say(&lobe::answer(shot.session.renderer(), id, sample, address)?);
+                Ok(())
             }
             Task::Request(Request::Value { id, x, y }) => self.value(id, x, y),
             Task::Request(Request::Space { id, camera, size }) => {
@@ -236,6 +243,9 @@ impl Window<'_> {
         if denoises && !is_done && shot.denoised_until.is_some_and(|until| started < until) {
             return Ok(());
         }
+        if let Some(counted) = develop::counted(wish)? {
+            return self.show_cost(counted, is_done);
+        }
         let (session, film, scale) = match (&shot.film, &shot.coarse) {
             (Some(film), _) if shot.samples > 0 => (&shot.session, film, 1),
             (_, Some(coarse)) => (&coarse.session, &coarse.film, coarse.scale),
@@ -263,6 +273,31 @@ impl Window<'_> {
         Ok(())
     }
 
+    /// Sends a heat map of the cost, which is measured once.
+    fn show_cost(&mut self, counted: Counted, done: bool) -> Result<()> {
+        let (Some(shot), Some(wish)) = (&mut self.shot, &self.wish) else { return Ok(()) };
+        let map = match shot.cost.take() {
+            Some(map) => map,
+            None => CostMap::new(&shot.session)?,
+        };
+        let png = map.png(counted)?;
+        let header = Header::Picture {
+            view: wish.id,
+            width: map.width,
+            height: map.height,
+            scale: map.scale,
+            samples: 1,
+            of: shot.session.settings().samples,
+            done,
+            layer: wish.layer.clone().unwrap_or_default(),
+            seconds: shot.spent.as_secs_f64(),
+            sizes: vec![png.len()],
+        };
+        shot.cost = Some(map);
+        self.mailbox.show(header.frame(&[&png]));
+        Ok(())
+    }
+
     fn inspect(
         &self,
         id: u64,
@@ -272,18 +307,15 @@ impl Window<'_> {
         min_contribution: Option<f32>,
     ) -> Result<()> {
         let shot = self.shot.as_ref().ok_or_else(nothing_yet)?;
-        shot.check_pixel(pixel)?;
+        let sample = shot.checked(pixel, sample)?;
         let own = shot.session.settings();
-        if sample >= MOST_SAMPLES {
-            return Err(refused(format!("there is no sample {sample}")));
-        }
         let mut session = shot.session.clone();
         session.set_settings(RenderSettings {
             depth: depth.unwrap_or(own.depth).min(256),
             min_contribution: min_contribution.unwrap_or(own.min_contribution),
             ..own.clone()
         })?;
-        let inspection = inspect::inspect(session.renderer(), SampleId { pixel, sample });
+        let inspection = inspect::inspect(session.renderer(), sample);
         let text = inspection.to_string();
         self.mailbox.say(&Answer::Inspection { id, inspection: Box::new(inspection), text });
         Ok(())
@@ -332,6 +364,7 @@ impl Shot {
             session,
             coarse: None,
             film: None,
+            cost: None,
             samples: 0,
             pass: 1,
             rays: 0,
@@ -419,6 +452,15 @@ impl Shot {
             self.stage = Stage::Done;
         }
         Ok(true)
+    }
+
+    /// A sample of this view.
+    fn checked(&self, pixel: [u32; 2], sample: u32) -> Result<SampleId> {
+        self.check_pixel(pixel)?;
+        match sample < MOST_SAMPLES {
+            true => Ok(SampleId { pixel, sample }),
+            false => Err(refused(format!("there is no sample {sample}"))),
+        }
     }
 
     fn check_pixel(&self, [x, y]: [u32; 2]) -> Result<()> {

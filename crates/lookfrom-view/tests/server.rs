@@ -5,7 +5,8 @@ mod support;
 use lookfrom::inspect;
 use lookfrom::render::SampleId;
 use lookfrom::session::{Format, Options, Session};
-use lookfrom_scene::json;
+use lookfrom_scene::image::read_exr;
+use lookfrom_scene::{Disk, LoadContext, json};
 use serde_json::{Value, json};
 use support::{SCENE, Served, view, view_from};
 
@@ -255,7 +256,19 @@ fn another_development_renders_nothing_anew() {
     let brighter = page.finished(2);
     assert!(plain.payload != brighter.payload);
     assert_eq!(plain.header["seconds"], brighter.header["seconds"], "the same film");
-    let layers = ["albedo", "normal", "shadingNormal", "position", "depth", "uv", "error", "samples"];
+    let layers = [
+        "albedo",
+        "normal",
+        "shadingNormal",
+        "position",
+        "depth",
+        "uv",
+        "error",
+        "samples",
+        "bounces",
+        "nodes",
+        "tests",
+    ];
     for (id, layer) in (3..).zip(layers) {
         let mut wish = view(id);
         wish["layer"] = json!(layer);
@@ -285,4 +298,86 @@ fn the_scene_from_an_observer_has_depths_and_a_matrix() {
     assert!((row(0) / row(3) - 16.5).abs() < 1e-9 && (row(1) / row(3) - 16.5).abs() < 1e-9);
     assert!((row(3) - 3.0).abs() < 1e-9 && (depth(16, 16) - 3.0).abs() < 1e-2, "{}", depth(16, 16));
     assert_eq!(depth(0, 0), f32::INFINITY);
+}
+
+#[test]
+fn a_balloon_is_the_scattering_at_its_vertex() {
+    let matte =
+        SCENE.replace("radius = 1", "radius = 1\nmaterial = { type = \"diffuse\", reflectance = 0.5 }");
+    for (name, text) in [("lobe-path", matte.as_str()), ("lobe-whitted", SCENE)] {
+        let served = Served::new(name, text);
+        let mut page = served.open();
+        page.say(&view(1));
+        page.finished(1);
+        page.say(&json!({ "type": "lobe", "id": 4, "x": 32, "y": 24, "sample": 0, "address": 1 }));
+        let lobe = page.text("lobe");
+        let number = |value: &Value| value.as_f64().expect("a number");
+        let [n, m] = [&lobe["theta"], &lobe["phi"]].map(|count| count.as_u64().expect("a count") as usize);
+        let (values, directions) = (&lobe["values"], &lobe["directions"]);
+        assert_eq!(
+            (values.as_array().map(Vec::len), directions.as_array().map(Vec::len)),
+            (Some(n * m), Some(n * m))
+        );
+        let vector = |value: &Value| [0, 1, 2].map(|axis| number(&value[axis]));
+        let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (normal, point) = (vector(&lobe["normal"]), vector(&lobe["point"]));
+        assert!((dot(point, point) - 1.0).abs() < 1e-3 && (dot(normal, point) - 1.0).abs() < 1e-3, "{lobe}");
+        if name == "lobe-path" {
+            for index in (0..n * m).step_by(97) {
+                let expected = 0.5 / std::f64::consts::PI * dot(normal, vector(&directions[index])).max(0.0);
+                assert!((number(&values[index]) - expected).abs() < 1e-4, "{index}");
+            }
+            assert!(dot(vector(&lobe["chosen"]), normal) > 0.0);
+        }
+        page.say(&json!({ "type": "lobe", "id": 5, "x": 32, "y": 24, "sample": 0, "address": 99 }));
+        assert_eq!(page.text("error")["id"], 5);
+    }
+}
+
+#[test]
+fn words_render_the_same_view() {
+    let served = Served::new("words", SCENE);
+    let mut page = served.open();
+    page.say(&view_from(1, [5.0, 0.5, 0.0], false));
+    page.finished(1);
+    page.say(&json!({ "type": "words", "id": 2 }));
+    let words = page.text("words");
+    let command = words["command"].as_str().expect("a text");
+    assert!(command.contains("--lookfrom=5,0.5,0 ") && command.contains("--width=64"), "{command}");
+    // The tables replace those of the scene.
+    let rest = SCENE.split_once("[[sphere]]").expect("the scene has a sphere").1;
+    let text = format!("{}\n[[sphere]]{rest}", words["toml"].as_str().expect("a text"));
+    let copy = served.scene.with_file_name("copy.toml");
+    std::fs::write(&copy, text).expect("a temporary file");
+    let session = Session::open(&copy, &Options::default()).expect("a scene");
+    assert_eq!(session.camera().view.lookfrom().to_array(), [5.0, 0.5, 0.0]);
+    assert_eq!((session.image().width, session.settings().samples), (64, 4));
+}
+
+#[test]
+fn saved_files_are_those_of_the_library() {
+    let served = Served::new("save", SCENE);
+    let mut page = served.open();
+    page.say(&view(1));
+    page.finished(1);
+    let expected = session(&served).render(&()).expect("a picture");
+    for (id, format, known) in [(2, "png", Format::Png), (3, "exr", Format::Exr)] {
+        page.say(&json!({ "type": "save", "id": id, "format": format }));
+        let file = page.frame("file");
+        assert_eq!(
+            (&file.header["id"], &file.header["name"]),
+            (&json!(id), &json!(format!("scene.{format}")))
+        );
+        if known == Format::Png {
+            assert!(file.payload == expected.encode(known).expect("a PNG"));
+        } else {
+            let path = served.scene.with_file_name("saved.exr");
+            std::fs::write(&path, &file.payload).expect("a temporary file");
+            let file = read_exr(&path, &mut LoadContext::new(&Disk)).expect("an EXR");
+            let red: Vec<f32> = expected.picture.pixels.iter().map(|pixel| pixel[0]).collect();
+            assert!(
+                file.channel("R").is_some_and(|channel| channel == red) && file.channel("depth").is_some()
+            );
+        }
+    }
 }
