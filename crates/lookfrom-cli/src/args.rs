@@ -4,6 +4,7 @@
 
 mod farm;
 mod film;
+mod inspect;
 mod model;
 #[cfg(feature = "view")]
 mod view;
@@ -24,6 +25,7 @@ use crate::values;
 
 pub(crate) use farm::FarmArguments;
 pub(crate) use film::{DevelopArguments, FilesArguments, KeepArguments, MergeArguments, ResumeArguments};
+pub(crate) use inspect::{InspectArguments, Samples};
 pub(crate) use model::ModelArguments;
 #[cfg(feature = "view")]
 pub(crate) use view::ViewArguments;
@@ -63,14 +65,6 @@ Examples:
 
 Ctrl-C finishes the tiles in progress and writes the picture so far; a second Ctrl-C exits at once.
 Exit codes: 0 done, 1 scene, 2 usage, 3 output, 130 interrupted.";
-
-const INSPECT_EXAMPLES: &str = "\
-Examples:
-  lookfrom inspect scene.toml 320 200
-  lookfrom inspect scene.toml 320 200 --sample 5 --json
-  lookfrom inspect scene.toml 320 200 --svg rays.svg
-
-Give the same options as for the render: they determine the rays of the sample.";
 
 const INFO_EXAMPLES: &str = "\
 Examples:
@@ -121,8 +115,8 @@ pub(crate) enum Command {
     /// Write the files by which a scheduler renders pictures on many machines: OpenJD, Slurm, Dask, HyperQueue
     #[command(after_help = farm::EXAMPLES)]
     Farm(FarmArguments),
-    /// Trace one sample of a pixel and show every step: intersections, BSDFs, light samples, throughput
-    #[command(after_help = INSPECT_EXAMPLES)]
+    /// Trace samples of a pixel and show every step: intersections, BSDFs, light samples, throughput
+    #[command(after_help = inspect::EXAMPLES)]
     Inspect(InspectArguments),
     /// Show a scene in the browser while it renders, and why every pixel is as it is
     #[cfg(feature = "view")]
@@ -204,39 +198,6 @@ pub(crate) struct RenderArguments {
     /// Write a summary of each scene to stdout, one JSON object per line
     #[arg(long)]
     pub(crate) json: bool,
-
-    #[command(flatten)]
-    pub(crate) common: Common,
-
-    #[command(flatten)]
-    pub(crate) overrides: Overrides,
-}
-
-#[derive(Args, Debug)]
-pub(crate) struct InspectArguments {
-    /// A scene (.toml, .pbrt) or a model (.gltf, .glb, .obj, .ply, .stl)
-    #[arg(value_name = "SCENE")]
-    pub(crate) scene: PathBuf,
-
-    /// Column of the pixel, counted from 0 at the left
-    #[arg(value_name = "X", value_parser = values::whole(0, u32::MAX))]
-    pub(crate) x: u32,
-
-    /// Row of the pixel, counted from 0 at the top
-    #[arg(value_name = "Y", value_parser = values::whole(0, u32::MAX))]
-    pub(crate) y: u32,
-
-    /// Index of the sample in the pixel, from 0
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::whole(0, u32::MAX))]
-    pub(crate) sample: u32,
-
-    /// Print one JSON object instead of text
-    #[arg(long)]
-    pub(crate) json: bool,
-
-    /// Also draw the rays into this SVG file
-    #[arg(long, value_name = "FILE")]
-    pub(crate) svg: Option<PathBuf>,
 
     #[command(flatten)]
     pub(crate) common: Common,

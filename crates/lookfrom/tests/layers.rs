@@ -125,9 +125,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "bsdf",
             "camera",
+            "develop",
+            "film",
             "integrator",
             "light",
             "material",
+            "math",
             "render",
             "primitive",
             "spectrum",

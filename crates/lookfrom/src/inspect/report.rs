@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::candidate::Candidate;
+use super::expression::Contribution;
 use super::scatter::{BounceReport, FoundReport, LightSampleReport, ScatteringReport};
 
 /// A factor of light, per lane: red, green and blue, or one for each of four wavelengths.
@@ -26,6 +27,10 @@ pub struct Inspection {
     pub sample: u32,
     /// The integrator, as `--integrator` names it.
     pub integrator: &'static str,
+    /// The colour of this sample alone as in an 8-bit picture: exposure, tone map, sRGB.
+    pub color8: [u8; 3],
+    /// The largest contributions, largest first.
+    pub contributions: Vec<Contribution>,
     /// The wavelengths of the four lanes; `None` where light is red, green and blue.
     pub wavelengths: Option<WavelengthsReport>,
     /// The steps from the pixel to the world.
@@ -38,6 +43,8 @@ pub struct Inspection {
     pub additions: Vec<Addition>,
     /// The filter's weight.
     pub weight: f32,
+    /// Alpha, before the filter's weight.
+    pub alpha: f32,
     /// The value that the film received: `radiance · weight`, as the camera's sensor measures it.
     pub film: [f32; 3],
     /// Whether the sum of the additions equals, bit for bit, the value that the film received.
@@ -270,6 +277,12 @@ pub struct Addition {
 }
 
 impl Inspection {
+    /// A ray by its address.
+    pub fn ray(&self, address: u64) -> Option<&RayReport> {
+        let index = self.rays.binary_search_by_key(&address, |ray| ray.address).ok()?;
+        self.rays.get(index)
+    }
+
     /// Whether the rays are a path, not a tree.
     pub fn is_path(&self) -> bool {
         matches!(self.integrator, "path" | "simple_path" | "random_walk" | "ambient_occlusion")

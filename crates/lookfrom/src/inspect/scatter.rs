@@ -24,6 +24,8 @@ pub struct ScatteringReport {
     pub numbers: Vec<(&'static str, Vec<f32>)>,
     /// Its lobes, in words.
     pub lobes: String,
+    /// Its lobes that light sampling can use, in letters: `D` diffuse, `G` glossy, `DG` both.
+    pub letters: &'static str,
     /// The outward shading normal, with normal and bump maps.
     pub n: [f32; 3],
 }
@@ -88,6 +90,8 @@ pub struct SampledDirectionReport {
 pub struct BounceReport {
     /// The sampled lobe, in words.
     pub lobe: String,
+    /// The same in letters: `R`, `T` (specular), `D` diffuse, `G` glossy, `DT`, `GT` through the surface.
+    pub letters: &'static str,
     /// The direction, unit length.
     pub wi: [f32; 3],
     /// The BSDF (for specular lobes the factor of the same delta function as in `pdf`).
@@ -203,8 +207,26 @@ pub(super) fn scattering(shading: &Shading, factor: impl Fn(Spectrum) -> Factor)
             )
         }
     };
-    let lobes = words(shading.bsdf.lobes());
-    ScatteringReport { kind, does, numbers, lobes, n: shading.n().to_array() }
+    let lobes = shading.bsdf.lobes();
+    let letters = match [Lobes::DIFFUSE, Lobes::GLOSSY].map(|lobe| lobes.intersects(lobe)) {
+        [true, true] => "DG",
+        [true, false] => "D",
+        [false, true] => "G",
+        [false, false] => "",
+    };
+    ScatteringReport { kind, does, numbers, lobes: words(lobes), letters, n: shading.n().to_array() }
+}
+
+/// The one lobe of a sample in letters.
+pub(super) fn letters(lobe: Lobes) -> &'static str {
+    match (lobe.is_specular(), lobe.intersects(Lobes::DIFFUSE), lobe.is_transmission()) {
+        (true, _, false) => "R",
+        (true, _, true) => "T",
+        (false, true, false) => "D",
+        (false, true, true) => "DT",
+        (false, false, false) => "G",
+        (false, false, true) => "GT",
+    }
 }
 
 /// A set of lobes in words.

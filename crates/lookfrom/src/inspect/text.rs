@@ -1,6 +1,7 @@
 //! The inspection as text: from the pixel to the world, then the tree of rays, indented, or the path, ray by ray.
 
 mod path;
+mod pixel;
 
 use std::fmt::{self, Display, Formatter, Write as _};
 
@@ -14,6 +15,8 @@ impl Display for Inspection {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let [x, y] = self.pixel;
         writeln!(f, "pixel {x} {y} (column, row from the top), sample {}", self.sample)?;
+        writeln!(f)?;
+        self.write_summary(f)?;
         writeln!(f)?;
         self.write_camera(f)?;
         writeln!(f)?;
@@ -85,6 +88,12 @@ impl Inspection {
         }
         for addition in self.additions.iter().filter(|addition| addition.address == ray.address) {
             writeln!(f, "{pad}  + {}   {}", amount(&addition.value), addition.term)?;
+        }
+        let straight_on =
+            self.rays.iter().find(|child| child.parent == Some(ray.address) && child.kind == "straight on");
+        if let Some(child) = straight_on {
+            writeln!(f, "{pad}  the ray passes this surface (cut out by its alpha) and goes straight on")?;
+            return self.write_ray(f, child, indent);
         }
         for branch in &ray.branches {
             let mut how = String::new();
@@ -235,6 +244,11 @@ fn amount(amount: &Amount) -> String {
             format!("{} (rgb {rgb})", lanes(&amount.lanes))
         }
     }
+}
+
+/// A colour with few digits.
+fn digits(rgb: &[f32]) -> String {
+    format!("[{}]", rgb.iter().map(|x| short(f64::from(*x))).collect::<Vec<_>>().join(" "))
 }
 
 /// A factor or a colour with all digits.

@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 use lookfrom_bvh::{Hit, NONE};
 use lookfrom_scene::settings::Integrator;
 
-use super::candidate;
+use super::candidate::Candidate;
 use super::report::{
     Addition, Amount, Blocker, BranchReport, CoefficientsReport, Factor, LightReport, MetReport, RayReport,
     ShadowReport,
@@ -66,11 +66,11 @@ impl<'a> TraceLogBuilder<'a> {
         }
     }
 
-    /// Records an event. A ray's own event comes before all others of that ray.
-    pub(super) fn record(&mut self, event: &Event) {
+    /// Records an event, and the primitives that were tested for a hit. A ray's own event comes before all others of that ray.
+    pub(super) fn record(&mut self, event: &Event, candidates: Vec<Candidate>) {
         match event {
             Event::Hit { path, hit } => {
-                let ray = self.ray(path, hit);
+                let ray = self.ray(path, hit, candidates);
                 self.rays.insert(path.address, ray);
             }
             Event::Surface { address, coefficients, .. } => {
@@ -147,20 +147,29 @@ impl<'a> TraceLogBuilder<'a> {
         if is_path {
             self.end_paths();
         }
+        let in_sequence = self.renderer.settings().integrator != Integrator::Whitted;
 
         // Children have larger addresses than their parents: from the last to the first, each is added to its parent.
         let mut subtrees = self.added.clone();
         let addresses: Vec<u64> = self.rays.keys().copied().collect();
         for &address in addresses.iter().rev() {
             let subtree = subtrees.get(&address).copied().unwrap_or_default();
-            let parent = if is_path { address - 1 } else { address >> 1 };
+            let parent = if in_sequence { address - 1 } else { address >> 1 };
             let has_parent = self.rays.contains_key(&parent);
             if has_parent {
                 *subtrees.entry(parent).or_default() += subtree;
             }
             let own = self.amount(self.added.get(&address).copied().unwrap_or_default());
             let subtree = self.amount(subtree);
+            // What no branch leads to has passed its parent's surface.
+            let has_branch = self
+                .rays
+                .get(&parent)
+                .is_some_and(|ray| ray.branches.iter().any(|branch| branch.address == address));
             self.at(address, |ray| {
+                if has_parent && !is_path && !has_branch {
+                    ray.kind = "straight on";
+                }
                 ray.parent = has_parent.then_some(parent);
                 ray.added = own;
                 ray.subtree = subtree;
@@ -226,7 +235,7 @@ impl<'a> TraceLogBuilder<'a> {
         Amount { lanes: self.factor(value), rgb: self.renderer.rgb(value, &self.lanes) }
     }
 
-    fn ray(&self, path: &Path, hit: &Hit) -> RayReport {
+    fn ray(&self, path: &Path, hit: &Hit, candidates: Vec<Candidate>) -> RayReport {
         let kind = match (path.address, path.address & 1) {
             (Path::ROOT, _) => "camera",
             (_, 0) => "reflected",
@@ -244,7 +253,7 @@ impl<'a> TraceLogBuilder<'a> {
             throughput: self.factor(path.beta),
             // Infinite stands for a specular bounce or a camera ray.
             pdf: (pdf != f32::INFINITY).then_some(pdf),
-            candidates: candidate::candidates(self.world, &path.ray, hit),
+            candidates,
             met: surface.map(|surface| met_report(self.world, hit, &surface)),
             throughput_there: None,
             only_color: None,
@@ -373,6 +382,7 @@ impl<'a> TraceLogBuilder<'a> {
         let sample = &bounce.sample;
         BounceReport {
             lobe: scatter::words(sample.lobe),
+            letters: scatter::letters(sample.lobe),
             wi: bounce.wi.to_array(),
             f: self.factor(sample.f),
             cos: bounce.cos,

@@ -1,0 +1,85 @@
+//! Options of `lookfrom inspect`. The doc comments are the help texts.
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Common, Overrides};
+use crate::values;
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  lookfrom inspect scene.toml 320 200
+  lookfrom inspect scene.toml 320 200 --sample 5 --json
+  lookfrom inspect scene.toml 320 200 --sample all       all samples of the pixel in short, the brightest first
+  lookfrom inspect scene.toml 320 200 --sample worst     every step of the brightest
+  lookfrom inspect scene.toml 320 200 --svg rays.svg
+
+Give the same options as for the render: they determine the rays of the sample.";
+
+#[derive(Args, Debug)]
+pub(crate) struct InspectArguments {
+    /// A scene (.toml, .pbrt) or a model (.gltf, .glb, .obj, .ply, .stl)
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: PathBuf,
+
+    /// Column of the pixel, counted from 0 at the left
+    #[arg(value_name = "X", value_parser = values::whole(0, u32::MAX))]
+    pub(crate) x: u32,
+
+    /// Row of the pixel, counted from 0 at the top
+    #[arg(value_name = "Y", value_parser = values::whole(0, u32::MAX))]
+    pub(crate) y: u32,
+
+    /// Index of the sample in the pixel, from 0; worst (the brightest); several in short, brightest first: all or N..M
+    ///
+    /// `all` and `N..M` (M excluded) show colour, mean and variance of the pixel, its largest contributions, and a line for
+    /// each sample. `N` and `worst` show every step of one sample.
+    #[arg(long, value_name = "N|worst|all|N..M", default_value = "0", value_parser = Samples::parse)]
+    pub(crate) sample: Samples,
+
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    /// Also draw the rays into this SVG file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) svg: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) common: Common,
+
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+}
+
+/// The samples to inspect.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Samples {
+    /// One, by its number.
+    One(u32),
+    /// The brightest.
+    Worst,
+    /// Those of the picture.
+    All,
+    /// Some of them.
+    Range(Range<u32>),
+}
+
+impl Samples {
+    fn parse(typed: &str) -> Result<Self, String> {
+        const EXPECTED: &str = "expected the number of a sample, worst, all, or a range such as 0..16";
+        let whole = values::whole(0, u32::MAX - 1);
+        match (typed, typed.split_once("..")) {
+            ("worst", _) => Ok(Self::Worst),
+            ("all", _) => Ok(Self::All),
+            (_, None) => whole(typed).map(Self::One).map_err(|_| EXPECTED.into()),
+            (_, Some((start, end))) => match (whole(start), whole(end)) {
+                (Ok(start), Ok(end)) if start < end => Ok(Self::Range(start..end)),
+                (Ok(start), Ok(_)) => Err(format!("expected an end of the range that is above {start}")),
+                _ => Err(EXPECTED.into()),
+            },
+        }
+    }
+}

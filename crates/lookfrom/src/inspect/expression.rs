@@ -1,0 +1,271 @@
+//! Light-path expressions: a contribution as the chain of what its light did, from the camera to the light, and the
+//! factors that made it large. After Heckbert (1990), with names of the scene in place of `E S D L`.
+
+use serde::Serialize;
+
+use super::report::{Addition, Inspection, MetReport, RayReport};
+use super::scatter::{FoundReport, LightSampleReport};
+use crate::core::math::luminance;
+
+/// Number of contributions in a summary.
+pub(super) const LARGEST: usize = 3;
+
+/// A contribution to a sample, as an expression.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Contribution {
+    /// Number of the sample in its pixel.
+    pub sample: u32,
+    /// Its part of the value that the film received for this sample.
+    pub value: [f32; 3],
+    /// The ray whose hit made it.
+    pub address: u64,
+    /// Number of reflections, refractions and bounces before that hit.
+    pub depth: u32,
+    /// The light that it comes from: its name, `sky`, `ambient`, or the shape that emits it.
+    pub light: String,
+    /// From the camera to the light: `camera → glass (R) → window`. Letters: `R` specular reflection, `T` specular
+    /// transmission, `D` diffuse, `G` glossy (with `T`, through the surface), `S` Whitted's highlight.
+    pub expression: String,
+    /// Its factors, and the one that makes it large.
+    pub why: String,
+}
+
+/// A number for a sort: the luminance of a colour; infinite where a channel is not finite.
+pub(super) fn brightness(rgb: [f32; 3]) -> f32 {
+    if rgb.iter().all(|c| c.is_finite()) { luminance(rgb) } else { f32::INFINITY }
+}
+
+/// The largest contributions of a sample, largest first.
+pub(super) fn largest(inspection: &Inspection) -> Vec<Contribution> {
+    let mut additions: Vec<&Addition> = inspection.additions.iter().collect();
+    additions.sort_by(|a, b| brightness(b.value.rgb).total_cmp(&brightness(a.value.rgb)));
+    additions.into_iter().take(LARGEST).filter_map(|addition| contribution(inspection, addition)).collect()
+}
+
+fn contribution(inspection: &Inspection, addition: &Addition) -> Option<Contribution> {
+    let ray = inspection.ray(addition.address)?;
+    let light = light_of(ray, addition);
+    let end = match addition.term.as_str() {
+        // Light of the surface itself, or of what is behind the scene, is where the way ends.
+        "emission" | "sky" | "open sky" => None,
+        term if term.starts_with("found ") => None,
+        _ => Some(letters_toward_light(ray, addition)),
+    };
+    let mut links = links(inspection, ray);
+    if let (Some(letters), Some(met)) = (end, &ray.met) {
+        links.push(link(met, &letters));
+    }
+    if light != "view" {
+        links.push(light.clone());
+    }
+    let value = addition.value.rgb.map(|c| c * inspection.weight);
+    Some(Contribution {
+        sample: inspection.sample,
+        value,
+        address: ray.address,
+        depth: ray.depth,
+        light,
+        expression: links.join(" → "),
+        why: why(inspection, ray, addition),
+    })
+}
+
+/// The expression of a sample without light: its longest way, and nothing at its end.
+pub(super) fn dark(inspection: &Inspection) -> String {
+    let Some(last) = inspection.rays.iter().max_by_key(|ray| (ray.depth, ray.address)) else {
+        return "nothing".into();
+    };
+    let mut links = links(inspection, last);
+    links.extend(last.met.as_ref().map(|met| link(met, "")));
+    links.push("nothing".into());
+    links.join(" → ")
+}
+
+/// The chain from the camera up to a ray, without the ray's own hit.
+fn links(inspection: &Inspection, ray: &RayReport) -> Vec<String> {
+    let mut links = Vec::new();
+    let mut ray = ray;
+    while let Some(parent) = ray.parent.and_then(|parent| inspection.ray(parent)) {
+        let letters = match (ray.kind, &parent.bounce) {
+            ("straight on", _) => None,
+            (_, Some(bounce)) => Some(bounce.letters),
+            ("reflected", None) => Some("R"),
+            _ => Some("T"),
+        };
+        if let (Some(letters), Some(met)) = (letters, &parent.met) {
+            links.push(link(met, letters));
+        }
+        ray = parent;
+    }
+    links.push("camera".into());
+    links.reverse();
+    links
+}
+
+/// A surface in the chain: its shape's name, or that of its material where only the material has one.
+fn link(met: &MetReport, letters: &str) -> String {
+    let name = match (without_place(&met.shape), without_place(&met.material)) {
+        ((shape, true), _) => shape,
+        (_, (material, true)) => material,
+        ((kind, false), _) => kind,
+    };
+    if letters.is_empty() { name.to_owned() } else { format!("{name} ({letters})") }
+}
+
+/// A name without the place in the file that stands for one, and whether the author gave it.
+fn without_place(name: &str) -> (&str, bool) {
+    match name.split_once(" (") {
+        Some((kind, place)) if place.ends_with(')') && place.contains(':') => (kind, false),
+        _ => (name, true),
+    }
+}
+
+/// The light of an addition.
+fn light_of(ray: &RayReport, addition: &Addition) -> String {
+    match addition.term.as_str() {
+        "emission" => ray.met.as_ref().map_or_else(|| "emission".into(), |met| link(met, "")),
+        term => {
+            let light = term.strip_prefix("found ").or_else(|| term.strip_prefix("sampled ")).unwrap_or(term);
+            without_place(light).0.to_owned()
+        }
+    }
+}
+
+/// How the surface scatters the light of a light that was sampled there.
+fn letters_toward_light(ray: &RayReport, addition: &Addition) -> String {
+    if let (Some(scattering), Some(sample)) =
+        (&ray.scattering, ray.light_sample.as_ref().and_then(|light| light.sample.as_ref()))
+    {
+        let crosses = ray.met.as_ref().is_some_and(|met| {
+            let cos: f64 = (0..3).map(|k| met.ng[k] * f64::from(sample.wi[k])).sum();
+            (cos > 0.0) != met.front
+        });
+        return format!("{}{}", scattering.letters, if crosses { "T" } else { "" });
+    }
+    let light = ray.lights.iter().find(|light| light.light == addition.term);
+    match light {
+        Some(light) if most(&light.specular) > most(&light.diffuse) => "S".into(),
+        Some(_) => "D".into(),
+        None => String::new(),
+    }
+}
+
+/// One factor of a contribution.
+struct Part {
+    name: &'static str,
+    value: f32,
+    is_divisor: bool,
+}
+
+impl Part {
+    fn times(name: &'static str, lanes: &[f32]) -> Self {
+        Self { name, value: most(lanes), is_divisor: false }
+    }
+
+    /// What it multiplies the light by.
+    fn factor(&self) -> f32 {
+        if self.is_divisor { 1.0 / self.value } else { self.value }
+    }
+}
+
+/// The factors of a contribution (the largest lane of each), and the one that makes it large.
+fn why(inspection: &Inspection, ray: &RayReport, addition: &Addition) -> String {
+    let beta = Part::times("β", ray.throughput_there.as_ref().unwrap_or(&ray.throughput));
+    let mut parts = vec![beta];
+    let sampled = ray.light_sample.as_ref().filter(|_| addition.term.starts_with("sampled "));
+    let found = ray.found.iter().find(|found| addition.term == format!("found {}", found.light));
+    let local = ray.lights.iter().find(|light| light.light == addition.term);
+    if let Some(LightSampleReport { sample: Some(sample), .. }) = sampled {
+        parts.extend([
+            Part::times("f cos", &sample.f_cos),
+            Part::times("L", &sample.arrives.lanes),
+            Part::times("w", &[sample.weight]),
+            Part { name: "p", value: sample.pdf, is_divisor: true },
+        ]);
+    } else if let Some(FoundReport { radiance, weight, .. }) = found {
+        parts.extend([Part::times("L", &radiance.lanes), Part::times("w", &[*weight])]);
+    } else if let Some(light) = local {
+        let sum: Vec<f32> = light.diffuse.iter().zip(&light.specular).map(|(d, s)| d + s).collect();
+        parts.extend([
+            Part::times("(k_d N·L + k_s (N·H)^n)", &sum),
+            Part::times("I_j", &light.intensity.lanes),
+        ]);
+    } else {
+        let beta = parts[0].value;
+        let rest: Vec<f32> = addition.value.lanes.iter().map(|value| value / beta).collect();
+        parts.push(Part::times("L", &rest));
+    }
+    let product = parts.iter().enumerate().map(|(index, part)| match (index, part.is_divisor) {
+        (0, _) => format!("{} {}", part.name, three(part.value)),
+        (_, true) => format!(" / {} {}", part.name, three(part.value)),
+        (_, false) => format!(" · {} {}", part.name, three(part.value)),
+    });
+    let product: String = product.collect();
+    match parts.iter().max_by(|a, b| a.factor().total_cmp(&b.factor())) {
+        Some(part) if part.factor() > 1.0 => format!("{product}: {}", reason(inspection, ray, part, found)),
+        _ => format!("{product}: no factor is above 1"),
+    }
+}
+
+/// What a factor above 1 means.
+fn reason(inspection: &Inspection, ray: &RayReport, part: &Part, found: Option<&FoundReport>) -> String {
+    match (part.name, found) {
+        ("p", _) => "small p, a direction that is rarely sampled".into(),
+        ("β", _) => grown(inspection, ray),
+        ("L", Some(found)) if found.weight == 1.0 && found.light_pdf == 0.0 || ray.pdf.is_none() => {
+            match ray.depth {
+                0 => "large L, seen directly".into(),
+                _ => "large L, and only a path of this kind finds it (w = 1)".into(),
+            }
+        }
+        ("L", Some(found)) => {
+            format!("large L, found by a bounce though light sampling would (q {})", three(found.light_pdf))
+        }
+        (name, _) => format!("large {name}"),
+    }
+}
+
+/// Where the throughput has grown most.
+fn grown(inspection: &Inspection, ray: &RayReport) -> String {
+    let mut most_grown: Option<(f32, &RayReport)> = None;
+    let mut next = ray.parent;
+    while let Some(ray) = next.and_then(|address| inspection.ray(address)) {
+        if let Some(bounce) = &ray.bounce {
+            let growth = most(&bounce.throughput_after) / (most(&bounce.throughput_before) * bounce.survival);
+            if most_grown.is_none_or(|(most, _)| growth > most) {
+                most_grown = Some((growth, ray));
+            }
+        }
+        next = ray.parent;
+    }
+    match most_grown {
+        Some((growth, RayReport { address, bounce: Some(bounce), .. })) => format!(
+            "large β, grown {} times at the hit of ray {address} (pdf {}, survival {})",
+            three(growth),
+            three(bounce.pdf),
+            three(bounce.survival)
+        ),
+        _ => "large β".into(),
+    }
+}
+
+/// The largest lane.
+fn most(lanes: &[f32]) -> f32 {
+    lanes.iter().copied().fold(0.0, f32::max)
+}
+
+/// Three digits.
+fn three(x: f32) -> String {
+    match x.abs() {
+        0.0 => "0".into(),
+        size if !(1e-3..1e5).contains(&size) => format!("{x:.2e}"),
+        size => {
+            let digits = (2 - libm::log10f(size).floor() as i32).max(0) as usize;
+            let fixed = format!("{x:.digits$}");
+            match fixed.contains('.') {
+                true => fixed.trim_end_matches('0').trim_end_matches('.').to_owned(),
+                false => fixed,
+            }
+        }
+    }
+}
