@@ -44,6 +44,10 @@ export function createApp() {
         camera() {
             return app.view.get().camera ?? app.scene.get()?.camera ?? null;
         },
+        /** The size of the finished picture; coarse ones are smaller. @returns {[number, number]} */
+        size() {
+            return app.view.get().size ?? app.scene.get()?.size ?? [1, 1];
+        },
         /** The ray that is selected. @returns {import("./protocol.js").Ray | null} */
         selectedRay() {
             return app.inspection.get()?.rays.find((ray) => ray.address === app.ray.get()) ?? null;

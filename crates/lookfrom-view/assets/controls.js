@@ -1,6 +1,7 @@
 // The hand on a camera: orbit, pan, dolly and fly, by mouse, touch and keys.
 
 import { dolly, fly, look, orbit, pan } from "./camera.js";
+import { subtract } from "./vector.js";
 
 /** @typedef {import("./protocol.js").Camera} Camera */
 
@@ -110,7 +111,9 @@ function attachKeys(element, hand, change, restSoon) {
     /** @param {number} now */
     function flight(now) {
         if (held.size === 0) return change((camera) => camera, false);
-        const length = (hand.size() * Math.min(now - lastTime, 100)) / 4000;
+        const camera = hand.camera();
+        const distance = camera ? Math.hypot(...subtract(camera.lookat, camera.lookfrom)) : 1;
+        const length = (Math.min(hand.size(), 2 * distance) * Math.min(now - lastTime, 100)) / 4000;
         lastTime = now;
         /** @type {import("./vector.js").Vector} */
         const step = [0, 0, 0];

@@ -4,11 +4,12 @@ import { h } from "./html.js";
 
 /**
  * A number of at most `digits` digits, for reading. `exact` is for comparing.
- * @param {number | null | undefined} x
+ * @param {number | string | null | undefined} number JSON has infinities and NaN as strings.
  * @param {number} [digits]
  */
-export function short(x, digits = 5) {
-    if (x === null || x === undefined) return "–";
+export function short(number, digits = 5) {
+    if (number === null || number === undefined) return "–";
+    const x = Number(number);
     if (!Number.isFinite(x)) return Number.isNaN(x) ? "NaN" : x > 0 ? "∞" : "−∞";
     if (x === 0) return "0";
     const size = Math.abs(x);
@@ -18,7 +19,7 @@ export function short(x, digits = 5) {
 
 /**
  * A number with all of its digits, as in the JSON of `lookfrom inspect`.
- * @param {number | null | undefined} x
+ * @param {number | string | null | undefined} x
  */
 export const exact = (x) => (x === null || x === undefined ? "–" : String(x));
 

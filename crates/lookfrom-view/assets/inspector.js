@@ -30,23 +30,28 @@ export function attachInspector(app) {
         const scene = app.scene.get();
         document.body.classList.toggle("has-pixel", pixel !== null);
         if (!pixel || !scene) return;
-        const [width, height] = app.view.get().size ?? scene.size;
+        const [width, height] = app.size();
         if (pixel[0] >= width || pixel[1] >= height) return app.pixel.set(null);
         document.body.classList.add("is-tracing");
         try {
             const { report } = await app.socket.request("pixel", { x: pixel[0], y: pixel[1] });
-            const chosen = wanted ?? app.sample.get() ?? report.all?.[0]?.sample ?? 0;
-            wanted = null;
             app.report.set(report);
-            const isSame = app.sample.get() === chosen;
-            app.sample.set(chosen);
-            if (isSame) inspect(chosen);
+            choose(report.all?.[0]?.sample ?? 0);
             app.announce(`Pixel ${pixel.join(" ")}: ${report.samples} samples`);
         } catch (error) {
             app.toast(/** @type {Error} */ (error).message);
+            choose(0);
         } finally {
             document.body.classList.remove("is-tracing");
         }
+    }
+
+    /** Keeps the sample that is chosen, or that the link asks for. @param {number} otherwise */
+    function choose(otherwise) {
+        const sample = wanted ?? app.sample.get() ?? otherwise;
+        wanted = null;
+        if (app.sample.get() === sample) inspect(sample);
+        else app.sample.set(sample);
     }
 
     /** @param {number | null} sample */

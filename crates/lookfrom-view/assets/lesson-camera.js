@@ -20,11 +20,10 @@ export function cameraLesson(app) {
 
     function show() {
         const inspection = app.inspection.get();
-        const frame = app.frame.get();
-        if (!inspection || !frame) return replace(element, noPixel());
+        if (!inspection || !app.frame.get()) return replace(element, noPixel());
         const { steps, p_k } = inspection.camera;
         if (!steps?.length) return replace(element, h("p", { class: "hint" }, "This camera has other steps: it is not a plane of pixels."));
-        const size = /** @type {[number, number]} */ ([frame.width, frame.height]);
+        const size = app.size();
         const body = h("div");
         const pad = pixelPad(size, [p_k[0], p_k[1]], (p) => fill(p));
         const copy = h("canvas", { width: size[0], height: size[1], "aria-hidden": "true" });

@@ -20,7 +20,7 @@ export function sphereLesson(app) {
         const tests = (app.selectedRay()?.candidates ?? []).filter((candidate) => numbersOf(candidate).kind === "Sphere");
         const candidate = tests.find(({ name }) => name === chosen) ?? tests.find(({ is_nearest }) => is_nearest) ?? tests[0];
         const { byName } = candidate ? numbersOf(candidate) : { byName: null };
-        const quadratic = byName ? { A: byName.A.f64, B: byName.B.f64, C: byName.C.f64 } : { A: 1, B: -4, C: 15 };
+        const quadratic = byName ? { A: Number(byName.A.f64), B: Number(byName.B.f64), C: Number(byName.C.f64) } : { A: 1, B: -4, C: 15 };
         replace(element,
             h("p", {}, "A point of the ray is on the sphere where the distance to its centre is R. Squared, that is a parabola in t; its roots are where the ray enters and leaves."),
             tests.length > 1 && h("div", { class: "field" }, select(tests.slice(0, 60).map(({ name, verdict }) => [name, `${name}: ${verdict}`]), candidate.name, (name) => {

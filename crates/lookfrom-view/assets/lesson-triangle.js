@@ -20,7 +20,7 @@ export function triangleLesson(app) {
         const tests = (app.selectedRay()?.candidates ?? []).filter((candidate) => numbersOf(candidate).kind === "Triangle");
         const candidate = tests.find(({ name }) => name === chosen) ?? tests.find(({ is_nearest }) => is_nearest) ?? tests[0];
         const numbers = candidate ? numbersOf(candidate).byName : {};
-        const start = /** @type {[number, number]} */ (candidate ? [numbers["β"].f64, numbers["γ"].f64] : [0.25, 0.3]);
+        const start = /** @type {[number, number]} */ (candidate ? [Number(numbers["β"].f64), Number(numbers["γ"].f64)] : [0.25, 0.3]);
         const figure = areas(start);
         replace(element,
             h("p", {}, "Three equations, three unknowns; Cramer's rule gives β, γ and t. A hit has ", h("b", {}, "β ≥ 0, γ ≥ 0, β + γ ≤ 1"), ": then α, β, γ are the shares of the three areas."),

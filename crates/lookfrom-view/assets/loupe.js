@@ -1,7 +1,7 @@
 // The loupe: the pixels around the pointer, enlarged, and the film's values of the one under it.
 
 import { byId, h, replace } from "./html.js";
-import { lanes, short, swatch } from "./format.js";
+import { lanes, swatch } from "./format.js";
 
 /** Pixels to each side of the middle. */
 const REACH = 5;
@@ -56,7 +56,7 @@ export function showLoupe(app, { pixelAt, canvas, overlay }) {
 
     /** @param {import("./protocol.js").Value} value */
     function show({ x, y, rgb, samples, variance, reference }) {
-        const deviation = variance?.map((v) => Math.sqrt(Math.max(v, 0)));
+        const deviation = samples > 1 && variance?.map((v) => Math.sqrt(Math.max(Number(v), 0)));
         replace(
             readout,
             h("span", { class: "where" }, `${x}, ${y}`),
@@ -64,7 +64,7 @@ export function showLoupe(app, { pixelAt, canvas, overlay }) {
             h("span", {}, lanes(rgb)),
             deviation && h("span", { class: "faint", title: "standard deviation of the samples" }, `σ ${lanes(deviation, 3)}`),
             reference && h("span", { class: "faint" }, `reference ${lanes(reference)}`),
-            h("span", { class: "faint" }, `${short(samples)} samples`),
+            h("span", { class: "faint" }, `${samples} sample${samples === 1 ? "" : "s"}`),
         );
     }
 

@@ -70,9 +70,11 @@ app.pixel.on((pixel) => {
 tabs.select("view");
 
 app.socket.on("scene", (/** @type {import("./protocol.js").Scene} */ scene) => {
-    byId("scene-name").textContent = scene.name;
-    document.title = `${scene.name} · lookfrom`;
-    app.announce(`${scene.name} is loaded`);
+    const name = scene.name.split(/[/\\]/).at(-1) ?? scene.name;
+    byId("scene-name").textContent = name;
+    byId("scene-name").title = scene.name;
+    document.title = `${name} · lookfrom`;
+    app.announce(`${name} is loaded`);
     app.scene.set(scene);
     sendView();
     if (link.pixel) app.pixel.set(link.pixel);

@@ -43,14 +43,15 @@ export function showPicture(app) {
             app.frame.set(header);
             document.body.classList.add("has-picture");
             draw();
+            canvas.dataset.done = String(header.done);
         }
         isDecoding = false;
     }
 
     function draw() {
         const header = app.frame.get();
-        if (!header) return;
-        const { width, height } = header;
+        if (!header || bitmaps.length === 0) return;
+        const [width, height] = app.size();
         if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
         const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
         context.imageSmoothingEnabled = false;
@@ -148,16 +149,16 @@ export function showPicture(app) {
  */
 function attachCrosshair(app, overlay) {
     overlay.addEventListener("keydown", (event) => {
-        const frame = app.frame.get();
-        if (!frame) return;
+        if (!app.frame.get()) return;
+        const [width, height] = app.size();
         const pixel = app.pixel.get();
         if (event.key.toLowerCase() === "i" && !event.ctrlKey) {
-            app.pixel.set(pixel ?? [Math.floor(frame.width / 2), Math.floor(frame.height / 2)]);
+            app.pixel.set(pixel ?? [Math.floor(width / 2), Math.floor(height / 2)]);
         } else if ((event.ctrlKey || event.metaKey) && event.key.startsWith("Arrow")) {
             const step = event.shiftKey ? 10 : 1;
-            const [x, y] = pixel ?? [Math.floor(frame.width / 2), Math.floor(frame.height / 2)];
+            const [x, y] = pixel ?? [Math.floor(width / 2), Math.floor(height / 2)];
             const [dx, dy] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key] ?? [0, 0];
-            app.pixel.set([clamp(x + dx * step, frame.width), clamp(y + dy * step, frame.height)]);
+            app.pixel.set([clamp(x + dx * step, width), clamp(y + dy * step, height)]);
         } else return;
         event.preventDefault();
     });

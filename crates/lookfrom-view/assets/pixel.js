@@ -15,12 +15,9 @@ export function showPixel(app) {
     const samples = byId("pixel-samples");
 
     const showPlace = () => {
-        const frame = app.frame.get();
         const pixel = app.pixel.get();
-        const axis = (/** @type {0 | 1} */ i) => {
-            const input = h("input", { type: "number", min: 0, max: (frame ? [frame.width, frame.height][i] : 1e5) - 1, step: 1, value: pixel?.[i] ?? "", "aria-label": ["Column", "Row"][i], id: `pixel-${"xy"[i]}` });
-            return input;
-        };
+        const axis = (/** @type {0 | 1} */ i) =>
+            h("input", { type: "number", min: 0, max: app.size()[i] - 1, step: 1, value: pixel?.[i] ?? "", "aria-label": ["Column", "Row"][i], id: `pixel-${"xy"[i]}` });
         const [x, y] = [axis(0), axis(1)];
         const go = (/** @type {Event} */ event) => {
             event.preventDefault();
@@ -83,7 +80,7 @@ export function showPixel(app) {
     }
     let selectInList = () => {};
 
-    app.frame.on((frame) => void (frame && !place.contains(document.activeElement) && place.dataset.size !== `${frame.width}×${frame.height}` && ((place.dataset.size = `${frame.width}×${frame.height}`), showPlace())));
+    app.scene.on(showPlace);
     app.pixel.on(showPlace);
     app.pixel.on(show);
     app.report.on(show);

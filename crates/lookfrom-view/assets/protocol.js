@@ -46,7 +46,7 @@
  * @property {string[]} variants
  * @property {{name: string, seconds: number}[]} animations
  * @property {boolean} turntable
- * @property {Record<string, number>} counts
+ * @property {Record<string, any>} counts
  * @property {{name: string, position: Vector | null}[]} lights
  * @property {string | null} reference
  * @property {string[]} warnings
@@ -67,7 +67,7 @@
 /** @typedef {{pixel: [number, number], samples: number, mean: number[], variance: number[], standardError: number[], color8: number[], contributions: Contribution[], all: SampleRow[]}} PixelReport */
 
 /** @typedef {{lanes: number[], rgb: Vector}} Amount */
-/** @typedef {{f32: number, f64: number, bits: number}} Twice */
+/** @typedef {{f32: number | "NaN" | "Infinity" | "-Infinity", f64: number | "NaN" | "Infinity" | "-Infinity", bits: number}} Twice */
 /** @typedef {{name: string, verdict: string, is_nearest: boolean, test: any}} Candidate */
 /** @typedef {{from: Vector, to: Vector, is_endless: boolean, blockers: {shape: string, passed: number[], t?: number, point?: Vector}[]}} Shadow */
 /** @typedef {{name: string, does: string, matrix: number[][], product: number[][], point: number[]}} Step */

@@ -1,5 +1,6 @@
 // Rays on a picture: colour by kind, width by throughput; shadow rays; what is hidden behind geometry is dashed.
 
+import { byId } from "./html.js";
 import { luminance, mean } from "./format.js";
 import { add, mix, scale } from "./vector.js";
 
@@ -28,7 +29,7 @@ export const KINDS = {
 };
 
 /** @param {string} name */
-export const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--ray-${name}`).trim() || "#888";
+export const color = (name) => getComputedStyle(byId("picture-overlay")).getPropertyValue(`--ray-${name}`).trim() || "#888";
 
 /** @param {string} kind */
 export const kindName = (kind) => /** @type {Record<string, string>} */ (KINDS)[kind] ?? "straight";

@@ -104,11 +104,18 @@ function showRendering(app, scene) {
         cameraGroup(app, scene),
         group(
             "Contents",
-            h("dl", { class: "facts" }, Object.entries(scene.counts ?? {}).flatMap(([name, n]) => [h("dt", {}, name), h("dd", {}, typeof n === "number" ? count(n) : String(n))])),
+            h("dl", { class: "facts" }, Object.entries(scene.counts ?? {}).flatMap(([name, n]) => [h("dt", {}, name), h("dd", {}, contents(n))])),
             scene.warnings.length > 0 && h("details", { class: "warnings" }, h("summary", {}, `${scene.warnings.length} warnings`), h("ul", {}, scene.warnings.map((warning) => h("li", {}, warning)))),
         ),
     );
     refocus("settings", focused);
+}
+
+/** A count, or counts by kind. @param {any} n @returns {string} */
+function contents(n) {
+    if (typeof n === "number") return count(n);
+    if (Array.isArray(n)) return String(n.length);
+    return Object.entries(n ?? {}).map(([kind, n]) => `${contents(n)} ${kind}`).join(", ") || "0";
 }
 
 /** @param {App} app @param {Scene} scene */

@@ -81,7 +81,7 @@ export function showSpace(app) {
         drawSpace(context, {
             inspection,
             camera: viewed,
-            size: app.view.get().size ?? app.scene.get()?.size ?? [1, 1],
+            size: app.size(),
             lobe,
             selected: app.ray.get(),
             isCameraRayShown: true,
@@ -104,7 +104,8 @@ export function showSpace(app) {
         const inspection = app.inspection.get();
         const viewed = app.camera();
         if (!inspection || !viewed) return;
-        const reach = sceneSize() / 4;
+        const first = inspection.rays[0]?.met?.point;
+        const reach = Math.min(sceneSize() / 4, first ? 0.6 * length(subtract(first, viewed.lookfrom)) : Infinity);
         const points = inspection.rays.flatMap((ray) => [ray.a, end(ray, reach), ...shadows(ray).filter(({ shadow }) => !shadow.is_endless).map(({ shadow }) => shadow.to)]);
         /** @type {(pick: (...values: number[]) => number) => Vector} */
         const corner = (pick) => /** @type {Vector} */ ([0, 1, 2].map((i) => pick(...points.map((p) => p[i]))));
