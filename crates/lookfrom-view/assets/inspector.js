@@ -35,7 +35,7 @@ export function attachInspector(app) {
         document.body.classList.add("is-tracing");
         try {
             const { report } = await app.socket.request("pixel", { x: pixel[0], y: pixel[1] });
-            app.report.set(report);
+            app.report.set(finite(report));
             choose(report.all?.[0]?.sample ?? 0);
             app.announce(`Pixel ${pixel.join(" ")}: ${report.samples} samples`);
         } catch (error) {
@@ -69,6 +69,19 @@ export function attachInspector(app) {
             app.toast(/** @type {Error} */ (error).message);
         }
     }
+}
+
+/**
+ * A report whose luminances are numbers: JSON has those that are not finite as strings.
+ * @param {import("./protocol.js").PixelReport} report
+ * @returns {import("./protocol.js").PixelReport}
+ */
+function finite(report) {
+    return {
+        ...report,
+        standardError: report.standardError ?? report.standard_error ?? null,
+        all: report.all.map((row) => ({ ...row, luminance: Number.isFinite(Number(row.luminance)) ? Number(row.luminance) : Infinity })),
+    };
 }
 
 /**

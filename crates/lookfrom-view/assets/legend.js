@@ -1,20 +1,17 @@
-// The legend of a false-colour layer: its colours, its name, and the range where the server gives one.
+// The legend of a false-colour picture: its colours, what they count, and their ends.
 
 import { byId, h, replace } from "./html.js";
-import { short } from "./format.js";
 
-/** Layers that are colours themselves. */
-const COLORS = new Set(["color", "albedo", "noisy", "normals", "normal", "shading normal", "uv"]);
-const MEANINGS = /** @type {Record<string, string>} */ ({
-    variance: "variance of the samples",
-    samples: "samples per pixel",
-    bounces: "bounces, mean",
-    bvh: "nodes and primitives tested, per ray",
-    cost: "nodes and primitives tested, per ray",
-    depth: "distance along the view's axis",
-    flip: "FLIP: visible difference",
-    z: "standard errors between picture and reference",
-    difference: "absolute difference",
+/** What false colours mean, and their lowest and highest end, as the server draws them. */
+const HEAT = /** @type {Record<string, [meaning: string, low: string, high: string]>} */ ({
+    depth: ["distance along the view's axis", "far", "near"],
+    error: ["standard error ÷ mean, logarithmic", "0.1 %", "100 %"],
+    samples: ["samples per pixel", "0", "most"],
+    bounces: ["rays of a sample", "0", "most"],
+    nodes: ["BVH nodes that the camera ray visits", "0", "most"],
+    tests: ["primitives that the camera ray tests", "0", "most"],
+    flip: ["FLIP: the difference that is seen", "0", "1"],
+    z: ["too dark, too bright: in standard errors", "dark", "bright"],
 });
 
 /** @param {import("./app.js").App} app */
@@ -22,20 +19,14 @@ export function showLegend(app) {
     const legend = byId("legend");
     const show = () => {
         const { layer, compare } = app.view.get();
-        const shown = compare && compare !== "wipe" && compare !== "reference" ? compare : layer;
-        const known = app.scene.get()?.layers.find(({ name }) => name === shown);
-        const range = app.frame.get()?.range ?? known?.range;
-        legend.hidden = COLORS.has(shown) || compare === "wipe" || compare === "reference";
-        if (legend.hidden) return;
-        legend.dataset.scale = shown;
-        replace(
-            legend,
-            h("span", { class: "faint" }, known?.unit ?? MEANINGS[shown] ?? known?.title ?? shown),
-            h("span", { class: "scale" }),
-            h("span", { class: "ends" }, h("span", {}, range ? short(range[0], 3) : "low"), h("span", {}, range ? short(range[1], 3) : "high")),
-        );
+        const shown = layer === "color" ? compare ?? "" : layer;
+        const known = HEAT[shown];
+        legend.hidden = !known;
+        if (!known) return;
+        const [meaning, low, high] = known;
+        legend.dataset.scale = shown === "z" ? "signed" : "heat";
+        replace(legend, h("span", { class: "faint" }, meaning), h("span", { class: "scale" }), h("span", { class: "ends" }, h("span", {}, low), h("span", {}, high)));
     };
     app.view.on(show);
     app.scene.on(show);
-    app.frame.on(show);
 }

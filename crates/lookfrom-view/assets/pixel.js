@@ -4,6 +4,7 @@ import { byId, h, replace } from "./html.js";
 import { exact, lanes, short, swatch } from "./format.js";
 import { scatter } from "./scatter.js";
 
+/** @typedef {import("./protocol.js").Contribution} Contribution */
 /** @typedef {import("./protocol.js").PixelReport} PixelReport */
 
 const MOST_ROWS = 60;
@@ -13,6 +14,7 @@ export function showPixel(app) {
     const place = byId("pixel-place");
     const summary = byId("pixel-summary");
     const samples = byId("pixel-samples");
+    const sampleSummary = byId("sample-summary");
 
     const showPlace = () => {
         const pixel = app.pixel.get();
@@ -34,8 +36,24 @@ export function showPixel(app) {
             replace(samples);
             return;
         }
-        replace(summary, numbers(report), contributions(report, (sample) => app.sample.set(sample)));
+        replace(summary, numbers(report), contributionList("Largest contributions", report.contributions, select));
         showSamples(report);
+    };
+
+    /** Selects a contribution: its sample, and the ray that made it. @param {Contribution} contribution */
+    function select({ sample, address }) {
+        if (address !== undefined) app.ray.set(address);
+        app.sample.set(sample);
+    }
+
+    const showSample = () => {
+        const inspection = app.inspection.get();
+        if (!inspection) return replace(sampleSummary);
+        const { sample, film, contributions } = inspection;
+        replace(sampleSummary,
+            h("h3", {}, `Sample ${sample}`),
+            h("p", { class: "number" }, swatch(film), ` ${lanes(film, 6)}`),
+            contributions && contributionList("Its largest contributions", contributions, select));
     };
 
     /** @param {PixelReport} report */
@@ -84,6 +102,7 @@ export function showPixel(app) {
     app.pixel.on(showPlace);
     app.pixel.on(show);
     app.report.on(show);
+    app.inspection.on(showSample);
     app.sample.on(() => selectInList());
     showPlace();
     show();
@@ -93,23 +112,24 @@ export function showPixel(app) {
 function numbers(report) {
     const [r, g, b] = report.color8;
     return h("dl", { class: "facts numbers" },
-        h("dt", {}, "mean"), h("dd", {}, swatch(report.mean), " ", lanes(report.mean), h("span", { class: "faint" }, ` ± ${lanes(report.standardError, 2)}`)),
+        h("dt", {}, "mean"), h("dd", {}, swatch(report.mean), " ", lanes(report.mean), report.standardError && h("span", { class: "faint" }, ` ± ${lanes(report.standardError, 2)}`)),
         h("dt", {}, "variance"), h("dd", {}, lanes(report.variance)),
         h("dt", {}, "8 bit"), h("dd", {}, `${r} ${g} ${b}`),
         h("dt", {}, "samples"), h("dd", {}, exact(report.samples)));
 }
 
 /**
- * @param {PixelReport} report
- * @param {(sample: number) => void} select
+ * @param {string} title
+ * @param {Contribution[]} contributions
+ * @param {(contribution: Contribution) => void} select
  */
-function contributions(report, select) {
-    if (!report.contributions?.length) return h("p", { class: "hint" }, "No light reaches this pixel.");
-    return h("section", { class: "contributions", "aria-label": "Largest contributions" },
-        h("h3", {}, "Largest contributions"),
-        h("ol", {}, report.contributions.slice(0, 3).map(({ sample, value, expression, why }) =>
-            h("li", {}, h("button", { type: "button", onclick: () => select(sample) },
-                h("span", { class: "expression" }, expression),
-                h("span", { class: "value" }, swatch(value), " ", lanes(value, 3)),
-                h("span", { class: "why" }, why, h("span", { class: "faint" }, ` · sample ${sample}`)))))));
+function contributionList(title, contributions, select) {
+    if (contributions.length === 0) return h("p", { class: "hint" }, "No light.");
+    return h("section", { class: "contributions", "aria-label": title },
+        h("h3", {}, title),
+        h("ol", {}, contributions.slice(0, 3).map((contribution) =>
+            h("li", {}, h("button", { type: "button", onclick: () => select(contribution) },
+                h("span", { class: "expression" }, contribution.expression),
+                h("span", { class: "value" }, swatch(contribution.value), " ", lanes(contribution.value, 3)),
+                h("span", { class: "why" }, contribution.why, h("span", {}, ` · sample ${contribution.sample}`)))))));
 }

@@ -42,7 +42,7 @@
  * @property {string} tonemap
  * @property {string[]} tonemaps
  * @property {boolean} denoise
- * @property {{name: string, title: string, unit?: string, range?: [number, number] | null}[]} layers
+ * @property {{name: string, title: string}[]} layers
  * @property {string[]} variants
  * @property {{name: string, seconds: number}[]} animations
  * @property {boolean} turntable
@@ -56,15 +56,15 @@
 /** @typedef {{type: "progress", view: number, samples: number, of: number, seconds: number, raysPerSecond: number, done: boolean}} Progress */
 /** @typedef {{type: "error", id: number | null, message: string, excerpt: string | null}} Failure */
 /** @typedef {{type: "value", x: number, y: number, rgb: Vector, samples: number, variance: Vector, reference: Vector | null}} Value */
-/** @typedef {{kind: "picture", view: number, width: number, height: number, scale: number, samples: number, of: number, done: boolean, layer: string, seconds: number, sizes?: number[], range?: [number, number] | null}} PictureHeader */
+/** @typedef {{kind: "picture", view: number, width: number, height: number, scale: number, samples: number, of: number, done: boolean, layer: string, seconds: number, sizes?: number[]}} PictureHeader */
 /** @typedef {{kind: "space", id: number, width: number, height: number, screenFromWorld: number[], sizes: number[]}} SpaceHeader */
 /** @typedef {{kind: "file", id: number, name: string, mime: string}} FileHeader */
 /** @typedef {{header: any, payload: ArrayBuffer}} Binary */
 /** @typedef {{type: "lobe", address: number, point: Vector, normal: Vector, wi: Vector, chosen: Vector | null, theta: number, phi: number, values: number[], directions: Vector[]}} Lobe */
 
 /** @typedef {{sample: number, film: number[], luminance: number, depth: number, light: string | null, expression: string}} SampleRow */
-/** @typedef {{sample: number, value: number[], expression: string, why: string}} Contribution */
-/** @typedef {{pixel: [number, number], samples: number, mean: number[], variance: number[], standardError: number[], color8: number[], contributions: Contribution[], all: SampleRow[]}} PixelReport */
+/** @typedef {{sample: number, value: number[], address?: number, expression: string, why: string}} Contribution */
+/** @typedef {{pixel: [number, number], samples: number, mean: number[], variance: number[] | null, standardError: number[] | null, standard_error?: number[] | null, color8: number[], contributions: Contribution[], all: SampleRow[]}} PixelReport */
 
 /** @typedef {{lanes: number[], rgb: Vector}} Amount */
 /** @typedef {{f32: number | "NaN" | "Infinity" | "-Infinity", f64: number | "NaN" | "Infinity" | "-Infinity", bits: number}} Twice */
@@ -112,6 +112,8 @@
  * @property {number} weight
  * @property {Vector} film
  * @property {boolean} adds_up
+ * @property {Contribution[]} [contributions]
+ * @property {number[]} [color8]
  */
 
 export {};

@@ -19,7 +19,7 @@ const spread = (n) => (n * 0.6180339887) % 1;
  */
 export function scatter(rows, hand) {
     const shown = rows.slice(0, MOST_DOTS);
-    const lit = shown.filter(({ luminance }) => luminance > 0);
+    const lit = shown.filter(({ luminance }) => luminance > 0 && luminance < Infinity);
     const lights = [...new Set(shown.map(({ light }) => light ?? "none"))];
     const deepest = Math.max(1, ...shown.map(({ depth }) => depth));
     // Five decades at most: what is darker lies on the line of zero.
@@ -28,7 +28,7 @@ export function scatter(rows, hand) {
     const low = Math.max(high - 5, Math.min(high - 1, Math.floor(Math.log10(Math.min(brightest, ...lit.map(({ luminance }) => luminance))))));
     const x = (/** @type {SampleRow} */ { depth, sample }) => LEFT + ((depth + 0.15 + 0.7 * spread(sample)) / (deepest + 1)) * (WIDTH - LEFT - RIGHT);
     const y = (/** @type {number} */ luminance) => {
-        const part = luminance > 0 ? (Math.log10(luminance) - low) / (high - low) : -1;
+        const part = luminance > 0 ? Math.min(1, (Math.log10(luminance) - low) / (high - low)) : -1;
         return part < 0 ? HEIGHT - BOTTOM - 4 : HEIGHT - BOTTOM - 20 - part * (HEIGHT - BOTTOM - TOP - 20);
     };
 
