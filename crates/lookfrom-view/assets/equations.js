@@ -167,7 +167,10 @@ function theBounce(ray) {
             ["p", bounce.pdf_is_proportional ? "density; only its ratio to f means something" : "density of the direction", exact(bounce.pdf)],
             ["β", "before", lanes(bounce.throughput_before)],
             ["β′", "after", lanes(bounce.throughput_after)],
-            ...(bounce.survival < 1 ? [/** @type {Row} */ (["", "survival probability of Russian roulette", exact(bounce.survival)])] : []),
+            ...(bounce.survival < 1 ? [
+                /** @type {Row} */ (["P", "probability that Russian roulette lets it go on", exact(bounce.survival)]),
+                /** @type {Row} */ (["β′ / P", "throughput of the next ray: what goes on stands for what ended", lanes(bounce.next_throughput)]),
+            ] : []),
         ]),
         reason && h("p", {}, `${reason[0].toUpperCase()}${reason.slice(1)}.`));
 }

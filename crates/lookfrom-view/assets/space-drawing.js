@@ -60,11 +60,8 @@ function drawNormal(context, drawing) {
     label(context, drawing, tip, "n", color("normal"));
 }
 
-/** A length of the world that is seen well at a point. @param {SpaceDrawing} drawing @param {Vector} at */
-const lobeSize = ({ camera, farAway, inspection }, at) => {
-    const [first] = inspection.rays;
-    return Math.min(farAway * 0.1, 0.2 * (length(subtract(first?.met?.point ?? at, camera.lookfrom)) || 1));
-};
+/** A length of the world that has the same size on the screen wherever it is. @param {SpaceDrawing} drawing @param {Vector} at */
+const lobeSize = ({ project }, at) => 0.11 * Math.max(project(at)[2], 0);
 
 /**
  * The BSDF times the cosine as a balloon around the point: its radius is the value in that direction.

@@ -1,16 +1,16 @@
 // The second view of the scene: a picture by the same kernel from an observer's eye, with the sample's rays on top.
 
-import { add, cross, dot, length, mix, scale, subtract, unit } from "./vector.js";
+import { length, subtract } from "./vector.js";
 import { attachControls } from "./controls.js";
 import { project, screenFromWorld } from "./camera.js";
 import { byId } from "./html.js";
 import { drawSpace } from "./space-drawing.js";
-import { end, shadows } from "./rays.js";
+import { observer, sees } from "./observer.js";
+import { end } from "./rays.js";
 
 /** @typedef {import("./protocol.js").Camera} Camera */
 /** @typedef {import("./protocol.js").Vector} Vector */
 
-const FOV = 36;
 /** While the hand moves, pictures are smaller by this factor. */
 const COARSE = 3;
 const MOST_PIXELS = 700_000;
@@ -29,6 +29,10 @@ export function showSpace(app) {
     let asked = false;
     let again = false;
     let isMoving = false;
+    /** @type {import("./observer.js").Place} */
+    let place = "beside";
+    /** Whether the observer's place is our choice, which may turn out to be behind a wall. */
+    let isFresh = false;
 
     const sceneSize = () => {
         const bounds = app.scene.get()?.bounds;
@@ -63,6 +67,8 @@ export function showSpace(app) {
         [canvas.width, canvas.height] = [width, height];
         canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
         hint.hidden = true;
+        if (isFresh && isBlind()) stand("near");
+        isFresh = false;
         draw();
     }
 
@@ -74,10 +80,6 @@ export function showSpace(app) {
         const viewed = app.camera();
         if (!camera || !inspection || !viewed) return;
         context.scale(ratio, ratio);
-        const { clientWidth, clientHeight } = overlay;
-        const shown = frame;
-        const [sx, sy] = shown ? [clientWidth / shown.width, clientHeight / shown.height] : [1, 1];
-        const matrix = shown?.matrix ?? screenFromWorld(camera, [clientWidth, clientHeight]);
         drawSpace(context, {
             inspection,
             camera: viewed,
@@ -86,46 +88,45 @@ export function showSpace(app) {
             selected: app.ray.get(),
             isCameraRayShown: true,
             farAway: sceneSize(),
-            project(p) {
-                const [x, y, depth] = project(matrix, p);
-                return [x * sx, y * sy, depth];
-            },
-            isHidden(x, y, depth) {
-                if (!shown) return false;
-                const [column, row] = [Math.floor(x / sx), Math.floor(y / sy)];
-                if (column < 0 || row < 0 || column >= shown.width || row >= shown.height) return false;
-                return shown.depths[row * shown.width + column] < depth * 0.997;
-            },
+            project: projected,
+            isHidden,
         });
     }
 
-    /** An observer beside the rays, who sees the eye and all hits. */
-    function frameRays() {
+    /** A point of the world in pixels of the page, by the matrix of the picture that is shown. @param {Vector} p @returns {[number, number, number]} */
+    function projected(p) {
+        const { clientWidth, clientHeight } = overlay;
+        if (!frame) return camera ? project(screenFromWorld(camera, [clientWidth, clientHeight]), p) : [0, 0, -1];
+        const [x, y, depth] = project(frame.matrix, p);
+        return [(x * clientWidth) / frame.width, (y * clientHeight) / frame.height, depth];
+    }
+
+    /** @param {number} x @param {number} y @param {number} depth */
+    function isHidden(x, y, depth) {
+        if (!frame) return false;
+        const [column, row] = [Math.floor((x * frame.width) / overlay.clientWidth), Math.floor((y * frame.height) / overlay.clientHeight)];
+        if (column < 0 || row < 0 || column >= frame.width || row >= frame.height) return false;
+        return frame.depths[row * frame.width + column] < depth * 0.995;
+    }
+
+    /** @param {import("./observer.js").Place} next */
+    function stand(next) {
         const inspection = app.inspection.get();
         const viewed = app.camera();
         if (!inspection || !viewed) return;
-        const first = inspection.rays[0]?.met?.point;
-        const reach = Math.min(sceneSize() / 4, first ? 0.6 * length(subtract(first, viewed.lookfrom)) : Infinity);
-        const points = inspection.rays.flatMap((ray) => [ray.a, end(ray, reach), ...shadows(ray).filter(({ shadow }) => !shadow.is_endless).map(({ shadow }) => shadow.to)]);
-        /** @type {(pick: (...values: number[]) => number) => Vector} */
-        const corner = (pick) => /** @type {Vector} */ ([0, 1, 2].map((i) => pick(...points.map((p) => p[i]))));
-        const middle = mix(corner(Math.min), corner(Math.max), 0.5);
-        const forward = unit(subtract(viewed.lookat, viewed.lookfrom));
-        const up = unit(viewed.up);
-        const side = unit(cross(forward, up));
-        const direction = unit(add(add(scale(side, 0.85), scale(up, 0.45)), scale(forward, -0.35)));
-        const size = /** @type {[number, number]} */ ([overlay.clientWidth || 1, overlay.clientHeight || 1]);
-        let distance = 3 * Math.max(...points.map((p) => length(subtract(p, middle))), 1e-3);
-        // Nearer or farther until the outermost point is just inside; three steps are enough.
-        for (let i = 0; i < 3; i++) {
-            camera = { lookfrom: add(middle, scale(direction, distance)), lookat: middle, up: viewed.up, fov: FOV };
-            const matrix = screenFromWorld(camera, size);
-            const outermost = Math.max(...points.map((p) => {
-                const [x, y] = project(matrix, p);
-                return Math.max(Math.abs((2 * x) / size[0] - 1), Math.abs((2 * y) / size[1] - 1));
-            }));
-            distance *= Math.max(0.05, outermost / 0.8);
-        }
+        place = next;
+        camera = observer(inspection, viewed, [overlay.clientWidth || 1, overlay.clientHeight || 1], sceneSize(), place);
+        ask();
+    }
+
+    /** Whether walls stand between the observer and most of the hits. */
+    function isBlind() {
+        const hits = app.inspection.get()?.rays.filter(({ met }) => met?.point) ?? [];
+        const hidden = hits.filter(({ met }) => {
+            const [x, y, depth] = projected(met.point);
+            return isHidden(x, y, depth);
+        });
+        return hits.length > 0 && hidden.length > 0.5 * hits.length;
     }
 
     attachControls(overlay, {
@@ -148,32 +149,27 @@ export function showSpace(app) {
     /** The ray that passes within a finger's reach. @param {import("./protocol.js").Ray[]} rays @param {number} x @param {number} y */
     function nearestRay(rays, x, y) {
         let [best, distance] = [/** @type {number | null} */ (null), 12];
-        const at = (/** @type {Vector} */ p) => {
-            const [px, py, depth] = project(frame?.matrix ?? [], p);
-            return { x: (px * overlay.clientWidth) / (frame?.width ?? 1), y: (py * overlay.clientHeight) / (frame?.height ?? 1), depth };
-        };
         for (const ray of rays) {
-            const [a, b] = [at(ray.a), at(end(ray, sceneSize()))];
-            if (a.depth <= 0 || b.depth <= 0) continue;
-            const [dx, dy] = [b.x - a.x, b.y - a.y];
-            const s = Math.max(0, Math.min(1, ((x - a.x) * dx + (y - a.y) * dy) / (dx * dx + dy * dy || 1)));
-            const d = Math.hypot(a.x + s * dx - x, a.y + s * dy - y);
+            const [[x0, y0, d0], [x1, y1, d1]] = [projected(ray.a), projected(end(ray, sceneSize()))];
+            if (d0 <= 0 || d1 <= 0) continue;
+            const [dx, dy] = [x1 - x0, y1 - y0];
+            const s = Math.max(0, Math.min(1, ((x - x0) * dx + (y - y0) * dy) / (dx * dx + dy * dy || 1)));
+            const d = Math.hypot(x0 + s * dx - x, y0 + s * dy - y);
             if (d < distance) [best, distance] = [ray.address, d];
         }
         return best;
     }
 
-    byId("space-frame").addEventListener("click", () => {
-        frameRays();
-        ask();
-    });
+    byId("space-frame").addEventListener("click", () => stand(place === "near" ? "beside" : "near"));
     app.inspection.on((inspection) => {
         document.body.classList.toggle("has-sample", inspection !== null);
         lobe = null;
         // The eye of the observer stays while it still sees the rays.
-        if (inspection && (!camera || !isInView(inspection))) frameRays();
+        if (inspection && (!camera || !sees(inspection, camera))) {
+            stand("beside");
+            isFresh = true;
+        } else ask();
         draw();
-        ask();
     });
     app.ray.on(async (address) => {
         lobe = null;
@@ -197,17 +193,4 @@ export function showSpace(app) {
         draw();
         ask();
     }).observe(overlay);
-
-    /** @param {import("./protocol.js").Inspection} inspection */
-    function isInView(inspection) {
-        if (!camera) return false;
-        const { lookfrom, lookat } = camera;
-        const forward = unit(subtract(lookat, lookfrom));
-        const matrix = screenFromWorld(camera, [1, 1]);
-        return inspection.rays.every(({ met }) => {
-            if (!met?.point) return true;
-            const [x, y] = project(matrix, met.point);
-            return dot(subtract(met.point, lookfrom), forward) > 0 && Math.abs(x - 0.5) < 0.9 && Math.abs(y - 0.5) < 0.5;
-        });
-    }
 }

@@ -83,6 +83,28 @@ test("a click shows the numbers of `lookfrom inspect --json`", async () => {
     await context.close();
 });
 
+test("a pixel: its mean and all of its samples, and from a contribution to its ray", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await finished(page);
+    await inspect(page, 120, 100);
+    await page.locator("#samples tbody tr").first().waitFor();
+    const said = await inspection(copy.scene, 120, 100, "all", SMALL);
+    const rows = await page.locator("#samples tbody tr").evaluateAll((rows) => rows.map((row) => [row.dataset.sample, row.querySelector(".expression").textContent]));
+    assert.deepEqual(rows, said.all.map(({ sample, expression }) => [String(sample), expression]));
+    assert.match((await page.locator("#pixel-summary .numbers").textContent()) ?? "", new RegExp(`8 bit${said.color8.join(" ")}samples${said.samples}$`));
+
+    const last = page.locator("#samples tbody tr").last();
+    await last.getByRole("button").click();
+    const sample = await last.getAttribute("data-sample");
+    await until("the sample is in the link", async () => page.url().includes(`sample=${sample}`));
+    const largest = said.contributions[0];
+    await page.locator("#pixel-summary .contributions button").first().click();
+    await until("the contribution's ray is in the link", async () => page.url().endsWith(`sample=${largest.sample}&ray=${largest.address}`));
+    assert.match((await page.locator('#tree [aria-selected="true"]').getAttribute("aria-label")) ?? "", new RegExp(`^Ray ${largest.address},`));
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
 test("the exercise of the notes: M_vw = I", async () => {
     const { page, context, errors } = await open(browser, server.url);
     await inspect(page, 50, 90);
