@@ -50,7 +50,7 @@ pub(crate) fn answer(renderer: &Renderer, request: u64, id: SampleId, address: u
         theta: RINGS,
         phi: OF_RING,
         values,
-        directions: directions.into_iter().map(Vec3::to_array).collect(),
+        directions: directions.iter().map(Vec3::to_array).collect(),
     })
 }
 

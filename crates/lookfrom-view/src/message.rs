@@ -15,6 +15,8 @@ pub(crate) const LONGEST: usize = 1 << 16;
 pub(crate) enum Request {
     /// What to show; replaces the whole view before.
     View(Box<Wish>),
+    /// All samples of a pixel.
+    Pixel { id: u64, x: u32, y: u32 },
     /// One sample of a pixel, with all events.
     Inspect { id: u64, x: u32, y: u32, sample: u32, depth: Option<u32>, min_contribution: Option<f32> },
     /// The scene from an observer's camera.
@@ -116,6 +118,10 @@ pub(crate) enum Answer {
         seconds: f64,
         rays_per_second: f64,
         done: bool,
+    },
+    Pixel {
+        id: u64,
+        report: Box<lookfrom::inspect::PixelInspection>,
     },
     Inspection {
         id: u64,
@@ -270,7 +276,8 @@ impl Request {
     pub(crate) fn id(&self) -> Option<u64> {
         match *self {
             Self::View(ref wish) => Some(wish.id),
-            Self::Inspect { id, .. }
+            Self::Pixel { id, .. }
+            | Self::Inspect { id, .. }
             | Self::Space { id, .. }
             | Self::Value { id, .. }
             | Self::Save { id, .. }

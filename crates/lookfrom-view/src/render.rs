@@ -35,6 +35,9 @@ const FIRST_SCALE: u32 = 8;
 /// The coarsest picture.
 const COARSEST: u32 = 32;
 
+/// The most samples of a pixel that are inspected at once: it takes a second or so.
+const MOST_INSPECTED: u32 = 4096;
+
 /// Runs until the window is closed.
 pub(crate) fn run(mailbox: &Mailbox, document: &Document) {
     let mut window =
@@ -111,9 +114,10 @@ impl Window<'_> {
         }
     }
 
-    /// Whether there is something to render.
+    /// Whether there is something to render. A pause holds up passes, not the first sight of another view.
     fn has_work(&self) -> bool {
-        !self.is_paused && self.shot.as_ref().is_some_and(|shot| shot.stage != Stage::Done)
+        let stage = self.shot.as_ref().map_or(Stage::Done, |shot| shot.stage);
+        stage != Stage::Done && !(self.is_paused && stage == Stage::Full)
     }
 
     fn answer(&mut self, task: Task) -> Result<()> {
@@ -124,6 +128,7 @@ impl Window<'_> {
                 self.is_paused = paused;
                 Ok(())
             }
+            Task::Request(Request::Pixel { id, x, y }) => self.pixel(id, [x, y]),
             Task::Request(Request::Inspect { id, x, y, sample, depth, min_contribution }) => {
                 self.inspect(id, [x, y], sample, depth, min_contribution)
             }
@@ -159,7 +164,7 @@ impl Window<'_> {
         {
             self.mailbox.say(&Answer::Scene(Box::new(loaded.told())));
             (self.loaded, self.variation, self.shot) = (Some(loaded), None, None);
-            if let Some(wish) = self.wish.take() {
+            if let Some(wish) = self.wish.clone() {
                 self.look(wish)?;
             }
         }
@@ -176,22 +181,21 @@ impl Window<'_> {
             return Ok(());
         };
         develop::check(&wish, &loaded)?;
-        let before = self.wish.replace(wish.clone());
-        if let Some(shot) = &mut self.shot
-            && before.is_some_and(|before| before.light() == wish.light())
+        if let (Some(shot), Some(before)) = (&mut self.shot, &self.wish)
+            && before.light() == wish.light()
         {
             shot.take_samples(&wish, &loaded)?;
             if !wish.moving && shot.stage == Stage::Done && shot.film.is_none() {
                 shot.stage = shot.after_coarse();
             }
             shot.denoised_until = None;
+            self.wish = Some(wish);
             return self.show();
         }
-        let pace = self.shot.take().and_then(|shot| shot.pace);
-        let session = self.base(&wish, &loaded)?;
-        let session = wish.applied(session)?;
-        let shot = Shot::new(session, pace);
-        self.shot = Some(shot);
+        // What cannot be shown leaves the view as it is.
+        let session = wish.applied(self.base(&wish, &loaded)?)?;
+        let pace = self.shot.as_ref().and_then(|shot| shot.pace);
+        (self.shot, self.wish) = (Some(Shot::new(session, pace)), Some(wish));
         Ok(())
     }
 
@@ -295,6 +299,19 @@ impl Window<'_> {
         };
         shot.cost = Some(map);
         self.mailbox.show(header.frame(&[&png]));
+        Ok(())
+    }
+
+    fn pixel(&self, id: u64, pixel: [u32; 2]) -> Result<()> {
+        let (Some(shot), Some(wish)) = (&self.shot, &self.wish) else { return Err(nothing_yet()) };
+        let mut session = shot.session.clone();
+        let own = session.image().clone();
+        // Its colour is that of the picture on the screen.
+        let (exposure, tonemap) = (wish.exposure, wish.tonemap(own.tonemap)?);
+        session.set_image(ImageSettings { exposure, tonemap, ..own })?;
+        let samples = session.settings().samples.min(MOST_INSPECTED);
+        let report = Box::new(inspect::inspect_pixel(session.renderer(), pixel, 0..samples)?);
+        self.mailbox.say(&Answer::Pixel { id, report });
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! A server of a scene in a temporary folder, and pages without a browser.
 
-use std::io::{Read, Write};
+use std::io::{BufRead, BufReader, Write};
 use std::net::{Ipv4Addr, TcpStream};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A small scene.
-pub const SCENE: &str = r#"
+pub(crate) const SCENE: &str = r#"
 [camera]
 lookfrom = [0, 1, 5]
 lookat = [0, 0, 0]
@@ -44,17 +44,17 @@ intensity = [20, 20, 20]
 "#;
 
 /// A server that ends when it is dropped.
-pub struct Served {
-    pub url: String,
-    pub scene: PathBuf,
-    pub windows: Arc<AtomicUsize>,
+pub(crate) struct Served {
+    pub(crate) url: String,
+    pub(crate) scene: PathBuf,
+    pub(crate) windows: Arc<AtomicUsize>,
     stopped: Arc<AtomicBool>,
     thread: Option<JoinHandle<std::io::Result<()>>>,
 }
 
 impl Served {
     /// Serves a scene file of this text.
-    pub fn new(name: &str, text: &str) -> Self {
+    pub(crate) fn new(name: &str, text: &str) -> Self {
         let folder = std::env::temp_dir().join(format!("lookfrom-view-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a temporary folder");
         let scene = folder.join("scene.toml");
@@ -79,31 +79,31 @@ impl Served {
     }
 
     /// Replaces the scene's file.
-    pub fn write(&self, text: &str) {
+    pub(crate) fn write(&self, text: &str) {
         std::fs::write(&self.scene, text).expect("the file is ours");
     }
 
     /// `127.0.0.1:port`.
-    pub fn host(&self) -> &str {
+    pub(crate) fn host(&self) -> &str {
         self.url.trim_start_matches("http://").split('/').next().expect("a host")
     }
 
-    pub fn token(&self) -> &str {
+    pub(crate) fn token(&self) -> &str {
         self.url.split('=').nth(1).expect("a token")
     }
 
     /// The first line of the answer to a request with these headers.
-    pub fn status(&self, path: &str, headers: &str) -> String {
+    pub(crate) fn status(&self, path: &str, headers: &str) -> String {
         let mut stream = TcpStream::connect(self.host()).expect("it listens");
-        let request = format!("GET {path} HTTP/1.1\r\nConnection: close\r\n{headers}\r\n");
+        let request = format!("GET {path} HTTP/1.1\r\n{headers}\r\n");
         stream.write_all(request.as_bytes()).expect("it reads");
         let mut answer = String::new();
-        stream.read_to_string(&mut answer).expect("it answers");
-        answer.lines().next().unwrap_or_default().to_owned()
+        BufReader::new(stream).read_line(&mut answer).expect("it answers");
+        answer
     }
 
     /// Opens a window.
-    pub fn open(&self) -> Page {
+    pub(crate) fn open(&self) -> Page {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
         let url = format!("ws://{}/socket?token={}", self.host(), self.token());
         let (socket, _) = runtime.block_on(connect_async(url)).expect("a socket");
@@ -111,7 +111,7 @@ impl Served {
     }
 
     /// Waits until this many windows have threads.
-    pub fn wait_for_windows(&self, count: usize) {
+    pub(crate) fn wait_for_windows(&self, count: usize) {
         let started = Instant::now();
         while self.windows.load(Ordering::Acquire) != count {
             assert!(started.elapsed() < PATIENCE, "{} windows", self.windows.load(Ordering::Acquire));
@@ -132,36 +132,36 @@ impl Drop for Served {
 }
 
 /// A window of a page.
-pub struct Page {
+pub(crate) struct Page {
     runtime: Runtime,
     socket: WebSocketStream<MaybeTlsStream<AsyncStream>>,
 }
 
 /// A binary frame.
 #[derive(Debug)]
-pub struct Frame {
-    pub header: Value,
-    pub payload: Vec<u8>,
+pub(crate) struct Frame {
+    pub(crate) header: Value,
+    pub(crate) payload: Vec<u8>,
 }
 
 /// Anything from the server.
 #[derive(Debug)]
-pub enum Heard {
+pub(crate) enum Heard {
     Text(Value),
     Frame(Frame),
 }
 
 impl Page {
-    pub fn say(&mut self, message: &Value) {
+    pub(crate) fn say(&mut self, message: &Value) {
         self.say_text(message.to_string());
     }
 
-    pub fn say_text(&mut self, text: String) {
+    pub(crate) fn say_text(&mut self, text: String) {
         self.runtime.block_on(self.socket.send(Message::text(text))).expect("it reads");
     }
 
     /// The next message; `None` once the socket is closed.
-    pub fn hear(&mut self) -> Option<Heard> {
+    pub(crate) fn hear(&mut self) -> Option<Heard> {
         let next = self.runtime.block_on(async { tokio::time::timeout(PATIENCE, self.socket.next()).await });
         match next.expect("an answer in time") {
             Some(Ok(Message::Text(text))) => {
@@ -177,27 +177,29 @@ impl Page {
     }
 
     /// The next text of a type; others are passed over.
-    pub fn text(&mut self, kind: &str) -> Value {
+    pub(crate) fn text(&mut self, kind: &str) -> Value {
         loop {
             match self.hear().expect("the socket is open") {
                 Heard::Text(text) if text["type"] == kind => return text,
-                _ => {}
+                Heard::Text(text) => assert!(text["type"] != "error", "instead of a {kind}: {text}"),
+                Heard::Frame(_) => {}
             }
         }
     }
 
     /// The next frame of a kind; others are passed over.
-    pub fn frame(&mut self, kind: &str) -> Frame {
+    pub(crate) fn frame(&mut self, kind: &str) -> Frame {
         loop {
             match self.hear().expect("the socket is open") {
                 Heard::Frame(frame) if frame.header["kind"] == kind => return frame,
-                _ => {}
+                Heard::Text(text) => assert!(text["type"] != "error", "instead of a {kind}: {text}"),
+                Heard::Frame(_) => {}
             }
         }
     }
 
     /// The finished picture of a view.
-    pub fn finished(&mut self, view: u64) -> Frame {
+    pub(crate) fn finished(&mut self, view: u64) -> Frame {
         loop {
             let frame = self.frame("picture");
             if frame.header["view"] == view && frame.header["done"] == true {
@@ -208,12 +210,12 @@ impl Page {
 }
 
 /// The message for a view of the scene as it is.
-pub fn view(id: u64) -> Value {
+pub(crate) fn view(id: u64) -> Value {
     json!({ "type": "view", "id": id })
 }
 
 /// The message for a view from somewhere.
-pub fn view_from(id: u64, lookfrom: [f64; 3], moving: bool) -> Value {
+pub(crate) fn view_from(id: u64, lookfrom: [f64; 3], moving: bool) -> Value {
     let camera = json!({ "lookfrom": lookfrom, "lookat": [0, 0, 0], "up": [0, 1, 0], "fov": null });
     json!({ "type": "view", "id": id, "camera": camera, "moving": moving, "tonemap": "clamp", "layer": "color" })
 }
