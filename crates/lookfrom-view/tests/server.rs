@@ -307,8 +307,8 @@ fn the_scene_from_an_observer_has_depths_and_a_matrix() {
 
 #[test]
 fn a_balloon_is_the_scattering_at_its_vertex() {
-    let matte =
-        SCENE.replace("radius = 1", "radius = 1\nmaterial = { type = \"diffuse\", reflectance = 0.5 }");
+    let matte = SCENE.replace("radius = 1", "radius = 1\nmaterial = \"matte\"");
+    let matte = format!("{matte}\n[materials.matte]\ntype = \"diffuse\"\nreflectance = 0.5\n");
     for (name, text) in [("lobe-path", matte.as_str()), ("lobe-whitted", SCENE)] {
         let served = Served::new(name, text);
         let mut page = served.open();
