@@ -2,7 +2,7 @@
 
 import { display, frac, row, sqrt } from "./formula.js";
 import { h } from "./html.js";
-import { exact, point } from "./format.js";
+import { exact, fileName, point } from "./format.js";
 
 /** @typedef {import("./protocol.js").Candidate} Candidate */
 /** @typedef {import("./protocol.js").Twice} Twice */
@@ -30,7 +30,7 @@ const FORMULAS = /** @type {Record<string, () => Element[]>} */ ({
 export function candidateTable(candidate) {
     const { kind, rows, inputs } = numbersOf(candidate);
     return h("div", { class: `candidate ${candidate.is_nearest ? "nearest" : ""}` },
-        h("p", { class: "verdict" }, h("strong", {}, candidate.name), h("span", {}, candidate.verdict)),
+        h("p", { class: "verdict" }, h("strong", { title: candidate.name }, fileName(candidate.name)), h("span", {}, candidate.verdict)),
         rows.length > 0 && FORMULAS[kind]?.(),
         inputRows(inputs),
         rows.length > 0 && h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `numbers of ${candidate.name}` },

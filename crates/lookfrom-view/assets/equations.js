@@ -2,7 +2,7 @@
 
 import { display, formula, frac } from "./formula.js";
 import { byId, h, replace } from "./html.js";
-import { exact, lanes, point, short, swatch } from "./format.js";
+import { exact, fileName, lanes, point, short, swatch } from "./format.js";
 import { candidateTable } from "./candidates.js";
 import { ends } from "./tree.js";
 
@@ -64,7 +64,7 @@ function theHit(ray) {
     const { met } = ray;
     if (!met) return section("Hit", h("p", {}, "It leaves the scene."));
     const k = met.coefficients;
-    return section(`Hit: ${met.shape}`,
+    return section(`Hit: ${fileName(met.shape)}`,
         terms([
             ["t", "where along the ray; 1 is the image plane for a camera ray", exact(met.t)],
             ["p", "the point", point(met.point, 9)],
@@ -89,7 +89,7 @@ function theLights(ray) {
     return [section("Lights",
         display("I = k_a I_a + Σ_j ( k_d (N·L_j) + k_s (N·H_j)ⁿ ) I_j + k_r S + k_t T"),
         lit.map(({ light, wi, intensity, diffuse, specular, shadow, added }) => [
-            h("h4", {}, light),
+            h("h4", {}, fileName(light)),
             terms([
                 ["L_j", "direction to the light", point(wi)],
                 ["I_j", "its intensity here, were nothing between", lanes(intensity.rgb)],
@@ -105,7 +105,7 @@ function theLights(ray) {
 function shadowWords(shadow) {
     if (!shadow) return "none: it would carry nothing";
     if (shadow.blockers.length === 0) return "reaches the light";
-    return shadow.blockers.map(({ shape, passed }) => (Math.max(...passed) > 0 ? `through ${shape} × ${lanes(passed)}` : `blocked by ${shape}`)).join(", ");
+    return shadow.blockers.map(({ shape, passed }) => (Math.max(...passed) > 0 ? `through ${fileName(shape)} × ${lanes(passed)}` : `blocked by ${fileName(shape)}`)).join(", ");
 }
 
 /** Next-event estimation. @param {Ray} ray */
@@ -113,8 +113,8 @@ function theLightSample(ray) {
     const sampled = ray.light_sample;
     if (!sampled) return null;
     const { sample, light, probability, shadow, added } = sampled;
-    if (!sample) return section(`Sampled light: ${light}`, h("p", {}, "It does not illuminate this point."));
-    return section(`Sampled light: ${light}`,
+    if (!sample) return section(`Sampled light: ${fileName(light)}`, h("p", {}, "It does not illuminate this point."));
+    return section(`Sampled light: ${fileName(light)}`,
         display("β f cos θ L", frac("w", "p")),
         terms([
             ["β", "throughput", lanes(ray.throughput_there ?? ray.throughput)],
@@ -130,7 +130,7 @@ function theLightSample(ray) {
 
 /** Light that the ray itself hits. @param {Ray} ray */
 function theFound(ray) {
-    return ray.found.map(({ light, radiance, light_pdf, weight, added }) => section(`Light that it hits: ${light}`,
+    return ray.found.map(({ light, radiance, light_pdf, weight, added }) => section(`Light that it hits: ${fileName(light)}`,
         display("β L w"),
         terms([
             ["β", "throughput", lanes(ray.throughput_there ?? ray.throughput)],

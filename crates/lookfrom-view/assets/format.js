@@ -67,6 +67,9 @@ export function swatch(rgb) {
     return element;
 }
 
+/** A name without the folders of the files in it. @param {string} name */
+export const fileName = (name) => name.replace(/[^\s(]*[/\\](?=[^\s/\\])/g, "");
+
 /** @param {number} seconds */
 export const duration = (seconds) =>
     seconds < 1 ? `${Math.round(seconds * 1000)} ms` : seconds < 60 ? `${seconds.toFixed(1)} s` : `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;

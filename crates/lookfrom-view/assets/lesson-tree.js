@@ -2,7 +2,7 @@
 
 import { h, replace, svg } from "./html.js";
 import { slider } from "./fields.js";
-import { exact, short, single, swatch } from "./format.js";
+import { exact, fileName, short, single, swatch } from "./format.js";
 import { kindName, rayWidth } from "./rays.js";
 import { noPixel } from "./notes.js";
 
@@ -107,7 +107,7 @@ function proof({ additions, radiance, film, adds_up, weight }) {
     return [
         h("p", { class: `verdict ${adds_up ? "good" : "bad"}`, role: "status", id: "adds-up" }, adds_up ? "It adds up, bit for bit." : "It does not add up: please report this."),
         h("div", { class: "scroll tall", tabindex: "0", role: "region", "aria-label": "contributions" }, h("table", { class: "twice" },
-            h("tbody", {}, additions.map(({ address, term, value }) => row(`${address} ${term}`, value.lanes, value.rgb))),
+            h("tbody", {}, additions.map(({ address, term, value }) => row(`${address} ${fileName(term)}`, value.lanes, value.rgb))),
             h("tfoot", {},
                 row("sum, by this page", sum, radiance.rgb, isSame ? "good" : "bad"),
                 row("radiance", radiance.lanes, radiance.rgb),

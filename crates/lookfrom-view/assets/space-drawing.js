@@ -76,18 +76,22 @@ function drawLobe(context, drawing, { point, theta, phi, values, directions, cho
         // The cube root keeps what is faint visible beside a sharp peak.
         const tips = directions.map((direction, i) => drawing.project(add(point, scale(direction, size * Math.cbrt(Math.max(values[i], 0) / most)))));
         context.lineWidth = 0.8;
-        for (let i = 0; i + 1 < theta; i++) {
-            for (let k = 0; k < phi; k++) {
-                const corners = [i * phi + k, i * phi + ((k + 1) % phi), (i + 1) * phi + ((k + 1) % phi), (i + 1) * phi + k];
+        context.fillStyle = color("lobe");
+        context.strokeStyle = color("lobe");
+        // A net of some dozen meshes is enough for the eye.
+        const [down, around] = [Math.max(1, Math.round(theta / 12)), Math.max(1, Math.round(phi / 24))];
+        for (let i = 0; i + 1 < theta; i += down) {
+            const below = Math.min(i + down, theta - 1);
+            for (let k = 0; k < phi; k += around) {
+                const next = k + around < phi ? k + around : 0;
+                const corners = [i * phi + k, i * phi + next, below * phi + next, below * phi + k];
                 if (corners.every((corner) => !(values[corner] > 0))) continue;
                 context.beginPath();
                 corners.forEach((corner, n) => context[n === 0 ? "moveTo" : "lineTo"](tips[corner][0], tips[corner][1]));
                 context.closePath();
-                context.globalAlpha = 0.12;
-                context.fillStyle = color("lobe");
+                context.globalAlpha = 0.07;
                 context.fill();
-                context.globalAlpha = 0.35;
-                context.strokeStyle = color("lobe");
+                context.globalAlpha = 0.4;
                 context.stroke();
             }
         }

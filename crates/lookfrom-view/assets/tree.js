@@ -1,7 +1,7 @@
 // The tree of rays of a sample, with the keys of an ARIA tree.
 
 import { byId, h, replace } from "./html.js";
-import { exact, luminance, short, swatch } from "./format.js";
+import { exact, fileName, luminance, short, swatch } from "./format.js";
 import { kindName, rayWidth } from "./rays.js";
 
 /** @typedef {import("./protocol.js").Ray} Ray */
@@ -28,7 +28,7 @@ export function showTree(app) {
             const row = h("div", { class: "ray" },
                 h("span", { class: `kind ${kindName(ray.kind)}`, "aria-hidden": "true" }),
                 h("span", { class: "name" }, `${ray.address} ${ray.kind}`),
-                h("span", { class: "met" }, ends(ray)),
+                h("span", { class: "met", title: ray.met?.shape }, ends(ray)),
                 h("span", { class: "value", title: "contribution of this ray and all after it" }, swatch(ray.subtree.rgb), " ", short(luminance(ray.subtree.rgb), 3)));
             const kind = /** @type {HTMLElement} */ (row.firstChild);
             kind.style.height = `${rayWidth(ray).toFixed(1)}px`;
@@ -104,4 +104,4 @@ export function showTree(app) {
 }
 
 /** What a ray meets, in words. @param {Ray} ray */
-export const ends = (ray) => (ray.met ? `→ ${ray.met.shape}` : "→ leaves the scene");
+export const ends = (ray) => (ray.met ? `→ ${fileName(ray.met.shape)}` : "→ leaves the scene");
