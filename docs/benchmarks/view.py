@@ -123,7 +123,7 @@ def reloads(lookfrom, scene, count):
         page = Page(process.stdout.readline().strip())
         for generation in range(1, count + 1):
             page.until(lambda heard: heard.get("type") == "scene" and heard["generation"] == generation)
-            view(page, generation)
+            page.say(type="view", id=generation, size=[320, 180])
             page.until(lambda heard: picture_of(generation)(heard) and heard["scale"] == 1)
             if generation in (1, 10, 100) or generation % 250 == 0:
                 print(f"  {generation} scenes read: {resident(process) / 1024:.0f} MB")

@@ -1,5 +1,7 @@
 //! Heat maps of the cost of pixels: rays, nodes and primitives of their first samples.
 
+use std::thread::ScopedJoinHandle;
+
 use lookfrom::render::{Cost, SampleId};
 use lookfrom::session::Session;
 use lookfrom_scene::Result;
@@ -49,7 +51,7 @@ impl CostMap {
         let costs = std::thread::scope(|scope| {
             let parts = ids.chunks(ids.len().div_ceil(threads).max(1));
             let parts: Vec<_> = parts.map(|part| scope.spawn(|| by_rows(part, width, renderer))).collect();
-            let joined = parts.into_iter().map(|part| part.join());
+            let joined = parts.into_iter().map(ScopedJoinHandle::join);
             joined.flat_map(|part| part.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
         });
         Ok(Self { width, height, scale, costs })

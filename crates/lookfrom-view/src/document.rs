@@ -107,6 +107,11 @@ impl Document {
         let generation = self.now().0.map_or(0, |loaded| loaded.generation) + 1;
         let read = catch_unwind(AssertUnwindSafe(|| self.read(generation, &inputs)));
         let read = read.unwrap_or_else(|_| Err(panicked()));
+        let paths = inputs.paths();
+        before.retain(|path, _| paths.contains(path));
+        for (path, stamp) in stamps(&paths) {
+            before.entry(path).or_insert(stamp);
+        }
         {
             let mut state = locked(&self.state);
             match read {
@@ -116,11 +121,6 @@ impl Document {
         }
         let windows: Vec<_> = locked(&self.windows).iter().filter_map(Weak::upgrade).collect();
         windows.iter().for_each(|window| window.put(Task::SceneChanged));
-        let paths = inputs.paths();
-        before.retain(|path, _| paths.contains(path));
-        for (path, stamp) in stamps(&paths) {
-            before.entry(path).or_insert(stamp);
-        }
         before
     }
 

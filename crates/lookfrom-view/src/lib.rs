@@ -17,6 +17,7 @@ mod mailbox;
 mod message;
 mod render;
 mod server;
+mod shot;
 mod space;
 mod told;
 mod view;

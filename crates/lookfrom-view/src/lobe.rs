@@ -9,7 +9,7 @@ use lookfrom::render::{Renderer, SampleId};
 use lookfrom::shading::interaction::SurfaceInteraction;
 use lookfrom_scene::Result;
 
-use crate::message::Answer;
+use crate::message::LobeAnswer;
 use crate::view::refused;
 
 /// Rings of directions, from the normal to its opposite.
@@ -22,7 +22,7 @@ const OF_RING: usize = 64;
 ///
 /// # Errors
 /// `Request` where there is no such vertex, or one that only mirrors and refracts.
-pub(crate) fn answer(renderer: &Renderer, request: u64, id: SampleId, address: u64) -> Result<Answer> {
+pub(crate) fn answer(renderer: &Renderer, request: u64, id: SampleId, address: u64) -> Result<LobeAnswer> {
     let mut events = Vec::new();
     let (traced, _) = renderer.trace_events(&[id], &mut events);
     let lanes = traced[0].lanes;
@@ -40,7 +40,7 @@ pub(crate) fn answer(renderer: &Renderer, request: u64, id: SampleId, address: u
     let directions: Vec<Vec3> = (0..RINGS).flat_map(|ring| of_ring(ring, normal, tangents)).collect();
     let values = balloon.values(&directions, |light| luminance(renderer.rgb(light, &lanes)));
     let point = DVec3::from_array(surface.point.position) + renderer.world().origin();
-    Ok(Answer::Lobe {
+    Ok(LobeAnswer {
         id: request,
         address,
         point: point.into(),

@@ -138,20 +138,7 @@ pub(crate) enum Answer {
         variance: [f32; 3],
         reference: Option<[f32; 3]>,
     },
-    Lobe {
-        id: u64,
-        address: u64,
-        point: [f64; 3],
-        normal: [f32; 3],
-        /// Toward the origin of the ray that arrives, for which the balloon is.
-        wi: [f32; 3],
-        /// Toward where the path goes on.
-        chosen: Option<[f32; 3]>,
-        theta: usize,
-        phi: usize,
-        values: Vec<f32>,
-        directions: Vec<[f32; 3]>,
-    },
+    Lobe(Box<LobeAnswer>),
     Words {
         id: u64,
         toml: String,
@@ -221,6 +208,23 @@ pub(crate) struct LightAnswer {
     pub(crate) name: &'static str,
     /// `None` for lights that are not at one point.
     pub(crate) position: Option<[f64; 3]>,
+}
+
+/// The scattering at a vertex, over rings of directions around the normal.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct LobeAnswer {
+    pub(crate) id: u64,
+    pub(crate) address: u64,
+    pub(crate) point: [f64; 3],
+    pub(crate) normal: [f32; 3],
+    /// Toward the origin of the ray that arrives, for which the balloon is.
+    pub(crate) wi: [f32; 3],
+    /// Toward where the path goes on.
+    pub(crate) chosen: Option<[f32; 3]>,
+    pub(crate) theta: usize,
+    pub(crate) phi: usize,
+    pub(crate) values: Vec<f32>,
+    pub(crate) directions: Vec<[f32; 3]>,
 }
 
 /// The header of a binary frame.

@@ -187,7 +187,7 @@ fn finite(number: f64, what: &str) -> Result<f64> {
     }
 }
 
-fn in_range<T: PartialOrd + std::fmt::Display>(number: T, least: T, most: T, what: &str) -> Result<T> {
+fn in_range<T: Copy + PartialOrd + std::fmt::Display>(number: T, least: T, most: T, what: &str) -> Result<T> {
     match least <= number && number <= most {
         true => Ok(number),
         false => Err(refused(format!("{what} is {number}; expected {least} to {most}"))),

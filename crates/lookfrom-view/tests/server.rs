@@ -386,3 +386,39 @@ fn saved_files_are_those_of_the_library() {
         }
     }
 }
+
+#[test]
+fn a_picture_is_compared_with_its_reference() {
+    let served = Served::with_reference("reference", SCENE, |scene| {
+        let session = Session::open(scene, &Options::default()).expect("a scene");
+        let picture = session.render(&()).expect("a picture").encode(Format::Exr).expect("an EXR");
+        let path = scene.with_file_name("reference.exr");
+        std::fs::write(&path, picture).expect("a temporary file");
+        Some(path)
+    });
+    let mut page = served.open();
+    assert!(page.text("scene")["reference"].as_str().is_some_and(|name| name.ends_with("reference.exr")));
+    let mut compared = |id: u64, mode: &str, exposure: f64| {
+        let mut wish = view(id);
+        (wish["compare"], wish["exposure"]) = (json!({ "mode": mode }), json!(exposure));
+        page.say(&wish);
+        page.finished(id)
+    };
+    let wipe = compared(1, "wipe", 0.0);
+    let sizes: Vec<usize> = serde_json::from_value(wipe.header["sizes"].clone()).expect("sizes");
+    let (picture, reference) = wipe.payload.split_at(sizes[0]);
+    assert!(sizes.len() == 2 && picture == reference, "the same light");
+    assert!(compared(2, "reference", 0.0).payload == picture);
+    // Nothing stays nothing at any exposure.
+    let black = compared(3, "difference", 0.0).payload;
+    assert!(black == compared(4, "difference", 20.0).payload && black == compared(5, "flip", 0.0).payload);
+    assert!(black != compared(6, "z", 0.0).payload, "no difference is white there");
+    page.say(&json!({ "type": "value", "id": 7, "x": 32, "y": 20 }));
+    let value = page.text("value");
+    assert_eq!(value["rgb"], value["reference"]);
+    let mut wish = view(8);
+    (wish["compare"], wish["size"]) = (json!({ "mode": "wipe" }), json!([32, 24]));
+    page.say(&wish);
+    let error = page.text("error");
+    assert!(error["message"].as_str().is_some_and(|text| text.contains("64 × 48")), "{error}");
+}

@@ -55,6 +55,15 @@ pub(crate) struct Served {
 impl Served {
     /// Serves a scene file of this text.
     pub(crate) fn new(name: &str, text: &str) -> Self {
+        Self::with_reference(name, text, |_| None)
+    }
+
+    /// Serves a scene file of this text, with a picture that `reference` makes of it.
+    pub(crate) fn with_reference(
+        name: &str,
+        text: &str,
+        reference: impl FnOnce(&Path) -> Option<PathBuf>,
+    ) -> Self {
         let folder = std::env::temp_dir().join(format!("lookfrom-view-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a temporary folder");
         let scene = folder.join("scene.toml");
@@ -63,7 +72,7 @@ impl Served {
             scene: scene.clone(),
             options: Options::default(),
             environment: None,
-            reference: None,
+            reference: reference(&scene),
             typed: Vec::new(),
             host: Ipv4Addr::LOCALHOST.into(),
             port: 0,
