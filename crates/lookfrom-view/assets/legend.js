@@ -18,7 +18,9 @@ const HEAT = /** @type {Record<string, [meaning: string, low: string, high: stri
 export function showLegend(app) {
     const legend = byId("legend");
     const show = () => {
-        const { layer, compare } = app.view.get();
+        const { compare } = app.view.get();
+        // That of the picture that is shown, which may wait for the one that is asked for.
+        const layer = app.frame.get()?.layer ?? "color";
         const shown = layer === "color" ? compare ?? "" : layer;
         const known = HEAT[shown];
         legend.hidden = !known;
@@ -28,5 +30,5 @@ export function showLegend(app) {
         replace(legend, h("span", { class: "faint" }, meaning), h("span", { class: "scale" }), h("span", { class: "ends" }, h("span", {}, low), h("span", {}, high)));
     };
     app.view.on(show);
-    app.scene.on(show);
+    app.frame.on(show);
 }

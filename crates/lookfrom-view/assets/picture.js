@@ -35,22 +35,23 @@ export function showPicture(app) {
             let start = 0;
             const pictures = sizes.map((/** @type {number} */ size) => new Blob([payload.slice(start, (start += size))], { type: "image/png" }));
             try {
-                bitmaps = await Promise.all(pictures.map((/** @type {Blob} */ picture) => createImageBitmap(picture)));
+                const decoded = await Promise.all(pictures.map((/** @type {Blob} */ picture) => createImageBitmap(picture)));
+                for (const old of bitmaps) old.close();
+                bitmaps = decoded;
             } catch {
                 app.toast("A picture of the server could not be decoded");
                 continue;
             }
-            app.frame.set(header);
-            document.body.classList.add("has-picture");
             draw();
+            document.body.classList.add("has-picture");
             canvas.dataset.done = String(header.done);
+            app.frame.set(header);
         }
         isDecoding = false;
     }
 
     function draw() {
-        const header = app.frame.get();
-        if (!header || bitmaps.length === 0) return;
+        if (bitmaps.length === 0) return;
         const [width, height] = app.size();
         if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
         const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
