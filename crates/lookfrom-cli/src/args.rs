@@ -6,6 +6,8 @@ mod farm;
 mod film;
 mod inspect;
 mod model;
+#[cfg(feature = "view")]
+mod view;
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -25,6 +27,8 @@ pub(crate) use farm::FarmArguments;
 pub(crate) use film::{DevelopArguments, FilesArguments, KeepArguments, MergeArguments, ResumeArguments};
 pub(crate) use inspect::{InspectArguments, Samples};
 pub(crate) use model::ModelArguments;
+#[cfg(feature = "view")]
+pub(crate) use view::ViewArguments;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -114,6 +118,10 @@ pub(crate) enum Command {
     /// Trace samples of a pixel and show every step: intersections, BSDFs, light samples, throughput
     #[command(after_help = inspect::EXAMPLES)]
     Inspect(InspectArguments),
+    /// Show a scene in the browser while it renders, and why every pixel is as it is
+    #[cfg(feature = "view")]
+    #[command(after_help = view::EXAMPLES)]
+    View(ViewArguments),
     /// List the contents of scenes, models, pictures and films
     #[command(after_help = INFO_EXAMPLES)]
     Info(InfoArguments),

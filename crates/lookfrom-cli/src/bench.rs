@@ -14,7 +14,8 @@ use crate::args::BenchArguments;
 use crate::compare::read;
 use crate::exit::{self, DONE, Failure, answer};
 use crate::prepare::{self, prepare};
-use crate::{json, report};
+use crate::report;
+use lookfrom_scene::json;
 
 /// Default number of samples per pixel.
 const SAMPLES: u32 = 16;

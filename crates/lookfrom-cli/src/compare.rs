@@ -15,7 +15,8 @@ use serde::Serialize;
 use crate::args::CompareArguments;
 use crate::exit::{self, BAD_SCENE, DONE, Failure, answer, say};
 use crate::html::{self, Shown};
-use crate::{json, output};
+use crate::output;
+use lookfrom_scene::json;
 
 /// A difference of means up to this many standard errors is explained by noise.
 const MOST_STANDARD_ERRORS_OF_MEAN: f64 = 3.5;

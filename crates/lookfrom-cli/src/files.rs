@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::args::FilesArguments;
 use crate::exit::{DONE, Failure, answer};
-use crate::json;
+use lookfrom_scene::json;
 
 /// Lists the files of every scene, each once, and returns the exit code.
 pub(crate) fn run(arguments: &FilesArguments) -> u8 {

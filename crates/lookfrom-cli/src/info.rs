@@ -19,9 +19,9 @@ use self::object::Object;
 
 use crate::args::{InfoArguments, Overrides};
 use crate::exit::{self, DONE, Failure, answer};
-use crate::json;
 use crate::prepare::{self, prepare};
 use crate::report::{self, bytes, thousands};
+use lookfrom_scene::json;
 
 /// Describes every scene and returns the exit code. A scene that fails does not stop the others; its code is kept.
 pub(crate) fn run(arguments: &InfoArguments) -> u8 {

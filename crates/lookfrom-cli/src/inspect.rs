@@ -6,8 +6,9 @@ use lookfrom_scene::Inputs;
 
 use crate::args::{InspectArguments, Samples};
 use crate::exit::{self, DONE, Failure};
+use crate::output;
 use crate::prepare::{self, prepare};
-use crate::{json, output};
+use lookfrom_scene::json;
 
 /// Inspects samples of one pixel.
 pub(crate) fn run(arguments: &InspectArguments) -> u8 {

@@ -17,7 +17,6 @@ mod html;
 mod info;
 mod inspect;
 mod interrupt;
-mod json;
 mod merge;
 mod naming;
 mod output;
@@ -29,6 +28,8 @@ mod render;
 mod report;
 mod resume;
 mod values;
+#[cfg(feature = "view")]
+mod view;
 
 use std::process::ExitCode;
 
@@ -58,9 +59,36 @@ fn main() -> ExitCode {
         }
         Command::Info(arguments) => info::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
+        #[cfg(feature = "view")]
+        Command::View(arguments) => {
+            let typed = matches.subcommand_matches("view").map(film::arguments).unwrap_or_default();
+            view::run(&arguments, &typed)
+        }
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Completions { shell } => completions::run(shell),
     };
     ExitCode::from(code)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    #[test]
+    fn json_is_written_where_all_json_is_written() {
+        fn search(folder: &Path) {
+            let forbidden = ["serde", "json"].join("_");
+            for entry in std::fs::read_dir(folder).expect("the sources are there") {
+                let path = entry.expect("it can be read").path();
+                if path.is_dir() {
+                    search(&path);
+                } else {
+                    let text = std::fs::read_to_string(&path).expect("it is a text");
+                    assert!(!text.contains(&forbidden), "{}: use lookfrom_scene::json", path.display());
+                }
+            }
+        }
+        search(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    }
 }

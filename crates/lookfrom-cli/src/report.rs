@@ -11,7 +11,7 @@ use lookfrom_scene::WarningKind;
 use serde::Serialize;
 
 use crate::exit::{self, Failure};
-use crate::json;
+use lookfrom_scene::json;
 
 /// Number of fireflies that are listed.
 const MOST_FIREFLIES: usize = 3;

@@ -21,4 +21,6 @@ mod command {
     mod pinned;
     mod render;
     mod stage;
+    #[cfg(all(unix, feature = "view"))]
+    mod view;
 }

@@ -1,7 +1,7 @@
 //! Camera parameters, with the names of the lecture notes: `lookfrom`, `lookat`, `up`, `θ`. The crate `lookfrom` computes
 //! matrices from them.
 
-use glam::{DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 
 use crate::error::Location;
 use crate::scene::MediumId;
@@ -51,6 +51,51 @@ impl View {
             Self::Look { lookfrom, .. } => *lookfrom,
             Self::Matrix(matrix) => matrix.w_axis.truncate(),
         }
+    }
+}
+
+/// Position and orientation of a camera, as in [`View::Look`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// The position of the camera.
+    pub lookfrom: DVec3,
+    /// The point at the centre of the view.
+    pub lookat: DVec3,
+    /// The up vector; of any length, not parallel to the view.
+    pub up: DVec3,
+}
+
+impl Camera {
+    /// Position and orientation as points and a vector; `None` for a matrix that shears, reflects or is degenerate. The
+    /// `lookat` of a matrix is the point of its view axis that is nearest to `middle`, if that is in front of the camera.
+    pub fn look(&self, middle: DVec3) -> Option<Look> {
+        let matrix = match self.view {
+            View::Look { lookfrom, lookat, up } => return Some(Look { lookfrom, lookat, up }),
+            View::Matrix(matrix) => matrix,
+        };
+        let linear = DMat3::from_mat4(matrix);
+        let scale = linear.z_axis.length();
+        let turned =
+            (linear.transpose() * linear * (1.0 / (scale * scale))).abs_diff_eq(DMat3::IDENTITY, 1e-6);
+        if !turned || linear.determinant() <= 0.0 {
+            return None;
+        }
+        let lookfrom = matrix.w_axis.truncate();
+        let w = linear.z_axis / scale;
+        let along = (middle - lookfrom).dot(w);
+        let distance = if along > 0.0 && along.is_finite() { along } else { 1.0 };
+        Some(Look { lookfrom, lookat: lookfrom + distance * w, up: linear.y_axis })
+    }
+
+    /// Changes position and orientation. A lens that was focused on `lookat` ([`Camera::look`]) stays so.
+    pub fn set_look(&mut self, look: Look, middle: DVec3) {
+        let before = self.look(middle).map(|look| look.lookfrom.distance(look.lookat));
+        if let (Some(lens), Some(before)) = (&mut self.lens, before)
+            && (lens.focus_distance - before).abs() <= 1e-9 * before
+        {
+            lens.focus_distance = look.lookfrom.distance(look.lookat);
+        }
+        self.view = View::Look { lookfrom: look.lookfrom, lookat: look.lookat, up: look.up };
     }
 }
 

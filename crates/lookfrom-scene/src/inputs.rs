@@ -1,6 +1,6 @@
 //! A record of the files that were read for each scene, so that no output overwrites an input.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -32,6 +32,13 @@ impl Inputs {
     /// Wraps `files` so that every file requested by `reader` is recorded, found or not.
     pub fn record<'a>(&'a self, files: &'a dyn Files, reader: impl Into<String>) -> Recorded<'a> {
         Recorded { files, reader: reader.into(), inputs: self }
+    }
+
+    /// The paths of all requested files, found or not, as they were requested; sorted.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        let paths: BTreeSet<PathBuf> =
+            self.register().read.values().map(|input| input.path.clone()).collect();
+        paths.into_iter().collect()
     }
 
     /// The input that would be overwritten by writing to `path`, whatever path it was read from.
@@ -114,6 +121,7 @@ mod tests {
         let reader = |path: &str| inputs.at(Path::new(path), &memory).map(|input| input.reader);
         assert_eq!((reader("a"), reader("missing")), (Some("first".into()), Some("first".into())));
         assert_eq!(reader("other"), None);
+        assert_eq!(inputs.paths(), [PathBuf::from("a"), "missing".into()]);
     }
 
     #[test]

@@ -13,6 +13,7 @@ pub mod files;
 pub mod gltf;
 pub mod image;
 pub mod inputs;
+pub mod json;
 pub mod light;
 pub mod load;
 pub mod material;

@@ -29,6 +29,24 @@ pub struct ImageSettings {
     pub denoise: bool,
 }
 
+impl ImageSettings {
+    /// Changes the size. The crop window stays the same part of the image, to the next pixel outward.
+    pub fn resize(&mut self, width: u32, height: u32) {
+        let [old_width, old_height] = [self.width, self.height].map(|size| u64::from(size.max(1)));
+        self.crop = self.crop.map(|PixelBounds { x0, y0, x1, y1 }| {
+            let down = |edge: u32, new: u32, old: u64| (u64::from(edge) * u64::from(new) / old) as u32;
+            let up = |edge: u32, new: u32, old: u64| (u64::from(edge) * u64::from(new)).div_ceil(old) as u32;
+            PixelBounds {
+                x0: down(x0, width, old_width),
+                y0: down(y0, height, old_height),
+                x1: up(x1, width, old_width),
+                y1: up(y1, height, old_height),
+            }
+        });
+        (self.width, self.height) = (width, height);
+    }
+}
+
 /// The background of the image where the camera sees no surface; illumination does not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Background {

@@ -5,6 +5,7 @@
 //! chooses the tiles and samples to render.
 
 mod camera_warnings;
+mod cost;
 mod driver;
 mod first_hit;
 mod start;
@@ -35,6 +36,7 @@ use crate::view::View;
 use crate::world::World;
 
 pub(crate) use camera_warnings::Subject;
+pub use cost::Cost;
 use first_hit::FirstHit;
 use start::Start;
 use transport::Transport;

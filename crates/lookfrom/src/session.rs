@@ -38,7 +38,9 @@ use lookfrom_scene::digest::Digested;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
 use lookfrom_scene::studio::Turntable;
-use lookfrom_scene::{Disk, Error, Files, LoadContext, Location, Memory, Result, Scene, Warning, load};
+use lookfrom_scene::{
+    Disk, Error, Files, Inputs, LoadContext, Location, Memory, Result, Scene, Warning, load,
+};
 
 use crate::core::clock::Stopwatch;
 use crate::film::{Film, Picture};
@@ -123,6 +125,16 @@ impl Session {
     pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Self> {
         let path = path.as_ref();
         Self::read_from(Source::File(path.to_owned(), Arc::new(options.clone())), path, &Disk, options)
+    }
+
+    /// As [`Session::open`]; every file that is read joins `inputs`.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_on_record(path: impl AsRef<Path>, options: &Options, inputs: &Inputs) -> Result<Self> {
+        let path = path.as_ref();
+        let files = inputs.record(&Disk, path.display().to_string());
+        Self::read_from(Source::File(path.to_owned(), Arc::new(options.clone())), path, &files, options)
     }
 
     /// A session of a scene or model file in memory, which is self-contained. The extension of `name` determines its

@@ -155,7 +155,8 @@ const CRATES: &[(&str, &[&str])] = &[
     ("lookfrom-bvh", &["lookfrom-simd"]),
     ("lookfrom-scene", &["lookfrom-test-data"]),
     ("lookfrom", &["lookfrom-bvh", "lookfrom-scene", "lookfrom-simd", "lookfrom-test-data"]),
-    ("lookfrom-cli", &["lookfrom", "lookfrom-scene"]),
+    ("lookfrom-view", &["lookfrom", "lookfrom-scene"]),
+    ("lookfrom-cli", &["lookfrom", "lookfrom-scene", "lookfrom-view"]),
 ];
 
 /// What a library must not do: only doors speak and decide when the program ends.
@@ -292,7 +293,7 @@ fn names_the_crate(code: &str, name: &str) -> bool {
 
 #[test]
 fn libraries_return_and_doors_speak() {
-    for library in ["lookfrom", "lookfrom-bvh", "lookfrom-scene", "lookfrom-simd"] {
+    for library in ["lookfrom", "lookfrom-bvh", "lookfrom-scene", "lookfrom-simd", "lookfrom-view"] {
         for path in sources(&crate_folder(library).join("src")) {
             for forbidden in FOR_DOORS {
                 assert!(!code(&path).contains(forbidden), "{} says {forbidden}", path.display());

@@ -1,7 +1,7 @@
 //! HyperQueue, by its Python interface (PyPI `hyperqueue`): a task for each part, then a merge.
 
 use super::Job;
-use crate::json::line;
+use lookfrom_scene::json::line;
 
 /// The Python script that submits the job and waits for it.
 pub(super) fn files(job: &Job) -> Vec<(&'static str, String)> {

@@ -1,7 +1,7 @@
 //! Open Job Description (2023-09, with the extension TASK_CHUNKING): a step for the parts, and one that merges them.
 
 use super::Job;
-use crate::json::{document, json};
+use lookfrom_scene::json::{document, json};
 
 /// The job template; the parameter that has no default, for `openjd run` and for a job bundle of Deadline Cloud; and the
 /// files that the bundle uploads.

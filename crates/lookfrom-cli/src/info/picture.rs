@@ -10,7 +10,7 @@ use lookfrom_scene::{Disk, LoadContext};
 use serde::Serialize;
 
 use crate::exit::{Failure, answer};
-use crate::json;
+use lookfrom_scene::json;
 
 /// The JSON object of a picture, which docs/guide/command.md explains.
 #[derive(Serialize)]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::stage::Stage;
 
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 12] = [
     "render",
     "resume",
     "merge",
@@ -12,6 +12,7 @@ const COMMANDS: [&str; 11] = [
     "files",
     "farm",
     "inspect",
+    "view",
     "info",
     "compare",
     "bench",

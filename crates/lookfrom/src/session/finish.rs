@@ -75,14 +75,18 @@ impl Finished {
 impl Session {
     /// Finishes the picture of a film that its renderer has rendered.
     pub fn finish(&self, rendered: Rendered) -> Finished {
-        let developed =
-            develop(&rendered.film, &self.development(), &header::header(self), self.has_room_for_layers());
+        let developed = self.develop(&rendered.film, &self.development(), self.has_room_for_layers());
         Finished { rendered, developed }
+    }
+
+    /// Develops a film of this session's picture, finished or not, `with_layers` for a format that can hold them.
+    pub fn develop(&self, film: &Film, development: &Development, with_layers: bool) -> Developed {
+        develop(film, development, &header::header(self), with_layers)
     }
 }
 
-/// Develops a film, whose header has the `common` texts. `has_layers` is whether anyone will see the light before
-/// denoising. A film of a part of the samples, whose noise is nobody's picture, is not denoised.
+/// Develops a film, whose header has the `common` texts. `has_layers` is whether anyone will see AOVs and the
+/// light before denoising. A film of a part of the samples, whose noise is nobody's picture, is not denoised.
 pub(super) fn develop(
     film: &Film,
     development: &Development,
@@ -91,7 +95,7 @@ pub(super) fn develop(
 ) -> Developed {
     let spread = development.fireflies == Fireflies::Spread;
     let mut picture = if spread { film.picture_without_fireflies() } else { film.picture() };
-    let mut layers = if film.has_layers() { layers::channels(film) } else { Vec::new() };
+    let mut layers = if has_layers && film.has_layers() { layers::channels(film) } else { Vec::new() };
     let is_denoised = development.denoise && film.ledger().is_from_start(film.area());
     if is_denoised {
         picture = denoised(film, &picture);

@@ -5,8 +5,8 @@
 
 use std::ops::Range;
 
-use glam::{DMat3, DMat4, DVec3};
-use lookfrom_scene::camera::{Camera, Projection, View};
+use glam::DVec3;
+use lookfrom_scene::camera::{Camera, Projection};
 use lookfrom_scene::image::Image;
 use lookfrom_scene::settings::{
     Background, ColorMode, Filter, ImageSettings, Integrator, Layers, LightSampler, PixelBounds,
@@ -198,18 +198,7 @@ impl Options {
                 "a picture of {width} × {height} pixels; at most {MOST_PIXELS} pixels are possible"
             )));
         }
-        // The scene's crop stays the same part of the picture, to the next pixel outward.
-        image.crop = image.crop.map(|PixelBounds { x0, y0, x1, y1 }| {
-            let down = |edge: u32, new: u64, old: u64| (u64::from(edge) * new / old) as u32;
-            let up = |edge: u32, new: u64, old: u64| (u64::from(edge) * new).div_ceil(old) as u32;
-            PixelBounds {
-                x0: down(x0, width, old_width),
-                y0: down(y0, height, old_height),
-                x1: up(x1, width, old_width),
-                y1: up(y1, height, old_height),
-            }
-        });
-        (image.width, image.height) = (width as u32, height as u32);
+        image.resize(width as u32, height as u32);
         Ok(())
     }
 
@@ -240,44 +229,17 @@ impl Options {
     }
 
     fn look(&self, camera: &mut Camera, middle: DVec3) -> Result<()> {
-        let (mut lookfrom, mut lookat, mut up) = match camera.view {
-            View::Look { lookfrom, lookat, up } => (lookfrom, lookat, up),
-            View::Matrix(matrix) => look_of_matrix(&matrix, middle).ok_or_else(|| {
-                unsuitable(
-                    "lookfrom, lookat and up cannot change a camera whose matrix shears or reflects"
-                        .to_owned(),
-                )
-            })?,
-        };
-        let distance_before = lookfrom.distance(lookat);
-        replace(&mut lookfrom, self.lookfrom);
-        replace(&mut lookat, self.lookat);
-        replace(&mut up, self.up);
-        // A lens that was focused on lookat stays so.
-        if let Some(lens) = &mut camera.lens
-            && (lens.focus_distance - distance_before).abs() <= 1e-9 * distance_before
-        {
-            lens.focus_distance = lookfrom.distance(lookat);
-        }
-        camera.view = View::Look { lookfrom, lookat, up };
+        let mut look = camera.look(middle).ok_or_else(|| {
+            unsuitable(
+                "lookfrom, lookat and up cannot change a camera whose matrix shears or reflects".to_owned(),
+            )
+        })?;
+        replace(&mut look.lookfrom, self.lookfrom);
+        replace(&mut look.lookat, self.lookat);
+        replace(&mut look.up, self.up);
+        camera.set_look(look, middle);
         Ok(())
     }
-}
-
-/// `lookfrom`, `lookat` and `up` of a camera matrix that is a rotation with a uniform scale. `lookat` is the point of
-/// the view axis that is nearest to the centre of the scene, if that is in front of the camera.
-fn look_of_matrix(matrix: &DMat4, middle: DVec3) -> Option<(DVec3, DVec3, DVec3)> {
-    let linear = DMat3::from_mat4(*matrix);
-    let scale = linear.z_axis.length();
-    let turned = (linear.transpose() * linear * (1.0 / (scale * scale))).abs_diff_eq(DMat3::IDENTITY, 1e-6);
-    if !turned || linear.determinant() <= 0.0 {
-        return None;
-    }
-    let lookfrom = matrix.w_axis.truncate();
-    let w = linear.z_axis / scale;
-    let along = (middle - lookfrom).dot(w);
-    let distance = if along > 0.0 && along.is_finite() { along } else { 1.0 };
-    Some((lookfrom, lookfrom + distance * w, linear.y_axis))
 }
 
 fn replace<T>(setting: &mut T, typed: Option<T>) {
@@ -289,7 +251,8 @@ fn replace<T>(setting: &mut T, typed: Option<T>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lookfrom_scene::camera::Lens;
+    use glam::DMat4;
+    use lookfrom_scene::camera::{Lens, View};
 
     fn image(width: u32, height: u32, crop: Option<PixelBounds>) -> ImageSettings {
         ImageSettings { width, height, crop, ..ImageSettings::default() }

@@ -1,0 +1,83 @@
+// What the buttons of the header and single keys do: undo, copy, save, full help.
+
+import { byId, h, replace } from "./html.js";
+
+/** @param {import("./app.js").App} app */
+export function attachActions(app) {
+    const [undo, redo] = ["undo", "redo"].map((id) => /** @type {HTMLButtonElement} */ (byId(id)));
+    undo.addEventListener("click", () => app.view.undo());
+    redo.addEventListener("click", () => app.view.redo());
+    app.view.on(() => {
+        undo.disabled = !app.view.canUndo();
+        redo.disabled = !app.view.canRedo();
+    });
+    attachMenu(app);
+    attachHelp();
+    document.addEventListener("keydown", (event) => {
+        const isTyping = event.target instanceof HTMLElement && event.target.matches("input, select, textarea");
+        const key = event.key.toLowerCase();
+        if ((event.ctrlKey || event.metaKey) && key === "z" && !isTyping) {
+            event.preventDefault();
+            if (event.shiftKey) app.view.redo();
+            else app.view.undo();
+        } else if ((event.ctrlKey || event.metaKey) && key === "y" && !isTyping) {
+            event.preventDefault();
+            app.view.redo();
+        } else if (isTyping || event.ctrlKey || event.metaKey || event.altKey) return;
+        else if (event.key === "?") /** @type {HTMLDialogElement} */ (byId("help")).showModal();
+        else if (key === "l") byId("loupe-button").click();
+        else if (key === "home" && event.target === byId("picture-overlay")) app.view.set({ camera: null });
+    });
+}
+
+/** @param {import("./app.js").App} app */
+function attachMenu(app) {
+    /** @type {Record<string, () => Promise<void>>} */
+    const actions = {
+        "copy-toml": async () => copy((await app.socket.request("words")).toml, "The view as TOML"),
+        "copy-command": async () => copy((await app.socket.request("words")).command, "The command line"),
+        "copy-link": async () => copy(location.href, "The link"),
+        "save-png": () => save("png"),
+        "save-exr": () => save("exr"),
+    };
+    for (const [id, action] of Object.entries(actions)) {
+        byId(id).addEventListener("click", () => {
+            /** @type {HTMLDetailsElement | null} */ (byId(id).closest("details"))?.removeAttribute("open");
+            action().catch((error) => app.toast(error.message));
+        });
+    }
+    const menu = /** @type {HTMLDetailsElement} */ (byId("menu"));
+    document.addEventListener("click", ({ target }) => void (menu.contains(/** @type {Node} */ (target)) || (menu.open = false)));
+    menu.addEventListener("keydown", (event) => {
+        if (event.key !== "Escape") return;
+        menu.open = false;
+        menu.querySelector("summary")?.focus();
+    });
+
+    /** @param {string} text @param {string} what */
+    async function copy(text, what) {
+        try {
+            await navigator.clipboard.writeText(text);
+            app.toast(`${what} is in the clipboard`);
+        } catch {
+            // Without permission, the text is shown to be copied by hand.
+            const box = /** @type {HTMLDialogElement} */ (byId("text"));
+            replace(box, h("h2", {}, what), h("pre", { tabindex: "0" }, text), h("form", { method: "dialog" }, h("button", {}, "Close")));
+            box.showModal();
+        }
+    }
+
+    /** @param {string} format */
+    async function save(format) {
+        const { header, payload } = await app.socket.request("save", { format });
+        const url = URL.createObjectURL(new Blob([payload], { type: header.mime }));
+        h("a", { href: url, download: header.name }).click();
+        setTimeout(() => URL.revokeObjectURL(url), 10_000);
+        app.toast(`${header.name} is saved`);
+    }
+}
+
+function attachHelp() {
+    const help = /** @type {HTMLDialogElement} */ (byId("help"));
+    byId("help-button").addEventListener("click", () => help.showModal());
+}

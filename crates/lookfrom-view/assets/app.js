@@ -1,0 +1,58 @@
+// What the parts of the page share: the connection, the scene, the view, and what is selected.
+
+import { byId } from "./html.js";
+import { signal } from "./signal.js";
+import { connect } from "./socket.js";
+import { viewState } from "./state.js";
+
+/** @typedef {ReturnType<typeof createApp>} App */
+
+export function createApp() {
+    const app = {
+        socket: connect(),
+        view: viewState(),
+        /** @type {import("./signal.js").Signal<import("./protocol.js").Scene | null>} */
+        scene: signal(/** @type {any} */ (null)),
+        /** @type {import("./signal.js").Signal<import("./protocol.js").PictureHeader | null>} */
+        frame: signal(/** @type {any} */ (null)),
+        /** The selected pixel. @type {import("./signal.js").Signal<[number, number] | null>} */
+        pixel: signal(/** @type {any} */ (null)),
+        /** @type {import("./signal.js").Signal<import("./protocol.js").PixelReport | null>} */
+        report: signal(/** @type {any} */ (null)),
+        /** The selected sample of the pixel. @type {import("./signal.js").Signal<number | null>} */
+        sample: signal(/** @type {any} */ (null)),
+        /** @type {import("./signal.js").Signal<import("./protocol.js").Inspection | null>} */
+        inspection: signal(/** @type {any} */ (null)),
+        /** The address of the selected ray. @type {import("./signal.js").Signal<number | null>} */
+        ray: signal(/** @type {any} */ (null)),
+        /** Whether the rays are drawn over the picture. */
+        raysOverPicture: signal(true),
+
+        /** Says a sentence to screen readers. @param {string} sentence */
+        announce(sentence) {
+            byId("announcements").textContent = sentence;
+        },
+        /** Shows a short message for some seconds. @param {string} sentence */
+        toast(sentence) {
+            const element = byId("toast");
+            element.textContent = sentence;
+            element.classList.add("shown");
+            clearTimeout(toastTimer);
+            toastTimer = window.setTimeout(() => element.classList.remove("shown"), 4000);
+        },
+        /** The camera in use: the view's, or the scene's. @returns {import("./protocol.js").Camera | null} */
+        camera() {
+            return app.view.get().camera ?? app.scene.get()?.camera ?? null;
+        },
+        /** The size of the finished picture; coarse ones are smaller. @returns {[number, number]} */
+        size() {
+            return app.view.get().size ?? app.scene.get()?.size ?? [1, 1];
+        },
+        /** The ray that is selected. @returns {import("./protocol.js").Ray | null} */
+        selectedRay() {
+            return app.inspection.get()?.rays.find((ray) => ray.address === app.ray.get()) ?? null;
+        },
+    };
+    let toastTimer = 0;
+    return app;
+}

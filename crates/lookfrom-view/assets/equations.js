@@ -1,0 +1,184 @@
+// The equations of the selected ray, in the order in which the renderer computes them, with their numbers.
+
+import { display, formula, frac } from "./formula.js";
+import { byId, h, replace } from "./html.js";
+import { exact, fileName, lanes, point, short, swatch } from "./format.js";
+import { candidateTable } from "./candidates.js";
+import { ends } from "./tree.js";
+
+/** @typedef {import("./protocol.js").Ray} Ray */
+/** @typedef {[symbol: string, meaning: string, value: string | Node | (string | Node)[]]} Row */
+
+/** @param {import("./app.js").App} app */
+export function showEquations(app) {
+    const element = byId("equations");
+    /** What the reader has closed stays closed from ray to ray. @type {Set<string>} */
+    const closed = new Set();
+    const show = () => {
+        const ray = app.selectedRay();
+        if (!ray) return replace(element);
+        const sections = [theRay(ray), theTests(ray), theHit(ray), ...theLights(ray), theLightSample(ray), ...theFound(ray), theBranches(ray), theBounce(ray), theSum(ray)];
+        replace(element, sections.filter((section) => section !== null).map((section) => {
+            const { title, content } = /** @type {{title: string, content: any[]}} */ (section);
+            const details = h("details", { open: !closed.has(title) }, h("summary", {}, title), content);
+            details.addEventListener("toggle", () => (details.open ? closed.delete(title) : closed.add(title)));
+            return details;
+        }));
+    };
+    app.inspection.on(show);
+    app.ray.on(show);
+}
+
+/** @param {Row[]} rows */
+export const terms = (rows) =>
+    h("table", { class: "terms" }, h("tbody", {}, rows.map(([symbol, meaning, value]) =>
+        h("tr", {}, h("th", { scope: "row" }, symbol && formula(symbol)), h("td", { class: "number" }, value), h("td", { class: "meaning" }, meaning)))));
+
+/** @param {string} title @param {...any} content */
+const section = (title, ...content) => ({ title, content });
+
+/** @param {Ray} ray */
+function theRay(ray) {
+    return section(`Ray ${ray.address}: ${ray.kind}`,
+        display("p(t) = a + t (b − a)"),
+        terms([
+            ["a", ray.kind === "camera" ? "the eye (or a point of the lens)" : "its origin", point(ray.a, 7)],
+            ["b − a", "its direction", point(ray.direction, 7)],
+            ["β", "throughput: light along it is multiplied by this", lanes(ray.throughput, 6)],
+            ...(ray.pdf === null ? [] : [/** @type {Row} */ (["p", "density of its direction, per steradian", short(ray.pdf, 6)])]),
+        ]));
+}
+
+/** @param {Ray} ray */
+function theTests(ray) {
+    if (ray.candidates.length === 0) return section("Tested primitives", h("p", { class: "hint" }, "None: the tree of boxes excludes everything."));
+    const sorted = [...ray.candidates].sort((a, b) => Number(b.is_nearest) - Number(a.is_nearest));
+    const others = sorted.slice(1);
+    return section("Tested primitives",
+        candidateTable(sorted[0]),
+        others.length > 0 && h("details", { class: "inner" }, h("summary", {}, `${others.length} more: rejected or farther`), others.slice(0, 40).map(candidateTable)));
+}
+
+/** @param {Ray} ray */
+function theHit(ray) {
+    const { met } = ray;
+    if (!met) return section("Hit", h("p", {}, "It leaves the scene."));
+    const k = met.coefficients;
+    return section(`Hit: ${fileName(met.shape)}`,
+        terms([
+            ["t", "where along the ray; 1 is the image plane for a camera ray", exact(met.t)],
+            ["p", "the point", point(met.point, 9)],
+            ["±", "bound of the distance to the surface, by component", point(met.error, 2)],
+            ["n_g", `geometric normal; the ray comes from ${met.front ? "outside" : "inside"}`, point(met.ng)],
+            ["n", "shading normal", point(met.n)],
+            ["u v", "surface parameters", point(met.uv)],
+            ...(k ? [
+                /** @type {Row} */ (["k_a", "ambient", lanes(k.ambient)]), /** @type {Row} */ (["k_d", "diffuse", lanes(k.diffuse)]),
+                /** @type {Row} */ (["k_s", `specular, with the exponent n = ${short(k.shininess)}`, lanes(k.specular)]),
+                /** @type {Row} */ (["k_r", "mirrored", lanes(k.mirror)]), /** @type {Row} */ (["k_t", `transmitted, η = ${short(k.ior)}`, lanes(k.transmission)]),
+            ] : []),
+        ]),
+        h("p", { class: "meaning" }, `Material ${met.material}`, ray.scattering && `: ${ray.scattering.kind}; ${ray.scattering.does}`),
+        ray.scattering && terms(ray.scattering.numbers.map((/** @type {[string, number[]]} */ [name, value]) => ["", name, lanes(value)])));
+}
+
+/** Whitted's sum over the lights. @param {Ray} ray */
+function theLights(ray) {
+    const lit = ray.lights.filter(({ wi }) => wi);
+    if (lit.length === 0) return [];
+    return [section("Lights",
+        display("I = k_a I_a + Σ_j ( k_d (N·L_j) + k_s (N·H_j)ⁿ ) I_j + k_r S + k_t T"),
+        lit.map(({ light, wi, intensity, diffuse, specular, shadow, added }) => [
+            h("h4", {}, fileName(light)),
+            terms([
+                ["L_j", "direction to the light", point(wi)],
+                ["I_j", "its intensity here, were nothing between", lanes(intensity.rgb)],
+                ["k_d (N·L_j)", "diffuse", lanes(diffuse)],
+                ["k_s (N·H_j)ⁿ", "highlight", lanes(specular)],
+                ["", "shadow ray", shadowWords(shadow)],
+                ["+", "added to the pixel", amount(added)],
+            ]),
+        ]))];
+}
+
+/** @param {import("./protocol.js").Shadow | null} shadow */
+function shadowWords(shadow) {
+    if (!shadow) return "none: it would carry nothing";
+    if (shadow.blockers.length === 0) return "reaches the light";
+    return shadow.blockers.map(({ shape, passed }) => (Math.max(...passed) > 0 ? `through ${fileName(shape)} × ${lanes(passed)}` : `blocked by ${fileName(shape)}`)).join(", ");
+}
+
+/** Next-event estimation. @param {Ray} ray */
+function theLightSample(ray) {
+    const sampled = ray.light_sample;
+    if (!sampled) return null;
+    const { sample, light, probability, shadow, added } = sampled;
+    if (!sample) return section(`Sampled light: ${fileName(light)}`, h("p", {}, "It does not illuminate this point."));
+    return section(`Sampled light: ${fileName(light)}`,
+        display("β f cos θ L", frac("w", "p")),
+        terms([
+            ["β", "throughput", lanes(ray.throughput_there ?? ray.throughput)],
+            ["f cos θ", "BSDF times cosine", lanes(sample.f_cos)],
+            ["L", "radiance, were nothing between", lanes(sample.arrives.lanes)],
+            ["p", `density: ${short(probability)} (choice of this light) × ${short(sample.light_pdf)}`, exact(sample.pdf)],
+            ["q", "density of the direction in BSDF sampling", exact(sample.bsdf_pdf)],
+            ["w", "weight p² / (p² + q²), the power heuristic", exact(sample.weight)],
+            ["", "shadow ray", shadowWords(shadow)],
+            ["+", "added to the pixel", amount(added)],
+        ]));
+}
+
+/** Light that the ray itself hits. @param {Ray} ray */
+function theFound(ray) {
+    return ray.found.map(({ light, radiance, light_pdf, weight, added }) => section(`Light that it hits: ${fileName(light)}`,
+        display("β L w"),
+        terms([
+            ["β", "throughput", lanes(ray.throughput_there ?? ray.throughput)],
+            ["L", "radiance toward the origin", lanes(radiance.lanes)],
+            ["p", "density of the direction in BSDF sampling", exact(ray.pdf)],
+            ["q", "density in light sampling; 0 where that cannot find it", exact(light_pdf)],
+            ["w", "weight p² / (p² + q²)", exact(weight)],
+            ["+", "added to the pixel", amount(added)],
+        ])));
+}
+
+/** @param {Ray} ray */
+function theBranches(ray) {
+    if (ray.branches.length === 0) return null;
+    return section("Branches",
+        display("F max(k_r, k_t) S + (1 − F) k_t T"),
+        terms(ray.branches.map(({ kind, weight, fresnel, total_reflection, cut }) => [
+            kind === "reflected" ? "S" : "T",
+            `${kind}${fresnel === null || fresnel === undefined ? "" : `, Fresnel's F = ${short(fresnel)}`}${total_reflection ? ", total internal reflection" : ""}${cut ? `; not followed: ${cut}` : ""}`,
+            lanes(weight),
+        ])));
+}
+
+/** @param {Ray} ray */
+function theBounce(ray) {
+    const { bounce, ends: reason } = ray;
+    if (!bounce) return reason ? section("The path ends", h("p", {}, `${reason[0].toUpperCase()}${reason.slice(1)}.`)) : null;
+    return section(`Goes on by ${bounce.lobe}`,
+        display("β′ = ", frac("β f cos θ", "p")),
+        terms([
+            ["ω", "the sampled direction", point(bounce.wi)],
+            ["f", "BSDF", lanes(bounce.f)],
+            ["cos θ", "of the angle to the shading normal", exact(bounce.cos)],
+            ["p", bounce.pdf_is_proportional ? "density; only its ratio to f means something" : "density of the direction", exact(bounce.pdf)],
+            ["β", "before", lanes(bounce.throughput_before)],
+            ["β′", "after", lanes(bounce.throughput_after)],
+            ...(bounce.survival < 1 ? [
+                /** @type {Row} */ (["P", "probability that Russian roulette lets it go on", exact(bounce.survival)]),
+                /** @type {Row} */ (["β′ / P", "throughput of the next ray: what goes on stands for what ended", lanes(bounce.next_throughput)]),
+            ] : []),
+        ]),
+        reason && h("p", {}, `${reason[0].toUpperCase()}${reason.slice(1)}.`));
+}
+
+/** @param {Ray} ray */
+function theSum(ray) {
+    return section("Sum", terms([["", `ray ${ray.address} ${ends(ray)}`, amount(ray.added)], ["", "with all rays after it", amount(ray.subtree)]]));
+}
+
+/** @param {import("./protocol.js").Amount} value */
+const amount = (value) => [swatch(value.rgb), ` ${lanes(value.rgb, 6)}`];

@@ -1,0 +1,141 @@
+// The settings of the picture: those that develop it above it, those that render it anew in the panel "View".
+
+import { byId, h, replace } from "./html.js";
+import { field, number, select, slider } from "./fields.js";
+import { count } from "./format.js";
+
+/** @typedef {import("./app.js").App} App */
+/** @typedef {import("./protocol.js").Scene} Scene */
+/** @typedef {import("./protocol.js").View} View */
+
+const COMPARISONS = /** @type {const} */ ([
+    ["", "Picture"],
+    ["wipe", "Wipe"],
+    ["reference", "Reference"],
+    ["difference", "Difference"],
+    ["flip", "FLIP"],
+    ["z", "z-score"],
+]);
+
+/** @param {App} app */
+export function showSettings(app) {
+    const rebuild = () => {
+        const scene = app.scene.get();
+        if (!scene) return;
+        // What is being typed into is not replaced.
+        const active = document.activeElement;
+        if (!(active instanceof HTMLElement && active.closest("#development") && active.matches("input"))) showDevelopment(app, scene);
+        if (!(active instanceof HTMLElement && active.closest("#settings") && active.matches("input"))) showRendering(app, scene);
+    };
+    app.scene.on(rebuild);
+    app.view.on((_, moving) => void (moving || rebuild()));
+}
+
+/** @param {App} app @param {Scene} scene */
+function showDevelopment(app, scene) {
+    const view = app.view.get();
+    const focused = focusedName("development");
+    const exposure = slider(
+        "Exposure",
+        { min: -10, max: 10, step: 0.1 },
+        view.exposure ?? scene.exposure,
+        (value) => app.view.set({ exposure: value }),
+        (value) => `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value).toFixed(1)}`,
+    );
+    const denoise = h("input", { type: "checkbox", checked: view.denoise ?? scene.denoise });
+    denoise.addEventListener("change", () => app.view.set({ denoise: denoise.checked }));
+    const rays = h("input", { type: "checkbox", checked: app.raysOverPicture.get() });
+    rays.addEventListener("change", () => app.raysOverPicture.set(rays.checked));
+    replace(
+        byId("development"),
+        select(scene.layers.map(({ name, title }) => [name, title]), view.layer, (layer) => app.view.set({ layer }), "Layer"),
+        scene.reference !== null &&
+            select(COMPARISONS, view.compare ?? "", (compare) => app.view.set({ compare: /** @type {View["compare"]} */ (compare || null) }), "Comparison with the reference"),
+        exposure.element,
+        select(scene.tonemaps.map((name) => [name, name]), view.tonemap ?? scene.tonemap, (tonemap) => app.view.set({ tonemap }), "Tone map"),
+        h("label", { class: "check" }, denoise, "Denoise"),
+        h("label", { class: "check", title: "The selected sample's rays over the picture" }, rays, "Rays"),
+    );
+    refocus("development", focused);
+}
+
+/** The accessible name of the focused control, which survives rebuilding. @param {string} id */
+function focusedName(id) {
+    const active = document.activeElement;
+    if (!(active instanceof HTMLElement) || !byId(id).contains(active)) return null;
+    return [...byId(id).querySelectorAll("input, select, button")].indexOf(active);
+}
+
+/** @param {string} id @param {number | null} index */
+function refocus(id, index) {
+    if (index === null || index < 0) return;
+    const control = byId(id).querySelectorAll("input, select, button")[index];
+    if (control instanceof HTMLElement) control.focus();
+}
+
+/** @param {App} app @param {Scene} scene */
+function showRendering(app, scene) {
+    const view = app.view.get();
+    const focused = focusedName("settings");
+    /** @param {Partial<View>} change */
+    const set = (change) => app.view.set(change);
+    const [width, height] = scene.size;
+    const sizes = [1, 0.5, 0.25].map((part) => /** @type {[number, number]} */ ([Math.max(1, Math.round(width * part)), Math.max(1, Math.round(height * part))]));
+    const animation = view.animation === null ? null : scene.animations[view.animation];
+    replace(
+        byId("settings"),
+        group(
+            "Light transport",
+            field("Integrator", select(scene.integrators.map((name) => [name, name]), view.integrator ?? scene.integrator, (integrator) => set({ integrator }))),
+            field("Depth", number(view.depth, { min: 0, max: 1000, step: 1, placeholder: String(scene.depth) }, (depth) => set({ depth })), "Bounces at most"),
+            field("Samples", number(view.samples, { min: 1, max: 1e6, step: 1, placeholder: String(scene.samples) }, (samples) => set({ samples })), "Samples per pixel"),
+            field("Min. contribution", number(view.minContribution, { min: 0, max: 1, placeholder: String(scene.minContribution) }, (minContribution) => set({ minContribution })), "Branches of Whitted's tree with a smaller share are not followed"),
+            field("Size", select(sizes.map((size) => [size.join("x"), size.join(" × ")]), (view.size ?? scene.size).join("x"), (text) => set({ size: text === scene.size.join("x") ? null : /** @type {any} */ (text.split("x").map(Number)) }))),
+        ),
+        group(
+            "Scene",
+            scene.variants.length > 0 && field("Variant", select([["", "the file's own"], .../** @type {[string, string][]} */ (scene.variants.map((name) => [name, name]))], view.variant ?? "", (variant) => set({ variant: variant || null }))),
+            scene.animations.length > 0 &&
+                field("Animation", select([["", "none"], .../** @type {[string, string][]} */ (scene.animations.map(({ name }, i) => [String(i), name || `animation ${i}`]))], view.animation === null ? "" : String(view.animation), (text) => set({ animation: text === "" ? null : Number(text), at: text === "" ? null : 0 }))),
+            animation && slider("Time", { min: 0, max: animation.seconds, step: animation.seconds / 200 }, view.at ?? 0, (at) => set({ at }), (at) => `${at.toFixed(2)} s`).element,
+            scene.turntable && slider("Turntable", { min: 0, max: 360, step: 1 }, view.turn ?? 0, (turn) => set({ turn }), (turn) => `${turn}°`).element,
+            slider("Surroundings", { min: -180, max: 180, step: 1 }, view.rotateEnvironment ?? 0, (rotateEnvironment) => set({ rotateEnvironment }), (turn) => `${turn}°`).element,
+        ),
+        cameraGroup(app, scene),
+        group(
+            "Contents",
+            h("dl", { class: "facts" }, Object.entries(scene.counts ?? {}).flatMap(([name, n]) => [h("dt", {}, name), h("dd", {}, contents(n))])),
+            scene.warnings.length > 0 && h("details", { class: "warnings" }, h("summary", {}, `${scene.warnings.length} warnings`), h("ul", {}, scene.warnings.map((warning) => h("li", {}, warning)))),
+        ),
+    );
+    refocus("settings", focused);
+}
+
+/** A count, or counts by kind. @param {any} n @returns {string} */
+function contents(n) {
+    if (typeof n === "number") return count(n);
+    if (Array.isArray(n)) return String(n.length);
+    return Object.entries(n ?? {}).map(([kind, n]) => `${contents(n)} ${kind}`).join(", ") || "0";
+}
+
+/** @param {App} app @param {Scene} scene */
+function cameraGroup(app, scene) {
+    const camera = app.view.get().camera ?? scene.camera;
+    /** @param {"lookfrom" | "lookat" | "up"} name */
+    const vector = (name) =>
+        h("div", { class: "field vector", role: "group", "aria-label": name }, h("span", { class: "label" }, name),
+            camera[name].map((x, i) => {
+                const input = number(Number(x.toPrecision(6)), {}, (value) => {
+                    const changed = /** @type {import("./protocol.js").Vector} */ (camera[name].map((old, k) => (k === i ? value ?? 0 : old)));
+                    app.view.set({ camera: { lookfrom: camera.lookfrom, lookat: camera.lookat, up: camera.up, fov: camera.fov, [name]: changed } });
+                });
+                input.setAttribute("aria-label", `${name} ${"xyz"[i]}`);
+                return input;
+            }));
+    const fov = camera.fov !== null && field("fov", number(Number(camera.fov.toPrecision(6)), { min: 1, max: 179 }, (value) =>
+        app.view.set({ camera: value === null ? null : { lookfrom: camera.lookfrom, lookat: camera.lookat, up: camera.up, fov: value } })), "Vertical field of view, degrees");
+    return group("Camera", vector("lookfrom"), vector("lookat"), vector("up"), fov, h("button", { type: "button", onclick: () => app.view.set({ camera: null }) }, "The scene's own camera"));
+}
+
+/** @param {string} title @param {...any} children */
+const group = (title, ...children) => h("section", { class: "group" }, h("h3", {}, title), children);

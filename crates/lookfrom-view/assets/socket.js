@@ -1,0 +1,98 @@
+// The connection to the server: texts and binary messages, answers matched to their questions.
+
+/** @typedef {ReturnType<typeof connect>} Socket */
+
+/**
+ * The parts of a binary message: a JSON header after its length, then the payload.
+ * @param {ArrayBuffer} buffer
+ * @returns {import("./protocol.js").Binary}
+ */
+export function parts(buffer) {
+    const length = new DataView(buffer).getUint32(0, true);
+    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
+    return { header, payload: buffer.slice(4 + length) };
+}
+
+/** Connects, and connects again when the server comes back. */
+export function connect() {
+    /** @type {Map<string, ((message: any) => void)[]>} */
+    const listeners = new Map();
+    /** @type {Map<number, {type: string, resolve: (answer: any) => void, reject: (error: Error) => void}>} */
+    const waiting = new Map();
+    /** @type {WebSocket | null} */
+    let socket = null;
+    let lastId = 0;
+    let pause = 250;
+
+    /** @param {string} type @param {any} message */
+    const tell = (type, message) => (listeners.get(type) ?? []).forEach((listener) => listener(message));
+
+    /** @param {number} id @param {any} answer */
+    function settle(id, answer) {
+        const question = waiting.get(id);
+        if (!question) return false;
+        waiting.delete(id);
+        if (answer.type === "error") question.reject(new Error(answer.message));
+        else question.resolve(answer);
+        return true;
+    }
+
+    function open() {
+        const url = new URL("/socket" + location.search, location.href);
+        url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+        socket = new WebSocket(url);
+        socket.binaryType = "arraybuffer";
+        socket.onopen = () => {
+            pause = 250;
+            tell("open", null);
+        };
+        socket.onmessage = ({ data }) => {
+            if (typeof data !== "string") {
+                const binary = parts(data);
+                if (!settle(binary.header.id ?? -1, binary)) tell(binary.header.kind, binary);
+                return;
+            }
+            const message = JSON.parse(data);
+            if (!settle(message.id ?? -1, message)) tell(message.type, message);
+        };
+        socket.onclose = () => {
+            waiting.clear();
+            tell("close", null);
+            setTimeout(open, pause);
+            pause = Math.min(2 * pause, 5000);
+        };
+    }
+
+    /**
+     * @param {string} type
+     * @param {object} body
+     * @returns {number} the message's id
+     */
+    function send(type, body) {
+        const id = ++lastId;
+        if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ type, id, ...body }));
+        return id;
+    }
+
+    return {
+        open,
+        send,
+        /**
+         * Sends a question. A later one of the same type replaces it: then this promise is never settled.
+         * @param {string} type
+         * @param {object} [body]
+         * @returns {Promise<any>}
+         */
+        request(type, body = {}) {
+            for (const [id, question] of waiting) if (question.type === type) waiting.delete(id);
+            return new Promise((resolve, reject) => waiting.set(send(type, body), { type, resolve, reject }));
+        },
+        /**
+         * @param {string} type a message's type, a binary's kind, "open" or "close"
+         * @param {(message: any) => void} listener
+         */
+        on(type, listener) {
+            listeners.set(type, [...(listeners.get(type) ?? []), listener]);
+        },
+    };
+}

@@ -1,0 +1,57 @@
+// How far the picture is, whether the server is there, and errors of the scene over the last good picture.
+
+import { byId, h, replace } from "./html.js";
+import { count, duration } from "./format.js";
+
+/** @param {import("./app.js").App} app */
+export function showStatus(app) {
+    const progress = /** @type {HTMLProgressElement} */ (byId("progress"));
+    const text = byId("progress-text");
+    const failure = byId("failure");
+    let announced = -1;
+    let isPaused = false;
+
+    app.socket.on("progress", (/** @type {import("./protocol.js").Progress} */ { samples, of, seconds, raysPerSecond, done }) => {
+        progress.max = of;
+        progress.value = samples;
+        document.body.classList.toggle("is-done", done);
+        const rate = raysPerSecond > 0 ? ` · ${count(raysPerSecond)} rays/s` : "";
+        text.textContent = `${samples} / ${of} samples · ${duration(seconds)}${rate}`;
+        // Screen readers hear of each quarter only.
+        const quarter = done ? 4 : Math.floor((4 * samples) / Math.max(of, 1));
+        if (quarter !== announced && (done || quarter > 0)) app.announce(done ? "The picture is finished" : `${samples} of ${of} samples`);
+        announced = quarter;
+    });
+
+    const pause = byId("pause");
+    pause.addEventListener("click", () => {
+        isPaused = !isPaused;
+        app.socket.send("pause", { paused: isPaused });
+        pause.setAttribute("aria-pressed", String(isPaused));
+        pause.setAttribute("aria-label", isPaused ? "Continue rendering" : "Pause rendering");
+    });
+
+    app.socket.on("error", (/** @type {import("./protocol.js").Failure} */ { id, message, excerpt }) => {
+        if (id !== null) return app.toast(message);
+        replace(
+            failure,
+            h("h2", {}, "The scene cannot be shown"),
+            h("p", {}, message),
+            excerpt && h("pre", { tabindex: "0" }, excerpt),
+            h("p", { class: "faint" }, document.body.classList.contains("has-picture") ? "Behind is the last good picture. The file is watched: save it again." : "The file is watched: save it again."),
+        );
+        failure.hidden = false;
+    });
+    app.scene.on(() => (failure.hidden = true));
+
+    app.socket.on("open", () => {
+        document.body.classList.remove("is-offline");
+        [isPaused, announced] = [false, -1];
+        pause.setAttribute("aria-pressed", "false");
+    });
+    app.socket.on("close", () => {
+        document.body.classList.add("is-offline");
+        text.textContent = "The server is not there; trying again …";
+        app.announce("The connection to the server is lost");
+    });
+}

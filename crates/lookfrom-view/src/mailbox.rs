@@ -1,0 +1,134 @@
+//! What is on the way between the socket of a window and its thread. Only the latest counts: a request replaces an earlier
+//! one of its type that has not been taken, a picture an earlier one that has not been sent.
+
+use std::collections::VecDeque;
+use std::mem::discriminant;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+use tokio::sync::Notify;
+
+use crate::message::{Answer, Request};
+
+/// The most texts that wait to be sent; a page that reads no faster is left.
+const MOST_TEXTS: usize = 256;
+
+/// Something for the thread of a window to do.
+#[derive(Debug)]
+pub(crate) enum Task {
+    /// The scene was read again, or there is an error in it.
+    SceneChanged,
+    /// A message of the page.
+    Request(Request),
+}
+
+/// Something for the socket to send.
+#[derive(Debug)]
+pub(crate) enum Letter {
+    Text(String),
+    /// A frame.
+    Binary(Vec<u8>),
+}
+
+/// Both directions of a window.
+#[derive(Debug, Default)]
+pub(crate) struct Mailbox {
+    inbox: Mutex<Vec<Task>>,
+    arrived: Condvar,
+    /// Whether there is a task, for a look without a lock.
+    has_tasks: AtomicBool,
+    closed: AtomicBool,
+    outbox: Mutex<Outbox>,
+    ready: Notify,
+}
+
+#[derive(Debug, Default)]
+struct Outbox {
+    letters: VecDeque<Letter>,
+    /// Sent after the letters.
+    picture: Option<Vec<u8>>,
+}
+
+impl Mailbox {
+    /// Adds a task, in place of an untaken one of the same type.
+    pub(crate) fn put(&self, task: Task) {
+        let mut inbox = locked(&self.inbox);
+        inbox.retain(|other| match (other, &task) {
+            (Task::Request(other), Task::Request(new)) => discriminant(other) != discriminant(new),
+            (other, new) => discriminant(other) != discriminant(new),
+        });
+        inbox.push(task);
+        self.has_tasks.store(true, Ordering::Release);
+        self.arrived.notify_one();
+    }
+
+    /// Takes all tasks; waits for one if `patient`. `None` once the window is closed.
+    pub(crate) fn take(&self, patient: bool) -> Option<Vec<Task>> {
+        let mut inbox = locked(&self.inbox);
+        while patient && inbox.is_empty() && !self.is_closed() {
+            inbox = self.arrived.wait(inbox).unwrap_or_else(PoisonError::into_inner);
+        }
+        self.has_tasks.store(false, Ordering::Release);
+        (!self.is_closed()).then(|| std::mem::take(&mut *inbox))
+    }
+
+    /// Whether there is a task to take.
+    pub(crate) fn has_tasks(&self) -> bool {
+        self.has_tasks.load(Ordering::Acquire)
+    }
+
+    /// Ends the window's thread.
+    pub(crate) fn close(&self) {
+        let _inbox = locked(&self.inbox);
+        self.closed.store(true, Ordering::Release);
+        self.arrived.notify_all();
+        self.ready.notify_one();
+    }
+
+    /// Whether the window is closed.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.closed.load(Ordering::Acquire)
+    }
+
+    /// Sends a text.
+    pub(crate) fn say(&self, answer: &Answer) {
+        self.send(Letter::Text(answer.text()));
+    }
+
+    /// Sends a letter after those before it.
+    pub(crate) fn send(&self, letter: Letter) {
+        let mut outbox = locked(&self.outbox);
+        if outbox.letters.len() < MOST_TEXTS {
+            outbox.letters.push_back(letter);
+        }
+        self.ready.notify_one();
+    }
+
+    /// Sends a picture, in place of an unsent one.
+    pub(crate) fn show(&self, frame: Vec<u8>) {
+        locked(&self.outbox).picture = Some(frame);
+        self.ready.notify_one();
+    }
+
+    /// The next letter to send; `None` once the window is closed.
+    pub(crate) async fn next(&self) -> Option<Letter> {
+        loop {
+            if self.is_closed() {
+                return None;
+            }
+            let letter = {
+                let mut outbox = locked(&self.outbox);
+                outbox.letters.pop_front().or_else(|| outbox.picture.take().map(Letter::Binary))
+            };
+            if letter.is_some() {
+                return letter;
+            }
+            self.ready.notified().await;
+        }
+    }
+}
+
+/// What a mutex guards, though a thread may have panicked while it held it.
+pub(crate) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,227 @@
+//! The server: page, assets and socket, for whoever knows the token.
+//!
+//! Other sites' pages can send requests to a local port, but they cannot read the token; and a page of a name that was bound
+//! to this address (DNS rebinding) has that name as its `Host` and `Origin`. Both are refused.
+
+use std::io;
+use std::net::{IpAddr, SocketAddr, TcpListener};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use axum::Router;
+use axum::extract::ws::WebSocketUpgrade;
+use axum::extract::{Path, Query, Request, State};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::middleware::{self, Next};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use serde::Deserialize;
+
+use crate::Settings;
+use crate::assets::asset;
+use crate::document::Document;
+use crate::message::LONGEST;
+use crate::window;
+
+/// The most windows at once.
+const MOST_WINDOWS: usize = 16;
+
+/// The interval at which the server looks whether to end.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// The longest wait for the threads of windows at the end.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// What the page may load: nothing from elsewhere.
+const POLICY: &str =
+    "default-src 'self'; img-src 'self' blob:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+
+/// A server of one scene, bound to its address.
+#[derive(Debug)]
+pub struct Server {
+    listener: TcpListener,
+    address: SocketAddr,
+    house: Arc<House>,
+}
+
+/// What all requests share.
+#[derive(Debug)]
+pub(crate) struct House {
+    token: String,
+    host: IpAddr,
+    pub(crate) document: Document,
+    /// Windows whose threads have not ended.
+    pub(crate) windows: Arc<AtomicUsize>,
+}
+
+impl Server {
+    /// Binds the address. Nothing is read yet.
+    ///
+    /// # Errors
+    /// Where the address is in use or not this machine's, or where the system has no entropy for a token.
+    pub fn bind(settings: Settings) -> io::Result<Self> {
+        let listener = TcpListener::bind((settings.host, settings.port))?;
+        let address = listener.local_addr()?;
+        let mut bits = [0; 16];
+        getrandom::fill(&mut bits).map_err(io::Error::other)?;
+        let token = bits.iter().map(|byte| format!("{byte:02x}")).collect();
+        let (host, windows) = (settings.host, Arc::default());
+        let house = Arc::new(House { token, host, document: Document::new(settings), windows });
+        Ok(Self { listener, address, house })
+    }
+
+    /// The address of the page, with the token.
+    pub fn url(&self) -> String {
+        let mut address = self.address;
+        if address.ip().is_unspecified() {
+            let loopback: IpAddr =
+                if address.is_ipv4() { [127, 0, 0, 1].into() } else { [0, 0, 0, 0, 0, 0, 0, 1].into() };
+            address.set_ip(loopback);
+        }
+        format!("http://{address}/?token={}", self.house.token)
+    }
+
+    /// A counter of the windows whose threads have not ended.
+    pub fn windows(&self) -> Arc<AtomicUsize> {
+        self.house.windows.clone()
+    }
+
+    /// Serves until `stopped`. Then all renders end.
+    ///
+    /// # Errors
+    /// Where the system refuses to listen or to start threads.
+    pub fn run(self, stopped: impl Fn() -> bool + Sync) -> io::Result<()> {
+        let Self { listener, house, .. } = self;
+        listener.set_nonblocking(true)?;
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+        std::thread::scope(|scope| {
+            let watching = std::thread::Builder::new().name("watch".to_owned());
+            watching.spawn_scoped(scope, || house.document.watch(&stopped))?;
+            let windows = house.windows.clone();
+            let served = runtime.block_on(async {
+                let listener = tokio::net::TcpListener::from_std(listener)?;
+                tokio::select! {
+                    served = axum::serve(listener, router(house.clone())) => served,
+                    () = ended(&stopped) => Ok(()),
+                }
+            });
+            // The tasks of the sockets end, and tell their windows.
+            drop(runtime);
+            let started = Instant::now();
+            while windows.load(Ordering::Acquire) > 0 && started.elapsed() < PATIENCE {
+                std::thread::sleep(LOOK / 10);
+            }
+            served
+        })
+    }
+}
+
+async fn ended(stopped: &impl Fn() -> bool) {
+    while !stopped() {
+        tokio::time::sleep(LOOK).await;
+    }
+}
+
+fn router(house: Arc<House>) -> Router {
+    Router::new()
+        .route("/", get(page))
+        .route("/socket", get(socket))
+        .route("/{*name}", get(file))
+        .layer(middleware::from_fn_with_state(house.clone(), guarded))
+        .with_state(house)
+}
+
+/// The query of addresses that need the token.
+#[derive(Deserialize)]
+struct Token {
+    #[serde(default)]
+    token: String,
+}
+
+impl House {
+    /// Whether a token is this server's, in a time that does not depend on where it differs.
+    fn knows(&self, token: &str) -> bool {
+        let differences = self.token.bytes().zip(token.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
+        self.token.len() == token.len() && differences == 0
+    }
+
+    /// Whether a `Host` is an address by which this server may be asked for. The port may be another one: that of a tunnel.
+    fn is_host(&self, host: &str) -> bool {
+        let name = match host.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
+            Some((name, _)) => name,
+            None => host.split(':').next().unwrap_or_default(),
+        };
+        if name.eq_ignore_ascii_case("localhost") {
+            return true;
+        }
+        // A name that was bound to this address is no number.
+        name.parse::<IpAddr>()
+            .is_ok_and(|ip| ip.is_loopback() || ip == self.host || self.host.is_unspecified())
+    }
+
+    /// Whether a request asks for this server, and not by another site's page.
+    fn welcomes(&self, headers: &HeaderMap) -> bool {
+        let text = |name| headers.get(name).map(|value| value.to_str().unwrap_or_default());
+        let host = text(header::HOST).unwrap_or_default();
+        let is_ours = |origin: &str| origin.strip_prefix("http://") == Some(host);
+        self.is_host(host) && text(header::ORIGIN).is_none_or(is_ours)
+    }
+}
+
+/// Refuses requests to other hosts and from other sites' pages, and tells the browser what the page may do.
+async fn guarded(State(house): State<Arc<House>>, request: Request, next: Next) -> Response {
+    if !house.welcomes(request.headers()) {
+        return (StatusCode::FORBIDDEN, "another host or origin\n").into_response();
+    }
+    let mut response = next.run(request).await;
+    for (name, value) in [
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::CACHE_CONTROL, "no-store"),
+    ] {
+        response.headers_mut().insert(name, HeaderValue::from_static(value));
+    }
+    response
+}
+
+async fn page(State(house): State<Arc<House>>, Query(query): Query<Token>) -> Response {
+    match house.knows(&query.token) {
+        true => found("index.html"),
+        false => no_token(),
+    }
+}
+
+async fn file(Path(name): Path<String>) -> Response {
+    found(&name)
+}
+
+async fn socket(
+    State(house): State<Arc<House>>,
+    Query(query): Query<Token>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    if !house.knows(&query.token) {
+        return no_token();
+    }
+    if house.windows.load(Ordering::Acquire) >= MOST_WINDOWS {
+        let message = format!("{MOST_WINDOWS} windows are open: close one\n");
+        return (StatusCode::SERVICE_UNAVAILABLE, message).into_response();
+    }
+    // Longer messages than the longest are read, so that they can be answered, up to a limit.
+    let upgrade = upgrade.max_message_size(16 * LONGEST).max_frame_size(16 * LONGEST);
+    upgrade.on_upgrade(move |socket| window::run(socket, house))
+}
+
+fn no_token() -> Response {
+    let message = "this address needs its token: open the one that `lookfrom view` printed\n";
+    (StatusCode::FORBIDDEN, message).into_response()
+}
+
+fn found(name: &str) -> Response {
+    match asset(name) {
+        Some((mime, bytes)) => ([(header::CONTENT_TYPE, mime)], bytes.into_owned()).into_response(),
+        None => (StatusCode::NOT_FOUND, "no such file\n").into_response(),
+    }
+}

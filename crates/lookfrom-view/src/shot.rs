@@ -1,0 +1,200 @@
+//! A view and its films: a coarse picture, then the film, pass by pass.
+
+use std::time::{Duration, Instant};
+
+use lookfrom::film::Film;
+use lookfrom::render::{Progress, SampleId, StopCriteria, StopReason};
+use lookfrom::session::{MOST_SAMPLES, Session};
+use lookfrom_scene::Result;
+use lookfrom_scene::settings::{ImageSettings, RenderSettings};
+
+use crate::cost::CostMap;
+use crate::document::Loaded;
+use crate::mailbox::Mailbox;
+use crate::message::Wish;
+use crate::view::refused;
+
+/// The time that a coarse picture may take while the camera is moved.
+const FRAME: Duration = Duration::from_millis(50);
+
+/// The time that a pass shall take.
+const PASS: Duration = Duration::from_millis(400);
+
+/// Pixels of the view per pixel of the first coarse picture, while nothing is known of its cost.
+const FIRST_SCALE: u32 = 8;
+
+/// The coarsest picture.
+const COARSEST: u32 = 32;
+
+/// A view and its films.
+pub(crate) struct Shot {
+    pub(crate) session: Session,
+    /// The last coarse picture.
+    pub(crate) coarse: Option<Coarse>,
+    pub(crate) film: Option<Film>,
+    pub(crate) cost: Option<CostMap>,
+    /// Samples that every pixel of the film has.
+    pub(crate) samples: u32,
+    /// Samples of the next pass.
+    pub(crate) pass: u32,
+    pub(crate) rays: u64,
+    pub(crate) spent: Duration,
+    /// Seconds for one sample of one pixel, if known.
+    pub(crate) pace: Option<f64>,
+    /// When a denoised picture may be made again: it takes time that the render then has not.
+    pub(crate) denoised_until: Option<Instant>,
+    pub(crate) stage: Stage,
+}
+
+pub(crate) struct Coarse {
+    pub(crate) scale: u32,
+    pub(crate) session: Session,
+    pub(crate) film: Film,
+}
+
+/// What is to be rendered next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stage {
+    Coarse(u32),
+    Full,
+    Done,
+}
+
+impl Shot {
+    pub(crate) fn new(session: Session, pace: Option<f64>) -> Self {
+        let scale = pace.map_or(FIRST_SCALE, |pace| scale_of(session.image(), pace));
+        Self {
+            session,
+            coarse: None,
+            film: None,
+            cost: None,
+            samples: 0,
+            pass: 1,
+            rays: 0,
+            spent: Duration::ZERO,
+            pace,
+            denoised_until: None,
+            stage: Stage::Coarse(scale),
+        }
+    }
+
+    /// Takes over the number of samples of a wish for the same light.
+    pub(crate) fn take_samples(&mut self, wish: &Wish, loaded: &Loaded) -> Result<()> {
+        let samples = wish.samples.unwrap_or(loaded.session.settings().samples);
+        if samples == self.session.settings().samples {
+            return Ok(());
+        }
+        self.session.set_settings(RenderSettings { samples, ..self.session.settings().clone() })?;
+        if samples < self.samples {
+            (self.film, self.samples, self.pass, self.rays, self.spent) = (None, 0, 1, 0, Duration::ZERO);
+        }
+        if self.stage == Stage::Done && samples != self.samples {
+            self.stage = Stage::Full;
+        }
+        Ok(())
+    }
+
+    /// Renders one sample of each pixel of a smaller picture.
+    pub(crate) fn render_coarse(&mut self, scale: u32, moving: bool, mailbox: &Mailbox) -> Result<bool> {
+        let mut session = self.session.clone();
+        let mut image = session.image().clone();
+        image.resize(image.width.div_ceil(scale), image.height.div_ceil(scale));
+        session.set_image(ImageSettings { denoise: false, ..image })?;
+        session.set_settings(RenderSettings { samples: 1, ..session.settings().clone() })?;
+        let film = Film::for_image(session.image())?;
+        let pixels = film.width() as f64 * film.height() as f64;
+        let started = Instant::now();
+        let rendered = session.renderer().render_onto(
+            film,
+            0,
+            &StopCriteria::default(),
+            None,
+            &Watch { mailbox, is_interruptible: false },
+        )?;
+        self.pace = Some(started.elapsed().as_secs_f64() / pixels);
+        self.coarse = Some(Coarse { scale, session, film: rendered.film });
+        self.stage = if moving { Stage::Done } else { self.after_coarse() };
+        Ok(rendered.reason != StopReason::Cancelled)
+    }
+
+    /// What follows the coarse picture, if the camera stands still.
+    pub(crate) fn after_coarse(&self) -> Stage {
+        let finer = self.pace.map_or(FIRST_SCALE, |pace| scale_of(self.session.image(), pace / 4.0));
+        match &self.coarse {
+            None => Stage::Coarse(FIRST_SCALE),
+            Some(coarse) if coarse.scale > 2 && finer > 1 => Stage::Coarse(2),
+            Some(_) => Stage::Full,
+        }
+    }
+
+    /// Adds samples to the film. Whether there is a whole pass more.
+    pub(crate) fn render_pass(&mut self, mailbox: &Mailbox) -> Result<bool> {
+        let of = self.session.settings().samples;
+        let end = of.min(self.samples.saturating_add(self.pass));
+        let film = match self.film.take() {
+            Some(film) => film,
+            None => Film::for_image(self.session.image())?,
+        };
+        let settings = RenderSettings { samples: end, ..self.session.settings().clone() };
+        let renderer = self.session.renderer().with_settings(settings)?;
+        let started = Instant::now();
+        let watch = Watch { mailbox, is_interruptible: true };
+        let rendered = renderer.render_onto(film, 0, &StopCriteria::default(), None, &watch)?;
+        let elapsed = started.elapsed();
+        self.film = Some(rendered.film);
+        self.rays += rendered.rays.total();
+        self.spent += elapsed;
+        if rendered.reason == StopReason::Cancelled {
+            return Ok(false);
+        }
+        self.samples = end;
+        if elapsed < PASS / 2 {
+            self.pass = self.pass.saturating_mul(2);
+        }
+        if end == of {
+            self.stage = Stage::Done;
+        }
+        Ok(true)
+    }
+
+    /// A sample of this view.
+    pub(crate) fn checked(&self, pixel: [u32; 2], sample: u32) -> Result<SampleId> {
+        self.check_pixel(pixel)?;
+        match sample < MOST_SAMPLES {
+            true => Ok(SampleId { pixel, sample }),
+            false => Err(refused(format!("there is no sample {sample}"))),
+        }
+    }
+
+    pub(crate) fn check_pixel(&self, [x, y]: [u32; 2]) -> Result<()> {
+        let ImageSettings { width, height, .. } = *self.session.image();
+        if x >= width || y >= height {
+            return Err(refused(format!(
+                "pixel {x} {y} is outside of the picture of {width} × {height} pixels"
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// The finest scale whose picture takes no longer than a frame.
+fn scale_of(image: &ImageSettings, pace: f64) -> u32 {
+    let whole = f64::from(image.width) * f64::from(image.height) * pace;
+    let mut scale = 1;
+    while scale < COARSEST && whole / f64::from(scale * scale) > FRAME.as_secs_f64() {
+        scale *= 2;
+    }
+    scale
+}
+
+/// Ends a render when its window is closed, and a pass when there is a message.
+struct Watch<'a> {
+    mailbox: &'a Mailbox,
+    is_interruptible: bool,
+}
+
+impl Progress for Watch<'_> {
+    fn cancelled(&self) -> bool {
+        self.mailbox.is_closed() || self.is_interruptible && self.mailbox.has_tasks()
+    }
+}

@@ -1,0 +1,104 @@
+//! What a page is told of a scene.
+
+use lookfrom::light::Light;
+use lookfrom::world::World;
+use lookfrom_scene::camera::{Camera, Look, Projection, View};
+use lookfrom_scene::settings::{Integrator, Tonemap};
+use lookfrom_scene::{WarningGroup, WarningKind};
+
+use crate::develop;
+use crate::document::Loaded;
+use crate::message::{AnimationAnswer, BoundsAnswer, CameraAnswer, LayerAnswer, LightAnswer, SceneAnswer};
+
+/// The most lights that are listed: a mesh may have millions.
+const MOST_LIGHTS: usize = 256;
+
+impl Loaded {
+    /// The message of this scene.
+    pub(crate) fn told(&self) -> SceneAnswer {
+        let session = &self.session;
+        let (image, settings, info) = (session.image(), session.settings(), session.info());
+        let numbered =
+            |(number, name): (usize, Option<&String>)| name.cloned().unwrap_or_else(|| number.to_string());
+        let warnings = WarningGroup::of(session.warnings());
+        SceneAnswer {
+            generation: self.generation,
+            name: session.name().to_owned(),
+            size: [image.width, image.height],
+            camera: camera(session.camera(), info.bounds.center()),
+            bounds: BoundsAnswer { min: info.bounds.min.into(), max: info.bounds.max.into() },
+            integrator: settings.integrator.word(),
+            integrators: Integrator::WORDS.iter().map(|&(word, _)| word).collect(),
+            depth: settings.depth,
+            samples: settings.samples,
+            min_contribution: settings.min_contribution,
+            exposure: image.exposure,
+            tonemap: image.tonemap.word(),
+            tonemaps: Tonemap::WORDS.iter().map(|&(word, _)| word).collect(),
+            denoise: image.denoise,
+            layers: develop::layers().map(|(name, title)| LayerAnswer { name, title }).collect(),
+            variants: info.contents.variants.iter().map(Option::as_ref).enumerate().map(numbered).collect(),
+            animations: info
+                .contents
+                .animations
+                .iter()
+                .enumerate()
+                .map(|(number, animation)| AnimationAnswer {
+                    name: numbered((number, animation.name.as_ref())),
+                    seconds: animation.duration.unwrap_or(0.0),
+                })
+                .collect(),
+            turntable: self.options.turn.is_some(),
+            counts: info.counts.clone(),
+            lights: lights(session.world()),
+            reference: self.reference.as_ref().map(|image| image.name.clone()),
+            warnings: warnings
+                .iter()
+                .filter(|group| group.kind() == WarningKind::Warning)
+                .map(ToString::to_string)
+                .collect(),
+            version: env!("CARGO_PKG_VERSION"),
+        }
+    }
+}
+
+fn camera(camera: &Camera, middle: glam::DVec3) -> CameraAnswer {
+    // A matrix that mirrors or shears has a position and an axis, at least.
+    let look = camera.look(middle).unwrap_or_else(|| {
+        let lookfrom = camera.view.lookfrom();
+        let (w, up) = match camera.view {
+            View::Matrix(matrix) => (matrix.z_axis.truncate(), matrix.y_axis.truncate()),
+            View::Look { lookat, up, .. } => (lookat - lookfrom, up),
+        };
+        Look { lookfrom, lookat: lookfrom + w, up }
+    });
+    let (fov, projection) = match camera.projection {
+        Projection::Perspective { fov } => (Some(fov), "perspective"),
+        Projection::Orthographic { .. } => (None, "orthographic"),
+        Projection::Equirectangular | Projection::EquirectangularPbrt => (None, "equirectangular"),
+        Projection::Octahedral => (None, "octahedral"),
+    };
+    CameraAnswer {
+        lookfrom: look.lookfrom.into(),
+        lookat: look.lookat.into(),
+        up: look.up.into(),
+        fov,
+        projection,
+    }
+}
+
+fn lights(world: &World) -> Vec<LightAnswer> {
+    let told = |light: &Light| {
+        let (name, position) = match light {
+            Light::Point { position, .. } => ("point", Some(*position)),
+            Light::Spot { position, .. } => ("spot", Some(*position)),
+            Light::Projection(light) => ("projection", Some(light.position)),
+            Light::Goniometric(light) => ("goniometric", Some(light.position)),
+            Light::Distant { .. } => ("distant", None),
+            Light::Area(_) => ("area", None),
+            _ => ("environment", None),
+        };
+        LightAnswer { name, position: position.map(|position| (position + world.origin()).into()) }
+    };
+    world.lights().iter().take(MOST_LIGHTS).map(told).collect()
+}

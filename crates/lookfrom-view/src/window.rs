@@ -1,0 +1,89 @@
+//! A window of the page: its socket, and the thread that renders for it.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use axum::extract::ws::{Message, WebSocket};
+use futures_util::{SinkExt, StreamExt};
+
+use crate::mailbox::{Letter, Mailbox, Task};
+use crate::message::{Answer, Request};
+use crate::render;
+use crate::server::House;
+
+/// Runs a window until its socket closes. However it ends, its thread is told.
+pub(crate) async fn run(socket: WebSocket, house: Arc<House>) {
+    let mailbox = Arc::new(Mailbox::default());
+    let _closing = Closing(mailbox.clone());
+    house.document.add(&mailbox);
+    let counted = Counted::new(&house.windows);
+    let thread = {
+        let (mailbox, house) = (mailbox.clone(), house.clone());
+        std::thread::Builder::new().name("window".to_owned()).spawn(move || {
+            let _counted = counted;
+            let _closing = Closing(mailbox.clone());
+            render::run(&mailbox, &house.document);
+        })
+    };
+    if thread.is_err() {
+        return;
+    }
+    let (mut sink, mut stream) = socket.split();
+    let sending = async {
+        while let Some(letter) = mailbox.next().await {
+            let message = match letter {
+                Letter::Text(text) => Message::Text(text.into()),
+                Letter::Binary(bytes) => Message::Binary(bytes.into()),
+            };
+            if sink.send(message).await.is_err() {
+                return;
+            }
+        }
+    };
+    let receiving = async {
+        while let Some(Ok(message)) = stream.next().await {
+            match message {
+                Message::Text(text) => match Request::of_text(&text) {
+                    Ok(request) => mailbox.put(Task::Request(request)),
+                    Err(answer) => mailbox.say(&answer),
+                },
+                Message::Binary(_) => mailbox.say(&Answer::Error {
+                    id: None,
+                    message: "a binary message; expected a text".to_owned(),
+                    excerpt: None,
+                }),
+                Message::Close(_) => return,
+                Message::Ping(_) | Message::Pong(_) => {}
+            }
+        }
+    };
+    tokio::select! {
+        () = sending => {}
+        () = receiving => {}
+    }
+}
+
+/// Closes a mailbox when dropped.
+struct Closing(Arc<Mailbox>);
+
+impl Drop for Closing {
+    fn drop(&mut self) {
+        self.0.close();
+    }
+}
+
+/// Counts as a window until it is dropped.
+struct Counted(Arc<AtomicUsize>);
+
+impl Counted {
+    fn new(count: &Arc<AtomicUsize>) -> Self {
+        count.fetch_add(1, Ordering::AcqRel);
+        Self(count.clone())
+    }
+}
+
+impl Drop for Counted {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::AcqRel);
+    }
+}

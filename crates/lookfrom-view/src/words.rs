@@ -1,0 +1,122 @@
+//! A view in words: as tables of a scene file, and as a command line.
+
+use std::fmt::Write;
+
+use lookfrom::session::Session;
+use lookfrom_scene::camera::{Camera, Projection};
+
+use crate::message::Wish;
+
+/// The camera and the settings of a view as TOML.
+pub(crate) fn toml(session: &Session, wish: &Wish) -> String {
+    let (image, settings) = (session.image(), session.settings());
+    let mut text = String::from("[camera]\n");
+    if let Some(look) = session.camera().look(session.info().bounds.center()) {
+        for (name, vector) in [("lookfrom", look.lookfrom), ("lookat", look.lookat), ("up", look.up)] {
+            let _ = writeln!(text, "{name} = [{}]", joined(vector.to_array(), ", "));
+        }
+    }
+    if let Some((name, value)) = projection(session.camera()) {
+        let _ = writeln!(text, "{name} = {value}");
+    }
+    let _ = write!(text, "\n[image]\nwidth = {}\nheight = {}\n", image.width, image.height);
+    let _ = write!(text, "exposure = {}\ntonemap = {:?}\n", wish.exposure, tonemap(session, wish));
+    let _ = write!(
+        text,
+        "denoise = {}\n\n[render]\nintegrator = {:?}\nsamples = {}\ndepth = {}\nmin_contribution = {}\n",
+        wish.denoise,
+        settings.integrator.word(),
+        settings.samples,
+        settings.depth,
+        settings.min_contribution
+    );
+    text
+}
+
+/// The command that renders the view of a scene; `typed` are the options that its session was opened with.
+pub(crate) fn command(session: &Session, wish: &Wish, typed: &[String]) -> String {
+    let (image, settings) = (session.image(), session.settings());
+    let mut options = vec![
+        ("width", image.width.to_string()),
+        ("height", image.height.to_string()),
+        ("samples", settings.samples.to_string()),
+        ("integrator", settings.integrator.word().to_owned()),
+        ("depth", settings.depth.to_string()),
+        ("min-contribution", settings.min_contribution.to_string()),
+        ("exposure", wish.exposure.to_string()),
+        ("tonemap", tonemap(session, wish).to_owned()),
+        ("denoise", if wish.denoise { "on" } else { "off" }.to_owned()),
+    ];
+    // A camera on a turntable is where the turntable says.
+    match (wish.turn, &wish.camera) {
+        (Some(degrees), None) => options.push(("turn", degrees.to_string())),
+        (_, None) => {}
+        (_, Some(camera)) => {
+            for (name, vector) in
+                [("lookfrom", camera.lookfrom), ("lookat", camera.lookat), ("up", camera.up)]
+            {
+                options.push((name, joined(vector, ",")));
+            }
+            if let Some(("fov", degrees)) = projection(session.camera()) {
+                options.push(("fov", degrees.to_string()));
+            }
+        }
+    }
+    let optional = [
+        ("rotate-environment", wish.rotate_environment.map(|degrees| degrees.to_string())),
+        ("animation", wish.animation.map(|number| number.to_string())),
+        ("at", wish.at.map(|seconds| seconds.to_string())),
+        ("variant", wish.variant.clone()),
+    ];
+    options.extend(optional.into_iter().filter_map(|(name, value)| Some((name, value?))));
+    let is_replaced = |typed: &str| {
+        let name = typed.trim_start_matches("--").split('=').next().unwrap_or_default();
+        name == "size" || options.iter().any(|(option, _)| *option == name)
+    };
+    let kept = typed.iter().filter(|typed| !is_replaced(typed)).cloned();
+    let words = kept.chain(options.iter().map(|(name, value)| format!("--{name}={value}")));
+    let mut text = format!("lookfrom render {}", quoted(session.name()));
+    words.for_each(|word| {
+        let _ = write!(text, " {}", quoted(&word));
+    });
+    text
+}
+
+fn tonemap(session: &Session, wish: &Wish) -> &'static str {
+    let own = session.image().tonemap;
+    wish.tonemap(own).unwrap_or(own).word()
+}
+
+/// The number of a projection, with its key.
+fn projection(camera: &Camera) -> Option<(&'static str, f64)> {
+    match camera.projection {
+        Projection::Perspective { fov } => Some(("fov", fov)),
+        Projection::Orthographic { height } => Some(("height", height)),
+        _ => None,
+    }
+}
+
+fn joined(numbers: [f64; 3], between: &str) -> String {
+    numbers.map(|number| number.to_string()).join(between)
+}
+
+/// A word for a POSIX shell.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_survive_a_shell() {
+        assert_eq!(quoted("--lookfrom=-1,2,3"), "--lookfrom=-1,2,3");
+        assert_eq!(quoted("my scene.toml"), "'my scene.toml'");
+        assert_eq!(quoted("it's; rm"), r"'it'\''s; rm'");
+    }
+}

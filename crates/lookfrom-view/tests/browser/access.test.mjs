@@ -1,0 +1,107 @@
+// Without a mouse, on a small screen, in both themes.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { join } from "node:path";
+import { PATIENCE, SCENES, inspect, launch, open, screenshot, serve } from "./browser.mjs";
+
+const SMALL = ["--width", "160", "--height", "120", "--samples", "2", "--depth", "3"];
+let browser, server;
+
+before(async () => {
+    browser = await launch();
+    server = await serve(join(SCENES, "glass-and-mirror.toml"), SMALL);
+});
+after(async () => {
+    await browser?.close();
+    await server?.stop();
+});
+
+test("keys alone lead from the picture to a ray's equations", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await page.locator('#picture[data-done="true"]').waitFor();
+    const isAt = (selector) => page.evaluate((selector) => document.activeElement?.matches(selector) ?? false, selector);
+    for (let i = 0; !(await isAt("#picture-overlay")); i++) {
+        assert.ok(i < 40, "Tab never reaches the picture");
+        await page.keyboard.press("Tab");
+    }
+    await page.keyboard.press("i");
+    await page.locator("#tree li").first().waitFor();
+    await page.waitForFunction(() => /pixel=80,60/.test(location.hash));
+    await page.keyboard.press("Control+Shift+ArrowRight");
+    await page.waitForFunction(() => /pixel=90,60/.test(location.hash));
+    for (let i = 0; !(await isAt('#tree [role="treeitem"]')); i++) {
+        assert.ok(i < 80, "Tab never reaches the tree");
+        await page.keyboard.press("Tab");
+    }
+    await page.keyboard.press("Home");
+    assert.match((await page.locator("#equations summary").first().textContent()) ?? "", /^Ray 1: camera/);
+    await page.keyboard.press("ArrowDown");
+    assert.match((await page.locator("#equations summary").first().textContent()) ?? "", /^Ray 2|^Ray 3/);
+    assert.equal(await page.locator('#tree [aria-selected="true"]').count(), 1);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
+test("every control has a name", async () => {
+    const { page, context } = await open(browser, server.url);
+    await inspect(page, 60, 75);
+    for (const tab of ["Why this pixel", "Notes, alive", "View"]) {
+        await page.getByRole("tab", { name: tab }).click();
+        const nameless = await page.locator("button, input, select, [role=slider], [role=application]").evaluateAll((controls) =>
+            controls
+                .filter((control) => control.checkVisibility())
+                .filter((control) => !(control.getAttribute("aria-label") || control.labels?.length || control.textContent.trim()))
+                .map((control) => control.outerHTML));
+        assert.deepEqual(nameless, [], tab);
+    }
+    await context.close();
+});
+
+for (const [width, height, colorScheme] of [[360, 740, "light"], [360, 740, "dark"], [800, 900, "light"], [1280, 800, "dark"]]) {
+    test(`${width} pixels, ${colorScheme}: nothing is cut off, and text is legible`, async () => {
+        const { page, context, errors } = await open(browser, server.url, { viewport: { width, height }, colorScheme, reducedMotion: "reduce" });
+        await page.locator('#picture[data-done="true"]').waitFor();
+        await inspect(page, 60, 75);
+        await page.waitForTimeout(500);
+        await screenshot(page, `why-${width}-${colorScheme}`);
+        assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "the page scrolls sideways");
+        assert.deepEqual(await page.evaluate(faint), []);
+        for (let lesson = 0; lesson < 6; lesson++) {
+            await page.getByRole("tab", { name: "Notes, alive" }).click();
+            await page.getByLabel("Lesson").selectOption(String(lesson));
+            await page.waitForTimeout(100);
+            await screenshot(page, `lesson-${lesson + 1}-${width}-${colorScheme}`);
+            assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `lesson ${lesson + 1} scrolls sideways`);
+        }
+        assert.deepEqual(errors, []);
+        await context.close();
+    }, { timeout: 4 * PATIENCE });
+}
+
+/** Texts with less contrast than WCAG's level AA asks for, 4.5 : 1. */
+function faint() {
+    const parse = (color) => {
+        const numbers = color.match(/[\d.]+/g).map(Number);
+        return color.startsWith("color(") ? numbers.slice(-4).map((x, i) => (i < 3 ? 255 * x : x)) : numbers;
+    };
+    const light = (rgb) => {
+        const [r, g, b] = rgb.slice(0, 3).map((x) => (x / 255 <= 0.04045 ? x / 255 / 12.92 : ((x / 255 + 0.055) / 1.055) ** 2.4));
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    };
+    const ground = (element) => {
+        for (let at = element; at; at = at.parentElement) {
+            const color = getComputedStyle(at).backgroundColor;
+            if (color !== "rgba(0, 0, 0, 0)" && (parse(color)[3] ?? 1) > 0.95) return parse(color);
+        }
+        return [255, 255, 255];
+    };
+    return [...document.querySelectorAll("p, td, th, label, button, dt, dd, summary, h3, h4, span")]
+        .filter((element) => element.checkVisibility() && !element.closest(":disabled, #toast, .unseen, .rays-legend") && [...element.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim()))
+        .map((element) => {
+            const [a, b] = [light(parse(getComputedStyle(element).color)), light(ground(element))].sort((x, y) => y - x);
+            return [element.textContent.slice(0, 30), (a + 0.05) / (b + 0.05)];
+        })
+        .filter(([, contrast]) => contrast < 4.5)
+        .map(([text, contrast]) => `${text}: ${contrast.toFixed(2)}`);
+}

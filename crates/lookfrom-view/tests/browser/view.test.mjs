@@ -1,0 +1,177 @@
+// `lookfrom view` in a browser, used as a person uses it.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { readFile, writeFile } from "node:fs/promises";
+import { PATIENCE, copyOf, inspect, inspection, launch, open, pictureHash, placeOf, screenshot, serve } from "./browser.mjs";
+
+const SMALL = ["--width", "160", "--height", "160", "--samples", "4"];
+let browser, copy, server;
+
+before(async () => {
+    browser = await launch();
+    copy = await copyOf("notes-exercise.toml");
+    server = await serve(copy.scene, SMALL);
+});
+after(async () => {
+    await browser?.close();
+    await server?.stop();
+    await copy?.remove();
+});
+
+/** Waits until something is true. */
+async function until(what, isTrue) {
+    const start = Date.now();
+    while (!(await isTrue())) {
+        if (Date.now() - start > PATIENCE) assert.fail(`never: ${what}`);
+        await new Promise((resolve) => setTimeout(resolve, 50));
+    }
+}
+
+async function finished(page) {
+    await page.locator('#picture[data-done="true"]').waitFor();
+}
+
+test("a drag orbits, undo goes back, and the link keeps the view", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await finished(page);
+    const start = await pictureHash(page);
+    const { x, y } = await placeOf(page, 80, 80);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 60, y + 20, { steps: 4 });
+    await page.mouse.up();
+    await until("another picture", async () => (await pictureHash(page)) !== start);
+    await until("the camera is in the link", async () => page.url().includes("camera="));
+    const link = page.url();
+    await finished(page);
+    const moved = await pictureHash(page);
+    await screenshot(page, "orbit");
+
+    await page.keyboard.press("Control+z");
+    await until("the first picture again", async () => (await pictureHash(page)) === start);
+    await page.keyboard.press("Control+Shift+z");
+    await until("the moved picture again", async () => (await pictureHash(page)) === moved);
+
+    const other = await open(browser, link);
+    await until("the link's picture", async () => (await pictureHash(other.page)) === moved);
+    assert.deepEqual([...errors, ...other.errors], []);
+    await other.context.close();
+    await context.close();
+});
+
+test("a click shows the numbers of `lookfrom inspect --json`", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await finished(page);
+    await inspect(page, 50, 90);
+    await until("the pixel is in the link", async () => /pixel=50,90.*sample=\d+/.test(page.url()));
+    const sample = Number(/sample=(\d+)/.exec(page.url())[1]);
+    const said = await inspection(copy.scene, 50, 90, sample, SMALL);
+
+    const rows = await page.locator("#equations .candidate.nearest .twice tbody tr").evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent)));
+    const nearest = said.rays[0].candidates.find((candidate) => candidate.is_nearest);
+    const numbers = Object.values(nearest.test)[0].numbers;
+    assert.deepEqual(rows, numbers.map(([name, value]) => [name, String(value.f32), String(value.f64), String(value.bits)]));
+
+    await page.getByRole("tab", { name: "Notes, alive" }).click();
+    await page.getByLabel("Lesson").selectOption({ label: "6. The tree, and its sum" });
+    assert.equal(await page.locator("#adds-up").textContent(), "It adds up, bit for bit.");
+    const sums = await page.locator("#sum tfoot tr").evaluateAll((rows) => rows.map((row) => [...row.querySelectorAll("td")].map((cell) => Number(cell.textContent))));
+    assert.deepEqual(sums, [said.radiance.lanes, said.radiance.lanes, said.film]);
+    await screenshot(page, "sum");
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
+test("a pixel: its mean and all of its samples, and from a contribution to its ray", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await finished(page);
+    await inspect(page, 120, 100);
+    await page.locator("#samples tbody tr").first().waitFor();
+    const said = await inspection(copy.scene, 120, 100, "all", SMALL);
+    const rows = await page.locator("#samples tbody tr").evaluateAll((rows) => rows.map((row) => [row.dataset.sample, row.querySelector(".expression").textContent]));
+    assert.deepEqual(rows, said.all.map(({ sample, expression }) => [String(sample), expression]));
+    assert.match((await page.locator("#pixel-summary .numbers").textContent()) ?? "", new RegExp(`8 bit${said.color8.join(" ")}samples${said.samples}$`));
+
+    const last = page.locator("#samples tbody tr").last();
+    await last.getByRole("button").click();
+    const sample = await last.getAttribute("data-sample");
+    await until("the sample is in the link", async () => page.url().includes(`sample=${sample}`));
+    const largest = said.contributions[0];
+    await page.locator("#pixel-summary .contributions button").first().click();
+    await until("the contribution's ray is in the link", async () => page.url().endsWith(`sample=${largest.sample}&ray=${largest.address}`));
+    assert.match((await page.locator('#tree [aria-selected="true"]').getAttribute("aria-label")) ?? "", new RegExp(`^Ray ${largest.address},`));
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
+test("the exercise of the notes: M_vw = I", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await inspect(page, 50, 90);
+    await page.getByRole("tab", { name: "Notes, alive" }).click();
+    await page.getByLabel("Lesson").selectOption({ label: "2. The exercise: M_vw = I" });
+    assert.match((await page.locator("#exercise-verdict").textContent()) ?? "", /^M_vw = I/);
+    await page.locator("#picture-overlay").focus();
+    await page.keyboard.press("ArrowLeft");
+    await until("another camera's matrix", async () => /not the identity/.test((await page.locator("#exercise-verdict").textContent()) ?? ""));
+    await page.getByRole("button", { name: "Look from there" }).click();
+    await until("the identity again", async () => /^M_vw = I/.test((await page.locator("#exercise-verdict").textContent()) ?? ""));
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
+test("an edit of the file reloads it, a broken one shows the error over the last picture", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await finished(page);
+    const before = await pictureHash(page);
+    const text = await readFile(copy.scene, "utf8");
+    await writeFile(copy.scene, text.replace("center = [-0.8, 0, 4]", "center = [-0.8, 0.5, 4]"));
+    await until("the edited picture", async () => (await pictureHash(page)) !== before);
+    await finished(page);
+    const edited = await pictureHash(page);
+
+    await writeFile(copy.scene, text.replace("radius = 1", "radius = one"));
+    await page.locator("#failure").waitFor();
+    assert.match((await page.locator("#failure pre").textContent()) ?? "", /radius = one[\s\S]*\^/);
+    assert.equal(await pictureHash(page), edited);
+    await screenshot(page, "error");
+
+    await writeFile(copy.scene, text);
+    await page.locator("#failure").waitFor({ state: "hidden" });
+    await until("the first picture again", async () => (await pictureHash(page)) === before);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
+test("two windows have views of their own", async () => {
+    const [one, two] = [await open(browser, server.url), await open(browser, server.url)];
+    await finished(one.page);
+    await finished(two.page);
+    const start = await pictureHash(one.page);
+    assert.equal(await pictureHash(two.page), start);
+    await two.page.locator("#picture-overlay").focus();
+    await two.page.keyboard.press("ArrowRight");
+    await until("the second moves", async () => (await pictureHash(two.page)) !== start);
+    await finished(two.page);
+    assert.equal(await pictureHash(one.page), start);
+    assert.deepEqual([...one.errors, ...two.errors], []);
+    await one.context.close();
+    await two.context.close();
+});
+
+test("a slow network delays pictures and breaks nothing", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await finished(page);
+    const start = await pictureHash(page);
+    const session = await context.newCDPSession(page);
+    await session.send("Network.enable");
+    await session.send("Network.emulateNetworkConditions", { offline: false, latency: 200, downloadThroughput: 60_000, uploadThroughput: 30_000 });
+    await page.locator("#picture-overlay").focus();
+    for (let i = 0; i < 10; i++) await page.keyboard.press("ArrowRight");
+    await until("another picture", async () => (await pictureHash(page)) !== start);
+    for (let i = 0; i < 10; i++) await page.keyboard.press("ArrowLeft");
+    await until("the way back", async () => (await pictureHash(page)) !== start);
+    await inspect(page, 50, 90);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
