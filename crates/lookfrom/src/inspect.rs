@@ -7,6 +7,7 @@
 mod camera;
 mod candidate;
 mod expression;
+mod lights;
 mod pixel;
 mod report;
 mod scatter;
@@ -14,40 +15,41 @@ mod svg;
 mod text;
 mod trace_log;
 
-use lookfrom_bvh::Hit;
+use lookfrom_scene::settings::ImageSettings;
+use lookfrom_scene::spectrum::CameraSensor;
 
-use crate::integrator::{Event, Path};
+use crate::core::spectrum::Spectrum;
+
+use crate::integrator::Event;
 use crate::render::{Renderer, SampleId};
 use crate::shading::texture::SpectralMode;
 
 use trace_log::TraceLogBuilder;
 
-pub use candidate::{Candidate, Number, Test};
+pub use candidate::{Candidate, Number, Test, TestNumbers, TraversalReport};
 pub use expression::Contribution;
+pub use lights::{LightPlace, lights};
 pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};
 pub use report::{
-    Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport, Factor, Inspection,
-    LightReport, MatrixStep, MetReport, RayReport, ShadowReport, WavelengthsReport,
+    AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport,
+    DevelopmentReport, Factor, Inspection, LightReport, MatrixStep, MetReport, RayReport, SensorReport,
+    ShadowReport, SphereMapping, WavelengthsReport,
 };
 pub use scatter::{BounceReport, FoundReport, LightSampleReport, SampledDirectionReport, ScatteringReport};
 pub use svg::svg;
+pub use text::{Excerpt, Part, Selection};
 
 /// Traces one sample and reports all steps of its computation.
 pub fn inspect(renderer: &Renderer, id: SampleId) -> Inspection {
-    let candidates = |path: &Path, hit: &Hit| candidate::candidates(renderer.world(), &path.ray, hit);
-    trace(renderer, id, candidates)
+    trace(renderer, id, true)
 }
 
 /// The same without the tests of primitives, which take most of the time.
 fn inspect_without_tests(renderer: &Renderer, id: SampleId) -> Inspection {
-    trace(renderer, id, |_, _| Vec::new())
+    trace(renderer, id, false)
 }
 
-fn trace(
-    renderer: &Renderer,
-    id: SampleId,
-    candidates: impl Fn(&Path, &Hit) -> Vec<Candidate>,
-) -> Inspection {
+fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
     let mut events: Vec<Event> = Vec::new();
     let (traced, _) = renderer.trace_events(&[id], &mut events);
     let traced = traced[0];
@@ -60,14 +62,8 @@ fn trace(
         }),
     };
 
-    let mut log = TraceLogBuilder::new(renderer, traced.lanes);
-    for event in &events {
-        let tests = match event {
-            Event::Hit { path, hit } => candidates(path, hit),
-            _ => Vec::new(),
-        };
-        log.record(event, tests);
-    }
+    let mut log = TraceLogBuilder::new(renderer, traced.lanes, with_tests);
+    events.iter().for_each(|event| log.record(event));
     let told = log.end();
     let film = renderer.rgb(told.sum * traced.weight, &traced.lanes);
     let mut inspection = Inspection {
@@ -78,10 +74,13 @@ fn trace(
         contributions: Vec::new(),
         wavelengths,
         camera: camera::camera_steps(renderer, id),
+        render_origin: renderer.world().origin().to_array(),
         rays: told.rays,
         radiance: told.radiance,
         additions: told.additions,
         weight: traced.weight,
+        sensor: sensor(renderer, told.sum * traced.weight, &traced.lanes),
+        development: development(&renderer.view().image),
         alpha: traced.alpha,
         film: traced.rgb,
         adds_up: film.map(f32::to_bits) == traced.rgb.map(f32::to_bits),
@@ -89,4 +88,22 @@ fn trace(
     inspection.color8 = pixel::color8(&renderer.view().image, &inspection);
     inspection.contributions = expression::largest(&inspection);
     inspection
+}
+
+fn sensor(renderer: &Renderer, light: Spectrum, lanes: &SpectralMode) -> SensorReport {
+    let settings = &renderer.view().image.sensor;
+    // The one factor of all channels, by the brightest.
+    let brightest = |rgb: [f32; 3]| rgb.into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
+    let [measured, limited] = [renderer.measured(light, lanes), renderer.rgb(light, lanes)].map(brightest);
+    SensorReport {
+        camera: settings.camera.map(CameraSensor::name),
+        imaging_ratio: settings.imaging_ratio,
+        white_balance: settings.white_balance,
+        max_component: settings.max_component,
+        scaled_by: if measured == limited { 1.0 } else { limited / measured },
+    }
+}
+
+fn development(image: &ImageSettings) -> DevelopmentReport {
+    DevelopmentReport { exposure: image.exposure, tonemap: image.tonemap.word(), denoise: image.denoise }
 }

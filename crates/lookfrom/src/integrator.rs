@@ -123,11 +123,16 @@ impl Path {
         if self.interior.is_empty() {
             return *self;
         }
-        let length = match hit.is_hit() {
+        let transmittance = world.transmittance(self.interior, self.length_to(hit), lanes);
+        Self { beta: self.beta * transmittance, ..*self }
+    }
+
+    /// The length of the way to `hit`; infinite for a miss.
+    fn length_to(&self, hit: &Hit) -> f32 {
+        match hit.is_hit() {
             true => Vec3::from_array(self.ray.direction).length() * hit.t,
             false => f32::INFINITY,
-        };
-        Self { beta: self.beta * world.transmittance(self.interior, length, lanes), ..*self }
+        }
     }
 
     /// The same path continued behind a surface that it passes.
@@ -211,6 +216,23 @@ impl<P: Probe> StepOutput<'_, P> {
     /// The spectral mode of a path.
     fn lanes(&self, path: &Path) -> SpectralMode {
         self.queues.lanes[path.slot as usize]
+    }
+
+    /// [`Path::absorbed`], and tells the probe.
+    fn absorbed(&mut self, world: &World, path: &Path, hit: &Hit) -> Path {
+        let lanes = self.lanes(path);
+        let absorbed = path.absorbed(world, hit, &lanes);
+        let length = || path.length_to(hit);
+        self.probe.notice_some(|| {
+            (!path.interior.is_empty()).then(|| Event::Absorbed {
+                address: path.address,
+                interior: path.interior,
+                length: length(),
+                transmittance: world.transmittance(path.interior, length(), &lanes),
+                beta: absorbed.beta,
+            })
+        });
+        absorbed
     }
 
     /// Adds light to a path's sample.

@@ -345,12 +345,16 @@ impl Renderer {
 
     /// The colour that the sensor measures: linear Rec. 709.
     pub fn rgb(&self, light: Spectrum, lanes: &SpectralMode) -> [f32; 3] {
-        let rgb = match lanes {
-            SpectralMode::Rgb if self.keeps_rgb => return light.rgb(),
+        self.limited(self.measured(light, lanes))
+    }
+
+    /// The same without the maximum component value.
+    pub(crate) fn measured(&self, light: Spectrum, lanes: &SpectralMode) -> [f32; 3] {
+        match lanes {
+            SpectralMode::Rgb if self.keeps_rgb => light.rgb(),
             SpectralMode::Rgb => self.sensor.balanced(light.rgb()),
             SpectralMode::Spectral(wavelengths) => self.sensor.rgb(light, wavelengths),
-        };
-        self.limited(rgb)
+        }
     }
 
     /// A colour scaled so that no channel of the sensor exceeds its limit (pbrt's `maxcomponentvalue`). The channels

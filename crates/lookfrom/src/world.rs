@@ -299,17 +299,18 @@ impl World {
 
     #[inline(never)]
     fn transmittance_inside(&self, media: InteriorStack, distance: f32, lanes: &SpectralMode) -> Spectrum {
-        let medium = media.medium(&self.materials).and_then(|index| self.media.get(index as usize));
-        let Some(medium) = medium else { return lanes.one() };
-        if distance.is_infinite() && media.space().is_none() {
+        let Some((sigma, scale)) = self.absorption(media, lanes) else { return lanes.one() };
+        if scale == 0.0 || distance.is_infinite() && media.space().is_none() {
             return lanes.one();
         }
-        let sigma = self.textures.spectrum(&medium.absorption, &TexturePoint::NOWHERE, lanes);
-        if medium.scale == 0.0 {
-            return lanes.one();
-        }
-        let length = medium.scale * distance;
+        let length = scale * distance;
         lanes.one() * sigma.map(|sigma| if sigma == 0.0 { 1.0 } else { libm::expf(-sigma * length) })
+    }
+
+    /// The absorption coefficient of the medium that a ray is in, and a factor of it; `None` where nothing is absorbed.
+    pub(crate) fn absorption(&self, media: InteriorStack, lanes: &SpectralMode) -> Option<(Spectrum, f32)> {
+        let medium = media.medium(&self.materials).and_then(|index| self.media.get(index as usize))?;
+        Some((self.textures.spectrum(&medium.absorption, &TexturePoint::NOWHERE, lanes), medium.scale))
     }
 
     /// The same world with its environment maps rotated by `rotation`, in the world: geometry and materials are shared,

@@ -5,7 +5,7 @@ mod support;
 use std::collections::BTreeSet;
 
 use lookfrom::film::{Film, FilmTile};
-use lookfrom::inspect::{Inspection, RayReport, inspect, svg};
+use lookfrom::inspect::{Inspection, RayReport, inspect, inspect_pixel, svg};
 use lookfrom::render::SampleId;
 use lookfrom_scene::image::Image;
 use lookfrom_scene::light::{Light, LightKind, Power, Sky};
@@ -187,6 +187,11 @@ fn what_is_shown_of_a_path_adds_up_to_what_the_film_received() {
     }
 }
 
+/// Y of a linear Rec. 709 colour.
+fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    0.212_639 * r + 0.715_169 * g + 0.072_192 * b
+}
+
 fn close(a: f32, b: f32) -> bool {
     (a - b).abs() <= 1e-5 * a.abs().max(b.abs()) + 1e-12
 }
@@ -222,19 +227,16 @@ fn check_ray(inspection: &Inspection, ray: &RayReport, what: &str) {
         let expected = sample.bsdf_pdf.map_or(1.0, |q| heuristic(sample.pdf, q));
         assert!(close(sample.weight, expected), "{what}: {light:?}");
         let through = |lane: usize| match &light.shadow {
-            Some(shadow) => shadow.blockers.iter().map(|blocker| blocker.passed[lane]).product(),
+            Some(shadow) => {
+                let passed: f32 = shadow.blockers.iter().map(|blocker| blocker.passed[lane]).product();
+                passed * shadow.rest.as_ref().map_or(0.0, |rest| rest[lane])
+            }
             None => 0.0,
         };
         let (arrives, f_cos) = (&sample.arrives.lanes, &sample.f_cos);
         let added =
             |lane| share[lane] * f_cos[lane] * arrives[lane] * through(lane) * sample.weight / sample.pdf;
-        let found = &light.added.lanes;
-        // what is left of the way after the last crossing is absorbed as well, and not told
-        if light.shadow.as_ref().is_none_or(|shadow| shadow.blockers.is_empty()) {
-            assert_close(found, added, &format!("{what}: light sample"));
-        } else {
-            assert!(found.iter().enumerate().all(|(lane, found)| *found <= 1.00001 * added(lane)), "{what}");
-        }
+        assert_close(&light.added.lanes, added, &format!("{what}: light sample"));
     }
     let next = inspection.rays.iter().find(|next| next.parent == Some(ray.address));
     if let Some(bounce) = &ray.bounce {
@@ -319,4 +321,116 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
         assert!(told.contains(expected), "{expected:?} is not in {told:#?}");
     }
     assert!(!told.iter().any(|told| told.starts_with("random_walk sampled")), "{told:#?}");
+}
+
+#[test]
+fn a_pixel_is_the_sum_of_its_samples() {
+    for integrator in [Integrator::Path, Integrator::Whitted] {
+        let compiled = Compiled::new(room(integrator, ColorMode::Rgb));
+        let renderer = compiled.renderer();
+        let mut said = BTreeSet::new();
+        for pixel in pixels() {
+            let whole = inspect_pixel(&renderer, pixel, 0..4).expect("a pixel of the picture");
+            let mut contributions: Vec<f32> = Vec::new();
+            for summary in &whole.all {
+                let one = inspect(&renderer, SampleId { pixel, sample: summary.sample });
+                assert_eq!(one.film, summary.film, "{pixel:?}");
+                contributions.extend(one.additions.iter().map(|addition| luminance(addition.value.rgb)));
+                assert_eq!(summary.light.is_some(), one.film != [0.0; 3], "{pixel:?}");
+                assert!(one.to_string().contains("In short"), "{one}");
+            }
+            contributions.sort_by(|a, b| b.total_cmp(a));
+            let told: Vec<f32> = whole.contributions.iter().map(|one| luminance(one.value)).collect();
+            assert_eq!(told, contributions[..told.len()], "{pixel:?}: the largest of all");
+            assert_eq!(told.len(), contributions.len().min(3), "{pixel:?}");
+            said.extend(whole.contributions.into_iter().map(|one| one.expression));
+        }
+        for expected in match integrator {
+            Integrator::Path => {
+                ["camera → floor (D) → window", "camera → prism (T) → ", " (D) → sky", "metal (G) → "]
+            }
+            _ => [
+                "camera → floor (D) → window",
+                "camera → jelly (R) → ",
+                "mirror (R) → ",
+                "camera → prism (T) → ",
+            ],
+        } {
+            assert!(said.iter().any(|said| said.contains(expected)), "{expected:?} is not in {said:#?}");
+        }
+    }
+    let compiled = Compiled::new(room(Integrator::Path, ColorMode::Rgb));
+    let renderer = compiled.renderer();
+    assert!(inspect_pixel(&renderer, [48, 0], 0..1).is_err_and(|error| error.message.contains("48 × 32")));
+    assert!(inspect_pixel(&renderer, [0, 0], 1..1).is_err_and(|error| error.message.contains("1..1")));
+}
+
+/// A sheet with holes above a floor, seen straight from above.
+const SHEET: &str = r#"
+[camera]
+lookfrom = [0, 5, 0.01]
+lookat = [0, 0, 0]
+fov = 40
+
+[image]
+width = 16
+height = 16
+
+[render]
+samples = 2
+
+[materials.floor]
+diffuse = 0.5
+
+[[quad]]
+corner = [-4, 0, -4]
+edge_u = [0, 0, 8]
+edge_v = [8, 0, 0]
+material = "floor"
+
+[[quad]]
+corner = [-4, 1, -4]
+edge_u = [0, 0, 8]
+edge_v = [8, 0, 0]
+material = "floor"
+alpha = 0.4
+
+[[quad]]
+corner = [-4, 2, -4]
+edge_u = [0, 0, 8]
+edge_v = [8, 0, 0]
+material = "floor"
+alpha = 0.4
+
+[[light]]
+type = "point"
+position = [0, 3, 0]
+intensity = 5
+"#;
+
+#[test]
+fn rays_that_pass_holes_are_shown() {
+    for integrator in [Integrator::Whitted, Integrator::Raycast, Integrator::Normals] {
+        let mut of_sheets = scene(SHEET);
+        of_sheets.render.integrator = integrator;
+        let compiled = Compiled::new(of_sheets);
+        let renderer = compiled.renderer();
+        let mut longest = 0;
+        for (y, x) in (0..16).flat_map(|y| (0..16).map(move |x| (y, x))) {
+            let inspection = inspect(&renderer, SampleId { pixel: [x, y], sample: 1 });
+            let text = inspection.to_string();
+            let mut parent = None;
+            for ray in &inspection.rays {
+                let kind = if parent.is_none() { "camera" } else { "straight on" };
+                assert_eq!((ray.kind, ray.parent), (kind, parent), "{integrator:?} at {x} {y}");
+                assert!(text.contains(&format!("{kind} ray {}:", ray.address)), "{text}");
+                assert_eq!(ray.subtree, inspection.radiance, "{integrator:?} at {x} {y}");
+                parent = Some(ray.address);
+            }
+            longest = longest.max(inspection.rays.len());
+            let drawing = svg(&renderer, &inspection);
+            assert_eq!(drawing.contains("ray that passed a surface"), inspection.rays.len() > 1, "{x} {y}");
+        }
+        assert_eq!(longest, 3, "{integrator:?}: past both sheets to the floor");
+    }
 }

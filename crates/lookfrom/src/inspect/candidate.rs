@@ -1,18 +1,27 @@
-//! Candidates of an intersection test, with each number of the test in f32 and f64.
+//! Candidates of an intersection test, with the inputs of the test and each of its numbers in f32 and f64.
 //!
 //! The numbers are those of the kernel's reference implementation ([`lookfrom_bvh::reference`]) for the ray that was
 //! traced: the same inputs, computed once in f32 and once in f64, so that a difference shows the loss of precision.
+//! Every number can be computed anew from the inputs, which are printed exactly.
 
-use glam::Vec3;
-use lookfrom_bvh::reference::{Cramer, Quadratic, Rejection, Root, cramer, sphere};
-use lookfrom_bvh::{Hit, NONE, Observer, Procedural, Ray};
+mod curve;
+mod disk;
+mod patch;
+mod quadric;
+mod reference;
+mod traversal;
+
+use glam::{DVec3, Vec3};
+use lookfrom_bvh::{Hit, NONE, Procedural, Ray};
 use serde::Serialize;
 
-use crate::primitive::{Mesh, Primitives};
-use crate::world::World;
+use traversal::Tested;
 
-/// Maximum number of reported primitives per ray.
-const MOST_CANDIDATES: usize = 10_000;
+use crate::primitive::Primitives;
+use crate::world::{Instance, World};
+
+pub use traversal::TraversalReport;
+pub(super) use traversal::of_shadow;
 
 /// A primitive that a ray was tested against.
 #[derive(Clone, Debug, Serialize)]
@@ -27,22 +36,61 @@ pub struct Candidate {
     pub test: Test,
 }
 
-/// The numbers of a test, each with its name in the lecture notes.
-#[derive(Clone, Debug, Serialize)]
+/// A test by the kind of primitive.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum Test {
     /// Cramer's rule: `D D1 D2 D3 α β γ t`.
-    Triangle {
-        /// The numbers, by name.
-        numbers: Vec<(&'static str, Number)>,
-    },
+    Triangle(TestNumbers),
     /// The quadratic equation `A t² + 2 B t + C = 0`.
-    Sphere {
-        /// The numbers, by name.
-        numbers: Vec<(&'static str, Number)>,
-    },
-    /// Another primitive, without numbers in the notes.
-    Other,
+    Sphere(TestNumbers),
+    /// The same of a sphere or cylinder in its own space, or the plane of a disk there.
+    Quadric(TestNumbers),
+    /// The plane of the disk, and the coordinates `x y` in it.
+    Disk(TestNumbers),
+    /// The quadratic equation `a + b u + c u² = 0` of a bilinear patch.
+    Patch(TestNumbers),
+    /// The distance of the ray from the curve at its hit.
+    Curve(TestNumbers),
+}
+
+impl Test {
+    /// The inputs and the numbers.
+    pub fn numbers(&self) -> &TestNumbers {
+        match self {
+            Self::Triangle(numbers)
+            | Self::Sphere(numbers)
+            | Self::Quadric(numbers)
+            | Self::Disk(numbers)
+            | Self::Patch(numbers)
+            | Self::Curve(numbers) => numbers,
+        }
+    }
+}
+
+/// The inputs of a test and the numbers that are computed from them. Lengths and points are relative to the render
+/// origin ([`Inspection::render_origin`](super::Inspection::render_origin)), or in the space of an object where an input
+/// `a in the object` says so.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TestNumbers {
+    /// The inputs by name, exactly: each is a vector or a number. `a` and `d` are the ray's, `a + t d`.
+    pub inputs: Vec<(&'static str, Vec<f64>)>,
+    /// The numbers, each with its name in the lecture notes.
+    pub numbers: Vec<(&'static str, Number)>,
+}
+
+impl TestNumbers {
+    /// Adds an input.
+    fn input(&mut self, name: &'static str, value: impl AsRef<[f64]>) {
+        self.inputs.push((name, value.as_ref().to_vec()));
+    }
+
+    /// Adds a number, unless there is none.
+    fn number(&mut self, name: &'static str, f32: f32, f64: f64) {
+        if !(f32.is_nan() && f64.is_nan()) {
+            self.numbers.push((name, Number::new(f32, f64)));
+        }
+    }
 }
 
 /// One quantity, computed twice.
@@ -73,24 +121,58 @@ fn matching_bits(approximate: f32, exact: f64) -> u32 {
     if bits > 0.0 { (bits as u32).min(f32::MANTISSA_DIGITS - 1) } else { 0 }
 }
 
-/// Every primitive that the kernel tests `ray` against, in order.
-pub(super) fn candidates(world: &World, ray: &Ray, nearest: &Hit) -> Vec<Candidate> {
-    let mut tested = Tested(Vec::new());
+/// The cost of a ray, and every primitive that the kernel tests it against, in order.
+pub(super) fn candidates(world: &World, ray: &Ray, nearest: &Hit) -> (TraversalReport, Vec<Candidate>) {
+    let mut tested = Tested::default();
     world.bvh.query().observer(&mut tested).closest_hit(ray);
-    tested.0.into_iter().map(|ids| candidate(world, ray, ids, nearest)).collect()
+    let Tested { traversal, primitives } = tested;
+    (traversal, primitives.into_iter().map(|ids| candidate(world, ray, ids, nearest)).collect())
 }
 
-/// The observer that collects the candidates.
-struct Tested(Vec<[u32; 3]>);
+/// A ray in the space in which a primitive is tested.
+#[derive(Clone, Copy, Debug)]
+struct TestRay {
+    /// As the kernel tests it: not rounded to f32 in an instance.
+    origin: DVec3,
+    direction: DVec3,
+    /// Rounded to f32.
+    single: Ray,
+}
 
-impl Observer for Tested {
-    fn candidate(&mut self, instance: u32, geometry: u32, primitive: u32) {
-        let ids = [instance, geometry, primitive];
-        if self.0.len() < MOST_CANDIDATES && !self.0.contains(&ids) {
-            self.0.push(ids);
+impl TestRay {
+    /// A ray of render space, or in the object of an instance as the kernel takes it there; t stays the same.
+    fn new(ray: &Ray, instance: Option<&Instance>) -> Self {
+        let [mut origin, mut direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
+        if let Some(instance) = instance {
+            let to_object = &instance.object_from_render;
+            origin = to_object.transform_vector3(origin - instance.render_from_object.w_axis.truncate());
+            direction = to_object.transform_vector3(direction);
+        }
+        let single =
+            Ray { origin: origin.as_vec3().to_array(), direction: direction.as_vec3().to_array(), ..*ray };
+        Self { origin, direction, single }
+    }
+
+    /// Why a hit at `t` is out of range, if it is.
+    fn range(&self, t: f64) -> Option<&'static str> {
+        if !(t > f64::from(self.single.t_min)) {
+            Some("t ≤ 0: behind the origin")
+        } else if !(t < f64::from(self.single.t_max)) {
+            Some("t beyond the end of the ray")
+        } else {
+            None
         }
     }
+
+    /// Adds the ray as inputs.
+    fn add_to(&self, numbers: &mut TestNumbers, names: [&'static str; 2]) {
+        numbers.input(names[0], self.origin.to_array());
+        numbers.input(names[1], self.direction.to_array());
+    }
 }
+
+/// Names of a ray in the space of an object.
+const IN_OBJECT: [&str; 2] = ["a in the object", "d in the object"];
 
 fn candidate(
     world: &World,
@@ -99,40 +181,47 @@ fn candidate(
     nearest: &Hit,
 ) -> Candidate {
     let (primitives, placed) = world.primitives(&Hit { instance, geometry, primitive, ..Hit::MISS });
-    // In an instance the test is done in object space, with the same t.
-    let ray = match placed {
-        None => *ray,
-        Some(placed) => {
-            let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-            let (origin, direction) = placed.in_object(origin, direction);
-            Ray { origin: origin.as_vec3().to_array(), direction: direction.as_vec3().to_array(), ..*ray }
-        }
-    };
+    let ray = TestRay::new(ray, placed);
     let index = primitive as usize;
+    let mut numbers = TestNumbers::default();
+    if let Some(placed) = placed {
+        let [x, y, z, _] = placed.object_from_render.transpose().to_cols_array_2d();
+        numbers.input("instance at", placed.render_from_object.w_axis.truncate().to_array());
+        numbers.input("to object, row 1", &x[..3]);
+        numbers.input("to object, row 2", &y[..3]);
+        numbers.input("to object, row 3", &z[..3]);
+    }
+    ray.add_to(&mut numbers, if placed.is_some() { IN_OBJECT } else { ["a", "d"] });
     let (kind, shape, test, outcome) = match primitives {
         Primitives::Mesh(mesh) => {
-            let (test, outcome) = triangle_test(mesh, index, &ray);
-            ("triangle", mesh.binding.shape, test, outcome)
+            let outcome = reference::triangle(mesh.corners(index), &ray, &mut numbers);
+            ("triangle", mesh.binding.shape, Test::Triangle(numbers), outcome)
         }
         Primitives::Spheres(spheres) => {
             let shape = spheres.bindings[spheres.binding_of[index] as usize].binding.shape;
-            let (test, outcome) = sphere_test(&spheres.spheres[index], &ray);
-            ("sphere", shape, test, outcome)
+            let outcome = reference::sphere(&spheres.spheres[index], &ray, &mut numbers);
+            ("sphere", shape, Test::Sphere(numbers), outcome)
         }
         Primitives::Disks(disks) => {
-            ("disk", disks.bindings[index].shape, Test::Other, procedural_test(disks, primitive, &ray))
+            let reason = disk::test(&disks.disks[index], &ray, &mut numbers);
+            let outcome = procedural(disks, primitive, &ray, reason);
+            ("disk", disks.bindings[index].shape, Test::Disk(numbers), outcome)
         }
         Primitives::Quadrics(quadrics) => {
-            let outcome = procedural_test(&**quadrics, primitive, &ray);
-            ("quadric", quadrics.bindings[index].shape, Test::Other, outcome)
+            let reason = quadric::test(&quadrics.quadrics[index], &ray, &mut numbers);
+            let outcome = procedural(&**quadrics, primitive, &ray, reason);
+            ("quadric", quadrics.bindings[index].shape, Test::Quadric(numbers), outcome)
         }
         Primitives::Patches(patches) => {
-            let outcome = procedural_test(&**patches, primitive, &ray);
-            ("patch", patches.binding.shape, Test::Other, outcome)
+            patch::test(patches.corners(index), &ray, &mut numbers);
+            let outcome = procedural(&**patches, primitive, &ray, None);
+            ("patch", patches.binding.shape, Test::Patch(numbers), outcome)
         }
         Primitives::Curves(curves) => {
-            let outcome = procedural_test(&**curves, primitive, &ray);
-            ("curve segment", curves.binding.shape, Test::Other, outcome)
+            curve::test(curves, primitive, &ray, &mut numbers);
+            let reason = Some("the ray passes at more than half the width");
+            let outcome = procedural(&**curves, primitive, &ray, reason);
+            ("curve segment", curves.binding.shape, Test::Curve(numbers), outcome)
         }
     };
     let within = if instance == NONE { String::new() } else { format!(" in instance {instance}") };
@@ -140,7 +229,7 @@ fn candidate(
         [nearest.instance, nearest.geometry, nearest.primitive] == [instance, geometry, primitive];
     let verdict = match (is_nearest, outcome.starts_with("hit")) {
         (true, true) => format!("{outcome}: the nearest"),
-        (true, false) => format!("the nearest hit, though in f64 by Cramer's rule alone {outcome}"),
+        (true, false) => format!("the nearest hit, though by these numbers in f64 alone {outcome}"),
         (false, true) => format!("{outcome}, but another is nearer"),
         (false, false) => outcome,
     };
@@ -152,67 +241,16 @@ fn candidate(
     }
 }
 
-fn procedural_test(primitives: &impl Procedural, primitive: u32, ray: &Ray) -> String {
-    let hit = primitives.intersect(primitive, ray);
-    hit.map_or("rejected: outside of the primitives or of the range of t".to_owned(), |_| "hit".into())
-}
-
-fn triangle_test(mesh: &Mesh, index: usize, ray: &Ray) -> (Test, String) {
-    let [p0, p1, p2] = mesh.corners(index);
-    let single: Cramer<f32> = cramer(ray.origin, ray.direction, p0, p1, p2);
-    let [a, d, p0, p1, p2] = [ray.origin, ray.direction, p0, p1, p2].map(|v| v.map(f64::from));
-    let double: Cramer<f64> = cramer(a, d, p0, p1, p2);
-    let numbers = vec![
-        ("D", Number::new(single.d, double.d)),
-        ("D1", Number::new(single.d1, double.d1)),
-        ("D2", Number::new(single.d2, double.d2)),
-        ("D3", Number::new(single.d3, double.d3)),
-        ("α", Number::new(single.alpha, double.alpha)),
-        ("β = D1/D", Number::new(single.beta, double.beta)),
-        ("γ = D2/D", Number::new(single.gamma, double.gamma)),
-        ("t = D3/D", Number::new(single.t, double.t)),
-    ];
-    let outcome = match double.accept(f64::from(ray.t_min), f64::from(ray.t_max)) {
-        Ok(_) => "hit".to_owned(),
-        Err(reason) => format!("rejected: {}", why(reason)),
-    };
-    (Test::Triangle { numbers }, outcome)
-}
-
-fn sphere_test(of: &lookfrom_bvh::Sphere, ray: &Ray) -> (Test, String) {
-    let single: Quadratic<f32> = sphere(ray.origin, ray.direction, of.center, of.radius);
-    let [a, d, c] = [ray.origin, ray.direction, of.center].map(|v| v.map(f64::from));
-    let double: Quadratic<f64> = sphere(a, d, c, f64::from(of.radius));
-    let numbers = vec![
-        ("A", Number::new(single.a, double.a)),
-        ("B", Number::new(single.b, double.b)),
-        ("C", Number::new(single.c, double.c)),
-        ("B² − AC", Number::new(single.discriminant_naive, double.discriminant_naive)),
-        ("Δ (stable)", Number::new(single.discriminant, double.discriminant)),
-        ("q", Number::new(single.q, double.q)),
-        ("t₁ = q/A", Number::new(single.t1, double.t1)),
-        ("t₂ = C/q", Number::new(single.t2, double.t2)),
-    ];
-    let outcome = match double.accept(f64::from(ray.t_min), f64::from(ray.t_max)) {
-        Ok((root, t)) => {
-            let which = if t == double.t1 { "t₁" } else { "t₂" };
-            let side = if root == Root::Near { "the near root" } else { "the far root" };
-            format!("hit at {which}, {side}")
-        }
-        Err(reason) => format!("rejected: {}", why(reason)),
-    };
-    (Test::Sphere { numbers }, outcome)
-}
-
-fn why(reason: Rejection) -> &'static str {
-    match reason {
-        Rejection::Parallel => "D = 0: the ray runs along the plane",
-        Rejection::BetaNegative => "β < 0",
-        Rejection::GammaNegative => "γ < 0",
-        Rejection::BeyondEdge => "β + γ > 1",
-        Rejection::NoRealRoot => "no real root",
-        Rejection::BeforeTMin => "t ≤ 0: behind the origin",
-        Rejection::BeyondTMax => "t beyond the end of the ray",
+/// The result of the kernel's own test of a primitive, which is in f64; `reason` is that of a miss, where it is known.
+fn procedural(
+    primitives: &impl Procedural,
+    primitive: u32,
+    ray: &TestRay,
+    reason: Option<&'static str>,
+) -> String {
+    match primitives.intersect(primitive, &ray.single) {
+        Some(_) => "hit".into(),
+        None => format!("rejected: {}", reason.unwrap_or("outside of the primitive or of the range of t")),
     }
 }
 

@@ -74,6 +74,10 @@ pub struct SampledDirectionReport {
     pub light_pdf: f32,
     /// p: the density with the choice of the light, `probability · light_pdf`.
     pub pdf: f32,
+    /// The point on the light, in the world; `None` for a light infinitely far away.
+    pub point: Option<[f64; 3]>,
+    /// Whether the light has only one direction here (a point, a distant light): then p is a probability, not a density.
+    pub is_delta: bool,
     /// L: the unoccluded incident radiance.
     pub arrives: Amount,
     /// The BSDF times the cosine; black where it does not scatter this light.
@@ -104,6 +108,8 @@ pub struct BounceReport {
     pub pdf_is_proportional: bool,
     /// Relative index of refraction, beyond the surface over before it, where light was refracted; else 1.
     pub eta: f32,
+    /// The product of η² over all refractions so far, this one included: roulette multiplies the throughput by it.
+    pub eta_scale: f32,
     /// β before.
     pub throughput_before: Factor,
     /// `β f cos / pdf`.

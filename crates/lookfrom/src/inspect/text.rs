@@ -1,230 +1,139 @@
-//! The inspection as text: from the pixel to the world, then the tree of rays, indented, or the path, ray by ray.
+//! The inspection as text: what matters first, from the pixel to the world, then the tree of rays, indented, or the path,
+//! ray by ray, and the sum. An [`Excerpt`] is a part of it.
 
+mod camera;
+mod candidates;
+mod hit;
 mod path;
 mod pixel;
+mod sum;
+mod tree;
 
-use std::fmt::{self, Display, Formatter, Write as _};
+use std::fmt::{self, Display, Formatter, Write};
 
-use super::candidate::{Number, Test};
-use super::{Amount, Candidate, Inspection, LightReport, MetReport, RayReport, ShadowReport};
+use super::{Amount, Inspection, RayReport};
 
-/// Number of candidates that are shown besides the hit of a ray of the tree; the JSON has all.
-const OTHERS_IN_TREE: usize = 5;
+/// Maximum number of columns of a line.
+const COLUMNS: usize = 120;
 
-impl Display for Inspection {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let [x, y] = self.pixel;
-        writeln!(f, "pixel {x} {y} (column, row from the top), sample {}", self.sample)?;
-        writeln!(f)?;
-        self.write_summary(f)?;
-        writeln!(f)?;
-        self.write_camera(f)?;
-        writeln!(f)?;
-        self.write_wavelengths(f)?;
-        if self.is_path() {
-            self.write_path(f)?;
-        } else {
-            writeln!(f, "The tree of rays")?;
-            if let Some(root) = self.rays.first() {
-                self.write_ray(f, root, 0)?;
-            }
-        }
-        writeln!(f)?;
-        self.write_sum(f)
-    }
+/// A part of the text of an inspection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// From the pixel to the world.
+    Camera,
+    /// The rays and the primitives that they were tested against.
+    Tests,
+    /// The light at each hit.
+    Lights,
+    /// What matters, and the sum.
+    Sums,
+}
+
+/// The parts and rays to show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Selection {
+    /// Only the ray with this address.
+    pub ray: Option<u64>,
+    /// Only rays after this number of reflections, refractions and bounces.
+    pub bounce: Option<u32>,
+    /// Only this part.
+    pub part: Option<Part>,
+}
+
+/// The text of a part of an inspection.
+#[derive(Clone, Copy, Debug)]
+pub struct Excerpt<'a> {
+    pub(super) inspection: &'a Inspection,
+    selection: Selection,
 }
 
 impl Inspection {
-    fn write_camera(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let camera = &self.camera;
-        writeln!(f, "From the pixel to the world: P_world = T4 · R3 · S2 · T1 · P_k")?;
-        writeln!(f, "  P_k      = {}", vector(&camera.p_k))?;
-        for step in &camera.steps {
-            writeln!(f, "  {}: {}", step.name, step.does)?;
-            let title =
-                if step.name == "T1" { String::new() } else { format!("product up to {}", step.name) };
-            for (row, (matrix, product)) in step.matrix.iter().zip(&step.product).enumerate() {
-                let matrix = matrix.map(|x| format!("{:>11}", short(x))).join(" ");
-                let product = product.map(|x| format!("{:>11}", short(x))).join(" ");
-                match (title.is_empty(), row) {
-                    (true, _) => writeln!(f, "    [{matrix} ]")?,
-                    (false, 0) => writeln!(f, "    [{matrix} ]   [{product} ]  {title}")?,
-                    (false, _) => writeln!(f, "    [{matrix} ]   [{product} ]")?,
+    /// A part of its text; all of it by default.
+    pub fn excerpt(&self, selection: Selection) -> Excerpt<'_> {
+        Excerpt { inspection: self, selection }
+    }
+}
+
+impl Display for Inspection {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        self.excerpt(Selection::default()).fmt(f)
+    }
+}
+
+impl Display for Excerpt<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let mut text = String::new();
+        self.write(&mut text)?;
+        text.lines().try_for_each(|line| write_wrapped(f, line))
+    }
+}
+
+impl Excerpt<'_> {
+    fn write(&self, f: &mut String) -> fmt::Result {
+        let inspection = self.inspection;
+        let [x, y] = inspection.pixel;
+        writeln!(f, "pixel {x} {y} (column, row from the top), sample {}", inspection.sample)?;
+        if self.has(Part::Sums) && !self.is_of_rays() {
+            writeln!(f)?;
+            inspection.write_summary(f)?;
+        }
+        if self.has(Part::Camera) && !self.is_of_rays() {
+            writeln!(f)?;
+            inspection.write_camera(f)?;
+            inspection.write_wavelengths(f)?;
+        }
+        if self.has(Part::Tests) || self.has(Part::Lights) {
+            writeln!(f)?;
+            if inspection.is_path() {
+                self.write_path(f)?;
+            } else {
+                writeln!(f, "The tree of rays")?;
+                if let Some(root) = inspection.rays.first() {
+                    self.write_ray(f, root, 0)?;
                 }
             }
-            writeln!(f, "    point  = {}", vector(&step.point))?;
         }
-        writeln!(f, "  lookfrom = {}", vector(&camera.lookfrom))?;
-        writeln!(
-            f,
-            "  u (left) = {}   v (up) = {}   w (forward) = {}",
-            vector(&camera.u),
-            vector(&camera.v),
-            vector(&camera.w)
-        )?;
-        let moved = if camera.lens { "   (a point of the lens)" } else { "" };
-        writeln!(f, "  a        = {}{moved}", vector(&camera.a))?;
-        let on_plane =
-            if camera.lens { "where the ray from the lens crosses the image plane" } else { "P_world" };
-        writeln!(f, "  b        = {}   ({on_plane})", vector(&camera.b))?;
-        writeln!(
-            f,
-            "  b − a    = {}   p(t) = a + t (b − a); t = 1 is the image plane",
-            vector(&camera.direction)
-        )
-    }
-
-    fn write_ray(&self, f: &mut Formatter<'_>, ray: &RayReport, indent: usize) -> fmt::Result {
-        let pad = "  ".repeat(indent + 1);
-        writeln!(f, "{pad}{} ray {}: throughput {}", ray.kind, ray.address, lanes(&ray.throughput))?;
-        writeln!(f, "{pad}  a = {}   direction = {}", vector(&ray.a), vector32(&ray.direction))?;
-        write_candidates(f, ray, OTHERS_IN_TREE, &pad)?;
-        match &ray.met {
-            None => writeln!(f, "{pad}  meets nothing: the sky")?,
-            Some(met) => write_met(f, met, &pad)?,
-        }
-        for light in &ray.lights {
-            write_light(f, light, &pad)?;
-        }
-        for addition in self.additions.iter().filter(|addition| addition.address == ray.address) {
-            writeln!(f, "{pad}  + {}   {}", amount(&addition.value), addition.term)?;
-        }
-        let straight_on =
-            self.rays.iter().find(|child| child.parent == Some(ray.address) && child.kind == "straight on");
-        if let Some(child) = straight_on {
-            writeln!(f, "{pad}  the ray passes this surface (cut out by its alpha) and goes straight on")?;
-            return self.write_ray(f, child, indent);
-        }
-        for branch in &ray.branches {
-            let mut how = String::new();
-            if let Some(fresnel) = branch.fresnel {
-                write!(how, ", Fresnel reflectance {fresnel}")?;
-            }
-            if branch.total_reflection {
-                how.push_str(", total internal reflection");
-            }
-            if let Some(cut) = branch.cut {
-                write!(how, "; not followed: {cut}")?;
-            }
-            writeln!(f, "{pad}  {} branch, weight {}{how}", branch.kind, lanes(&branch.weight))?;
-            if let Some(child) = self.rays.iter().find(|child| child.address == branch.address) {
-                self.write_ray(f, child, indent + 2)?;
-            }
-        }
-        if !ray.branches.is_empty() {
-            writeln!(f, "{pad}  all below ray {}: {}", ray.address, amount(&ray.subtree))?;
+        if self.has(Part::Sums) && !self.is_of_rays() {
+            writeln!(f)?;
+            inspection.write_sum(f)?;
+            inspection.write_development(f)?;
         }
         Ok(())
     }
 
-    /// Writes the wavelengths of the lanes, in spectral mode.
-    fn write_wavelengths(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Some(wavelengths) = &self.wavelengths else { return Ok(()) };
-        writeln!(f, "Light has four wavelengths; numbers in [brackets] are one for each, in this order")?;
-        writeln!(f, "  λ   = {} nm", vector32(&wavelengths.lambda))?;
-        writeln!(
-            f,
-            "  pdf = {} per nm: the density with which each was sampled; the sensor divides by it",
-            vector32(&wavelengths.pdf)
-        )?;
-        if wavelengths.dispersed {
-            writeln!(
-                f,
-                "  Dispersion: each wavelength is refracted differently, so the path follows only the first; the others no\n  \
-                 longer count (pdf 0), and the first counts four times (its pdf is divided by four)."
-            )?;
+    /// Whether a part is shown.
+    fn has(&self, part: Part) -> bool {
+        self.selection.part.is_none_or(|chosen| chosen == part)
+    }
+
+    /// Whether only some rays are shown.
+    fn is_of_rays(&self) -> bool {
+        self.selection.ray.is_some() || self.selection.bounce.is_some()
+    }
+
+    /// Whether a ray is shown.
+    fn shows(&self, ray: &RayReport) -> bool {
+        let Selection { ray: address, bounce, .. } = self.selection;
+        address.is_none_or(|address| address == ray.address)
+            && bounce.is_none_or(|bounce| bounce == ray.depth)
+    }
+}
+
+/// Writes a line; what is beyond the last column goes on in the next line, four columns further in.
+fn write_wrapped(f: &mut Formatter<'_>, line: &str) -> fmt::Result {
+    let indent = line.chars().take_while(|c| *c == ' ').count();
+    let mut column = indent;
+    write!(f, "{}", &line[..indent])?;
+    for (index, word) in line[indent..].split_inclusive(' ').enumerate() {
+        let width = word.trim_end().chars().count();
+        if index > 0 && column + width > COLUMNS {
+            write!(f, "\n{:1$}", "", indent + 4)?;
+            column = indent + 4;
         }
-        writeln!(f)
-    }
-
-    fn write_sum(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        writeln!(f, "The sum, in the order in which the film's sample was added up")?;
-        for addition in &self.additions {
-            writeln!(f, "  {}   ray {} {}", amount(&addition.value), addition.address, addition.term)?;
-        }
-        writeln!(f, "  = {}   times the filter's weight {}", amount(&self.radiance), self.weight)?;
-        let verdict = if self.adds_up { "the same, bit for bit" } else { "NOT the same: please report this" };
-        let sensor = if self.wavelengths.is_some() { "measured by the camera's sensor, and " } else { "" };
-        writeln!(f, "  = {}   {sensor}what the film received: {verdict}", lanes(&self.film))
-    }
-}
-
-fn write_candidates(f: &mut Formatter<'_>, ray: &RayReport, others: usize, pad: &str) -> fmt::Result {
-    let (shown, hidden) = chosen(&ray.candidates, others);
-    for candidate in shown {
-        writeln!(f, "{pad}  tested {}: {}", candidate.name, candidate.verdict)?;
-        write_test(f, &candidate.test, pad)?;
-    }
-    if hidden > 0 {
-        writeln!(f, "{pad}  … and {hidden} more candidates, all rejected or farther (--json shows them)")?;
-    }
-    Ok(())
-}
-
-/// The nearest hit and the first few others, and the number of those left out.
-fn chosen(candidates: &[Candidate], others: usize) -> (Vec<&Candidate>, usize) {
-    let mut shown: Vec<&Candidate> = candidates.iter().filter(|candidate| candidate.is_nearest).collect();
-    shown.extend(candidates.iter().filter(|candidate| !candidate.is_nearest).take(others));
-    let hidden = candidates.len() - shown.len();
-    (shown, hidden)
-}
-
-fn write_test(f: &mut Formatter<'_>, test: &Test, pad: &str) -> fmt::Result {
-    let numbers: &[(&str, Number)] = match test {
-        Test::Triangle { numbers } | Test::Sphere { numbers } => numbers,
-        Test::Other => return Ok(()),
-    };
-    writeln!(f, "{pad}    {:<14} {:>16} {:>24} {:>14}", "", "f32", "f64", "matching bits")?;
-    for (name, Number { f32, f64, bits }) in numbers {
-        writeln!(f, "{pad}    {name:<14} {:>16} {:>24} {bits:>14}", format!("{f32}"), format!("{f64}"))?;
-    }
-    Ok(())
-}
-
-fn write_met(f: &mut Formatter<'_>, met: &MetReport, pad: &str) -> fmt::Result {
-    let side = if met.front { "outside" } else { "inside" };
-    let instance = met.instance.map_or(String::new(), |instance| format!(" in instance {instance}"));
-    writeln!(f, "{pad}  meets {} at t = {} from {side}{instance}", met.shape, met.t)?;
-    writeln!(f, "{pad}    point = {}   known to ± {}", vector(&met.point), vector(&met.error))?;
-    writeln!(f, "{pad}    ng = {}   n = {}   uv = {}", vector(&met.ng), vector32(&met.n), vector32(&met.uv))?;
-    write!(f, "{pad}    material {}", met.material)?;
-    if let Some(k) = &met.coefficients {
-        write!(
-            f,
-            ": k_a {} k_d {} k_s {} n {}",
-            lanes(&k.ambient),
-            lanes(&k.diffuse),
-            lanes(&k.specular),
-            k.shininess
-        )?;
-        write!(f, " k_r {} k_t {} ior {}", lanes(&k.mirror), lanes(&k.transmission), k.ior)?;
+        f.write_str(word)?;
+        column += word.chars().count();
     }
     writeln!(f)
-}
-
-fn write_light(f: &mut Formatter<'_>, light: &LightReport, pad: &str) -> fmt::Result {
-    let Some(wi) = light.wi else {
-        return writeln!(f, "{pad}  light {}: does not illuminate this point", light.light);
-    };
-    writeln!(f, "{pad}  light {}: L = {}   I_j = {}", light.light, vector32(&wi), amount(&light.intensity))?;
-    let (diffuse, specular) = (lanes(&light.diffuse), lanes(&light.specular));
-    writeln!(f, "{pad}    k_d (N·L) = {diffuse}   k_s (N·H)^n = {specular}")?;
-    write_shadow(f, light.shadow.as_ref(), "reaches the light", pad)
-}
-
-/// Writes the result of a shadow ray; `end` describes one that is unoccluded.
-fn write_shadow(f: &mut Formatter<'_>, shadow: Option<&ShadowReport>, end: &str, pad: &str) -> fmt::Result {
-    let Some(shadow) = shadow else {
-        return writeln!(f, "{pad}    no shadow ray: its contribution would be 0");
-    };
-    for blocker in &shadow.blockers {
-        let (name, passed) = (&blocker.shape, &blocker.passed);
-        match passed.iter().all(|lane| *lane == 0.0) {
-            true => writeln!(f, "{pad}    shadow ray: blocked by {name}")?,
-            false => writeln!(f, "{pad}    shadow ray: through {name}, transmittance {}", lanes(passed))?,
-        }
-    }
-    if shadow.is_blocked() { Ok(()) } else { writeln!(f, "{pad}    shadow ray: {end}") }
 }
 
 fn vector(v: &[f64]) -> String {
@@ -254,6 +163,19 @@ fn digits(rgb: &[f32]) -> String {
 /// A factor or a colour with all digits.
 fn lanes(lanes: &[f32]) -> String {
     format!("[{}]", lanes.iter().map(|x| full(*x)).collect::<Vec<_>>().join(" "))
+}
+
+/// A vector, or a number, with all its digits.
+fn exact(value: &[f64]) -> String {
+    match value {
+        [number] => full64(*number),
+        vector => format!("({})", vector.iter().map(|x| full64(*x)).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// Enough digits to read the same number back.
+fn full64(x: f64) -> String {
+    if x != 0.0 && !(1e-5..1e15).contains(&x.abs()) { format!("{x:e}") } else { format!("{x}") }
 }
 
 /// Enough digits to read the same number back.

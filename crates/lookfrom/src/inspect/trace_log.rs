@@ -3,24 +3,19 @@
 //! Rays form a tree (Whitted's, the child of n is 2n or 2n + 1) or a path (n is followed by n + 1), depending on the
 //! integrator.
 
+mod lights;
+mod rays;
+
 use std::collections::BTreeMap;
 
-use glam::{DVec3, Vec3};
-use lookfrom_bvh::{Hit, NONE};
+use glam::Vec3;
 use lookfrom_scene::settings::Integrator;
 
-use super::candidate::Candidate;
-use super::report::{
-    Addition, Amount, Blocker, BranchReport, CoefficientsReport, Factor, LightReport, MetReport, RayReport,
-    ShadowReport,
-};
-use super::scatter::{self, BounceReport, FoundReport, LightSampleReport, SampledDirectionReport};
+use super::report::{AbsorptionReport, Addition, Amount, BranchReport, Factor, RayReport};
+use super::scatter::FoundReport;
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Bounce, Branch, Cut, Event, Path, Shadow, Term};
-use crate::light::LightSample;
+use crate::integrator::{Branch, Cut, Event, Term};
 use crate::render::Renderer;
-use crate::shading::interaction::SurfaceInteraction;
-use crate::shading::material::{Coefficients, Shading};
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
@@ -30,6 +25,8 @@ pub(super) struct TraceLogBuilder<'a> {
     world: &'a World,
     /// The spectral mode at the end of the sample.
     lanes: SpectralMode,
+    /// Whether the tests of primitives are reported.
+    with_tests: bool,
     rays: BTreeMap<u64, RayReport>,
     /// The contribution of each ray's own hit.
     added: BTreeMap<u64, Spectrum>,
@@ -54,11 +51,12 @@ fn is_path(integrator: Integrator) -> bool {
 
 impl<'a> TraceLogBuilder<'a> {
     /// An empty log.
-    pub(super) fn new(renderer: &'a Renderer, lanes: SpectralMode) -> Self {
+    pub(super) fn new(renderer: &'a Renderer, lanes: SpectralMode, with_tests: bool) -> Self {
         Self {
             renderer,
             world: renderer.world(),
             lanes,
+            with_tests,
             rays: BTreeMap::new(),
             added: BTreeMap::new(),
             sum: Spectrum::BLACK,
@@ -66,12 +64,29 @@ impl<'a> TraceLogBuilder<'a> {
         }
     }
 
-    /// Records an event, and the primitives that were tested for a hit. A ray's own event comes before all others of that ray.
-    pub(super) fn record(&mut self, event: &Event, candidates: Vec<Candidate>) {
+    /// Records an event. A ray's own event comes before all others of that ray.
+    pub(super) fn record(&mut self, event: &Event) {
         match event {
             Event::Hit { path, hit } => {
-                let ray = self.ray(path, hit, candidates);
+                let ray = self.ray(path, hit);
                 self.rays.insert(path.address, ray);
+            }
+            Event::Absorbed { address, interior, length, transmittance, beta } => {
+                let Some((sigma, scale)) = self.world.absorption(*interior, &self.lanes) else { return };
+                let material =
+                    interior.material().map(|index| self.world.names.materials[index as usize].clone());
+                let report = AbsorptionReport {
+                    material,
+                    sigma: self.factor(sigma),
+                    scale,
+                    length: *length,
+                    transmittance: self.factor(*transmittance),
+                    throughput: self.factor(*beta),
+                };
+                self.at(*address, |ray| {
+                    ray.throughput_there = Some(report.throughput.clone());
+                    ray.absorption = Some(report);
+                });
             }
             Event::Surface { address, coefficients, .. } => {
                 let report = coefficients.as_deref().map(|k| self.coefficients(k));
@@ -80,7 +95,7 @@ impl<'a> TraceLogBuilder<'a> {
                 }
             }
             Event::LocalLight { address, light, sample, diffuse, specular } => {
-                let report = self.light(*light, sample.as_ref(), *diffuse, *specular);
+                let report = self.light(*address, *light, sample.as_ref(), [*diffuse, *specular]);
                 self.at(*address, |ray| ray.lights.push(report));
             }
             Event::Shaded { address, shading, beta, .. } => self.shaded(*address, shading, *beta),
@@ -104,14 +119,14 @@ impl<'a> TraceLogBuilder<'a> {
             Event::LightSampleFailed { address, light, probability, sample } => {
                 let sample = sample
                     .as_ref()
-                    .map(|sample| self.direction(*probability, sample, Spectrum::BLACK, None, 1.0));
+                    .map(|sample| self.direction(*light, *probability, sample, Spectrum::BLACK, None, 1.0));
                 self.light_sample(*address, *light, *probability, sample);
             }
             Event::LightSampled { address, light, probability, sample, f, bsdf_pdf, weight } => {
                 let is_weighted = self.renderer.settings().integrator == Integrator::Path
                     && !self.world.lights[*light as usize].is_delta();
                 let bsdf_pdf = is_weighted.then_some(*bsdf_pdf);
-                let sample = self.direction(*probability, sample, *f, bsdf_pdf, *weight);
+                let sample = self.direction(*light, *probability, sample, *f, bsdf_pdf, *weight);
                 self.light_sample(*address, *light, *probability, Some(sample));
             }
             Event::Shadow { shadow, hit, passed } => self.shadow(shadow, hit, *passed),
@@ -119,19 +134,28 @@ impl<'a> TraceLogBuilder<'a> {
                 let report = self.bounce(*address, bounce);
                 self.at(*address, |ray| ray.bounce = Some(report));
             }
-            Event::Grew { address, branch, weight, fresnel, total_reflection, cut } => {
+            Event::Grew { address, branch, direction, weight, fresnel, total_reflection, cut } => {
                 let (kind, bit) = match branch {
                     Branch::Mirrored => ("reflected", 0),
                     Branch::Refracted => ("refracted", 1),
                 };
+                let met = self.rays.get(address).and_then(|ray| ray.met.as_ref());
+                let n = met.map_or(Vec3::ZERO, |met| Vec3::from_array(met.n));
+                let eta = met.and_then(|met| {
+                    let ior = met.coefficients.as_ref()?.ior;
+                    (*branch == Branch::Refracted).then_some(if met.front { ior } else { 1.0 / ior })
+                });
                 let report = BranchReport {
                     address: address << 1 | bit,
                     kind,
+                    direction: direction.to_array(),
+                    cos: n.dot(*direction).abs(),
+                    eta,
                     weight: self.factor(*weight),
                     fresnel: *fresnel,
                     total_reflection: *total_reflection,
                     cut: cut.map(|cut| match cut {
-                        Cut::Contribution => "can no longer change the pixel",
+                        Cut::Contribution => "share below min_contribution",
                         Cut::Depth => "the maximum depth is reached",
                     }),
                 };
@@ -232,173 +256,7 @@ impl<'a> TraceLogBuilder<'a> {
     }
 
     fn amount(&self, value: Spectrum) -> Amount {
-        Amount { lanes: self.factor(value), rgb: self.renderer.rgb(value, &self.lanes) }
-    }
-
-    fn ray(&self, path: &Path, hit: &Hit, candidates: Vec<Candidate>) -> RayReport {
-        let kind = match (path.address, path.address & 1) {
-            (Path::ROOT, _) => "camera",
-            (_, 0) => "reflected",
-            _ => "refracted",
-        };
-        let pdf = path.previous.pdf;
-        let surface = hit.is_hit().then(|| self.world.surface(&path.ray, hit));
-        RayReport {
-            address: path.address,
-            parent: None,
-            kind,
-            depth: path.depth,
-            a: in_world(self.world, path.ray.origin),
-            direction: path.ray.direction,
-            throughput: self.factor(path.beta),
-            // Infinite stands for a specular bounce or a camera ray.
-            pdf: (pdf != f32::INFINITY).then_some(pdf),
-            candidates,
-            met: surface.map(|surface| met_report(self.world, hit, &surface)),
-            throughput_there: None,
-            only_color: None,
-            found: Vec::new(),
-            scattering: None,
-            lights: Vec::new(),
-            light_sample: None,
-            openness: None,
-            bounce: None,
-            branches: Vec::new(),
-            ends: None,
-            added: Amount::default(),
-            subtree: Amount::default(),
-        }
-    }
-
-    fn coefficients(&self, k: &Coefficients) -> CoefficientsReport {
-        CoefficientsReport {
-            ambient: self.factor(k.ambient),
-            diffuse: self.factor(k.diffuse),
-            specular: self.factor(k.specular),
-            shininess: k.shininess,
-            mirror: self.factor(k.mirror),
-            transmission: self.factor(k.transmission),
-            ior: k.ior,
-        }
-    }
-
-    fn light(
-        &self,
-        index: u32,
-        sample: Option<&LightSample>,
-        diffuse: Spectrum,
-        specular: Spectrum,
-    ) -> LightReport {
-        let intensity = sample.map(|sample| sample.li / (std::f32::consts::PI * sample.pdf));
-        LightReport {
-            index,
-            light: self.world.names.lights[index as usize].clone(),
-            wi: sample.map(|sample| sample.wi.to_array()),
-            intensity: self.amount(intensity.unwrap_or_default()),
-            diffuse: self.factor(diffuse),
-            specular: self.factor(specular),
-            shadow: None,
-            added: self.amount(Spectrum::BLACK),
-        }
-    }
-
-    fn shaded(&mut self, address: u64, shading: &Shading, beta: Spectrum) {
-        let report = scatter::scattering(shading, |value| self.factor(value));
-        let throughput = self.factor(beta);
-        let only = match self.lanes {
-            SpectralMode::Rgb => beta.only_lane().map(|lane| ["red", "green", "blue", ""][lane]),
-            SpectralMode::Spectral(_) => None,
-        };
-        self.at(address, |ray| {
-            let had_others = ray.throughput.iter().filter(|lane| **lane != 0.0).count() > 1;
-            ray.only_color = only.filter(|_| had_others);
-            ray.scattering = Some(report);
-            ray.throughput_there = Some(throughput);
-        });
-    }
-
-    fn direction(
-        &self,
-        probability: f32,
-        sample: &LightSample,
-        f_cos: Spectrum,
-        bsdf_pdf: Option<f32>,
-        weight: f32,
-    ) -> SampledDirectionReport {
-        SampledDirectionReport {
-            wi: sample.wi.to_array(),
-            light_pdf: sample.pdf,
-            pdf: probability * sample.pdf,
-            arrives: self.amount(sample.li),
-            f_cos: self.factor(f_cos),
-            bsdf_pdf,
-            weight,
-        }
-    }
-
-    fn light_sample(
-        &mut self,
-        address: u64,
-        index: u32,
-        probability: f32,
-        sample: Option<SampledDirectionReport>,
-    ) {
-        let light = self.world.names.lights[index as usize].clone();
-        let added = self.amount(Spectrum::BLACK);
-        let report = LightSampleReport { index, light, probability, sample, shadow: None, added };
-        self.at(address, |ray| ray.light_sample = Some(report));
-    }
-
-    fn shadow(&mut self, shadow: &Shadow, hit: &Hit, passed: Spectrum) {
-        let world = self.world;
-        let blocker = hit.is_hit().then(|| {
-            let surface = world.surface(&shadow.ray, hit);
-            let shape = world.names.shapes[surface.shape as usize].clone();
-            Blocker { shape, passed: self.factor(passed) }
-        });
-        let Some(ray) = self.rays.get_mut(&shadow.address) else { return };
-        let report = match shadow.term {
-            Term::Light(light) => match ray.lights.iter_mut().find(|report| report.index == light) {
-                Some(report) => &mut report.shadow,
-                None => match &mut ray.light_sample {
-                    Some(report) => &mut report.shadow,
-                    None => return,
-                },
-            },
-            _ => &mut ray.openness,
-        };
-        let [origin, direction] =
-            [shadow.ray.origin, shadow.ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-        // behind a transparent surface the rest of the way is shorter
-        let is_endless = shadow.ray.t_max.is_infinite();
-        let length = if is_endless { 1.0 } else { f64::from(shadow.ray.t_max) };
-        let [from, to] = [origin, origin + direction * length].map(|point| (world.origin + point).to_array());
-        let report = report.get_or_insert(ShadowReport { from, to, is_endless, blockers: Vec::new() });
-        report.to = to;
-        report.blockers.extend(blocker);
-    }
-
-    fn bounce(&self, address: u64, bounce: &Bounce) -> BounceReport {
-        let sample = &bounce.sample;
-        BounceReport {
-            lobe: scatter::words(sample.lobe),
-            letters: scatter::letters(sample.lobe),
-            wi: bounce.wi.to_array(),
-            f: self.factor(sample.f),
-            cos: bounce.cos,
-            pdf: sample.pdf,
-            pdf_is_proportional: sample.pdf_is_proportional,
-            eta: sample.eta,
-            throughput_before: self
-                .rays
-                .get(&address)
-                .and_then(|ray| ray.throughput_there.clone())
-                .unwrap_or_default(),
-            throughput_after: self.factor(bounce.beta),
-            survival: bounce.survival,
-            survives: bounce.survives,
-            next_throughput: None,
-        }
+        Amount { lanes: self.factor(value), rgb: self.renderer.measured(value, &self.lanes) }
     }
 
     fn add(&mut self, address: u64, term: Term, value: Spectrum) {
@@ -439,25 +297,4 @@ impl<'a> TraceLogBuilder<'a> {
             Term::Light(light) => name(light).clone(),
         }
     }
-}
-
-fn met_report(world: &World, hit: &Hit, surface: &SurfaceInteraction) -> MetReport {
-    MetReport {
-        shape: world.names.shapes[surface.shape as usize].clone(),
-        primitive: hit.primitive,
-        instance: (hit.instance != NONE).then_some(hit.instance),
-        t: hit.t,
-        point: (world.origin + DVec3::from_array(surface.point.position)).to_array(),
-        error: surface.point.error,
-        ng: surface.ng.to_array(),
-        n: surface.ns_facing().to_array(),
-        uv: surface.uv.to_array(),
-        front: surface.front,
-        material: world.names.materials[surface.material as usize].clone(),
-        coefficients: None,
-    }
-}
-
-fn in_world(world: &World, point: [f32; 3]) -> [f64; 3] {
-    (world.origin + Vec3::from_array(point).as_dvec3()).to_array()
 }

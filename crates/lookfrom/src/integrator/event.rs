@@ -7,6 +7,7 @@ use crate::core::spectrum::Spectrum;
 use crate::integrator::{Path, Shadow};
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::Shading;
 
 /// The reason why light is added.
@@ -47,7 +48,7 @@ pub enum Branch {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Cut {
-    /// It could no longer change the pixel.
+    /// Its throughput is below `min_contribution`.
     Contribution,
     /// The maximum depth was reached.
     Depth,
@@ -63,6 +64,19 @@ pub enum Event {
         path: Path,
         /// Its hit, or a miss.
         hit: Hit,
+    },
+    /// A medium absorbed light on the way to the hit.
+    Absorbed {
+        /// Address of the path.
+        address: u64,
+        /// The media that the path is inside of.
+        interior: InteriorStack,
+        /// Length of the way; infinite for a miss.
+        length: f32,
+        /// Beer's factor.
+        transmittance: Spectrum,
+        /// The throughput after it.
+        beta: Spectrum,
     },
     /// The surface that was hit was evaluated.
     Surface {
@@ -163,6 +177,8 @@ pub enum Event {
         address: u64,
         /// The branch.
         branch: Branch,
+        /// Its direction, unit length, whether it is followed or not.
+        direction: Vec3,
         /// The branch's weight relative to its parent.
         weight: Spectrum,
         /// Fresnel reflectance, where it is evaluated.

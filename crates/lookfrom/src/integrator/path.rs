@@ -173,7 +173,7 @@ impl PathTracer {
         }
 
         // Absorb on the way.
-        let mut path = path.absorbed(world, hit, &output.lanes(path));
+        let mut path = output.absorbed(world, path, hit);
         path.previous.is_catcher = false;
 
         // A path that leaves the scene sees the sky.

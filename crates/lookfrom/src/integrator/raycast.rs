@@ -41,7 +41,7 @@ impl Integrator for Raycast {
         hit: &Hit,
         output: &mut StepOutput<'_, P>,
     ) {
-        let path = &path.absorbed(world, hit, &output.lanes(path));
+        let path = &output.absorbed(world, path, hit);
         if !hit.is_hit() {
             output.add_surroundings(world, path);
             return;

@@ -60,7 +60,7 @@ impl Integrator for Whitted {
         output: &mut StepOutput<'_, P>,
     ) {
         // Absorb on the way.
-        let path = &path.absorbed(world, hit, &output.lanes(path));
+        let path = &output.absorbed(world, path, hit);
 
         // A ray that leaves the scene sees the sky.
         if !hit.is_hit() {
@@ -90,6 +90,7 @@ impl Integrator for Whitted {
             output.probe.notice(|| Event::Grew {
                 address: path.address,
                 branch,
+                direction,
                 weight,
                 fresnel: branches.fresnel,
                 total_reflection: branches.total_reflection,

@@ -49,11 +49,22 @@ impl Curves {
     }
 
     /// The strand of a primitive, and its range of u.
-    fn segment(&self, primitive: u32) -> (&Strand, [f64; 2]) {
+    pub(crate) fn segment(&self, primitive: u32) -> (&Strand, [f64; 2]) {
         let number = f64::from(primitive % SEGMENTS);
         let from = number / f64::from(SEGMENTS);
         let to = (number + 1.0) / f64::from(SEGMENTS);
         (&self.strands[(primitive / SEGMENTS) as usize], [from, to])
+    }
+
+    /// A ray's origin and direction in the space of the strands; its t stays the same.
+    pub(crate) fn ray_in_object(&self, origin: DVec3, direction: DVec3) -> (DVec3, DVec3) {
+        let translation = DVec3::from_array(self.render_from_object.translation);
+        (self.vector_in_object(origin - translation), self.vector_in_object(direction))
+    }
+
+    /// The apparent width of a primitive's strand at u along it, seen along a unit direction of its space.
+    pub(crate) fn visible_width(&self, primitive: u32, u: f64, direction: DVec3) -> f64 {
+        visible_width(self.segment(primitive).0, u, direction)
     }
 
     fn vector_in_object(&self, v: DVec3) -> DVec3 {
@@ -124,9 +135,7 @@ impl Procedural for Curves {
     fn intersect(&self, primitive: u32, ray: &Ray) -> Option<ProceduralHit> {
         let (strand, [from, to]) = self.segment(primitive);
         let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-        let translation = DVec3::from_array(self.render_from_object.translation);
-        let (origin, direction) =
-            (self.vector_in_object(origin - translation), self.vector_in_object(direction));
+        let (origin, direction) = self.ray_in_object(origin, direction);
         let length = direction.length();
 
         // A frame along the ray: the curve is seen from the origin, depths are lengths of the direction times t.

@@ -1,9 +1,11 @@
 //! The text report of a path: one ray after the other, each number with its formula.
 
-use std::fmt::{self, Formatter};
+use std::fmt::{self, Write};
 
-use super::{Inspection, RayReport};
-use super::{amount, full, lanes, vector, vector32, write_candidates, write_met, write_shadow};
+use super::candidates::{write_candidates, write_traced};
+use super::hit::{write_absorption, write_met, write_shadow};
+use super::{Excerpt, Part, RayReport};
+use super::{amount, full, lanes, vector, vector32};
 use crate::inspect::scatter::{BounceReport, FoundReport, LightSampleReport, ScatteringReport};
 
 /// Number of candidates that are shown besides the hit of a ray.
@@ -13,11 +15,13 @@ const OTHERS_ALONG_PATH: usize = 0;
 const ONLY_CHOICE: &str =
     "the only one possible (from the camera, or after specular reflection or transmission)";
 
-impl Inspection {
-    pub(super) fn write_path(&self, f: &mut Formatter<'_>) -> fmt::Result {
+impl Excerpt<'_> {
+    pub(super) fn write_path(&self, f: &mut String) -> fmt::Result {
         writeln!(f, "The path, ray by ray")?;
-        self.write_introduction(f)?;
-        for ray in &self.rays {
+        if self.has(Part::Lights) && !self.is_of_rays() {
+            self.write_introduction(f)?;
+        }
+        for ray in self.inspection.rays.iter().filter(|ray| self.shows(ray)) {
             writeln!(f)?;
             self.write_ray_of_path(f, ray)?;
         }
@@ -25,8 +29,8 @@ impl Inspection {
     }
 
     /// Writes the meaning of the letters that this integrator uses.
-    fn write_introduction(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        if self.integrator == "ambient_occlusion" {
+    fn write_introduction(&self, f: &mut String) -> fmt::Result {
+        if self.inspection.integrator == "ambient_occlusion" {
             return writeln!(
                 f,
                 "  One shadow ray from the first surface: is anything near? Lines with + are added to the pixel."
@@ -46,7 +50,7 @@ impl Inspection {
         )?;
         writeln!(f, "    f    the BSDF of the surface; cos: of the angle to its normal n")?;
         writeln!(f, "    L    incident radiance from a direction")?;
-        match self.integrator {
+        match self.inspection.integrator {
             "path" => {
                 writeln!(
                     f,
@@ -73,7 +77,7 @@ impl Inspection {
         writeln!(f, "  Lines with + are added to the pixel.")
     }
 
-    fn write_ray_of_path(&self, f: &mut Formatter<'_>, ray: &RayReport) -> fmt::Result {
+    fn write_ray_of_path(&self, f: &mut String, ray: &RayReport) -> fmt::Result {
         let pad = "  ";
         writeln!(
             f,
@@ -83,19 +87,21 @@ impl Inspection {
             after(ray.depth),
             lanes(&ray.throughput)
         )?;
-        writeln!(f, "{pad}  a = {}   direction = {}", vector(&ray.a), vector32(&ray.direction))?;
-        write_candidates(f, ray, OTHERS_ALONG_PATH, pad)?;
+        if self.has(Part::Tests) {
+            writeln!(f, "{pad}  a = {}   direction = {}", vector(&ray.a), vector32(&ray.direction))?;
+            write_traced(f, ray, pad)?;
+            write_candidates(f, ray, OTHERS_ALONG_PATH, pad)?;
+        }
         match &ray.met {
             None => writeln!(f, "{pad}  meets nothing: the sky")?,
             Some(met) => write_met(f, met, pad)?,
         }
-        if let Some(there) = ray.throughput_there.as_ref().filter(|there| **there != ray.throughput) {
-            let why = match ray.only_color {
-                Some(color) => {
-                    format!("dispersion: {color} goes on alone, with the weight of all colours")
-                }
-                None => "after absorption on the way".into(),
-            };
+        if !self.has(Part::Lights) {
+            return Ok(());
+        }
+        write_absorption(f, ray, pad)?;
+        if let (Some(color), Some(there)) = (ray.only_color, &ray.throughput_there) {
+            let why = format!("dispersion: {color} goes on alone, with the weight of all colours");
             writeln!(f, "{pad}  {why}: β = {}", lanes(there))?;
         }
         for found in &ray.found {
@@ -133,10 +139,10 @@ impl Inspection {
         }
     }
 
-    fn write_found(&self, f: &mut Formatter<'_>, ray: &RayReport, found: &FoundReport) -> fmt::Result {
+    fn write_found(&self, f: &mut String, ray: &RayReport, found: &FoundReport) -> fmt::Result {
         writeln!(f, "    finds the light {}: L = {}", found.light, amount(&found.radiance))?;
         let (w, q) = (full(found.weight), full(found.light_pdf));
-        match (ray.pdf, self.integrator) {
+        match (ray.pdf, self.inspection.integrator) {
             (None, _) => {
                 writeln!(f, "      direction: {ONLY_CHOICE}, light sampling cannot find it: w = {w}")?;
             }
@@ -158,7 +164,7 @@ impl Inspection {
         writeln!(f, "      + β L w = {}", amount(&found.added))
     }
 
-    fn write_light_sample(&self, f: &mut Formatter<'_>, report: &LightSampleReport) -> fmt::Result {
+    fn write_light_sample(&self, f: &mut String, report: &LightSampleReport) -> fmt::Result {
         writeln!(
             f,
             "    samples one light: {}, chosen with probability {}",
@@ -181,24 +187,26 @@ impl Inspection {
             return writeln!(f, "      f cos = 0: the surface scatters none of it along this path");
         }
         writeln!(f, "      f cos = {}", lanes(&sample.f_cos))?;
-        let (p, pdf) = (full(sample.pdf), full(sample.light_pdf));
-        match sample.bsdf_pdf {
-            Some(q) => {
+        if let Some(point) = sample.point {
+            writeln!(f, "      from the point {}", vector(&point))?;
+        }
+        let (p, pdf, probability) = (full(sample.pdf), full(sample.light_pdf), full(report.probability));
+        match sample.is_delta {
+            true => writeln!(f, "      p = {p}: the probability of choosing it; it has only this direction")?,
+            false => {
                 writeln!(
                     f,
-                    "      p = probability × pdf of this direction to it = {} × {pdf} = {p}",
-                    full(report.probability)
+                    "      p = probability × pdf of this direction to it = {probability} × {pdf} = {p}"
                 )?;
+            }
+        }
+        match sample.bsdf_pdf {
+            Some(q) => {
                 writeln!(f, "      q = {}: pdf of this direction in BSDF sampling", full(q))?;
                 writeln!(f, "      w = p² / (p² + q²) = {}", full(sample.weight))?;
             }
             None => {
-                writeln!(
-                    f,
-                    "      p = probability × pdf of this direction to it = {} × {pdf} = {p}",
-                    full(report.probability)
-                )?;
-                let why = match self.integrator {
+                let why = match self.inspection.integrator {
                     "path" => "a delta light: no path hits it",
                     _ => "light that can be sampled counts only here",
                 };
@@ -209,8 +217,8 @@ impl Inspection {
         writeln!(f, "      + β f cos L w / p = {}", amount(&report.added))
     }
 
-    fn write_bounce(&self, f: &mut Formatter<'_>, bounce: &BounceReport) -> fmt::Result {
-        match self.integrator {
+    fn write_bounce(&self, f: &mut String, bounce: &BounceReport) -> fmt::Result {
+        match self.inspection.integrator {
             "random_walk" => writeln!(
                 f,
                 "    goes on in a direction sampled uniformly over the sphere: wi = {}",
@@ -251,7 +259,8 @@ impl Inspection {
                 let survival = full(bounce.survival);
                 write!(
                     f,
-                    "      Russian roulette: survives with probability {survival} (largest lane of β, × η² inside glass): "
+                    "      Russian roulette: survives with probability {survival} (largest lane of β × the η² so far {}): ",
+                    full(bounce.eta_scale)
                 )?;
                 match (survives, &bounce.next_throughput) {
                     (true, Some(next)) => {
@@ -265,7 +274,7 @@ impl Inspection {
     }
 }
 
-fn write_scattering(f: &mut Formatter<'_>, scattering: &ScatteringReport) -> fmt::Result {
+fn write_scattering(f: &mut String, scattering: &ScatteringReport) -> fmt::Result {
     writeln!(f, "    {}: {}", scattering.kind, scattering.does)?;
     let numbers = scattering.numbers.iter().map(|(name, values)| match values.as_slice() {
         [value] => format!("{name} {}", full(*value)),

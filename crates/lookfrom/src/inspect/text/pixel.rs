@@ -1,12 +1,20 @@
 //! The inspection of a pixel as text: colour, largest contributions, then every sample, the brightest first.
 
-use std::fmt::{self, Display, Formatter};
+use std::fmt::{self, Display, Formatter, Write};
 
-use super::{digits, short};
+use super::{digits, short, write_wrapped};
 use crate::inspect::{Contribution, Inspection, PixelInspection};
 
 impl Display for PixelInspection {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let mut text = String::new();
+        self.write(&mut text)?;
+        text.lines().try_for_each(|line| write_wrapped(f, line))
+    }
+}
+
+impl PixelInspection {
+    fn write(&self, f: &mut String) -> fmt::Result {
         let [x, y] = self.pixel;
         let last = u64::from(self.first_sample) + u64::from(self.samples) - 1;
         writeln!(f, "pixel {x} {y} (column, row from the top), samples {} to {last}", self.first_sample)?;
@@ -48,7 +56,7 @@ impl Display for PixelInspection {
 
 impl Inspection {
     /// Writes the colour and the largest contributions.
-    pub(super) fn write_summary(&self, f: &mut Formatter<'_>) -> fmt::Result {
+    pub(super) fn write_summary(&self, f: &mut String) -> fmt::Result {
         let [red, green, blue] = self.color8;
         writeln!(f, "In short")?;
         writeln!(f, "  the film received {}   as 8 bits, alone {red} {green} {blue}", digits(&self.film))?;
@@ -58,7 +66,7 @@ impl Inspection {
 }
 
 fn write_contributions(
-    f: &mut Formatter<'_>,
+    f: &mut String,
     contributions: &[Contribution],
     sum: f64,
     of_many: bool,

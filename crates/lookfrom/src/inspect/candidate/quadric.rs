@@ -1,0 +1,84 @@
+//! Quadrics in their own space, where they are spheres, cylinders and disks around the z axis.
+
+use glam::DVec3;
+use lookfrom_bvh::reference::{Quadratic, sphere as quadratic};
+
+use super::reference::roots;
+use super::{TestNumbers, TestRay};
+use crate::primitive::{Quadric, QuadricKind};
+
+/// Names of a ray in the space of a quadric.
+const IN_QUADRIC: [&str; 2] = ["a in the quadric", "d in the quadric"];
+
+/// Adds the inputs and numbers of the test of a quadric; returns the reason why it is missed, if it is.
+pub(super) fn test(quadric: &Quadric, ray: &TestRay, numbers: &mut TestNumbers) -> Option<&'static str> {
+    let ray = TestRay {
+        origin: quadric.point_in_object(ray.origin),
+        direction: quadric.vector_in_object(ray.direction),
+        ..*ray
+    };
+    ray.add_to(numbers, IN_QUADRIC);
+    let in_plane = DVec3::new(1.0, 1.0, 0.0);
+    let reason = match quadric.kind {
+        QuadricKind::Sphere { radius, z } => {
+            numbers.input("R", [radius]);
+            numbers.input("z from, to", z);
+            curved(&ray, DVec3::ONE, radius, numbers)
+        }
+        QuadricKind::Cylinder { radius, z } => {
+            numbers.input("R", [radius]);
+            numbers.input("z from, to", z);
+            curved(&ray, in_plane, radius, numbers)
+        }
+        QuadricKind::Disk { height, radius, inner_radius } => {
+            numbers.input("z", [height]);
+            numbers.input("R", [radius]);
+            numbers.input("R of the hole", [inner_radius]);
+            flat(&ray, height, numbers)
+        }
+    };
+    numbers.input("φ up to", [quadric.phi_max]);
+    reason
+}
+
+/// The quadratic equation of a sphere around the origin, or, across the axis, of a cylinder; and z and φ of its roots.
+fn curved(ray: &TestRay, axes: DVec3, radius: f64, numbers: &mut TestNumbers) -> Option<&'static str> {
+    let [a, d] = [ray.origin, ray.direction].map(|v| (v * axes).to_array());
+    let double: Quadratic<f64> = quadratic(a, d, [0.0; 3], radius);
+    let [a32, d32] = [a, d].map(|v| v.map(|x| x as f32));
+    let single: Quadratic<f32> = quadratic(a32, d32, [0.0; 3], radius as f32);
+    roots(&single, &double, numbers);
+    if !(double.discriminant >= 0.0) {
+        return Some("no real root");
+    }
+    let names = [["z at t₁", "φ at t₁"], ["z at t₂", "φ at t₂"]];
+    let root_pairs = [(single.t1, double.t1), (single.t2, double.t2)];
+    for ([z, phi], (t32, t64)) in names.into_iter().zip(root_pairs) {
+        place(ray, t32, t64, [z, phi], numbers);
+    }
+    Some("both roots are outside of its part, or of the range of t")
+}
+
+/// The plane of a disk.
+fn flat(ray: &TestRay, height: f64, numbers: &mut TestNumbers) -> Option<&'static str> {
+    let (a, d) = (ray.origin, ray.direction);
+    let t = (height - a.z) / d.z;
+    let single = (height as f32 - a.z as f32) / d.z as f32;
+    numbers.number("t = (z − a_z)/d_z", single, t);
+    let radius = |x: f64, y: f64| (x * x + y * y).sqrt();
+    let at = a + t * d;
+    let at32 = a.as_vec3() + single * d.as_vec3();
+    numbers.number("√(x² + y²)", (at32.x * at32.x + at32.y * at32.y).sqrt(), radius(at.x, at.y));
+    place(ray, single, t, ["z at t", "φ at t"], numbers);
+    ray.range(t).or(Some("outside of the disk, or in its hole"))
+}
+
+/// z and φ of the point at t.
+fn place(ray: &TestRay, t32: f32, t64: f64, [z, phi]: [&'static str; 2], numbers: &mut TestNumbers) {
+    let at = ray.origin + t64 * ray.direction;
+    let at32 = ray.origin.as_vec3() + t32 * ray.direction.as_vec3();
+    let turn = |phi: f64| if phi < 0.0 { phi + std::f64::consts::TAU } else { phi };
+    numbers.number(z, at32.z, at.z);
+    let single = libm::atan2f(at32.y, at32.x);
+    numbers.number(phi, turn(f64::from(single)) as f32, turn(libm::atan2(at.y, at.x)));
+}

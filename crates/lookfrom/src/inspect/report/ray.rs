@@ -1,0 +1,136 @@
+//! A ray and its hit as plain data.
+
+use serde::Serialize;
+
+use super::{Amount, BranchReport, Factor, LightReport, ShadowReport};
+use crate::inspect::candidate::{Candidate, TraversalReport};
+use crate::inspect::scatter::{BounceReport, FoundReport, LightSampleReport, ScatteringReport};
+
+/// One ray.
+#[derive(Clone, Debug, Serialize)]
+pub struct RayReport {
+    /// 1 is the camera ray; in Whitted's tree the reflected child of n is 2n, the refracted one 2n + 1; along a path n
+    /// is followed by n + 1.
+    pub address: u64,
+    /// Address of the ray that it comes from.
+    pub parent: Option<u64>,
+    /// `camera`; in a tree `reflected` or `refracted`; along a path `reflected`, `transmitted`, `scattered` (a random
+    /// walk) or `straight on` (past a surface that it passes by alpha or as an interface).
+    pub kind: &'static str,
+    /// Number of reflections, refractions and bounces before.
+    pub depth: u32,
+    /// Its origin.
+    pub a: [f64; 3],
+    /// The same as it is traced: relative to the render origin ([`Inspection::render_origin`]).
+    pub origin: [f32; 3],
+    /// Its direction, not necessarily of unit length.
+    pub direction: [f32; 3],
+    /// β: the throughput, the factor of light along it in the sample.
+    pub throughput: Factor,
+    /// The solid angle density of its direction, for MIS weights; `None` for camera rays, after specular bounces and in
+    /// Whitted's tree.
+    pub pdf: Option<f32>,
+    /// The cost of finding its hit.
+    pub traversal: TraversalReport,
+    /// Every primitive that was tested, in the order of the tests.
+    pub candidates: Vec<Candidate>,
+    /// Its hit; `None` for a miss.
+    pub met: Option<MetReport>,
+    /// What a medium absorbs on the way to the hit.
+    pub absorption: Option<AbsorptionReport>,
+    /// The product of η² over the refractions before, by which Russian roulette multiplies the throughput.
+    pub eta_scale: f32,
+    /// The throughput at the hit, after absorption on the way and dispersion there, along a path.
+    pub throughput_there: Option<Factor>,
+    /// In RGB mode: the one colour that goes on, with the weight of all three, after dispersion at the hit.
+    pub only_color: Option<&'static str>,
+    /// Lights that it hit, along a path.
+    pub found: Vec<FoundReport>,
+    /// The BSDF at the hit, along a path.
+    pub scattering: Option<ScatteringReport>,
+    /// Each light, in Whitted's model.
+    pub lights: Vec<LightReport>,
+    /// The light that was sampled at the hit, along a path.
+    pub light_sample: Option<LightSampleReport>,
+    /// The shadow ray of ambient occlusion.
+    pub openness: Option<ShadowReport>,
+    /// The continuation of the path, even if Russian roulette ends it.
+    pub bounce: Option<BounceReport>,
+    /// The branches of the tree here, followed or not.
+    pub branches: Vec<BranchReport>,
+    /// The reason why the path ends here, if it does.
+    pub ends: Option<&'static str>,
+    /// The contribution of this ray's own hit to the sample.
+    pub added: Amount,
+    /// The contribution of this ray and of all rays that come from it.
+    pub subtree: Amount,
+}
+
+/// Absorption by a medium (Beer's law): `T = exp(−σ · scale · length)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct AbsorptionReport {
+    /// The material of the body whose medium it is; `None` in a medium that fills space.
+    pub material: Option<String>,
+    /// σ: the absorption coefficient, per unit of length.
+    pub sigma: Factor,
+    /// A factor of it.
+    pub scale: f32,
+    /// Length of the way; infinite where nothing is hit.
+    pub length: f32,
+    /// T: the part of the light that is left.
+    pub transmittance: Factor,
+    /// The throughput after it.
+    pub throughput: Factor,
+}
+
+/// The hit of a ray.
+#[derive(Clone, Debug, Serialize)]
+pub struct MetReport {
+    /// The shape's name.
+    pub shape: String,
+    /// Index of the primitive.
+    pub primitive: u32,
+    /// The instance, if it is in one.
+    pub instance: Option<u32>,
+    /// The kernel's `t`, in units of the direction.
+    pub t: f32,
+    /// The point.
+    pub point: [f64; 3],
+    /// Error bound of the point, per component, by which the next ray's origin is moved off the surface.
+    pub error: [f64; 3],
+    /// Outward geometric normal.
+    pub ng: [f64; 3],
+    /// Shading normal on the side of the viewer.
+    pub n: [f32; 3],
+    /// Texture coordinates.
+    pub uv: [f32; 2],
+    /// Toward the viewer, unit length.
+    pub wo: [f32; 3],
+    /// The cosine of the angle between the shading normal and the direction to the viewer.
+    pub cos_viewer: f32,
+    /// Whether the outside was hit.
+    pub front: bool,
+    /// The material's name.
+    pub material: String,
+    /// Its coefficients here, where the integrator evaluates them.
+    pub coefficients: Option<CoefficientsReport>,
+}
+
+/// Whitted's coefficients at a point.
+#[derive(Clone, Debug, Serialize)]
+pub struct CoefficientsReport {
+    /// `k_a`.
+    pub ambient: Factor,
+    /// `k_d`.
+    pub diffuse: Factor,
+    /// `k_s`.
+    pub specular: Factor,
+    /// `n`.
+    pub shininess: f32,
+    /// `k_r`.
+    pub mirror: Factor,
+    /// `k_t`.
+    pub transmission: Factor,
+    /// Inside over outside.
+    pub ior: f32,
+}

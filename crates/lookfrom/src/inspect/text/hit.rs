@@ -1,0 +1,74 @@
+//! A hit as text: the point, the material, what was absorbed on the way; and shadow rays.
+
+use std::fmt::{self, Write};
+
+use super::{full, lanes, vector, vector32};
+use crate::inspect::{AbsorptionReport, MetReport, RayReport, ShadowReport, TraversalReport};
+
+pub(super) fn write_met(f: &mut String, met: &MetReport, pad: &str) -> fmt::Result {
+    let side = if met.front { "outside" } else { "inside" };
+    let instance = met.instance.map_or(String::new(), |instance| format!(" in instance {instance}"));
+    writeln!(f, "{pad}  meets {} at t = {} from {side}{instance}", met.shape, met.t)?;
+    writeln!(f, "{pad}    point = {}", vector(&met.point))?;
+    writeln!(f, "{pad}      off the surface by at most {}, per component", vector(&met.error))?;
+    writeln!(f, "{pad}    ng = {}   n = {}", vector(&met.ng), vector32(&met.n))?;
+    writeln!(f, "{pad}    uv = {}   cos θ to the viewer = {}", vector32(&met.uv), full(met.cos_viewer))?;
+    write!(f, "{pad}    material {}", met.material)?;
+    if let Some(k) = &met.coefficients {
+        write!(
+            f,
+            "\n{pad}      k_a {} k_d {} k_s {} n {}\n{pad}     ",
+            lanes(&k.ambient),
+            lanes(&k.diffuse),
+            lanes(&k.specular),
+            k.shininess
+        )?;
+        write!(f, " k_r {} k_t {} ior {}", lanes(&k.mirror), lanes(&k.transmission), k.ior)?;
+    }
+    writeln!(f)
+}
+
+/// What a medium absorbs on the way.
+pub(super) fn write_absorption(f: &mut String, ray: &RayReport, pad: &str) -> fmt::Result {
+    let Some(absorption) = &ray.absorption else { return Ok(()) };
+    let AbsorptionReport { material, sigma, scale, length, transmittance, throughput } = absorption;
+    let medium = material.as_deref().unwrap_or("the medium that fills space");
+    writeln!(f, "{pad}  absorbed by {medium}: T = exp(−σ · length) = {}", lanes(transmittance))?;
+    let scale = if *scale == 1.0 { String::new() } else { format!(" · {}", full(*scale)) };
+    writeln!(f, "{pad}    σ = {}{scale}   length = {}", lanes(sigma), full(*length))?;
+    writeln!(f, "{pad}    throughput there = {}", lanes(throughput))
+}
+
+/// Writes the result of a shadow ray; `end` describes one that is unoccluded.
+pub(super) fn write_shadow(
+    f: &mut String,
+    shadow: Option<&ShadowReport>,
+    end: &str,
+    pad: &str,
+) -> fmt::Result {
+    let Some(shadow) = shadow else {
+        return writeln!(f, "{pad}    no shadow ray: its contribution would be 0");
+    };
+    let TraversalReport { nodes, tests } = shadow.traversal;
+    writeln!(f, "{pad}    shadow ray: visits {nodes} nodes, is tested against {tests} primitives")?;
+    for blocker in &shadow.blockers {
+        let (name, t, passed) = (&blocker.shape, full(blocker.t), &blocker.passed);
+        match passed.iter().all(|lane| *lane == 0.0) {
+            true => writeln!(f, "{pad}    shadow ray: blocked by {name} at t = {t}")?,
+            false => {
+                writeln!(
+                    f,
+                    "{pad}    shadow ray: through {name} at t = {t}, transmittance {}",
+                    lanes(passed)
+                )?;
+            }
+        }
+    }
+    match &shadow.rest {
+        Some(rest) if rest.iter().any(|lane| *lane != 1.0) => {
+            writeln!(f, "{pad}    shadow ray: {end}, after absorption on the rest of the way {}", lanes(rest))
+        }
+        Some(_) => writeln!(f, "{pad}    shadow ray: {end}"),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,136 @@
+//! Events of lights: samples, shadow rays.
+
+use glam::{DVec3, Vec3};
+use lookfrom_bvh::Hit;
+
+use super::TraceLogBuilder;
+use crate::core::spectrum::Spectrum;
+use crate::inspect::candidate::{self, TraversalReport};
+use crate::inspect::report::{Blocker, LightReport, ShadowReport};
+use crate::inspect::scatter::{LightSampleReport, SampledDirectionReport};
+use crate::integrator::{Shadow, Term};
+use crate::light::{LightSample, Target};
+use crate::world::World;
+
+impl TraceLogBuilder<'_> {
+    /// The light of Whitted's model; `terms` are the diffuse and the specular one.
+    pub(super) fn light(
+        &self,
+        address: u64,
+        index: u32,
+        sample: Option<&LightSample>,
+        terms: [Spectrum; 2],
+    ) -> LightReport {
+        let intensity = sample.map(|sample| sample.li / (std::f32::consts::PI * sample.pdf));
+        let met = self.rays.get(&address).and_then(|ray| ray.met.as_ref());
+        let [n, wo] = met.map_or([Vec3::ZERO; 2], |met| [met.n, met.wo].map(Vec3::from_array));
+        let h = sample.map(|sample| (wo + sample.wi).normalize_or_zero());
+        LightReport {
+            index,
+            light: self.world.names.lights[index as usize].clone(),
+            wi: sample.map(|sample| sample.wi.to_array()),
+            n_dot_l: sample.map(|sample| n.dot(sample.wi)),
+            h: h.map(|h| h.to_array()),
+            n_dot_h: h.map(|h| n.dot(h)),
+            arrives: self.amount(sample.map(|sample| sample.li).unwrap_or_default()),
+            pdf: sample.map(|sample| sample.pdf),
+            point: sample.and_then(|sample| target(self.world, sample)),
+            intensity: self.amount(intensity.unwrap_or_default()),
+            diffuse: self.factor(terms[0]),
+            specular: self.factor(terms[1]),
+            shadow: None,
+            added: self.amount(Spectrum::BLACK),
+        }
+    }
+
+    pub(super) fn direction(
+        &self,
+        light: u32,
+        probability: f32,
+        sample: &LightSample,
+        f_cos: Spectrum,
+        bsdf_pdf: Option<f32>,
+        weight: f32,
+    ) -> SampledDirectionReport {
+        SampledDirectionReport {
+            wi: sample.wi.to_array(),
+            light_pdf: sample.pdf,
+            pdf: probability * sample.pdf,
+            point: target(self.world, sample),
+            is_delta: self.world.lights[light as usize].is_delta(),
+            arrives: self.amount(sample.li),
+            f_cos: self.factor(f_cos),
+            bsdf_pdf,
+            weight,
+        }
+    }
+
+    pub(super) fn light_sample(
+        &mut self,
+        address: u64,
+        index: u32,
+        probability: f32,
+        sample: Option<SampledDirectionReport>,
+    ) {
+        let light = self.world.names.lights[index as usize].clone();
+        let added = self.amount(Spectrum::BLACK);
+        let report = LightSampleReport { index, light, probability, sample, shadow: None, added };
+        self.at(address, |ray| ray.light_sample = Some(report));
+    }
+
+    pub(super) fn shadow(&mut self, shadow: &Shadow, hit: &Hit, passed: Spectrum) {
+        let world = self.world;
+        let blocker = hit.is_hit().then(|| {
+            let surface = world.surface(&shadow.ray, hit);
+            let shape = world.names.shapes[surface.shape as usize].clone();
+            let point = (world.origin + DVec3::from_array(surface.point.position)).to_array();
+            Blocker { shape, t: hit.t, point, passed: self.factor(passed) }
+        });
+        // A ray of a probe stops at a first surface that blocks it: only one that reaches the light has a rest.
+        let rest = (!hit.is_hit()).then(|| self.factor(passed));
+        let traversal = match self.with_tests {
+            true => candidate::of_shadow(world, &shadow.ray),
+            false => TraversalReport::default(),
+        };
+        let Some(ray) = self.rays.get_mut(&shadow.address) else { return };
+        let report = match shadow.term {
+            Term::Light(light) => match ray.lights.iter_mut().find(|report| report.index == light) {
+                Some(report) => &mut report.shadow,
+                None => match &mut ray.light_sample {
+                    Some(report) => &mut report.shadow,
+                    None => return,
+                },
+            },
+            _ => &mut ray.openness,
+        };
+        let [origin, direction] =
+            [shadow.ray.origin, shadow.ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
+        // behind a transparent surface the rest of the way is shorter
+        let is_endless = shadow.ray.t_max.is_infinite();
+        let length = if is_endless { 1.0 } else { f64::from(shadow.ray.t_max) };
+        let [from, to] = [origin, origin + direction * length].map(|point| (world.origin + point).to_array());
+        let report = report.get_or_insert(ShadowReport {
+            from,
+            to,
+            is_endless,
+            blockers: Vec::new(),
+            rest: None,
+            traversal: TraversalReport::default(),
+        });
+        report.to = to;
+        report.rest = rest;
+        report.traversal.nodes += traversal.nodes;
+        report.traversal.tests += traversal.tests;
+        report.blockers.extend(blocker);
+    }
+}
+
+/// The point on a light that a sample aims at, in the world; `None` infinitely far away.
+fn target(world: &World, sample: &LightSample) -> Option<[f64; 3]> {
+    let position = match sample.target {
+        Target::Point(position) => position,
+        Target::Surface(point, _) => DVec3::from_array(point.position),
+        Target::Infinity => return None,
+    };
+    Some((world.origin + position).to_array())
+}

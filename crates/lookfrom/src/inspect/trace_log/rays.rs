@@ -1,0 +1,136 @@
+//! Events of rays: hits, surfaces, bounces.
+
+use glam::{DVec3, Vec3};
+use lookfrom_bvh::{Hit, NONE};
+
+use super::TraceLogBuilder;
+use crate::core::spectrum::Spectrum;
+use crate::inspect::candidate;
+use crate::inspect::report::{Amount, CoefficientsReport, MetReport, RayReport};
+use crate::inspect::scatter::{self, BounceReport};
+use crate::integrator::{Bounce, Path};
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::material::{Coefficients, Shading};
+use crate::shading::texture::SpectralMode;
+use crate::world::World;
+
+impl TraceLogBuilder<'_> {
+    pub(super) fn ray(&self, path: &Path, hit: &Hit) -> RayReport {
+        let kind = match (path.address, path.address & 1) {
+            (Path::ROOT, _) => "camera",
+            (_, 0) => "reflected",
+            _ => "refracted",
+        };
+        let (traversal, candidates) = match self.with_tests {
+            true => candidate::candidates(self.world, &path.ray, hit),
+            false => Default::default(),
+        };
+        let pdf = path.previous.pdf;
+        let surface = hit.is_hit().then(|| self.world.surface(&path.ray, hit));
+        RayReport {
+            address: path.address,
+            parent: None,
+            kind,
+            depth: path.depth,
+            a: in_world(self.world, path.ray.origin),
+            origin: path.ray.origin,
+            direction: path.ray.direction,
+            throughput: self.factor(path.beta),
+            // Infinite stands for a specular bounce or a camera ray.
+            pdf: (pdf != f32::INFINITY).then_some(pdf),
+            traversal,
+            candidates,
+            met: surface.map(|surface| met_report(self.world, hit, &surface)),
+            absorption: None,
+            eta_scale: path.previous.eta_scale,
+            throughput_there: None,
+            only_color: None,
+            found: Vec::new(),
+            scattering: None,
+            lights: Vec::new(),
+            light_sample: None,
+            openness: None,
+            bounce: None,
+            branches: Vec::new(),
+            ends: None,
+            added: Amount::default(),
+            subtree: Amount::default(),
+        }
+    }
+
+    pub(super) fn coefficients(&self, k: &Coefficients) -> CoefficientsReport {
+        CoefficientsReport {
+            ambient: self.factor(k.ambient),
+            diffuse: self.factor(k.diffuse),
+            specular: self.factor(k.specular),
+            shininess: k.shininess,
+            mirror: self.factor(k.mirror),
+            transmission: self.factor(k.transmission),
+            ior: k.ior,
+        }
+    }
+
+    pub(super) fn shaded(&mut self, address: u64, shading: &Shading, beta: Spectrum) {
+        let report = scatter::scattering(shading, |value| self.factor(value));
+        let throughput = self.factor(beta);
+        let only = match self.lanes {
+            SpectralMode::Rgb => beta.only_lane().map(|lane| ["red", "green", "blue", ""][lane]),
+            SpectralMode::Spectral(_) => None,
+        };
+        self.at(address, |ray| {
+            let had_others = ray.throughput.iter().filter(|lane| **lane != 0.0).count() > 1;
+            ray.only_color = only.filter(|_| had_others);
+            ray.scattering = Some(report);
+            ray.throughput_there = Some(throughput);
+        });
+    }
+
+    pub(super) fn bounce(&self, address: u64, bounce: &Bounce) -> BounceReport {
+        let sample = &bounce.sample;
+        let before = self.rays.get(&address).map_or(1.0, |ray| ray.eta_scale);
+        let refracted = if sample.lobe.is_transmission() { sample.eta * sample.eta } else { 1.0 };
+        BounceReport {
+            lobe: scatter::words(sample.lobe),
+            letters: scatter::letters(sample.lobe),
+            wi: bounce.wi.to_array(),
+            f: self.factor(sample.f),
+            cos: bounce.cos,
+            pdf: sample.pdf,
+            pdf_is_proportional: sample.pdf_is_proportional,
+            eta: sample.eta,
+            eta_scale: before * refracted,
+            throughput_before: self
+                .rays
+                .get(&address)
+                .and_then(|ray| ray.throughput_there.clone())
+                .unwrap_or_default(),
+            throughput_after: self.factor(bounce.beta),
+            survival: bounce.survival,
+            survives: bounce.survives,
+            next_throughput: None,
+        }
+    }
+}
+
+fn met_report(world: &World, hit: &Hit, surface: &SurfaceInteraction) -> MetReport {
+    MetReport {
+        shape: world.names.shapes[surface.shape as usize].clone(),
+        primitive: hit.primitive,
+        instance: (hit.instance != NONE).then_some(hit.instance),
+        t: hit.t,
+        point: (world.origin + DVec3::from_array(surface.point.position)).to_array(),
+        error: surface.point.error,
+        ng: surface.ng.to_array(),
+        n: surface.ns_facing().to_array(),
+        uv: surface.uv.to_array(),
+        wo: surface.wo.to_array(),
+        cos_viewer: surface.ns_facing().dot(surface.wo),
+        front: surface.front,
+        material: world.names.materials[surface.material as usize].clone(),
+        coefficients: None,
+    }
+}
+
+fn in_world(world: &World, point: [f32; 3]) -> [f64; 3] {
+    (world.origin + Vec3::from_array(point).as_dvec3()).to_array()
+}
