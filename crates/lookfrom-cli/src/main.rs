@@ -57,7 +57,10 @@ fn main() -> ExitCode {
             farm::run(&arguments, typed)
         }
         Command::Info(arguments) => info::run(&arguments),
-        Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Inspect(arguments) => {
+            let typed = matches.subcommand_matches("inspect").map(film::arguments).unwrap_or_default();
+            inspect::run(&arguments, &typed)
+        }
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Completions { shell } => completions::run(shell),
