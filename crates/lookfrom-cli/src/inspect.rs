@@ -1,8 +1,12 @@
 //! `lookfrom inspect`: a report on one sample, or on the samples of a pixel. The inspection itself is the library's.
 
-use lookfrom::inspect;
-use lookfrom::render::{Renderer, SampleId};
+use std::path::Path;
+
+use lookfrom::inspect::{self, LightPlace, Selection};
+use lookfrom::render::SampleId;
+use lookfrom::session::Session;
 use lookfrom_scene::Inputs;
+use serde::Serialize;
 
 use crate::args::{InspectArguments, Samples};
 use crate::exit::{self, DONE, Failure};
@@ -10,18 +14,51 @@ use crate::output;
 use crate::prepare::{self, prepare};
 use lookfrom_scene::json;
 
-/// Inspects samples of one pixel.
-pub(crate) fn run(arguments: &InspectArguments) -> u8 {
-    match follow(arguments) {
+/// A report as JSON, with all that is needed to have it again.
+#[derive(Serialize)]
+struct Document<'a, T> {
+    /// The version of the program.
+    version: &'static str,
+    /// The scene's file.
+    scene: &'a Path,
+    /// The typed options that change the picture.
+    options: &'a [String],
+    /// Columns, rows and samples per pixel of the picture.
+    picture: PictureSize,
+    /// The lights by their index.
+    lights: Vec<LightPlace>,
+    /// The report's own keys.
+    #[serde(flatten)]
+    report: &'a T,
+}
+
+#[derive(Serialize)]
+struct PictureSize {
+    width: u32,
+    height: u32,
+    samples: u32,
+}
+
+/// Inspects samples of one pixel; `typed` are the options that change the picture.
+pub(crate) fn run(arguments: &InspectArguments, typed: &[String]) -> u8 {
+    match follow(arguments, typed) {
         Ok(()) => DONE,
         Err(failure) => failure.report(),
     }
 }
 
-fn follow(arguments: &InspectArguments) -> Result<(), Failure> {
-    if arguments.svg.is_some() && matches!(arguments.sample, Samples::All | Samples::Range(_)) {
-        let message = "--svg draws the rays of one sample: choose it by --sample N or --sample worst";
-        return Err(Failure::Usage(message.into()));
+fn follow(arguments: &InspectArguments, typed: &[String]) -> Result<(), Failure> {
+    let is_of_many = matches!(arguments.sample, Samples::All | Samples::Range(_));
+    let options = [
+        ("--svg", arguments.svg.is_some()),
+        ("--ray", arguments.ray.is_some()),
+        ("--bounce", arguments.bounce.is_some()),
+        ("--only", arguments.only.is_some()),
+    ];
+    if let Some((option, _)) = options.into_iter().find(|(_, is_typed)| *is_typed && is_of_many) {
+        return Err(Failure::Usage(format!(
+            "{option} shows the rays of one sample: choose it by --sample N or --sample worst"
+        )));
     }
     prepare::use_threads(&arguments.common)?;
     let inputs = Inputs::default();
@@ -51,31 +88,49 @@ fn follow(arguments: &InspectArguments) -> Result<(), Failure> {
     }
     let renderer = session.renderer();
     let pixel = || inspect::inspect_pixel(renderer, [x, y], chosen.clone());
-    match &arguments.sample {
-        Samples::One(sample) => report(renderer, *sample, arguments, &inputs),
-        Samples::Worst => report(renderer, pixel()?.all[0].sample, arguments, &inputs),
-        Samples::All | Samples::Range(_) => answer(&pixel()?, arguments),
-    }
-}
-
-/// Prints the inspection of a sample, and writes the drawing of `--svg`.
-fn report(
-    renderer: &Renderer,
-    sample: u32,
-    arguments: &InspectArguments,
-    inputs: &Inputs,
-) -> Result<(), Failure> {
-    let &InspectArguments { x, y, .. } = arguments;
+    let sample = match &arguments.sample {
+        Samples::One(sample) => *sample,
+        Samples::Worst => pixel()?.all[0].sample,
+        Samples::All | Samples::Range(_) => {
+            let report = pixel()?;
+            return answer(&report, &report.to_string(), &session, (arguments, typed));
+        }
+    };
     let inspection = inspect::inspect(renderer, SampleId { pixel: [x, y], sample });
     if let Some(path) = &arguments.svg {
         let drawing = inspect::svg(renderer, &inspection);
-        output::replace_file(path, drawing.as_bytes(), inputs, "--svg")?;
+        output::replace_file(path, drawing.as_bytes(), &inputs, "--svg")?;
     }
-    answer(&inspection, arguments)
+    let &InspectArguments { ray, bounce, only: part, .. } = arguments;
+    if let Some(ray) = ray.filter(|ray| inspection.ray(*ray).is_none()) {
+        let known: Vec<String> = inspection.rays.iter().map(|ray| ray.address.to_string()).collect();
+        return Err(Failure::Usage(format!("there is no ray {ray}: this sample has {}", known.join(", "))));
+    }
+    let text = inspection.excerpt(Selection { ray, bounce, part }).to_string();
+    answer(&inspection, &text, &session, (arguments, typed))
 }
 
 /// Prints a report as text or JSON.
-fn answer(report: &(impl serde::Serialize + ToString), arguments: &InspectArguments) -> Result<(), Failure> {
-    let text = if arguments.json { json::document(report) } else { report.to_string() };
-    exit::answer(text.trim_end())
+fn answer<T: Serialize>(
+    report: &T,
+    text: &str,
+    session: &Session,
+    (arguments, typed): (&InspectArguments, &[String]),
+) -> Result<(), Failure> {
+    if !arguments.json {
+        return exit::answer(text.trim_end());
+    }
+    let image = session.image();
+    exit::answer(&json::document(&Document {
+        version: env!("CARGO_PKG_VERSION"),
+        scene: &arguments.scene,
+        options: typed,
+        picture: PictureSize {
+            width: image.width,
+            height: image.height,
+            samples: session.settings().samples,
+        },
+        lights: inspect::lights(session.renderer().world()),
+        report,
+    }))
 }

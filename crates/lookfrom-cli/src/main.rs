@@ -58,7 +58,10 @@ fn main() -> ExitCode {
             farm::run(&arguments, typed)
         }
         Command::Info(arguments) => info::run(&arguments),
-        Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Inspect(arguments) => {
+            let typed = matches.subcommand_matches("inspect").map(film::arguments).unwrap_or_default();
+            inspect::run(&arguments, &typed)
+        }
         #[cfg(feature = "view")]
         Command::View(arguments) => {
             let typed = matches.subcommand_matches("view").map(film::arguments).unwrap_or_default();

@@ -4,9 +4,14 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use clap::Args;
+use lookfrom::inspect::Part;
 
 use super::{Common, Overrides};
 use crate::values;
+
+/// The parts of the text.
+const PARTS: &[(&str, Part)] =
+    &[("camera", Part::Camera), ("tests", Part::Tests), ("lights", Part::Lights), ("sums", Part::Sums)];
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -14,6 +19,7 @@ Examples:
   lookfrom inspect scene.toml 320 200 --sample 5 --json
   lookfrom inspect scene.toml 320 200 --sample all       all samples of the pixel in short, the brightest first
   lookfrom inspect scene.toml 320 200 --sample worst     every step of the brightest
+  lookfrom inspect scene.toml 320 200 --ray 3 --only lights
   lookfrom inspect scene.toml 320 200 --svg rays.svg
 
 Give the same options as for the render: they determine the rays of the sample.";
@@ -39,7 +45,19 @@ pub(crate) struct InspectArguments {
     #[arg(long, value_name = "N|worst|all|N..M", default_value = "0", value_parser = Samples::parse)]
     pub(crate) sample: Samples,
 
-    /// Print one JSON object instead of text
+    /// Show only the ray with this number
+    #[arg(long, value_name = "N", value_parser = values::whole(1, u64::MAX))]
+    pub(crate) ray: Option<u64>,
+
+    /// Show only the rays after this many reflections, refractions and bounces; 0 is the camera ray
+    #[arg(long, value_name = "N", value_parser = values::whole(0, u32::MAX))]
+    pub(crate) bounce: Option<u32>,
+
+    /// Show only a part: camera, tests (of primitives), lights, sums
+    #[arg(long, value_name = "PART", value_parser = values::word(PARTS))]
+    pub(crate) only: Option<Part>,
+
+    /// Print one JSON object instead of text; it always has everything
     #[arg(long)]
     pub(crate) json: bool,
 

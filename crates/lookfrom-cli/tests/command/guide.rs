@@ -73,3 +73,40 @@ fn every_key_of_the_answers_is_in_the_guide() {
         }
     }
 }
+
+#[test]
+fn the_lesson_shows_what_is_printed_and_what_is_written() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
+    let lesson = read("docs/guide/lesson.md");
+    let stage = Stage::new("guide-lesson");
+    let scene = root.join("scenes/notes-exercise.toml");
+    let printed: String = ["120 240", "330 240"]
+        .map(|pixel| {
+            let run = stage.done(&format!("inspect {} {pixel}", scene.display()));
+            String::from_utf8(run.stdout).unwrap()
+        })
+        .concat();
+    let written: String = [
+        "crates/lookfrom/src/view/camera.rs",
+        "crates/lookfrom-bvh/src/reference.rs",
+        "crates/lookfrom/src/shading/material/whitted.rs",
+    ]
+    .map(read)
+    .concat();
+    let mut shown = [0, 0];
+    let mut place: Option<usize> = None;
+    for line in lesson.lines() {
+        match (line, place) {
+            ("```text", None) => place = Some(0),
+            ("```rust", None) => place = Some(1),
+            ("```", _) => place = None,
+            (line, Some(place)) => {
+                shown[place] += 1;
+                assert!([&printed, &written][place].contains(line), "not there any more: {line}");
+            }
+            _ => {}
+        }
+    }
+    assert!(shown.iter().all(|lines| *lines > 15), "{shown:?}");
+}

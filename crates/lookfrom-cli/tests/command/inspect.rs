@@ -22,6 +22,130 @@ fn what_is_inspected_is_what_is_rendered() {
     }
 }
 
+/// A triple of numbers as f32.
+fn triple(value: &serde_json::Value) -> Vec<f32> {
+    value.as_array().unwrap().iter().map(|value| value.as_f64().unwrap() as f32).collect()
+}
+
+#[test]
+fn a_whole_pixel_is_that_of_the_picture() {
+    let stage = Stage::new("inspect-pixel");
+    for options in [
+        "--samples 9 --width 20 --seed 3",
+        "--samples 9 --width 20 --integrator path --exposure 1 --tonemap agx --background #204060",
+        "--samples 9 --width 20 --integrator path --color spectral --background transparent",
+        "--samples 5 --width 20 --integrator path --filter mitchell",
+    ] {
+        stage.done(&format!("render scene.toml -q -o p.exr {options}"));
+        stage.done(&format!("render scene.toml -q -o p.png {options}"));
+        let linear = image::read(&stage.path("p.exr"), &mut LoadContext::new(&Disk)).unwrap();
+        let bytes = image::read(&stage.path("p.png"), &mut LoadContext::new(&Disk)).unwrap();
+        for [x, y] in [[0, 0], [11, 6], [3, 14], [10, 9]] {
+            let at = format!("pixel {x} {y}, {options}");
+            let pixel =
+                &stage.json_document(&format!("inspect scene.toml {x} {y} --sample all --json {options}"));
+            if !options.contains('#') {
+                assert_eq!(triple(&pixel["mean"]), linear.texel(y * 20 + x), "{at}");
+            }
+            let bytes = bytes.texel(y * 20 + x).map(|c| (255.0 * image::srgb_from_linear(c) + 0.5) as u8);
+            assert_eq!(pixel["color8"], serde_json::json!(bytes), "{at}");
+
+            let all = pixel["all"].as_array().unwrap();
+            assert_eq!(pixel["samples"], all.len(), "{at}");
+            let luminances: Vec<f64> = all.iter().map(|one| one["luminance"].as_f64().unwrap()).collect();
+            assert!(luminances.is_sorted_by(|a, b| a >= b), "{at}: {luminances:?}");
+            let n = all.len() as f64;
+            for channel in 0..3 {
+                let of = |one: &serde_json::Value| one["film"][channel].as_f64().unwrap();
+                let mean = all.iter().map(of).sum::<f64>() / n;
+                let squares = all.iter().map(|one| (of(one) - mean).powi(2)).sum::<f64>();
+                let variance = pixel["variance"][channel].as_f64().unwrap();
+                assert!((variance - squares / (n - 1.0)).abs() <= 1e-9 * variance, "{at}");
+                let error = pixel["standard_error"][channel].as_f64().unwrap();
+                assert!((error * error - variance / n).abs() <= 1e-9 * variance, "{at}");
+            }
+            // The first of the list is the worst, and what is told of it is what its own inspection tells.
+            let worst =
+                &stage.json_document(&format!("inspect scene.toml {x} {y} --sample worst --json {options}"));
+            assert_eq!((&worst["sample"], &worst["film"]), (&all[0]["sample"], &all[0]["film"]), "{at}");
+            if let Some(first) = worst["contributions"].get(0) {
+                assert_eq!(first["expression"], all[0]["expression"], "{at}");
+                assert!(first["expression"].as_str().unwrap().starts_with("camera → "), "{at}");
+            }
+        }
+    }
+    let some = &stage.json_document("inspect scene.toml 20 14 --sample 2..4 --json");
+    let mut numbers: Vec<u64> =
+        some["all"].as_array().unwrap().iter().map(|one| one["sample"].as_u64().unwrap()).collect();
+    numbers.sort_unstable();
+    assert_eq!((numbers, &some["samples"]), (vec![2, 3], &serde_json::json!(2)));
+    let one = &stage.json_document("inspect scene.toml 20 14 --sample 2..3 --json");
+    assert_eq!(one["variance"], serde_json::json!(null), "one sample has no variance");
+    let text = String::from_utf8(stage.done("inspect scene.toml 20 14 --sample all").stdout).unwrap();
+    assert!(text.contains("In short") && text.contains("variance") && text.contains("camera → "), "{text}");
+    for (typed, problem) in [
+        ("4..4", "above 4"),
+        ("0..5", "there is no sample 4: the picture has 4 samples"),
+        ("some", "worst, all, or a range"),
+        ("-1", "worst, all, or a range"),
+        ("all --svg rays.svg", "--svg shows the rays of one sample"),
+        ("0..2 --only lights", "--only shows the rays of one sample"),
+        ("0 --ray 9999", "there is no ray 9999: this sample has 1"),
+    ] {
+        stage.run(&format!("inspect scene.toml 20 14 --sample {typed}")).fails(2, &[problem]);
+    }
+}
+
+#[test]
+fn parts_of_an_inspection() {
+    let stage = Stage::new("inspect-parts");
+    let said = |options: &str| {
+        let run = stage.done(&format!("inspect scene.toml 20 14 --integrator path {options}"));
+        String::from_utf8(run.stdout).unwrap()
+    };
+    // What belongs to each part, and to no other.
+    let words = [
+        ("camera", "P_world = "),
+        ("tests", "tested "),
+        ("lights", "samples one light"),
+        ("sums", "bit for bit"),
+    ];
+    for (part, _) in words {
+        let text = said(&format!("--only {part}"));
+        for (of, word) in words {
+            assert_eq!(text.contains(word), of == part, "{word:?} in --only {part}: {text}");
+        }
+    }
+    let whole = said("");
+    assert!(words.iter().all(|(_, word)| whole.contains(word)), "{whole}");
+    assert!(whole.find("In short") < whole.find("P_k"), "what matters comes first: {whole}");
+    let second = said("--bounce 1");
+    assert!(second.contains("ray 2 (") && !second.contains("ray 1 (") && !second.contains("P_k"), "{second}");
+    assert!(said("--ray 1").contains("ray 1 (") && !said("--ray 1").contains("ray 2 ("));
+    for text in
+        [whole, said("--integrator whitted --depth 12"), said("--color spectral"), said("--sample all")]
+    {
+        let longest = text.lines().max_by_key(|line| line.chars().count()).unwrap();
+        assert!(longest.chars().count() <= 120, "{longest}");
+    }
+}
+
+#[test]
+fn an_inspection_as_data_says_what_it_is_of() {
+    let stage = Stage::new("inspect-data");
+    for sample in ["1", "worst", "all", "1..3"] {
+        let report = &stage
+            .json_document(&format!("inspect scene.toml 20 14 --json --sample {sample} --exposure 1.5"));
+        assert_eq!(report["version"], env!("CARGO_PKG_VERSION"));
+        assert_eq!(report["scene"], "scene.toml");
+        assert_eq!(report["options"], serde_json::json!(["--exposure=1.5"]));
+        assert_eq!(report["picture"], serde_json::json!({"width": 40, "height": 30, "samples": 4}));
+        assert_eq!(report["lights"][0]["kind"], "point");
+        assert_eq!(report["lights"][0]["position"], serde_json::json!([3.0, 4.0, 5.0]));
+        assert_eq!(report["pixel"], serde_json::json!([20, 14]));
+    }
+}
+
 #[test]
 fn an_inspection_in_words_and_as_a_drawing() {
     let stage = Stage::new("inspect-svg");

@@ -122,16 +122,24 @@ impl Excerpt<'_> {
 /// Writes a line; what is beyond the last column goes on in the next line, four columns further in.
 fn write_wrapped(f: &mut Formatter<'_>, line: &str) -> fmt::Result {
     let indent = line.chars().take_while(|c| *c == ' ').count();
-    let mut column = indent;
     write!(f, "{}", &line[..indent])?;
-    for (index, word) in line[indent..].split_inclusive(' ').enumerate() {
-        let width = word.trim_end().chars().count();
-        if index > 0 && column + width > COLUMNS {
+    let (mut column, mut spaces) = (indent, 0);
+    for (index, word) in line[indent..].split(' ').enumerate() {
+        spaces += usize::from(index > 0);
+        if word.is_empty() {
+            continue;
+        }
+        let width = word.chars().count();
+        if column > indent && column + spaces + width > COLUMNS {
             write!(f, "\n{:1$}", "", indent + 4)?;
             column = indent + 4;
+        } else {
+            write!(f, "{:spaces$}", "")?;
+            column += spaces;
         }
         f.write_str(word)?;
-        column += word.chars().count();
+        column += width;
+        spaces = 0;
     }
     writeln!(f)
 }

@@ -1,7 +1,8 @@
 //! Recursive ray tracing (Whitted 1980): at each hit shadow rays, one reflected and one refracted ray, and so on. The
 //! colour of a pixel is the sum over that tree of rays.
 //!
-//! *Adaptive depth control* (Hall & Greenberg 1983): a branch that can no longer change the pixel is not followed.
+//! *Adaptive depth control* (Hall & Greenberg 1983): a branch whose throughput is below a limit is not
+//! followed.
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
