@@ -2,7 +2,7 @@
 
 import { display, frac, row, sqrt } from "./formula.js";
 import { h } from "./html.js";
-import { exact, fileName, point } from "./format.js";
+import { exact, fileName } from "./format.js";
 
 /** @typedef {import("./protocol.js").Candidate} Candidate */
 /** @typedef {import("./protocol.js").Twice} Twice */
@@ -18,7 +18,9 @@ export function numbersOf({ test }) {
     /** @type {Record<string, Twice>} */
     const byName = {};
     for (const [name, value] of rows) byName[name.split(" ")[0]] = value;
-    return { kind, rows, byName, inputs: body?.inputs ?? body ?? {} };
+    /** @type {[string, number[]][]} */
+    const inputs = body?.inputs ?? [];
+    return { kind, rows, byName, inputs };
 }
 
 const FORMULAS = /** @type {Record<string, () => Element[]>} */ ({
@@ -40,12 +42,11 @@ export function candidateTable(candidate) {
                     h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, exact(value.f32)), h("td", {}, exact(value.f64)), h("td", { title: "leading bits that agree, of 24" }, bits(value.bits))))))));
 }
 
-/** The inputs of a test, where the server gives them: points, radii. @param {Record<string, any>} inputs */
+/** The inputs of a test: points, radii. @param {[string, number[]][]} inputs */
 function inputRows(inputs) {
-    const known = Object.entries(inputs).filter(([name, value]) => name !== "numbers" && (typeof value === "number" || (Array.isArray(value) && value.every((x) => typeof x === "number"))));
-    if (known.length === 0) return null;
-    return h("table", { class: "terms" }, h("tbody", {}, known.map(([name, value]) =>
-        h("tr", {}, h("th", { scope: "row" }, name.replaceAll("_", " ")), h("td", { class: "number" }, typeof value === "number" ? exact(value) : point(value, 9)))))); 
+    if (inputs.length === 0) return null;
+    return h("table", { class: "terms inputs" }, h("tbody", {}, inputs.map(([name, value]) =>
+        h("tr", {}, h("th", { scope: "row" }, name), h("td", { class: "number" }, value.length === 1 ? exact(value[0]) : `(${value.map(exact).join(", ")})`)))));
 }
 
 /** @param {number} n */

@@ -17,7 +17,7 @@ export function showEquations(app) {
     const show = () => {
         const ray = app.selectedRay();
         if (!ray) return replace(element);
-        const sections = [theRay(ray), theTests(ray), theHit(ray), ...theLights(ray), theLightSample(ray), ...theFound(ray), theBranches(ray), theBounce(ray), theSum(ray)];
+        const sections = [theRay(ray), theTests(ray), theAbsorption(ray), theHit(ray), ...theLights(ray), theLightSample(ray), ...theFound(ray), theBranches(ray), theBounce(ray), theSum(ray)];
         replace(element, sections.filter((section) => section !== null).map((section) => {
             const { title, content } = /** @type {{title: string, content: any[]}} */ (section);
             const details = h("details", { open: !closed.has(title) }, h("summary", {}, title), content);
@@ -51,12 +51,29 @@ function theRay(ray) {
 
 /** @param {Ray} ray */
 function theTests(ray) {
-    if (ray.candidates.length === 0) return section("Tested primitives", h("p", { class: "hint" }, "None: the tree of boxes excludes everything."));
+    const cost = ray.traversal && h("p", { class: "hint" }, `${ray.traversal.nodes} nodes of the BVH visited, ${ray.traversal.tests} primitives tested.`);
+    if (ray.candidates.length === 0) return section("Tested primitives", cost ?? h("p", { class: "hint" }, "None: the tree of boxes excludes everything."));
     const sorted = [...ray.candidates].sort((a, b) => Number(b.is_nearest) - Number(a.is_nearest));
     const others = sorted.slice(1);
     return section("Tested primitives",
+        cost,
         candidateTable(sorted[0]),
         others.length > 0 && h("details", { class: "inner" }, h("summary", {}, `${others.length} more: rejected or farther`), others.slice(0, 40).map(candidateTable)));
+}
+
+/** Beer's law, on the way through a medium. @param {Ray} ray */
+function theAbsorption(ray) {
+    const { absorption } = ray;
+    if (!absorption) return null;
+    return section(`Absorption${absorption.material ? ` in ${absorption.material}` : ""}`,
+        display("T = exp(− σ s l)"),
+        terms([
+            ["σ", "absorption coefficient, per unit of length", lanes(absorption.sigma)],
+            ["s", "a factor of it", exact(absorption.scale)],
+            ["l", "length of the way", exact(absorption.length)],
+            ["T", "what is left", lanes(absorption.transmittance)],
+            ["β T", "throughput after it", lanes(absorption.throughput)],
+        ]));
 }
 
 /** @param {Ray} ray */
@@ -88,10 +105,12 @@ function theLights(ray) {
     if (lit.length === 0) return [];
     return [section("Lights",
         display("I = k_a I_a + Σ_j ( k_d (N·L_j) + k_s (N·H_j)ⁿ ) I_j + k_r S + k_t T"),
-        lit.map(({ light, wi, intensity, diffuse, specular, shadow, added }) => [
+        lit.map(({ light, wi, n_dot_l, h: half, n_dot_h, intensity, diffuse, specular, shadow, added }) => [
             h("h4", {}, fileName(light)),
             terms([
                 ["L_j", "direction to the light", point(wi)],
+                ...(typeof n_dot_l === "number" ? [/** @type {Row} */ (["N·L_j", "cosine of the angle to the normal", exact(n_dot_l)])] : []),
+                ...(half ? [/** @type {Row} */ (["H_j", `halfway between the light and the viewer; N·H = ${short(n_dot_h)}`, point(half)])] : []),
                 ["I_j", "its intensity here, were nothing between", lanes(intensity.rgb)],
                 ["k_d (N·L_j)", "diffuse", lanes(diffuse)],
                 ["k_s (N·H_j)ⁿ", "highlight", lanes(specular)],
@@ -105,7 +124,10 @@ function theLights(ray) {
 function shadowWords(shadow) {
     if (!shadow) return "none: it would carry nothing";
     if (shadow.blockers.length === 0) return "reaches the light";
-    return shadow.blockers.map(({ shape, passed }) => (Math.max(...passed) > 0 ? `through ${fileName(shape)} × ${lanes(passed)}` : `blocked by ${fileName(shape)}`)).join(", ");
+    return shadow.blockers.map(({ shape, passed, t }) => {
+        const at = t === undefined ? "" : ` at t = ${short(t)}`;
+        return Math.max(...passed) > 0 ? `through ${fileName(shape)}${at} × ${lanes(passed)}` : `blocked by ${fileName(shape)}${at}`;
+    }).join(", ");
 }
 
 /** Next-event estimation. @param {Ray} ray */
@@ -147,9 +169,9 @@ function theBranches(ray) {
     if (ray.branches.length === 0) return null;
     return section("Branches",
         display("F max(k_r, k_t) S + (1 − F) k_t T"),
-        terms(ray.branches.map(({ kind, weight, fresnel, total_reflection, cut }) => [
+        terms(ray.branches.map(({ kind, direction, cos, eta, weight, fresnel, total_reflection, cut }) => [
             kind === "reflected" ? "S" : "T",
-            `${kind}${fresnel === null || fresnel === undefined ? "" : `, Fresnel's F = ${short(fresnel)}`}${total_reflection ? ", total internal reflection" : ""}${cut ? `; not followed: ${cut}` : ""}`,
+            `${kind}${direction ? ` to ${point(direction, 4)}, cos θ = ${short(cos)}` : ""}${eta ? `, η = ${short(eta)}` : ""}${fresnel === null || fresnel === undefined ? "" : `, Fresnel's F = ${short(fresnel)}`}${total_reflection ? ", total internal reflection" : ""}${cut ? `; not followed: ${cut}` : ""}`,
             lanes(weight),
         ])));
 }

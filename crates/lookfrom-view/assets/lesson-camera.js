@@ -22,7 +22,7 @@ export function cameraLesson(app) {
         const inspection = app.inspection.get();
         if (!inspection || !app.frame.get()) return replace(element, noPixel());
         const { steps, p_k } = inspection.camera;
-        if (!steps?.length) return replace(element, h("p", { class: "hint" }, "This camera has other steps: it is not a plane of pixels."));
+        if (steps[0]?.name !== "T1") return replace(element, h("p", { class: "hint" }, "This camera has other steps: it is not a plane of pixels."));
         const size = app.size();
         const body = h("div");
         const pad = pixelPad(size, [p_k[0], p_k[1]], (p) => fill(p));

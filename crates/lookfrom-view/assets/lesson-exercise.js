@@ -22,9 +22,9 @@ export function exerciseLesson(app) {
             h("p", {}, "Let the eye be at the origin, ", formula("d = 1"), ", lookat = (0, 0, d) and up = (0, 1, 0). Show that the matrix from view to world, ", formula("M_vw = T_4 · R_3"), ", is the identity."),
             h("button", { type: "button", onclick: () => app.view.set({ camera: { ...EXERCISE, fov: app.camera()?.fov ?? EXERCISE.fov } }) }, "Look from there"),
         ];
-        const steps = inspection?.camera.steps;
-        if (!inspection || !steps || steps.length < 4) return replace(element, task, noPixel());
-        const [R3, T4] = [steps[2].matrix, steps[3].matrix];
+        const step = (/** @type {string} */ wanted) => inspection?.camera.steps.find(({ name }) => name === wanted)?.matrix;
+        const [R3, T4] = [step("R3"), step("T4")];
+        if (!inspection || !R3 || !T4) return replace(element, task, noPixel());
         const M = product(T4, R3);
         const isIdentity = M.every((row, i) => row.every((x, k) => x === (i === k ? 1 : 0)));
         const text = (/** @type {number[][]} */ m) => matrix(m.map((row) => row.map((x) => short(x, 4))));

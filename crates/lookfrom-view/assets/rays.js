@@ -85,7 +85,7 @@ export function drawRays(context, drawing) {
  */
 function drawShadow(context, drawing, shadow, isLit, isSelected) {
     const blocker = shadow.blockers.find(({ passed }) => Math.max(...passed) === 0);
-    const at = blocker?.point ?? (blocker?.t !== undefined ? mix(shadow.from, shadow.to, Math.min(1, blocker.t)) : null);
+    const at = blocker?.point ?? null;
     const width = isSelected ? 2 : 1.1;
     if (isLit || !blocker) drawLine(context, drawing, shadow.from, shadow.to, color("shadow"), width, false);
     else if (at) {

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { join } from "node:path";
-import { PATIENCE, SCENES, inspect, launch, open, screenshot, serve } from "./browser.mjs";
+import { PATIENCE, SCENES, inspect, launch, open, placeOf, screenshot, serve } from "./browser.mjs";
 
 const SMALL = ["--width", "160", "--height", "120", "--samples", "2", "--depth", "3"];
 let browser, server;
@@ -55,6 +55,25 @@ test("every control has a name", async () => {
                 .map((control) => control.outerHTML));
         assert.deepEqual(nameless, [], tab);
     }
+    await context.close();
+});
+
+test("fingers: a tap selects a pixel, two come nearer", async () => {
+    const { page, context, errors } = await open(browser, server.url, { viewport: { width: 360, height: 740 }, hasTouch: true });
+    await page.locator('#picture[data-done="true"]').waitFor();
+    const { x, y } = await placeOf(page, 60, 75);
+    await page.touchscreen.tap(x, y);
+    await page.waitForFunction(() => /pixel=60,75/.test(location.hash));
+    const session = await context.newCDPSession(page);
+    const fingers = (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+    await fingers("touchStart", [x - 20, y], [x + 20, y]);
+    for (let reach = 25; reach <= 60; reach += 5) await fingers("touchMove", [x - reach, y], [x + reach, y]);
+    await fingers("touchEnd");
+    await page.waitForFunction(() => /camera=/.test(location.hash));
+    const [eye, target] = /camera=([^&]*)/.exec(await page.evaluate(() => location.hash))[1].split("/").map((v) => v.split(",").map(Number));
+    // The scene's own camera is 9.7 away.
+    assert.ok(Math.hypot(...eye.map((c, i) => c - target[i])) < 6);
+    assert.deepEqual(errors, []);
     await context.close();
 });
 

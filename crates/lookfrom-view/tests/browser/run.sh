@@ -4,7 +4,7 @@
 # Needs node with npm, its packages (`npm ci` here) and Chromium; says "skipped" where one is missing. Screenshots are
 # kept in LOOKFROM_SCREENSHOTS, where that is set.
 set -euo pipefail
-binary=$(realpath "${1:-$(dirname "$0")/../../../../target/debug/lookfrom}")
+binary=$(realpath -m "${1:-$(dirname "$0")/../../../../target/debug/lookfrom}")
 cd "$(dirname "$0")"
 
 skip() { printf 'skipped: %s\n' "$1"; exit 0; }
