@@ -2,9 +2,9 @@
 //!
 //! A [`Server`] serves a page and a WebSocket on a local port. It draws everything itself, by the kernel and the development
 //! of every other front end; the page shows pictures and numbers. Each window of the page has a view, a film and a thread of
-//! its own; all share the [`document`]: the scene, which is read again when one of its files changes.
+//! its own; all share the `document`: the scene, which is read again when one of its files changes.
 //!
-//! The messages are in [`message`]. The page is in `assets/`: embedded in release builds, read from disk at each request in
+//! The messages are in `message`. The page is in `assets/`: embedded in release builds, read from disk at each request in
 //! builds with debug assertions.
 
 mod assets;

@@ -1,6 +1,8 @@
 //! Light-path expressions: a contribution as the chain of what its light did, from the camera to the light, and the
 //! factors that made it large. After Heckbert (1990), with names of the scene in place of `E S D L`.
 
+use std::fmt::{self, Display, Formatter};
+
 use serde::Serialize;
 
 use super::report::{Addition, Inspection, MetReport, RayReport};
@@ -201,17 +203,32 @@ fn why(inspection: &Inspection, ray: &RayReport, addition: &Addition) -> String 
         (_, false) => format!(" · {} {}", part.name, three(part.value)),
     });
     let product: String = product.collect();
-    match parts.iter().max_by(|a, b| a.factor().total_cmp(&b.factor())) {
-        Some(part) if part.factor() > 1.0 => format!("{product}: {}", reason(inspection, ray, part, found)),
-        _ => format!("{product}: no factor is above 1"),
+    let largest = parts.iter().max_by(|a, b| a.factor().total_cmp(&b.factor()));
+    let largest = largest.filter(|part| part.factor() > 1.0);
+    let reason = match largest {
+        Some(part) => reason(inspection, ray, part, found),
+        None => "no factor is above 1".into(),
+    };
+    // A throughput that stands for many paths makes fireflies even where it is not large.
+    match grown(inspection, ray) {
+        Some(growth) if largest.is_none_or(|part| part.name != "β") && growth.times > MUCH => {
+            format!("{product}: {reason}; β has grown {growth}")
+        }
+        _ => format!("{product}: {reason}"),
     }
 }
+
+/// Growth of the throughput at one hit that is told beside the largest factor.
+const MUCH: f32 = 4.0;
 
 /// What a factor above 1 means.
 fn reason(inspection: &Inspection, ray: &RayReport, part: &Part, found: Option<&FoundReport>) -> String {
     match (part.name, found) {
         ("p", _) => "small p, a direction that is rarely sampled".into(),
-        ("β", _) => grown(inspection, ray),
+        ("β", _) => match grown(inspection, ray) {
+            Some(growth) => format!("large β, grown {growth}"),
+            None => "large β".into(),
+        },
         ("L", Some(found)) if found.weight == 1.0 && found.light_pdf == 0.0 || ray.pdf.is_none() => {
             match ray.depth {
                 0 => "large L, seen directly".into(),
@@ -225,28 +242,40 @@ fn reason(inspection: &Inspection, ray: &RayReport, part: &Part, found: Option<&
     }
 }
 
-/// Where the throughput has grown most.
-fn grown(inspection: &Inspection, ray: &RayReport) -> String {
-    let mut most_grown: Option<(f32, &RayReport)> = None;
+/// The hit where the throughput has grown most, by its BSDF sample and Russian roulette.
+struct Growth {
+    times: f32,
+    address: u64,
+    pdf: f32,
+    survival: f32,
+}
+
+impl Display for Growth {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { times, address, pdf, survival } = *self;
+        write!(f, "{} times at the hit of ray {address} (pdf {}", three(times), three(pdf))?;
+        match survival < 1.0 {
+            true => write!(f, ", survival of Russian roulette {})", three(survival)),
+            false => write!(f, ")"),
+        }
+    }
+}
+
+/// Where the throughput has grown most on the way to a ray.
+fn grown(inspection: &Inspection, ray: &RayReport) -> Option<Growth> {
+    let mut most_grown: Option<Growth> = None;
     let mut next = ray.parent;
     while let Some(ray) = next.and_then(|address| inspection.ray(address)) {
         if let Some(bounce) = &ray.bounce {
-            let growth = most(&bounce.throughput_after) / (most(&bounce.throughput_before) * bounce.survival);
-            if most_grown.is_none_or(|(most, _)| growth > most) {
-                most_grown = Some((growth, ray));
+            let times = most(&bounce.throughput_after) / (most(&bounce.throughput_before) * bounce.survival);
+            if most_grown.as_ref().is_none_or(|most| times > most.times) {
+                let (pdf, survival) = (bounce.pdf, bounce.survival);
+                most_grown = Some(Growth { times, address: ray.address, pdf, survival });
             }
         }
         next = ray.parent;
     }
-    match most_grown {
-        Some((growth, RayReport { address, bounce: Some(bounce), .. })) => format!(
-            "large β, grown {} times at the hit of ray {address} (pdf {}, survival {})",
-            three(growth),
-            three(bounce.pdf),
-            three(bounce.survival)
-        ),
-        _ => "large β".into(),
-    }
+    most_grown
 }
 
 /// The largest lane.

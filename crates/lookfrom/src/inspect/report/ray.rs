@@ -21,7 +21,7 @@ pub struct RayReport {
     pub depth: u32,
     /// Its origin.
     pub a: [f64; 3],
-    /// The same as it is traced: relative to the render origin ([`Inspection::render_origin`]).
+    /// The same as it is traced: relative to the render origin (`Inspection::render_origin`).
     pub origin: [f32; 3],
     /// Its direction, not necessarily of unit length.
     pub direction: [f32; 3],
