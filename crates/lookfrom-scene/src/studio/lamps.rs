@@ -1,8 +1,9 @@
-//! Whether a model brings its own light: surfaces that light it, not only glow.
+//! Whether a model brings its own light: surfaces that light the rest of it, not only glow.
 //!
-//! Emission up to 1 is how models draw screens, labels and eyes: it is as bright as white paper in the studio, and lights
-//! next to nothing. A surface is a lamp if it is brighter than that, or if all of them together would light the model: if
-//! the light they give off, spread over the sphere around the model, is a good part of what the studio gives.
+//! Emission up to 1 is how models draw screens, labels and eyes: it is as bright as white paper in the studio. Brighter
+//! surfaces are lamps if together they would light the model: if they are a small part of it, and their light, spread over
+//! the sphere around the model, is not negligible beside the studio's. A row of glowing cubes is lit by the studio, a room
+//! with a lamp by its lamp.
 
 use glam::DVec3;
 
@@ -13,8 +14,10 @@ use crate::texture::TextureKind;
 
 /// The radiance of white paper in the studio, with room for rounding and tints.
 const PAPER: f64 = 1.01;
-/// The irradiance, relative to π, that lights a model.
-const LIT: f64 = 0.1;
+/// The irradiance, relative to π, that lights a model. A square lamp of radiance 15, as in the Cornell box, gives 0.07.
+const LIT: f64 = 0.02;
+/// The greatest part of a model's area that is a lamp for the rest.
+const SMALL: f64 = 0.1;
 /// Nested textures that are followed.
 const DEEPEST: u32 = 16;
 
@@ -29,19 +32,19 @@ pub fn has_lamps(scene: &Scene) -> bool {
     });
     let shapes = scene.shapes.iter().map(|shape| (shape, 1.0)).chain(instanced);
     let mut means = Means { scene, of_images: vec![None; scene.images.len()] };
-    let mut flux = 0.0;
-    for (shape, growth) in shapes {
+    let (mut flux, mut lamps) = (0.0, 0.0);
+    for (shape, growth) in shapes.clone() {
         let Some(emission) = &shape.emission else { continue };
         let [r, g, b] = means.of(&emission.radiance, DEEPEST);
         let radiance = f64::from(r.max(g).max(b));
         if radiance > PAPER {
-            return true;
-        }
-        if radiance > 0.0 {
-            flux += radiance * growth * area(scene, shape);
+            let area = growth * area(scene, shape);
+            flux += radiance * area;
+            lamps += area;
         }
     }
     flux > LIT * sphere
+        && lamps < SMALL * shapes.map(|(shape, growth)| growth * area(scene, shape)).sum::<f64>()
 }
 
 /// Means of colours; those of images are computed once.
@@ -131,21 +134,23 @@ mod tests {
     #[test]
     fn glow_is_no_lamp() {
         assert!(!has_lamps(&model(0.5, 0.0)));
-        assert!(!has_lamps(&model(0.5, 0.1)));
         assert!(!has_lamps(&model(0.5, 1.0)));
+        assert!(!has_lamps(&model(2.0, 1.0)));
     }
 
     #[test]
-    fn what_is_bright_or_large_is_one() {
-        assert!(has_lamps(&model(0.01, 17.0)));
-        assert!(has_lamps(&model(2.0, 1.0)));
-        assert!(!has_lamps(&model(2.0, 0.1)));
+    fn what_lights_the_rest_is_one() {
+        assert!(has_lamps(&model(0.5, 15.0)));
+        assert!(has_lamps(&model(0.01, 1e5)));
+        // Too small, and most of the model itself.
+        assert!(!has_lamps(&model(0.01, 17.0)));
+        assert!(!has_lamps(&model(2.0, 17.0)));
     }
 
     #[test]
     fn size_and_unit_do_not_matter() {
         for exponent in [-20, 20] {
-            for (side, radiance) in [(0.5, 1.0), (2.0, 1.0)] {
+            for (side, radiance) in [(0.5, 15.0), (2.0, 15.0), (0.5, 1.0)] {
                 let mut scene = model(side, radiance);
                 for shape in &mut scene.shapes {
                     let Geometry::Quad { corner, edge_u, edge_v } = &mut shape.geometry else { continue };
