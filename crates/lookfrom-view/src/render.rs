@@ -257,16 +257,26 @@ impl Window<'_> {
     }
 
     fn pixel(&self, id: u64, pixel: [u32; 2]) -> Result<()> {
-        let (Some(shot), Some(wish)) = (&self.shot, &self.wish) else { return Err(nothing_yet()) };
-        let mut session = shot.session.clone();
-        let own = session.image().clone();
-        // Its colour is that of the picture on the screen.
-        let (exposure, tonemap) = (wish.exposure, wish.tonemap(own.tonemap)?);
-        session.set_image(ImageSettings { exposure, tonemap, ..own })?;
+        let session = self.as_shown()?;
         let samples = session.settings().samples.min(MOST_INSPECTED);
         let report = Box::new(inspect::inspect_pixel(session.renderer(), pixel, 0..samples)?);
         self.mailbox.say(&Answer::Pixel { id, report });
         Ok(())
+    }
+
+    /// The session, developed as the picture on the screen is.
+    fn as_shown(&self) -> Result<Session> {
+        let (Some(shot), Some(wish)) = (&self.shot, &self.wish) else { return Err(nothing_yet()) };
+        let mut session = shot.session.clone();
+        let own = session.image().clone();
+        let tonemap = wish.tonemap(own.tonemap)?;
+        session.set_image(ImageSettings {
+            exposure: wish.exposure,
+            tonemap,
+            denoise: wish.denoise,
+            ..own
+        })?;
+        Ok(session)
     }
 
     fn inspect(
@@ -279,12 +289,12 @@ impl Window<'_> {
     ) -> Result<()> {
         let shot = self.shot.as_ref().ok_or_else(nothing_yet)?;
         let sample = shot.checked(pixel, sample)?;
-        let own = shot.session.settings();
-        let mut session = shot.session.clone();
+        let mut session = self.as_shown()?;
+        let own = session.settings().clone();
         session.set_settings(RenderSettings {
             depth: depth.unwrap_or(own.depth).min(256),
             min_contribution: min_contribution.unwrap_or(own.min_contribution),
-            ..own.clone()
+            ..own
         })?;
         let inspection = inspect::inspect(session.renderer(), sample);
         let text = inspection.to_string();
