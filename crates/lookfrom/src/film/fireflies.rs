@@ -9,6 +9,7 @@
 //! by many of its own standard errors, and stays. The excess above the median goes in equal parts to the 5 × 5 pixels
 //! around.
 
+use super::pixel::Pixel;
 use super::{Film, Picture};
 use lookfrom_scene::settings::PixelBounds;
 
@@ -28,14 +29,32 @@ pub struct Firefly {
 }
 
 impl Film {
-    /// The fireflies of the film, those with the largest excess first.
+    /// The fireflies of the film that are at least twice as bright as the median of their neighbours, those with the
+    /// largest excess first.
     pub fn fireflies(&self) -> Vec<Firefly> {
         let area = self.area();
-        let places = (area.y0..area.y1).flat_map(|y| (area.x0..area.x1).map(move |x| [x, y]));
-        let mut found: Vec<Firefly> = places
-            .filter_map(|pixel @ [x, y]| {
+        let luminance = |x, y| self.tile.pixel(x, y).map_or(0.0, Pixel::luminance);
+        let rows = (area.y0..area.y1).flat_map(|y| (area.x0..area.x1).map(move |x| (x, y)));
+        let lights: Vec<f64> = rows.clone().map(|(x, y)| luminance(x, y)).collect();
+        let width = (area.x1 - area.x0) as usize;
+        let at = |x: u32, y: u32| lights[(y - area.y0) as usize * width + (x - area.x0) as usize];
+        // Few pixels are so much brighter than half of their neighbours: only of these the errors are compared.
+        let stands_out = |x: u32, y: u32| {
+            let (half, near) = (0.5 * at(x, y), around(area, x, y, 1));
+            let (mut darker, mut all) = (0, 0);
+            for row in near.y0..near.y1 {
+                for column in near.x0..near.x1 {
+                    darker += u32::from(at(column, row) <= half);
+                    all += 1;
+                }
+            }
+            half > 0.0 && 2 * darker >= all - 1
+        };
+        let mut found: Vec<Firefly> = rows
+            .filter(|&(x, y)| stands_out(x, y))
+            .filter_map(|(x, y)| {
                 let [own, median] = self.outlier(x, y)?;
-                Some(Firefly { pixel, excess: own - median })
+                (own >= 2.0 * median).then_some(Firefly { pixel: [x, y], excess: own - median })
             })
             .collect();
         found.sort_by(|a, b| b.excess.total_cmp(&a.excess));
