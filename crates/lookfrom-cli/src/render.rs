@@ -212,6 +212,10 @@ pub(crate) fn render_picture(
     let mut summary = Summary::new(session, &finished);
     summary.output = has_picture.then(|| target.name());
     summary.denoised &= has_picture;
+    // They take time that nobody should wait for who does not read of them.
+    if arguments.json || !arguments.quiet {
+        summary.find_fireflies(session, &finished);
+    }
     summary.measured(render_time, report::seconds(started.elapsed()));
     Ok(summary)
 }

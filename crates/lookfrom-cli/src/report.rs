@@ -93,7 +93,7 @@ impl From<SampleId> for DroppedAddress {
 }
 
 impl Summary {
-    /// The summary without the output's name and the times of render and write.
+    /// The summary without the output's name, the times of render and write, and the fireflies.
     pub(crate) fn new(session: &Session, finished: &Finished) -> Self {
         let (info, rendered) = (session.info(), &finished.rendered);
         let film = &rendered.film;
@@ -125,8 +125,13 @@ impl Summary {
             notices: exit::lines(session.warnings(), WarningKind::Notice),
             cancelled: is_cancelled,
             dropped_samples: Dropped { count: film.dropped(), first: film.first_dropped().map(Into::into) },
-            fireflies: session.fireflies(film, MOST_FIREFLIES),
+            fireflies: Outliers::default(),
         }
+    }
+
+    /// Adds the fireflies, whose samples are traced again.
+    pub(crate) fn find_fireflies(&mut self, session: &Session, finished: &Finished) {
+        self.fireflies = session.fireflies(&finished.rendered.film, MOST_FIREFLIES);
     }
 
     /// Adds the times of render and write, in seconds, and the memory.
