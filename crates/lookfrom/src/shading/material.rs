@@ -56,6 +56,8 @@ pub struct Material {
     pub whitted: Whitted,
     /// The pictures that its scattering function depends on.
     pub pictures: PictureSet,
+    /// False if its scattering function is known to be the same everywhere.
+    pub varies: bool,
 }
 
 /// A BSDF at a point, with its shading frame.

@@ -27,8 +27,10 @@ impl<'a> Compiler<'a> {
     pub(crate) fn compile(&mut self, material: &written::Material) -> (Material, [f32; 3]) {
         let whitted = approximate::in_whitteds_model(&material.kind, &self.whitted, self.textures);
         let (kind, bump_mapping) = (self.kind(&material.kind), self.bump_mapping(&material.bump_mapping));
+        let (pictures, varies) = pictures::of(&kind, &bump_mapping, self.textures);
         let compiled = Material {
-            pictures: pictures::of(&kind, &bump_mapping, self.textures),
+            pictures,
+            varies,
             kind,
             bump_mapping,
             medium: None,

@@ -1,11 +1,12 @@
-//! The pictures that a material's scattering function depends on, to be looked up before it is evaluated.
+//! The pictures that a material's scattering function depends on, to be looked up before it is evaluated, and whether it
+//! varies over the surface at all.
 
 use super::{BumpMapping, Coat, MaterialKind, Metal, Roughness};
 use crate::shading::texture::{FloatTexture, PictureSet, SpectrumTexture, Textures};
 
-/// The pictures of a material.
-pub(super) fn of(kind: &MaterialKind, bump_mapping: &BumpMapping, textures: &Textures) -> PictureSet {
-    let mut walk = Walk { textures, pictures: PictureSet::EMPTY };
+/// The pictures of a material, and whether it may vary over the surface.
+pub(super) fn of(kind: &MaterialKind, bump_mapping: &BumpMapping, textures: &Textures) -> (PictureSet, bool) {
+    let mut walk = Walk { textures, pictures: PictureSet::EMPTY, varies: false };
     match kind {
         MaterialKind::Diffuse { reflectance } => walk.color(reflectance),
         MaterialKind::DiffuseTransmission { reflectance, transmittance, .. } => {
@@ -32,27 +33,34 @@ pub(super) fn of(kind: &MaterialKind, bump_mapping: &BumpMapping, textures: &Tex
             walk.number(look.roughness);
             walk.number(look.transmission);
             walk.number(look.clearcoat);
+            // Other inputs of it are seldom pictures.
+            walk.varies = true;
         }
-        _ => {}
+        _ => walk.varies = true,
     }
-    if let BumpMapping::NormalTexture(map) = bump_mapping {
-        walk.color(&map.texture);
+    match bump_mapping {
+        BumpMapping::None => {}
+        BumpMapping::NormalTexture(map) => walk.color(&map.texture),
+        BumpMapping::Bump(_) | BumpMapping::NormalMap(_) => walk.varies = true,
     }
-    walk.pictures
+    (walk.pictures, walk.varies)
 }
 
 /// A walk through a material's inputs.
 struct Walk<'a> {
     textures: &'a Textures,
     pictures: PictureSet,
+    varies: bool,
 }
 
 impl Walk<'_> {
     fn color(&mut self, color: &SpectrumTexture) {
+        self.varies |= color.varies();
         self.textures.add_pictures(color, &mut self.pictures);
     }
 
     fn number(&mut self, number: FloatTexture) {
+        self.varies |= number.varies();
         self.textures.add_pictures_of_float(number, &mut self.pictures);
     }
 
@@ -74,6 +82,8 @@ impl Walk<'_> {
 
     fn coat(&mut self, coat: &Coat) {
         self.roughness(&coat.roughness);
+        self.number(coat.thickness);
+        self.number(coat.g);
         self.color(&coat.albedo);
     }
 }

@@ -138,9 +138,10 @@ impl PathTracer {
 
         // Evaluate the materials.
         let world = batch.world;
-        let mut points: [_; LANES] = std::array::from_fn(|lane| {
-            hits[lane].texture_point(world, &surfaces, [uv[0][lane], uv[1][lane]], lane)
-        });
+        let mut points = [TexturePoint::NOWHERE; LANES];
+        for (lane, hit) in hits.iter().enumerate().filter(|(_, hit)| hit.material.varies) {
+            points[lane] = hit.texture_point(world, &surfaces, [uv[0][lane], uv[1][lane]], lane);
+        }
         let pictures = by_lane!(lane => &hits[lane].material.pictures);
         let look_ups = world.textures.look_up_lanes(&pictures, &points);
         if let Some(look_ups) = &look_ups {
