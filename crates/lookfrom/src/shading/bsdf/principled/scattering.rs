@@ -9,6 +9,7 @@ use super::sheen;
 use super::surface::Facet;
 use super::view::{View, across, is_below};
 use crate::core::optics;
+use crate::core::sampler::ONE_MINUS_EPSILON;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::core::warp;
@@ -165,17 +166,24 @@ impl<R: Real> LocalScattering<R> {
     pub(super) fn sample(&self, uc: R, u: [R; 2], mode: Mode) -> DirectionSample<R> {
         let choice = &self.choice;
         let (zero, one) = (uc.like(0.0), uc.like(1.0));
-        // What is left of `uc` is used for the next choice.
-        let is_matte = uc.lt(choice.matte);
-        let rest = uc - choice.matte;
+        // The lobe is chosen by the first of the two numbers of the direction, which is then stretched over the lobe's part:
+        // each lobe's directions stay as even as all of them.
+        let [position, other] = u;
+        let is_matte = position.lt(choice.matte);
+        let rest = position - choice.matte;
         let is_matte_through = !is_matte & rest.lt(choice.matte_through);
         let is_diffuse = is_matte | is_matte_through;
+        let mut part = R::select(is_matte, position / choice.matte, rest / choice.matte_through);
         let rest = rest - choice.matte_through;
         let is_sheen = !is_diffuse & rest.lt(choice.sheen);
+        part = R::select(is_sheen, rest / choice.sheen, part);
         let rest = rest - choice.sheen;
         let is_coat = !is_diffuse & !is_sheen & rest.lt(choice.coat);
+        part = R::select(is_coat, rest / choice.coat, part);
         let rest = rest - choice.coat;
         let is_facet = !is_diffuse & !is_sheen & !is_coat;
+        part = R::select(is_facet, rest / choice.facet, part);
+        let u = [Float::min(Float::max(part, zero), one.like(ONE_MINUS_EPSILON)), other];
 
         let no = is_matte.like(false);
         let mut sample = DirectionSample {
@@ -195,7 +203,7 @@ impl<R: Real> LocalScattering<R> {
             self.sample_coat(&mut sample, u, is_coat);
         }
         if is_facet.any() {
-            self.sample_facet(&mut sample, u, rest, is_facet, mode);
+            self.sample_facet(&mut sample, u, uc, is_facet, mode);
         }
         sample.is_valid = sample.is_valid & !is_grazing(sample.wi);
         sample.is_transmission = is_below(sample.wi);
@@ -229,12 +237,12 @@ impl<R: Real> LocalScattering<R> {
         &self,
         sample: &mut DirectionSample<R>,
         u: [R; 2],
-        rest: R,
+        uc: R,
         is_facet: R::Mask,
         mode: Mode,
     ) {
         let View { surface, wo, .. } = &self.view;
-        let (zero, one) = (rest.like(0.0), rest.like(1.0));
+        let (zero, one) = (uc.like(0.0), uc.like(1.0));
         let probability = self.choice.facet;
         let is_smooth = surface.is_smooth();
         let up = Vector { x: zero, y: zero, z: one };
@@ -243,7 +251,7 @@ impl<R: Real> LocalScattering<R> {
             false => Vector::select(is_smooth, up, surface.roughness.sample(*wo, u)),
         };
         let (mirrors, is_allowed) = self.mirrors_at(wo.dot(wm));
-        let reflects = rest.lt(probability * mirrors);
+        let reflects = uc.lt(mirrors);
         let (wi, is_on_side) = self.off_facet(wm, reflects);
         let is_valid = is_on_side & is_allowed & probability.gt(zero);
         sample.wi = Vector::select(is_facet, wi, sample.wi);
