@@ -2,6 +2,7 @@
 //!
 //! The doc comments of the fields are the help texts.
 
+mod encoding;
 mod farm;
 mod film;
 mod inspect;
@@ -23,6 +24,7 @@ use lookfrom_scene::settings::{
 
 use crate::values;
 
+pub(crate) use encoding::EncodingArguments;
 pub(crate) use farm::FarmArguments;
 pub(crate) use film::{DevelopArguments, FilesArguments, KeepArguments, MergeArguments, ResumeArguments};
 pub(crate) use inspect::{InspectArguments, Samples};
@@ -145,15 +147,18 @@ pub(crate) struct RenderArguments {
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
-    /// Output: a file (.png, .exr, .hdr, .pfm, .ppm), a folder, a pattern with {name}, or - for a PNG to stdout
+    /// Output: a file (.png, .jpg, .webp, .exr, .hdr, .pfm, .ppm), a folder, a pattern with {name}, or - for a PNG to stdout
     ///
-    /// PNG and PPM are 8-bit sRGB after exposure and tone mapping; EXR, HDR and PFM are linear light as computed. Without this
+    /// PNG, JPEG, WebP and PPM are sRGB after exposure and tone mapping; EXR, HDR and PFM are linear light as computed. Without this
     /// option: NAME.png in the current folder, named after the scene. For several scenes give a folder or a pattern, in which
     /// {name} is the scene's name without folder and extension, {dir} its folder as typed, {parent} the name of that folder,
     /// {n} its number in the call, from 1; {{ and }} are literal braces. Missing folders are created. Input files of a scene
     /// are never overwritten.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) encoding: EncodingArguments,
 
     /// Time limit: stop after the pass over the picture that reaches it (60s, 500ms, 2m, 1h)
     ///
@@ -362,7 +367,7 @@ pub(crate) struct Overrides {
     #[arg(long, value_name = "NAME[:RADIUS]", value_parser = values::filter)]
     pub(crate) filter: Option<Filter>,
 
-    /// Exposure in stops, for PNG and PPM
+    /// Exposure in stops, for PNG, JPEG, WebP and PPM
     #[arg(long, value_name = "STOPS", value_parser = values::between(-64.0f32, 64.0), allow_hyphen_values = true)]
     pub(crate) exposure: Option<f32>,
 

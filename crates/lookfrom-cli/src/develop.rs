@@ -15,7 +15,8 @@ use crate::output::Target;
 
 /// Develops every picture and returns the exit code. One that fails does not stop the others; its code is kept.
 pub(crate) fn run(arguments: &DevelopArguments) -> u8 {
-    let targets = match naming::targets(&arguments.pictures, arguments.output.as_deref(), false) {
+    let targets = naming::targets(&arguments.pictures, arguments.output.as_deref(), false);
+    let targets = match targets.and_then(|targets| arguments.encoding.apply(targets)) {
         Ok(targets) => targets,
         Err(failure) => return failure.report(),
     };

@@ -55,7 +55,7 @@ pub(crate) fn targets(scenes: &[PathBuf], output: Option<&Path>, json: bool) -> 
     let count = scenes.len();
     let numbered = |(index, scene): (usize, &'_ PathBuf)| target(Numbered { scene, index, count }, output);
     let targets = scenes.iter().enumerate().map(numbered).collect::<Result<Vec<_>, _>>()?;
-    if targets.contains(&Target::Stdout) {
+    if targets.iter().any(Target::is_stdout) {
         let usage = |message: &str| Err(Failure::Usage(message.to_owned()));
         if json {
             return usage("-o - and --json cannot both write to stdout; write the picture to a file");
@@ -102,7 +102,7 @@ fn target(of: Numbered<'_>, output: Option<&Path>) -> Result<Target, Failure> {
     let Some(output) = output else { return file(default_name.into()) };
     if output == Path::new("-") {
         return match of.count {
-            1 => Ok(Target::Stdout),
+            1 => Ok(Target::Stdout(Format::Png)),
             _ => Err(Failure::Usage(
                 "-o - is for one scene; give several a folder or a pattern with {name}".to_owned(),
             )),
@@ -240,7 +240,7 @@ mod tests {
         assert_eq!(of(&["b.toml"], Some("x/")).unwrap(), ["x/b.png"]);
         assert_eq!(of(&["b.toml", "c.ply"], Some("x")).unwrap(), ["x/b.png", "x/c.png"]);
         assert_eq!(of(&["b.toml"], Some("-")).unwrap(), ["-"]);
-        for wrong in ["x", "x.toml", "x.jpg", ".png", "{name}"] {
+        for wrong in ["x", "x.toml", "x.gif", ".png", "{name}"] {
             assert_eq!(of(&["b.toml"], Some(wrong)), Err(2), "{wrong}");
         }
         for wrong in ["-", "x.png"] {

@@ -14,8 +14,8 @@ use crate::exit::Failure;
 /// Target of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
-    /// A PNG to stdout.
-    Stdout,
+    /// A PNG to stdout, of 8 or 16 bits.
+    Stdout(Format),
     /// A file.
     File(PathBuf, Format),
 }
@@ -24,7 +24,7 @@ impl Target {
     /// Its name in messages and summaries.
     pub(crate) fn name(&self) -> String {
         match self {
-            Self::Stdout => "-".to_owned(),
+            Self::Stdout(_) => "-".to_owned(),
             Self::File(path, _) => path.display().to_string(),
         }
     }
@@ -32,7 +32,7 @@ impl Target {
     /// The folder of the file; the current one for stdout.
     pub(crate) fn folder(&self) -> &Path {
         match self {
-            Self::Stdout => Path::new("."),
+            Self::Stdout(_) => Path::new("."),
             Self::File(path, _) => folder_or_here(path.parent()),
         }
     }
@@ -50,8 +50,20 @@ impl Target {
     /// The format of the picture.
     pub(crate) fn format(&self) -> Format {
         match self {
-            Self::Stdout => Format::Png,
-            Self::File(_, format) => *format,
+            Self::Stdout(format) | Self::File(_, format) => *format,
+        }
+    }
+
+    /// Whether it is stdout.
+    pub(crate) fn is_stdout(&self) -> bool {
+        matches!(self, Self::Stdout(_))
+    }
+
+    /// The same with a picture of another format.
+    pub(crate) fn of_format(self, format: Format) -> Self {
+        match self {
+            Self::Stdout(_) => Self::Stdout(format),
+            Self::File(path, _) => Self::File(path, format),
         }
     }
 
@@ -66,7 +78,7 @@ impl Target {
     /// `Output` where this target is such a file.
     pub(crate) fn keep_inputs(&self, inputs: &Inputs) -> Result<(), Failure> {
         match self {
-            Self::Stdout => Ok(()),
+            Self::Stdout(_) => Ok(()),
             Self::File(path, _) => keep_inputs(path, inputs, "-o"),
         }
     }
@@ -77,7 +89,7 @@ impl Target {
     /// `Output` where that fails or would overwrite an input; an existing file then stays as it was.
     pub(crate) fn write(&self, bytes: &[u8], inputs: &Inputs) -> Result<(), Failure> {
         match self {
-            Self::Stdout => std::io::stdout()
+            Self::Stdout(_) => std::io::stdout()
                 .write_all(bytes)
                 .and_then(|()| std::io::stdout().flush())
                 .map_err(|error| Failure::Output(format!("cannot write -: {error}"))),

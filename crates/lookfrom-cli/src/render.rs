@@ -23,15 +23,16 @@ use crate::{interrupt, naming};
 /// `typed`, the arguments by which their sessions can be opened again.
 pub(crate) fn run(arguments: &RenderArguments, typed: &[String]) -> u8 {
     let ready = naming::targets(&arguments.scenes, arguments.output.as_deref(), arguments.json)
+        .and_then(|targets| arguments.encoding.apply(targets))
         .and_then(|targets| prepare::use_threads(&arguments.common).map(|()| targets));
     let ready = ready.and_then(|targets| match arguments.write_every {
-        Some(_) if targets.contains(&Target::Stdout) => {
+        Some(_) if targets.iter().any(Target::is_stdout) => {
             Err(Failure::Usage("--write-every needs an output file; -o - is stdout".to_owned()))
         }
         _ => Ok(targets),
     });
     let ready = ready.and_then(|targets| match arguments.turntable {
-        Some(_) if targets.contains(&Target::Stdout) => {
+        Some(_) if targets.iter().any(Target::is_stdout) => {
             Err(Failure::Usage("--turntable writes several files; -o - is stdout".to_owned()))
         }
         _ => Ok(targets),

@@ -5,6 +5,7 @@ pub mod compare;
 mod encoding;
 pub mod flip;
 mod ktx2;
+mod metadata;
 mod openexr;
 mod read;
 mod srgb;
@@ -12,8 +13,12 @@ mod texels;
 mod write;
 
 pub use self::encoding::Encoding;
+pub use self::metadata::Metadata;
 pub use self::openexr::{Channels, ExrChannel, ExrHeader, ExrRows, encode_exr, read_exr, write_exr};
 pub use self::read::{decode, read, read_data, read_encoded, read_opacity};
 pub use self::srgb::{linear_from_srgb, srgb_from_linear};
 pub use self::texels::{Image, Quad};
-pub use self::write::{encode_hdr, encode_pfm, encode_png, encode_png_with_alpha, encode_ppm};
+pub use self::write::{
+    Pixels, encode_hdr, encode_jpeg, encode_pfm, encode_png, encode_png_of, encode_png_with_alpha,
+    encode_ppm, encode_webp,
+};

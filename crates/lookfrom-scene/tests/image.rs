@@ -3,8 +3,11 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use ::image::{DynamicImage, ImageFormat, Rgb32FImage, RgbImage, RgbaImage};
-use lookfrom_scene::image::{self, Image};
+use ::image::{
+    DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Rgb, Rgb32FImage, RgbImage, Rgba,
+    RgbaImage,
+};
+use lookfrom_scene::image::{self, Image, Metadata, Pixels};
 use lookfrom_scene::{ErrorKind, LoadContext, Memory};
 use proptest::prelude::*;
 
@@ -155,6 +158,80 @@ fn eight_bits_come_back() {
     assert_eq!(image::encode_exr(1, 1, &twice, &[]).unwrap_err().kind, ErrorKind::Invalid);
     let own = [("channels".to_owned(), String::new())];
     assert_eq!(image::encode_exr(1, 1, &twice[..1], &own).unwrap_err().kind, ErrorKind::Invalid);
+}
+
+#[test]
+fn pictures_for_display_come_back_with_what_is_told_of_them() {
+    let rgb = gradient().into_raw();
+    let size = [7, 5];
+    let rgba: Vec<u8> =
+        rgb.chunks_exact(3).enumerate().flat_map(|(i, c)| [c[0], c[1], c[2], 7 * i as u8]).collect();
+    let wide: Vec<u16> = (0..4 * 35).map(|i| i * 467).collect();
+    let metadata = Metadata::new("a program", "seed: 3\nscene: größe.toml");
+    let told = Some(&metadata);
+    let lossless = [
+        (image::encode_png_of(size, Pixels::Rgb8(&rgb), told), DynamicImage::from(gradient())),
+        (image::encode_webp(size, Pixels::Rgb8(&rgb), told), gradient().into()),
+        (
+            image::encode_png_of(size, Pixels::Rgba8(&rgba), told),
+            RgbaImage::from_raw(7, 5, rgba.clone()).unwrap().into(),
+        ),
+        (
+            image::encode_webp(size, Pixels::Rgba8(&rgba), told),
+            RgbaImage::from_raw(7, 5, rgba.clone()).unwrap().into(),
+        ),
+        (
+            image::encode_png_of(size, Pixels::Rgba16(&wide), told),
+            ImageBuffer::<Rgba<u16>, _>::from_raw(7, 5, wide.clone()).unwrap().into(),
+        ),
+        (
+            image::encode_png_of(size, Pixels::Rgb16(&wide[..105]), told),
+            ImageBuffer::<Rgb<u16>, _>::from_raw(7, 5, wide[..105].to_vec()).unwrap().into(),
+        ),
+    ];
+    let mut files: Vec<Vec<u8>> = Vec::new();
+    for (bytes, expected) in lossless {
+        let bytes = bytes.expect("a picture");
+        assert_eq!(::image::load_from_memory(&bytes).expect("other programs read it"), expected);
+        files.push(bytes);
+    }
+    let jpeg = image::encode_jpeg(size, &rgb, 100, told).expect("a picture");
+    let found = ::image::load_from_memory(&jpeg).expect("other programs read it").into_rgb8();
+    assert!(found.as_raw().iter().zip(&rgb).all(|(a, b)| a.abs_diff(*b) <= 4), "{found:?}");
+    files.push(jpeg);
+
+    for bytes in files {
+        let reader = ImageReader::new(Cursor::new(&bytes)).with_guessed_format().unwrap();
+        let mut decoder = reader.into_decoder().unwrap();
+        let exif = decoder.exif_metadata().unwrap().expect("Exif");
+        let icc = decoder.icc_profile().unwrap().expect("an ICC profile");
+        assert_eq!(
+            (&icc[36..40], u32::from_be_bytes(icc[..4].try_into().unwrap()) as usize),
+            (&b"acsp"[..], icc.len())
+        );
+        // The fields of the first directory, and of the one that it leads to.
+        let number =
+            |at: usize, bytes: usize| (0..bytes).fold(0, |sum, k| sum | usize::from(exif[at + k]) << (8 * k));
+        let field = |directory: usize, tag: usize| {
+            let fields = (0..number(directory, 2)).map(|k| directory + 2 + 12 * k);
+            let at = fields.into_iter().find(|at| number(*at, 2) == tag).expect("the field");
+            (number(at + 4, 4), number(at + 8, 4))
+        };
+        let text = |tag: usize| {
+            let (count, at) = field(8, tag);
+            std::str::from_utf8(&exif[at..at + count]).expect("UTF-8").trim_end_matches('\0')
+        };
+        assert_eq!(&exif[..8], b"II*\0\x08\0\0\0");
+        assert_eq!((text(0x0131), text(0x010e)), ("a program", "seed: 3\nscene: größe.toml"));
+        assert_eq!(field(field(8, 0x8769).1, 0xa001), (1, 1), "its colours are not sRGB");
+    }
+    assert_eq!(image::encode_webp([7, 6], Pixels::Rgb8(&rgb), None).unwrap_err().kind, ErrorKind::Invalid);
+    let long = vec![0; 3 * 70_000];
+    assert_eq!(image::encode_jpeg([70_000, 1], &long, 90, None).unwrap_err().kind, ErrorKind::Invalid);
+    assert_eq!(
+        image::encode_webp([70_000, 1], Pixels::Rgb8(&long), None).unwrap_err().kind,
+        ErrorKind::Invalid
+    );
 }
 
 /// A PNG whose header claims a size, with a right checksum, and nothing behind it.

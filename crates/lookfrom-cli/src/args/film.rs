@@ -9,7 +9,7 @@ use clap::Args;
 use lookfrom::session::Fireflies;
 use lookfrom_scene::settings::{Background, Tonemap};
 
-use super::Common;
+use super::{Common, EncodingArguments};
 use crate::values;
 
 pub(super) const RESUME_EXAMPLES: &str = "\
@@ -127,15 +127,18 @@ pub(crate) struct DevelopArguments {
     #[arg(required = true, value_name = "PICTURE")]
     pub(crate) pictures: Vec<PathBuf>,
 
-    /// Output: a file (.png, .exr, .hdr, .pfm, .ppm), a folder or a pattern with {name}, as for render
+    /// Output: a file (.png, .jpg, .webp, .exr, .hdr, .pfm, .ppm), a folder or a pattern with {name}, as for render
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
 
-    /// Exposure in stops, for PNG and PPM [default: the film's, or 0]
+    #[command(flatten)]
+    pub(crate) encoding: EncodingArguments,
+
+    /// Exposure in stops, for PNG, JPEG, WebP and PPM [default: the film's, or 0]
     #[arg(long, value_name = "STOPS", value_parser = values::between(-64.0f32, 64.0), allow_hyphen_values = true)]
     pub(crate) exposure: Option<f32>,
 
-    /// Tone map from linear light to 8 bits [default: the film's, or clamp]
+    /// Tone map from linear light to what a screen shows [default: the film's, or clamp]
     #[arg(long, value_name = "NAME", value_parser = values::word(Tonemap::WORDS))]
     pub(crate) tonemap: Option<Tonemap>,
 

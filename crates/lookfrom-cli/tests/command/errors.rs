@@ -82,7 +82,13 @@ fn what_the_parser_says_and_what_we_say_look_alike() {
 fn an_output_that_cannot_be_is_refused_before_rendering() {
     let stage = Stage::new("refused");
     endless(&stage);
-    stage.run("render endless.toml -o p.jpg").fails(2, &["p.jpg", ".jpg", ".png, .exr, .hdr, .pfm, .ppm"]);
+    stage
+        .run("render endless.toml -o p.gif")
+        .fails(2, &["p.gif", ".gif", ".png, .jpg, .jpeg, .webp, .exr, .hdr, .pfm, .ppm"]);
+    stage.run("render endless.toml -o p.png --quality 80").fails(2, &["--quality", "JPEG", "p.png"]);
+    stage.run("render endless.toml -o p.webp --bits 16").fails(2, &["--bits 16", "PNG", "p.webp"]);
+    stage.run("render endless.toml -o p.png --bits 12").fails(2, &["--bits", "8, 16"]);
+    stage.run("render endless.toml -o p.jpg --quality 0").fails(2, &["from 1 to 100"]);
     stage.run("render endless.toml -o picture").fails(2, &["no extension"]);
     stage.run("render endless.toml -o scene.toml/p.png").fails(3, &["scene.toml is not a folder"]);
     stage.run("render endless.toml -o scene.toml/new/").fails(3, &["scene.toml is not a folder"]);

@@ -19,6 +19,8 @@ fn the_library_makes_the_pictures_of_the_command() {
     let cases = [
         ("whitted1980.toml", "--samples 2", Format::Png, Options { samples: Some(2), ..small() }),
         ("models/star.ply", "", Format::Png, small()),
+        ("models/star.ply", "", Format::Jpeg(Format::JPEG_QUALITY), small()),
+        ("star.pbrt", "", Format::WebP, small()),
         (
             "models/knot.obj",
             "--samples 3 --layers geometry",

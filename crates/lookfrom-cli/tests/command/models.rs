@@ -273,11 +273,11 @@ fn any_files_camera_can_be_left_aside() {
     let options = "-q --size 24x18 --samples 1 --strict";
     let scene = super::stage::SCENE;
     stage.write("bare.toml", &scene[scene.find("[image]").unwrap()..]);
-    stage.done(&format!("render scene.toml {options} --camera none -o none.png"));
-    stage.done(&format!("render scene.toml {options} -o own.png"));
-    stage.done(&format!("render bare.toml {options} -o bare.png"));
-    assert!(stage.bytes("none.png") == stage.bytes("bare.png"), "it is not framed");
-    assert!(stage.bytes("none.png") != stage.bytes("own.png"), "it is seen by its own camera");
+    stage.done(&format!("render scene.toml {options} --camera none -o none.ppm"));
+    stage.done(&format!("render scene.toml {options} -o own.ppm"));
+    stage.done(&format!("render bare.toml {options} -o bare.ppm"));
+    assert!(stage.bytes("none.ppm") == stage.bytes("bare.ppm"), "it is not framed");
+    assert!(stage.bytes("none.ppm") != stage.bytes("own.ppm"), "it is seen by its own camera");
     // From afar a sphere is small, framed it is large.
     let pbrt = "LookAt 0 0 90  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n";
     stage.write("s.pbrt", pbrt);

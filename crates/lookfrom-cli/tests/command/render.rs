@@ -40,25 +40,48 @@ fn a_picture_by_the_name_of_the_scene() {
 #[test]
 fn every_format_holds_the_same_light() {
     let stage = Stage::new("formats");
-    for extension in ["exr", "pfm", "hdr", "png", "ppm"] {
+    for extension in ["exr", "pfm", "hdr", "png", "ppm", "webp"] {
         stage.done(&format!("render scene.toml -q -o p.{extension}"));
     }
+    stage.done("render scene.toml -q --bits 16 -o p16.png");
     let exact = colors(&stage.path("p.exr"));
     assert!(exact.iter().flatten().any(|&value| value > 0.1), "the picture is black");
-    for (extension, step) in [("pfm", 0.0), ("hdr", 0.01), ("png", 0.01), ("ppm", 0.01)] {
-        let other = colors(&stage.path(&format!("p.{extension}")));
+    for (name, step) in [
+        ("p.pfm", 0.0),
+        ("p.hdr", 0.01),
+        ("p.png", 0.01),
+        ("p.ppm", 0.01),
+        ("p.webp", 0.01),
+        ("p16.png", 1e-4),
+    ] {
+        let other = colors(&stage.path(name));
         for (a, b) in exact.iter().flatten().zip(other.iter().flatten()) {
             // 8-bit pictures are cut at 1.
-            let a = if ["png", "ppm"].contains(&extension) { a.clamp(0.0, 1.0) } else { *a };
-            assert!((a - b).abs() <= step * a.max(1.0), "{extension}: {a} {b}");
+            let a = if name.ends_with("pfm") || name.ends_with("hdr") { *a } else { a.clamp(0.0, 1.0) };
+            assert!((a - b).abs() <= step * a.max(1.0), "{name}: {a} {b}");
         }
     }
 }
 
 #[test]
+fn a_better_jpeg_is_larger_and_nearer() {
+    let stage = Stage::new("jpeg");
+    stage.done("render scene.toml -q --width 160 --height 120 -o p.png");
+    let exact = colors(&stage.path("p.png"));
+    let [(coarse, far), (fine, near)] = ["--quality 20", "--quality 95"].map(|option| {
+        stage.done(&format!("render scene.toml -q --width 160 --height 120 {option} -o p.jpg"));
+        let found = colors(&stage.path("p.jpg"));
+        let squares =
+            exact.iter().flatten().zip(found.iter().flatten()).map(|(a, b)| f64::from(a - b).powi(2));
+        (stage.bytes("p.jpg").len(), (squares.sum::<f64>() / (3.0 * exact.len() as f64)).sqrt())
+    });
+    assert!(fine > coarse && near < far && near < 0.01, "{coarse} {far}, {fine} {near}");
+}
+
+#[test]
 fn the_same_bytes_for_any_number_of_threads() {
     let stage = Stage::new("threads");
-    for extension in ["png", "exr"] {
+    for extension in ["png", "jpg", "webp", "exr"] {
         let [one, two] = [1, 2].map(|threads| {
             stage.done(&format!("render scene.toml -q --width 100 --threads {threads} -o p.{extension}"));
             stage.bytes(&format!("p.{extension}"))

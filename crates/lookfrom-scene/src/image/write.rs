@@ -1,20 +1,72 @@
-//! Image writers: 8-bit PNG and PPM, and HDR and PFM for linear light. EXR is in `openexr`.
+//! Image writers: PNG, JPEG, WebP and PPM for display, and HDR and PFM for linear light. EXR is in `openexr`.
 
 use std::io::Cursor;
 
 use ::image::codecs::hdr::HdrEncoder;
+use ::image::codecs::jpeg::JpegEncoder;
 use ::image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use ::image::{ExtendedColorType, ImageEncoder, Rgb};
+use ::image::codecs::webp::WebPEncoder;
+use ::image::{ExtendedColorType, ImageEncoder, ImageResult, Rgb};
 
+use super::metadata::Metadata;
 use crate::error::{Error, ErrorKind, Location, Result};
+
+/// Colours in sRGB, row 0 on top; alpha is straight (not premultiplied).
+#[derive(Clone, Copy, Debug)]
+pub enum Pixels<'a> {
+    /// Red, green, blue.
+    Rgb8(&'a [u8]),
+    /// Red, green, blue, alpha.
+    Rgba8(&'a [u8]),
+    /// Red, green, blue: of 65535.
+    Rgb16(&'a [u16]),
+    /// Red, green, blue, alpha: of 65535.
+    Rgba16(&'a [u16]),
+}
+
+impl Pixels<'_> {
+    fn color_type(&self) -> ExtendedColorType {
+        match self {
+            Self::Rgb8(_) => ExtendedColorType::Rgb8,
+            Self::Rgba8(_) => ExtendedColorType::Rgba8,
+            Self::Rgb16(_) => ExtendedColorType::Rgb16,
+            Self::Rgba16(_) => ExtendedColorType::Rgba16,
+        }
+    }
+
+    /// Encodes them, if they are as many as a size says.
+    fn encode(
+        &self,
+        [width, height]: [u32; 2],
+        encode: impl FnOnce(&[u8], ExtendedColorType) -> ImageResult<()>,
+    ) -> Result<()> {
+        let channels = match self {
+            Self::Rgb8(_) | Self::Rgb16(_) => 3,
+            Self::Rgba8(_) | Self::Rgba16(_) => 4,
+        };
+        let encoded = match self {
+            Self::Rgb8(bytes) | Self::Rgba8(bytes) => {
+                check_channels(width, height, bytes.len(), channels)?;
+                encode(bytes, self.color_type())
+            }
+            Self::Rgb16(numbers) | Self::Rgba16(numbers) => {
+                check_channels(width, height, numbers.len(), channels)?;
+                let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_ne_bytes()).collect();
+                encode(&bytes, self.color_type())
+            }
+        };
+        encoded.map_err(|error| {
+            Error::new(ErrorKind::Io, &Location::default(), format!("cannot encode: {error}"))
+        })
+    }
+}
 
 /// The bytes of a PNG of 8-bit sRGB colours, row 0 on top. The same input gives the same bytes.
 ///
 /// # Errors
 /// `Invalid` if `rgb` is not `3 * width * height` bytes.
 pub fn encode_png(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>> {
-    check_bytes(width, height, rgb, 3)?;
-    encode(width, height, rgb, ExtendedColorType::Rgb8)
+    encode_png_of([width, height], Pixels::Rgb8(rgb), None)
 }
 
 /// The bytes of a PNG of 8-bit sRGB colours with straight (not premultiplied) alpha, row 0 on top. The same input gives the
@@ -23,18 +75,59 @@ pub fn encode_png(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>> {
 /// # Errors
 /// `Invalid` if `rgba` is not `4 * width * height` bytes.
 pub fn encode_png_with_alpha(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>> {
-    check_bytes(width, height, rgba, 4)?;
-    encode(width, height, rgba, ExtendedColorType::Rgba8)
+    encode_png_of([width, height], Pixels::Rgba8(rgba), None)
 }
 
-fn encode(width: u32, height: u32, bytes: &[u8], color: ExtendedColorType) -> Result<Vec<u8>> {
-    let mut png = Cursor::new(Vec::new());
-    PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
-        .write_image(bytes, width, height, color)
-        .map_err(|error| {
-            Error::new(ErrorKind::Io, &Location::default(), format!("cannot encode: {error}"))
-        })?;
-    Ok(png.into_inner())
+/// The bytes of a PNG, and what is told of it. The same input gives the same bytes.
+///
+/// # Errors
+/// `Invalid` if there are not as many pixels as `size` (width and height) says.
+pub fn encode_png_of(size: [u32; 2], pixels: Pixels, metadata: Option<&Metadata>) -> Result<Vec<u8>> {
+    let mut bytes = Cursor::new(Vec::new());
+    pixels.encode(size, |samples, color| {
+        let mut encoder =
+            PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive);
+        Metadata::tell(metadata, &mut encoder)?;
+        encoder.write_image(samples, size[0], size[1], color)
+    })?;
+    Ok(bytes.into_inner())
+}
+
+/// The bytes of a JPEG (baseline, colours at full resolution) of a quality of 1 (small) to 100, and what is told of it. The same
+/// input gives the same bytes.
+///
+/// # Errors
+/// `Invalid` if `rgb` is not `3 * width * height` bytes, or a side is longer than the 65,535 pixels that the format has.
+pub fn encode_jpeg(
+    [width, height]: [u32; 2],
+    rgb: &[u8],
+    quality: u8,
+    metadata: Option<&Metadata>,
+) -> Result<Vec<u8>> {
+    check_side("JPEG", width.max(height), 65_535)?;
+    let mut bytes = Vec::new();
+    Pixels::Rgb8(rgb).encode([width, height], |samples, color| {
+        let mut encoder = JpegEncoder::new_with_quality(&mut bytes, quality.clamp(1, 100));
+        Metadata::tell(metadata, &mut encoder)?;
+        encoder.write_image(samples, width, height, color)
+    })?;
+    Ok(bytes)
+}
+
+/// The bytes of a WebP without loss, of 8 bits a channel, and what is told of it. The same input gives the same bytes.
+///
+/// # Errors
+/// `Invalid` if there are not as many pixels as `size` (width and height) says, or a side is longer than the 16,384 pixels that the format
+/// has.
+pub fn encode_webp(size: [u32; 2], pixels: Pixels, metadata: Option<&Metadata>) -> Result<Vec<u8>> {
+    check_side("WebP", size[0].max(size[1]), 16_384)?;
+    let mut bytes = Vec::new();
+    pixels.encode(size, |samples, color| {
+        let mut encoder = WebPEncoder::new_lossless(&mut bytes);
+        Metadata::tell(metadata, &mut encoder)?;
+        encoder.write_image(samples, size[0], size[1], color)
+    })?;
+    Ok(bytes)
 }
 
 /// The bytes of a binary PPM (P6) of 8-bit sRGB colours, row 0 on top.
@@ -42,7 +135,7 @@ fn encode(width: u32, height: u32, bytes: &[u8], color: ExtendedColorType) -> Re
 /// # Errors
 /// `Invalid` if `rgb` is not `3 * width * height` bytes.
 pub fn encode_ppm(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>> {
-    check_bytes(width, height, rgb, 3)?;
+    check_channels(width, height, rgb.len(), 3)?;
     let mut bytes = format!("P6\n{width} {height}\n255\n").into_bytes();
     bytes.extend_from_slice(rgb);
     Ok(bytes)
@@ -75,11 +168,21 @@ pub fn encode_pfm(width: u32, height: u32, texels: &[[f32; 3]]) -> Result<Vec<u8
     Ok(bytes)
 }
 
-fn check_bytes(width: u32, height: u32, bytes: &[u8], a_pixel: usize) -> Result<()> {
-    if bytes.len().is_multiple_of(a_pixel) {
-        return check(width, height, bytes.len() / a_pixel);
+/// Checks the number of values of a picture with so many of them a pixel.
+fn check_channels(width: u32, height: u32, values: usize, channels: usize) -> Result<()> {
+    if values.is_multiple_of(channels) {
+        return check(width, height, values / channels);
     }
-    Err(Error::invalid(&Location::default(), format!("{} bytes are not {a_pixel} per pixel", bytes.len())))
+    Err(Error::invalid(&Location::default(), format!("{values} values are not {channels} per pixel")))
+}
+
+/// Checks the longer side of a picture against the longest of a format.
+fn check_side(format: &str, side: u32, most: u32) -> Result<()> {
+    if side <= most {
+        return Ok(());
+    }
+    let message = format!("a {format} has at most {most} pixels a side, not {side}");
+    Err(Error::invalid(&Location::default(), message).hint("write a PNG or an EXR"))
 }
 
 /// Checks that there is a value for each pixel, and at least one pixel.

@@ -23,32 +23,64 @@ pub fn srgb8(picture: &Picture, exposure: f32, tonemap: Tonemap) -> Vec<u8> {
 /// map do not change the background: where alpha is 0, the screen shows just this colour.
 pub fn srgb8_before(picture: &Picture, background: [f32; 3], exposure: f32, tonemap: Tonemap) -> Vec<u8> {
     let byte = Bytes::new();
-    let scale = scale(exposure);
-    let mut bytes = Vec::with_capacity(3 * picture.pixels.len());
-    for (index, &rgb) in picture.pixels.iter().enumerate() {
-        let Some(&alpha) = picture.alpha.get(index) else {
-            bytes.extend(display(rgb, scale, tonemap).map(|value| byte.of(value)));
-            continue;
-        };
-        let (straight, alpha) = straight(rgb, alpha);
-        let shown = display(straight, scale, tonemap);
-        bytes.extend([0, 1, 2].map(|c| byte.of(alpha * shown[c] + (1.0 - alpha) * background[c])));
-    }
-    bytes
+    shown_before(picture, background, exposure, tonemap, |value| byte.of(value))
+}
+
+/// As [`srgb8_before`], of 65535.
+pub fn srgb16_before(picture: &Picture, background: [f32; 3], exposure: f32, tonemap: Tonemap) -> Vec<u16> {
+    shown_before(picture, background, exposure, tonemap, sixteen_bits)
 }
 
 /// As [`srgb8`], with a fourth byte per pixel: alpha, linear from 0 to 255. The colours are divided by it first: PNG
 /// has straight alpha. Pixels without an alpha are opaque.
 pub fn srgba8(picture: &Picture, exposure: f32, tonemap: Tonemap) -> Vec<u8> {
     let byte = Bytes::new();
+    straight_rgba(picture, exposure, tonemap, |value| byte.of(value), |alpha| (255.0 * alpha + 0.5) as u8)
+}
+
+/// As [`srgba8`], of 65535.
+pub fn srgba16(picture: &Picture, exposure: f32, tonemap: Tonemap) -> Vec<u16> {
+    straight_rgba(picture, exposure, tonemap, sixteen_bits, |alpha| (65535.0 * alpha + 0.5) as u16)
+}
+
+/// The display colours over a background, each component encoded.
+fn shown_before<T>(
+    picture: &Picture,
+    background: [f32; 3],
+    exposure: f32,
+    tonemap: Tonemap,
+    encode: impl Fn(f32) -> T,
+) -> Vec<T> {
     let scale = scale(exposure);
-    let mut bytes = Vec::with_capacity(4 * picture.pixels.len());
+    let mut encoded = Vec::with_capacity(3 * picture.pixels.len());
+    for (index, &rgb) in picture.pixels.iter().enumerate() {
+        let Some(&alpha) = picture.alpha.get(index) else {
+            encoded.extend(display(rgb, scale, tonemap).map(&encode));
+            continue;
+        };
+        let (straight, alpha) = straight(rgb, alpha);
+        let shown = display(straight, scale, tonemap);
+        encoded.extend([0, 1, 2].map(|c| encode(alpha * shown[c] + (1.0 - alpha) * background[c])));
+    }
+    encoded
+}
+
+/// The straight display colours and alphas, each encoded.
+fn straight_rgba<T>(
+    picture: &Picture,
+    exposure: f32,
+    tonemap: Tonemap,
+    encode: impl Fn(f32) -> T,
+    encode_alpha: impl Fn(f32) -> T,
+) -> Vec<T> {
+    let scale = scale(exposure);
+    let mut encoded = Vec::with_capacity(4 * picture.pixels.len());
     for (index, &rgb) in picture.pixels.iter().enumerate() {
         let (straight, alpha) = straight(rgb, picture.alpha.get(index).copied().unwrap_or(1.0));
-        bytes.extend(display(straight, scale, tonemap).map(|value| byte.of(value)));
-        bytes.push((255.0 * alpha + 0.5) as u8);
+        encoded.extend(display(straight, scale, tonemap).map(&encode));
+        encoded.push(encode_alpha(alpha));
     }
-    bytes
+    encoded
 }
 
 /// Straight colour from one premultiplied by alpha, and the alpha clamped to 0 … 1.
@@ -85,9 +117,18 @@ fn display(rgb: [f32; 3], scale: f64, tonemap: Tonemap) -> [f32; 3] {
 
 /// The byte of a linear value in 0 … 1, by the exact curve.
 fn encode(value: f32) -> u8 {
+    (255.0 * bent(value) + 0.5) as u8
+}
+
+/// As [`encode`], of 65535.
+fn sixteen_bits(value: f32) -> u16 {
+    (65535.0 * bent(value) + 0.5) as u16
+}
+
+/// The curve of sRGB.
+fn bent(value: f32) -> f64 {
     let x = f64::from(value);
-    let bent = if x <= 0.0031308 { 12.92 * x } else { 1.055 * libm::pow(x, 1.0 / 2.4) - 0.055 };
-    (255.0 * bent + 0.5) as u8
+    if x <= 0.0031308 { 12.92 * x } else { 1.055 * libm::pow(x, 1.0 / 2.4) - 0.055 }
 }
 
 /// The least values that [`encode`] maps to the bytes 1, 2, … 255: the curve is monotonic, so they determine it.

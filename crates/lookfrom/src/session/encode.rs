@@ -5,13 +5,13 @@ use std::path::Path;
 
 use lookfrom_scene::Result;
 use lookfrom_scene::image::{
-    encode_exr, encode_hdr, encode_pfm, encode_png, encode_png_with_alpha, encode_ppm,
+    Metadata, Pixels, encode_exr, encode_hdr, encode_jpeg, encode_pfm, encode_png_of, encode_ppm, encode_webp,
 };
 use lookfrom_scene::settings::Background;
 
 use super::{Developed, Development};
 use crate::film::Picture;
-use crate::post::develop::{srgb8_before, srgba8};
+use crate::post::develop::{srgb8_before, srgb16_before, srgba8, srgba16};
 
 /// A picture format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +19,12 @@ use crate::post::develop::{srgb8_before, srgba8};
 pub enum Format {
     /// 8-bit sRGB after exposure and tone map, with alpha where the background is transparent.
     Png,
+    /// The same in 16 bits.
+    Png16,
+    /// 8-bit sRGB after exposure and tone map, with losses: of a quality of 1 to 100.
+    Jpeg(u8),
+    /// 8-bit sRGB after exposure and tone map, without losses, with alpha where the background is transparent.
+    WebP,
     /// Linear light in 32-bit floats, with AOVs, alpha and a header with the settings.
     Exr,
     /// Linear light in Radiance's shared exponents.
@@ -31,8 +37,19 @@ pub enum Format {
 
 impl Format {
     /// All formats, by their file extensions.
-    pub const EXTENSIONS: &'static [(&'static str, Self)] =
-        &[("png", Self::Png), ("exr", Self::Exr), ("hdr", Self::Hdr), ("pfm", Self::Pfm), ("ppm", Self::Ppm)];
+    pub const EXTENSIONS: &'static [(&'static str, Self)] = &[
+        ("png", Self::Png),
+        ("jpg", Self::Jpeg(Self::JPEG_QUALITY)),
+        ("jpeg", Self::Jpeg(Self::JPEG_QUALITY)),
+        ("webp", Self::WebP),
+        ("exr", Self::Exr),
+        ("hdr", Self::Hdr),
+        ("pfm", Self::Pfm),
+        ("ppm", Self::Ppm),
+    ];
+
+    /// The quality of JPEGs where nothing else is asked for: hard to tell from the picture, and a tenth of its bytes.
+    pub const JPEG_QUALITY: u8 = 90;
 
     /// The format of a file's extension, case-insensitive.
     pub fn of_path(path: &Path) -> Option<Self> {
@@ -77,11 +94,26 @@ pub(super) fn encode(
     let background = behind(background);
     let developed = || srgb8_before(picture, background, exposure, tonemap);
     let linear = || picture.clone().before(background).pixels;
+    let size = [width, height];
+    let metadata = metadata(header, development);
+    let metadata = Some(&metadata);
     match format {
         Format::Png if is_transparent => {
-            encode_png_with_alpha(width, height, &srgba8(picture, exposure, tonemap))
+            encode_png_of(size, Pixels::Rgba8(&srgba8(picture, exposure, tonemap)), metadata)
         }
-        Format::Png => encode_png(width, height, &developed()),
+        Format::Png => encode_png_of(size, Pixels::Rgb8(&developed()), metadata),
+        Format::Png16 if is_transparent => {
+            encode_png_of(size, Pixels::Rgba16(&srgba16(picture, exposure, tonemap)), metadata)
+        }
+        Format::Png16 => {
+            let developed = srgb16_before(picture, background, exposure, tonemap);
+            encode_png_of(size, Pixels::Rgb16(&developed), metadata)
+        }
+        Format::Jpeg(quality) => encode_jpeg(size, &developed(), quality, metadata),
+        Format::WebP if is_transparent => {
+            encode_webp(size, Pixels::Rgba8(&srgba8(picture, exposure, tonemap)), metadata)
+        }
+        Format::WebP => encode_webp(size, Pixels::Rgb8(&developed()), metadata),
         Format::Ppm => encode_ppm(width, height, &developed()),
         Format::Hdr => encode_hdr(width, height, &linear()),
         Format::Pfm => encode_pfm(width, height, &linear()),
@@ -92,6 +124,18 @@ pub(super) fn encode(
             encode_exr(width, height, &channels, header)
         }
     }
+}
+
+/// What a file for display tells of itself: the texts of an EXR's header, and its development.
+fn metadata(header: &[(String, String)], development: &Development) -> Metadata {
+    let mut lines: Vec<String> = header
+        .iter()
+        .filter(|(name, _)| !["software", "exposure", "tonemap"].contains(&name.as_str()))
+        .map(|(name, text)| format!("{name}: {text}"))
+        .collect();
+    lines.push(format!("exposure: {}", development.exposure));
+    lines.push(format!("tonemap: {}", development.tonemap.word()));
+    Metadata::new(concat!("lookfrom ", env!("CARGO_PKG_VERSION")), &lines.join("\n"))
 }
 
 /// The channels of a picture in an EXR: red, green and blue, alpha before a transparent background, and layers.

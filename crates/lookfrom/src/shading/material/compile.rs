@@ -28,14 +28,8 @@ impl<'a> Compiler<'a> {
         let whitted = approximate::in_whitteds_model(&material.kind, &self.whitted, self.textures);
         let (kind, bump_mapping) = (self.kind(&material.kind), self.bump_mapping(&material.bump_mapping));
         let (pictures, varies) = pictures::of(&kind, &bump_mapping, self.textures);
-        let compiled = Material {
-            pictures,
-            varies,
-            kind,
-            bump_mapping,
-            medium: None,
-            whitted: self.whitted(&whitted),
-        };
+        let compiled =
+            Material { pictures, varies, kind, bump_mapping, medium: None, whitted: self.whitted(&whitted) };
         let absorption = whitted.absorption;
         self.whitted.push(whitted);
         (compiled, absorption)

@@ -233,14 +233,7 @@ impl<R: Real> LocalScattering<R> {
     }
 
     #[inline(always)]
-    fn sample_facet(
-        &self,
-        sample: &mut DirectionSample<R>,
-        u: [R; 2],
-        uc: R,
-        is_facet: R::Mask,
-        mode: Mode,
-    ) {
+    fn sample_facet(&self, sample: &mut DirectionSample<R>, u: [R; 2], uc: R, is_facet: R::Mask, mode: Mode) {
         let View { surface, wo, .. } = &self.view;
         let (zero, one) = (uc.like(0.0), uc.like(1.0));
         let probability = self.choice.facet;
