@@ -85,7 +85,7 @@
  * @property {number[]} throughput
  * @property {number[] | null} throughput_there
  * @property {number | null} pdf
- * @property {{nodes: number, tests: number}} [traversal]
+ * @property {{nodes: number, culled: number, tests: number}} [traversal]
  * @property {any} [absorption]
  * @property {Candidate[]} candidates
  * @property {any} met

@@ -124,6 +124,7 @@ impl TraceLogBuilder<'_> {
         report.blockers.extend(blocker);
     }
 }
+        report.traversal.culled += traversal.culled;
 
 /// The point on a light that a sample aims at, in the world; `None` infinitely far away.
 fn target(world: &World, sample: &LightSample) -> Option<[f64; 3]> {
