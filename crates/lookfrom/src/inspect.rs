@@ -8,6 +8,7 @@ mod camera;
 mod candidate;
 mod expression;
 mod lights;
+mod microfacets;
 mod pixel;
 mod report;
 mod scatter;
@@ -29,6 +30,7 @@ use trace_log::TraceLogBuilder;
 pub use candidate::{Candidate, Number, Test, TestNumbers, TraversalReport};
 pub use expression::Contribution;
 pub use lights::{LightPlace, lights};
+pub use microfacets::MicrofacetReport;
 pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};
 pub use report::{
     AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport,
