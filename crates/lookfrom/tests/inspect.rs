@@ -347,10 +347,10 @@ fn a_pixel_is_the_sum_of_its_samples() {
         }
         for expected in match integrator {
             Integrator::Path => {
-                ["camera → floor (D) → window", "camera → prism (T) → ", " (D) → sky", "metal (G) → "]
+                ["camera → floor quad 1 (D) → window", "camera → prism (T) → ", " (D) → sky", "metal (G) → "]
             }
             _ => [
-                "camera → floor (D) → window",
+                "camera → floor quad 1 (D) → window",
                 "camera → jelly (R) → ",
                 "mirror (R) → ",
                 "camera → prism (T) → ",
