@@ -108,7 +108,7 @@ fn follow(arguments: &InspectArguments, typed: &[String]) -> Result<(), Failure>
     };
     let inspection = inspect::inspect(renderer, SampleId { pixel: [x, y], sample });
     if let Some(path) = &arguments.svg {
-        let drawing = inspect::svg(renderer, &inspection);
+        let drawing = inspect::svg(renderer, &inspection, arguments.svg_view.unwrap_or_default())?;
         output::replace_file(path, drawing.as_bytes(), &inputs, "--svg")?;
     }
     let &InspectArguments { ray, bounce, only: part, .. } = arguments;

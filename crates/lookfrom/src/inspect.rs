@@ -38,7 +38,7 @@ pub use report::{
     ShadowReport, SphereMapping, WavelengthsReport,
 };
 pub use scatter::{BounceReport, FoundReport, LightSampleReport, SampledDirectionReport, ScatteringReport};
-pub use svg::svg;
+pub use svg::{SvgView, svg};
 pub use text::{Excerpt, Part, Selection};
 
 /// Traces one sample and reports all steps of its computation.
