@@ -74,5 +74,6 @@ of_scene many-lights.toml --width 480 --samples 160 --fireflies median
 of_scene cutouts.toml --width 480 --samples 96
 of_scene dispersion.toml --width 480 --samples 256
 of_scene star.pbrt --width 320 --height 240 --samples 128 --fireflies median
-"$LOOKFROM" inspect scenes/hero.toml 330 300 --depth 2 --svg docs/guide/img/inspector-glass.svg > /dev/null
-"$LOOKFROM" inspect scenes/hero.toml 330 300 --integrator path --sample 4 --svg docs/guide/img/inspector-path.svg > /dev/null
+"$LOOKFROM" inspect scenes/hero.toml 330 300 --depth 2 --svg-view side --svg docs/guide/img/inspector-glass.svg > /dev/null
+"$LOOKFROM" inspect scenes/hero.toml 330 300 --integrator path --sample 4 --svg-view side --svg docs/guide/img/inspector-path.svg > /dev/null
+"$LOOKFROM" inspect scenes/hero.toml 330 300 --integrator path --sample 4 --svg docs/guide/img/inspector-sheet.svg > /dev/null

@@ -141,6 +141,11 @@ impl Node {
         }
     }
 
+    /// The number of children.
+    pub(crate) fn count(&self) -> usize {
+        (0..WIDTH).filter(|slot| !self.child_bounds(*slot).is_empty()).count()
+    }
+
     /// One face of all children's boxes.
     #[inline(always)]
     pub(crate) fn face<S: Simd>(&self, simd: S, axis: usize, side: usize) -> f32x8<S> {

@@ -31,6 +31,12 @@ pub trait Observer {
         let _ = (instance, node);
     }
 
+    /// The ray was tested against the boxes of the node's children: it enters `entered` of `tested`. The others are
+    /// culled: it misses them, or has a hit before them.
+    fn boxes(&mut self, instance: u32, tested: u32, entered: u32) {
+        let _ = (instance, tested, entered);
+    }
+
     /// The ray is about to be tested against a primitive.
     fn candidate(&mut self, instance: u32, geometry: u32, primitive: u32) {
         let _ = (instance, geometry, primitive);
@@ -46,6 +52,10 @@ impl<W: Observer> Observer for &mut W {
 
     fn node(&mut self, instance: u32, node: u32) {
         (**self).node(instance, node);
+    }
+
+    fn boxes(&mut self, instance: u32, tested: u32, entered: u32) {
+        (**self).boxes(instance, tested, entered);
     }
 
     fn candidate(&mut self, instance: u32, geometry: u32, primitive: u32) {

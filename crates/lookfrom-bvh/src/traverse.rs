@@ -137,6 +137,9 @@ impl<'t> TreePath<'t> {
         state.observer.node(state.instance, number as u32);
         let node = &bvh.nodes[number];
         let entered = node.enter(simd, slabs, self.end);
+        if O::LISTENS {
+            state.observer.boxes(state.instance, node.count() as u32, entered.children.count_ones());
+        }
         if entered.children == 0 {
             stack.pop(self.end)
         } else {

@@ -107,8 +107,13 @@ impl<O: Observer> Traversal<'_, O> {
         let (mut entered, count) = enter(&bvh.nodes[number], ray, self.ray.t_min);
         let entered = &mut entered[..count];
         entered.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let is_beyond = |near: f64, end: f64| near - near.abs() * ROOM > end;
+        if O::LISTENS {
+            let reached = entered.iter().filter(|(near, _)| !is_beyond(*near, self.end)).count();
+            self.observer.boxes(instance, bvh.nodes[number].count() as u32, reached as u32);
+        }
         for &(near, child) in entered.iter() {
-            if near - near.abs() * ROOM > self.end {
+            if is_beyond(near, self.end) {
                 continue;
             }
             match child.content() {

@@ -4,7 +4,7 @@
 #[path = "../src/testing.rs"]
 mod testing;
 
-use lookfrom_bvh::{Builder, Observer, Quality, Ray, Triangles};
+use lookfrom_bvh::{Builder, Observer, Quality, Ray, RayF64, Triangles};
 use testing::Random;
 
 #[derive(Default)]
@@ -85,4 +85,50 @@ fn rays_visit_no_more_than_they_did() {
             );
         }
     }
+}
+
+/// Boxes and the nodes whose children they are.
+#[derive(Default)]
+struct Boxes {
+    nodes: u64,
+    tested: u64,
+    entered: u64,
+}
+
+impl Observer for Boxes {
+    fn node(&mut self, _instance: u32, _node: u32) {
+        self.nodes += 1;
+    }
+
+    fn boxes(&mut self, _instance: u32, tested: u32, entered: u32) {
+        assert!((1..=8).contains(&tested) && entered <= tested, "{entered} of {tested}");
+        self.tested += u64::from(tested);
+        self.entered += u64::from(entered);
+    }
+}
+
+#[test]
+fn boxes_are_counted_alike_in_both_precisions() {
+    let (positions, indices) = soup(2000);
+    let mut builder = Builder::new();
+    builder.triangles(Triangles { positions: &positions, indices: &indices });
+    let bvh = builder.build().unwrap();
+    let mut random = Random::new(6);
+    let [mut all, mut in_f64, mut nearest] = [(); 3].map(|()| Boxes::default());
+    for _ in 0..500 {
+        let ray = Ray::new(random.near([0.5, 0.5, 1.5], 0.5), [0.1, 0.2, -1.0]);
+        bvh.query().observer(&mut all).all_hits(&ray, &mut Vec::new());
+        bvh.query().observer(&mut in_f64).all_hits(&RayF64::from(ray), &mut Vec::new());
+        bvh.query().observer(&mut nearest).closest_hit(&ray);
+    }
+    // Margins for rounding differ, so that a box may be entered in one precision alone.
+    let is_near = |a: u64, b: u64| a.abs_diff(b) <= a / 500;
+    assert!(is_near(all.tested, in_f64.tested) && is_near(all.entered, in_f64.entered));
+    // What is behind a hit is culled, and so are the boxes in it.
+    assert!(nearest.tested < all.tested && nearest.entered < all.entered);
+    assert!(all.entered < all.tested && all.tested <= 8 * all.nodes);
+
+    let mut past = Boxes::default();
+    bvh.query().observer(&mut past).closest_hit(&Ray::new([0.0, 0.0, 9.0], [1.0, 0.0, 0.0]));
+    assert!((past.nodes, past.entered) == (1, 0) && past.tested > 1, "every box of the root is culled");
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::digest::Digested;
+use lookfrom_scene::digest::{Digested, FileDigest};
 use lookfrom_scene::{Disk, LoadContext, load};
 use serde::Serialize;
 
@@ -17,26 +17,33 @@ pub(crate) fn run(arguments: &FilesArguments) -> u8 {
     list(arguments).map_or_else(|failure| failure.report(), |()| DONE)
 }
 
-/// A line of `--json`.
+/// An input file as JSON.
 #[derive(Serialize)]
-struct Line {
+pub(crate) struct InputFile {
     path: String,
+    bytes: u64,
     sha256: String,
 }
 
+impl From<(PathBuf, FileDigest)> for InputFile {
+    fn from((path, FileDigest { bytes, sha256 }): (PathBuf, FileDigest)) -> Self {
+        Self { path: path.display().to_string(), bytes, sha256 }
+    }
+}
+
 fn list(arguments: &FilesArguments) -> Result<(), Failure> {
-    let mut files: BTreeMap<PathBuf, String> = BTreeMap::new();
+    let mut files: BTreeMap<PathBuf, FileDigest> = BTreeMap::new();
     for scene in &arguments.scenes {
         files.extend(read(scene)?);
     }
-    for (path, sha256) in files {
+    for (path, digest) in files {
         if arguments.null {
             let mut stdout = std::io::stdout().lock();
             let written =
                 stdout.write_all(path.as_os_str().as_encoded_bytes()).and_then(|()| stdout.write_all(&[0]));
             written.map_err(|error| Failure::Output(format!("cannot write to stdout: {error}")))?;
         } else if arguments.json {
-            answer(&json::line(&Line { path: path.display().to_string(), sha256 }))?;
+            answer(&json::line(&InputFile::from((path, digest))))?;
         } else {
             answer(&path.display().to_string())?;
         }
@@ -45,7 +52,7 @@ fn list(arguments: &FilesArguments) -> Result<(), Failure> {
 }
 
 /// The files of a scene, with their digests.
-pub(crate) fn read(scene: &Path) -> Result<Vec<(PathBuf, String)>, Failure> {
+pub(crate) fn read(scene: &Path) -> Result<Vec<(PathBuf, FileDigest)>, Failure> {
     let files = Digested::new(&Disk);
     load::scene(scene, &mut LoadContext::new(&files))?;
     Ok(files.digests(Path::new("")))

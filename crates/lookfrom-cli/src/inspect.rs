@@ -5,13 +5,15 @@ use std::path::Path;
 use lookfrom::inspect::{self, LightPlace, Selection};
 use lookfrom::render::SampleId;
 use lookfrom::session::Session;
-use lookfrom_scene::Inputs;
+use lookfrom_scene::digest::Digested;
+use lookfrom_scene::{Disk, Files, Inputs};
 use serde::Serialize;
 
 use crate::args::{InspectArguments, Samples};
 use crate::exit::{self, DONE, Failure};
+use crate::files::InputFile;
 use crate::output;
-use crate::prepare::{self, prepare};
+use crate::prepare;
 use lookfrom_scene::json;
 
 /// A report as JSON, with all that is needed to have it again.
@@ -20,11 +22,13 @@ struct Document<'a, T> {
     /// The version of the program.
     version: &'static str,
     /// The scene's file.
-    scene: &'a Path,
+    scene: String,
     /// The typed options that change the picture.
     options: &'a [String],
     /// Columns, rows and samples per pixel of the picture.
     picture: PictureSize,
+    /// The files that the scene was read from.
+    inputs: Vec<InputFile>,
     /// The lights by their index.
     lights: Vec<LightPlace>,
     /// The report's own keys.
@@ -62,10 +66,16 @@ fn follow(arguments: &InspectArguments, typed: &[String]) -> Result<(), Failure>
     }
     prepare::use_threads(&arguments.common)?;
     let inputs = Inputs::default();
-    let environment = prepare::environment(&arguments.overrides, &inputs)?;
     let InspectArguments { scene, common, overrides, .. } = arguments;
+    // Only JSON lists them, and digests take time.
+    let digested = Digested::new(&Disk);
+    let files: &dyn Files = if arguments.json { &digested } else { &Disk };
+    let environment = prepare::environment_from(&inputs.record(files, "--environment"), overrides)?;
     let options = overrides.options(common, environment.as_ref());
-    let session = prepare(scene, common, &options, &inputs)?;
+    let of_scene = inputs.record(files, scene.display().to_string());
+    let session = prepare::prepare_from(&of_scene, scene, common, &options)?;
+    let read = digested.digests(Path::new("")).into_iter().map(InputFile::from).collect();
+    let answer = Answer { arguments, typed, session: &session, inputs: read };
     exit::say_warnings(session.warnings());
     let &InspectArguments { x, y, .. } = arguments;
     let (width, height) = (session.image().width, session.image().height);
@@ -93,12 +103,12 @@ fn follow(arguments: &InspectArguments, typed: &[String]) -> Result<(), Failure>
         Samples::Worst => pixel()?.all[0].sample,
         Samples::All | Samples::Range(_) => {
             let report = pixel()?;
-            return answer(&report, &report.to_string(), &session, (arguments, typed));
+            return answer.print(&report, || report.to_string());
         }
     };
     let inspection = inspect::inspect(renderer, SampleId { pixel: [x, y], sample });
     if let Some(path) = &arguments.svg {
-        let drawing = inspect::svg(renderer, &inspection);
+        let drawing = inspect::svg(renderer, &inspection, arguments.svg_view.unwrap_or_default())?;
         output::replace_file(path, drawing.as_bytes(), &inputs, "--svg")?;
     }
     let &InspectArguments { ray, bounce, only: part, .. } = arguments;
@@ -106,31 +116,37 @@ fn follow(arguments: &InspectArguments, typed: &[String]) -> Result<(), Failure>
         let known: Vec<String> = inspection.rays.iter().map(|ray| ray.address.to_string()).collect();
         return Err(Failure::Usage(format!("there is no ray {ray}: this sample has {}", known.join(", "))));
     }
-    let text = inspection.excerpt(Selection { ray, bounce, part }).to_string();
-    answer(&inspection, &text, &session, (arguments, typed))
+    answer.print(&inspection, || inspection.excerpt(Selection { ray, bounce, part }).to_string())
 }
 
-/// Prints a report as text or JSON.
-fn answer<T: Serialize>(
-    report: &T,
-    text: &str,
-    session: &Session,
-    (arguments, typed): (&InspectArguments, &[String]),
-) -> Result<(), Failure> {
-    if !arguments.json {
-        return exit::answer(text.trim_end());
+/// What a report is printed with.
+struct Answer<'a> {
+    arguments: &'a InspectArguments,
+    typed: &'a [String],
+    session: &'a Session,
+    inputs: Vec<InputFile>,
+}
+
+impl Answer<'_> {
+    /// Prints a report as text or JSON.
+    fn print(self, report: &impl Serialize, text: impl FnOnce() -> String) -> Result<(), Failure> {
+        let Self { arguments, typed, session, inputs } = self;
+        if !arguments.json {
+            return exit::answer(text().trim_end());
+        }
+        let image = session.image();
+        exit::answer(&json::document(&Document {
+            version: env!("CARGO_PKG_VERSION"),
+            scene: arguments.scene.display().to_string(),
+            options: typed,
+            picture: PictureSize {
+                width: image.width,
+                height: image.height,
+                samples: session.settings().samples,
+            },
+            inputs,
+            lights: inspect::lights(session.renderer().world()),
+            report,
+        }))
     }
-    let image = session.image();
-    exit::answer(&json::document(&Document {
-        version: env!("CARGO_PKG_VERSION"),
-        scene: &arguments.scene,
-        options: typed,
-        picture: PictureSize {
-            width: image.width,
-            height: image.height,
-            samples: session.settings().samples,
-        },
-        lights: inspect::lights(session.renderer().world()),
-        report,
-    }))
 }

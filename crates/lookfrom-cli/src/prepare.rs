@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use lookfrom::session::{Options, Session};
 use lookfrom_scene::image::{self, Image};
-use lookfrom_scene::{Disk, Inputs, LoadContext, load};
+use lookfrom_scene::{Disk, Files, Inputs, LoadContext, load};
 
 use crate::args::{Common, Overrides};
 use crate::exit::{self, Failure};
@@ -20,8 +20,20 @@ pub(crate) fn prepare(
     options: &Options,
     inputs: &Inputs,
 ) -> Result<Session, Failure> {
-    let files = inputs.record(&Disk, path.display().to_string());
-    let session = Session::read(path, &files, options).map_err(exit::in_scene(path))?;
+    prepare_from(&inputs.record(&Disk, path.display().to_string()), path, common, options)
+}
+
+/// The same, read through `files`.
+///
+/// # Errors
+/// As [`prepare`].
+pub(crate) fn prepare_from(
+    files: &dyn Files,
+    path: &Path,
+    common: &Common,
+    options: &Options,
+) -> Result<Session, Failure> {
+    let session = Session::read(path, files, options).map_err(exit::in_scene(path))?;
     if common.strict && exit::is_bad(session.warnings()) {
         return Err(Failure::Strict(session.warnings().to_vec()));
     }
@@ -33,9 +45,16 @@ pub(crate) fn prepare(
 /// # Errors
 /// `Scene` where it cannot be read.
 pub(crate) fn environment(overrides: &Overrides, inputs: &Inputs) -> Result<Option<Image>, Failure> {
+    environment_from(&inputs.record(&Disk, "--environment"), overrides)
+}
+
+/// The same, read through `files`.
+///
+/// # Errors
+/// As [`environment`].
+pub(crate) fn environment_from(files: &dyn Files, overrides: &Overrides) -> Result<Option<Image>, Failure> {
     let Some(path) = &overrides.model.environment else { return Ok(None) };
-    let files = inputs.record(&Disk, "--environment");
-    Ok(Some(image::read(path, &mut LoadContext::new(&files))?))
+    Ok(Some(image::read(path, &mut LoadContext::new(files))?))
 }
 
 /// Reads scenes only to record their input files in `inputs`. Errors are ignored here; they are reported when the scenes are

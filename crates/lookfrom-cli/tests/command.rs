@@ -20,6 +20,7 @@ mod command {
     mod naming;
     mod pinned;
     mod render;
+    mod schema;
     mod stage;
     #[cfg(all(unix, feature = "view"))]
     mod view;

@@ -40,10 +40,19 @@ pub fn digest(bytes: &[u8]) -> String {
     digest.finish()
 }
 
+/// The size and digest of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FileDigest {
+    /// Number of bytes.
+    pub bytes: u64,
+    /// SHA-256 as 64 hexadecimal digits.
+    pub sha256: String,
+}
+
 /// Files that are digested as they are read.
 pub struct Digested<'a> {
     files: &'a dyn Files,
-    digests: Mutex<BTreeMap<PathBuf, String>>,
+    digests: Mutex<BTreeMap<PathBuf, FileDigest>>,
 }
 
 impl<'a> Digested<'a> {
@@ -53,9 +62,9 @@ impl<'a> Digested<'a> {
     }
 
     /// The files that were read, by name, with their digests. Names are relative to `folder` where they are inside.
-    pub fn digests(self, folder: &Path) -> Vec<(PathBuf, String)> {
+    pub fn digests(self, folder: &Path) -> Vec<(PathBuf, FileDigest)> {
         let digests = self.digests.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let relative = |(path, digest): (PathBuf, String)| {
+        let relative = |(path, digest): (PathBuf, FileDigest)| {
             (path.strip_prefix(folder).map_or(path.clone(), Path::to_owned), digest)
         };
         digests.into_iter().map(relative).collect()
@@ -65,7 +74,7 @@ impl<'a> Digested<'a> {
 impl Files for Digested<'_> {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
         let bytes = self.files.read(path, limit)?;
-        let digest = digest(&bytes);
+        let digest = FileDigest { bytes: bytes.len() as u64, sha256: digest(&bytes) };
         self.digests.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned(), digest);
         Ok(bytes)
     }
@@ -93,7 +102,7 @@ mod tests {
             let _ = LoadContext::new(&files).read(Path::new(path));
         }
         let digests = files.digests(Path::new("a"));
-        assert_eq!(digests[0], ("b".into(), digest(b"abc")));
+        assert_eq!(digests[0], ("b".into(), FileDigest { bytes: 3, sha256: digest(b"abc") }));
         assert_eq!((digests.len(), &digests[1].0), (2, &PathBuf::from("c")));
     }
 }

@@ -51,7 +51,7 @@ function theRay(ray) {
 
 /** @param {Ray} ray */
 function theTests(ray) {
-    const cost = ray.traversal && h("p", { class: "hint" }, `${ray.traversal.nodes} nodes of the BVH visited, ${ray.traversal.tests} primitives tested.`);
+    const cost = ray.traversal && h("p", { class: "hint" }, `${ray.traversal.nodes} nodes of the BVH visited, ${ray.traversal.culled} boxes culled, ${ray.traversal.tests} primitives tested.`);
     if (ray.candidates.length === 0) return section("Tested primitives", cost ?? h("p", { class: "hint" }, "None: the tree of boxes excludes everything."));
     const sorted = [...ray.candidates].sort((a, b) => Number(b.is_nearest) - Number(a.is_nearest));
     const others = sorted.slice(1);
@@ -130,6 +130,20 @@ function shadowWords(shadow) {
     }).join(", ");
 }
 
+/** D, G and F of the boundaries with microfacets. @param {import("./protocol.js").Microfacet[] | undefined} microfacets @returns {Row[]} */
+const microfacetRows = (microfacets) => (microfacets ?? []).flatMap(({ boundary, refracts, alpha, half_vector, d, g, fresnel, value }) => {
+    const does = `${boundary} ${refracts ? "refracts" : "reflects"}`;
+    return /** @type {Row[]} */ ([
+        ...(d === null || g === null ? [] : [
+            ["ω_m", `normal of the microfacets; the ${does}, α = ${alpha.map((x) => short(x)).join(", ")}`, point(half_vector)],
+            ["D", "density of microfacets with this normal", exact(d)],
+            ["G", "the part that is neither masked nor shadowed", exact(g)],
+        ]),
+        ["F", `Fresnel reflectance${d === null ? ` where the smooth ${does}` : ""}`, lanes(fresnel)],
+        ["f", `${boundary}'s part of the BSDF`, lanes(value)],
+    ]);
+});
+
 /** Next-event estimation. @param {Ray} ray */
 function theLightSample(ray) {
     const sampled = ray.light_sample;
@@ -141,6 +155,7 @@ function theLightSample(ray) {
         terms([
             ["β", "throughput", lanes(ray.throughput_there ?? ray.throughput)],
             ["f cos θ", "BSDF times cosine", lanes(sample.f_cos)],
+            ...microfacetRows(sample.microfacets),
             ["L", "radiance, were nothing between", lanes(sample.arrives.lanes)],
             ["p", `density: ${short(probability)} (choice of this light) × ${short(sample.light_pdf)}`, exact(sample.pdf)],
             ["q", "density of the direction in BSDF sampling", exact(sample.bsdf_pdf)],
@@ -185,6 +200,7 @@ function theBounce(ray) {
         terms([
             ["ω", "the sampled direction", point(bounce.wi)],
             ["f", "BSDF", lanes(bounce.f)],
+            ...microfacetRows(bounce.microfacets),
             ["cos θ", "of the angle to the shading normal", exact(bounce.cos)],
             ["p", bounce.pdf_is_proportional ? "density; only its ratio to f means something" : "density of the direction", exact(bounce.pdf)],
             ["β", "before", lanes(bounce.throughput_before)],

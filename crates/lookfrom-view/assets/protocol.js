@@ -70,6 +70,7 @@
 /** @typedef {{f32: number | "NaN" | "Infinity" | "-Infinity", f64: number | "NaN" | "Infinity" | "-Infinity", bits: number}} Twice */
 /** @typedef {{name: string, verdict: string, is_nearest: boolean, test: any}} Candidate */
 /** @typedef {{from: Vector, to: Vector, is_endless: boolean, blockers: {shape: string, passed: number[], t?: number, point?: Vector}[]}} Shadow */
+/** @typedef {{boundary: string, refracts: boolean, alpha: [number, number], half_vector: Vector, d: number | null, g: number | null, fresnel: number[], value: number[]}} Microfacet */
 /** @typedef {{name: string, does: string, matrix: number[][], product: number[][], point: number[]}} Step */
 /** @typedef {{lookfrom: Vector, u: Vector, v: Vector, w: Vector, p_k: number[], steps: Step[], p_world: Vector, a: Vector, b: Vector, direction: Vector, lens: boolean}} CameraReport */
 
@@ -85,7 +86,7 @@
  * @property {number[]} throughput
  * @property {number[] | null} throughput_there
  * @property {number | null} pdf
- * @property {{nodes: number, tests: number}} [traversal]
+ * @property {{nodes: number, culled: number, tests: number}} [traversal]
  * @property {any} [absorption]
  * @property {Candidate[]} candidates
  * @property {any} met

@@ -8,6 +8,7 @@ mod camera;
 mod candidate;
 mod expression;
 mod lights;
+mod microfacets;
 mod pixel;
 mod report;
 mod scatter;
@@ -29,6 +30,7 @@ use trace_log::TraceLogBuilder;
 pub use candidate::{Candidate, Number, Test, TestNumbers, TraversalReport};
 pub use expression::Contribution;
 pub use lights::{LightPlace, lights};
+pub use microfacets::MicrofacetReport;
 pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};
 pub use report::{
     AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport,
@@ -36,7 +38,7 @@ pub use report::{
     ShadowReport, SphereMapping, WavelengthsReport,
 };
 pub use scatter::{BounceReport, FoundReport, LightSampleReport, SampledDirectionReport, ScatteringReport};
-pub use svg::svg;
+pub use svg::{SvgView, svg};
 pub use text::{Excerpt, Part, Selection};
 
 /// Traces one sample and reports all steps of its computation.

@@ -5,7 +5,7 @@ mod support;
 use std::collections::BTreeSet;
 
 use lookfrom::film::{Film, FilmTile};
-use lookfrom::inspect::{Inspection, RayReport, inspect, inspect_pixel, svg};
+use lookfrom::inspect::{Inspection, RayReport, SvgView, inspect, inspect_pixel, svg};
 use lookfrom::render::SampleId;
 use lookfrom_scene::image::Image;
 use lookfrom_scene::light::{Light, LightKind, Power, Sky};
@@ -179,7 +179,8 @@ fn what_is_shown_of_a_path_adds_up_to_what_the_film_received() {
                 assert!(inspection.adds_up, "{at}");
                 assert_eq!(film.mean(x, y), inspection.film, "{at}");
                 assert!(inspection.to_string().contains("the same, bit for bit"), "{at}");
-                assert!(svg(&renderer, &inspection).ends_with("</svg>\n"), "{at}");
+                let drawing = svg(&renderer, &inspection, SvgView::Sheet);
+                assert!(drawing.is_ok_and(|drawing| drawing.ends_with("</svg>\n")), "{at}");
                 light_was_seen |= inspection.film != [0.0; 3];
             }
             assert!(light_was_seen, "{integrator:?} {color:?} is black");
@@ -347,10 +348,10 @@ fn a_pixel_is_the_sum_of_its_samples() {
         }
         for expected in match integrator {
             Integrator::Path => {
-                ["camera → floor (D) → window", "camera → prism (T) → ", " (D) → sky", "metal (G) → "]
+                ["camera → floor quad 1 (D) → window", "camera → prism (T) → ", " (D) → sky", "metal (G) → "]
             }
             _ => [
-                "camera → floor (D) → window",
+                "camera → floor quad 1 (D) → window",
                 "camera → jelly (R) → ",
                 "mirror (R) → ",
                 "camera → prism (T) → ",
@@ -428,7 +429,8 @@ fn rays_that_pass_holes_are_shown() {
                 parent = Some(ray.address);
             }
             longest = longest.max(inspection.rays.len());
-            let drawing = svg(&renderer, &inspection);
+            let drawing =
+                svg(&renderer, &inspection, SvgView::Side).unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(drawing.contains("ray that passed a surface"), inspection.rays.len() > 1, "{x} {y}");
         }
         assert_eq!(longest, 3, "{integrator:?}: past both sheets to the floor");

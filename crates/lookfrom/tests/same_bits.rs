@@ -3,7 +3,7 @@
 mod support;
 
 use lookfrom::film::FilmTile;
-use lookfrom::inspect::{inspect, svg};
+use lookfrom::inspect::{SvgView, inspect, svg};
 use lookfrom::integrator::{
     Integrator as Transport, LightSampling, Path, PathTracer, Probe, SampleStream, ShadowTransparency,
     StepOutput, Whitted,
@@ -121,7 +121,8 @@ fn what_the_inspector_shows_adds_up_to_what_the_film_received() {
                 assert_eq!(film.mean(x, y), inspection.film, "{name} at {x} {y}");
                 let text = inspection.to_string();
                 assert!(text.contains("the same, bit for bit"), "{text}");
-                assert!(svg(&renderer, &inspection).ends_with("</svg>\n"));
+                let drawing = svg(&renderer, &inspection, SvgView::Sheet);
+                assert!(drawing.is_ok_and(|drawing| drawing.ends_with("</svg>\n")));
             }
         }
     }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use clap::Args;
-use lookfrom::inspect::Part;
+use lookfrom::inspect::{Part, SvgView};
 
 use super::{Common, Overrides};
 use crate::values;
@@ -21,6 +21,7 @@ Examples:
   lookfrom inspect scene.toml 320 200 --sample worst     every step of the brightest
   lookfrom inspect scene.toml 320 200 --ray 3 --only lights
   lookfrom inspect scene.toml 320 200 --svg rays.svg
+  lookfrom inspect scene.toml 320 200 --svg rays.svg --svg-view side
 
 Give the same options as for the render: they determine the rays of the sample.";
 
@@ -64,6 +65,10 @@ pub(crate) struct InspectArguments {
     /// Also draw the rays into this SVG file
     #[arg(long, value_name = "FILE")]
     pub(crate) svg: Option<PathBuf>,
+
+    /// The views that it has: a sheet of all, side, top, front (from behind the camera), camera
+    #[arg(long, value_name = "VIEW", requires = "svg", value_parser = values::word(SvgView::WORDS))]
+    pub(crate) svg_view: Option<SvgView>,
 
     #[command(flatten)]
     pub(crate) common: Common,

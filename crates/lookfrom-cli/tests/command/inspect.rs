@@ -164,3 +164,58 @@ fn an_inspection_in_words_and_as_a_drawing() {
         .run("inspect scene.toml 20 14 --svg model.obj/rays.svg")
         .fails(3, &["cannot write model.obj/rays.svg"]);
 }
+
+/// The corners of the rectangles behind labels, in the drawing's own panels, by the text on them.
+fn labels(drawing: &str) -> Vec<([f64; 4], String)> {
+    let attribute = |element: &str, name: &str| -> f64 {
+        let (_, rest) = element.split_once(&format!(" {name}=\"")).unwrap();
+        rest.split('"').next().unwrap().parse().unwrap()
+    };
+    let rows = drawing.lines().filter(|line| line.contains("fill-opacity=\"0.8\""));
+    rows.map(|row| {
+        let [x, y, width, height] = ["x", "y", "width", "height"].map(|name| attribute(row, name));
+        let text = row.split_once("<text").unwrap().1.split_once('>').unwrap().1.split('<').next().unwrap();
+        ([x, y, x + width, y + height], text.to_owned())
+    })
+    .collect()
+}
+
+#[test]
+fn a_drawing_has_views_and_labels_that_keep_apart() {
+    let stage = Stage::new("inspect-svg-views");
+    let draw = |options: &str| {
+        stage.done(&format!("inspect scene.toml 20 14 --integrator path --svg rays.svg {options}"));
+        String::from_utf8(stage.bytes("rays.svg")).unwrap()
+    };
+    let sheet = draw("");
+    for view in ["side", "top", "front", "camera"] {
+        let alone = draw(&format!("--svg-view {view}"));
+        let title = format!("<clipPath id=\"{view}\">");
+        assert!(sheet.contains(&title) && alone.contains(&title), "{view}");
+        assert_eq!(alone.matches("<clipPath").count(), 1, "{view}");
+        let labels = labels(&alone);
+        assert!(labels.len() > 1, "{view}: {labels:?}");
+        for (index, (one, text)) in labels.iter().enumerate() {
+            for (other, beside) in &labels[..index] {
+                let apart =
+                    one[0] >= other[2] || other[0] >= one[2] || one[1] >= other[3] || other[1] >= one[3];
+                assert!(apart, "{view}: {text} is on {beside}");
+            }
+        }
+        let has = |word: &str| labels.iter().any(|(_, text)| text == word);
+        assert!(has("1") || view == "camera", "{view}: the camera ray's number is not in {labels:?}");
+        assert!(has(if view == "camera" { "the pixel" } else { "image plane, t = 1" }), "{view}: {labels:?}");
+        assert!(
+            view == "camera" || ["u", "v", "w"].iter().filter(|axis| has(axis)).count() == 2,
+            "{labels:?}"
+        );
+    }
+    stage.write(
+        "around.toml",
+        "camera = { projection = \"octahedral\", lookfrom = [0, 0, 0], lookat = [0, 0, 3] }",
+    );
+    let of_all_around = "inspect around.toml 5 5 --svg rays.svg";
+    stage.done(of_all_around);
+    stage.run(&format!("{of_all_around} --svg-view camera")).fails(2, &["has no image plane"]);
+    stage.run("inspect scene.toml 5 5 --svg-view top").fails(2, &["--svg <FILE>"]);
+}

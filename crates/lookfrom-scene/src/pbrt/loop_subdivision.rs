@@ -34,7 +34,13 @@ pub(super) fn subdivide(positions: &[Vec3], triangles: &[[u32; 3]], levels: u32)
     let limit = vertices.clone().map(|vertex| surface.limit(vertex, &surface.ring(vertex))).collect();
     let moved = Surface { positions: limit, ..surface };
     let normals = vertices.map(|vertex| moved.normal(vertex, &moved.ring(vertex))).collect();
-    Ok(Mesh { positions: moved.positions, triangles: moved.faces, normals, ..Mesh::default() })
+    Ok(Mesh {
+        name: "loopsubdiv".into(),
+        positions: moved.positions,
+        triangles: moved.faces,
+        normals,
+        ..Mesh::default()
+    })
 }
 
 impl Surface {

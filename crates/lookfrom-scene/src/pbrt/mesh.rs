@@ -23,7 +23,7 @@ impl Reader<'_, '_> {
         let mirrors = self.state.matrix.determinant() < 0.0;
         let handedness = if mirrors == self.state.reverse_orientation { 1.0 } else { -1.0 };
         let mesh = Mesh {
-            name: String::new(),
+            name: "trianglemesh".into(),
             normals: self.one_a_vertex(p, "N", p.vectors("N", Kind::Normal)?, positions.len()),
             tangents: self
                 .one_a_vertex(p, "S", p.vectors("S", Kind::Vector3)?, positions.len())

@@ -104,21 +104,17 @@ fn links(inspection: &Inspection, ray: &RayReport) -> Vec<String> {
     links
 }
 
-/// A surface in the chain: its shape's name, or that of its material where only the material has one.
+/// A surface in the chain: its shape.
 fn link(met: &MetReport, letters: &str) -> String {
-    let name = match (without_place(&met.shape), without_place(&met.material)) {
-        ((shape, true), _) => shape,
-        (_, (material, true)) => material,
-        ((kind, false), _) => kind,
-    };
+    let name = without_place(&met.shape);
     if letters.is_empty() { name.to_owned() } else { format!("{name} ({letters})") }
 }
 
-/// A name without the place in the file that stands for one, and whether the author gave it.
-fn without_place(name: &str) -> (&str, bool) {
-    match name.split_once(" (") {
-        Some((kind, place)) if place.ends_with(')') && place.contains(':') => (kind, false),
-        _ => (name, true),
+/// A label without the place in the file.
+pub(super) fn without_place(name: &str) -> &str {
+    match name.rsplit_once(" (") {
+        Some((label, place)) if place.ends_with(')') && place.contains([':', '#', '.', '<']) => label,
+        _ => name,
     }
 }
 
@@ -128,7 +124,7 @@ fn light_of(ray: &RayReport, addition: &Addition) -> String {
         "emission" => ray.met.as_ref().map_or_else(|| "emission".into(), |met| link(met, "")),
         term => {
             let light = term.strip_prefix("found ").or_else(|| term.strip_prefix("sampled ")).unwrap_or(term);
-            without_place(light).0.to_owned()
+            without_place(light).to_owned()
         }
     }
 }

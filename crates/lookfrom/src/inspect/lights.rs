@@ -3,18 +3,22 @@
 use glam::DVec3;
 use serde::Serialize;
 
-use crate::light::Light;
+use crate::light::{EmitterBounds, Light};
 use crate::world::World;
 
 /// A light, by its index in reports.
 #[derive(Clone, Debug, Serialize)]
 pub struct LightPlace {
-    /// Its name.
+    /// Its name; of an area light, the name of its shape.
     pub name: String,
     /// `point`, `spot`, `distant`, `projection`, `goniometric`, `area` or `environment`.
     pub kind: &'static str,
-    /// Its position in the world, if it is a point.
+    /// Its position in the world, if it has one; of an area light, the centre of its bounds.
     pub position: Option<[f64; 3]>,
+    /// The bounds of an area light: minimum and maximum in the world.
+    pub bounds: Option<[[f64; 3]; 2]>,
+    /// The area of an area light, of one side.
+    pub area: Option<f64>,
     /// Toward it, unit length, if it is infinitely far away in one direction.
     pub toward: Option<[f32; 3]>,
 }
@@ -28,7 +32,10 @@ pub fn lights(world: &World) -> Vec<LightPlace> {
             Light::Distant { toward, .. } => ("distant", None, Some(toward.to_array())),
             Light::Projection(light) => ("projection", Some(light.position), None),
             Light::Goniometric(light) => ("goniometric", Some(light.position), None),
-            Light::Area(_) => ("area", None, None),
+            Light::Area(light) => {
+                let EmitterBounds { min, max, .. } = light.emitter_bounds();
+                ("area", Some(min.midpoint(max)), None)
+            }
             Light::Environment(_) => ("environment", None, None),
         }
     };
@@ -36,8 +43,16 @@ pub fn lights(world: &World) -> Vec<LightPlace> {
     named
         .map(|(light, name)| {
             let (kind, position, toward) = place(light);
-            let position = position.map(|position| (world.origin + position).to_array());
-            LightPlace { name: name.clone(), kind, position, toward }
+            let in_world = |point: DVec3| (world.origin + point).to_array();
+            let (bounds, area) = match light {
+                Light::Area(light) => {
+                    let EmitterBounds { min, max, .. } = light.emitter_bounds();
+                    (Some([min, max].map(in_world)), Some(light.area()))
+                }
+                _ => (None, None),
+            };
+            let position = position.map(in_world);
+            LightPlace { name: name.clone(), kind, position, bounds, area, toward }
         })
         .collect()
 }

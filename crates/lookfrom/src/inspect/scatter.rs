@@ -5,6 +5,7 @@
 
 use serde::Serialize;
 
+use super::microfacets::MicrofacetReport;
 use super::report::{Amount, Factor, ShadowReport};
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::Bsdf;
@@ -82,6 +83,9 @@ pub struct SampledDirectionReport {
     pub arrives: Amount,
     /// The BSDF times the cosine; black where it does not scatter this light.
     pub f_cos: Factor,
+    /// The factors D, G and F of the boundaries of the BSDF that have microfacets. Diffuse lobes, sheen, and walks
+    /// between layers are the rest of the BSDF.
+    pub microfacets: Vec<MicrofacetReport>,
     /// q: the density of the direction in BSDF sampling; `None` for a delta light, and where light is not weighted by
     /// MIS.
     pub bsdf_pdf: Option<f32>,
@@ -100,6 +104,8 @@ pub struct BounceReport {
     pub wi: [f32; 3],
     /// The BSDF (for specular lobes the factor of the same delta function as in `pdf`).
     pub f: Factor,
+    /// The factors of `f`, as those of a light sample.
+    pub microfacets: Vec<MicrofacetReport>,
     /// Absolute cosine of the direction and the shading normal.
     pub cos: f32,
     /// The density of the direction; for specular lobes a probability.

@@ -11,11 +11,13 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use lookfrom_scene::settings::Integrator;
 
+use super::microfacets::MicrofacetReport;
 use super::report::{AbsorptionReport, Addition, Amount, BranchReport, Factor, RayReport};
 use super::scatter::FoundReport;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{Branch, Cut, Event, Term};
 use crate::render::Renderer;
+use crate::shading::material::Shading;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
@@ -33,6 +35,8 @@ pub(super) struct TraceLogBuilder<'a> {
     /// The sum of all contributions, added in their order.
     sum: Spectrum,
     additions: Vec<Addition>,
+    /// The BSDF at the hit of each ray of a path, and the direction to the viewer.
+    shadings: BTreeMap<u64, (Shading, Vec3)>,
 }
 
 /// The finished trace log.
@@ -61,6 +65,7 @@ impl<'a> TraceLogBuilder<'a> {
             added: BTreeMap::new(),
             sum: Spectrum::BLACK,
             additions: Vec::new(),
+            shadings: BTreeMap::new(),
         }
     }
 
@@ -98,7 +103,10 @@ impl<'a> TraceLogBuilder<'a> {
                 let report = self.light(*address, *light, sample.as_ref(), [*diffuse, *specular]);
                 self.at(*address, |ray| ray.lights.push(report));
             }
-            Event::Shaded { address, shading, beta, .. } => self.shaded(*address, shading, *beta),
+            Event::Shaded { address, shading, beta, surface } => {
+                self.shadings.insert(*address, (**shading, surface.wo));
+                self.shaded(*address, shading, *beta);
+            }
             Event::Found { address, light, radiance, light_pdf, weight, beta } => {
                 let report = FoundReport {
                     index: *light,
@@ -239,6 +247,13 @@ impl<'a> TraceLogBuilder<'a> {
                 (.., Some(_)) => "its throughput is 0",
             });
         }
+    }
+
+    /// The factors of the microfacets at the hit of a ray, for light from a direction.
+    fn microfacets(&self, address: u64, wi: Vec3, is_specular: bool) -> Vec<MicrofacetReport> {
+        let Some((shading, wo)) = self.shadings.get(&address) else { return Vec::new() };
+        let factors = shading.factors(*wo, wi, is_specular);
+        factors.iter().map(|factors| MicrofacetReport::new(factors, |value| self.factor(value))).collect()
     }
 
     fn at(&mut self, address: u64, change: impl FnOnce(&mut RayReport)) {

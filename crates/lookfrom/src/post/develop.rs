@@ -7,6 +7,8 @@
 
 mod tonemap;
 
+use std::sync::LazyLock;
+
 use crate::film::Picture;
 use lookfrom_scene::settings::Tonemap;
 
@@ -22,8 +24,7 @@ pub fn srgb8(picture: &Picture, exposure: f32, tonemap: Tonemap) -> Vec<u8> {
 /// As [`srgb8`], over a background of a linear colour in 0 … 1, composited by the picture's alpha. Exposure and tone
 /// map do not change the background: where alpha is 0, the screen shows just this colour.
 pub fn srgb8_before(picture: &Picture, background: [f32; 3], exposure: f32, tonemap: Tonemap) -> Vec<u8> {
-    let byte = Bytes::new();
-    shown_before(picture, background, exposure, tonemap, |value| byte.of(value))
+    shown_before(picture, background, exposure, tonemap, byte)
 }
 
 /// As [`srgb8_before`], of 65535.
@@ -34,8 +35,7 @@ pub fn srgb16_before(picture: &Picture, background: [f32; 3], exposure: f32, ton
 /// As [`srgb8`], with a fourth byte per pixel: alpha, linear from 0 to 255. The colours are divided by it first: PNG
 /// has straight alpha. Pixels without an alpha are opaque.
 pub fn srgba8(picture: &Picture, exposure: f32, tonemap: Tonemap) -> Vec<u8> {
-    let byte = Bytes::new();
-    straight_rgba(picture, exposure, tonemap, |value| byte.of(value), |alpha| (255.0 * alpha + 0.5) as u8)
+    straight_rgba(picture, exposure, tonemap, byte, |alpha| (255.0 * alpha + 0.5) as u8)
 }
 
 /// As [`srgba8`], of 65535.
@@ -89,17 +89,10 @@ fn straight(rgb: [f32; 3], alpha: f32) -> ([f32; 3], f32) {
     (if alpha > 0.0 { rgb.map(|c| c / alpha) } else { [0.0; 3] }, alpha)
 }
 
-/// The bytes of linear values in 0 … 1: each is the number of thresholds that its value has reached.
-struct Bytes([f32; 255]);
-
-impl Bytes {
-    fn new() -> Self {
-        Self(thresholds())
-    }
-
-    fn of(&self, value: f32) -> u8 {
-        self.0.partition_point(|&threshold| threshold <= value) as u8
-    }
+/// The byte of a linear value in 0 … 1: the number of thresholds that it has reached.
+fn byte(value: f32) -> u8 {
+    static THRESHOLDS: LazyLock<[f32; 255]> = LazyLock::new(thresholds);
+    THRESHOLDS.partition_point(|&threshold| threshold <= value) as u8
 }
 
 /// The factor of an exposure in stops.

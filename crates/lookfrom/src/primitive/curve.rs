@@ -56,6 +56,21 @@ impl Curves {
         (&self.strands[(primitive / SEGMENTS) as usize], [from, to])
     }
 
+    /// Number of primitives.
+    pub(crate) fn count(&self) -> usize {
+        self.strands.len() * SEGMENTS as usize
+    }
+
+    /// The ends of the centre line of a primitive, in render space.
+    pub(crate) fn ends(&self, primitive: usize) -> [DVec3; 2] {
+        let (strand, range) = self.segment(primitive as u32);
+        range.map(|u| {
+            let (point, _) = evaluate(&controls(strand), u);
+            DVec3::from_array(self.render_from_object.vector(point.to_array()))
+                + DVec3::from_array(self.render_from_object.translation)
+        })
+    }
+
     /// A ray's origin and direction in the space of the strands; its t stays the same.
     pub(crate) fn ray_in_object(&self, origin: DVec3, direction: DVec3) -> (DVec3, DVec3) {
         let translation = DVec3::from_array(self.render_from_object.translation);

@@ -120,6 +120,11 @@ impl Quadric {
         self.vector_in_object(p - DVec3::from_array(self.render_from_object.translation))
     }
 
+    /// A point of object space, in render space.
+    pub fn point_in_render(&self, p: DVec3) -> DVec3 {
+        self.vector_in_render(p) + DVec3::from_array(self.render_from_object.translation)
+    }
+
     /// A direction of render space, in object space.
     pub fn vector_in_object(&self, v: DVec3) -> DVec3 {
         DVec3::from_array(self.object_from_render.vector(v.to_array()))

@@ -26,7 +26,7 @@ impl Identity {
     /// Of a scene read from files.
     pub(super) fn of_files(files: Digested<'_>, path: &Path, options: &Options) -> Self {
         let digests = files.digests(path.parent().unwrap_or(Path::new("")));
-        let inputs = digests.into_iter().map(|(path, digest)| (path.display().to_string(), digest));
+        let inputs = digests.into_iter().map(|(path, digest)| (path.display().to_string(), digest.sha256));
         Self::new(inputs.collect(), options)
     }
 

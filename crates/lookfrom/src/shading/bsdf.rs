@@ -10,6 +10,7 @@
 pub mod conductor;
 pub mod dielectric;
 pub mod diffuse;
+mod factors;
 pub mod fresnel;
 pub mod henyey_greenstein;
 pub mod lanes;
@@ -35,6 +36,7 @@ use microfacet::TrowbridgeReitz;
 use principled::Principled;
 use whitted::Whitted;
 
+pub use factors::MicrofacetFactors;
 pub use local_scattering::LocalScattering;
 
 /// The transported quantity: radiance on paths from the camera, importance on paths from lights (Veach 1997). Only

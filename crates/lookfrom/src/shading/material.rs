@@ -26,7 +26,7 @@ use crate::shading::bsdf::diffuse::Diffuse;
 use crate::shading::bsdf::layered::{CoatLayer, Layered};
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::bsdf::whitted::Whitted as WhittedBsdf;
-use crate::shading::bsdf::{self, Bsdf, BsdfSample, Mode, fresnel};
+use crate::shading::bsdf::{self, Bsdf, BsdfSample, MicrofacetFactors, Mode, fresnel};
 use crate::shading::interaction::{ShadingGeometry, SurfaceInteraction};
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::{
@@ -127,6 +127,14 @@ impl Shading {
     fn agrees(&self, wo: Vec3, wi: Vec3) -> bool {
         let on_one_side = |n: Vec3| wo.dot(n) * wi.dot(n) > 0.0;
         !matches!(self.bsdf, Bsdf::Principled(_)) || on_one_side(self.ng) == on_one_side(self.frame.n)
+    }
+
+    /// The factors of its microfacets for two unit directions in render space ([`Bsdf::factors`]), with ω_m there.
+    pub fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {
+        let [wo, wi] = [wo, wi].map(|w| self.frame.local(w));
+        let mut all = self.bsdf.factors(wo, wi, is_specular);
+        all.iter_mut().for_each(|factors| factors.wm = self.frame.render(factors.wm));
+        all
     }
 
     /// Calls `ask` with the BSDF for a fixed outgoing direction of unit length in render space.

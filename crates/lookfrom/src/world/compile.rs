@@ -11,7 +11,7 @@ use lookfrom_scene::settings::Integrator as Kind;
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
 use super::lights::Lights;
-use super::place::{Compiler, Group};
+use super::place::{Compiler, Group, Labels};
 use super::{Instance, Medium, Names, World, reflectance};
 use crate::core::math;
 use crate::light::{Light, LightChoice};
@@ -62,30 +62,31 @@ impl World {
 
         // Shapes that are not instanced.
         let mut in_world = Group::default();
-        for shape in &scene.shapes {
+        let labels = Labels::new(&scene);
+        for shape in scene.shapes.iter().zip(&labels.shapes) {
             compiler.place(shape, &render_from_world, None, &mut in_world)?;
         }
         // Objects, each with a BVH of its own. Shapes in them that emit light are left to the instances.
         let mut in_objects = Vec::new();
-        for (index, object) in scene.objects.iter().enumerate() {
+        let labelled = |object: usize| scene.objects[object].shapes.iter().zip(&labels.objects[object]);
+        for index in 0..scene.objects.len() {
             let mut group = Group::default();
             compiler.has_instance_grain = scene.instances.iter().any(|instance| {
                 let is_grained = |id: MaterialId| compiler.grains.get(id.index()).is_some_and(|grain| *grain);
                 instance.object.index() == index && instance.material.is_some_and(is_grained)
             });
-            for shape in object.shapes.iter().filter(|shape| shape.emission.is_none()) {
+            for shape in labelled(index).filter(|(shape, _)| shape.emission.is_none()) {
                 compiler.place(shape, &DMat4::IDENTITY, None, &mut group)?;
             }
             in_objects.push(group);
         }
         compiler.has_instance_grain = false;
         for written in &scene.instances {
-            let object = &scene.objects[written.object.index()];
             let material = written.material.map(|id| id.0);
             let matrix = render_from_world * written.world_from_object;
             let instance = Instance::new(&written.at, written.object.0, matrix, material)?;
             // Each instance of a shape that emits light is a light of its own.
-            for shape in object.shapes.iter().filter(|shape| shape.emission.is_some()) {
+            for shape in labelled(written.object.index()).filter(|(shape, _)| shape.emission.is_some()) {
                 compiler.place(shape, &matrix, material, &mut in_world)?;
             }
             in_world.instances.push(instance);

@@ -3,6 +3,7 @@
 //! Shapes of vertices (meshes, patches, curves) become primitives of their own, see `place/vertices`; spheres, disks
 //! and quadrics of all shapes are collected, one geometry per kind.
 
+mod labels;
 mod vertices;
 
 use std::f32::consts::PI;
@@ -24,6 +25,7 @@ use crate::primitive::{
 };
 use crate::shading::interior_stack::{InteriorStack, MediumInterface};
 use crate::shading::texture::FloatTexture;
+pub(super) use labels::Labels;
 
 /// From axes with the poles on z to axes with the poles on y: a rotation.
 const Y_FROM_Z: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);
@@ -82,7 +84,7 @@ pub(super) struct Compiler<'a> {
     pub(super) scene: &'a Scene,
     pub(super) warnings: &'a mut Vec<Warning>,
     pub(super) lights: Lights<'a>,
-    /// Names by shape number.
+    /// Labels by shape number.
     pub(super) shapes: Vec<String>,
     /// By material: whether it is anisotropic or bump-mapped, and so needs derivatives by texture coordinates.
     pub(super) grains: Vec<bool>,
@@ -113,10 +115,10 @@ impl Placing<'_> {
 }
 
 impl Compiler<'_> {
-    /// Adds a shape to a group; `group_from_parent` transforms to the group's space.
+    /// Adds a shape with its label to a group; `group_from_parent` transforms to the group's space.
     pub(super) fn place(
         &mut self,
-        shape: &Shape,
+        (shape, label): (&Shape, &String),
         group_from_parent: &DMat4,
         material: Option<u32>,
         group: &mut Group,
@@ -124,7 +126,7 @@ impl Compiler<'_> {
         let matrix = *group_from_parent * shape.world_from_object;
         inverse(&shape.at, &matrix)?;
         let number = self.shapes.len() as u32;
-        self.shapes.push(self.name_of(shape));
+        self.shapes.push(label.clone());
         let has_opacities = match &shape.geometry {
             Geometry::Mesh(id) => !self.scene.meshes[id.index()].opacities.is_empty(),
             _ => false,
@@ -186,25 +188,6 @@ impl Compiler<'_> {
             Geometry::Curves(strands) => self.curves(placing, strands, group),
             Geometry::Mesh(id) => self.mesh(placing, &self.scene.meshes[id.index()], group),
         }
-    }
-
-    fn name_of(&self, shape: &Shape) -> String {
-        let kind = match &shape.geometry {
-            Geometry::Sphere(_) => "sphere",
-            Geometry::Spheres(_) => "spheres",
-            Geometry::Quad { .. } => "quad",
-            Geometry::Disk { .. } => "disk",
-            Geometry::PartialSphere { .. } => "partial sphere",
-            Geometry::PartialDisk { .. } => "partial disk",
-            Geometry::Cylinder { .. } => "cylinder",
-            Geometry::Bilinear(_) => "bilinear patches",
-            Geometry::Curves(_) => "curves",
-            Geometry::Mesh(id) => match self.scene.meshes[id.index()].name.as_str() {
-                "" => "mesh",
-                name => name,
-            },
-        };
-        shape.name.clone().unwrap_or_else(|| format!("{kind} ({})", shape.at))
     }
 
     /// Spheres of one shape whose poles are on z after `pole`.
@@ -320,7 +303,8 @@ impl Compiler<'_> {
             Some(mean) => light.radiance.scale * mean,
             None => self.lights.brightness_of(&light.radiance),
         };
-        Some(self.lights.push(Light::Area(light), brightness, self.name_of(shape)))
+        let label = self.shapes[binding.shape as usize].clone();
+        Some(self.lights.push(Light::Area(light), brightness, label))
     }
 
     /// The index that the next light will have.

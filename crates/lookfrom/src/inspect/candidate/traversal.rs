@@ -13,6 +13,8 @@ const MOST_CANDIDATES: usize = 10_000;
 pub struct TraversalReport {
     /// Nodes of the BVH that it visited, in instances, too.
     pub nodes: u32,
+    /// Boxes of their children that were culled: the ray misses them, or has a hit before them. The others were entered.
+    pub culled: u32,
     /// Primitives that it was tested against.
     pub tests: u32,
 }
@@ -27,6 +29,10 @@ pub(super) struct Tested {
 impl Observer for Tested {
     fn node(&mut self, _: u32, _: u32) {
         self.traversal.nodes += 1;
+    }
+
+    fn boxes(&mut self, _: u32, tested: u32, entered: u32) {
+        self.traversal.culled += tested - entered;
     }
 
     fn candidate(&mut self, instance: u32, geometry: u32, primitive: u32) {

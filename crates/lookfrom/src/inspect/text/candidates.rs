@@ -10,8 +10,11 @@ pub(super) fn write_traced(f: &mut String, ray: &RayReport, pad: &str) -> fmt::R
     if ray.candidates.is_empty() {
         return Ok(());
     }
-    let TraversalReport { nodes, tests } = ray.traversal;
-    writeln!(f, "{pad}  visits {nodes} nodes of the BVH, is tested against {tests} primitives")?;
+    let TraversalReport { nodes, culled, tests } = ray.traversal;
+    writeln!(
+        f,
+        "{pad}  visits {nodes} nodes of the BVH, culls {culled} boxes, is tested against {tests} primitives"
+    )?;
     let d = ray.direction.map(f64::from);
     writeln!(f, "{pad}  for the tests, relative to the render origin, in f32:")?;
     writeln!(f, "{pad}    a = {}", exact(&ray.origin.map(f64::from)))?;

@@ -49,8 +49,11 @@ pub(super) fn write_shadow(
     let Some(shadow) = shadow else {
         return writeln!(f, "{pad}    no shadow ray: its contribution would be 0");
     };
-    let TraversalReport { nodes, tests } = shadow.traversal;
-    writeln!(f, "{pad}    shadow ray: visits {nodes} nodes, is tested against {tests} primitives")?;
+    let TraversalReport { nodes, culled, tests } = shadow.traversal;
+    writeln!(
+        f,
+        "{pad}    shadow ray: visits {nodes} nodes, culls {culled} boxes, is tested against {tests} primitives"
+    )?;
     for blocker in &shadow.blockers {
         let (name, t, passed) = (&blocker.shape, full(blocker.t), &blocker.passed);
         match passed.iter().all(|lane| *lane == 0.0) {

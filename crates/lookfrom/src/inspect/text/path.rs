@@ -4,6 +4,7 @@ use std::fmt::{self, Write};
 
 use super::candidates::{write_candidates, write_traced};
 use super::hit::{write_absorption, write_met, write_shadow};
+use super::microfacets::write_microfacets;
 use super::{Excerpt, Part, RayReport};
 use super::{amount, full, lanes, vector, vector32};
 use crate::inspect::scatter::{BounceReport, FoundReport, LightSampleReport, ScatteringReport};
@@ -187,6 +188,7 @@ impl Excerpt<'_> {
             return writeln!(f, "      f cos = 0: the surface scatters none of it along this path");
         }
         writeln!(f, "      f cos = {}", lanes(&sample.f_cos))?;
+        write_microfacets(f, &sample.microfacets)?;
         if let Some(point) = sample.point {
             writeln!(f, "      from the point {}", vector(&point))?;
         }
@@ -233,6 +235,7 @@ impl Excerpt<'_> {
             full(bounce.cos),
             full(bounce.pdf)
         )?;
+        write_microfacets(f, &bounce.microfacets)?;
         if bounce.lobe.starts_with("specular") {
             writeln!(
                 f,

@@ -60,6 +60,7 @@ impl TraceLogBuilder<'_> {
             is_delta: self.world.lights[light as usize].is_delta(),
             arrives: self.amount(sample.li),
             f_cos: self.factor(f_cos),
+            microfacets: Vec::new(),
             bsdf_pdf,
             weight,
         }
@@ -70,8 +71,11 @@ impl TraceLogBuilder<'_> {
         address: u64,
         index: u32,
         probability: f32,
-        sample: Option<SampledDirectionReport>,
+        mut sample: Option<SampledDirectionReport>,
     ) {
+        if let Some(sample) = sample.as_mut().filter(|sample| sample.f_cos.iter().any(|lane| *lane != 0.0)) {
+            sample.microfacets = self.microfacets(address, Vec3::from_array(sample.wi), false);
+        }
         let light = self.world.names.lights[index as usize].clone();
         let added = self.amount(Spectrum::BLACK);
         let report = LightSampleReport { index, light, probability, sample, shadow: None, added };
@@ -120,6 +124,7 @@ impl TraceLogBuilder<'_> {
         report.to = to;
         report.rest = rest;
         report.traversal.nodes += traversal.nodes;
+        report.traversal.culled += traversal.culled;
         report.traversal.tests += traversal.tests;
         report.blockers.extend(blocker);
     }

@@ -94,6 +94,7 @@ impl TraceLogBuilder<'_> {
             letters: scatter::letters(sample.lobe),
             wi: bounce.wi.to_array(),
             f: self.factor(sample.f),
+            microfacets: self.microfacets(address, bounce.wi, sample.lobe.is_specular()),
             cos: bounce.cos,
             pdf: sample.pdf,
             pdf_is_proportional: sample.pdf_is_proportional,

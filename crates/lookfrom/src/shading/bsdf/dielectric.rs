@@ -22,9 +22,9 @@ pub struct Dielectric<R = f32> {
 
 /// A microfacet that scatters light between two directions.
 #[derive(Clone, Copy)]
-struct Facet<R: Real> {
+pub(super) struct Facet<R: Real> {
     /// Its normal, z ≥ 0.
-    wm: Vector<R>,
+    pub(super) wm: Vector<R>,
     /// Its Fresnel reflectance.
     fresnel: R,
     /// True for reflection, false for refraction.
@@ -57,7 +57,7 @@ impl<R: Real> Dielectric<R> {
 
     /// The facet that scatters light between two directions, and whether there is one.
     #[inline(always)]
-    fn facet(&self, wo: Vector<R>, wi: Vector<R>) -> (Facet<R>, R::Mask) {
+    pub(super) fn facet(&self, wo: Vector<R>, wi: Vector<R>) -> (Facet<R>, R::Mask) {
         let (zero, one) = (self.eta.like(0.0), self.eta.like(1.0));
         let reflects = (wo.z * wi.z).gt(zero);
         let eta = R::select(reflects, one, fresnel::relative_eta(wo.z, self.eta));

@@ -37,6 +37,7 @@
 mod albedo;
 mod choice;
 mod facing;
+mod factors;
 pub mod film;
 mod layers;
 mod look;

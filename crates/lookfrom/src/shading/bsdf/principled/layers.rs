@@ -10,6 +10,7 @@ use crate::core::optics;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::core::warp;
+use crate::shading::bsdf::MicrofacetFactors;
 use crate::shading::bsdf::conductor::half_vector;
 use crate::shading::bsdf::is_grazing;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
@@ -161,5 +162,29 @@ impl<R: Real> Coat<R> {
         let wi = (s * local.x + t * local.y + n * local.z).normalize();
         let is_above = local.z.gt(zero) & wi.z.gt(zero) & !is_grazing(wi);
         (wi, is_above & self.wo.z.gt(zero) & !is_grazing(self.wo))
+    }
+}
+
+impl Coat<f32> {
+    /// The factors of its facets, with ω_m in the frame of the surface; `None` where it is smooth, or not lit.
+    pub(super) fn factors(&self, wi: Vector<f32>) -> Option<MicrofacetFactors> {
+        let (local, wm, is_lit) = self.facet(wi);
+        let cos_m = [self.wo.dot(wm), local.dot(wm)];
+        let fresnel = Spectrum::splat(schlick(cos_m[0]) * (1.0 - COAT_F0) + COAT_F0);
+        let [s, t, n] = self.frame;
+        is_lit.then(|| MicrofacetFactors {
+            boundary: "clear coat",
+            refracts: false,
+            roughness: self.roughness,
+            wm: (s * wm.x + t * wm.y + n * wm.z).into(),
+            cos: [self.wo.z, wi.z],
+            cos_m,
+            d: Some(self.roughness.d(wm)),
+            g: Some(self.roughness.g(self.wo, local)),
+            fresnel,
+            part: fresnel,
+            eta: 1.0,
+            weight: self.amount,
+        })
     }
 }

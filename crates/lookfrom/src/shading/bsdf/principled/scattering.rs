@@ -297,6 +297,11 @@ impl<R: Real> LocalScattering<R> {
 }
 
 impl LocalScattering {
+    /// What depends on ω_o alone.
+    pub(super) fn view(&self) -> &View<f32> {
+        &self.view
+    }
+
     /// As [`crate::shading::bsdf::Bsdf::sample`].
     pub(in crate::shading::bsdf) fn sample_one(
         &self,

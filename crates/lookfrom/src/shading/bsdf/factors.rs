@@ -1,0 +1,155 @@
+//! The factors D, G and F of microfacet BSDFs for two directions, as the inspector shows them.
+//!
+//! They are what [`Bsdf::f`] multiplies, one set for each boundary with microfacets. Diffuse lobes, sheen, and what
+//! is scattered between the layers of a coat have no such factors.
+//!
+//! Cook & Torrance 1982 (reflection); Walter et al. 2007 (refraction).
+
+use glam::Vec3;
+
+use super::conductor::{Conductor, try_half_vector};
+use super::dielectric::Dielectric;
+use super::lobes::Lobes;
+use super::microfacet::TrowbridgeReitz;
+use super::{Bsdf, fresnel, is_grazing, same_side};
+use crate::core::spectrum::Spectrum;
+
+/// The factors of one boundary that scatters light from `wi` to `wo` by its microfacets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MicrofacetFactors {
+    /// The boundary: `conductor`, `dielectric`, `coat`; of glTF's layers `specular`, `glass`, `clear coat`.
+    pub boundary: &'static str,
+    /// Whether the facets refract light; otherwise they reflect it (a thin sheet also to its other side).
+    pub refracts: bool,
+    /// α.
+    pub roughness: TrowbridgeReitz,
+    /// ω_m: the normal of the facets, unit length; the half vector of a reflection.
+    pub wm: Vec3,
+    /// Absolute cosines of ω_o and ω_i to the normal.
+    pub cos: [f32; 2],
+    /// Cosines of ω_o and ω_i to ω_m.
+    pub cos_m: [f32; 2],
+    /// D(ω_m); `None` where the boundary is smooth.
+    pub d: Option<f32>,
+    /// G(ω_o, ω_i), or only G₁(ω_o) where light that leaves a facet is never shadowed; `None` where it is smooth.
+    pub g: Option<f32>,
+    /// F: the Fresnel reflectance of the facets; where the boundary is a mix, that of its parts by their weights.
+    pub fresnel: Spectrum,
+    /// What the facets do with light of this way: F where they reflect it, else 1 − F, tinted by the body.
+    pub part: Spectrum,
+    /// The index of refraction on the side of `wi` over the one on the side of `wo`, where light is refracted; else 1.
+    pub eta: f32,
+    /// The weight of the boundary, below the layers above it.
+    pub weight: f32,
+}
+
+impl MicrofacetFactors {
+    /// Its part of the BSDF, by their formula: `weight · part · D G / (4 |cos_o cos_i|)` for reflection, and
+    /// `weight · part · D G |cos_om cos_im| / (|cos_o cos_i| (cos_im + cos_om / η)² η²)` for refraction. Where the boundary
+    /// is smooth, the factor of a delta function: `weight · part / (|cos_i| η²)`.
+    pub fn value(&self) -> Spectrum {
+        let &Self { cos: [cos_o, cos_i], cos_m: [cos_om, cos_im], eta, part, weight, .. } = self;
+        let (Some(d), Some(g)) = (self.d, self.g) else {
+            return part * (weight / (cos_i * eta * eta));
+        };
+        let sum = cos_im + cos_om / eta;
+        let jacobian = match self.refracts {
+            true => (cos_om * cos_im).abs() / (sum * sum * eta * eta),
+            false => 0.25,
+        };
+        part * (weight * d * g * jacobian / (cos_o * cos_i))
+    }
+}
+
+impl Bsdf {
+    /// The factors for light from `wi` to `wo`. `is_specular` asks for those of a direction that was sampled from a
+    /// smooth boundary, which has no value for any other.
+    pub fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {
+        let factors = match self {
+            Self::Conductor(bsdf) => bsdf.factors(wo, wi, is_specular),
+            Self::Dielectric(bsdf) => bsdf.factors("dielectric", wo, wi, is_specular),
+            // A part of what is reflected is reflected by the coat; both sides scatter alike.
+            Self::CoatedDiffuse(bsdf) => coat(&bsdf.coat, wo, wi),
+            Self::CoatedConductor(bsdf) => coat(&bsdf.coat, wo, wi),
+            Self::Principled(look) if !is_specular => {
+                return look.scattering(wo, Lobes::ALL).factors(wi.into());
+            }
+            Self::Principled(_)
+            | Self::Diffuse(_)
+            | Self::DiffuseTransmission(_)
+            | Self::ThinDielectric(_)
+            | Self::Whitted(_) => None,
+        };
+        factors.into_iter().collect()
+    }
+}
+
+fn coat(boundary: &Dielectric, wo: Vec3, wi: Vec3) -> Option<MicrofacetFactors> {
+    let up = |w: Vec3| if wo.z < 0.0 { -w } else { w };
+    let factors = boundary.factors("coat", up(wo), up(wi), false)?;
+    (!factors.refracts).then(|| MicrofacetFactors { wm: up(factors.wm), ..factors })
+}
+
+impl Conductor {
+    fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Option<MicrofacetFactors> {
+        let is_smooth = self.roughness.is_smooth();
+        if !same_side(wo, wi) || is_smooth != is_specular {
+            return None;
+        }
+        let wm = if is_smooth { Vec3::Z } else { try_half_vector(wo, wi)? };
+        let cos_m = [wo.dot(wm), wi.dot(wm)];
+        let fresnel = fresnel::conductor(cos_m[0].abs(), self.eta, self.k);
+        Some(MicrofacetFactors {
+            boundary: "conductor",
+            refracts: false,
+            roughness: self.roughness,
+            wm,
+            cos: [wo.z.abs(), wi.z.abs()],
+            cos_m,
+            d: (!is_smooth).then(|| self.roughness.d(wm.into())),
+            g: (!is_smooth).then(|| self.roughness.g(wo.into(), wi.into())),
+            fresnel,
+            part: fresnel,
+            eta: 1.0,
+            weight: 1.0,
+        })
+    }
+}
+
+impl Dielectric {
+    fn factors(
+        &self,
+        boundary: &'static str,
+        wo: Vec3,
+        wi: Vec3,
+        is_specular: bool,
+    ) -> Option<MicrofacetFactors> {
+        if is_grazing(wo) || is_grazing(wi) || self.is_specular() != is_specular {
+            return None;
+        }
+        let is_smooth = self.is_specular();
+        let reflects = wo.z * wi.z > 0.0;
+        let wm = if is_smooth {
+            Vec3::Z
+        } else {
+            let (facet, is_usable) = self.facet(wo.into(), wi.into());
+            is_usable.then(|| facet.wm.into())?
+        };
+        let cos_m = [wo.dot(wm), wi.dot(wm)];
+        let f = fresnel::dielectric(cos_m[0], self.eta);
+        Some(MicrofacetFactors {
+            boundary,
+            refracts: !reflects,
+            roughness: self.roughness,
+            wm,
+            cos: [wo.z.abs(), wi.z.abs()],
+            cos_m,
+            d: (!is_smooth).then(|| self.roughness.d(wm.into())),
+            g: (!is_smooth).then(|| self.roughness.g(wo.into(), wi.into())),
+            fresnel: Spectrum([f; 4]),
+            part: Spectrum([if reflects { f } else { 1.0 - f }; 4]),
+            eta: if reflects { 1.0 } else { fresnel::relative_eta(wo.z, self.eta) },
+            weight: 1.0,
+        })
+    }
+}
