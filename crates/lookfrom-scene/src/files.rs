@@ -129,7 +129,7 @@ fn resolved(path: &Path) -> PathBuf {
 
 fn too_long(at: &Location, limit: u64) -> Error {
     Error::new(ErrorKind::Limit, at, format!("longer than the limit of {limit} bytes"))
-        .hint("divide the file, or raise `Limits::file_bytes`")
+        .hint("divide the file")
 }
 
 /// Files in memory, by path: for tests and for embedders without a disk.

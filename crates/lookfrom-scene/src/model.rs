@@ -3,6 +3,7 @@
 //! The reader is selected by the extension, or by the content if the extension is absent or wrong. Models in formats
 //! without a camera and lights are shown by [`crate::studio`].
 
+pub(crate) mod lines;
 pub(crate) mod number;
 pub(crate) mod points;
 pub(crate) mod polygon;

@@ -14,13 +14,17 @@ use std::path::Path;
 use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
 use crate::image::linear_from_srgb;
-use crate::model::{points, text};
+use crate::material::{Color, Whitted};
+use crate::model::surface::push_material;
+use crate::model::{lines, points, text};
+use build::Form;
+
 use crate::packed;
 use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Part};
 
 /// Reads an OBJ file and the material libraries and images that it names. There is one part per material; a file without
-/// faces is a point cloud. Vertex colours are taken to be sRGB-encoded.
+/// faces and lines is a point cloud; lines are thin wires. Vertex colours are taken to be sRGB-encoded.
 ///
 /// # Errors
 /// `Io`, `Limit`, `Syntax` and `Invalid`, at line and column. After an error the scene may contain parts of the file.
@@ -46,7 +50,7 @@ pub fn from_bytes(
         return Err(Error::syntax(&file, "no vertices: there is no line that starts with `v`")
             .hint("check that this is a Wavefront OBJ file and that it is whole"));
     }
-    if statements.groups.iter().all(|group| group.faces.is_empty()) {
+    if statements.groups.iter().all(|group| group.faces.is_empty() && group.lines.is_empty()) {
         return Ok(points::cloud(&statements.positions, &statements.colors, &file, context, scene));
     }
     let colored = !statements.colors.is_empty();
@@ -54,15 +58,31 @@ pub fn from_bytes(
     let mut looks = look::Looks::read(&meshes.libraries, path, context);
     let mut parts = Vec::new();
     for piece in meshes.pieces {
-        let look = looks.look(piece.material.as_deref(), colored, &file, context, scene);
-        let mesh = MeshId(scene.meshes.len() as u32);
-        let name = piece.material.map(|name| String::from_utf8_lossy(&name).into_owned());
-        parts.push(Part {
-            material: look.material,
+        let is_colored = colored && matches!(piece.form, Form::Mesh(_));
+        let look = looks.look(piece.material.as_deref(), is_colored, &file, context, scene);
+        let name = piece.material.map(|name| String::from_utf8_lossy(&name).into_owned()).or(piece.object);
+        let part = |geometry, material| Part {
+            material,
             emission: look.emission,
-            ..Part::new(name.or(piece.object), Geometry::Mesh(mesh))
-        });
-        scene.meshes.push(piece.mesh);
+            ..Part::new(name.clone(), geometry)
+        };
+        match piece.form {
+            Form::Mesh(mesh) => {
+                let id = MeshId(scene.meshes.len() as u32);
+                scene.meshes.push(mesh);
+                parts.push(part(Geometry::Mesh(id), look.material));
+            }
+            Form::Lines(ends, colors) => {
+                for (color, wires) in lines::wires(&ends, if look.material.is_some() { &[] } else { &colors })
+                {
+                    let material = color.map(|color| {
+                        let whitted = Whitted { diffuse: Color::Value(color), ..Whitted::default() };
+                        push_material(scene, "lines", &file, whitted)
+                    });
+                    parts.push(part(wires, look.material.or(material)));
+                }
+            }
+        }
     }
     looks.warn(&file, context);
     Ok(parts)

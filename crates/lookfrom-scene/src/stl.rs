@@ -185,7 +185,7 @@ fn read_binary(
     }
     if count as usize > triangles.limit {
         let message = format!("{count} triangles are more than the limit of {}", triangles.limit);
-        return Err(Error::new(ErrorKind::Limit, file, message).hint("raise `Limits::elements`"));
+        return Err(Error::new(ErrorKind::Limit, file, message).hint("split the model into several files"));
     }
     let used = TRIANGLE * count as usize;
     let rest = body.len() - used;
@@ -277,7 +277,7 @@ fn read_text(
                 if triangles.triangles.len() > triangles.limit {
                     let message = format!("more than {} triangles", triangles.limit);
                     let error = Error::new(ErrorKind::Limit, &scanner.at(file), message);
-                    return Err(error.hint("raise `Limits::elements`"));
+                    return Err(error.hint("split the model into several files"));
                 }
             }
             b"endfacet" => is_in_facet = false,

@@ -184,9 +184,15 @@ fn every_mode_has_its_form() {
         let primitive = json!({"attributes": {"POSITION": positions}, "indices": indices, "mode": mode});
         model.scene(one(primitive, json!({})))
     };
+    // Corners by their place in the square: meshes keep only the vertices that they use.
     let triangles = |mode| {
         let scene = read(mode);
-        mesh(&scene, &scene.shapes[0]).triangles.clone()
+        let mesh = mesh(&scene, &scene.shapes[0]);
+        let place = |corner: u32| {
+            let Vec3 { x, y, .. } = mesh.positions[corner as usize];
+            (x + 2.0 * y) as u32
+        };
+        mesh.triangles.iter().map(|triangle| triangle.map(place)).collect::<Vec<_>>()
     };
     assert_eq!(triangles(4), [[3, 1, 0]]);
     assert_eq!(triangles(5), [[3, 1, 0], [1, 2, 0]]);
@@ -197,6 +203,63 @@ fn every_mode_has_its_form() {
         assert!(!scene.shapes[0].single_sided, "lines are seen from everywhere");
     }
     assert!(matches!(&read(0).shapes[0].geometry, Geometry::Spheres(spheres) if spheres.len() == 4));
+}
+
+#[test]
+fn arrays_of_a_wrong_length_are_told_by_their_place() {
+    let said = |scale: Value| Model::default().error(json!({"nodes": [{"scale": scale}]})).to_string();
+    let long = said(json!([1, 1, 1, 1]));
+    assert!(long.starts_with("m/a.gltf#/nodes/0/scale: the array has too many values"), "{long}");
+    assert!(said(json!([1, 1])).starts_with("m/a.gltf#/nodes/0/scale: "));
+}
+
+#[test]
+fn points_and_lines_have_the_colours_of_their_vertices() {
+    let mut model = Model::default();
+    let positions = model.square();
+    let colors = model.floats("VEC3", &[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+    let half = json!([{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1]}}]);
+    let read = |mode: u32| {
+        let attributes = json!({"POSITION": positions, "COLOR_0": colors});
+        let primitive = json!({"attributes": attributes, "mode": mode, "material": 0});
+        let scene = model.scene(one(primitive, json!({"materials": half})));
+        let of_shape = |shape: &Shape| {
+            let MaterialKind::Principled(look) = &scene.materials[shape.material.index()].kind else {
+                panic!()
+            };
+            let count = match &shape.geometry {
+                Geometry::Spheres(spheres) => spheres.len(),
+                Geometry::Curves(strands) => strands.len(),
+                other => panic!("{other:?}"),
+            };
+            (look.base_color, count)
+        };
+        scene.shapes.iter().map(of_shape).collect::<Vec<_>>()
+    };
+    let (red, blue) = (Color::Value([0.5, 0.0, 0.0]), Color::Value([0.0, 0.0, 0.5]));
+    let mut points = read(0);
+    points.sort_by_key(|(color, _)| *color == blue);
+    assert_eq!(points, [(red, 2), (blue, 2)]);
+    // Lines between red and blue.
+    assert_eq!(read(1), [(Color::Value([0.25, 0.0, 0.25]), 2)]);
+}
+
+#[test]
+fn primitives_keep_only_the_vertices_that_they_use() {
+    let mut model = Model::default();
+    let corners: Vec<f32> = (0..300).flat_map(|i| [i as f32, (i % 2) as f32, 0.0]).collect();
+    let positions = model.floats("VEC3", &corners);
+    let colors = model.floats("VEC3", &corners);
+    let indices = model.indices(&[7, 5, 290]);
+    let scene = model.scene(one(
+        json!({"attributes": {"POSITION": positions, "COLOR_0": colors}, "indices": indices}),
+        json!({}),
+    ));
+    let mesh = mesh(&scene, &scene.shapes[0]);
+    let [a, b, c] = [[5.0, 1.0, 0.0], [7.0, 1.0, 0.0], [290.0, 0.0, 0.0]];
+    assert_eq!(mesh.positions, [a, b, c].map(Vec3::from));
+    assert_eq!(mesh.colors, [a, b, c]);
+    assert_eq!(mesh.triangles, [[1, 0, 2]]);
 }
 
 #[test]

@@ -22,7 +22,7 @@ const EXPECTED: &[(&str, usize, usize, usize)] = &[
     ("OBJ/only_a_part_of_vertexcolors.obj", 3, 0, 1),
     ("OBJ/point_cloud.obj", 0, 3, 1),
     ("OBJ/spider.obj", 1312, 0, 4),
-    ("OBJ/testmixed.obj", 12, 0, 1),
+    ("OBJ/testmixed.obj", 12, 0, 2),
     ("OBJ/testpoints.obj", 0, 8, 1),
     ("PLY/cube.ply", 12, 0, 1),
     ("PLY/cube_binary.ply", 12, 0, 1),
@@ -77,6 +77,7 @@ fn counts(path: &Path) -> Result<(usize, usize, usize), String> {
         match &part.geometry {
             Geometry::Mesh(mesh) => triangles += scene.meshes[mesh.index()].triangles.len(),
             Geometry::Spheres(spheres) => points += spheres.len(),
+            Geometry::Curves(_) => {}
             other => panic!("unexpected {other:?}"),
         }
     }

@@ -73,7 +73,7 @@ fn obj() {
                 "{triangle}v nan 1e39 0\nf 1 2 3\nf 1 2 4\nf 4 2 3\nf 1 2 2\nf 1 2\ncurv 1 2\np 1\ncall x\nfoo\n"
             )
         ),
-        "a.obj:11: 1 point or line element left out: only faces are drawn\n\
+        "a.obj:11: 1 point element left out: only faces and lines are drawn\n\
          a.obj:9: 1 face left out: fewer than three corners\n\
          a.obj:10: 1 curve or surface left out: free-form geometry is not supported\n\
          a.obj:12: 1 `call` or `csh` statement ignored: no other files or programs are run\n\
@@ -83,7 +83,7 @@ fn obj() {
     );
     assert_eq!(
         said_within("a.obj", triangle, Limits { elements: 2, ..Limits::default() }),
-        "a.obj:3: more than 2 vertices\n  help: raise `Limits::elements`, or split the model"
+        "a.obj:3: more than 2 vertices\n  help: split the model into several files"
     );
     assert_eq!(
         said("a.obj", format!("mtllib no such.mtl\n{triangle}usemtl red\nf 1 2 3\n")),

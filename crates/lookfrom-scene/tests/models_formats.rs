@@ -391,3 +391,43 @@ proptest! {
             format!("{:?}", (&mesh.positions, &mesh.triangles, &mesh.normals, &mesh.uvs, &mesh.colors)));
     }
 }
+
+#[test]
+fn obj_lines_are_wires() {
+    let wires = |part: &Part| match &part.geometry {
+        Geometry::Curves(strands) => strands.iter().map(|s| [s.points[0], s.points[3]]).collect::<Vec<_>>(),
+        other => panic!("no wires: {other:?}"),
+    };
+    let [o, x, y] = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    // A closed loop, without faces; indices of texture coordinates that are not there do not matter.
+    let bare = Model::of(&[("a.obj", format!("{TRIANGLE}l 1/1 2/2 3 -3\nl 2\nl 2 2\n").as_bytes())]);
+    assert_eq!(wires(&bare.parts[0]), [[o, x], [x, y], [y, o]]);
+    assert_eq!(bare.parts.len(), 1);
+
+    // Beside faces, with the material in use.
+    let obj = format!("mtllib m.mtl\n{TRIANGLE}usemtl m\nf 1 2 3\nusemtl n\nl 1 3\n");
+    let both = Model::of(&[("a.obj", obj.as_bytes()), ("m.mtl", b"newmtl m\nnewmtl n\nKd 1 0 0\n")]);
+    assert_eq!(wires(&both.parts[1]), [[o, y]]);
+    assert_eq!(both.look(1).diffuse, Color::Value([1.0, 0.0, 0.0]));
+
+    // With colours at the vertices: a wire has the mean of its ends.
+    let colored = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 0 0 1\nv 1 1 0 0 0 1\nl 1 2\nl 3 4\n";
+    let colored = Model::of(&[("a.obj", colored.as_bytes())]);
+    let mut colors: Vec<Color> = (0..2).map(|part| colored.look(part).diffuse).collect();
+    colors.sort_by_key(|color| *color == Color::Value([0.0, 0.0, 1.0]));
+    assert_eq!(colors, [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]].map(Color::Value));
+}
+
+#[test]
+fn ply_splats_are_coloured_points() {
+    let names = ["x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity"];
+    let properties: String = names.iter().map(|name| format!("property float {name}\n")).collect();
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex 2\n{properties}end_header\n0 0 0 9 0 -9 1\n1 0 0 9 0 -9 1\n"
+    );
+    let cloud = Model::of(&[("a.ply", ply.as_bytes())]);
+    assert!(matches!(&cloud.parts[0].geometry, Geometry::Spheres(spheres) if spheres.len() == 2));
+    let Color::Value([red, green, blue]) = cloud.look(0).diffuse else { panic!("no colour") };
+    assert!(red == 1.0 && blue == 0.0 && (green - 0.214).abs() < 1e-3, "{green}: half of 1, encoded");
+    assert!(cloud.warnings[0].contains("Gaussian splats"), "{:?}", cloud.warnings);
+}

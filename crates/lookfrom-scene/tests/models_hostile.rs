@@ -73,6 +73,12 @@ fn read(name: &str, content: Vec<u8>) -> Result<(), String> {
                     assert!(sphere.center.is_finite() && sphere.radius > 0.0 && sphere.radius.is_finite());
                 }
             }
+            Geometry::Curves(strands) => {
+                for strand in &**strands {
+                    assert!(strand.points.iter().all(|point| point.is_finite()));
+                    assert!(strand.width[0] > 0.0 && strand.width[0].is_finite());
+                }
+            }
             Geometry::Mesh(mesh) => check(&scene.meshes[mesh.index()]),
             other => panic!("unexpected {other:?}"),
         }

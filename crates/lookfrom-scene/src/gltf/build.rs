@@ -11,7 +11,7 @@ use super::contents::contents;
 use super::file::Document;
 use super::json::{Instancing, Primitive, Whole};
 use super::light;
-use super::material::{Look, Looks};
+use super::material::{Brought, Colors, Look, Looks};
 use super::mesh;
 use super::morph::morph;
 use super::node::{Tree, placed};
@@ -252,10 +252,10 @@ impl Builder<'_, '_, '_> {
         skin: Option<&Skin>,
         name: &str,
         pointer: &str,
-    ) -> Result<Option<Piece>> {
+    ) -> Result<Vec<Piece>> {
         let document = self.document;
         let Some(mut vertices) = mesh::vertices(document, primitive, pointer, self.context)? else {
-            return Ok(None);
+            return Ok(Vec::new());
         };
         if !primitive.targets.is_empty() {
             morph(document, &primitive.targets, weights, pointer, &mut vertices)?;
@@ -265,18 +265,22 @@ impl Builder<'_, '_, '_> {
             let is_bent = skin.bend(document, primitive, pointer, &mut vertices)?;
             world_from_skinned = is_bent.then_some(skin.world_from_skinned);
         }
+        let is_surface = mesh::is_surface(primitive);
         let brought = vertices.brought();
         let (material, asked) = self.material(primitive, pointer);
-        let look = self.looks.look(material, &asked, brought, self.context, self.scene)?;
-        vertices.grain = look.grain;
-        let geometry =
-            mesh::geometry(document, primitive, vertices, name, pointer, self.context, self.scene)?;
-        Ok(geometry.map(|geometry| Piece {
-            pointer: document.at(pointer),
-            geometry,
-            look,
-            world_from_skinned,
-        }))
+        if is_surface {
+            vertices.grain = self.looks.look(material, &asked, brought, self.context, self.scene)?.grain;
+        }
+        let mut pieces = Vec::new();
+        for (color, geometry) in
+            mesh::geometry(document, primitive, vertices, name, pointer, self.context, self.scene)?
+        {
+            let colors = color.map_or(Colors::None, |color| Colors::One(color.map(f32::to_bits)));
+            let brought = if is_surface { brought } else { Brought { colors, opacities: false } };
+            let look = self.looks.look(material, &asked, brought, self.context, self.scene)?;
+            pieces.push(Piece { pointer: document.at(pointer), geometry, look, world_from_skinned });
+        }
+        Ok(pieces)
     }
 
     /// The material of a primitive in the selected variant, and the JSON pointer of its reference.

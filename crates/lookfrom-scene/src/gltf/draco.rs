@@ -107,7 +107,7 @@ pub(crate) fn decode(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Dec
     let mut stream = DecoderBuffer::new(bytes).with_limits(most);
     MeshDecoder::new().decode(&mut stream, &mut mesh).map_err(|error| match error.kind() {
         Kind::LimitExceeded => Error::new(ErrorKind::Limit, at, format!("the mesh is too large: {error}"))
-            .hint("divide the model, or raise `Limits::elements`"),
+            .hint("split the model into several files"),
         _ => Error::syntax(at, format!("the Draco stream cannot be decoded: {error}"))
             .hint("the file is damaged or was written wrongly: export it again, or without compression"),
     })?;

@@ -140,7 +140,7 @@ impl Document {
                 self.limits.elements
             );
             return Err(Error::new(ErrorKind::Limit, &self.at(asked), message)
-                .hint("divide the model, or raise `Limits::elements`"));
+                .hint("split the model into several files"));
         }
         Ok(())
     }

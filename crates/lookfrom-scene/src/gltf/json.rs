@@ -629,12 +629,18 @@ pub(super) fn parse(text: &str) -> Result<Root, Wrong> {
     serde_json::from_str(text).map_err(|error| {
         let mut deserializer = serde_json::Deserializer::from_str(text);
         let path = serde_path_to_error::deserialize::<_, Root>(&mut deserializer).err();
-        let pointer = path.filter(|_| error.is_data()).map(|error| pointer(error.path()));
+        // An array that is too long is a syntax error for serde_json: the array should have ended.
+        let is_too_long = !error.is_data() && serde_json::from_str::<serde::de::IgnoredAny>(text).is_ok();
+        let pointer = path.filter(|_| error.is_data() || is_too_long).map(|error| pointer(error.path()));
         let message = error.to_string();
         // The message ends with line and column, which are reported separately.
         let message = message.split(" at line ").next().unwrap_or_default();
         Wrong {
-            message: in_words_of_json(message),
+            message: if is_too_long {
+                "the array has too many values".to_owned()
+            } else {
+                in_words_of_json(message)
+            },
             pointer,
             line: u32::try_from(error.line()).unwrap_or(0),
             column: u32::try_from(error.column()).unwrap_or(0),

@@ -35,8 +35,19 @@ pub(super) struct Look {
 /// The vertex attributes of a primitive that its material can use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Brought {
-    pub(super) colors: bool,
+    pub(super) colors: Colors,
     pub(super) opacities: bool,
+}
+
+/// The colours that a primitive brings.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Colors {
+    #[default]
+    None,
+    /// Those of its vertices.
+    OfVertices,
+    /// One for all of it, as bits.
+    One([u32; 3]),
 }
 
 /// The materials converted so far.
@@ -101,13 +112,17 @@ struct Reader<'r, 'd, 'f> {
 impl Reader<'_, '_, '_> {
     fn look(&mut self, entry: &json::Material, brought: Brought) -> Result<Look> {
         let (base_color, base_alpha) = self.base(entry)?;
-        let base_color = match brought.colors {
-            true => {
+        let own = match brought.colors {
+            Colors::None => None,
+            Colors::OfVertices => {
                 let own = TextureKind::VertexColor { tint: [1.0; 3] };
-                let own = Color::Texture(self.textures.push(own, &self.pointer, self.scene));
-                self.textures.product(base_color, own, &self.pointer, self.scene)
+                Some(Color::Texture(self.textures.push(own, &self.pointer, self.scene)))
             }
-            false => base_color,
+            Colors::One(bits) => Some(Color::Value(bits.map(f32::from_bits))),
+        };
+        let base_color = match own {
+            Some(own) => self.textures.product(base_color, own, &self.pointer, self.scene),
+            None => base_color,
         };
         let kind = match (&entry.extensions.unlit, &entry.extensions.specular_glossiness) {
             (Some(_), _) => MaterialKind::Unlit { color: base_color },

@@ -6,20 +6,17 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use super::file::Document;
 use super::json::{Primitive, Whole};
-use super::material::Brought;
+use super::material::{Brought, Colors};
 use super::tangents;
 use crate::error::Result;
 use crate::files::LoadContext;
-use crate::model::points::radius as point_radius;
 use crate::model::polygon::has_area;
-use crate::scene::{Bounds, MeshId, Scene};
-use crate::shape::{Geometry, Mesh, Profile, Sphere, Strand};
+use crate::model::{lines, points};
+use crate::scene::{MeshId, Scene};
+use crate::shape::{Geometry, Mesh};
 use crate::warning::Warning;
 
 use self::topology::Topology;
-
-/// The radius of lines, relative to that of the primitive's bounding sphere.
-const THINNESS: f64 = 0.004;
 
 /// The attributes of a primitive's vertices as in the file, except for v, which runs up.
 #[derive(Clone, Debug, Default)]
@@ -47,10 +44,39 @@ pub(crate) struct Vertices {
 impl Vertices {
     /// The vertex attributes that its material can use.
     pub(super) fn brought(&self) -> Brought {
-        Brought {
-            colors: !self.colors.is_empty(),
-            opacities: self.opacities.iter().any(|&opacity| opacity != 1.0),
+        let colors = if self.colors.is_empty() { Colors::None } else { Colors::OfVertices };
+        Brought { colors, opacities: self.opacities.iter().any(|&opacity| opacity != 1.0) }
+    }
+
+    /// The mean colour of some vertices, where they have colours.
+    fn color<const N: usize>(&self, corners: [u32; N]) -> Option<[f32; 3]> {
+        let colors = corners.iter().map(|&corner| self.colors.get(corner as usize).copied().map(Vec3::from));
+        Some((colors.sum::<Option<Vec3>>()? / N as f32).to_array())
+    }
+
+    /// Keeps only the vertices of these triangles, in their order: primitives often share long accessors of which each
+    /// uses a part.
+    fn keep_used(&mut self, triangles: &mut [[u32; 3]]) {
+        fn keep<T: Copy>(values: &mut Vec<T>, used: &[u32]) {
+            if !values.is_empty() {
+                *values = used.iter().map(|&vertex| values[vertex as usize]).collect();
+            }
         }
+        let mut place_of = vec![u32::MAX; self.positions.len()];
+        triangles.iter().flatten().for_each(|&vertex| place_of[vertex as usize] = 0);
+        let used: Vec<u32> =
+            (0..).zip(&place_of).filter(|(_, place)| **place == 0).map(|(vertex, _)| vertex).collect();
+        if used.len() == self.positions.len() {
+            return;
+        }
+        (0..).zip(&used).for_each(|(place, &vertex)| place_of[vertex as usize] = place);
+        triangles.iter_mut().flatten().for_each(|vertex| *vertex = place_of[*vertex as usize]);
+        keep(&mut self.positions, &used);
+        keep(&mut self.normals, &used);
+        keep(&mut self.tangents, &used);
+        self.uvs.iter_mut().for_each(|uvs| keep(uvs, &used));
+        keep(&mut self.colors, &used);
+        keep(&mut self.opacities, &used);
     }
 
     /// Appends a copy of a vertex, without its tangent, and returns its index.
@@ -86,11 +112,11 @@ pub(crate) fn vertices(
         context.warn(&at, "the primitive has no POSITION and is left out");
         return Ok(None);
     };
-    let positions: Vec<Vec3> = points(document.vectors(positions, &place("POSITION"))?);
+    let positions: Vec<Vec3> = vectors(document.vectors(positions, &place("POSITION"))?);
     let count = positions.len();
     let mut vertices = Vertices { positions, ..Vertices::default() };
     if let Some(index) = find("NORMAL") {
-        vertices.normals = points(document.vectors(index, &place("NORMAL"))?);
+        vertices.normals = vectors(document.vectors(index, &place("NORMAL"))?);
         check_count(document, vertices.normals.len(), count, &place("NORMAL"))?;
         vertices
             .normals
@@ -136,8 +162,8 @@ pub(crate) fn vertices(
     Ok(Some(vertices))
 }
 
-fn points(vectors: Vec<[f32; 3]>) -> Vec<Vec3> {
-    vectors.into_iter().map(Vec3::from_array).collect()
+fn vectors(values: Vec<[f32; 3]>) -> Vec<Vec3> {
+    values.into_iter().map(Vec3::from_array).collect()
 }
 
 fn check_count(document: &Document, found: usize, expected: usize, pointer: &str) -> Result<()> {
@@ -176,8 +202,8 @@ fn colors(
     check_count(document, vertices.colors.len(), count, pointer)
 }
 
-/// The geometry of a primitive: triangles as a mesh of the scene, points as spheres, lines as curves. Elements with
-/// invalid positions are left out with a warning; `None` if nothing is left.
+/// The geometry of a primitive: triangles as a mesh of the scene, points as spheres, lines as curves; coloured points and lines
+/// in groups, with the colour of each. Elements with invalid positions are left out with a warning.
 ///
 /// # Errors
 /// If an index is out of range, or the mode is not known.
@@ -189,7 +215,7 @@ pub(crate) fn geometry(
     pointer: &str,
     context: &mut LoadContext<'_>,
     scene: &mut Scene,
-) -> Result<Option<Geometry>> {
+) -> Result<Vec<(Option<[f32; 3]>, Geometry)>> {
     let mode = primitive.mode.unwrap_or(Whole(4));
     let Some(topology) = Topology::of(mode) else {
         return Err(document
@@ -219,30 +245,32 @@ pub(crate) fn geometry(
         Topology::Points => {
             let mut used: Vec<u32> = (0..order.len()).map(|i| order.vertex(i)).collect();
             used.retain(|&vertex| usable(&[vertex]));
-            let centers = used.iter().map(|&vertex| vertices.positions[vertex as usize].as_dvec3());
-            let radius = point_radius(centers.clone().collect());
-            let spheres: Vec<Sphere> = centers.map(|center| Sphere { center, radius }).collect();
-            (!spheres.is_empty()).then(|| Geometry::Spheres(spheres.into()))
+            let centers: Vec<DVec3> =
+                used.iter().map(|&vertex| vertices.positions[vertex as usize].as_dvec3()).collect();
+            let colors: Vec<[f32; 3]> = used.iter().filter_map(|&vertex| vertices.color([vertex])).collect();
+            if centers.is_empty() { Vec::new() } else { points::spheres(&centers, &colors) }
         }
         Topology::Lines | Topology::LineLoop | Topology::LineStrip => {
-            let mut lines = topology::lines(topology, &order);
-            lines.retain(|line| usable(line));
-            let ends = lines.iter().flatten().map(|&vertex| vertices.positions[vertex as usize].as_dvec3());
-            let width = (2.0 * radius(ends)) as f32;
-            let lines = lines.iter().map(|line| line.map(|vertex| vertices.positions[vertex as usize]));
-            let strands: Vec<Strand> =
-                lines.filter(|[a, b]| a != b).map(|line| strand(line, width)).collect();
-            (!strands.is_empty()).then(|| Geometry::Curves(strands.into()))
+            let mut ends = topology::lines(topology, &order);
+            let segment = |line: &[u32; 2]| line.map(|vertex| vertices.positions[vertex as usize]);
+            ends.retain(|line| usable(line) && segment(line)[0] != segment(line)[1]);
+            let colors: Vec<[f32; 3]> = ends.iter().filter_map(|line| vertices.color(*line)).collect();
+            let segments: Vec<[Vec3; 2]> = ends.iter().map(segment).collect();
+            if segments.is_empty() { Vec::new() } else { lines::wires(&segments, &colors) }
         }
         Topology::Triangles | Topology::TriangleStrip | Topology::TriangleFan => {
             let mut triangles = topology::triangles(topology, &order);
             let corners = |triangle: &[u32; 3]| triangle.map(|vertex| vertices.positions[vertex as usize]);
             // Strips are joined by triangles without area, which no ray hits.
             triangles.retain(|triangle| usable(triangle) && has_area(corners(triangle)));
+            vertices.keep_used(&mut triangles);
             if let Some(set) = vertices.grain {
                 tangents::complete(&mut vertices, &mut triangles, set);
             }
-            (!triangles.is_empty()).then(|| Geometry::Mesh(push_mesh(scene, name, vertices, triangles)))
+            match triangles.is_empty() {
+                true => Vec::new(),
+                false => vec![(None, Geometry::Mesh(push_mesh(scene, name, vertices, triangles)))],
+            }
         }
     };
     if left_out > 0 {
@@ -255,6 +283,11 @@ pub(crate) fn geometry(
         context.warnings.push(Warning::new(&at, what).of(left_out as u64, noun));
     }
     Ok(geometry)
+}
+
+/// Whether the mode of a primitive is one of triangles.
+pub(super) fn is_surface(primitive: &Primitive) -> bool {
+    primitive.mode.is_none_or(|mode| mode.0 >= 4)
 }
 
 /// The order in which vertices are used.
@@ -290,23 +323,6 @@ fn push_mesh(scene: &mut Scene, name: &str, vertices: Vertices, triangles: Vec<[
         tangents,
     });
     MeshId(scene.meshes.len() as u32 - 1)
-}
-
-/// The radius of lines, for a primitive with these positions.
-fn radius(places: impl Iterator<Item = DVec3>) -> f64 {
-    let bounds = places.fold(Bounds::EMPTY, Bounds::with);
-    let size = if bounds.radius() > 0.0 { bounds.radius() } else { bounds.center().abs().max_element() };
-    let radius = THINNESS * size;
-    if radius.is_normal() && (radius as f32).is_normal() { radius } else { THINNESS }
-}
-
-/// A straight curve segment.
-fn strand([a, b]: [Vec3; 2], width: f32) -> Strand {
-    Strand {
-        points: [a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b],
-        width: [width; 2],
-        profile: Profile::Cylinder,
-    }
 }
 
 /// A mesh with its positions transformed by a singular matrix, such as one that flattens it; without normals and tangents,

@@ -110,9 +110,7 @@ pub(crate) fn decode(bytes: &[u8], layout: &Layout, at: &Location, limits: &Limi
     }
     if count > limits.elements {
         let found = format!("{count} elements are more than the limit of {}", limits.elements);
-        return Err(
-            Error::new(ErrorKind::Limit, at, found).hint("divide the model, or raise `Limits::elements`")
-        );
+        return Err(Error::new(ErrorKind::Limit, at, found).hint("split the model into several files"));
     }
     let too_many = || Error::new(ErrorKind::Limit, at, "more elements than this machine can address");
     let count = usize::try_from(count).map_err(|_| too_many())?;

@@ -143,7 +143,10 @@ impl<'d> Textures<'d> {
         if b == Color::gray(1.0) {
             return a;
         }
-        Color::Texture(self.push(TextureKind::Product { a, b }, pointer, scene))
+        match (a, b) {
+            (Color::Value(a), Color::Value(b)) => Color::Value(std::array::from_fn(|i| a[i] * b[i])),
+            _ => Color::Texture(self.push(TextureKind::Product { a, b }, pointer, scene)),
+        }
     }
 
     /// Adds a texture.

@@ -95,7 +95,7 @@ fn decode_channels(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Chann
             at,
             format!("{channels} channels of {total} values in all are too many"),
         )
-        .hint("leave channels out, or raise `Limits::texels`"));
+        .hint("make the picture smaller, or leave channels out"));
     }
 
     let picture = exr_read()

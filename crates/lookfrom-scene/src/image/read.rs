@@ -133,7 +133,7 @@ pub(super) fn check_size(width: u64, height: u64, at: &Location, limits: &Limits
             at,
             format!("{width}×{height} texels are more than the limit of {}", limits.texels),
         )
-        .hint("make the picture smaller, or raise `Limits::texels`"));
+        .hint("make the picture smaller"));
     }
     Ok(())
 }
@@ -222,8 +222,7 @@ fn wrong(error: &ImageError, bytes: &[u8], at: &Location, limits: &Limits) -> Er
                 }
                 _ => error.to_string(),
             };
-            Error::new(ErrorKind::Limit, at, message)
-                .hint("make the picture smaller, or raise `Limits::texels`")
+            Error::new(ErrorKind::Limit, at, message).hint("make the picture smaller")
         }
         _ => Error::syntax(at, format!("not a complete picture: {error}")).hint(whole),
     }

@@ -38,24 +38,41 @@ pub(crate) fn cloud(
     if finite.is_empty() {
         return Vec::new();
     }
-    let radius = radius(finite.iter().map(|&(point, _)| point).collect());
-    let part = |points: &mut dyn Iterator<Item = DVec3>, material| Part {
-        material,
-        ..Part::new(None, Geometry::Spheres(points.map(|center| Sphere { center, radius }).collect()))
+    let centers: Vec<DVec3> = finite.iter().map(|&(point, _)| point).collect();
+    let color_of = |&(_, index): &(DVec3, usize)| colors.get(index).copied().unwrap_or([1.0; 3]);
+    let colors: Vec<[f32; 3]> =
+        if colors.is_empty() { Vec::new() } else { finite.iter().map(color_of).collect() };
+    let part = |(color, geometry): (Option<[f32; 3]>, Geometry)| {
+        let material = color.map(|color| {
+            let whitted = Whitted { diffuse: Color::Value(color), ..Whitted::default() };
+            push_material(scene, "points", file, whitted)
+        });
+        Part { material, ..Part::new(None, geometry) }
     };
-    if colors.is_empty() {
-        return vec![part(&mut finite.iter().map(|&(point, _)| point), None)];
+    spheres(&centers, &colors).into_iter().map(part).collect()
+}
+
+/// Spheres around finite points, at least one; a group for each colour where there is one for each point.
+pub(crate) fn spheres(centers: &[DVec3], colors: &[[f32; 3]]) -> Vec<(Option<[f32; 3]>, Geometry)> {
+    let radius = radius(centers.to_vec());
+    if colors.len() != centers.len() {
+        let spheres = centers.iter().map(|&center| Sphere { center, radius }).collect();
+        return vec![(None, Geometry::Spheres(spheres))];
     }
-    let color_of = |order: usize| colors.get(finite[order].1).copied().unwrap_or([1.0; 3]);
-    let parts = boxes((0..finite.len()).collect(), &color_of).into_iter().map(|mut members| {
+    let spheres =
+        |members: Vec<usize>| members.iter().map(|&i| Sphere { center: centers[i], radius }).collect();
+    let groups = by_color(colors).into_iter();
+    groups.map(|(color, members)| (Some(color), Geometry::Spheres(spheres(members)))).collect()
+}
+
+/// Groups of points or lines of similar colours: the mean colour of each, and its members in their order.
+pub(super) fn by_color(colors: &[[f32; 3]]) -> Vec<([f32; 3], Vec<usize>)> {
+    let grouped = boxes((0..colors.len()).collect(), &|i| colors[i]).into_iter().map(|mut members| {
         members.sort_unstable();
-        let sum = members.iter().fold(Vec3::ZERO, |sum, &i| sum + Vec3::from(color_of(i)));
-        let mean = sum / members.len() as f32;
-        let whitted = Whitted { diffuse: Color::Value(mean.to_array()), ..Whitted::default() };
-        let material = push_material(scene, "points", file, whitted);
-        part(&mut members.iter().map(|&i| finite[i].0), Some(material))
+        let sum = members.iter().fold(Vec3::ZERO, |sum, &i| sum + Vec3::from(colors[i]));
+        ((sum / members.len() as f32).to_array(), members)
     });
-    parts.collect()
+    grouped.collect()
 }
 
 /// Splits points by colour. The box that is widest, as the eye sees it, is split at its middle colour again and again.

@@ -21,11 +21,18 @@ pub(super) struct Meshes {
     pub(super) libraries: Vec<(Location, Vec<u8>)>,
 }
 
-/// The faces of one material.
+/// The faces or the lines of one material.
 pub(super) struct Piece {
     pub(super) material: Option<Vec<u8>>,
     pub(super) object: Option<String>,
-    pub(super) mesh: Mesh,
+    pub(super) form: Form,
+}
+
+/// What a piece consists of.
+pub(super) enum Form {
+    Mesh(Mesh),
+    /// The ends of lines, and the colour of each, where vertices have colours.
+    Lines(Vec<[Vec3; 2]>, Vec<[f32; 3]>),
 }
 
 /// Counts of elements that could not be used.
@@ -34,6 +41,7 @@ struct Tallies {
     not_finite: Tally,
     flat: Tally,
     values: Tally,
+    lines: Tally,
 }
 
 /// Builds the meshes; groups without triangles are left out.
@@ -47,13 +55,19 @@ pub(super) fn meshes(
     make_values_finite(&mut statements, &mut tallies.values);
     smooth(&mut statements, &mut triangulator);
     let mut pieces = Vec::new();
-    for mut group in std::mem::take(&mut statements.groups) {
+    for group in std::mem::take(&mut statements.groups) {
+        let piece = |form| Piece { material: group.material.clone(), object: group.object.clone(), form };
         let mut mesh = mesh(&group, &statements, &mut triangulator, &mut tallies);
         if !mesh.triangles.is_empty() {
             mesh.name = file.file.to_string();
-            pieces.push(Piece { material: group.material.take(), object: group.object.take(), mesh });
+            pieces.push(piece(Form::Mesh(mesh)));
+        }
+        let (ends, colors) = lines(&group, &statements, &mut tallies.lines);
+        if !ends.is_empty() {
+            pieces.push(piece(Form::Lines(ends, colors)));
         }
     }
+    tallies.lines.warn("line", "left out: a coordinate is infinite or not a number", file, context);
     tallies.not_finite.warn("face", "left out: a coordinate is infinite or not a number", file, context);
     tallies.flat.notice("triangle", "left out: without area", file, context);
     tallies.values.warn("normal or texture coordinate", "ignored: infinite or not a number", file, context);
@@ -196,6 +210,24 @@ fn mesh(
         mesh.colors = keys.iter().map(|key| value(&statements.colors, key[0], [1.0; 3])).collect();
     }
     mesh
+}
+
+/// The lines of a group, and their colours.
+fn lines(group: &Group, statements: &Statements, dropped: &mut Tally) -> (Vec<[Vec3; 2]>, Vec<[f32; 3]>) {
+    let (mut ends, mut colors) = (Vec::new(), Vec::new());
+    for line in &group.lines {
+        let [a, b] = line.map(|position| statements.positions[position as usize]);
+        if !a.is_finite() || !b.is_finite() {
+            dropped.add(0);
+        } else if a != b {
+            ends.push([a, b]);
+            if !statements.colors.is_empty() {
+                let color = |position| Vec3::from(value(&statements.colors, position, [1.0; 3]));
+                colors.push(color(line[0]).midpoint(color(line[1])).to_array());
+            }
+        }
+    }
+    (ends, colors)
 }
 
 fn value<T: Copy>(values: &[T], index: u32, otherwise: T) -> T {

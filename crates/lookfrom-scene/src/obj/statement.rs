@@ -43,6 +43,8 @@ pub(super) struct Group {
     pub(super) faces: Vec<Face>,
     /// The corners of all faces, one face after the other.
     pub(super) corners: Vec<Corner>,
+    /// The positions of the ends of lines.
+    pub(super) lines: Vec<[u32; 2]>,
 }
 
 /// All statements of a file that are supported.
@@ -160,7 +162,8 @@ impl Parser<'_> {
                     self.statements.libraries.push((at, name.to_vec()));
                 }
             }
-            b"p" | b"l" => self.loose.add(self.scanner.line()),
+            b"l" => self.polyline()?,
+            b"p" => self.loose.add(self.scanner.line()),
             b"curv" | b"curv2" | b"surf" => self.curves.add(self.scanner.line()),
             b"call" | b"csh" => self.calls.add(self.scanner.line()),
             // Attributes of curves and surfaces, and display attributes.
@@ -240,6 +243,23 @@ impl Parser<'_> {
         if group.corners.len() > self.elements { Err(self.too_many("corners of faces")) } else { Ok(()) }
     }
 
+    /// `l v v …` or `l v/vt v/vt …`: a line through these positions.
+    fn polyline(&mut self) -> Result<()> {
+        let mut previous = None;
+        loop {
+            let word = self.scanner.word();
+            if word.is_empty() || word[0] == b'#' {
+                break;
+            }
+            let end = self.corner(word)?.position;
+            let lines = &mut self.statements.groups[self.group].lines;
+            lines.extend(previous.map(|previous| [previous, end]));
+            previous = Some(end);
+        }
+        let lines = self.statements.groups[self.group].lines.len();
+        if lines > self.elements { Err(self.too_many("lines")) } else { Ok(()) }
+    }
+
     /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     fn corner(&mut self, word: &[u8]) -> Result<Corner> {
         let counts =
@@ -303,7 +323,7 @@ impl Parser<'_> {
     fn too_many(&self, what: &str) -> Error {
         let message = format!("more than {} {what}", self.elements);
         Error::new(ErrorKind::Limit, &self.file.at(self.scanner.line(), 0), message)
-            .hint("raise `Limits::elements`, or split the model")
+            .hint("split the model into several files")
     }
 
     fn use_material(&mut self, name: Option<&[u8]>) {
@@ -345,8 +365,8 @@ impl Parser<'_> {
 
     fn warn(&self, context: &mut LoadContext<'_>) {
         let file = self.file;
-        if self.statements.groups.iter().any(|group| !group.faces.is_empty()) {
-            self.loose.warn("point or line element", "left out: only faces are drawn", file, context);
+        if self.statements.groups.iter().any(|group| !group.faces.is_empty() || !group.lines.is_empty()) {
+            self.loose.warn("point element", "left out: only faces and lines are drawn", file, context);
         }
         self.thin.notice("face", "left out: fewer than three corners", file, context);
         let kinds = [(1, "texture coordinates (vt)"), (2, "normals (vn)")];

@@ -69,7 +69,7 @@ impl Reader<'_, '_> {
         if self.open.len() as u64 > u64::from(limit) {
             let error =
                 place.error(ErrorKind::Limit, format!("includes nest deeper than the limit of {limit}"));
-            return Err(error.hint("include the files from fewer levels, or raise `Limits::import_depth`"));
+            return Err(error.hint("include the files from fewer levels"));
         }
         self.included += 1;
         if self.included > MOST_INCLUDED {

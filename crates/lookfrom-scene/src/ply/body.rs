@@ -44,6 +44,11 @@ pub(super) struct Face {
     pub(super) line: u32,
 }
 
+/// The first property of the colours of Gaussian splats: coefficients of the constant spherical harmonic.
+pub(super) const SPLAT_COLOR: &str = "f_dc_0";
+/// That harmonic, ½ / √π.
+const CONSTANT_HARMONIC: f64 = 0.282_094_791_773_878_1;
+
 /// Names of vertex properties, in the order of the values in `read_vertices`.
 const VERTEX: [&[&str]; 11] = [
     &["x"],
@@ -54,9 +59,9 @@ const VERTEX: [&[&str]; 11] = [
     &["nz", "normal_z"],
     &["s", "u", "texture_u", "texture_s", "s0", "u0"],
     &["t", "v", "texture_v", "texture_t", "t0", "v0"],
-    &["red", "r", "diffuse_red"],
-    &["green", "g", "diffuse_green"],
-    &["blue", "b", "diffuse_blue"],
+    &["red", "r", "diffuse_red", SPLAT_COLOR],
+    &["green", "g", "diffuse_green", "f_dc_1"],
+    &["blue", "b", "diffuse_blue", "f_dc_2"],
 ];
 
 /// Parses the values after the header.
@@ -80,7 +85,9 @@ pub(super) fn read(bytes: &[u8], header: &Header, file: &Location, limits: &Limi
                 element.count,
                 shown(element.name.as_bytes())
             );
-            return Err(Error::new(ErrorKind::Limit, &element.at, message).hint("raise `Limits::elements`"));
+            return Err(
+                Error::new(ErrorKind::Limit, &element.at, message).hint("split the model into several files")
+            );
         }
         match element.name.as_str() {
             "vertex" => read_vertices(element, &mut reader, &mut content)?,
@@ -123,7 +130,13 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
             slots[column] = slot;
         }
     }
-    let decode = color_decoder(columns[8].map(|column| element.properties[column].kind));
+    let red = columns[8].map(|column| &element.properties[column]);
+    let decode_plain = color_decoder(red.map(|red| red.kind));
+    let is_splat = red.is_some_and(|red| red.name == SPLAT_COLOR);
+    let decode = |value: f64| match is_splat && value.is_finite() {
+        true => linear_from_srgb((0.5 + CONSTANT_HARMONIC * value).clamp(0.0, 1.0) as f32),
+        false => decode_plain(value),
+    };
     for _ in 0..count {
         // One slot more than there are names, for properties that are skipped.
         let mut row = [0.0_f64; VERTEX.len() + 1];
@@ -234,7 +247,7 @@ fn read_faces(
                 &element.at,
                 "more corners of faces than the limit allows",
             )
-            .hint("raise `Limits::elements`"));
+            .hint("split the model into several files"));
         }
     }
     Ok(())

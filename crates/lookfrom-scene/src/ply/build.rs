@@ -4,8 +4,8 @@ use std::path::Path;
 
 use glam::{Vec2, Vec3};
 
-use super::body::Content;
-use super::header::Header;
+use super::body::{Content, SPLAT_COLOR};
+use super::header::{Element, Header};
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
 use crate::material::Whitted;
@@ -43,6 +43,14 @@ pub(super) fn parts(
         return Ok(Vec::new());
     }
     if content.faces.is_empty() {
+        let is_splat = |element: &Element| element.find(&[SPLAT_COLOR]).is_some();
+        if header.elements.iter().any(is_splat) {
+            context.warn(
+                &file,
+                "this is a cloud of 3D Gaussian splats (Kerbl et al. 2023): they are shown as points of one size, \
+                 without their opacities and shapes",
+            );
+        }
         return Ok(points::cloud(&content.positions, &content.colors, &file, context, scene));
     }
     make_values_finite(&mut content, &file, context);

@@ -46,7 +46,7 @@ pub fn read_spd(path: &Path, context: &mut LoadContext<'_>) -> Result<Curve> {
             };
             if wavelengths.len() as u64 >= context.limits.elements {
                 let message = format!("more than the limit of {} entries", context.limits.elements);
-                return Err(Error::new(ErrorKind::Limit, &at(), message).hint("raise `Limits::elements`"));
+                return Err(Error::new(ErrorKind::Limit, &at(), message).hint("use fewer"));
             }
             wavelengths.push(wavelength);
             values.push(number);

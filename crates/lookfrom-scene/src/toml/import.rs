@@ -40,7 +40,7 @@ impl Reader<'_, '_> {
                 chain(&self.open)
             );
             return Err(Error { kind: ErrorKind::Limit, ..value.error(message) }
-                .hint("import the files from fewer levels, or raise `Limits::import_depth`"));
+                .hint("import the files from fewer levels"));
         }
         // A file that several others import is merged once.
         if self.done.contains(&tidy(&path)) {

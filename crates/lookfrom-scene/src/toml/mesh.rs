@@ -104,5 +104,5 @@ fn for_vertices<'a, T>(
 /// The error that there are more elements than the limit.
 pub(super) fn too_many(table: &Table<'_>, count: u64, limit: u64) -> Error {
     let message = format!("{count} elements are more than the limit of {limit}");
-    Error { kind: ErrorKind::Limit, ..table.error(message) }.hint("use fewer, or raise `Limits::elements`")
+    Error { kind: ErrorKind::Limit, ..table.error(message) }.hint("use fewer")
 }

@@ -155,7 +155,7 @@ fn inline(value: Value<'_>, limit: u64) -> Result<Curve> {
     let count = items.len() as u64;
     if count > limit {
         let error = value.error(format!("{count} entries are more than the limit of {limit}"));
-        return Err(Error { kind: ErrorKind::Limit, ..error }.hint("use fewer, or raise `Limits::elements`"));
+        return Err(Error { kind: ErrorKind::Limit, ..error }.hint("use fewer"));
     }
     if count < 2 {
         return Err(value.wrong(expected));
