@@ -288,6 +288,7 @@ fn another_development_renders_nothing_anew() {
 fn the_scene_from_an_observer_has_depths_and_a_matrix() {
     let served = Served::new("space", SCENE);
     let mut page = served.open();
+    page.text("scene");
     let camera = json!({ "lookfrom": [0, 0, 4], "lookat": [0, 0, 0], "up": [0, 1, 0], "fov": 60 });
     page.say(&json!({ "type": "space", "id": 9, "camera": camera, "size": [33, 33] }));
     let frame = page.frame("space");

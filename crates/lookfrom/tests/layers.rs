@@ -21,7 +21,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("points", &["lanes", "vector"]),
     ("warp", &["elementary", "vector"]),
     ("color", &["math", "spectrum"]),
-    ("bsdf", &["elementary", "hash", "lanes", "math", "optics", "spectrum", "vector", "warp"]),
+    ("bsdf", &["elementary", "hash", "lanes", "math", "optics", "sampler", "spectrum", "vector", "warp"]),
     ("film", &["hash", "lanes", "spectrum"]),
     ("denoise", &["film", "parallel"]),
     ("develop", &["film"]),

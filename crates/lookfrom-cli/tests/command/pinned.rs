@@ -10,13 +10,14 @@ use lookfrom::render::SAMPLING_VERSION;
 
 use super::stage::Stage;
 
-const SCENES: [&str; 6] = [
+const SCENES: [&str; 7] = [
     "whitted1980.toml",
     "glass-and-mirror.toml",
     "cornell.toml",
     "materials.toml",
     "many-lights.toml",
     "models/star.ply",
+    "../docs/guide/scenes/gltf/clearcoat.gltf",
 ];
 
 const SETTINGS: [(&str, &str); 5] = [

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use lookfrom_scene::Result;
+use lookfrom_scene::image::compare::CHANNELS_ATTRIBUTE;
 use lookfrom_scene::image::{
     Metadata, Pixels, encode_exr, encode_hdr, encode_jpeg, encode_pfm, encode_png_of, encode_ppm, encode_webp,
 };
@@ -130,7 +131,7 @@ pub(super) fn encode(
 fn metadata(header: &[(String, String)], development: &Development) -> Metadata {
     let mut lines: Vec<String> = header
         .iter()
-        .filter(|(name, _)| !["software", "exposure", "tonemap"].contains(&name.as_str()))
+        .filter(|(name, _)| !["software", "exposure", "tonemap", CHANNELS_ATTRIBUTE].contains(&name.as_str()))
         .map(|(name, text)| format!("{name}: {text}"))
         .collect();
     lines.push(format!("exposure: {}", development.exposure));
