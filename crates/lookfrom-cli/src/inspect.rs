@@ -119,7 +119,7 @@ fn follow(arguments: &InspectArguments, typed: &[String]) -> Result<(), Failure>
     answer.print(&inspection, || inspection.excerpt(Selection { ray, bounce, part }).to_string())
 }
 
-/// What a report is printed with.
+/// The context of a printed report.
 struct Answer<'a> {
     arguments: &'a InspectArguments,
     typed: &'a [String],

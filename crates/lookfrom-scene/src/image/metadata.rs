@@ -1,10 +1,9 @@
-//! What picture files tell of themselves beside their pixels: how they were made (Exif 2.32), and that their colours are sRGB (an
-//! ICC profile).
+//! Metadata of picture files: the software and its settings (Exif 2.32), and sRGB as the colour space (an ICC profile).
 
 use ::image::{ImageEncoder, ImageError, ImageResult};
 use moxcms::ColorProfile;
 
-/// What is told of a picture.
+/// The metadata of a picture.
 #[derive(Clone, Debug)]
 pub struct Metadata {
     exif: Vec<u8>,

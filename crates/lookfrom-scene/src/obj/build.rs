@@ -28,7 +28,7 @@ pub(super) struct Piece {
     pub(super) form: Form,
 }
 
-/// What a piece consists of.
+/// The elements of a piece.
 pub(super) enum Form {
     Mesh(Mesh),
     /// The ends of lines, and the colour of each, where vertices have colours.

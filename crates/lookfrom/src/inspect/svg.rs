@@ -28,7 +28,7 @@ const GAP: f64 = 12.0;
 /// Height of the line above the panels.
 const HEADER: f64 = 30.0;
 
-/// What a drawing shows.
+/// The views of a drawing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SvgView {
     /// All views.
@@ -40,7 +40,7 @@ pub enum SvgView {
     Top,
     /// From behind the camera.
     Front,
-    /// What the camera sees.
+    /// The scene as the camera sees it.
     Camera,
 }
 

@@ -96,25 +96,24 @@ pub(super) fn encode(
     let developed = || srgb8_before(picture, background, exposure, tonemap);
     let linear = || picture.clone().before(background).pixels;
     let size = [width, height];
-    let metadata = metadata(header, development);
-    let metadata = Some(&metadata);
+    let metadata = || metadata(header, development);
     match format {
         Format::Png if is_transparent => {
-            encode_png_of(size, Pixels::Rgba8(&srgba8(picture, exposure, tonemap)), metadata)
+            encode_png_of(size, Pixels::Rgba8(&srgba8(picture, exposure, tonemap)), Some(&metadata()))
         }
-        Format::Png => encode_png_of(size, Pixels::Rgb8(&developed()), metadata),
+        Format::Png => encode_png_of(size, Pixels::Rgb8(&developed()), Some(&metadata())),
         Format::Png16 if is_transparent => {
-            encode_png_of(size, Pixels::Rgba16(&srgba16(picture, exposure, tonemap)), metadata)
+            encode_png_of(size, Pixels::Rgba16(&srgba16(picture, exposure, tonemap)), Some(&metadata()))
         }
         Format::Png16 => {
             let developed = srgb16_before(picture, background, exposure, tonemap);
-            encode_png_of(size, Pixels::Rgb16(&developed), metadata)
+            encode_png_of(size, Pixels::Rgb16(&developed), Some(&metadata()))
         }
-        Format::Jpeg(quality) => encode_jpeg(size, &developed(), quality, metadata),
+        Format::Jpeg(quality) => encode_jpeg(size, &developed(), quality, Some(&metadata())),
         Format::WebP if is_transparent => {
-            encode_webp(size, Pixels::Rgba8(&srgba8(picture, exposure, tonemap)), metadata)
+            encode_webp(size, Pixels::Rgba8(&srgba8(picture, exposure, tonemap)), Some(&metadata()))
         }
-        Format::WebP => encode_webp(size, Pixels::Rgb8(&developed()), metadata),
+        Format::WebP => encode_webp(size, Pixels::Rgb8(&developed()), Some(&metadata())),
         Format::Ppm => encode_ppm(width, height, &developed()),
         Format::Hdr => encode_hdr(width, height, &linear()),
         Format::Pfm => encode_pfm(width, height, &linear()),
@@ -127,7 +126,7 @@ pub(super) fn encode(
     }
 }
 
-/// What a file for display tells of itself: the texts of an EXR's header, and its development.
+/// The metadata of a picture for display: the texts of an EXR's header, and its development.
 fn metadata(header: &[(String, String)], development: &Development) -> Metadata {
     let mut lines: Vec<String> = header
         .iter()

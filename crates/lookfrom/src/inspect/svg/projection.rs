@@ -9,7 +9,7 @@ use crate::view::camera::Camera;
 /// A view of the world: x to the right, y up, z away from the viewer.
 pub(super) struct Projection {
     view_from_world: DMat4,
-    /// Where the rays of sight meet; `None` where they are parallel. Points are divided by their z then.
+    /// Whether points are divided by their z; otherwise the projection is parallel.
     is_perspective: bool,
     /// The least z that is drawn.
     near: f64,

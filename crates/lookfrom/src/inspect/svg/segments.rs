@@ -69,7 +69,7 @@ pub(super) struct Segment {
     pub(super) kind: Kind,
     pub(super) ends: [DVec3; 2],
     pub(super) title: String,
-    /// What is at its end: a shape, or the light of a shadow ray.
+    /// The name of the shape at its end, or of the light of a shadow ray.
     pub(super) name: Option<String>,
 }
 

@@ -35,7 +35,7 @@ pub struct MicrofacetFactors {
     pub g: Option<f32>,
     /// F: the Fresnel reflectance of the facets; where the boundary is a mix, that of its parts by their weights.
     pub fresnel: Spectrum,
-    /// What the facets do with light of this way: F where they reflect it, else 1 − F, tinted by the body.
+    /// The share of light that the facets send this way: F where they reflect it, else 1 − F, tinted by the body.
     pub part: Spectrum,
     /// The index of refraction on the side of `wi` over the one on the side of `wo`, where light is refracted; else 1.
     pub eta: f32,
@@ -44,6 +44,30 @@ pub struct MicrofacetFactors {
 }
 
 impl MicrofacetFactors {
+    /// Those of a boundary of its own, by facets with the normal `wm`, or of a smooth one: with D, G and cosines, and with a
+    /// reflectance of 0.
+    fn of_boundary(
+        boundary: &'static str,
+        roughness: TrowbridgeReitz,
+        is_smooth: bool,
+        [wo, wi, wm]: [Vec3; 3],
+    ) -> Self {
+        Self {
+            boundary,
+            refracts: false,
+            roughness,
+            wm,
+            cos: [wo.z.abs(), wi.z.abs()],
+            cos_m: [wo.dot(wm), wi.dot(wm)],
+            d: (!is_smooth).then(|| roughness.d(wm.into())),
+            g: (!is_smooth).then(|| roughness.g(wo.into(), wi.into())),
+            fresnel: Spectrum::BLACK,
+            part: Spectrum::BLACK,
+            eta: 1.0,
+            weight: 1.0,
+        }
+    }
+
     /// Its part of the BSDF, by their formula: `weight · part · D G / (4 |cos_o cos_i|)` for reflection, and
     /// `weight · part · D G |cos_om cos_im| / (|cos_o cos_i| (cos_im + cos_om / η)² η²)` for refraction. Where the boundary
     /// is smooth, the factor of a delta function: `weight · part / (|cos_i| η²)`.
@@ -97,22 +121,9 @@ impl Conductor {
             return None;
         }
         let wm = if is_smooth { Vec3::Z } else { try_half_vector(wo, wi)? };
-        let cos_m = [wo.dot(wm), wi.dot(wm)];
-        let fresnel = fresnel::conductor(cos_m[0].abs(), self.eta, self.k);
-        Some(MicrofacetFactors {
-            boundary: "conductor",
-            refracts: false,
-            roughness: self.roughness,
-            wm,
-            cos: [wo.z.abs(), wi.z.abs()],
-            cos_m,
-            d: (!is_smooth).then(|| self.roughness.d(wm.into())),
-            g: (!is_smooth).then(|| self.roughness.g(wo.into(), wi.into())),
-            fresnel,
-            part: fresnel,
-            eta: 1.0,
-            weight: 1.0,
-        })
+        let plain = MicrofacetFactors::of_boundary("conductor", self.roughness, is_smooth, [wo, wi, wm]);
+        let fresnel = fresnel::conductor(plain.cos_m[0].abs(), self.eta, self.k);
+        Some(MicrofacetFactors { fresnel, part: fresnel, ..plain })
     }
 }
 
@@ -135,21 +146,14 @@ impl Dielectric {
             let (facet, is_usable) = self.facet(wo.into(), wi.into());
             is_usable.then(|| facet.wm.into())?
         };
-        let cos_m = [wo.dot(wm), wi.dot(wm)];
-        let f = fresnel::dielectric(cos_m[0], self.eta);
+        let plain = MicrofacetFactors::of_boundary(boundary, self.roughness, is_smooth, [wo, wi, wm]);
+        let f = fresnel::dielectric(plain.cos_m[0], self.eta);
         Some(MicrofacetFactors {
-            boundary,
             refracts: !reflects,
-            roughness: self.roughness,
-            wm,
-            cos: [wo.z.abs(), wi.z.abs()],
-            cos_m,
-            d: (!is_smooth).then(|| self.roughness.d(wm.into())),
-            g: (!is_smooth).then(|| self.roughness.g(wo.into(), wi.into())),
             fresnel: Spectrum([f; 4]),
             part: Spectrum([if reflects { f } else { 1.0 - f }; 4]),
             eta: if reflects { 1.0 } else { fresnel::relative_eta(wo.z, self.eta) },
-            weight: 1.0,
+            ..plain
         })
     }
 }

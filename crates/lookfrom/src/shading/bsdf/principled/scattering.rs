@@ -297,7 +297,7 @@ impl<R: Real> LocalScattering<R> {
 }
 
 impl LocalScattering {
-    /// What depends on ω_o alone.
+    /// The part that depends on ω_o alone.
     pub(super) fn view(&self) -> &View<f32> {
         &self.view
     }
