@@ -3,7 +3,7 @@
 use super::Packet;
 use crate::collector::PacketCollector;
 use crate::common_origin::CommonOriginBlock;
-use crate::conservative::TriangleLanes;
+use crate::conservative::{TriangleBlock, TriangleLanes};
 use crate::exact::ExactRay;
 use crate::packet_bounds::PacketBounds;
 use crate::ray::{Hit, NONE};
@@ -191,27 +191,54 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
     /// Intersects the deferred sure hits of a group exactly.
     #[inline(always)]
     pub(super) fn intersect_sure(&mut self, simd: S, index: usize, deferred: mask32x8<S>) {
-        let deferred = LaneMask(deferred.to_bitmask() as u32 & 0xff);
-        if deferred == LaneMask(0) {
+        let deferred = deferred.to_bitmask() as u32 & 0xff;
+        if deferred == 0 {
             return;
         }
+        let (group, bvh) = (&self.groups[index], self.bvh());
+        let first = deferred.trailing_zeros() as usize;
+        let (number, of) = (group.block[first], group.lane[first]);
+        let same = group.block.simd_eq(number) & group.lane.simd_eq(of);
+        if deferred & !(same.to_bitmask() as u32) == 0 {
+            // One triangle for all: its corners are loaded once.
+            let (block, of) = (&bvh.triangles[number as usize], of as usize);
+            let column = |corner, axis| f32x8::splat(simd, block.coordinate(corner, axis, of));
+            let corner = |corner: usize| [column(corner, 0), column(corner, 1), column(corner, 2)];
+            let corners = [corner(0), corner(1), corner(2)];
+            return self.intersect_corners(index, deferred, corners, [(block, of); LANES]);
+        }
         // The other lanes have any triangle.
-        let group = &self.groups[index];
-        let bvh = self.bvh();
-        let block = |lane: usize| &bvh.triangles[group.block[lane].max(0) as usize];
-        let blocks = [0, 1, 2, 3, 4, 5, 6, 7].map(block);
         let of: [i32; LANES] = group.lane.into();
+        let at = |lane: usize| (&bvh.triangles[group.block[lane].max(0) as usize], of[lane] as usize);
+        let triangles = [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)];
         let column = |corner: usize, axis: usize| {
-            let at = |lane: usize| blocks[lane].coordinate(corner, axis, of[lane] as usize);
+            let at = |lane: usize| {
+                let (block, of): (&TriangleBlock, usize) = triangles[lane];
+                block.coordinate(corner, axis, of)
+            };
             f32x8::load_array(simd, [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
         };
         let corner = |corner: usize| [column(corner, 0), column(corner, 1), column(corner, 2)];
-        let Ray8 { origin, direction, .. } = *group;
-        let [t, u, v] = triangle::intersect_sure_lanes(origin, direction, [corner(0), corner(1), corner(2)]);
+        let corners = [corner(0), corner(1), corner(2)];
+        self.intersect_corners(index, deferred, corners, triangles);
+    }
+
+    /// Intersects some rays of a group exactly with a triangle each, given by its corners, and by its block and lane.
+    #[inline(always)]
+    fn intersect_corners(
+        &mut self,
+        index: usize,
+        rays: u32,
+        corners: [[f32x8<S>; 3]; 3],
+        triangles: [(&TriangleBlock, usize); LANES],
+    ) {
+        let Ray8 { origin, direction, .. } = self.groups[index];
+        let [t, u, v] = triangle::intersect_sure_lanes(origin, direction, corners);
         let [t, u, v]: [[f32; LANES]; 3] = [t.into(), u.into(), v.into()];
-        for lane in deferred {
+        for lane in LaneMask(rays) {
             let place = index * LANES + lane;
-            let (geometry, primitive) = blocks[lane].ids(of[lane] as usize);
+            let (block, of) = triangles[lane];
+            let (geometry, primitive) = block.ids(of);
             let hit = Hit { t: t[lane], u: u[lane], v: v[lane], primitive, geometry, instance: NONE };
             if hit.t < self.rays[place].t_max && hit.precedes(&self.hits[place]) {
                 self.hits[place] = hit;
