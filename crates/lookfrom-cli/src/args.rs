@@ -19,7 +19,8 @@ use clap_complete::Shell;
 use glam::DVec3;
 use lookfrom::session::Fireflies;
 use lookfrom_scene::settings::{
-    ColorMode, Filter, Integrator, Layers, LightSampler, PixelBounds, Sampler, Sensor, Tonemap,
+    ColorMode, Filter, Integrator, Layers, LightPathLayer, LightSampler, PixelBounds, Sampler, Sensor,
+    Tonemap,
 };
 
 use crate::values;
@@ -339,6 +340,13 @@ pub(crate) struct Overrides {
     /// AOVs of an EXR besides the picture: geometry is albedo, normals, position, depth, uv and variance
     #[arg(long, value_name = "NAME", value_parser = values::word(values::LAYERS))]
     pub(crate) layers: Option<Layers>,
+
+    /// A layer of an EXR with the light that came on certain ways: a name and a light-path expression; may be repeated
+    ///
+    /// "direct=C<RD>[LB]" is light that came from lights to diffuse surfaces and from there to the camera. The notation is that
+    /// of Open Shading Language; docs/guide/path-tracing.md explains it.
+    #[arg(long, value_name = "NAME=EXPRESSION", value_parser = values::light_path)]
+    pub(crate) light_path: Vec<LightPathLayer>,
 
     /// Denoise the picture (alone: on) [default: the scene's setting; on for models]
     ///

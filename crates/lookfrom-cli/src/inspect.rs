@@ -145,7 +145,7 @@ impl Answer<'_> {
                 samples: session.settings().samples,
             },
             inputs,
-            lights: inspect::lights(session.renderer().world()),
+            lights: inspect::lights(session.renderer().world()).collect(),
             report,
         }))
     }

@@ -22,6 +22,7 @@ impl Overrides {
             color: self.color,
             light_sampler: self.light_sampler,
             layers: self.layers,
+            light_paths: self.light_path.clone(),
             denoise: self.denoise,
             depth: self.depth,
             min_contribution: self.min_contribution,

@@ -7,8 +7,9 @@ use std::time::Duration;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
+use lookfrom_scene::Location;
 use lookfrom_scene::image::linear_from_srgb;
-use lookfrom_scene::settings::{Background, Filter, Layers, PixelBounds};
+use lookfrom_scene::settings::{Background, Filter, Layers, LightPathLayer, PixelBounds};
 
 use lookfrom::session::{Fireflies, MOST_SAMPLES};
 
@@ -159,6 +160,15 @@ pub(crate) fn field_of_view(typed: &str) -> Result<f64, String> {
         Ok(degrees) if degrees > 0.0 && degrees < 180.0 => Ok(degrees),
         _ => Err("expected degrees between 0 and 180, both excluded".to_owned()),
     }
+}
+
+/// A layer of a light-path expression.
+pub(crate) fn light_path(typed: &str) -> Result<LightPathLayer, String> {
+    let Some((name, expression)) = typed.split_once('=') else {
+        return Err("expected NAME=EXPRESSION, as in direct=C<RD>[LB]".to_owned());
+    };
+    let at = Location { file: format!("--light-path {name}").into(), ..Location::default() };
+    Ok(LightPathLayer { name: name.to_owned(), expression: expression.to_owned(), at })
 }
 
 /// `NAME` or `NAME:RADIUS`.

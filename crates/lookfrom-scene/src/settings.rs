@@ -1,7 +1,7 @@
 //! Settings of the image and of the integrator, with their defaults.
 
+use crate::error::Location;
 use crate::image::srgb_from_linear;
-
 use crate::spectrum::CameraSensor;
 
 /// Resolution, filter, sensor and tone mapping of the image.
@@ -23,6 +23,8 @@ pub struct ImageSettings {
     pub sensor: Sensor,
     /// The AOVs written to an EXR in addition to the image.
     pub layers: Layers,
+    /// Further layers of an EXR: parts of the light, by light-path expressions.
+    pub light_paths: Vec<LightPathLayer>,
     /// The background of the image where the camera sees no surface.
     pub background: Background,
     /// Whether the image is denoised.
@@ -117,6 +119,17 @@ pub enum Layers {
     Geometry,
 }
 
+/// A layer with the light that came on certain ways.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LightPathLayer {
+    /// Its name: that of its channels, before `.R`, `.G` and `.B`.
+    pub name: String,
+    /// The light-path expression, in the notation of Open Shading Language.
+    pub expression: String,
+    /// Where it is written.
+    pub at: Location,
+}
+
 impl Default for ImageSettings {
     fn default() -> Self {
         Self {
@@ -128,6 +141,7 @@ impl Default for ImageSettings {
             tonemap: Tonemap::default(),
             sensor: Sensor::default(),
             layers: Layers::None,
+            light_paths: Vec::new(),
             background: Background::default(),
             denoise: false,
         }

@@ -206,7 +206,7 @@ pub(crate) struct AnimationAnswer {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct LightAnswer {
     pub(crate) name: &'static str,
-    /// `None` for lights that are not at one point.
+    /// Of an area light the centre of its bounds; `None` for lights that are nowhere.
     pub(crate) position: Option<[f64; 3]>,
 }
 

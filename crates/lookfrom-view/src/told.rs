@@ -1,6 +1,6 @@
 //! What a page is told of a scene.
 
-use lookfrom::light::Light;
+use lookfrom::inspect::{self, LightPlace};
 use lookfrom::world::World;
 use lookfrom_scene::camera::{Camera, Look, Projection, View};
 use lookfrom_scene::settings::{Integrator, Tonemap};
@@ -88,17 +88,6 @@ fn camera(camera: &Camera, middle: glam::DVec3) -> CameraAnswer {
 }
 
 fn lights(world: &World) -> Vec<LightAnswer> {
-    let told = |light: &Light| {
-        let (name, position) = match light {
-            Light::Point { position, .. } => ("point", Some(*position)),
-            Light::Spot { position, .. } => ("spot", Some(*position)),
-            Light::Projection(light) => ("projection", Some(light.position)),
-            Light::Goniometric(light) => ("goniometric", Some(light.position)),
-            Light::Distant { .. } => ("distant", None),
-            Light::Area(_) => ("area", None),
-            _ => ("environment", None),
-        };
-        LightAnswer { name, position: position.map(|position| (position + world.origin()).into()) }
-    };
-    world.lights().iter().take(MOST_LIGHTS).map(told).collect()
+    let told = |LightPlace { kind, position, .. }: LightPlace| LightAnswer { name: kind, position };
+    inspect::lights(world).take(MOST_LIGHTS).map(told).collect()
 }

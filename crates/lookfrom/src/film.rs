@@ -12,6 +12,7 @@ pub mod aov;
 mod channels;
 mod fireflies;
 mod ledger;
+mod light_paths;
 mod noise;
 mod pixel;
 mod stored;
@@ -257,6 +258,15 @@ impl Film {
     /// `None` where the film has no memory for them, where no sample hit anything, and outside of [`Film::area`].
     pub fn aovs(&self, x: u32, y: u32) -> Option<Aovs> {
         self.tile.layers.get(self.tile.index(x, y)?)?.mean()
+    }
+
+    /// The mean light of a pixel in each layer of light-path expressions; black outside of [`Film::area`].
+    pub fn light_paths(&self, x: u32, y: u32) -> impl Iterator<Item = [f32; 3]> {
+        let (index, samples) = (self.tile.index(x, y), self.samples(x, y));
+        self.tile
+            .light_paths
+            .iter()
+            .map(move |layer| index.map_or([0.0; 3], |index| layer[index].mean(samples)))
     }
 
     /// Whether the film has AOVs.

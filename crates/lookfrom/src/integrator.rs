@@ -9,6 +9,7 @@ mod background;
 mod direct;
 mod event;
 mod first_hit;
+mod light_paths;
 mod occlusion;
 mod path;
 mod raycast;
@@ -24,6 +25,7 @@ use crate::core::hash;
 use crate::core::sampler::PixelSampler;
 use crate::core::spectrum::Spectrum;
 use crate::light::LightSampleContext;
+use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::SpectralMode;
@@ -32,6 +34,8 @@ use crate::world::World;
 pub use background::Alpha;
 pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
 pub use first_hit::FirstHit;
+use light_paths::LastScattering;
+pub use light_paths::{LightPathState, LightPaths};
 pub use occlusion::AmbientOcclusion;
 pub use path::{LightSampling, PathTracer, PreviousVertex};
 pub use raycast::Raycast;
@@ -99,6 +103,8 @@ pub struct Path {
     pub interior: InteriorStack,
     /// The surface that the ray left.
     pub previous: PreviousVertex,
+    /// Where it is in the light-path expressions of the picture.
+    pub light_path: LightPathState,
 }
 
 impl Path {
@@ -111,9 +117,12 @@ impl Path {
     }
 
     /// Whether the path passes the surface as if it were not there: by the alpha test, decided by `u ∈ [0, 1)` where it
-    /// is stochastic, or, on its way from the camera, because it hit the back of a single-sided surface.
+    /// is stochastic, because it hit the back of a single-sided surface on its way from the camera, or, elsewhere, an open
+    /// front of one.
     fn goes_through(&self, world: &World, surface: &SurfaceInteraction, u: f32) -> bool {
         let is_back = surface.single_sided && !surface.front && !self.previous.blurred;
+        let is_open = world.is_open_front(surface) && self.previous.blurred;
+        let u = if is_open { u / World::COVERAGE_OF_OPEN_FRONTS } else { u };
         is_back || !world.passes_alpha_test(surface, u)
     }
 
@@ -180,6 +189,10 @@ pub struct Queues {
     pub paths: Vec<Path>,
     /// Shadow rays, to be traced before them.
     pub shadows: Vec<Shadow>,
+    /// Light by light-path expressions: for each slot as many layers as there are expressions.
+    pub layers: Vec<Spectrum>,
+    /// How surfaces scatter the light of shadow rays ([`Shadow::last_scattering`]), if there are such expressions.
+    last_scatterings: Vec<LastScattering>,
     /// The rays of `shadows`, their origin primitives, their hits, and whether they are blocked: memory that is reused.
     rays: Vec<Ray>,
     origin_primitives: Vec<OriginPrimitive>,
@@ -198,6 +211,14 @@ impl Queues {
         self.alpha.resize(count, Alpha::Opaque);
         self.paths.clear();
         self.shadows.clear();
+        self.layers.clear();
+        self.last_scatterings.clear();
+    }
+
+    /// The layers of a slot.
+    fn layers_of(&mut self, slot: u32, light_paths: &LightPaths) -> &mut [Spectrum] {
+        let first = slot as usize * light_paths.count();
+        &mut self.layers[first..first + light_paths.count()]
     }
 }
 
@@ -208,6 +229,8 @@ pub struct StepOutput<'a, P: Probe> {
     pub queues: Queues,
     /// The background that camera rays see where they hit nothing.
     pub background: Background,
+    /// The light-path expressions of layers, if there are any. Then steps are not computed side by side.
+    pub light_paths: Option<&'a LightPaths>,
     /// The listener.
     pub probe: &'a mut P,
 }
@@ -238,6 +261,40 @@ impl<P: Probe> StepOutput<'_, P> {
     /// Adds light to a path's sample.
     pub fn add(&mut self, path: &Path, term: Term, value: Spectrum) {
         self.add_to(path.slot, path.address, term, value);
+        if let Some(light_paths) = self.light_paths {
+            light_paths.add(path.light_path, term, value, self.queues.layers_of(path.slot, light_paths));
+        }
+    }
+
+    /// Adds the light of a shadow ray to its sample.
+    fn add_unoccluded(&mut self, shadow: &Shadow) {
+        let &Shadow { slot, address, term, contribution, last_scattering, .. } = shadow;
+        self.add_to(slot, address, term, contribution);
+        if let Some(light_paths) = self.light_paths
+            && let Some(last) = self.queues.last_scatterings.get(last_scattering as usize).copied()
+        {
+            let layers = self.queues.layers_of(slot, light_paths);
+            light_paths.add_sampled(&last, term, contribution, layers);
+        }
+    }
+
+    /// The state of a path that a surface scatters by one lobe.
+    fn scattered(&self, path: &Path, lobe: Lobes) -> LightPathState {
+        self.light_paths.map_or_else(LightPathState::default, |paths| paths.scattered(path.light_path, lobe))
+    }
+
+    /// Notes how a surface scatters the light of a light, for the layers of light-path expressions: to which side, and with
+    /// which share of diffuse lobes. Returns its number for the shadow ray.
+    fn last_scattering(
+        &mut self,
+        path: &Path,
+        is_transmission: bool,
+        diffuse: impl FnOnce() -> Spectrum,
+    ) -> u32 {
+        let Some(light_paths) = self.light_paths else { return Shadow::NO_SCATTERING };
+        let last = light_paths.last_scattering(path.light_path, is_transmission, diffuse());
+        self.queues.last_scatterings.push(last);
+        self.queues.last_scatterings.len() as u32 - 1
     }
 
     pub(crate) fn add_to(&mut self, slot: u32, address: u64, term: Term, value: Spectrum) {

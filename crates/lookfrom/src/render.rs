@@ -17,7 +17,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_scene::settings::{
-    Background, ColorMode, ImageSettings, PixelBounds, RenderSettings, Sensor as SensorSettings,
+    Background, ColorMode, ImageSettings, LightPathLayer, PixelBounds, RenderSettings,
+    Sensor as SensorSettings,
 };
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 
@@ -29,7 +30,8 @@ use crate::core::spectrum::Spectrum;
 pub use crate::film::SampleId;
 use crate::film::{FilmTile, SampleSums};
 use crate::integrator::{
-    Alpha, Event, Integrator, Path, PreviousVertex, Probe, Queues, SampleStream, StepOutput, resolve_shadows,
+    Alpha, Event, Integrator, LightPathState, LightPaths, Path, PreviousVertex, Probe, Queues, SampleStream,
+    StepOutput, resolve_shadows,
 };
 use crate::shading::texture::SpectralMode;
 use crate::view::View;
@@ -65,6 +67,8 @@ pub struct Renderer {
     sensor: Sensor,
     /// Whether the sensor leaves light in RGB as it is.
     keeps_rgb: bool,
+    /// The light-path expressions of the picture's layers, if there are any.
+    light_paths: Option<Arc<LightPaths>>,
 }
 
 /// Numbers of rays traced.
@@ -152,6 +156,7 @@ impl Renderer {
             keeps_rgb: image.sensor == SensorSettings::default(),
             integrator: transport::of_settings(&settings, &view.camera, eye),
             is_plugged_in: false,
+            light_paths: light_paths(&world, &image.light_paths)?.map(Arc::new),
             world,
             view,
             settings,
@@ -175,6 +180,11 @@ impl Renderer {
     /// Warns of a camera that sees nothing of the scene, or is inside a body.
     pub(crate) fn check_view(&self, subject: &Subject, warnings: &mut Vec<Warning>) {
         camera_warnings::check(self, subject, warnings);
+    }
+
+    /// Whether the picture would be the background alone only because the camera sees the backs of single-sided surfaces.
+    pub(crate) fn sees_only_backs(&self) -> bool {
+        camera_warnings::sees_only_backs(self)
     }
 
     /// The same with a custom integrator in place of the one in the settings.
@@ -263,12 +273,20 @@ impl Renderer {
     ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
         let Batch { start, queues, paths, rays, origin_primitives, hits, first_hits, .. } = batch;
-        let mut output =
-            StepOutput { queues: std::mem::take(queues), background: self.image().background, probe };
+        let light_paths = self.light_paths.as_deref();
+        let light_path = light_paths.map_or_else(LightPathState::default, LightPaths::start);
+        let mut output = StepOutput {
+            queues: std::mem::take(queues),
+            background: self.image().background,
+            light_paths,
+            probe,
+        };
 
         // Start: a ray from the camera for each sample.
         self.start(ids, start);
         output.queues.start(ids.len(), |slot| start.lanes(slot));
+        let layers = ids.len() * light_paths.map_or(0, LightPaths::count);
+        output.queues.layers.resize(layers, Spectrum::BLACK);
         let interior = self.world.space_of(self.view.medium);
         let Queues { paths: started, lanes, .. } = &mut output.queues;
         started.extend(start.rays.iter().zip(&*lanes).enumerate().map(|(slot, (ray, lanes))| Path {
@@ -279,6 +297,7 @@ impl Renderer {
             address: Path::ROOT,
             interior,
             previous: PreviousVertex::default(),
+            light_path,
         }));
 
         while !output.queues.paths.is_empty() {
@@ -317,6 +336,25 @@ impl Renderer {
         samples.map(|(((&radiance, lanes), &alpha), &weight)| {
             let (rgb, alpha) = self.with_alpha(radiance, weight, lanes, alpha);
             Traced { rgb, radiance, lanes: *lanes, weight, alpha }
+        })
+    }
+
+    /// The colours of a sample's layers, by light-path expressions, as the film of its light has them: weighted, and with the
+    /// sample's limit of brightness. Nothing of a sample that shows the view's own background.
+    fn light_by_paths<'a>(
+        &'a self,
+        batch: &'a Batch,
+        slot: usize,
+        traced: &'a Traced,
+    ) -> impl Iterator<Item = [f32; 3]> + 'a {
+        let Queues { layers, alpha, .. } = &batch.queues;
+        let count = self.light_paths.as_ref().map_or(0, |light_paths| light_paths.count());
+        let is_seen = alpha[slot] == Alpha::Opaque || self.image().background == Background::Environment;
+        let whole = self.measured(traced.radiance * traced.weight, &traced.lanes);
+        let limit = self.limit(whole);
+        layers[slot * count..][..count].iter().map(move |light| match is_seen {
+            true => self.measured(*light * traced.weight, &traced.lanes).map(|c| c * limit),
+            false => [0.0; 3],
         })
     }
 
@@ -360,13 +398,19 @@ impl Renderer {
     /// A colour scaled so that no channel of the sensor exceeds its limit (pbrt's `maxcomponentvalue`). The channels
     /// are those before the conversion to RGB, where single wavelengths are far outside of the gamut.
     fn limited(&self, rgb: [f32; 3]) -> [f32; 3] {
+        let limit = self.limit(rgb);
+        if limit < 1.0 { rgb.map(|c| c * limit) } else { rgb }
+    }
+
+    /// The factor of that scaling.
+    fn limit(&self, rgb: [f32; 3]) -> f32 {
         let most = self.image().sensor.max_component;
         if most == f32::INFINITY {
-            return rgb;
+            return 1.0;
         }
         // Negative values, from a filter's negative lobes, are limited as well.
         let brightest = self.sensor.channels(rgb).into_iter().fold(0.0, |most, c| c.abs().max(most));
-        if brightest > most { rgb.map(|c| c * (most / brightest)) } else { rgb }
+        if brightest > most { most / brightest } else { 1.0 }
     }
 
     /// Adds the given samples of every pixel of a tile to the tile, and records them in its ledger.
@@ -399,9 +443,13 @@ impl Renderer {
                 batch.light = light;
                 continue;
             }
-            for (id, traced) in ids.iter().zip(self.traced(batch)) {
+            for (slot, (id, traced)) in ids.iter().zip(self.traced(batch)).enumerate() {
                 let [x, y] = id.pixel;
                 tile.add_with_alpha(x, y, id.sample, traced.rgb, traced.alpha * traced.weight);
+                if tile.has_light_paths() {
+                    let layers = self.light_by_paths(batch, slot, &traced);
+                    tile.add_light_paths(x, y, traced.rgb, layers);
+                }
                 if tile.has_channels() {
                     tile.add_channels(x, y, self.sensor.channels(traced.rgb));
                 }
@@ -411,6 +459,16 @@ impl Renderer {
         batch.ids = ids;
         Ok(rays)
     }
+}
+
+/// The light-path expressions of layers, for the lights of a world.
+fn light_paths(world: &World, layers: &[LightPathLayer]) -> Result<Option<LightPaths>> {
+    if layers.is_empty() {
+        return Ok(None);
+    }
+    let is_environment = |index: usize| world.environments.contains(&(index as u32));
+    let lights = world.names.lights.iter().enumerate();
+    LightPaths::new(layers, lights.map(|(index, name)| (name.as_str(), is_environment(index)))).map(Some)
 }
 
 /// The wavelengths of a sample, chosen by its random numbers.

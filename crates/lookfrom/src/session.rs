@@ -60,6 +60,10 @@ pub use provenance::Provenance;
 pub use running::Running;
 use source::Source;
 
+/// The warning of a camera that would otherwise see nothing.
+const BOTH_SIDES: &str = "the camera sees only the backs of single-sided surfaces, which would not be shown: they are shown \
+                          from both sides";
+
 /// A scene that is ready to be rendered, and to be rendered again with another camera or other settings.
 ///
 /// Owns its data; a clone shares the world.
@@ -202,20 +206,26 @@ impl Session {
         let Prepared { added, turntable } = prepare::prepare(&mut scene, path, options, &mut warnings)?;
         if options.format.is_some_and(|format| !format.has_layers()) {
             scene.image.layers = Layers::None;
+            scene.image.light_paths.clear();
         }
         let range = options.range(scene.render.samples)?;
         scene.render.samples = range.end;
         let camera = scene.camera.clone().unwrap_or_default();
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
         let subject = Subject::of_scene(&scene);
-        let world = Arc::new(World::compile(scene, &mut warnings).map_err(in_file(path))?);
+        let mut world = Arc::new(World::compile(scene, &mut warnings).map_err(in_file(path))?);
+        let mut renderer = Renderer::new(world.clone(), view, settings).map_err(in_file(path))?;
+        if renderer.sees_only_backs() {
+            world = Arc::new(world.with_both_sides());
+            renderer = renderer.with_world(world.clone(), renderer.view().clone()).map_err(in_file(path))?;
+            warnings.push(Warning::new(&Location::file(path), BOTH_SIDES));
+        }
         let turntable = turntable.map(|turntable| Turning {
             turntable,
             camera: camera.clone(),
             world: world.clone(),
             degrees: 0.0,
         });
-        let renderer = Renderer::new(world, view, settings).map_err(in_file(path))?;
         let mut session = Self {
             name: path.display().to_string(),
             renderer,

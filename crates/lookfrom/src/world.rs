@@ -11,6 +11,7 @@ mod lights;
 mod place;
 mod precision;
 mod reflectance;
+mod sides;
 
 pub use class::Class;
 
@@ -79,8 +80,10 @@ pub struct World {
     pub(crate) environments: Vec<u32>,
     /// Whether any material transmits light.
     pub(crate) transmissive: bool,
-    /// Whether rays may pass any surface as if it were not there: alpha, medium interfaces.
+    /// Whether rays may pass any surface as if it were not there: alpha, medium interfaces, open fronts.
     pub(crate) has_gaps: bool,
+    /// Whether single-sided surfaces mostly face inward: then their fronts are open to light ([`World::is_open_front`]).
+    pub(crate) has_open_fronts: bool,
     /// Unoccluded irradiance of the shadow catcher ([`MaterialKind::ShadowCatcher`]) from lights infinitely far away,
     /// in linear Rec. 709; `None` where there is no shadow catcher.
     pub(crate) catcher_irradiance: Option<[f32; 3]>,
@@ -214,14 +217,16 @@ impl World {
     }
 
     /// The alpha test: whether the surface exists where a ray hit it. Stochastic for alpha between 0 and 1, by `u ∈ [0,
-    /// 1)`.
+    /// 1)`; none passes it for `u ≥ 1`.
     pub fn passes_alpha_test(&self, surface: &SurfaceInteraction, u: f32) -> bool {
-        surface.alpha.is_none_or(|alpha| u < self.textures.float(alpha, &self.texture_point(surface)))
+        u < surface.alpha.map_or(1.0, |alpha| self.textures.float(alpha, &self.texture_point(surface)))
     }
 
     /// Whether evaluating a surface needs random numbers: for its alpha, or for its material.
     pub fn is_stochastic(&self, surface: &SurfaceInteraction) -> bool {
-        self.materials[surface.material as usize].is_stochastic() || surface.alpha.is_some()
+        self.materials[surface.material as usize].is_stochastic()
+            || surface.alpha.is_some()
+            || self.is_open_front(surface)
     }
 
     /// Whether a surface is only an interface between media.

@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use lookfrom::film::Film;
 use lookfrom::render::{Progress, StopCriteria, TileDone};
 use lookfrom::session::{FilmFile, Finished, Fireflies, Format, Options, Session};
-use lookfrom_scene::ErrorKind;
-use lookfrom_scene::settings::{Background, ColorMode, Integrator, Layers, PixelBounds};
+use lookfrom_scene::settings::{Background, ColorMode, Integrator, Layers, LightPathLayer, PixelBounds};
+use lookfrom_scene::{ErrorKind, Location};
 
 const SCENE: &[u8] = br#"
 [camera]
@@ -80,6 +80,15 @@ fn merged(parts: &[&[u8]]) -> Vec<u8> {
     out.into_inner()
 }
 
+fn light_paths() -> Vec<LightPathLayer> {
+    let layer = |(name, expression): (&str, &str)| LightPathLayer {
+        name: name.into(),
+        expression: expression.into(),
+        at: Location::default(),
+    };
+    [("diffuse", "CD.*"), ("direct", "C.L")].map(layer).to_vec()
+}
+
 /// Renders that differ in what their films hold.
 fn kinds() -> Vec<(&'static str, Options)> {
     let path = Options { integrator: Some(Integrator::Path), ..Options::default() };
@@ -88,6 +97,7 @@ fn kinds() -> Vec<(&'static str, Options)> {
         ("path", path.clone()),
         ("spectral", Options { color: Some(ColorMode::Spectral), ..path.clone() }),
         ("layers", Options { layers: Some(Layers::Geometry), ..path.clone() }),
+        ("light paths", Options { light_paths: light_paths(), ..path.clone() }),
         ("alpha", Options { background: Some(Background::Transparent), ..path.clone() }),
         (
             "denoised",

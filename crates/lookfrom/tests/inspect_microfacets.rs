@@ -34,6 +34,7 @@ floor = { type = "diffuse", reflectance = 0.7 }
 metal = { type = "conductor", metal = "gold", roughness = 0.4 }
 glass = { type = "dielectric", ior = 1.5, roughness = 0.3 }
 smooth = { type = "dielectric", ior = 1.5 }
+sheet = { type = "thin_dielectric", ior = 1.5 }
 mirror = { type = "conductor", metal = "silver" }
 lacquer = { type = "coated_diffuse", reflectance = [0.5, 0.1, 0.1], roughness = 0.4 }
 car = { type = "principled", base_color = [0.1, 0.3, 0.7], roughness = 0.6, clearcoat = 0.8, clearcoat_roughness = 0.5 }
@@ -85,6 +86,11 @@ material = "smooth"
 center = [-2.2, 0.3, 1]
 radius = 0.3
 material = "mirror"
+
+[[sphere]]
+center = [1.4, 0.3, 1]
+radius = 0.3
+material = "sheet"
 
 [[light]]
 type = "rectangle"
@@ -178,6 +184,14 @@ fn check(report: &MicrofacetReport, ray: &RayReport, wi: Vec3, n: Vec3, what: &s
                 let rest = 1.0 - f64::from(report.fresnel[lane]);
                 near(report.part[lane], if report.refracts { rest } else { 1.0 - rest }, what);
             }
+            // Once reflected, or through, back and through, and so on.
+            "thin dielectric" => {
+                let once = fresnel(cos_om.abs(), 1.5);
+                let whole = once + (1.0 - once) * (1.0 - once) * once / (1.0 - once * once);
+                near(report.fresnel[lane], whole, what);
+                let is_reflected = wo.dot(n) * wi.dot(n) > 0.0;
+                near(report.part[lane], if is_reflected { whole } else { 1.0 - whole }, what);
+            }
             _ if !report.refracts && report.boundary != "specular" => {
                 assert_eq!(report.part[lane], report.fresnel[lane], "{what}");
             }
@@ -200,7 +214,7 @@ fn of_direction(
     for (lane, f) in f.iter().enumerate() {
         let sum: f32 = microfacets.iter().map(|report| report.value[lane]).sum();
         match kind {
-            "conductor" | "dielectric" => near(sum, f64::from(*f), what),
+            "conductor" | "dielectric" | "thin dielectric" => near(sum, f64::from(*f), what),
             // The rest is diffuse, or scattered between layers; walks there are estimates.
             "coated diffuse" => {}
             _ => assert!(sum <= 1.001 * f + 1e-6, "{what}: {sum} is more than {f}"),
@@ -269,6 +283,7 @@ fn microfacets_come_to_the_bsdf() {
         "smooth dielectric reflects",
         "smooth dielectric refracts",
         "smooth conductor reflects",
+        "smooth thin dielectric reflects",
         "coat reflects",
         "specular reflects",
         "clear coat reflects",

@@ -4,8 +4,8 @@ use super::table::Table;
 use super::value::Value;
 use crate::error::{Error, ErrorKind, Result};
 use crate::settings::{
-    ColorMode, Filter, ImageSettings, Integrator, Layers, LightSampler, PixelBounds, RenderSettings, Sampler,
-    Sensor, Tonemap,
+    ColorMode, Filter, ImageSettings, Integrator, Layers, LightPathLayer, LightSampler, PixelBounds,
+    RenderSettings, Sampler, Sensor, Tonemap,
 };
 use crate::spectrum::CameraSensor;
 
@@ -22,6 +22,7 @@ pub(super) const IMAGE: &[&str] = &[
     "white_balance",
     "max_component",
     "layers",
+    "light_paths",
     "denoise",
 ];
 /// The keys of `filter` as a table.
@@ -76,9 +77,20 @@ pub(super) fn image(table: &Table<'_>) -> ImageSettings {
         layers: table.or("layers", default.layers, |value| {
             Ok(if value.boolean()? { Layers::Geometry } else { Layers::None })
         }),
+        light_paths: table.or("light_paths", Vec::new(), light_paths),
         background: default.background,
         denoise: table.or("denoise", default.denoise, Value::boolean),
     }
+}
+
+/// Names of layers, each with its light-path expression.
+fn light_paths(value: Value<'_>) -> Result<Vec<LightPathLayer>> {
+    let layers = value.table("light_paths")?;
+    let layer = |value: Value<'_>| {
+        let expression = value.text("a light-path expression such as \"C<RD>L\"")?.to_owned();
+        Ok(LightPathLayer { name: value.key().to_owned(), expression, at: value.at() })
+    };
+    layers.entries().map(layer).collect()
 }
 
 /// A camera's sensor; `None` for the standard observer.

@@ -106,6 +106,10 @@ macro_rules! for_each_plane {
         { let ($plane, $prefix) = ($($borrow)+ $tile.channels, "film.sensor"); $body }
         { let ($plane, $prefix) = ($($borrow)+ $tile.layers, "film.aov"); $body }
         { let ($plane, $prefix) = ($($borrow)+ $tile.features, "film.feature"); $body }
+        for (index, $plane) in ($($borrow)+ $tile.light_paths).into_iter().enumerate() {
+            let $prefix = &format!("film.light_path.{index}");
+            $body
+        }
     }};
 }
 

@@ -8,6 +8,7 @@ use lookfrom_scene::{Error, Location, Result};
 use super::aov::{AovSums, LayerSums};
 use super::channels::ChannelSums;
 use super::ledger::{Overlap, SampleLedger};
+use super::light_paths::LightPathSums;
 use super::pixel::{Pixel, fixed_point, fixed_point_square};
 use super::{Aovs, BRIGHTEST, FEATURE_SAMPLES, MOST_PIXELS, SampleId, common, too_large, xyz};
 
@@ -22,6 +23,8 @@ pub struct FilmTile {
     pub(super) channels: Vec<ChannelSums>,
     /// One per pixel, or none.
     pub(super) features: Vec<AovSums>,
+    /// For each layer of light-path expressions, one per pixel.
+    pub(super) light_paths: Vec<Vec<LightPathSums>>,
     /// Sums of alpha, in multiples of 2⁻⁶⁴: one per pixel, or none.
     pub(super) alphas: Vec<i128>,
     /// Sums of their squares, in multiples of 2⁻⁴⁸: one per pixel, or none.
@@ -70,6 +73,7 @@ impl FilmTile {
                 (empty(count)?, if image.denoise { empty(count)? } else { Vec::new() })
             }
         };
+        let light_paths = image.light_paths.iter().map(|_| empty(count)).collect::<Result<_>>()?;
         let (dropped, first_dropped, ledger) = (0, None, SampleLedger::default());
         Ok(Self {
             area,
@@ -77,6 +81,7 @@ impl FilmTile {
             layers,
             channels,
             features,
+            light_paths,
             alphas,
             alpha_squares,
             dropped,
@@ -87,7 +92,9 @@ impl FilmTile {
 
     /// An empty tile of other pixels, with sums of the same kinds.
     pub(super) fn empty_like(&self, area: PixelBounds) -> Result<Self> {
-        let Self { area: _, pixels: _, layers, channels, features, alphas, alpha_squares, .. } = self;
+        let Self {
+            area: _, pixels: _, layers, channels, features, light_paths, alphas, alpha_squares, ..
+        } = self;
         let plain = Self::new(area)?;
         let count = plain.pixels.len() as u64;
         let of = |is_empty: bool| if is_empty { 0 } else { count };
@@ -95,6 +102,7 @@ impl FilmTile {
             layers: empty(of(layers.is_empty()))?,
             channels: empty(of(channels.is_empty()))?,
             features: empty(of(features.is_empty()))?,
+            light_paths: light_paths.iter().map(|_| empty(count)).collect::<Result<_>>()?,
             alphas: empty(of(alphas.is_empty()))?,
             alpha_squares: empty(of(alpha_squares.is_empty()))?,
             ..plain
@@ -109,6 +117,23 @@ impl FilmTile {
     /// Whether the first hit of a sample is needed: whether [`FilmTile::add_first_hit`] does anything.
     pub fn wants_first_hit(&self, sample: u32) -> bool {
         self.has_layers() || !self.features.is_empty() && sample < FEATURE_SAMPLES
+    }
+
+    /// Whether the tile has layers of light-path expressions.
+    pub fn has_light_paths(&self) -> bool {
+        !self.light_paths.is_empty()
+    }
+
+    /// Adds the light of one sample to the layers of light-path expressions, in their order, unless the sample is dropped:
+    /// unless its whole light, `rgb`, is not finite.
+    ///
+    /// # Panics
+    /// If the pixel is outside of the tile.
+    pub fn add_light_paths(&mut self, x: u32, y: u32, rgb: [f32; 3], layers: impl Iterator<Item = [f32; 3]>) {
+        let index = self.index_inside(x, y);
+        if rgb.iter().all(|light| light.is_finite()) {
+            self.light_paths.iter_mut().zip(layers).for_each(|(layer, light)| layer[index].add(light));
+        }
     }
 
     /// Whether the sensor's channels are needed: whether [`FilmTile::add_channels`] does anything.
@@ -230,6 +255,9 @@ impl FilmTile {
             merge_row(&mut self.layers, &other.layers, &rows, LayerSums::merge);
             merge_row(&mut self.channels, &other.channels, &rows, ChannelSums::merge);
             merge_row(&mut self.features, &other.features, &rows, AovSums::merge);
+            for (mine, theirs) in self.light_paths.iter_mut().zip(&other.light_paths) {
+                merge_row(mine, theirs, &rows, LightPathSums::merge);
+            }
         }
         self.drop_samples(other.dropped, other.first_dropped);
         Ok(())
@@ -244,7 +272,12 @@ impl FilmTile {
             ("denoiser features", !self.features.is_empty()),
         ];
         let kinds = kinds.iter().filter(|(_, has)| *has).map(|(kind, _)| format!(" and {kind}"));
-        std::iter::once("light".to_owned()).chain(kinds).collect()
+        let light_paths = match self.light_paths.len() {
+            0 => None,
+            1 => Some(" and 1 layer of light paths".to_owned()),
+            count => Some(format!(" and {count} layers of light paths")),
+        };
+        std::iter::once("light".to_owned()).chain(kinds).chain(light_paths).collect()
     }
 
     pub(super) fn drop_samples(&mut self, count: u64, first: Option<SampleId>) {

@@ -24,7 +24,7 @@ pub struct LightPlace {
 }
 
 /// The lights of a world, in the order of their indices.
-pub fn lights(world: &World) -> Vec<LightPlace> {
+pub fn lights(world: &World) -> impl Iterator<Item = LightPlace> {
     let place = |light: &Light| -> (&'static str, Option<DVec3>, Option<[f32; 3]>) {
         match light {
             Light::Point { position, .. } => ("point", Some(*position), None),
@@ -40,19 +40,17 @@ pub fn lights(world: &World) -> Vec<LightPlace> {
         }
     };
     let named = world.lights.iter().zip(&world.names.lights);
-    named
-        .map(|(light, name)| {
-            let (kind, position, toward) = place(light);
-            let in_world = |point: DVec3| (world.origin + point).to_array();
-            let (bounds, area) = match light {
-                Light::Area(light) => {
-                    let EmitterBounds { min, max, .. } = light.emitter_bounds();
-                    (Some([min, max].map(in_world)), Some(light.area()))
-                }
-                _ => (None, None),
-            };
-            let position = position.map(in_world);
-            LightPlace { name: name.clone(), kind, position, bounds, area, toward }
-        })
-        .collect()
+    named.map(move |(light, name)| {
+        let (kind, position, toward) = place(light);
+        let in_world = |point: DVec3| (world.origin + point).to_array();
+        let (bounds, area) = match light {
+            Light::Area(light) => {
+                let EmitterBounds { min, max, .. } = light.emitter_bounds();
+                (Some([min, max].map(in_world)), Some(light.area()))
+            }
+            _ => (None, None),
+        };
+        let position = position.map(in_world);
+        LightPlace { name: name.clone(), kind, position, bounds, area, toward }
+    })
 }

@@ -12,7 +12,7 @@ use crate::shading::bsdf::MicrofacetFactors;
 /// `weight · part / (|cos_i| η²)`, the factor of a delta function.
 #[derive(Clone, Debug, Serialize)]
 pub struct MicrofacetReport {
-    /// `conductor`, `dielectric` or `coat`; of glTF's layers `specular`, `glass` or `clear coat`.
+    /// `conductor`, `dielectric`, `thin dielectric` or `coat`; of glTF's layers `specular`, `glass` or `clear coat`.
     pub boundary: &'static str,
     /// Whether the facets refract light; otherwise they reflect it (a thin sheet also to its other side).
     pub refracts: bool,

@@ -152,7 +152,15 @@ impl SampleSummary {
 
 /// The settings of a picture of one pixel.
 fn one_pixel(image: &ImageSettings) -> ImageSettings {
-    ImageSettings { width: 1, height: 1, crop: None, layers: Layers::None, denoise: false, ..image.clone() }
+    ImageSettings {
+        width: 1,
+        height: 1,
+        crop: None,
+        layers: Layers::None,
+        light_paths: Vec::new(),
+        denoise: false,
+        ..image.clone()
+    }
 }
 
 /// Adds a sample to the film of one pixel.

@@ -31,7 +31,7 @@ pub(super) fn step_all<I: Integrator, P: Probe>(
     output: &mut StepOutput<'_, P>,
     grow: impl Fn(&Path, &PlainBranch, &mut Vec<Path>),
 ) {
-    let in_lanes = !P::LISTENS && PlainSteps::are_for(world);
+    let in_lanes = !P::LISTENS && output.light_paths.is_none() && PlainSteps::are_for(world);
     let mut steps = PlainSteps::default();
     for (paths, hits) in paths.chunks(LANES).zip(hits.chunks(LANES)) {
         if in_lanes {
@@ -94,7 +94,10 @@ pub(super) fn local_light<P: Probe>(
         let arriving = sample.li / (std::f32::consts::PI * sample.pdf);
         let contribution = path.beta * (diffuse + specular) * arriving;
         if !contribution.is_black() {
-            output.queues.shadows.push(Shadow::new(world, path, surface, &sample, index, contribution));
+            let last_scattering =
+                output.last_scattering(path, false, || diffuse.share_of(diffuse + specular));
+            let shadow = Shadow::new(world, path, surface, &sample, index, contribution);
+            output.queues.shadows.push(Shadow { last_scattering, ..shadow });
         }
     }
     coefficients

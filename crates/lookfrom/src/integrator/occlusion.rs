@@ -63,6 +63,7 @@ impl Integrator for AmbientOcclusion {
             term: Term::Unoccluded,
             // Visibility does not depend on the medium.
             interior: InteriorStack::default(),
+            last_scattering: Shadow::NO_SCATTERING,
         });
     }
 }

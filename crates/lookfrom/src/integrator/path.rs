@@ -113,7 +113,8 @@ impl Integrator for PathTracer {
         hits: &[Hit],
         output: &mut StepOutput<'_, P>,
     ) {
-        let in_lanes = self.light_sampling == LightSampling::MultipleImportance;
+        let in_lanes =
+            self.light_sampling == LightSampling::MultipleImportance && output.light_paths.is_none();
         let mut waiting = Waiting::default();
         let batch = HitBatch { world, paths, hits, stream };
         for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
@@ -298,6 +299,7 @@ impl PathTracer {
                 blurred: path.previous.blurred || !is_sharp,
                 is_catcher: *is_catcher,
             },
+            light_path: output.scattered(path, sample.lobe),
         });
     }
 
@@ -408,7 +410,11 @@ impl PathTracer {
             f,
         });
         if !contribution.is_black() {
-            output.queues.shadows.push(Shadow::new(world, path, surface, &sample, index, contribution));
+            let crosses = surface.crosses(sample.wi);
+            let last_scattering =
+                output.last_scattering(path, crosses, || scattering.diffuse_share(sample.wi));
+            let shadow = Shadow::new(world, path, surface, &sample, index, contribution);
+            output.queues.shadows.push(Shadow { last_scattering, ..shadow });
             if *is_catcher {
                 self.expect_light(light, path, contribution, output);
             }

@@ -37,9 +37,14 @@ pub struct Shadow {
     pub term: Term,
     /// The media that the ray is inside of.
     pub interior: InteriorStack,
+    /// How the surface scatters its light: a number in the queues, or [`Shadow::NO_SCATTERING`] where no layer asks.
+    pub last_scattering: u32,
 }
 
 impl Shadow {
+    /// No number of [`Shadow::last_scattering`].
+    pub const NO_SCATTERING: u32 = u32::MAX;
+
     pub(super) fn new(
         world: &World,
         path: &Path,
@@ -69,7 +74,16 @@ impl Shadow {
         let crosses = surface.crosses(sample.wi);
         let interior = interior.leaving(&world.materials, surface, sample.wi, crosses);
         let origin_primitive = surface.origin_primitive;
-        Self { ray, origin_primitive, contribution, slot, address, term: Term::Light(light), interior }
+        Self {
+            ray,
+            origin_primitive,
+            contribution,
+            slot,
+            address,
+            term: Term::Light(light),
+            interior,
+            last_scattering: Self::NO_SCATTERING,
+        }
     }
 }
 
@@ -106,6 +120,7 @@ impl ShadowTransparency {
         };
         let Material { kind, whitted, .. } = &world.materials[binding.material as usize];
         binding.alpha.is_none()
+            && !(world.has_open_fronts && binding.single_sided)
             && !matches!(kind, MaterialKind::Interface)
             && (self == Self::AlphaTested || whitted.transmission.is_gray(0.0))
     }
@@ -128,8 +143,9 @@ pub(crate) fn resolve<P: Probe>(
     output.queues = queues;
     let mut shadows = std::mem::take(&mut output.queues.shadows);
     for shadow in shadows.drain(..) {
-        output.add_to(shadow.slot, shadow.address, shadow.term, shadow.contribution);
+        output.add_unoccluded(&shadow);
     }
+    output.queues.last_scatterings.clear();
     output.queues.shadows = shadows;
     traced
 }
@@ -231,6 +247,9 @@ impl Shadow {
         {
             return through_medium;
         }
+        if world.is_open_front(surface) {
+            return through_medium * (1.0 - World::COVERAGE_OF_OPEN_FRONTS);
+        }
         if shadow_transparency == ShadowTransparency::AlphaTested {
             return Spectrum::BLACK;
         }
@@ -253,7 +272,7 @@ impl Shadow {
         self.ray.origin = surface.origin(direction);
         self.origin_primitive = surface.origin_primitive;
         self.ray.t_max -= hit.t;
-        if world.passes_alpha_test(surface, self.number(hit)) {
+        if world.passes_alpha_test(surface, self.number(hit)) && !world.is_open_front(surface) {
             self.interior = self.interior.leaving(&world.materials, surface, direction, true);
         }
     }

@@ -12,6 +12,7 @@ use crate::integrator::direct::{self, PlainBranch, local_light, same_side};
 use crate::integrator::{
     Branch, Cut, Event, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput,
 };
+use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
@@ -98,7 +99,9 @@ impl Integrator for Whitted {
                 cut: child.err(),
             });
             if let Ok(child) = child {
-                output.queues.paths.push(child);
+                let lobe = Lobes::sampled(true, false, branch == Branch::Refracted);
+                let light_path = output.scattered(path, lobe);
+                output.queues.paths.push(Path { light_path, ..child });
             }
         }
     }

@@ -77,8 +77,30 @@ pub(super) fn check(renderer: &Renderer, subject: &Subject, warnings: &mut Vec<W
     warnings.push(Warning::new(at, message));
 }
 
-/// First hits of rays through a grid over the picture.
+/// Whether the picture would be the background alone only because the camera sees the backs of single-sided surfaces.
+pub(super) fn sees_only_backs(renderer: &Renderer) -> bool {
+    let sees_nothing = |side| seen(renderer, side).iter().all(Option::is_none);
+    let sees_backs = || {
+        let passes_nothing = |_: &SurfaceInteraction| false;
+        first_hits(renderer, FINE, passes_nothing).iter().flatten().any(|surface| surface.single_sided)
+    };
+    sees_nothing(COARSE) && sees_nothing(FINE) && sees_backs()
+}
+
+/// First hits of rays through a grid over the picture, behind surfaces that camera rays pass.
 fn seen(renderer: &Renderer, side: u32) -> Vec<Option<SurfaceInteraction>> {
+    let world = renderer.world();
+    first_hits(renderer, side, |surface| {
+        surface.single_sided && !surface.front || world.is_interface(surface)
+    })
+}
+
+/// First hits of rays through a grid over the picture, behind surfaces that they pass.
+fn first_hits(
+    renderer: &Renderer,
+    side: u32,
+    is_passed: impl Fn(&SurfaceInteraction) -> bool,
+) -> Vec<Option<SurfaceInteraction>> {
     let (world, camera) = (renderer.world(), renderer.view().camera());
     let [width, height] = camera.size.map(f64::from);
     let middle = |cell: u32| (f64::from(cell) + 0.5) / f64::from(side);
@@ -87,10 +109,6 @@ fn seen(renderer: &Renderer, side: u32) -> Vec<Option<SurfaceInteraction>> {
         let place = [width * middle(cell % side), height * middle(cell / side)];
         let ray = renderer.kernel_ray(&camera.ray(place, [0.5; 2]));
         world.bvh.query().all_hits(&ray, &mut hits);
-        // Surfaces that camera rays pass.
-        let is_passed = |surface: &SurfaceInteraction| {
-            surface.single_sided && !surface.front || world.is_interface(surface)
-        };
         hits.iter().map(|hit| world.surface(&ray, hit)).find(|surface| !is_passed(surface))
     };
     (0..side * side).map(&mut first).collect()

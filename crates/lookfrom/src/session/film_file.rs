@@ -11,7 +11,7 @@ use std::io::{Seek, Write};
 use std::path::Path;
 
 use lookfrom_scene::image::{ExrChannel, ExrHeader, ExrRows, write_exr};
-use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds, Sensor};
+use lookfrom_scene::settings::{Background, ImageSettings, Layers, LightPathLayer, PixelBounds, Sensor};
 use lookfrom_scene::{Error, ErrorKind, Limits, Location, Result};
 
 use super::provenance::{FORMAT, PREFIX, Provenance, Texts};
@@ -184,6 +184,10 @@ fn image_of(found: &ExrHeader, area: PixelBounds) -> ImageSettings {
         crop: Some(area),
         layers: if has("film.aov.samples.0") { Layers::Geometry } else { Layers::None },
         denoise: has("film.feature.samples.0"),
+        light_paths: (0..)
+            .take_while(|index| has(&format!("film.light_path.{index}.sum.R.0")))
+            .map(|_| LightPathLayer::default())
+            .collect(),
         background: if has_alpha { Background::Transparent } else { Background::Environment },
         sensor: Sensor {
             // Any sensor that does not measure X, Y and Z.

@@ -96,6 +96,9 @@ pub(super) fn develop(
     let spread = development.fireflies == Fireflies::Spread;
     let mut picture = if spread { film.picture_without_fireflies() } else { film.picture() };
     let mut layers = if has_layers && film.has_layers() { layers::channels(film) } else { Vec::new() };
+    if has_layers {
+        layers.extend(layers::of_light_paths(film, header::light_paths(common)));
+    }
     let is_denoised = development.denoise && film.ledger().is_from_start(film.area());
     if is_denoised {
         picture = denoised(film, &picture);

@@ -61,8 +61,23 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
         texts.push(("camera.focus_distance", lens.focus_distance.to_string()));
     }
     let mut texts: Vec<_> = texts.into_iter().map(|(name, text)| (name.to_owned(), text)).collect();
+    let light_paths = image.light_paths.iter().enumerate();
+    texts.extend(
+        light_paths.map(|(index, layer)| {
+            (format!("{LIGHT_PATH}{index:02}.{}", layer.name), layer.expression.clone())
+        }),
+    );
     texts.sort();
     texts
+}
+
+/// The names of texts with light-path expressions begin with this; a number, a point and the name of the layer follow.
+const LIGHT_PATH: &str = "light_path.";
+
+/// The names of the layers of light-path expressions, in their order, among sorted texts.
+pub(super) fn light_paths(texts: &[(String, String)]) -> impl Iterator<Item = &str> {
+    let names = texts.iter().filter_map(|(name, _)| name.strip_prefix(LIGHT_PATH));
+    names.filter_map(|numbered| numbered.split_once('.')).map(|(_, name)| name)
 }
 
 /// The name of the text with the relative error at which a tile gets no more samples.

@@ -24,6 +24,25 @@ pub(super) fn noisy(background: Background, picture: Picture) -> Vec<(String, Ve
         .to_vec()
 }
 
+/// The channels of the layers of light-path expressions, by their names.
+pub(super) fn of_light_paths<'a>(
+    film: &Film,
+    names: impl Iterator<Item = &'a str>,
+) -> Vec<(String, Vec<f32>)> {
+    let mut channels: Vec<(String, Vec<f32>)> = names
+        .flat_map(|name| ["R", "G", "B"].map(|letter| (format!("{name}.{letter}"), Vec::new())))
+        .collect();
+    if channels.is_empty() {
+        return channels;
+    }
+    for (x, y) in (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y))) {
+        for ((_, channel), value) in channels.iter_mut().zip(film.light_paths(x, y).flatten()) {
+            channel.push(value);
+        }
+    }
+    channels
+}
+
 /// The AOV channels of a film, 0 where there is no hit.
 pub(super) fn channels(film: &Film) -> Vec<(String, Vec<f32>)> {
     let pixels = || (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));

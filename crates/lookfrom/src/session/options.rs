@@ -9,8 +9,8 @@ use glam::DVec3;
 use lookfrom_scene::camera::{Camera, Projection};
 use lookfrom_scene::image::Image;
 use lookfrom_scene::settings::{
-    Background, ColorMode, Filter, ImageSettings, Integrator, Layers, LightSampler, PixelBounds,
-    RenderSettings, Sampler, Tonemap,
+    Background, ColorMode, Filter, ImageSettings, Integrator, Layers, LightPathLayer, LightSampler,
+    PixelBounds, RenderSettings, Sampler, Tonemap,
 };
 use lookfrom_scene::{Error, ErrorKind, ImportOptions, Location, Result, Scene};
 
@@ -45,6 +45,8 @@ pub struct Options {
     pub light_sampler: Option<LightSampler>,
     /// AOVs besides the picture.
     pub layers: Option<Layers>,
+    /// Layers of light-path expressions: those of the file's with the same names are replaced.
+    pub light_paths: Vec<LightPathLayer>,
     /// Whether the picture is denoised.
     pub denoise: Option<bool>,
     /// Maximum path depth.
@@ -149,6 +151,10 @@ impl Options {
         replace(&mut render.color, self.color);
         replace(&mut render.light_sampler, self.light_sampler);
         replace(&mut image.layers, self.layers);
+        for layer in &self.light_paths {
+            image.light_paths.retain(|other| other.name != layer.name);
+            image.light_paths.push(layer.clone());
+        }
         replace(&mut image.denoise, self.denoise);
         replace(&mut image.background, self.background);
         replace(&mut render.depth, self.depth);

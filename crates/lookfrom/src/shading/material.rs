@@ -170,6 +170,12 @@ impl Scattering<'_> {
         self.bsdf.pdf(self.shading.frame.local(wi))
     }
 
+    /// The share of diffuse lobes in the BSDF for light from `wi`, 0 … 1 by lane; the others are glossy.
+    pub fn diffuse_share(&self, wi: Vec3) -> Spectrum {
+        let Shading { bsdf, frame, .. } = self.shading;
+        bsdf.diffuse_share(frame.local(self.wo), frame.local(wi))
+    }
+
     /// A direction by importance sampling.
     pub fn sample(&self, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
         let sample = self.bsdf.sample(lobe, u)?;

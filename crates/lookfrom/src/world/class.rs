@@ -20,13 +20,17 @@ pub enum Class {
 
 impl World {
     /// The class of each geometry, by its compiled material.
-    pub(super) fn classify(primitives: &[Primitives], materials: &[Material]) -> Vec<Class> {
+    pub(super) fn classify(&mut self) {
         let class = |primitives: &Primitives| {
             let Primitives::Mesh(mesh) = primitives else { return Class::General };
-            let class = materials[mesh.binding.material as usize].class();
-            class.filter(|_| mesh.binding.is_only_material()).map_or(Class::General, Class::Mesh)
+            let is_whole =
+                mesh.binding.is_only_material() && !(self.has_open_fronts && mesh.binding.single_sided);
+            let class = self.materials[mesh.binding.material as usize].class();
+            class.filter(|_| is_whole).map_or(Class::General, Class::Mesh)
         };
-        primitives.iter().map(class).collect()
+        let classes = self.primitives.iter().map(class).collect();
+        let object_classes = self.objects.iter().map(|object| object.iter().map(class).collect()).collect();
+        (self.classes, self.object_classes) = (classes, object_classes);
     }
 
     /// The class of a hit on a [`Class::Mesh`]; `None` for others, and for instances with a material of their own.

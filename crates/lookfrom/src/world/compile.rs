@@ -139,8 +139,8 @@ impl World {
         let mut world = Self {
             origin,
             bvh: Arc::new(bvh),
-            classes: Self::classify(&primitives, &materials).into(),
-            object_classes: objects.iter().map(|object| Self::classify(object, &materials)).collect(),
+            classes: Arc::default(),
+            object_classes: Arc::default(),
             primitives: primitives.into(),
             objects: objects.into(),
             instances: instances.into(),
@@ -148,6 +148,7 @@ impl World {
             has_gaps: !alphas.is_empty()
                 || has_media
                     && materials.iter().any(|material| matches!(material.kind, MaterialKind::Interface)),
+            has_open_fronts: false,
             has_media,
             radius,
             catcher_irradiance: None,
@@ -164,6 +165,9 @@ impl World {
             names: Arc::new(names),
         };
         world.catcher_irradiance = world.unoccluded_irradiance();
+        world.has_open_fronts = world.faces_inward();
+        world.has_gaps |= world.has_open_fronts;
+        world.classify();
         Ok(world)
     }
 }

@@ -124,6 +124,7 @@ impl PlainSteps {
                 address: path.address,
                 term: Term::Light(from.light),
                 interior,
+                last_scattering: Shadow::NO_SCATTERING,
             });
         }
         true

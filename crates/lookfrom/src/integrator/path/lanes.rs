@@ -251,6 +251,7 @@ impl PathTracer {
             address,
             term: Term::Light(light),
             interior: item.interior(world, wi.into(), crosses),
+            last_scattering: Shadow::NO_SCATTERING,
         });
         if item.is_catcher {
             self.expect_light(&world.lights[light as usize], item.path, contribution, output);
@@ -309,6 +310,7 @@ impl PathTracer {
                 blurred: path.previous.blurred || !is_specular,
                 is_catcher,
             },
+            light_path: path.light_path,
         });
     }
 }

@@ -229,12 +229,16 @@ impl ThinDielectric {
         Self { eta: fresnel::valid_eta(eta) }
     }
 
+    /// What both sides of the sheet reflect together: R + T R T + T R³ T + … = R + T² R / (1 − R²).
+    #[inline]
+    pub(super) fn reflectance(&self, wo: Vec3) -> f32 {
+        let once = optics::fresnel_dielectric(wo.z.abs(), self.eta);
+        if once < 1.0 { once + (1.0 - once) * (1.0 - once) * once / (1.0 - once * once) } else { once }
+    }
+
     #[inline]
     pub(super) fn sample(&self, wo: Vec3, uc: f32, lobes: Lobes) -> Option<BsdfSample> {
-        // R + T R T + T R³ T + … = R + T² R / (1 − R²)
-        let once = optics::fresnel_dielectric(wo.z.abs(), self.eta);
-        let fresnel =
-            if once < 1.0 { once + (1.0 - once) * (1.0 - once) * once / (1.0 - once * once) } else { once };
+        let fresnel = self.reflectance(wo);
         let [r, t] = lobes.allowed([fresnel, 1.0 - fresnel]);
         if r + t == 0.0 {
             return None;

@@ -5,19 +5,22 @@
 //!
 //! Cook & Torrance 1982 (reflection); Walter et al. 2007 (refraction).
 
+use std::f32::consts::FRAC_1_PI;
+
 use glam::Vec3;
 
 use super::conductor::{Conductor, try_half_vector};
-use super::dielectric::Dielectric;
+use super::dielectric::{Dielectric, ThinDielectric};
 use super::lobes::Lobes;
 use super::microfacet::TrowbridgeReitz;
-use super::{Bsdf, fresnel, is_grazing, same_side};
+use super::{Bsdf, Mode, fresnel, is_grazing, same_side};
 use crate::core::spectrum::Spectrum;
 
 /// The factors of one boundary that scatters light from `wi` to `wo` by its microfacets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MicrofacetFactors {
-    /// The boundary: `conductor`, `dielectric`, `coat`; of glTF's layers `specular`, `glass`, `clear coat`.
+    /// The boundary: `conductor`, `dielectric`, `thin dielectric` (both of its sides together), `coat`; of glTF's layers
+    /// `specular`, `glass`, `clear coat`.
     pub boundary: &'static str,
     /// Whether the facets refract light; otherwise they reflect it (a thin sheet also to its other side).
     pub refracts: bool,
@@ -98,13 +101,47 @@ impl Bsdf {
             Self::Principled(look) if !is_specular => {
                 return look.scattering(wo, Lobes::ALL).factors(wi.into());
             }
-            Self::Principled(_)
-            | Self::Diffuse(_)
-            | Self::DiffuseTransmission(_)
-            | Self::ThinDielectric(_)
-            | Self::Whitted(_) => None,
+            Self::ThinDielectric(bsdf) => bsdf.factors(wo, wi, is_specular),
+            Self::Principled(_) | Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Whitted(_) => None,
         };
         factors.into_iter().collect()
+    }
+
+    /// The share of diffuse lobes in the value for light from `wi`, 0 … 1 by lane; glossy ones have the rest. Sheen counts as
+    /// diffuse, and so does what is scattered between a coat and a diffuse base.
+    pub fn diffuse_share(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        let all = Spectrum([1.0; 4]);
+        let f = || self.f(wo, wi, Mode::Radiance);
+        match self {
+            Self::Diffuse(_) | Self::DiffuseTransmission(_) => all,
+            Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::CoatedConductor(_) => {
+                Spectrum::BLACK
+            }
+            Self::Whitted(bsdf) => (bsdf.diffuse * FRAC_1_PI).share_of(f()),
+            Self::Principled(look) => look.scattering(wo, Lobes::ALL).diffuse_f(wi.into()).share_of(f()),
+            Self::CoatedDiffuse(_) => {
+                let factors = self.factors(wo, wi, false);
+                let glossy = factors.iter().fold(Spectrum::BLACK, |sum, factors| sum + factors.value());
+                all - glossy.share_of(f())
+            }
+        }
+    }
+}
+
+impl ThinDielectric {
+    fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Option<MicrofacetFactors> {
+        if !is_specular {
+            return None;
+        }
+        let smooth = MicrofacetFactors::of_boundary(
+            "thin dielectric",
+            TrowbridgeReitz::SMOOTH,
+            true,
+            [wo, wi, Vec3::Z],
+        );
+        let fresnel = self.reflectance(wo);
+        let part = if same_side(wo, wi) { fresnel } else { 1.0 - fresnel };
+        Some(MicrofacetFactors { fresnel: Spectrum([fresnel; 4]), part: Spectrum([part; 4]), ..smooth })
     }
 }
 

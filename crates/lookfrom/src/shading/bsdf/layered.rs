@@ -355,7 +355,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
         };
 
         let mut random = Random::new(Purpose::Sample, wo, [uc, u[0], u[1]]);
-        let mut is_specular = first.is_specular;
+        let (mut is_specular, mut is_diffuse) = (first.is_specular, none);
         let beta = first.f * (Float::abs(first.wi.z) / first.pdf);
         let alive = first.is_valid & first.is_transmission;
         let mut walk = Walk { beta, w: first.wi, z: self.thickness, alive };
@@ -374,11 +374,13 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
                 walk.beta = Spectrum::select(step.at_particle, walk.beta * self.albedo, walk.beta);
                 walk.z = R::select(step.at_particle, step.next, walk.z);
                 is_specular = is_specular & !step.at_particle;
+                is_diffuse = is_diffuse | step.at_particle;
             }
             if step.at_base.any() {
                 let sample = self.base.sample(&-walk.w, zero, random.two(step.at_base)).if_lit();
                 Self::turn(&mut walk, step.at_base, &sample);
                 is_specular = is_specular & (!step.at_base | sample.is_specular);
+                is_diffuse = is_diffuse | (step.at_base & sample.is_diffuse);
             }
             if step.at_coat.any() {
                 let u = (random.one(step.at_coat), random.two(step.at_coat));
@@ -393,7 +395,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
                     pdf: one,
                     eta: one,
                     is_specular,
-                    is_diffuse: none,
+                    is_diffuse,
                     is_transmission: none,
                     is_valid: leaves,
                 };

@@ -192,7 +192,8 @@ impl<R: Real> LocalScattering<R> {
             pdf: zero,
             eta: one,
             is_specular: no,
-            is_diffuse,
+            // What is scattered between facets is no body's.
+            is_diffuse: (is_diffuse & self.view.surface.has_matte()) | is_sheen,
             is_transmission: no,
             is_valid: choice.exists & self.is_usable,
         };

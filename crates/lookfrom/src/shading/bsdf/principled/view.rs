@@ -148,17 +148,24 @@ impl<R: Real> View<R> {
             let both = (one - self.mirror.all()) * (one - mirror.all()) / hidden;
             sum = Spectrum::select(is_hidden, self.again_on(through) * both, black);
         }
-        let has_matte = surface.has_matte();
-        if has_matte.any() {
-            let left = surface.left(cos, mirror) * self.left;
-            let left = left.zip(
-                surface.mean_left,
-                #[inline(always)]
-                |left, mean| R::select(mean.gt(zero), left / mean, zero),
-            );
-            sum += Spectrum::select(has_matte, left * self.body(through), black);
+        if surface.has_matte().any() {
+            sum += self.matte_body(cos, mirror, through);
         }
         sum
+    }
+
+    /// π f of the diffuse body on a side, where the other direction has this cosine and this albedo of a mirror.
+    #[inline(always)]
+    fn matte_body(&self, cos: R, mirror: Split<R>, through: R::Mask) -> Spectrum<R> {
+        let surface = &self.surface;
+        let zero = cos.like(0.0);
+        let left = surface.left(cos, mirror) * self.left;
+        let left = left.zip(
+            surface.mean_left,
+            #[inline(always)]
+            |left, mean| R::select(mean.gt(zero), left / mean, zero),
+        );
+        Spectrum::select(surface.has_matte(), left * self.body(through), Spectrum::splat(zero))
     }
 
     /// The albedo of the diffuse body on a side.
@@ -229,6 +236,20 @@ impl<R: Real> View<R> {
             f += Spectrum::splat(R::select(through, zero, coat.f(wi)));
         }
         f
+    }
+
+    /// The part of [`Self::f_by`] that the diffuse body and sheen have.
+    #[inline(always)]
+    pub(super) fn diffuse_f(&self, wi: Vector<R>) -> Spectrum<R> {
+        let cos = Float::abs(wi.z);
+        let through = is_below(wi);
+        let (below_coat, below_sheen) = self.below(wi);
+        let mirror = albedo::mirror(cos, self.surface.alpha);
+        let mut f = self.matte_body(cos, mirror, through) * (below_sheen * cos.like(FRAC_1_PI));
+        if let Some(sheen) = &self.sheen {
+            f += Spectrum::select(through, Spectrum::splat(cos.like(0.0)), sheen.f(self.wo, wi));
+        }
+        f * below_coat
     }
 
     /// Reflection and transmission by facets.

@@ -1,0 +1,40 @@
+//! Sums of the light by light-path expressions, for the layers of a picture.
+//!
+//! Fixed-point numbers as those of all light ([`super::Pixel`]): a layer that has every way is the picture. A pixel takes
+//! 48 bytes for each layer.
+
+use super::fixed_point;
+use super::pixel::TWO_TO_64;
+use super::stored::{Named, Stored, channels_of, store_fields};
+
+/// The sums of a layer over the samples of a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct LightPathSums {
+    /// Multiples of 2⁻⁶⁴. Additions wrap.
+    sums: [i128; 3],
+}
+
+store_fields!(LightPathSums { sums: [i128; 3] = ["sum.R", "sum.G", "sum.B"] });
+
+impl LightPathSums {
+    /// Adds the light of one sample; a number that is not finite counts as 0.
+    pub(super) fn add(&mut self, rgb: [f32; 3]) {
+        for (sum, light) in self.sums.iter_mut().zip(rgb) {
+            *sum = sum.wrapping_add(if light.is_finite() { fixed_point(light) } else { 0 });
+        }
+    }
+
+    pub(super) fn merge(&mut self, add: &Self) {
+        for (sum, add) in self.sums.iter_mut().zip(add.sums) {
+            *sum = sum.wrapping_add(add);
+        }
+    }
+
+    /// The mean over a number of samples, black where there are none.
+    pub(super) fn mean(&self, samples: u64) -> [f32; 3] {
+        match samples {
+            0 => [0.0; 3],
+            _ => self.sums.map(|sum| (sum as f64 / (samples as f64 * TWO_TO_64)) as f32),
+        }
+    }
+}
