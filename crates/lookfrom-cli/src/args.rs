@@ -7,6 +7,7 @@ mod farm;
 mod film;
 mod inspect;
 mod model;
+mod series;
 #[cfg(feature = "view")]
 mod view;
 
@@ -30,6 +31,7 @@ pub(crate) use farm::FarmArguments;
 pub(crate) use film::{DevelopArguments, FilesArguments, KeepArguments, MergeArguments, ResumeArguments};
 pub(crate) use inspect::{InspectArguments, Samples};
 pub(crate) use model::ModelArguments;
+pub(crate) use series::{SeriesArguments, Views};
 #[cfg(feature = "view")]
 pub(crate) use view::ViewArguments;
 
@@ -58,9 +60,15 @@ Examples:
   lookfrom render model.obj --lookfrom -3,2,5 --up 0,0,1
   lookfrom render model.glb --size 512 --floor --background transparent
   lookfrom render model.stl --up 0,0,1 --turntable 36 -o 'around/{name}.png'
+  lookfrom render model.obj --views all --sheet 4x2 -o sides.png
+  lookfrom render robot.glb --frames 0..48 -o 'walk/frame-####.png'
+  lookfrom render robot.glb --frames 0..48 -o walk.gif
+  lookfrom render shop/ --size 256 -o thumbs/            all scenes and models of a folder
   lookfrom render a.toml b.toml -o pictures/             pictures/a.png, pictures/b.png
   lookfrom render */chair.obj -o 'out/{parent}.png'      out/oak.png, out/steel.png
   lookfrom render scene.toml -o - | display
+  generate | lookfrom render - -o picture.png
+  lookfrom render scene.toml --watch
   lookfrom render scene.pbrt --noise 0.02 --write-every 10s
   lookfrom render scene.pbrt --samples 16 --denoise
   lookfrom render scene.pbrt -o a.exr --film --checkpoint 30s     go on after any stop: lookfrom resume a.exr
@@ -85,6 +93,11 @@ const BENCH_EXAMPLES: &str = "\
 Examples:
   lookfrom bench scenes/*.toml
   lookfrom bench scene.pbrt --time 10s --reference reference.exr --json";
+
+const MAN_EXAMPLES: &str = "\
+Examples:
+  lookfrom man | man -l -
+  lookfrom man render > ~/.local/share/man/man1/lookfrom-render.1";
 
 const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
@@ -134,6 +147,12 @@ pub(crate) enum Command {
     /// Measure rendering speed and remaining noise
     #[command(after_help = BENCH_EXAMPLES)]
     Bench(BenchArguments),
+    /// Print the manual page of the command, or of one of its commands
+    #[command(after_help = MAN_EXAMPLES)]
+    Man {
+        /// The command [default: lookfrom itself]
+        command: Option<String>,
+    },
     /// Print a completion script for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
@@ -144,17 +163,18 @@ pub(crate) enum Command {
 
 #[derive(Args, Debug)]
 pub(crate) struct RenderArguments {
-    /// Scenes (.toml, .pbrt) or models (.gltf, .glb, .obj, .ply, .stl)
+    /// Scenes (.toml, .pbrt) or models (.gltf, .glb, .obj, .ply, .stl), folders of them, or - for one from stdin
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
-    /// Output: a file (.png, .jpg, .webp, .exr, .hdr, .pfm, .ppm), a folder, a pattern with {name}, or - for a PNG to stdout
+    /// Output: a file (.png, .jpg, .webp, .exr, .hdr, .pfm, .ppm, .gif, .apng), a folder, a pattern with {name}, or - for stdout
     ///
-    /// PNG, JPEG, WebP and PPM are sRGB after exposure and tone mapping; EXR, HDR and PFM are linear light as computed. Without this
-    /// option: NAME.png in the current folder, named after the scene. For several scenes give a folder or a pattern, in which
+    /// PNG, JPEG, WebP, PPM and GIF are sRGB after exposure and tone mapping; EXR, HDR and PFM are linear light as computed. Without
+    /// this option: NAME.png in the current folder, named after the scene. For several scenes give a folder or a pattern, in which
     /// {name} is the scene's name without folder and extension, {dir} its folder as typed, {parent} the name of that folder,
-    /// {n} its number in the call, from 1; {{ and }} are literal braces. Missing folders are created. Input files of a scene
-    /// are never overwritten.
+    /// {n} its number in the call, from 1; {{ and }} are literal braces. Of several pictures of a scene, ### is the number with so
+    /// many digits; without it .gif, .apng and .webp are animations. Missing folders are created. Input files of a scene are never
+    /// overwritten.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
 
@@ -186,16 +206,15 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "NAME", value_parser = values::word(values::FIREFLIES), default_value = "off")]
     pub(crate) fireflies: Fireflies,
 
-    /// Render this many pictures of each scene, evenly around it, as on a turntable: NAME-000.png, NAME-001.png …
-    ///
-    /// The camera orbits an upright axis, counter-clockwise as seen from above; environment light turns with it, other lights
-    /// stay with the scene. The axis goes through the point that the scene's camera looks at (or --lookat), else through
-    /// the centre of the visible geometry. A model is framed so that nothing is cropped at any angle.
-    #[arg(long, value_name = "N", value_parser = values::whole(1u32, 100_000))]
-    pub(crate) turntable: Option<u32>,
+    #[command(flatten)]
+    pub(crate) several: SeriesArguments,
 
     #[command(flatten)]
     pub(crate) keep: KeepArguments,
+
+    /// Render again when a file of the scenes changes, until Ctrl-C
+    #[arg(long, conflicts_with = "skip_existing")]
+    pub(crate) watch: bool,
 
     /// Print nothing but errors
     #[arg(short, long)]

@@ -15,8 +15,9 @@ use crate::output::Target;
 
 /// Develops every picture and returns the exit code. One that fails does not stop the others; its code is kept.
 pub(crate) fn run(arguments: &DevelopArguments) -> u8 {
-    let targets = naming::targets(&arguments.pictures, arguments.output.as_deref(), false);
-    let targets = match targets.and_then(|targets| arguments.encoding.apply(targets)) {
+    let encoding = &arguments.encoding;
+    let targets = naming::targets(&arguments.pictures, arguments.output.as_deref(), encoding.format(), false);
+    let targets = match targets.and_then(|targets| encoding.apply(targets)) {
         Ok(targets) => targets,
         Err(failure) => return failure.report(),
     };

@@ -5,11 +5,15 @@
 //! pointer to `--help`. Colours are clap's; the printer removes them where they are not wanted.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Style};
 use lookfrom_scene::excerpt::{Excerpt, Excerpts};
-use lookfrom_scene::{Disk, Error, Files, Result};
+use lookfrom_scene::load::PIPE;
+use lookfrom_scene::{Error, Files, Result};
+
+use crate::pipe::Piped;
 
 /// Last line of an error about the command line, as clap has it.
 const TO_HELP: &str = "\n\nFor more information, try '--help'.";
@@ -77,9 +81,9 @@ fn of_file(error: &Error, excerpt: Option<Excerpt>) -> String {
 struct Regular;
 
 impl Files for Regular {
-    fn read(&self, path: &std::path::Path, limit: u64) -> Result<Vec<u8>> {
-        if path.is_file() {
-            return Disk.read(path, limit);
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
+        if path == Path::new(PIPE) || path.is_file() {
+            return Piped.read(path, limit);
         }
         Err(Error::new(lookfrom_scene::ErrorKind::Io, &lookfrom_scene::Location::file(path), "not a file"))
     }
@@ -89,7 +93,6 @@ impl Files for Regular {
 mod tests {
     use super::*;
     use lookfrom_scene::Location;
-    use std::path::Path;
 
     fn without_color(text: &str) -> String {
         anstream::adapter::strip_str(text).to_string()

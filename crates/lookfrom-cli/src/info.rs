@@ -21,6 +21,7 @@ use crate::args::{InfoArguments, Overrides};
 use crate::exit::{self, DONE, Failure, answer};
 use crate::prepare::{self, prepare};
 use crate::report::{self, bytes, thousands};
+use crate::scenes;
 use lookfrom_scene::json;
 
 /// Describes every scene and returns the exit code. A scene that fails does not stop the others; its code is kept.
@@ -28,8 +29,12 @@ pub(crate) fn run(arguments: &InfoArguments) -> u8 {
     if let Err(failure) = prepare::use_threads(&arguments.common) {
         return failure.report();
     }
+    let scenes = match scenes::expanded(&arguments.scenes) {
+        Ok(scenes) => scenes,
+        Err(failure) => return failure.report(),
+    };
     let mut code = DONE;
-    for scene in &arguments.scenes {
+    for scene in &scenes {
         if let Err(failure) = info(scene, arguments) {
             let of_failure = failure.report();
             if arguments.json {

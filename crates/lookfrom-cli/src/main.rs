@@ -17,16 +17,20 @@ mod html;
 mod info;
 mod inspect;
 mod interrupt;
+mod man;
 mod merge;
 mod naming;
 mod output;
 mod overrides;
+mod picture;
+mod pipe;
 mod prepare;
 mod preview;
 mod progress;
 mod render;
 mod report;
 mod resume;
+mod scenes;
 mod values;
 #[cfg(feature = "view")]
 mod view;
@@ -69,6 +73,7 @@ fn main() -> ExitCode {
         }
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Man { command } => man::run(command.as_deref()),
         Command::Completions { shell } => completions::run(shell),
     };
     ExitCode::from(code)

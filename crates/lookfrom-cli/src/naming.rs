@@ -6,6 +6,7 @@ use std::io::IsTerminal;
 use std::path::{Component, Path, PathBuf};
 
 use lookfrom::session::Format;
+use lookfrom_scene::load::PIPE;
 use lookfrom_scene::suggest::nearest;
 use lookfrom_scene::{Disk, Files};
 
@@ -51,20 +52,18 @@ struct Numbered<'a> {
 /// # Errors
 /// `Usage` for an unknown format, several scenes for one file, an invalid pattern, or a picture to a terminal;
 /// `Output` where a folder cannot be written to.
-pub(crate) fn targets(scenes: &[PathBuf], output: Option<&Path>, json: bool) -> Result<Vec<Target>, Failure> {
+pub(crate) fn targets(
+    scenes: &[PathBuf],
+    output: Option<&Path>,
+    format: Option<&str>,
+    json: bool,
+) -> Result<Vec<Target>, Failure> {
     let count = scenes.len();
-    let numbered = |(index, scene): (usize, &'_ PathBuf)| target(Numbered { scene, index, count }, output);
+    let numbered =
+        |(index, scene): (usize, &'_ PathBuf)| target(Numbered { scene, index, count }, output, format);
     let targets = scenes.iter().enumerate().map(numbered).collect::<Result<Vec<_>, _>>()?;
     if targets.iter().any(Target::is_stdout) {
-        let usage = |message: &str| Err(Failure::Usage(message.to_owned()));
-        if json {
-            return usage("-o - and --json cannot both write to stdout; write the picture to a file");
-        }
-        if std::io::stdout().is_terminal() {
-            return usage(
-                "a picture cannot be written to a terminal; give -o a file, or redirect stdout to a pipe or file",
-            );
-        }
+        check_stdout(json)?;
     }
     let mut taken = HashMap::new();
     for (index, target) in targets.iter().enumerate() {
@@ -82,6 +81,40 @@ pub(crate) fn targets(scenes: &[PathBuf], output: Option<&Path>, json: bool) -> 
     Ok(targets)
 }
 
+/// Target of the one picture of all scenes. Checks everything that can be known before scenes are read.
+///
+/// # Errors
+/// As [`targets`].
+pub(crate) fn sheet(output: Option<&Path>, format: Option<&str>, json: bool) -> Result<Target, Failure> {
+    let of = Numbered { scene: Path::new("sheet"), index: 0, count: 1 };
+    let target = target(of, output, format)?;
+    if matches!(target.format(), Format::Exr | Format::Hdr | Format::Pfm) {
+        return Err(Failure::Usage(format!(
+            "a sheet is for a screen, not of linear light: {} as .png, .jpg, .webp or .ppm",
+            target.name()
+        )));
+    }
+    if target.is_stdout() {
+        check_stdout(json)?;
+    }
+    target.check()?;
+    Ok(target)
+}
+
+/// Refuses pictures to a terminal, or between lines of JSON.
+fn check_stdout(json: bool) -> Result<(), Failure> {
+    let usage = |message: &str| Err(Failure::Usage(message.to_owned()));
+    if json {
+        return usage("-o - and --json cannot both write to stdout; write the picture to a file");
+    }
+    if std::io::stdout().is_terminal() {
+        return usage(
+            "a picture cannot be written to a terminal; give -o a file, or redirect stdout to a pipe or file",
+        );
+    }
+    Ok(())
+}
+
 /// The error that two pictures would have the same file name.
 fn same_name(first: &Path, second: &Path, path: &Path) -> Failure {
     let extension = path.extension().unwrap_or_default().display();
@@ -95,14 +128,24 @@ fn same_name(first: &Path, second: &Path, path: &Path) -> Failure {
 }
 
 /// Target of the picture of one scene.
-fn target(of: Numbered<'_>, output: Option<&Path>) -> Result<Target, Failure> {
+fn target(of: Numbered<'_>, output: Option<&Path>, extension: Option<&str>) -> Result<Target, Failure> {
     let mut default_name = stem(of.scene).to_owned();
-    default_name.push(".png");
-    let file = |path: PathBuf| Ok(Target::File(path.clone(), format(&path)?));
+    default_name.push(format!(".{}", extension.unwrap_or("png")));
+    let file = |path: PathBuf| {
+        let format = format(&path)?;
+        match extension.map(|extension| Format::of_path(Path::new(&format!("x.{extension}")))) {
+            Some(other) if other != Some(format) => Err(Failure::Usage(format!(
+                "{} is not of --format {}; give -o a folder or -, or leave out --format",
+                path.display(),
+                extension.unwrap_or_default()
+            ))),
+            _ => Ok(Target::File(path, format)),
+        }
+    };
     let Some(output) = output else { return file(default_name.into()) };
     if output == Path::new("-") {
         return match of.count {
-            1 => Ok(Target::Stdout(Format::Png)),
+            1 => Ok(Target::Stdout(format(Path::new(&default_name))?)),
             _ => Err(Failure::Usage(
                 "-o - is for one scene; give several a folder or a pattern with {name}".to_owned(),
             )),
@@ -196,6 +239,9 @@ fn name_of_folder(folder: &Path) -> OsString {
 }
 
 fn stem(scene: &Path) -> &OsStr {
+    if scene == Path::new(PIPE) {
+        return OsStr::new("stdin");
+    }
     scene.file_stem().unwrap_or(OsStr::new("picture"))
 }
 
@@ -217,12 +263,15 @@ fn format(path: &Path) -> Result<Format, Failure> {
 
 #[cfg(test)]
 mod tests {
+    use lookfrom::session::Series;
+
     use super::*;
 
     fn of(scenes: &[&str], output: Option<&str>) -> Result<Vec<String>, u8> {
         let count = scenes.len();
         let numbered = |(index, scene): (usize, &&str)| {
-            let target = target(Numbered { scene: Path::new(scene), index, count }, output.map(Path::new));
+            let target =
+                target(Numbered { scene: Path::new(scene), index, count }, output.map(Path::new), None);
             target.map(|target| target.name()).map_err(|failure| failure.code())
         };
         scenes.iter().enumerate().map(numbered).collect()
@@ -240,7 +289,7 @@ mod tests {
         assert_eq!(of(&["b.toml"], Some("x/")).unwrap(), ["x/b.png"]);
         assert_eq!(of(&["b.toml", "c.ply"], Some("x")).unwrap(), ["x/b.png", "x/c.png"]);
         assert_eq!(of(&["b.toml"], Some("-")).unwrap(), ["-"]);
-        for wrong in ["x", "x.toml", "x.gif", ".png", "{name}"] {
+        for wrong in ["x", "x.toml", "x.bmp", ".png", "{name}"] {
             assert_eq!(of(&["b.toml"], Some(wrong)), Err(2), "{wrong}");
         }
         for wrong in ["-", "x.png"] {
@@ -284,8 +333,28 @@ mod tests {
     #[test]
     fn numbers_of_pictures() {
         let numbered = Numbered { scene: Path::new("a.b.toml"), index: 0, count: 1 };
-        let target = target(numbered, Some(Path::new("x/"))).unwrap();
-        assert_eq!(target.numbered(7, 36).name(), "x/a.b-007.png");
-        assert_eq!(target.numbered(7, 10_001).name(), "x/a.b-00007.png");
+        let named = |output: &str| target(numbered, Some(Path::new(output)), None).unwrap();
+        let [of_36, of_10001] = [Series::Turntable(36), Series::Turntable(10_001)];
+        assert_eq!(named("x/").of_series(&of_36, 7).name(), "x/a.b-007.png");
+        assert_eq!(named("x/").of_series(&of_10001, 7).name(), "x/a.b-00007.png");
+        let frames = Series::Frames { frames: 99..101, fps: 24.0 };
+        assert_eq!(named("x/").of_series(&frames, 0).name(), "x/a.b-0099.png");
+        assert_eq!(named("x/f-#####.{name}.png").of_series(&frames, 1).name(), "x/f-00100.a.b.png");
+        assert_eq!(named("#.png").of_series(&frames, 0).name(), "099.png");
+        assert_eq!(named("#.png").of_series(&Series::One, 0).name(), "#.png");
+    }
+
+    #[test]
+    fn formats_by_option() {
+        let numbered = Numbered { scene: Path::new("a.toml"), index: 0, count: 1 };
+        let named = |output: &str| target(numbered, Some(Path::new(output)), Some("jpg"));
+        assert_eq!(named("x/").unwrap().name(), "x/a.jpg");
+        assert_eq!(named("-").unwrap(), Target::Stdout(Format::Jpeg(Format::JPEG_QUALITY)));
+        assert_eq!(named("x.jpeg").unwrap().name(), "x.jpeg");
+        assert_eq!(named("x.png").map_err(|failure| failure.code()), Err(2));
+        assert_eq!(
+            target(Numbered { scene: Path::new("-"), ..numbered }, None, None).unwrap().name(),
+            "stdin.png"
+        );
     }
 }

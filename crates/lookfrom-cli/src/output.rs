@@ -3,10 +3,11 @@
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use lookfrom::session::Format;
+use lookfrom::session::{Format, Series};
 use lookfrom_scene::{Disk, Inputs};
 
 use crate::exit::Failure;
@@ -14,7 +15,7 @@ use crate::exit::Failure;
 /// Target of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
-    /// A PNG to stdout, of 8 or 16 bits.
+    /// Stdout.
     Stdout(Format),
     /// A file.
     File(PathBuf, Format),
@@ -37,14 +38,31 @@ impl Target {
         }
     }
 
-    /// Target of picture `number` of `count` of the same scene: NAME-000.png for NAME.png.
-    pub(crate) fn numbered(&self, number: u32, count: u32) -> Self {
-        let Self::File(path, format) = self else { return self.clone() };
-        let digits = (count - 1).to_string().len().max(3);
+    /// Target of a picture of several of the same scene: its number in place of `###`, or else NAME-LABEL.png for NAME.png.
+    pub(crate) fn of_series(&self, series: &Series, index: usize) -> Self {
+        let (Self::File(path, format), Some(label)) = (self, series.label(index)) else {
+            return self.clone();
+        };
+        if let Some((name, marks)) = number_marks(path) {
+            let [number, last] = series.number(index);
+            let digits = marks.len().max(last.to_string().len());
+            let name = format!("{}{number:0digits$}{}", &name[..marks.start], &name[marks.end..]);
+            return Self::File(path.with_file_name(name), *format);
+        }
         let mut name = path.file_stem().unwrap_or_default().to_owned();
-        name.push(format!("-{number:0digits$}."));
+        name.push(format!("-{label}."));
         name.push(path.extension().unwrap_or_default());
         Self::File(path.with_file_name(name), *format)
+    }
+
+    /// Whether its name has a place for a number, `###`.
+    pub(crate) fn has_number(&self) -> bool {
+        matches!(self, Self::File(path, _) if number_marks(path).is_some())
+    }
+
+    /// Whether it is the file at a path.
+    pub(crate) fn is(&self, other: &Path) -> bool {
+        matches!(self, Self::File(path, _) if path == other)
     }
 
     /// The format of the picture.
@@ -116,6 +134,14 @@ impl Target {
         }
         Ok(())
     }
+}
+
+/// The name of a file and where the number of a picture goes in it: the first `#` and those that follow.
+fn number_marks(path: &Path) -> Option<(&str, Range<usize>)> {
+    let name = path.file_name()?.to_str()?;
+    let start = name.find('#')?;
+    let end = name[start..].find(|c| c != '#').map_or(name.len(), |length| start + length);
+    Some((name, start..end))
 }
 
 /// Refuses to overwrite a file that was read. The error names `option` as the way to give another name.

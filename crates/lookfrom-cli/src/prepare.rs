@@ -8,6 +8,7 @@ use lookfrom_scene::{Disk, Files, Inputs, LoadContext, load};
 
 use crate::args::{Common, Overrides};
 use crate::exit::{self, Failure};
+use crate::pipe::Piped;
 
 /// A session of a scene or model file. Every file that is read joins `inputs`.
 ///
@@ -20,7 +21,7 @@ pub(crate) fn prepare(
     options: &Options,
     inputs: &Inputs,
 ) -> Result<Session, Failure> {
-    prepare_from(&inputs.record(&Disk, path.display().to_string()), path, common, options)
+    prepare_from(&inputs.record(&Piped, path.display().to_string()), path, common, options)
 }
 
 /// The same, read through `files`.
@@ -61,7 +62,7 @@ pub(crate) fn environment_from(files: &dyn Files, overrides: &Overrides) -> Resu
 /// prepared.
 pub(crate) fn read_ahead(scenes: &[PathBuf], overrides: &Overrides, inputs: &Inputs) {
     for scene in scenes {
-        let files = inputs.record(&Disk, scene.display().to_string());
+        let files = inputs.record(&Piped, scene.display().to_string());
         let _ = load::scene(
             scene,
             &mut LoadContext { import: overrides.model.choice(), ..LoadContext::new(&files) },

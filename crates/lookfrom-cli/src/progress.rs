@@ -24,17 +24,20 @@ pub(crate) struct Watcher<'a> {
 }
 
 impl<'a> Watcher<'a> {
-    /// Starts the clock. A bar is shown unless `quiet` or where stderr is not a terminal; it ends at `time` if there is one.
+    /// Starts the clock. A bar is shown, after the words of what is done, unless `quiet` or where stderr is not a terminal; it ends
+    /// at `time` if there is one.
     pub(crate) fn start(
         quiet: bool,
+        doing: Option<String>,
         time: Option<Duration>,
         preview: Option<Preview>,
         checkpoints: Option<&'a Checkpoints<'a>>,
     ) -> Self {
         let bar = (!quiet && stderr_is_terminal()).then(|| {
-            let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
+            let style = ProgressStyle::with_template("{prefix}{bar:40} {percent:>3} %  {msg}  {eta} left");
             let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
-            bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+            bar.with_prefix(doing.unwrap_or_default())
+                .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
         Self { bar, started: Instant::now(), done: AtomicU64::new(0), time, preview, checkpoints }
     }

@@ -1,129 +1,343 @@
 //! `lookfrom render`: pictures of scenes and models.
 
-use std::path::Path;
-use std::sync::mpsc::Receiver;
-use std::time::Instant;
+use std::path::{Path, PathBuf};
 
 use lookfrom::render::StopCriteria;
-use lookfrom::session::{FilmFile, Format, Options, Session};
+use lookfrom::session::{Format, Options, Series, Session, Sheet};
 use lookfrom_scene::Inputs;
-use lookfrom_scene::image::Image;
+use lookfrom_scene::image::{Animation, Image};
+use lookfrom_scene::load::PIPE;
+use lookfrom_scene::stamps::Stamps;
 
 use crate::args::RenderArguments;
 use crate::exit::{self, DONE, Failure, INTERRUPTED, answer, say};
-use crate::film::{self, Checkpoints};
 use crate::output::Target;
+use crate::picture::{self, Job, Outlet};
+use crate::pipe::Piped;
 use crate::prepare::{self, prepare};
-use crate::preview::{Preview, SoFar};
-use crate::progress::Watcher;
-use crate::report::{self, Summary};
-use crate::{interrupt, naming};
+use crate::report;
+use crate::{film, interrupt, naming, scenes};
+
+/// Failed scenes that are named at the end of a call.
+const MOST_FAILED: usize = 20;
+
+/// What a call is to do, checked as far as can be before scenes are read.
+struct Call<'a> {
+    arguments: &'a RenderArguments,
+    /// The arguments by which sessions can be opened again, for films.
+    typed: &'a [String],
+    scenes: Vec<PathBuf>,
+    /// One for each scene; that of the sheet if there is one.
+    targets: Vec<Target>,
+    series: Series,
+}
 
 /// Renders every scene and returns the exit code. A scene that fails does not stop the others; its code is kept. Films keep
 /// `typed`, the arguments by which their sessions can be opened again.
 pub(crate) fn run(arguments: &RenderArguments, typed: &[String]) -> u8 {
-    let ready = naming::targets(&arguments.scenes, arguments.output.as_deref(), arguments.json)
-        .and_then(|targets| arguments.encoding.apply(targets))
-        .and_then(|targets| prepare::use_threads(&arguments.common).map(|()| targets));
-    let ready = ready.and_then(|targets| match arguments.write_every {
-        Some(_) if targets.iter().any(Target::is_stdout) => {
-            Err(Failure::Usage("--write-every needs an output file; -o - is stdout".to_owned()))
-        }
-        _ => Ok(targets),
+    let ready = Call::new(arguments, typed).and_then(|call| {
+        prepare::use_threads(&arguments.common)?;
+        Ok(call)
     });
-    let ready = ready.and_then(|targets| match arguments.turntable {
-        Some(_) if targets.iter().any(Target::is_stdout) => {
-            Err(Failure::Usage("--turntable writes several files; -o - is stdout".to_owned()))
-        }
-        _ => Ok(targets),
-    });
-    let ready = ready.and_then(|targets| {
-        match arguments.keep.film && targets.iter().any(|target| target.format() != Format::Exr) {
-            true => Err(Failure::Usage(
-                "--film needs an .exr: -o NAME.exr; make other pictures of it by lookfrom develop".to_owned(),
-            )),
-            false => Ok(targets),
-        }
-    });
-    let inputs = Inputs::default();
-    let ready = ready.and_then(|targets| Ok((targets, prepare::environment(&arguments.overrides, &inputs)?)));
-    let (targets, environment) = match ready {
-        Ok(ready) => ready,
+    let call = match ready {
+        Ok(call) => call,
         Err(failure) => return failure.report(),
     };
     interrupt::listen();
-    // A picture may overwrite an input of a later scene. Where no output file exists yet, nothing can be lost.
-    if targets.len() > 1 && targets.iter().flat_map(|target| pictures(target, arguments)).any(|t| t.exists())
-    {
-        prepare::read_ahead(&arguments.scenes, &arguments.overrides, &inputs);
-    }
-    let mut code = DONE;
-    for (index, (scene, target)) in arguments.scenes.iter().zip(&targets).enumerate() {
-        let of_scene = match render_all(scene, target, (arguments, typed), environment.as_ref(), &inputs) {
-            Ok(of_scene) => of_scene,
-            Err(failure) => {
-                let of_failure = failure.report();
-                if arguments.json {
-                    let _ = answer(&report::failure(scene, &failure)).map_err(|failure| failure.report());
-                }
-                of_failure
-            }
+    if arguments.watch { call.watch() } else { call.render(&Inputs::default()) }
+}
+
+impl<'a> Call<'a> {
+    /// # Errors
+    /// `Usage` for options that do not go together; as [`naming::targets`].
+    fn new(arguments: &'a RenderArguments, typed: &'a [String]) -> Result<Self, Failure> {
+        let RenderArguments { several, keep, encoding, .. } = arguments;
+        let usage = |message: String| Err(Failure::Usage(message));
+        let scenes = scenes::expanded(&arguments.scenes)?;
+        let output = arguments.output.as_deref();
+        let targets = match several.sheet {
+            Some(_) => vec![naming::sheet(output, encoding.format(), arguments.json)?; scenes.len()],
+            None => naming::targets(&scenes, output, encoding.format(), arguments.json)?,
         };
-        if interrupt::asked() && (of_scene == INTERRUPTED || index + 1 < targets.len()) {
-            return INTERRUPTED;
+        let targets = encoding.apply(targets)?;
+        let series = several.series();
+        let call = Self { arguments, typed, scenes, targets, series };
+        let is_piped = call.targets.iter().any(Target::is_stdout);
+        let is_several = call.series != Series::One;
+        if is_piped && arguments.write_every.is_some() {
+            return usage("--write-every needs an output file; -o - is stdout".to_owned());
         }
-        if code == DONE {
-            code = of_scene;
+        if is_piped && is_several && several.sheet.is_none() {
+            return usage("--turntable, --views and --frames write several files; -o - is stdout".to_owned());
         }
+        if keep.film && call.targets.iter().any(|target| target.format() != Format::Exr) {
+            return usage(
+                "--film needs an .exr: -o NAME.exr; make other pictures of it by lookfrom develop".to_owned(),
+            );
+        }
+        if keep.film && matches!(call.series, Series::Views(_) | Series::Frames { .. }) {
+            return usage(
+                "--film is for single pictures and turntables: give --view or --at in calls of their own"
+                    .to_owned(),
+            );
+        }
+        if keep.film && call.scenes.iter().any(|scene| scene == Path::new(PIPE)) {
+            return usage("--film needs a scene in a file, which can be read again; - is stdin".to_owned());
+        }
+        if arguments.write_every.is_some() && call.targets.iter().any(|target| call.is_animation(target)) {
+            return usage("--write-every is for single pictures, not for an animation".to_owned());
+        }
+        if let Some((columns, Some(rows))) = several.sheet {
+            let (cells, pictures) = (columns as usize * rows as usize, call.count());
+            if pictures > cells {
+                return usage(format!(
+                    "{pictures} pictures do not fit into the {cells} cells of --sheet {columns}x{rows}; --sheet {columns} \
+                     has as many rows as it takes"
+                ));
+            }
+        }
+        Ok(call)
     }
-    code
-}
 
-/// Targets of the pictures of one scene: one, or those of a turntable.
-fn pictures(target: &Target, arguments: &RenderArguments) -> Vec<Target> {
-    match arguments.turntable {
-        None => vec![target.clone()],
-        Some(count) => (0..count).map(|number| target.numbered(number, count)).collect(),
+    /// The number of all pictures.
+    fn count(&self) -> usize {
+        self.scenes.len() * self.series.count()
     }
-}
 
-/// Renders all pictures of one scene, which is read once, prints the summaries and returns the exit code.
-fn render_all(
-    path: &Path,
-    target: &Target,
-    (arguments, typed): (&RenderArguments, &[String]),
-    environment: Option<&Image>,
-    inputs: &Inputs,
-) -> Result<u8, Failure> {
-    let targets = pictures(target, arguments);
-    let start = arguments.overrides.model.turn.unwrap_or(0.0);
-    let mut options = options(arguments, target, environment);
-    options.turn = options.turn.or(arguments.turntable.map(|_| start));
-    let mut session = prepare(path, &arguments.common, &options, inputs)?;
-    if !arguments.quiet {
-        exit::say_warnings(session.warnings());
+    /// Whether the pictures of a scene become one that moves.
+    fn is_animation(&self, target: &Target) -> bool {
+        self.series != Series::One
+            && self.arguments.several.sheet.is_none()
+            && target.format().animation().is_ok()
+            && !target.has_number()
     }
-    keep_inputs(path, &targets, inputs)?;
-    for (number, target) in targets.iter().enumerate() {
-        let degrees = start + 360.0 * number as f64 / targets.len() as f64;
-        if number > 0 {
-            session.set_turn(degrees).map_err(exit::in_scene(path))?;
+
+    /// Targets of the pictures of one scene.
+    fn pictures(&self, target: &Target) -> Vec<Target> {
+        match self.arguments.several.sheet.is_some() || self.is_animation(target) {
+            true => vec![target.clone(); self.series.count()],
+            false => (0..self.series.count()).map(|index| target.of_series(&self.series, index)).collect(),
         }
-        let mut typed = typed.to_vec();
-        if arguments.turntable.is_some() {
+    }
+
+    /// Renders all scenes, again after each change of their files, until Ctrl-C.
+    fn watch(&self) -> u8 {
+        let mut before = Stamps::default();
+        loop {
+            let inputs = Inputs::default();
+            let code = self.render(&inputs);
+            if interrupt::asked() {
+                return code;
+            }
+            let written: Vec<Target> = self.targets.iter().flat_map(|target| self.pictures(target)).collect();
+            let paths: Vec<PathBuf> = inputs.paths();
+            let paths: Vec<PathBuf> =
+                paths.into_iter().filter(|path| !written.iter().any(|target| target.is(path))).collect();
+            before = before.after_reading(&paths);
+            if !self.arguments.quiet {
+                say("waiting for changes; Ctrl-C ends this");
+            }
+            // Nothing is lost by Ctrl-C now, which ends the process.
+            let Some(now) = before.wait(&interrupt::asked) else { return INTERRUPTED };
+            before = now;
+        }
+    }
+
+    /// Renders all scenes and returns the exit code. Every file that is read joins `inputs`.
+    fn render(&self, inputs: &Inputs) -> u8 {
+        let Self { arguments, scenes, targets, .. } = self;
+        let environment = match prepare::environment(&arguments.overrides, inputs) {
+            Ok(environment) => environment,
+            Err(failure) => return failure.report(),
+        };
+        // A picture may overwrite an input of a later scene. Where no output file exists yet, nothing can be lost.
+        if scenes.len() > 1 && targets.iter().flat_map(|target| self.pictures(target)).any(|t| t.exists()) {
+            prepare::read_ahead(scenes, &arguments.overrides, inputs);
+        }
+        let mut sheet = arguments.several.sheet.map(|(columns, rows)| {
+            let needed = self.count().div_ceil(columns as usize) as u32;
+            Sheet::new(columns, rows.unwrap_or(needed))
+        });
+        let (mut code, mut failed) = (DONE, Vec::new());
+        for (index, scene) in scenes.iter().enumerate() {
+            let of_scene = match self.render_scene(index, environment.as_ref(), inputs, sheet.as_mut()) {
+                Ok(of_scene) => of_scene,
+                Err(failure) => {
+                    failed.push(scene.display().to_string());
+                    let of_failure = failure.report();
+                    if arguments.json {
+                        let _ = answer(&report::failure(scene, &failure)).map_err(|failure| failure.report());
+                    }
+                    of_failure
+                }
+            };
+            if code == DONE || of_scene == INTERRUPTED {
+                code = of_scene;
+            }
+            if interrupt::asked() && (of_scene == INTERRUPTED || index + 1 < scenes.len()) {
+                code = INTERRUPTED;
+                break;
+            }
+        }
+        if let Some(sheet) = sheet
+            && let Err(failure) = write_sheet(&sheet, &targets[0], inputs)
+        {
+            // Where nothing could be rendered, that has been told.
+            code = if failed.len() == scenes.len() { code } else { failure.report() };
+        }
+        if scenes.len() > 1 && !failed.is_empty() && !arguments.quiet {
+            let named = failed.iter().take(MOST_FAILED).map(String::as_str).collect::<Vec<_>>().join(", ");
+            let more = if failed.len() > MOST_FAILED { ", …" } else { "" };
+            say(&format!("{} of {} scenes failed: {named}{more}", failed.len(), scenes.len()));
+        }
+        code
+    }
+
+    /// Renders all pictures of one scene, prints the summaries and returns the exit code.
+    fn render_scene(
+        &self,
+        index: usize,
+        environment: Option<&Image>,
+        inputs: &Inputs,
+        sheet: Option<&mut Sheet>,
+    ) -> Result<u8, Failure> {
+        let target = &self.targets[index];
+        if let Some(sheet) = sheet {
+            // Cells without a picture stay empty, so that each picture is where it belongs.
+            let mut shown = Vec::new();
+            let code = self.render_series(
+                index,
+                environment,
+                inputs,
+                &mut Outlet::Gathered(&mut |finished| {
+                    shown.push(finished.shown());
+                    Ok(())
+                }),
+            );
+            let count = self.series.count();
+            shown
+                .into_iter()
+                .map(Some)
+                .chain(std::iter::repeat(None))
+                .take(count)
+                .for_each(|cell| sheet.add(cell));
+            return code;
+        }
+        if !self.is_animation(target) {
+            return self.render_series(index, environment, inputs, &mut Outlet::Target);
+        }
+        if self.arguments.several.skip_existing && target.exists() {
+            return self.skipped(&self.scenes[index], target).map(|()| DONE);
+        }
+        let (format, fps) = (target.format().animation()?, self.arguments.several.fps);
+        let mut animation: Option<Animation> = None;
+        let mut outlet = |finished: &lookfrom::session::Finished| {
+            let shown = finished.shown();
+            let animation = match &mut animation {
+                Some(animation) => animation,
+                none => {
+                    none.insert(Animation::new(format, [shown.width, shown.height], fps, shown.has_alpha)?)
+                }
+            };
+            Ok(animation.add(&shown.rgba)?)
+        };
+        let code = self.render_series(index, environment, inputs, &mut Outlet::Gathered(&mut outlet));
+        if let Some(animation) = animation {
+            let bytes = animation.finish().map_err(|error| cannot_encode(target, &error))?;
+            target.write(&bytes, inputs)?;
+        }
+        code
+    }
+
+    /// Renders the pictures of one scene one by one.
+    fn render_series(
+        &self,
+        index: usize,
+        environment: Option<&Image>,
+        inputs: &Inputs,
+        outlet: &mut Outlet<'_>,
+    ) -> Result<u8, Failure> {
+        let Self { arguments, series, .. } = self;
+        let (path, target) = (self.scenes[index].as_path(), &self.targets[index]);
+        let in_scene = exit::in_scene(path);
+        let targets = self.pictures(target);
+        let skips = arguments.several.skip_existing && matches!(outlet, Outlet::Target);
+        let mut options: Option<Options> = None;
+        let mut session: Option<Session> = None;
+        for (number, target) in targets.iter().enumerate() {
+            if skips && target.exists() {
+                self.skipped(path, target)?;
+                continue;
+            }
+            let options = match &options {
+                Some(options) => options,
+                None => {
+                    let files = inputs.record(&Piped, path.display().to_string());
+                    let of_all = self::options(arguments, target, environment);
+                    options.insert(series.framed(path, &files, &of_all).map_err(&in_scene)?)
+                }
+            };
+            let is_there = match &mut session {
+                Some(session) => series.go_to(number, options, session).map_err(&in_scene)?,
+                None => false,
+            };
+            if !is_there {
+                // The memory of the last one is needed for the next.
+                let is_first = session.take().is_none();
+                let next = prepare(path, &arguments.common, &series.options(number, options), inputs)?;
+                if is_first && !arguments.quiet {
+                    exit::say_warnings(next.warnings());
+                }
+                keep_inputs(path, &targets, inputs)?;
+                session = Some(next);
+            }
+            let Some(session) = &session else { continue };
+            let place = (self.count() > 1).then(|| [index * series.count() + number + 1, self.count()]);
+            let typed = self.typed(number, options);
+            let job = Job { arguments, typed: &typed, inputs, place };
+            let code = interrupt::keeping(|| -> Result<u8, Failure> {
+                let film = if arguments.keep.go_on { film::existing(target)? } else { None };
+                let summary = picture::render(path, target, session, film, &job, outlet)?;
+                picture::told(&summary, arguments)
+            })?;
+            if code != DONE {
+                return Ok(code);
+            }
+        }
+        Ok(DONE)
+    }
+
+    /// The arguments by which the session of one picture can be opened again.
+    fn typed(&self, number: usize, options: &Options) -> Vec<String> {
+        let mut typed = self.typed.to_vec();
+        if let (Series::Turntable(_), Some(degrees)) =
+            (&self.series, self.series.options(number, options).turn)
+        {
             typed.retain(|argument| !argument.starts_with("--turn="));
             typed.push(format!("--turn={degrees}"));
         }
-        let code = interrupt::keeping(|| -> Result<u8, Failure> {
-            let film = if arguments.keep.go_on { film::existing(target)? } else { None };
-            let summary = render_picture(path, target, &session, film, (arguments, &typed), inputs)?;
-            told(&summary, arguments)
-        })?;
-        if code != DONE {
-            return Ok(code);
-        }
+        typed
     }
-    Ok(DONE)
+
+    /// Tells that a picture is there already.
+    fn skipped(&self, scene: &Path, target: &Target) -> Result<(), Failure> {
+        if !self.arguments.quiet {
+            say(&format!("{} exists; not rendered", target.name()));
+        }
+        if self.arguments.json {
+            answer(&report::skipped(scene, &target.name()))?;
+        }
+        Ok(())
+    }
+}
+
+fn write_sheet(sheet: &Sheet, target: &Target, inputs: &Inputs) -> Result<(), Failure> {
+    let shown = sheet.shown().and_then(|shown| shown.encode(target.format()));
+    target.write(&shown.map_err(|error| cannot_encode(target, &error))?, inputs)
+}
+
+fn cannot_encode(target: &Target, error: &lookfrom_scene::Error) -> Failure {
+    Failure::Output(format!("{}: {}", target.name(), error.message))
 }
 
 /// Refuses pictures that would overwrite an input, and a scene that reads a picture of this call.
@@ -150,99 +364,5 @@ pub(crate) fn options(arguments: &RenderArguments, target: &Target, environment:
         film: arguments.keep.film,
         part: arguments.keep.part,
         ..arguments.overrides.options(&arguments.common, environment)
-    }
-}
-
-/// Renders a picture, or the rest of one whose `film` is there, and writes it.
-pub(crate) fn render_picture(
-    path: &Path,
-    target: &Target,
-    session: &Session,
-    film: Option<FilmFile>,
-    (arguments, typed): (&RenderArguments, &[String]),
-    inputs: &Inputs,
-) -> Result<Summary, Failure> {
-    let in_scene = exit::in_scene(path);
-    let provenance = match arguments.keep.film {
-        false => None,
-        true => {
-            let mut provenance = session.provenance().map_err(&in_scene)?;
-            provenance.scene = Some(path.display().to_string());
-            provenance.arguments = typed.to_vec();
-            film::rebase(&mut provenance, Path::new(""), target.folder());
-            Some(provenance)
-        }
-    };
-    let every = arguments.keep.checkpoint.unwrap_or(film::INTERVAL);
-    let checkpoints =
-        provenance.as_ref().map(|provenance| Checkpoints::new(every, target, provenance, inputs));
-
-    // Render, and write previews and checkpoints meanwhile.
-    let started = Instant::now();
-    let finished = std::thread::scope(|scope| {
-        let preview = arguments.write_every.map(|every| {
-            let (preview, pictures) = Preview::start(every, session.image());
-            scope.spawn(move || write_previews(target, session, &pictures, inputs));
-            preview
-        });
-        let watcher = Watcher::start(arguments.quiet, arguments.time, preview, checkpoints.as_ref());
-        let finished = match film {
-            Some(film) => session.resume(film, &watcher),
-            None => session.render(&watcher),
-        };
-        watcher.finish();
-        finished
-    });
-    let render_time = report::seconds(started.elapsed());
-    let finished = finished.map_err(in_scene)?;
-
-    // Write, unless the render was stopped before the first sample.
-    let started = Instant::now();
-    let has_picture = finished.rendered.samples_taken > 0;
-    if has_picture {
-        match &provenance {
-            Some(provenance) => film::write(target, provenance, &finished, inputs)?,
-            None => {
-                let bytes = finished.encode(target.format());
-                let bytes = bytes
-                    .map_err(|error| Failure::Output(format!("{}: {}", target.name(), error.message)))?;
-                target.write(&bytes, inputs)?;
-            }
-        }
-    }
-    let mut summary = Summary::new(session, &finished);
-    summary.output = has_picture.then(|| target.name());
-    summary.denoised &= has_picture;
-    // They take time that nobody should wait for who does not read of them.
-    if arguments.json || !arguments.quiet {
-        summary.find_fireflies(session, &finished);
-    }
-    summary.measured(render_time, report::seconds(started.elapsed()));
-    Ok(summary)
-}
-
-/// Prints the summary of a picture, and returns the exit code.
-pub(crate) fn told(summary: &Summary, arguments: &RenderArguments) -> Result<u8, Failure> {
-    if !arguments.quiet {
-        say(&summary.for_people());
-    }
-    if arguments.json {
-        answer(&summary.as_json())?;
-    }
-    Ok(if summary.cancelled { INTERRUPTED } else { DONE })
-}
-
-/// Writes previews as they arrive. Only the first failure is reported; the final picture is written elsewhere.
-fn write_previews(target: &Target, session: &Session, pictures: &Receiver<SoFar>, inputs: &Inputs) {
-    let mut told = false;
-    for (picture, mean) in pictures {
-        let bytes = session.encode_preview(&picture, mean, target.format());
-        let bytes = bytes.map_err(|error| Failure::Output(format!("{}: {}", target.name(), error.message)));
-        if let Err(failure) = bytes.and_then(|bytes| target.write(&bytes, inputs))
-            && !told
-        {
-            say(&format!("warning: no preview: {failure}"));
-            told = true;
-        }
     }
 }

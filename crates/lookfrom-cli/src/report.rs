@@ -20,6 +20,9 @@ const MOST_FIREFLIES: usize = 3;
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     pub(crate) scene: String,
+    /// The number of the picture in the call, from 1, and the number of all, if there are several.
+    #[serde(skip)]
+    pub(crate) place: Option<[usize; 2]>,
     /// `None` where the render was stopped before there was a picture.
     pub(crate) output: Option<String>,
     pub(crate) width: u32,
@@ -100,6 +103,7 @@ impl Summary {
         let is_cancelled = rendered.reason == StopReason::Cancelled;
         Self {
             scene: session.name().to_owned(),
+            place: None,
             output: None,
             width: session.image().width,
             height: session.image().height,
@@ -156,6 +160,9 @@ impl Summary {
         let [camera, secondary, shadow, total] = [camera, secondary, shadow, total].map(thousands);
         let mut text = String::new();
         // Writing to a string cannot fail.
+        if let Some([number, count]) = self.place {
+            let _ = write!(text, "{number} of {count}: ");
+        }
         let _ = writeln!(
             text,
             "{scene} → {output}: {width} × {height} pixels, {samples} samples per pixel, {integrator}{}",
@@ -231,6 +238,17 @@ pub(crate) fn failure(scene: &Path, failure: &Failure) -> String {
     json::line(&Failed { scene: scene.display().to_string(), error: failure.to_string() })
 }
 
+/// The JSON object of a picture that is there already.
+pub(crate) fn skipped(scene: &Path, output: &str) -> String {
+    #[derive(Serialize)]
+    struct Skipped<'a> {
+        scene: String,
+        output: &'a str,
+        skipped: bool,
+    }
+    json::line(&Skipped { scene: scene.display().to_string(), output, skipped: true })
+}
+
 /// A duration in seconds, to the microsecond.
 pub(crate) fn seconds(duration: Duration) -> f64 {
     duration.as_micros() as f64 / 1e6
@@ -273,6 +291,7 @@ mod tests {
     fn summary() -> Summary {
         Summary {
             scene: "a.toml".into(),
+            place: None,
             output: Some("a.png".into()),
             width: 4,
             height: 3,

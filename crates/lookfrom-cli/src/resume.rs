@@ -12,6 +12,7 @@ use crate::exit::{self, Failure};
 use crate::film;
 use crate::interrupt;
 use crate::output::{Target, folder_or_here};
+use crate::picture::{self, Job, Outlet};
 use crate::prepare::{self, prepare};
 use crate::render;
 
@@ -44,9 +45,9 @@ fn resume(arguments: &ResumeArguments) -> Result<u8, Failure> {
     }
     target.keep_inputs(&inputs)?;
     interrupt::keeping(|| {
-        let summary =
-            render::render_picture(scene, &target, &session, Some(film), (&of_render, &typed), &inputs)?;
-        render::told(&summary, &of_render)
+        let job = Job { arguments: &of_render, typed: &typed, inputs: &inputs, place: None };
+        let summary = picture::render(scene, &target, &session, Some(film), &job, &mut Outlet::Target)?;
+        picture::told(&summary, &of_render)
     })
 }
 

@@ -10,8 +10,11 @@ use glam::DVec3;
 use lookfrom_scene::Location;
 use lookfrom_scene::image::linear_from_srgb;
 use lookfrom_scene::settings::{Background, Filter, Layers, LightPathLayer, PixelBounds};
+use lookfrom_scene::studio::Viewpoint;
 
 use lookfrom::session::{Fireflies, MOST_SAMPLES};
+
+use crate::args::Views;
 
 /// AOVs of an EXR.
 pub(crate) const LAYERS: &[(&str, Layers)] = &[("none", Layers::None), ("geometry", Layers::Geometry)];
@@ -98,6 +101,39 @@ pub(crate) fn size(typed: &str) -> Result<[u32; 2], String> {
     match (side(width), side(height)) {
         (Some(width), Some(height)) => Ok([width, height]),
         _ => Err("expected pixels, such as 256 for a square or 640x360".to_owned()),
+    }
+}
+
+/// `C` or `CxR`: columns, and rows.
+pub(crate) fn sheet(typed: &str) -> Result<(u32, Option<u32>), String> {
+    let side = |typed: &str| typed.trim().parse::<u32>().ok().filter(|&side| (1..=1000).contains(&side));
+    let sides = match typed.split_once(['x', '×']) {
+        None => side(typed).map(|columns| (columns, None)),
+        Some((columns, rows)) => side(columns).zip(side(rows).map(Some)),
+    };
+    sides.ok_or_else(|| {
+        "expected columns, such as 4, or columns and rows, such as 4x2; at most 1000".to_owned()
+    })
+}
+
+/// `front,top` or `all`.
+pub(crate) fn views(typed: &str) -> Result<Views, String> {
+    if typed == "all" {
+        return Ok(Viewpoint::WORDS.to_vec());
+    }
+    let view = |typed: &str| {
+        let known = Viewpoint::WORDS.iter().find(|(word, _)| *word == typed.trim());
+        known.copied().ok_or_else(|| {
+            let words: Vec<&str> = Viewpoint::WORDS.iter().map(|&(word, _)| word).collect();
+            format!("there is no view {typed:?}; the views are {}, or all", words.join(", "))
+        })
+    };
+    let views = typed.split(',').map(view).collect::<Result<Views, String>>()?;
+    let mut names: Vec<&str> = views.iter().map(|&(name, _)| name).collect();
+    names.sort_unstable();
+    match names.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(format!("the view {} twice", pair[0])),
+        None => Ok(views),
     }
 }
 
@@ -239,6 +275,20 @@ mod tests {
         }
         for wrong in ["", "#fff", "#gggggg", "red"] {
             assert!(background(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn sheets_and_views() {
+        assert_eq!((sheet("4x2"), sheet("3")), (Ok((4, Some(2))), Ok((3, None))));
+        for wrong in ["", "0", "4x", "4x0", "x2", "1001", "-1"] {
+            assert!(sheet(wrong).is_err(), "{wrong}");
+        }
+        let names = |typed| views(typed).map(|views| views.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+        assert_eq!(names("top, front"), Ok(vec!["top", "front"]));
+        assert_eq!(names("all").unwrap().len(), Viewpoint::WORDS.len());
+        for wrong in ["", "front,", "Top", "front,front", "all,top"] {
+            assert!(views(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -19,9 +19,13 @@ mod command {
     mod models;
     mod naming;
     mod pinned;
+    mod pipes;
     mod render;
     mod schema;
+    mod series;
     mod stage;
     #[cfg(all(unix, feature = "view"))]
     mod view;
+    #[cfg(unix)]
+    mod watch;
 }

@@ -1,5 +1,6 @@
 //! Decoded images; their readers, writers and comparison.
 
+mod animation;
 mod basis;
 pub mod compare;
 mod encoding;
@@ -12,6 +13,7 @@ mod srgb;
 mod texels;
 mod write;
 
+pub use self::animation::{Animation, AnimationFormat};
 pub use self::encoding::Encoding;
 pub use self::metadata::Metadata;
 pub use self::openexr::{Channels, ExrChannel, ExrHeader, ExrRows, encode_exr, read_exr, write_exr};

@@ -28,6 +28,7 @@ pub mod scene;
 pub mod settings;
 pub mod shape;
 pub mod spectrum;
+pub mod stamps;
 pub mod stl;
 pub mod studio;
 pub mod suggest;

@@ -14,9 +14,12 @@ use crate::{gltf, model, packed, pbrt, studio, toml};
 /// The reflectance of models whose file has no materials.
 const CLAY: f32 = 0.8;
 
+/// The path that stands for a pipe, from which a file comes without a name.
+pub const PIPE: &str = "-";
+
 /// Reads a scene in our own format (`.toml`), of pbrt-v4 (`.pbrt`), a glTF file (`.gltf`, `.glb`), or a model file, whose
 /// parts are placed as in the file and have a diffuse grey material "default" if the file gives them none.
-/// [`LoadContext::import`] selects the camera of a file.
+/// [`LoadContext::import`] selects the camera of a file. From a [`PIPE`], what no other reader knows is our own format.
 ///
 /// # Errors
 /// `Unsupported` if the format is not known, and the errors of the format's reader.
@@ -40,12 +43,26 @@ fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     }
     let (image, render) = studio::settings_for_models();
     let mut scene = Scene { source_format: SourceFormat::Model, image, render, ..Scene::default() };
-    let parts = model(path, context, &mut scene)?.parts;
+    let parts = match model(path, context, &mut scene) {
+        Ok(model) => model.parts,
+        Err(error) if error.kind == ErrorKind::Unsupported && path == Path::new(PIPE) => {
+            return toml::read(path, context);
+        }
+        Err(error) => return Err(error),
+    };
     let default = MaterialId(scene.materials.len() as u32);
     let clay = MaterialKind::Diffuse { reflectance: Color::gray(CLAY) };
     scene.materials.push(Material::new("default", Location::default(), clay));
     scene.shapes = shapes(parts, &Location::file(path), default);
     Ok(scene)
+}
+
+/// Whether a file has the name of a scene or of a model, as [`scene`] reads them.
+pub fn has_known_name(path: &Path) -> bool {
+    is_toml(path)
+        || extension(&packed::unpacked_name(path)) == "pbrt"
+        || GLTF.contains(&&*extension(path))
+        || model::is_model(path)
 }
 
 /// Whether a file is a scene in our own format.

@@ -7,6 +7,7 @@ mod framing;
 mod lamps;
 mod surroundings;
 mod turntable;
+mod viewpoint;
 
 use framing::Framing;
 use glam::DVec3;
@@ -23,6 +24,7 @@ use crate::shape::{Emission, Geometry, Shape};
 pub use lamps::has_lamps;
 pub use surroundings::{add_floor, surround, turn_environments};
 pub use turntable::Turntable;
+pub use viewpoint::{Viewpoint, up_of_camera};
 
 /// Vertical field of view in degrees, and the tangent of its half: 2 − √3.
 const FOV: f64 = 30.0;
@@ -56,16 +58,24 @@ const DENOISED_SAMPLES: u32 = 16;
 const SMALL_DENOISED_SAMPLES: u32 = 6;
 const SMALL_DENOISED_PIXELS: u64 = 512 * 512;
 
-/// Adds a camera that frames the scene's bounds, if there is none. `up` as in [`add_lights_and_camera`].
-pub fn frame(scene: &mut Scene, up: Option<DVec3>) {
-    StudioFrame::of(scene, up).add_camera(scene);
+/// Adds a camera that shows the scene from a viewpoint, if there is none. It frames `bounds`, or without them what is in the
+/// scene. `up` as in [`add_lights_and_camera`].
+pub fn frame(scene: &mut Scene, up: Option<DVec3>, viewpoint: &Viewpoint, bounds: Option<Bounds>) {
+    let stage = StudioFrame::of(scene, up);
+    match bounds {
+        None => stage.add_camera(scene, viewpoint),
+        Some(_) if scene.camera.is_some() => {}
+        Some(bounds) => {
+            scene.camera = Some(framing_from(bounds, aspect(scene), stage.basis, viewpoint));
+        }
+    }
 }
 
 /// Adds what the scene lacks: a camera that frames its bounds, if there is none, and light, if there are neither lights
 /// nor emissive shapes. `up` is the direction (of any length) that is up; without it, the camera's, or else y.
 pub fn add_lights_and_camera(scene: &mut Scene, up: Option<DVec3>) {
     let stage = StudioFrame::of(scene, up);
-    stage.add_camera(scene);
+    stage.add_camera(scene, &Viewpoint::THREE_QUARTER);
     stage.add_light(scene);
 }
 
@@ -73,7 +83,7 @@ pub fn add_lights_and_camera(scene: &mut Scene, up: Option<DVec3>) {
 /// lights nor lamps ([`has_lamps`]); where the camera is inside, a point light at the camera as well. `up` as in [`add_lights_and_camera`].
 pub fn add_studio_and_camera(scene: &mut Scene, up: Option<DVec3>) {
     let stage = StudioFrame::of(scene, up);
-    stage.add_camera(scene);
+    stage.add_camera(scene, &Viewpoint::THREE_QUARTER);
     if scene.lights.is_empty() && !has_lamps(scene) {
         stage.add_studio(scene);
         if let Some(position) = stage.eye_inside(scene) {
@@ -108,8 +118,13 @@ pub fn samples_for_models(image: &ImageSettings) -> u32 {
 /// A camera that shows the box from the right, above and front, as large as it fits into an image of this aspect ratio
 /// (width / height). An empty box is replaced by a unit box around the origin. `up` may have any length.
 pub fn framing(bounds: Bounds, aspect: f64, up: DVec3) -> Camera {
+    framing_from(bounds, aspect, basis(up), &Viewpoint::THREE_QUARTER)
+}
+
+/// The same from any viewpoint; `basis` is right, up and towards the viewer.
+fn framing_from(bounds: Bounds, aspect: f64, basis: [DVec3; 3], viewpoint: &Viewpoint) -> Camera {
     let bounds = sane(bounds);
-    let mut framing = Framing::new(bounds.center(), basis(up), aspect);
+    let mut framing = Framing::new(bounds.center(), basis, aspect, viewpoint);
     corners(bounds).into_iter().for_each(|corner| framing.include(corner));
     framing.camera()
 }
@@ -145,9 +160,9 @@ impl StudioFrame {
         Self { bounds: sane(scene.bounds()), basis: basis(up.or_else(of_camera).unwrap_or(DVec3::Y)) }
     }
 
-    fn add_camera(&self, scene: &mut Scene) {
+    fn add_camera(&self, scene: &mut Scene, viewpoint: &Viewpoint) {
         if scene.camera.is_none() {
-            let mut framing = Framing::new(self.bounds.center(), self.basis, aspect(scene));
+            let mut framing = Framing::new(self.bounds.center(), self.basis, aspect(scene), viewpoint);
             if self.bounds == scene.bounds() {
                 visit(scene, &mut |point| framing.include(point));
             } else {
@@ -371,7 +386,7 @@ mod tests {
             world_from_object: DMat4::from_scale(DVec3::splat(1e6)),
             ..Shape::new(Location::default(), mesh, crate::scene::MaterialId(0))
         });
-        StudioFrame::of(&scene, None).add_camera(&mut scene);
+        StudioFrame::of(&scene, None).add_camera(&mut scene, &Viewpoint::THREE_QUARTER);
         let camera = scene.camera.as_ref().unwrap();
         let most = scene.meshes[0].positions.iter().fold(0.0_f64, |most, position| {
             let [x, y, _] = project(camera, 4.0 / 3.0, 1e6 * position.as_dvec3());

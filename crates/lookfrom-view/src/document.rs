@@ -1,24 +1,18 @@
 //! The scene that all windows share. It is read again when one of its files changes; while it cannot be read, the last good
 //! one stays, with the error.
-//!
-//! Files are polled, not watched by the system: that works on network folders, too, and with editors that replace files.
 
-use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, Weak};
-use std::time::{Duration, SystemTime};
 
 use lookfrom::session::{Options, Session};
 use lookfrom_scene::image::{self, Image};
+use lookfrom_scene::stamps::Stamps;
 use lookfrom_scene::{Disk, Error, ErrorKind, Inputs, LoadContext, Location, Result};
 
 use crate::Settings;
 use crate::mailbox::{Mailbox, Task, locked};
 use crate::message::Answer;
-
-/// The interval at which files are polled.
-const POLL: Duration = Duration::from_millis(300);
 
 /// The scene, its files and its windows.
 #[derive(Debug)]
@@ -46,9 +40,6 @@ pub(crate) struct Loaded {
     /// The picture to compare with.
     pub(crate) reference: Option<Image>,
 }
-
-/// Time of the last change and length of each file; `None` for one that is not there.
-type Stamps = BTreeMap<PathBuf, Option<(SystemTime, u64)>>;
 
 impl Document {
     /// A document of which nothing is read yet.
@@ -80,38 +71,20 @@ impl Document {
 
     /// Reads the scene, and again after each change of its files, until `stopped`.
     pub(crate) fn watch(&self, stopped: &dyn Fn() -> bool) {
-        let mut known = self.read_again(Stamps::new());
-        while !stopped() {
-            std::thread::sleep(POLL);
-            let mut now = stamps(known.keys());
-            if now == known {
-                continue;
-            }
-            // Whoever writes them may not be done.
-            loop {
-                std::thread::sleep(POLL / 3);
-                let later = stamps(known.keys());
-                if later == now || stopped() {
-                    break;
-                }
-                now = later;
-            }
+        let mut known = self.read_again(Stamps::default());
+        while let Some(now) = known.wait(stopped) {
             known = self.read_again(now);
         }
     }
 
     /// Reads the scene, tells all windows, and returns the stamps of its files: as they were before, so that a change
     /// while it is read counts.
-    fn read_again(&self, mut before: Stamps) -> Stamps {
+    fn read_again(&self, before: Stamps) -> Stamps {
         let inputs = Inputs::default();
         let generation = self.now().0.map_or(0, |loaded| loaded.generation) + 1;
         let read = catch_unwind(AssertUnwindSafe(|| self.read(generation, &inputs)));
         let read = read.unwrap_or_else(|_| Err(panicked()));
-        let paths = inputs.paths();
-        before.retain(|path, _| paths.contains(path));
-        for (path, stamp) in stamps(&paths) {
-            before.entry(path).or_insert(stamp);
-        }
+        let stamps = before.after_reading(&inputs.paths());
         {
             let mut state = locked(&self.state);
             match read {
@@ -121,7 +94,7 @@ impl Document {
         }
         let windows: Vec<_> = locked(&self.windows).iter().filter_map(Weak::upgrade).collect();
         windows.iter().for_each(|window| window.put(Task::SceneChanged));
-        before
+        stamps
     }
 
     fn read(&self, generation: u64, inputs: &Inputs) -> Result<Loaded> {
@@ -144,12 +117,4 @@ pub(crate) fn panicked() -> Error {
         &Location::default(),
         "internal error: this program has a fault; please report it",
     )
-}
-
-fn stamps<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Stamps {
-    let stamp = |path: &PathBuf| {
-        let found = std::fs::metadata(path).ok()?;
-        Some((found.modified().ok()?, found.len()))
-    };
-    paths.into_iter().map(|path| (path.clone(), stamp(path))).collect()
 }

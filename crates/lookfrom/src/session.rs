@@ -24,6 +24,8 @@ mod outliers;
 mod prepare;
 mod provenance;
 mod running;
+mod series;
+mod shown;
 mod source;
 
 use std::path::{Path, PathBuf};
@@ -58,6 +60,8 @@ pub use outliers::{Outlier, Outliers};
 use prepare::Prepared;
 pub use provenance::Provenance;
 pub use running::Running;
+pub use series::Series;
+pub use shown::{Sheet, Shown};
 use source::Source;
 
 /// The warning of a camera that would otherwise see nothing.

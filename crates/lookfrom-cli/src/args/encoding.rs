@@ -1,6 +1,7 @@
 //! Options of the formats of pictures.
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use lookfrom::session::Format;
 
 use crate::exit::Failure;
@@ -9,6 +10,10 @@ use crate::values;
 
 #[derive(Args, Debug)]
 pub(crate) struct EncodingArguments {
+    /// Format where no file name says it: of -o -, of a folder and without -o [default: png]
+    #[arg(long, value_name = "EXTENSION", value_parser = extensions())]
+    format: Option<String>,
+
     /// Quality of JPEGs, from 1 to 100 [default: 90]
     #[arg(long, value_name = "N", value_parser = values::whole(1u8, 100))]
     quality: Option<u8>,
@@ -27,7 +32,17 @@ enum Bits {
 
 const BITS: &[(&str, Bits)] = &[("8", Bits::Eight), ("16", Bits::Sixteen)];
 
+/// Parser of extensions of formats.
+fn extensions() -> PossibleValuesParser {
+    PossibleValuesParser::new(Format::EXTENSIONS.iter().map(|&(extension, _)| extension))
+}
+
 impl EncodingArguments {
+    /// The extension where no file name says it.
+    pub(crate) fn format(&self) -> Option<&str> {
+        self.format.as_deref()
+    }
+
     /// Targets with what is asked of their formats.
     ///
     /// # Errors

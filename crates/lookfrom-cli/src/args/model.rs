@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lookfrom_scene::settings::Background;
+use lookfrom_scene::studio::Viewpoint;
 use lookfrom_scene::{CameraChoice, ImportOptions};
 
 use crate::values;
@@ -36,6 +37,21 @@ pub(crate) struct ModelArguments {
     /// Add a shadow-catcher floor under the model: only the shadows on it are visible (with the path tracer)
     #[arg(long)]
     pub(crate) floor: bool,
+
+    /// View that the scene is framed from, in place of its camera; persp is that of models without a camera
+    ///
+    /// The whole scene is in the picture. front, right, back, left, top, bottom and iso have parallel rays, unless --fov gives them a
+    /// perspective.
+    #[arg(long, value_name = "NAME", value_parser = values::word(Viewpoint::WORDS), conflicts_with_all = ["lookfrom", "camera"])]
+    pub(crate) view: Option<Viewpoint>,
+
+    /// Azimuth of the view, counter-clockwise as seen from above: 0 is the front, 90 the right side
+    #[arg(long, value_name = "DEGREES", value_parser = values::between(-36000.0f64, 36000.0), allow_hyphen_values = true, conflicts_with_all = ["lookfrom", "camera"])]
+    pub(crate) azimuth: Option<f64>,
+
+    /// Elevation of the view above the horizon, -90 to 90
+    #[arg(long, value_name = "DEGREES", value_parser = values::between(-90.0f64, 90.0), allow_hyphen_values = true, conflicts_with_all = ["lookfrom", "camera"])]
+    pub(crate) elevation: Option<f64>,
 
     /// Orbit the camera around the point that it looks at, with the environment: one picture of --turntable
     #[arg(long, value_name = "DEGREES", value_parser = values::between(-36000.0f64, 36000.0), allow_hyphen_values = true)]

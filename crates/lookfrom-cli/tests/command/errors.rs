@@ -83,8 +83,8 @@ fn an_output_that_cannot_be_is_refused_before_rendering() {
     let stage = Stage::new("refused");
     endless(&stage);
     stage
-        .run("render endless.toml -o p.gif")
-        .fails(2, &["p.gif", ".gif", ".png, .jpg, .jpeg, .webp, .exr, .hdr, .pfm, .ppm"]);
+        .run("render endless.toml -o p.bmp")
+        .fails(2, &["p.bmp", ".bmp", ".png, .jpg, .jpeg, .webp, .exr, .hdr, .pfm, .ppm, .gif, .apng"]);
     stage.run("render endless.toml -o p.png --quality 80").fails(2, &["--quality", "JPEG", "p.png"]);
     stage.run("render endless.toml -o p.webp --bits 16").fails(2, &["--bits 16", "PNG", "p.webp"]);
     stage.run("render endless.toml -o p.png --bits 12").fails(2, &["--bits", "8, 16"]);

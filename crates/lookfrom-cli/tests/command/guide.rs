@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::stage::Stage;
 
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "render",
     "resume",
     "merge",
@@ -16,6 +16,7 @@ const COMMANDS: [&str; 12] = [
     "info",
     "compare",
     "bench",
+    "man",
     "completions",
 ];
 

@@ -169,7 +169,7 @@ pub fn encode_pfm(width: u32, height: u32, texels: &[[f32; 3]]) -> Result<Vec<u8
 }
 
 /// Checks the number of values of a picture with so many of them a pixel.
-fn check_channels(width: u32, height: u32, values: usize, channels: usize) -> Result<()> {
+pub(super) fn check_channels(width: u32, height: u32, values: usize, channels: usize) -> Result<()> {
     if values.is_multiple_of(channels) {
         return check(width, height, values / channels);
     }

@@ -7,7 +7,7 @@
 
 use glam::{DMat4, DVec3};
 
-use super::StudioFrame;
+use super::{StudioFrame, sane};
 use crate::error::Location;
 use crate::image::Image;
 use crate::light::{LightKind, Sky};
@@ -96,10 +96,11 @@ pub(super) fn rotation(axis: DVec3, degrees: f64) -> DMat4 {
     DMat4::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z), DMat4::IDENTITY.w_axis)
 }
 
-/// Adds a large shadow-catcher floor under everything ([`MaterialKind::ShadowCatcher`]). `up` as
+/// Adds a large shadow-catcher floor under everything ([`MaterialKind::ShadowCatcher`]), or under `bounds`. `up` as
 /// in [`super::add_lights_and_camera`].
-pub fn add_floor(scene: &mut Scene, up: Option<DVec3>) {
-    let StudioFrame { bounds, basis: [_, up, _] } = StudioFrame::of(scene, up);
+pub fn add_floor(scene: &mut Scene, up: Option<DVec3>, bounds: Option<Bounds>) {
+    let StudioFrame { bounds: of_scene, basis: [_, up, _] } = StudioFrame::of(scene, up);
+    let bounds = bounds.map_or(of_scene, sane);
     // The bounds include instances: take the lowest corner of the box along `up`.
     let Bounds { min, max } = bounds;
     let lowest = DVec3::select(up.cmpge(DVec3::ZERO), min, max).dot(up);
@@ -225,10 +226,10 @@ mod tests {
     fn the_floor_lies_below_for_any_up() {
         for up in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(-1.0, 1.0, 2.0)] {
             let mut scene = Scene::default();
-            add_floor(&mut scene, Some(up));
+            add_floor(&mut scene, Some(up), None);
             let floor = scene.shapes.last().unwrap();
             let Geometry::Disk { center, normal, .. } = floor.geometry else { panic!("not a disk") };
-            for corner in super::super::corners(super::super::sane(Bounds::EMPTY)) {
+            for corner in super::super::corners(sane(Bounds::EMPTY)) {
                 assert!((corner - center).dot(normal) > 0.0);
             }
             let [_, vertical, _] = super::super::basis(up);

@@ -7,8 +7,9 @@ use glam::{DMat4, DVec3};
 
 use super::framing::Framing;
 use super::surroundings::rotation;
-use super::{aspect, basis, bounds_of, corners, sane, visit_instance, visit_shape};
-use crate::camera::{Camera, Target, View};
+use super::viewpoint::{target, up_of_camera};
+use super::{Viewpoint, aspect, basis, bounds_of, corners, sane, visit_instance, visit_shape};
+use crate::camera::{Camera, View};
 use crate::material::MaterialKind;
 use crate::scene::{Bounds, Instance, Scene, SourceFormat};
 use crate::shape::{Geometry, Shape};
@@ -33,29 +34,19 @@ impl Turntable {
     /// through the point that the scene's own camera looks at, or else through the centre of the visible subject. `up` is the
     /// axis' direction (of any length); if it is `None`, the camera's, or else y.
     pub fn new(scene: &Scene, up: Option<DVec3>, lookat: Option<DVec3>) -> Self {
-        let target = scene.camera.as_ref().and_then(|camera| match camera.view {
-            View::Look { lookat, up, .. } => Some(Target { lookat, up }),
-            View::Matrix(_) => camera.target,
-        });
-        let of_matrix = || match scene.camera.as_ref()?.view {
-            // In these formats the camera's y axis is the up vector.
-            View::Matrix(matrix) if scene.source_format != SourceFormat::Gltf => {
-                Some(matrix.y_axis.truncate())
-            }
-            _ => None,
-        };
-        let up = up.or(target.map(|target| target.up)).or_else(of_matrix);
+        let target = target(scene);
+        let up = up.or_else(|| up_of_camera(scene));
         let lookat = lookat.or(target.map(|target| target.lookat));
         let pivot = lookat.unwrap_or_else(|| sane(bounds(scene, &visible(scene))).center());
         Self { pivot, basis: basis(up.unwrap_or(DVec3::Y)) }
     }
 
-    /// Adds a camera, if there is none, that shows the whole subject at every angle, at the same size.
-    pub fn frame(&self, scene: &mut Scene) {
+    /// Adds a camera, if there is none, that shows the whole subject at every angle, at the same size, first from `viewpoint`.
+    pub fn frame(&self, scene: &mut Scene, viewpoint: &Viewpoint) {
         if scene.camera.is_some() {
             return;
         }
-        let mut framing = Framing::new(self.pivot, self.basis, aspect(scene));
+        let mut framing = Framing::new(self.pivot, self.basis, aspect(scene), viewpoint);
         let items = visible(scene);
         let written = bounds(scene, &items);
         if sane(written) == written {

@@ -6,11 +6,13 @@ use std::path::Path;
 use lookfrom_scene::Result;
 use lookfrom_scene::image::compare::CHANNELS_ATTRIBUTE;
 use lookfrom_scene::image::{
-    Metadata, Pixels, encode_exr, encode_hdr, encode_jpeg, encode_pfm, encode_png_of, encode_ppm, encode_webp,
+    AnimationFormat, Metadata, Pixels, encode_exr, encode_hdr, encode_jpeg, encode_pfm, encode_png_of,
+    encode_ppm, encode_webp,
 };
 use lookfrom_scene::settings::Background;
 
-use super::{Developed, Development};
+use super::options::unsuitable;
+use super::{Developed, Development, Shown};
 use crate::film::Picture;
 use crate::post::develop::{srgb8_before, srgb16_before, srgba8, srgba16};
 
@@ -34,6 +36,10 @@ pub enum Format {
     Pfm,
     /// 8-bit sRGB after exposure and tone map.
     Ppm,
+    /// 256 colours of sRGB after exposure and tone map: an animation, or a picture.
+    Gif,
+    /// A PNG that is an animation.
+    Apng,
 }
 
 impl Format {
@@ -47,6 +53,8 @@ impl Format {
         ("hdr", Self::Hdr),
         ("pfm", Self::Pfm),
         ("ppm", Self::Ppm),
+        ("gif", Self::Gif),
+        ("apng", Self::Apng),
     ];
 
     /// The quality of JPEGs where nothing else is asked for: hard to tell from the picture, and a tenth of its bytes.
@@ -56,6 +64,19 @@ impl Format {
     pub fn of_path(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_string_lossy().to_lowercase();
         Self::EXTENSIONS.iter().find(|(known, _)| *known == extension).map(|&(_, format)| format)
+    }
+
+    /// The animation of this format.
+    ///
+    /// # Errors
+    /// `Request` for one without animations.
+    pub fn animation(self) -> Result<AnimationFormat> {
+        match self {
+            Self::Gif => Ok(AnimationFormat::Gif),
+            Self::Apng => Ok(AnimationFormat::Apng),
+            Self::WebP => Ok(AnimationFormat::WebP),
+            _ => Err(unsuitable("animations are GIF, APNG or WebP".to_owned())),
+        }
     }
 
     /// Whether the format can hold AOVs.
@@ -117,6 +138,7 @@ pub(super) fn encode(
         Format::Ppm => encode_ppm(width, height, &developed()),
         Format::Hdr => encode_hdr(width, height, &linear()),
         Format::Pfm => encode_pfm(width, height, &linear()),
+        Format::Gif | Format::Apng => Shown::new(picture, development).encode(format),
         Format::Exr => {
             let channels = channels(picture, layers, development.background);
             let channels: Vec<_> =

@@ -47,10 +47,16 @@ impl Identity {
             }
             digest.finish()
         });
-        let &Options { up, rotate_environment, floor, ref import, .. } = options;
+        let &Options { up, view, azimuth, elevation, framed, rotate_environment, floor, ref import, .. } =
+            options;
+        // Only where there is one: films that are older know of no view.
+        let view = match options.chooses_view() || framed.is_some() {
+            true => format!(" {view:?} {azimuth:?} {elevation:?} {framed:?}"),
+            false => String::new(),
+        };
         Self {
             inputs,
-            options: format!("{up:?} {rotate_environment:?} {floor} {import:?} {environment:?}"),
+            options: format!("{up:?} {rotate_environment:?} {floor} {import:?} {environment:?}{view}"),
             has_goal: options.stop.time.is_none() || options.samples.is_some(),
         }
     }

@@ -8,10 +8,12 @@ use std::ops::Range;
 use glam::DVec3;
 use lookfrom_scene::camera::{Camera, Projection};
 use lookfrom_scene::image::Image;
+use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{
     Background, ColorMode, Filter, ImageSettings, Integrator, Layers, LightPathLayer, LightSampler,
     PixelBounds, RenderSettings, Sampler, Tonemap,
 };
+use lookfrom_scene::studio::Viewpoint;
 use lookfrom_scene::{Error, ErrorKind, ImportOptions, Location, Result, Scene};
 
 use super::Format;
@@ -73,6 +75,15 @@ pub struct Options {
     pub up: Option<DVec3>,
     /// Vertical field of view in degrees, in (0, 180).
     pub fov: Option<f64>,
+    /// The view that the scene is framed from, in place of its camera.
+    pub view: Option<Viewpoint>,
+    /// The azimuth of that view in degrees, counter-clockwise as seen from above: 0 is the front, 90 the right side. Without
+    /// `view` the rest is that of a model without a camera.
+    pub azimuth: Option<f64>,
+    /// Its elevation in degrees above the horizon, −90 to 90.
+    pub elevation: Option<f64>,
+    /// What the view frames, and the floor is under; without it, what is in the scene.
+    pub framed: Option<Bounds>,
     /// An equirectangular environment map, in place of the studio or of a scene's own environments.
     pub environment: Option<Image>,
     /// Rotation of environments around the up direction, in degrees, counter-clockwise as seen from above.
@@ -208,13 +219,30 @@ impl Options {
         Ok(())
     }
 
+    /// Whether a view replaces the scene's camera.
+    pub(super) fn chooses_view(&self) -> bool {
+        self.view.is_some() || self.azimuth.is_some() || self.elevation.is_some()
+    }
+
+    /// The view that a scene without a camera is framed from.
+    pub(super) fn viewpoint(&self) -> Viewpoint {
+        let mut viewpoint = self.view.unwrap_or(Viewpoint::THREE_QUARTER);
+        replace(&mut viewpoint.azimuth, self.azimuth);
+        replace(&mut viewpoint.elevation, self.elevation);
+        // A camera that is elsewhere does not keep the distance of the framing.
+        if self.lookfrom.is_none() && self.fov.is_some() {
+            viewpoint.fov = self.fov;
+        }
+        viewpoint
+    }
+
     /// Applies the options to the camera of a scene that has one.
     ///
     /// # Errors
     /// `Request` for a field of view where rays are parallel, and for a new position or direction of a camera that
     /// shears or reflects.
     pub(super) fn apply_to_camera(&self, scene: &mut Scene) -> Result<()> {
-        let moved = self.lookfrom.is_some() || self.lookat.is_some() || self.up.is_some();
+        let moved = self.lookfrom.is_some() || self.lookat.is_some() || self.up_of_camera().is_some();
         let middle = scene.bounds().center();
         let Some(camera) = &mut scene.camera else { return Ok(()) };
         if let Some(degrees) = self.fov {
@@ -234,6 +262,11 @@ impl Options {
         Ok(())
     }
 
+    /// The up vector of a camera that no view frames: straight from above, what is up in the world is not in the picture.
+    fn up_of_camera(&self) -> Option<DVec3> {
+        self.up.filter(|_| !self.chooses_view())
+    }
+
     fn look(&self, camera: &mut Camera, middle: DVec3) -> Result<()> {
         let mut look = camera.look(middle).ok_or_else(|| {
             unsuitable(
@@ -242,7 +275,7 @@ impl Options {
         })?;
         replace(&mut look.lookfrom, self.lookfrom);
         replace(&mut look.lookat, self.lookat);
-        replace(&mut look.up, self.up);
+        replace(&mut look.up, self.up_of_camera());
         camera.set_look(look, middle);
         Ok(())
     }

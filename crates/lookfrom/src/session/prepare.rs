@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use glam::DVec3;
 use lookfrom_scene::scene::SourceFormat;
-use lookfrom_scene::studio::Turntable;
+use lookfrom_scene::studio::{Turntable, Viewpoint};
 use lookfrom_scene::{CameraChoice, ImportOptions, Location, Result, Scene, Warning, studio};
 
 use super::options::{MOST_SAMPLES, Options};
@@ -47,14 +48,20 @@ pub(super) fn prepare(
         warn("a shadow-catching floor needs the path tracer; with this integrator it is grey");
     }
 
+    let viewpoint = options.viewpoint();
+    let mut up = options.up;
+    if options.chooses_view() {
+        // The camera of a view from above has another one.
+        up = up.or_else(|| studio::up_of_camera(scene)).or(Some(DVec3::Y));
+        scene.camera = None;
+    }
     let had_camera = scene.camera.is_some();
     let lights = scene.lights.len();
-    let up = options.up;
     // The camera comes first: inside a room other lights are added.
     let turntable = options.turn.map(|_| Turntable::new(scene, up, options.lookat));
     match &turntable {
-        Some(turntable) => turntable.frame(scene),
-        None => studio::frame(scene, up),
+        Some(turntable) => turntable.frame(scene, &viewpoint),
+        None => studio::frame(scene, up, &viewpoint, options.framed),
     }
     options.apply_to_camera(scene)?;
     if let Some(environment) = &options.environment {
@@ -71,11 +78,16 @@ pub(super) fn prepare(
     if scene.lights.len() > lights && options.environment.is_none() {
         added.push("lights");
     }
+    // The studio is one of the camera, wherever that is.
+    let around = viewpoint.azimuth - Viewpoint::THREE_QUARTER.azimuth;
+    if origin != SourceFormat::Scene && added.contains(&"lights") && around != 0.0 {
+        studio::turn_environments(scene, up, around);
+    }
     if let Some(degrees) = options.rotate_environment {
         studio::turn_environments(scene, up, degrees);
     }
     if options.floor {
-        studio::add_floor(scene, up);
+        studio::add_floor(scene, up, options.framed);
         added.push("floor");
     }
     Ok(Prepared { added, turntable })

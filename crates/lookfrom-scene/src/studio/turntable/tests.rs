@@ -58,7 +58,7 @@ fn nothing_is_cut_at_any_angle_and_the_size_stays() {
                 let (mut most, mut distances) = (0.0_f64, Vec::new());
                 for step in 0..36 {
                     scene.camera = None;
-                    turntable.frame(&mut scene);
+                    turntable.frame(&mut scene, &Viewpoint::THREE_QUARTER);
                     scene.camera =
                         scene.camera.as_ref().map(|camera| turntable.turned(camera, 10.0 * f64::from(step)));
                     for point in projected(&scene) {
@@ -89,7 +89,7 @@ fn a_scene_turns_around_what_its_camera_looks_at() {
     let view = View::Look { lookfrom: DVec3::new(0.5, 3.0, 7.0), lookat, up: DVec3::Y };
     scene.camera = Some(Camera { view, ..Camera::default() });
     let turntable = Turntable::new(&scene, None, None);
-    turntable.frame(&mut scene);
+    turntable.frame(&mut scene, &Viewpoint::THREE_QUARTER);
     scene.camera = scene.camera.as_ref().map(|camera| turntable.turned(camera, 90.0));
     let View::Look { lookfrom, lookat: after, .. } = scene.camera.as_ref().unwrap().view else { panic!() };
     assert!(after.distance(lookat) < 1e-12, "{after}");
@@ -150,7 +150,7 @@ fn lamps_domes_and_floors_without_end_do_not_move_the_axis() {
 fn the_turned_camera_keeps_its_distance_and_comes_back() {
     let mut scene = Scene::default();
     let turntable = Turntable::new(&scene, Some(DVec3::Z), None);
-    turntable.frame(&mut scene);
+    turntable.frame(&mut scene, &Viewpoint::THREE_QUARTER);
     add_studio_and_camera(&mut scene, Some(DVec3::Z));
     let places = |scene: &Scene| match scene.camera.as_ref().unwrap().view {
         View::Look { lookfrom, lookat, .. } => (lookfrom, lookat),

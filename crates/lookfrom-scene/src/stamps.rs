@@ -1,0 +1,89 @@
+//! Stamps of files, by which their changes are seen.
+//!
+//! Files are polled, not watched by the system: that works on network folders, too, and with editors that replace files.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::thread::sleep;
+use std::time::{Duration, SystemTime};
+
+/// The interval at which files are polled.
+const POLL: Duration = Duration::from_millis(300);
+
+/// Time of the last change and length of each file; `None` for one that is not there.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Stamps(BTreeMap<PathBuf, Option<(SystemTime, u64)>>);
+
+impl Stamps {
+    /// Those of files as they are now.
+    pub fn of<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Self {
+        let stamp = |path: &PathBuf| {
+            let found = std::fs::metadata(path).ok()?;
+            Some((found.modified().ok()?, found.len()))
+        };
+        Self(paths.into_iter().map(|path| (path.clone(), stamp(path))).collect())
+    }
+
+    /// Whether the files are no longer as they were.
+    pub fn have_changed(&self) -> bool {
+        *self != Self::of(self.0.keys())
+    }
+
+    /// Waits until a file has changed and whoever writes them seems to be done; returns the stamps as they are then. Returns
+    /// `None` once `stopped`.
+    pub fn wait(&self, stopped: &dyn Fn() -> bool) -> Option<Self> {
+        loop {
+            if stopped() {
+                return None;
+            }
+            sleep(POLL);
+            let mut now = Self::of(self.0.keys());
+            if now == *self {
+                continue;
+            }
+            loop {
+                sleep(POLL / 3);
+                let later = Self::of(self.0.keys());
+                if later == now || stopped() {
+                    return Some(later);
+                }
+                now = later;
+            }
+        }
+    }
+
+    /// The stamps of the files that were read: those that had one before keep it, so that a change while they were read
+    /// counts.
+    pub fn after_reading(mut self, paths: &[PathBuf]) -> Self {
+        self.0.retain(|path, _| paths.contains(path));
+        for (path, stamp) in Self::of(paths).0 {
+            self.0.entry(path).or_insert(stamp);
+        }
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changes_are_seen() {
+        let folder = std::env::temp_dir().join(format!("lookfrom-stamps-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a temporary folder");
+        let [here, missing] = ["here", "missing"].map(|name| folder.join(name));
+        std::fs::write(&here, "1").expect("a temporary file");
+        let paths = [here.clone(), missing.clone()];
+        let before = Stamps::of(&paths);
+        assert!(!before.have_changed());
+        std::fs::write(&missing, "2").expect("a temporary file");
+        assert!(before.have_changed());
+        let now = before.wait(&|| false).expect("nobody stops it");
+        assert!(now != before && !now.have_changed());
+        // A file that changes while the scene is read is read again.
+        std::fs::write(&here, "longer").expect("a temporary file");
+        assert!(now.after_reading(&paths).have_changed());
+        assert_eq!(Stamps::of(&paths).wait(&|| true), None);
+        std::fs::remove_dir_all(&folder).expect("it is ours");
+    }
+}
