@@ -1,12 +1,16 @@
 //! Reader for Wavefront OBJ files, to meshes and materials.
 //!
-//! `statement` parses the text, `build` makes one mesh per material, [`mtl`] parses material libraries and `look` converts
-//! their materials. The format: Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1; vertex colours
-//! after the coordinates are an extension that many programs write.
+//! `statement` parses the text, `build` makes one mesh per material, [`mtl`] parses material libraries (`map` their texture
+//! maps), `look` converts their materials, `physical` those that are physically based, and `maps` reads their images. The
+//! format: Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1; vertex colours after the coordinates
+//! are an extension that many programs write.
 
 mod build;
 mod look;
+mod map;
+mod maps;
 pub mod mtl;
+mod physical;
 mod statement;
 
 use std::path::Path;
@@ -15,9 +19,10 @@ use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
 use crate::image::linear_from_srgb;
 use crate::material::{Color, Whitted};
-use crate::model::surface::push_material;
+use crate::model::surface::{push_material, unit_of_uv};
 use crate::model::{lines, points, text};
 use build::Form;
+use look::Surface;
 
 use crate::packed;
 use crate::scene::{MeshId, Scene};
@@ -58,12 +63,16 @@ pub fn from_bytes(
     let mut looks = look::Looks::read(&meshes.libraries, path, context);
     let mut parts = Vec::new();
     for piece in meshes.pieces {
-        let is_colored = colored && matches!(piece.form, Form::Mesh(_));
-        let look = looks.look(piece.material.as_deref(), is_colored, &file, context, scene);
+        let surface = match &piece.form {
+            Form::Mesh(mesh) => Surface { is_colored: colored, unit_of_uv: unit_of_uv(mesh) },
+            Form::Lines(..) => Surface { is_colored: false, unit_of_uv: None },
+        };
+        let look = looks.look(piece.material.as_deref(), surface, &file, context, scene);
         let name = piece.material.map(|name| String::from_utf8_lossy(&name).into_owned()).or(piece.object);
         let part = |geometry, material| Part {
             material,
             emission: look.emission,
+            alpha: look.alpha,
             ..Part::new(name.clone(), geometry)
         };
         match piece.form {

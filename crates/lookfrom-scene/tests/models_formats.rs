@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use glam::{Vec2, Vec3};
-use lookfrom_scene::material::{Color, MaterialKind, Whitted};
+use lookfrom_scene::image::{Pixels, encode_png_of};
+use lookfrom_scene::material::{BumpMapping, Color, Material, MaterialKind, Principled, Scalar, Whitted};
 use lookfrom_scene::shape::{Geometry, Mesh, Part};
-use lookfrom_scene::texture::{Mapping, TextureKind, Wrap};
+use lookfrom_scene::texture::{Channel, Mapping, TextureKind, Wrap};
 use lookfrom_scene::{LoadContext, Memory, Scene, model, ply};
 use proptest::prelude::*;
 
@@ -39,6 +40,26 @@ impl Model {
             panic!("not Whitted's")
         };
         whitted
+    }
+
+    fn material(&self) -> &Material {
+        &self.scene.materials[self.parts[0].material.unwrap().index()]
+    }
+
+    fn principled(&self) -> &Principled {
+        let MaterialKind::Principled(principled) = &self.material().kind else { panic!("not glTF's") };
+        principled
+    }
+
+    /// The texels, the channel and the factor of a number.
+    fn number(&self, number: Scalar) -> (Vec<[f32; 3]>, Channel, f32) {
+        let Scalar::Texture(texture) = number else { panic!("no texture: {number:?}") };
+        match &self.scene.textures[texture.index()].kind {
+            &TextureKind::Image { image, channel, scale, .. } => {
+                (self.scene.images[image.index()].texels().collect(), channel, scale)
+            }
+            other => panic!("no picture: {other:?}"),
+        }
     }
 
     /// The picture behind a colour, and how it is laid on.
@@ -183,16 +204,131 @@ fn mtl_pictures_are_multiplied_found_and_shared() {
     assert_eq!(model.warnings, [""; 0]);
 }
 
+/// A triangle of 3 × 4 over half of the picture, of material `m`.
+fn pictured(mtl: &str, more: &[(&str, &[u8])]) -> Model {
+    let obj = "mtllib m.mtl\nv 0 0 0\nv 3 0 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n";
+    let mtl = format!("newmtl m\n{mtl}");
+    let mut files = vec![("a.obj", obj.as_bytes()), ("m.mtl", mtl.as_bytes())];
+    files.extend(more);
+    Model::of(&files)
+}
+
+/// A picture of one texel.
+fn ppm(texel: [u8; 3]) -> Vec<u8> {
+    [b"P6\n1 1\n255\n".as_slice(), &texel].concat()
+}
+
+#[test]
+fn mtl_opacity_maps_cut_surfaces_out() {
+    let (mask, clear) = (ppm([0, 51, 255]), encode_png_of([1, 1], Pixels::Rgba8(&[255, 255, 255, 51]), None));
+    let clear = clear.unwrap();
+    let files: [(&str, &[u8]); 2] = [("mask.ppm", &mask), ("clear.png", &clear)];
+    for (map, channel) in [
+        ("map_d mask.ppm", Channel::Rgb),
+        ("map_d -imfchan g mask.ppm", Channel::Green),
+        ("map_d clear.png", Channel::Alpha),
+        ("map_d -imfchan l clear.png", Channel::Rgb),
+        ("d 0\nmap_d mask.ppm", Channel::Rgb),
+    ] {
+        let model = pictured(&format!("Kd 1 0 0\n{map}\n"), &files);
+        let (texels, found, scale) = model.number(model.parts[0].alpha.unwrap());
+        assert_eq!((found, scale), (channel, 1.0), "{map}");
+        // Opacities are numbers, not encoded colours.
+        assert!(texels == [[0.0, 0.2, 1.0]] || texels == [[1.0; 3]], "{map}: {texels:?}");
+        assert_eq!(model.look(0).diffuse, Color::Value([1.0, 0.0, 0.0]), "{map}");
+        assert_eq!(model.warnings, [""; 0], "{map}");
+    }
+    // `d` lets light through besides.
+    assert_eq!(pictured("Kd 1 1 1\nd 0.25\nmap_d mask.ppm\n", &files).look(0).diffuse, Color::gray(0.25));
+    // A picture of colours is no opacity.
+    let model = pictured("map_Kd mask.ppm\nmap_d mask.ppm\n", &files);
+    assert_eq!(model.parts[0].alpha, None);
+    assert!(model.warnings[0].contains("no alpha channel"), "{:?}", model.warnings);
+}
+
+#[test]
+fn mtl_bump_and_normal_maps() {
+    let (gray, blue) = (ppm([128; 3]), ppm([128, 128, 255]));
+    let files: [(&str, &[u8]); 2] = [("gray.ppm", &gray), ("blue.ppm", &blue)];
+    let heights = |mtl: &str| {
+        let model = pictured(mtl, &files);
+        let BumpMapping::Bump(heights) = model.material().bump_mapping else { panic!("{mtl}") };
+        let (_, channel, scale) = model.number(heights);
+        (channel, f64::from(scale))
+    };
+    // Slopes do not depend on the unit of the model: a unit of uv is as long as √12 here.
+    let (channel, height) = heights("map_Bump -bm 2 gray.ppm\n");
+    assert_eq!(channel, Channel::Rgb);
+    assert!((height - 0.02 * 12_f64.sqrt()).abs() < 1e-6, "{height}");
+    let (channel, repeated) = heights("bump -s 4 4 -bm 2 -imfchan r gray.ppm\n");
+    assert_eq!(channel, Channel::Red);
+    assert!((repeated - height / 4.0).abs() < 1e-6, "{repeated}");
+    for (mtl, scale, warnings) in
+        [("norm blue.ppm\n", 1.0, 0), ("map_Kn -bm 0.5 blue.ppm\n", 0.5, 0), ("map_Bump blue.ppm\n", 1.0, 1)]
+    {
+        let model = pictured(mtl, &files);
+        let BumpMapping::NormalTexture(normals) = model.material().bump_mapping else { panic!("{mtl}") };
+        assert_eq!((normals.scale, model.warnings.len()), (scale, warnings), "{mtl}");
+    }
+    // Without texture coordinates that span an area there is nothing to lay them on.
+    let model = with_material("bump gray.ppm\n", &[("d/gray.ppm", &gray)]);
+    assert_eq!(model.scene.materials[0].bump_mapping, BumpMapping::None);
+}
+
+#[test]
+fn mtl_highlights_by_maps() {
+    let half = ppm([51, 102, 153]);
+    let model = pictured("Ks 1 1 1\nNs 50\nmap_Ns half.ppm\n", &[("half.ppm", &half)]);
+    assert!((model.look(0).shininess - 20.0).abs() < 1e-4, "{}", model.look(0).shininess);
+    let model = pictured("Ks 1 1 1\nNs 50\nmap_Ns -mm 0.5 0.5 -imfchan b half.ppm\n", &[("half.ppm", &half)]);
+    assert!((model.look(0).shininess - 40.0).abs() < 1e-4, "{}", model.look(0).shininess);
+}
+
+#[test]
+fn mtl_physically_based() {
+    let parts = ppm([26, 128, 255]);
+    let files: [(&str, &[u8]); 1] = [("p.ppm", &parts)];
+    let model = pictured(
+        "Kd .5 .5 .5\nPr 0.3\nPm 1\nPs 0.25\nPc 0.5\nPcr 0.1\naniso 0.8\nanisor 0.25\nNi 1.4\n",
+        &[],
+    );
+    let look = model.principled();
+    assert_eq!(look.base_color, Color::gray(0.5));
+    assert_eq!((look.metallic, look.roughness), (Scalar::Value(1.0), Scalar::Value(0.3)));
+    assert_eq!((look.clearcoat, look.clearcoat_roughness), (Scalar::Value(0.5), Scalar::Value(0.1)));
+    assert_eq!((look.sheen_color, look.ior), (Color::gray(0.25), 1.4));
+    let anisotropy = look.anisotropy.unwrap();
+    assert_eq!(anisotropy.strength, 0.8);
+    assert!((anisotropy.rotation - std::f32::consts::FRAC_PI_2).abs() < 1e-6);
+    for (map, roughness, metallic) in
+        [("map_ORM", Channel::Green, Channel::Blue), ("map_RMA", Channel::Red, Channel::Green)]
+    {
+        let model = pictured(&format!("Pr 1\nPm 0\n{map} p.ppm\n"), &files);
+        let look = model.principled();
+        assert_eq!(model.number(look.roughness).1, roughness, "{map}");
+        assert_eq!(model.number(look.metallic).1, metallic, "{map}");
+        assert_eq!(model.scene.images.len(), 1, "{map}");
+    }
+    let model = pictured("map_Pr p.ppm\nd 0.5\n", &files);
+    let look = model.principled();
+    assert_eq!((look.metallic, model.parts[0].alpha), (Scalar::Value(0.0), Some(Scalar::Value(0.5))));
+    // Without a roughness, the highlight is as wide as that of `Ns`.
+    let Scalar::Value(rough) = pictured("Pc 1\nNs 30\n", &[]).principled().roughness else { panic!() };
+    assert!((rough - 0.5).abs() < 1e-6, "{rough}");
+    // `Pm` and `Pr` alone stay a highlight of Whitted's model.
+    assert!(matches!(pictured("Pm 1\nPr 0.2\n", &[]).material().kind, MaterialKind::Whitted(_)));
+}
+
 #[test]
 fn mtl_misses_are_warned_of() {
-    let model = with_material("Kd 1 0 0\nmap_Kd no.png\nmap_Bump b.png\nNs many\nfoo\n", &[]);
+    let model = with_material("Kd 1 0 0\nmap_Kd no.png\ndisp b.png\nNs many\nfoo\n", &[]);
     assert_eq!(model.look(0).diffuse, Color::Value([1.0, 0.0, 0.0]));
     assert_eq!(
         model.warnings,
         [
             "d/m.mtl:5: 1 line ignored: the values are not what the keyword expects",
             "d/m.mtl:6: 1 `(unknown)` statement ignored: not supported",
-            "d/m.mtl:4: 1 `map_Bump` statement ignored: not supported",
+            "d/m.mtl:4: 1 `disp, decal` statement ignored: not supported",
             "d/m.mtl:3:8: texture `no.png`: no such file; the constant colour is used",
         ]
     );

@@ -171,9 +171,9 @@ impl Image {
         (0..self.len()).map(|index| self.texel(index))
     }
 
-    /// The same image with each of its colours multiplied by `tint`.
-    pub fn tinted(&self, tint: [f32; 3]) -> Self {
-        let texels = self.texels().map(|texel| std::array::from_fn(|c| texel[c] * tint[c])).collect();
+    /// The same image with other colours, each made of the linear one.
+    pub fn with_colors(&self, color: impl Fn([f32; 3]) -> [f32; 3]) -> Self {
+        let texels = self.texels().map(color).collect();
         let alpha =
             if self.has_alpha { (0..self.len()).map(|k| self.alpha(k)).collect() } else { Vec::new() };
         Self::from_linear_and_alpha(self.name.clone(), self.width, self.height, texels, alpha)
@@ -217,7 +217,7 @@ mod tests {
         assert!(!opaque.has_alpha() && opaque.alpha(1) == 1.0);
         let clear = Image::from_linear_and_alpha("", 1, 2, vec![[0.5; 3]; 2], vec![1.0, 0.25]);
         assert!(clear.has_alpha());
-        let tinted = clear.tinted([2.0, 1.0, 0.0]);
+        let tinted = clear.with_colors(|[r, g, _]| [2.0 * r, g, 0.0]);
         assert_eq!((tinted.texel(1), tinted.alpha(1), tinted.len()), ([1.0, 0.5, 0.0], 0.25, 2));
     }
 }

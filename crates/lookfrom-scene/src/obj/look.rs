@@ -1,4 +1,4 @@
-//! Conversion of MTL materials to the Whitted model.
+//! Conversion of MTL materials: to the Whitted model, or by `physical` to glTF's if they are physically based.
 //!
 //! Colours are taken to be linear. Only materials that are used are converted, and only their images are read. Ambient
 //! light is reflected by the diffuse colour: `Ka` is rarely meaningful.
@@ -11,43 +11,53 @@
 //! | `d` < 1 | weight of the diffuse colour; the rest is transmitted, tinted by `Tf`, and refracted by `illum` |
 //! | `illum` 4, 6, 7, 9 | glass: mirror reflection `Ks`, refraction by `Ni` (7: by Fresnel) |
 //! | `Pm`, `Pr` | a metal: mirror reflection `Kd · Pm · (1 − Pr)²`, the rest a highlight |
+//! | `map_Ns` | its mean multiplies `Ns` |
+//! | `map_d` | alpha of the surface, which `d` does not change in the Whitted model: that is light let through |
+//! | `map_Bump`, `norm` | bump or normal map |
 //! | `Ke`, `map_Ke` | emission, from both sides |
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
 
+use super::maps::{Images, Maps};
 use super::mtl::{self, Map, MtlMaterial, shown_name};
+use super::physical;
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
-use crate::image::Image;
-use crate::material::{Color, Whitted};
-use crate::model::surface::{
-    base_name, beside, picture, push_image, push_material, push_texture, push_vertex_colors, read_image,
-};
+use crate::material::{BumpMapping, Color, Material, MaterialKind, Scalar, Whitted};
+use crate::model::surface::{base_name, beside, push_texture, push_vertex_colors};
 use crate::model::tally::Tally;
 use crate::packed;
-use crate::scene::{ImageId, MaterialId, Scene};
+use crate::scene::{MaterialId, Scene};
 use crate::shape::Emission;
-use crate::texture::{TextureKind, Wrap};
+use crate::texture::TextureKind;
 
 /// The material libraries of a file, and what is converted of them.
 pub(super) struct Looks {
     materials: Vec<(MtlMaterial, PathBuf)>,
     by_name: HashMap<Vec<u8>, usize>,
-    /// Images by file and tint, so that each is read once; `None` if it cannot be read.
-    images: HashMap<(PathBuf, [u32; 3]), Option<ImageId>>,
-    /// Total number of texels of the images read so far.
-    texels: u64,
+    images: Images,
     names_libraries: bool,
     missing: Tally,
     missing_name: String,
 }
 
-/// The material and emission of one part.
+/// The material, emission and alpha of one part.
+#[derive(Default)]
 pub(super) struct Look {
     pub(super) material: Option<MaterialId>,
     pub(super) emission: Option<Emission>,
+    pub(super) alpha: Option<Scalar>,
+}
+
+/// What a material depends on in the geometry that has it.
+#[derive(Clone, Copy)]
+pub(super) struct Surface {
+    /// Whether vertices have colours.
+    pub(super) is_colored: bool,
+    /// The length of a unit of texture coordinates.
+    pub(super) unit_of_uv: Option<f32>,
 }
 
 /// Limits on the number of libraries and on the length of each, against hostile files.
@@ -67,8 +77,7 @@ impl Looks {
         let mut looks = Self {
             materials: Vec::new(),
             by_name: HashMap::new(),
-            images: HashMap::new(),
-            texels: 0,
+            images: Images::default(),
             names_libraries: !libraries.is_empty(),
             missing: Tally::default(),
             missing_name: String::new(),
@@ -119,11 +128,11 @@ impl Looks {
         Ok(())
     }
 
-    /// Converts the material with this name and adds it to the scene. `colored` tells whether vertices have colours.
+    /// Converts the material with this name and adds it to the scene.
     pub(super) fn look(
         &mut self,
         name: Option<&[u8]>,
-        colored: bool,
+        surface: Surface,
         file: &Location,
         context: &mut LoadContext<'_>,
         scene: &mut Scene,
@@ -136,11 +145,11 @@ impl Looks {
             self.missing.add(0);
         }
         let Some(index) = index else {
-            let material = colored.then(|| push_vertex_colors(scene, file));
-            return Look { material, emission: None };
+            let material = surface.is_colored.then(|| push_vertex_colors(scene, file));
+            return Look { material, ..Look::default() };
         };
-        let (written, library) = self.materials[index].clone();
-        self.translate(&written, &library, colored, context, scene)
+        let (written, library) = &self.materials[index];
+        translate(written, surface, Maps { images: &mut self.images, library, context, scene })
     }
 
     /// Warns of materials that no library defines. Files without libraries use names freely.
@@ -152,151 +161,146 @@ impl Looks {
             format!("not defined in any library, such as `{}`: the default is used", self.missing_name);
         self.missing.warn("material", &what, file, context);
     }
+}
 
-    fn translate(
-        &mut self,
-        written: &MtlMaterial,
-        library: &Path,
-        colored: bool,
-        context: &mut LoadContext<'_>,
-        scene: &mut Scene,
-    ) -> Look {
-        let name = shown_name(&written.name);
-        let illumination = written.illumination.unwrap_or(2);
-        let opacity = written.opacity.unwrap_or(1.0);
-        let kd = written.diffuse.unwrap_or(if written.diffuse_map.is_some() { WHITE } else { [0.8; 3] });
-        let metallic = written.metallic.unwrap_or(0.0).min(1.0);
-        // The transmitted fraction: given by opacity, or 1 if the illumination model is glass.
-        let is_glass = matches!(illumination, 6 | 7);
-        let passing = if is_glass && opacity == 1.0 { 1.0 } else { 1.0 - opacity };
-        let covering = (1.0 - passing) * (1.0 - metallic);
+fn translate(written: &MtlMaterial, surface: Surface, mut maps: Maps<'_, '_>) -> Look {
+    let name = shown_name(&written.name);
+    warn_of_gain(written, &name, &mut maps);
+    let kind = match physical::is_physical(written) {
+        true => MaterialKind::Principled(Box::new(physical::principled(written, surface, &mut maps))),
+        false => MaterialKind::Whitted(whitted(written, surface, &mut maps)),
+    };
+    let is_physical = matches!(kind, MaterialKind::Principled(_));
+    let ke = written.emission.unwrap_or(BLACK);
+    let shines = ke != BLACK || (written.emission_map.is_some() && written.emission.is_none());
+    let emission = shines.then(|| {
+        let radiance = color(ke, written.emission_map.as_ref(), 1.0, &mut maps);
+        Emission::new(radiance, true)
+    });
+    let emission = emission.filter(|emission| emission.radiance != Color::BLACK);
+    let cut = written.opacity_map.as_ref();
+    let cut = cut.and_then(|map| maps.opacity(map, written.diffuse_map.as_ref()));
+    let alpha = if is_physical { physical::alpha(written, cut, &mut maps) } else { cut };
+    let bump_mapping = bump_mapping(written, surface, &mut maps);
+    let material = Material { bump_mapping, ..Material::new(name, written.at.clone(), kind) };
+    maps.scene.materials.push(material);
+    Look { material: Some(MaterialId(maps.scene.materials.len() as u32 - 1)), emission, alpha }
+}
 
-        // A colour without an image is checked when the scene is built.
-        let tinted = [(written.diffuse, &written.diffuse_map), (written.specular, &written.specular_map)];
-        for (tint, map) in tinted {
-            if let (Some([r, g, b]), Some(map)) = (tint, map)
-                && r.max(g).max(b) > 1.0
-            {
-                let file = &map.file;
-                let message = format!(
-                    "material `{name}` multiplies `{file}` by [{r}, {g}, {b}], and colours of surfaces go from 0 to 1: \
-                     the surface gives off more light than arrives"
-                );
-                context.warn(&written.at, message);
-            }
+/// Warns of colours that are multiplied by more than 1. One without an image is checked when the scene is built.
+fn warn_of_gain(written: &MtlMaterial, name: &str, maps: &mut Maps<'_, '_>) {
+    let tinted = [(written.diffuse, &written.diffuse_map), (written.specular, &written.specular_map)];
+    for (tint, map) in tinted {
+        if let (Some([r, g, b]), Some(map)) = (tint, map)
+            && r.max(g).max(b) > 1.0
+        {
+            let file = &map.file;
+            let message = format!(
+                "material `{name}` multiplies `{file}` by [{r}, {g}, {b}], and colours of surfaces go from 0 to 1: \
+                 the surface gives off more light than arrives"
+            );
+            maps.context.warn(&written.at, message);
         }
-        let mut color = |constant: [f32; 3], map: Option<&Map>, scale: f32, scene: &mut Scene| {
-            let constant = constant.map(|value| value * scale);
-            let picture = map.filter(|_| scale > 0.0).and_then(|map| {
-                let tint = if constant == BLACK { [scale; 3] } else { constant };
-                self.texture(map, tint, library, context, scene)
-            });
-            picture.unwrap_or(Color::Value(constant))
-        };
-        let mut diffuse = color(kd, written.diffuse_map.as_ref(), covering, scene);
-        if let (true, Color::Value(_)) = (colored && written.diffuse_map.is_none(), diffuse) {
-            let tint = if kd == BLACK { WHITE } else { kd }.map(|value| value * covering);
-            diffuse = push_texture(scene, &name, &written.at, TextureKind::VertexColor { tint });
-        }
-        let ks = written.specular.unwrap_or(BLACK);
-        let shininess = written.shininess.unwrap_or(0.0);
-        let has_highlight = illumination >= 2 && shininess > 0.0;
-        let specular_map = written.specular_map.as_ref();
-        let mut specular = if has_highlight { color(ks, specular_map, 1.0, scene) } else { Color::BLACK };
-        let mut mirror = match illumination {
-            3..=7 => color(ks, specular_map, 1.0, scene),
-            _ => Color::BLACK,
-        };
-        let filter = written.filter.filter(|&filter| filter != BLACK).unwrap_or(WHITE);
-        let mut whitted = Whitted {
-            diffuse,
-            shininess,
-            transmission: Color::Value(filter.map(|value| value.min(1.0) * passing)),
-            ior: match (written.ior, illumination) {
-                (Some(ior), 4..=9) if ior > 0.0 => ior,
-                (_, 4 | 5 | 6 | 7 | 9) => 1.5,
-                _ => 1.0,
-            },
-            ..Whitted::default()
-        };
-        // Many programs write `Ni 1` everywhere, which would leave no reflection.
-        whitted.fresnel = illumination == 7 || (illumination == 5 && whitted.ior != 1.0);
-        if whitted.fresnel && passing > 0.0 {
-            // Fresnel's equations distribute all light between reflection and transmission.
-            mirror = Color::Value(if ks == BLACK { WHITE } else { ks });
-        }
-        if metallic > 0.0 {
-            let roughness = written.roughness.unwrap_or(0.5).clamp(0.0, 1.0);
-            let clear = (1.0 - roughness) * (1.0 - roughness);
-            mirror = color(kd, written.diffuse_map.as_ref(), metallic * clear, scene);
-            specular = color(kd, written.diffuse_map.as_ref(), metallic * (1.0 - clear), scene);
-            // The exponent with a highlight as wide as this roughness (Walter et al. 2007: α = roughness²).
-            let alpha = (roughness * roughness).max(0.01);
-            whitted.shininess = (2.0 / (alpha * alpha) - 2.0).max(1.0);
-        }
-        whitted.mirror = mirror;
-        whitted.specular = specular;
-
-        let ke = written.emission.unwrap_or(BLACK);
-        let shines = ke != BLACK || (written.emission_map.is_some() && written.emission.is_none());
-        let emission = shines.then(|| {
-            let radiance = color(ke, written.emission_map.as_ref(), 1.0, scene);
-            Emission::new(radiance, true)
-        });
-        let emission = emission.filter(|emission| emission.radiance != Color::BLACK);
-        Look { material: Some(push_material(scene, &name, &written.at, whitted)), emission }
     }
+}
 
-    /// The texture of a map with its texels multiplied by `tint`; `None`, with a warning, if it cannot be read.
-    fn texture(
-        &mut self,
-        map: &Map,
-        tint: [f32; 3],
-        library: &Path,
-        context: &mut LoadContext<'_>,
-        scene: &mut Scene,
-    ) -> Option<Color> {
-        let key = (beside(library, &map.file), tint.map(f32::to_bits));
-        let image = match self.images.get(&key) {
-            Some(image) => *image,
-            None => {
-                let image = match self.read_tinted(&map.file, tint, library, context) {
-                    Ok(image) => Some(push_image(scene, image)),
-                    Err(why) => {
-                        let message = format!("texture `{}`: {why}; the constant colour is used", map.file);
-                        context.warn(&map.at, message);
-                        None
-                    }
-                };
-                self.images.insert(key, image);
-                image
-            }
-        }?;
-        let wrap = if map.clamp { Wrap::Black } else { Wrap::Repeat };
-        let kind = picture(image, map.scale, map.offset, wrap);
-        Some(push_texture(scene, &map.file, &map.at, kind))
-    }
+/// A constant times a map, times `scale`; the map alone if the constant is black, as sloppy exporters write it.
+fn color(constant: [f32; 3], map: Option<&Map>, scale: f32, maps: &mut Maps<'_, '_>) -> Color {
+    let constant = constant.map(|value| value * scale);
+    let picture = map.filter(|_| scale > 0.0).and_then(|map| {
+        let tint = if constant == BLACK { [scale; 3] } else { constant };
+        maps.color(map, tint)
+    });
+    picture.unwrap_or(Color::Value(constant))
+}
 
-    /// Reads an image and multiplies its texels by `tint`. One image with many tints must not exhaust the memory: all images
-    /// together have at most as many texels as one image may have.
-    fn read_tinted(
-        &mut self,
-        name: &str,
-        tint: [f32; 3],
-        library: &Path,
-        context: &mut LoadContext<'_>,
-    ) -> std::result::Result<Image, String> {
-        let left = context.limits.texels.saturating_sub(self.texels);
-        let limit = context.limits.texels;
-        let too_many = || format!("the pictures of this model have more than {limit} texels");
-        if left == 0 {
-            return Err(too_many());
-        }
-        let image = read_image(library, name, context).map_err(|error| error.message)?;
-        if image.len() as u64 > left {
-            return Err(too_many());
-        }
-        self.texels += image.len() as u64;
-        Ok(if tint == WHITE { image } else { image.tinted(tint) })
+/// The diffuse colour times `covering`, with the colours of the vertices where there is no map.
+pub(super) fn diffuse(
+    written: &MtlMaterial,
+    surface: Surface,
+    covering: f32,
+    maps: &mut Maps<'_, '_>,
+) -> Color {
+    let kd = diffuse_constant(written);
+    let diffuse = color(kd, written.diffuse_map.as_ref(), covering, maps);
+    if let (true, Color::Value(_)) = (surface.is_colored && written.diffuse_map.is_none(), diffuse) {
+        let tint = if kd == BLACK { WHITE } else { kd }.map(|value| value * covering);
+        let kind = TextureKind::VertexColor { tint };
+        return push_texture(maps.scene, &shown_name(&written.name), &written.at, kind);
     }
+    diffuse
+}
+
+fn diffuse_constant(written: &MtlMaterial) -> [f32; 3] {
+    written.diffuse.unwrap_or(if written.diffuse_map.is_some() { WHITE } else { [0.8; 3] })
+}
+
+/// `Ns` times the mean of its map.
+pub(super) fn shininess(written: &MtlMaterial, maps: &mut Maps<'_, '_>) -> f32 {
+    let mean = written.shininess_map.as_ref().and_then(|map| maps.mean(map));
+    written.shininess.unwrap_or(0.0) * mean.map_or(1.0, |mean| mean.max(0.0))
+}
+
+fn bump_mapping(written: &MtlMaterial, surface: Surface, maps: &mut Maps<'_, '_>) -> BumpMapping {
+    let Some(unit_of_uv) = surface.unit_of_uv else { return BumpMapping::None };
+    let normals = written.normal_map.as_ref().and_then(|map| maps.normals(map));
+    let heights = || written.bump_map.as_ref().and_then(|map| maps.heights(map, unit_of_uv));
+    normals.or_else(heights).unwrap_or_default()
+}
+
+/// `d`; 1 if it is 0 and there is a map, for which sloppy exporters write it.
+pub(super) fn own_opacity(written: &MtlMaterial) -> f32 {
+    written.opacity.filter(|&d| d > 0.0 || written.opacity_map.is_none()).unwrap_or(1.0)
+}
+
+fn whitted(written: &MtlMaterial, surface: Surface, maps: &mut Maps<'_, '_>) -> Whitted {
+    let illumination = written.illumination.unwrap_or(2);
+    let opacity = own_opacity(written);
+    let kd = diffuse_constant(written);
+    let metallic = written.metallic.unwrap_or(0.0).min(1.0);
+    // The transmitted fraction: given by opacity, or 1 if the illumination model is glass.
+    let is_glass = matches!(illumination, 6 | 7);
+    let passing = if is_glass && opacity == 1.0 { 1.0 } else { 1.0 - opacity };
+    let covering = (1.0 - passing) * (1.0 - metallic);
+
+    let diffuse = diffuse(written, surface, covering, maps);
+    let ks = written.specular.unwrap_or(BLACK);
+    let shininess = shininess(written, maps);
+    let has_highlight = illumination >= 2 && shininess > 0.0;
+    let specular_map = written.specular_map.as_ref();
+    let mut specular = if has_highlight { color(ks, specular_map, 1.0, maps) } else { Color::BLACK };
+    let mut mirror = match illumination {
+        3..=7 => color(ks, specular_map, 1.0, maps),
+        _ => Color::BLACK,
+    };
+    let filter = written.filter.filter(|&filter| filter != BLACK).unwrap_or(WHITE);
+    let mut whitted = Whitted {
+        diffuse,
+        shininess,
+        transmission: Color::Value(filter.map(|value| value.min(1.0) * passing)),
+        ior: match (written.ior, illumination) {
+            (Some(ior), 4..=9) if ior > 0.0 => ior,
+            (_, 4 | 5 | 6 | 7 | 9) => 1.5,
+            _ => 1.0,
+        },
+        ..Whitted::default()
+    };
+    // Many programs write `Ni 1` everywhere, which would leave no reflection.
+    whitted.fresnel = illumination == 7 || (illumination == 5 && whitted.ior != 1.0);
+    if whitted.fresnel && passing > 0.0 {
+        // Fresnel's equations distribute all light between reflection and transmission.
+        mirror = Color::Value(if ks == BLACK { WHITE } else { ks });
+    }
+    if metallic > 0.0 {
+        let roughness = written.roughness.unwrap_or(0.5).clamp(0.0, 1.0);
+        let clear = (1.0 - roughness) * (1.0 - roughness);
+        mirror = color(kd, written.diffuse_map.as_ref(), metallic * clear, maps);
+        specular = color(kd, written.diffuse_map.as_ref(), metallic * (1.0 - clear), maps);
+        // The exponent with a highlight as wide as this roughness (Walter et al. 2007: α = roughness²).
+        let alpha = (roughness * roughness).max(0.01);
+        whitted.shininess = (2.0 / (alpha * alpha) - 2.0).max(1.0);
+    }
+    whitted.mirror = mirror;
+    whitted.specular = specular;
+    whitted
 }

@@ -7,12 +7,14 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+pub use super::map::Map;
 use crate::error::Location;
 use crate::files::LoadContext;
 use crate::model::number::parse_f32;
 use crate::model::scan::{Scanner, shown};
 use crate::model::tally::Tally;
 use crate::model::text;
+use crate::texture::Channel;
 
 /// A material as it is written; `None` for absent statements.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,21 +51,30 @@ pub struct MtlMaterial {
     pub specular_map: Option<Map>,
     /// `map_Ke`.
     pub emission_map: Option<Map>,
-}
-
-/// A texture map.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Map {
-    /// The location of its name.
-    pub at: Location,
-    /// The file name as it is written, with `/` between folders.
-    pub file: String,
-    /// `-s`: factor of the texture coordinates.
-    pub scale: [f32; 2],
-    /// `-o`: then this is added.
-    pub offset: [f32; 2],
-    /// `-clamp on`: black outside [0, 1].
-    pub clamp: bool,
+    /// `map_d`: multiplies the opacity.
+    pub opacity_map: Option<Map>,
+    /// `map_Ns`: multiplies the sharpness of the highlight.
+    pub shininess_map: Option<Map>,
+    /// `map_Bump` or `bump`: heights.
+    pub bump_map: Option<Map>,
+    /// `norm` or `map_Kn`: normals.
+    pub normal_map: Option<Map>,
+    /// `map_Pm`, or a channel of `map_RMA` or `map_ORM`: replaces `Pm`.
+    pub metallic_map: Option<Map>,
+    /// `map_Pr`, or a channel of `map_RMA` or `map_ORM`: replaces `Pr`.
+    pub roughness_map: Option<Map>,
+    /// `Ps`: the strength of the sheen.
+    pub sheen: Option<f32>,
+    /// `map_Ps`: replaces `Ps`.
+    pub sheen_map: Option<Map>,
+    /// `Pc`: the strength of a clear coat.
+    pub clearcoat: Option<f32>,
+    /// `Pcr`: its roughness.
+    pub clearcoat_roughness: Option<f32>,
+    /// `aniso`: the elongation of the highlight.
+    pub anisotropy: Option<f32>,
+    /// `anisor`: its rotation; 1 is a full turn.
+    pub anisotropy_rotation: Option<f32>,
 }
 
 /// Parses a library's materials in the order of the file; `path` is for messages.
@@ -139,7 +150,9 @@ fn resolve_transparency(
         file,
         context,
     );
-    if !materials.is_empty() && materials.iter().all(|material| material.opacity == Some(0.0)) {
+    let is_invisible =
+        |material: &MtlMaterial| material.opacity == Some(0.0) && material.opacity_map.is_none();
+    if !materials.is_empty() && materials.iter().all(is_invisible) {
         context.warn(
             file,
             "every material is fully transparent (`d 0`): nothing of the model is visible, but reflections",
@@ -178,6 +191,18 @@ impl MtlMaterial {
             b"Ni" => return number(&mut self.ior),
             b"Pm" => return number(&mut self.metallic),
             b"Pr" => return number(&mut self.roughness),
+            b"Ps" => return number(&mut self.sheen),
+            b"Pc" => return number(&mut self.clearcoat),
+            b"Pcr" => return number(&mut self.clearcoat_roughness),
+            b"aniso" | b"anisor" => {
+                let value = parse_f32(scanner.word()).filter(|value| value.is_finite());
+                let to = match keyword {
+                    b"aniso" => &mut self.anisotropy,
+                    _ => &mut self.anisotropy_rotation,
+                };
+                *to = value.or(*to);
+                return done(value.is_some());
+            }
             b"d" | b"Tr" => {
                 let mut word = scanner.word();
                 if word == b"-halo" {
@@ -195,28 +220,40 @@ impl MtlMaterial {
             }
             _ => {}
         }
+        let keyword = keyword.to_ascii_lowercase();
+        if let b"map_rma" | b"map_orm" = keyword.as_slice() {
+            let [roughness, metallic] = match keyword.as_slice() {
+                b"map_rma" => [Channel::Red, Channel::Green],
+                _ => [Channel::Green, Channel::Blue],
+            };
+            let Some(map) = Map::read(scanner, file) else { return Outcome::Unreadable };
+            let channel_of = |channel| Some(Map { channel: Some(channel), ..map.clone() });
+            (self.roughness_map, self.metallic_map) = (channel_of(roughness), channel_of(metallic));
+            return Outcome::Done;
+        }
         let mut map = |to: &mut Option<Map>| {
-            let value = read_map(scanner, file);
+            let value = Map::read(scanner, file);
             let is = value.is_some();
             *to = value.or(to.take());
             done(is)
         };
-        match keyword.to_ascii_lowercase().as_slice() {
+        match keyword.as_slice() {
             b"map_kd" => map(&mut self.diffuse_map),
             b"map_ks" => map(&mut self.specular_map),
             b"map_ke" => map(&mut self.emission_map),
+            b"map_d" => map(&mut self.opacity_map),
+            b"map_ns" => map(&mut self.shininess_map),
+            b"map_bump" | b"bump" => map(&mut self.bump_map),
+            b"norm" | b"map_kn" => map(&mut self.normal_map),
+            b"map_pr" => map(&mut self.roughness_map),
+            b"map_pm" => map(&mut self.metallic_map),
+            b"map_ps" => map(&mut self.sheen_map),
             // Ambient colours are rarely meaningful: most programs write black, white or the diffuse colour.
             b"ka" | b"map_ka" => Outcome::Done,
-            b"map_d" => Outcome::Ignored("map_d"),
-            b"map_ns" => Outcome::Ignored("map_Ns"),
-            b"map_bump" | b"bump" => Outcome::Ignored("map_Bump"),
-            b"map_pr" | b"map_pm" | b"map_ps" | b"map_rma" | b"map_orm" => Outcome::Ignored("map_Pr, map_Pm"),
-            b"norm" | b"map_kn" => Outcome::Ignored("norm"),
             b"disp" | b"decal" => Outcome::Ignored("disp, decal"),
             b"refl" => Outcome::Ignored("refl"),
             b"km" => Outcome::Ignored("Km"),
             b"sharpness" => Outcome::Ignored("sharpness"),
-            b"ps" | b"pc" | b"pcr" | b"aniso" | b"anisor" => Outcome::Ignored("Ps, Pc, aniso"),
             _ => Outcome::Ignored("(unknown)"),
         }
     }
@@ -255,55 +292,6 @@ fn read_color(scanner: &mut Scanner<'_>) -> Option<[f32; 3]> {
         [x, y, z]
     };
     Some(rgb.map(|value| value.max(0.0)))
-}
-
-/// Options, then a file name that may contain spaces.
-fn read_map(scanner: &mut Scanner<'_>, file: &Location) -> Option<Map> {
-    let mut map =
-        Map { at: file.clone(), file: String::new(), scale: [1.0; 2], offset: [0.0; 2], clamp: false };
-    loop {
-        let before = scanner.clone();
-        let option = scanner.word();
-        // Minimum and maximum number of arguments; those beyond the minimum must be numbers.
-        let (least, most) = match option {
-            b"-s" | b"-o" | b"-t" => (1, 3),
-            b"-mm" => (2, 2),
-            b"-clamp" | b"-blendu" | b"-blendv" | b"-cc" | b"-imfchan" | b"-type" | b"-bm" | b"-boost"
-            | b"-texres" => (1, 1),
-            _ => {
-                *scanner = before;
-                let name = scanner.rest_of_line();
-                map.at = scanner.at(file);
-                let name = String::from_utf8_lossy(name.trim_ascii()).replace('\\', "/");
-                map.file = name.trim_matches('"').trim().to_owned();
-                return (!map.file.is_empty()).then_some(map);
-            }
-        };
-        let mut numbers = Vec::new();
-        for taken in 0..most {
-            let before = scanner.clone();
-            let word = scanner.word();
-            match parse_f32(word).filter(|value| value.is_finite()) {
-                Some(number) => numbers.push(number),
-                None if taken < least => map.clamp |= option == b"-clamp" && word == b"on",
-                None => {
-                    *scanner = before;
-                    break;
-                }
-            }
-        }
-        let pair = |otherwise: [f32; 2]| {
-            [
-                numbers.first().copied().unwrap_or(otherwise[0]),
-                numbers.get(1).copied().unwrap_or(otherwise[1]),
-            ]
-        };
-        match option {
-            b"-s" => map.scale = pair(map.scale),
-            b"-o" => map.offset = pair(map.offset),
-            _ => {}
-        }
-    }
 }
 
 /// The name of a material, for messages.

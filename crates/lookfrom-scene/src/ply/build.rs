@@ -8,6 +8,7 @@ use super::body::{Content, SPLAT_COLOR};
 use super::header::{Element, Header};
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
+use crate::image::Encoding;
 use crate::material::Whitted;
 use crate::model::points;
 use crate::model::polygon::{Triangulator, has_area};
@@ -175,7 +176,7 @@ fn material(
             context
                 .warn(&at, format!("{} textures are named: only the first is used", header.textures.len()));
         }
-        match read_image(path, name, context) {
+        match read_image(path, name, Encoding::Srgb, context) {
             Ok(image) => {
                 let image = push_image(scene, image);
                 let kind = picture(image, [1.0; 2], [0.0; 2], Wrap::Repeat);
