@@ -18,7 +18,7 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use glam::DVec3;
-use lookfrom::session::Fireflies;
+use lookfrom::session::{Exposure, Fireflies};
 use lookfrom_scene::settings::{
     ColorMode, Filter, Integrator, Layers, LightPathLayer, LightSampler, PixelBounds, Sampler, Sensor,
     Tonemap,
@@ -57,9 +57,9 @@ Manual: docs/guide/command.md, scene files: docs/guide/scene-format.md";
 const RENDER_EXAMPLES: &str = "\
 Examples:
   lookfrom render scene.toml -o picture.exr --samples 64
-  lookfrom render model.obj --lookfrom -3,2,5 --up 0,0,1
+  lookfrom render model.obj --lookfrom -3,2,5 --up z
   lookfrom render model.glb --size 512 --floor --background transparent
-  lookfrom render model.stl --up 0,0,1 --turntable 36 -o 'around/{name}.png'
+  lookfrom render model.obj --up z --turntable 36 -o 'around/{name}.png'
   lookfrom render model.obj --views all --sheet 4x2 -o sides.png
   lookfrom render robot.glb --frames 0..48 -o 'walk/frame-####.png'
   lookfrom render robot.glb --frames 0..48 -o walk.gif
@@ -394,9 +394,9 @@ pub(crate) struct Overrides {
     #[arg(long, value_name = "NAME[:RADIUS]", value_parser = values::filter)]
     pub(crate) filter: Option<Filter>,
 
-    /// Exposure in stops, for PNG, JPEG, WebP and PPM
-    #[arg(long, value_name = "STOPS", value_parser = values::between(-64.0f32, 64.0), allow_hyphen_values = true)]
-    pub(crate) exposure: Option<f32>,
+    /// Exposure in stops, for PNG, JPEG, WebP and PPM, or auto [default for models with lights of their own: auto]
+    #[arg(long, value_name = "STOPS|auto", value_parser = values::exposure, allow_hyphen_values = true)]
+    pub(crate) exposure: Option<Exposure>,
 
     /// Tone map from linear light to 8 bits
     #[arg(long, value_name = "NAME", value_parser = values::word(Tonemap::WORDS))]
@@ -410,8 +410,8 @@ pub(crate) struct Overrides {
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     pub(crate) lookat: Option<DVec3>,
 
-    /// Up vector of the camera, and of a model's studio and floor
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    /// Up vector of the camera, and of a model's studio and floor: an axis (z, -y) or any direction [default for STL: z]
+    #[arg(long, value_name = "AXIS|X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub(crate) up: Option<DVec3>,
 
     /// Vertical field of view in degrees

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use lookfrom::render::StopCriteria;
-use lookfrom::session::{Format, Options, Series, Session, Sheet};
+use lookfrom::session::{Exposure, Format, Options, Series, Session, Sheet};
 use lookfrom_scene::Inputs;
 use lookfrom_scene::image::{Animation, Image};
 use lookfrom_scene::load::PIPE;
@@ -269,7 +269,7 @@ impl<'a> Call<'a> {
                 self.skipped(path, target)?;
                 continue;
             }
-            let options = match &options {
+            let options = match &mut options {
                 Some(options) => options,
                 None => {
                     let files = inputs.record(&Piped, path.display().to_string());
@@ -289,6 +289,8 @@ impl<'a> Call<'a> {
                     exit::say_warnings(next.warnings());
                 }
                 keep_inputs(path, &targets, inputs)?;
+                // All pictures of a scene have the exposure of the first.
+                options.exposure = Some(Exposure::Stops(next.image().exposure));
                 session = Some(next);
             }
             let Some(session) = &session else { continue };

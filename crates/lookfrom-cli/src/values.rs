@@ -12,7 +12,7 @@ use lookfrom_scene::image::linear_from_srgb;
 use lookfrom_scene::settings::{Background, Filter, Layers, LightPathLayer, PixelBounds};
 use lookfrom_scene::studio::Viewpoint;
 
-use lookfrom::session::{Fireflies, MOST_SAMPLES};
+use lookfrom::session::{Exposure, Fireflies, MOST_SAMPLES};
 
 use crate::args::Views;
 
@@ -74,6 +74,26 @@ pub(crate) fn part(typed: &str) -> Result<[u32; 2], String> {
 pub(crate) fn vector(typed: &str) -> Result<DVec3, String> {
     let vector = DVec3::from_array(separated(typed, "three numbers, X,Y,Z")?);
     if vector.is_finite() { Ok(vector) } else { Err("expected finite numbers".to_owned()) }
+}
+
+/// Stops, or `auto`.
+pub(crate) fn exposure(typed: &str) -> Result<Exposure, String> {
+    let stops = || typed.parse().ok().filter(|stops| (-64.0..=64.0).contains(stops)).map(Exposure::Stops);
+    let exposure = if typed == "auto" { Some(Exposure::Auto) } else { stops() };
+    exposure.ok_or_else(|| "expected stops from -64 to 64, or auto".to_owned())
+}
+
+/// `x`, `-z` …, or `X,Y,Z`.
+pub(crate) fn direction(typed: &str) -> Result<DVec3, String> {
+    match typed {
+        "x" => Ok(DVec3::X),
+        "y" => Ok(DVec3::Y),
+        "z" => Ok(DVec3::Z),
+        "-x" => Ok(DVec3::NEG_X),
+        "-y" => Ok(DVec3::NEG_Y),
+        "-z" => Ok(DVec3::NEG_Z),
+        _ => vector(typed).map_err(|error| format!("{error}, or one of x, y, z, -x, -y, -z")),
+    }
 }
 
 /// `X0,Y0,X1,Y1`: a window of at least one pixel.
@@ -310,6 +330,8 @@ mod tests {
         for wrong in ["", "1,2", "1,2,3,4", "1,,3", "1,2,x", "1,2,inf", "NaN,0,0"] {
             assert!(vector(wrong).is_err(), "{wrong}");
         }
+        assert_eq!([direction("-x"), direction("0,0,2")], [Ok(DVec3::NEG_X), Ok(DVec3::new(0.0, 0.0, 2.0))]);
+        assert!(direction("w").is_err() && direction("+y").is_err());
         assert_eq!(crop("1,2,3,4"), Ok(PixelBounds { x0: 1, y0: 2, x1: 3, y1: 4 }));
         for wrong in ["1,2,1,4", "1,4,3,4", "3,2,1,4", "-1,0,1,1", "0,0,1.5,1", "0,0,1"] {
             assert!(crop(wrong).is_err(), "{wrong}");

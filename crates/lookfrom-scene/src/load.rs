@@ -44,7 +44,10 @@ fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let (image, render) = studio::settings_for_models();
     let mut scene = Scene { source_format: SourceFormat::Model, image, render, ..Scene::default() };
     let parts = match model(path, context, &mut scene) {
-        Ok(model) => model.parts,
+        Ok(model) => {
+            scene.z_is_up = model.z_is_up;
+            model.parts
+        }
         Err(error) if error.kind == ErrorKind::Unsupported && path == Path::new(PIPE) => {
             return toml::read(path, context);
         }
@@ -94,6 +97,8 @@ fn extension(path: &Path) -> String {
 #[derive(Clone, Default)]
 pub(crate) struct Model {
     pub(crate) parts: Vec<Part>,
+    /// Whether z is up by the custom of the format, not y.
+    pub(crate) z_is_up: bool,
     /// The selected camera of the file.
     pub(crate) camera: Option<Camera>,
     pub(crate) lights: Vec<Light>,
@@ -111,13 +116,13 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
     if is_gltf(path, context) {
         return gltf::model(path, context, scene);
     }
-    let parts = model::read(path, context, scene).map_err(|error| match error.kind {
+    let (parts, z_is_up) = model::read_with_up(path, context, scene).map_err(|error| match error.kind {
         ErrorKind::Unsupported if !model::is_model(path) => unsupported(
             "the format is not known, neither by the name nor by the content of the file".to_owned(),
         ),
         _ => error,
     })?;
-    Ok(Model { parts, ..Model::default() })
+    Ok(Model { parts, z_is_up, ..Model::default() })
 }
 
 /// Converts parts to shapes with the transforms of the file.

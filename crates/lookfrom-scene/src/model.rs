@@ -13,13 +13,12 @@ pub(crate) mod tally;
 pub(crate) mod text;
 pub(crate) mod weld;
 
-use std::path::Path;
-
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 use crate::scene::Scene;
 use crate::shape::Part;
 use crate::{obj, packed, ply, stl};
+use std::path::Path;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Format {
@@ -40,6 +39,15 @@ pub fn is_model(path: &Path) -> bool {
 /// # Errors
 /// `Unsupported` if neither name nor content is that of a model; otherwise the errors of the format's reader.
 pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
+    read_with_up(path, context, scene).map(|(parts, _)| parts)
+}
+
+/// The same, and whether z is up by the custom of the format, not y.
+pub(crate) fn read_with_up(
+    path: &Path,
+    context: &mut LoadContext<'_>,
+    scene: &mut Scene,
+) -> Result<(Vec<Part>, bool)> {
     let bytes = packed::read(path, context)?;
     let file = Location::file(path);
     if bytes.is_empty() {
@@ -48,9 +56,10 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Re
     let format =
         by_content(&bytes).or(by_name(path)).or_else(|| looks_like_obj(&bytes).then_some(Format::Obj));
     match format {
-        Some(Format::Obj) => obj::from_bytes(&bytes, path, context, scene),
-        Some(Format::Ply) => ply::from_bytes(&bytes, path, context, scene),
-        Some(Format::Stl) => stl::from_bytes(&bytes, path, context, scene),
+        Some(Format::Obj) => Ok((obj::from_bytes(&bytes, path, context, scene)?, false)),
+        Some(Format::Ply) => Ok((ply::from_bytes(&bytes, path, context, scene)?, false)),
+        // Programs for construction and for printers put parts onto the plane of x and y.
+        Some(Format::Stl) => Ok((stl::from_bytes(&bytes, path, context, scene)?, true)),
         None => Err(Error::new(
             ErrorKind::Unsupported,
             &file,

@@ -53,6 +53,8 @@ pub struct Scene {
     pub is_complete: bool,
     /// The format of the file that it was read from.
     pub source_format: SourceFormat,
+    /// Whether z is up by the custom of its format, not y: of STL, without a camera that says so.
+    pub z_is_up: bool,
     /// The animations, variants, cameras and scenes of the file.
     pub contents: Contents,
     /// The camera; `None` if the file has none: then the scene is framed by its bounds.

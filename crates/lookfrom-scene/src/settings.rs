@@ -385,6 +385,11 @@ pub enum Integrator {
 }
 
 impl Integrator {
+    /// Whether its pictures show the light of the scene's lights.
+    pub fn needs_light(self) -> bool {
+        matches!(self, Self::Raycast | Self::Whitted | Self::Path | Self::SimplePath | Self::RandomWalk)
+    }
+
     /// The words for the integrators, in scene files and on the command line.
     pub const WORDS: &'static [(&'static str, Self)] = &[
         ("path", Self::Path),

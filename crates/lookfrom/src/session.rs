@@ -14,6 +14,7 @@
 //! ```
 
 mod encode;
+mod exposure;
 mod film_file;
 mod finish;
 mod header;
@@ -52,6 +53,7 @@ use crate::view::View;
 use crate::world::World;
 
 pub use encode::Format;
+pub use exposure::Exposure;
 pub use film_file::FilmFile;
 pub use finish::{Developed, Development, Finished};
 use identity::Identity;
@@ -207,7 +209,8 @@ impl Session {
         let (counts, bounds) = (Counts::of(&scene), scene.bounds());
         let contents = std::mem::take(&mut scene.contents);
         let noise = options.stop.noise.or(options.adaptive.then_some(ADAPTIVE_NOISE));
-        let Prepared { added, turntable } = prepare::prepare(&mut scene, path, options, &mut warnings)?;
+        let Prepared { added, turntable, has_own_lights } =
+            prepare::prepare(&mut scene, path, options, &mut warnings)?;
         if options.format.is_some_and(|format| !format.has_layers()) {
             scene.image.layers = Layers::None;
             scene.image.light_paths.clear();
@@ -245,6 +248,12 @@ impl Session {
             info: SceneInfo { counts, contents, bounds, added, read, build: started.elapsed() },
             warnings,
         };
+        if options.exposure.map_or(has_own_lights, |exposure| exposure == Exposure::Auto) {
+            let stops = session.expose()?;
+            let message =
+                format!("the exposure is {stops}, chosen by what is seen; --exposure {stops} repeats it");
+            session.warnings.push(Warning::notice(&Location::file(path), message));
+        }
         if let Some(degrees) = options.turn {
             session.set_turn(degrees)?;
         }

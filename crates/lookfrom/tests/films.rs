@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use lookfrom::film::Film;
 use lookfrom::render::{Progress, StopCriteria, TileDone};
-use lookfrom::session::{FilmFile, Finished, Fireflies, Format, Options, Session};
+use lookfrom::session::{Exposure, FilmFile, Finished, Fireflies, Format, Options, Session};
 use lookfrom_scene::settings::{Background, ColorMode, Integrator, Layers, LightPathLayer, PixelBounds};
 use lookfrom_scene::{ErrorKind, Location};
 
@@ -107,7 +107,7 @@ fn kinds() -> Vec<(&'static str, Options)> {
                 ..path.clone()
             },
         ),
-        ("fireflies", Options { fireflies: Fireflies::Spread, exposure: Some(0.3), ..path }),
+        ("fireflies", Options { fireflies: Fireflies::Spread, exposure: Some(Exposure::Stops(0.3)), ..path }),
     ]
 }
 

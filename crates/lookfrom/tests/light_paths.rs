@@ -160,7 +160,7 @@ fn lights_are_told_apart_by_their_names() {
                 );
             }
         }
-        support::scene(&text)
+        scene(&text)
     };
     let layers = [("left", "C.*<L.'left'>"), ("right", "C.*<L.'right'>")];
     let both = film_of(scene(""), &layers);

@@ -287,3 +287,57 @@ fn any_files_camera_can_be_left_aside() {
     });
     assert!(own <= 4 && none > 40, "{own} {none}");
 }
+
+#[test]
+fn stl_files_stand_on_the_plane_of_x_and_y() {
+    let stage = Stage::new("stl-up");
+    let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 3 0 0\nvertex 0 2 1\nendloop\nendfacet\nendsolid\n";
+    stage.write("a.stl", stl);
+    let seen = |options: &str| {
+        let run = stage.done(&format!("render a.stl --size 24 --samples 1 {options} -o p.ppm"));
+        (stage.bytes("p.ppm"), run.stderr.contains("z is up"))
+    };
+    let (custom, is_told) = seen("");
+    let (z, is_told_of_z) = seen("--up z");
+    let (y, _) = seen("--up y");
+    assert!(custom == z && custom != y);
+    assert_eq!((is_told, is_told_of_z), (true, false));
+    assert!(y == seen("--up 0,1,0").0);
+}
+
+#[test]
+fn lights_of_a_file_are_exposed() {
+    let stage = Stage::new("exposed");
+    let lit = |name: &str, intensity: &str| {
+        let gltf = format!(
+            r#"{{"asset": {{"version": "2.0"}}, "extensionsUsed": ["KHR_lights_punctual"], "scene": 0,
+            "extensions": {{"KHR_lights_punctual": {{"lights": [{{"type": "directional", "intensity": {intensity}}}]}}}},
+            "scenes": [{{"nodes": [0, 1]}}],
+            "nodes": [{{"mesh": 0}}, {{"extensions": {{"KHR_lights_punctual": {{"light": 0}}}}}}],
+            "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+            "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}}],
+            "bufferViews": [{{"buffer": 0, "byteLength": 36}}],
+            "buffers": [{{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}}]}}"#
+        );
+        stage.write(name, &gltf);
+    };
+    lit("dim.gltf", "0.001");
+    lit("bright.gltf", "128000");
+    let brightest = |file: &str, options: &str| {
+        let run = stage.done(&format!(
+            "render {file} --size 32 --samples 4 --denoise off --tonemap clamp {options} -o p.ppm"
+        ));
+        (stage.bytes("p.ppm")[13..].iter().copied().max().unwrap(), run.stderr)
+    };
+    for (file, plain) in [("dim.gltf", 0..12), ("bright.gltf", 255..256)] {
+        let (shown, told) = brightest(file, "");
+        assert!((180..255).contains(&shown), "{file}: {shown}");
+        assert!(plain.contains(&u16::from(brightest(file, "--exposure 0").0)), "{file}");
+        // What is told repeats it.
+        let stops = told.split("--exposure ").nth(1).and_then(|rest| rest.split(' ').next()).expect(&told);
+        assert_eq!(brightest(file, &format!("--exposure {stops}")).0, shown, "{file} {stops}");
+    }
+    // The studio and other surroundings are as bright as they are.
+    assert!(!brightest("model.obj", "").1.contains("the exposure is"));
+    assert!(brightest("model.obj", "--exposure auto").1.contains("the exposure is"));
+}

@@ -16,7 +16,7 @@ use lookfrom_scene::settings::{
 use lookfrom_scene::studio::Viewpoint;
 use lookfrom_scene::{Error, ErrorKind, ImportOptions, Location, Result, Scene};
 
-use super::Format;
+use super::{Exposure, Format};
 use crate::film::MOST_PIXELS;
 use crate::render::StopCriteria;
 
@@ -62,7 +62,7 @@ pub struct Options {
     /// Pixel filter.
     pub filter: Option<Filter>,
     /// Exposure in stops.
-    pub exposure: Option<f32>,
+    pub exposure: Option<Exposure>,
     /// The tone map.
     pub tonemap: Option<Tonemap>,
     /// The background that camera rays see where they hit nothing.
@@ -155,7 +155,9 @@ impl Options {
             image.crop = Some(crop);
         }
         replace(&mut image.filter, self.filter);
-        replace(&mut image.exposure, self.exposure);
+        if let Some(Exposure::Stops(stops)) = self.exposure {
+            image.exposure = stops;
+        }
         replace(&mut image.tonemap, self.tonemap);
         replace(&mut render.samples, self.samples);
         replace(&mut render.integrator, self.integrator);

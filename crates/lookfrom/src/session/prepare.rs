@@ -15,6 +15,8 @@ pub(super) struct Prepared {
     pub(super) added: Vec<&'static str>,
     /// The turntable, if enabled; the scene itself is not turned yet.
     pub(super) turntable: Option<Turntable>,
+    /// Whether a model is lit by the lights of its file, whose unit nobody knows.
+    pub(super) has_own_lights: bool,
 }
 
 /// Applies options to a scene, and chooses defaults for what both leave open.
@@ -49,7 +51,11 @@ pub(super) fn prepare(
     }
 
     let viewpoint = options.viewpoint();
-    let mut up = options.up;
+    let mut up = options.up.or(scene.z_is_up.then_some(DVec3::Z));
+    if scene.z_is_up && options.up.is_none() {
+        let message = "z is up, as is the custom of this format; --up y shows it otherwise";
+        warnings.push(Warning::notice(&Location::file(file), message));
+    }
     if options.chooses_view() {
         // The camera of a view from above has another one.
         up = up.or_else(|| studio::up_of_camera(scene)).or(Some(DVec3::Y));
@@ -83,6 +89,9 @@ pub(super) fn prepare(
     if origin != SourceFormat::Scene && added.contains(&"lights") && around != 0.0 {
         studio::turn_environments(scene, up, around);
     }
+    let is_model = origin != SourceFormat::Scene;
+    let is_lit_anew = added.contains(&"lights") || options.environment.is_some();
+    let has_own_lights = is_model && !is_lit_anew && scene.render.integrator.needs_light();
     if let Some(degrees) = options.rotate_environment {
         studio::turn_environments(scene, up, degrees);
     }
@@ -90,7 +99,7 @@ pub(super) fn prepare(
         studio::add_floor(scene, up, options.framed);
         added.push("floor");
     }
-    Ok(Prepared { added, turntable })
+    Ok(Prepared { added, turntable, has_own_lights })
 }
 
 /// Chooses defaults for samples and denoising.

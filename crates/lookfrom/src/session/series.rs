@@ -100,7 +100,7 @@ impl Series {
         let Self::Frames { frames, .. } = self else { return Ok(options.clone()) };
         let mut bounds = Bounds::EMPTY;
         let last = frames.len().saturating_sub(1);
-        let steps = last.min(MOST_POSES - 1).max(1);
+        let steps = last.clamp(1, MOST_POSES - 1);
         let mut poses: Vec<usize> = (0..=steps).map(|step| last * step / steps).collect();
         poses.dedup();
         for index in poses {
