@@ -2,3 +2,4 @@
 
 pub mod denoise;
 pub mod develop;
+pub(crate) mod exposure;

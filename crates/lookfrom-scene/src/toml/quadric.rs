@@ -107,7 +107,7 @@ fn phi_max(table: &Table<'_>) -> f64 {
 }
 
 /// The transform from a space with its origin at a point and z along a unit vector.
-fn along(origin: DVec3, z: DVec3) -> DMat4 {
+pub(super) fn along(origin: DVec3, z: DVec3) -> DMat4 {
     let (x, y) = composite::tangents(z);
     DMat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), origin.extend(1.0))
 }

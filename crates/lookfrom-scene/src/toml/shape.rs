@@ -16,7 +16,11 @@ pub(super) const KEYS: Kinds = &[
     ("plane", &["point", "normal", "size"]),
     ("disk", &["center", "normal", "radius", "inner_radius", "phi_max"]),
     ("cylinder", &["from", "to", "radius", "phi_max"]),
+    ("cone", &["from", "to", "radius", "tip_radius", "closed", "segments"]),
+    ("torus", &["center", "axis", "radius", "tube", "segments"]),
+    ("lathe", &["from", "axis", "profile", "smooth", "segments"]),
     ("box", &["min", "max"]),
+    ("heightfield", &["file", "size", "height"]),
     (
         "mesh",
         &[
@@ -109,6 +113,10 @@ impl Reader<'_, '_> {
             "sphere" => return quadric::sphere_or_part(table),
             "disk" => return quadric::disk(table),
             "cylinder" => return quadric::cylinder(table),
+            "cone" => return self.cone(table),
+            "torus" => return self.torus(table),
+            "lathe" => return self.lathe(table),
+            "heightfield" => self.heightfield(table)?,
             "quad" => quad(table)?,
             "sphereflake" => self.sphereflake(table)?,
             "patch" => curve::patch(table)?,

@@ -7,21 +7,11 @@ use lookfrom_scene::Result;
 use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
 
 use super::Session;
-use crate::core::math::luminance;
-use crate::film::Picture;
+use crate::post::exposure;
 
 /// The longer side of the small picture, in pixels, and its samples per pixel.
 const SIDE: u32 = 64;
 const SAMPLES: u32 = 8;
-/// The luminance that nine tenths of what is lit are below.
-const BRIGHT: f64 = 0.9;
-const BRIGHT_QUANTILE: f64 = 0.9;
-/// The least geometric mean of what is lit, even if lamps and windows become white by it.
-const DARK: f64 = 0.05;
-/// The fraction of a stop that exposures are rounded to, so that a person can repeat one.
-const STEPS: f64 = 8.0;
-/// The most stops, as in options.
-const MOST: f64 = 64.0;
 
 /// How the exposure of a picture is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,53 +42,8 @@ impl Session {
         small.set_settings(RenderSettings { samples: SAMPLES, ..self.settings().clone() })?;
         (small.first_sample, small.identity) = (0, None);
         (small.stop.time, small.stop.noise) = (None, None);
-        let stops = stops(&small.render(&())?.picture);
+        let stops = exposure::stops(&small.render(&())?.picture);
         self.set_image(ImageSettings { exposure: stops, ..self.image().clone() })?;
         Ok(stops)
-    }
-}
-
-/// The exposure of a picture; 0 where nothing is lit.
-fn stops(picture: &Picture) -> f32 {
-    let mut lit: Vec<f64> = picture.pixels.iter().map(|&rgb| f64::from(luminance(rgb))).collect();
-    lit.retain(|luminance| *luminance > 0.0 && luminance.is_finite());
-    if lit.is_empty() {
-        return 0.0;
-    }
-    lit.sort_by(f64::total_cmp);
-    let bright = lit[((lit.len() - 1) as f64 * BRIGHT_QUANTILE).round() as usize];
-    let mean = lit.iter().map(|luminance| libm::log2(*luminance)).sum::<f64>() / lit.len() as f64;
-    let stops = (libm::log2(BRIGHT) - libm::log2(bright)).max(libm::log2(DARK) - mean);
-    ((stops * STEPS).round() / STEPS).clamp(-MOST, MOST) as f32
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn of(luminances: &[f32]) -> f32 {
-        let pixels: Vec<_> = luminances.iter().map(|&value| [value; 3]).collect();
-        stops(&Picture { width: luminances.len() as u32, height: 1, pixels, alpha: Vec::new() })
-    }
-
-    #[test]
-    fn what_is_lit_becomes_bright() {
-        assert_eq!(of(&[0.0, f32::NAN, f32::INFINITY]), 0.0);
-        assert_eq!(of(&[0.9; 20]), 0.0);
-        // Black surroundings do not count.
-        let mut alone = vec![0.0; 1000];
-        alone.extend([0.9 / 256.0; 10]);
-        assert_eq!(of(&alone), 8.0);
-        assert_eq!(of(&[0.9 * 1024.0; 5]), -10.0);
-        assert_eq!(of(&[1e-38, 1e-40]), 64.0);
-        // A room keeps its light where its lamp is white, but is not lost for a wide lamp.
-        let mut room = vec![0.9; 95];
-        room.extend([500.0; 5]);
-        assert_eq!(of(&room), 0.0);
-        let mut wide = vec![0.01; 70];
-        wide.extend([1000.0; 30]);
-        let dark = f64::from(of(&wide));
-        assert!(dark > -10.0 && dark < -2.0, "{dark}");
-        assert_eq!(of(&[1.0]) * 8.0, (of(&[1.0]) * 8.0).round());
     }
 }

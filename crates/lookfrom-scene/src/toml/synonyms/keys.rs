@@ -265,6 +265,10 @@ pub(super) const KEYS: &[(&[&str], &[&[&str]])] = &[
         &[&["mesh"]],
     ),
     (&["tube", "rod"], &[&["cylinder"]]),
+    (&["frustum", "pyramid"], &[&["cone"]]),
+    (&["donut", "doughnut", "ring"], &[&["torus"]]),
+    (&["revolution", "sor", "vase", "revolve"], &[&["lathe"]]),
+    (&["terrain", "heightmap", "landscape"], &[&["heightfield"]]),
     (&["hair", "strand", "bezier", "spline"], &[&["curve"]]),
     (&["bilinear", "bilinearmesh"], &[&["patch"]]),
 ];
