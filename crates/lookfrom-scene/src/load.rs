@@ -45,7 +45,8 @@ fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut scene = Scene { source_format: SourceFormat::Model, image, render, ..Scene::default() };
     let parts = match model(path, context, &mut scene) {
         Ok(model) => {
-            scene.z_is_up = model.z_is_up;
+            let points = scene.meshes.iter().flat_map(|mesh| &mesh.positions);
+            scene.z_is_up = model.z_is_up && !model::stand::stands_on_y(points);
             model.parts
         }
         Err(error) if error.kind == ErrorKind::Unsupported && path == Path::new(PIPE) => {

@@ -8,6 +8,7 @@ pub(crate) mod number;
 pub(crate) mod points;
 pub(crate) mod polygon;
 pub(crate) mod scan;
+pub(crate) mod stand;
 pub(crate) mod surface;
 pub(crate) mod tally;
 pub(crate) mod text;
