@@ -2,8 +2,10 @@
 //! floor.
 //!
 //! The studio is a backdrop that darkens downwards, with softboxes: a large key light at the upper left of the camera, one
-//! overhead, and two vertical strips, at the right and behind at the left, that give reflective surfaces bright edges. It is
-//! an environment light at infinity, so models of any size look the same in it.
+//! overhead, and two vertical strips, at the right and behind at the left, that give reflective surfaces bright edges. Two
+//! black flags beside the part of the backdrop that the camera sees, and a dark floor below it, give them dark edges: else
+//! mirrors would vanish in front of what they reflect. It is an environment light at infinity, so models of any size look
+//! the same in it.
 
 use glam::{DMat4, DVec3};
 
@@ -17,37 +19,44 @@ use crate::scene::{Bounds, MaterialId, Scene};
 use crate::shape::{Geometry, Shape};
 
 /// Resolution of the studio's environment map.
-const WIDTH: u32 = 256;
-const HEIGHT: u32 = 128;
+const WIDTH: u32 = 512;
+const HEIGHT: u32 = 256;
 
 /// Radiance of the backdrop by the height of the direction, from −1 to 1, linearly interpolated.
-const BACKDROP: [(f64, [f64; 3]); 5] = [
-    (-1.0, [0.20, 0.20, 0.205]),
+const BACKDROP: [(f64, [f64; 3]); 7] = [
+    (-1.0, [0.11, 0.11, 0.114]),
+    (-0.8, [0.16, 0.162, 0.167]),
+    (-0.62, [0.335, 0.34, 0.349]),
     (-0.55, [0.36, 0.365, 0.375]),
     (-0.1, [0.66, 0.665, 0.675]),
     (0.3, [0.30, 0.305, 0.315]),
     (1.0, [0.18, 0.185, 0.195]),
 ];
 
-/// A softbox: a rectangular light.
-struct SoftBox {
+/// A rectangle in front of the backdrop: a softbox, which is a light, or a flag, which is dark.
+struct Panel {
     /// Direction from the model, as components to the right, up and towards the camera; any length.
     toward: [f64; 3],
     /// Half its width and height at a distance of 1.
     half: [f64; 2],
     /// Radiance at its centre.
     radiance: [f64; 3],
+    /// The fraction of its half size over which its edge fades out.
+    fade: f64,
 }
 
-const SOFT_BOXES: [SoftBox; 4] = [
-    SoftBox { toward: [-0.62, 0.85, 0.6], half: [0.62, 0.62], radiance: [2.15, 2.1, 2.03] },
-    SoftBox { toward: [0.1, 1.0, -0.35], half: [0.6, 0.4], radiance: [1.1, 1.1, 1.1] },
-    SoftBox { toward: [0.95, 0.5, 0.1], half: [0.16, 0.42], radiance: [1.5, 1.55, 1.63] },
-    SoftBox { toward: [-0.75, 0.68, -0.75], half: [0.14, 0.42], radiance: [1.9, 1.95, 2.05] },
+/// Vertical, at equal angles to both sides of the direction in which the camera looks, outside the image.
+const FLAGS: [Panel; 2] = [
+    Panel { toward: [0.70, -0.1, -0.71], half: [0.2, 0.55], radiance: [0.08, 0.081, 0.084], fade: 0.7 },
+    Panel { toward: [-0.964, -0.1, 0.267], half: [0.2, 0.55], radiance: [0.08, 0.081, 0.084], fade: 0.7 },
 ];
 
-/// The fraction of a box's half size over which its edge fades out.
-const FADE: f64 = 0.12;
+const SOFT_BOXES: [Panel; 4] = [
+    Panel { toward: [-0.62, 0.85, 0.6], half: [0.62, 0.62], radiance: [2.15, 2.1, 2.03], fade: 0.12 },
+    Panel { toward: [0.1, 1.0, -0.35], half: [0.6, 0.4], radiance: [1.1, 1.1, 1.1], fade: 0.12 },
+    Panel { toward: [0.95, 0.5, 0.1], half: [0.16, 0.42], radiance: [1.5, 1.55, 1.63], fade: 0.12 },
+    Panel { toward: [-0.75, 0.68, -0.75], half: [0.14, 0.42], radiance: [1.9, 1.95, 2.05], fade: 0.12 },
+];
 
 /// Radius of the floor in radii of the bounds, so that it extends beyond the upper edge of the image.
 const FLOOR_RADIUS: f64 = 60.0;
@@ -124,34 +133,38 @@ fn studio() -> Image {
     let turns = |parts: f64| libm::sincos(std::f64::consts::PI * parts);
     let columns: Vec<(f64, f64)> =
         (0..WIDTH).map(|x| turns(2.0 * ((f64::from(x) + 0.5) / f64::from(WIDTH) - 0.5))).collect();
-    let frames = SOFT_BOXES.map(|of| basis_facing(DVec3::from_array(of.toward)));
+    let panels: Vec<(&Panel, [DVec3; 3])> = FLAGS
+        .iter()
+        .chain(&SOFT_BOXES)
+        .map(|panel| (panel, basis_facing(DVec3::from_array(panel.toward))))
+        .collect();
     let mut texels = Vec::with_capacity((WIDTH * HEIGHT) as usize);
     for y in 0..HEIGHT {
         let (sin_theta, cos_theta) = turns((f64::from(y) + 0.5) / f64::from(HEIGHT));
         for (sin_phi, cos_phi) in &columns {
             let direction = DVec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta);
-            texels.push(radiance(direction, &frames).map(|c| c as f32));
+            texels.push(radiance(direction, &panels).map(|c| c as f32));
         }
     }
     Image::from_linear("studio", WIDTH, HEIGHT, texels)
 }
 
 /// The studio's radiance from a unit direction.
-fn radiance(direction: DVec3, frames: &[[DVec3; 3]; 4]) -> [f64; 3] {
+fn radiance(direction: DVec3, panels: &[(&Panel, [DVec3; 3])]) -> [f64; 3] {
     // The backdrop.
     let above = BACKDROP[1..].iter().position(|(y, _)| direction.y <= *y).unwrap_or(BACKDROP.len() - 2);
     let [(y0, low), (y1, high)] = [BACKDROP[above], BACKDROP[above + 1]];
     let t = ((direction.y - y0) / (y1 - y0)).clamp(0.0, 1.0);
     let mut sum: [f64; 3] = std::array::from_fn(|c| low[c] + t * (high[c] - low[c]));
 
-    // The softboxes in front of it.
-    for (SoftBox { half, radiance, .. }, [right, up, toward]) in SOFT_BOXES.iter().zip(frames) {
+    // The panels in front of it.
+    for (Panel { half, radiance, fade, .. }, [right, up, toward]) in panels {
         let depth = direction.dot(*toward);
         if depth <= 0.0 {
             continue;
         }
         let inside = |axis: DVec3, half: f64| {
-            let from_edge = (1.0 - (direction.dot(axis) / (depth * half)).abs()) / FADE;
+            let from_edge = (1.0 - (direction.dot(axis) / (depth * half)).abs()) / fade;
             let t = (0.5 + 0.5 * from_edge).clamp(0.0, 1.0);
             t * t * (3.0 - 2.0 * t)
         };
@@ -203,6 +216,36 @@ mod tests {
             assert!(side[1] > 0.25 && (side[0] / side[2] - 1.0).abs() < 0.06, "{side:?}");
         }
         assert!(key[1] > 1.3 * right[1], "it must have a bright side");
+    }
+
+    #[test]
+    fn mirrors_have_dark_edges_before_the_backdrop() {
+        let image = studio();
+        let [.., to_camera] = super::super::basis(DVec3::Y);
+        assert_eq!(to_camera, DVec3::Z);
+        let camera = -DVec3::from_array(super::super::TO_CAMERA).normalize();
+        let across = camera.cross(DVec3::Y).normalize();
+        let luminance = |direction: DVec3| {
+            let u = libm::atan2(direction.x, -direction.z) / std::f64::consts::TAU + 0.5;
+            let v = libm::acos(direction.y) / std::f64::consts::PI;
+            let [x, y] = [u * f64::from(WIDTH), v * f64::from(HEIGHT)].map(|at| at as usize);
+            image.texel(y.min(HEIGHT as usize - 1) * WIDTH as usize + x.min(WIDTH as usize - 1))[1]
+        };
+        let behind = luminance(camera);
+        // What a mirror ball reflects inside its edges at the left, at the right and below: 75° aside from the camera's
+        // direction, at the height of the flags, and the floor.
+        for side in [across, -across] {
+            let reflected = (0.26 * camera + 0.97 * side) * DVec3::new(1.0, 0.0, 1.0) - 0.1 * DVec3::Y;
+            assert!(luminance(reflected.normalize()) < 0.3 * behind, "{reflected}");
+        }
+        assert!(luminance(DVec3::new(0.0, -0.95, -0.31)) < 0.4 * behind);
+        // And the image shows neither.
+        for x in [-0.45, 0.0, 0.45] {
+            for y in [-0.26, 0.0, 0.26] {
+                let direction = (camera + x * across + y * across.cross(camera)).normalize();
+                assert!(luminance(direction) > 0.3, "{x} {y}");
+            }
+        }
     }
 
     #[test]
