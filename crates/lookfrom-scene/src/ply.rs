@@ -1,10 +1,12 @@
 //! Reader and writer for PLY files: meshes and point clouds.
 //!
-//! `header` parses the header, `body` (with `values`) the elements, `build` makes the mesh, [`write`](fn@write) writes one.
+//! `header` parses the header, `body` (with `values`) the elements, `build` makes the mesh, `edges` wires, and
+//! [`write`](fn@write) writes a mesh.
 //! The format: Turk 1994, "The PLY Polygon File Format"; property names as they are in common use.
 
 mod body;
 mod build;
+mod edges;
 mod header;
 mod values;
 mod write;
@@ -18,8 +20,9 @@ use crate::packed;
 use crate::scene::Scene;
 use crate::shape::Part;
 
-/// Reads a PLY file, ASCII or binary: one mesh, or a point cloud if there are no faces. Integer colours are sRGB-encoded,
-/// floating-point ones linear; an image named by a comment `TextureFile` is used.
+/// Reads a PLY file, ASCII or binary: one mesh, or wires along its edges if there are no faces, or a point cloud if there
+/// are no edges either. Integer colours are sRGB-encoded, floating-point ones linear; an image named by a comment
+/// `TextureFile` is used.
 ///
 /// # Errors
 /// `Io`, `Limit`, `Syntax` and `Invalid`; at line and column, or at a byte in binary formats. After an error the scene may

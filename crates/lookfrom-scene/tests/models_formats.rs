@@ -567,3 +567,48 @@ fn ply_splats_are_coloured_points() {
     assert!(red == 1.0 && blue == 0.0 && (green - 0.214).abs() < 1e-3, "{green}: half of 1, encoded");
     assert!(cloud.warnings[0].contains("Gaussian splats"), "{:?}", cloud.warnings);
 }
+
+#[test]
+fn ply_edges_without_faces_are_wires() {
+    let header =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    let vertices = "0 0 0\n1 0 0\n0 1 0\n";
+    let edge = "property int vertex1\nproperty int vertex2\n";
+    let of = |file: &str| Model::of(&[("a.ply", file.as_bytes())]);
+    let wires = |model: &Model, part: usize| match &model.parts[part].geometry {
+        Geometry::Curves(strands) => {
+            strands.iter().map(|strand| [strand.points[0], strand.points[3]]).collect::<Vec<_>>()
+        }
+        other => panic!("no wires: {other:?}"),
+    };
+
+    let plain = of(&format!("{header}element edge 3\n{edge}end_header\n{vertices}0 1\n1 2\n2 2\n"));
+    assert_eq!((plain.parts.len(), plain.parts[0].material), (1, None));
+    assert_eq!(wires(&plain, 0), [[Vec3::ZERO, Vec3::X], [Vec3::X, Vec3::Y]]);
+    assert_eq!(plain.warnings, [""; 0]);
+
+    let rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    let rows = "0 1 255 0 0\n1 2 0 0 255\n";
+    let colored = of(&format!("{header}element edge 2\n{edge}{rgb}end_header\n{vertices}{rows}"));
+    assert_eq!(colored.parts.len(), 2);
+    let mut colors = [colored.look(0).diffuse, colored.look(1).diffuse];
+    colors.sort_by_key(|color| *color != Color::Value([1.0, 0.0, 0.0]));
+    assert_eq!(colors, [Color::Value([1.0, 0.0, 0.0]), Color::Value([0.0, 0.0, 1.0])]);
+
+    // Colours of vertices are those of their edges, too.
+    let vertices_rgb = "0 0 0 255 0 0\n1 0 0 255 0 0\n0 1 0 0 0 255\n";
+    let colored = of(&format!("{header}{rgb}element edge 1\n{edge}end_header\n{vertices_rgb}0 2\n"));
+    assert_eq!(colored.look(0).diffuse, Color::Value([0.5, 0.0, 0.5]));
+
+    let strays = of(&format!("{header}element edge 4\n{edge}end_header\n{vertices}0 1\n0 3\n-1 0\n2 1\n"));
+    assert_eq!(wires(&strays, 0), [[Vec3::ZERO, Vec3::X], [Vec3::Y, Vec3::X]]);
+    assert_eq!(strays.warnings, ["a.ply: 2 edges left out: there is no vertex of this index"]);
+
+    // Beside faces, edges are only the outlines of these.
+    let face = "element face 1\nproperty list uchar int vertex_indices\n";
+    let both = of(&format!("{header}{face}element edge 1\n{edge}end_header\n{vertices}3 0 1 2\n0 1\n"));
+    assert_eq!((both.parts.len(), both.mesh(0).triangles.len()), (1, 1));
+    // Without ends there are no edges: the vertices are points.
+    let other = of(&format!("{header}element edge 1\nproperty int length\nend_header\n{vertices}7\n"));
+    assert!(matches!(&other.parts[0].geometry, Geometry::Spheres(spheres) if spheres.len() == 3));
+}

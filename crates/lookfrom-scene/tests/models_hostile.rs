@@ -17,6 +17,9 @@ const PLY: &str = "ply\r\nformat ascii 1.0\r\ncomment TextureFile a.png\r\neleme
     element tristrips 1\r\nproperty list int int vertex_indices\r\nelement extra 1\r\nproperty int a\r\nend_header\r\n\
     0 0 0 0 0 1 0 0 255 0 0\r\n1 0 0 0 0 1 1 0 0 255 0\r\n1 1 0 0 0 1 1 1 0 0 255\r\n0 1 0 0 0 1 0 1 9 9 9\r\n\
     4 0 1 2 3 8 0 0 1 0 1 1 0 1\r\n3 0 1 2 0\r\n6 0 1 2 3 -1 0\r\n7\r\n";
+const EDGES: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+    element edge 2\nproperty int vertex1\nproperty list uchar int l\nproperty int vertex2\nproperty uchar red\n\
+    property uchar green\nproperty uchar blue\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 1 9 1 255 0 0\n1 0 2 0 0 255\n";
 const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\nendloop\nendfacet\n\
     endsolid a\nsolid b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 1 0 1\nvertex 1 1 1\nvertex 0 1 1\nendloop\n\
     endfacet\nendsolid\n";
@@ -48,6 +51,7 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
         ("a.obj", OBJ.as_bytes().to_vec()),
         ("a.obj", utf16),
         ("a.ply", PLY.as_bytes().to_vec()),
+        ("a.ply", EDGES.as_bytes().to_vec()),
         ("a.ply", lookfrom_scene::ply::write(&mesh)),
         ("a.ply", big),
         ("a.stl", STL.as_bytes().to_vec()),

@@ -1,10 +1,11 @@
 //! Parser for the elements of PLY files.
 //!
-//! Vertices and faces; other elements and properties are skipped. Headers are not trusted: declared sizes are compared
+//! Vertices, faces and edges; other elements and properties are skipped. Headers are not trusted: declared sizes are compared
 //! with the remaining bytes before memory is allocated.
 
 use glam::{Vec2, Vec3};
 
+use super::edges::Edges;
 use super::header::{Element, Format, Header, Kind, Scalar};
 use super::values::Reader;
 use crate::error::{Error, ErrorKind, Location, Result};
@@ -31,6 +32,7 @@ pub(super) struct Content {
     pub(super) corner_uvs: Vec<Vec2>,
     /// Empty, or one per face; linear.
     pub(super) face_colors: Vec<[f32; 3]>,
+    pub(super) edges: Edges,
     /// Rows of a text with more values than the header declares.
     pub(super) longer: Tally,
     /// The number of faces with fewer than three corners, and the line of the first.
@@ -50,7 +52,7 @@ pub(super) const SPLAT_COLOR: &str = "f_dc_0";
 const CONSTANT_HARMONIC: f64 = 0.282_094_791_773_878_1;
 
 /// Names of vertex properties, in the order of the values in `read_vertices`.
-const VERTEX: [&[&str]; 11] = [
+pub(super) const VERTEX: [&[&str]; 11] = [
     &["x"],
     &["y"],
     &["z"],
@@ -93,6 +95,9 @@ pub(super) fn read(bytes: &[u8], header: &Header, file: &Location, limits: &Limi
             "vertex" => read_vertices(element, &mut reader, &mut content)?,
             "face" | "tristrips" | "tristrip" => {
                 read_faces(element, vertices, limits, &mut reader, &mut content)?;
+            }
+            "edge" if element.find(&["vertex1"]).is_some() => {
+                content.edges = Edges::read(element, &mut reader)?;
             }
             _ => skip(element, least, &mut reader)?,
         }
@@ -163,7 +168,7 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
 }
 
 /// The conversion of a colour to linear light: integers are sRGB-encoded, floating-point values are linear.
-fn color_decoder(kind: Option<Kind>) -> impl Fn(f64) -> f32 {
+pub(super) fn color_decoder(kind: Option<Kind>) -> impl Fn(f64) -> f32 {
     let bytes: Vec<f32> = (0..=255).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
     let full = match kind {
         Some(Kind::One(Scalar::F32 | Scalar::F64)) | None => 0.0,

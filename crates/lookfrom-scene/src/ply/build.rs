@@ -1,4 +1,4 @@
-//! Meshes and point clouds of PLY elements.
+//! Meshes, wires and point clouds of PLY elements.
 
 use std::path::Path;
 
@@ -21,7 +21,7 @@ use crate::scene::{MaterialId, MeshId, Scene};
 use crate::shape::{Geometry, Mesh, Part};
 use crate::texture::Wrap;
 
-/// Adds the mesh (or the points) and its material to the scene.
+/// Adds the mesh (or the edges, or the points) and its material to the scene.
 pub(super) fn parts(
     mut content: Content,
     header: &Header,
@@ -42,6 +42,10 @@ pub(super) fn parts(
     if content.positions.is_empty() {
         context.warn(&file, "there are no vertices");
         return Ok(Vec::new());
+    }
+    if content.faces.is_empty() && !content.edges.is_empty() {
+        let Content { edges, positions, colors, .. } = content;
+        return Ok(edges.wires(&positions, &colors, &file, context, scene));
     }
     if content.faces.is_empty() {
         let is_splat = |element: &Element| element.find(&[SPLAT_COLOR]).is_some();
