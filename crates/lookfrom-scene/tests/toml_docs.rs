@@ -93,3 +93,22 @@ fn the_snippets_of_the_guide_are_read() {
         }
     }
 }
+
+/// The blocks of the tutorial, one after the other, are the scene that it shows.
+#[test]
+fn the_tutorial_makes_its_scene() {
+    let tutorial = std::fs::read_to_string(root().join("docs/guide/tutorial.md")).expect("the tutorial");
+    let scene = std::fs::read_to_string(root().join("scenes/still-life.toml")).expect("its scene");
+    let blocks: Vec<&str> =
+        tutorial.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    let (_, written) = scene.split_once("\n\n").expect("a line about it");
+    assert_eq!(blocks.join("\n"), written);
+    // After each of them there is a scene without errors, once there is anything to see.
+    for count in 2..=blocks.len() {
+        let files =
+            lookfrom_scene::Memory([("s.toml".into(), blocks[..count].join("\n").into_bytes())].into());
+        if let Err(error) = load::scene(Path::new("s.toml"), &mut LoadContext::new(&files)) {
+            panic!("after block {count}: {error}");
+        }
+    }
+}
