@@ -3,11 +3,11 @@
 use crate::core::math::luminance;
 use crate::film::Picture;
 
-/// The luminance that nine tenths of what is lit are below.
+/// The luminance that all but a few hundredths of what is lit are below.
 const BRIGHT: f64 = 0.9;
-const BRIGHT_QUANTILE: f64 = 0.9;
+const BRIGHT_QUANTILE: f64 = 0.97;
 /// The least geometric mean of what is lit, even if lamps and windows become white by it.
-const DARK: f64 = 0.05;
+const DARK: f64 = 0.03;
 /// The fraction of a stop that exposures are rounded to, so that a person can repeat one.
 const STEPS: f64 = 8.0;
 /// The most stops, as in options.
@@ -47,8 +47,8 @@ mod tests {
         assert_eq!(of(&[0.9 * 1024.0; 5]), -10.0);
         assert_eq!(of(&[1e-38, 1e-40]), 64.0);
         // A room keeps its light where its lamp is white, but is not lost for a wide lamp.
-        let mut room = vec![0.9; 95];
-        room.extend([500.0; 5]);
+        let mut room = vec![0.9; 98];
+        room.extend([500.0; 2]);
         assert_eq!(of(&room), 0.0);
         let mut wide = vec![0.01; 70];
         wide.extend([1000.0; 30]);
