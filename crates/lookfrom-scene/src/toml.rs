@@ -7,6 +7,7 @@
 mod camera;
 mod chain;
 mod color;
+mod color_names;
 mod composite;
 mod curve;
 mod directional;

@@ -424,3 +424,19 @@ fn mixes_of_mixes_come_to_an_end() {
     let error = load::scene(Path::new("a.toml"), &mut LoadContext::new(&files)).unwrap_err();
     assert_eq!(error.kind, lookfrom_scene::ErrorKind::Limit, "{error}");
 }
+
+#[test]
+fn colours_have_names_unless_textures_have_them() {
+    let reflectance = |text: &str| {
+        let scene = read(&format!(
+            "[materials.a]\ntype = \"diffuse\"\nreflectance = {text}\n[textures.plum]\ntype = \"checker\"\n"
+        ));
+        let MaterialKind::Diffuse { reflectance } = *kind(&scene, "a") else { panic!("{text}") };
+        reflectance
+    };
+    assert_eq!(reflectance("\"tomato\""), reflectance("\"#ff6347\""));
+    assert_eq!(reflectance("\"DarkSlateGray\""), reflectance("\"#2f4f4f\""));
+    assert!(matches!(reflectance("\"plum\""), Color::Texture(_)));
+    let scene = read("[[light]]\ntype = \"point\"\nposition = [0, 1, 0]\nintensity = \"white\"\n");
+    assert_eq!(scene.lights.len(), 1);
+}

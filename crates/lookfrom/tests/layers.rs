@@ -26,6 +26,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("film", &["hash", "lanes", "spectrum"]),
     ("denoise", &["film", "parallel"]),
     ("develop", &["film"]),
+    ("exposure", &["film", "math"]),
     ("noise", &["hash"]),
     ("filter", &["sampler"]),
     ("distribution", &["sampler"]),
@@ -141,7 +142,19 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     (
         "session",
-        &["clock", "color", "denoise", "develop", "film", "inspect", "integrator", "render", "view", "world"],
+        &[
+            "clock",
+            "color",
+            "denoise",
+            "develop",
+            "exposure",
+            "film",
+            "inspect",
+            "integrator",
+            "render",
+            "view",
+            "world",
+        ],
     ),
 ];
 

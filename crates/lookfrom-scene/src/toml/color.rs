@@ -1,8 +1,9 @@
-//! Colours and numbers, possibly textured: numbers, `[r, g, b]`, `"#rrggbb"`, curves, names of textures, inline textures.
+//! Colours and numbers, possibly textured: numbers, `[r, g, b]`, `"#rrggbb"`, names, curves, names of textures, inline
+//! textures.
 
-use super::Reader;
 use super::table::Table;
 use super::value::Value;
+use super::{Reader, color_names};
 use crate::error::Result;
 use crate::image::linear_from_srgb;
 use crate::material::{Color, Scalar};
@@ -15,12 +16,12 @@ const DARKEST: f64 = 1e-30;
 
 /// A constant RGB colour.
 pub(super) fn plain_color(value: Value<'_>) -> Result<[f32; 3]> {
-    let expected = "a colour: a number, [r, g, b] or \"#rrggbb\"";
+    let expected = "a colour: a number, [r, g, b], \"#rrggbb\" or a name such as \"tomato\"";
     if value.is_number() {
         return primary(value).map(|gray| [gray; 3]);
     }
     if let Some(text) = value.as_text() {
-        return hex_color(text).ok_or_else(|| value.wrong(expected));
+        return text_color(text).ok_or_else(|| value.wrong(expected));
     }
     let [r, g, b] = value.list_of(expected)?;
     Ok([primary(r)?, primary(g)?, primary(b)?])
@@ -30,10 +31,10 @@ fn primary(value: Value<'_>) -> Result<f32> {
     value.single_where("a number of at least 0", |number| number >= 0.0)
 }
 
-/// `#rgb` or `#rrggbb`, converted to linear.
-fn hex_color(text: &str) -> Option<[f32; 3]> {
-    let digits: Vec<f32> =
-        text.strip_prefix('#')?.chars().map(|c| c.to_digit(16).map(|d| d as f32)).collect::<Option<_>>()?;
+/// `#rgb`, `#rrggbb` or a name, converted to linear.
+fn text_color(text: &str) -> Option<[f32; 3]> {
+    let digits = text.strip_prefix('#').or_else(|| color_names::digits(text))?;
+    let digits: Vec<f32> = digits.chars().map(|c| c.to_digit(16).map(|d| d as f32)).collect::<Option<_>>()?;
     let byte = match digits.len() {
         3 => |digits: &[f32], i: usize| 17.0 * digits[i],
         6 => |digits: &[f32], i: usize| 16.0 * digits[2 * i] + digits[2 * i + 1],
@@ -54,7 +55,13 @@ impl Reader<'_, '_> {
             return Ok(Color::Texture(self.add_texture(value, kind)));
         }
         match value.as_text() {
-            Some(name) if !name.starts_with('#') => self.texture_named(value, name).map(Color::Texture),
+            // A texture of the scene may have the name of a colour.
+            Some(name)
+                if self.textures.contains_key(name)
+                    || text_color(name).is_none() && !name.starts_with('#') =>
+            {
+                self.texture_named(value, name).map(Color::Texture)
+            }
             _ => plain_color(value).map(Color::Value),
         }
     }
@@ -100,7 +107,8 @@ impl Reader<'_, '_> {
             }
             return Ok((Color::Curve(curve), table.or("scale", 1.0, primary)));
         }
-        let is_texture = value.is_table() || value.as_text().is_some_and(|text| !text.starts_with('#'));
+        let is_texture = value.is_table()
+            || value.as_text().is_some_and(|text| !text.starts_with('#') && text_color(text).is_none());
         if is_texture && !textures {
             let expected = "a colour: a number, [r, g, b], \"#rrggbb\", or a curve such as { kelvin = 5600 }";
             return Err(value.wrong(expected));
