@@ -11,6 +11,7 @@ pub mod error;
 pub mod excerpt;
 pub mod files;
 pub mod gltf;
+pub mod ies;
 pub mod image;
 pub mod inputs;
 pub mod json;

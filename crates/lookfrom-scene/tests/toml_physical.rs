@@ -440,3 +440,20 @@ fn colours_have_names_unless_textures_have_them() {
     let scene = read("[[light]]\ntype = \"point\"\nposition = [0, 1, 0]\nintensity = \"white\"\n");
     assert_eq!(scene.lights.len(), 1);
 }
+
+#[test]
+fn photometric_files_are_read_once() {
+    let lamp = "[[light]]\ntype = \"goniometric\"\nimage = \"a.IES\"\nposition = [0, 2, 0]\nintensity = 3\n";
+    let ies = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n2 1\n";
+    let scene = read_files(&[("a.toml", &lamp.repeat(2)), ("a.IES", ies)]);
+    assert_eq!((scene.lights.len(), scene.images.len()), (2, 1));
+    let Color::Value(intensity) = (match scene.lights[1].kind {
+        LightKind::Goniometric { intensity, .. } => intensity,
+        ref other => panic!("{other:?}"),
+    }) else {
+        panic!("no colour")
+    };
+    assert_eq!(intensity, [3.0; 3]);
+    // The brightest direction, straight down, is at the corners of the map.
+    assert!(scene.images[0].texel(0)[0] > 0.99);
+}

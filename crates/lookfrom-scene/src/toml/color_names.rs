@@ -30,11 +30,6 @@ const NAMES: &str = "\
     tomato ff6347  turquoise 40e0d0  violet ee82ee  wheat f5deb3  white ffffff  whitesmoke f5f5f5  yellow ffff00 \
     yellowgreen 9acd32";
 
-/// All names.
-pub(super) fn all() -> impl Iterator<Item = &'static str> {
-    NAMES.split_whitespace().step_by(2)
-}
-
 /// The digits `rrggbb` of a name in upper or lower case.
 pub(super) fn digits(name: &str) -> Option<&'static str> {
     let mut words = NAMES.split_whitespace();
@@ -52,6 +47,7 @@ mod tests {
 
     #[test]
     fn names_are_known() {
+        let all = || NAMES.split_whitespace().step_by(2);
         assert_eq!(all().count(), 148);
         assert!(all().is_sorted() && all().all(|name| digits(name).is_some_and(|digits| digits.len() == 6)));
         for (name, expected) in [

@@ -8,6 +8,7 @@ use super::sky::up_from_pole;
 use super::table::Table;
 use super::value::Value;
 use crate::error::Result;
+use crate::ies;
 use crate::light::{LightKind, Power};
 use crate::scene::ImageId;
 
@@ -67,10 +68,26 @@ impl Reader<'_, '_> {
         Ok((LightKind::Projection { image, intensity, fov, world_from_light }, power))
     }
 
+    /// The octahedral map of a luminaire's photometric file, or of a picture.
+    fn intensities(&mut self, value: Value<'_>) -> Result<ImageId> {
+        let Some(name) = value.as_text().filter(|name| ies::is_ies(name)) else {
+            return self.octahedral_image(value);
+        };
+        let key = (self.resolve(value, "the name of a photometric file")?, true);
+        if let Some(&id) = self.images.get(&key) {
+            return Ok(id);
+        }
+        let photometry = ies::read(&key.0, self.context).map_err(|error| value.blame(error))?;
+        let id = ImageId(self.scene.images.len() as u32);
+        self.scene.images.push(photometry.octahedral(name));
+        self.images.insert(key, id);
+        Ok(id)
+    }
+
     /// A goniometric light.
     pub(super) fn goniometric(&mut self, table: &Table<'_>) -> (LightKind, Power) {
         let position = position(table);
-        let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.octahedral_image(value));
+        let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.intensities(value));
         let (intensity, power) = self.intensity(table, "power");
         let world_from_light = DMat4::from_translation(position) * turned(table) * up_from_pole();
         (LightKind::Goniometric { intensity, image, world_from_light }, power)

@@ -1,0 +1,278 @@
+//! Reader for photometric files of luminaires, `.ies` (ANSI/IES LM-63, all editions): the intensity by direction.
+//!
+//! Photometry of type C, as nearly all files have it: vertical angles from straight down, horizontal ones around the upright axis,
+//! counter-clockwise as seen from above. Only relative intensities are used: luminaires are dimmed and have other lamps.
+
+use std::f64::consts::{FRAC_PI_4, PI};
+use std::path::Path;
+
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::files::LoadContext;
+use crate::image::Image;
+use crate::model::number::parse_f32;
+use crate::model::text;
+
+/// The longest file, and the most angles of a kind: real ones have a few hundred.
+const LONGEST: u64 = 1 << 24;
+const MOST_ANGLES: usize = 1 << 12;
+/// Texels along each side of the picture of a distribution.
+const SIDE: u32 = 256;
+
+/// Intensities of a luminaire by direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Photometry {
+    /// Vertical angles in degrees, increasing: 0 is straight down, 180 straight up.
+    vertical: Vec<f64>,
+    /// Horizontal angles in degrees, increasing; the rest is symmetric.
+    horizontal: Vec<f64>,
+    /// By horizontal, then by vertical angle; the greatest is 1.
+    intensities: Vec<f64>,
+}
+
+/// Whether a file has the name of a photometric file.
+pub fn is_ies(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ies"))
+}
+
+/// Reads a photometric file.
+///
+/// # Errors
+/// `Syntax` or `Invalid` for what is no such file, `Unsupported` for photometry of type A or B, `Limit` for too many angles.
+pub fn read(path: &Path, context: &LoadContext<'_>) -> Result<Photometry> {
+    let bytes = context.read(path)?;
+    if bytes.len() as u64 > LONGEST {
+        let message = format!("{} bytes are more than a photometric file has", bytes.len());
+        return Err(Error::new(ErrorKind::Limit, &Location::file(path), message));
+    }
+    parse(&String::from_utf8_lossy(&text::utf8(&bytes)), &Location::file(path))
+}
+
+/// The numbers of a file, one after the other.
+struct Numbers<'a> {
+    words: Box<dyn Iterator<Item = (u32, &'a str)> + 'a>,
+    file: &'a Location,
+    last_line: u32,
+}
+
+impl Numbers<'_> {
+    fn next(&mut self, what: &str) -> Result<f64> {
+        let Some((line, word)) = self.words.next() else {
+            let message = format!("the file ends before {what}");
+            return Err(Error::syntax(&self.file.at(self.last_line, 1), message));
+        };
+        self.last_line = line;
+        let number = parse_f32(word.as_bytes()).filter(|number| number.is_finite());
+        number.map(f64::from).ok_or_else(|| {
+            Error::syntax(&self.file.at(line, 1), format!("`{word}` is no number; expected {what}"))
+        })
+    }
+
+    fn count(&mut self, what: &str) -> Result<usize> {
+        let number = self.next(what)?;
+        if number < 1.0 || number.fract() != 0.0 {
+            return Err(self.wrong(format!("{what} is {number}; expected a whole number above 0")));
+        }
+        if number > MOST_ANGLES as f64 {
+            let at = self.file.at(self.last_line, 1);
+            let message = format!("{what} is {number}, more than the limit of {MOST_ANGLES}");
+            return Err(Error::new(ErrorKind::Limit, &at, message));
+        }
+        Ok(number as usize)
+    }
+
+    fn angles(&mut self, count: usize, what: &str) -> Result<Vec<f64>> {
+        let angles = (0..count).map(|_| self.next(what)).collect::<Result<Vec<_>>>()?;
+        if angles.windows(2).any(|pair| pair[0] >= pair[1]) {
+            return Err(self.wrong(format!("the {what}s do not increase")));
+        }
+        Ok(angles)
+    }
+
+    fn wrong(&self, message: String) -> Error {
+        Error::invalid(&self.file.at(self.last_line, 1), message)
+    }
+}
+
+fn parse(text: &str, file: &Location) -> Result<Photometry> {
+    let mut lines = (1..).zip(text.lines());
+    let tilt = lines.by_ref().find(|(_, line)| line.trim_start().starts_with("TILT="));
+    let Some((_, tilt)) = tilt else {
+        return Err(Error::syntax(file, "there is no line `TILT=`: it is no photometric file"));
+    };
+    let has_tilt = tilt.contains("INCLUDE");
+    let words = lines.flat_map(|(line, text): (u32, &str)| {
+        text.split(|c: char| c.is_whitespace() || c == ',')
+            .filter(|word| !word.is_empty())
+            .map(move |word| (line, word))
+    });
+    let mut numbers = Numbers { words: Box::new(words), file, last_line: 1 };
+    if has_tilt {
+        // By how much the lamp is dimmer where the luminaire is tilted: ours hangs as it was measured.
+        numbers.next("the lamp's position")?;
+        let count = numbers.count("the number of tilt angles")?;
+        (0..2 * count).try_for_each(|_| numbers.next("a tilt angle or factor").map(drop))?;
+    }
+    for what in ["the number of lamps", "the lumens of a lamp", "the factor of the intensities"] {
+        numbers.next(what)?;
+    }
+    let vertical_count = numbers.count("the number of vertical angles")?;
+    let horizontal_count = numbers.count("the number of horizontal angles")?;
+    let kind = numbers.next("the type of photometry")?;
+    if kind != 1.0 {
+        let at = file.at(numbers.last_line, 1);
+        let message = "photometry of type A or B is not supported: only type C, of luminaires that hang";
+        return Err(Error::new(ErrorKind::Unsupported, &at, message));
+    }
+    for what in ["the unit of lengths", "the width", "the length", "the height"] {
+        numbers.next(what)?;
+    }
+    for what in ["the ballast factor", "a number for the future", "the watts"] {
+        numbers.next(what)?;
+    }
+    let vertical = numbers.angles(vertical_count, "vertical angle")?;
+    let horizontal = numbers.angles(horizontal_count, "horizontal angle")?;
+    let count = vertical_count * horizontal_count;
+    let mut intensities = (0..count).map(|_| numbers.next("an intensity")).collect::<Result<Vec<f64>>>()?;
+    if intensities.iter().any(|intensity| *intensity < 0.0) {
+        return Err(Error::invalid(file, "an intensity is below 0"));
+    }
+    let greatest = intensities.iter().fold(0.0, |most: f64, intensity| most.max(*intensity));
+    if greatest > 0.0 {
+        intensities.iter_mut().for_each(|intensity| *intensity /= greatest);
+        return Ok(Photometry { vertical, horizontal, intensities });
+    }
+    Err(Error::invalid(file, "the luminaire emits no light: all intensities are 0"))
+}
+
+impl Photometry {
+    /// The relative intensity into a direction: degrees from straight down, and around. 0 beyond the vertical angles.
+    pub fn intensity(&self, vertical: f64, horizontal: f64) -> f64 {
+        let Some((row, t)) = place(&self.vertical, vertical) else { return 0.0 };
+        let (column, s) = place(&self.horizontal, self.folded(horizontal)).unwrap_or((0, 0.0));
+        let at = |column: usize, row: usize| {
+            let column = column.min(self.horizontal.len() - 1);
+            self.intensities[column * self.vertical.len() + row.min(self.vertical.len() - 1)]
+        };
+        let along = |column: usize| at(column, row) + t * (at(column, row + 1) - at(column, row));
+        let here = along(column);
+        here + s * (along(column + 1) - here)
+    }
+
+    /// A horizontal angle brought to those of the file by its symmetry.
+    fn folded(&self, angle: f64) -> f64 {
+        let (first, last) = (self.horizontal[0], self.horizontal[self.horizontal.len() - 1]);
+        let angle = angle.rem_euclid(360.0);
+        let mirrored = if angle > 180.0 { 360.0 - angle } else { angle };
+        match (first, last) {
+            // The same all around; both planes of symmetry; the plane through 0, or the one through 90.
+            _ if first == last => first,
+            (_, last) if last <= 90.0 => mirrored.min(180.0 - mirrored),
+            (_, last) if last <= 180.0 => mirrored,
+            (first, last) if first >= 90.0 && last <= 270.0 => match angle {
+                angle if angle < 90.0 => 180.0 - angle,
+                angle if angle > 270.0 => 540.0 - angle,
+                angle => angle,
+            },
+            _ => angle,
+        }
+    }
+
+    /// The intensities as an equal-area octahedral map (Clarberg 2008) with straight up in the middle.
+    pub fn octahedral(&self, name: &str) -> Image {
+        let place = |texel: u32| 2.0 * (f64::from(texel) + 0.5) / f64::from(SIDE) - 1.0;
+        let texels = (0..SIDE * SIDE).map(|index| {
+            let [u, v] = [place(index % SIDE), place(index / SIDE)];
+            let signed = 1.0 - u.abs() - v.abs();
+            let r = 1.0 - signed.abs();
+            let phi = if r == 0.0 { 0.0 } else { ((v.abs() - u.abs()) / r + 1.0) * FRAC_PI_4 };
+            let (sin, cos) = libm::sincos(phi);
+            let up = (1.0 - r * r).copysign(signed);
+            let around = libm::atan2(sin.copysign(v), cos.copysign(u));
+            let degrees = 180.0 / PI;
+            [self.intensity(libm::acos(-up) * degrees, around * degrees) as f32; 3]
+        });
+        Image::from_linear(name, SIDE, SIDE, texels.collect())
+    }
+}
+
+/// The interval of increasing numbers that a number is in, and where; `None` outside of them.
+fn place(sorted: &[f64], number: f64) -> Option<(usize, f64)> {
+    let (first, last) = (sorted[0], sorted[sorted.len() - 1]);
+    // Rounding does not make straight down and up dark.
+    let slack = 1e-6;
+    if number < first - slack || number > last + slack {
+        return None;
+    }
+    let above = sorted.partition_point(|known| *known <= number).clamp(1, sorted.len());
+    let below = above - 1;
+    match sorted.get(above) {
+        Some(next) => Some((below, ((number - sorted[below]) / (next - sorted[below])).clamp(0.0, 1.0))),
+        None => Some((below, 0.0)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::Memory;
+
+    fn of(body: &str) -> Result<Photometry> {
+        let files = Memory([("a.ies".into(), body.as_bytes().to_vec())].into());
+        read(Path::new("a.ies"), &LoadContext::new(&files))
+    }
+
+    fn near(a: f64, b: f64) -> bool {
+        (a - b).abs() < 1e-9
+    }
+
+    #[test]
+    fn symmetric_luminaires() {
+        let head = "IESNA:LM-63-2002\n[TEST] X\nTILT=NONE\n1 1000 1";
+        let round = of(&format!("{head} 3 1 1 1 0 0 0 1 1 40\n0 45 90\n0\n200 100 0\n")).unwrap();
+        for around in [0.0, 77.0, 359.0] {
+            assert!(near(round.intensity(0.0, around), 1.0) && near(round.intensity(22.5, around), 0.75));
+            assert!(near(round.intensity(67.5, around), 0.25) && round.intensity(91.0, around) == 0.0);
+        }
+        let quarter = of(&format!("{head} 2 2 1 1 0 0 0 1 1 40\r\n0, 90\r\n0 90\r\n8 8 2 2\r\n")).unwrap();
+        for around in [90.0, 270.0] {
+            assert!(near(quarter.intensity(50.0, around), 0.25), "{around}");
+        }
+        for around in [45.0, 135.0, 225.0, 315.0, -45.0] {
+            assert!(near(quarter.intensity(50.0, around), 0.625), "{around}");
+        }
+        let half = of(&format!("{head} 2 3 1 1 0 0 0 1 1 40\n0 180\n0 90 180\n4 4 2 2 1 1\n")).unwrap();
+        assert!(near(half.intensity(120.0, 180.0), 0.25) && near(half.intensity(1.0, 315.0), 0.75));
+        let other = of(&format!("{head} 2 3 1 1 0 0 0 1 1 40\n0 180\n90 180 270\n4 4 2 2 1 1\n")).unwrap();
+        assert!(near(other.intensity(9.0, 0.0), 0.5) && near(other.intensity(9.0, 300.0), 0.25 + 0.25 / 3.0));
+    }
+
+    #[test]
+    fn the_map_has_straight_up_in_the_middle() {
+        let tilt = "TILT=INCLUDE\n1 2 0 90 1 1\n1 -1 1 3 1 1 1 0 0 0 1 1 40 0 90 180 0 1 2 4";
+        let up = of(tilt).unwrap().octahedral("up");
+        let at = |x: u32, y: u32| up.texel((y * SIDE + x) as usize)[0];
+        assert!(at(SIDE / 2, SIDE / 2) > 0.99 && at(0, 0) < 0.26 && at(SIDE - 1, 0) < 0.26);
+        // The horizon is a square that stands on its corner.
+        assert!((at(SIDE / 4, SIDE / 4) - 0.5).abs() < 0.01);
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_line() {
+        for (text, expected) in [
+            ("a picture", "no line `TILT=`"),
+            ("TILT=NONE\n1 1 1 2 1 1", "a.ies:2:1: the file ends before the unit"),
+            ("TILT=NONE\n1 1 x", "`x` is no number"),
+            ("TILT=NONE\n1 1 1 2 1 3 1 0 0 0 1 1 1", "type A or B"),
+            ("TILT=NONE\n1 1 1 1e9 1 1", "more than the limit"),
+            (
+                "TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1\n90 0\n0\n1 1",
+                "a.ies:3:1: the vertical angles do not increase",
+            ),
+            ("TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1\n0 90\n0\n0 0", "no light"),
+            ("TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1\n0 90\n0\n0 -1", "below 0"),
+        ] {
+            let error = of(text).unwrap_err().to_string();
+            assert!(error.contains(expected), "{text}: {error}");
+        }
+    }
+}
