@@ -242,9 +242,7 @@ impl Shadow {
     ) -> Spectrum {
         let length = Vec3::from_array(self.ray.direction).length() * hit.t;
         let through_medium = world.transmittance(self.interior, length, lanes);
-        if !world.passes_alpha_test(surface, self.number(hit))
-            || world.has_media && world.is_interface(surface)
-        {
+        if !self.meets(world, hit, surface) || world.has_media && world.is_interface(surface) {
             return through_medium;
         }
         if world.is_open_front(surface) {
@@ -256,6 +254,11 @@ impl Shadow {
         let material = &world.materials[surface.material as usize].whitted;
         let point = world.texture_point(surface);
         Coefficients::at(material, &world.textures, &point, lanes).transmission * through_medium
+    }
+
+    /// Whether the surface exists where the ray hit it: the alpha test.
+    fn meets(&self, world: &World, hit: &Hit, surface: &SurfaceInteraction) -> bool {
+        surface.alpha.is_none() || world.passes_alpha_test(surface, self.number(hit))
     }
 
     /// A pseudorandom number in [0, 1): a hash of the ray and its hit.
@@ -272,7 +275,7 @@ impl Shadow {
         self.ray.origin = surface.origin(direction);
         self.origin_primitive = surface.origin_primitive;
         self.ray.t_max -= hit.t;
-        if world.passes_alpha_test(surface, self.number(hit)) && !world.is_open_front(surface) {
+        if !world.is_open_front(surface) && self.meets(world, hit, surface) {
             self.interior = self.interior.leaving(&world.materials, surface, direction, true);
         }
     }
