@@ -55,8 +55,7 @@ fn develop(path: &Path, target: &Target, arguments: &DevelopArguments) -> Result
         of_picture((picture, Vec::new(), Vec::new()), path, arguments)?
     };
     let bytes = developed.encode(target.format());
-    let bytes = bytes.map_err(|error| Failure::Output(format!("{}: {}", target.name(), error.message)))?;
-    target.write(&bytes, &inputs)
+    target.write(&bytes.map_err(|error| target.cannot_encode(&error))?, &inputs)
 }
 
 fn of_film(file: &FilmFile, path: &Path, arguments: &DevelopArguments) -> Result<Developed, Failure> {

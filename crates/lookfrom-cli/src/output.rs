@@ -65,6 +65,11 @@ impl Target {
         matches!(self, Self::File(path, _) if path == other)
     }
 
+    /// The failure that its format cannot hold the picture.
+    pub(crate) fn cannot_encode(&self, error: &lookfrom_scene::Error) -> Failure {
+        Failure::Output(format!("{}: {}", self.name(), error.message))
+    }
+
     /// The format of the picture.
     pub(crate) fn format(&self) -> Format {
         match self {

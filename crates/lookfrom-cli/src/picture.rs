@@ -87,9 +87,7 @@ pub(crate) fn render(
             (None, Outlet::Gathered(gather)) => gather(&finished)?,
             (None, Outlet::Target) => {
                 let bytes = finished.encode(target.format());
-                let bytes = bytes
-                    .map_err(|error| Failure::Output(format!("{}: {}", target.name(), error.message)))?;
-                target.write(&bytes, inputs)?;
+                target.write(&bytes.map_err(|error| target.cannot_encode(&error))?, inputs)?;
             }
         }
     }
@@ -121,7 +119,7 @@ fn write_previews(target: &Target, session: &Session, pictures: &Receiver<SoFar>
     let mut told = false;
     for (picture, mean) in pictures {
         let bytes = session.encode_preview(&picture, mean, target.format());
-        let bytes = bytes.map_err(|error| Failure::Output(format!("{}: {}", target.name(), error.message)));
+        let bytes = bytes.map_err(|error| target.cannot_encode(&error));
         if let Err(failure) = bytes.and_then(|bytes| target.write(&bytes, inputs))
             && !told
         {

@@ -21,7 +21,7 @@ use crate::{film, interrupt, naming, scenes};
 /// Failed scenes that are named at the end of a call.
 const MOST_FAILED: usize = 20;
 
-/// What a call is to do, checked as far as can be before scenes are read.
+/// A call of the command: its scenes, targets and series, checked as far as can be before scenes are read.
 struct Call<'a> {
     arguments: &'a RenderArguments,
     /// The arguments by which sessions can be opened again, for films.
@@ -243,7 +243,7 @@ impl<'a> Call<'a> {
         };
         let code = self.render_series(index, environment, inputs, &mut Outlet::Gathered(&mut outlet));
         if let Some(animation) = animation {
-            let bytes = animation.finish().map_err(|error| cannot_encode(target, &error))?;
+            let bytes = animation.finish().map_err(|error| target.cannot_encode(&error))?;
             target.write(&bytes, inputs)?;
         }
         code
@@ -335,11 +335,7 @@ impl<'a> Call<'a> {
 
 fn write_sheet(sheet: &Sheet, target: &Target, inputs: &Inputs) -> Result<(), Failure> {
     let shown = sheet.shown().and_then(|shown| shown.encode(target.format()));
-    target.write(&shown.map_err(|error| cannot_encode(target, &error))?, inputs)
-}
-
-fn cannot_encode(target: &Target, error: &lookfrom_scene::Error) -> Failure {
-    Failure::Output(format!("{}: {}", target.name(), error.message))
+    target.write(&shown.map_err(|error| target.cannot_encode(&error))?, inputs)
 }
 
 /// Refuses pictures that would overwrite an input, and a scene that reads a picture of this call.

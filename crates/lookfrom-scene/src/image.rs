@@ -22,5 +22,5 @@ pub use self::srgb::{linear_from_srgb, srgb_from_linear};
 pub use self::texels::{Image, Quad};
 pub use self::write::{
     Pixels, encode_hdr, encode_jpeg, encode_pfm, encode_png, encode_png_of, encode_png_with_alpha,
-    encode_ppm, encode_webp,
+    encode_ppm, encode_webp, without_alpha,
 };

@@ -14,12 +14,13 @@ pub(crate) mod tally;
 pub(crate) mod text;
 pub(crate) mod weld;
 
+use std::path::Path;
+
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 use crate::scene::Scene;
 use crate::shape::Part;
 use crate::{obj, packed, ply, stl};
-use std::path::Path;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Format {

@@ -126,8 +126,17 @@ pub struct LightPathLayer {
     pub name: String,
     /// The light-path expression, in the notation of Open Shading Language.
     pub expression: String,
-    /// Where it is written.
+    /// The location of its expression, for errors.
     pub at: Location,
+}
+
+impl ImageSettings {
+    /// A picture of another size with the light alone: whole, without AOVs, layers and denoising.
+    #[must_use]
+    pub fn of_light(&self, width: u32, height: u32) -> Self {
+        let plain = Self { crop: None, layers: Layers::None, denoise: false, ..self.clone() };
+        Self { width, height, light_paths: Vec::new(), ..plain }
+    }
 }
 
 impl Default for ImageSettings {

@@ -227,11 +227,21 @@ impl Reader<'_, '_> {
 
     /// An image of colours, or of data: then 8- and 16-bit values are linear.
     fn image_as(&mut self, value: Value<'_>, is_data: bool) -> Result<ImageId> {
+        let read = if is_data { image::read_data } else { image::read };
+        self.image_by(value, is_data, read)
+    }
+
+    /// The image that a file becomes, which is read once.
+    fn image_by(
+        &mut self,
+        value: Value<'_>,
+        is_data: bool,
+        read: impl FnOnce(&Path, &mut LoadContext<'_>) -> Result<image::Image>,
+    ) -> Result<ImageId> {
         let key = (self.resolve(value, "the name of a picture")?, is_data);
         if let Some(&id) = self.images.get(&key) {
             return Ok(id);
         }
-        let read = if is_data { image::read_data } else { image::read };
         let image = read(&key.0, self.context).map_err(|error| value.blame(error))?;
         let id = ImageId(self.scene.images.len() as u32);
         self.scene.images.push(image);

@@ -103,7 +103,7 @@ pub struct Path {
     pub interior: InteriorStack,
     /// The surface that the ray left.
     pub previous: PreviousVertex,
-    /// Where it is in the light-path expressions of the picture.
+    /// State in the automaton of the picture's light-path expressions.
     pub light_path: LightPathState,
 }
 
@@ -191,7 +191,7 @@ pub struct Queues {
     pub shadows: Vec<Shadow>,
     /// Light by light-path expressions: for each slot as many layers as there are expressions.
     pub layers: Vec<Spectrum>,
-    /// How surfaces scatter the light of shadow rays ([`Shadow::last_scattering`]), if there are such expressions.
+    /// Last scattering events of shadow rays, by [`Shadow::last_scattering`]; none without light-path expressions.
     last_scatterings: Vec<LastScattering>,
     /// The rays of `shadows`, their origin primitives, their hits, and whether they are blocked: memory that is reused.
     rays: Vec<Ray>,

@@ -5,7 +5,7 @@
 
 use gif::{DisposalMethod, Encoder, Repeat};
 
-use super::write::{Pixels, encode_png_of, encode_webp};
+use super::write::{Pixels, encode_png_of, encode_webp, without_alpha};
 use crate::error::{Error, ErrorKind, Location, Result};
 
 /// Effort of GIF's choice of 256 colours, from 1 (most) to 30.
@@ -73,11 +73,8 @@ impl Animation {
     pub fn add(&mut self, rgba: &[u8]) -> Result<()> {
         let [width, height] = self.size;
         super::write::check_channels(width, height, rgba.len(), 4)?;
-        let rgb: Vec<u8> = match self.has_alpha {
-            true => Vec::new(),
-            false => rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect(),
-        };
-        let pixels = if self.has_alpha { Pixels::Rgba8(rgba) } else { Pixels::Rgb8(&rgb) };
+        let opaque = (!self.has_alpha).then(|| without_alpha(rgba));
+        let pixels = opaque.as_deref().map_or(Pixels::Rgba8(rgba), Pixels::Rgb8);
         match &mut self.frames {
             Frames::Png(frames) => frames.push(encode_png_of(self.size, pixels, None)?),
             Frames::WebP(frames) => frames.push(encode_webp(self.size, pixels, None)?),
@@ -155,17 +152,14 @@ fn apng([width, height]: [u32; 2], fps: f64, stills: &[Vec<u8>]) -> Vec<u8> {
         let is_first = index == 0;
         let mut is_told = false;
         for (kind, data) in chunks(still) {
-            match &kind {
-                b"IDAT" if !is_told => {
-                    let mut control = next().to_vec();
-                    [width, height, 0, 0].iter().for_each(|side| control.extend(side.to_be_bytes()));
-                    control.extend([numerator, denominator].map(u16::to_be_bytes).as_flattened());
-                    // Whole frames, which replace what was before.
-                    control.extend([0, 0]);
-                    push_chunk(&mut bytes, b"fcTL", &control);
-                    is_told = true;
-                }
-                _ => {}
+            if &kind == b"IDAT" && !is_told {
+                let mut control = next().to_vec();
+                [width, height, 0, 0].iter().for_each(|side| control.extend(side.to_be_bytes()));
+                control.extend([numerator, denominator].map(u16::to_be_bytes).as_flattened());
+                // Whole frames, which replace what was before.
+                control.extend([0, 0]);
+                push_chunk(&mut bytes, b"fcTL", &control);
+                is_told = true;
             }
             match &kind {
                 b"IDAT" if is_first => push_chunk(&mut bytes, &kind, data),

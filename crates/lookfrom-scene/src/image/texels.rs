@@ -171,6 +171,15 @@ impl Image {
         (0..self.len()).map(|index| self.texel(index))
     }
 
+    /// The mean of its linear colours.
+    pub fn mean(&self) -> [f32; 3] {
+        let mut sums = [0.0_f64; 3];
+        for texel in self.texels() {
+            sums.iter_mut().zip(texel).for_each(|(sum, channel)| *sum += f64::from(channel));
+        }
+        sums.map(|sum| (sum / self.len().max(1) as f64) as f32)
+    }
+
     /// The same image with other colours, each made of the linear one.
     pub fn with_colors(&self, color: impl Fn([f32; 3]) -> [f32; 3]) -> Self {
         let texels = self.texels().map(color).collect();

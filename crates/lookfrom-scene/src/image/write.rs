@@ -168,6 +168,11 @@ pub fn encode_pfm(width: u32, height: u32, texels: &[[f32; 3]]) -> Result<Vec<u8
     Ok(bytes)
 }
 
+/// The colours of pixels of red, green, blue and alpha.
+pub fn without_alpha(rgba: &[u8]) -> Vec<u8> {
+    rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
+}
+
 /// Checks the number of values of a picture with so many of them a pixel.
 pub(super) fn check_channels(width: u32, height: u32, values: usize, channels: usize) -> Result<()> {
     if values.is_multiple_of(channels) {

@@ -1,4 +1,4 @@
-//! Which axis of a model is up, by what it stands on.
+//! The up axis of a model, by its footprint on the ground.
 
 use glam::Vec3;
 

@@ -63,7 +63,7 @@ impl Maps<'_, '_> {
     /// The mean of a number, which is used where a material has only one for the whole surface.
     pub(super) fn mean(&mut self, map: &Map) -> Option<f32> {
         let image = self.image(map, Use::Data)?;
-        let [r, g, b] = mean(&self.scene.images[image.index()]);
+        let [r, g, b] = self.scene.images[image.index()].mean();
         let mean = match map.channel {
             Some(Channel::Red) => r,
             Some(Channel::Green) => g,
@@ -131,6 +131,7 @@ impl Maps<'_, '_> {
         if map.range == Map::WHOLE_RANGE {
             return amount;
         }
+        // `amount` has the factor already: base · factor + gain · amount.
         let [base, gain] = map.range;
         let (low, high) = (Color::gray(factor * base), Color::gray(factor * base + gain));
         let kind = TextureKind::Mix { low, high, amount };
@@ -188,14 +189,6 @@ impl Maps<'_, '_> {
 
 /// Whether an image has the colours of a map of normals that mostly look outward: bluish, with a mean near (½, ½, 1).
 fn is_normal_map(image: &Image) -> bool {
-    let [r, g, b] = mean(image);
+    let [r, g, b] = image.mean();
     (r - 0.5).abs() < 0.1 && (g - 0.5).abs() < 0.1 && b > 0.75
-}
-
-fn mean(image: &Image) -> [f32; 3] {
-    let mut sums = [0.0_f64; 3];
-    for texel in image.texels() {
-        sums.iter_mut().zip(texel).for_each(|(sum, channel)| *sum += f64::from(channel));
-    }
-    sums.map(|sum| (sum / image.len().max(1) as f64) as f32)
 }

@@ -78,14 +78,7 @@ impl Means<'_> {
     }
 
     fn of_image(&mut self, index: usize) -> [f32; 3] {
-        *self.of_images[index].get_or_insert_with(|| {
-            let image = &self.scene.images[index];
-            let mut sums = [0.0_f64; 3];
-            for texel in image.texels() {
-                sums.iter_mut().zip(texel).for_each(|(sum, channel)| *sum += f64::from(channel));
-            }
-            sums.map(|sum| (sum / image.len().max(1) as f64) as f32)
-        })
+        *self.of_images[index].get_or_insert_with(|| self.scene.images[index].mean())
     }
 }
 

@@ -43,6 +43,11 @@ fn text_color(text: &str) -> Option<[f32; 3]> {
     Some([0, 1, 2].map(|i| linear_from_srgb(byte(&digits, i) / 255.0)))
 }
 
+/// Whether a text can only be the name of a texture.
+fn is_texture_name(text: &str) -> bool {
+    !text.starts_with('#') && color_names::digits(text).is_none()
+}
+
 impl Reader<'_, '_> {
     /// A colour that may be a spectrum, or a texture by name or inline.
     pub(super) fn color(&mut self, value: Value<'_>) -> Result<Color> {
@@ -56,10 +61,7 @@ impl Reader<'_, '_> {
         }
         match value.as_text() {
             // A texture of the scene may have the name of a colour.
-            Some(name)
-                if self.textures.contains_key(name)
-                    || text_color(name).is_none() && !name.starts_with('#') =>
-            {
+            Some(name) if self.textures.contains_key(name) || is_texture_name(name) => {
                 self.texture_named(value, name).map(Color::Texture)
             }
             _ => plain_color(value).map(Color::Value),
@@ -107,8 +109,7 @@ impl Reader<'_, '_> {
             }
             return Ok((Color::Curve(curve), table.or("scale", 1.0, primary)));
         }
-        let is_texture = value.is_table()
-            || value.as_text().is_some_and(|text| !text.starts_with('#') && text_color(text).is_none());
+        let is_texture = value.is_table() || value.as_text().is_some_and(is_texture_name);
         if is_texture && !textures {
             let expected = "a colour: a number, [r, g, b], \"#rrggbb\", or a curve such as { kelvin = 5600 }";
             return Err(value.wrong(expected));

@@ -70,18 +70,12 @@ impl Reader<'_, '_> {
 
     /// The octahedral map of a luminaire's photometric file, or of a picture.
     fn intensities(&mut self, value: Value<'_>) -> Result<ImageId> {
-        let Some(name) = value.as_text().filter(|name| ies::is_ies(name)) else {
-            return self.octahedral_image(value);
-        };
-        let key = (self.resolve(value, "the name of a photometric file")?, true);
-        if let Some(&id) = self.images.get(&key) {
-            return Ok(id);
+        match value.as_text().filter(|name| ies::is_ies(name)) {
+            Some(name) => {
+                self.image_by(value, true, |path, context| Ok(ies::read(path, context)?.octahedral(name)))
+            }
+            None => self.octahedral_image(value),
         }
-        let photometry = ies::read(&key.0, self.context).map_err(|error| value.blame(error))?;
-        let id = ImageId(self.scene.images.len() as u32);
-        self.scene.images.push(photometry.octahedral(name));
-        self.images.insert(key, id);
-        Ok(id)
     }
 
     /// A goniometric light.

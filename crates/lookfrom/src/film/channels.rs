@@ -2,6 +2,7 @@
 //!
 //! Sums of fixed-point numbers, as those of light. A pixel takes 112 bytes.
 
+use super::pixel::merge_sums;
 use super::stored::{Named, Stored, channels_of, store_fields};
 use super::{BRIGHTEST, TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square, unbiased_variance};
 
@@ -36,8 +37,8 @@ impl ChannelSums {
     }
 
     pub(super) fn merge(&mut self, add: &Self) {
+        merge_sums(&mut self.sums, &add.sums);
         for i in 0..3 {
-            self.sums[i] = self.sums[i].wrapping_add(add.sums[i]);
             self.squares[i] = self.squares[i].saturating_add(add.squares[i]);
         }
         self.samples = self.samples.saturating_add(add.samples);

@@ -4,7 +4,7 @@
 //! 48 bytes for each layer.
 
 use super::fixed_point;
-use super::pixel::TWO_TO_64;
+use super::pixel::{mean, merge_sums};
 use super::stored::{Named, Stored, channels_of, store_fields};
 
 /// The sums of a layer over the samples of a pixel.
@@ -25,16 +25,11 @@ impl LightPathSums {
     }
 
     pub(super) fn merge(&mut self, add: &Self) {
-        for (sum, add) in self.sums.iter_mut().zip(add.sums) {
-            *sum = sum.wrapping_add(add);
-        }
+        merge_sums(&mut self.sums, &add.sums);
     }
 
     /// The mean over a number of samples, black where there are none.
     pub(super) fn mean(&self, samples: u64) -> [f32; 3] {
-        match samples {
-            0 => [0.0; 3],
-            _ => self.sums.map(|sum| (sum as f64 / (samples as f64 * TWO_TO_64)) as f32),
-        }
+        mean(&self.sums, samples)
     }
 }

@@ -18,9 +18,7 @@ pub(super) struct Pixel {
 
 impl Pixel {
     pub(super) fn merge(&mut self, add: &Self) {
-        for (sum, add) in self.sums.iter_mut().zip(add.sums) {
-            *sum = sum.wrapping_add(add);
-        }
+        merge_sums(&mut self.sums, &add.sums);
         for (sum, add) in self.squares.iter_mut().zip(add.squares) {
             *sum = sum.saturating_add(add);
         }
@@ -28,11 +26,7 @@ impl Pixel {
     }
 
     pub(super) fn mean(&self) -> [f32; 3] {
-        if self.samples == 0 {
-            return [0.0; 3];
-        }
-        let scale = self.samples as f64 * TWO_TO_64;
-        self.sums.map(|sum| (sum as f64 / scale) as f32)
+        mean(&self.sums, self.samples)
     }
 
     /// The variance of one sample, in X, Y and Z: the mean of the squares less the square of the mean, times n / (n −
@@ -47,6 +41,20 @@ impl Pixel {
             unbiased_variance(n, mean[channel], self.squares[channel] as f64 / (n * TWO_TO_48))
         })
     }
+}
+
+/// Adds sums to others; they wrap.
+pub(super) fn merge_sums(sums: &mut [i128; 3], add: &[i128; 3]) {
+    sums.iter_mut().zip(add).for_each(|(sum, add)| *sum = sum.wrapping_add(*add));
+}
+
+/// The mean over a number of samples of sums in multiples of 2⁻⁶⁴, black where there are none.
+pub(super) fn mean(sums: &[i128; 3], samples: u64) -> [f32; 3] {
+    if samples == 0 {
+        return [0.0; 3];
+    }
+    let scale = samples as f64 * TWO_TO_64;
+    sums.map(|sum| (sum as f64 / scale) as f32)
 }
 
 /// The unbiased variance of one of `n` > 1 samples, by their mean and that of their squares.

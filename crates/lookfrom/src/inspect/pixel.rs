@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds};
+use lookfrom_scene::settings::{Background, ImageSettings, PixelBounds};
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 use serde::Serialize;
 
@@ -78,7 +78,7 @@ pub fn inspect_pixel(renderer: &Renderer, pixel: [u32; 2], samples: Range<u32>) 
         return request(format!("no samples in {start}..{end}; the end of a range is above its start"));
     }
 
-    let mut tile = FilmTile::for_image(ONE, &one_pixel(image))?;
+    let mut tile = FilmTile::for_image(ONE, &image.of_light(1, 1))?;
     let mut all = Vec::new();
     let mut contributions: Vec<Contribution> = Vec::new();
     for sample in samples.clone() {
@@ -150,19 +150,6 @@ impl SampleSummary {
     }
 }
 
-/// The settings of a picture of one pixel.
-fn one_pixel(image: &ImageSettings) -> ImageSettings {
-    ImageSettings {
-        width: 1,
-        height: 1,
-        crop: None,
-        layers: Layers::None,
-        light_paths: Vec::new(),
-        denoise: false,
-        ..image.clone()
-    }
-}
-
 /// Adds a sample to the film of one pixel.
 fn add(tile: &mut FilmTile, inspection: &Inspection) {
     let &Inspection { sample, film, alpha, weight, .. } = inspection;
@@ -171,7 +158,7 @@ fn add(tile: &mut FilmTile, inspection: &Inspection) {
 
 /// The picture of one pixel, and its bytes.
 fn developed(tile: &FilmTile, image: &ImageSettings) -> Result<([f32; 3], [u8; 3])> {
-    let mut film = Film::for_image(&one_pixel(image))?;
+    let mut film = Film::for_image(&image.of_light(1, 1))?;
     film.add_tile(tile)?;
     Ok((film.mean(0, 0), bytes(&film.picture(), image)))
 }

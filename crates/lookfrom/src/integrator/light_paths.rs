@@ -30,7 +30,7 @@ const MOST_LAYERS: usize = 64;
 /// Largest automaton, in bytes.
 const LARGEST: usize = 4 << 20;
 
-/// Where a path is in its light-path expressions.
+/// State of a path in the automaton of light-path expressions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LightPathState(u32);
 

@@ -37,7 +37,7 @@ pub struct Shadow {
     pub term: Term,
     /// The media that the ray is inside of.
     pub interior: InteriorStack,
-    /// How the surface scatters its light: a number in the queues, or [`Shadow::NO_SCATTERING`] where no layer asks.
+    /// Index of its last scattering event in the queues; [`Shadow::NO_SCATTERING`] without light-path expressions.
     pub last_scattering: u32,
 }
 

@@ -84,7 +84,7 @@ pub(super) fn sees_only_backs(renderer: &Renderer) -> bool {
         let passes_nothing = |_: &SurfaceInteraction| false;
         first_hits(renderer, FINE, passes_nothing).iter().flatten().any(|surface| surface.single_sided)
     };
-    sees_nothing(COARSE) && sees_nothing(FINE) && sees_backs()
+    renderer.world().has_single_sides() && sees_nothing(COARSE) && sees_nothing(FINE) && sees_backs()
 }
 
 /// First hits of rays through a grid over the picture, behind surfaces that camera rays pass.

@@ -4,7 +4,7 @@
 //! chosen before the picture is rendered, so that all its parts, previews and films have the same.
 
 use lookfrom_scene::Result;
-use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
+use lookfrom_scene::settings::{ImageSettings, RenderSettings};
 
 use super::Session;
 use crate::post::exposure;
@@ -13,7 +13,7 @@ use crate::post::exposure;
 const SIDE: u32 = 64;
 const SAMPLES: u32 = 8;
 
-/// How the exposure of a picture is chosen.
+/// The choice of a picture's exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exposure {
     /// In stops: 8-bit pictures are multiplied by 2^stops before tone mapping.
@@ -30,15 +30,7 @@ impl Session {
         let image = self.image();
         let scale = f64::from(SIDE) / f64::from(image.width.max(image.height));
         let side = |pixels: u32| ((f64::from(pixels) * scale).round() as u32).max(1);
-        let (width, height) = (side(image.width), side(image.height));
-        let plain = ImageSettings {
-            crop: None,
-            denoise: false,
-            layers: Layers::None,
-            light_paths: Vec::new(),
-            ..image.clone()
-        };
-        small.set_image(ImageSettings { width, height, ..plain })?;
+        small.set_image(image.of_light(side(image.width), side(image.height)))?;
         small.set_settings(RenderSettings { samples: SAMPLES, ..self.settings().clone() })?;
         (small.first_sample, small.identity) = (0, None);
         (small.stop.time, small.stop.noise) = (None, None);

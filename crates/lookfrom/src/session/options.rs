@@ -82,7 +82,7 @@ pub struct Options {
     pub azimuth: Option<f64>,
     /// Its elevation in degrees above the horizon, −90 to 90.
     pub elevation: Option<f64>,
-    /// What the view frames, and the floor is under; without it, what is in the scene.
+    /// The bounds that the view frames and the floor lies under; `None` for those of the scene.
     pub framed: Option<Bounds>,
     /// An equirectangular environment map, in place of the studio or of a scene's own environments.
     pub environment: Option<Image>,

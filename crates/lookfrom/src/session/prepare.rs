@@ -86,11 +86,11 @@ pub(super) fn prepare(
     }
     // The studio is one of the camera, wherever that is.
     let around = viewpoint.azimuth - Viewpoint::THREE_QUARTER.azimuth;
-    if origin != SourceFormat::Scene && added.contains(&"lights") && around != 0.0 {
+    let (is_model, has_studio) = (origin != SourceFormat::Scene, added.contains(&"lights"));
+    if is_model && has_studio && around != 0.0 {
         studio::turn_environments(scene, up, around);
     }
-    let is_model = origin != SourceFormat::Scene;
-    let is_lit_anew = added.contains(&"lights") || options.environment.is_some();
+    let is_lit_anew = has_studio || options.environment.is_some();
     let has_own_lights = is_model && !is_lit_anew && scene.render.integrator.needs_light();
     if let Some(degrees) = options.rotate_environment {
         studio::turn_environments(scene, up, degrees);

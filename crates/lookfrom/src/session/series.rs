@@ -49,7 +49,7 @@ impl Series {
         [index, last].map(|index| first + index as u32)
     }
 
-    /// What tells a picture from the others: its number, or the name of its view; `None` for the only one.
+    /// The label of a picture in file names: its number, or the name of its view; `None` for the only one.
     pub fn label(&self, index: usize) -> Option<String> {
         let [number, last] = self.number(index);
         let numbered =

@@ -1,6 +1,8 @@
 //! Pictures as a screen shows them: cells of contact sheets, and frames of animations.
 
-use lookfrom_scene::image::{Animation, Pixels, encode_jpeg, encode_png_of, encode_ppm, encode_webp};
+use lookfrom_scene::image::{
+    Animation, Pixels, encode_jpeg, encode_png_of, encode_ppm, encode_webp, without_alpha,
+};
 use lookfrom_scene::settings::Background;
 use lookfrom_scene::{Error, Location, Result};
 
@@ -49,9 +51,7 @@ impl Shown {
     /// `Request` for a format of linear light or of 16 bits; `Invalid` where the format cannot hold so many pixels.
     pub fn encode(&self, format: Format) -> Result<Vec<u8>> {
         let size = [self.width, self.height];
-        let rgb = || -> Vec<u8> {
-            self.rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
-        };
+        let rgb = || without_alpha(&self.rgba);
         match format {
             Format::Png if self.has_alpha => encode_png_of(size, Pixels::Rgba8(&self.rgba), None),
             Format::Png => encode_png_of(size, Pixels::Rgb8(&rgb()), None),

@@ -31,7 +31,7 @@ impl World {
     }
 
     /// Whether any surface is single-sided.
-    pub(super) fn has_single_sides(&self) -> bool {
+    pub(crate) fn has_single_sides(&self) -> bool {
         let objects = self.objects.iter().flatten();
         self.primitives.iter().chain(objects).any(|primitives| match primitives {
             Primitives::Mesh(mesh) => mesh.binding.single_sided,

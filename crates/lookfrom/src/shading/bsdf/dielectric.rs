@@ -229,7 +229,8 @@ impl ThinDielectric {
         Self { eta: fresnel::valid_eta(eta) }
     }
 
-    /// What both sides of the sheet reflect together: R + T R T + T R³ T + … = R + T² R / (1 − R²).
+    /// Reflectance of both interfaces with all reflections between them: R + T R T + T R³ T + … = R + T² R / (1 − R²), as in
+    /// pbrt-v4.
     #[inline]
     pub(super) fn reflectance(&self, wo: Vec3) -> f32 {
         let once = optics::fresnel_dielectric(wo.z.abs(), self.eta);
