@@ -192,15 +192,12 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
     #[inline(always)]
     fn meet(&mut self, simd: S, bounds: &Aabb) -> [u32; GROUPS] {
         let groups = &*self.groups;
-        let slabs = self.slabs.get_or_insert_with(
-            #[inline(always)]
-            || {
-                let [a, b, c, d, e, f, g, h] = groups;
-                let of = |group: &Ray8<S>| Slabs8::new(simd, group);
-                [of(a), of(b), of(c), of(d), of(e), of(f), of(g), of(h)]
-            },
-        );
+        // Without closures, which would not be compiled for the level.
+        if self.slabs.is_none() {
+            self.slabs = Some(Slabs8::of_groups(simd, groups));
+        }
         let mut meeting = [0; GROUPS];
+        let Some(slabs) = &self.slabs else { return meeting };
         for index in 0..GROUPS {
             meeting[index] = slabs[index].meet(&groups[index], bounds);
         }

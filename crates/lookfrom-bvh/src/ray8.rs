@@ -183,6 +183,21 @@ impl<S: Simd> Slabs8<S> {
         Self { axes: [slabs(ox, dx), slabs(oy, dy), slabs(oz, dz)] }
     }
 
+    /// Those of all groups of a packet.
+    #[inline(always)]
+    pub(crate) fn of_groups(simd: S, [a, b, c, d, e, f, g, h]: &[Ray8<S>; GROUPS]) -> [Self; GROUPS] {
+        [
+            Self::new(simd, a),
+            Self::new(simd, b),
+            Self::new(simd, c),
+            Self::new(simd, d),
+            Self::new(simd, e),
+            Self::new(simd, f),
+            Self::new(simd, g),
+            Self::new(simd, h),
+        ]
+    }
+
     /// The rays of the group that hit a box before their ends.
     #[inline(always)]
     pub(crate) fn meet(&self, group: &Ray8<S>, bounds: &Aabb) -> u32 {

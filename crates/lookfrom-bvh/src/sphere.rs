@@ -6,7 +6,7 @@
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
 use crate::exact::{ExactRay, Rounded};
 use crate::vector::{dot, subtract, wide};
-use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask32x8};
+use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, mask32x8};
 
 /// A sphere's surface: rays hit it from both sides.
 ///
@@ -57,13 +57,15 @@ pub(crate) fn intersect_exact<T: Rounded>(ray: &ExactRay<T>, sphere: &Sphere) ->
     Some(if t1 <= t2 { [t1, t2] } else { [t2, t1] })
 }
 
-/// The same for eight rays: those whose lines hit the sphere, and both hits.
+/// The same for eight rays, of which those of a mask count: those whose lines hit the sphere, and both hits. `None` where
+/// there are none.
 #[inline(always)]
 pub(crate) fn intersect_lanes<S: Simd>(
     origin: [f32x8<S>; 3],
     direction: [f32x8<S>; 3],
     sphere: &Sphere,
-) -> (mask32x8<S>, [f32x8<S>; 2]) {
+    rays: mask32x8<S>,
+) -> Option<(mask32x8<S>, [f32x8<S>; 2])> {
     let [ox, oy, oz]: [f64x8<S>; 3] =
         [Real::widen(origin[0]), Real::widen(origin[1]), Real::widen(origin[2])];
     let direction = [Real::widen(direction[0]), Real::widen(direction[1]), Real::widen(direction[2])];
@@ -72,10 +74,14 @@ pub(crate) fn intersect_lanes<S: Simd>(
     let quadratic = Quadratic::new([ox, oy, oz], direction, [ox.like(x), ox.like(y), ox.like(z)], radius);
     let hit = Float::lt(quadratic.discriminant, ox.like(0.0));
     let hit = Float::eq(quadratic.discriminant, quadratic.discriminant) & !hit;
+    let hit = origin[0].narrow_mask(hit) & rays;
+    if !hit.any() {
+        return None;
+    }
     let [t1, t2] = quadratic.roots(radius);
     let [t1, t2]: [f32x8<S>; 2] = [Real::narrow(t1), Real::narrow(t2)];
     let turned = Float::gt(t1, t2);
-    (origin[0].narrow_mask(hit), [Float::select(turned, t2, t1), Float::select(turned, t1, t2)])
+    Some((hit, [Float::select(turned, t2, t1), Float::select(turned, t1, t2)]))
 }
 
 /// The quadratic equation of a line and a sphere.

@@ -222,6 +222,15 @@ impl World {
         u < surface.alpha.map_or(1.0, |alpha| self.textures.float(alpha, &self.texture_point(surface)))
     }
 
+    /// The part of the light that a surface does not let pass on the way from the camera, as if it were not there: 0 … 1.
+    pub(crate) fn opacity(&self, surface: &SurfaceInteraction) -> f32 {
+        if surface.single_sided && !surface.front || self.is_interface(surface) {
+            return 0.0;
+        }
+        let alpha = surface.alpha.map(|alpha| self.textures.float(alpha, &self.texture_point(surface)));
+        alpha.map_or(1.0, |alpha| alpha.clamp(0.0, 1.0))
+    }
+
     /// Whether evaluating a surface needs random numbers: for its alpha, or for its material.
     pub fn is_stochastic(&self, surface: &SurfaceInteraction) -> bool {
         self.materials[surface.material as usize].is_stochastic()

@@ -54,6 +54,65 @@ fn few_samples_come_near_to_many() {
     }
 }
 
+/// A board of bright and dark squares, behind two panes of which one covers half and one a quarter.
+const PANES: &str = r#"
+[image]
+width = 96
+height = 72
+[camera]
+lookfrom = [0, 0, 4]
+lookat = [0, 0, 0]
+[render]
+integrator = "path"
+[[light]]
+type = "environment"
+color = 1
+[materials.board]
+diffuse = { type = "checker", even = 0.9, odd = 0.05, scale = 0.4 }
+[materials.half]
+diffuse = [0.8, 0.1, 0.1]
+[materials.quarter]
+diffuse = [0.1, 0.3, 0.9]
+[[quad]]
+corner = [-2, -2, 0.1]
+edge_u = [4, 0, 0]
+edge_v = [0, 4, 0]
+material = "board"
+[[quad]]
+corner = [-2, -1, 1]
+edge_u = [2.3, 0, 0]
+edge_v = [0, 2, 0.5]
+material = "half"
+alpha = 0.5
+[[quad]]
+corner = [-0.3, -1, 0.5]
+edge_u = [2.3, 0, 0]
+edge_v = [0, 2, 0]
+material = "quarter"
+alpha = 0.25
+"#;
+
+#[test]
+fn surfaces_of_fractional_alpha_are_smooth() {
+    let picture = |panes: &str, samples, seed| {
+        let mut scene = support::scene(panes);
+        (scene.render.samples, scene.render.seed, scene.image.denoise) = (samples, seed, true);
+        Compiled::new(scene).film()
+    };
+    let (truth, film) = (picture(PANES, 1024, 9).picture(), picture(PANES, 8, 0));
+    let noisy = film.picture();
+    let [before, after] = [&noisy, &denoised(&film, &noisy)].map(|picture| relative_error(picture, &truth));
+    // Without the mean features the factor is about 2.
+    assert!(after * 6.0 < before, "{before} → {after}");
+    // The features of a pixel are those of all its surfaces, however few samples there are.
+    let even = PANES.replace(r#"{ type = "checker", even = 0.9, odd = 0.05, scale = 0.4 }"#, "0.6");
+    let film = picture(&even, 1, 3);
+    for (x, red, panes) in [(20, 0.7, "half"), (48, 0.6375, "both"), (75, 0.475, "quarter")] {
+        let albedo = film.denoiser_features(x, 36).map(|features| features.aovs.albedo[0]);
+        assert!(albedo.is_some_and(|albedo| (albedo - red).abs() < 1e-5), "{panes}: {albedo:?}");
+    }
+}
+
 #[test]
 fn many_samples_are_not_made_worse() {
     for name in ["cornell.toml", "textures.toml"] {

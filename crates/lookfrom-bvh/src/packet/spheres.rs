@@ -30,7 +30,11 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
     fn sphere(&mut self, simd: S, item: &SphereItem, index: usize, rays: u32) {
         let group = &mut self.groups[index];
         let Ray8 { origin, direction, .. } = *group;
-        let (is_hit, [near, far]) = sphere::intersect_lanes(origin, direction, &item.shape);
+        let rays = mask32x8::from_bitmask(simd, u64::from(rays));
+        let Some((is_hit, [near, far])) = sphere::intersect_lanes(origin, direction, &item.shape, rays)
+        else {
+            return;
+        };
         let [t_min, t_max] = group.range;
         let (mut enters, mut leaves) = (near.simd_gt(t_min), far.simd_gt(t_min) & near.simd_lt(far));
         if V::SELECTS {
@@ -39,8 +43,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
             leaves &= mask32x8::splat(simd, faces != Faces::Front);
         }
         let t = enters.select(near, far);
-        let rays = mask32x8::from_bitmask(simd, u64::from(rays));
-        let found = rays & is_hit & (enters | leaves) & t.simd_lt(t_max) & t.simd_le(group.end);
+        let found = is_hit & (enters | leaves) & t.simd_lt(t_max) & t.simd_le(group.end);
         if C::ANY_HIT {
             group.retire(simd, found);
             return;

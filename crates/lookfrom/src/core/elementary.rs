@@ -48,6 +48,14 @@ pub(crate) fn ln<R: Real>(x: R) -> R {
     e * 0.693_359_4 + (f + rest)
 }
 
+/// xⁿ for x and n of 0 and above, 0⁰ = 1; its relative error is at most (2 + 4 |ln xⁿ|) 2⁻²³.
+#[inline(always)]
+pub(crate) fn power<R: Real>(x: R, n: R) -> R {
+    let zero = x.like(0.0);
+    let is_zero = x.lt(x.like(f32::MIN_POSITIVE)) & n.gt(zero);
+    R::select(is_zero, zero, exp(ln(x) * n))
+}
+
 /// Sine and cosine of `t` eighths of a turn (π/4), for |t| ≤ 1, to 2⁻²²: their Taylor series.
 #[inline(always)]
 pub(crate) fn sin_cos_of_eighths<R: Real>(t: R) -> (R, R) {
@@ -238,6 +246,13 @@ mod tests {
             let x = number(count, 126).abs();
             let error = ulps(ln(x), libm::log(f64::from(x)));
             assert!(error <= 2.0, "ln({x}): {error} ulp");
+            let (x, n) = (number(2 * count, 1).abs(), number(2 * count + 1, 14).abs());
+            let truth = libm::pow(f64::from(x), f64::from(n));
+            if (1.3e-38..1e38).contains(&truth) {
+                let error = (f64::from(power(x, n)) / truth - 1.0).abs();
+                let bound = (2.0 + 4.0 * libm::log(truth).abs()) / 8_388_608.0;
+                assert!(error <= bound, "{x} to the {n}: {error}, bound {bound}");
+            }
             // Near 1, where the logarithm is small.
             let x = 1.0 + number(count, -2);
             let error = ulps(ln(x), libm::log(f64::from(x)));

@@ -45,11 +45,6 @@ pub fn luminance([r, g, b]: [f32; 3]) -> f32 {
     0.212_639 * r + 0.715_169 * g + 0.072_192 * b
 }
 
-/// x to the n, the same on every platform; 0⁰ = 1.
-pub fn power(x: f32, n: f32) -> f32 {
-    libm::powf(x, n)
-}
-
 /// Schlick's (1 − cos θ)⁵: 0 at normal, 1 at grazing incidence.
 #[inline(always)]
 pub fn schlick<R: Real>(cos: R) -> R {

@@ -36,7 +36,11 @@ mod dimension {
 
 /// Number of bounces before Russian roulette begins: the light that the first bounces find is most of the picture, and
 /// their noise most of the noise. (pbrt-v4 begins after the first; the light is the same.)
-const SAFE_BOUNCES: u32 = 4;
+const SAFE_BOUNCES: u32 = 2;
+
+/// Survival probability over throughput: paths that still carry half of their light always go on. Both numbers are
+/// those of the least product of error and rays over nine scenes (docs/benchmarks/shading.md).
+const SURVIVAL: f32 = 2.0;
 
 /// Strategy for finding light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -431,7 +435,7 @@ impl PathTracer {
 
     /// The survival probability of a path after its `depth`-th bounce, and whether it survives.
     fn roulette(&self, stream: &SampleStream, beta: Spectrum, eta_scale: f32, depth: u32) -> (f32, bool) {
-        let survival = beta.max_lane() * eta_scale;
+        let survival = beta.max_lane() * eta_scale * SURVIVAL;
         if self.light_sampling != LightSampling::MultipleImportance
             || depth <= SAFE_BOUNCES
             || survival >= 1.0

@@ -1,7 +1,9 @@
 //! First hits of camera rays, recorded once for AOVs and denoiser.
 //!
 //! No probe is needed, so that rendering is not slowed down: first hits are recorded as they are traced, and evaluated
-//! after the batch. Where a ray passes a surface as if it were not there, the hit behind it counts.
+//! after the batch. Where a ray passes a surface as if it were not there, the hit behind it counts; but where chance decides
+//! that, by an alpha between 0 and 1, all surfaces along the ray count by what they cover, so that features have no noise
+//! that light does not have.
 
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_bvh::{Hit, Ray};
@@ -9,19 +11,38 @@ use lookfrom_bvh::{Hit, Ray};
 use super::{Renderer, SampleId};
 use crate::film::{Aovs, FilmTile};
 use crate::integrator::Path;
+use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material;
 
 /// The first hit of a sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FirstHit {
+    /// The hit of the camera's ray, which may have gone on behind it.
+    outermost: RayHit,
+    /// The hit that it has not passed.
+    seen: RayHit,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct RayHit {
     ray: Ray,
     hit: Hit,
 }
 
 impl FirstHit {
-    pub(super) const MISS: Self =
+    pub(super) const MISS: Self = Self { outermost: RayHit::MISS, seen: RayHit::MISS };
+}
+
+impl RayHit {
+    const MISS: Self =
         Self { ray: Ray { origin: [0.0; 3], t_min: 0.0, direction: [0.0; 3], t_max: 0.0 }, hit: Hit::MISS };
 }
+
+/// Number of surfaces of fractional alpha that are looked through.
+const MOST_LAYERS: usize = 16;
+
+/// What is left of a pixel behind surfaces that cover nearly all of it is not looked at.
+const LEAST_PART: f32 = 1.0 / 256.0;
 
 /// Records the hits of the paths that come straight from the camera, by slot, if `first_hits` is not empty.
 pub(super) fn note(first_hits: &mut [FirstHit], paths: &[Path], hits: &[Hit]) {
@@ -30,7 +51,11 @@ pub(super) fn note(first_hits: &mut [FirstHit], paths: &[Path], hits: &[Hit]) {
     }
     for (path, hit) in paths.iter().zip(hits) {
         if path.depth == 0 {
-            first_hits[path.slot as usize] = FirstHit { ray: path.ray, hit: *hit };
+            let first = &mut first_hits[path.slot as usize];
+            first.seen = RayHit { ray: path.ray, hit: *hit };
+            if !first.outermost.hit.is_hit() {
+                first.outermost = first.seen;
+            }
         }
     }
 }
@@ -44,15 +69,55 @@ impl Renderer {
         let view_from_world = self.view.camera.world_from_view().inverse();
         for (id, first) in ids.iter().zip(first_hits) {
             let [x, y] = id.pixel;
-            let aovs = first.hit.is_hit().then(|| self.aovs(first, &view_from_world));
+            let aovs = match self.world.has_gaps {
+                true => self.blended_aovs(first, &view_from_world),
+                false => None,
+            };
+            let aovs = aovs.or_else(|| {
+                let RayHit { ray, hit } = first.seen;
+                hit.is_hit().then(|| self.aovs(&self.world.surface(&ray, &hit), &view_from_world))
+            });
             tile.add_first_hit(x, y, id.sample, aovs.as_ref());
         }
     }
 
-    fn aovs(&self, first: &FirstHit, view_from_world: &DMat4) -> Aovs {
+    /// The mean albedo and shading normal of all surfaces along a camera ray by what each covers, and the place of the one
+    /// that covers most; `None` where none has an alpha between 0 and 1. What nothing covers is white, as a miss is.
+    fn blended_aovs(&self, first: &FirstHit, view_from_world: &DMat4) -> Option<Aovs> {
         let world = &self.world;
-        let surface = world.surface(&first.ray, &first.hit);
-        let point = world.texture_point(&surface);
+        let RayHit { mut ray, mut hit } = first.outermost;
+        let (mut left, mut is_blended) = (1.0, false);
+        let (mut albedo, mut ns) = (Vec3::ZERO, Vec3::ZERO);
+        let mut most: Option<(f32, Aovs)> = None;
+        for _ in 0..MOST_LAYERS {
+            if !hit.is_hit() {
+                break;
+            }
+            let surface = world.surface(&ray, &hit);
+            let opacity = world.opacity(&surface);
+            is_blended |= opacity > 0.0 && opacity < 1.0;
+            if opacity > 0.0 {
+                let (aovs, part) = (self.aovs(&surface, view_from_world), left * opacity);
+                albedo += part * Vec3::from(aovs.albedo);
+                ns += part * Vec3::from(aovs.ns);
+                if most.is_none_or(|(greatest, _)| part > greatest) {
+                    most = Some((part, aovs));
+                }
+            }
+            left *= 1.0 - opacity;
+            if left < LEAST_PART {
+                break;
+            }
+            ray = Ray::new(surface.origin(Vec3::from(ray.direction)), ray.direction);
+            hit = world.bvh.query().origin(surface.origin_primitive).closest_hit(&ray);
+        }
+        let (_, aovs) = most.filter(|_| is_blended)?;
+        Some(Aovs { albedo: (albedo + left).to_array(), ns: ns.normalize_or_zero().to_array(), ..aovs })
+    }
+
+    fn aovs(&self, surface: &SurfaceInteraction, view_from_world: &DMat4) -> Aovs {
+        let world = &self.world;
+        let point = world.texture_point(surface);
         // The view space of the notes (u, v, w) has x to the left, that of AOVs to the right.
         let mirrored = |v: DVec3| [-v.x as f32, v.y as f32, v.z as f32];
         let toward_viewer = |n: Vec3| {
@@ -63,9 +128,9 @@ impl Renderer {
         };
         let position = world.origin + DVec3::from_array(surface.point.position);
         Aovs {
-            albedo: material::albedo(&world.materials, &world.textures, &surface, &point),
+            albedo: material::albedo(&world.materials, &world.textures, surface, &point),
             ng: toward_viewer(surface.ng.as_vec3()),
-            ns: toward_viewer(material::normal(&world.materials, &world.textures, &surface, &point)),
+            ns: toward_viewer(material::normal(&world.materials, &world.textures, surface, &point)),
             position: mirrored(view_from_world.transform_point3(position)),
             uv: surface.uv.to_array(),
         }

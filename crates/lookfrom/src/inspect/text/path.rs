@@ -262,7 +262,7 @@ impl Excerpt<'_> {
                 let survival = full(bounce.survival);
                 write!(
                     f,
-                    "      Russian roulette: survives with probability {survival} (largest lane of β × the η² so far {}): ",
+                    "      Russian roulette: survives with probability {survival} (twice the largest lane of β × the η² so far {}): ",
                     full(bounce.eta_scale)
                 )?;
                 match (survives, &bounce.next_throughput) {

@@ -2,14 +2,14 @@
 //! those of [`super::local_light`] and of Whitted's step.
 
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
-use lookfrom_simd::{Float, Kernel, Simd, dispatch, f32x8, f64x8, level, prelude::*};
+use lookfrom_simd::{Float, Kernel, Mask, Simd, dispatch, f32x8, f64x8, level, prelude::*};
 
 use super::arriving::{Arriving, Ends};
 use super::branches::Branches;
 use super::plain::PlainHit;
 use super::surfaces::Surfaces;
+use crate::core::elementary;
 use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64, scatter_spectrum};
-use crate::core::math;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::{Branch, Path, Probe, SampleStream, Shadow, StepOutput, Term};
@@ -196,6 +196,8 @@ impl Kernel for PlainKernel<'_> {
                 gather_spectrum(simd, &by_lane!(lane => coefficients[lane].specular)),
             ),
         };
+        let has_highlights = !specular.is_black().all();
+        let shininess = f32x8::load_array(simd, by_lane!(lane => coefficients[lane].shininess));
         let zero = f32x8::splat(simd, 0.0);
 
         for (index, source) in world.lights.iter().enumerate() {
@@ -209,18 +211,13 @@ impl Kernel for PlainKernel<'_> {
                 exists & ng_facing.dot(wi).gt(zero) & !(n_dot_l.lt(zero) | Float::eq(n_dot_l, zero));
             let (half, has_half) = (wo + wi).try_normalize();
             let cos = f32x8::select(has_half, Float::max(ns_facing.dot(half), zero), zero);
-            let cos: [f32; LANES] = cos.into();
-            let may_be = lit.to_bitmask() as u32;
-            if may_be == 0 {
+            if !lit.any() {
                 continue;
             }
-            let highlight = by_lane!(lane =>
-            if may_be & 1 << lane == 0 || coefficients[lane].specular.is_black() {
-                0.0
-            } else {
-                math::power(cos[lane], coefficients[lane].shininess)
-            });
-            let reflected = diffuse * n_dot_l + specular * f32x8::load_array(simd, highlight);
+            let mut reflected = diffuse * n_dot_l;
+            if has_highlights {
+                reflected = reflected + specular * elementary::power(cos, shininess);
+            }
             let contribution = beta * reflected * li;
             lit &= !contribution.is_black();
             let wide = wi.widen();

@@ -12,6 +12,7 @@ use std::f32::consts::{FRAC_1_PI, TAU};
 
 use super::diffuse::cosine_direction;
 use super::{BsdfSample, Lobes, conductor::try_half_vector, is_grazing, same_side};
+use crate::core::elementary;
 use crate::core::math;
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
@@ -101,7 +102,7 @@ impl Whitted {
             Spectrum::BLACK
         } else {
             let cos = try_half_vector(wo, wi).map_or(0.0, |h| h.z);
-            self.specular * (math::power(cos, self.shininess) / wi.z.abs())
+            self.specular * (elementary::power(cos, self.shininess) / wi.z.abs())
         };
         (self.diffuse + highlight) * FRAC_1_PI
     }
@@ -113,7 +114,7 @@ impl Whitted {
         if choice.glossy > 0.0
             && let Some(h) = try_half_vector(wo, wi)
         {
-            let of_half = (self.shininess + 1.0) / TAU * math::power(h.z, self.shininess);
+            let of_half = (self.shininess + 1.0) / TAU * elementary::power(h.z, self.shininess);
             pdf += choice.glossy * of_half / (4.0 * wo.dot(h).abs().max(f32::MIN_POSITIVE));
         }
         pdf

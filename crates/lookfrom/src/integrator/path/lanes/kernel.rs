@@ -9,7 +9,7 @@ use crate::core::lanes::{LANES, by_lane, gather, gather_spectrum, scatter, scatt
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::integrator::path::{SAFE_BOUNCES, dimension};
+use crate::integrator::path::{SAFE_BOUNCES, SURVIVAL, dimension};
 use crate::integrator::sample_streams::SampleStreams;
 use crate::integrator::{Path, SampleStream};
 use crate::shading::bsdf::lanes::{Kind, LaneBsdf, RowBsdf};
@@ -173,7 +173,7 @@ impl<S: Simd> Surfaces<S> {
             * Float::select(sample.is_transmission, sample.eta * sample.eta, zero.like(1.0));
 
         // End paths of small throughput by Russian roulette.
-        let mut survival = beta.max_lane() * eta_scale;
+        let mut survival = beta.max_lane() * eta_scale * SURVIVAL;
         let depth = u32x8::load_array(simd, by_lane!(lane => paths.paths[lane].depth));
         let is_safe = survival.simd_ge(1.0) | depth.simd_lt(SAFE_BOUNCES);
         let mut survives = is_safe;

@@ -9,7 +9,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::Vec3;
 use lookfrom_simd::{Float, Mask, Real};
 
-use crate::core::math;
+use crate::core::elementary;
 use crate::core::vector::Vector;
 use crate::shading::bsdf::conductor::half_vector;
 
@@ -49,7 +49,7 @@ impl<R: Real> Sheen<R> {
     #[inline(always)]
     fn log_lambda(&self, cos: R) -> R {
         let [a, b, c, d, e] = self.fit;
-        a / (b * cos.zip(c, math::power) + 1.0) + d * cos + e
+        a / (b * elementary::power(cos, c) + 1.0) + d * cos + e
     }
 
     /// Λ: masked over visible parts, for a cosine in 0 … 1.
@@ -62,7 +62,7 @@ impl<R: Real> Sheen<R> {
             true => near,
             false => R::select(is_low, near, self.log_lambda(half) * 2.0 - near),
         };
-        exponent.map(libm::expf)
+        elementary::exp(exponent)
     }
 
     /// `f` of white fibres, for two directions above the surface.
@@ -80,7 +80,7 @@ impl<R: Real> Sheen<R> {
                 let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
                 let (wm, exists) = half_vector(wo, wi);
                 let sin2 = Float::max(one - wm.z * wm.z, zero);
-                let power = sin2.zip(one.like(0.5) / self.alpha, math::power);
+                let power = elementary::power(sin2, one.like(0.5) / self.alpha);
                 let d = (one / self.alpha + 2.0) * power / (2.0 * PI);
                 let (o, i) = (Float::min(wo.z, one), Float::min(wi.z, one));
                 let f = d / (o * 4.0 * i * (self.lambda(o) + 1.0 + self.lambda(i)));
