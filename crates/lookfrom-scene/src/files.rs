@@ -159,7 +159,7 @@ pub struct LoadContext<'a> {
     pub import: ImportOptions,
 }
 
-/// Import options: the animation, material variant, scene and camera of a file that has several.
+/// Import options: the animation, material variant, scene and camera of a file that has several, and subdivision.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
     /// The animation, by name or number from 0, that poses the model; `None` is the pose at rest, or, if `at` is not 0, the
@@ -173,6 +173,9 @@ pub struct ImportOptions {
     pub scene: Option<String>,
     /// The camera.
     pub camera: CameraChoice,
+    /// Levels of subdivision of meshes into Catmull–Clark surfaces, up to [`MOST_LEVELS`](crate::subdivision::MOST_LEVELS); 0
+    /// leaves them as they are.
+    pub subdivision: u32,
 }
 
 /// The selection of one of a file's cameras.

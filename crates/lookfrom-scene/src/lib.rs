@@ -32,6 +32,7 @@ pub mod spectrum;
 pub mod stamps;
 pub mod stl;
 pub mod studio;
+pub mod subdivision;
 pub mod suggest;
 pub mod texture;
 pub mod toml;

@@ -8,8 +8,8 @@ use crate::files::{CameraChoice, LoadContext};
 use crate::light::Light;
 use crate::material::{Color, Material, MaterialKind};
 use crate::scene::{MaterialId, Scene, SourceFormat};
-use crate::shape::{Part, Shape};
-use crate::{gltf, model, packed, pbrt, studio, toml};
+use crate::shape::{Mesh, Part, Shape};
+use crate::{gltf, model, packed, pbrt, studio, subdivision, toml};
 
 /// The reflectance of models whose file has no materials.
 const CLAY: f32 = 0.8;
@@ -39,7 +39,9 @@ fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
         return pbrt::read(path, context);
     }
     if is_gltf(path, context) {
-        return Ok(Scene { source_format: SourceFormat::Gltf, ..gltf::read(path, context)? });
+        let mut scene = Scene { source_format: SourceFormat::Gltf, ..gltf::read(path, context)? };
+        subdivide(&mut scene.meshes, path, context)?;
+        return Ok(scene);
     }
     let (image, render) = studio::settings_for_models();
     let mut scene = Scene { source_format: SourceFormat::Model, image, render, ..Scene::default() };
@@ -114,8 +116,11 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
     if extension(&packed::unpacked_name(path)) == "pbrt" {
         return Err(unsupported("a scene of pbrt cannot be a part of another scene".to_owned()));
     }
+    let first = scene.meshes.len();
     if is_gltf(path, context) {
-        return gltf::model(path, context, scene);
+        let model = gltf::model(path, context, scene)?;
+        subdivide(&mut scene.meshes[first..], path, context)?;
+        return Ok(model);
     }
     let (parts, z_is_up) = model::read_with_up(path, context, scene).map_err(|error| match error.kind {
         ErrorKind::Unsupported if !model::is_model(path) => unsupported(
@@ -124,6 +129,14 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
         _ => error,
     })?;
     Ok(Model { parts, z_is_up, ..Model::default() })
+}
+
+/// Subdivides meshes as [`LoadContext::import`] says.
+fn subdivide(meshes: &mut [Mesh], path: &Path, context: &mut LoadContext<'_>) -> Result<()> {
+    match context.import.subdivision {
+        0 => Ok(()),
+        levels => subdivision::subdivide_meshes(meshes, levels, &Location::file(path), context),
+    }
 }
 
 /// Converts parts to shapes with the transforms of the file.

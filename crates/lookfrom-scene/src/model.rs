@@ -20,7 +20,7 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 use crate::scene::Scene;
 use crate::shape::Part;
-use crate::{obj, packed, ply, stl};
+use crate::{obj, packed, ply, stl, subdivision};
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Format {
@@ -57,18 +57,25 @@ pub(crate) fn read_with_up(
     }
     let format =
         by_content(&bytes).or(by_name(path)).or_else(|| looks_like_obj(&bytes).then_some(Format::Obj));
-    match format {
-        Some(Format::Obj) => Ok((obj::from_bytes(&bytes, path, context, scene)?, false)),
-        Some(Format::Ply) => Ok((ply::from_bytes(&bytes, path, context, scene)?, false)),
+    let first = scene.meshes.len();
+    let read = match format {
+        Some(Format::Obj) => return Ok((obj::from_bytes(&bytes, path, context, scene)?, false)),
+        Some(Format::Ply) => (ply::from_bytes(&bytes, path, context, scene)?, false),
         // Programs for construction and for printers put parts onto the plane of x and y.
-        Some(Format::Stl) => Ok((stl::from_bytes(&bytes, path, context, scene)?, true)),
-        None => Err(Error::new(
-            ErrorKind::Unsupported,
-            &file,
-            "neither its name nor its content is that of a model",
-        )
-        .hint("models are OBJ, PLY or STL files")),
+        Some(Format::Stl) => (stl::from_bytes(&bytes, path, context, scene)?, true),
+        None => {
+            return Err(Error::new(
+                ErrorKind::Unsupported,
+                &file,
+                "neither its name nor its content is that of a model",
+            )
+            .hint("models are OBJ, PLY or STL files"));
+        }
+    };
+    if let levels @ 1.. = context.import.subdivision {
+        subdivision::subdivide_meshes(&mut scene.meshes[first..], levels, &file, context)?;
     }
+    Ok(read)
 }
 
 fn by_name(path: &Path) -> Option<Format> {

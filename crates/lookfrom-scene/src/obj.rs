@@ -1,7 +1,7 @@
 //! Reader for Wavefront OBJ files, to meshes and materials.
 //!
 //! `statement` parses the text, `build` makes one mesh per material, [`mtl`] parses material libraries (`map` their texture
-//! maps), `look` converts their materials, `physical` those that are physically based, and `maps` reads their images. The
+//! maps), `subdivide` makes subdivision surfaces of polygons, `look` converts their materials, `physical` those that are physically based, and `maps` reads their images. The
 //! format: Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1; vertex colours after the coordinates
 //! are an extension that many programs write.
 
@@ -12,6 +12,7 @@ mod maps;
 pub mod mtl;
 mod physical;
 mod statement;
+mod subdivide;
 
 use std::path::Path;
 
@@ -49,7 +50,7 @@ pub fn from_bytes(
 ) -> Result<Vec<Part>> {
     let file = Location::file(path);
     let text = text::utf8(bytes);
-    let statements = statement::parse(&text, &file, context)?;
+    let mut statements = statement::parse(&text, &file, context)?;
     drop(text);
     if statements.positions.is_empty() {
         return Err(Error::syntax(&file, "no vertices: there is no line that starts with `v`")
@@ -57,6 +58,9 @@ pub fn from_bytes(
     }
     if statements.groups.iter().all(|group| group.faces.is_empty() && group.lines.is_empty()) {
         return Ok(points::cloud(&statements.positions, &statements.colors, &file, context, scene));
+    }
+    if let levels @ 1.. = context.import.subdivision {
+        subdivide::subdivide(&mut statements, levels, &file, context)?;
     }
     let colored = !statements.colors.is_empty();
     let meshes = build::meshes(statements, &file, context)?;

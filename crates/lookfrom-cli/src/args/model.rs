@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use lookfrom_scene::settings::Background;
 use lookfrom_scene::studio::Viewpoint;
+use lookfrom_scene::subdivision::MOST_LEVELS;
 use lookfrom_scene::{CameraChoice, ImportOptions};
 
 use crate::values;
@@ -73,6 +74,13 @@ pub(crate) struct ModelArguments {
     #[arg(long = "scene", value_name = "NAME|N")]
     pub(crate) scene_of_file: Option<String>,
 
+    /// Subdivide meshes this many times into smooth surfaces (Catmull-Clark), 0 to 8
+    ///
+    /// Quadrilaterals and other polygons of OBJ files are the cage; in other formats two triangles, one after the other, that make a
+    /// flat quadrilateral are one face of it.
+    #[arg(long, value_name = "LEVELS", value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_LEVELS)), default_value_t = 0, hide_default_value = true)]
+    pub(crate) subdivide: u32,
+
     /// Camera of a glTF file, by name or number from 0; none frames any scene as if it had no camera
     #[arg(long, value_name = "NAME|N")]
     pub(crate) camera: Option<String>,
@@ -91,6 +99,7 @@ impl ModelArguments {
                 Some("none") => CameraChoice::None,
                 Some(name) => CameraChoice::Named(name.to_owned()),
             },
+            subdivision: self.subdivide,
         }
     }
 }

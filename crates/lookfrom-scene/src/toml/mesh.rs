@@ -10,6 +10,7 @@ use super::{Reader, color};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::MeshId;
 use crate::shape::{Geometry, Mesh};
+use crate::subdivision;
 
 impl Reader<'_, '_> {
     /// Adds a mesh after checking that its positions are finite.
@@ -65,6 +66,10 @@ impl Reader<'_, '_> {
         let count = mesh.positions.len().max(mesh.triangles.len()) as u64;
         if count > self.context.limits.elements {
             return Err(too_many(table, count, self.context.limits.elements));
+        }
+        if let levels @ 1.. = self.subdivision(table) {
+            let meshes = std::slice::from_mut(&mut mesh);
+            subdivision::subdivide_meshes(meshes, levels, &table.at(), self.context)?;
         }
         Ok(mesh)
     }

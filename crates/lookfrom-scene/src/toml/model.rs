@@ -12,6 +12,7 @@ use crate::files::{CameraChoice, ImportOptions};
 use crate::light::{Light, LightKind};
 use crate::load;
 use crate::shape::Part;
+use crate::subdivision::MOST_LEVELS;
 
 /// The keys that select the contents of a glTF file.
 pub(super) const CHOICE: &[&str] = &["scene", "animation", "at", "variant", "camera", "lights"];
@@ -29,7 +30,7 @@ impl Reader<'_, '_> {
         if let Some(triangles) = table.find("triangles").filter(|_| !table.has("positions")) {
             triangles.note(triangles.error("`triangles` needs `positions`, not `file`"));
         }
-        table.allow(&[&["file", "positions", "triangles"], CHOICE, COMMON, transform::KEYS]);
+        table.allow(&[&["file", "positions", "triangles", "subdivision"], CHOICE, COMMON, transform::KEYS]);
         let path = self.resolve(file, "the name of a model file")?;
         if let Some(key) = CHOICE.iter().find_map(|key| table.find(key))
             && !load::is_gltf(&path, self.context)
@@ -55,6 +56,12 @@ impl Reader<'_, '_> {
         Ok(model.parts)
     }
 
+    /// Levels of subdivision of a mesh.
+    pub(super) fn subdivision(&self, table: &Table<'_>) -> u32 {
+        let levels = |value: Value<'_>| Ok(value.integer(0, MOST_LEVELS.into())? as u32);
+        table.or("subdivision", self.context.import.subdivision, levels)
+    }
+
     /// The import options of the file, and whether its camera is requested.
     fn choice(&self, table: &Table<'_>) -> (ImportOptions, bool) {
         let name = |key: &str, otherwise: &Option<String>| {
@@ -67,6 +74,7 @@ impl Reader<'_, '_> {
             variant: name("variant", &asked.variant),
             scene: name("scene", &asked.scene),
             camera: CameraChoice::First,
+            subdivision: self.subdivision(table),
         };
         let has_camera = table.or("camera", false, |value| match value.as_text() {
             Some(name) => {

@@ -33,6 +33,7 @@ pub(super) const KEYS: Kinds = &[
             "lights",
             "positions",
             "triangles",
+            "subdivision",
             "normals",
             "uvs",
             "colors",
