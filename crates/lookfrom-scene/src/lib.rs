@@ -34,6 +34,7 @@ pub mod stl;
 pub mod studio;
 pub mod subdivision;
 pub mod suggest;
+mod text;
 pub mod texture;
 pub mod toml;
 pub mod warning;

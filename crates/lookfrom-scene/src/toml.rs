@@ -31,6 +31,7 @@ mod spectrum;
 mod synonyms;
 mod syntax;
 mod table;
+mod text;
 mod texture;
 mod transform;
 mod value;

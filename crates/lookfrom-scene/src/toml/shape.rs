@@ -21,6 +21,7 @@ pub(super) const KEYS: Kinds = &[
     ("lathe", &["from", "axis", "profile", "smooth", "segments"]),
     ("box", &["min", "max"]),
     ("heightfield", &["file", "size", "height"]),
+    ("text", &["text", "font", "size", "depth", "align", "line_spacing"]),
     (
         "mesh",
         &[
@@ -118,6 +119,7 @@ impl Reader<'_, '_> {
             "torus" => return self.torus(table),
             "lathe" => return self.lathe(table),
             "heightfield" => self.heightfield(table)?,
+            "text" => self.text(table)?,
             "quad" => quad(table)?,
             "sphereflake" => self.sphereflake(table)?,
             "patch" => curve::patch(table)?,
