@@ -23,6 +23,8 @@ of_guide() {
     [[ $1 == light-environment ]] && more=(--samples 512)
     # So does a path.
     grep -q -e lit-stage "docs/guide/scenes/$1.toml" && more=(--fireflies median)
+    # Six moments of a round.
+    [[ $1 == animation ]] && more=(--frames 0..6 --fps 3 --sheet 6 --size 160x120)
     picture "docs/guide/scenes/$1.toml" -o "docs/guide/img/$1.png" ${more[@]+"${more[@]}"}
 }
 

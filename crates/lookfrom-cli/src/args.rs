@@ -8,6 +8,7 @@ mod film;
 mod inspect;
 mod model;
 mod series;
+mod variables;
 #[cfg(feature = "view")]
 mod view;
 
@@ -32,6 +33,7 @@ pub(crate) use film::{DevelopArguments, FilesArguments, KeepArguments, MergeArgu
 pub(crate) use inspect::{InspectArguments, Samples};
 pub(crate) use model::ModelArguments;
 pub(crate) use series::{SeriesArguments, Views};
+pub(crate) use variables::VariableArguments;
 #[cfg(feature = "view")]
 pub(crate) use view::ViewArguments;
 
@@ -63,6 +65,8 @@ Examples:
   lookfrom render model.obj --views all --sheet 4x2 -o sides.png
   lookfrom render robot.glb --frames 0..48 -o 'walk/frame-####.png'
   lookfrom render robot.glb --frames 0..48 -o walk.gif
+  lookfrom render robot.glb --frames 0..240 --format ppm -o - | ffmpeg -f image2pipe -framerate 24 -i - walk.mp4
+  lookfrom render scene.toml -D radius=2 -D paint=tomato
   lookfrom render shop/ --size 256 -o thumbs/            all scenes and models of a folder
   lookfrom render a.toml b.toml -o pictures/             pictures/a.png, pictures/b.png
   lookfrom render */chair.obj -o 'out/{parent}.png'      out/oak.png, out/steel.png
@@ -243,6 +247,9 @@ pub(crate) struct InfoArguments {
 
     #[command(flatten)]
     pub(crate) common: Common,
+
+    #[command(flatten)]
+    pub(crate) variables: VariableArguments,
 }
 
 #[derive(Args, Debug)]
@@ -420,4 +427,7 @@ pub(crate) struct Overrides {
 
     #[command(flatten)]
     pub(crate) model: ModelArguments,
+
+    #[command(flatten)]
+    pub(crate) variables: VariableArguments,
 }

@@ -73,7 +73,10 @@ impl fmt::Display for Failure {
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         match error.kind {
-            ErrorKind::Request => Self::Usage(error.message),
+            ErrorKind::Request => Self::Usage(match error.hint {
+                Some(hint) => format!("{}\n  help: {hint}", error.message),
+                None => error.message,
+            }),
             _ => Self::Scene(error),
         }
     }

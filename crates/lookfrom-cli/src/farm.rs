@@ -105,7 +105,7 @@ fn write(arguments: &FarmArguments, matches: &ArgMatches) -> Result<(), Failure>
 
 fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> {
     let scene = &arguments.scene;
-    let inputs = files::read(scene)?.into_iter().map(|(path, _)| path);
+    let inputs = files::read(scene, &arguments.overrides.variables)?.into_iter().map(|(path, _)| path);
     let environment = arguments.overrides.model.environment.iter().cloned();
     let inputs = inputs.chain(environment).map(|path| film::absolute(&path)).collect();
     let mut options = film::arguments(matches);
@@ -133,9 +133,10 @@ fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> 
                 .map(|k| format!("--turn={}", start + 360.0 * f64::from(k) / f64::from(count)))
                 .collect()
         }
-        (None, Some(frames)) => {
-            frames.clone().map(|frame| format!("--at={}", f64::from(frame) / arguments.fps)).collect()
-        }
+        (None, Some(frames)) => frames
+            .clone()
+            .map(|frame| format!("--at={}", f64::from(frame) / arguments.overrides.variables.fps))
+            .collect(),
         (None, None) => vec![String::new()],
     };
     let name = scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();

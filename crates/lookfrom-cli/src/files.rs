@@ -8,7 +8,7 @@ use lookfrom_scene::digest::{Digested, FileDigest};
 use lookfrom_scene::{Disk, LoadContext, load};
 use serde::Serialize;
 
-use crate::args::FilesArguments;
+use crate::args::{FilesArguments, VariableArguments};
 use crate::exit::{DONE, Failure, answer};
 use lookfrom_scene::json;
 
@@ -34,7 +34,7 @@ impl From<(PathBuf, FileDigest)> for InputFile {
 fn list(arguments: &FilesArguments) -> Result<(), Failure> {
     let mut files: BTreeMap<PathBuf, FileDigest> = BTreeMap::new();
     for scene in &arguments.scenes {
-        files.extend(read(scene)?);
+        files.extend(read(scene, &arguments.variables)?);
     }
     for (path, digest) in files {
         if arguments.null {
@@ -52,8 +52,13 @@ fn list(arguments: &FilesArguments) -> Result<(), Failure> {
 }
 
 /// The files of a scene, with their digests.
-pub(crate) fn read(scene: &Path) -> Result<Vec<(PathBuf, FileDigest)>, Failure> {
+pub(crate) fn read(
+    scene: &Path,
+    variables: &VariableArguments,
+) -> Result<Vec<(PathBuf, FileDigest)>, Failure> {
     let files = Digested::new(&Disk);
-    load::scene(scene, &mut LoadContext::new(&files))?;
+    let mut context = LoadContext { variables: variables.variables(), ..LoadContext::new(&files) };
+    context.import.at = variables.at.unwrap_or(0.0);
+    load::scene(scene, &mut context)?;
     Ok(files.digests(Path::new("")))
 }

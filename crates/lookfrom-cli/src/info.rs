@@ -52,7 +52,8 @@ fn info(path: &Path, arguments: &InfoArguments) -> Result<(), Failure> {
     if Format::of_path(path) == Some(Format::Exr) {
         return picture::info(path, arguments.json);
     }
-    let options = Overrides::default().options(&arguments.common, None);
+    let overrides = Overrides { variables: arguments.variables.clone(), ..Overrides::default() };
+    let options = overrides.options(&arguments.common, None);
     let session = prepare(path, &arguments.common, &options, &Inputs::default())?;
     if arguments.json {
         return answer(&json::line(&Object::new(path, &session)));
@@ -100,6 +101,11 @@ fn for_people(path: &Path, session: &Session) -> String {
     );
     choices(&info.contents, &mut line);
     line("camera", camera_in_words(session.camera()));
+    if !info.contents.variables.is_empty() {
+        let entry = |(name, value): &(String, String)| format!("{name} = {value}");
+        let entries: Vec<String> = info.contents.variables.iter().map(entry).collect();
+        line("variables", entries.join(", "));
+    }
     let image = session.image();
     let mut picture = format!(
         "{} × {} pixels, filter {}, exposure {}, tonemap {}",

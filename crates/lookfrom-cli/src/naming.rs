@@ -88,7 +88,7 @@ pub(crate) fn targets(
 pub(crate) fn sheet(output: Option<&Path>, format: Option<&str>, json: bool) -> Result<Target, Failure> {
     let of = Numbered { scene: Path::new("sheet"), index: 0, count: 1 };
     let target = target(of, output, format)?;
-    if matches!(target.format(), Format::Exr | Format::Hdr | Format::Pfm) {
+    if !target.format().is_for_screens() {
         return Err(Failure::Usage(format!(
             "a sheet is for a screen, not of linear light: {} as .png, .jpg, .webp or .ppm",
             target.name()

@@ -43,7 +43,8 @@ impl Overrides {
             rotate_environment: self.model.rotate_environment,
             floor: self.model.floor,
             turn: self.model.turn,
-            import: self.model.choice(),
+            import: self.model.choice(self.variables.at),
+            variables: self.variables.variables(),
             threads: common.threads.map(usize::from),
             ..Options::default()
         }

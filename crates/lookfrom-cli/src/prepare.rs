@@ -60,13 +60,10 @@ pub(crate) fn environment_from(files: &dyn Files, overrides: &Overrides) -> Resu
 
 /// Reads scenes only to record their input files in `inputs`. Errors are ignored here; they are reported when the scenes are
 /// prepared.
-pub(crate) fn read_ahead(scenes: &[PathBuf], overrides: &Overrides, inputs: &Inputs) {
+pub(crate) fn read_ahead(scenes: &[PathBuf], common: &Common, overrides: &Overrides, inputs: &Inputs) {
     for scene in scenes {
         let files = inputs.record(&Piped, scene.display().to_string());
-        let _ = load::scene(
-            scene,
-            &mut LoadContext { import: overrides.model.choice(), ..LoadContext::new(&files) },
-        );
+        let _ = load::scene(scene, &mut overrides.options(common, None).context(&files));
     }
 }
 

@@ -60,15 +60,20 @@ impl<'a> Call<'a> {
             None => naming::targets(&scenes, output, encoding.format(), arguments.json)?,
         };
         let targets = encoding.apply(targets)?;
-        let series = several.series();
+        let series = several.series(arguments.overrides.variables.fps);
         let call = Self { arguments, typed, scenes, targets, series };
         let is_piped = call.targets.iter().any(Target::is_stdout);
         let is_several = call.series != Series::One;
         if is_piped && arguments.write_every.is_some() {
             return usage("--write-every needs an output file; -o - is stdout".to_owned());
         }
-        if is_piped && is_several && several.sheet.is_none() {
-            return usage("--turntable, --views and --frames write several files; -o - is stdout".to_owned());
+        let is_stream = is_piped && is_several && several.sheet.is_none();
+        if is_stream && call.targets.iter().any(|target| !target.format().is_for_screens()) {
+            return usage(
+                "several pictures on stdout are an animation (--format gif, apng or webp) or one after the other (png, \
+                 ppm, jpg); files of linear light need names of their own"
+                    .to_owned(),
+            );
         }
         if keep.film && call.targets.iter().any(|target| target.format() != Format::Exr) {
             return usage(
@@ -152,7 +157,7 @@ impl<'a> Call<'a> {
         };
         // A picture may overwrite an input of a later scene. Where no output file exists yet, nothing can be lost.
         if scenes.len() > 1 && targets.iter().flat_map(|target| self.pictures(target)).any(|t| t.exists()) {
-            prepare::read_ahead(scenes, &arguments.overrides, inputs);
+            prepare::read_ahead(scenes, &arguments.common, &arguments.overrides, inputs);
         }
         let mut sheet = arguments.several.sheet.map(|(columns, rows)| {
             let needed = self.count().div_ceil(columns as usize) as u32;
@@ -229,7 +234,7 @@ impl<'a> Call<'a> {
         if self.arguments.several.skip_existing && target.exists() {
             return self.skipped(&self.scenes[index], target).map(|()| DONE);
         }
-        let (format, fps) = (target.format().animation()?, self.arguments.several.fps);
+        let (format, fps) = (target.format().animation()?, self.arguments.overrides.variables.fps);
         let mut animation: Option<Animation> = None;
         let mut outlet = |finished: &lookfrom::session::Finished| {
             let shown = finished.shown();

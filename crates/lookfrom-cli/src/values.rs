@@ -227,6 +227,16 @@ pub(crate) fn light_path(typed: &str) -> Result<LightPathLayer, String> {
     Ok(LightPathLayer { name: name.to_owned(), expression: expression.to_owned(), at })
 }
 
+/// `NAME=VALUE`.
+pub(crate) fn definition(typed: &str) -> Result<(String, String), String> {
+    match typed.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => {
+            Ok((name.trim().to_owned(), value.trim().to_owned()))
+        }
+        _ => Err("expected NAME=VALUE, as in radius=2".to_owned()),
+    }
+}
+
 /// `NAME` or `NAME:RADIUS`.
 pub(crate) fn filter(typed: &str) -> Result<Filter, String> {
     let (name, radius_typed) =

@@ -1,9 +1,9 @@
-//! The animations, material variants, cameras and scenes of a file, from which one of each is selected.
+//! The animations, material variants, cameras and scenes of a file, from which one of each is selected, and its variables.
 
 use crate::camera::Projection;
 
-/// The items that [`ImportOptions`](crate::ImportOptions) selects from, in the order of their numbers. Only glTF files have
-/// any.
+/// The items that [`ImportOptions`](crate::ImportOptions) selects from, in the order of their numbers, which only glTF files
+/// have, and the variables of scenes in our own format.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contents {
     /// The names of the scenes.
@@ -16,6 +16,8 @@ pub struct Contents {
     pub animations: Vec<AnimationEntry>,
     /// The names of the material variants.
     pub variants: Vec<Option<String>>,
+    /// The names of the [variables](crate::Variables), with their values: TOML, or long ones in words.
+    pub variables: Vec<(String, String)>,
 }
 
 /// A camera of a file.

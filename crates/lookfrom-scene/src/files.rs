@@ -6,6 +6,7 @@ use std::io::{ErrorKind as IoKind, Read};
 use std::path::{Component, Path, PathBuf};
 
 use crate::error::{Error, ErrorKind, Location, Result};
+use crate::variables::Variables;
 use crate::warning::Warning;
 
 /// Limits on the resources of a scene. Scene files are untrusted input; exceeding a limit is an [`ErrorKind::Limit`].
@@ -157,6 +158,8 @@ pub struct LoadContext<'a> {
     pub warnings: Vec<Warning>,
     /// Import options for files with several animations, variants, scenes or cameras.
     pub import: ImportOptions,
+    /// Values for the variables of the scene.
+    pub variables: Variables,
 }
 
 /// Import options: the animation, material variant, scene and camera of a file that has several, and subdivision.
@@ -165,7 +168,7 @@ pub struct ImportOptions {
     /// The animation, by name or number from 0, that poses the model; `None` is the pose at rest, or, if `at` is not 0, the
     /// first animation.
     pub animation: Option<String>,
-    /// The time in seconds from the beginning of the animation.
+    /// The time in seconds from the beginning of all animations: of models, and of a scene in our own format.
     pub at: f64,
     /// The material variant, by name or number from 0.
     pub variant: Option<String>,
@@ -194,7 +197,13 @@ pub enum CameraChoice {
 impl<'a> LoadContext<'a> {
     /// A context over `files` with the default limits.
     pub fn new(files: &'a dyn Files) -> Self {
-        Self { files, limits: Limits::default(), warnings: Vec::new(), import: ImportOptions::default() }
+        Self {
+            files,
+            limits: Limits::default(),
+            warnings: Vec::new(),
+            import: ImportOptions::default(),
+            variables: Variables::default(),
+        }
     }
 
     /// The whole content of a file within the limits.

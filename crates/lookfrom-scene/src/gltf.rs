@@ -32,6 +32,7 @@ use std::path::Path;
 
 use self::build::Model;
 use self::file::Document;
+pub(crate) use self::pose::AT_REST;
 use crate::error::Result;
 use crate::files::LoadContext;
 use crate::load;

@@ -37,10 +37,12 @@ pub mod suggest;
 mod text;
 pub mod texture;
 pub mod toml;
+pub mod variables;
 pub mod warning;
 
 pub use error::{Error, ErrorKind, Location, Result};
 pub use files::{CameraChoice, Disk, Files, ImportOptions, Limits, LoadContext, Memory};
 pub use inputs::Inputs;
 pub use scene::Scene;
+pub use variables::Variables;
 pub use warning::{Warning, WarningGroup, WarningKind};

@@ -25,6 +25,13 @@ pub const PIPE: &str = "-";
 /// `Unsupported` if the format is not known, and the errors of the format's reader.
 pub fn scene(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut scene = whole(path, context)?;
+    if let Some(name) = context.variables.values.keys().next().filter(|_| scene.contents.variables.is_empty())
+    {
+        // Our own format knows better what is missing.
+        let message = format!("--define {name}: this file has no variables");
+        return Err(Error::new(ErrorKind::Request, &Location::default(), message)
+            .hint("variables are for scenes in our own format (.toml)"));
+    }
     if context.import.camera == CameraChoice::None {
         scene.camera = None;
     }
@@ -71,8 +78,8 @@ pub fn has_known_name(path: &Path) -> bool {
         || model::is_model(path)
 }
 
-/// Whether a file is a scene in our own format.
-pub(crate) fn is_toml(path: &Path) -> bool {
+/// Whether a file has the name of a scene in our own format.
+pub fn is_toml(path: &Path) -> bool {
     extension(path) == "toml"
 }
 

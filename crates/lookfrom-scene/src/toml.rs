@@ -1,7 +1,8 @@
 //! Reader for our own scene format (`docs/guide/scene-format.md`). Errors have the location of the invalid value.
 //!
 //! This file reads files and merges what they import. Beside it: `document`, `table` and `value` (the parsed text with
-//! locations, and recorded errors), `syntax` (recovery from errors of TOML), `synonyms` (terms of other programs), and a
+//! locations, and recorded errors), `scope` (variables, which are replaced by their values before anything is decoded; with
+//! `expression`, `evaluate`, `function`, `quantity` and `keyframes`), `syntax` (recovery from errors of TOML), `synonyms` (terms of other programs), and a
 //! decoder for each part of the vocabulary.
 
 mod camera;
@@ -12,8 +13,12 @@ mod composite;
 mod curve;
 mod directional;
 mod document;
+mod evaluate;
+mod expression;
+mod function;
 mod heightfield;
 mod import;
+mod keyframes;
 mod light;
 mod mapping;
 mod material;
@@ -23,7 +28,9 @@ mod object;
 mod physical;
 mod principled;
 mod quadric;
+mod quantity;
 mod revolution;
+mod scope;
 mod settings;
 mod shape;
 mod sky;
@@ -45,12 +52,14 @@ use ::toml::de::DeTable;
 use self::document::Document;
 use self::import::tidy;
 use self::material::DEFAULT;
+use self::scope::Variables;
 use self::syntax::Readable;
 use self::table::{SCENE, Table};
 use self::value::Value;
 use self::vocabulary::TOP;
 use crate::error::{Error, Location, Result};
 use crate::files::{ImportOptions, LoadContext};
+use crate::gltf::AT_REST;
 use crate::load::Model;
 use crate::material::MaterialKind;
 use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
@@ -67,7 +76,10 @@ pub use self::vocabulary::vocabulary;
 /// With line and column, and all errors that one run can find: `Syntax` for malformed TOML, `Invalid` for an unknown or
 /// invalid key, type, number or name, `Limit` for excessive sizes and nesting, and the errors of the files that it names.
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
+    let given = scope::given(context);
     let mut reader = Reader {
+        variables: Variables::new(&given, context),
+        time: context.import.at,
         context,
         scene: Scene::default(),
         scene_file: Location::file(path),
@@ -91,11 +103,13 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
         errors: Vec::new(),
     };
     reader.file(path)?;
+    reader.errors.extend(reader.variables.errors(reader.knows_all_names));
     if let Some(error) = Error::all(reader.errors) {
         return Err(error);
     }
     // Only path tracing renders physically based materials completely.
     let mut scene = reader.scene;
+    scene.contents.variables = reader.variables.into_all();
     let is_physical = |kind: &MaterialKind| !matches!(kind, MaterialKind::Whitted(_));
     if !reader.names_integrator && scene.materials.iter().any(|material| is_physical(&material.kind)) {
         scene.render.integrator = Integrator::Path;
@@ -112,6 +126,9 @@ struct Reader<'s, 'f> {
     scene: Scene,
     /// The main file.
     scene_file: Location,
+    variables: Variables<'s>,
+    /// The time of all animations in seconds.
+    time: f64,
     materials: BTreeMap<String, MaterialId>,
     textures: BTreeMap<String, TextureId>,
     objects: BTreeMap<String, ObjectId>,
@@ -158,21 +175,25 @@ impl Reader<'_, '_> {
         let document = Document::new(whole.clone(), text);
         let (root, wrong) = DeTable::parse_recoverable(document.text());
         if wrong.is_empty() {
-            self.document(path, &document, root.get_ref(), Vec::new());
+            self.document(path, &document, root.into_inner(), Vec::new());
             return Ok(());
         }
         let Readable { text, errors, has_all_names } = syntax::readable(&document);
         self.knows_all_names &= has_all_names;
         let document = Document::new(whole, text);
         let (root, _) = DeTable::parse_recoverable(document.text());
-        self.document(path, &document, root.get_ref(), errors);
+        self.document(path, &document, root.into_inner(), errors);
         Ok(())
     }
 
     /// Reads a parsed file; `errors` are its syntax errors.
-    fn document(&mut self, path: &Path, document: &Document, root: &DeTable<'_>, errors: Vec<Error>) {
+    fn document(&mut self, path: &Path, document: &Document, root: DeTable<'_>, errors: Vec<Error>) {
         self.open.push(path.to_owned());
-        self.tables(&Table::new(document, 0, SCENE.to_owned(), root));
+        let replacements = self.variables.open(document, &root, self.knows_all_names);
+        let mut root = root;
+        scope::replace(&mut root, &replacements);
+        self.tables(&Table::new(document, 0, SCENE.to_owned(), &root));
+        self.variables.close();
         self.open.pop();
         self.done.insert(tidy(path));
         self.errors.extend(document.errors(errors));
@@ -257,8 +278,14 @@ impl Reader<'_, '_> {
             return Ok(model.clone());
         }
         let before = std::mem::replace(&mut self.context.import, choice.clone());
+        let told = self.context.warnings.len();
         let model = load::model(&path, self.context, &mut self.scene);
         self.context.import = before;
+        if choice.animation.is_none() && choice.at == self.time {
+            // The time is that of the scene, in which not everything moves.
+            let of_model = self.context.warnings.split_off(told);
+            self.context.warnings.extend(of_model.into_iter().filter(|warning| warning.message != AT_REST));
+        }
         let model = model.map_err(|error| value.blame(error))?;
         self.models.push(((path, choice.clone()), model.clone()));
         Ok(model)

@@ -41,9 +41,7 @@ use lookfrom_scene::digest::Digested;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
 use lookfrom_scene::studio::Turntable;
-use lookfrom_scene::{
-    Disk, Error, Files, Inputs, LoadContext, Location, Memory, Result, Scene, Warning, load,
-};
+use lookfrom_scene::{Disk, Error, Files, Inputs, Location, Memory, Result, Scene, Warning, load};
 
 use crate::core::clock::Stopwatch;
 use crate::film::{Film, Picture};
@@ -171,7 +169,7 @@ impl Session {
         let started = Stopwatch::start();
         let digested = Digested::new(files);
         let files: &dyn Files = if options.film { &digested } else { files };
-        let mut context = LoadContext { import: options.import.clone(), ..LoadContext::new(files) };
+        let mut context = options.context(files);
         let scene = load::scene(path, &mut context)?;
         let warnings = context.warnings;
         let identity = options.film.then(|| Identity::of_files(digested, path, options));

@@ -42,13 +42,9 @@ pub(crate) struct FarmArguments {
     #[arg(long, value_name = "N", value_parser = values::whole(1u32, 100_000))]
     pub(crate) turntable: Option<u32>,
 
-    /// Frames of a glTF animation, FROM..BEFORE: --at FRAME / FPS
+    /// Frames of the animations of the scene or model, FROM..BEFORE: --at FRAME / FPS
     #[arg(long, value_name = "FROM..BEFORE", value_parser = values::samples, conflicts_with_all = ["turntable", "at"])]
     pub(crate) frames: Option<Range<u32>>,
-
-    /// Frames per second
-    #[arg(long, value_name = "N", default_value_t = 24.0, value_parser = values::between(1e-3f64, 1e6))]
-    pub(crate) fps: f64,
 
     #[command(flatten)]
     pub(crate) overrides: Overrides,

@@ -9,7 +9,7 @@ use clap::Args;
 use lookfrom::session::Fireflies;
 use lookfrom_scene::settings::{Background, Tonemap};
 
-use super::{Common, EncodingArguments};
+use super::{Common, EncodingArguments, VariableArguments};
 use crate::values;
 
 pub(super) const RESUME_EXAMPLES: &str = "\
@@ -170,4 +170,7 @@ pub(crate) struct FilesArguments {
     /// Print one JSON object per line for each file: its path and SHA-256
     #[arg(long, conflicts_with = "null")]
     pub(crate) json: bool,
+
+    #[command(flatten)]
+    pub(crate) variables: VariableArguments,
 }

@@ -62,10 +62,6 @@ pub(crate) struct ModelArguments {
     #[arg(long, value_name = "NAME|N")]
     pub(crate) animation: Option<String>,
 
-    /// Time in the animation: 1.5s, 500ms, 1.5
-    #[arg(long, value_name = "TIME", value_parser = values::moment)]
-    pub(crate) at: Option<f64>,
-
     /// Material variant of a glTF file, by name or number from 0
     #[arg(long, value_name = "NAME|N")]
     pub(crate) variant: Option<String>,
@@ -87,11 +83,11 @@ pub(crate) struct ModelArguments {
 }
 
 impl ModelArguments {
-    /// The import options: which scene, camera, animation and variant of a file to use.
-    pub(crate) fn choice(&self) -> ImportOptions {
+    /// The import options: which scene, camera, animation and variant of a file to use, at a time in seconds.
+    pub(crate) fn choice(&self, at: Option<f64>) -> ImportOptions {
         ImportOptions {
             animation: self.animation.clone(),
-            at: self.at.unwrap_or(0.0),
+            at: at.unwrap_or(0.0),
             variant: self.variant.clone(),
             scene: self.scene_of_file.clone(),
             camera: match self.camera.as_deref() {

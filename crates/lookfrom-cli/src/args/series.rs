@@ -25,15 +25,11 @@ pub(crate) struct SeriesArguments {
     #[arg(long, value_name = "NAME,…", value_parser = values::views, conflicts_with_all = ["turntable", "view", "lookfrom", "camera"])]
     pub(crate) views: Option<Views>,
 
-    /// Render these frames of a glTF animation, FROM..BEFORE, at --fps: NAME-0000.png, NAME-0001.png …
+    /// Render these frames of the animations of a scene or model, FROM..BEFORE, at --fps: NAME-0000.png, NAME-0001.png …
     ///
     /// Frame 0 is at the animation's begin, frame F at F / fps seconds. A model without a camera is framed once, for all poses.
     #[arg(long, value_name = "FROM..BEFORE", value_parser = values::samples, conflicts_with_all = ["turntable", "views", "at", "turn"])]
     pub(crate) frames: Option<Range<u32>>,
-
-    /// Frames per second, of --frames and of animated pictures
-    #[arg(long, value_name = "N", default_value_t = 24.0, value_parser = values::between(1e-3f64, 1e6))]
-    pub(crate) fps: f64,
 
     /// Put all pictures of the call onto one sheet of so many columns and rows; without rows as many as it takes
     #[arg(long, value_name = "N|CxR", value_parser = values::sheet, conflicts_with_all = ["write_every", "film", "skip_existing"])]
@@ -48,12 +44,12 @@ pub(crate) struct SeriesArguments {
 pub(crate) type Views = Vec<(&'static str, Viewpoint)>;
 
 impl SeriesArguments {
-    /// The pictures of each scene.
-    pub(crate) fn series(&self) -> Series {
+    /// The pictures of each scene, with so many frames per second.
+    pub(crate) fn series(&self, fps: f64) -> Series {
         match self {
             Self { turntable: Some(count), .. } => Series::Turntable(*count),
             Self { views: Some(views), .. } => Series::Views(views.clone()),
-            Self { frames: Some(frames), fps, .. } => Series::Frames { frames: frames.clone(), fps: *fps },
+            Self { frames: Some(frames), .. } => Series::Frames { frames: frames.clone(), fps },
             _ => Series::One,
         }
     }

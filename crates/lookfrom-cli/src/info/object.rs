@@ -1,5 +1,6 @@
 //! The objects of `info --json`, described in docs/guide/command.md.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use lookfrom::session::{SceneInfo, Session};
@@ -24,6 +25,7 @@ pub(super) struct Object<'a> {
     scenes: Vec<SceneObject<'a>>,
     animations: Vec<AnimationObject<'a>>,
     variants: &'a [Option<String>],
+    variables: BTreeMap<&'a str, &'a str>,
     cameras: Vec<CameraEntryObject<'a>>,
     camera: CameraObject,
     image: ImageObject,
@@ -129,6 +131,11 @@ impl<'a> Object<'a> {
             scenes: scenes(contents),
             animations: contents.animations.iter().map(Into::into).collect(),
             variants: &contents.variants,
+            variables: contents
+                .variables
+                .iter()
+                .map(|(name, value)| (name.as_str(), value.as_str()))
+                .collect(),
             cameras: contents.cameras.iter().map(Into::into).collect(),
             camera: session.camera().into(),
             image: session.image().into(),

@@ -56,7 +56,7 @@ fn a_turntable_makes_numbered_pictures_that_can_be_made_alone() {
     assert!(stage.bytes("t-001.png") == stage.bytes("alone.png"), "the second of four is not that of 90°");
     stage.done("render model.obj -q -o first.png --size 16x12 --samples 1 --turn 0");
     assert!(stage.bytes("t-000.png") == stage.bytes("first.png"), "the first is not where it begins");
-    stage.run("render model.obj -o - --turntable 2").fails(2, &["--turntable"]);
+    stage.run("render model.obj -o - --turntable 2 --format exr").fails(2, &["names of their own"]);
 }
 
 /// Whether nothing touches the edge of a transparent picture, and something is in it.

@@ -12,7 +12,7 @@ const BOX: &str = "v 0 0 0\nv 4 0 0\nv 4 2 0\nv 0 2 0\nv 0 0 1\nv 4 0 1\nv 4 2 1
                    f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
 
 /// A triangle that moves by 4 to the right in a second.
-const MOVING: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+pub(super) const MOVING: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
 "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
 "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}], "samplers": [{"input": 1, "output": 2}]}],
 "accessors": [
@@ -176,7 +176,7 @@ fn frames_of_an_animation_are_framed_as_one() {
     assert!(stage.path("later/00003.png").exists() && stage.path("later/00004.png").exists());
     stage.run("render moving.gltf --frames 0..2 --at 1").fails(2, &["--at"]);
     stage.run("render moving.gltf --frames 2..2").fails(2, &["whole number"]);
-    stage.run("render moving.gltf --frames 0..2 -o -").fails(2, &["--frames"]);
+    stage.run("render moving.gltf --frames 0..2 -o - --format pfm").fails(2, &["names of their own"]);
 }
 
 #[test]
@@ -216,4 +216,24 @@ fn several_pictures_can_move() {
     // One picture is no animation, and a GIF all the same.
     stage.done("render model.obj -q --size 8 --samples 1 -o one.gif");
     assert_eq!(png(&stage, "one.gif").dimensions(), (8, 8));
+}
+
+#[test]
+fn several_pictures_go_to_stdout_as_one_animation_or_one_after_the_other() {
+    let stage = Stage::new("series-stdout");
+    stage.write("moving.gltf", MOVING);
+    let of = "render moving.gltf -q --samples 1 --size 12x8 --frames 0..3 --fps 4";
+    for format in ["gif", "apng", "webp"] {
+        stage.done(&format!("{of} -o walk.{format}"));
+        let run = stage.done(&format!("{of} --format {format} -o -"));
+        assert!(run.stdout == stage.bytes(&format!("walk.{format}")), "{format}");
+    }
+    for format in ["ppm", "png", "jpg"] {
+        stage.done(&format!("{of} --format {format} -o ./"));
+        let one_by_one: Vec<u8> =
+            (0..3).flat_map(|frame| stage.bytes(&format!("moving-000{frame}.{format}"))).collect();
+        let run = stage.done(&format!("{of} --format {format} -o -"));
+        assert!(run.stdout == one_by_one, "{format}");
+    }
+    stage.run(&format!("{of} --format exr -o -")).fails(2, &["linear light", "ppm"]);
 }

@@ -64,6 +64,9 @@ pub(crate) fn pose(document: &Document, context: &mut LoadContext<'_>) -> Result
     Ok(pose)
 }
 
+/// The warning about a time without an animation.
+pub(crate) const AT_REST: &str = "a time is given, but the file has no animations: it is at rest";
+
 /// The index of the requested animation.
 fn chosen(document: &Document, context: &mut LoadContext<'_>) -> Result<Option<usize>> {
     let animations = &document.root.animations;
@@ -74,7 +77,7 @@ fn chosen(document: &Document, context: &mut LoadContext<'_>) -> Result<Option<u
         }
         None if context.import.at == 0.0 => Ok(None),
         None if animations.is_empty() => {
-            context.warn(&document.at(""), "a time is given, but the file has no animations: it is at rest");
+            context.warn(&document.at(""), AT_REST);
             Ok(None)
         }
         None => Ok(Some(0)),

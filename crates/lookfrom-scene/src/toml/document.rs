@@ -2,7 +2,7 @@
 //! the scene is discarded in the end.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::error::{Error, Location};
 
@@ -16,20 +16,31 @@ pub(super) struct Document {
     line_starts: Vec<usize>,
     /// By byte offset and message, so that each is recorded once.
     errors: RefCell<BTreeMap<(usize, String), Error>>,
+    /// Lines and columns of values that could not be determined.
+    refused: RefCell<BTreeSet<(u32, u32)>>,
 }
 
 impl Document {
     pub(super) fn new(whole: Location, text: String) -> Self {
         let breaks = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n').map(|(index, _)| index + 1);
         let line_starts = std::iter::once(0).chain(breaks).collect();
-        Self { whole, text, line_starts, errors: RefCell::default() }
+        Self { whole, text, line_starts, errors: RefCell::default(), refused: RefCell::default() }
     }
 
     /// Records an error at a byte offset; reading continues.
     pub(super) fn note(&self, offset: usize, error: Error) {
-        if !self.is_full() && !error.is_untold() {
+        let is_consequence = self.refused.borrow().contains(&(error.at.line, error.at.column));
+        if !self.is_full() && !error.is_untold() && !is_consequence {
             self.errors.borrow_mut().entry((offset, error.message.clone())).or_insert(error);
         }
+    }
+
+    /// Records why the value at a byte offset cannot be determined. Later errors at its place are consequences, which are not
+    /// told.
+    pub(super) fn refuse(&self, offset: usize, error: Error) {
+        self.note(offset, error);
+        let Location { line, column, .. } = self.location(offset);
+        self.refused.borrow_mut().insert((line, column));
     }
 
     /// Whether an error was recorded at a byte offset.

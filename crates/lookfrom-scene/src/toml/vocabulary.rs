@@ -1,11 +1,21 @@
 //! The list of all tables and keys of the format, for documentation, editors and tests.
 
 use super::table::Kinds;
-use super::{camera, light, mapping, material, settings, shape, spectrum, texture, transform};
+use super::{camera, keyframes, light, mapping, material, settings, shape, spectrum, texture, transform};
 
 /// The top-level keys of a file, except the kinds of shapes.
-pub(super) const TOP: &[&str] =
-    &["import", "camera", "image", "render", "materials", "textures", "objects", "instance", "light"];
+pub(super) const TOP: &[&str] = &[
+    "import",
+    "variables",
+    "camera",
+    "image",
+    "render",
+    "materials",
+    "textures",
+    "objects",
+    "instance",
+    "light",
+];
 
 /// The tables that occur at most once, and their keys.
 pub(super) const SETTINGS: Kinds =
@@ -25,6 +35,7 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
         ("[[instance]]".to_owned(), [shape::INSTANCE, transform::KEYS].concat()),
         ("transform".to_owned(), transform::STEPS.to_vec()),
         ("rotate".to_owned(), transform::ROTATION.to_vec()),
+        ("keyframes".to_owned(), keyframes::KEYS.to_vec()),
     ];
     for &(kind, keys) in shape::KEYS {
         tables.push((format!("[[{kind}]]"), [keys, shape::COMMON, transform::KEYS].concat()));
@@ -58,6 +69,7 @@ pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
         ("projection", words(&camera::PROJECTIONS)),
         ("space", mapping::SPACES.to_vec()),
         ("layout", words(sky::LAYOUTS)),
+        ("interpolation", words(keyframes::INTERPOLATIONS)),
         ("falloff", words(light::FALLOFFS)),
         ("encoding", words(texture::ENCODINGS)),
         ("wrap", words(texture::WRAPS)),

@@ -79,6 +79,11 @@ impl Format {
         }
     }
 
+    /// Whether the format holds colours of a screen, not linear light.
+    pub fn is_for_screens(self) -> bool {
+        !matches!(self, Self::Exr | Self::Hdr | Self::Pfm)
+    }
+
     /// Whether the format can hold AOVs.
     pub fn has_layers(self) -> bool {
         self == Self::Exr

@@ -4,10 +4,10 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use lookfrom_scene::Scene;
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::digest::{Digest, Digested};
 use lookfrom_scene::settings::RenderSettings;
+use lookfrom_scene::{Scene, Variables};
 
 use super::{Options, Provenance, Session, header};
 
@@ -47,16 +47,32 @@ impl Identity {
             }
             digest.finish()
         });
-        let &Options { up, view, azimuth, elevation, framed, rotate_environment, floor, ref import, .. } =
-            options;
-        // Only where there is one: films that are older know of no view.
+        let &Options {
+            up,
+            view,
+            azimuth,
+            elevation,
+            framed,
+            rotate_environment,
+            floor,
+            ref import,
+            ref variables,
+            ..
+        } = options;
+        // Only where there are any: films that are older know of no view and no variables.
         let view = match options.chooses_view() || framed.is_some() {
             true => format!(" {view:?} {azimuth:?} {elevation:?} {framed:?}"),
             false => String::new(),
         };
+        let variables = match *variables != Variables::default() {
+            true => format!(" {variables:?}"),
+            false => String::new(),
+        };
         Self {
             inputs,
-            options: format!("{up:?} {rotate_environment:?} {floor} {import:?} {environment:?}{view}"),
+            options: format!(
+                "{up:?} {rotate_environment:?} {floor} {import:?} {environment:?}{view}{variables}"
+            ),
             has_goal: options.stop.time.is_none() || options.samples.is_some(),
         }
     }

@@ -14,7 +14,9 @@ use lookfrom_scene::settings::{
     PixelBounds, RenderSettings, Sampler, Tonemap,
 };
 use lookfrom_scene::studio::Viewpoint;
-use lookfrom_scene::{Error, ErrorKind, ImportOptions, Location, Result, Scene};
+use lookfrom_scene::{
+    Error, ErrorKind, Files, ImportOptions, LoadContext, Location, Result, Scene, Variables,
+};
 
 use super::{Exposure, Format};
 use crate::film::MOST_PIXELS;
@@ -95,6 +97,8 @@ pub struct Options {
     pub turn: Option<f64>,
     /// Selection among several animations, variants, scenes and cameras of a file.
     pub import: ImportOptions,
+    /// Values for the variables of a scene.
+    pub variables: Variables,
     /// Stop criteria, besides the number of samples. With them and without `samples`, that number is not limited.
     pub stop: StopCriteria,
     /// Adaptive sampling: tiles that are clean enough get no more samples ([`ADAPTIVE_NOISE`], unless `stop` sets the
@@ -134,6 +138,15 @@ pub(super) fn unsuitable(message: String) -> Error {
 }
 
 impl Options {
+    /// The context in which the scene is read.
+    pub fn context<'f>(&self, files: &'f dyn Files) -> LoadContext<'f> {
+        LoadContext {
+            import: self.import.clone(),
+            variables: self.variables.clone(),
+            ..LoadContext::new(files)
+        }
+    }
+
     /// Applies the options to image and render settings.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 use lookfrom_scene::scene::SourceFormat;
 use lookfrom_scene::studio::{Turntable, Viewpoint};
-use lookfrom_scene::{CameraChoice, ImportOptions, Location, Result, Scene, Warning, studio};
+use lookfrom_scene::{CameraChoice, ImportOptions, Location, Result, Scene, Warning, load, studio};
 
 use super::options::{MOST_SAMPLES, Options};
 
@@ -38,10 +38,13 @@ pub(super) fn prepare(
     if scene.bounds().is_empty() {
         warn("this scene has no geometry: the picture shows only the background");
     }
-    // The camera of any file can be ignored.
     let mut of_gltf = options.import.clone();
+    // The camera of any file can be ignored, and any scene may have a clock.
     if of_gltf.camera == CameraChoice::None {
         of_gltf.camera = CameraChoice::First;
+    }
+    if origin == SourceFormat::Scene && load::is_toml(file) {
+        of_gltf.at = 0.0;
     }
     if of_gltf != ImportOptions::default() && origin != SourceFormat::Gltf {
         warn("--animation, --at, --variant, --scene and --camera are for glTF files; this file is not one");

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::studio::Viewpoint;
-use lookfrom_scene::{Files, LoadContext, Result, load};
+use lookfrom_scene::{Files, Result, load};
 
 use super::{Options, Session};
 
@@ -69,7 +69,10 @@ impl Series {
             Self::One => {}
             Self::Turntable(_) => options.turn = self.turn(index, of_all),
             Self::Views(views) => options.view = views.get(index).map(|&(_, view)| view),
-            Self::Frames { fps, .. } => options.import.at = f64::from(self.number(index)[0]) / fps,
+            Self::Frames { fps, .. } => {
+                options.import.at = f64::from(self.number(index)[0]) / fps;
+                options.variables.fps = *fps;
+            }
         }
         options
     }
@@ -104,8 +107,7 @@ impl Series {
         let mut poses: Vec<usize> = (0..=steps).map(|step| last * step / steps).collect();
         poses.dedup();
         for index in poses {
-            let import = self.options(index, options).import;
-            let scene = load::scene(path, &mut LoadContext { import, ..LoadContext::new(files) })?;
+            let scene = load::scene(path, &mut self.options(index, options).context(files))?;
             if scene.camera.is_some() && !options.chooses_view() && !options.floor {
                 return Ok(options.clone());
             }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::settings::RenderSettings;
-use lookfrom_scene::{Disk, Files, LoadContext, Memory, Result, load};
+use lookfrom_scene::{Disk, Files, Memory, Result, load};
 
 use super::{Options, options, prepare};
 use crate::world::World;
@@ -38,8 +38,7 @@ impl Source {
                 ));
             }
         };
-        let mut context = LoadContext { import: options.import.clone(), ..LoadContext::new(files) };
-        let mut scene = load::scene(path, &mut context)?;
+        let mut scene = load::scene(path, &mut options.context(files))?;
         // Its warnings were given when the session was opened.
         prepare::prepare(&mut scene, path, options, &mut Vec::new())?;
         scene.camera = Some(camera.clone());

@@ -1,0 +1,371 @@
+//! Variables: `[variables]` of a file, what replaces them from outside, and the values that are written with them.
+//!
+//! A text that begins with `=` is an [expression](super::expression), a table with `keyframes` a value that changes with
+//! time. Before a file is decoded both are replaced by their values, so that no decoder knows of them.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::path::Path;
+use std::slice::Iter;
+
+use ::toml::Spanned;
+use ::toml::de::{DeTable, DeValue};
+
+use super::document::Document;
+use super::evaluate::{Allowance, evaluate};
+use super::expression::{self, Fault};
+use super::keyframes::{self, KEYFRAMES};
+use super::quantity::{MOST_EXACT, Quantity, Replacement};
+use super::table::Table;
+use super::value::Value;
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::files::LoadContext;
+use crate::suggest::nearest;
+
+/// The table of variables.
+pub(super) const VARIABLES: &str = "variables";
+
+/// Names that every scene has.
+pub(super) const BUILT_IN: [&str; 5] = ["t", "frame", "pi", "true", "false"];
+
+/// The most names that a message lists.
+const MOST_LISTED: usize = 12;
+
+/// Values from outside: texts of their own, by name.
+pub(super) fn given(context: &LoadContext<'_>) -> BTreeMap<String, Document> {
+    let whole = |name: &str| Location::file(Path::new(&format!("--define {name}")));
+    let values = context.variables.values.iter();
+    values.map(|(name, text)| (name.clone(), Document::new(whole(name), text.clone()))).collect()
+}
+
+/// The variables of a scene so far.
+pub(super) struct Variables<'g> {
+    given: BTreeMap<&'g str, Given<'g>>,
+    /// The values of the open files, the outermost first; `None` for a variable without a valid one.
+    open: Vec<BTreeMap<String, Option<Quantity>>>,
+    /// All variables that any file has, with their values in short.
+    all: BTreeMap<String, String>,
+    /// In seconds.
+    now: f64,
+    fps: f64,
+    allowance: Allowance,
+}
+
+/// A value from outside: TOML, or else the text itself.
+struct Given<'g> {
+    document: &'g Document,
+    item: Spanned<DeValue<'g>>,
+}
+
+impl<'g> Given<'g> {
+    fn new(document: &'g Document) -> Self {
+        let text = document.text();
+        let as_text = |_| Spanned::new(0..text.len(), DeValue::String(text.into()));
+        Self { document, item: DeValue::parse(text).unwrap_or_else(as_text) }
+    }
+}
+
+impl<'g> Variables<'g> {
+    pub(super) fn new(given: &'g BTreeMap<String, Document>, context: &LoadContext<'_>) -> Self {
+        Self {
+            given: given.iter().map(|(name, document)| (name.as_str(), Given::new(document))).collect(),
+            open: Vec::new(),
+            all: BTreeMap::new(),
+            now: context.import.at,
+            fps: context.variables.fps,
+            allowance: Allowance::default(),
+        }
+    }
+
+    /// Evaluates the variables of a file, and all that is written with them: the values that [`replace`] puts there.
+    /// `knows_all` unless the file has variables that cannot be read. To be followed by [`close`](Self::close) after all that
+    /// the file imports.
+    pub(super) fn open(
+        &mut self,
+        document: &Document,
+        root: &DeTable<'_>,
+        knows_all: bool,
+    ) -> Vec<Option<Replacement>> {
+        let empty = DeTable::new();
+        let table = match root.get(VARIABLES).map(|item| (item, item.get_ref())) {
+            None => &empty,
+            Some((_, DeValue::Table(table))) => table,
+            Some((item, _)) => {
+                let value = Value { document, key: VARIABLES, item };
+                value.note(value.wrong("a table of names and values"));
+                &empty
+            }
+        };
+        let scope = Scope::new(self, document, table, knows_all);
+        let names: Vec<&str> = scope.own.keys().copied().collect();
+        for name in names {
+            // Errors are told where the variable is defined.
+            let _ = scope.defined(name, 0);
+        }
+        let mut replacements = Vec::new();
+        for (_, item) in root.iter().filter(|(key, _)| key.get_ref() != VARIABLES) {
+            scope.evaluate_in(item, &mut replacements);
+        }
+        let done = scope.done.into_inner();
+        let own: BTreeMap<String, Option<Quantity>> =
+            done.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+        self.open.push(own);
+        for key in table.keys() {
+            let name: &str = key.get_ref();
+            let value = self.open.iter().find_map(|file| file.get(name)).cloned().flatten();
+            let in_short = value.map_or(String::new(), |value| value.in_short());
+            self.all.entry(name.to_owned()).or_insert(in_short);
+        }
+        replacements
+    }
+
+    /// Forgets the variables of the file that was opened last.
+    pub(super) fn close(&mut self) {
+        self.open.pop();
+    }
+
+    /// The errors of values from outside; where all names of the scene are known, also for those that it does not have.
+    pub(super) fn errors(&self, knows_all: bool) -> Vec<Error> {
+        let mut errors: Vec<Error> =
+            self.given.values().flat_map(|given| given.document.errors(Vec::new())).collect();
+        let strangers = self.given.keys().filter(|name| knows_all && !self.all.contains_key(**name));
+        errors.extend(strangers.map(|name| {
+            let message = format!("--define {name}: the scene has no variable `{name}`");
+            let known = || self.all.keys().map(String::as_str);
+            Error::new(ErrorKind::Request, &Location::default(), message).hint(match nearest(name, known()) {
+                Some(meant) => format!("did you mean `{meant}`?"),
+                None if self.all.is_empty() => {
+                    format!("give it one: a table [variables] with a line `{name} = 1`")
+                }
+                None => format!("it has: {}", listed(known())),
+            })
+        }));
+        errors
+    }
+
+    /// All variables that any file has, with their values in short.
+    pub(super) fn into_all(self) -> Vec<(String, String)> {
+        self.all.into_iter().collect()
+    }
+}
+
+fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let mut some: Vec<&str> = names.take(MOST_LISTED + 1).collect();
+    if some.len() > MOST_LISTED {
+        some[MOST_LISTED] = "…";
+    }
+    some.join(", ")
+}
+
+/// Where a variable is defined.
+#[derive(Clone, Copy)]
+struct Definition<'a> {
+    document: &'a Document,
+    item: &'a Spanned<DeValue<'a>>,
+}
+
+/// The variables that a file can use.
+pub(super) struct Scope<'a> {
+    variables: &'a Variables<'a>,
+    document: &'a Document,
+    /// Those that the file defines, and no file that imports it.
+    own: BTreeMap<&'a str, Definition<'a>>,
+    done: RefCell<BTreeMap<&'a str, Option<Quantity>>>,
+    /// Those whose values are being determined, each for the one before.
+    pending: RefCell<Vec<&'a str>>,
+    knows_all: bool,
+}
+
+impl<'a> Scope<'a> {
+    fn new(
+        variables: &'a Variables<'a>,
+        document: &'a Document,
+        table: &'a DeTable<'a>,
+        knows_all: bool,
+    ) -> Self {
+        let mut own = BTreeMap::new();
+        for (key, item) in table {
+            let name: &str = key.get_ref();
+            let wrong = match name {
+                _ if BUILT_IN.contains(&name) => format!("`{name}` cannot be defined: every scene has it"),
+                _ if !expression::is_name(name) => {
+                    format!("{name:?} cannot be a name; expected letters, digits and _, first no digit")
+                }
+                _ => {
+                    let given = variables.given.get(name);
+                    let here = Definition { document, item };
+                    let definition = given
+                        .map_or(here, |given| Definition { document: given.document, item: &given.item });
+                    if !variables.open.iter().any(|file| file.contains_key(name)) {
+                        own.insert(name, definition);
+                    }
+                    continue;
+                }
+            };
+            let offset = key.span().start;
+            document.note(offset, Error::invalid(&document.location(offset), wrong));
+        }
+        Self { variables, document, own, done: RefCell::default(), pending: RefCell::default(), knows_all }
+    }
+
+    /// The value of a name in an expression, at a byte offset of it.
+    fn named(&self, name: &str, at: usize) -> std::result::Result<Quantity, Fault> {
+        match name {
+            "t" => return Ok(Quantity::Number(self.variables.now)),
+            "frame" => return Ok(Quantity::Number(libm::round(self.variables.now * self.variables.fps))),
+            "pi" => return Ok(Quantity::Number(PI)),
+            "true" | "false" => return Ok(Quantity::Truth(name == "true")),
+            _ => {}
+        }
+        if let Some(value) = self.variables.open.iter().find_map(|file| file.get(name)) {
+            return value.clone().ok_or_else(Fault::default);
+        }
+        if let Some((&name, _)) = self.own.get_key_value(name) {
+            return self.defined(name, at);
+        }
+        if !self.knows_all {
+            return Err(Fault::default());
+        }
+        let outer = self.variables.open.iter().flat_map(|file| file.keys().map(String::as_str));
+        let known: Vec<&str> = self.own.keys().copied().chain(outer).collect();
+        Err(Fault::new(at, format!("there is no variable `{name}`")).hint(
+            match nearest(name, known.iter().copied().chain(BUILT_IN)) {
+                Some(meant) => format!("did you mean `{meant}`?"),
+                None if known.is_empty() => {
+                    format!("give it a value: a table [variables] with a line `{name} = 1`")
+                }
+                None => format!("there are: {}", listed(known.into_iter())),
+            },
+        ))
+    }
+
+    /// The value of a variable of this file.
+    fn defined(&self, name: &'a str, at: usize) -> std::result::Result<Quantity, Fault> {
+        if let Some(value) = self.done.borrow().get(name) {
+            return value.clone().ok_or_else(Fault::default);
+        }
+        let chain = self.pending.borrow().clone();
+        if let Some(start) = chain.iter().position(|&other| other == name) {
+            let chain: Vec<&str> = chain[start..].iter().copied().chain([name]).collect();
+            let message = format!("`{name}` is defined by itself: {}", chain.join(" → "));
+            return Err(Fault::new(at, message).hint("give one of them a value of its own"));
+        }
+        let Some(&Definition { document, item }) = self.own.get(name) else { return Err(Fault::default()) };
+        self.pending.borrow_mut().push(name);
+        let value = self.variables.allowance.deeper(at, || {
+            let value = Value { document, key: name, item };
+            Ok(self.quantity(value).map_err(|error| document.refuse(item.span().start, error)))
+        });
+        self.pending.borrow_mut().pop();
+        let value = value?.ok();
+        self.done.borrow_mut().insert(name, value.clone());
+        value.ok_or_else(Fault::default)
+    }
+
+    /// Evaluates the expressions and keyframes in a value, in their order; `None` for one without a valid value, whose error
+    /// is recorded.
+    fn evaluate_in(&self, item: &Spanned<DeValue<'_>>, replacements: &mut Vec<Option<Replacement>>) {
+        match item.get_ref() {
+            value if is_calculated(value) => {
+                let value = self.quantity(Value { document: self.document, key: "", item });
+                let refuse = |error| self.document.refuse(item.span().start, error);
+                replacements.push(value.map_err(refuse).ok().map(Replacement::new));
+            }
+            DeValue::Array(items) => items.iter().for_each(|item| self.evaluate_in(item, replacements)),
+            DeValue::Table(entries) => {
+                entries.values().for_each(|item| self.evaluate_in(item, replacements));
+            }
+            _ => {}
+        }
+    }
+
+    /// The value of a value of TOML.
+    pub(super) fn quantity(&self, value: Value<'_>) -> Result<Quantity> {
+        let offset = value.item.span().start;
+        let calculated = match value.item.get_ref() {
+            DeValue::String(text) if text.starts_with('=') => {
+                let expression = expression::parse(text, 1);
+                let names = |name: &str, at: usize| self.named(name, at);
+                expression.and_then(|expression| evaluate(&expression, &names, &self.variables.allowance))
+            }
+            DeValue::Table(map) if map.contains_key(KEYFRAMES) => {
+                let table = Table::new(value.document, offset, KEYFRAMES.to_owned(), map);
+                return keyframes::at_time(&table, self, self.variables.now);
+            }
+            DeValue::String(text) => Ok(Quantity::Text(text.clone().into_owned())),
+            DeValue::Boolean(truth) => Ok(Quantity::Truth(*truth)),
+            DeValue::Integer(_) | DeValue::Float(_) => {
+                let number = value.number()?;
+                if number.abs() > MOST_EXACT && value.item.get_ref().is_integer() {
+                    return Err(value
+                        .wrong(&format!("a number of at most {MOST_EXACT}, as larger ones are not exact")));
+                }
+                Ok(Quantity::Number(number))
+            }
+            DeValue::Datetime(_) => {
+                return Err(value.wrong("a number, a text, true, false, a list or a table"));
+            }
+            DeValue::Array(items) => {
+                let items = items.iter().map(|item| self.quantity(Value { item, ..value }));
+                Ok(Quantity::List(items.collect::<Result<_>>()?))
+            }
+            DeValue::Table(map) => {
+                let entries = map.iter().map(|(key, item)| {
+                    let key: &str = key.get_ref();
+                    Ok((key.to_owned(), self.quantity(Value { key, item, ..value })?))
+                });
+                Ok(Quantity::Table(entries.collect::<Result<_>>()?))
+            }
+        };
+        calculated
+            .and_then(|quantity| self.variables.allowance.spend(quantity, 0))
+            .map_err(|fault| located(value, fault))
+    }
+}
+
+/// Takes the variables out of a file, and puts values in place of all that is written with them.
+pub(super) fn replace<'r>(root: &mut DeTable<'r>, replacements: &'r [Option<Replacement>]) {
+    root.remove(VARIABLES);
+    let mut replacements = replacements.iter();
+    root.iter_mut().for_each(|(_, item)| replace_in(item, &mut replacements));
+}
+
+fn replace_in<'r>(item: &mut Spanned<DeValue<'r>>, replacements: &mut Iter<'r, Option<Replacement>>) {
+    if is_calculated(item.get_ref()) {
+        if let Some(Some(replacement)) = replacements.next() {
+            *item = replacement.as_toml(&item.span());
+        }
+        return;
+    }
+    match item.get_mut() {
+        DeValue::Array(items) => items.iter_mut().for_each(|item| replace_in(item, replacements)),
+        DeValue::Table(entries) => entries.iter_mut().for_each(|(_, item)| replace_in(item, replacements)),
+        _ => {}
+    }
+}
+
+/// Whether a value is not itself what is meant.
+fn is_calculated(value: &DeValue<'_>) -> bool {
+    match value {
+        DeValue::String(text) => text.starts_with('='),
+        DeValue::Table(map) => map.contains_key(KEYFRAMES),
+        _ => false,
+    }
+}
+
+/// The error of a text or value of a file.
+fn located(value: Value<'_>, fault: Fault) -> Error {
+    if fault.message.is_empty() {
+        return Error::untold();
+    }
+    let span = value.item.span();
+    let written = value.document.text().get(span.clone()).unwrap_or_default();
+    // A text with escapes is not written as it is; then its beginning has to do.
+    let inside = value.as_text().and_then(|text| written.find(text)).map_or(0, |start| start + fault.at);
+    let error = Error::invalid(&value.document.location(span.start + inside), fault.message);
+    match fault.hint {
+        Some(hint) => error.hint(hint),
+        None => error,
+    }
+}
