@@ -13,7 +13,7 @@ mod variables;
 mod view;
 
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
@@ -25,6 +25,7 @@ use lookfrom_scene::settings::{
     Tonemap,
 };
 
+use crate::terminal::{Show, Way};
 use crate::values;
 
 pub(crate) use encoding::EncodingArguments;
@@ -72,7 +73,7 @@ Examples:
   lookfrom render */chair.obj -o 'out/{parent}.png'      out/oak.png, out/steel.png
   lookfrom render scene.toml -o - | display
   generate | lookfrom render - -o picture.png
-  lookfrom render scene.toml --watch
+  lookfrom render scene.toml --watch --show
   lookfrom render scene.pbrt --noise 0.02 --write-every 10s
   lookfrom render scene.pbrt --samples 16 --denoise
   lookfrom render scene.pbrt -o a.exr --film --checkpoint 30s     go on after any stop: lookfrom resume a.exr
@@ -220,9 +221,20 @@ pub(crate) struct RenderArguments {
     #[arg(long, conflicts_with = "skip_existing")]
     pub(crate) watch: bool,
 
+    /// Draw each finished picture in the terminal (stderr), as it can: auto, or kitty, sixel, blocks [default with --watch: auto]
+    ///
+    /// auto concludes from the environment what the terminal can do: graphics of kitty, sixels, or half blocks in colour. It draws
+    /// nothing where stderr is not a terminal.
+    #[arg(long, value_name = "WAY", value_parser = values::word(Show::WORDS), num_args = 0..=1, default_missing_value = "auto")]
+    pub(crate) show: Option<Show>,
+
     /// Print nothing but errors
-    #[arg(short, long)]
+    #[arg(short, long, conflicts_with = "verbose")]
     pub(crate) quiet: bool,
+
+    /// Print also what each scene has, the settings as finally chosen, and the times of all steps; twice: the files, too
+    #[arg(short, long, action = clap::ArgAction::Count)]
+    pub(crate) verbose: u8,
 
     /// Write a summary of each scene to stdout, one JSON object per line
     #[arg(long)]
@@ -233,6 +245,14 @@ pub(crate) struct RenderArguments {
 
     #[command(flatten)]
     pub(crate) overrides: Overrides,
+}
+
+impl RenderArguments {
+    /// How finished pictures are drawn in the terminal, if they are.
+    pub(crate) fn way(&self) -> Option<Way> {
+        let is_watched = self.watch && !self.quiet && self.output.as_deref() != Some(Path::new("-"));
+        self.show.unwrap_or(if is_watched { Show::Auto } else { Show::Off }).way()
+    }
 }
 
 #[derive(Args, Debug)]

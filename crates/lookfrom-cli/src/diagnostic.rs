@@ -11,7 +11,7 @@ use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Style};
 use lookfrom_scene::excerpt::{Excerpt, Excerpts};
 use lookfrom_scene::load::PIPE;
-use lookfrom_scene::{Error, Files, Result};
+use lookfrom_scene::{Error, Files, Result, WarningKind};
 
 use crate::pipe::Piped;
 
@@ -25,6 +25,16 @@ const FRAME: Style = AnsiColor::Blue.on_default().bold();
 pub(crate) fn plain(message: &str) -> String {
     let error = *Styles::styled().get_error();
     format!("{error}error:{error:#} {message}")
+}
+
+/// A warning or note.
+pub(crate) fn of_warning(kind: WarningKind, message: &str) -> String {
+    let (word, color) = match kind == WarningKind::Warning {
+        true => ("warning", AnsiColor::Yellow),
+        false => ("note", AnsiColor::Green),
+    };
+    let style = color.on_default().bold();
+    format!("{style}{word}:{style:#} {message}")
 }
 
 /// An error about the command line that only the scene reveals.

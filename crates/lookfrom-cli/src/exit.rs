@@ -131,8 +131,8 @@ fn listed(warnings: &[Warning], kind: WarningKind) -> Vec<String> {
 
 /// Prints warnings on stderr: first those that matter for the picture, then the harmless ones (notes).
 pub(crate) fn say_warnings(warnings: &[Warning]) {
-    for (kind, word) in [(WarningKind::Warning, "warning"), (WarningKind::Notice, "note")] {
-        listed(warnings, kind).iter().for_each(|line| say(&format!("{word}: {line}")));
+    for kind in [WarningKind::Warning, WarningKind::Notice] {
+        listed(warnings, kind).iter().for_each(|line| say_in_color(&diagnostic::of_warning(kind, line)));
     }
 }
 

@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use crate::args::{FilesArguments, VariableArguments};
 use crate::exit::{DONE, Failure, answer};
+use crate::report::bytes;
 use lookfrom_scene::json;
 
 /// Lists the files of every scene, each once, and returns the exit code.
@@ -49,6 +50,14 @@ fn list(arguments: &FilesArguments) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// Files that were read with their sizes, a line each.
+pub(crate) fn in_words(paths: &[PathBuf]) -> String {
+    let size =
+        |path: &PathBuf| std::fs::metadata(path).map_or("not there".to_owned(), |file| bytes(file.len()));
+    let line = |path: &PathBuf| format!("  {:<10} {}, {}", "file", path.display(), size(path));
+    paths.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// The files of a scene, with their digests.

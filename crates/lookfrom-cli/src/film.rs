@@ -152,7 +152,7 @@ pub(crate) fn write(
     finished: &Finished,
     inputs: &Inputs,
 ) -> Result<(), Failure> {
-    let Finished { rendered, developed } = finished;
+    let Finished { rendered, developed, .. } = finished;
     write_by(target, inputs, |file| provenance.write(&rendered.film, developed, file))
 }
 

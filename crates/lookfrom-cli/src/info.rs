@@ -84,7 +84,8 @@ fn tree(session: &Session) -> Tree {
     }
 }
 
-fn for_people(path: &Path, session: &Session) -> String {
+/// The contents and settings of a scene, a line each.
+pub(crate) fn for_people(path: &Path, session: &Session) -> String {
     let info = session.info();
     let mut lines = vec![path.display().to_string()];
     let mut line = |name: &str, text: String| lines.push(format!("  {name:<10} {text}"));

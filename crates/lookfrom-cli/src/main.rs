@@ -31,6 +31,7 @@ mod render;
 mod report;
 mod resume;
 mod scenes;
+mod terminal;
 mod values;
 #[cfg(feature = "view")]
 mod view;

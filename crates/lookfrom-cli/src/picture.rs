@@ -14,6 +14,7 @@ use crate::output::Target;
 use crate::preview::{Preview, SoFar};
 use crate::progress::Watcher;
 use crate::report::{self, Summary};
+use crate::terminal;
 
 /// What becomes of a finished picture.
 pub(crate) enum Outlet<'a> {
@@ -78,6 +79,11 @@ pub(crate) fn render(
     let render_time = report::seconds(started.elapsed());
     let finished = finished.map_err(in_scene)?;
 
+    let is_cell = arguments.several.sheet.is_some();
+    if let Some(way) = arguments.way().filter(|_| !is_cell && finished.rendered.samples_taken > 0) {
+        terminal::draw(&finished.shown(), way)?;
+    }
+
     // Write, unless the render was stopped before the first sample.
     let started = Instant::now();
     let has_picture = finished.rendered.samples_taken > 0;
@@ -107,6 +113,9 @@ pub(crate) fn render(
 pub(crate) fn told(summary: &Summary, arguments: &RenderArguments) -> Result<u8, Failure> {
     if !arguments.quiet {
         say(&summary.for_people());
+        if arguments.verbose > 0 {
+            say(&summary.steps());
+        }
     }
     if arguments.json {
         answer(&summary.as_json())?;

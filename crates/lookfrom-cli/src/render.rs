@@ -16,7 +16,8 @@ use crate::picture::{self, Job, Outlet};
 use crate::pipe::Piped;
 use crate::prepare::{self, prepare};
 use crate::report;
-use crate::{film, interrupt, naming, scenes};
+use crate::terminal::{self, Show, Way};
+use crate::{files, film, info, interrupt, naming, scenes};
 
 /// Failed scenes that are named at the end of a call.
 const MOST_FAILED: usize = 20;
@@ -66,6 +67,9 @@ impl<'a> Call<'a> {
         let is_several = call.series != Series::One;
         if is_piped && arguments.write_every.is_some() {
             return usage("--write-every needs an output file; -o - is stdout".to_owned());
+        }
+        if is_piped && arguments.show.is_some_and(|show| show != Show::Off) {
+            return usage("--show is for pictures in files; -o - is stdout".to_owned());
         }
         let is_stream = is_piped && is_several && several.sheet.is_none();
         if is_stream && call.targets.iter().any(|target| !target.format().is_for_screens()) {
@@ -185,7 +189,7 @@ impl<'a> Call<'a> {
             }
         }
         if let Some(sheet) = sheet
-            && let Err(failure) = write_sheet(&sheet, &targets[0], inputs)
+            && let Err(failure) = write_sheet(&sheet, &targets[0], arguments.way(), inputs)
         {
             // Where nothing could be rendered, that has been told.
             code = if failed.len() == scenes.len() { code } else { failure.report() };
@@ -293,6 +297,12 @@ impl<'a> Call<'a> {
                 if is_first && !arguments.quiet {
                     exit::say_warnings(next.warnings());
                 }
+                if is_first && arguments.verbose > 0 {
+                    say(&info::for_people(path, &next));
+                }
+                if is_first && arguments.verbose > 1 {
+                    say(&files::in_words(&inputs.paths()));
+                }
                 keep_inputs(path, &targets, inputs)?;
                 // All pictures of a scene have the exposure of the first.
                 options.exposure = Some(Exposure::Stops(next.image().exposure));
@@ -338,9 +348,12 @@ impl<'a> Call<'a> {
     }
 }
 
-fn write_sheet(sheet: &Sheet, target: &Target, inputs: &Inputs) -> Result<(), Failure> {
-    let shown = sheet.shown().and_then(|shown| shown.encode(target.format()));
-    target.write(&shown.map_err(|error| target.cannot_encode(&error))?, inputs)
+/// Writes a sheet, and draws it in the terminal if there is a way.
+fn write_sheet(sheet: &Sheet, target: &Target, way: Option<Way>, inputs: &Inputs) -> Result<(), Failure> {
+    let cannot_encode = |error| target.cannot_encode(&error);
+    let shown = sheet.shown().map_err(cannot_encode)?;
+    target.write(&shown.encode(target.format()).map_err(cannot_encode)?, inputs)?;
+    way.map_or(Ok(()), |way| terminal::draw(&shown, way))
 }
 
 /// Refuses pictures that would overwrite an input, and a scene that reads a picture of this call.

@@ -56,6 +56,9 @@ pub(crate) struct Seconds {
     pub(crate) read: f64,
     pub(crate) build: f64,
     pub(crate) render: f64,
+    /// The part of `render` after the last sample: fireflies, denoising.
+    pub(crate) develop: f64,
+    /// After that: encoding, and writing the file.
     pub(crate) write: f64,
 }
 
@@ -117,6 +120,7 @@ impl Summary {
                 read: seconds(info.read),
                 build: seconds(info.build),
                 render: 0.0,
+                develop: seconds(finished.developing),
                 write: 0.0,
             },
             rays: rendered.rays.into(),
@@ -150,11 +154,30 @@ impl Summary {
         json::line(self)
     }
 
+    /// The times of all steps, and the mean number of samples, for a person.
+    pub(crate) fn steps(&self) -> String {
+        let Seconds { read, build, render, develop, write } = self.seconds;
+        let steps = [
+            ("read", read, "files to a scene"),
+            ("build", build, "scene to a world, its trees, the exposure"),
+            ("sample", render - develop, "paths of light"),
+            (
+                "develop",
+                develop,
+                if self.denoised { "film to a picture, denoised" } else { "film to a picture" },
+            ),
+            ("write", write, "encoding, the file"),
+        ];
+        let mut lines = vec![format!("  steps of {}:", self.scene)];
+        lines.extend(steps.map(|(name, time, what)| format!("    {name:<8} {time:>9.3} s  {what}")));
+        lines.join("\n")
+    }
+
     /// The summary for a person.
     pub(crate) fn for_people(&self) -> String {
         let Self { scene, width, height, samples, integrator, .. } = self;
         let RayCounts { camera, secondary, shadow, total } = self.rays;
-        let Seconds { read, build, render, write } = self.seconds;
+        let Seconds { read, build, render, write, .. } = self.seconds;
         let output = self.output.as_deref().unwrap_or("nothing");
         let memory = self.peak_memory_bytes.map_or("unknown".to_owned(), bytes);
         let [camera, secondary, shadow, total] = [camera, secondary, shadow, total].map(thousands);
@@ -301,7 +324,7 @@ mod tests {
             relative_error: None,
             integrator: "whitted",
             denoised: false,
-            seconds: Seconds { read: 0.0, build: 0.0, render: 2.5, write: 0.0 },
+            seconds: Seconds { read: 0.0, build: 0.0, render: 2.5, develop: 0.0, write: 0.0 },
             rays: Rays { camera: 1000, secondary: 20, shadow: 3 }.into(),
             mrays_per_s: 1.5,
             peak_memory_bytes: None,

@@ -24,6 +24,7 @@ mod command {
     mod schema;
     mod series;
     mod stage;
+    mod terminal;
     mod variables;
     #[cfg(all(unix, feature = "view"))]
     mod view;

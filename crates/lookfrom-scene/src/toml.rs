@@ -1,7 +1,7 @@
 //! Reader for our own scene format (`docs/guide/scene-format.md`). Errors have the location of the invalid value.
 //!
 //! This file reads files and merges what they import. Beside it: `document`, `table` and `value` (the parsed text with
-//! locations, and recorded errors), `scope` (variables, which are replaced by their values before anything is decoded; with
+//! locations, and recorded errors), `variables` and `scope` (variables, which are replaced by their values before anything is decoded; with
 //! `expression`, `evaluate`, `function`, `quantity` and `keyframes`), `syntax` (recovery from errors of TOML), `synonyms` (terms of other programs), and a
 //! decoder for each part of the vocabulary.
 
@@ -42,6 +42,7 @@ mod text;
 mod texture;
 mod transform;
 mod value;
+mod variables;
 mod vocabulary;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -52,10 +53,10 @@ use ::toml::de::DeTable;
 use self::document::Document;
 use self::import::tidy;
 use self::material::DEFAULT;
-use self::scope::Variables;
 use self::syntax::Readable;
 use self::table::{SCENE, Table};
 use self::value::Value;
+use self::variables::Variables;
 use self::vocabulary::TOP;
 use crate::error::{Error, Location, Result};
 use crate::files::{ImportOptions, LoadContext};
@@ -76,7 +77,7 @@ pub use self::vocabulary::vocabulary;
 /// With line and column, and all errors that one run can find: `Syntax` for malformed TOML, `Invalid` for an unknown or
 /// invalid key, type, number or name, `Limit` for excessive sizes and nesting, and the errors of the files that it names.
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
-    let given = scope::given(context);
+    let given = variables::given(context);
     let mut reader = Reader {
         variables: Variables::new(&given, context),
         time: context.import.at,

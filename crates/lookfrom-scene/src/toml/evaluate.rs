@@ -89,7 +89,7 @@ pub(super) fn evaluate(
                         truth(value, expression.at)?;
                         Quantity::Truth(truth(of(other)?, other.at)?)
                     }
-                    _ => allowance.spend(operate(operator, value, of(other)?, at)?, at)?,
+                    _ => allowance.spend(operate(operator, &value, &of(other)?, at)?, at)?,
                 };
             }
             value
@@ -122,14 +122,14 @@ fn item(list: Quantity, at: usize, index: Quantity, at_index: usize) -> Result<Q
     Ok(items.swap_remove(place))
 }
 
-fn operate(operator: Operator, a: Quantity, b: Quantity, at: usize) -> Result<Quantity, Fault> {
+fn operate(operator: Operator, a: &Quantity, b: &Quantity, at: usize) -> Result<Quantity, Fault> {
     let arithmetic = |sign: &str, f: &dyn Fn(&[f64]) -> f64| numbers(&[a.clone(), b.clone()], sign, at, f);
-    let compared = |sign: &str, is: &dyn Fn(f64, f64) -> bool| match (&a, &b) {
+    let compared = |sign: &str, is: &dyn Fn(f64, f64) -> bool| match (a, b) {
         (Quantity::Number(a), Quantity::Number(b)) => Ok(Quantity::Truth(is(*a, *b))),
         _ => Err(Fault::new(at, format!("{} {sign} {}; expected numbers", a.what(), b.what()))),
     };
     match operator {
-        Operator::Plus => match (&a, &b) {
+        Operator::Plus => match (a, b) {
             (Quantity::Text(a), Quantity::Text(b)) => Ok(Quantity::Text(format!("{a}{b}"))),
             (Quantity::Text(a), Quantity::Number(_)) => Ok(Quantity::Text(format!("{a}{b}"))),
             (Quantity::Number(_), Quantity::Text(b)) => Ok(Quantity::Text(format!("{a}{b}"))),
@@ -146,7 +146,7 @@ fn operate(operator: Operator, a: Quantity, b: Quantity, at: usize) -> Result<Qu
         Operator::GreaterOrEqual => compared(">=", &|a, b| a >= b),
         Operator::Equal => Ok(Quantity::Truth(a == b)),
         Operator::NotEqual => Ok(Quantity::Truth(a != b)),
-        Operator::Or | Operator::And => Ok(a),
+        Operator::Or | Operator::And => Ok(a.clone()),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Variables: `[variables]` of a file, what replaces them from outside, and the values that are written with them.
+//! The values of a file that are written with variables.
 //!
 //! A text that begins with `=` is an [expression](super::expression), a table with `keyframes` a value that changes with
 //! time. Before a file is decoded both are replaced by their values, so that no decoder knows of them.
@@ -6,157 +6,24 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use std::path::Path;
 use std::slice::Iter;
 
 use ::toml::Spanned;
 use ::toml::de::{DeTable, DeValue};
 
 use super::document::Document;
-use super::evaluate::{Allowance, evaluate};
+use super::evaluate::evaluate;
 use super::expression::{self, Fault};
 use super::keyframes::{self, KEYFRAMES};
 use super::quantity::{MOST_EXACT, Quantity, Replacement};
 use super::table::Table;
 use super::value::Value;
-use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::LoadContext;
+use super::variables::{VARIABLES, Variables, listed};
+use crate::error::{Error, Result};
 use crate::suggest::nearest;
 
-/// The table of variables.
-pub(super) const VARIABLES: &str = "variables";
-
 /// Names that every scene has.
-pub(super) const BUILT_IN: [&str; 5] = ["t", "frame", "pi", "true", "false"];
-
-/// The most names that a message lists.
-const MOST_LISTED: usize = 12;
-
-/// Values from outside: texts of their own, by name.
-pub(super) fn given(context: &LoadContext<'_>) -> BTreeMap<String, Document> {
-    let whole = |name: &str| Location::file(Path::new(&format!("--define {name}")));
-    let values = context.variables.values.iter();
-    values.map(|(name, text)| (name.clone(), Document::new(whole(name), text.clone()))).collect()
-}
-
-/// The variables of a scene so far.
-pub(super) struct Variables<'g> {
-    given: BTreeMap<&'g str, Given<'g>>,
-    /// The values of the open files, the outermost first; `None` for a variable without a valid one.
-    open: Vec<BTreeMap<String, Option<Quantity>>>,
-    /// All variables that any file has, with their values in short.
-    all: BTreeMap<String, String>,
-    /// In seconds.
-    now: f64,
-    fps: f64,
-    allowance: Allowance,
-}
-
-/// A value from outside: TOML, or else the text itself.
-struct Given<'g> {
-    document: &'g Document,
-    item: Spanned<DeValue<'g>>,
-}
-
-impl<'g> Given<'g> {
-    fn new(document: &'g Document) -> Self {
-        let text = document.text();
-        let as_text = |_| Spanned::new(0..text.len(), DeValue::String(text.into()));
-        Self { document, item: DeValue::parse(text).unwrap_or_else(as_text) }
-    }
-}
-
-impl<'g> Variables<'g> {
-    pub(super) fn new(given: &'g BTreeMap<String, Document>, context: &LoadContext<'_>) -> Self {
-        Self {
-            given: given.iter().map(|(name, document)| (name.as_str(), Given::new(document))).collect(),
-            open: Vec::new(),
-            all: BTreeMap::new(),
-            now: context.import.at,
-            fps: context.variables.fps,
-            allowance: Allowance::default(),
-        }
-    }
-
-    /// Evaluates the variables of a file, and all that is written with them: the values that [`replace`] puts there.
-    /// `knows_all` unless the file has variables that cannot be read. To be followed by [`close`](Self::close) after all that
-    /// the file imports.
-    pub(super) fn open(
-        &mut self,
-        document: &Document,
-        root: &DeTable<'_>,
-        knows_all: bool,
-    ) -> Vec<Option<Replacement>> {
-        let empty = DeTable::new();
-        let table = match root.get(VARIABLES).map(|item| (item, item.get_ref())) {
-            None => &empty,
-            Some((_, DeValue::Table(table))) => table,
-            Some((item, _)) => {
-                let value = Value { document, key: VARIABLES, item };
-                value.note(value.wrong("a table of names and values"));
-                &empty
-            }
-        };
-        let scope = Scope::new(self, document, table, knows_all);
-        let names: Vec<&str> = scope.own.keys().copied().collect();
-        for name in names {
-            // Errors are told where the variable is defined.
-            let _ = scope.defined(name, 0);
-        }
-        let mut replacements = Vec::new();
-        for (_, item) in root.iter().filter(|(key, _)| key.get_ref() != VARIABLES) {
-            scope.evaluate_in(item, &mut replacements);
-        }
-        let done = scope.done.into_inner();
-        let own: BTreeMap<String, Option<Quantity>> =
-            done.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
-        self.open.push(own);
-        for key in table.keys() {
-            let name: &str = key.get_ref();
-            let value = self.open.iter().find_map(|file| file.get(name)).cloned().flatten();
-            let in_short = value.map_or(String::new(), |value| value.in_short());
-            self.all.entry(name.to_owned()).or_insert(in_short);
-        }
-        replacements
-    }
-
-    /// Forgets the variables of the file that was opened last.
-    pub(super) fn close(&mut self) {
-        self.open.pop();
-    }
-
-    /// The errors of values from outside; where all names of the scene are known, also for those that it does not have.
-    pub(super) fn errors(&self, knows_all: bool) -> Vec<Error> {
-        let mut errors: Vec<Error> =
-            self.given.values().flat_map(|given| given.document.errors(Vec::new())).collect();
-        let strangers = self.given.keys().filter(|name| knows_all && !self.all.contains_key(**name));
-        errors.extend(strangers.map(|name| {
-            let message = format!("--define {name}: the scene has no variable `{name}`");
-            let known = || self.all.keys().map(String::as_str);
-            Error::new(ErrorKind::Request, &Location::default(), message).hint(match nearest(name, known()) {
-                Some(meant) => format!("did you mean `{meant}`?"),
-                None if self.all.is_empty() => {
-                    format!("give it one: a table [variables] with a line `{name} = 1`")
-                }
-                None => format!("it has: {}", listed(known())),
-            })
-        }));
-        errors
-    }
-
-    /// All variables that any file has, with their values in short.
-    pub(super) fn into_all(self) -> Vec<(String, String)> {
-        self.all.into_iter().collect()
-    }
-}
-
-fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    let mut some: Vec<&str> = names.take(MOST_LISTED + 1).collect();
-    if some.len() > MOST_LISTED {
-        some[MOST_LISTED] = "…";
-    }
-    some.join(", ")
-}
+const BUILT_IN: [&str; 5] = ["t", "frame", "pi", "true", "false"];
 
 /// Where a variable is defined.
 #[derive(Clone, Copy)]
@@ -178,7 +45,7 @@ pub(super) struct Scope<'a> {
 }
 
 impl<'a> Scope<'a> {
-    fn new(
+    pub(super) fn new(
         variables: &'a Variables<'a>,
         document: &'a Document,
         table: &'a DeTable<'a>,
@@ -207,6 +74,24 @@ impl<'a> Scope<'a> {
             document.note(offset, Error::invalid(&document.location(offset), wrong));
         }
         Self { variables, document, own, done: RefCell::default(), pending: RefCell::default(), knows_all }
+    }
+
+    /// The values of the file's variables, and all that is written with variables, in its order.
+    pub(super) fn evaluate(
+        self,
+        root: &DeTable<'_>,
+    ) -> (BTreeMap<String, Option<Quantity>>, Vec<Option<Replacement>>) {
+        let names: Vec<&str> = self.own.keys().copied().collect();
+        for name in names {
+            // Errors are told where the variable is defined.
+            let _ = self.defined(name, 0);
+        }
+        let mut replacements = Vec::new();
+        for (_, item) in root.iter().filter(|(key, _)| key.get_ref() != VARIABLES) {
+            self.evaluate_in(item, &mut replacements);
+        }
+        let done = self.done.into_inner().into_iter();
+        (done.map(|(name, value)| (name.to_owned(), value)).collect(), replacements)
     }
 
     /// The value of a name in an expression, at a byte offset of it.

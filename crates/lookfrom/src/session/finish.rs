@@ -1,8 +1,11 @@
 //! From the film of a render to a finished picture: fireflies, denoising, AOVs, header, in this order.
 
+use std::time::Duration;
+
 use lookfrom_scene::settings::{Background, ImageSettings, Tonemap};
 
 use super::{Fireflies, Session, header, layers};
+use crate::core::clock::Stopwatch;
 use crate::film::{Film, Picture};
 use crate::post::denoise::denoised;
 use crate::render::Rendered;
@@ -53,6 +56,8 @@ pub struct Finished {
     pub rendered: Rendered,
     /// The picture.
     pub developed: Developed,
+    /// The time that its development took.
+    pub developing: Duration,
 }
 
 impl std::ops::Deref for Finished {
@@ -75,8 +80,9 @@ impl Finished {
 impl Session {
     /// Finishes the picture of a film that its renderer has rendered.
     pub fn finish(&self, rendered: Rendered) -> Finished {
+        let started = Stopwatch::start();
         let developed = self.develop(&rendered.film, &self.development(), self.has_room_for_layers());
-        Finished { rendered, developed }
+        Finished { rendered, developed, developing: started.elapsed() }
     }
 
     /// Develops a film of this session's picture, finished or not, `with_layers` for a format that can hold them.

@@ -43,7 +43,8 @@ pub(super) fn prepare(
     if of_gltf.camera == CameraChoice::None {
         of_gltf.camera = CameraChoice::First;
     }
-    if origin == SourceFormat::Scene && load::is_toml(file) {
+    let may_be_toml = load::is_toml(file) || file == Path::new(load::PIPE);
+    if origin == SourceFormat::Scene && may_be_toml {
         of_gltf.at = 0.0;
     }
     if of_gltf != ImportOptions::default() && origin != SourceFormat::Gltf {

@@ -35,6 +35,11 @@ pub(super) const CHOICES: &[(&[&str], &[&str], &str)] = &[
     (&["rect", "quad", "square", "plane"], &["rectangle"], ""),
     (&["ball"], &["sphere"], ""),
     (&["circle"], &["disk"], ""),
+    // Interpolation of keyframes.
+    (&["spline", "cubicspline", "bezier", "catmullrom", "hermite", "bspline"], &["cubic"], ""),
+    (&["ease", "easein", "easeout", "easeinout", "smoothstep", "sine"], &["smooth"], ""),
+    (&["constant", "hold", "stepped", "none", "nearest", "discrete"], &["step"], ""),
+    (&["lerp", "line"], &["linear"], ""),
     // Materials.
     (
         &["emissive", "emission", "emitter", "light", "area", "arealight", "diffuselight"],

@@ -26,6 +26,24 @@ pub(super) const KEYS: &[(&[&str], &[&[&str]])] = &[
     (&["matrix", "transformation", "xform", "toworld", "tf"], &[&["transform"]]),
     (&["dir", "direction", "normal", "facing", "axis", "orientation"], &[&["direction"], &["normal"]]),
     (&["upvector", "vup", "worldup", "viewup"], &[&["up"]]),
+    // Variables and animation.
+    (
+        &[
+            "variable",
+            "parameters",
+            "params",
+            "constants",
+            "define",
+            "defines",
+            "definitions",
+            "let",
+            "globals",
+        ],
+        &[&["variables"]],
+    ),
+    (&["keyframe", "frames", "keys", "times", "animate", "animation"], &[&["keyframes"]]),
+    (&["ease", "easing", "interpolate", "interp", "spline"], &[&["interpolation"]]),
+    (&["loop", "cycle", "cyclic", "periodic", "wrap", "extrapolation"], &[&["repeat"]]),
     // Cameras.
     (
         &["angle", "cone", "spotangle", "cutoff", "cutoffangle", "outerangle", "beamangle"],
