@@ -67,7 +67,7 @@ pub(crate) fn read(
 ) -> Result<Vec<(PathBuf, FileDigest)>, Failure> {
     let files = Digested::new(&Disk);
     let mut context = LoadContext { variables: variables.variables(), ..LoadContext::new(&files) };
-    context.import.at = variables.at.unwrap_or(0.0);
+    context.import.at = variables.at;
     load::scene(scene, &mut context)?;
     Ok(files.digests(Path::new("")))
 }

@@ -165,11 +165,11 @@ pub struct LoadContext<'a> {
 /// Import options: the animation, material variant, scene and camera of a file that has several, and subdivision.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
-    /// The animation, by name or number from 0, that poses the model; `None` is the pose at rest, or, if `at` is not 0, the
-    /// first animation.
+    /// The animation, by name or number from 0, that poses the model; `None` is the first animation if `at` is given, and
+    /// else the pose at rest.
     pub animation: Option<String>,
-    /// The time in seconds from the beginning of all animations: of models, and of a scene in our own format.
-    pub at: f64,
+    /// The time in seconds from the beginning of all animations, of models and of a scene in our own format; `None` is 0.
+    pub at: Option<f64>,
     /// The material variant, by name or number from 0.
     pub variant: Option<String>,
     /// The scene, by name or number from 0.

@@ -128,8 +128,8 @@ struct Reader<'s, 'f> {
     /// The main file.
     scene_file: Location,
     variables: Variables<'s>,
-    /// The time of all animations in seconds.
-    time: f64,
+    /// The time of all animations in seconds, if one is asked for.
+    time: Option<f64>,
     materials: BTreeMap<String, MaterialId>,
     textures: BTreeMap<String, TextureId>,
     objects: BTreeMap<String, ObjectId>,

@@ -146,7 +146,7 @@ fn pointers_of_animations_are_told_of_once() {
         "animations": [{{"samplers": [{{"input": 0, "output": 0}}], "channels": [{channel}, {channel}, {channel}]}}]"#
     ));
     let memory = Memory([(PathBuf::from("a.gltf"), file.into_bytes())].into());
-    let choice = ImportOptions { animation: Some("0".to_owned()), at: 0.5, ..ImportOptions::default() };
+    let choice = ImportOptions { animation: Some("0".to_owned()), at: Some(0.5), ..ImportOptions::default() };
     let (_, warnings) = read_by("a.gltf", &memory, choice).expect("it is valid");
     assert_eq!(
         warnings,

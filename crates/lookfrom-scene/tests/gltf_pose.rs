@@ -34,7 +34,12 @@ impl Numbers {
         self.push(elements.as_flattened(), 5121, elements.len(), "VEC4")
     }
 
-    fn read(&self, mut root: Value, animation: Option<&str>, at: f64) -> Result<(Scene, Vec<String>)> {
+    fn read(
+        &self,
+        mut root: Value,
+        animation: Option<&str>,
+        at: impl Into<Option<f64>>,
+    ) -> Result<(Scene, Vec<String>)> {
         root["asset"] = json!({"version": "2.0"});
         root["buffers"] = json!([{"uri": "b", "byteLength": self.bytes.len()}]);
         root["bufferViews"] = json!(self.views);
@@ -43,14 +48,17 @@ impl Numbers {
             [(PathBuf::from("a.gltf"), root.to_string().into_bytes()), ("b".into(), self.bytes.clone())];
         let files = Memory(files.into());
         let mut context = LoadContext::new(&files);
-        context.import =
-            ImportOptions { animation: animation.map(str::to_owned), at, ..ImportOptions::default() };
+        context.import = ImportOptions {
+            animation: animation.map(str::to_owned),
+            at: at.into(),
+            ..ImportOptions::default()
+        };
         let scene = gltf::read(Path::new("a.gltf"), &mut context)?;
         Ok((scene, context.warnings.iter().map(ToString::to_string).collect()))
     }
 
     /// Where the vertices of the first mesh are in the world, of what must read without a warning.
-    fn places(&self, root: &Value, animation: Option<&str>, at: f64) -> Vec<DVec3> {
+    fn places(&self, root: &Value, animation: Option<&str>, at: impl Into<Option<f64>>) -> Vec<DVec3> {
         let (scene, warnings) = self.read(root.clone(), animation, at).expect("it is valid");
         assert_eq!(warnings, Vec::<String>::new());
         let world_from_object = scene.shapes[0].world_from_object;
@@ -109,7 +117,7 @@ fn arm() -> (Numbers, Value) {
 #[test]
 fn joints_take_the_mesh_along_and_its_own_node_does_not() {
     let (numbers, root) = arm();
-    let at_rest = numbers.places(&root, None, 0.0);
+    let at_rest = numbers.places(&root, None, None);
     near(at_rest[0], [0.0, 5.0, 0.0]);
     near(at_rest[1], [2.0, 5.0, 0.0]);
     // Before the first key, between both, and after the last.
@@ -125,6 +133,11 @@ fn joints_take_the_mesh_along_and_its_own_node_does_not() {
     near(numbers.places(&root, Some("slide"), 2.0)[1], [2.0, 0.0, 4.0]);
     // A time without a name is that of the first animation.
     near(numbers.places(&root, None, 2.0)[1], [1.0, 6.0, 0.0]);
+    // So is its beginning, which need not be the pose at rest.
+    let mut sliding = root.clone();
+    sliding["animations"] = json!([root["animations"][1]]);
+    near(numbers.places(&sliding, None, None)[1], [2.0, 5.0, 0.0]);
+    near(numbers.places(&sliding, None, 0.0)[1], [2.0, 0.0, 0.0]);
 }
 
 #[test]
@@ -227,10 +240,10 @@ fn morph_targets_are_added_by_their_weights() {
         }]
     });
     // The mesh's own weights, then those of the node, then those of the animation.
-    let places = numbers.places(&root, None, 0.0);
+    let places = numbers.places(&root, None, None);
     near(places[0], [1.0, 0.0, 1.0]);
     near(places[1], [2.0, 0.0, 2.0]);
-    let (scene, _) = numbers.read(root.clone(), None, 0.0).unwrap();
+    let (scene, _) = numbers.read(root.clone(), None, None).unwrap();
     let mesh = &scene.meshes[0];
     assert!((mesh.normals[0] - Vec3::new(HALF, 0.0, HALF)).length() < 1e-6);
     assert!((mesh.uvs[0] - glam::Vec2::new(0.75, 0.5)).length() < 1e-6, "v runs up: {}", mesh.uvs[0]);
@@ -238,7 +251,7 @@ fn morph_targets_are_added_by_their_weights() {
 
     let mut own = root.clone();
     own["nodes"] = json!([{"mesh": 0, "weights": [1.0]}, {"mesh": 0, "weights": [0.0, 3.0]}, {"mesh": 0}]);
-    let (scene, _) = numbers.read(own, None, 0.0).unwrap();
+    let (scene, _) = numbers.read(own, None, None).unwrap();
     let firsts: Vec<Vec3> = scene.meshes.iter().map(|mesh| mesh.positions[0]).collect();
     assert_eq!(firsts, [Vec3::new(0.0, 0.0, 2.0), Vec3::new(3.0, 0.0, 0.0), Vec3::new(1.0, 0.0, 1.0)]);
 
@@ -264,20 +277,20 @@ fn relief_and_grain_bring_tangents() {
             }]}]
         })
     };
-    let plain = numbers.read(root(json!({})), None, 0.0).unwrap().0;
+    let plain = numbers.read(root(json!({})), None, None).unwrap().0;
     assert!(plain.meshes[0].tangents.is_empty());
     let brushed = json!({"extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": 1.0}}});
-    let brushed = numbers.read(root(brushed), None, 0.0).unwrap().0;
+    let brushed = numbers.read(root(brushed), None, None).unwrap().0;
     // The picture's up is y.
     assert_eq!(brushed.meshes[0].tangents, [Vec4::new(1.0, 0.0, 0.0, 1.0); 3]);
 }
 
 /// The vertices of a file of the corpus, in the world; `None` where the corpus is not there.
-fn corpus(name: &str, animation: Option<&str>, at: f64) -> Option<Vec<DVec3>> {
+fn corpus(name: &str, animation: Option<&str>, at: impl Into<Option<f64>>) -> Option<Vec<DVec3>> {
     let path = lookfrom_test_data::shared(&format!("corpus/{name}"))?;
     let mut context = LoadContext::new(&Disk);
     context.import =
-        ImportOptions { animation: animation.map(str::to_owned), at, ..ImportOptions::default() };
+        ImportOptions { animation: animation.map(str::to_owned), at: at.into(), ..ImportOptions::default() };
     let scene = gltf::read(&path, &mut context).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(context.warnings, []);
     let world_from_object = scene.shapes[0].world_from_object;
@@ -286,7 +299,7 @@ fn corpus(name: &str, animation: Option<&str>, at: f64) -> Option<Vec<DVec3>> {
 
 #[test]
 fn the_simple_skin_of_the_corpus_bends_around_its_joint() {
-    let Some(rest) = corpus("gltf/SimpleSkin/SimpleSkin.gltf", None, 0.0) else { return };
+    let Some(rest) = corpus("gltf/SimpleSkin/SimpleSkin.gltf", None, None) else { return };
     for time in [0.5, 1.0, 1.7, 2.5, 4.0, 5.5] {
         let Some(bent) = corpus("gltf/SimpleSkin/SimpleSkin.gltf", Some("0"), time) else { return };
         // The lowest row stays, the uppermost keeps its distance from the joint at (0, 1).
@@ -302,7 +315,7 @@ fn the_simple_skin_of_the_corpus_bends_around_its_joint() {
 
 #[test]
 fn the_fox_of_the_corpus_walks() {
-    let Some(rest) = corpus("gltf/Fox/Fox.glb", None, 0.0) else { return };
+    let Some(rest) = corpus("gltf/Fox/Fox.glb", None, None) else { return };
     let size = |places: &[DVec3]| {
         let [low, high] = [DVec3::min, DVec3::max].map(|f| places.iter().copied().reduce(f).unwrap());
         high - low
@@ -326,7 +339,7 @@ fn the_fox_of_the_corpus_walks() {
 #[test]
 fn the_simple_morph_of_the_corpus_is_raised() {
     let name = "assimp/glTF2/SimpleMorph/glTF/SimpleMorph.gltf";
-    let Some(rest) = corpus(name, None, 0.0) else { return };
+    let Some(rest) = corpus(name, None, None) else { return };
     // Weights ½ and ½ of (−1, 1) and (1, 1) raise the tip from ½ to 1½; the animation begins with neither.
     near(rest[2], [0.5, 1.5, 0.0]);
     near(corpus(name, Some("0"), 0.0).unwrap()[2], [0.5, 0.5, 0.0]);

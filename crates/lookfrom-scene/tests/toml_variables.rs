@@ -16,7 +16,7 @@ fn read_files(texts: &[(&str, &str)], at: f64, given: &[(&str, &str)]) -> Result
     }
     files.0.insert("tile-0007.png".into(), image::encode_png(1, 1, &[255, 0, 0]).expect("a picture"));
     let mut context = LoadContext::new(&files);
-    context.import.at = at;
+    context.import.at = Some(at);
     let values = given.iter().map(|&(name, value)| (name.to_owned(), value.to_owned())).collect();
     context.variables = Variables { values, fps: 24.0 };
     let scene = load::scene(Path::new("a.toml"), &mut context)?;

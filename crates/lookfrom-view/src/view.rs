@@ -126,7 +126,7 @@ impl Variation {
             options.rotate_environment = Some(finite(degrees, "rotateEnvironment")?);
         }
         if let Some(at) = self.at {
-            options.import.at = finite(at, "at")?;
+            options.import.at = Some(finite(at, "at")?);
         }
         if let Some(number) = self.animation {
             options.import.animation = Some(number.to_string());

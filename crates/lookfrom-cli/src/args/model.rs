@@ -87,7 +87,7 @@ impl ModelArguments {
     pub(crate) fn choice(&self, at: Option<f64>) -> ImportOptions {
         ImportOptions {
             animation: self.animation.clone(),
-            at: at.unwrap_or(0.0),
+            at,
             variant: self.variant.clone(),
             scene: self.scene_of_file.clone(),
             camera: match self.camera.as_deref() {

@@ -75,7 +75,7 @@ fn chosen(document: &Document, context: &mut LoadContext<'_>) -> Result<Option<u
             let names = animations.iter().map(|animation| animation.name.as_deref());
             choose(document, "animation", "/animations", name, names).map(Some)
         }
-        None if context.import.at == 0.0 => Ok(None),
+        None if context.import.at.is_none() => Ok(None),
         None if animations.is_empty() => {
             context.warn(&document.at(""), AT_REST);
             Ok(None)
@@ -87,7 +87,7 @@ fn chosen(document: &Document, context: &mut LoadContext<'_>) -> Result<Option<u
 fn animate(document: &Document, index: usize, pose: &mut Pose, context: &mut LoadContext<'_>) -> Result<()> {
     let root = &document.root;
     let animation = &root.animations[index];
-    let time = context.import.at;
+    let time = context.import.at.unwrap_or(0.0);
     let mut placements: Vec<Option<Placement>> = vec![None; root.nodes.len()];
     for (place, channel) in animation.channels.iter().enumerate() {
         let pointer = format!("/animations/{index}/channels/{place}");

@@ -70,7 +70,7 @@ impl Reader<'_, '_> {
         let asked = &self.context.import;
         let mut choice = ImportOptions {
             animation: name("animation", &asked.animation),
-            at: table.or("at", asked.at, Value::number),
+            at: table.or("at", asked.at, |value| value.number().map(Some)),
             variant: name("variant", &asked.variant),
             scene: name("scene", &asked.scene),
             camera: CameraChoice::First,

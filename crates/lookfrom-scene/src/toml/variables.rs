@@ -61,7 +61,7 @@ impl<'g> Variables<'g> {
             given: given.iter().map(|(name, document)| (name.as_str(), Given::new(document))).collect(),
             open: Vec::new(),
             all: BTreeMap::new(),
-            now: context.import.at,
+            now: context.import.at.unwrap_or(0.0),
             fps: context.variables.fps,
             allowance: Allowance::default(),
         }

@@ -7,7 +7,7 @@ use std::path::Path;
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::digest::{Digest, Digested};
 use lookfrom_scene::settings::RenderSettings;
-use lookfrom_scene::{Scene, Variables};
+use lookfrom_scene::{ImportOptions, Scene, Variables};
 
 use super::{Options, Provenance, Session, header};
 
@@ -20,6 +20,16 @@ pub(super) struct Identity {
     options: String,
     /// Whether the number of samples is that of the picture, and not only the most that a time limit allows.
     has_goal: bool,
+}
+
+/// Import options in the words that films have always known them by: without a time it was 0, at which nothing moved.
+fn as_ever(import: &ImportOptions) -> String {
+    let ImportOptions { animation, at, variant, scene, camera } = import;
+    let begun = if *at == Some(0.0) { " begun" } else { "" };
+    let at = at.unwrap_or(0.0);
+    format!(
+        "ImportOptions {{ animation: {animation:?}, at: {at:?}, variant: {variant:?}, scene: {scene:?}, camera: {camera:?} }}{begun}"
+    )
 }
 
 impl Identity {
@@ -64,6 +74,7 @@ impl Identity {
             true => format!(" {view:?} {azimuth:?} {elevation:?} {framed:?}"),
             false => String::new(),
         };
+        let import = as_ever(import);
         let variables = match *variables != Variables::default() {
             true => format!(" {variables:?}"),
             false => String::new(),
@@ -71,7 +82,7 @@ impl Identity {
         Self {
             inputs,
             options: format!(
-                "{up:?} {rotate_environment:?} {floor} {import:?} {environment:?}{view}{variables}"
+                "{up:?} {rotate_environment:?} {floor} {import} {environment:?}{view}{variables}"
             ),
             has_goal: options.stop.time.is_none() || options.samples.is_some(),
         }
@@ -89,5 +100,22 @@ impl Identity {
         let mut provenance = Provenance::new(common, self.inputs.clone(), digest.finish(), development);
         provenance.goal = self.has_goal.then(|| session.first_sample..session.settings().samples);
         provenance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn films_that_are_older_are_known_again() {
+        let none = ImportOptions::default();
+        let before = "ImportOptions { animation: None, at: 0.0, variant: None, scene: None, camera: First }";
+        assert_eq!(as_ever(&none), before);
+        let later = ImportOptions { at: Some(1.5), animation: Some("Run".to_owned()), ..none.clone() };
+        let before =
+            "ImportOptions { animation: Some(\"Run\"), at: 1.5, variant: None, scene: None, camera: First }";
+        assert_eq!(as_ever(&later), before);
+        assert_ne!(as_ever(&ImportOptions { at: Some(0.0), ..none.clone() }), as_ever(&none));
     }
 }

@@ -45,7 +45,7 @@ pub(super) fn prepare(
     }
     let may_be_toml = load::is_toml(file) || file == Path::new(load::PIPE);
     if origin == SourceFormat::Scene && may_be_toml {
-        of_gltf.at = 0.0;
+        of_gltf.at = None;
     }
     if of_gltf != ImportOptions::default() && origin != SourceFormat::Gltf {
         warn("--animation, --at, --variant, --scene and --camera are for glTF files; this file is not one");

@@ -70,7 +70,7 @@ impl Series {
             Self::Turntable(_) => options.turn = self.turn(index, of_all),
             Self::Views(views) => options.view = views.get(index).map(|&(_, view)| view),
             Self::Frames { fps, .. } => {
-                options.import.at = f64::from(self.number(index)[0]) / fps;
+                options.import.at = Some(f64::from(self.number(index)[0]) / fps);
                 options.variables.fps = *fps;
             }
         }
@@ -137,7 +137,7 @@ mod tests {
         let start = Options { turn: Some(10.0), ..Options::default() };
         assert_eq!(Series::Turntable(4).options(3, &start).turn, Some(280.0));
         let frames = Series::Frames { frames: 12..20, fps: 24.0 };
-        assert_eq!(frames.options(6, &start).import.at, 0.75);
+        assert_eq!(frames.options(6, &start).import.at, Some(0.75));
         let views = Series::Views(Viewpoint::WORDS.to_vec());
         assert_eq!(views.options(1, &start).view.map(|view| view.azimuth), Some(90.0));
     }
