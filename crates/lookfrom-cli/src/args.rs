@@ -6,6 +6,7 @@ mod encoding;
 mod farm;
 mod film;
 mod inspect;
+mod memory;
 mod model;
 mod series;
 mod variables;
@@ -32,6 +33,7 @@ pub(crate) use encoding::EncodingArguments;
 pub(crate) use farm::FarmArguments;
 pub(crate) use film::{DevelopArguments, FilesArguments, KeepArguments, MergeArguments, ResumeArguments};
 pub(crate) use inspect::{InspectArguments, Samples};
+pub(crate) use memory::MemoryArguments;
 pub(crate) use model::ModelArguments;
 pub(crate) use series::{SeriesArguments, Views};
 pub(crate) use variables::VariableArguments;
@@ -309,6 +311,9 @@ pub(crate) struct CompareArguments {
     /// Print one JSON object per line for each pair
     #[arg(long)]
     pub(crate) json: bool,
+
+    #[command(flatten)]
+    pub(crate) memory: MemoryArguments,
 }
 
 #[derive(Args, Debug)]
@@ -349,6 +354,9 @@ pub(crate) struct Common {
     /// Treat warnings as errors, except harmless ones (notes)
     #[arg(long)]
     pub(crate) strict: bool,
+
+    #[command(flatten)]
+    pub(crate) memory: MemoryArguments,
 }
 
 /// Settings of the scene that the command line overrides.

@@ -6,8 +6,8 @@ use std::time::Instant;
 use lookfrom::film::Film;
 use lookfrom::render::{Rendered, StopCriteria};
 use lookfrom::session::{MOST_SAMPLES, Options};
-use lookfrom_scene::Inputs;
 use lookfrom_scene::image::compare::{Sampled, compare};
+use lookfrom_scene::{Disk, Inputs, LoadContext};
 use serde::Serialize;
 
 use crate::args::BenchArguments;
@@ -67,7 +67,7 @@ const HEADING: &str =
 fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure> {
     // No file is written, so no input can be overwritten.
     let inputs = Inputs::default();
-    let environment = prepare::environment(&arguments.overrides, &inputs)?;
+    let environment = prepare::environment(&arguments.overrides, &arguments.common, &inputs)?;
     let most = if arguments.time.is_some() { MOST_SAMPLES } else { SAMPLES };
     let options = Options {
         samples: Some(arguments.overrides.samples.as_ref().map_or(most, |samples| samples.end)),
@@ -80,6 +80,7 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
     exit::say_warnings(session.warnings());
 
     // The measured render.
+    let _memory = session.room_for_picture().map_err(exit::in_scene(path))?;
     let renderer = session.renderer();
     let started = Instant::now();
     let rendered = renderer.render_until(&options.stop, options.threads, &());
@@ -88,7 +89,10 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
 
     // The reference.
     let reference = match &arguments.reference {
-        Some(file) => read(file, None, &inputs)?,
+        Some(file) => {
+            let files = inputs.record(&Disk, "the comparison");
+            read(file, None, &mut LoadContext::within(&arguments.common.memory.budget(), &files))?
+        }
         None => {
             let mut other = session.settings().clone();
             (other.samples, other.seed) = (arguments.reference_samples, other.seed.wrapping_add(1));

@@ -9,7 +9,7 @@ use lookfrom_scene::image::{self, Channels};
 use lookfrom_scene::settings::Sensor;
 use lookfrom_scene::spectrum::CameraSensor;
 use lookfrom_scene::spectrum::space::XYZ_FROM_RGB;
-use lookfrom_scene::{Disk, Inputs, LoadContext};
+use lookfrom_scene::{Disk, Inputs, LoadContext, Location};
 use serde::Serialize;
 
 use crate::args::CompareArguments;
@@ -108,8 +108,11 @@ fn compare_pair(
     arguments: &CompareArguments,
     inputs: &Inputs,
 ) -> Result<(Verdict, Pictures), Failure> {
+    let files = inputs.record(&Disk, "the comparison");
+    let mut context = LoadContext::within(&arguments.memory.budget(), &files);
     let [of_picture, of_reference] = arguments.samples.map_or([None; 2], |samples| samples.map(Some));
-    let (mut a, mut b) = (read(picture, of_picture, inputs)?, read(reference, of_reference, inputs)?);
+    let (mut a, mut b) =
+        (read(picture, of_picture, &mut context)?, read(reference, of_reference, &mut context)?);
     if let Some(sensor) = &arguments.sensor {
         let said = *color::Sensor::new(sensor).variance_from_rgb();
         for side in [&mut a, &mut b] {
@@ -125,8 +128,8 @@ fn compare_pair(
     }
     let Comparison { means, relative, rmse, relative_mse, noise } =
         compare(&a, &b).map_err(exit::in_scene(picture))?;
-    let exposed = |of: &Sampled| exposed(of, arguments.exposure);
-    let map = flip(&exposed(&a), &exposed(&b), a.width, PIXELS_PER_DEGREE);
+    let scale = 2.0_f32.powf(arguments.exposure);
+    let map = flip([&a.pixels, &b.pixels], a.width, scale, PIXELS_PER_DEGREE);
     let mut verdict = Verdict {
         picture: picture.display().to_string(),
         reference: reference.display().to_string(),
@@ -163,21 +166,27 @@ fn passes(verdict: &Verdict, arguments: &CompareArguments) -> bool {
     means && pixels && verdict.not_finite == 0
 }
 
-/// Reads a picture of any format and records it in `inputs`; only an EXR can have variances.
-pub(crate) fn read(path: &Path, samples: Option<u64>, inputs: &Inputs) -> Result<Sampled, Failure> {
-    let files = inputs.record(&Disk, "the comparison");
-    let mut context = LoadContext::new(&files);
+/// Bytes of a pixel while its colours become those of [`Sampled`].
+const PIXEL: u64 = 24;
+
+/// Reads a picture of any format; only an EXR can have variances.
+pub(crate) fn read(
+    path: &Path,
+    samples: Option<u64>,
+    context: &mut LoadContext<'_>,
+) -> Result<Sampled, Failure> {
     let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
     let file = if is_exr {
-        image::read_exr(path, &mut context)?
+        image::read_exr(path, context)?
     } else {
-        let picture = image::read(path, &mut context)?;
+        let picture = image::read(path, context)?;
+        context.keep(picture.len() as u64 * PIXEL, "the compared picture", &Location::file(path))?;
         let channel = |index: usize| picture.texels().map(|texel| texel[index]).collect();
         let channels = ["R", "G", "B"].map(str::to_owned).into_iter().zip([0, 1, 2].map(channel)).collect();
         let (width, height) = (picture.width, picture.height);
         Channels { width, height, channels, attributes: Vec::new() }
     };
-    exit::say_warnings(&context.warnings);
+    exit::say_warnings(&std::mem::take(&mut context.warnings));
     Sampled::new(&file, samples).map_err(exit::in_scene(path))
 }
 

@@ -6,12 +6,15 @@ use lookfrom::film::Picture;
 use lookfrom::session::{Developed, Development, FilmFile, Fireflies};
 use lookfrom_scene::image::{self, Channels};
 use lookfrom_scene::settings::{Background, Tonemap};
-use lookfrom_scene::{Disk, Inputs, LoadContext};
+use lookfrom_scene::{Disk, Inputs, LoadContext, Location};
 
 use crate::args::DevelopArguments;
 use crate::exit::{DONE, Failure};
 use crate::naming;
 use crate::output::Target;
+
+/// Bytes of a pixel as it is developed: linear light, and what is encoded.
+const DEVELOPED: u64 = 16;
 
 /// Develops every picture and returns the exit code. One that fails does not stop the others; its code is kept.
 pub(crate) fn run(arguments: &DevelopArguments) -> u8 {
@@ -36,18 +39,19 @@ pub(crate) fn run(arguments: &DevelopArguments) -> u8 {
 fn develop(path: &Path, target: &Target, arguments: &DevelopArguments) -> Result<(), Failure> {
     let inputs = Inputs::default();
     let files = inputs.record(&Disk, path.display().to_string());
-    let mut context = LoadContext::new(&files);
+    let mut context = LoadContext::within(&arguments.memory.budget(), &files);
     let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
     let developed = if is_exr {
         let bytes = context.read(path)?;
         match FilmFile::is_film(&bytes) {
-            true => of_film(&FilmFile::read(&bytes, path)?, path, arguments)?,
+            true => of_film(&FilmFile::read(&bytes, path, &context.budget)?, path, arguments)?,
             false => {
                 of_picture(picture_of_exr(image::read_exr(path, &mut context)?, path)?, path, arguments)?
             }
         }
     } else {
         let image = image::read(path, &mut context)?;
+        context.keep(image.len() as u64 * DEVELOPED, "the developed picture", &Location::file(path))?;
         let alpha =
             if image.has_alpha() { (0..image.len()).map(|k| image.alpha(k)).collect() } else { Vec::new() };
         let picture =

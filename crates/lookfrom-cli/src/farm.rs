@@ -105,7 +105,9 @@ fn write(arguments: &FarmArguments, matches: &ArgMatches) -> Result<(), Failure>
 
 fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> {
     let scene = &arguments.scene;
-    let inputs = files::read(scene, &arguments.overrides.variables)?.into_iter().map(|(path, _)| path);
+    let budget = lookfrom_scene::Budget::default();
+    let inputs =
+        files::read(scene, &arguments.overrides.variables, &budget)?.into_iter().map(|(path, _)| path);
     let environment = arguments.overrides.model.environment.iter().cloned();
     let inputs = inputs.chain(environment).map(|path| film::absolute(&path)).collect();
     let mut options = film::arguments(matches);

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use lookfrom_scene::digest::{Digested, FileDigest};
-use lookfrom_scene::{Disk, LoadContext, load};
+use lookfrom_scene::{Budget, Disk, LoadContext, load};
 use serde::Serialize;
 
 use crate::args::{FilesArguments, VariableArguments};
@@ -35,7 +35,7 @@ impl From<(PathBuf, FileDigest)> for InputFile {
 fn list(arguments: &FilesArguments) -> Result<(), Failure> {
     let mut files: BTreeMap<PathBuf, FileDigest> = BTreeMap::new();
     for scene in &arguments.scenes {
-        files.extend(read(scene, &arguments.variables)?);
+        files.extend(read(scene, &arguments.variables, &arguments.memory.budget())?);
     }
     for (path, digest) in files {
         if arguments.null {
@@ -64,9 +64,10 @@ pub(crate) fn in_words(paths: &[PathBuf]) -> String {
 pub(crate) fn read(
     scene: &Path,
     variables: &VariableArguments,
+    budget: &Budget,
 ) -> Result<Vec<(PathBuf, FileDigest)>, Failure> {
     let files = Digested::new(&Disk);
-    let mut context = LoadContext { variables: variables.variables(), ..LoadContext::new(&files) };
+    let mut context = LoadContext { variables: variables.variables(), ..LoadContext::within(budget, &files) };
     context.import.at = variables.at;
     load::scene(scene, &mut context)?;
     Ok(files.digests(Path::new("")))

@@ -11,7 +11,7 @@ use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Args, Command};
 use lookfrom::film::Film;
 use lookfrom::session::{Developed, FilmFile, Finished, Provenance};
-use lookfrom_scene::{Disk, ErrorKind, Inputs, LoadContext, Result as SceneResult};
+use lookfrom_scene::{Budget, Disk, ErrorKind, Inputs, LoadContext, Result as SceneResult};
 
 use crate::args::Overrides;
 use crate::exit::{Failure, say};
@@ -184,21 +184,21 @@ fn write_by(
 ///
 /// # Errors
 /// `Scene` where it cannot be read, is damaged, or is no film.
-pub(crate) fn read(path: &Path) -> Result<FilmFile, Failure> {
-    let bytes = LoadContext::new(&Disk).read(path)?;
-    Ok(FilmFile::read(&bytes, path)?)
+pub(crate) fn read(path: &Path, budget: &Budget) -> Result<FilmFile, Failure> {
+    let bytes = LoadContext::within(budget, &Disk).read(path)?;
+    Ok(FilmFile::read(&bytes, path, budget)?)
 }
 
 /// The film that a target has already, to go on with. One that is damaged is none, with a warning.
 ///
 /// # Errors
 /// `Scene` where there is a file that is no film.
-pub(crate) fn existing(target: &Target) -> Result<Option<FilmFile>, Failure> {
+pub(crate) fn existing(target: &Target, budget: &Budget) -> Result<Option<FilmFile>, Failure> {
     let Target::File(path, _) = target else { return Ok(None) };
     if !target.exists() {
         return Ok(None);
     }
-    match read(path) {
+    match read(path, budget) {
         Ok(film) => Ok(Some(film)),
         Err(Failure::Scene(error)) if error.kind == ErrorKind::Syntax => {
             say(&format!("warning: {error}\n  it is rendered again"));

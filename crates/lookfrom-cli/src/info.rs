@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &InfoArguments) -> u8 {
 
 fn info(path: &Path, arguments: &InfoArguments) -> Result<(), Failure> {
     if Format::of_path(path) == Some(Format::Exr) {
-        return picture::info(path, arguments.json);
+        return picture::info(path, arguments.json, &arguments.common.memory.budget());
     }
     let overrides = Overrides { variables: arguments.variables.clone(), ..Overrides::default() };
     let options = overrides.options(&arguments.common, None);

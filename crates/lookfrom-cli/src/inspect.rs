@@ -70,7 +70,7 @@ fn follow(arguments: &InspectArguments, typed: &[String]) -> Result<(), Failure>
     // Only JSON lists them, and digests take time.
     let digested = Digested::new(&Disk);
     let files: &dyn Files = if arguments.json { &digested } else { &Disk };
-    let environment = prepare::environment_from(&inputs.record(files, "--environment"), overrides)?;
+    let environment = prepare::environment_from(&inputs.record(files, "--environment"), overrides, common)?;
     let options = overrides.options(common, environment.as_ref());
     let of_scene = inputs.record(files, scene.display().to_string());
     let session = prepare::prepare_from(&of_scene, scene, common, &options)?;

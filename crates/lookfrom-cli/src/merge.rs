@@ -27,10 +27,11 @@ fn merge(arguments: &MergeArguments) -> Result<u8, Failure> {
             return Err(Failure::Usage(format!("{} is no .exr, which a film needs", output.display())));
         }
     };
+    let budget = &arguments.memory.budget();
     let mut whole: Option<FilmFile> = None;
     let mut bad = Vec::new();
     for path in &arguments.films {
-        let added = film::read(path).and_then(|mut part| {
+        let added = film::read(path, budget).and_then(|mut part| {
             let to = target.as_ref().map_or(Path::new("."), Target::folder);
             film::rebase(&mut part.provenance, folder_or_here(path.parent()), to);
             match &mut whole {

@@ -46,6 +46,7 @@ impl Overrides {
             import: self.model.choice(self.variables.at),
             variables: self.variables.variables(),
             threads: common.threads.map(usize::from),
+            budget: common.memory.budget(),
             ..Options::default()
         }
     }

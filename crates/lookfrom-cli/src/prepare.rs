@@ -45,17 +45,25 @@ pub(crate) fn prepare_from(
 ///
 /// # Errors
 /// `Scene` where it cannot be read.
-pub(crate) fn environment(overrides: &Overrides, inputs: &Inputs) -> Result<Option<Image>, Failure> {
-    environment_from(&inputs.record(&Disk, "--environment"), overrides)
+pub(crate) fn environment(
+    overrides: &Overrides,
+    common: &Common,
+    inputs: &Inputs,
+) -> Result<Option<Image>, Failure> {
+    environment_from(&inputs.record(&Disk, "--environment"), overrides, common)
 }
 
 /// The same, read through `files`.
 ///
 /// # Errors
 /// As [`environment`].
-pub(crate) fn environment_from(files: &dyn Files, overrides: &Overrides) -> Result<Option<Image>, Failure> {
+pub(crate) fn environment_from(
+    files: &dyn Files,
+    overrides: &Overrides,
+    common: &Common,
+) -> Result<Option<Image>, Failure> {
     let Some(path) = &overrides.model.environment else { return Ok(None) };
-    Ok(Some(image::read(path, &mut LoadContext::new(files))?))
+    Ok(Some(image::read(path, &mut LoadContext::within(&common.memory.budget(), files))?))
 }
 
 /// Reads scenes only to record their input files in `inputs`. Errors are ignored here; they are reported when the scenes are

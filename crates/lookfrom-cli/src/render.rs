@@ -155,7 +155,7 @@ impl<'a> Call<'a> {
     /// Renders all scenes and returns the exit code. Every file that is read joins `inputs`.
     fn render(&self, inputs: &Inputs) -> u8 {
         let Self { arguments, scenes, targets, .. } = self;
-        let environment = match prepare::environment(&arguments.overrides, inputs) {
+        let environment = match prepare::environment(&arguments.overrides, &arguments.common, inputs) {
             Ok(environment) => environment,
             Err(failure) => return failure.report(),
         };
@@ -313,7 +313,7 @@ impl<'a> Call<'a> {
             let typed = self.typed(number, options);
             let job = Job { arguments, typed: &typed, inputs, place };
             let code = interrupt::keeping(|| -> Result<u8, Failure> {
-                let film = if arguments.keep.go_on { film::existing(target)? } else { None };
+                let film = if arguments.keep.go_on { film::existing(target, &options.budget)? } else { None };
                 let summary = picture::render(path, target, session, film, &job, outlet)?;
                 picture::told(&summary, arguments)
             })?;

@@ -30,13 +30,13 @@ fn resume(arguments: &ResumeArguments) -> Result<u8, Failure> {
     }
     let target = Target::File(output.clone(), Format::Exr);
     target.check()?;
-    let mut film = film::read(&arguments.film)?;
+    let mut film = film::read(&arguments.film, &arguments.common.memory.budget())?;
     film::rebase(&mut film.provenance, folder_or_here(arguments.film.parent()), Path::new(""));
     let typed = film.provenance.arguments.clone();
     let of_render = render_arguments(arguments, &film)?;
     let scene = &of_render.scenes[0];
     let inputs = Inputs::default();
-    let environment = prepare::environment(&of_render.overrides, &inputs)?;
+    let environment = prepare::environment(&of_render.overrides, &arguments.common, &inputs)?;
     let options = render::options(&of_render, &target, environment.as_ref());
     interrupt::listen();
     let session = prepare(scene, &of_render.common, &options, &inputs)?;

@@ -41,6 +41,26 @@ pub(crate) fn duration(typed: &str) -> Result<Duration, String> {
     }
 }
 
+/// `2GiB`, `500MB`, `1.5 GB`: bytes in units of 1024 or of 1000.
+pub(crate) fn memory(typed: &str) -> Result<u64, String> {
+    const UNITS: [(&str, u64); 7] = [
+        ("kib", 1 << 10),
+        ("mib", 1 << 20),
+        ("gib", 1 << 30),
+        ("tib", 1 << 40),
+        ("kb", 1_000),
+        ("mb", 1_000_000),
+        ("gb", 1_000_000_000),
+    ];
+    let lower = typed.to_ascii_lowercase();
+    let unit = UNITS.iter().find_map(|(unit, bytes)| Some((lower.strip_suffix(unit)?, *bytes)));
+    let size = unit.and_then(|(number, bytes)| Some(number.trim().parse::<f64>().ok()? * bytes as f64));
+    match size {
+        Some(size) if (1.0..1e18).contains(&size) => Ok(size as u64),
+        _ => Err("expected a size with its unit, KiB, MiB, GiB, TiB, KB, MB or GB: 2GiB, 500MB".to_owned()),
+    }
+}
+
 /// Parser of the words of a table, which the help and completions list.
 pub(crate) fn word<T: Copy + Send + Sync>(
     words: &'static [(&'static str, T)],

@@ -16,6 +16,7 @@ mod command {
     mod json;
     mod layers;
     mod library;
+    mod memory;
     mod models;
     mod naming;
     mod pinned;

@@ -79,6 +79,10 @@ impl Files for Digested<'_> {
         Ok(bytes)
     }
 
+    fn length(&self, path: &Path) -> Option<u64> {
+        self.files.length(path)
+    }
+
     fn identities(&self, path: &Path) -> Vec<FileId> {
         self.files.identities(path)
     }

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use unicode_width::UnicodeWidthChar;
 
+use crate::budget::{Budget, Reserved};
 use crate::error::Location;
 use crate::files::{Files, Limits};
 use crate::packed;
@@ -41,7 +42,7 @@ impl fmt::Display for Excerpt {
 /// Extracts excerpts from files; the last file is cached.
 pub struct Excerpts<'a> {
     files: &'a dyn Files,
-    last: Option<(Arc<str>, Vec<u8>)>,
+    last: Option<(Arc<str>, Reserved<Vec<u8>>)>,
 }
 
 impl<'a> Excerpts<'a> {
@@ -56,9 +57,8 @@ impl<'a> Excerpts<'a> {
         if self.last.as_ref().is_none_or(|(file, _)| *file != at.file) {
             let path = Path::new(&*at.file);
             let bytes = self.files.read(path, LONGEST_FILE).ok()?;
-            let bytes =
-                packed::unpacked(bytes, path, &Limits { file_bytes: LONGEST_FILE, ..Limits::default() })
-                    .ok()?;
+            let limits = Limits { file_bytes: LONGEST_FILE, ..Limits::default() };
+            let bytes = packed::unpacked(bytes.into(), path, &limits, &Budget::default()).ok()?;
             self.last = Some((at.file.clone(), bytes));
         }
         let (_, bytes) = self.last.as_ref()?;

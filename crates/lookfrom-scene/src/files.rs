@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::io::{ErrorKind as IoKind, Read};
 use std::path::{Component, Path, PathBuf};
 
+use crate::budget::{Budget, Reservation, Reserved};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::variables::Variables;
 use crate::warning::Warning;
@@ -35,6 +36,11 @@ pub trait Files: Sync {
     /// # Errors
     /// `Io` if it cannot be read, `Limit` if it is longer than `limit`.
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>>;
+
+    /// The number of bytes of a file, if that is known before it is read. By default it is not.
+    fn length(&self, _path: &Path) -> Option<u64> {
+        None
+    }
 
     /// The identities of the file at a path, whether it exists or not: two paths with a common identity refer to the
     /// same file. By default, a file is identified by its path.
@@ -95,6 +101,10 @@ impl Files for Disk {
         if bytes.len() as u64 > limit { Err(too_long(&at, limit)) } else { Ok(bytes) }
     }
 
+    fn length(&self, path: &Path) -> Option<u64> {
+        std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file).map(|metadata| metadata.len())
+    }
+
     fn identities(&self, path: &Path) -> Vec<FileId> {
         let mut identities = vec![FileId::Path(resolved(path))];
         #[cfg(unix)]
@@ -143,17 +153,25 @@ impl Files for Memory {
         let bytes = self.0.get(path).ok_or_else(|| Error::new(ErrorKind::Io, &at, "no such file"))?;
         if bytes.len() as u64 > limit { Err(too_long(&at, limit)) } else { Ok(bytes.clone()) }
     }
+
+    fn length(&self, path: &Path) -> Option<u64> {
+        self.0.get(path).map(|bytes| bytes.len() as u64)
+    }
 }
 
 /// Pointers of Git LFS are shorter than this (its specification, version 1).
 const LONGEST_POINTER: usize = 1024;
 
-/// The context of a load: file access, limits, import options and warnings.
+/// The context of a load: file access, limits, memory, import options and warnings.
 pub struct LoadContext<'a> {
     /// File access.
     pub files: &'a dyn Files,
     /// The limits.
     pub limits: Limits,
+    /// The memory for all that is read.
+    pub budget: Budget,
+    /// The memory of what was read and stays.
+    pub kept: Vec<Reservation>,
     /// The warnings so far.
     pub warnings: Vec<Warning>,
     /// Import options for files with several animations, variants, scenes or cameras.
@@ -195,29 +213,65 @@ pub enum CameraChoice {
 }
 
 impl<'a> LoadContext<'a> {
-    /// A context over `files` with the default limits.
+    /// A context over `files` with the default limits and the budget of this machine.
     pub fn new(files: &'a dyn Files) -> Self {
+        Self::within(&Budget::default(), files)
+    }
+
+    /// A context over `files` with the default limits and this budget.
+    pub fn within(budget: &Budget, files: &'a dyn Files) -> Self {
         Self {
             files,
             limits: Limits::default(),
+            budget: budget.clone(),
+            kept: Vec::new(),
             warnings: Vec::new(),
             import: ImportOptions::default(),
             variables: Variables::default(),
         }
     }
 
-    /// The whole content of a file within the limits.
+    /// The whole content of a file within the limits, in memory that is reserved while it is used.
     ///
     /// # Errors
     /// `Io` when it cannot be read, or is a pointer of Git LFS to a file that is elsewhere; `Limit` when it is too long.
-    pub fn read(&self, path: &Path) -> Result<Vec<u8>> {
-        let bytes = self.files.read(path, self.limits.file_bytes)?;
+    pub fn read(&self, path: &Path) -> Result<Reserved<Vec<u8>>> {
+        const WHAT: &str = "the file";
+        let at = Location::file(path);
+        let length = self.files.length(path).filter(|&length| length <= self.limits.file_bytes);
+        let ahead = length.map(|length| self.budget.reserve(length, WHAT, &at)).transpose()?;
+        let most = length.unwrap_or_else(|| self.limits.file_bytes.min(self.budget.left()));
+        let bytes = match self.files.read(path, self.limits.file_bytes.min(most)) {
+            Err(error) if error.kind == ErrorKind::Limit && most < self.limits.file_bytes => {
+                // Longer than it was, or than there is memory.
+                self.budget.reserve(most.saturating_add(1), WHAT, &at)?;
+                return Err(error);
+            }
+            read => read?,
+        };
+        let memory = match ahead {
+            Some(memory) => memory,
+            None => self.budget.reserve(bytes.len() as u64, WHAT, &at)?,
+        };
         if bytes.len() < LONGEST_POINTER && bytes.starts_with(b"version https://git-lfs") {
             let message = "this is a pointer of Git LFS, not the file itself";
             return Err(Error::new(ErrorKind::Io, &Location::file(path), message)
                 .hint("`git lfs pull` brings the file"));
         }
-        Ok(bytes)
+        Ok(Reserved::new(bytes, memory))
+    }
+
+    /// Counts memory of what stays, after the fact or before.
+    ///
+    /// # Errors
+    /// `Limit` if there is not so much left.
+    pub fn keep(&mut self, bytes: u64, what: &str, at: &Location) -> Result<()> {
+        let memory = self.budget.reserve(bytes, what, at)?;
+        match self.kept.last_mut() {
+            Some(last) => last.join(memory),
+            None => self.kept.push(memory),
+        }
+        Ok(())
     }
 
     /// Adds a warning: reading continues, but the picture may differ from the intended one.

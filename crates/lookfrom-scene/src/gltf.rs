@@ -33,6 +33,7 @@ use std::path::Path;
 use self::build::Model;
 use self::file::Document;
 pub(crate) use self::pose::AT_REST;
+use crate::budget::Reserved;
 use crate::error::Result;
 use crate::files::LoadContext;
 use crate::load;
@@ -74,7 +75,7 @@ pub fn is_gltf(content: &[u8]) -> bool {
 }
 
 fn document_model(
-    content: Vec<u8>,
+    content: Reserved<Vec<u8>>,
     path: &Path,
     context: &mut LoadContext<'_>,
     scene: &mut Scene,

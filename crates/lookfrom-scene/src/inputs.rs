@@ -97,6 +97,10 @@ impl Files for Recorded<'_> {
         self.files.read(path, limit)
     }
 
+    fn length(&self, path: &Path) -> Option<u64> {
+        self.files.length(path)
+    }
+
     fn identities(&self, path: &Path) -> Vec<FileId> {
         self.files.identities(path)
     }
@@ -115,7 +119,7 @@ mod tests {
         for reader in ["first", "second"] {
             let files = inputs.record(&memory, reader);
             let context = LoadContext::new(&files);
-            assert_eq!(context.read(Path::new("a")).expect("it is there"), [1]);
+            assert_eq!(*context.read(Path::new("a")).expect("it is there"), [1]);
             assert!(context.read(Path::new("missing")).is_err());
         }
         let reader = |path: &str| inputs.at(Path::new(path), &memory).map(|input| input.reader);

@@ -3,6 +3,7 @@
 //! A [`scene::Scene`] is a scene as it was written. It keeps names and locations, is validated as far as a file can be
 //! validated by itself, and is independent of rendering. Start reading at [`scene`].
 
+pub mod budget;
 pub mod camera;
 pub mod contents;
 pub mod count;
@@ -40,6 +41,7 @@ pub mod toml;
 pub mod variables;
 pub mod warning;
 
+pub use budget::Budget;
 pub use error::{Error, ErrorKind, Location, Result};
 pub use files::{CameraChoice, Disk, Files, ImportOptions, Limits, LoadContext, Memory};
 pub use inputs::Inputs;

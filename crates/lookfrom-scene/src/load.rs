@@ -25,6 +25,10 @@ pub const PIPE: &str = "-";
 /// `Unsupported` if the format is not known, and the errors of the format's reader.
 pub fn scene(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut scene = whole(path, context)?;
+    // What a reader only warns of, such as a picture without which it goes on, may have been this.
+    if let Some(refusal) = context.budget.take_refusal() {
+        return Err(refusal);
+    }
     if let Some(name) = context.variables.values.keys().next().filter(|_| scene.contents.variables.is_empty())
     {
         // Our own format knows better what is missing.

@@ -19,8 +19,11 @@ use std::path::Path;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 use crate::scene::Scene;
-use crate::shape::Part;
+use crate::shape::{Mesh, Part};
 use crate::{obj, packed, ply, stl, subdivision};
+
+/// Bytes that a byte of a model becomes, at most, while the model is parsed.
+pub(crate) const PARSED: u64 = 3;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Format {
@@ -55,11 +58,12 @@ pub(crate) fn read_with_up(
     if bytes.is_empty() {
         return Err(Error::syntax(&file, "the file is empty"));
     }
+    let _parsing = context.budget.reserve(bytes.len() as u64 * PARSED, "the parsed model", &file)?;
+    let before = scene.meshes.len();
     let format =
         by_content(&bytes).or(by_name(path)).or_else(|| looks_like_obj(&bytes).then_some(Format::Obj));
-    let first = scene.meshes.len();
-    let read = match format {
-        Some(Format::Obj) => return Ok((obj::from_bytes(&bytes, path, context, scene)?, false)),
+    let (parts, z_is_up) = match format {
+        Some(Format::Obj) => (obj::from_bytes(&bytes, path, context, scene)?, false),
         Some(Format::Ply) => (ply::from_bytes(&bytes, path, context, scene)?, false),
         // Programs for construction and for printers put parts onto the plane of x and y.
         Some(Format::Stl) => (stl::from_bytes(&bytes, path, context, scene)?, true),
@@ -72,10 +76,15 @@ pub(crate) fn read_with_up(
             .hint("models are OBJ, PLY or STL files"));
         }
     };
-    if let levels @ 1.. = context.import.subdivision {
-        subdivision::subdivide_meshes(&mut scene.meshes[first..], levels, &file, context)?;
+    // Polygons are subdivided by their reader.
+    if let levels @ 1.. = context.import.subdivision
+        && format != Some(Format::Obj)
+    {
+        subdivision::subdivide_meshes(&mut scene.meshes[before..], levels, &file, context)?;
     }
-    Ok(read)
+    let meshes = scene.meshes[before..].iter().map(Mesh::bytes).sum();
+    context.keep(meshes, "the meshes of the model", &file)?;
+    Ok((parts, z_is_up))
 }
 
 fn by_name(path: &Path) -> Option<Format> {

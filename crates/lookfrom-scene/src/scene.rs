@@ -177,6 +177,16 @@ impl Bounds {
 }
 
 impl Scene {
+    /// Bytes of its arrays. Names, materials and what else a person could have written are not counted.
+    pub fn bytes(&self) -> u64 {
+        let shapes = |shapes: &[Shape]| shapes.iter().map(Shape::bytes).sum::<u64>();
+        self.meshes.iter().map(Mesh::bytes).sum::<u64>()
+            + self.images.iter().map(Image::bytes).sum::<u64>()
+            + shapes(&self.shapes)
+            + self.objects.iter().map(|object| shapes(&object.shapes)).sum::<u64>()
+            + size_of_val(&*self.instances) as u64
+    }
+
     /// The bounding box of everything that is placed in the world.
     pub fn bounds(&self) -> Bounds {
         let of = |shapes: &[Shape]| {

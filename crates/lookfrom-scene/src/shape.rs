@@ -36,6 +36,22 @@ pub struct Shape {
 }
 
 impl Shape {
+    /// Bytes of itself and of the arrays that only it has: its meshes are the scene's.
+    pub fn bytes(&self) -> u64 {
+        let arrays = match &self.geometry {
+            Geometry::Spheres(spheres) => size_of_val(&**spheres),
+            Geometry::Curves(strands) => size_of_val(&**strands),
+            Geometry::Bilinear(patches) => {
+                size_of_val(&*patches.positions)
+                    + size_of_val(&*patches.patches)
+                    + size_of_val(&*patches.normals)
+                    + size_of_val(&*patches.uvs)
+            }
+            _ => 0,
+        };
+        (size_of::<Self>() + arrays) as u64
+    }
+
     /// A geometry with a material, at the origin, opaque, without emission.
     pub fn new(at: Location, geometry: Geometry, material: MaterialId) -> Self {
         Self {
@@ -204,6 +220,18 @@ pub struct Mesh {
 impl Mesh {
     /// The number of sets of texture coordinates that materials can use.
     pub const MOST_UV_SETS: usize = 4;
+
+    /// Bytes of its arrays.
+    pub fn bytes(&self) -> u64 {
+        let vertices = size_of_val(&*self.positions)
+            + size_of_val(&*self.normals)
+            + size_of_val(&*self.uvs)
+            + self.more_uvs.iter().map(|uvs| size_of_val(&**uvs)).sum::<usize>()
+            + size_of_val(&*self.colors)
+            + size_of_val(&*self.opacities)
+            + size_of_val(&*self.tangents);
+        (vertices + size_of_val(&*self.triangles)) as u64
+    }
 }
 
 /// A part of a model file, before it is placed in a scene.

@@ -17,6 +17,7 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
+use crate::budget::Reservation;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 use crate::shape::Mesh;
@@ -24,8 +25,11 @@ use crate::shape::Mesh;
 /// The most levels: a quadrilateral becomes 4ⁿ.
 pub const MOST_LEVELS: u32 = 8;
 
-/// The most faces that a mesh is subdivided into: they take about 2 GiB.
-const MOST_FACES: u64 = 1 << 22;
+/// The most faces that a mesh is subdivided into.
+const MOST_FACES: u64 = 1 << 24;
+
+/// Bytes that a face takes while meshes are subdivided.
+const BYTES_OF_FACE: u64 = 500;
 
 /// Polygons over shared vertices.
 #[derive(Clone, Debug, Default)]
@@ -67,30 +71,36 @@ pub(crate) fn subdivide_meshes(
     for mesh in meshes {
         let cage = mesh::cage(mesh);
         if !cage.corners.is_empty() {
-            check(&cage, levels, file, context)?;
+            let _subdividing = check(&cage, levels, file, context)?;
             mesh::replace(mesh, &cage, levels);
         }
     }
     Ok(())
 }
 
-/// Checks that a cage can be subdivided, and warns of edges of more than two faces.
+/// Checks that a cage can be subdivided, warns of edges of more than two faces, and reserves the memory meanwhile.
 ///
 /// # Errors
 /// `Limit` if there would be too many faces.
-pub(crate) fn check(cage: &Cage, levels: u32, file: &Location, context: &mut LoadContext<'_>) -> Result<()> {
+pub(crate) fn check(
+    cage: &Cage,
+    levels: u32,
+    file: &Location,
+    context: &mut LoadContext<'_>,
+) -> Result<Reservation> {
     let (count, most) = (cage.count_after(levels), context.limits.elements.min(MOST_FACES));
     if count > most {
         let message =
             format!("{levels} levels of subdivision make {count} faces, more than the limit of {most}");
         return Err(Error::new(ErrorKind::Limit, file, message).hint("subdivide fewer times"));
     }
+    let reservation = context.budget.reserve(count * BYTES_OF_FACE, "the subdivision surface", file)?;
     let branching = cage.branching_edges();
     if branching > 0 {
         let edges = if branching == 1 { "an edge has".to_owned() } else { format!("{branching} edges have") };
         context.warn(file, format!("{edges} more than two faces: the subdivision surface is sharp there"));
     }
-    Ok(())
+    Ok(reservation)
 }
 
 /// The faces around the edges of a cage.

@@ -167,9 +167,11 @@ impl Reader<'_, '_> {
     fn file(&mut self, path: &Path) -> Result<()> {
         let whole = Location::file(path);
         let bytes = self.context.read(path)?;
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let valid = error.utf8_error().valid_up_to();
-            let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
+        let memory = bytes.len() as u64 + document::memory(&bytes);
+        let _parsing = self.context.budget.reserve(memory, "the parsed scene", &whole)?;
+        let text = str::from_utf8(&bytes).map(str::to_owned).map_err(|error| {
+            let valid = error.valid_up_to();
+            let line = bytes[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
             Error::syntax(&whole.at(u32::try_from(line).unwrap_or(0), 0), "the text is not UTF-8")
                 .hint("save it as UTF-8; a model or picture has to be named by its own extension")
         })?;

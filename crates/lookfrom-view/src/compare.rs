@@ -42,10 +42,7 @@ pub(crate) fn pictures(
         }
         Comparing::Flip => {
             let scale = exposure.exp2();
-            let exposed = |pixels: &[[f32; 3]]| -> Vec<[f32; 3]> {
-                pixels.iter().map(|pixel| pixel.map(|light| light * scale)).collect()
-            };
-            let errors = flip(&exposed(pixels), &exposed(&other), width as usize, PIXELS_PER_DEGREE);
+            let errors = flip([pixels, &other], width as usize, scale, PIXELS_PER_DEGREE);
             vec![colored(errors.into_iter().map(heat).collect())?]
         }
         Comparing::Z => {

@@ -27,7 +27,7 @@ use self::pixel::{Pixel, TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square, 
 pub(crate) use self::sums::SampleSums;
 pub use self::tile::FilmTile;
 
-use lookfrom_scene::settings::{ImageSettings, Layers, PixelBounds};
+use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds};
 use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 use std::cmp::Ordering;
@@ -140,6 +140,29 @@ impl Film {
         let whole = PixelBounds { x0: 0, y0: 0, x1: width, y1: height };
         let area = common(whole, crop.unwrap_or(whole));
         Ok(Self { width, height, tile: FilmTile::for_image(area, image)? })
+    }
+
+    /// The bytes of a film for these settings, with those that are needed at the same time to develop and encode its picture:
+    /// an estimate, from the sums of a pixel and from what was measured for the rest (docs/benchmarks/memory.md).
+    pub fn memory(image: &ImageSettings) -> u64 {
+        const DEVELOPED: usize = 32;
+        const LAYERS_DEVELOPED: usize = 80;
+        const DENOISER: usize = 180;
+        let whole = PixelBounds { x0: 0, y0: 0, x1: image.width, y1: image.height };
+        let PixelBounds { x0, y0, x1, y1 } = common(whole, image.crop.unwrap_or(whole));
+        let pixels = u64::from(x1.saturating_sub(x0)) * u64::from(y1.saturating_sub(y0));
+        let mut bytes = size_of::<Pixel>() + DEVELOPED;
+        if image.layers != Layers::None {
+            bytes += size_of::<aov::LayerSums>() + LAYERS_DEVELOPED;
+        }
+        if image.denoise {
+            bytes += size_of::<aov::AovSums>() + DENOISER;
+        }
+        if image.background != Background::Environment {
+            bytes += 2 * size_of::<u128>() + size_of::<f32>();
+        }
+        bytes += image.light_paths.len() * 2 * size_of::<light_paths::LightPathSums>();
+        pixels.saturating_mul(bytes as u64)
     }
 
     /// Columns of the picture.

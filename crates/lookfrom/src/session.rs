@@ -20,6 +20,7 @@ mod finish;
 mod header;
 mod identity;
 mod layers;
+mod memory;
 mod options;
 mod outliers;
 mod prepare;
@@ -34,6 +35,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use glam::DMat3;
+use lookfrom_scene::budget::Reservation;
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::contents::Contents;
 use lookfrom_scene::count::Counts;
@@ -41,7 +43,9 @@ use lookfrom_scene::digest::Digested;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
 use lookfrom_scene::studio::Turntable;
-use lookfrom_scene::{Disk, Error, Files, Inputs, Location, Memory, Result, Scene, Warning, load};
+use lookfrom_scene::{
+    Budget, Disk, Error, Files, Inputs, LoadContext, Location, Memory, Result, Scene, Warning, load,
+};
 
 use crate::core::clock::Stopwatch;
 use crate::film::{Film, Picture};
@@ -88,7 +92,17 @@ pub struct Session {
     format: Option<Format>,
     /// What the scene was read from, if the film is to be kept.
     identity: Option<Identity>,
+    budget: Budget,
+    /// The memory of the world.
+    memory: Arc<Vec<Reservation>>,
     info: SceneInfo,
+    warnings: Vec<Warning>,
+}
+
+/// A scene that was read or made, with its memory and the warnings of its reader.
+struct Given {
+    scene: Scene,
+    memory: Vec<Reservation>,
     warnings: Vec<Warning>,
 }
 
@@ -171,9 +185,9 @@ impl Session {
         let files: &dyn Files = if options.film { &digested } else { files };
         let mut context = options.context(files);
         let scene = load::scene(path, &mut context)?;
-        let warnings = context.warnings;
+        let LoadContext { warnings, kept: memory, .. } = context;
         let identity = options.film.then(|| Identity::of_files(digested, path, options));
-        Self::prepare(scene, path, source, identity, warnings, started, options)
+        Self::prepare(Given { scene, memory, warnings }, path, source, identity, started, options)
     }
 
     /// A session of a scene that was made or read elsewhere.
@@ -182,23 +196,22 @@ impl Session {
     /// As [`Session::open`].
     pub fn of_scene(scene: Scene, options: &Options) -> Result<Self> {
         let identity = options.film.then(|| Identity::of_scene(&scene, options));
+        let memory = options.budget.reserve(scene.bytes(), "the scene", &Location::default())?;
         Self::prepare(
-            scene,
+            Given { scene, memory: vec![memory], warnings: Vec::new() },
             Path::new(""),
             Source::Elsewhere,
             identity,
-            Vec::new(),
             Stopwatch::start(),
             options,
         )
     }
 
     fn prepare(
-        mut scene: Scene,
+        Given { mut scene, memory, mut warnings }: Given,
         path: &Path,
         source: Source,
         identity: Option<Identity>,
-        mut warnings: Vec<Warning>,
         started: Stopwatch,
         options: &Options,
     ) -> Result<Self> {
@@ -218,7 +231,8 @@ impl Session {
         let camera = scene.camera.clone().unwrap_or_default();
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
         let subject = Subject::of_scene(&scene);
-        let mut world = Arc::new(World::compile(scene, &mut warnings).map_err(in_file(path))?);
+        let (world, memory) = memory::compile(scene, memory, &options.budget, path, &mut warnings)?;
+        let mut world = Arc::new(world);
         let mut renderer = Renderer::new(world.clone(), view, settings).map_err(in_file(path))?;
         if renderer.sees_only_backs() {
             world = Arc::new(world.with_both_sides());
@@ -243,6 +257,8 @@ impl Session {
             threads: options.threads,
             format: options.format,
             identity,
+            budget: options.budget.clone(),
+            memory: Arc::new(memory),
             info: SceneInfo { counts, contents, bounds, added, read, build: started.elapsed() },
             warnings,
         };
@@ -313,11 +329,13 @@ impl Session {
         self.renderer = match self.world().is_precise_from(eye) {
             true => self.renderer.with_view(view)?,
             false => {
-                let mut world = self.source.world_around(&camera, self.settings())?;
+                let (mut world, memory) = self.source.world_around(&camera, self.settings())?;
                 if let Some(turning) = &self.turntable {
                     world = world.with_surroundings_turned(&turning.rotation());
                 }
-                self.renderer.with_world(Arc::new(world), view)?
+                let renderer = self.renderer.with_world(Arc::new(world), view)?;
+                self.memory = Arc::new(memory);
+                renderer
             }
         };
         self.camera = camera;
@@ -370,8 +388,9 @@ impl Session {
     /// Renders and finishes the picture.
     ///
     /// # Errors
-    /// `Limit` if memory for the film or threads are not available.
+    /// `Limit` if memory for the film ([`Options::budget`]) or threads are not available.
     pub fn render(&self, progress: &dyn Progress) -> Result<Finished> {
+        let _memory = self.room_for_picture()?;
         self.render_onto(Film::for_image(self.image())?, progress)
     }
 
@@ -402,6 +421,7 @@ impl Session {
         if provenance.noise() != before.noise() {
             film.forget_clean();
         }
+        let _memory = self.room_for_picture()?;
         self.render_onto(film, progress)
     }
 

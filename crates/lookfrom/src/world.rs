@@ -8,6 +8,7 @@ mod catcher;
 mod class;
 mod compile;
 mod lights;
+mod memory;
 mod place;
 mod precision;
 mod reflectance;

@@ -9,7 +9,7 @@ use lookfrom::film::Film;
 use lookfrom::render::{Progress, StopCriteria, TileDone};
 use lookfrom::session::{Exposure, FilmFile, Finished, Fireflies, Format, Options, Session};
 use lookfrom_scene::settings::{Background, ColorMode, Integrator, Layers, LightPathLayer, PixelBounds};
-use lookfrom_scene::{ErrorKind, Location};
+use lookfrom_scene::{Budget, ErrorKind, Location};
 
 const SCENE: &[u8] = br#"
 [camera]
@@ -66,7 +66,7 @@ fn rendered(options: &Options, threads: usize) -> Vec<u8> {
 }
 
 fn read(bytes: &[u8]) -> FilmFile {
-    FilmFile::read(bytes, Path::new("film.exr")).expect("a film")
+    FilmFile::read(bytes, Path::new("film.exr"), &Budget::default()).expect("a film")
 }
 
 /// The file of the sum of films, in this order.
@@ -293,7 +293,9 @@ fn damaged_films_are_errors() {
         ..Options::default()
     };
     let film = rendered(&options, 1);
-    let error_of = |bytes: &[u8]| FilmFile::read(bytes, Path::new("film.exr")).expect_err("a damaged film");
+    let error_of = |bytes: &[u8]| {
+        FilmFile::read(bytes, Path::new("film.exr"), &Budget::default()).expect_err("a damaged film")
+    };
     // Any byte of the first part, where the header is, and some of the others.
     for index in (0..3000).step_by(7).chain((3000..film.len()).step_by(97)) {
         let mut damaged = film.clone();

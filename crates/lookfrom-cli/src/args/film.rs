@@ -9,7 +9,7 @@ use clap::Args;
 use lookfrom::session::Fireflies;
 use lookfrom_scene::settings::{Background, Tonemap};
 
-use super::{Common, EncodingArguments, VariableArguments};
+use super::{Common, EncodingArguments, MemoryArguments, VariableArguments};
 use crate::values;
 
 pub(super) const RESUME_EXAMPLES: &str = "\
@@ -119,6 +119,9 @@ pub(crate) struct MergeArguments {
     /// Print nothing but errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
+
+    #[command(flatten)]
+    pub(crate) memory: MemoryArguments,
 }
 
 #[derive(Args, Debug)]
@@ -155,6 +158,9 @@ pub(crate) struct DevelopArguments {
     /// Background of a picture with alpha: transparent, white, black or #rrggbb
     #[arg(long, value_name = "BACKGROUND", value_parser = values::background)]
     pub(crate) background: Option<Background>,
+
+    #[command(flatten)]
+    pub(crate) memory: MemoryArguments,
 }
 
 #[derive(Args, Debug)]
@@ -173,4 +179,7 @@ pub(crate) struct FilesArguments {
 
     #[command(flatten)]
     pub(crate) variables: VariableArguments,
+
+    #[command(flatten)]
+    pub(crate) memory: MemoryArguments,
 }

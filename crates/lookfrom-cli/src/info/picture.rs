@@ -6,7 +6,7 @@ use std::path::Path;
 use lookfrom::session::FilmFile;
 use lookfrom_scene::image;
 use lookfrom_scene::settings::PixelBounds;
-use lookfrom_scene::{Disk, LoadContext};
+use lookfrom_scene::{Budget, Disk, LoadContext};
 use serde::Serialize;
 
 use crate::exit::{Failure, answer};
@@ -51,10 +51,11 @@ struct Input {
 }
 
 /// Describes a picture.
-pub(super) fn info(path: &Path, is_json: bool) -> Result<(), Failure> {
-    let mut context = LoadContext::new(&Disk);
+pub(super) fn info(path: &Path, is_json: bool, budget: &Budget) -> Result<(), Failure> {
+    let mut context = LoadContext::within(budget, &Disk);
     let bytes = context.read(path)?;
-    let film = if FilmFile::is_film(&bytes) { Some(film(&FilmFile::read(&bytes, path)?)) } else { None };
+    let film =
+        if FilmFile::is_film(&bytes) { Some(film(&FilmFile::read(&bytes, path, budget)?)) } else { None };
     let exr = image::read_exr(path, &mut context)?;
     let header = exr.attributes.into_iter().filter(|(name, _)| !name.starts_with("film"));
     let picture = Picture {

@@ -234,6 +234,9 @@ impl Document {
         let layout = Layout::new(component, accessor.normalized.unwrap_or(false), numbers, rows);
         let count = accessor.count.index();
         self.count(count as u64, asked)?;
+        let memory = (count as u64).saturating_mul(size_of::<[V; N]>() as u64);
+        let what = format!("an accessor of {count} elements");
+        let _memory = self.budget.reserve(memory, &what, &self.at(asked))?;
 
         // A part of a compressed mesh; if it cannot be decompressed, the uncompressed fallback, where there is one.
         if let Some((view, role)) = self.compressed.role(index) {

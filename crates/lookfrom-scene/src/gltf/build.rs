@@ -23,7 +23,7 @@ use crate::files::LoadContext;
 use crate::light::Light;
 use crate::load;
 use crate::scene::{Instance, MeshId, Object, ObjectId, Scene};
-use crate::shape::{Geometry, Part, Shape};
+use crate::shape::{Geometry, Mesh, Part, Shape};
 
 /// The maximum number of triangles in copies of one mesh; with more, the copies become instances, which take less
 /// memory but are slower to trace.
@@ -171,7 +171,9 @@ impl Builder<'_, '_, '_> {
             for mesh in 0..self.document.root.meshes.len() {
                 let pieces = self.mesh(Form { mesh, node: None }, None, "/meshes")?;
                 let name = self.document.root.meshes[mesh].name.clone();
-                pieces.iter().for_each(|piece| self.shape(piece, &name, DMat4::IDENTITY));
+                for piece in &pieces {
+                    self.shape(piece, &name, DMat4::IDENTITY)?;
+                }
             }
         }
         for &node in &tree.shown {
@@ -193,6 +195,8 @@ impl Builder<'_, '_, '_> {
                 let object = *objects.entry(form).or_insert_with(|| self.object(&name, &pieces));
                 let world_from_node = if skin.is_some() { DMat4::IDENTITY } else { world_from_node };
                 let at = self.document.at(&format!("/nodes/{node}"));
+                let memory = (places.len() * size_of::<Instance>()) as u64;
+                self.context.keep(memory, "its instances", &at)?;
                 for place in places {
                     self.instance(at.clone(), object, world_from_node * place);
                 }
@@ -208,7 +212,7 @@ impl Builder<'_, '_, '_> {
                 continue;
             }
             for piece in &pieces {
-                self.shape(piece, &name, piece.world_from_skinned.unwrap_or(world_from_node));
+                self.shape(piece, &name, piece.world_from_skinned.unwrap_or(world_from_node))?;
             }
         }
         Ok(())
@@ -272,9 +276,12 @@ impl Builder<'_, '_, '_> {
             vertices.grain = self.looks.look(material, &asked, brought, self.context, self.scene)?.grain;
         }
         let mut pieces = Vec::new();
-        for (color, geometry) in
-            mesh::geometry(document, primitive, vertices, name, pointer, self.context, self.scene)?
-        {
+        let before = self.scene.meshes.len();
+        let geometries =
+            mesh::geometry(document, primitive, vertices, name, pointer, self.context, self.scene)?;
+        let meshes = self.scene.meshes[before..].iter().map(Mesh::bytes).sum();
+        self.context.keep(meshes, "a primitive", &document.at(pointer))?;
+        for (color, geometry) in geometries {
             let colors = color.map_or(Colors::None, |color| Colors::One(color.map(f32::to_bits)));
             let brought = if is_surface { brought } else { Brought { colors, opacities: false } };
             let look = self.looks.look(material, &asked, brought, self.context, self.scene)?;
@@ -295,21 +302,24 @@ impl Builder<'_, '_, '_> {
         (primitive.material, format!("{pointer}/material"))
     }
 
-    fn shape(&mut self, piece: &Piece, name: &Option<String>, world_from_object: DMat4) {
+    fn shape(&mut self, piece: &Piece, name: &Option<String>, world_from_object: DMat4) -> Result<()> {
         let mut shape = shape(piece, name);
         if is_invertible(&world_from_object) {
             shape.world_from_object = world_from_object;
         } else {
             // Scaled by 0 along one axis, a mesh is flat, but still visible.
-            let Geometry::Mesh(id) = piece.geometry else { return };
+            let Geometry::Mesh(id) = piece.geometry else { return Ok(()) };
             let flat = mesh::flattened(&self.scene.meshes[id.index()], &world_from_object);
             if flat.triangles.is_empty() {
-                return;
+                return Ok(());
             }
+            self.context.keep(flat.bytes(), "a flat copy of a mesh", &piece.pointer)?;
             shape.geometry = Geometry::Mesh(MeshId(self.scene.meshes.len() as u32));
             self.scene.meshes.push(flat);
         }
+        self.context.keep(size_of::<Shape>() as u64, "a shape", &piece.pointer)?;
         self.model.shapes.push(shape);
+        Ok(())
     }
 
     fn object(&mut self, name: &Option<String>, pieces: &[Piece]) -> ObjectId {

@@ -21,6 +21,14 @@ pub(crate) struct Decoded {
     pub(crate) attributes: BTreeMap<u64, Attribute>,
 }
 
+impl Decoded {
+    /// Bytes of its arrays.
+    pub(crate) fn bytes(&self) -> u64 {
+        let numbers = self.attributes.values().map(|attribute| size_of_val(&*attribute.numbers));
+        (size_of_val(&*self.indices) + numbers.sum::<usize>()) as u64
+    }
+}
+
 /// The values of a vertex attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Attribute {

@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::draco::{self, Compressed, Decoded};
 use super::json::{self, Root, Whole};
 use super::meshopt::{self, Layout};
 use super::uri::{self, Uri};
+use crate::budget::{Budget, Reservation, Reserved};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, LoadContext};
 use crate::model::surface::beside;
@@ -36,8 +37,12 @@ pub(crate) struct Document {
     /// The limits.
     pub(crate) limits: Limits,
     at: Location,
-    content: Vec<u8>,
+    content: Reserved<Vec<u8>>,
     buffers: Vec<Bytes>,
+    /// The memory for all that is read.
+    pub(crate) budget: Budget,
+    /// The memory of what this document holds, besides its files.
+    held: Mutex<Vec<Reservation>>,
     /// Decompressed buffer views, filled at the first request.
     decoded: Vec<OnceLock<Result<Vec<u8>>>>,
     /// Decoded Draco meshes.
@@ -52,7 +57,7 @@ pub(crate) struct Document {
 enum Bytes {
     /// A part of the container.
     Chunk(Range<usize>),
-    Own(Arc<Vec<u8>>),
+    Own(Arc<Reserved<Vec<u8>>>),
     /// The bytes could not be read; an error only where they are used.
     Missing(Error),
 }
@@ -71,12 +76,18 @@ impl Document {
     ///
     /// # Errors
     /// `Syntax` if it is not glTF, `Unsupported` if it is another version.
-    pub(crate) fn open(content: Vec<u8>, path: &Path, context: &mut LoadContext<'_>) -> Result<Self> {
+    pub(crate) fn open(
+        content: Reserved<Vec<u8>>,
+        path: &Path,
+        context: &mut LoadContext<'_>,
+    ) -> Result<Self> {
         let at = Location::file(path);
         let (what, (json, binary)) = match content.starts_with(MAGIC) {
             true => ("the JSON of the GLB container", chunks(&content, &at, context)?),
             false => ("the file", (0..content.len(), None)),
         };
+        let memory = json::memory(&content[json.clone()]);
+        let memory = context.budget.reserve(memory, what, &at)?;
         let root = parse(&content[json], what, &at, context)?;
         check_version(&root, &at, context)?;
         let decoded = root.buffer_views.iter().map(|_| OnceLock::new()).collect();
@@ -89,6 +100,8 @@ impl Document {
             at,
             content,
             buffers: Vec::new(),
+            budget: context.budget.clone(),
+            held: Mutex::new(vec![memory]),
             decoded,
             compressed,
             values: AtomicU64::new(0),
@@ -145,6 +158,16 @@ impl Document {
         Ok(())
     }
 
+    /// Reserves memory for what the document holds until it is dropped, or for what is read from it.
+    ///
+    /// # Errors
+    /// `Limit` if there is not so much left.
+    fn hold(&self, bytes: u64, what: &str, asked: &str) -> Result<()> {
+        let memory = self.budget.reserve(bytes, what, &self.at(asked))?;
+        self.held.lock().unwrap_or_else(PoisonError::into_inner).push(memory);
+        Ok(())
+    }
+
     /// Counts zero-filled elements that are about to be created.
     ///
     /// # Errors
@@ -188,6 +211,7 @@ impl Document {
         let layout = Layout::new(packed, &at)?;
         // Elements can have hundreds of bytes, and a damaged file many views, so bytes count as well.
         self.count(layout.count.saturating_mul(layout.stride / 4), place)?;
+        self.hold(layout.count.saturating_mul(layout.stride), "a compressed buffer view", place)?;
         meshopt::decode(bytes, &layout, &at, &self.limits)
     }
 
@@ -202,6 +226,7 @@ impl Document {
             let mesh = draco::decode(self.view(view, asked)?.bytes, &self.at(&place), &self.limits)?;
             self.count(mesh.vertices as u64, &place)?;
             self.count(mesh.indices.len() as u64, &place)?;
+            self.hold(mesh.bytes(), "a compressed mesh", &place)?;
             Ok(mesh)
         })
     }
@@ -227,7 +252,7 @@ impl Document {
     }
 
     fn read_buffers(&mut self, binary: Option<&Range<usize>>, context: &mut LoadContext<'_>) {
-        let mut files: BTreeMap<PathBuf, Arc<Vec<u8>>> = BTreeMap::new();
+        let mut files: BTreeMap<PathBuf, Arc<Reserved<Vec<u8>>>> = BTreeMap::new();
         let mut buffers = Vec::with_capacity(self.root.buffers.len());
         for (index, buffer) in self.root.buffers.iter().enumerate() {
             let place = format!("/buffers/{index}");
@@ -263,11 +288,14 @@ impl Document {
         &self,
         uri: &str,
         place: &str,
-        files: &mut BTreeMap<PathBuf, Arc<Vec<u8>>>,
+        files: &mut BTreeMap<PathBuf, Arc<Reserved<Vec<u8>>>>,
         context: &LoadContext<'_>,
-    ) -> Result<Arc<Vec<u8>>> {
+    ) -> Result<Arc<Reserved<Vec<u8>>>> {
         match self.uri(uri, &format!("{place}/uri"))? {
-            Uri::Data(bytes) => Ok(Arc::new(bytes)),
+            Uri::Data(bytes) => {
+                let memory = context.budget.reserve(bytes.len() as u64, "a buffer", &self.at(place))?;
+                Ok(Arc::new(Reserved::new(bytes, memory)))
+            }
             Uri::Names(names) => {
                 let (path, bytes) = self.first_of(&names, place, |path| match files.get(path) {
                     Some(bytes) => Ok(bytes.clone()),

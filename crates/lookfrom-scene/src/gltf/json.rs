@@ -48,6 +48,14 @@ impl<'de> Deserialize<'de> for Whole {
     }
 }
 
+/// Bytes of an object of the file as it is parsed: of a node, of which there may be millions.
+const OBJECT: u64 = size_of::<Node>() as u64;
+
+/// An estimate of the memory that parsing takes.
+pub(crate) fn memory(text: &[u8]) -> u64 {
+    text.iter().filter(|&&byte| byte == b'{').count() as u64 * OBJECT
+}
+
 /// A list that may be `null`, as some programs write it.
 fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
     Option::<Vec<T>>::deserialize(deserializer).map(Option::unwrap_or_default)

@@ -159,10 +159,10 @@ impl<'d> Textures<'d> {
     /// Decodes the requested images. An image that cannot be read is white, with a warning.
     pub(super) fn decode(self, context: &mut LoadContext<'_>, scene: &mut Scene) {
         let Self { document, pictures, instead, .. } = self;
-        let (files, limits) = (context.files, context.limits);
+        let (files, limits, budget) = (context.files, context.limits, context.budget.clone());
         let texels = AtomicU64::new(0);
         let read = |((index, meaning), id): ((usize, Meaning), ImageId)| {
-            let mut context = LoadContext { limits, ..LoadContext::new(files) };
+            let mut context = LoadContext { limits, ..LoadContext::within(&budget, files) };
             let image =
                 picture(document, index, meaning, &texels, &mut context).or_else(|error| {
                     match instead.get(&index) {
@@ -177,11 +177,12 @@ impl<'d> Textures<'d> {
                 context.warn(&error.at, message);
                 blank(document, index, meaning)
             });
-            (id, image, context.warnings)
+            (id, image, context.warnings, context.kept)
         };
         let decoded: Vec<_> = parallel::map(pictures.into_iter().collect(), read);
-        for (id, image, warnings) in decoded {
+        for (id, image, warnings, kept) in decoded {
             scene.images[id.index()] = image;
+            context.kept.extend(kept);
             context.warnings.extend(warnings);
         }
     }

@@ -31,15 +31,41 @@ const WIDEST: f64 = 0.04;
 
 type Color = [f64; 3];
 
-/// The error of each pixel, in [0, 1], between two images of `width` columns of linear colours, which are clamped to
-/// [0, 1]. At a border the last pixels are repeated.
+/// Rows of a band, at least: the rows around it are computed as well, for neither band alone.
+const BAND: usize = 256;
+
+/// The error of each pixel, in [0, 1], between two images of `width` columns of linear colours, which are multiplied by
+/// `scale` and clamped to [0, 1]. At a border the last pixels are repeated. The images are compared in bands of rows, since
+/// a pixel takes 200 bytes.
 ///
 /// # Panics
 /// If the images are not whole rows or differ in size.
-pub fn flip(picture: &[[f32; 3]], reference: &[[f32; 3]], width: usize, pixels_per_degree: f64) -> Vec<f32> {
+pub fn flip(
+    [picture, reference]: [&[[f32; 3]]; 2],
+    width: usize,
+    scale: f32,
+    pixels_per_degree: f64,
+) -> Vec<f32> {
     assert!(width > 0 && picture.len() == reference.len() && picture.len().is_multiple_of(width));
-    let opponents = [picture, reference].map(|rgb| {
-        rgb.iter().map(|rgb| opponent(rgb.map(|c| f64::from(c).clamp(0.0, 1.0)))).collect::<Vec<Color>>()
+    let (rows, margin) =
+        (picture.len() / width, filter_radius(pixels_per_degree).max(edge_radius(pixels_per_degree)));
+    let margin = usize::try_from(margin).unwrap_or(rows);
+    let mut errors = Vec::with_capacity(picture.len());
+    for start in (0..rows).step_by(BAND.max(2 * margin)) {
+        let end = (start + BAND.max(2 * margin)).min(rows);
+        let (above, below) = (start.saturating_sub(margin), end.saturating_add(margin).min(rows));
+        let band = [picture, reference].map(|image| &image[above * width..below * width]);
+        let of_band = flip_band(band, width, scale, pixels_per_degree);
+        errors.extend_from_slice(&of_band[(start - above) * width..(end - above) * width]);
+    }
+    errors
+}
+
+/// The same of images that are compared as a whole.
+fn flip_band(images: [&[[f32; 3]]; 2], width: usize, scale: f32, pixels_per_degree: f64) -> Vec<f32> {
+    let opponents = images.map(|rgb| {
+        let color = |rgb: &[f32; 3]| opponent(rgb.map(|c| f64::from(c * scale).clamp(0.0, 1.0)));
+        rgb.iter().map(color).collect::<Vec<Color>>()
     });
 
     // The colour difference after spatial filtering.
@@ -126,10 +152,24 @@ fn rgb_from_opponent([y, cx, cz]: Color) -> Color {
     multiply(&RGB_FROM_XYZ, [0, 1, 2].map(|i| relative[i] * white[i]))
 }
 
+/// Radius in pixels of the filters by the contrast sensitivity functions.
+fn filter_radius(pixels_per_degree: f64) -> i32 {
+    let deviations = (WIDEST / (2.0 * std::f64::consts::PI * std::f64::consts::PI)).sqrt();
+    (3.0 * deviations * pixels_per_degree).ceil() as i32
+}
+
+/// Standard deviation in pixels of the filters for edges and points, and their radius.
+fn edge_deviation(pixels_per_degree: f64) -> f64 {
+    0.5 * EDGE_WIDTH * pixels_per_degree
+}
+
+fn edge_radius(pixels_per_degree: f64) -> i32 {
+    (3.0 * edge_deviation(pixels_per_degree)).ceil() as i32
+}
+
 /// The colours after filtering with the contrast sensitivity functions, for [`difference`].
 fn perceived(colors: &[Color], width: usize, pixels_per_degree: f64) -> Vec<Color> {
-    let deviations = (WIDEST / (2.0 * std::f64::consts::PI * std::f64::consts::PI)).sqrt();
-    let radius = (3.0 * deviations * pixels_per_degree).ceil() as i32;
+    let radius = filter_radius(pixels_per_degree);
     let channels: [Vec<f64>; 3] = std::array::from_fn(|channel| {
         let values: Vec<f64> = colors.iter().map(|color| color[channel]).collect();
         // A sum of Gaussians: each is separable into a blur along rows and one along columns.
@@ -165,8 +205,7 @@ fn perceived(colors: &[Color], width: usize, pixels_per_degree: f64) -> Vec<Colo
 /// Edge and point feature strengths at each pixel.
 fn features(light: &[f64], width: usize, pixels_per_degree: f64) -> Vec<[f64; 2]> {
     // A Gaussian as wide as an edge and its first two derivatives; positive and negative weights are each normalised.
-    let deviation = 0.5 * EDGE_WIDTH * pixels_per_degree;
-    let radius = (3.0 * deviation).ceil() as i32;
+    let (deviation, radius) = (edge_deviation(pixels_per_degree), edge_radius(pixels_per_degree));
     let gauss = |x: i32| libm::exp(-f64::from(x * x) / (2.0 * deviation * deviation));
     let bell: Vec<f64> = (-radius..=radius).map(gauss).collect();
     let bell_sum: f64 = bell.iter().sum();
@@ -234,7 +273,7 @@ mod tests {
     }
 
     fn of(picture: &[[f32; 3]], reference: &[[f32; 3]]) -> Vec<f32> {
-        flip(picture, reference, WIDTH, PIXELS_PER_DEGREE)
+        flip([picture, reference], WIDTH, 1.0, PIXELS_PER_DEGREE)
     }
 
     fn flat(encoded: [f32; 3]) -> Vec<[f32; 3]> {
@@ -251,6 +290,23 @@ mod tests {
         assert!((least - 0.085_741_59).abs() < 1e-3 && (most - 0.969_730_14).abs() < 1e-3, "{least} {most}");
         assert_eq!(of(&b, &a), of(&a, &b), "whichever is the reference");
         assert!(of(&a, &a).iter().all(|&error| error == 0.0));
+    }
+
+    #[test]
+    fn bands_are_those_of_the_whole() {
+        const COLUMNS: usize = 3;
+        let noise = |seed: u32| -> Vec<[f32; 3]> {
+            let value =
+                |i: u32| (i.wrapping_mul(2_654_435_761).wrapping_add(seed) >> 8) as f32 / (1 << 23) as f32;
+            (0..700 * COLUMNS as u32).map(|i| [0, 1, 2].map(|c| value(3 * i + c))).collect()
+        };
+        let (a, b) = (noise(1), noise(1 << 29));
+        for rows in [1, 255, 256, 257, 512, 700] {
+            let images = [&a[..rows * COLUMNS], &b[..rows * COLUMNS]];
+            let whole = flip_band(images, COLUMNS, 0.5, PIXELS_PER_DEGREE);
+            assert!(whole.iter().any(|&error| error > 0.1));
+            assert_eq!(flip(images, COLUMNS, 0.5, PIXELS_PER_DEGREE), whole, "{rows} rows");
+        }
     }
 
     #[test]

@@ -7,9 +7,10 @@
 use std::io::Read;
 
 use super::basis;
-use super::read::check_size;
+use super::read::{check_size, room};
+use crate::budget::Reservation;
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::Limits;
+use crate::files::LoadContext;
 
 /// The first bytes of every file.
 pub(super) const MAGIC: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
@@ -36,6 +37,8 @@ pub(super) struct Pixels {
     pub(super) height: u32,
     /// Row by row from the top: red, green, blue, alpha.
     pub(super) texels: Vec<[u8; 4]>,
+    /// The memory in which it was decoded.
+    pub(super) memory: Reservation,
 }
 
 /// The header of a file.
@@ -59,11 +62,13 @@ struct Header {
 /// Decodes a file that starts with [`MAGIC`].
 ///
 /// # Errors
-/// `Syntax` if it is damaged or cut off, `Unsupported` for other formats, `Limit` for more than [`Limits::texels`].
-pub(super) fn decode(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Pixels> {
+/// `Syntax` if it is damaged or cut off, `Unsupported` for other formats, `Limit` for more than [`crate::Limits::texels`] or there is memory for.
+pub(super) fn decode(bytes: &[u8], at: &Location, context: &LoadContext<'_>) -> Result<Pixels> {
     let header = header(bytes, at)?;
     let Header { format, width, height, packing, .. } = header;
-    check_size(u64::from(width), u64::from(height), at, limits)?;
+    check_size(u64::from(width), u64::from(height), at, &context.limits)?;
+    // Not more than five bytes for a texel before it is transcoded, or as it is.
+    let memory = room([width, height], 9, at, context)?;
     let texels = match format {
         0 => basis(bytes, &header, at)?,
         _ => plain(bytes, &header, at)?,
@@ -72,7 +77,7 @@ pub(super) fn decode(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Pix
         let message = format!("format {format}, packed by {packing}, gives {} texels", texels.len());
         return Err(Error::syntax(at, message).hint(NOT_WHOLE));
     }
-    Ok(Pixels { width, height, texels })
+    Ok(Pixels { width, height, texels, memory })
 }
 
 fn header(bytes: &[u8], at: &Location) -> Result<Header> {

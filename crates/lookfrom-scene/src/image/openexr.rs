@@ -15,8 +15,9 @@ use ::exr::meta::attribute::AttributeValue;
 use ::exr::prelude::{ReadChannels, ReadLayers, read as exr_read};
 
 use super::read::{Floats, check_size};
+use crate::budget::Reservation;
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::{Limits, LoadContext};
+use crate::files::LoadContext;
 
 pub use rows::ExrRows;
 pub use write::{ExrChannel, ExrHeader, encode_exr, write_exr};
@@ -54,12 +55,15 @@ impl Channels {
 /// As [`super::read()`].
 pub fn read_exr(path: &Path, context: &mut LoadContext<'_>) -> Result<Channels> {
     let bytes = context.read(path)?;
-    decode_channels(&bytes, &Location::file(path), &context.limits)
+    let (channels, mut memory) = decode_channels(&bytes, &Location::file(path), context)?;
+    memory.shrink(memory.bytes() / 2);
+    context.kept.push(memory);
+    Ok(channels)
 }
 
 /// The colours of an OpenEXR file: R, G, B if present, else Y, or its only channel.
-pub(super) fn decode_rgb(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Floats> {
-    let found = decode_channels(bytes, at, limits)?;
+pub(super) fn decode_rgb(bytes: &[u8], at: &Location, context: &LoadContext<'_>) -> Result<Floats> {
+    let (found, memory) = decode_channels(bytes, at, context)?;
     let gray = match found.channels.as_slice() {
         [(_, only)] => Some(only.as_slice()),
         _ => found.channel("Y"),
@@ -74,10 +78,16 @@ pub(super) fn decode_rgb(bytes: &[u8], at: &Location, limits: &Limits) -> Result
         .hint("write the picture again with channels of these names"));
     };
     let texels = r.iter().zip(g).zip(b).map(|((&r, &g), &b)| [r, g, b]).collect();
-    Ok(Floats { width: found.width, height: found.height, texels, alpha: Vec::new() })
+    Ok(Floats { width: found.width, height: found.height, texels, alpha: Vec::new(), memory })
 }
 
-fn decode_channels(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Channels> {
+/// The channels, and the memory of twice their values: as the crate returns them, or with the colours of a picture.
+fn decode_channels(
+    bytes: &[u8],
+    at: &Location,
+    context: &LoadContext<'_>,
+) -> Result<(Channels, Reservation)> {
+    let limits = &context.limits;
     let fault = |error: &ExrError| fault(error, at);
 
     // The headers first: nothing larger than the limits is decoded.
@@ -97,6 +107,9 @@ fn decode_channels(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Chann
         )
         .hint("make the picture smaller, or leave channels out"));
     }
+
+    let memory = total.saturating_mul(2 * size_of::<f32>() as u64);
+    let memory = context.budget.reserve(memory, &format!("a picture of {channels} channels"), at)?;
 
     let picture = exr_read()
         .no_deep_data()
@@ -148,7 +161,7 @@ fn decode_channels(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Chann
     }
     found.attributes.sort();
     found.attributes.dedup();
-    Ok(found)
+    Ok((found, memory))
 }
 
 /// The error of the crate `exr` as one of ours.

@@ -8,18 +8,26 @@ use ::image::error::{ImageError, LimitErrorKind};
 use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
 use super::{Encoding, Image, ktx2, openexr};
+use crate::budget::Reservation;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, LoadContext};
 
 /// The names of the readable formats, for messages.
 const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, DDS (DXT1 to DXT5), KTX2";
 
+/// Bytes of a texel for decoding 8 bits per channel, besides the decoder's result.
+const SHALLOW: u64 = 6;
+
+/// The same for more than 8 bits.
+const DEEP: u64 = 20;
+
 /// Reads a colour image: 8- and 16-bit formats are taken to be sRGB-encoded and become linear, floating-point formats are
 /// linear already. Values that are not finite become 0, with a warning.
 ///
 /// # Errors
 /// `Io` if the file cannot be read; `Syntax` if it is not a complete image; `Unsupported` if its format is not known;
-/// `Limit` if it has more texels than [`Limits::texels`], which is checked before anything is decoded.
+/// `Limit` if it has more texels than [`Limits::texels`], or there is no memory
+/// for it, which is checked before anything is decoded.
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Image> {
     read_encoded(path, context, Encoding::Srgb)
 }
@@ -52,27 +60,26 @@ pub fn decode(
     context: &mut LoadContext<'_>,
 ) -> Result<Image> {
     let at = Location::file(Path::new(name));
-    let limits = context.limits;
     // Formats that the crate `image` does not support are recognised by their first bytes.
     if bytes.starts_with(&ktx2::MAGIC) {
-        let ktx2::Pixels { width, height, texels } = ktx2::decode(bytes, &at, &limits)?;
-        return Ok(Image::from_bytes(name, width, height, texels, encoding));
+        let ktx2::Pixels { width, height, texels, memory } = ktx2::decode(bytes, &at, context)?;
+        return Ok(kept(Image::from_bytes(name, width, height, texels, encoding), memory, context));
     }
     let floats = if bytes.starts_with(&openexr::MAGIC) {
-        openexr::decode_rgb(bytes, &at, &limits)?
+        openexr::decode_rgb(bytes, &at, context)?
     } else if is_pfm(bytes) {
-        decode_pfm(bytes, &at, &limits)?
+        decode_pfm(bytes, &at, context)?
     } else {
-        match decode_common(bytes, Path::new(name), &at, &limits)? {
-            picture if is_deep(&picture) => floats_of(picture, encoding),
-            picture => {
+        match decode_common(bytes, Path::new(name), &at, context)? {
+            (picture, memory) if is_deep(&picture) => floats_of(picture, memory, encoding),
+            (picture, memory) => {
                 let (width, height) = (picture.width(), picture.height());
                 let texels = picture.into_rgba8().pixels().map(|pixel| pixel.0).collect();
-                return Ok(Image::from_bytes(name, width, height, texels, encoding));
+                return Ok(kept(Image::from_bytes(name, width, height, texels, encoding), memory, context));
             }
         }
     };
-    let Floats { width, height, mut texels, mut alpha } = floats;
+    let Floats { width, height, mut texels, mut alpha, memory } = floats;
     let mut bad = 0_usize;
     for value in texels.iter_mut().flatten().chain(&mut alpha) {
         if !value.is_finite() {
@@ -83,7 +90,14 @@ pub fn decode(
     if bad > 0 {
         context.warn(&at, format!("{bad} values are not finite numbers; each becomes 0"));
     }
-    Ok(Image::from_linear_and_alpha(name, width, height, texels, alpha))
+    Ok(kept(Image::from_linear_and_alpha(name, width, height, texels, alpha), memory, context))
+}
+
+/// An image that stays; of the memory in which it was decoded only its own is kept.
+fn kept(image: Image, mut memory: Reservation, context: &mut LoadContext<'_>) -> Image {
+    memory.shrink(image.bytes());
+    context.kept.push(memory);
+    image
 }
 
 /// The opacity (alpha) of an image in grey, if it has one that is not 1 everywhere. `encoding` is as in [`read_encoded`];
@@ -101,7 +115,7 @@ pub fn read_opacity(
     if bytes.starts_with(&openexr::MAGIC) || bytes.starts_with(&ktx2::MAGIC) || is_pfm(&bytes) {
         return Ok(None);
     }
-    let picture = decode_common(&bytes, path, &at, &context.limits)?;
+    let (picture, memory) = decode_common(&bytes, path, &at, context)?;
     if !picture.color().has_alpha() {
         return Ok(None);
     }
@@ -112,14 +126,14 @@ pub fn read_opacity(
             return Ok(None);
         }
         let texels = alphas.into_iter().map(|alpha| [encoding.decode(alpha); 3]).collect();
-        return Ok(Some(Image::from_linear(name, width, height, texels)));
+        return Ok(Some(kept(Image::from_linear(name, width, height, texels), memory, context)));
     }
     let texels = picture.into_rgba8();
     if texels.pixels().all(|pixel| pixel.0[3] == 255) {
         return Ok(None);
     }
     let texels = texels.pixels().map(|pixel| pixel.0[3]).map(|a| [a, a, a, 255]).collect();
-    Ok(Some(Image::from_bytes(name, width, height, texels, encoding)))
+    Ok(Some(kept(Image::from_bytes(name, width, height, texels, encoding), memory, context)))
 }
 
 /// Checks the size in a header before memory is allocated.
@@ -138,19 +152,38 @@ pub(super) fn check_size(width: u64, height: u64, at: &Location, limits: &Limits
     Ok(())
 }
 
+/// Memory for decoding a picture, by the bytes that a texel takes.
+pub(super) fn room(
+    [width, height]: [u32; 2],
+    bytes: u64,
+    at: &Location,
+    context: &LoadContext<'_>,
+) -> Result<Reservation> {
+    let total = (u64::from(width) * u64::from(height)).saturating_mul(bytes);
+    context.budget.reserve(total, &format!("a picture of {width}×{height} texels"), at)
+}
+
 /// An image of 32-bit floats; `alpha` is empty if it is opaque.
 pub(super) struct Floats {
     pub(super) width: u32,
     pub(super) height: u32,
     pub(super) texels: Vec<[f32; 3]>,
     pub(super) alpha: Vec<f32>,
+    /// The memory in which it was decoded.
+    pub(super) memory: Reservation,
 }
 
 fn is_pfm(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PF") || bytes.starts_with(b"Pf")
 }
 
-fn decode_common(bytes: &[u8], path: &Path, at: &Location, limits: &Limits) -> Result<DynamicImage> {
+fn decode_common(
+    bytes: &[u8],
+    path: &Path,
+    at: &Location,
+    context: &LoadContext<'_>,
+) -> Result<(DynamicImage, Reservation)> {
+    let limits = &context.limits;
     let fault = |error: &ImageError| wrong(error, bytes, at, limits);
     let mut reader = ImageReader::new(Cursor::new(bytes));
     if let Ok(format) = ImageFormat::from_path(path) {
@@ -166,7 +199,12 @@ fn decode_common(bytes: &[u8], path: &Path, at: &Location, limits: &Limits) -> R
     let decoder = reader.into_decoder().map_err(|error| fault(&error))?;
     let (width, height) = decoder.dimensions();
     check_size(width.into(), height.into(), at, limits)?;
-    DynamicImage::from_decoder(decoder).map_err(|error| fault(&error))
+    // As the decoder returns it, and what the decoder needs or what it is converted to.
+    let decoded = u64::from(decoder.color_type().bytes_per_pixel());
+    let channels = u64::from(decoder.color_type().channel_count());
+    let converted = if decoded > channels { DEEP } else { SHALLOW };
+    let memory = room([width, height], decoded + converted, at, context)?;
+    DynamicImage::from_decoder(decoder).map(|picture| (picture, memory)).map_err(|error| fault(&error))
 }
 
 /// Whether an image has more than 8 bits per channel.
@@ -181,7 +219,7 @@ fn is_deep(picture: &DynamicImage) -> bool {
 }
 
 /// Linear colours; `encoding` applies to integer formats.
-fn floats_of(picture: DynamicImage, encoding: Encoding<'_>) -> Floats {
+fn floats_of(picture: DynamicImage, memory: Reservation, encoding: Encoding<'_>) -> Floats {
     let (width, height) = (picture.width(), picture.height());
     let has_alpha = picture.color().has_alpha();
     let (mut texels, mut alpha) = (Vec::new(), Vec::new());
@@ -193,7 +231,7 @@ fn floats_of(picture: DynamicImage, encoding: Encoding<'_>) -> Floats {
         } else {
             texels.extend(picture.into_rgb32f().pixels().map(|pixel| pixel.0));
         }
-        return Floats { width, height, texels, alpha };
+        return Floats { width, height, texels, alpha, memory };
     }
     let table: Vec<f32> = (0..=u16::MAX).map(|value| encoding.decode(f32::from(value) / 65535.0)).collect();
     let pixels = picture.into_rgba16();
@@ -202,7 +240,7 @@ fn floats_of(picture: DynamicImage, encoding: Encoding<'_>) -> Floats {
     if has_alpha {
         alpha.extend(pixels.pixels().map(|pixel| f32::from(pixel.0[3]) / 65535.0));
     }
-    Floats { width, height, texels, alpha }
+    Floats { width, height, texels, alpha, memory }
 }
 
 /// Our error for an error of the decoder.
@@ -230,7 +268,7 @@ fn wrong(error: &ImageError, bytes: &[u8], at: &Location, limits: &Limits) -> Er
 
 /// Portable float map: `PF` (colour) or `Pf` (grey), width, height, a scale whose sign gives the byte order, then
 /// 32-bit numbers, bottom row first.
-fn decode_pfm(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Floats> {
+fn decode_pfm(bytes: &[u8], at: &Location, context: &LoadContext<'_>) -> Result<Floats> {
     let bad = |message: String| {
         Error::syntax(at, message)
             .hint("a PFM file starts with `PF`, width, height and scale, each before one space")
@@ -251,12 +289,13 @@ fn decode_pfm(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Floats> {
     let width: u32 = word().and_then(|w| w.parse().ok()).ok_or_else(|| bad("has no width".to_owned()))?;
     let height: u32 = word().and_then(|w| w.parse().ok()).ok_or_else(|| bad("has no height".to_owned()))?;
     let scale: f32 = word().and_then(|w| w.parse().ok()).ok_or_else(|| bad("has no scale".to_owned()))?;
-    check_size(width.into(), height.into(), at, limits)?;
+    check_size(width.into(), height.into(), at, &context.limits)?;
 
     let row = width as usize * channels * 4;
     if rest.len() / row < height as usize {
         return Err(bad(format!("ends early: {} bytes of {}", rest.len(), row * height as usize)));
     }
+    let memory = room([width, height], size_of::<[f32; 3]>() as u64, at, context)?;
     let number = |b: &[u8]| {
         let b = [b[0], b[1], b[2], b[3]];
         if scale < 0.0 { f32::from_le_bytes(b) } else { f32::from_be_bytes(b) }
@@ -269,5 +308,5 @@ fn decode_pfm(bytes: &[u8], at: &Location, limits: &Limits) -> Result<Floats> {
             [value(0), value(1), value(2)]
         })
         .collect();
-    Ok(Floats { width, height, texels, alpha: Vec::new() })
+    Ok(Floats { width, height, texels, alpha: Vec::new(), memory })
 }

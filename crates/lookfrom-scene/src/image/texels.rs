@@ -98,6 +98,15 @@ impl Image {
         }
     }
 
+    /// Bytes of its texels.
+    pub fn bytes(&self) -> u64 {
+        let bytes = match &self.texels {
+            Texels::Bytes { texels, .. } => size_of_val(&**texels),
+            Texels::Floats { texels, alpha } => size_of_val(&**texels) + size_of_val(&**alpha),
+        };
+        bytes as u64
+    }
+
     /// Whether the image has no texels.
     pub fn is_empty(&self) -> bool {
         self.len() == 0

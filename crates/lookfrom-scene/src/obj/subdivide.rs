@@ -20,7 +20,7 @@ pub(super) fn subdivide(
     if sources.is_empty() {
         return Ok(());
     }
-    subdivision::check(&cage, levels, file, context)?;
+    let _subdividing = subdivision::check(&cage, levels, file, context)?;
     let refined = cage.subdivided(levels);
     replace(statements, &refined, &sources);
     Ok(())

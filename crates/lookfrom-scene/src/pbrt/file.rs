@@ -7,6 +7,7 @@ use super::lexer::{Lexer, Token};
 use super::text::{Place, Text};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
+use crate::model::PARSED;
 use crate::packed;
 use crate::parallel;
 use crate::ply;
@@ -108,16 +109,17 @@ impl Reader<'_, '_> {
     /// Reads all model files in parallel; meshes, warnings and errors come in the order of the files' names.
     pub(super) fn read_models(&mut self) -> Result<()> {
         let models: Vec<(PathBuf, Model)> = std::mem::take(&mut self.models).into_iter().collect();
-        let (files, limits) = (self.context.files, self.context.limits);
+        let (files, limits, budget) = (self.context.files, self.context.limits, &self.context.budget);
         let paths: Vec<&PathBuf> = models.iter().map(|(path, _)| path).collect();
         let read = |path: &PathBuf| {
-            let mut context = LoadContext { limits, ..LoadContext::new(files) };
+            let mut context = LoadContext { limits, ..LoadContext::within(budget, files) };
             let mesh = mesh(path, &mut context);
-            (mesh, context.warnings)
+            (mesh, context.warnings, context.kept)
         };
         let contents: Vec<_> = parallel::map(paths, read);
-        for ((path, model), (mesh, warnings)) in models.iter().zip(contents) {
+        for ((path, model), (mesh, warnings, kept)) in models.iter().zip(contents) {
             self.context.warnings.extend(warnings);
+            self.context.kept.extend(kept);
             match mesh {
                 Ok(mesh) => self.scene.meshes[model.mesh.index()] = mesh,
                 Err(error) => self.missing.add(path, model.place.blame(error))?,
@@ -130,14 +132,17 @@ impl Reader<'_, '_> {
 /// The mesh in a PLY file, compressed or not.
 fn mesh(path: &Path, context: &mut LoadContext<'_>) -> Result<Mesh> {
     let bytes = packed::read(path, context)?;
+    let at = Location::file(path);
+    let parsing = bytes.len() as u64 * PARSED;
+    let _parsing = context.budget.reserve(parsing, "the parsed model", &at)?;
     let mut alone = Scene::default();
     let parts = ply::from_bytes(&bytes, path, context, &mut alone)?;
     if parts.iter().any(|part| !matches!(part.geometry, Geometry::Mesh(_))) {
-        let at = Location::file(path);
         context.warn(&at, "there are points but no faces: nothing is rendered");
     }
     let mut mesh = alone.meshes.into_iter().next().unwrap_or_default();
     // Vertex colours are used only by a material of the PLY file's own.
     mesh.colors = Vec::new();
+    context.keep(mesh.bytes(), "the mesh", &at)?;
     Ok(mesh)
 }

@@ -277,7 +277,7 @@ mod tests {
     use super::*;
 
     fn text(content: &str) -> Rc<Text> {
-        Text::new(Path::new("a.pbrt"), content.as_bytes().to_vec())
+        Text::new(Path::new("a.pbrt"), content.as_bytes().to_vec().into())
     }
 
     #[test]

@@ -86,6 +86,8 @@ impl Reader<'_, '_> {
                 format!("{count} triangles after {levels} levels are more than the limit of {limit}");
             return Err(p.place.error(ErrorKind::Limit, message).hint("lower \"integer levels\""));
         }
+        // Each level is made from the one before it: vertices, their neighbours and triangles.
+        let _memory = self.context.budget.reserve(count * 100, "the subdivided mesh", &p.place.location())?;
         let mesh =
             subdivide(&positions, &triangles, levels).map_err(|message| p.refuse("indices", &message))?;
         Ok(self.push_mesh(mesh))

@@ -36,7 +36,7 @@ impl Reader<'_, '_> {
             emission = None;
         }
         let sides = self.sides(&p.place)?;
-        self.push_shape(Shape {
+        let shape = Shape {
             name: None,
             at: p.place.location(),
             geometry,
@@ -47,7 +47,9 @@ impl Reader<'_, '_> {
             reverse_orientation: self.state.reverse_orientation,
             single_sided: false,
             world_from_object: matrix,
-        });
+        };
+        self.context.keep(shape.bytes(), "the shape", &shape.at)?;
+        self.push_shape(shape);
         Ok(())
     }
 

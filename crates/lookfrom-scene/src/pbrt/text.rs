@@ -7,18 +7,19 @@ use std::cell::Cell;
 use std::path::Path;
 use std::rc::Rc;
 
+use crate::budget::Reserved;
 use crate::error::{Error, ErrorKind, Location};
 
 /// A file's content, with the state for converting offsets to locations.
 pub(super) struct Text {
     whole: Location,
-    bytes: Vec<u8>,
+    bytes: Reserved<Vec<u8>>,
     /// The last offset counted to, its line (from 1) and the offset at which that line starts.
     counted: Cell<(usize, u32, usize)>,
 }
 
 impl Text {
-    pub(super) fn new(path: &Path, bytes: Vec<u8>) -> Rc<Self> {
+    pub(super) fn new(path: &Path, bytes: Reserved<Vec<u8>>) -> Rc<Self> {
         Rc::new(Self { whole: Location::file(path), bytes, counted: Cell::new((0, 1, 0)) })
     }
 
@@ -95,7 +96,7 @@ mod tests {
 
     #[test]
     fn lines_are_counted_forwards_and_backwards() {
-        let text = Text::new(Path::new("a"), "one\ntwö x\n\nfour".as_bytes().to_vec());
+        let text = Text::new(Path::new("a"), "one\ntwö x\n\nfour".as_bytes().to_vec().into());
         let at = |offset: usize| {
             let location = Place::new(&text, offset).location();
             (location.line, location.column)

@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     fn place() -> Place {
-        Place::new(&Text::new(Path::new("a"), Vec::new()), 0)
+        Place::new(&Text::new(Path::new("a"), Vec::new().into()), 0)
     }
 
     #[test]

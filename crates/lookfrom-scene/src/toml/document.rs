@@ -9,6 +9,14 @@ use crate::error::{Error, Location};
 /// Maximum number of errors recorded per file.
 const MOST_ERRORS: usize = 1000;
 
+/// Bytes of a value as the parser returns it, with the tokens from which it is made.
+const VALUE: u64 = 200;
+
+/// An estimate of the memory that parsing takes, from the signs without which there is no value.
+pub(super) fn memory(text: &[u8]) -> u64 {
+    text.iter().filter(|byte| matches!(byte, b',' | b'=' | b'[' | b'\n')).count() as u64 * VALUE
+}
+
 /// A file's text, its line starts, and the errors recorded so far.
 pub(super) struct Document {
     whole: Location,

@@ -31,6 +31,8 @@ impl Reader<'_, '_> {
         if count > self.context.limits.elements {
             return Err(too_many(table, count, self.context.limits.elements));
         }
+        // A vertex has a position, a normal and texture coordinates; a height before, and two triangles.
+        let _memory = self.context.budget.reserve(count / 2 * 64, "the terrain", &table.at())?;
         let mesh = terrain(image, size, height);
         self.mesh(table, mesh)
     }

@@ -20,6 +20,7 @@ impl Reader<'_, '_> {
                 .error("its corners are too far away to compute with")
                 .hint("use smaller numbers"));
         }
+        self.context.keep(mesh.bytes(), "the mesh", &table.at())?;
         self.scene.meshes.push(mesh);
         Ok(Geometry::Mesh(MeshId(self.scene.meshes.len() as u32 - 1)))
     }

@@ -24,6 +24,8 @@ impl Reader<'_, '_> {
         if self.flake_spheres > self.context.limits.elements {
             return Err(too_many(table, self.flake_spheres, self.context.limits.elements));
         }
+        let memory = composite::sphereflake_count(depth) * 2 * size_of::<Sphere>() as u64;
+        self.context.keep(memory, "the sphereflake", &table.at())?;
         let spheres = composite::sphereflake(center, radius, depth);
         if spheres.iter().all(|sphere| sphere.radius.is_normal() && sphere.center.is_finite()) {
             return Ok(Geometry::Spheres(Arc::from(spheres)));

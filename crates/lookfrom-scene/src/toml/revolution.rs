@@ -112,6 +112,7 @@ impl Reader<'_, '_> {
         if count > limit {
             return Err(too_many(table, count, limit));
         }
+        let _memory = self.context.budget.reserve(count * 56, "the mesh", &table.at())?;
         let mesh = Mesh { name: name.to_owned(), ..revolve(pieces, segments as u32) };
         Ok((self.mesh(table, mesh)?, own))
     }

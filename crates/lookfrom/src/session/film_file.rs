@@ -12,7 +12,7 @@ use std::path::Path;
 
 use lookfrom_scene::image::{ExrChannel, ExrHeader, ExrRows, write_exr};
 use lookfrom_scene::settings::{Background, ImageSettings, Layers, LightPathLayer, PixelBounds, Sensor};
-use lookfrom_scene::{Error, ErrorKind, Limits, Location, Result};
+use lookfrom_scene::{Budget, Error, ErrorKind, Limits, Location, Result};
 
 use super::provenance::{FORMAT, PREFIX, Provenance, Texts};
 use super::{Developed, Development, encode, finish, header};
@@ -39,8 +39,8 @@ impl FilmFile {
     ///
     /// # Errors
     /// `Syntax` where it is damaged; `Invalid` where it is no film, or of another version of the format; `Limit` where
-    /// it is too large.
-    pub fn read(bytes: &[u8], path: &Path) -> Result<Self> {
+    /// it is too large, or the budget for it and its picture too small.
+    pub fn read(bytes: &[u8], path: &Path, budget: &Budget) -> Result<Self> {
         let at = Location::file(path);
         let rows = ExrRows::open(bytes, &at, &Limits::default())?;
         let found = rows.header();
@@ -66,6 +66,8 @@ impl FilmFile {
             return Err(texts.damaged("film.area is not a part of the picture"));
         }
         let image = image_of(found, area);
+        let what = format!("a film of {} × {} pixels", image.width, image.height);
+        let _memory = budget.reserve(Film::memory(&image), &what, &at)?;
         let mut film = Film::for_image(&image).map_err(|error| Error { at: at.clone(), ..error })?;
         let place = |name: &String| {
             let place =

@@ -15,7 +15,7 @@ use lookfrom_scene::settings::{
 };
 use lookfrom_scene::studio::Viewpoint;
 use lookfrom_scene::{
-    Error, ErrorKind, Files, ImportOptions, LoadContext, Location, Result, Scene, Variables,
+    Budget, Error, ErrorKind, Files, ImportOptions, LoadContext, Location, Result, Scene, Variables,
 };
 
 use super::{Exposure, Format};
@@ -110,6 +110,8 @@ pub struct Options {
     pub format: Option<Format>,
     /// Number of threads; `None` is one per processor.
     pub threads: Option<usize>,
+    /// The memory for all that the session reads, compiles and renders: by default, what this machine has.
+    pub budget: Budget,
 }
 
 /// Treatment of fireflies, pixels that single samples make far too bright.
@@ -143,7 +145,7 @@ impl Options {
         LoadContext {
             import: self.import.clone(),
             variables: self.variables.clone(),
-            ..LoadContext::new(files)
+            ..LoadContext::within(&self.budget, files)
         }
     }
 

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use lookfrom_scene::budget::Reservation;
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::settings::RenderSettings;
 use lookfrom_scene::{Disk, Files, Memory, Result, load};
 
-use super::{Options, options, prepare};
+use super::{Options, memory, options, prepare};
 use crate::world::World;
 
 /// The source of a scene, with the options that it was prepared with.
@@ -22,11 +23,15 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// The same world with another camera at the origin of render space.
+    /// The same world with another camera at the origin of render space, and its memory.
     ///
     /// # Errors
     /// As [`Session::open`](super::Session::open); `Request` where the scene cannot be read again.
-    pub(super) fn world_around(&self, camera: &Camera, settings: &RenderSettings) -> Result<World> {
+    pub(super) fn world_around(
+        &self,
+        camera: &Camera,
+        settings: &RenderSettings,
+    ) -> Result<(World, Vec<Reservation>)> {
         let (path, files, options): (&Path, &dyn Files, &Options) = match self {
             Self::File(path, options) => (path, &Disk, options),
             Self::Bytes(path, files, options) => (path, &**files, options),
@@ -38,11 +43,12 @@ impl Source {
                 ));
             }
         };
-        let mut scene = load::scene(path, &mut options.context(files))?;
+        let mut context = options.context(files);
+        let mut scene = load::scene(path, &mut context)?;
         // Its warnings were given when the session was opened.
         prepare::prepare(&mut scene, path, options, &mut Vec::new())?;
         scene.camera = Some(camera.clone());
         scene.render = settings.clone();
-        World::compile(scene, &mut Vec::new())
+        memory::compile(scene, context.kept, &options.budget, path, &mut Vec::new())
     }
 }

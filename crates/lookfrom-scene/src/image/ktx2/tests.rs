@@ -4,10 +4,13 @@ use std::io::Write;
 use std::path::Path;
 
 use super::*;
+use crate::{Limits, Memory};
 
 fn run(bytes: &[u8]) -> Result<Pixels> {
     let limits = Limits { texels: 1 << 12, ..Limits::default() };
-    decode(bytes, &Location::file(Path::new("picture.ktx2")), &limits)
+    let files = Memory::default();
+    let context = LoadContext { limits, ..LoadContext::new(&files) };
+    decode(bytes, &Location::file(Path::new("picture.ktx2")), &context)
 }
 
 /// A file of 3 × 2 texels in this format and with this level.
