@@ -29,8 +29,8 @@ fn everything_that_is_read_counts() {
         "compare a.png a.png",
     ] {
         stage
-            .run(&format!("{command} --memory 1kb"))
-            .fails(1, &["of memory, but of the limit of 1000 bytes"]);
+            .run(&format!("{command} --memory 0.05kb"))
+            .fails(1, &["of memory, but of the limit of 50 bytes"]);
         stage.done(&format!("{command} --memory 1GiB"));
     }
     stage.run("info model.obj --memory 12").fails(2, &["expected a size with its unit"]);
