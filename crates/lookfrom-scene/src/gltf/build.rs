@@ -87,7 +87,7 @@ fn size(aspect: f64, most: u32) -> (u32, u32) {
 /// Reads everything; images are decoded last, in parallel.
 pub(super) fn model(document: &Document, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Model> {
     let Pose { local, weights } = pose::pose(document, context)?;
-    let tree = Tree::new(document, &local, context)?;
+    let tree = Tree::new(document, local, context)?;
     let cameras = Cameras::new(document, &tree)?;
     let variant = match (&context.import.variant, &document.root.extensions.variants) {
         (None, _) => None,
@@ -150,7 +150,7 @@ struct Builder<'b, 'd, 'f> {
     /// The primitives of each mesh used so far.
     pieces: BTreeMap<Form, Vec<Piece>>,
     /// Morph weights of nodes that override those of the mesh.
-    weights: Vec<Option<Vec<f64>>>,
+    weights: BTreeMap<usize, Vec<f64>>,
     variant: Option<usize>,
     model: Model,
 }
@@ -178,7 +178,7 @@ impl Builder<'_, '_, '_> {
         }
         for &node in &tree.shown {
             let Some(form) = self.form(node) else { continue };
-            let skin = match nodes[node].skin {
+            let skin = match nodes[node].skin.as_deref().copied() {
                 Some(index) => {
                     if let Entry::Vacant(place) = skins.entry(index.index()) {
                         place.insert(Skin::new(self.document, index, &format!("/nodes/{node}/skin"), tree)?);
@@ -188,9 +188,9 @@ impl Builder<'_, '_, '_> {
                 None => None,
             };
             let pieces = self.mesh(form, skin, &format!("/nodes/{node}/mesh"))?;
-            let world_from_node = tree.world_from_node[node];
+            let world_from_node = tree.world_from_node(node);
             let name = nodes[node].name.clone().or_else(|| self.document.root.meshes[form.mesh].name.clone());
-            if let Some(instancing) = &nodes[node].extensions.instancing {
+            if let Some(instancing) = nodes[node].instancing() {
                 let places = self.places(instancing, node)?;
                 let object = *objects.entry(form).or_insert_with(|| self.object(&name, &pieces));
                 let world_from_node = if skin.is_some() { DMat4::IDENTITY } else { world_from_node };
@@ -226,7 +226,7 @@ impl Builder<'_, '_, '_> {
             let primitives = root.meshes.get(index).map_or(&[][..], |mesh| &mesh.primitives);
             primitives.iter().any(|primitive| !primitive.targets.is_empty())
         };
-        let is_own = root.nodes[node].skin.is_some() || (self.weights[node].is_some() && has_targets());
+        let is_own = root.nodes[node].skin.is_some() || (self.weights.contains_key(&node) && has_targets());
         Some(Form { mesh: index, node: is_own.then_some(node) })
     }
 
@@ -238,7 +238,7 @@ impl Builder<'_, '_, '_> {
             return Ok(pieces.clone());
         }
         let name = mesh.name.clone().unwrap_or_else(|| format!("mesh {}", form.mesh));
-        let weights = form.node.and_then(|node| self.weights[node].clone());
+        let weights = form.node.and_then(|node| self.weights.get(&node).cloned());
         let weights = weights.or_else(|| mesh.weights.clone()).unwrap_or_default();
         let mut pieces = Vec::new();
         for (place, primitive) in mesh.primitives.iter().enumerate() {

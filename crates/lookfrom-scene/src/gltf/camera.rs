@@ -34,7 +34,7 @@ impl<'d> Cameras<'d> {
     pub(super) fn new(document: &'d Document, tree: &Tree) -> Result<Self> {
         let mut placed = Vec::new();
         for &node in &tree.shown {
-            if let Some(index) = document.root.nodes[node].camera {
+            if let Some(index) = document.root.nodes[node].camera.as_deref().copied() {
                 let asked = format!("/nodes/{node}/camera");
                 document.one_of(&document.root.cameras, index, "camera", &asked)?;
                 placed.push((node, index.index()));
@@ -91,7 +91,7 @@ pub(super) fn eye(cameras: &Cameras<'_>, tree: &Tree, context: &mut LoadContext<
         context.warn(&at, "the camera's values are invalid; the scene is framed without it");
         return Ok(None);
     };
-    let Some(matrix) = world_from_camera(&tree.world_from_node[node]) else {
+    let Some(matrix) = world_from_camera(&tree.world_from_node(node)) else {
         context.warn(&at, "the camera's node has a degenerate transform; the scene is framed without it");
         return Ok(None);
     };

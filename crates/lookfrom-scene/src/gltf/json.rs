@@ -48,8 +48,8 @@ impl<'de> Deserialize<'de> for Whole {
     }
 }
 
-/// Bytes of an object of the file as it is parsed: of a node, of which there may be millions.
-const OBJECT: u64 = size_of::<Node>() as u64;
+/// Bytes of an object of the file: of a node, of which there may be millions, with its place in the hierarchy.
+const OBJECT: u64 = size_of::<Node>() as u64 + 140;
 
 /// An estimate of the memory that parsing takes.
 pub(crate) fn memory(text: &[u8]) -> u64 {
@@ -167,23 +167,41 @@ pub(crate) struct Scene {
     pub(crate) nodes: Vec<Whole>,
 }
 
+/// There may be millions: what most nodes have not is elsewhere.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Node {
     pub(crate) name: Option<String>,
     #[serde(default, deserialize_with = "list")]
     pub(crate) children: Vec<Whole>,
     /// In column-major order.
-    pub(crate) matrix: Option<[f64; 16]>,
-    pub(crate) translation: Option<[f64; 3]>,
+    pub(crate) matrix: Option<Box<[f64; 16]>>,
+    pub(crate) translation: Option<Box<[f64; 3]>>,
     /// x, y, z, w.
-    pub(crate) rotation: Option<[f64; 4]>,
-    pub(crate) scale: Option<[f64; 3]>,
+    pub(crate) rotation: Option<Box<[f64; 4]>>,
+    pub(crate) scale: Option<Box<[f64; 3]>>,
     pub(crate) mesh: Option<Whole>,
-    pub(crate) camera: Option<Whole>,
-    pub(crate) skin: Option<Whole>,
-    pub(crate) weights: Option<Vec<f64>>,
-    #[serde(default, deserialize_with = "or_default")]
-    pub(crate) extensions: NodeExtensions,
+    pub(crate) camera: Option<Box<Whole>>,
+    pub(crate) skin: Option<Box<Whole>>,
+    pub(crate) weights: Option<Box<[f64]>>,
+    extensions: Option<Box<NodeExtensions>>,
+}
+
+impl Node {
+    /// The light that it places.
+    pub(crate) fn light(&self) -> Option<&LightIndex> {
+        self.extensions.as_ref()?.light.as_ref()
+    }
+
+    /// The places of its mesh, where it has several.
+    pub(crate) fn instancing(&self) -> Option<&Instancing> {
+        self.extensions.as_ref()?.instancing.as_ref()
+    }
+
+    /// Whether it and its children can be seen.
+    pub(crate) fn is_visible(&self) -> bool {
+        let visibility = self.extensions.as_ref().and_then(|extensions| extensions.visibility.as_ref());
+        visibility.and_then(|visibility| visibility.visible).unwrap_or(true)
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]

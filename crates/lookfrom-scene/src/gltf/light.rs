@@ -22,11 +22,11 @@ pub(super) fn lights(document: &Document, tree: &Tree, context: &mut LoadContext
     let known = document.root.extensions.lights.as_ref().map_or(&[][..], |lights| &lights.lights);
     let mut lights = Vec::new();
     for &node in &tree.shown {
-        let Some(used) = &document.root.nodes[node].extensions.light else { continue };
+        let Some(used) = document.root.nodes[node].light() else { continue };
         let pointer = format!("/nodes/{node}/extensions/KHR_lights_punctual/light");
         let light = document.one_of(known, used.light, "light", &pointer)?;
         let at = document.at(&format!("/extensions/KHR_lights_punctual/lights/{}", used.light.0));
-        match kind(light, &tree.world_from_node[node]) {
+        match kind(light, &tree.world_from_node(node)) {
             Some(kind) => {
                 let name = light.name.clone().or_else(|| document.root.nodes[node].name.clone());
                 lights.push(Light { name, at, kind, power: Power::AS_WRITTEN });

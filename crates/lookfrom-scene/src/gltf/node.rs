@@ -1,6 +1,6 @@
 //! Node hierarchy and world transforms (specification, §3.5).
 
-use glam::{DMat4, DQuat, DVec3, DVec4};
+use glam::{DAffine3, DMat4, DQuat, DVec3, DVec4};
 
 use super::choose::choose;
 use super::file::Document;
@@ -10,8 +10,8 @@ use crate::files::LoadContext;
 
 /// The hierarchy of a file's nodes.
 pub(crate) struct Tree {
-    /// The world transform of each node, including unreachable ones.
-    pub(crate) world_from_node: Vec<DMat4>,
+    /// The world transform of each node, including unreachable ones: without the last row, which is that of all.
+    world_from_node: Vec<DAffine3>,
     /// The nodes of the scene, parents before their children.
     pub(crate) shown: Vec<usize>,
     /// The index of the scene, if the file has any.
@@ -21,17 +21,28 @@ pub(crate) struct Tree {
 impl Node {
     /// The local transform at rest.
     pub(crate) fn at_rest(&self) -> DMat4 {
-        if let Some(matrix) = self.matrix {
-            let mut matrix = DMat4::from_cols_array(&matrix);
+        if let Some(matrix) = &self.matrix {
+            let mut matrix = DMat4::from_cols_array(matrix);
             // The last row of an affine transform.
             for (axis, w) in [(0, 0.0), (1, 0.0), (2, 0.0), (3, 1.0)] {
                 matrix.col_mut(axis).w = w;
             }
             return matrix;
         }
-        let translation = self.translation.map_or(DVec3::ZERO, DVec3::from_array);
-        let scale = self.scale.map_or(DVec3::ONE, DVec3::from_array);
-        placed(translation, self.rotation.map_or(DVec4::W, DVec4::from_array), scale)
+        placed(self.translation(), self.rotation(), self.scale())
+    }
+
+    pub(crate) fn translation(&self) -> DVec3 {
+        self.translation.as_deref().copied().map_or(DVec3::ZERO, DVec3::from_array)
+    }
+
+    /// x, y, z, w.
+    pub(crate) fn rotation(&self) -> DVec4 {
+        self.rotation.as_deref().copied().map_or(DVec4::W, DVec4::from_array)
+    }
+
+    pub(crate) fn scale(&self) -> DVec3 {
+        self.scale.as_deref().copied().map_or(DVec3::ONE, DVec3::from_array)
     }
 }
 
@@ -46,20 +57,38 @@ fn is_within_reach(matrix: &DMat4) -> bool {
     matrix.to_cols_array().iter().all(|&number| (number as f32).is_finite())
 }
 
+/// A transform without its last row, which is 0, 0, 0, 1.
+pub(crate) fn affine(matrix: &DMat4) -> DAffine3 {
+    let [x, y, z, w] = [matrix.x_axis, matrix.y_axis, matrix.z_axis, matrix.w_axis].map(DVec4::truncate);
+    DAffine3::from_cols(x, y, z, w)
+}
+
 impl Tree {
+    /// The world transform of a node.
+    ///
+    /// # Panics
+    /// If there is no such node.
+    pub(crate) fn world_from_node(&self, node: usize) -> DMat4 {
+        self.world_from_node[node].into()
+    }
+
     /// The hierarchy of the nodes, with one local transform for each.
     ///
     /// # Errors
     /// If a node is its own ancestor, or if a child, a node of the scene or the requested scene does not exist.
-    pub(crate) fn new(document: &Document, local: &[DMat4], context: &mut LoadContext<'_>) -> Result<Self> {
+    pub(crate) fn new(
+        document: &Document,
+        local: Vec<DAffine3>,
+        context: &mut LoadContext<'_>,
+    ) -> Result<Self> {
         let nodes = &document.root.nodes;
-        let mut parents: Vec<Option<usize>> = vec![None; nodes.len()];
+        let mut parents: Vec<Option<u32>> = vec![None; nodes.len()];
         for (index, node) in nodes.iter().enumerate() {
             for (place, &child) in node.children.iter().enumerate() {
                 let pointer = || format!("/nodes/{index}/children/{place}");
                 let slot = parents.get_mut(child.index());
                 match slot {
-                    Some(parent @ None) => *parent = Some(index),
+                    Some(parent @ None) => *parent = Some(index as u32),
                     Some(Some(first)) => {
                         let message =
                             format!("node {} is already a child of node {first}, and stays there", child.0);
@@ -73,14 +102,16 @@ impl Tree {
         }
 
         // Top-down from the roots; nodes that are not reached form cycles.
-        let is_child = |parent: usize, child: usize| parents.get(child).is_some_and(|&p| p == Some(parent));
-        let mut world_from_node = vec![DMat4::IDENTITY; nodes.len()];
+        let is_child =
+            |parent: usize, child: usize| parents.get(child).is_some_and(|&p| p == Some(parent as u32));
+        let mut world_from_node = local;
         let mut is_met = vec![false; nodes.len()];
         let mut waiting: Vec<usize> = (0..nodes.len()).filter(|&node| parents[node].is_none()).collect();
         while let Some(node) = waiting.pop() {
             is_met[node] = true;
-            let parent = parents[node].map_or(DMat4::IDENTITY, |parent| world_from_node[parent]);
-            world_from_node[node] = parent * local[node];
+            let parent =
+                parents[node].map_or(DMat4::IDENTITY, |parent| world_from_node[parent as usize].into());
+            world_from_node[node] = affine(&(parent * DMat4::from(world_from_node[node])));
             let children = nodes[node].children.iter().map(|child| child.index());
             waiting.extend(children.filter(|&child| is_child(node, child) && !is_met[child]));
         }
@@ -96,10 +127,8 @@ impl Tree {
         let mut shown = Vec::new();
         let mut is_shown = vec![false; nodes.len()];
         while let Some(node) = waiting.pop() {
-            let is_visible =
-                nodes[node].extensions.visibility.as_ref().and_then(|v| v.visible).unwrap_or(true);
-            if is_visible && !std::mem::replace(&mut is_shown[node], true) {
-                if is_within_reach(&world_from_node[node]) {
+            if nodes[node].is_visible() && !std::mem::replace(&mut is_shown[node], true) {
+                if is_within_reach(&world_from_node[node].into()) {
                     shown.push(node);
                 } else {
                     let message =
@@ -116,7 +145,7 @@ impl Tree {
     /// The index of the scene and its root nodes; all nodes without a parent if the file has no scene.
     fn roots(
         document: &Document,
-        parents: &[Option<usize>],
+        parents: &[Option<u32>],
         context: &LoadContext<'_>,
     ) -> Result<(Option<usize>, Vec<usize>)> {
         let root = &document.root;

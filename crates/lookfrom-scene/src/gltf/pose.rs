@@ -3,12 +3,14 @@
 //! [`LoadContext::import`] selects the animation and the time. Channels of extensions (`KHR_animation_pointer`) are
 //! ignored with a warning.
 
-use glam::{DMat4, DVec3, DVec4};
+use std::collections::BTreeMap;
+
+use glam::{DAffine3, DVec3, DVec4};
 
 use super::choose::choose;
 use super::file::Document;
 use super::json::{AnimationSampler, Node, Whole};
-use super::node::placed;
+use super::node::{affine, placed};
 use super::track::{Interpolation, Track};
 use crate::error::Result;
 use crate::files::LoadContext;
@@ -16,9 +18,9 @@ use crate::files::LoadContext;
 /// The pose of all nodes.
 pub(crate) struct Pose {
     /// Transform of each node relative to its parent.
-    pub(crate) local: Vec<DMat4>,
+    pub(crate) local: Vec<DAffine3>,
     /// Morph target weights of each node, where the node or the animation gives any.
-    pub(crate) weights: Vec<Option<Vec<f64>>>,
+    pub(crate) weights: BTreeMap<usize, Vec<f64>>,
 }
 
 /// The local transform of a node: translation, rotation and scale.
@@ -40,11 +42,7 @@ impl Placement {
                 return Self { translation, rotation: rotation.into(), scale };
             }
         }
-        Self {
-            translation: node.translation.map_or(DVec3::ZERO, DVec3::from_array),
-            rotation: node.rotation.map_or(DVec4::W, DVec4::from_array),
-            scale: node.scale.map_or(DVec3::ONE, DVec3::from_array),
-        }
+        Self { translation: node.translation(), rotation: node.rotation(), scale: node.scale() }
     }
 }
 
@@ -55,8 +53,12 @@ impl Placement {
 pub(crate) fn pose(document: &Document, context: &mut LoadContext<'_>) -> Result<Pose> {
     let nodes = &document.root.nodes;
     let mut pose = Pose {
-        local: nodes.iter().map(Node::at_rest).collect(),
-        weights: nodes.iter().map(|node| node.weights.clone()).collect(),
+        local: nodes.iter().map(|node| affine(&node.at_rest())).collect(),
+        weights: nodes
+            .iter()
+            .enumerate()
+            .filter_map(|(index, node)| Some((index, node.weights.as_deref()?.to_vec())))
+            .collect(),
     };
     if let Some(animation) = chosen(document, context)? {
         animate(document, animation, &mut pose, context)?;
@@ -88,7 +90,7 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, context: &mut Loa
     let root = &document.root;
     let animation = &root.animations[index];
     let time = context.import.at.unwrap_or(0.0);
-    let mut placements: Vec<Option<Placement>> = vec![None; root.nodes.len()];
+    let mut placements: BTreeMap<usize, Placement> = BTreeMap::new();
     for (place, channel) in animation.channels.iter().enumerate() {
         let pointer = format!("/animations/{index}/channels/{place}");
         let sampler = document.one_of(
@@ -124,24 +126,24 @@ fn animate(document: &Document, index: usize, pose: &mut Pose, context: &mut Loa
             );
             continue;
         };
-        let placement = || placements[target].unwrap_or_else(|| Placement::at_rest(node));
+        let placement = placements.get(&target).copied().unwrap_or_else(|| Placement::at_rest(node));
         match (channel.target.path.as_str(), numbers.as_slice()) {
             ("translation", &[x, y, z]) => {
-                placements[target] = Some(Placement { translation: DVec3::new(x, y, z), ..placement() });
+                placements.insert(target, Placement { translation: DVec3::new(x, y, z), ..placement });
             }
             ("scale", &[x, y, z]) => {
-                placements[target] = Some(Placement { scale: DVec3::new(x, y, z), ..placement() });
+                placements.insert(target, Placement { scale: DVec3::new(x, y, z), ..placement });
             }
             ("rotation", &[x, y, z, w]) => {
-                placements[target] = Some(Placement { rotation: DVec4::new(x, y, z, w), ..placement() });
+                placements.insert(target, Placement { rotation: DVec4::new(x, y, z, w), ..placement });
             }
-            _ => pose.weights[target] = Some(numbers),
+            _ => {
+                pose.weights.insert(target, numbers);
+            }
         }
     }
-    for (local, placement) in pose.local.iter_mut().zip(placements) {
-        if let Some(Placement { translation, rotation, scale }) = placement {
-            *local = placed(translation, rotation, scale);
-        }
+    for (node, Placement { translation, rotation, scale }) in placements {
+        pose.local[node] = affine(&placed(translation, rotation, scale));
     }
     Ok(())
 }

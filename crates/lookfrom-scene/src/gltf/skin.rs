@@ -50,7 +50,7 @@ impl Skin {
                     matrix.col_mut(axis).w = w;
                 }
             }
-            joints.push(tree.world_from_node[joint.index()] * matrix);
+            joints.push(tree.world_from_node(joint.index()) * matrix);
         }
         Ok(Self::of(joints))
     }

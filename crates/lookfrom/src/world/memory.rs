@@ -12,8 +12,8 @@ const TRIANGLE: u64 = 165;
 const PRIMITIVE: u64 = 160;
 /// Bytes of a shape, apart from its primitives, with its name and its binding to a material.
 const SHAPE: u64 = 600;
-/// Bytes of an instance.
-const INSTANCE: u64 = 700;
+/// Bytes of an instance, and what building the tree over it takes.
+const INSTANCE: u64 = 1300;
 /// Bytes of a primitive that emits light: the light, and its part of the light tree.
 const LIGHT: u64 = 160;
 
