@@ -3,6 +3,7 @@
 //! A [`scene::Scene`] is a scene as it was written. It keeps names and locations, is validated as far as a file can be
 //! validated by itself, and is independent of rendering. Start reading at [`scene`].
 
+pub mod atmosphere;
 pub mod budget;
 pub mod camera;
 pub mod contents;

@@ -7,6 +7,7 @@
 
 mod camera;
 mod chain;
+mod clear_sky;
 mod color;
 mod color_names;
 mod composite;

@@ -56,6 +56,21 @@ pub(super) const KEYS: Kinds = &[
             "illuminates",
         ],
     ),
+    (
+        "sun_and_sky",
+        &[
+            "elevation",
+            "azimuth",
+            "from",
+            "turbidity",
+            "albedo",
+            "sun",
+            "scale",
+            "illuminance",
+            "portal",
+            "illuminates",
+        ],
+    ),
 ];
 /// The words for the falloff with distance.
 pub(super) const FALLOFFS: &[(&str, Falloff)] =
@@ -92,6 +107,7 @@ impl Reader<'_, '_> {
             "projection" => self.projection(table)?,
             "goniometric" => self.goniometric(table),
             "environment" => self.environment(table)?,
+            "sun_and_sky" => self.sun_and_sky(table)?,
             _ => return self.read_lamp(word, table, name),
         };
         self.scene.lights.push(Light { name, at: table.at(), kind, power });

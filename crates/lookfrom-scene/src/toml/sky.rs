@@ -87,7 +87,7 @@ pub(super) fn up_from_pole() -> DMat4 {
 }
 
 /// The corners of a rectangle, in order around it.
-fn portal(value: Value<'_>) -> Result<[DVec3; 4]> {
+pub(super) fn portal(value: Value<'_>) -> Result<[DVec3; 4]> {
     let mut corners = [DVec3::ZERO; 4];
     for (corner, item) in
         corners.iter_mut().zip(value.list_of::<4>("four points, the corners of an opening")?)

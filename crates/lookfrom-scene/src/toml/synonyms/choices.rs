@@ -30,6 +30,7 @@ pub(super) const CHOICES: &[(&[&str], &[&str], &str)] = &[
         "",
     ),
     (&["constant", "uniform"], &["environment", "ambient"], ""),
+    (&["sunsky", "daylight", "clearsky", "nishita", "hosek", "preetham"], &["sun_and_sky"], ""),
     (&["ies", "goniophotometric", "photometric"], &["goniometric"], ""),
     (&["projector", "slide"], &["projection"], ""),
     (&["rect", "quad", "square", "plane"], &["rectangle"], ""),
