@@ -79,6 +79,9 @@ fn the_snippets_of_the_guide_are_read() {
         for file in ["images/tiles.png", "models/knot.obj", "models/star.ply", "textures.toml"] {
             files.0.insert(file.into(), std::fs::read(root.join("scenes").join(file)).expect("our own file"));
         }
+        let font = std::fs::read(root.join("docs/guide/scenes/parts/letters.ttf")).expect("our own font");
+        files.0.insert("letters.ttf".into(), font);
+        files.0.insert("jack.obj".into(), b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n".to_vec());
         let fox = r#"{"asset": {"version": "2.0"}, "animations": [{"name": "Run", "channels": [], "samplers": []}]}"#;
         files.0.insert("fox.glb".into(), fox.into());
         // Names that other snippets give.

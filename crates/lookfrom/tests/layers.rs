@@ -14,7 +14,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("vector", &[]),
     ("elementary", &[]),
     ("optics", &["vector"]),
-    ("math", &["optics"]),
+    ("math", &["elementary", "optics"]),
     ("spectrum", &[]),
     ("statistics", &[]),
     ("lanes", &["spectrum", "vector"]),

@@ -62,7 +62,7 @@ fn with_and_without_the_feature_parallel() {
     };
     assert_eq!(
         ["glass-and-mirror.toml", "soft-shadows.toml"].map(hash),
-        [0x348d_c841_67ed_9180, 0xdacc_0b71_9cbf_9352]
+        [0xea69_82ec_1241_cf64, 0x8e7d_90eb_7598_d7a6]
     );
 }
 

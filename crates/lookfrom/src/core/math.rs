@@ -4,6 +4,7 @@ use glam::{DMat4, DVec3, Vec3};
 use lookfrom_bvh::Affine;
 use lookfrom_simd::{Float, Real};
 
+pub(crate) use crate::core::elementary::power;
 use crate::core::optics;
 
 /// [`optics::reflect`] of one direction.

@@ -8,8 +8,8 @@ use super::arriving::{Arriving, Ends};
 use super::branches::Branches;
 use super::plain::PlainHit;
 use super::surfaces::Surfaces;
-use crate::core::elementary;
 use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64, scatter_spectrum};
+use crate::core::math;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::{Branch, Path, Probe, SampleStream, Shadow, StepOutput, Term};
@@ -216,7 +216,7 @@ impl Kernel for PlainKernel<'_> {
             }
             let mut reflected = diffuse * n_dot_l;
             if has_highlights {
-                reflected = reflected + specular * elementary::power(cos, shininess);
+                reflected = reflected + specular * math::power(cos, shininess);
             }
             let contribution = beta * reflected * li;
             lit &= !contribution.is_black();

@@ -17,7 +17,6 @@
 use glam::Vec3;
 
 use super::kind::Whitted;
-use crate::core::elementary;
 use crate::core::math;
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
@@ -89,7 +88,7 @@ impl Coefficients {
             Spectrum::BLACK
         } else {
             let h = (wo + wi).normalize_or_zero();
-            self.specular * elementary::power(n.dot(h).max(0.0), self.shininess)
+            self.specular * math::power(n.dot(h).max(0.0), self.shininess)
         };
         (self.diffuse * n_dot_l, specular)
     }
