@@ -156,7 +156,7 @@ impl Cage {
             cage = cage.refined_once();
         }
         let limit = limit::Limit::of(&cage);
-        let single = |points: Vec<DVec3>| points.into_iter().map(|point| point.as_vec3()).collect();
+        let single = |points: Vec<DVec3>| points.into_iter().map(DVec3::as_vec3).collect();
         let Self { corners, tags, values, .. } = cage;
         Refined { positions: single(limit.positions), normals: single(limit.normals), corners, tags, values }
     }

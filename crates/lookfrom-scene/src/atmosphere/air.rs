@@ -150,11 +150,12 @@ fn rayleigh_thickness(nm: f64) -> f64 {
     0.008_569 * squared(inverse_square) * (1.0 + (0.011_3 + 0.000_13 * inverse_square) * inverse_square)
 }
 
-/// The cross-section of ozone in its Chappuis band, in cm², rounded.
+/// The cross-section of ozone in its Chappuis band, in cm²: measurements at 233 K (Bogumil et al. 2003), rounded.
 fn ozone_cross_section(nm: f64) -> f64 {
     /// In 10⁻²¹ cm², from 380 to 740 nm.
-    const EVERY_20_NM: [f64; 19] =
-        [0.0, 0.01, 0.03, 0.14, 0.36, 0.7, 1.2, 1.8, 2.8, 3.9, 4.6, 5.1, 3.9, 2.7, 2.0, 1.3, 0.85, 0.55, 0.4];
+    const EVERY_20_NM: [f64; 19] = [
+        0.0, 0.02, 0.06, 0.16, 0.37, 0.78, 1.5, 2.1, 3.1, 4.3, 4.4, 5.0, 3.7, 2.7, 1.9, 1.2, 0.75, 0.51, 0.42,
+    ];
     let place = ((nm - 380.0) / 20.0).clamp(0.0, 18.0);
     let below = (place as usize).min(17);
     let t = place - below as f64;

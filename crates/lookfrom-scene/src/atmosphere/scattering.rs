@@ -117,9 +117,9 @@ fn gather(air: &Air, albedo: f64, r: f64, view: DVec3, sun: DVec3) -> Gathered {
     let passed = march(air, r, view.z, length, TABLE_STEPS, |step| {
         let up = (origin + step.distance * view) / step.r;
         let sunlight = air.sunlight(step.r, up.dot(sun));
-        for i in 0..COUNT {
+        for (i, sunlight) in sunlight.into_iter().enumerate() {
             let scattered = step.weight[i] * (step.scattering[0][i] + step.scattering[1][i]);
-            gathered.once[i] += scattered * sunlight[i] / (4.0 * PI);
+            gathered.once[i] += scattered * sunlight / (4.0 * PI);
             gathered.again[i] += scattered;
         }
     });

@@ -79,7 +79,7 @@ pub(super) fn cage(mesh: &Mesh) -> Cage {
     let of_vertex = |vertex: u32| {
         let vertex = vertex as usize;
         let uvs = [&mesh.uvs].into_iter().chain(&mesh.more_uvs).filter_map(move |uvs| uvs.get(vertex));
-        let uvs = uvs.flat_map(|uv| uv.to_array());
+        let uvs = uvs.flat_map(Vec2::to_array);
         uvs.chain(mesh.colors.get(vertex).into_iter().flatten().copied())
             .chain(mesh.opacities.get(vertex).copied())
     };

@@ -216,7 +216,7 @@ impl Kernel for PlainKernel<'_> {
             }
             let mut reflected = diffuse * n_dot_l;
             if has_highlights {
-                reflected = reflected + specular * math::power(cos, shininess);
+                reflected += specular * math::power(cos, shininess);
             }
             let contribution = beta * reflected * li;
             lit &= !contribution.is_black();
