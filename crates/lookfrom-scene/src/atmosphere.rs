@@ -2,7 +2,7 @@
 //!
 //! Air scatters by Rayleigh's law, aerosol by Cornette and Shanks's (1992), ozone absorbs; the Earth is a sphere. Light that
 //! is scattered once is integrated along each direction, all further scattering as by Hillaire, "A Scalable and Production
-//! Ready Sky and Atmosphere Rendering Technique" (2020), both at [`bands::COUNT`] wavelengths. The observer stands on the
+//! Ready Sky and Atmosphere Rendering Technique" (2020), both at sixteen wavelengths. The observer stands on the
 //! ground; refraction, clouds and the stars are left out.
 
 mod air;

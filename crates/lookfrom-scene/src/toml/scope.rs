@@ -1,6 +1,6 @@
 //! The values of a file that are written with variables.
 //!
-//! A text that begins with `=` is an [expression](super::expression), a table with `keyframes` a value that changes with
+//! A text that begins with `=` is an [expression], a table with `keyframes` a value that changes with
 //! time. Before a file is decoded both are replaced by their values, so that no decoder knows of them.
 
 use std::cell::RefCell;
