@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use lookfrom_scene::files::{Limits, Memory};
 use lookfrom_scene::shape::{Geometry, Mesh, Part};
-use lookfrom_scene::{Result, Scene, LoadContext};
+use lookfrom_scene::{LoadContext, Result, Scene};
 
 /// A reader of models.
 pub type Reader = fn(&Path, &mut LoadContext<'_>, &mut Scene) -> Result<Vec<Part>>;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use lookfrom::session::FilmFile;
+use lookfrom_scene::budget::Budget;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     // A film with a wrong checksum is refused at once: this one gets the right one.
@@ -16,10 +17,12 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
             bytes[digits].copy_from_slice(checksum.as_bytes());
         }
     }
-    if let Ok(film) = FilmFile::read(&bytes, Path::new("a.exr")) {
+    if let Ok(film) = FilmFile::read(&bytes, Path::new("a.exr"), &Budget::new(64 << 20)) {
         let area = film.film.area();
         assert!(area.x0 < area.x1 && area.x1 <= film.film.width());
-        assert!(film.film.ledger().bounds().is_none_or(|bounds| bounds.x1 <= area.x1 && bounds.y1 <= area.y1));
+        assert!(
+            film.film.ledger().bounds().is_none_or(|bounds| bounds.x1 <= area.x1 && bounds.y1 <= area.y1)
+        );
         let _ = film.film.picture();
     }
 });

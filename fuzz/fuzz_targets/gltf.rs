@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Memory, LoadContext, gltf};
+use lookfrom_scene::{LoadContext, Memory, gltf};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let files = Memory([(PathBuf::from("a.glb"), bytes.to_vec())].into());

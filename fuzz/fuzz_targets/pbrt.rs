@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Memory, LoadContext, pbrt};
+use lookfrom_scene::{LoadContext, Memory, pbrt};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let files = Memory([(PathBuf::from("a.pbrt"), bytes.to_vec())].into());

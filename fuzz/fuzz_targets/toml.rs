@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Memory, LoadContext, toml};
+use lookfrom_scene::{LoadContext, Memory, toml};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let files = Memory([(PathBuf::from("a.toml"), bytes.to_vec())].into());
