@@ -65,15 +65,15 @@ await copy.remove();
 if (process.env.LOOKFROM_SHARED) {
     const scene = join(process.env.LOOKFROM_SHARED, "scenes/veach-bidir/scene.pbrt");
     await at(scene, ["--samples", "32"], [1280, 800], async (page, keep) => {
-        await inspect(page, 145, 83);
+        await inspect(page, 81, 47);
         await settle(page);
         await keep("firefly-1");
         await page.locator('.scatter circle.selected').click();
         await settle(page, "#sample-summary");
         await keep("firefly-2");
-        await page.locator("#ray-5 > .ray").click();
+        await page.locator("#ray-8 > .ray").click();
         await settle(page, "#tree");
-        await page.locator("#equations details", { hasText: "Goes on by" }).last().evaluate((element) => element.scrollIntoView({ block: "end" }));
+        await page.locator("#equations details", { hasText: "Light that it hits" }).last().evaluate((element) => element.scrollIntoView({ block: "end" }));
         await keep("firefly-3");
     });
 }
