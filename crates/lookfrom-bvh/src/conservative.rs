@@ -264,10 +264,22 @@ impl<S: Simd> TriangleLanes<S> {
         Self { corners, extent: Lanes::splat(simd, block.extent(lane)) }
     }
 
+    /// What the test needs of the triangles alone.
+    #[inline(always)]
+    pub(crate) fn edges(&self) -> TriangleEdges<S> {
+        let ([a, b, c], extent) = (self.corners, self.extent);
+        let e = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+        let f = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
+        let normal = [
+            e[1].mul_sub(f[2], e[2] * f[1]),
+            e[2].mul_sub(f[0], e[0] * f[2]),
+            e[0].mul_sub(f[1], e[1] * f[0]),
+        ];
+        TriangleEdges { corner: a, edges: [e, f], normal, extent }
+    }
+
     /// Lane by lane, whether the ray may hit the triangle between its `t_min` and an end, and whether
     /// it surely does.
-    ///
-    /// Möller, Trumbore (1997), "Fast, Minimum Storage Ray/Triangle Intersection", without the division.
     #[inline(always)]
     pub(crate) fn test_conservatively(
         &self,
@@ -275,16 +287,44 @@ impl<S: Simd> TriangleLanes<S> {
         ray: &RayLanes<S>,
         t_max: Lanes<S>,
     ) -> ConservativeTest<S> {
-        let ([[ax, ay, az], [bx, by, bz], [gx, gy, gz]], extent) = (self.corners, self.extent);
-        let [dx, dy, dz] = ray.direction;
+        let edges = self.edges();
+        edges.test_range(simd, ray, t_max, &edges.test_sides(ray))
+    }
+}
 
-        // The edges, the vector from the origin to the first corner, and the normal.
-        let (ex, ey, ez) = (bx - ax, by - ay, bz - az);
-        let (fx, fy, fz) = (gx - ax, gy - ay, gz - az);
-        let (cx, cy, cz) = (ax - ray.origin[0], ay - ray.origin[1], az - ray.origin[2]);
-        let nx = ey.mul_sub(fz, ez * fy);
-        let ny = ez.mul_sub(fx, ex * fz);
-        let nz = ex.mul_sub(fy, ey * fx);
+/// Triangles by their first corner, the edges from it, and their cross product.
+#[derive(Clone, Copy)]
+pub(crate) struct TriangleEdges<S: Simd> {
+    corner: [Lanes<S>; 3],
+    edges: [[Lanes<S>; 3]; 2],
+    normal: [Lanes<S>; 3],
+    extent: Lanes<S>,
+}
+
+/// On which sides of a triangle's edges a ray's line passes.
+pub(crate) struct Sides<S: Simd> {
+    /// The vector from the origin to the first corner, and its largest component, rounding included.
+    way: [Lanes<S>; 3],
+    reach: Lanes<S>,
+    /// The sum of the edge functions.
+    determinant: Lanes<S>,
+    /// The least and the greatest of the edge functions, and the bound of their errors.
+    least: Lanes<S>,
+    most: Lanes<S>,
+    bound: Lanes<S>,
+    /// The lines that surely pass outside.
+    pub(crate) outside: mask32x8<S>,
+}
+
+/// Möller, Trumbore (1997), "Fast, Minimum Storage Ray/Triangle Intersection", without the division.
+impl<S: Simd> TriangleEdges<S> {
+    /// The first part of the test: the edge functions.
+    #[inline(always)]
+    pub(crate) fn test_sides(&self, ray: &RayLanes<S>) -> Sides<S> {
+        let Self { corner, edges: [[ex, ey, ez], [fx, fy, fz]], normal: [nx, ny, nz], extent } = *self;
+        let [dx, dy, dz] = ray.direction;
+        let way @ [cx, cy, cz] =
+            [corner[0] - ray.origin[0], corner[1] - ray.origin[1], corner[2] - ray.origin[2]];
 
         // The determinant, and the edge functions as its parts that belong to the corners.
         let rx = cy.mul_sub(dz, cz * dy);
@@ -295,51 +335,42 @@ impl<S: Simd> TriangleLanes<S> {
         let v = -ex.mul_add(rx, ey.mul_add(ry, ez * rz));
         let w = determinant - (u + v);
 
-        // Error bounds: those of products with the direction are relative to its length.
-        let underflow = ray.underflow;
-        let relative = extent.mul_add(ray.error, underflow);
+        // Errors of products with the direction are relative to its length.
+        let relative = extent.mul_add(ray.error, ray.underflow);
         let reach = cx.abs().max(cy.abs()).max(cz.abs()) + ray.rounding;
-        let bound = (reach + extent).mul_add(relative, underflow);
-        let size_error = extent.mul_add(relative, underflow);
+        let bound = (reach + extent).mul_add(relative, ray.underflow);
 
-        let distance = nx.mul_add(cx, ny.mul_add(cy, nz * cz));
-        let distance_error = extent.mul_add(extent.mul_add(ERROR, underflow), underflow) * reach;
-        let unused = extent.simd_lt(0.0);
-        let determinants =
-            Determinants { edges: [u, v, w], bound, determinant, size_error, distance, distance_error };
-        determinants.test(simd, ray, t_max, unused)
-    }
-}
-
-/// The quantities that the test compares, with error bounds.
-struct Determinants<S: Simd> {
-    /// The edge functions.
-    edges: [Lanes<S>; 3],
-    bound: Lanes<S>,
-    /// Their sum.
-    determinant: Lanes<S>,
-    size_error: Lanes<S>,
-    /// t times the determinant.
-    distance: Lanes<S>,
-    distance_error: Lanes<S>,
-}
-
-impl<S: Simd> Determinants<S> {
-    #[inline(always)]
-    fn test(&self, simd: S, ray: &RayLanes<S>, t_max: Lanes<S>, unused: mask32x8<S>) -> ConservativeTest<S> {
-        let &Self { edges: [u, v, w], bound, determinant, size_error, distance, distance_error } = self;
         // A miss has two edge functions of surely different signs. Comparisons with NaN are false, and exclude
         // nothing.
         let least = u.min(v).min(w);
         let most = u.max(v).max(w);
         let outside = least.simd_lt(-bound) & most.simd_gt(bound);
+        Sides { way, reach, determinant, least, most, bound, outside }
+    }
 
-        // Or its t is surely out of range, where the determinant's sign is sure.
+    /// The second part: whether t is in the ray's range. Distances are times the determinant.
+    #[inline(always)]
+    pub(crate) fn test_range(
+        &self,
+        simd: S,
+        ray: &RayLanes<S>,
+        t_max: Lanes<S>,
+        sides: &Sides<S>,
+    ) -> ConservativeTest<S> {
+        let Self { normal: [nx, ny, nz], extent, .. } = *self;
+        let Sides { way: [cx, cy, cz], reach, determinant, least, most, bound, outside } = *sides;
+        let underflow = ray.underflow;
+        let size_error = extent.mul_add(extent.mul_add(ray.error, underflow), underflow);
+        let distance = nx.mul_add(cx, ny.mul_add(cy, nz * cz));
+        let distance_error = extent.mul_add(extent.mul_add(ERROR, underflow), underflow) * reach;
+
+        // A t surely out of range, where the determinant's sign is sure.
         let size = determinant.abs();
         let distance = distance * Lanes::splat(simd, 1.0).copysign(determinant);
         let beyond = distance.simd_gt(t_max.mul_add(size, size_error.mul_add(t_max.abs(), distance_error)));
         let before = distance.simd_lt(ray.t_min.mul_sub(size, size_error.mul_add(ray.t_min, distance_error)));
         let out_of_range = size.simd_gt(size_error) & (beyond | before);
+        let unused = extent.simd_lt(0.0);
         let excluded = outside | out_of_range | unused;
 
         // A hit is sure where all comparisons hold the other way round, with twice the error bounds.

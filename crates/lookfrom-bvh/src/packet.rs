@@ -46,7 +46,7 @@ pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
     if rays.len() < RAYS || bvh.nodes.is_empty() || !(bvh.largest < LARGEST_FILTERED) {
         return None;
     }
-    let is_tiny = is_tiny(bvh);
+    let is_tiny = is_tiny::<C>(bvh);
     if !(is_tiny || seem_alike(rays) && coherence.start()) {
         return None;
     }
@@ -95,12 +95,12 @@ pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
     )
 }
 
-/// Trees with so few primitives that it is fastest to test any eight rays at once against all of them.
-const FEW: usize = 16;
-
-fn is_tiny(bvh: &Bvh) -> bool {
+/// Whether a tree has so few primitives that it is fastest to test any eight rays at once against all of them: measured
+/// by `small_bench`. A sphere costs as much as three triangles; rays of any-hit queries are soon done.
+fn is_tiny<C: PacketCollector>(bvh: &Bvh) -> bool {
     let Statistics { triangles, spheres, procedurals, instances, .. } = bvh.statistics;
-    bvh.nodes.len() == 1 && triangles + spheres <= FEW && procedurals + instances == 0
+    let most = if C::ANY_HIT { 72 } else { 48 };
+    triangles + 3 * spheres <= most && procedurals + instances == 0
 }
 
 /// A packet during traversal.
@@ -175,16 +175,17 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         true
     }
 
-    /// Visits all children of the root, which are leaves.
+    /// Visits all leaves.
     #[inline(always)]
     fn visit_all(&mut self, simd: S, stack: &mut TraversalStack<'_>) {
-        let root = &self.bvh().nodes[0];
-        for slot in 0..WIDTH {
-            match root.child(slot).content() {
-                Content::Triangles(number) => self.triangles(simd, number),
-                Content::Leaf(number) => self.other_leaf(simd, number, stack),
-                Content::Node(_) => false,
-            };
+        for node in &self.bvh().nodes {
+            for slot in 0..WIDTH {
+                match node.child(slot).content() {
+                    Content::Triangles(number) => self.triangles(simd, number),
+                    Content::Leaf(number) => self.other_leaf(simd, number, stack),
+                    Content::Node(_) => false,
+                };
+            }
         }
     }
 

@@ -34,6 +34,8 @@ pub(crate) struct Ray8<S: Simd> {
     pub(crate) end: f32x8<S>,
     /// What is surely nearer than this is surely nearer than all hits so far.
     pub(crate) limit: f32x8<S>,
+    /// [`conservative::ERROR`] times the largest component of each direction.
+    error: f32x8<S>,
     /// The block of a sure hit whose exact test is deferred, and its lane in it.
     pub(crate) block: i32x8<S>,
     pub(crate) lane: i32x8<S>,
@@ -55,6 +57,7 @@ impl<S: Simd> Ray8<S> {
             range: [zero; 2],
             end: zero,
             limit: zero,
+            error: zero,
             block: number,
             lane: number,
             origin_ids: [number; 2],
@@ -102,6 +105,7 @@ impl<S: Simd> Ray8<S> {
             range: [t_min, t_max],
             end,
             limit: end,
+            error: length * conservative::ERROR,
             block: i32x8::splat(simd, NO_BLOCK),
             lane: i32x8::splat(simd, 0),
             origin_ids: [i32x8::splat(simd, NONE as i32); 2],
@@ -111,8 +115,7 @@ impl<S: Simd> Ray8<S> {
     /// The rays for the conservative test.
     #[inline(always)]
     pub(crate) fn ray_lanes(&self, simd: S) -> RayLanes<S> {
-        let error = greatest(self.direction) * conservative::ERROR;
-        RayLanes::of_rays(simd, self.origin, self.direction, self.start, error)
+        RayLanes::of_rays(simd, self.origin, self.direction, self.start, self.error)
     }
 
     /// Sets the origin primitives of the rays, lane by lane.

@@ -154,7 +154,7 @@ impl Kernel for GoTogether<'_> {
 fn packets_of_every_query_say_what_single_rays_say() {
     let mut random = Random::new(10);
     let (mut hits, mut misses, mut packets, mut excluded) = (0, 0, 0, 0);
-    for round in 0..56 {
+    for round in 0..72 {
         let (center, size) = (random.point_with_exponents(-6, 6), random.size(-6, 6));
         // The last ones are so few that any rays form packets.
         let counts = [
@@ -165,7 +165,9 @@ fn packets_of_every_query_say_what_single_rays_say() {
             [0, 0, 0, 6],
             [2, 3, 0, 0],
             [12, 4, 0, 0],
-        ][round % 7];
+            [36, 0, 0, 0],
+            [30, 4, 0, 0],
+        ][round % 9];
         let mut bvh = mixture(&mut random, center, size, counts);
         for _ in 0..6 {
             let target = random.near(center, size);

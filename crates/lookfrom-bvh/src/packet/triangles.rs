@@ -124,19 +124,23 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         let bounds = block.bounds(simd).padded();
         let meeting = &mut self.meet(simd, &bounds);
         self.coherence.count(meeting);
-        let any = *meeting != [0; GROUPS];
-        for index in 0..GROUPS {
-            for of in LaneMask(triangles) {
+        if *meeting == [0; GROUPS] {
+            return false;
+        }
+        for of in LaneMask(triangles) {
+            let edges = TriangleLanes::splat(simd, block, of).edges();
+            for index in 0..GROUPS {
                 let rays = meeting[index];
                 if rays == 0 {
-                    break;
+                    continue;
                 }
                 let group = &mut self.groups[index];
-                let tested = TriangleLanes::splat(simd, block, of).test_conservatively(
-                    simd,
-                    &group.ray_lanes(simd),
-                    group.end,
-                );
+                let ray_lanes = group.ray_lanes(simd);
+                let sides = edges.test_sides(&ray_lanes);
+                if sides.outside.all_true() {
+                    continue;
+                }
+                let tested = edges.test_range(simd, &ray_lanes, group.end, &sides);
                 let (mut sure, mut kept) = (tested.sure, tested.kept.0 & rays);
                 if V::SELECTS && visibility.faces() != Faces::Both {
                     // The sign of a sure hit's determinant is also sure.
@@ -166,7 +170,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 }
             }
         }
-        any
+        true
     }
 
     /// Tests a ray exactly against a triangle that is not its origin primitive. Returns true if the ray is done.
