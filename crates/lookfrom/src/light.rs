@@ -24,7 +24,9 @@ use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint, Textu
 use cone::Cone;
 use tree::LightBounds;
 
-pub use area::{AreaLight, EmitterBounds, LightPoint, LightShape, MeshLight, PatchLight, QuadricLight};
+pub use area::{
+    AreaLight, DiskLight, EmitterBounds, LightPoint, LightShape, MeshLight, PatchLight, QuadricLight,
+};
 pub(crate) use area::{AreaSamples, sample_area_lights};
 pub use choice::LightChoice;
 pub use environment::{Environment, Layout, Sky, SkyImage};

@@ -3,6 +3,7 @@
 //! [`AreaLight::sample_point`] and [`AreaLight::pdf`] have the same solid angle density, as multiple importance
 //! sampling requires. The sampling of each kind of shape is in a file of its own.
 
+mod disk;
 mod lanes;
 mod mesh;
 mod patch;
@@ -17,11 +18,11 @@ use crate::core::math;
 use crate::core::points::Points;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::core::warp;
-use crate::primitive::Disk;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::texture::{FloatTexture, SpectralMode, TexturePoint, Textures};
 
+pub use disk::DiskLight;
+use disk::{DiskLights, gather_disks};
 pub(crate) use lanes::sample_area_lights;
 pub use mesh::MeshLight;
 use mesh::{Triangle as LightTriangle, sample_triangles};
@@ -50,8 +51,8 @@ pub struct AreaLight {
 pub enum LightShape {
     /// A sphere or ellipsoid, a cylinder, a disk, or a part of one.
     Quadric(Box<QuadricLight>),
-    /// A round disk.
-    Disk(Disk),
+    /// A disk or ellipse.
+    Disk(Box<DiskLight>),
     /// Triangles.
     Mesh(MeshLight),
     /// Bilinear patches.
@@ -116,6 +117,22 @@ impl<R: Real> AreaSamples<R> {
             pdf: R::select(mask, yes.pdf, no.pdf),
             is_valid: mask.choose(yes.is_valid, no.is_valid),
         }
+    }
+}
+
+impl AreaSamples<f32> {
+    /// The point with its texture coordinates, where there is one; for shapes of one primitive.
+    fn light_point(self, uv: impl FnOnce() -> Vec2) -> Option<LightPoint> {
+        let Self { points, normal, wi, pdf, is_valid } = self;
+        is_valid.then(|| LightPoint {
+            point: Point { position: points.position.into(), error: points.error.into() },
+            normal: normal.into(),
+            uv: uv(),
+            primitive: 0,
+            on_primitive: Vec2::ZERO,
+            wi: wi.into(),
+            pdf,
+        })
     }
 }
 
@@ -230,7 +247,7 @@ impl AreaLight {
     pub fn sample_point(&self, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
         let point = match &self.shape {
             LightShape::Quadric(light) => light.sample(from, u),
-            LightShape::Disk(disk) => sample_disk(disk, from, u),
+            LightShape::Disk(light) => light.sample(from, u),
             LightShape::Mesh(light) => light.sample(from, u),
             LightShape::Patches(light) => light.sample(from, u),
         }?;
@@ -250,7 +267,7 @@ impl AreaLight {
                 Some(pdf) => pdf,
                 None => by_area(light.pdf_by_area(DVec3::from_array(surface.point.position))),
             },
-            LightShape::Disk(disk) => by_area(1.0 / disk_area(disk)),
+            LightShape::Disk(light) => by_area(1.0 / light.area()),
             LightShape::Mesh(light) => match light.pdf_by_direction(from, place.0) {
                 Some(pdf) => pdf,
                 None => by_area(light.pdf_by_area(place.0)),
@@ -264,7 +281,7 @@ impl AreaLight {
     pub fn area(&self) -> f64 {
         match &self.shape {
             LightShape::Quadric(light) => light.area(),
-            LightShape::Disk(disk) => disk_area(disk),
+            LightShape::Disk(light) => light.area(),
             LightShape::Mesh(light) => light.area(),
             LightShape::Patches(light) => light.area(),
         }
@@ -274,7 +291,7 @@ impl AreaLight {
     pub fn emitter_bounds(&self) -> EmitterBounds {
         let (bounds, Cone { axis, cos }) = match &self.shape {
             LightShape::Quadric(light) => (light.bounds(), light.normals()),
-            LightShape::Disk(disk) => (disk.bounds(), Cone { axis: disk.normal().normalize(), cos: 1.0 }),
+            LightShape::Disk(light) => (light.bounds(), light.normals()),
             LightShape::Mesh(light) => (light.bounds(), light.normals()),
             LightShape::Patches(light) => (light.bounds(), light.normals()),
         };
@@ -315,16 +332,6 @@ fn seen(from: DVec3, point: Point, normal: DVec3, uv: Vec2, density: f64) -> Opt
     let (wi, distance) = toward(from, DVec3::from_array(point.position))?;
     let pdf = (density * distance * distance / normal.dot(wi.as_dvec3()).abs()) as f32;
     Some(LightPoint { point, normal, uv, primitive: 0, on_primitive: Vec2::ZERO, wi, pdf })
-}
-
-/// A point of a disk, sampled by area.
-fn sample_disk(disk: &Disk, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
-    let on_disk = Vec2::from_array(warp::concentric_disk(u));
-    seen(from, disk.at(on_disk), disk.normal().normalize(), 0.5 + 0.5 * on_disk, 1.0 / disk_area(disk))
-}
-
-fn disk_area(disk: &Disk) -> f64 {
-    std::f64::consts::PI * disk.normal().length()
 }
 
 #[cfg(test)]

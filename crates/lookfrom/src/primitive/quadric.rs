@@ -106,6 +106,11 @@ impl Quadric {
             && self.is_whole_turn()
     }
 
+    /// Whether it is a disk (an ellipse, after its transform) without a hole.
+    pub fn is_whole_disk(&self) -> bool {
+        matches!(self.kind, QuadricKind::Disk { inner_radius: 0.0, .. }) && self.is_whole_turn()
+    }
+
     fn is_whole_turn(&self) -> bool {
         self.phi_max >= 2.0 * PI
     }
@@ -180,9 +185,7 @@ impl Quadric {
             QuadricKind::Cylinder { radius, z: [low, high] } => {
                 DVec3::new(radius * cos, radius * sin, low + u0 * (high - low))
             }
-            QuadricKind::Disk { height, radius, inner_radius }
-                if inner_radius == 0.0 && self.is_whole_turn() =>
-            {
+            QuadricKind::Disk { height, radius, .. } if self.is_whole_disk() => {
                 let disk = Vec2::from_array(warp::concentric_disk(u)).as_dvec2() * radius;
                 DVec3::new(disk.x, disk.y, height)
             }

@@ -19,7 +19,7 @@ use super::Instance;
 use super::lights::Lights;
 use crate::core::math;
 use crate::core::points::Placement;
-use crate::light::{AreaLight, EmissionSpectrum, Light, LightShape, QuadricLight};
+use crate::light::{AreaLight, DiskLight, EmissionSpectrum, Light, LightShape, QuadricLight};
 use crate::primitive::{
     Disk, Disks, MaterialBinding, Mesh, Primitives, Quadric, QuadricKind, Quadrics, SphereBinding, Spheres,
 };
@@ -250,7 +250,7 @@ impl Compiler<'_> {
             axis_v: matrix.transform_vector3(radius * axis_v),
             flip: placing.mirrors() != shape.reverse_orientation,
         };
-        let light = self.area_light(placing, |_| Some(LightShape::Disk(disk)));
+        let light = self.area_light(placing, |_| Some(LightShape::Disk(Box::new(DiskLight::new(disk)?))));
         group.disks.disks.push(disk);
         group.disks.bindings.push(MaterialBinding { light, ..binding });
     }

@@ -1,9 +1,10 @@
-//! Area lights that are sampled in lanes: triangles and whole spheres of uniform emission.
+//! Area lights that are sampled in lanes: triangles, whole spheres and whole disks of uniform emission.
 
 use lookfrom_simd::{Simd, f32x8, f64x8, mask32x8, mask64x8, prelude::*};
 
 use super::{
-    AreaLight, AreaSamples, LightShape, LightTriangle, SphereLights, gather_spheres, sample_triangles,
+    AreaLight, AreaSamples, DiskLights, LightShape, LightTriangle, SphereLights, gather_disks,
+    gather_spheres, sample_triangles,
 };
 use crate::core::lanes::{LANES, bitmask, by_lane};
 use crate::core::vector::Vector;
@@ -14,8 +15,9 @@ impl AreaLight {
         self.is_uniform()
             && match &self.shape {
                 LightShape::Mesh(light) => light.has_one_normal_per_triangle(),
-                LightShape::Quadric(light) => light.sphere().is_some(),
-                _ => false,
+                LightShape::Quadric(light) => light.sphere().is_some() || light.disk().is_some(),
+                LightShape::Disk(_) => true,
+                LightShape::Patches(_) => false,
             }
     }
 
@@ -36,10 +38,20 @@ impl AreaLight {
             _ => None,
         }
     }
+
+    /// The whole disk that it is; only one of uniform emission.
+    #[inline]
+    fn disk(&self) -> Option<&DiskLights<f32>> {
+        match &self.shape {
+            LightShape::Quadric(light) if self.is_uniform() => light.disk(),
+            LightShape::Disk(light) if self.is_uniform() => Some(light.in_lanes()),
+            _ => None,
+        }
+    }
 }
 
-/// Points of the area lights that are sampled in lanes, and which those are: triangles and whole spheres of uniform
-/// emission.
+/// Points of the area lights that are sampled in lanes, and which those are: triangles, whole spheres and whole disks of
+/// uniform emission.
 #[inline(always)]
 pub(crate) fn sample_area_lights<S: Simd>(
     simd: S,
@@ -60,17 +72,30 @@ pub(crate) fn sample_area_lights<S: Simd>(
     let spheres = by_lane!(lane => lights[lane].and_then(AreaLight::sphere));
     if let Some(first) = spheres.iter().flatten().next() {
         let of = gather_spheres(simd, &by_lane!(lane => spheres[lane].unwrap_or(first)));
-        let (on_spheres, _) = of.sample(from, [u0, u1]);
-        let are_spheres = bitmask(&by_lane!(lane => spheres[lane].is_some()));
-        let masks = (
-            mask32x8::from_bitmask(simd, are_spheres.into()),
-            mask64x8::from_bitmask(simd, are_spheres.into()),
-        );
-        samples = Some(match samples {
-            Some(samples) => AreaSamples::select(masks.0, masks.1, on_spheres, samples),
-            None => on_spheres,
-        });
-        in_lanes |= are_spheres;
+        let lanes = bitmask(&by_lane!(lane => spheres[lane].is_some()));
+        samples = Some(chosen(simd, lanes, of.sample(from, [u0, u1]).0, samples));
+        in_lanes |= lanes;
+    }
+    let disks = by_lane!(lane => lights[lane].and_then(AreaLight::disk));
+    if let Some(first) = disks.iter().flatten().next() {
+        let of = gather_disks(simd, &by_lane!(lane => disks[lane].unwrap_or(first)));
+        let lanes = bitmask(&by_lane!(lane => disks[lane].is_some()));
+        samples = Some(chosen(simd, lanes, of.sample(from, [u0, u1]).0, samples));
+        in_lanes |= lanes;
     }
     (samples, in_lanes)
+}
+
+/// `these` in the lanes of a mask, `others` elsewhere.
+#[inline(always)]
+fn chosen<S: Simd>(
+    simd: S,
+    lanes: u32,
+    these: AreaSamples<f32x8<S>>,
+    others: Option<AreaSamples<f32x8<S>>>,
+) -> AreaSamples<f32x8<S>> {
+    let Some(others) = others else { return these };
+    let mask = mask32x8::from_bitmask(simd, lanes.into());
+    let wide_mask = mask64x8::from_bitmask(simd, lanes.into());
+    AreaSamples::select(mask, wide_mask, these, others)
 }

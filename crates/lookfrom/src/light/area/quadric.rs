@@ -1,16 +1,15 @@
 //! Quadric lights: spheres, cylinders, disks and their parts.
 //!
-//! A whole sphere is sampled by direction, in a file of its own. Parts are sampled by area in object space, which the map
-//! to render space changes by a factor that depends on the point.
+//! A whole sphere is sampled by direction, in a file of its own, a whole disk as any disk. Parts are sampled by area in
+//! object space, which the map to render space changes by a factor that depends on the point.
 
 mod sphere;
 
-use glam::{DVec3, Vec2, Vec3};
-use lookfrom_bvh::Point;
+use glam::{DVec3, Vec3};
 pub(crate) use sphere::{SphereLights, gather_spheres};
 
-use super::{AreaSamples, Cone, LightPoint, seen};
-use crate::primitive::{MaterialBinding, Quadric, QuadricKind};
+use super::{Cone, DiskLights, LightPoint, seen};
+use crate::primitive::{Disk, MaterialBinding, Quadric, QuadricKind};
 
 /// Number of cells along u and v in the numerical integration of the area of a non-uniformly scaled quadric.
 const CELLS: u32 = 64;
@@ -20,8 +19,14 @@ const CELLS: u32 = 64;
 pub struct QuadricLight {
     quadric: Quadric,
     area: f64,
-    /// The whole sphere that it is, if it is one.
-    sphere: Option<SphereLights<f32>>,
+    whole: Option<Whole>,
+}
+
+/// The whole sphere or disk that a quadric is.
+#[derive(Clone, Debug)]
+enum Whole {
+    Sphere(SphereLights<f32>),
+    Disk(DiskLights<f32>),
 }
 
 impl QuadricLight {
@@ -34,16 +39,21 @@ impl QuadricLight {
             (0..CELLS * CELLS).map(|k| quadric.area_scale(place(k))).sum::<f64>() / f64::from(CELLS * CELLS)
         };
         let area = quadric.object_area() * quadric.even_area_scale().unwrap_or_else(mean);
-        let sphere = match quadric.kind {
-            QuadricKind::Sphere { radius, .. } if quadric.is_whole_sphere() => Some(SphereLights {
-                frames: *quadric.frame(),
-                radius,
-                volume_scale: quadric.volume_scale(),
-                shines_inward: quadric.reverse || two_sided,
-            }),
+        let whole = match quadric.kind {
+            QuadricKind::Sphere { radius, .. } if quadric.is_whole_sphere() => {
+                Some(Whole::Sphere(SphereLights {
+                    frames: *quadric.frame(),
+                    radius,
+                    volume_scale: quadric.volume_scale(),
+                    shines_inward: quadric.reverse || two_sided,
+                }))
+            }
+            QuadricKind::Disk { height, radius, .. } if quadric.is_whole_disk() => {
+                whole_disk(&quadric, height, radius).map(Whole::Disk)
+            }
             _ => None,
         };
-        (area > 0.0 && area.is_finite()).then_some(Self { quadric, area, sphere })
+        (area > 0.0 && area.is_finite()).then_some(Self { quadric, area, whole })
     }
 
     pub(super) fn area(&self) -> f64 {
@@ -65,37 +75,63 @@ impl QuadricLight {
     }
 
     pub(super) fn sample(&self, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
-        let Some(sphere) = &self.sphere else {
-            let on_quadric = self.quadric.sample_in_object(u);
-            let at = self.quadric.point(on_quadric, MaterialBinding::NONE);
-            let density = self.pdf_by_area(DVec3::from_array(at.point.position));
-            return seen(from, at.point, at.ng, at.uv, density);
-        };
-        let (AreaSamples { points, normal, wi, pdf, is_valid }, in_object) = sphere.sample(from.into(), u);
-        is_valid.then(|| LightPoint {
-            point: Point { position: points.position.into(), error: points.error.into() },
-            normal: normal.into(),
-            uv: self.quadric.coordinates(in_object.into()).0,
-            primitive: 0,
-            on_primitive: Vec2::ZERO,
-            wi: wi.into(),
-            pdf,
-        })
+        let uv = |on_quadric| self.quadric.coordinates(on_quadric).0;
+        match &self.whole {
+            Some(Whole::Sphere(sphere)) => {
+                let (samples, in_object) = sphere.sample(from.into(), u);
+                samples.light_point(|| uv(in_object.into()))
+            }
+            Some(Whole::Disk(disk)) => {
+                let (samples, _) = disk.sample(from.into(), u);
+                samples.light_point(|| uv(self.quadric.sample_in_object(u)))
+            }
+            None => {
+                let on_quadric = self.quadric.sample_in_object(u);
+                let at = self.quadric.point(on_quadric, MaterialBinding::NONE);
+                let density = self.pdf_by_area(DVec3::from_array(at.point.position));
+                seen(from, at.point, at.ng, at.uv, density)
+            }
+        }
     }
 
     /// The solid angle density where the quadric is sampled by direction.
     pub(super) fn pdf_by_direction(&self, from: DVec3, wi: Vec3) -> Option<f32> {
-        Some(self.sphere.as_ref()?.pdf(from.into(), wi.into()))
+        Some(self.sphere()?.pdf(from.into(), wi.into()))
     }
 
     /// A whole sphere, which is sampled by direction; `None` for other quadrics.
     #[inline]
     pub(super) fn sphere(&self) -> Option<&SphereLights<f32>> {
-        self.sphere.as_ref()
+        match &self.whole {
+            Some(Whole::Sphere(sphere)) => Some(sphere),
+            _ => None,
+        }
+    }
+
+    /// A whole disk; `None` for other quadrics.
+    #[inline]
+    pub(super) fn disk(&self) -> Option<&DiskLights<f32>> {
+        match &self.whole {
+            Some(Whole::Disk(disk)) => Some(disk),
+            _ => None,
+        }
     }
 
     /// The area density, in render space, where the quadric is sampled by area.
     pub(super) fn pdf_by_area(&self, p: DVec3) -> f64 {
         1.0 / (self.quadric.object_area() * self.quadric.area_scale(self.quadric.point_in_object(p)))
     }
+}
+
+/// The disk that a quadric is, in render space.
+fn whole_disk(quadric: &Quadric, height: f64, radius: f64) -> Option<DiskLights<f32>> {
+    let center = quadric.point(DVec3::new(0.0, 0.0, height), MaterialBinding::NONE);
+    let [axis_u, axis_v] = [DVec3::X, DVec3::Y].map(|axis| quadric.vector_in_render(radius * axis));
+    let disk = Disk {
+        center: DVec3::from_array(center.point.position),
+        axis_u,
+        axis_v,
+        flip: axis_u.cross(axis_v).dot(center.ng) < 0.0,
+    };
+    DiskLights::new(&disk, DVec3::from_array(center.point.error))
 }

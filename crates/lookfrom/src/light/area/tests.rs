@@ -6,11 +6,12 @@ use glam::{DMat3, DMat4, DVec3};
 use lookfrom_simd::{Kernel, Level, Simd, dispatch, f32x8, prelude::*};
 
 use super::{
-    AreaSamples, LightPoint, MeshLight, QuadricLight, SphereLights, gather_spheres, sample_triangles,
+    AreaSamples, DiskLight, DiskLights, LightPoint, MeshLight, QuadricLight, SphereLights, gather_disks,
+    gather_spheres, sample_triangles,
 };
 use crate::core::hash;
 use crate::core::lanes::{LANES, by_lane, gather_f64, scatter, scatter_f64};
-use crate::primitive::{MaterialBinding, Mesh, Quadric, QuadricKind};
+use crate::primitive::{Disk, MaterialBinding, Mesh, Quadric, QuadricKind};
 
 /// What a sample consists of: direction, density, position, error, normal.
 type Numbers = Option<([f32; 3], f32, [[f64; 3]; 3])>;
@@ -88,6 +89,21 @@ impl Kernel for OnSpheres<'_> {
     }
 }
 
+struct OnDisks<'a> {
+    disks: [&'a DiskLights<f32>; LANES],
+    from: [[f64; 3]; LANES],
+    u: [[f32; LANES]; 2],
+}
+
+impl Kernel for OnDisks<'_> {
+    type Output = [Numbers; LANES];
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let u = self.u.map(|u| f32x8::load_array(simd, u));
+        eight(gather_disks(simd, &self.disks).sample(gather_f64(simd, &self.from), u).0)
+    }
+}
+
 #[test]
 fn eight_triangles_are_eight_one_by_one() {
     let light = |seed: u64| {
@@ -142,4 +158,63 @@ fn eight_spheres_are_eight_one_by_one() {
         let spheres = std::array::from_fn(|lane| lights[lane].sphere().expect("whole"));
         check(|level| dispatch(level, OnSpheres { spheres, from, u }), &alone);
     }
+}
+
+/// A disk as a quadric of any transform.
+fn quadric_disk(seed: u64) -> Option<Quadric> {
+    let axes = DMat3::from_cols_array_2d(&[vector(3 * seed), vector(3 * seed + 1), vector(3 * seed + 2)]);
+    let matrix = DMat4::from_translation(DVec3::from_array(vector(seed + 77))) * DMat4::from_mat3(axes);
+    let kind = QuadricKind::Disk { height: number(seed + 5), radius: number(seed).abs(), inner_radius: 0.0 };
+    Quadric::new(kind, 360.0, &matrix, seed.is_multiple_of(3))
+}
+
+#[test]
+fn eight_disks_are_eight_one_by_one() {
+    let mut quadrics = (0_u64..).filter_map(|seed| QuadricLight::new(quadric_disk(seed)?, false));
+    let disk = |seed: u64| {
+        let [center, axis_u, axis_v] = [0, 1, 2].map(|k| DVec3::from_array(vector(3 * seed + k)));
+        DiskLight::new(Disk { center, axis_u, axis_v, flip: seed.is_multiple_of(2) })
+    };
+    let mut disks = (0_u64..).filter_map(disk);
+    for round in 0..2000_u64 {
+        let seed = |lane: usize| 8 * round + lane as u64;
+        let quadrics: [QuadricLight; LANES] = std::array::from_fn(|_| quadrics.next().expect("more"));
+        let disks: [DiskLight; LANES] = std::array::from_fn(|_| disks.next().expect("more"));
+        let from = std::array::from_fn(|lane| vector(seed(lane) + 2_000_000));
+        let u: [[f32; LANES]; 2] =
+            std::array::from_fn(|k| std::array::from_fn(|lane| unit(2 * seed(lane) + k as u64)));
+        let alone = std::array::from_fn(|lane| {
+            let (from, u) = (DVec3::from_array(from[lane]), [u[0][lane], u[1][lane]]);
+            one(if lane % 2 == 0 { quadrics[lane].sample(from, u) } else { disks[lane].sample(from, u) })
+        });
+        let disks = std::array::from_fn(|lane| match lane % 2 {
+            0 => quadrics[lane].disk().expect("whole"),
+            _ => disks[lane].in_lanes(),
+        });
+        check(|level| dispatch(level, OnDisks { disks, from, u }), &alone);
+    }
+}
+
+#[test]
+fn samples_of_whole_disks_are_points_of_the_quadric() {
+    let mut count = 0;
+    for seed in 0..4000 {
+        let Some(quadric) = quadric_disk(seed) else { continue };
+        let Some(light) = QuadricLight::new(quadric, true) else { continue };
+        let (from, u) = (DVec3::from_array(vector(seed + 9)), [unit(2 * seed), unit(2 * seed + 1)]);
+        let Some(sample) = light.sample(from, u) else { continue };
+        let at = quadric.point(quadric.sample_in_object(u), MaterialBinding::NONE);
+        let (point, expected) = (sample.point.position, at.point.position);
+        for axis in 0..3 {
+            let bound = sample.point.error[axis] + at.point.error[axis];
+            assert!((point[axis] - expected[axis]).abs() <= bound, "{point:?} {expected:?} {bound:e}");
+        }
+        assert!(sample.normal.distance(at.ng) < 1e-9, "{} {}", sample.normal, at.ng);
+        let way = DVec3::from_array(expected) - from;
+        let pdf = way.length_squared() / (light.area() * at.ng.dot(way.normalize()).abs());
+        let [pdf, own] = [pdf as f32, sample.pdf];
+        assert!((own / pdf - 1.0).abs() < 1e-3 || at.ng.dot(way.normalize()).abs() < 1e-3, "{own} {pdf}");
+        count += 1;
+    }
+    assert!(count > 2000, "{count}");
 }
