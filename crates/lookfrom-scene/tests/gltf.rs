@@ -206,6 +206,15 @@ fn every_mode_has_its_form() {
 }
 
 #[test]
+fn numbers_out_of_range_are_told_by_their_place() {
+    let json = br#"{"asset": {"version": "2.0"}, "nodes": [{"translation": [0, 1e309, 0]}]}"#;
+    let memory = Memory([(PathBuf::from("a.gltf"), json.to_vec())].into());
+    let said = load::scene(Path::new("a.gltf"), &mut LoadContext::new(&memory)).expect_err("not a number");
+    let said = said.to_string();
+    assert!(said.starts_with("a.gltf#/nodes/0/translation/1: the number is too large"), "{said}");
+}
+
+#[test]
 fn arrays_of_a_wrong_length_are_told_by_their_place() {
     let said = |scale: Value| Model::default().error(json!({"nodes": [{"scale": scale}]})).to_string();
     let long = said(json!([1, 1, 1, 1]));

@@ -655,15 +655,22 @@ pub(super) fn parse(text: &str) -> Result<Root, Wrong> {
     serde_json::from_str(text).map_err(|error| {
         let mut deserializer = serde_json::Deserializer::from_str(text);
         let path = serde_path_to_error::deserialize::<_, Root>(&mut deserializer).err();
-        // An array that is too long is a syntax error for serde_json: the array should have ended.
-        let is_too_long = !error.is_data() && serde_json::from_str::<serde::de::IgnoredAny>(text).is_ok();
-        let pointer = path.filter(|_| error.is_data() || is_too_long).map(|error| pointer(error.path()));
         let message = error.to_string();
         // The message ends with line and column, which are reported separately.
         let message = message.split(" at line ").next().unwrap_or_default();
+        // An array that is too long is a syntax error for serde_json, since it should have ended; so is a number too large
+        // for f64. Both are valid JSON.
+        let is_out_of_range = message == "number out of range";
+        let is_too_long = !error.is_data()
+            && !is_out_of_range
+            && serde_json::from_str::<serde::de::IgnoredAny>(text).is_ok();
+        let is_json = error.is_data() || is_too_long || is_out_of_range;
+        let pointer = path.filter(|_| is_json).map(|error| pointer(error.path()));
         Wrong {
             message: if is_too_long {
                 "the array has too many values".to_owned()
+            } else if is_out_of_range {
+                "the number is too large".to_owned()
             } else {
                 in_words_of_json(message)
             },
