@@ -107,6 +107,13 @@ pub(crate) fn for_people(path: &Path, session: &Session) -> String {
         let entries: Vec<String> = info.contents.variables.iter().map(entry).collect();
         line("variables", entries.join(", "));
     }
+    if let Some(duration) = info.contents.duration {
+        let until = match duration {
+            0.0 => "expressions".to_owned(),
+            _ => format!("keyframes until {} s", digits(duration)),
+        };
+        line("changes", format!("with time: {until}"));
+    }
     let image = session.image();
     let mut picture = format!(
         "{} × {} pixels, filter {}, exposure {}, tonemap {}",

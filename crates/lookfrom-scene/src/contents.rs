@@ -18,6 +18,9 @@ pub struct Contents {
     pub variants: Vec<Option<String>>,
     /// The names of the [variables](crate::Variables), with their values: TOML, or long ones in words.
     pub variables: Vec<(String, String)>,
+    /// The time of the last keyframe of a scene in our own format, in seconds: 0 if only expressions depend on the time;
+    /// `None` if nothing does.
+    pub duration: Option<f64>,
 }
 
 /// A camera of a file.

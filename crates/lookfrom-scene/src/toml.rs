@@ -111,6 +111,7 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     }
     // Only path tracing renders physically based materials completely.
     let mut scene = reader.scene;
+    scene.contents.duration = reader.variables.duration();
     scene.contents.variables = reader.variables.into_all();
     let is_physical = |kind: &MaterialKind| !matches!(kind, MaterialKind::Whitted(_));
     if !reader.names_integrator && scene.materials.iter().any(|material| is_physical(&material.kind)) {

@@ -187,6 +187,16 @@ fn the_clock_counts_seconds_and_frames() {
     }
 }
 
+#[test]
+fn how_long_a_scene_changes_is_known() {
+    let duration = |text: &str| read(text, 0.5, &[]).contents.duration;
+    assert_eq!(duration("[variables]\na = 2\n[[sphere]]\nradius = \"= a\""), None);
+    assert_eq!(duration("[variables]\na = \"= 1 + t\"\n[[sphere]]\nradius = \"= a\""), Some(0.0));
+    assert_eq!(duration("[[sphere]]\nradius = \"= 1 + frame\""), Some(0.0));
+    let two = "[[sphere]]\nradius = { keyframes = [[0, 1], [3, 2]] }\n[[sphere]]\nradius = { keyframes = [[1, 1], [2, 2]] }";
+    assert_eq!(duration(two), Some(3.0));
+}
+
 /// The value of keyframes at a time.
 fn keyframes(rest: &str, at: f64) -> f64 {
     radius(&read(&format!("[[sphere]]\nradius = {{ keyframes = {rest} }}"), at, &[]))

@@ -45,6 +45,7 @@
  * @property {{name: string, title: string}[]} layers
  * @property {string[]} variants
  * @property {{name: string, seconds: number}[]} animations
+ * @property {number | null} duration
  * @property {boolean} turntable
  * @property {Record<string, any>} counts
  * @property {{name: string, position: Vector | null}[]} lights

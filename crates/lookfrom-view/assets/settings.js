@@ -82,6 +82,8 @@ function showRendering(app, scene) {
     const [width, height] = scene.size;
     const sizes = [1, 0.5, 0.25].map((part) => /** @type {[number, number]} */ ([Math.max(1, Math.round(width * part)), Math.max(1, Math.round(height * part))]));
     const animation = view.animation === null ? null : scene.animations[view.animation];
+    // Expressions have no end: ten seconds of them.
+    const seconds = animation ? animation.seconds : scene.duration === 0 ? 10 : scene.duration;
     replace(
         byId("settings"),
         group(
@@ -97,7 +99,7 @@ function showRendering(app, scene) {
             scene.variants.length > 0 && field("Variant", select([["", "the file's own"], .../** @type {[string, string][]} */ (scene.variants.map((name) => [name, name]))], view.variant ?? "", (variant) => set({ variant: variant || null }))),
             scene.animations.length > 0 &&
                 field("Animation", select([["", "none"], .../** @type {[string, string][]} */ (scene.animations.map(({ name }, i) => [String(i), name || `animation ${i}`]))], view.animation === null ? "" : String(view.animation), (text) => set({ animation: text === "" ? null : Number(text), at: text === "" ? null : 0 }))),
-            animation && slider("Time", { min: 0, max: animation.seconds, step: animation.seconds / 200 }, view.at ?? 0, (at) => set({ at }), (at) => `${at.toFixed(2)} s`).element,
+            seconds !== null && slider("Time", { min: 0, max: seconds, step: seconds / 200 }, view.at ?? 0, (at) => set({ at }), (at) => `${at.toFixed(2)} s`).element,
             scene.turntable && slider("Turntable", { min: 0, max: 360, step: 1 }, view.turn ?? 0, (turn) => set({ turn }), (turn) => `${turn}°`).element,
             slider("Surroundings", { min: -180, max: 180, step: 1 }, view.rotateEnvironment ?? 0, (rotateEnvironment) => set({ rotateEnvironment }), (turn) => `${turn}°`).element,
         ),

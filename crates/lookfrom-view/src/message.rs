@@ -167,6 +167,8 @@ pub(crate) struct SceneAnswer {
     pub(crate) layers: Vec<LayerAnswer>,
     pub(crate) variants: Vec<String>,
     pub(crate) animations: Vec<AnimationAnswer>,
+    /// Of keyframes and expressions of the scene, in seconds.
+    pub(crate) duration: Option<f64>,
     pub(crate) turntable: bool,
     pub(crate) counts: Counts,
     pub(crate) lights: Vec<LightAnswer>,

@@ -48,6 +48,7 @@ impl Loaded {
                     seconds: animation.duration.unwrap_or(0.0),
                 })
                 .collect(),
+            duration: info.contents.duration,
             turntable: self.options.turn.is_some(),
             counts: info.counts.clone(),
             lights: lights(session.world()),

@@ -24,6 +24,7 @@ pub(super) struct Object<'a> {
     bounds: Option<BoundsObject>,
     scenes: Vec<SceneObject<'a>>,
     animations: Vec<AnimationObject<'a>>,
+    duration: Option<f64>,
     variants: &'a [Option<String>],
     variables: BTreeMap<&'a str, &'a str>,
     cameras: Vec<CameraEntryObject<'a>>,
@@ -130,6 +131,7 @@ impl<'a> Object<'a> {
             bounds: (!bounds.is_empty()).then(|| bounds.into()),
             scenes: scenes(contents),
             animations: contents.animations.iter().map(Into::into).collect(),
+            duration: contents.duration,
             variants: &contents.variants,
             variables: contents
                 .variables

@@ -67,6 +67,9 @@ fn variables_from_the_command_line_change_the_picture() {
     stage.run("render model.obj -D radius=1").fails(2, &["no variables", ".toml"]);
     let info = &stage.json("info moving.toml -D radius=0.25 --at 1 --json")[0];
     assert_eq!(info["variables"], serde_json::json!({ "radius": "0.25", "x": "1" }));
+    assert_eq!(info["duration"], 1.0);
+    let said = String::from_utf8(stage.done("info moving.toml").stdout).unwrap();
+    assert!(said.contains("with time: keyframes until 1 s"), "{said}");
     assert!(info["bounds"]["max"][0] == 1.25 || info["bounds"]["max"][0].as_f64() > Some(1.25));
 }
 

@@ -27,6 +27,7 @@ pub(super) fn contents(document: &Document, tree: &Tree, cameras: &Cameras<'_>) 
         animations: root.animations.iter().map(entry).collect(),
         variants: variants.iter().map(|variant| variant.name.clone()).collect(),
         variables: Vec::new(),
+        duration: None,
     }
 }
 

@@ -42,9 +42,9 @@ struct Keyframe<'a> {
     value: Quantity,
 }
 
-/// The value of a table of keyframes at a time in seconds. Before the first keyframe it is that of the first, after the
+/// The value of a table of keyframes at the scene's time. Before the first keyframe it is that of the first, after the
 /// last that of the last, unless they repeat.
-pub(super) fn at_time(table: &Table<'_>, scope: &Scope<'_>, now: f64) -> Result<Quantity> {
+pub(super) fn at_time(table: &Table<'_>, scope: &Scope<'_>) -> Result<Quantity> {
     table.allow(&[KEYS]);
     let interpolation =
         table.or("interpolation", Interpolation::Linear, |value| value.choice(INTERPOLATIONS));
@@ -59,6 +59,7 @@ pub(super) fn at_time(table: &Table<'_>, scope: &Scope<'_>, now: f64) -> Result<
     if interpolation != Interpolation::Step {
         frames.windows(2).try_for_each(|pair| check(&pair[0], &pair[1]))?;
     }
+    let now = scope.now(last.time);
     let length = last.time - first.time;
     let repeats = repeats && length > 0.0;
     let now = if repeats { first.time + modulo(now - first.time, length) } else { now };

@@ -97,8 +97,11 @@ impl<'a> Scope<'a> {
     /// The value of a name in an expression, at a byte offset of it.
     fn named(&self, name: &str, at: usize) -> std::result::Result<Quantity, Fault> {
         match name {
-            "t" => return Ok(Quantity::Number(self.variables.now)),
-            "frame" => return Ok(Quantity::Number(libm::round(self.variables.now * self.variables.fps))),
+            "t" | "frame" => {
+                let Variables { now, fps, .. } = *self.variables;
+                self.variables.changes_until(0.0);
+                return Ok(Quantity::Number(if name == "t" { now } else { libm::round(now * fps) }));
+            }
             "pi" => return Ok(Quantity::Number(PI)),
             "true" | "false" => return Ok(Quantity::Truth(name == "true")),
             _ => {}
@@ -165,6 +168,12 @@ impl<'a> Scope<'a> {
         }
     }
 
+    /// The time in seconds, for a value that changes up to another one.
+    pub(super) fn now(&self, changes_until: f64) -> f64 {
+        self.variables.changes_until(changes_until);
+        self.variables.now
+    }
+
     /// The value of a value of TOML.
     pub(super) fn quantity(&self, value: Value<'_>) -> Result<Quantity> {
         let offset = value.item.span().start;
@@ -176,7 +185,7 @@ impl<'a> Scope<'a> {
             }
             DeValue::Table(map) if map.contains_key(KEYFRAMES) => {
                 let table = Table::new(value.document, offset, KEYFRAMES.to_owned(), map);
-                return keyframes::at_time(&table, self, self.variables.now);
+                return keyframes::at_time(&table, self);
             }
             DeValue::String(text) => Ok(Quantity::Text(text.clone().into_owned())),
             DeValue::Boolean(truth) => Ok(Quantity::Truth(*truth)),

@@ -1,5 +1,6 @@
 //! The variables of a scene: those of each file, and values that replace them from outside.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -39,6 +40,8 @@ pub(super) struct Variables<'g> {
     pub(super) now: f64,
     pub(super) fps: f64,
     pub(super) allowance: Allowance,
+    /// As [`Contents::duration`](crate::contents::Contents::duration).
+    duration: Cell<Option<f64>>,
 }
 
 /// A value from outside: TOML, or else the text itself.
@@ -64,6 +67,7 @@ impl<'g> Variables<'g> {
             now: context.import.at.unwrap_or(0.0),
             fps: context.variables.fps,
             allowance: Allowance::default(),
+            duration: Cell::new(None),
         }
     }
 
@@ -119,6 +123,17 @@ impl<'g> Variables<'g> {
             })
         }));
         errors
+    }
+
+    /// Takes note of a value that changes up to a time in seconds.
+    pub(super) fn changes_until(&self, time: f64) {
+        let before = self.duration.get().unwrap_or(0.0);
+        self.duration.set(Some(before.max(time)));
+    }
+
+    /// The time up to which values that were evaluated change.
+    pub(super) fn duration(&self) -> Option<f64> {
+        self.duration.get()
     }
 
     /// All variables that any file has, with their values in short.

@@ -159,6 +159,28 @@ test("two windows have views of their own", async () => {
     await two.context.close();
 });
 
+test("a scene with keyframes has a slider of time", async () => {
+    const moving = await copyOf("notes-exercise.toml");
+    const text = await readFile(moving.scene, "utf8");
+    await writeFile(moving.scene, text.replace("radius = 1", "radius = { keyframes = [[0, 1], [2, 0.5]] }"));
+    const server = await serve(moving.scene, SMALL);
+    const { page, context, errors } = await open(browser, server.url);
+    await finished(page);
+    const start = await pictureHash(page);
+    await page.getByRole("tab", { name: "View" }).click();
+    const time = page.getByLabel("Time");
+    assert.equal(await time.getAttribute("max"), "2");
+    await time.fill("2");
+    await until("another picture", async () => (await pictureHash(page)) !== start);
+    await until("the time is in the link", async () => page.url().includes("at=2"));
+    await time.fill("0");
+    await until("the first picture again", async () => (await pictureHash(page)) === start);
+    assert.deepEqual(errors, []);
+    await context.close();
+    await server.stop();
+    await moving.remove();
+});
+
 test("a slow network delays pictures and breaks nothing", async () => {
     const { page, context, errors } = await open(browser, server.url);
     await finished(page);
