@@ -4,6 +4,7 @@
 //! validated by itself, and is independent of rendering. Start reading at [`scene`].
 
 pub mod atmosphere;
+mod boolean;
 pub mod budget;
 pub mod camera;
 pub mod contents;

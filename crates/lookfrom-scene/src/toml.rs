@@ -35,6 +35,7 @@ mod scope;
 mod settings;
 mod shape;
 mod sky;
+mod solid;
 mod spectrum;
 mod synonyms;
 mod syntax;
@@ -98,6 +99,7 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
         open: Vec::new(),
         done: BTreeSet::new(),
         flake_spheres: 0,
+        segments: revolution::SEGMENTS,
         has_image: false,
         has_render: false,
         names_integrator: false,
@@ -154,6 +156,8 @@ struct Reader<'s, 'f> {
     in_object: bool,
     /// Number of spheres of all sphereflakes so far.
     flake_spheres: u64,
+    /// Straight pieces of a circle, where a shape does not say how many.
+    segments: u64,
     has_image: bool,
     has_render: bool,
     /// Whether the effective `[render]` names an integrator.

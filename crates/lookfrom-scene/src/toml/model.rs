@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec4};
 
-use super::shape::COMMON;
+use super::shape::{COMMON, OPERAND};
 use super::table::Table;
 use super::value::Value;
 use super::{Reader, transform};
@@ -30,7 +30,13 @@ impl Reader<'_, '_> {
         if let Some(triangles) = table.find("triangles").filter(|_| !table.has("positions")) {
             triangles.note(triangles.error("`triangles` needs `positions`, not `file`"));
         }
-        table.allow(&[&["file", "positions", "triangles", "subdivision"], CHOICE, COMMON, transform::KEYS]);
+        table.allow(&[
+            &["file", "positions", "triangles", "subdivision"],
+            CHOICE,
+            COMMON,
+            OPERAND,
+            transform::KEYS,
+        ]);
         let path = self.resolve(file, "the name of a model file")?;
         if let Some(key) = CHOICE.iter().find_map(|key| table.find(key))
             && !load::is_gltf(&path, self.context)

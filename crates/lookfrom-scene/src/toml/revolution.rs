@@ -2,7 +2,7 @@
 //!
 //! A profile goes from the axis below outward, up and back to the axis: then its surface faces outward.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 
@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::shape::{Geometry, Mesh};
 
 /// The number of straight pieces around the axis, and along a circle.
-const SEGMENTS: u64 = 96;
+pub(super) const SEGMENTS: u64 = 96;
 const MOST_SEGMENTS: u64 = 1 << 16;
 /// Straight pieces between two points of a smooth profile.
 const PIECES: u32 = 16;
@@ -106,7 +106,7 @@ impl Reader<'_, '_> {
         pieces: &[Piece],
         own: DMat4,
     ) -> Result<(Geometry, DMat4)> {
-        let segments = table.or("segments", SEGMENTS, |value| value.integer(3, MOST_SEGMENTS));
+        let segments = table.or("segments", self.segments, |value| value.integer(3, MOST_SEGMENTS));
         let limit = self.context.limits.elements;
         let count = 2 * segments * pieces.len() as u64;
         if count > limit {
@@ -116,6 +116,29 @@ impl Reader<'_, '_> {
         let mesh = Mesh { name: name.to_owned(), ..revolve(pieces, segments as u32) };
         Ok((self.mesh(table, mesh)?, own))
     }
+}
+
+/// A sphere of radius 1 whose poles lie on the z axis.
+pub(super) fn ball(segments: u32) -> Mesh {
+    let rings = (segments / 2).max(2);
+    let at = |index: u32| {
+        let (sin, cos) = libm::sincos(PI * f64::from(index) / f64::from(rings));
+        let normal = DVec2::new(if index % rings == 0 { 0.0 } else { sin }, -cos);
+        Ring { point: normal, normal }
+    };
+    let pieces: Vec<Piece> = (0..rings).map(|index| [at(index), at(index + 1)]).collect();
+    revolve(&pieces, segments)
+}
+
+/// A cylinder around the z axis with both of its ends; v goes from 0 to 1 along each of the three.
+pub(super) fn closed_cylinder(radius: f64, [low, high]: [f64; 2], segments: u32) -> Mesh {
+    let point = DVec2::new;
+    let profile = [point(0.0, low), point(radius, low), point(radius, high), point(0.0, high)];
+    let mut mesh = revolve(&edged(&profile), segments);
+    for (index, uv) in mesh.uvs.iter_mut().enumerate() {
+        uv.y = (index % 2) as f32;
+    }
+    mesh
 }
 
 /// Straight pieces between points, with edges between them.

@@ -6,7 +6,9 @@ use super::table::{Kinds, Table};
 use super::value::Value;
 use super::{Reader, composite, curve, light, quadric, transform};
 use crate::error::Result;
-use crate::shape::{Geometry, Part, Shape};
+use crate::material::Scalar;
+use crate::scene::MaterialId;
+use crate::shape::{Emission, Geometry, Part, Shape};
 
 /// The keys of shapes, by kind, in addition to [`COMMON`] and those of transforms.
 pub(super) const KEYS: Kinds = &[
@@ -20,6 +22,7 @@ pub(super) const KEYS: Kinds = &[
     ("torus", &["center", "axis", "radius", "tube", "segments"]),
     ("lathe", &["from", "axis", "profile", "smooth", "segments"]),
     ("box", &["min", "max"]),
+    ("solid", &["operation", "of", "segments"]),
     ("heightfield", &["file", "size", "height"]),
     ("text", &["text", "font", "size", "depth", "align", "line_spacing"]),
     (
@@ -47,8 +50,18 @@ pub(super) const KEYS: Kinds = &[
 /// Keys of all shapes.
 pub(super) const COMMON: &[&str] =
     &["name", "material", "emission", "power", "two_sided", "alpha", "reverse_orientation"];
+/// Keys of all shapes that are parts of a solid.
+pub(super) const OPERAND: &[&str] = &["type", "name", "material", "emission", "power", "two_sided", "alpha"];
 /// The keys of `[[instance]]`.
 pub(super) const INSTANCE: &[&str] = &["object", "material"];
+
+/// What a table says of a shape besides its geometry.
+pub(super) struct Look {
+    pub(super) name: Option<String>,
+    pub(super) material: Option<MaterialId>,
+    pub(super) emission: Option<Emission>,
+    pub(super) alpha: Option<Scalar>,
+}
 
 /// The kinds of shapes.
 pub(super) fn kinds() -> Vec<&'static str> {
@@ -72,41 +85,66 @@ impl Reader<'_, '_> {
     }
 
     fn shape(&mut self, kind: &str, table: &Table<'_>, shapes: &mut Vec<Shape>) -> Result<()> {
-        let material = table.maybe("material", |value| self.material_named(value));
-        let emission = self.emission(table);
-        let alpha = table.find("alpha").map(|_| self.share_or(table, "alpha", 1.0));
         let reverse_orientation = table.or("reverse_orientation", false, Value::boolean);
-        let name = light::name(table);
-        let mut world_from_object = transform::world_from_object(table);
-        let parts = match (kind, table.find("file")) {
-            ("mesh", Some(file)) => self.model_parts(table, file, &world_from_object)?,
-            _ => {
-                let (geometry, own) = self.geometry(kind, table)?;
-                world_from_object *= own;
-                if !world_from_object.is_finite() {
-                    return Err(table
-                        .error("it is too far away to compute with")
-                        .hint("use smaller numbers"));
-                }
-                vec![Part::new(None, geometry)]
-            }
-        };
-        for part in parts {
-            let material = material.or(part.material).unwrap_or_else(|| self.default_material());
-            // Emission of the shape has priority over that of its material, and that over that of its file.
-            let emission = emission.or_else(|| self.glows.get(&material).copied()).or(part.emission);
-            let name = name.clone().or(part.name);
+        for part in self.parts(kind, table)? {
+            let material = part.material.unwrap_or_else(|| self.default_material());
+            let glow = || self.glows.get(&material).copied().filter(|_| part.material.is_none());
             shapes.push(Shape {
-                name,
-                emission,
-                alpha: alpha.or(part.alpha),
+                name: part.name,
+                emission: part.emission.or_else(glow),
+                alpha: part.alpha,
                 reverse_orientation,
                 single_sided: part.single_sided,
-                world_from_object: world_from_object * part.world_from_object,
+                world_from_object: part.world_from_object,
                 ..Shape::new(table.at(), part.geometry, material)
             });
         }
         Ok(())
+    }
+
+    /// The parts of a shape at their places, with the look that its table gives them.
+    pub(super) fn parts(&mut self, kind: &str, table: &Table<'_>) -> Result<Vec<Part>> {
+        let look = self.look(table);
+        let world_from_object = transform::world_from_object(table);
+        let mut parts = match (kind, table.find("file")) {
+            ("mesh", Some(file)) => self.model_parts(table, file, &world_from_object)?,
+            ("solid", _) => self.solid(table)?,
+            _ => {
+                let (geometry, own) = self.geometry(kind, table)?;
+                if !(world_from_object * own).is_finite() {
+                    return Err(table
+                        .error("it is too far away to compute with")
+                        .hint("use smaller numbers"));
+                }
+                vec![Part { world_from_object: own, ..Part::new(None, geometry) }]
+            }
+        };
+        for part in &mut parts {
+            part.world_from_object = world_from_object * part.world_from_object;
+        }
+        self.dress(&look, &mut parts);
+        Ok(parts)
+    }
+
+    pub(super) fn look(&mut self, table: &Table<'_>) -> Look {
+        Look {
+            material: table.maybe("material", |value| self.material_named(value)),
+            emission: self.emission(table),
+            alpha: table.find("alpha").map(|_| self.share_or(table, "alpha", 1.0)),
+            name: light::name(table),
+        }
+    }
+
+    /// Gives parts the look that a table has for them.
+    pub(super) fn dress(&self, look: &Look, parts: &mut [Part]) {
+        for part in parts {
+            part.name = look.name.clone().or(part.name.take());
+            part.material = look.material.or(part.material);
+            // Emission of the shape has priority over that of its material, and that over that of its file.
+            let glow = look.material.and_then(|material| self.glows.get(&material).copied());
+            part.emission = look.emission.or(glow).or(part.emission);
+            part.alpha = look.alpha.or(part.alpha);
+        }
     }
 
     /// A geometry, and the transform from its own space.

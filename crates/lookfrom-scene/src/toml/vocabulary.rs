@@ -33,6 +33,7 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
         ("a colour by wavelength".to_owned(), [spectrum::KEYS, &["scale"]].concat()),
         ("[objects.NAME]".to_owned(), shape::kinds()),
         ("[[instance]]".to_owned(), [shape::INSTANCE, transform::KEYS].concat()),
+        ("[[solid.of]]".to_owned(), [shape::OPERAND, transform::KEYS].concat()),
         ("transform".to_owned(), transform::STEPS.to_vec()),
         ("rotate".to_owned(), transform::ROTATION.to_vec()),
         ("keyframes".to_owned(), keyframes::KEYS.to_vec()),
@@ -56,7 +57,7 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
 /// The keys with enumerated values, and these values.
 #[cfg(test)]
 pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
-    use super::sky;
+    use super::{sky, solid};
     use crate::settings::{ColorMode, Filter, Integrator, LightSampler, Sampler, Tonemap};
 
     fn words<T>(words: &[(&'static str, T)]) -> Vec<&'static str> {
@@ -69,6 +70,8 @@ pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
         ("projection", words(&camera::PROJECTIONS)),
         ("space", mapping::SPACES.to_vec()),
         ("layout", words(sky::LAYOUTS)),
+        ("operation", words(solid::OPERATIONS)),
+        ("[[solid.of]]", words(solid::TYPES)),
         ("interpolation", words(keyframes::INTERPOLATIONS)),
         ("falloff", words(light::FALLOFFS)),
         ("encoding", words(texture::ENCODINGS)),

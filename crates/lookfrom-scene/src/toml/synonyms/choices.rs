@@ -36,6 +36,12 @@ pub(super) const CHOICES: &[(&[&str], &[&str], &str)] = &[
     (&["rect", "quad", "square", "plane"], &["rectangle"], ""),
     (&["ball"], &["sphere"], ""),
     (&["circle"], &["disk"], ""),
+    // Solids.
+    (&["cube", "cuboid", "block", "brick"], &["box"], ""),
+    (&["ring", "donut"], &["torus"], ""),
+    (&["add", "unite", "merge", "or", "join"], &["union"], ""),
+    (&["intersect", "and", "common"], &["intersection"], ""),
+    (&["subtract", "subtraction", "minus", "cut", "sub"], &["difference"], ""),
     // Interpolation of keyframes.
     (&["spline", "cubicspline", "bezier", "catmullrom", "hermite", "bspline"], &["cubic"], ""),
     (&["ease", "easein", "easeout", "easeinout", "smoothstep", "sine"], &["smooth"], ""),

@@ -44,6 +44,14 @@ pub(super) const KEYS: &[(&[&str], &[&[&str]])] = &[
     (&["keyframe", "frames", "keys", "times", "animate", "animation"], &[&["keyframes"]]),
     (&["ease", "easing", "interpolate", "interp", "spline"], &[&["interpolation"]]),
     (&["loop", "cycle", "cyclic", "periodic", "wrap", "extrapolation"], &[&["repeat"]]),
+    // Solids.
+    (
+        &["csg", "boolean", "union", "difference", "intersection", "subtract", "merge", "composite"],
+        &[&["solid"]],
+    ),
+    (&["op", "mode", "method"], &[&["operation"]]),
+    (&["operands", "children", "shapes", "parts", "members"], &[&["of"]]),
+    (&["resolution", "tessellation", "subdivisions", "facets", "sides", "slices"], &[&["segments"]]),
     // Cameras.
     (
         &["angle", "cone", "spotangle", "cutoff", "cutoffangle", "outerangle", "beamangle"],
