@@ -6,8 +6,10 @@
 
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 use manifold_rust::manifold::Manifold;
-use manifold_rust::types::{Error, MeshGLP, OpType, WindingRule};
+use manifold_rust::types::{Error as Status, MeshGLP, OpType, WindingRule};
 
+use crate::budget::Reservation;
+use crate::error::Result;
 use crate::model::weld::Weld;
 use crate::shape::Mesh;
 
@@ -15,7 +17,7 @@ use crate::shape::Mesh;
 const STRIDE: usize = 3 + 3 + 2 + 3;
 
 /// Bytes that a boolean takes for each triangle of its operands, measured with two spheres that cross.
-pub(crate) const BYTES_PER_TRIANGLE: u64 = 2000;
+pub(crate) const BYTES_PER_TRIANGLE: u64 = 600;
 
 /// The most triangles of a surface that crosses itself: it is taken apart with rational numbers, which are slow.
 const MOST_CROSSING: usize = 50_000;
@@ -58,7 +60,7 @@ impl Solid {
     /// The solid that surfaces bound together, whichever side their front is on. What crosses itself, as the
     /// triangles of a letter may by a hair, is the union of what it surrounds. Vertices at the same place, as `f32`, are one: there
     /// faces of different operands that are meant to be flush are.
-    pub(crate) fn new(surfaces: &[Surface<'_>]) -> Result<Self, Flaw> {
+    pub(crate) fn new(surfaces: &[Surface<'_>]) -> std::result::Result<Self, Flaw> {
         let mut soup = Soup::default();
         for surface in surfaces {
             soup.add(surface)?;
@@ -69,42 +71,54 @@ impl Solid {
         }
         let manifold = Manifold::from_mesh_glp(&soup.into_mesh());
         match manifold.status() {
-            Error::NoError if volume == 0.0 || manifold.is_empty() => Err(Flaw::Flat),
-            Error::NoError if !manifold.has_self_intersections() => Ok(Self(manifold)),
-            Error::NoError if manifold.num_tri() > MOST_CROSSING => Err(Flaw::Crossing),
-            Error::NoError => {
+            Status::NoError if volume == 0.0 || manifold.is_empty() => Err(Flaw::Flat),
+            Status::NoError if !manifold.has_self_intersections() => Ok(Self(manifold)),
+            Status::NoError if manifold.num_tri() > MOST_CROSSING => Err(Flaw::Crossing),
+            Status::NoError => {
                 let united = manifold.rebuild_solid(WindingRule::Positive);
                 if united.is_empty() { Err(Flaw::Crossing) } else { Ok(Self(united)) }
             }
-            Error::NonFiniteVertex => Err(Flaw::Far),
+            Status::NonFiniteVertex => Err(Flaw::Far),
             _ => Err(Flaw::Open),
         }
     }
 
-    /// The first solid, united or intersected with all others, or without them.
-    pub(crate) fn combined(operation: Operation, mut solids: Vec<Self>) -> Self {
+    /// The first solid, united or intersected with all others, or without them. Each boolean asks for the memory that it takes
+    /// for each triangle, and has it until it is done.
+    pub(crate) fn combined(
+        operation: Operation,
+        mut solids: Vec<Self>,
+        reserve: &impl Fn(u64) -> Result<Reservation>,
+    ) -> Result<Self> {
         match operation {
-            Operation::Union => Self::in_pairs(OpType::Add, solids),
-            Operation::Intersection => Self::in_pairs(OpType::Intersect, solids),
-            Operation::Difference if solids.len() > 1 => {
-                let cutters = Self::in_pairs(OpType::Add, solids.split_off(1));
-                let whole = Self::in_pairs(OpType::Add, solids);
-                Self(whole.0.boolean(&cutters.0, OpType::Subtract))
+            Operation::Union => Self::in_pairs(OpType::Add, solids, reserve),
+            Operation::Intersection => Self::in_pairs(OpType::Intersect, solids, reserve),
+            Operation::Difference => {
+                let cutters = solids.split_off(1.min(solids.len()));
+                let cutters = Self::in_pairs(OpType::Add, cutters, reserve)?;
+                solids.push(cutters);
+                Self::in_pairs(OpType::Subtract, solids, reserve)
             }
-            Operation::Difference => Self::in_pairs(OpType::Add, solids),
         }
     }
 
     /// Combines neighbours, and then the results: of many small solids few are combined with a large one.
-    fn in_pairs(operation: OpType, mut solids: Vec<Self>) -> Self {
+    fn in_pairs(
+        operation: OpType,
+        mut solids: Vec<Self>,
+        reserve: &impl Fn(u64) -> Result<Reservation>,
+    ) -> Result<Self> {
         while solids.len() > 1 {
             let pair = |pair: &[Self]| match pair {
-                [a, b] => Self(a.0.boolean(&b.0, operation)),
-                _ => pair[0].clone(),
+                [a, b] => {
+                    let _memory = reserve((a.0.num_tri() + b.0.num_tri()) as u64)?;
+                    Ok(Self(a.0.boolean(&b.0, operation)))
+                }
+                _ => Ok(pair[0].clone()),
             };
-            solids = solids.chunks(2).map(pair).collect();
+            solids = solids.chunks(2).map(pair).collect::<Result<_>>()?;
         }
-        solids.pop().unwrap_or_else(|| Self(Manifold::empty()))
+        Ok(solids.pop().unwrap_or_else(|| Self(Manifold::empty())))
     }
 
     /// What is left of the surfaces, each with its number, facing outward. Attributes that a surface did not have are empty.
@@ -175,7 +189,7 @@ struct Soup {
 }
 
 impl Soup {
-    fn add(&mut self, surface: &Surface<'_>) -> Result<(), Flaw> {
+    fn add(&mut self, surface: &Surface<'_>) -> std::result::Result<(), Flaw> {
         let Surface { number, mesh, matrix } = surface;
         let of_normals = DMat3::from_mat4(*matrix).inverse().transpose();
         let is_mirrored = matrix.determinant() < 0.0;

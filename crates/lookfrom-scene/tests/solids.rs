@@ -246,3 +246,40 @@ proptest! {
         prop_assert!((rest - (a - common)).abs() < 1e-5, "{rest} {a} {common}");
     }
 }
+
+/// A mesh of these tetrahedra, given inline.
+fn tetrahedra(points: &[[u8; 3]], corners: &[[usize; 4]], scale: f64) -> String {
+    let faces = |&[a, b, c, d]: &[usize; 4]| [[a, c, b], [a, b, d], [a, d, c], [b, c, d]];
+    let triangles: Vec<[usize; 3]> = corners.iter().flat_map(faces).collect();
+    format!("{{ type = \"mesh\", positions = {points:?}, triangles = {triangles:?}, scale = {scale:?} }}")
+}
+
+#[test]
+fn what_crosses_itself_is_united() {
+    // Two tetrahedra, one of which is the other turned about its middle: the star has 12/8 of the volume.
+    let points = [[0, 0, 0], [2, 2, 0], [2, 0, 2], [0, 2, 2], [2, 2, 2], [0, 0, 2], [0, 2, 0], [2, 0, 0]];
+    let one = volume(&read(&solid("union", &tetrahedra(&points, &[[0, 1, 2, 3]], 1.0))));
+    let star = read(&solid("union", &tetrahedra(&points, &[[0, 1, 2, 3], [4, 6, 5, 7]], 1.0)));
+    is_closed(&star);
+    assert!((one - 8.0 / 3.0).abs() < 1e-9 && (volume(&star) - 1.5 * one).abs() < 1e-9, "{}", volume(&star));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+    /// Surfaces that touch, cross and cover themselves: a closed result or an error, never a panic.
+    #[test]
+    fn any_mesh_is_survived(
+        points in prop::collection::vec(prop::array::uniform3(0_u8..4), 8),
+        corners in prop::collection::vec(prop::array::uniform4(0_usize..8), 1..6),
+        scale in prop::sample::select(vec![1e-30, 1e-9, 1.0, 1e15, 1e37]),
+    ) {
+        let of = format!("{}, {}", tetrahedra(&points, &corners, scale), cuboid([0.5; 3], [1.5; 3]));
+        for operation in ["union", "intersection", "difference"] {
+            match load_with(&solid(operation, &of), &Budget::default()) {
+                Ok((scene, _)) if scene.shapes.is_empty() => {}
+                Ok((scene, _)) => is_closed(&scene),
+                Err(error) => prop_assert!(error.to_string().contains("this mesh"), "{error}"),
+            }
+        }
+    }
+}

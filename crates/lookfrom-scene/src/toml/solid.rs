@@ -110,7 +110,13 @@ impl Reader<'_, '_> {
             return Err(Error::untold());
         }
         self.share_material(&mut build.parts[first..]);
-        Ok(Solid::combined(operation, solids))
+        let limit = self.context.limits.elements;
+        Solid::combined(operation, solids, &|count| {
+            if count > limit {
+                return Err(too_many(table, count, limit));
+            }
+            self.context.budget.reserve(count * BYTES_PER_TRIANGLE, "the solid", &table.at())
+        })
     }
 
     /// What has no material has that of the first operand.
