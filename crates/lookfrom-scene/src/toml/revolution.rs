@@ -123,7 +123,7 @@ pub(super) fn ball(segments: u32) -> Mesh {
     let rings = (segments / 2).max(2);
     let at = |index: u32| {
         let (sin, cos) = libm::sincos(PI * f64::from(index) / f64::from(rings));
-        let normal = DVec2::new(if index % rings == 0 { 0.0 } else { sin }, -cos);
+        let normal = DVec2::new(if index.is_multiple_of(rings) { 0.0 } else { sin }, -cos);
         Ring { point: normal, normal }
     };
     let pieces: Vec<Piece> = (0..rings).map(|index| [at(index), at(index + 1)]).collect();
