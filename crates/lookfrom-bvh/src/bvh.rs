@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::aabb::Aabb;
+use crate::affine::Affine;
 use crate::conservative::TriangleBlock;
 use crate::instance::Instance;
 use crate::masks::Masks;
@@ -41,7 +42,8 @@ pub struct Bvh {
     pub(crate) spheres: Vec<SphereItem>,
     pub(crate) procedurals: Vec<ProceduralItem>,
     pub(crate) procedural_shapes: Vec<Arc<dyn Procedural>>,
-    pub(crate) instances: Vec<Instance>,
+    /// By id, as the builder numbered them; shared with the builder.
+    pub(crate) instances: Arc<Vec<Instance>>,
     pub(crate) masks: Masks,
     pub(crate) bounds: Aabb,
     pub(crate) statistics: Statistics,
@@ -86,7 +88,7 @@ impl Default for Bvh {
             spheres: Vec::new(),
             procedurals: Vec::new(),
             procedural_shapes: Vec::new(),
-            instances: Vec::new(),
+            instances: Arc::default(),
             masks: Masks::default(),
             bounds: Aabb::EMPTY,
             statistics: Statistics::default(),
@@ -109,6 +111,25 @@ impl Bvh {
     /// ```
     pub fn bounds(&self) -> Aabb {
         self.bounds
+    }
+
+    /// The map of an instance, world from object.
+    ///
+    /// # Panics
+    /// If there is no such instance.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Affine, Builder};
+    /// # use std::sync::Arc;
+    /// # let mut builder = Builder::new();
+    /// let up = Affine { translation: [0.0, 0.0, 1.0], ..Affine::IDENTITY };
+    /// let instance = builder.instance(Arc::new(Builder::new().build()?), up);
+    /// assert_eq!(builder.build()?.instance_map(instance), &up);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    #[inline]
+    pub fn instance_map(&self, instance: u32) -> &Affine {
+        &self.instances[instance as usize].world_from_object
     }
 
     pub(crate) fn set_bounds(&mut self, bounds: Aabb) {

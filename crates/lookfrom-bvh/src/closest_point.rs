@@ -205,7 +205,7 @@ impl Search<'_> {
             let instance = self.outer.instances.get(place as usize);
             let bvh = instance.map_or(self.outer, |instance| &*instance.bvh);
             let space = match instance {
-                Some(instance) => Space::new(&instance.world_from_object, self.point, instance.id),
+                Some(instance) => Space::new(&instance.world_from_object, self.point, place),
                 None => Space::world(self.point),
             };
             match child.content() {

@@ -6,7 +6,6 @@ use crate::Bvh;
 use crate::bvh::{Leaf, SphereItem};
 use crate::collector::Collector;
 use crate::exact::ExactRay;
-use crate::instance::Instance;
 use crate::observer::Observer;
 use crate::ray::{Hit, NONE, Ray};
 use crate::sphere;
@@ -106,13 +105,13 @@ fn instances<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
         if V::SELECTS && !state.visibility.enter_instance(place) {
             return false;
         }
-        let Instance { bvh, id, world_from_object, object_from_world } = &bvh.instances[place];
-        let inside = exact.in_object(world_from_object, object_from_world);
+        let instance = &bvh.instances[place];
+        let inside = exact.in_object(instance);
         let TraversalStack { entries, height, .. } = stack;
-        state.instance = *id;
+        state.instance = place as u32;
         let stop = trace_any(
             simd,
-            bvh,
+            &instance.bvh,
             &inside,
             state,
             &mut TraversalStack { entries, bottom: *height, height: *height },

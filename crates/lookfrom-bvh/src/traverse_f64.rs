@@ -191,9 +191,9 @@ impl<O: Observer> Traversal<'_, O> {
                 let outer = self.outer;
                 for place in range(first, count) {
                     let inside = &outer.instances[place];
-                    let inner = ray.in_object(&inside.world_from_object, &inside.object_from_world);
+                    let inner = ray.in_object(inside);
                     if is_usable(&inner) && self.visibility.enter_instance(place) {
-                        self.node(&inside.bvh, &inner, inside.id, 0);
+                        self.node(&inside.bvh, &inner, place as u32, 0);
                         self.visibility.leave_instance();
                     }
                 }

@@ -84,7 +84,8 @@ pub(crate) fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
         leaves: vec![false; bvh.leaves.len()],
         spheres: vec![false; bvh.spheres.len()],
         procedurals: vec![false; bvh.procedurals.len()],
-        instances: vec![false; bvh.instances.len()],
+        // Those that were left out are not in the tree.
+        instances: bvh.instances.iter().map(|instance| !instance.bounds().is_valid()).collect(),
         ids: Vec::new(),
     };
     if !bvh.nodes.is_empty() {
@@ -109,9 +110,9 @@ pub(crate) fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
         return Err(Invalid(format!("primitive {} of geometry {} is there twice", pair[0].1, pair[0].0)));
     }
 
-    for instance in &bvh.instances {
+    for (number, instance) in bvh.instances.iter().enumerate() {
         if !instance.bvh.instances.is_empty() {
-            return Err(Invalid(format!("the tree of instance {} holds instances", instance.id)));
+            return Err(Invalid(format!("the tree of instance {number} holds instances")));
         }
         instance.bvh.validate()?;
     }

@@ -161,7 +161,7 @@ impl<'a> Visibility<'a> for Masked<'a> {
 
     fn enter_instance(&mut self, place: usize) -> bool {
         let instance = &self.outer.instances[place];
-        let is_shown = self.mask.is_none_or(|mask| self.outer.masks.shows_instance(instance.id, mask));
+        let is_shown = self.mask.is_none_or(|mask| self.outer.masks.shows_instance(place as u32, mask));
         if is_shown {
             self.masks = &instance.bvh.masks;
         }

@@ -105,9 +105,9 @@ fn write(arguments: &FarmArguments, matches: &ArgMatches) -> Result<(), Failure>
 
 fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> {
     let scene = &arguments.scene;
-    let budget = lookfrom_scene::Budget::default();
-    let inputs =
-        files::read(scene, &arguments.overrides.variables, &budget)?.into_iter().map(|(path, _)| path);
+    let inputs = files::read(scene, &arguments.overrides.variables, &arguments.memory.budget())?
+        .into_iter()
+        .map(|(path, _)| path);
     let environment = arguments.overrides.model.environment.iter().cloned();
     let inputs = inputs.chain(environment).map(|path| film::absolute(&path)).collect();
     let mut options = film::arguments(matches);
@@ -117,6 +117,9 @@ fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> 
             .crop
             .map(|crop| format!("--crop={},{},{},{}", crop.x0, crop.y0, crop.x1, crop.y1)),
     );
+    // As it was typed: which unit is the user's affair.
+    let memory = matches.get_raw("memory").into_iter().flatten();
+    options.extend(memory.map(|size| format!("--memory={}", size.to_string_lossy())));
     if let Some(samples) = &arguments.overrides.samples {
         if samples.end - samples.start < arguments.parts {
             return Err(Failure::Usage(format!(

@@ -19,10 +19,11 @@ pub use class::Class;
 use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
-use lookfrom_bvh::{Bvh, Hit, NONE, OriginPrimitive, Point, Ray};
+use lookfrom_bvh::{Affine, Bvh, Hit, NONE, OriginPrimitive, Point, Ray};
 use lookfrom_scene::scene::MediumId;
 
-use crate::core::points::{Placement, Points};
+use crate::core::math;
+use crate::core::points::{Points, StoredPlacement, amplification};
 use crate::core::spectrum::Spectrum;
 use crate::light::{IncompletePdf, Light, LightChoice, LightSampleContext};
 use crate::primitive::{Mesh, Primitives, SurfacePoint, VertexData};
@@ -112,19 +113,24 @@ pub struct Names {
     pub lights: Vec<String>,
 }
 
-/// An instance of an object.
+/// An instance of an object: what the kernel does not know of it. There may be millions.
 #[derive(Clone, Debug)]
-pub struct Instance {
+pub(crate) struct Instance {
     /// Index into the world's objects.
-    pub object: u32,
-    /// From the object's space to render space.
-    pub render_from_object: DMat4,
-    /// The inverse.
-    pub object_from_render: DMat4,
-    /// Both, for points of the object.
-    pub(crate) placement: Placement<f32>,
+    pub(crate) object: u32,
     /// Replaces the materials of the object.
-    pub material: Option<u32>,
+    pub(crate) material: Option<u32>,
+    /// From render space to the object's.
+    object_from_render: Affine,
+    /// The amplification of errors by both maps.
+    amplification: [[f64; 3]; 3],
+}
+
+/// An instance in its place.
+#[derive(Clone, Copy, Debug)]
+pub struct PlacedInstance<'a> {
+    pub(crate) instance: &'a Instance,
+    pub(crate) placement: StoredPlacement<'a>,
 }
 
 impl World {
@@ -154,12 +160,21 @@ impl World {
     }
 
     /// The primitives that a hit belongs to and the instance, if it is in one.
-    pub fn primitives(&self, hit: &Hit) -> (&Primitives, Option<&Instance>) {
+    pub fn primitives(&self, hit: &Hit) -> (&Primitives, Option<PlacedInstance<'_>>) {
         if hit.instance == NONE {
             return (&self.primitives[hit.geometry as usize], None);
         }
-        let instance = &self.instances[hit.instance as usize];
-        (&self.objects[instance.object as usize][hit.geometry as usize], Some(instance))
+        let placed = self.instance(hit.instance);
+        (&self.objects[placed.instance.object as usize][hit.geometry as usize], Some(placed))
+    }
+
+    /// An instance, by the kernel's id.
+    pub(crate) fn instance(&self, id: u32) -> PlacedInstance<'_> {
+        let instance = &self.instances[id as usize];
+        let affine = self.bvh.instance_map(id);
+        let Instance { object_from_render, amplification, .. } = instance;
+        let placement = StoredPlacement { affine, inverse: &object_from_render.matrix, amplification };
+        PlacedInstance { instance, placement }
     }
 
     /// The surface interaction of `ray` at `hit`.
@@ -355,20 +370,40 @@ impl World {
 }
 
 impl Instance {
+    /// An instance with a map from the object's space to render space.
+    fn new(object: u32, material: Option<u32>, render_from_object: &Affine) -> Self {
+        let inverse = math::matrix(render_from_object).inverse();
+        let object_from_render = math::affine(&inverse);
+        Self { object, material, object_from_render, amplification: amplification(render_from_object) }
+    }
+}
+
+impl PlacedInstance<'_> {
+    /// From the object's space to render space.
+    pub fn render_from_object(&self) -> DMat4 {
+        math::matrix(self.placement.affine)
+    }
+
+    /// The inverse.
+    pub fn object_from_render(&self) -> DMat4 {
+        math::matrix(&self.instance.object_from_render)
+    }
+
     /// A ray's origin and direction in the object's space; its t stays the same.
     pub fn in_object(&self, origin: DVec3, direction: DVec3) -> (DVec3, DVec3) {
-        let to_object = &self.object_from_render;
+        let to_object = self.object_from_render();
         (to_object.transform_point3(origin), to_object.transform_vector3(direction))
     }
 
     /// A surface point of the object, in render space.
     fn place(&self, of_object: SurfacePoint) -> SurfacePoint {
-        let vector = |v: DVec3| self.placement.vector(v.into()).into();
-        let normal = |n: DVec3| self.placement.normal(n.into()).normalize().into();
+        let placement = self.placement.placement();
+        let vector = |v: DVec3| placement.vector(v.into()).into();
+        let normal = |n: DVec3| placement.normal(n.into()).normalize().into();
         let mut binding = of_object.binding;
-        binding.material = self.material.unwrap_or(binding.material);
+        binding.material = self.instance.material.unwrap_or(binding.material);
         let Point { position, error } = of_object.point;
-        let points = Points { position: position.into(), error: error.into() }.placed(&self.placement);
+        let points = Points { position: position.into(), error: error.into() }.placed(&placement);
         SurfacePoint {
             point: Point { position: points.position.into(), error: points.error.into() },
             ng: normal(of_object.ng),

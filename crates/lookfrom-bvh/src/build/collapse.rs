@@ -97,8 +97,8 @@ impl Collapse<'_> {
                 Leaf::Procedurals { first, count }
             }
             Kind::Instance | Kind::Triangle => {
-                let first = bvh.instances.len() as u32;
-                bvh.instances.extend(ids.map(|(_, place)| self.primitives.instances[place as usize].clone()));
+                // Instances keep their order: they are large, and a leaf holds one.
+                let first = self.primitives.ids(numbers[0]).1;
                 Leaf::Instances { first, count }
             }
         };

@@ -198,7 +198,7 @@ impl std::error::Error for BuildError {}
 pub struct Builder {
     quality: Quality,
     geometries: Vec<Geometry>,
-    instances: Vec<(Arc<Bvh>, Affine)>,
+    instances: Arc<Vec<Instance>>,
     masks: Masks,
     error: Option<BuildError>,
 }
@@ -318,8 +318,19 @@ impl Builder {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn instance(&mut self, bvh: Arc<Bvh>, world_from_object: Affine) -> u32 {
-        self.instances.push((bvh, world_from_object));
-        self.instances.len() as u32 - 1
+        let instance = self.instances.len() as u32;
+        let is_nested = !bvh.instances.is_empty();
+        match Instance::new(bvh, world_from_object) {
+            Some(made) if !is_nested => Arc::make_mut(&mut self.instances).push(made),
+            Some(_) => self.fail(BuildError::NestedInstance { instance }),
+            None => self.fail(BuildError::SingularMatrix { instance }),
+        }
+        instance
+    }
+
+    /// Makes [`Self::build`] fail.
+    fn fail(&mut self, error: BuildError) {
+        self.error.get_or_insert(error);
     }
 
     /// Builds the tree.
@@ -343,7 +354,7 @@ impl Builder {
         if let Some(error) = &self.error {
             return Err(error.clone());
         }
-        let primitives = Primitives::new(&self.geometries, self.usable_instances()?)?;
+        let primitives = Primitives::new(&self.geometries, &self.instances)?;
         let mut references = primitives.references();
         let bounds = primitives.bounds_of(&references);
         let left_out = primitives.count() - references.len();
@@ -360,21 +371,9 @@ impl Builder {
         }
         let mut bvh = collapse::collapse(&binary, &plan, &references, &primitives);
         bvh.set_bounds(bounds);
+        bvh.instances = self.instances.clone();
         bvh.masks = self.masks.clone();
         bvh.statistics = Statistics { left_out, ..bvh.take_statistics() };
         Ok(bvh)
-    }
-
-    fn usable_instances(&self) -> Result<Vec<Instance>, BuildError> {
-        let mut usable = Vec::with_capacity(self.instances.len());
-        for (id, (bvh, map)) in self.instances.iter().enumerate() {
-            let instance = id as u32;
-            if !bvh.instances.is_empty() {
-                return Err(BuildError::NestedInstance { instance });
-            }
-            let made = Instance::new(bvh.clone(), *map, instance);
-            usable.push(made.ok_or(BuildError::SingularMatrix { instance })?);
-        }
-        Ok(usable)
     }
 }

@@ -22,32 +22,43 @@ const LEAF: f32 = 1.0;
 /// The choice for one binary node.
 #[derive(Clone, Copy, Default)]
 struct Choice {
-    cost: [f32; PLACES],
     /// Number of slots of the left child when there are two to eight: `left[i − 2]`; 0 to use one slot less.
     left: [u8; PLACES],
     leaf: bool,
 }
 
-/// The choices for all binary nodes.
-pub(super) struct Plan(Vec<Choice>);
+/// A choice with the costs by which those above it are made.
+#[derive(Clone, Copy, Default)]
+struct Costed {
+    cost: [f32; PLACES],
+    choice: Choice,
+}
+
+/// The choices for all binary nodes, without the costs, which are larger.
+pub(super) struct Plan {
+    choices: Vec<Choice>,
+    cost: f32,
+}
 
 impl Plan {
     pub(super) fn new(binary: &[Binary], references: &[Reference]) -> Self {
-        let mut choices = vec![Choice::default(); binary.len()];
+        let mut costed = vec![Costed::default(); binary.len()];
         if !binary.is_empty() {
-            choose_all(binary, references, &mut choices);
+            choose_all(binary, references, &mut costed);
         }
-        Self(choices)
+        let cost = costed.first().map_or(0.0, |root| root.cost[0]);
+        let choices = parallel::collect(costed.len(), parallel::GRAIN, |number| costed[number].choice);
+        Self { choices, cost }
     }
 
     /// The expected cost of a ray, in units of box area.
     pub(super) fn cost(&self) -> f32 {
-        self.0.first().map_or(0.0, |root| root.cost[0])
+        self.cost
     }
 
     /// True if a binary node becomes a leaf.
     pub(super) fn is_leaf(&self, number: usize) -> bool {
-        self.0[number].leaf
+        self.choices[number].leaf
     }
 
     /// The binary nodes that become the children of the wide node at `root`.
@@ -66,7 +77,7 @@ impl Plan {
         children: &mut [usize; WIDTH],
         count: &mut usize,
     ) {
-        let choice = &self.0[number];
+        let choice = &self.choices[number];
         let mut places = places;
         while places > 1 && choice.left[places - 2] == 0 {
             places -= 1;
@@ -83,7 +94,7 @@ impl Plan {
 }
 
 /// Makes the choices for a binary node and all below it.
-fn choose_all(binary: &[Binary], references: &[Reference], choices: &mut [Choice]) {
+fn choose_all(binary: &[Binary], references: &[Reference], choices: &mut [Costed]) {
     let right = binary[0].right as usize;
     if binary.len() < parallel::GRAIN || right == 0 {
         // Children follow their parents.
@@ -101,10 +112,10 @@ fn choose_all(binary: &[Binary], references: &[Reference], choices: &mut [Choice
 }
 
 /// The choice for the first of some binary nodes, after those for its children are made.
-fn choose(binary: &[Binary], references: &[Reference], choices: &[Choice]) -> Choice {
+fn choose(binary: &[Binary], references: &[Reference], choices: &[Costed]) -> Costed {
     let node = &binary[0];
     let area = node.bounds.half_area();
-    let mut choice = Choice::default();
+    let Costed { mut cost, mut choice } = Costed::default();
     let leaf = if fits_a_leaf(&references[node.first as usize..][..node.count as usize]) {
         LEAF * area
     } else {
@@ -112,8 +123,7 @@ fn choose(binary: &[Binary], references: &[Reference], choices: &[Choice]) -> Ch
     };
     if node.right == 0 {
         choice.leaf = true;
-        choice.cost = [leaf; PLACES];
-        return choice;
+        return Costed { cost: [leaf; PLACES], choice };
     }
 
     // Distribute two to eight slots between the children; the last case is a wide node of its own.
@@ -121,22 +131,22 @@ fn choose(binary: &[Binary], references: &[Reference], choices: &[Choice]) -> Ch
     let mut shared = [f32::INFINITY; WIDTH + 1];
     for places in 2..=WIDTH {
         for to_left in 1..places {
-            let cost = left[to_left - 1] + right[places - to_left - 1];
-            if cost < shared[places] {
-                shared[places] = cost;
+            let both = left[to_left - 1] + right[places - to_left - 1];
+            if both < shared[places] {
+                shared[places] = both;
                 choice.left[places - 2] = to_left as u8;
             }
         }
     }
     let own_node = NODE * area + shared[WIDTH];
     choice.leaf = leaf <= own_node;
-    choice.cost[0] = leaf.min(own_node);
+    cost[0] = leaf.min(own_node);
     for places in 2..=PLACES {
-        choice.cost[places - 1] = shared[places];
-        if choice.cost[places - 2] <= shared[places] {
-            choice.cost[places - 1] = choice.cost[places - 2];
+        cost[places - 1] = shared[places];
+        if cost[places - 2] <= shared[places] {
+            cost[places - 1] = cost[places - 2];
             choice.left[places - 2] = 0;
         }
     }
-    choice
+    Costed { cost, choice }
 }

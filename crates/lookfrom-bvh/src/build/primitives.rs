@@ -61,13 +61,13 @@ impl Geometry {
 /// All candidates for the tree, numbered: the primitives of one geometry after the other, then the instances.
 pub(super) struct Primitives<'a> {
     pub(super) geometries: &'a [Geometry],
-    pub(super) instances: Vec<Instance>,
+    pub(super) instances: &'a [Instance],
     /// The first number of each geometry, and of the instances.
     first: Vec<u32>,
 }
 
 impl<'a> Primitives<'a> {
-    pub(super) fn new(geometries: &'a [Geometry], instances: Vec<Instance>) -> Result<Self, BuildError> {
+    pub(super) fn new(geometries: &'a [Geometry], instances: &'a [Instance]) -> Result<Self, BuildError> {
         let mut primitives = 0;
         let mut first = vec![0];
         for geometry in geometries {

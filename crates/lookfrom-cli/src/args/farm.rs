@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::Overrides;
+use super::{MemoryArguments, Overrides};
 use crate::farm::Scheduler;
 use crate::values;
 
@@ -45,6 +45,9 @@ pub(crate) struct FarmArguments {
     /// Frames of the animations of the scene or model, FROM..BEFORE: --at FRAME / FPS
     #[arg(long, value_name = "FROM..BEFORE", value_parser = values::samples, conflicts_with_all = ["turntable", "at"])]
     pub(crate) frames: Option<Range<u32>>,
+
+    #[command(flatten)]
+    pub(crate) memory: MemoryArguments,
 
     #[command(flatten)]
     pub(crate) overrides: Overrides,

@@ -17,10 +17,11 @@ fn job(stage: &Stage, arguments: &[&str]) -> String {
 #[cfg(unix)]
 fn tasks_and_their_merge_are_one_render() {
     let stage = Stage::new("farm");
-    let farm =
-        ["farm", "slurm", "scene.toml", "--parts", "3", "--exposure=0.5", "--samples", "5", "-o", "a job"];
-    let output = stage.command("").args(farm).output().unwrap();
+    let farm = "farm slurm scene.toml --parts 3 --exposure=0.5 --samples 5 --memory 2GiB -o";
+    let output = stage.command(farm).arg("a job").output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let script = String::from_utf8(stage.bytes("a job/job.sh")).unwrap();
+    assert!(script.contains(" '--exposure=0.5' '--memory=2GiB' '--samples=0..5'"), "{script}");
     job(&stage, &["part", "2-3"]);
     job(&stage, &["part", "3"]);
     // One part is damaged, one is missing: the merge renders both.

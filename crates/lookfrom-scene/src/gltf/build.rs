@@ -207,7 +207,9 @@ impl Builder<'_, '_, '_> {
             let shines = pieces.iter().any(|piece| piece.look.emission.is_some());
             if repeated > MOST_REPEATED_TRIANGLES && !shines {
                 let object = *objects.entry(form).or_insert_with(|| self.object(&name, &pieces));
-                let at = self.document.at(&format!("/nodes/{node}"));
+                // One location for all, which may be millions: that of the mesh.
+                let at = self.model.objects[object.index()].at.clone();
+                self.context.keep(size_of::<Instance>() as u64, "an instance", &at)?;
                 self.instance(at, object, world_from_node);
                 continue;
             }

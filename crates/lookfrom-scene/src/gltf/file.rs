@@ -92,6 +92,8 @@ impl Document {
         check_version(&root, &at, context)?;
         let decoded = root.buffer_views.iter().map(|_| OnceLock::new()).collect();
         let limits = context.limits;
+        // Text is not needed any longer, and may be long.
+        let content = if binary.is_some() { content } else { Vec::new().into() };
         let compressed = Compressed::new(&root);
         let mut document = Self {
             root,

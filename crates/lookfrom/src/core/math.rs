@@ -1,6 +1,6 @@
 //! Vector and scalar functions of rendering that glam lacks.
 
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec3};
 use lookfrom_bvh::Affine;
 use lookfrom_simd::{Float, Real};
 
@@ -34,6 +34,18 @@ pub fn affine(matrix: &DMat4) -> Affine {
         matrix: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.truncate().to_array()),
         translation: matrix.w_axis.truncate().to_array(),
     }
+}
+
+/// The matrix of an affine map of the kernel.
+pub fn matrix(affine: &Affine) -> DMat4 {
+    let [x, y, z] = affine.matrix;
+    let linear = DMat3::from_cols_array_2d(&[x, y, z]).transpose();
+    DMat4::from_cols(
+        linear.x_axis.extend(0.0),
+        linear.y_axis.extend(0.0),
+        linear.z_axis.extend(0.0),
+        DVec3::from_array(affine.translation).extend(1.0),
+    )
 }
 
 /// The direction of a normal transformed by a matrix, by the transpose of its `inverse`; not of unit length.

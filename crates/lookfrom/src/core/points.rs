@@ -108,26 +108,68 @@ pub(crate) struct Placement<R: Real> {
 impl Placement<f32> {
     /// Of one map and the inverse of its linear part.
     pub(crate) fn new(affine: &Affine, inverse_matrix: &[[f64; 3]; 3]) -> Self {
-        let matrix = &affine.matrix;
-        let inverse = affine.inverse().map_or([[0.0; 3]; 3], |inverse| inverse.matrix);
-        let amplification = [0, 1, 2].map(|i| {
-            [0, 1, 2].map(|j| {
-                let mut product = if i == j { -1.0 } else { 0.0 };
-                let mut magnitude = 0.0;
-                for k in 0..3 {
-                    product += matrix[i][k] * inverse[k][j];
-                    magnitude += (matrix[i][k] * inverse[k][j]).abs();
-                }
-                product.abs() + 8.0 * UNIT * magnitude
-            })
-        });
-        Self {
-            matrix: matrix.map(Vector::from),
-            translation: affine.translation.into(),
-            inverse: inverse_matrix.map(Vector::from),
-            amplification: amplification.map(Vector::from),
+        StoredPlacement { affine, inverse: inverse_matrix, amplification: &amplification(affine) }.placement()
+    }
+}
+
+/// The amplification of errors by a map and its inverse, by rows: see [`Placement::amplification`].
+pub(crate) fn amplification(affine: &Affine) -> [[f64; 3]; 3] {
+    let matrix = &affine.matrix;
+    let inverse = affine.inverse().map_or([[0.0; 3]; 3], |inverse| inverse.matrix);
+    [0, 1, 2].map(|i| {
+        [0, 1, 2].map(|j| {
+            let mut product = if i == j { -1.0 } else { 0.0 };
+            let mut magnitude = 0.0;
+            for k in 0..3 {
+                product += matrix[i][k] * inverse[k][j];
+                magnitude += (matrix[i][k] * inverse[k][j]).abs();
+            }
+            product.abs() + 8.0 * UNIT * magnitude
+        })
+    })
+}
+
+/// The parts of a placement where they are: of instances the kernel has the map.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StoredPlacement<'a> {
+    /// The map.
+    pub(crate) affine: &'a Affine,
+    /// The inverse of its linear part, by rows.
+    pub(crate) inverse: &'a [[f64; 3]; 3],
+    /// Its [`amplification`].
+    pub(crate) amplification: &'a [[f64; 3]; 3],
+}
+
+impl StoredPlacement<'_> {
+    /// The placement.
+    pub(crate) fn placement(&self) -> Placement<f32> {
+        Placement {
+            matrix: self.affine.matrix.map(Vector::from),
+            translation: self.affine.translation.into(),
+            inverse: self.inverse.map(Vector::from),
+            amplification: self.amplification.map(Vector::from),
         }
     }
+}
+
+/// One stored map in each lane.
+#[inline(always)]
+pub(crate) fn gather_stored_placements<S: Simd>(
+    simd: S,
+    rows: &[StoredPlacement<'_>; LANES],
+) -> Placement<f32x8<S>> {
+    macro_rules! gathered {
+        ($($field:ident).+) => {
+            [
+                gather_f64(simd, &by_lane!(lane => rows[lane].$($field).+[0])),
+                gather_f64(simd, &by_lane!(lane => rows[lane].$($field).+[1])),
+                gather_f64(simd, &by_lane!(lane => rows[lane].$($field).+[2])),
+            ]
+        };
+    }
+    let translation = gather_f64(simd, &by_lane!(lane => rows[lane].affine.translation));
+    let (matrix, inverse) = (gathered!(affine.matrix), gathered!(inverse));
+    Placement { matrix, translation, inverse, amplification: gathered!(amplification) }
 }
 
 impl<R: Real> Placement<R> {

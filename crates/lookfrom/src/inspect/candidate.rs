@@ -18,7 +18,7 @@ use serde::Serialize;
 use traversal::Tested;
 
 use crate::primitive::Primitives;
-use crate::world::{Instance, World};
+use crate::world::{PlacedInstance, World};
 
 pub use traversal::TraversalReport;
 pub(super) use traversal::of_shadow;
@@ -141,11 +141,11 @@ struct TestRay {
 
 impl TestRay {
     /// A ray of render space, or in the object of an instance as the kernel takes it there; t stays the same.
-    fn new(ray: &Ray, instance: Option<&Instance>) -> Self {
+    fn new(ray: &Ray, instance: Option<PlacedInstance<'_>>) -> Self {
         let [mut origin, mut direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
         if let Some(instance) = instance {
-            let to_object = &instance.object_from_render;
-            origin = to_object.transform_vector3(origin - instance.render_from_object.w_axis.truncate());
+            let to_object = instance.object_from_render();
+            origin = to_object.transform_vector3(origin - instance.render_from_object().w_axis.truncate());
             direction = to_object.transform_vector3(direction);
         }
         let single =
@@ -185,8 +185,8 @@ fn candidate(
     let index = primitive as usize;
     let mut numbers = TestNumbers::default();
     if let Some(placed) = placed {
-        let [x, y, z, _] = placed.object_from_render.transpose().to_cols_array_2d();
-        numbers.input("instance at", placed.render_from_object.w_axis.truncate().to_array());
+        let [x, y, z, _] = placed.object_from_render().transpose().to_cols_array_2d();
+        numbers.input("instance at", placed.render_from_object().w_axis.truncate().to_array());
         numbers.input("to object, row 1", &x[..3]);
         numbers.input("to object, row 2", &y[..3]);
         numbers.input("to object, row 3", &z[..3]);

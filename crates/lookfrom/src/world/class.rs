@@ -3,7 +3,7 @@
 use lookfrom_bvh::{Hit, NONE};
 
 use super::World;
-use crate::core::points::Placement;
+use crate::core::points::StoredPlacement;
 use crate::primitive::{Mesh, Primitives};
 use crate::shading::bsdf::lanes::BsdfClass;
 use crate::shading::material::Material;
@@ -52,10 +52,10 @@ impl World {
 
     /// The mesh of a hit, its material, and the placement of the instance that it is in; `None` for other geometries.
     #[inline]
-    pub(crate) fn mesh(&self, hit: &Hit) -> Option<(&Mesh, &Material, Option<&Placement<f32>>)> {
+    pub(crate) fn mesh(&self, hit: &Hit) -> Option<(&Mesh, &Material, Option<StoredPlacement<'_>>)> {
         let (primitives, instance) = self.primitives(hit);
         let Primitives::Mesh(mesh) = primitives else { return None };
         let material = &self.materials[mesh.binding.material as usize];
-        Some((mesh, material, instance.map(|instance| &instance.placement)))
+        Some((mesh, material, instance.map(|placed| placed.placement)))
     }
 }

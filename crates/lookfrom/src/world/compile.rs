@@ -11,7 +11,7 @@ use lookfrom_scene::settings::Integrator as Kind;
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
 use super::lights::Lights;
-use super::place::{Compiler, Group, Labels};
+use super::place::{self, Compiler, Group, Labels};
 use super::{Instance, Medium, Names, World, reflectance};
 use crate::core::math;
 use crate::light::{Light, LightChoice};
@@ -81,15 +81,24 @@ impl World {
             in_objects.push(group);
         }
         compiler.has_instance_grain = false;
+        let objects: Vec<Vec<Primitives>> = in_objects.into_iter().map(Group::into_primitives).collect();
+        let trees = objects
+            .iter()
+            .map(|primitives| tree(primitives, Builder::new()).map(Arc::new))
+            .collect::<Result<Vec<_>>>()?;
+        // There may be millions of instances: until the tree is built, only the kernel has their maps.
+        let mut builder = Builder::new();
+        let mut instanced = Vec::with_capacity(scene.instances.len());
         for written in &scene.instances {
             let material = written.material.map(|id| id.0);
             let matrix = render_from_world * written.world_from_object;
-            let instance = Instance::new(&written.at, written.object.0, matrix, material)?;
+            place::inverse(&written.at, &matrix)?;
             // Each instance of a shape that emits light is a light of its own.
             for shape in labelled(written.object.index()).filter(|(shape, _)| shape.emission.is_some()) {
                 compiler.place(shape, &matrix, material, &mut in_world)?;
             }
-            in_world.instances.push(instance);
+            builder.instance(trees[written.object.index()].clone(), math::affine(&matrix));
+            instanced.push((written.object.0, material));
         }
         for light in &scene.lights {
             compiler.lights.add(light, origin);
@@ -106,15 +115,16 @@ impl World {
             warnings.push(Warning::new(&light.at, message));
         }
 
-        // Build the BVHs: of the objects, and of the world over them.
-        let objects: Vec<Vec<Primitives>> = in_objects.into_iter().map(Group::into_primitives).collect();
-        let trees = objects
-            .iter()
-            .map(|primitives| tree(primitives, &[], &[]).map(Arc::new))
-            .collect::<Result<Vec<_>>>()?;
-        let instances = std::mem::take(&mut in_world.instances);
+        // Build the BVH of the world, over those of the objects. What is compiled makes room for it.
+        let written_materials = std::mem::take(&mut scene.materials);
+        let written_media = std::mem::take(&mut scene.media);
+        drop((scene, labels));
         let primitives = in_world.into_primitives();
-        let bvh = tree(&primitives, &instances, &trees)?;
+        let bvh = tree(&primitives, builder)?;
+        let placed = instanced.into_iter().zip(0..);
+        let instances: Arc<[Instance]> = placed
+            .map(|((object, material), id)| Instance::new(object, material, bvh.instance_map(id)))
+            .collect();
 
         let mut names = Names { shapes, lights: light_names, ..Names::default() };
         let mut materials: Vec<Material> = Vec::new();
@@ -123,9 +133,9 @@ impl World {
             Medium { absorption, scale }
         };
         let mut media: Vec<Medium> =
-            scene.media.iter().map(|written| medium(written.absorption, written.scale)).collect();
+            written_media.iter().map(|written| medium(written.absorption, written.scale)).collect();
         let mut compiler = material::Compiler::new(&textures);
-        for written in scene.materials {
+        for written in written_materials {
             let (mut material, absorption) = compiler.compile(&written);
             // An absorbing body is filled with a medium of its own.
             if absorption != [0.0; 3] {
@@ -143,7 +153,7 @@ impl World {
             object_classes: Arc::default(),
             primitives: primitives.into(),
             objects: objects.into(),
-            instances: instances.into(),
+            instances,
             transmissive: materials.iter().any(|material| !material.whitted.transmission.is_gray(0.0)),
             has_gaps: !alphas.is_empty()
                 || has_media
@@ -190,9 +200,8 @@ fn grains(materials: &[Written]) -> Vec<bool> {
     grains
 }
 
-/// The BVH over primitives in their order, then instances.
-fn tree(primitives: &[Primitives], instances: &[Instance], objects: &[Arc<Bvh>]) -> Result<Bvh> {
-    let mut builder = Builder::new();
+/// The BVH over primitives in their order, and what else the builder has.
+fn tree(primitives: &[Primitives], mut builder: Builder) -> Result<Bvh> {
     for primitives in primitives {
         match primitives {
             Primitives::Mesh(mesh) => {
@@ -214,10 +223,6 @@ fn tree(primitives: &[Primitives], instances: &[Instance], objects: &[Arc<Bvh>])
                 builder.procedural(curves.clone());
             }
         }
-    }
-    for instance in instances {
-        builder
-            .instance(objects[instance.object as usize].clone(), math::affine(&instance.render_from_object));
     }
     builder.build().map_err(|error| Error::new(ErrorKind::Invalid, &Location::default(), error.to_string()))
 }

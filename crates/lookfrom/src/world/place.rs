@@ -15,10 +15,7 @@ use lookfrom_scene::scene::Scene;
 use lookfrom_scene::shape::{Emission, Geometry, Shape, Sphere};
 use lookfrom_scene::{Error, Location, Result, Warning};
 
-use super::Instance;
 use super::lights::Lights;
-use crate::core::math;
-use crate::core::points::Placement;
 use crate::light::{AreaLight, DiskLight, EmissionSpectrum, Light, LightShape, QuadricLight};
 use crate::primitive::{
     Disk, Disks, MaterialBinding, Mesh, Primitives, Quadric, QuadricKind, Quadrics, SphereBinding, Spheres,
@@ -38,8 +35,6 @@ pub(super) struct Group {
     spheres: Spheres,
     disks: Disks,
     quadrics: Quadrics,
-    /// Instances of the scene's objects.
-    pub(super) instances: Vec<Instance>,
 }
 
 impl Group {
@@ -59,17 +54,8 @@ impl Group {
     }
 }
 
-impl Instance {
-    /// An instance of an object. A matrix that cannot be inverted is `Invalid`.
-    pub(super) fn new(at: &Location, object: u32, matrix: DMat4, material: Option<u32>) -> Result<Self> {
-        let object_from_render = inverse(at, &matrix)?;
-        let placement = Placement::new(&math::affine(&matrix), &math::affine(&object_from_render).matrix);
-        Ok(Self { object, render_from_object: matrix, object_from_render, placement, material })
-    }
-}
-
-/// The inverse of an affine matrix.
-fn inverse(at: &Location, matrix: &DMat4) -> Result<DMat4> {
+/// The inverse of an affine matrix. One that has none is `Invalid`.
+pub(super) fn inverse(at: &Location, matrix: &DMat4) -> Result<DMat4> {
     let inverse = matrix.inverse();
     let usable = matrix.is_finite() && inverse.is_finite();
     if usable { Ok(inverse) } else { Err(not_invertible(at)) }

@@ -29,9 +29,10 @@ pub(super) fn outlines(world: &World, viewer: DVec4) -> Vec<Outline> {
     let world_from_render = DMat4::from_translation(world.origin);
     let of_world = world.primitives.iter().map(|primitives| (primitives, world_from_render));
     let every = world.instances.len().div_ceil(MOST).max(1);
-    let of_instances = world.instances.iter().step_by(every).flat_map(|instance| {
-        let world_from_object = world_from_render * instance.render_from_object;
-        let object = &world.objects[instance.object as usize];
+    let of_instances = (0..world.instances.len()).step_by(every).flat_map(|id| {
+        let placed = world.instance(id as u32);
+        let world_from_object = world_from_render * placed.render_from_object();
+        let object = &world.objects[placed.instance.object as usize];
         object.iter().map(move |primitives| (primitives, world_from_object))
     });
     let lists: Vec<(&Primitives, DMat4)> = of_world.chain(of_instances).collect();
