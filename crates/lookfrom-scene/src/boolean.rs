@@ -57,10 +57,10 @@ pub(crate) struct Surface<'a> {
 pub(crate) struct Solid(Manifold);
 
 impl Solid {
-    /// The solid that surfaces bound together, whichever side their front is on. What crosses itself, as the
+    /// The solid that surfaces bound together, whichever side their front is on. What crosses itself (if it may), as the
     /// triangles of a letter may by a hair, is the union of what it surrounds. Vertices at the same place, as `f32`, are one: there
     /// faces of different operands that are meant to be flush are.
-    pub(crate) fn new(surfaces: &[Surface<'_>]) -> std::result::Result<Self, Flaw> {
+    pub(crate) fn new(surfaces: &[Surface<'_>], may_cross: bool) -> std::result::Result<Self, Flaw> {
         let mut soup = Soup::default();
         for surface in surfaces {
             soup.add(surface)?;
@@ -72,7 +72,7 @@ impl Solid {
         let manifold = Manifold::from_mesh_glp(&soup.into_mesh());
         match manifold.status() {
             Status::NoError if volume == 0.0 || manifold.is_empty() => Err(Flaw::Flat),
-            Status::NoError if !manifold.has_self_intersections() => Ok(Self(manifold)),
+            Status::NoError if !(may_cross && manifold.has_self_intersections()) => Ok(Self(manifold)),
             Status::NoError if manifold.num_tri() > MOST_CROSSING => Err(Flaw::Crossing),
             Status::NoError => {
                 let united = manifold.rebuild_solid(WindingRule::Positive);

@@ -108,7 +108,8 @@ fn boxes_are_exact() {
 
 #[test]
 fn curved_shapes_are_fine_enough() {
-    // A circle in N pieces lacks 2π²/3N² of its area, a sphere somewhat more.
+    // A circle in N pieces lacks 2π²/3N² of its area; a sphere and a torus lack about twice as much.
+    let lacking = 2.0 * PI * PI / (3.0 * 96.0 * 96.0);
     for (shape, expected) in [
         ("{ type = \"sphere\", radius = 2 }", 4.0 / 3.0 * PI * 8.0),
         ("{ type = \"cylinder\", from = [1, 0, 0], to = [1, 3, 0], radius = 0.5 }", 0.75 * PI),
@@ -117,7 +118,7 @@ fn curved_shapes_are_fine_enough() {
     ] {
         let scene = read(&solid("union", shape));
         let ratio = volume(&scene) / expected;
-        assert!((0.999..1.0).contains(&ratio), "{shape}: {ratio}");
+        assert!((1.0 - 2.6 * lacking..1.0 - 0.9 * lacking).contains(&ratio), "{shape}: {ratio}");
         is_closed(&scene);
     }
     let rough = read(&format!("{}segments = 8\n", solid("union", "{ type = \"sphere\" }")));

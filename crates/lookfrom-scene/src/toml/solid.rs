@@ -32,9 +32,6 @@ pub(super) const TYPES: &[(&str, &str)] = &[
 ];
 const SOLID: &str = "solid";
 
-/// The number of straight pieces of a circle: it is within 0.014 % of its radius, a fifteenth of a pixel of a sphere that is a
-/// thousand pixels wide.
-const SEGMENTS: u64 = 192;
 /// So many pieces make 16 million triangles of a sphere.
 const MOST_SEGMENTS: u64 = 1 << 12;
 /// Maximum depth of solids in solids.
@@ -56,9 +53,8 @@ impl Reader<'_, '_> {
         let mut build = Build { parts: Vec::new(), triangles: 0, depth: 0, memory: Vec::new() };
         // Lights and cameras of models in a solid would not be moved with it.
         let was_in_object = std::mem::replace(&mut self.in_object, true);
-        let was_segments = std::mem::replace(&mut self.segments, SEGMENTS);
         let solid = self.combined(table, DMat4::IDENTITY, &mut build);
-        (self.in_object, self.segments) = (was_in_object, was_segments);
+        self.in_object = was_in_object;
         let surfaces = solid?.surfaces();
         if surfaces.is_empty() {
             let message = "nothing is left of the solid: its operands do not overlap, or cut away all of it";
@@ -187,7 +183,9 @@ impl Reader<'_, '_> {
             let number = (build.parts.len() + index) as u32;
             surfaces.push(Surface { number, mesh, matrix: outer * part.world_from_object * own });
         }
-        Solid::new(&surfaces).map_err(|flaw| flawed(table, kind, flaw))
+        // What we make of these does not cross itself, which takes a while to find out.
+        let may_cross = !matches!(kind, "sphere" | "box" | "cylinder" | "cone");
+        Solid::new(&surfaces, may_cross).map_err(|flaw| flawed(table, kind, flaw))
     }
 }
 
