@@ -264,7 +264,7 @@ impl<S: Simd> TriangleLanes<S> {
         Self { corners, extent: Lanes::splat(simd, block.extent(lane)) }
     }
 
-    /// What the test needs of the triangles alone.
+    /// The edges and normals.
     #[inline(always)]
     pub(crate) fn edges(&self) -> TriangleEdges<S> {
         let ([a, b, c], extent) = (self.corners, self.extent);

@@ -250,7 +250,7 @@ pub(crate) struct RenderArguments {
 }
 
 impl RenderArguments {
-    /// How finished pictures are drawn in the terminal, if they are.
+    /// The way of drawing finished pictures in the terminal; `None` without drawing.
     pub(crate) fn way(&self) -> Option<Way> {
         let is_watched = self.watch && !self.quiet && self.output.as_deref() != Some(Path::new("-"));
         self.show.unwrap_or(if is_watched { Show::Auto } else { Show::Off }).way()

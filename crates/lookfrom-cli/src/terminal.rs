@@ -1,7 +1,7 @@
 //! Pictures in the terminal: by graphics where it has them, else by coloured half blocks.
 //!
-//! What a terminal can do is concluded from its environment, as a program would answer questions that it is asked by escape
-//! codes only if it knows them.
+//! The capabilities of a terminal are concluded from its environment: not every terminal answers when escape codes ask for
+//! them.
 
 mod blocks;
 mod kitty;

@@ -121,7 +121,7 @@ impl Solid {
         Ok(solids.pop().unwrap_or_else(|| Self(Manifold::empty())))
     }
 
-    /// What is left of the surfaces, each with its number, facing outward. Attributes that a surface did not have are empty.
+    /// The remaining parts of the surfaces, each with its number, facing outward. Attributes that a surface did not have are empty.
     pub(crate) fn surfaces(&self) -> Vec<(u32, Mesh)> {
         let whole: MeshGLP<f64, u32> = self.0.get_mesh_glp(-1);
         let runs = whole.run_index.windows(2).zip(&whole.run_original_id).zip(&whole.run_flags);

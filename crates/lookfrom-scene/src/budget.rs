@@ -1,6 +1,6 @@
 //! A memory budget: one limit for all that files make us allocate.
 //!
-//! What is about to be allocated is reserved first, by the size that the file claims; a [`Reservation`] gives its bytes
+//! Memory is reserved before it is allocated, by the size that the file claims; a [`Reservation`] gives its bytes
 //! back when it is dropped. What stays in a scene is kept by the [`LoadContext`](crate::LoadContext) that reads it. Large arrays
 //! are counted by their lengths, parsed text by an estimate from its length, and small things not at all. Readers may
 //! turn an error into a warning (a picture becomes white), but not this one: a budget remembers that it refused.

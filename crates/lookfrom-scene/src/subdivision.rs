@@ -37,7 +37,7 @@ pub(crate) struct Cage {
     pub(crate) positions: Vec<DVec3>,
     /// The vertex of each corner, face by face.
     pub(crate) corners: Vec<u32>,
-    /// Where each face begins in the corners, and the end.
+    /// The index of each face's first corner, and the number of corners.
     pub(crate) starts: Vec<usize>,
     /// A number that the parts of a face inherit.
     pub(crate) tags: Vec<u32>,

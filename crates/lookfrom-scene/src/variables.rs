@@ -1,4 +1,4 @@
-//! What a scene's file does not decide itself: values of its variables, and the frames that its clock counts.
+//! Values from outside for the variables of a scene, and its frames per second.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What the air is made of, and how much light passes through it. Lengths are in km, from the centre of the Earth.
+//! Composition and transmittance of the air. Lengths are in km, from the centre of the Earth.
 
 use super::SUN_RADIUS;
 use super::bands::{self, Bands};

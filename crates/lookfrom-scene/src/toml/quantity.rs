@@ -1,4 +1,4 @@
-//! What an expression or a variable may be: a number, a truth, a text, a list, a table.
+//! Values of expressions and variables: numbers, truths, texts, lists, tables.
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -115,7 +115,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// What has no material has that of the first operand.
+    /// Gives the material of the first operand to parts without one.
     fn share_material(&self, parts: &mut [Part]) {
         let Some(material) = parts.first().and_then(|part| part.material) else { return };
         for part in parts.iter_mut().filter(|part| part.material.is_none()) {

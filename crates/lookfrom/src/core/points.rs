@@ -142,6 +142,7 @@ pub(crate) struct StoredPlacement<'a> {
 
 impl StoredPlacement<'_> {
     /// The placement.
+    #[inline]
     pub(crate) fn placement(&self) -> Placement<f32> {
         Placement {
             matrix: self.affine.matrix.map(Vector::from),
@@ -150,26 +151,6 @@ impl StoredPlacement<'_> {
             amplification: self.amplification.map(Vector::from),
         }
     }
-}
-
-/// One stored map in each lane.
-#[inline(always)]
-pub(crate) fn gather_stored_placements<S: Simd>(
-    simd: S,
-    rows: &[StoredPlacement<'_>; LANES],
-) -> Placement<f32x8<S>> {
-    macro_rules! gathered {
-        ($($field:ident).+) => {
-            [
-                gather_f64(simd, &by_lane!(lane => rows[lane].$($field).+[0])),
-                gather_f64(simd, &by_lane!(lane => rows[lane].$($field).+[1])),
-                gather_f64(simd, &by_lane!(lane => rows[lane].$($field).+[2])),
-            ]
-        };
-    }
-    let translation = gather_f64(simd, &by_lane!(lane => rows[lane].affine.translation));
-    let (matrix, inverse) = (gathered!(affine.matrix), gathered!(inverse));
-    Placement { matrix, translation, inverse, amplification: gathered!(amplification) }
 }
 
 impl<R: Real> Placement<R> {

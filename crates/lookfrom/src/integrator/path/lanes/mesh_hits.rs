@@ -8,7 +8,7 @@ use super::Item;
 use super::kernel::{LanePaths, ScatterKernel};
 use super::surfaces::SurfaceColumns;
 use crate::core::lanes::{LANES, bitmask, by_lane, gather, scatter};
-use crate::core::points::{StoredPlacement, gather_stored_placements};
+use crate::core::points::{StoredPlacement, gather_placements};
 use crate::core::vector::Vector;
 use crate::integrator::path::PathTracer;
 use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, StepOutput};
@@ -277,8 +277,8 @@ impl Kernel for MeshKernel<'_> {
         let mut at = triangles.points(u, v);
         if let Some(first) = hits.iter().find_map(|hit| hit.placement) {
             let are_placed = bitmask(&by_lane!(lane => hits[lane].placement.is_some()));
-            let placements =
-                gather_stored_placements(simd, &by_lane!(lane => hits[lane].placement.unwrap_or(first)));
+            let rows = by_lane!(lane => hits[lane].placement.unwrap_or(first).placement());
+            let placements = gather_placements(simd, &by_lane!(lane => &rows[lane]));
             at = at.placed(mask64x8::from_bitmask(simd, are_placed.into()), &placements);
         }
         let direction = gather(simd, &by_lane!(lane => hits[lane].path.ray.direction));
