@@ -7,6 +7,7 @@
 use crate::aabb::Aabb;
 use crate::prepared::{self, PreparedRay};
 use crate::ray::NONE;
+use crate::ray8::least_of_each;
 use lookfrom_simd::{LaneMask, Simd, f32x8, mask32x8, prelude::*};
 use prefetch_index::prefetch_index;
 
@@ -56,6 +57,8 @@ pub(crate) struct ConservativeTest<S: Simd> {
     pub(crate) surely_hit: LaneMask,
     /// The surely hit triangles as a SIMD mask.
     pub(crate) sure: mask32x8<S>,
+    /// Triangles that the ray's line surely passes through, in its range or not.
+    pub(crate) surely_crossed: mask32x8<S>,
     distance: Lanes<S>,
     distance_room: Lanes<S>,
     size: Lanes<S>,
@@ -235,15 +238,14 @@ impl TriangleBlock {
     #[inline(always)]
     pub(crate) fn bounds<S: Simd>(&self, simd: S) -> Aabb {
         let [a, b, c] = self.lanes(simd).corners;
-        let mut bounds = Aabb::EMPTY;
+        let (mut min, mut max) = (a, a);
         for axis in 0..3 {
-            let [min, max] = [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])];
-            for lane in 0..BLOCK {
-                bounds.min[axis] = bounds.min[axis].min(min[lane]);
-                bounds.max[axis] = bounds.max[axis].max(max[lane]);
-            }
+            min[axis] = a[axis].min(b[axis]).min(c[axis]);
+            max[axis] = a[axis].max(b[axis]).max(c[axis]);
         }
-        bounds
+        let all = least_of_each([min[0], min[1], min[2], -max[0], -max[1], -max[2], min[0], min[0]]);
+        let [x, y, z, to_x, to_y, to_z, ..]: [f32; BLOCK] = all.into();
+        Aabb { min: [x, y, z], max: [-to_x, -to_y, -to_z] }
     }
 }
 
@@ -380,12 +382,14 @@ impl<S: Simd> TriangleEdges<S> {
         let last = t_max.min(ray.sure_before);
         let in_range = distance.simd_gt(first.mul_add(size, size_room.mul_add(first, distance_room)))
             & distance.simd_lt(last.mul_sub(size, size_room.mul_add(last, distance_room)));
-        let sure = inside & in_range & size.simd_gt(size_room) & !unused;
+        let surely_crossed = inside & size.simd_gt(size_room) & !unused;
+        let sure = surely_crossed & in_range;
         let lanes = (1 << BLOCK) - 1;
         ConservativeTest {
             kept: LaneMask(!excluded.to_bitmask() as u32 & lanes),
             surely_hit: LaneMask(sure.to_bitmask() as u32 & lanes),
             sure,
+            surely_crossed,
             distance,
             distance_room,
             size,

@@ -62,9 +62,9 @@ fn widest([x, y, z]: [f64; 3]) -> f64 {
     x.abs().max(y.abs()).max(z.abs())
 }
 
-/// The hit with a triangle that the conservative test found surely hit, so that the rest of [`intersect_exact`] is
-/// not needed. Its determinant is clear: it is the sum of three edge functions that exceed their error, and that
-/// error is `conservative::ERROR` relative to the same product as [`CLEAR`].
+/// The crossing with a triangle that the conservative test found surely crossed, so that the rest of [`intersect_exact`]
+/// is not needed, up to its comparison with the ray's range. Its determinant is clear: it is the sum of three edge
+/// functions that exceed their error, and that error is `conservative::ERROR` relative to the same product as [`CLEAR`].
 #[inline(always)]
 pub(crate) fn intersect_sure(ray: &ExactRay, corners: &[[f32; 3]; 3]) -> Crossing {
     meet_exactly(ray, corners).round()

@@ -17,7 +17,9 @@ mod tests;
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::Point;
 use lookfrom_scene::light::Falloff;
+use lookfrom_simd::{Simd, f32x8, prelude::*};
 
+use crate::core::lanes::{LANES, by_lane};
 use crate::core::spectrum::Spectrum;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint, Textures};
@@ -97,6 +99,18 @@ impl EmissionSpectrum {
     /// The emission of a colour that is the same everywhere.
     pub fn even(&self, textures: &Textures, lanes: &SpectralMode) -> Spectrum {
         self.at(textures, &TexturePoint::NOWHERE, lanes)
+    }
+
+    /// The same for eight samples, of colours that do not vary.
+    #[inline(always)]
+    pub(crate) fn even_lanes<S: Simd>(
+        simd: S,
+        textures: &Textures,
+        of: &[&Self; LANES],
+        modes: &[&SpectralMode; LANES],
+    ) -> Spectrum<f32x8<S>> {
+        let scale = f32x8::load_array(simd, by_lane!(lane => of[lane].scale));
+        textures.constants(simd, &by_lane!(lane => &of[lane].color), modes) * scale
     }
 }
 

@@ -160,6 +160,7 @@ impl World {
     }
 
     /// The primitives that a hit belongs to and the instance, if it is in one.
+    #[inline]
     pub fn primitives(&self, hit: &Hit) -> (&Primitives, Option<PlacedInstance<'_>>) {
         if hit.instance == NONE {
             return (&self.primitives[hit.geometry as usize], None);

@@ -6,6 +6,7 @@ use super::*;
 use crate::collector::AnyHit;
 use crate::dispatch::{dispatch, levels};
 use crate::origin_primitive::OriginPrimitive;
+use crate::ray::NONE;
 use crate::stack::with_stack;
 use crate::testing::Random;
 use crate::visibility::Everything;
@@ -67,6 +68,54 @@ fn packets_say_what_single_rays_say() {
         }
     }
     assert!(hits > 10_000 && misses > 10_000, "{hits} hits, {misses} misses");
+}
+
+#[test]
+fn rays_that_end_at_triangles_are_occluded_as_one_by_one() {
+    let mut random = Random::new(31);
+    let (mut blocked, mut open) = (0, 0);
+    for round in 0..60 {
+        let (center, size) = (random.point_with_exponents(-6, 6), random.size(-6, 6));
+        // Few triangles are tested at once, more are in a tree.
+        let count = if round % 2 == 0 { 20 } else { 200 };
+        let positions: Vec<[f32; 3]> = (0..3 * count).map(|_| random.near(center, size)).collect();
+        let indices: Vec<[u32; 3]> = (0..count).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
+        let mut builder = Builder::new();
+        builder.triangles(Triangles { positions: &positions, indices: &indices });
+        let mut bvh = builder.build().unwrap();
+        for _ in 0..5 {
+            let (from, target) = (random.near(center, 2.0 * size), random.below(count) as usize);
+            // From near a point to points of a triangle, where rounding decides whether they hit it.
+            let rays: Vec<Ray> = (0..150)
+                .map(|_| {
+                    let origin = random.near(from, 0.01 * size);
+                    let (u, v) = (random.unit(), random.unit());
+                    let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
+                    let [a, b, c] = indices[target].map(|vertex| positions[vertex as usize]);
+                    let direction =
+                        [0, 1, 2].map(|k| a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]) - origin[k]);
+                    let end = [1.0_f32, 1.0_f32.next_down(), 1.0_f32.next_up(), 0.999_999];
+                    Ray { t_max: end[random.below(4) as usize], ..Ray::new(origin, direction) }
+                })
+                .collect();
+            for level in levels() {
+                bvh.level = level;
+                let mut together = vec![false; rays.len()];
+                let query = match round % 3 {
+                    0 => bvh.query(),
+                    _ => bvh.query().origin(OriginPrimitive { instance: NONE, geometry: 0, primitive: 7 }),
+                };
+                query.occluded_many(&rays, &mut together);
+                for (ray, occluded) in rays.iter().zip(&together) {
+                    assert_eq!(*occluded, query.occluded(ray), "{ray:?}");
+                }
+                let occluded = together.iter().filter(|occluded| **occluded).count();
+                blocked += occluded;
+                open += rays.len() - occluded;
+            }
+        }
+    }
+    assert!(blocked > 10_000 && open > 5_000, "{blocked} occluded, {open} not");
 }
 
 /// Boxes whose floors are hit by rays.

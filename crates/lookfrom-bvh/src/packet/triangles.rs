@@ -142,10 +142,11 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 }
                 let tested = edges.test_range(simd, &ray_lanes, group.end, &sides);
                 let (mut sure, mut kept) = (tested.sure, tested.kept.0 & rays);
-                if V::SELECTS && visibility.faces() != Faces::Both {
+                let faces = if V::SELECTS { visibility.faces() } else { Faces::Both };
+                if faces != Faces::Both {
                     // The sign of a sure hit's determinant is also sure.
                     let is_front = tested.looks_at_front();
-                    sure &= if visibility.faces() == Faces::Front { is_front } else { !is_front };
+                    sure &= if faces == Faces::Front { is_front } else { !is_front };
                     kept &= !(tested.surely_hit.0 & !(sure.to_bitmask() as u32));
                 }
                 if !C::ANY_HIT {
@@ -159,6 +160,16 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                     let is_other = !group.start_on(simd, geometry, primitive);
                     sure &= is_other;
                     open &= is_other.to_bitmask() as u32;
+                }
+                // Where only the range is in doubt, as of rays that end at a light, t decides.
+                let crossed = tested.surely_crossed.to_bitmask() as u32 & open;
+                if faces == Faces::Both && crossed != 0 {
+                    let corners = TriangleLanes::splat(simd, block, of).corners;
+                    let [t, ..] = triangle::intersect_sure_lanes(group.origin, group.direction, corners);
+                    let [t_min, t_max] = group.range;
+                    let crossed = mask32x8::from_bitmask(simd, crossed.into());
+                    sure |= crossed & t.simd_gt(t_min) & t.simd_lt(t_max);
+                    open &= !(crossed.to_bitmask() as u32);
                 }
                 // A ray that is surely occluded is done.
                 group.retire(simd, sure);

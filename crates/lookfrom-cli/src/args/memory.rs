@@ -1,5 +1,7 @@
 //! The argument for the memory that files may take.
 
+use std::sync::OnceLock;
+
 use clap::Args;
 use lookfrom_scene::Budget;
 
@@ -16,8 +18,9 @@ pub(crate) struct MemoryArguments {
 }
 
 impl MemoryArguments {
-    /// A budget of that size, of which nothing is reserved.
+    /// The budget of that size. All that one call of the command reads shares it.
     pub(crate) fn budget(self) -> Budget {
-        self.memory.map_or_else(Budget::default, Budget::new)
+        static OF_CALL: OnceLock<Budget> = OnceLock::new();
+        OF_CALL.get_or_init(|| self.memory.map_or_else(Budget::default, Budget::new)).clone()
     }
 }

@@ -36,7 +36,7 @@ pub fn xyz_of(radiance: Spectrum, wavelengths: &Wavelengths) -> [f32; 3] {
         })
     });
     let weighted = wavelengths.weighted(radiance);
-    matching.each_ref().map(|function| (function.at(&wavelengths.lambda) * weighted).0.into_iter().sum())
+    matching.each_ref().map(|function| (function.at_sampled(wavelengths) * weighted).0.into_iter().sum())
 }
 
 /// XYZ to linear Rec. 709; colours outside the gamut have negative components.

@@ -18,6 +18,8 @@ pub struct Discrete {
     /// Cumulative sums: of the weights before each entry, and of all.
     sums: Vec<f64>,
     guide: Vec<u32>,
+    /// The probabilities of the entries.
+    probabilities: Vec<f32>,
 }
 
 impl Discrete {
@@ -34,7 +36,8 @@ impl Discrete {
         }
         let mut guide = Vec::new();
         push_guide(&mut guide, &sums);
-        Self { sums, guide }
+        let probabilities = (0..weights.len()).map(|index| rounded(share(&sums, index))).collect();
+        Self { sums, guide, probabilities }
     }
 
     /// The entry for `u` in [0, 1), its probability (equal to [`Discrete::pdf`]), and a new number in [0, 1) for
@@ -47,7 +50,7 @@ impl Discrete {
 
     /// The probability of an entry; 0 for one of weight 0 or an index out of range.
     pub fn pdf(&self, index: usize) -> f32 {
-        rounded(share(&self.sums, index))
+        self.probabilities.get(index).copied().unwrap_or(0.0)
     }
 }
 
@@ -93,8 +96,13 @@ fn choose(sums: &[f64], guide: &[u32], u: f32) -> (usize, f64) {
     let goal = f64::from(u) * sums[sums.len() - 1];
     let part = (u * (guide.len() - 1) as f32) as usize;
     let [from, to] = [guide[part] as usize, guide[part + 1] as usize];
-    // The first entry that ends beyond the goal has positive width.
-    let index = from + sums[from + 1..to + 1].partition_point(|&end| end <= goal);
+    // The first entry that ends beyond the goal has positive width. Mostly there are only few to choose from.
+    let ends = &sums[from + 1..to + 1];
+    let index = match ends {
+        [] => from,
+        [end] => from + usize::from(*end <= goal),
+        _ => from + ends.partition_point(|&end| end <= goal),
+    };
     (index, (goal - sums[index]) / (sums[index + 1] - sums[index]))
 }
 

@@ -1,6 +1,6 @@
 //! Eight paths side by side: arrays by lane, and their gathering into vectors.
 
-use lookfrom_simd::{Simd, f32x8, f64x8, prelude::*};
+use lookfrom_simd::{Simd, f32x4, f32x8, f64x8, prelude::*};
 
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -26,6 +26,64 @@ macro_rules! by_lane {
 
 pub(crate) use by_lane;
 
+/// The components of something in eight lanes: for each component the numbers of the lanes.
+pub(crate) type Columns<const N: usize, T = f32> = [[T; LANES]; N];
+
+/// The components in one lane.
+#[inline(always)]
+pub(crate) fn row<const N: usize, T: Copy>(columns: &Columns<N, T>, lane: usize) -> [T; N] {
+    std::array::from_fn(|component| columns[component][lane % LANES])
+}
+
+/// Replaces the components in one lane.
+#[inline(always)]
+pub(crate) fn set_row<const N: usize, T: Copy>(columns: &mut Columns<N, T>, lane: usize, row: [T; N]) {
+    for (column, component) in columns.iter_mut().zip(row) {
+        column[lane % LANES] = component;
+    }
+}
+
+/// Vectors from their columns.
+#[inline(always)]
+pub(crate) fn load<S: Simd>(simd: S, [x, y, z]: &Columns<3>) -> Vector<f32x8<S>> {
+    Vector { x: f32x8::load_array(simd, *x), y: f32x8::load_array(simd, *y), z: f32x8::load_array(simd, *z) }
+}
+
+/// Vectors of double precision from their columns.
+#[inline(always)]
+pub(crate) fn load_f64<S: Simd>(simd: S, [x, y, z]: &Columns<3, f64>) -> Vector<f64x8<S>> {
+    Vector { x: f64x8::load_array(simd, *x), y: f64x8::load_array(simd, *y), z: f64x8::load_array(simd, *z) }
+}
+
+/// Spectra from their columns.
+#[inline(always)]
+pub(crate) fn load_spectrum<S: Simd>(simd: S, [a, b, c, d]: &Columns<4>) -> Spectrum<f32x8<S>> {
+    Spectrum([
+        f32x8::load_array(simd, *a),
+        f32x8::load_array(simd, *b),
+        f32x8::load_array(simd, *c),
+        f32x8::load_array(simd, *d),
+    ])
+}
+
+/// The columns of vectors.
+#[inline(always)]
+pub(crate) fn store<S: Simd>(v: Vector<f32x8<S>>) -> Columns<3> {
+    [v.x.into(), v.y.into(), v.z.into()]
+}
+
+/// The columns of vectors of double precision.
+#[inline(always)]
+pub(crate) fn store_f64<S: Simd>(v: Vector<f64x8<S>>) -> Columns<3, f64> {
+    [v.x.into(), v.y.into(), v.z.into()]
+}
+
+/// The columns of spectra.
+#[inline(always)]
+pub(crate) fn store_spectrum<S: Simd>(s: Spectrum<f32x8<S>>) -> Columns<4> {
+    [s.0[0].into(), s.0[1].into(), s.0[2].into(), s.0[3].into()]
+}
+
 /// The answers of the lanes: that of lane i in bit i.
 #[inline(always)]
 pub(crate) fn bitmask(lanes: &[bool; LANES]) -> u32 {
@@ -37,14 +95,51 @@ pub(crate) fn bitmask(lanes: &[bool; LANES]) -> u32 {
     bits
 }
 
+/// The columns of rows of four numbers.
+#[inline(always)]
+fn transposed<S: Simd>(simd: S, rows: [f32x4<S>; LANES]) -> [f32x8<S>; 4] {
+    let [a, b, c, d, e, f, g, h] = rows;
+    let [low, high] = [transposed_half(simd, [a, b, c, d]), transposed_half(simd, [e, f, g, h])];
+    [
+        simd.combine_f32x4(low[0], high[0]),
+        simd.combine_f32x4(low[1], high[1]),
+        simd.combine_f32x4(low[2], high[2]),
+        simd.combine_f32x4(low[3], high[3]),
+    ]
+}
+
+#[inline(always)]
+fn transposed_half<S: Simd>(simd: S, [a, b, c, d]: [f32x4<S>; 4]) -> [f32x4<S>; 4] {
+    let [ac, bd] = [simd.zip_low_f32x4(a, c), simd.zip_low_f32x4(b, d)];
+    let [more_ac, more_bd] = [simd.zip_high_f32x4(a, c), simd.zip_high_f32x4(b, d)];
+    [
+        simd.zip_low_f32x4(ac, bd),
+        simd.zip_high_f32x4(ac, bd),
+        simd.zip_low_f32x4(more_ac, more_bd),
+        simd.zip_high_f32x4(more_ac, more_bd),
+    ]
+}
+
 /// A vector in each lane.
 #[inline(always)]
 pub(crate) fn gather<S: Simd>(simd: S, rows: &[[f32; 3]; LANES]) -> Vector<f32x8<S>> {
-    Vector {
-        x: f32x8::load_array(simd, by_lane!(lane => rows[lane][0])),
-        y: f32x8::load_array(simd, by_lane!(lane => rows[lane][1])),
-        z: f32x8::load_array(simd, by_lane!(lane => rows[lane][2])),
-    }
+    // The number after a row, the first of the next, goes to the fourth column, which is not used.
+    let all = rows.as_flattened();
+    let last = rows[LANES - 1];
+    let [x, y, z, _] = transposed(
+        simd,
+        [
+            f32x4::from_slice(simd, &all[0..4]),
+            f32x4::from_slice(simd, &all[3..7]),
+            f32x4::from_slice(simd, &all[6..10]),
+            f32x4::from_slice(simd, &all[9..13]),
+            f32x4::from_slice(simd, &all[12..16]),
+            f32x4::from_slice(simd, &all[15..19]),
+            f32x4::from_slice(simd, &all[18..22]),
+            f32x4::load_array(simd, [last[0], last[1], last[2], 0.0]),
+        ],
+    );
+    Vector { x, y, z }
 }
 
 /// A vector of double precision in each lane.
@@ -60,12 +155,19 @@ pub(crate) fn gather_f64<S: Simd>(simd: S, rows: &[[f64; 3]; LANES]) -> Vector<f
 /// A spectrum in each lane.
 #[inline(always)]
 pub(crate) fn gather_spectrum<S: Simd>(simd: S, rows: &[Spectrum; LANES]) -> Spectrum<f32x8<S>> {
-    Spectrum([
-        f32x8::load_array(simd, by_lane!(lane => rows[lane].0[0])),
-        f32x8::load_array(simd, by_lane!(lane => rows[lane].0[1])),
-        f32x8::load_array(simd, by_lane!(lane => rows[lane].0[2])),
-        f32x8::load_array(simd, by_lane!(lane => rows[lane].0[3])),
-    ])
+    Spectrum(transposed(
+        simd,
+        [
+            f32x4::load_array(simd, rows[0].0),
+            f32x4::load_array(simd, rows[1].0),
+            f32x4::load_array(simd, rows[2].0),
+            f32x4::load_array(simd, rows[3].0),
+            f32x4::load_array(simd, rows[4].0),
+            f32x4::load_array(simd, rows[5].0),
+            f32x4::load_array(simd, rows[6].0),
+            f32x4::load_array(simd, rows[7].0),
+        ],
+    ))
 }
 
 /// The vectors of the lanes.

@@ -77,13 +77,35 @@ impl<R: Real> Points<R> {
     /// As [`lookfrom_bvh::Point::leave`].
     #[inline(always)]
     pub(crate) fn leave(&self, unit_normal: Vector<R::Double>, direction: Vector<R>) -> Vector<R> {
-        let cos = unit_normal.dot(direction.widen());
-        let side = Float::select(cos.lt(cos.like(0.0)), cos.like(-1.0), cos.like(1.0));
-        let normal = unit_normal * side;
+        self.exits(unit_normal).toward(direction)
+    }
+
+    /// The ways out of the error bounds, along the unit normals and against them.
+    #[inline(always)]
+    pub(crate) fn exits(&self, unit_normal: Vector<R::Double>) -> Exits<R> {
         let Self { position, error } = *self;
-        let reach = normal.abs().times(error + position.abs() * cos.like(4.0 * UNIT));
+        let reach = unit_normal.abs().times(error + position.abs() * position.x.like(4.0 * UNIT));
         let step = (reach.x + reach.y + reach.z) * (1.0 + 1e-6);
-        let moved = position + normal * step;
+        Exits { position, normal: unit_normal, step: unit_normal * step }
+    }
+}
+
+/// The ways from points out of the bounds of their errors: for rays that leave surfaces.
+pub(crate) struct Exits<R: Real> {
+    position: Vector<R::Double>,
+    normal: Vector<R::Double>,
+    /// On the side of the normal.
+    step: Vector<R::Double>,
+}
+
+impl<R: Real> Exits<R> {
+    /// The origins of rays in some directions.
+    #[inline(always)]
+    pub(crate) fn toward(&self, direction: Vector<R>) -> Vector<R> {
+        let cos = self.normal.dot(direction.widen());
+        let is_behind = cos.lt(cos.like(0.0));
+        let normal = self.normal.negate_where(is_behind);
+        let moved = self.position + self.step.negate_where(is_behind);
         Vector {
             x: round_away(moved.x, normal.x, direction.x),
             y: round_away(moved.y, normal.y, direction.y),

@@ -8,6 +8,7 @@
 //! `picture`, `pattern`: image lookups and procedural patterns; `look_ups`: those of eight points at once; `evaluation`:
 //! conversion to numbers, RGB or spectra.
 
+mod constants;
 mod evaluation;
 mod input;
 mod look_ups;
@@ -110,9 +111,7 @@ impl SpectralMode {
 pub fn spectrum_of(rgb: [f32; 3], spectrum_type: SpectrumType, lanes: &SpectralMode) -> Spectrum {
     match lanes {
         SpectralMode::Rgb => RgbEvaluation(spectrum_type).color(rgb),
-        SpectralMode::Spectral(wavelengths) => {
-            SpectralEvaluation { spectrum_type, lambda: &wavelengths.lambda }.color(rgb)
-        }
+        SpectralMode::Spectral(wavelengths) => SpectralEvaluation { spectrum_type, wavelengths }.color(rgb),
     }
 }
 
@@ -185,9 +184,7 @@ impl Textures {
         match lanes {
             SpectralMode::Rgb => self.read(input, at, &RgbEvaluation(*spectrum_type)),
             SpectralMode::Spectral(wavelengths) => {
-                let lifted =
-                    SpectralEvaluation { spectrum_type: *spectrum_type, lambda: &wavelengths.lambda };
-                self.read(input, at, &lifted)
+                self.read(input, at, &SpectralEvaluation { spectrum_type: *spectrum_type, wavelengths })
             }
         }
     }

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use lookfrom_scene::spectrum::observer::{self, SAMPLES};
 use lookfrom_scene::spectrum::{Curve, SHORTEST, named};
 
-use super::rgb_from_xyz;
+use super::{Wavelengths, rgb_from_xyz};
 use crate::core::spectrum::Spectrum;
 
 /// A curve sampled at each nm from 360 to 830, evaluated at the nearest sample.
@@ -31,8 +31,13 @@ impl DenselySampledSpectrum {
 
     /// The value at each wavelength in nm; 0 outside 360 … 830.
     pub fn at(&self, lambda: &[f32; 4]) -> Spectrum {
-        let at = |nm: f32| nearest(nm).map_or(0.0, |i| self.0[i]);
-        Spectrum([at(lambda[0]), at(lambda[1]), at(lambda[2]), at(lambda[3])])
+        Spectrum(lambda.map(|nm| self.0.get(usize::from(nearest(nm))).copied().unwrap_or(0.0)))
+    }
+
+    /// The value at each wavelength of a sample.
+    #[inline]
+    pub(crate) fn at_sampled(&self, wavelengths: &Wavelengths) -> Spectrum {
+        Spectrum(wavelengths.of_curve(&self.0).map(|value| value.copied().unwrap_or(0.0)))
     }
 
     /// The same curve times a factor.
@@ -76,11 +81,11 @@ impl DenselySampledSpectrum {
     }
 }
 
-/// The index of the sample nearest to a wavelength in nm, if the wavelength is in range.
-pub(super) fn nearest(nm: f32) -> Option<usize> {
+/// The index of the sample nearest to a wavelength in nm; beyond the last one for a wavelength out of range.
+pub(super) fn nearest(nm: f32) -> u16 {
     // Negative numbers and NaN become 0, which is out of range, too.
-    let i = ((nm + 0.5) as u32).wrapping_sub(SHORTEST) as usize;
-    (i < SAMPLES).then_some(i)
+    let index = ((nm + 0.5) as u32).wrapping_sub(SHORTEST);
+    index.min(SAMPLES as u32) as u16
 }
 
 /// D65 with Y = 1: the white of Rec. 709, whose RGB is (1, 1, 1).

@@ -11,7 +11,7 @@ use lookfrom_scene::spectrum::daylight::daylight;
 use lookfrom_scene::spectrum::observer::{self, SAMPLES};
 use lookfrom_scene::spectrum::space::{self, Matrix};
 
-use super::densely_sampled::{DenselySampledSpectrum, nearest};
+use super::densely_sampled::DenselySampledSpectrum;
 use super::{Wavelengths, calibration, matrices};
 use crate::core::spectrum::Spectrum;
 
@@ -73,9 +73,9 @@ impl Sensor {
     pub fn rgb(&self, radiance: Spectrum, wavelengths: &Wavelengths) -> [f32; 3] {
         let weighted = wavelengths.weighted(radiance);
         let mut rgb = [0.0; 3];
-        for (nm, light) in wavelengths.lambda.into_iter().zip(weighted.0) {
-            let Some(i) = nearest(nm) else { continue };
-            for (sum, response) in rgb.iter_mut().zip(self.responses[i]) {
+        for (responses, light) in wavelengths.of_curve(&self.responses).into_iter().zip(weighted.0) {
+            let Some(responses) = responses else { continue };
+            for (sum, response) in rgb.iter_mut().zip(responses) {
                 *sum += response * light;
             }
         }

@@ -3,6 +3,8 @@
 //! A sigmoid of a quadratic polynomial of the wavelength is smooth, stays within [0, 1], and can represent almost
 //! every surface colour (Jakob and Hanika 2019). Colours with equal red, green and blue are constants.
 
+use lookfrom_simd::{Float, Real};
+
 use super::solve::{Measure, solve};
 use super::table::Table;
 use crate::core::spectrum::Spectrum;
@@ -12,7 +14,7 @@ use crate::core::spectrum::Spectrum;
 /// pbrt-v4 has the same functions as polynomials of λ itself; the normalised t preserves the digits of single
 /// precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sigmoid(pub [f32; 3]);
+pub struct Sigmoid<R = f32>(pub [R; 3]);
 
 /// The wavelength where t is 0, in nm.
 pub(super) const MIDDLE: f32 = 595.0;
@@ -26,16 +28,6 @@ impl Sigmoid {
     /// The same value v at all wavelengths, v within [0, 1].
     pub fn constant(v: f32) -> Self {
         Self([0.0, 0.0, ((v - 0.5) / (v * (1.0 - v)).sqrt()).clamp(-FLAT, FLAT)])
-    }
-
-    /// The values at wavelengths in nm.
-    pub fn at(&self, lambda: &[f32; 4]) -> Spectrum {
-        let Self([a, b, c]) = *self;
-        Spectrum(lambda.map(|nm| {
-            let t = (nm - MIDDLE) * (1.0 / REACH);
-            let x = (a * t + b) * t + c;
-            0.5 + 0.5 * x / (1.0 + x * x).sqrt()
-        }))
     }
 
     /// The spectrum whose colour under D65 is nearly `rgb`, by a table, for textures. Components are clamped to [0,
@@ -59,6 +51,23 @@ impl Sigmoid {
     }
 }
 
+impl<R: Real> Sigmoid<R> {
+    /// The values at wavelengths in nm.
+    #[inline(always)]
+    pub fn at(&self, [i, j, k, l]: &[R; 4]) -> Spectrum<R> {
+        Spectrum([self.value(*i), self.value(*j), self.value(*k), self.value(*l)])
+    }
+
+    /// The value at a wavelength in nm.
+    #[inline(always)]
+    fn value(&self, nm: R) -> R {
+        let Self([a, b, c]) = *self;
+        let t = (nm - MIDDLE) * (1.0 / REACH);
+        let x = (a * t + b) * t + c;
+        x * 0.5 / Float::sqrt(x * x + 1.0) + 0.5
+    }
+}
+
 /// Each component clamped to [0, 1]; NaN counts as 0.
 fn clamped(rgb: [f32; 3]) -> [f32; 3] {
     rgb.map(|component| if component > 0.0 { component.min(1.0) } else { 0.0 })
@@ -72,18 +81,23 @@ fn grey([r, g, b]: [f32; 3]) -> Option<f32> {
     (r == g && g == b).then_some(r)
 }
 
-/// A spectrum that may exceed 1: a scale times a smooth spectrum of at most ½.
+/// A spectrum that may exceed 1: a scale times a smooth spectrum, for a colour of at most ½.
 ///
 /// For indices of refraction and the like. For light, multiply by [`super::standard_illuminant`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unbounded {
-    /// Twice the largest component.
-    pub scale: f32,
+pub struct Unbounded<R = f32> {
+    /// The factor: of a colour, twice the largest component.
+    pub scale: R,
     /// The spectrum that is scaled.
-    pub sigmoid: Sigmoid,
+    pub sigmoid: Sigmoid<R>,
 }
 
 impl Unbounded {
+    /// The same value of 0 and above at all wavelengths, exactly.
+    pub fn gray(value: f32) -> Self {
+        Self { scale: value, sigmoid: Sigmoid([0.0, 0.0, FLAT]) }
+    }
+
     /// The spectrum with the colour `rgb` (under D65), by the table. Negative components and NaN count as 0.
     pub fn from_rgb(rgb: [f32; 3]) -> Self {
         Self::with(rgb, Sigmoid::from_rgb)
@@ -100,9 +114,12 @@ impl Unbounded {
         let sigmoid = if scale > 0.0 { lift(rgb.map(|v| v / scale)) } else { Sigmoid::constant(0.0) };
         Self { scale, sigmoid }
     }
+}
 
+impl<R: Real> Unbounded<R> {
     /// The values at wavelengths in nm.
-    pub fn at(&self, lambda: &[f32; 4]) -> Spectrum {
+    #[inline(always)]
+    pub fn at(&self, lambda: &[R; 4]) -> Spectrum<R> {
         self.sigmoid.at(lambda) * self.scale
     }
 }

@@ -2,8 +2,10 @@
 
 use std::sync::OnceLock;
 
+use lookfrom_scene::spectrum::observer::SAMPLES;
 use lookfrom_scene::spectrum::{LONGEST, SHORTEST};
 
+use super::densely_sampled::{nearest, standard_illuminant};
 use crate::core::spectrum::Spectrum;
 
 /// Number of cells of equal probability between the shortest and the longest wavelength; a multiple of four.
@@ -26,12 +28,37 @@ fn ends() -> &'static [f32; CELLS + 1] {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wavelengths {
     /// In nm, between 360 and 830.
-    pub lambda: [f32; 4],
+    pub(crate) lambda: [f32; 4],
     /// The density of each, per nm; 0 for terminated ones.
-    pub pdf: [f32; 4],
+    pub(crate) pdf: [f32; 4],
+    /// The indices of the nearest samples of measured curves, beyond their end where there is none.
+    nearest: [u16; 4],
+    /// The spectral power of daylight D65 of luminance 1 there.
+    pub(crate) daylight: Spectrum,
 }
 
 impl Wavelengths {
+    /// By wavelengths in nm and their densities per nm.
+    pub fn new(lambda: [f32; 4], pdf: [f32; 4]) -> Self {
+        Self { lambda, pdf, nearest: lambda.map(nearest), daylight: standard_illuminant().at(&lambda) }
+    }
+
+    /// In nm, between 360 and 830.
+    pub fn lambda(&self) -> [f32; 4] {
+        self.lambda
+    }
+
+    /// The density of each, per nm; 0 for terminated ones.
+    pub fn pdf(&self) -> [f32; 4] {
+        self.pdf
+    }
+
+    /// The samples of a curve, at whole nm, that are nearest; `None` where there is none.
+    #[inline(always)]
+    pub(super) fn of_curve<'a, T>(&self, samples: &'a [T; SAMPLES]) -> [Option<&'a T>; 4] {
+        self.nearest.map(|index| samples.get(usize::from(index)))
+    }
+
     /// Samples wavelengths by the sensitivity of the eye, with a density about ∝ 1 / cosh²(0.0072 (λ − 538)) on 360
     /// … 830 nm (Radziszewski, Boryczko, Alda 2009): constant in each of 2048 cells of equal probability. `u` is in
     /// [0, 1); the lanes are at u, u + ¼, u + ½, u + ¾ modulo 1.
@@ -46,7 +73,7 @@ impl Wavelengths {
             (ends[cell] + within * width, 1.0 / (CELLS as f32 * width))
         };
         let lanes = [lane(0), lane(1), lane(2), lane(3)];
-        Self { lambda: lanes.map(|(lambda, _)| lambda), pdf: lanes.map(|(_, pdf)| pdf) }
+        Self::new(lanes.map(|(lambda, _)| lambda), lanes.map(|(_, pdf)| pdf))
     }
 
     /// Terminates all wavelengths but the first, which gets four times the weight. Idempotent.

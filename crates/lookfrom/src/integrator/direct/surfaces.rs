@@ -72,7 +72,7 @@ fn on_triangles<S: Simd>(
     let indices = by_lane!(lane => triangles[lane].1);
     let u = f32x8::load_array(simd, by_lane!(lane => eight[lane].hit.u));
     let v = f32x8::load_array(simd, by_lane!(lane => eight[lane].hit.v));
-    let at = gather_triangles(simd, &meshes, &indices).points(u, v);
+    let at = gather_triangles(simd, &meshes, &indices, false).points(u, v);
     (at.points, at.ng, at.ns)
 }
 

@@ -14,16 +14,17 @@ mod surfaces;
 
 use glam::Vec3;
 use lookfrom_bvh::{OriginPrimitive, Ray};
+use lookfrom_simd::LaneMask;
 
 use kernel::{LanePaths, ScatterKernel, Scattered};
 pub(super) use mesh_hits::HitBatch;
+use mesh_hits::MeshPoints;
 use surfaces::SurfaceColumns;
 
 use super::{PathTracer, PreviousVertex, Vertex};
-use crate::core::lanes::{LANES, by_lane};
-use crate::integrator::shadow;
+use crate::core::lanes::{LANES, by_lane, row};
+use crate::core::spectrum::Spectrum;
 use crate::integrator::{Bounce, Event, Path, Probe, SampleStream, Shadow, StepOutput, Term};
-use crate::light::Target;
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
@@ -43,6 +44,19 @@ pub(super) struct Waiting {
     escaped: Vec<u32>,
     mesh_hits: [Vec<u32>; BsdfClass::COUNT],
     vertices: [Vec<Vertex>; BsdfClass::COUNT],
+    memory: Memory,
+}
+
+/// The numbers of the eight paths that are scattered, in memory that the next eight reuse.
+struct Memory {
+    points: MeshPoints,
+    scattered: Scattered,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self { points: MeshPoints::NONE, scattered: Scattered::NONE }
+    }
 }
 
 /// Calls a generic method of a path tracer with the BSDF of a class.
@@ -86,7 +100,7 @@ impl Waiting {
     ) {
         let hits = &mut self.mesh_hits[class as usize];
         if fills_lanes(hits, index as u32) {
-            with_class!(class, tracer.scatter_mesh_hits(batch, hits, output));
+            with_class!(class, tracer.scatter_mesh_hits(batch, hits, &mut self.memory, output));
             hits.clear();
         }
     }
@@ -104,7 +118,8 @@ impl Waiting {
         let Some(class) = BsdfClass::of(&vertex.shading.bsdf) else { return Some(vertex) };
         let vertices = &mut self.vertices[class as usize];
         if fills_lanes(vertices, vertex) {
-            with_class!(class, tracer.scatter_vertices(world, vertices, output));
+            let scattered = &mut self.memory.scattered;
+            with_class!(class, tracer.scatter_vertices(world, vertices, scattered, output));
             vertices.clear();
         }
         None
@@ -112,7 +127,7 @@ impl Waiting {
 
     /// Scatters the paths that are left.
     pub(super) fn flush<P: Probe>(
-        self,
+        mut self,
         tracer: &PathTracer,
         batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
         output: &mut StepOutput<'_, P>,
@@ -121,9 +136,9 @@ impl Waiting {
         for (class, (hits, vertices)) in
             BsdfClass::ALL.into_iter().zip(self.mesh_hits.iter().zip(&self.vertices))
         {
-            with_class!(class, tracer.scatter_mesh_hits(batch, hits, output));
-            let world = batch.world;
-            with_class!(class, tracer.scatter_vertices(world, vertices, output));
+            with_class!(class, tracer.scatter_mesh_hits(batch, hits, &mut self.memory, output));
+            let (world, scattered) = (batch.world, &mut self.memory.scattered);
+            with_class!(class, tracer.scatter_vertices(world, vertices, scattered, output));
         }
     }
 }
@@ -150,6 +165,7 @@ struct Item<'a> {
 
 impl Item<'_> {
     /// The media around light that has left to `wi`, passing through the surface or not.
+    #[inline]
     fn interior(&self, world: &World, wi: Vec3, passes: bool) -> InteriorStack {
         match self.surface {
             Some(surface) => self.path.interior.leaving(&world.materials, surface, wi, passes),
@@ -164,6 +180,7 @@ impl PathTracer {
         &self,
         world: &World,
         vertices: &[Vertex],
+        scattered: &mut Scattered,
         output: &mut StepOutput<'_, P>,
     ) {
         let Some(last) = vertices.last() else { return };
@@ -178,30 +195,31 @@ impl PathTracer {
             streams: by_lane!(lane => &vertices[lane].stream),
             modes: by_lane!(lane => &output.queues.lanes[vertices[lane].path.slot as usize]),
         };
-        let scattered = ScatterKernel { world, surfaces: &surfaces, bsdfs: &bsdfs, paths }.scatter();
-        let items = by_lane!(lane => Item {
+        ScatterKernel { world, surfaces: &surfaces, bsdfs: &bsdfs, paths, scattered }.scatter();
+        let item = |lane: usize| Item {
             path: &vertices[lane].path,
             origin_primitive: vertices[lane].surface.origin_primitive,
             surface: Some(&vertices[lane].surface),
             is_catcher: vertices[lane].is_catcher,
-        });
-        self.go_on(world, &items, active, &scattered, output);
+        };
+        self.go_on(world, item, active, scattered, output);
     }
 
     /// The shadow rays and further paths of scattered paths, in the lanes of a mask.
-    fn go_on<P: Probe>(
+    fn go_on<'a, P: Probe>(
         &self,
         world: &World,
-        items: &[Item<'_>; LANES],
+        item: impl Fn(usize) -> Item<'a>,
         active: u32,
         scattered: &Scattered,
         output: &mut StepOutput<'_, P>,
     ) {
-        for (lane, item) in items.iter().enumerate().filter(|(lane, _)| active & 1 << lane != 0) {
+        for lane in LaneMask(active) {
+            let item = item(lane);
             if scattered.has_density & 1 << lane != 0 {
-                self.shadow_ray(world, item, lane, scattered, output);
+                self.shadow_ray(world, &item, lane, scattered, output);
             }
-            self.next_path(world, item, lane, scattered, output);
+            self.next_path(world, &item, lane, scattered, output);
         }
     }
 
@@ -227,22 +245,18 @@ impl PathTracer {
             light,
             probability,
             sample: lights.light_sample(lane),
-            f: connections.f[lane],
+            f: Spectrum(row(&connections.f, lane)),
             bsdf_pdf: connections.bsdf_pdf[lane],
             weight: connections.weight[lane],
         });
         if !is(connections.is_lit) {
             return;
         }
-        let (origin, wi) = (connections.origin[lane], lights.wi[lane]);
-        let ray = match lights.target(lane) {
-            Target::Infinity => Ray::new(origin, wi),
-            Target::Point(position) => shadow::toward(origin, position.to_array()),
-            Target::Surface(..) => Ray { t_max: 1.0, ..Ray::new(origin, connections.end[lane]) },
-        };
-        let contribution = connections.contribution[lane];
+        let ray = lights.shadow_ray(lane, row(&connections.origin, lane), &connections.end);
+        let contribution = Spectrum(row(&connections.contribution, lane));
         // Through the surface of a body it travels in what is behind.
-        let crosses = item.surface.is_some_and(|surface| surface.crosses(wi.into()));
+        let wi = Vec3::from_array(row(&lights.wi, lane));
+        let crosses = item.surface.is_some_and(|surface| surface.crosses(wi));
         output.queues.shadows.push(Shadow {
             ray,
             origin_primitive: item.origin_primitive,
@@ -250,7 +264,7 @@ impl PathTracer {
             slot,
             address,
             term: Term::Light(light),
-            interior: item.interior(world, wi.into(), crosses),
+            interior: item.interior(world, wi, crosses),
             last_scattering: Shadow::NO_SCATTERING,
         });
         if item.is_catcher {
@@ -271,11 +285,11 @@ impl PathTracer {
         let Item { path, origin_primitive, is_catcher, .. } = *item;
         let is = |mask: u32| mask & 1 << lane != 0;
         let (is_specular, is_transmission) = (is(scattered.is_specular), is(scattered.is_transmission));
-        let wi = Vec3::from_array(scattered.wi[lane]);
+        let wi = Vec3::from_array(row(&scattered.wi, lane));
         if P::LISTENS && is(scattered.is_valid) {
             let sample = BsdfSample {
                 wi,
-                f: scattered.f[lane],
+                f: Spectrum(row(&scattered.f, lane)),
                 pdf: scattered.pdf[lane],
                 lobe: Lobes::sampled(is_specular, is(scattered.is_diffuse), is_transmission),
                 eta: scattered.eta[lane],
@@ -285,7 +299,7 @@ impl PathTracer {
                 wi,
                 cos: scattered.cos[lane],
                 sample,
-                beta: scattered.beta[lane],
+                beta: Spectrum(row(&scattered.beta, lane)),
                 survival: scattered.survival[lane],
                 survives: is(scattered.survives),
             };
@@ -295,8 +309,8 @@ impl PathTracer {
             return;
         }
         output.queues.paths.push(Path {
-            ray: Ray::new(scattered.origin[lane], scattered.wi[lane]),
-            beta: scattered.next_beta[lane],
+            ray: Ray::new(row(&scattered.origin, lane), wi.to_array()),
+            beta: Spectrum(row(&scattered.next_beta, lane)),
             slot: path.slot,
             depth: path.depth + 1,
             address: path.address + 1,
@@ -304,8 +318,8 @@ impl PathTracer {
             previous: PreviousVertex {
                 pdf: scattered.mis_pdf[lane],
                 origin_primitive,
-                point: scattered.point[lane].into(),
-                n: scattered.n[lane].into(),
+                point: row(&scattered.point, lane).into(),
+                n: row(&scattered.n, lane).into(),
                 eta_scale: scattered.eta_scale[lane],
                 blurred: path.previous.blurred || !is_specular,
                 is_catcher,

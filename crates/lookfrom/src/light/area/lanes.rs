@@ -20,33 +20,45 @@ impl AreaLight {
                 LightShape::Patches(_) => false,
             }
     }
+}
 
-    /// The triangle that `u0` chooses, its probability, and the remapped `u0`; only for meshes of uniform emission.
-    #[inline]
-    fn triangle(&self, u0: f32) -> Option<(&LightTriangle, f32, f32)> {
-        match &self.shape {
-            LightShape::Mesh(light) if self.is_uniform() => light.triangle(u0),
-            _ => None,
-        }
-    }
+/// What is sampled in each lane, of what is sampled in lanes.
+struct Chosen<'a> {
+    triangles: [Option<&'a LightTriangle>; LANES],
+    /// The probabilities of the triangles, and what is left of the numbers that chose them.
+    probability: [f32; LANES],
+    rest: [f32; LANES],
+    spheres: [Option<&'a SphereLights<f32>>; LANES],
+    disks: [Option<&'a DiskLights<f32>>; LANES],
+}
 
-    /// The whole sphere that it is, which is sampled by direction; only one of uniform emission.
-    #[inline]
-    fn sphere(&self) -> Option<&SphereLights<f32>> {
-        match &self.shape {
-            LightShape::Quadric(light) if self.is_uniform() => light.sphere(),
-            _ => None,
+impl<'a> Chosen<'a> {
+    #[inline(always)]
+    fn new(lights: &[Option<&'a AreaLight>; LANES], u0: &[f32; LANES]) -> Self {
+        let mut chosen = Self {
+            triangles: [None; LANES],
+            probability: [1.0; LANES],
+            rest: [0.0; LANES],
+            spheres: [None; LANES],
+            disks: [None; LANES],
+        };
+        for (lane, light) in lights.iter().enumerate() {
+            let Some(light) = light.filter(|light| light.is_uniform()) else { continue };
+            match &light.shape {
+                LightShape::Mesh(mesh) => {
+                    if let Some((triangle, probability, rest)) = mesh.triangle(u0[lane]) {
+                        chosen.triangles[lane] = Some(triangle);
+                        (chosen.probability[lane], chosen.rest[lane]) = (probability, rest);
+                    }
+                }
+                LightShape::Quadric(quadric) => {
+                    (chosen.spheres[lane], chosen.disks[lane]) = (quadric.sphere(), quadric.disk());
+                }
+                LightShape::Disk(disk) => chosen.disks[lane] = Some(disk.in_lanes()),
+                LightShape::Patches(_) => {}
+            }
         }
-    }
-
-    /// The whole disk that it is; only one of uniform emission.
-    #[inline]
-    fn disk(&self) -> Option<&DiskLights<f32>> {
-        match &self.shape {
-            LightShape::Quadric(light) if self.is_uniform() => light.disk(),
-            LightShape::Disk(light) if self.is_uniform() => Some(light.in_lanes()),
-            _ => None,
-        }
+        chosen
     }
 }
 
@@ -59,24 +71,20 @@ pub(crate) fn sample_area_lights<S: Simd>(
     [u0, u1]: [f32x8<S>; 2],
     from: Vector<f64x8<S>>,
 ) -> (Option<AreaSamples<f32x8<S>>>, u32) {
-    let triangles = by_lane!(lane => lights[lane].and_then(|light| light.triangle(u0[lane])));
+    let Chosen { triangles, probability, rest, spheres, disks } = Chosen::new(lights, &u0.into());
     let (mut samples, mut in_lanes) = (None, 0);
-    if let Some((first, ..)) = triangles.iter().flatten().next() {
-        let of = by_lane!(lane => triangles[lane].map_or(*first, |(triangle, ..)| triangle));
-        let probability = by_lane!(lane => triangles[lane].map_or(1.0, |(_, probability, _)| probability));
-        let rest = by_lane!(lane => triangles[lane].map_or(0.0, |(_, _, rest)| rest));
+    if let Some(first) = triangles.iter().flatten().next() {
+        let of = by_lane!(lane => triangles[lane].unwrap_or(first));
         let [probability, rest] = [f32x8::load_array(simd, probability), f32x8::load_array(simd, rest)];
         samples = Some(sample_triangles(simd, &of, probability, [rest, u1], from));
         in_lanes = bitmask(&by_lane!(lane => triangles[lane].is_some()));
     }
-    let spheres = by_lane!(lane => lights[lane].and_then(AreaLight::sphere));
     if let Some(first) = spheres.iter().flatten().next() {
         let of = gather_spheres(simd, &by_lane!(lane => spheres[lane].unwrap_or(first)));
         let lanes = bitmask(&by_lane!(lane => spheres[lane].is_some()));
         samples = Some(chosen(simd, lanes, of.sample(from, [u0, u1]).0, samples));
         in_lanes |= lanes;
     }
-    let disks = by_lane!(lane => lights[lane].and_then(AreaLight::disk));
     if let Some(first) = disks.iter().flatten().next() {
         let of = gather_disks(simd, &by_lane!(lane => disks[lane].unwrap_or(first)));
         let lanes = bitmask(&by_lane!(lane => disks[lane].is_some()));

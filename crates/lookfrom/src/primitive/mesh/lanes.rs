@@ -1,78 +1,98 @@
 //! Triangles of eight meshes side by side.
 
-use glam::{Vec2, Vec3, Vec4};
-use lookfrom_simd::{Simd, f32x8, f64x8, mask64x8, prelude::*};
+use glam::Vec2;
+use lookfrom_simd::{LaneMask, Simd, f32x8, f64x8, mask64x8, prelude::*};
 
 use super::Mesh;
-use crate::core::lanes::{LANES, bitmask, by_lane, gather};
+use crate::core::lanes::{LANES, load, set_row};
 use crate::core::vector::Vector;
 use crate::primitive::triangle::{Tangent, Triangles};
 
-/// A triangle in each lane: its mesh and its index there.
+/// A triangle in each lane: its mesh and its index there. Texture coordinates are 0 where neither they nor derivatives are
+/// wanted.
 #[inline(always)]
 pub(crate) fn gather_triangles<S: Simd>(
     simd: S,
     meshes: &[&Mesh; LANES],
     indices: &[u32; LANES],
+    wants_uvs: bool,
 ) -> Triangles<f32x8<S>> {
-    let vertices = by_lane!(lane => meshes[lane].triangles[indices[lane] as usize]);
     let zero = f32x8::splat(simd, 0.0);
     let none = Vector { x: zero, y: zero, z: zero };
-    macro_rules! mask {
-        ($lane:ident => $answer:expr) => {
-            mask64x8::from_bitmask(simd, bitmask(&by_lane!($lane => $answer)).into())
-        };
+    let mut corners = [[0; 3]; LANES];
+    let mut positions = [[[0.0; LANES]; 3]; 3];
+    let mut orientation = [1.0; LANES];
+    let (mut have_normals, mut have_tangents, mut want_derivatives) = (0, 0, 0);
+    for (lane, mesh) in meshes.iter().enumerate() {
+        corners[lane] = mesh.triangles[indices[lane] as usize];
+        for (corner, vertex) in corners[lane].into_iter().enumerate() {
+            set_row(&mut positions[corner], lane, mesh.positions[vertex as usize]);
+        }
+        orientation[lane] = if mesh.flip { -1.0 } else { 1.0 };
+        have_normals |= u32::from(!mesh.normals.is_empty()) << lane;
+        have_tangents |= u32::from(!mesh.tangents.is_empty()) << lane;
+        want_derivatives |= u32::from(mesh.wants_derivatives) << lane;
     }
     let mut triangles = Triangles {
-        positions: [none; 3],
-        orientation: f64x8::load_array(simd, by_lane!(lane => if meshes[lane].flip { -1.0 } else { 1.0 })),
+        positions: [load(simd, &positions[0]), load(simd, &positions[1]), load(simd, &positions[2])],
+        orientation: f64x8::load_array(simd, orientation),
         normals: [none; 3],
         uvs: [[zero; 2]; 3],
         tangents: [Tangent { along: none, sign: zero }; 3],
-        have_normals: mask!(lane => !meshes[lane].normals.is_empty()),
-        have_tangents: mask!(lane => !meshes[lane].tangents.is_empty()),
-        want_derivatives: mask!(lane => meshes[lane].wants_derivatives),
+        have_normals: mask64x8::from_bitmask(simd, have_normals.into()),
+        have_tangents: mask64x8::from_bitmask(simd, have_tangents.into()),
+        want_derivatives: mask64x8::from_bitmask(simd, want_derivatives.into()),
     };
-    let (have_normals, have_tangents) =
-        (triangles.have_normals.any_true(), triangles.have_tangents.any_true());
-    let mut corner = 0;
-    while corner < 3 {
-        let at = by_lane!(lane => vertices[lane][corner] as usize);
-        triangles.positions[corner] = gather(simd, &by_lane!(lane => meshes[lane].positions[at[lane]]));
-        if have_normals {
-            let normals =
-                by_lane!(lane => meshes[lane].normals.get(at[lane]).map_or([0.0; 3], Vec3::to_array));
-            triangles.normals[corner] = gather(simd, &normals);
+    if have_normals != 0 {
+        let mut normals = [[[0.0; LANES]; 3]; 3];
+        for lane in LaneMask(have_normals) {
+            for (columns, vertex) in normals.iter_mut().zip(corners[lane]) {
+                set_row(columns, lane, meshes[lane].normals[vertex as usize].to_array());
+            }
         }
-        let uvs =
-            by_lane!(lane => meshes[lane].uvs.get(at[lane]).map_or(Mesh::NO_UVS[corner], Vec2::to_array));
-        triangles.uvs[corner] = [
-            f32x8::load_array(simd, by_lane!(lane => uvs[lane][0])),
-            f32x8::load_array(simd, by_lane!(lane => uvs[lane][1])),
-        ];
-        if have_tangents {
-            let tangents =
-                by_lane!(lane => meshes[lane].tangents.get(at[lane]).map_or([0.0; 4], Vec4::to_array));
-            triangles.tangents[corner] = Tangent {
-                along: gather(
-                    simd,
-                    &by_lane!(lane => [tangents[lane][0], tangents[lane][1], tangents[lane][2]]),
-                ),
-                sign: f32x8::load_array(simd, by_lane!(lane => tangents[lane][3])),
-            };
+        triangles.normals = [load(simd, &normals[0]), load(simd, &normals[1]), load(simd, &normals[2])];
+    }
+    if wants_uvs || want_derivatives != 0 {
+        let mut uvs = [[[0.0; LANES]; 2]; 3];
+        for (lane, mesh) in meshes.iter().enumerate() {
+            for (corner, vertex) in corners[lane].into_iter().enumerate() {
+                let uv = mesh.uvs.get(vertex as usize).map_or(Mesh::NO_UVS[corner], Vec2::to_array);
+                set_row(&mut uvs[corner], lane, uv);
+            }
         }
-        corner += 1;
+        let mut corner = 0;
+        while corner < 3 {
+            let [u, v] = uvs[corner];
+            triangles.uvs[corner] = [f32x8::load_array(simd, u), f32x8::load_array(simd, v)];
+            corner += 1;
+        }
+    }
+    if have_tangents != 0 {
+        let mut tangents = [[[0.0; LANES]; 4]; 3];
+        for lane in LaneMask(have_tangents) {
+            for (columns, vertex) in tangents.iter_mut().zip(corners[lane]) {
+                set_row(columns, lane, meshes[lane].tangents[vertex as usize].to_array());
+            }
+        }
+        let mut corner = 0;
+        while corner < 3 {
+            let [x, y, z, sign] = tangents[corner];
+            let along = load(simd, &[x, y, z]);
+            triangles.tangents[corner] = Tangent { along, sign: f32x8::load_array(simd, sign) };
+            corner += 1;
+        }
     }
     triangles
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::{Vec3, Vec4};
     use lookfrom_simd::{Kernel, Level, dispatch};
 
     use super::*;
     use crate::core::hash;
-    use crate::core::lanes::{scatter, scatter_f64};
+    use crate::core::lanes::{by_lane, scatter, scatter_f64};
     use crate::core::points::{Placement, gather_placements};
     use crate::primitive::MaterialBinding;
     use crate::primitive::triangle::TrianglePoints;
@@ -127,7 +147,7 @@ mod tests {
         type Output = [Numbers; LANES];
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
-            let triangles = gather_triangles(simd, &by_lane!(lane => &self.meshes[lane]), &[0; LANES]);
+            let triangles = gather_triangles(simd, &by_lane!(lane => &self.meshes[lane]), &[0; LANES], true);
             let [u, v] = self.on.map(|on| f32x8::load_array(simd, on));
             let placements = gather_placements(simd, &by_lane!(lane => &self.placements[lane]));
             // Every other lane is an instance.

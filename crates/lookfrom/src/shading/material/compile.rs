@@ -46,7 +46,7 @@ impl<'a> Compiler<'a> {
     fn kind(&self, kind: &written::MaterialKind) -> MaterialKind {
         use written::MaterialKind as Written;
         match kind {
-            Written::Whitted(whitted) => MaterialKind::Whitted(self.whitted(whitted)),
+            Written::Whitted(whitted) => MaterialKind::Whitted(Box::new(self.whitted(whitted))),
             Written::Diffuse { reflectance } => {
                 MaterialKind::Diffuse { reflectance: self.albedo(*reflectance) }
             }

@@ -11,7 +11,7 @@ use crate::shading::texture::{FloatTexture, SpectrumTexture, TexturePoint, Textu
 #[non_exhaustive]
 pub enum MaterialKind {
     /// Whitted's model.
-    Whitted(Whitted),
+    Whitted(Box<Whitted>),
     /// Diffuse (Lambertian) reflection.
     Diffuse {
         /// Fraction of light that is reflected.

@@ -7,9 +7,9 @@ use std::ops::{Add, Mul};
 
 use lookfrom_scene::texture::TexelFilter;
 
-use super::input::{Constant, Uplifts};
+use super::input::{Constant, uplift};
 use super::{Measured, SpectrumType};
-use crate::core::color::{Sigmoid, Unbounded, standard_illuminant};
+use crate::core::color::{Unbounded, Wavelengths};
 use crate::core::spectrum::Spectrum;
 
 /// A way to evaluate leaves.
@@ -112,30 +112,20 @@ impl Evaluation for RgbEvaluation {
     }
 }
 
-/// Evaluation at four wavelengths in nm, by spectrum type.
+/// Evaluation at four wavelengths, by spectrum type.
 pub(super) struct SpectralEvaluation<'a> {
     pub(super) spectrum_type: SpectrumType,
-    pub(super) lambda: &'a [f32; 4],
+    pub(super) wavelengths: &'a Wavelengths,
 }
 
 impl SpectralEvaluation<'_> {
-    fn lift(&self, rgb: [f32; 3], uplifts: Option<&Uplifts>) -> Spectrum {
-        let rgb = within(self.spectrum_type, rgb);
-        // A grey is the same at all wavelengths and needs no table.
-        let is_gray = rgb[0] == rgb[1] && rgb[1] == rgb[2];
-        let values = match self.spectrum_type {
-            _ if is_gray => Spectrum([rgb[0]; 4]),
-            SpectrumType::Albedo => {
-                uplifts.map_or_else(|| Sigmoid::from_rgb(rgb), |uplifts| uplifts.albedo).at(self.lambda)
-            }
-            SpectrumType::Unbounded | SpectrumType::Illuminant => {
-                uplifts.map_or_else(|| Unbounded::from_rgb(rgb), |uplifts| uplifts.unbounded).at(self.lambda)
-            }
-        };
-        if self.spectrum_type == SpectrumType::Illuminant && !values.is_black() {
-            values * standard_illuminant().at(self.lambda)
-        } else {
-            values
+    /// The values of an uplifted colour of this type.
+    #[inline]
+    fn lifted(&self, uplift: &Unbounded) -> Spectrum {
+        let values = uplift.at(&self.wavelengths.lambda);
+        match self.spectrum_type {
+            SpectrumType::Illuminant => values * self.wavelengths.daylight,
+            SpectrumType::Albedo | SpectrumType::Unbounded => values,
         }
     }
 }
@@ -148,11 +138,14 @@ impl Evaluation for SpectralEvaluation<'_> {
     }
 
     fn color(&self, rgb: [f32; 3]) -> Spectrum {
-        self.lift(rgb, None)
+        self.lifted(&uplift(self.spectrum_type, rgb))
     }
 
     fn constant(&self, constant: &Constant) -> Spectrum {
-        self.lift(constant.rgb, constant.uplifts.as_ref())
+        match &constant.uplifts {
+            Some(uplifts) => self.lifted(uplifts.of(self.spectrum_type)),
+            None => self.color(constant.rgb),
+        }
     }
 
     fn reflectance(&self, rgb: [f32; 3]) -> Spectrum {
@@ -160,7 +153,7 @@ impl Evaluation for SpectralEvaluation<'_> {
     }
 
     fn curve(&self, curve: &Measured) -> Spectrum {
-        curve.dense.at(self.lambda)
+        curve.dense.at_sampled(self.wavelengths)
     }
 }
 

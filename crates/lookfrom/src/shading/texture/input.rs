@@ -59,11 +59,37 @@ pub(super) struct Constant {
     pub(super) uplifts: Option<Uplifts>,
 }
 
-/// The spectra that a colour is uplifted to.
+/// The spectra that a colour is uplifted to, of an illuminant over that of daylight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Uplifts {
-    pub(super) albedo: Sigmoid,
-    pub(super) unbounded: Unbounded,
+    albedo: Unbounded,
+    unbounded: Unbounded,
+}
+
+impl Uplifts {
+    fn new(rgb: [f32; 3]) -> Self {
+        let lifted = |spectrum_type| uplift(spectrum_type, rgb);
+        Self { albedo: lifted(SpectrumType::Albedo), unbounded: lifted(SpectrumType::Unbounded) }
+    }
+
+    /// The spectrum for a use of the colour.
+    #[inline]
+    pub(super) fn of(&self, spectrum_type: SpectrumType) -> &Unbounded {
+        match spectrum_type {
+            SpectrumType::Albedo => &self.albedo,
+            SpectrumType::Unbounded | SpectrumType::Illuminant => &self.unbounded,
+        }
+    }
+}
+
+/// The spectrum that a colour is uplifted to, of an illuminant over that of daylight. A grey needs no table.
+pub(super) fn uplift(spectrum_type: SpectrumType, rgb: [f32; 3]) -> Unbounded {
+    let rgb = within(spectrum_type, rgb);
+    match spectrum_type {
+        _ if rgb[0] == rgb[1] && rgb[1] == rgb[2] => Unbounded::gray(rgb[0]),
+        SpectrumType::Albedo => Unbounded { scale: 1.0, sigmoid: Sigmoid::from_rgb(rgb) },
+        SpectrumType::Unbounded | SpectrumType::Illuminant => Unbounded::from_rgb(rgb),
+    }
 }
 
 impl SpectrumTexture {
@@ -130,13 +156,9 @@ impl Input {
     /// Compiles a colour; `uplifts` where spectra will be evaluated.
     pub(super) fn new(written: Color, uplifts: bool) -> Self {
         match written {
-            Color::Value(rgb) => Self::Constant(Constant {
-                rgb,
-                uplifts: uplifts.then(|| Uplifts {
-                    albedo: Sigmoid::from_rgb(within(SpectrumType::Albedo, rgb)),
-                    unbounded: Unbounded::from_rgb(within(SpectrumType::Unbounded, rgb)),
-                }),
-            }),
+            Color::Value(rgb) => {
+                Self::Constant(Constant { rgb, uplifts: uplifts.then(|| Uplifts::new(rgb)) })
+            }
             Color::Curve(id) => Self::Curve(id),
             Color::Texture(id) => Self::Texture(id),
         }

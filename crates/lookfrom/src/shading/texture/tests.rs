@@ -241,7 +241,7 @@ fn spectra_seen_in_daylight_have_their_colors() {
     let textures = textures_of(&[picture(TexelFilter::Nearest, 1.0, false)], vec![image], vec![]);
     let curve_of = |color, usage, at: &TexturePoint| -> Vec<f32> {
         let spectral = |nm: &f32| {
-            let lanes = SpectralMode::Spectral(Wavelengths { lambda: [*nm; 4], pdf: [1.0; 4] });
+            let lanes = SpectralMode::Spectral(Wavelengths::new([*nm; 4], [1.0; 4]));
             textures.spectrum_of(color, usage, at, &lanes).0[2]
         };
         lambda.iter().map(spectral).collect()
@@ -265,7 +265,7 @@ fn spectra_seen_in_daylight_have_their_colors() {
 
 #[test]
 fn spectra_are_blended_and_curves_read() {
-    let lanes = SpectralMode::Spectral(Wavelengths { lambda: [450.0, 500.0, 550.0, 600.0], pdf: [1.0; 4] });
+    let lanes = SpectralMode::Spectral(Wavelengths::new([450.0, 500.0, 550.0, 600.0], [1.0; 4]));
     let curves = vec![
         Curve::Constant(0.5),
         Curve::Tabulated { wavelengths: vec![400.0, 600.0], values: vec![0.0, 1.0] },
@@ -426,7 +426,7 @@ fn products_multiply_channels_and_only_one_factor_is_light() {
     assert_eq!(textures.rgb_of(of_colors, SpectrumType::Albedo, &here), [0.25, 0.25, 0.0]);
     assert_eq!(textures.scalar(Scalar::Texture(TextureId(2)), &here), 3.0);
 
-    let lanes = SpectralMode::Spectral(Wavelengths { lambda: [450.0, 500.0, 550.0, 600.0], pdf: [1.0; 4] });
+    let lanes = SpectralMode::Spectral(Wavelengths::new([450.0, 500.0, 550.0, 600.0], [1.0; 4]));
     let spectrum = |color, usage| textures.spectrum_of(color, usage, &here, &lanes);
     for usage in [SpectrumType::Unbounded, SpectrumType::Illuminant] {
         let six = spectrum(Color::gray(6.0), usage);

@@ -126,7 +126,7 @@ fn channels_are_what_the_camera_measures() {
     let sensor = Sensor::new(&settings);
     let responses = settings.camera.expect("one").responses();
     // A laser of luminous density 1 at 540 nm; only one lane is in use.
-    let mut wavelengths = Wavelengths { lambda: [540.0; 4], pdf: [1.0; 4] };
+    let mut wavelengths = Wavelengths::new([540.0; 4], [1.0; 4]);
     wavelengths.terminate_secondary();
     let rgb = sensor.rgb(Spectrum([1.0, 0.0, 0.0, 0.0]), &wavelengths);
     assert!(rgb[0] < 0.0 && rgb[1] > 0.0, "{rgb:?}");

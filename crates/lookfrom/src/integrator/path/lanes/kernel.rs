@@ -5,8 +5,11 @@ use lookfrom_simd::{Float, Kernel, Mask, Simd, dispatch, f32x8, level, mask32x8,
 
 use super::light_samples::LightSamples;
 use super::surfaces::{SurfaceColumns, Surfaces};
-use crate::core::lanes::{LANES, by_lane, gather, gather_spectrum, scatter, scatter_spectrum};
+use crate::core::lanes::{
+    Columns, LANES, by_lane, gather_spectrum, load, load_spectrum, store, store_spectrum,
+};
 use crate::core::math::power_heuristic;
+use crate::core::points::Exits;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::path::{SAFE_BOUNCES, SURVIVAL, dimension};
@@ -29,18 +32,18 @@ pub(super) struct Scattered {
     pub(super) is_diffuse: u32,
     pub(super) is_transmission: u32,
     /// That direction, in render space, of unit length.
-    pub(super) wi: [[f32; 3]; LANES],
-    pub(super) f: [Spectrum; LANES],
+    pub(super) wi: Columns<3>,
+    pub(super) f: Columns<4>,
     pub(super) pdf: [f32; LANES],
     /// The density to compare with that of light sampling.
     pub(super) mis_pdf: [f32; LANES],
     pub(super) eta: [f32; LANES],
     pub(super) cos: [f32; LANES],
-    pub(super) origin: [[f32; 3]; LANES],
+    pub(super) origin: Columns<3>,
     /// The throughputs, before Russian roulette.
-    pub(super) beta: [Spectrum; LANES],
+    pub(super) beta: Columns<4>,
     /// The throughputs of the paths that go on.
-    pub(super) next_beta: [Spectrum; LANES],
+    pub(super) next_beta: Columns<4>,
     /// Products of η².
     pub(super) eta_scale: [f32; LANES],
     /// Probabilities of surviving Russian roulette, and the lanes that survive it.
@@ -49,39 +52,68 @@ pub(super) struct Scattered {
     /// Lanes whose path goes on.
     pub(super) goes_on: u32,
     /// The points and the shading normals, in single precision.
-    pub(super) point: [[f32; 3]; LANES],
-    pub(super) n: [[f32; 3]; LANES],
+    pub(super) point: Columns<3>,
+    pub(super) n: Columns<3>,
+}
+
+impl Scattered {
+    /// Of no path.
+    pub(super) const NONE: Self = Self {
+        kind: Kind { pdf_is_proportional: false, needs_lobe: false, needs_agreement: false },
+        has_density: 0,
+        lights: LightSamples::NONE,
+        connections: Connections::NONE,
+        is_valid: 0,
+        is_specular: 0,
+        is_diffuse: 0,
+        is_transmission: 0,
+        wi: [[0.0; LANES]; 3],
+        f: [[0.0; LANES]; 4],
+        pdf: [0.0; LANES],
+        mis_pdf: [0.0; LANES],
+        eta: [0.0; LANES],
+        cos: [0.0; LANES],
+        origin: [[0.0; LANES]; 3],
+        beta: [[0.0; LANES]; 4],
+        next_beta: [[0.0; LANES]; 4],
+        eta_scale: [0.0; LANES],
+        survival: [0.0; LANES],
+        survives: 0,
+        goes_on: 0,
+        point: [[0.0; LANES]; 3],
+        n: [[0.0; LANES]; 3],
+    };
 }
 
 /// What light sampling finds in eight lanes, if nothing is in between.
 pub(super) struct Connections {
     /// The BSDF for the direction to the light, times the cosine.
-    pub(super) f: [Spectrum; LANES],
+    pub(super) f: Columns<4>,
     /// The density with which the BSDF samples that direction: 0 for light from a single direction.
     pub(super) bsdf_pdf: [f32; LANES],
     /// Weights of multiple importance sampling.
     pub(super) weight: [f32; LANES],
-    pub(super) contribution: [Spectrum; LANES],
+    pub(super) contribution: Columns<4>,
     /// Lanes that have a light sample for which the BSDF is not black.
     pub(super) is_sampled: u32,
     /// Lanes whose contribution is not black.
     pub(super) is_lit: u32,
-    pub(super) origin: [[f32; 3]; LANES],
+    pub(super) origin: Columns<3>,
     /// From there to the light, where that is a surface.
-    pub(super) end: [[f32; 3]; LANES],
+    pub(super) end: Columns<3>,
 }
 
 impl Connections {
     /// Of no lane.
     const NONE: Self = Self {
-        f: [Spectrum::BLACK; LANES],
+        f: [[0.0; LANES]; 4],
         bsdf_pdf: [0.0; LANES],
         weight: [0.0; LANES],
-        contribution: [Spectrum::BLACK; LANES],
+        contribution: [[0.0; LANES]; 4],
         is_sampled: 0,
         is_lit: 0,
-        origin: [[0.0; 3]; LANES],
-        end: [[0.0; 3]; LANES],
+        origin: [[0.0; LANES]; 3],
+        end: [[0.0; LANES]; 3],
     };
 }
 
@@ -93,9 +125,10 @@ impl<S: Simd> Surfaces<S> {
         simd: S,
         (bsdf, view): (&B, &B::View),
         beta: Spectrum<f32x8<S>>,
-        lights: &LightSamples,
-    ) -> Connections {
-        let wi = gather(simd, &lights.wi);
+        (lights, exits): (&LightSamples, &Exits<f32x8<S>>),
+        connections: &mut Connections,
+    ) {
+        let wi = load(simd, &lights.wi);
         let local = self.local(wi);
         let zero = f32x8::splat(simd, 0.0);
         let (mut f, bsdf_pdf) = bsdf.f_and_pdf(view, local);
@@ -107,19 +140,17 @@ impl<S: Simd> Surfaces<S> {
         let bsdf_pdf = Float::select(is_delta, zero, bsdf_pdf);
         let light_pdf = f32x8::load_array(simd, lights.probability) * f32x8::load_array(simd, lights.pdf);
         let weight = Float::select(is_delta, zero.like(1.0), power_heuristic(light_pdf, bsdf_pdf));
-        let contribution = beta * f * gather_spectrum(simd, &lights.li) * (weight / light_pdf);
+        let contribution = beta * f * load_spectrum(simd, &lights.li) * (weight / light_pdf);
         let is_sampled = lights.is_valid & !f.is_black().to_bitmask() as u32;
-        let origin = self.points.leave(self.ng, wi);
-        Connections {
-            f: scatter_spectrum(f),
-            bsdf_pdf: bsdf_pdf.into(),
-            weight: weight.into(),
-            contribution: scatter_spectrum(contribution),
-            is_sampled,
-            is_lit: is_sampled & !contribution.is_black().to_bitmask() as u32,
-            origin: scatter(origin),
-            end: lights.ends(simd, origin),
-        }
+        let origin = exits.toward(wi);
+        connections.f = store_spectrum(f);
+        connections.bsdf_pdf = bsdf_pdf.into();
+        connections.weight = weight.into();
+        connections.contribution = store_spectrum(contribution);
+        connections.is_sampled = is_sampled;
+        connections.is_lit = is_sampled & !contribution.is_black().to_bitmask() as u32;
+        connections.origin = store(origin);
+        connections.end = lights.ends(simd, origin);
     }
 
     /// True where the geometric and the shading normal agree whether `wo` and `wi`, in render space, are on one side.
@@ -138,19 +169,23 @@ impl<S: Simd> Surfaces<S> {
         world: &World,
         bsdf: &B,
         paths: &LanePaths<'_>,
-    ) -> Scattered {
+        scattered: &mut Scattered,
+    ) {
         let streams = SampleStreams::new(simd, &paths.streams);
         let zero = f32x8::splat(simd, 0.0);
         let view = bsdf.view(self.wo);
         let beta = gather_spectrum(simd, &by_lane!(lane => paths.paths[lane].beta));
 
+        let exits = self.points.exits(self.ng);
+
         // Sample one light.
         let has_density = bsdf.has_density();
-        let (mut lights, mut connections) = (LightSamples::NONE, Connections::NONE);
-        if has_density.any() {
-            lights =
-                LightSamples::new(simd, world, self, &streams, &paths.modes, has_density.to_bitmask() as u32);
-            connections = self.connect(simd, (bsdf, &view), beta, &lights);
+        scattered.kind = B::KIND;
+        scattered.has_density = has_density.to_bitmask() as u32;
+        if scattered.has_density != 0 {
+            let Scattered { lights, connections, .. } = scattered;
+            lights.sample(simd, world, self, &streams, &paths.modes, scattered.has_density);
+            self.connect(simd, (bsdf, &view), beta, (lights, &exits), connections);
         }
 
         // Go on in one direction.
@@ -183,31 +218,25 @@ impl<S: Simd> Surfaces<S> {
             survives = is_safe | u.simd_lt(survival);
         }
         let goes_on = sample.is_valid & survives & !beta.is_black();
-        Scattered {
-            kind: B::KIND,
-            has_density: has_density.to_bitmask() as u32,
-            lights,
-            connections,
-            is_valid: sample.is_valid.to_bitmask() as u32,
-            is_specular: sample.is_specular.to_bitmask() as u32,
-            is_diffuse: sample.is_diffuse.to_bitmask() as u32,
-            is_transmission: sample.is_transmission.to_bitmask() as u32,
-            wi: scatter(wi),
-            f: scatter_spectrum(sample.f),
-            pdf: sample.pdf.into(),
-            mis_pdf: Float::select(sample.is_specular, zero.like(f32::INFINITY), mis_pdf).into(),
-            eta: sample.eta.into(),
-            cos: cos.into(),
-            origin: scatter(self.points.leave(self.ng, wi)),
-            beta: scatter_spectrum(beta),
-            next_beta: scatter_spectrum(beta / survival),
-            eta_scale: eta_scale.into(),
-            survival: survival.into(),
-            survives: survives.to_bitmask() as u32,
-            goes_on: goes_on.to_bitmask() as u32,
-            point: scatter(Vector::narrow(self.points.position)),
-            n: scatter(self.n),
-        }
+        scattered.is_valid = sample.is_valid.to_bitmask() as u32;
+        scattered.is_specular = sample.is_specular.to_bitmask() as u32;
+        scattered.is_diffuse = sample.is_diffuse.to_bitmask() as u32;
+        scattered.is_transmission = sample.is_transmission.to_bitmask() as u32;
+        scattered.wi = store(wi);
+        scattered.f = store_spectrum(sample.f);
+        scattered.pdf = sample.pdf.into();
+        scattered.mis_pdf = Float::select(sample.is_specular, zero.like(f32::INFINITY), mis_pdf).into();
+        scattered.eta = sample.eta.into();
+        scattered.cos = cos.into();
+        scattered.origin = store(exits.toward(wi));
+        scattered.beta = store_spectrum(beta);
+        scattered.next_beta = store_spectrum(beta / survival);
+        scattered.eta_scale = eta_scale.into();
+        scattered.survival = survival.into();
+        scattered.survives = survives.to_bitmask() as u32;
+        scattered.goes_on = goes_on.to_bitmask() as u32;
+        scattered.point = store(Vector::narrow(self.points.position));
+        scattered.n = store(self.n);
     }
 }
 
@@ -224,23 +253,25 @@ pub(super) struct ScatterKernel<'a, B> {
     pub(super) surfaces: &'a SurfaceColumns,
     pub(super) bsdfs: &'a [&'a B; LANES],
     pub(super) paths: LanePaths<'a>,
+    /// Memory for the samples.
+    pub(super) scattered: &'a mut Scattered,
 }
 
 impl<B: RowBsdf> ScatterKernel<'_, B> {
     /// Runs at the machine's level. Not inlined, so that a class is compiled once, whatever the probe.
     #[inline(never)]
-    pub(super) fn scatter(self) -> Scattered {
-        dispatch(level(), self)
+    pub(super) fn scatter(self) {
+        dispatch(level(), self);
     }
 }
 
 impl<B: RowBsdf> Kernel for ScatterKernel<'_, B> {
-    type Output = Scattered;
+    type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> Scattered {
-        let Self { world, surfaces, bsdfs, paths } = self;
+    fn run<S: Simd>(self, simd: S) {
+        let Self { world, surfaces, bsdfs, paths, scattered } = self;
         let bsdf = B::gather(simd, bsdfs);
-        surfaces.load(simd).scatter(simd, world, &bsdf, &paths)
+        surfaces.load(simd).scatter(simd, world, &bsdf, &paths, scattered);
     }
 }

@@ -2,157 +2,191 @@
 //!
 //! Triangles and spheres of one colour are vectorised; every other light is sampled by scalar code and put into its lane.
 
-use glam::DVec3;
-use lookfrom_bvh::Point;
-use lookfrom_simd::{Simd, f32x8, prelude::*};
+use lookfrom_bvh::{Point, Ray};
+use lookfrom_simd::{Float, LaneMask, Simd, f32x8, prelude::*};
 
 use super::surfaces::Surfaces;
-use crate::core::lanes::{LANES, bitmask, by_lane, gather, gather_f64, scatter, scatter_f64};
+use crate::core::lanes::{
+    Columns, LANES, bitmask, by_lane, load, load_f64, row, set_row, store, store_f64, store_spectrum,
+};
 use crate::core::points::Points;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::integrator::Event;
 use crate::integrator::path::dimension;
 use crate::integrator::sample_streams::SampleStreams;
+use crate::integrator::{Event, shadow};
 use crate::light::{
-    AreaSamples, IncompletePdf, Light, LightSample, LightSampleContext, Target, sample_area_lights,
+    AreaSamples, EmissionSpectrum, IncompletePdf, Light, LightSample, LightSampleContext, Target,
+    sample_area_lights,
 };
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
-/// The light samples of eight lanes. Masks have bit i for lane i.
+/// The light samples of eight lanes. Masks have bit i for lane i; what a lane has not sampled has no meaning.
 pub(super) struct LightSamples {
-    /// The light that each lane samples, and the probability of its choice.
-    choice: [Option<(u32, f32)>; LANES],
+    /// The light that each lane samples, or [`NO_LIGHT`], and the probability of its choice.
+    light: [u32; LANES],
+    pub(super) probability: [f32; LANES],
     /// Lanes that have a sample.
     pub(super) is_valid: u32,
     /// Lanes whose light comes from a single direction.
     pub(super) is_delta: u32,
-    pub(super) probability: [f32; LANES],
+    /// Lanes whose shadow ray ends at a [`Target::Point`], and those where it ends at a [`Target::Surface`].
+    at_point: u32,
+    on_surface: u32,
     pub(super) pdf: [f32; LANES],
-    pub(super) li: [Spectrum; LANES],
-    pub(super) wi: [[f32; 3]; LANES],
-    /// Of a [`Target::Surface`], the point and the normal are in the fields below.
-    target: [Target; LANES],
-    position: [[f64; 3]; LANES],
-    error: [[f64; 3]; LANES],
-    normal: [[f64; 3]; LANES],
+    pub(super) li: Columns<4>,
+    pub(super) wi: Columns<3>,
+    position: Columns<3, f64>,
+    error: Columns<3, f64>,
+    normal: Columns<3, f64>,
 }
+
+/// No light of a lane.
+const NO_LIGHT: u32 = u32::MAX;
 
 impl LightSamples {
     /// No lane has a sample.
     pub(super) const NONE: Self = Self {
-        choice: [None; LANES],
+        light: [NO_LIGHT; LANES],
+        probability: [0.0; LANES],
         is_valid: 0,
         is_delta: 0,
-        probability: [0.0; LANES],
+        at_point: 0,
+        on_surface: 0,
         pdf: [0.0; LANES],
-        li: [Spectrum::BLACK; LANES],
-        wi: [[0.0; 3]; LANES],
-        target: [Target::Infinity; LANES],
-        position: [[0.0; 3]; LANES],
-        error: [[0.0; 3]; LANES],
-        normal: [[0.0; 3]; LANES],
+        li: [[0.0; LANES]; 4],
+        wi: [[0.0; LANES]; 3],
+        position: [[0.0; LANES]; 3],
+        error: [[0.0; LANES]; 3],
+        normal: [[0.0; LANES]; 3],
     };
 
-    /// Samples lights in the lanes of a mask. Not inlined, since all classes of BSDFs need it.
+    /// Samples lights in the lanes of a mask, in place of what was sampled before. Not inlined, since all classes of BSDFs
+    /// need it.
     #[inline(never)]
-    pub(super) fn new<S: Simd>(
+    pub(super) fn sample<S: Simd>(
+        &mut self,
         simd: S,
         world: &World,
         surfaces: &Surfaces<S>,
         streams: &SampleStreams<S>,
         modes: &[&SpectralMode; LANES],
         mask: u32,
-    ) -> Self {
+    ) {
         simd.vectorize(
             #[inline(always)]
-            || Self::sample(simd, world, surfaces, streams, modes, mask),
-        )
+            || self.sample_now(simd, world, surfaces, streams, modes, mask),
+        );
     }
 
     #[inline(always)]
-    fn sample<S: Simd>(
+    fn sample_now<S: Simd>(
+        &mut self,
         simd: S,
         world: &World,
         surfaces: &Surfaces<S>,
         streams: &SampleStreams<S>,
         modes: &[&SpectralMode; LANES],
         mask: u32,
-    ) -> Self {
-        let [u0, u1] = streams.two(dimension::LIGHT);
-        let (points, normals) = (scatter_f64(surfaces.points.position), scatter(surfaces.n));
-        let at = by_lane!(lane => LightSampleContext {
-            point: DVec3::from_array(points[lane]),
-            n: normals[lane].into(),
-        });
-        let mut choice = match world.light_choice.only() {
-            Some(light) => [Some((light, 1.0)); LANES],
-            None => {
-                let [which, _] = streams.two(dimension::CHOICE);
-                world.light_choice.sample_lanes(simd, &at, which, mask)
-            }
-        };
-        for (lane, choice) in choice.iter_mut().enumerate() {
-            *choice = choice.filter(|_| mask & 1 << lane != 0);
-        }
-        let mut sampled = Self { choice, ..Self::NONE };
+    ) {
+        (self.is_valid, self.is_delta, self.at_point, self.on_surface) = (0, 0, 0, 0);
+        self.choose(simd, world, surfaces, streams, mask);
+        let u = streams.two(dimension::LIGHT);
+        let numbers: [[f32; LANES]; 2] = [u[0].into(), u[1].into()];
         let area_lights = by_lane!(lane => {
-            match choice[lane].map(|(index, _)| &world.lights[index as usize]) {
+            match world.lights.get(self.light[lane] as usize) {
                 Some(Light::Area(light)) => Some(light),
                 _ => None,
             }
         });
-        let mut facing = [0.0; LANES];
-        let (on_surfaces, in_lanes) =
-            sample_area_lights(simd, &area_lights, [u0, u1], surfaces.points.position);
-        if let Some(AreaSamples { points, normal, wi, pdf, .. }) = &on_surfaces {
-            facing = normal.dot(wi.widen()).into();
-            (sampled.wi, sampled.pdf) = (scatter(*wi), (*pdf).into());
-            (sampled.position, sampled.error) = (scatter_f64(points.position), scatter_f64(points.error));
-            sampled.normal = scatter_f64(*normal);
+        let (on_surfaces, on_areas) = sample_area_lights(simd, &area_lights, u, surfaces.points.position);
+        if let Some(AreaSamples { points, normal, wi, pdf, is_valid }) = on_surfaces {
+            let cosine = normal.dot(wi.widen());
+            let faces = cosine.lt(cosine.like(0.0)).to_bitmask() as u32;
+            let two_sided =
+                bitmask(&by_lane!(lane => area_lights[lane].is_some_and(|light| light.two_sided)));
+            (self.wi, self.pdf) = (store(wi), pdf.into());
+            (self.position, self.error) = (store_f64(points.position), store_f64(points.error));
+            self.normal = store_f64(normal);
+            self.on_surface = on_areas & is_valid.to_bitmask() as u32 & (faces | two_sided);
+            self.is_valid = self.on_surface;
+            if let Some(first) = LaneMask(self.on_surface).next().and_then(|lane| area_lights[lane]) {
+                let emissions = by_lane!(lane => match area_lights[lane] {
+                    Some(light) if on_areas & 1 << lane != 0 => &light.radiance,
+                    _ => &first.radiance,
+                });
+                let li = EmissionSpectrum::even_lanes(simd, &world.textures, &emissions, modes);
+                self.li = store_spectrum(li);
+            }
         }
-        let on_skies = sampled.sample_skies(simd, world, [u0.into(), u1.into()], modes);
-        let is_valid = on_surfaces.map_or(0, |samples| samples.is_valid.to_bitmask() as u32);
+        let on_skies = self.sample_skies(simd, world, numbers, modes);
 
-        for lane in 0..LANES {
-            let Some((index, probability)) = choice[lane] else { continue };
-            sampled.probability[lane] = probability;
-            if on_skies & 1 << lane != 0 {
-                continue;
-            }
-            let light = &world.lights[index as usize];
-            if let Some(area_light) = area_lights[lane].filter(|_| in_lanes & 1 << lane != 0) {
-                let emits = facing[lane] < 0.0 || area_light.two_sided;
-                if emits && is_valid & 1 << lane != 0 {
-                    sampled.li[lane] = area_light.radiance.even(&world.textures, modes[lane]);
-                    sampled.target[lane] = ON_SURFACE;
-                    sampled.is_valid |= 1 << lane;
-                }
-                continue;
-            }
-            let u = [u0[lane], u1[lane]];
-            let Some(LightSample { wi, li, pdf, target }) =
-                light.sample(&world.textures, &at[lane], u, modes[lane], IncompletePdf::Allowed)
-            else {
-                continue;
-            };
-            sampled.wi[lane] = wi.to_array();
-            sampled.pdf[lane] = pdf;
-            sampled.li[lane] = li;
-            sampled.is_valid |= 1 << lane;
-            sampled.is_delta |= u32::from(light.is_delta()) << lane;
-            sampled.target[lane] = match target {
-                Target::Surface(point, normal) => {
-                    sampled.position[lane] = point.position;
-                    sampled.error[lane] = point.error;
-                    sampled.normal[lane] = normal.to_array();
-                    ON_SURFACE
-                }
-                target => target,
-            };
+        // Sample the other lights one by one.
+        let others = mask & !(on_areas | on_skies);
+        if others == 0 {
+            return;
         }
-        sampled
+        let positions = store_f64(surfaces.points.position);
+        let normals = store(surfaces.n);
+        for lane in LaneMask(others) {
+            let Some(light) = world.lights.get(self.light[lane] as usize) else { continue };
+            let at = context(&positions, &normals, lane);
+            let u = row(&numbers, lane);
+            if let Some(sample) = light.sample(&world.textures, &at, u, modes[lane], IncompletePdf::Allowed) {
+                self.set(lane, &sample);
+                self.is_delta |= u32::from(light.is_delta()) << lane;
+            }
+        }
+    }
+
+    /// Chooses lights in the lanes of a mask.
+    #[inline(always)]
+    fn choose<S: Simd>(
+        &mut self,
+        simd: S,
+        world: &World,
+        surfaces: &Surfaces<S>,
+        streams: &SampleStreams<S>,
+        mask: u32,
+    ) {
+        let chosen = match world.light_choice.only() {
+            Some(light) => [Some((light, 1.0)); LANES],
+            None => {
+                let positions = store_f64(surfaces.points.position);
+                let normals = store(surfaces.n);
+                let at = by_lane!(lane => context(&positions, &normals, lane));
+                let [which, _] = streams.two(dimension::CHOICE);
+                world.light_choice.sample_lanes(simd, &at, which, mask)
+            }
+        };
+        for (lane, chosen) in chosen.into_iter().enumerate() {
+            (self.light[lane], self.probability[lane]) =
+                chosen.filter(|_| mask & 1 << lane != 0).unwrap_or((NO_LIGHT, 0.0));
+        }
+    }
+
+    /// The sample of a lane.
+    #[inline]
+    fn set(&mut self, lane: usize, sample: &LightSample) {
+        let LightSample { wi, li, pdf, target } = *sample;
+        set_row(&mut self.wi, lane, wi.to_array());
+        set_row(&mut self.li, lane, li.0);
+        self.pdf[lane] = pdf;
+        self.is_valid |= 1 << lane;
+        match target {
+            Target::Infinity => {}
+            Target::Point(position) => {
+                set_row(&mut self.position, lane, position.to_array());
+                self.at_point |= 1 << lane;
+            }
+            Target::Surface(point, normal) => {
+                set_row(&mut self.position, lane, point.position);
+                set_row(&mut self.error, lane, point.error);
+                set_row(&mut self.normal, lane, normal.to_array());
+                self.on_surface |= 1 << lane;
+            }
+        }
     }
 
     /// Samples the environment maps in the lanes that have chosen them, and returns these lanes.
@@ -166,8 +200,7 @@ impl LightSamples {
     ) -> u32 {
         let mut sampled = 0;
         for &index in &world.environments {
-            let chosen =
-                bitmask(&by_lane!(lane => self.choice[lane].is_some_and(|(light, _)| light == index)));
+            let chosen = bitmask(&by_lane!(lane => self.light[lane] == index));
             let Light::Environment(environment) = &world.lights[index as usize] else { continue };
             let Some(sky) = environment.map_in_lanes().filter(|_| chosen != 0 && environment.illuminates)
             else {
@@ -175,8 +208,9 @@ impl LightSamples {
             };
             let samples = sky.sample_lanes(simd, &world.textures, u, modes);
             for lane in (0..LANES).filter(|lane| chosen & 1 << lane != 0) {
-                (self.wi[lane], self.li[lane], self.pdf[lane]) =
-                    (samples.wi[lane], samples.li[lane], samples.pdf[lane]);
+                set_row(&mut self.wi, lane, samples.wi[lane]);
+                set_row(&mut self.li, lane, samples.li[lane].0);
+                self.pdf[lane] = samples.pdf[lane];
                 self.is_valid |= u32::from(samples.is_usable(lane)) << lane;
             }
             sampled |= chosen;
@@ -187,30 +221,40 @@ impl LightSamples {
     /// The light that a lane samples, and the probability of its choice.
     #[inline]
     pub(super) fn light(&self, lane: usize) -> Option<(u32, f32)> {
-        self.choice[lane]
+        let light = self.light[lane];
+        (light != NO_LIGHT).then_some((light, self.probability[lane]))
     }
 
-    /// The target of a lane's shadow ray; a [`Target::Surface`] is [`LightSamples::ends`].
+    /// The shadow ray of a lane from an origin; `end` is that of [`LightSamples::ends`].
     #[inline]
-    pub(super) fn target(&self, lane: usize) -> &Target {
-        &self.target[lane]
+    pub(super) fn shadow_ray(&self, lane: usize, origin: [f32; 3], end: &Columns<3>) -> Ray {
+        if self.on_surface & 1 << lane != 0 {
+            return Ray { t_max: 1.0, ..Ray::new(origin, row(end, lane)) };
+        }
+        match self.at_point & 1 << lane {
+            0 => Ray::new(origin, row(&self.wi, lane)),
+            _ => shadow::toward(origin, row(&self.position, lane)),
+        }
     }
 
     /// The light sample of a lane, for a probe.
     pub(super) fn light_sample(&self, lane: usize) -> LightSample {
-        let target = match self.target[lane] {
-            Target::Surface(..) => {
-                let point = Point { position: self.position[lane], error: self.error[lane] };
-                Target::Surface(point, self.normal[lane].into())
-            }
-            target => target,
+        let is = |mask: u32| mask & 1 << lane != 0;
+        let position = row(&self.position, lane);
+        let target = if is(self.on_surface) {
+            Target::Surface(Point { position, error: row(&self.error, lane) }, row(&self.normal, lane).into())
+        } else if is(self.at_point) {
+            Target::Point(position.into())
+        } else {
+            Target::Infinity
         };
-        LightSample { wi: self.wi[lane].into(), li: self.li[lane], pdf: self.pdf[lane], target }
+        let (wi, li) = (row(&self.wi, lane).into(), Spectrum(row(&self.li, lane)));
+        LightSample { wi, li, pdf: self.pdf[lane], target }
     }
 
     /// The event of a light sample that contributes nothing, for a probe; `None` where no light was sampled.
     pub(super) fn failed(&self, lane: usize, address: u64) -> Option<Event> {
-        let (light, probability) = self.choice[lane]?;
+        let (light, probability) = self.light(lane)?;
         let sample = (self.is_valid & 1 << lane != 0).then(|| self.light_sample(lane));
         Some(Event::LightSampleFailed { address, light, probability, sample })
     }
@@ -218,13 +262,15 @@ impl LightSamples {
     /// The directions of shadow rays, from their origins to just before the lights' surfaces: as
     /// [`crate::integrator::Shadow::new`] has them.
     #[inline(always)]
-    pub(super) fn ends<S: Simd>(&self, simd: S, origins: Vector<f32x8<S>>) -> [[f32; 3]; LANES] {
-        let points =
-            Points { position: gather_f64(simd, &self.position), error: gather_f64(simd, &self.error) };
-        let normal = gather_f64(simd, &self.normal);
-        scatter(points.just_before(normal, gather(simd, &self.wi), origins))
+    pub(super) fn ends<S: Simd>(&self, simd: S, origins: Vector<f32x8<S>>) -> Columns<3> {
+        let points = Points { position: load_f64(simd, &self.position), error: load_f64(simd, &self.error) };
+        let normal = load_f64(simd, &self.normal);
+        store(points.just_before(normal, load(simd, &self.wi), origins))
     }
 }
 
-/// A point of a surface, which is stored beside.
-const ON_SURFACE: Target = Target::Surface(Point { position: [0.0; 3], error: [0.0; 3] }, DVec3::ZERO);
+/// The light sample context of a lane.
+#[inline(always)]
+fn context(positions: &Columns<3, f64>, normals: &Columns<3>, lane: usize) -> LightSampleContext {
+    LightSampleContext { point: row(positions, lane).into(), n: row(normals, lane).into() }
+}

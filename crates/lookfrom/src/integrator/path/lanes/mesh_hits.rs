@@ -4,10 +4,10 @@ use glam::{DVec3, Vec2};
 use lookfrom_bvh::{Hit, OriginPrimitive};
 use lookfrom_simd::{Float, Kernel, Simd, dispatch, f32x8, level, mask64x8, prelude::*};
 
-use super::Item;
 use super::kernel::{LanePaths, ScatterKernel};
 use super::surfaces::SurfaceColumns;
-use crate::core::lanes::{LANES, bitmask, by_lane, gather, scatter};
+use super::{Item, Memory};
+use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, store};
 use crate::core::points::{StoredPlacement, gather_placements};
 use crate::core::vector::Vector;
 use crate::integrator::path::PathTracer;
@@ -112,14 +112,19 @@ impl PathTracer {
         &self,
         batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
         indices: &[u32],
+        memory: &mut Memory,
         output: &mut StepOutput<'_, P>,
     ) {
         let Some(last) = indices.last() else { return };
         // Unused lanes repeat the last hit.
-        let Some(last) = batch.mesh_hit(*last) else { return };
-        let hits =
-            by_lane!(lane => indices.get(lane).and_then(|index| batch.mesh_hit(*index)).unwrap_or(last));
-        let MeshPoints { mut surfaces, uv, front, bent } = MeshKernel(&hits).points();
+        let hits = by_lane!(lane => match batch.mesh_hit(*indices.get(lane).unwrap_or(last)) {
+            Some(hit) => hit,
+            None => return,
+        });
+        let Memory { points: mesh_points, scattered } = memory;
+        MeshKernel { hits: &hits, points: mesh_points }.set_points();
+        let MeshPoints { surfaces, uv, front, bent } = mesh_points;
+        let front = *front;
 
         // Paths from the camera pass the back faces of single-sided meshes.
         let mut active = (1 << indices.len()) - 1;
@@ -136,21 +141,26 @@ impl PathTracer {
             return;
         }
 
-        // Evaluate the materials.
+        // Evaluate the materials. Most are the same everywhere.
         let world = batch.world;
-        let mut points = [TexturePoint::NOWHERE; LANES];
-        for (lane, hit) in hits.iter().enumerate().filter(|(_, hit)| hit.material.varies) {
-            points[lane] = hit.texture_point(world, &surfaces, [uv[0][lane], uv[1][lane]], lane);
-        }
         let pictures = by_lane!(lane => &hits[lane].material.pictures);
-        let look_ups = world.textures.look_up_lanes(&pictures, &points);
-        if let Some(look_ups) = &look_ups {
-            for (lane, point) in points.iter_mut().enumerate() {
-                point.looked_up = Some(look_ups.of(pictures[lane], lane));
+        let mut varying = None;
+        let look_ups;
+        if hits.iter().any(|hit| hit.material.varies) {
+            let points = varying.insert([TexturePoint::NOWHERE; LANES]);
+            for (lane, hit) in hits.iter().enumerate().filter(|(_, hit)| hit.material.varies) {
+                points[lane] = hit.texture_point(world, surfaces, row(uv, lane), lane);
+            }
+            look_ups = world.textures.look_up_lanes(&pictures, points);
+            if let Some(look_ups) = &look_ups {
+                for (lane, point) in points.iter_mut().enumerate() {
+                    point.looked_up = Some(look_ups.of(pictures[lane], lane));
+                }
             }
         }
         let mut rows = [None; LANES];
         for (lane, MeshHit { path, material, .. }) in hits.iter().enumerate() {
+            let point = varying.as_ref().map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
             let mut throughput = path.beta;
             let context = ShadingContext {
                 lanes: &mut output.queues.lanes[path.slot as usize],
@@ -158,17 +168,14 @@ impl PathTracer {
                 interior: path.interior,
                 u: 0.0,
             };
-            let mut row: Option<B> = match &bent {
-                Some(bent) if material.bends_frames() => {
-                    let geometry = bent.geometry(&surfaces, lane, front & 1 << lane != 0);
-                    material.bent_row(&world.textures, &geometry, &points[lane], context).map(
-                        |(row, axes)| {
-                            surfaces.set_frame(lane, axes);
-                            row
-                        },
-                    )
-                }
-                _ => material.row(&world.textures, &points[lane], context),
+            let mut row: Option<B> = if material.bends_frames() {
+                let geometry = bent.geometry(surfaces, lane, front & 1 << lane != 0);
+                material.bent_row(&world.textures, &geometry, point, context).map(|(row, axes)| {
+                    surfaces.set_frame(lane, axes);
+                    row
+                })
+            } else {
+                material.row(&world.textures, point, context)
             };
             if self.regularize && path.previous.blurred {
                 row.iter_mut().for_each(B::regularize);
@@ -184,14 +191,14 @@ impl PathTracer {
             streams: by_lane!(lane => &streams[lane]),
             modes: by_lane!(lane => &output.queues.lanes[hits[lane].path.slot as usize]),
         };
-        let scattered = ScatterKernel { world, surfaces: &surfaces, bsdfs: &bsdfs, paths }.scatter();
-        let items = by_lane!(lane => Item {
+        ScatterKernel { world, surfaces, bsdfs: &bsdfs, paths, scattered }.scatter();
+        let item = |lane: usize| Item {
             path: hits[lane].path,
             origin_primitive: OriginPrimitive::of(hits[lane].hit),
             surface: None,
             is_catcher: false,
-        });
-        self.go_on(world, &items, active, &scattered, output);
+        };
+        self.go_on(world, item, active, scattered, output);
     }
 
     /// Tells the probe of a surface and its shading, as scalar code has them.
@@ -221,20 +228,30 @@ impl PathTracer {
 }
 
 /// The points of eight hits, in the frames of materials without bump mapping.
-struct MeshPoints {
+pub(super) struct MeshPoints {
     surfaces: SurfaceColumns,
-    uv: [[f32; LANES]; 2],
+    uv: Columns<2>,
     /// Bit i for lane i: whether the ray hit the outside.
     front: u32,
-    /// Where materials bend frames.
-    bent: Option<BentFrames>,
+    /// Of materials that bend frames.
+    bent: BentFrames,
+}
+
+impl MeshPoints {
+    /// None yet.
+    pub(super) const NONE: Self = Self {
+        surfaces: SurfaceColumns::NONE,
+        uv: [[0.0; LANES]; 2],
+        front: 0,
+        bent: BentFrames { ns: [[0.0; LANES]; 3], dpdu: [[0.0; LANES]; 3], dpdv: [[0.0; LANES]; 3] },
+    };
 }
 
 /// The directions from which bent frames are made.
 struct BentFrames {
-    ns: [[f32; 3]; LANES],
-    dpdu: [[f32; 3]; LANES],
-    dpdv: [[f32; 3]; LANES],
+    ns: Columns<3>,
+    dpdu: Columns<3>,
+    dpdv: Columns<3>,
 }
 
 impl BentFrames {
@@ -243,34 +260,39 @@ impl BentFrames {
     fn geometry(&self, surfaces: &SurfaceColumns, lane: usize, front: bool) -> ShadingGeometry {
         ShadingGeometry {
             ng: DVec3::from_array(surfaces.ng(lane)).as_vec3(),
-            ns: self.ns[lane].into(),
-            dpdu: self.dpdu[lane].into(),
-            dpdv: self.dpdv[lane].into(),
+            ns: row(&self.ns, lane).into(),
+            dpdu: row(&self.dpdu, lane).into(),
+            dpdv: row(&self.dpdv, lane).into(),
             wo: surfaces.wo(lane).into(),
             front,
         }
     }
 }
 
-struct MeshKernel<'a>(&'a [MeshHit<'a>; LANES]);
+/// Finds the points of hits.
+struct MeshKernel<'a> {
+    hits: &'a [MeshHit<'a>; LANES],
+    points: &'a mut MeshPoints,
+}
 
 impl MeshKernel<'_> {
     #[inline(never)]
-    fn points(self) -> MeshPoints {
-        dispatch(level(), self)
+    fn set_points(self) {
+        dispatch(level(), self);
     }
 }
 
 impl Kernel for MeshKernel<'_> {
-    type Output = MeshPoints;
+    type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> MeshPoints {
-        let hits = self.0;
+    fn run<S: Simd>(self, simd: S) {
+        let Self { hits, points } = self;
         let triangles = gather_triangles(
             simd,
             &by_lane!(lane => hits[lane].mesh),
             &by_lane!(lane => hits[lane].hit.primitive),
+            hits.iter().any(|hit| hit.material.varies),
         );
         let u = f32x8::load_array(simd, by_lane!(lane => hits[lane].hit.u));
         let v = f32x8::load_array(simd, by_lane!(lane => hits[lane].hit.v));
@@ -288,13 +310,12 @@ impl Kernel for MeshKernel<'_> {
         let n = ns.negate_where(ns.dot(ng).lt(ns.x.like(0.0)));
         let dpdu = Vector::narrow(at.shading_dpdu);
         let (s, t) = frame_about(n, dpdu);
-        let surfaces = SurfaceColumns::new(at.points, at.ng, [s, t, n], wo);
-        let front = at.ng.dot(wide_wo).gt(wide_wo.x.like(0.0)).to_bitmask() as u32;
-        let mut bent = None;
+        points.surfaces.set(at.points, at.ng, [s, t, n], wo);
+        points.uv = [at.uv[0].into(), at.uv[1].into()];
+        points.front = at.ng.dot(wide_wo).gt(wide_wo.x.like(0.0)).to_bitmask() as u32;
         if hits.iter().any(|hit| hit.material.bends_frames()) {
             let dpdv = Vector::narrow(at.shading_dpdv);
-            bent = Some(BentFrames { ns: scatter(ns), dpdu: scatter(dpdu), dpdv: scatter(dpdv) });
+            points.bent = BentFrames { ns: store(ns), dpdu: store(dpdu), dpdv: store(dpdv) };
         }
-        MeshPoints { surfaces, uv: [at.uv[0].into(), at.uv[1].into()], front, bent }
     }
 }

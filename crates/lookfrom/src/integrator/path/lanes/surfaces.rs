@@ -1,8 +1,8 @@
 //! Eight surfaces side by side, in memory and in vectors.
 
-use lookfrom_simd::{Simd, f32x8, f64x8, prelude::*};
+use lookfrom_simd::{Simd, f32x8, f64x8};
 
-use crate::core::lanes::LANES;
+use crate::core::lanes::{Columns, LANES, load, load_f64, row, set_row, store, store_f64};
 use crate::core::points::Points;
 use crate::core::vector::Vector;
 use crate::integrator::path::Vertex;
@@ -10,48 +10,51 @@ use crate::integrator::path::Vertex;
 /// Eight surfaces in memory, by component.
 #[derive(Clone, Copy)]
 pub(super) struct SurfaceColumns {
-    position: [[f64; LANES]; 3],
-    error: [[f64; LANES]; 3],
-    ng: [[f64; LANES]; 3],
+    position: Columns<3, f64>,
+    error: Columns<3, f64>,
+    ng: Columns<3, f64>,
     /// The axes of the frames; the third are the shading normals.
-    frame: [[[f32; LANES]; 3]; 3],
+    frame: [Columns<3>; 3],
     /// In render space.
-    wo: [[f32; LANES]; 3],
+    wo: Columns<3>,
 }
 
 impl SurfaceColumns {
+    /// None yet.
+    pub(super) const NONE: Self = Self {
+        position: [[0.0; LANES]; 3],
+        error: [[0.0; LANES]; 3],
+        ng: [[0.0; LANES]; 3],
+        frame: [[[0.0; LANES]; 3]; 3],
+        wo: [[0.0; LANES]; 3],
+    };
+
+    /// Replaces all of them.
     #[inline(always)]
-    pub(super) fn new<S: Simd>(
+    pub(super) fn set<S: Simd>(
+        &mut self,
         points: Points<f32x8<S>>,
         ng: Vector<f64x8<S>>,
         [s, t, n]: [Vector<f32x8<S>>; 3],
         wo: Vector<f32x8<S>>,
-    ) -> Self {
-        Self {
-            position: store_f64(points.position),
-            error: store_f64(points.error),
-            ng: store_f64(ng),
-            frame: [store(s), store(t), store(n)],
-            wo: store(wo),
-        }
+    ) {
+        self.position = store_f64(points.position);
+        self.error = store_f64(points.error);
+        self.ng = store_f64(ng);
+        self.frame = [store(s), store(t), store(n)];
+        self.wo = store(wo);
     }
 
     /// The surfaces of vertices.
     pub(super) fn of_vertices(vertices: &[&Vertex; LANES]) -> Self {
-        let (zeros, wide_zeros) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
-        let mut columns =
-            Self { position: wide_zeros, error: wide_zeros, ng: wide_zeros, frame: [zeros; 3], wo: zeros };
+        let mut columns = Self::NONE;
         for (lane, vertex) in vertices.iter().enumerate() {
-            let (surface, axes) = (&vertex.surface, vertex.shading.axes());
-            for k in 0..3 {
-                columns.position[k][lane] = surface.point.position[k];
-                columns.error[k][lane] = surface.point.error[k];
-                columns.ng[k][lane] = surface.ng[k];
-                columns.wo[k][lane] = surface.wo[k];
-                for (column, axis) in columns.frame.iter_mut().zip(axes) {
-                    column[k][lane] = axis[k];
-                }
-            }
+            let surface = &vertex.surface;
+            set_row(&mut columns.position, lane, surface.point.position);
+            set_row(&mut columns.error, lane, surface.point.error);
+            set_row(&mut columns.ng, lane, surface.ng.to_array());
+            set_row(&mut columns.wo, lane, surface.wo.to_array());
+            columns.set_frame(lane, vertex.shading.axes());
         }
         columns
     }
@@ -59,29 +62,27 @@ impl SurfaceColumns {
     /// Replaces the axes of a lane's frame.
     #[inline]
     pub(super) fn set_frame(&mut self, lane: usize, axes: [[f32; 3]; 3]) {
-        for (column, axis) in self.frame.iter_mut().zip(axes) {
-            for k in 0..3 {
-                column[k][lane] = axis[k];
-            }
+        for (columns, axis) in self.frame.iter_mut().zip(axes) {
+            set_row(columns, lane, axis);
         }
     }
 
     /// The direction back along a lane's ray.
     #[inline]
     pub(super) fn wo(&self, lane: usize) -> [f32; 3] {
-        self.wo.map(|column| column[lane])
+        row(&self.wo, lane)
     }
 
     /// The position of a lane.
     #[inline]
     pub(super) fn position(&self, lane: usize) -> [f64; 3] {
-        self.position.map(|column| column[lane])
+        row(&self.position, lane)
     }
 
     /// The geometric normal of a lane.
     #[inline]
     pub(super) fn ng(&self, lane: usize) -> [f64; 3] {
-        self.ng.map(|column| column[lane])
+        row(&self.ng, lane)
     }
 
     /// The surfaces in vectors.
@@ -128,33 +129,5 @@ impl<S: Simd> Surfaces<S> {
     #[inline(always)]
     pub(super) fn render(&self, w: Vector<f32x8<S>>) -> Vector<f32x8<S>> {
         (self.s * w.x + self.t * w.y + self.n * w.z).normalize()
-    }
-}
-
-#[inline(always)]
-fn store<S: Simd>(v: Vector<f32x8<S>>) -> [[f32; LANES]; 3] {
-    [v.x.into(), v.y.into(), v.z.into()]
-}
-
-#[inline(always)]
-fn store_f64<S: Simd>(v: Vector<f64x8<S>>) -> [[f64; LANES]; 3] {
-    [v.x.into(), v.y.into(), v.z.into()]
-}
-
-#[inline(always)]
-fn load<S: Simd>(simd: S, v: &[[f32; LANES]; 3]) -> Vector<f32x8<S>> {
-    Vector {
-        x: f32x8::load_array(simd, v[0]),
-        y: f32x8::load_array(simd, v[1]),
-        z: f32x8::load_array(simd, v[2]),
-    }
-}
-
-#[inline(always)]
-fn load_f64<S: Simd>(simd: S, v: &[[f64; LANES]; 3]) -> Vector<f64x8<S>> {
-    Vector {
-        x: f64x8::load_array(simd, v[0]),
-        y: f64x8::load_array(simd, v[1]),
-        z: f64x8::load_array(simd, v[2]),
     }
 }

@@ -31,7 +31,7 @@ pub(crate) fn sample_triangles<S: Simd>(
     let [_, mut beta, mut gamma] = warp::uniform_triangle(u);
 
     // Large ones are sampled by direction.
-    let seen = Seen::new(simd, of, normal, area, from);
+    let seen = Seen::new(corners, normal, area, from);
     let (mut by_direction, mut direction_pdf) = (seen.is_large, probability);
     if by_direction.any_true() {
         let spherical = SphericalTriangles::new(seen.corners);
@@ -62,20 +62,18 @@ struct Seen<S: Simd> {
 impl<S: Simd> Seen<S> {
     #[inline(always)]
     fn new(
-        simd: S,
-        of: &[&Triangle; LANES],
+        corners: [Vector<f32x8<S>>; 3],
         normal: Vector<f64x8<S>>,
         area: f64x8<S>,
         from: Vector<f64x8<S>>,
     ) -> Self {
-        let p0 = gather_f64(simd, &by_lane!(lane => of[lane].p0.to_array())) - from;
-        let e1 = gather_f64(simd, &by_lane!(lane => of[lane].e1.to_array()));
-        let e2 = gather_f64(simd, &by_lane!(lane => of[lane].e2.to_array()));
+        let [p0, p1, p2] = [corners[0].widen(), corners[1].widen(), corners[2].widen()];
+        let (e1, e2, p0) = (p1 - p0, p2 - p0, p0 - from);
         let middle = p0 + (e1 + e2) * area.like(1.0 / 3.0);
         let distance2 = middle.dot(middle);
         let seems = area * Float::abs(normal.dot(middle)) / (distance2 * Float::sqrt(distance2));
         let is_large = Float::gt(seems, area.like(WORTH_DIRECTION)) | Float::lt(distance2, area);
-        let is_large = mask32x8::from_bitmask(simd, is_large.to_bitmask());
+        let is_large = corners[0].x.narrow_mask(is_large);
         Self { corners: [p0, p0 + e1, p0 + e2], is_large }
     }
 }
