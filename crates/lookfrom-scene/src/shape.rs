@@ -325,9 +325,15 @@ impl Geometry {
                 bounds.union(hull.transformed(matrix))
             }),
             Self::Mesh(id) => {
-                let mesh = &meshes[id.index()];
-                mesh.triangles.iter().flatten().fold(Bounds::EMPTY, |bounds, &vertex| {
-                    bounds.with(matrix.transform_point3(mesh.positions[vertex as usize].as_dvec3()))
+                // A vertex is a corner of six triangles, on average, or of none.
+                let Mesh { positions, triangles, .. } = &meshes[id.index()];
+                let mut is_corner = vec![false; positions.len()];
+                for &vertex in triangles.as_flattened() {
+                    is_corner[vertex as usize] = true;
+                }
+                let corners = positions.iter().zip(&is_corner).filter(|(_, is_corner)| **is_corner);
+                corners.fold(Bounds::EMPTY, |bounds, (position, _)| {
+                    bounds.with(matrix.transform_point3(position.as_dvec3()))
                 })
             }
         }

@@ -152,22 +152,28 @@ pub(crate) fn gather_f64<S: Simd>(simd: S, rows: &[[f64; 3]; LANES]) -> Vector<f
     }
 }
 
+/// Four numbers in each lane.
+#[inline(always)]
+pub(crate) fn gather_four<S: Simd>(simd: S, rows: &[[f32; 4]; LANES]) -> [f32x8<S>; 4] {
+    transposed(
+        simd,
+        [
+            f32x4::load_array(simd, rows[0]),
+            f32x4::load_array(simd, rows[1]),
+            f32x4::load_array(simd, rows[2]),
+            f32x4::load_array(simd, rows[3]),
+            f32x4::load_array(simd, rows[4]),
+            f32x4::load_array(simd, rows[5]),
+            f32x4::load_array(simd, rows[6]),
+            f32x4::load_array(simd, rows[7]),
+        ],
+    )
+}
+
 /// A spectrum in each lane.
 #[inline(always)]
 pub(crate) fn gather_spectrum<S: Simd>(simd: S, rows: &[Spectrum; LANES]) -> Spectrum<f32x8<S>> {
-    Spectrum(transposed(
-        simd,
-        [
-            f32x4::load_array(simd, rows[0].0),
-            f32x4::load_array(simd, rows[1].0),
-            f32x4::load_array(simd, rows[2].0),
-            f32x4::load_array(simd, rows[3].0),
-            f32x4::load_array(simd, rows[4].0),
-            f32x4::load_array(simd, rows[5].0),
-            f32x4::load_array(simd, rows[6].0),
-            f32x4::load_array(simd, rows[7].0),
-        ],
-    ))
+    Spectrum(gather_four(simd, &by_lane!(lane => rows[lane].0)))
 }
 
 /// The vectors of the lanes.

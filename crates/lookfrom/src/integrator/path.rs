@@ -123,11 +123,12 @@ impl Integrator for PathTracer {
         let batch = HitBatch { world, paths, hits, stream };
         for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
             output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
+            let is_plain = batch.is_plain(index);
             if !in_lanes {
                 self.step(world, &(batch.stream)(path), path, hit, output);
-            } else if batch.has_escaped(index) {
+            } else if is_plain && !hit.is_hit() {
                 waiting.push_escaped(self, &batch, index, output);
-            } else if let Some(class) = batch.mesh_class(self, index) {
+            } else if is_plain && let Some(class) = batch.mesh_class(self, index) {
                 waiting.push_hit(self, &batch, (class, index), output);
             } else if let Some(vertex) = self.arrive(world, &(batch.stream)(path), path, hit, output)
                 && let Some(vertex) = waiting.push_vertex(self, world, vertex, output)

@@ -5,13 +5,14 @@
 //! probability 0.
 
 use lookfrom_scene::settings::LightSampler as Kind;
-use lookfrom_simd::{Float, Simd, f32x8, prelude::*};
+use lookfrom_simd::{Float, LaneMask, Simd, f32x8, f64x8, prelude::*};
 
 use super::tree::{LightBounds, Tree};
 use super::{Light, LightSampleContext};
 use crate::core::distribution::Discrete;
-use crate::core::lanes::{LANES, by_lane, gather};
+use crate::core::lanes::{LANES, row, store, store_f64};
 use crate::core::sampler::ONE_MINUS_EPSILON;
+use crate::core::vector::Vector;
 
 /// A distribution over lights.
 #[derive(Clone, Debug)]
@@ -79,28 +80,29 @@ impl LightChoice {
     pub(crate) fn sample_lanes<S: Simd>(
         &self,
         simd: S,
-        at: &[LightSampleContext; LANES],
+        points: Vector<f64x8<S>>,
+        n: Vector<f32x8<S>>,
         u: f32x8<S>,
         mask: u32,
     ) -> [Option<(u32, f32)>; LANES] {
-        if self.tree.is_empty() || self.weights.is_some() {
-            return by_lane!(lane => match mask & 1 << lane {
-                0 => None,
-                _ => self.sample(&at[lane], u[lane]),
-            });
+        let is_listed = self.tree.is_empty() || self.weights.is_some();
+        let (in_list, mut listed, mut chosen) = (self.share_of_list(), mask, [None; LANES]);
+        if !is_listed {
+            listed &= u.simd_lt(in_list).to_bitmask() as u32;
+            let rest = (u - in_list) / (1.0 - in_list);
+            let rest = Float::min(rest, rest.like(ONE_MINUS_EPSILON));
+            chosen = self.tree.sample_lanes(simd, Vector::narrow(points), n, rest, mask & !listed);
+            for (_, probability) in chosen.iter_mut().flatten() {
+                *probability *= 1.0 - in_list;
+            }
         }
-        let in_list = self.share_of_list();
-        let listed = u.simd_lt(in_list).to_bitmask() as u32;
-        let rest = (u - in_list) / (1.0 - in_list);
-        let rest = Float::min(rest, rest.like(ONE_MINUS_EPSILON));
-        let p = gather(simd, &by_lane!(lane => at[lane].point.as_vec3().to_array()));
-        let n = gather(simd, &by_lane!(lane => at[lane].n.to_array()));
-        let mut chosen = self.tree.sample_lanes(simd, p, n, rest, mask & !listed);
-        for (lane, chosen) in chosen.iter_mut().enumerate() {
-            *chosen = match mask & listed & 1 << lane {
-                0 => chosen.map(|(light, probability)| (light, probability * (1.0 - in_list))),
-                _ => self.sample(&at[lane], u[lane]),
-            };
+        if listed != 0 {
+            let (points, normals, numbers) = (store_f64(points), store(n), <[f32; LANES]>::from(u));
+            for lane in LaneMask(listed) {
+                let at =
+                    LightSampleContext { point: row(&points, lane).into(), n: row(&normals, lane).into() };
+                chosen[lane] = self.sample(&at, numbers[lane]);
+            }
         }
         chosen
     }

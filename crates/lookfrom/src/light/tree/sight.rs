@@ -1,8 +1,8 @@
 //! The importance of a cluster of lights at a point, at any width (Conty Estevez & Kulla 2018).
 
-use lookfrom_simd::{Float, Real, Simd, f32x8, prelude::*};
+use lookfrom_simd::{Float, Real, Simd, f32x8};
 
-use crate::core::lanes::{LANES, by_lane};
+use crate::core::lanes::{LANES, by_lane, gather_four};
 use crate::core::vector::Vector;
 
 /// Light bounds in the form that importances are computed from.
@@ -24,24 +24,30 @@ impl Sight {
     /// One in each lane.
     #[inline(always)]
     pub(super) fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Sight<f32x8<S>> {
-        Sight {
-            center: Vector {
-                x: f32x8::load_array(simd, by_lane!(lane => rows[lane].center.x)),
-                y: f32x8::load_array(simd, by_lane!(lane => rows[lane].center.y)),
-                z: f32x8::load_array(simd, by_lane!(lane => rows[lane].center.z)),
-            },
-            radius: f32x8::load_array(simd, by_lane!(lane => rows[lane].radius)),
-            axis: Vector {
-                x: f32x8::load_array(simd, by_lane!(lane => rows[lane].axis.x)),
-                y: f32x8::load_array(simd, by_lane!(lane => rows[lane].axis.y)),
-                z: f32x8::load_array(simd, by_lane!(lane => rows[lane].axis.z)),
-            },
-            cos_normals: f32x8::load_array(simd, by_lane!(lane => rows[lane].cos_normals)),
-            sin_normals: f32x8::load_array(simd, by_lane!(lane => rows[lane].sin_normals)),
-            cos_emission: f32x8::load_array(simd, by_lane!(lane => rows[lane].cos_emission)),
-            power: f32x8::load_array(simd, by_lane!(lane => rows[lane].power)),
-            two_sided: f32x8::load_array(simd, by_lane!(lane => rows[lane].two_sided)),
-        }
+        let [x, y, z, radius] = gather_four(
+            simd,
+            &by_lane!(lane => {
+                let Self { center: Vector { x, y, z }, radius, .. } = *rows[lane];
+                [x, y, z, radius]
+            }),
+        );
+        let center = Vector { x, y, z };
+        let [x, y, z, cos_normals] = gather_four(
+            simd,
+            &by_lane!(lane => {
+                let Self { axis: Vector { x, y, z }, cos_normals, .. } = *rows[lane];
+                [x, y, z, cos_normals]
+            }),
+        );
+        let axis = Vector { x, y, z };
+        let [sin_normals, cos_emission, power, two_sided] = gather_four(
+            simd,
+            &by_lane!(lane => {
+                let Self { sin_normals, cos_emission, power, two_sided, .. } = *rows[lane];
+                [sin_normals, cos_emission, power, two_sided]
+            }),
+        );
+        Sight { center, radius, axis, cos_normals, sin_normals, cos_emission, power, two_sided }
     }
 }
 

@@ -131,7 +131,8 @@ impl LightSamples {
         let normals = store(surfaces.n);
         for lane in LaneMask(others) {
             let Some(light) = world.lights.get(self.light[lane] as usize) else { continue };
-            let at = context(&positions, &normals, lane);
+            let at =
+                LightSampleContext { point: row(&positions, lane).into(), n: row(&normals, lane).into() };
             let u = row(&numbers, lane);
             if let Some(sample) = light.sample(&world.textures, &at, u, modes[lane], IncompletePdf::Allowed) {
                 self.set(lane, &sample);
@@ -153,11 +154,9 @@ impl LightSamples {
         let chosen = match world.light_choice.only() {
             Some(light) => [Some((light, 1.0)); LANES],
             None => {
-                let positions = store_f64(surfaces.points.position);
-                let normals = store(surfaces.n);
-                let at = by_lane!(lane => context(&positions, &normals, lane));
                 let [which, _] = streams.two(dimension::CHOICE);
-                world.light_choice.sample_lanes(simd, &at, which, mask)
+                let points = surfaces.points.position;
+                world.light_choice.sample_lanes(simd, points, surfaces.n, which, mask)
             }
         };
         for (lane, chosen) in chosen.into_iter().enumerate() {
@@ -267,10 +266,4 @@ impl LightSamples {
         let normal = load_f64(simd, &self.normal);
         store(points.just_before(normal, load(simd, &self.wi), origins))
     }
-}
-
-/// The light sample context of a lane.
-#[inline(always)]
-fn context(positions: &Columns<3, f64>, normals: &Columns<3>, lane: usize) -> LightSampleContext {
-    LightSampleContext { point: row(positions, lane).into(), n: row(normals, lane).into() }
 }

@@ -29,32 +29,27 @@ pub(in crate::integrator::path) struct HitBatch<'a, F> {
 }
 
 impl<'a, F: Fn(&Path) -> SampleStream> HitBatch<'a, F> {
-    /// Whether a path has left the scene, in no medium and not from a shadow catcher.
+    /// Whether a path travels in no medium and comes from no shadow catcher.
     #[inline]
-    pub(in crate::integrator::path) fn has_escaped(&self, index: usize) -> bool {
-        let (path, hit) = (&self.paths[index], &self.hits[index]);
-        !hit.is_hit() && path.interior.is_empty() && !path.previous.is_catcher
+    pub(in crate::integrator::path) fn is_plain(&self, index: usize) -> bool {
+        let path = &self.paths[index];
+        path.interior.is_empty() && !path.previous.is_catcher
     }
 
-    /// The class of a path that met a mesh whose material has BSDFs of a class, and is to go on from there, in no medium.
+    /// The class of a path that met a mesh whose material has BSDFs of a class, and is to go on from there.
     #[inline]
     pub(in crate::integrator::path) fn mesh_class(
         &self,
         tracer: &PathTracer,
         index: usize,
     ) -> Option<BsdfClass> {
-        let (path, hit) = (&self.paths[index], &self.hits[index]);
-        if !hit.is_hit()
-            || path.depth >= tracer.depth
-            || !path.interior.is_empty()
-            || path.previous.is_catcher
-        {
-            return None;
+        match self.paths[index].depth < tracer.depth {
+            true => self.world.mesh_class(&self.hits[index]),
+            false => None,
         }
-        self.world.mesh_class(hit)
     }
 
-    /// A path that has such a class.
+    /// A plain path that has such a class.
     #[inline(always)]
     fn mesh_hit(&self, index: u32) -> Option<MeshHit<'a>> {
         let (path, hit) = (&self.paths[index as usize], &self.hits[index as usize]);
