@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 
 use lookfrom_scene::spectrum::observer;
 use lookfrom_scene::spectrum::{LONGEST, SHORTEST, space};
+use lookfrom_simd::{Kernel, Simd, dispatch, f64x4, level, prelude::*};
 
 use super::sigmoid::{MIDDLE, REACH};
 use super::{matrices, standard_illuminant};
@@ -97,32 +98,47 @@ impl Measure {
     }
 
     /// The colour of a sigmoid spectrum, and its Jacobian (row: component, column: coefficient).
-    fn color(&self, [a, b, c]: [f64; 3]) -> ([f64; 3], space::Matrix) {
-        // By channel, term and lane.
-        let mut sums = [[[0.0; LANES]; 4]; 3];
-        for Step { t, weights } in &self.0 {
-            // The value of the sigmoid, and its derivatives by a, b and c.
-            let mut terms = [[0.0; LANES]; 4];
-            for lane in 0..LANES {
-                let t = t[lane];
-                let x = (a * t + b) * t + c;
-                let inverse = 1.0 / (1.0 + x * x).sqrt();
-                let slope = 0.5 * inverse * inverse * inverse;
-                terms[0][lane] = 0.5 + 0.5 * x * inverse;
-                terms[1][lane] = slope * t * t;
-                terms[2][lane] = slope * t;
-                terms[3][lane] = slope;
-            }
-            for (sums, weights) in sums.iter_mut().zip(weights) {
-                for (sum, term) in sums.iter_mut().zip(&terms) {
-                    for lane in 0..LANES {
-                        sum[lane] += weights[lane] * term[lane];
-                    }
+    fn color(&self, coefficients: [f64; 3]) -> ([f64; 3], space::Matrix) {
+        let sums = dispatch(level(), Sums { steps: &self.0, coefficients });
+        let sums = sums.map(|sums| sums.map(|lanes| lanes.iter().sum::<f64>()));
+        (sums.map(|[value, ..]| value), sums.map(|[_, a, b, c]| [a, b, c]))
+    }
+}
+
+/// The sums of a sigmoid spectrum and of its derivatives by a, b and c over the steps of a rule: by channel, term and lane.
+struct Sums<'a> {
+    steps: &'a [Step],
+    coefficients: [f64; 3],
+}
+
+impl Kernel for Sums<'_> {
+    type Output = [[[f64; LANES]; 4]; 3];
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let [a, b, c] = self.coefficients;
+        let (a, b, c) = (f64x4::splat(simd, a), f64x4::splat(simd, b), f64x4::splat(simd, c));
+        let (half, one) = (f64x4::splat(simd, 0.5), f64x4::splat(simd, 1.0));
+        let mut sums = [[f64x4::splat(simd, 0.0); 4]; 3];
+        for Step { t, weights } in self.steps {
+            let t = f64x4::load_array(simd, *t);
+            let x = (a * t + b) * t + c;
+            let inverse = one / (one + x * x).sqrt();
+            let half_inverse = half * inverse;
+            let by_c = half_inverse * inverse * inverse;
+            let by_b = by_c * t;
+            let terms = [half + x * half_inverse, by_b * t, by_b, by_c];
+            for channel in 0..3 {
+                let weights = f64x4::load_array(simd, weights[channel]);
+                for term in 0..4 {
+                    sums[channel][term] += weights * terms[term];
                 }
             }
         }
-        let sums = sums.map(|sums| sums.map(|lanes| lanes.iter().sum::<f64>()));
-        (sums.map(|[value, ..]| value), sums.map(|[_, a, b, c]| [a, b, c]))
+        let arrays =
+            |[value, by_a, by_b, by_c]: [f64x4<S>; 4]| [value.into(), by_a.into(), by_b.into(), by_c.into()];
+        let [red, green, blue] = sums;
+        [arrays(red), arrays(green), arrays(blue)]
     }
 }
 
@@ -177,4 +193,48 @@ pub(super) fn solve(measure: &Measure, rgb: [f64; 3]) -> [f64; 3] {
         }
     }
     coefficients
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::hash;
+
+    /// The sums of [`Measure::color`], number by number as they are defined.
+    fn sums_one_by_one(measure: &Measure, [a, b, c]: [f64; 3]) -> [[[f64; LANES]; 4]; 3] {
+        let mut sums = [[[0.0; LANES]; 4]; 3];
+        for Step { t, weights } in &measure.0 {
+            for lane in 0..LANES {
+                let t = t[lane];
+                let x = (a * t + b) * t + c;
+                let inverse = 1.0 / (1.0 + x * x).sqrt();
+                let slope = 0.5 * inverse * inverse * inverse;
+                let terms = [0.5 + 0.5 * x * inverse, slope * t * t, slope * t, slope];
+                for (sums, weights) in sums.iter_mut().zip(weights) {
+                    for (sum, term) in sums.iter_mut().zip(terms) {
+                        sum[lane] += weights[lane] * term;
+                    }
+                }
+            }
+        }
+        sums
+    }
+
+    #[test]
+    fn sums_in_lanes_have_the_bits_of_sums_one_by_one() {
+        for measure in [Measure::exact(), Measure::of_pbrt()] {
+            for round in 0..2000 {
+                let coefficients = [0, 1, 2].map(|index| {
+                    let bits = hash::pair(round, index);
+                    let mantissa = (bits >> 40) as f64 / 8_388_608.0 - 1.0;
+                    mantissa * libm::exp2((bits % 40) as f64 - 19.0)
+                });
+                let together = dispatch(level(), Sums { steps: &measure.0, coefficients });
+                let alone = sums_one_by_one(measure, coefficients);
+                let bits =
+                    |sums: [[[f64; LANES]; 4]; 3]| sums.map(|sums| sums.map(|lanes| lanes.map(f64::to_bits)));
+                assert_eq!(bits(together), bits(alone), "{coefficients:?}");
+            }
+        }
+    }
 }
