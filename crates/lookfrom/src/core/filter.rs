@@ -7,8 +7,10 @@
 //!
 //! Mitchell & Netravali 1988 (the cubic); Harris 1978 (the four-term window).
 
-use crate::core::sampler::ONE_MINUS_EPSILON;
 use lookfrom_scene::settings::Filter as Shape;
+use lookfrom_simd::{Float, Real};
+
+use crate::core::sampler::ONE_MINUS_EPSILON;
 
 /// Number of table cells from the centre to the radius.
 const CELLS: usize = 1024;
@@ -97,20 +99,29 @@ impl Filter {
     ///
     /// `u` is in [0, 1)²; each coordinate of the offset is monotonic in its coordinate of `u`. All weights have the
     /// same magnitude; they are negative where the filter is, and 1 on average.
-    pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
-        let [(x, x_sign), (y, y_sign)] = u.map(|u| {
-            // Choose a side, and the distance on it.
-            let outward = (2.0 * u - 1.0).abs().min(ONE_MINUS_EPSILON);
-            let side = if u < 0.5 { -self.radius } else { self.radius };
-            let (x, sign) = match (&self.table, self.curve) {
-                (Some(table), _) => table.invert(outward),
-                (None, Curve::Triangle) => (1.0 - (1.0 - outward).sqrt(), 1.0),
-                (None, _) => (outward, 1.0),
-            };
-            (side * x, sign)
-        });
+    #[inline(always)]
+    pub fn sample<R: Real>(&self, [u, v]: [R; 2]) -> ([R; 2], R) {
+        let ([x, x_sign], [y, y_sign]) = (self.along_one_axis(u), self.along_one_axis(v));
         let magnitude = self.table.as_ref().map_or(1.0, |table| table.weight);
         ([x, y], x_sign * y_sign * magnitude)
+    }
+
+    /// The offset that a number in [0, 1) chooses along one axis, and the sign of the filter there.
+    #[inline(always)]
+    fn along_one_axis<R: Real>(&self, u: R) -> [R; 2] {
+        // Choose a side, and the distance on it.
+        let one = u.like(1.0);
+        let outward = Float::min(Float::abs(u * 2.0 - one), u.like(ONE_MINUS_EPSILON));
+        let side = R::select(u.lt(u.like(0.5)), u.like(-self.radius), u.like(self.radius));
+        let (distance, sign) = match (&self.table, self.curve) {
+            (Some(table), _) => {
+                let signed = outward.map(|share| table.invert(share));
+                (Float::abs(signed), one.copysign(signed))
+            }
+            (None, Curve::Triangle) => (one - Float::sqrt(one - outward), one),
+            (None, _) => (outward, one),
+        };
+        [side * distance, sign]
     }
 
     /// The value of the filter at an offset in pixels from the centre, per pixel²: its integral over the plane
@@ -157,9 +168,9 @@ impl Table {
         Some((Self { cumulative, first, negative, weight }, 2.0 * total))
     }
 
-    /// The distance (0 … 1) that encloses the fraction `share` of |f|, and the sign of f there. `share`
-    /// is in [0, 1).
-    fn invert(&self, share: f32) -> (f32, f32) {
+    /// The distance (0 … 1) that encloses the fraction `share` of |f|, with the sign of f there. `share` is in
+    /// [0, 1).
+    fn invert(&self, share: f32) -> f32 {
         // Find the last cell that begins at or before it: one of positive width in the table.
         let mut cell = usize::from(self.first[(share * PARTS as f32) as usize]);
         while cell < CELLS - 1 && self.cumulative[cell + 1] <= share {
@@ -167,7 +178,7 @@ impl Table {
         }
         let (start, end) = (self.cumulative[cell], self.cumulative[cell + 1]);
         let place = (cell as f32 + (share - start) / (end - start)) / CELLS as f32;
-        (place, if self.negative[cell] { -1.0 } else { 1.0 })
+        if self.negative[cell] { -place } else { place }
     }
 }
 

@@ -1,14 +1,15 @@
-//! The start of a batch: random numbers of the camera, and camera rays, eight side by side where the camera is linear.
+//! The start of a batch: random numbers of the camera, points of the image, and camera rays, eight side by side where the
+//! camera is linear.
 
-use glam::DVec3;
 use lookfrom_bvh::Ray;
-use lookfrom_simd::{Float, Kernel, Simd, dispatch, f32x8, f64x8, level, prelude::*};
+use lookfrom_simd::{Float, Kernel, Real, Simd, dispatch, f32x8, f64x8, level, prelude::*, u32x8, u64x8};
 
 use super::{Renderer, SampleId};
 use crate::core::lanes::{LANES, by_lane, scatter};
+use crate::core::sampler::lanes::PixelSamplers;
 use crate::core::vector::Vector;
 use crate::shading::texture::SpectralMode;
-use crate::view::camera::{Camera, CameraRay};
+use crate::view::camera::CameraRay;
 
 /// Dimensions of a sample's random numbers that the camera uses; rays use hashes of their address and dimension.
 const FILTER_DIMENSION: u32 = 0;
@@ -19,10 +20,9 @@ const WAVELENGTH_DIMENSION: u32 = 2;
 #[derive(Debug, Default)]
 pub(super) struct Start {
     /// Random numbers, empty where they are not needed.
-    filter: Vec<[f32; 2]>,
     lens: Vec<[f32; 2]>,
     wavelengths: Vec<[f32; 2]>,
-    /// Points of the image, in pixels, y up.
+    /// Points of the image, in pixels, y up; empty where the camera is linear.
     points: Vec<[f64; 2]>,
     /// The rays of the kernel.
     pub(super) rays: Vec<Ray>,
@@ -42,7 +42,7 @@ impl Renderer {
     /// The camera ray of a sample and the filter weight.
     pub fn camera_ray(&self, id: SampleId) -> (CameraRay, f32) {
         let two = |dimension| self.sampler.two(id.pixel, id.sample, dimension);
-        let (point, weight) = self.image_point(id, two(FILTER_DIMENSION));
+        let (point, weight) = self.image_point(id.pixel.map(f64::from), two(FILTER_DIMENSION));
         (self.view.camera.ray(point, two(LENS_DIMENSION)), weight)
     }
 
@@ -54,50 +54,96 @@ impl Renderer {
 
     /// Replaces `start` by the camera rays of the samples.
     pub(super) fn start(&self, ids: &[SampleId], start: &mut Start) {
-        let Start { filter, lens, wavelengths, points, rays, weights } = start;
+        let Start { lens, wavelengths, points, rays, weights } = start;
         let camera = &self.view.camera;
         let draw = |is_sampled: bool, dimension: u32, numbers: &mut Vec<[f32; 2]>| {
             let count = if is_sampled { ids.len() } else { 0 };
             self.sampler.two_of_each(count, |k| (ids[k].pixel, ids[k].sample), dimension, numbers);
         };
-        draw(true, FILTER_DIMENSION, filter);
         draw(camera.lens.is_some(), LENS_DIMENSION, lens);
         draw(self.is_spectral(), WAVELENGTH_DIMENSION, wavelengths);
 
         points.clear();
         weights.clear();
         rays.clear();
-        points.extend(ids.iter().zip(&*filter).map(|(id, u)| {
-            let (point, weight) = self.image_point(*id, *u);
-            weights.push(weight);
-            point
-        }));
         if camera.is_linear() {
-            dispatch(level(), LinearRays { camera, eye: self.eye, points, rays });
+            dispatch(level(), LinearRays { renderer: self, ids, rays, weights });
         } else {
+            dispatch(level(), ImagePoints { renderer: self, ids, points, weights });
             rays.extend(points.iter().enumerate().map(|(slot, point)| {
                 self.kernel_ray(&camera.ray(*point, lens.get(slot).copied().unwrap_or_default()))
             }));
         }
     }
 
-    /// The point of the image that the filter chooses by `u`, in pixels, y up, and the filter's weight.
-    #[inline]
-    fn image_point(&self, id: SampleId, u: [f32; 2]) -> ([f64; 2], f32) {
-        let [column, row] = id.pixel.map(f64::from);
-        let (offset, weight) = self.filter.sample(u);
-        let x_k = column + 0.5 + f64::from(offset[0]);
-        let y_k = f64::from(self.view.image.height) - (row + 0.5 + f64::from(offset[1]));
-        ([x_k, y_k], weight)
+    /// The point of the image that the filter chooses by `u`, in pixels, y up, and the filter's weight; in the pixel of a
+    /// column and a row.
+    #[inline(always)]
+    fn image_point<R: Real>(&self, [column, row]: [R::Double; 2], u: [R; 2]) -> ([R::Double; 2], R) {
+        let ([x, y], weight) = self.filter.sample(u);
+        let half = column.like(0.5);
+        let height = column.like(f64::from(self.view.image.height));
+        ([column + half + x.widen(), height - (row + half + y.widen())], weight)
+    }
+
+    /// [`Self::image_point`] of up to eight samples, each with its random numbers. Unused lanes repeat the last one.
+    #[inline(always)]
+    fn image_points<S: Simd>(&self, simd: S, ids: &[SampleId]) -> ([f64x8<S>; 2], f32x8<S>) {
+        let repeated;
+        let ids = match ids.first_chunk::<LANES>() {
+            Some(ids) => ids,
+            None => {
+                repeated = by_lane!(lane => ids[lane.min(ids.len() - 1)]);
+                &repeated
+            }
+        };
+        let columns = f32x8::extend(u32x8::load_array(simd, by_lane!(lane => ids[lane].pixel[0])));
+        let rows = f32x8::extend(u32x8::load_array(simd, by_lane!(lane => ids[lane].pixel[1])));
+        let samples = u32x8::load_array(simd, by_lane!(lane => ids[lane].sample));
+        let samplers = PixelSamplers::of_pixels(&self.sampler, columns | (rows << 32));
+        let u = samplers.two(samples, u64x8::splat(simd, u64::from(FILTER_DIMENSION)));
+        self.image_point([below_2_to_52(columns), below_2_to_52(rows)], u)
     }
 }
 
-/// Appends the rays of a linear camera through points of the image.
+/// Integers below 2⁵² as numbers, exactly.
+#[inline(always)]
+fn below_2_to_52<S: Simd>(integers: u64x8<S>) -> f64x8<S> {
+    const TWO_TO_52: f64 = 4_503_599_627_370_496.0;
+    let sums: f64x8<S> = (integers | TWO_TO_52.to_bits()).bitcast();
+    sums - TWO_TO_52
+}
+
+/// Appends the points of the image for samples, in pixels, y up, and the filter's weights.
+struct ImagePoints<'a> {
+    renderer: &'a Renderer,
+    ids: &'a [SampleId],
+    points: &'a mut Vec<[f64; 2]>,
+    weights: &'a mut Vec<f32>,
+}
+
+impl Kernel for ImagePoints<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { renderer, ids, points, weights } = self;
+        for ids in ids.chunks(LANES) {
+            let ([x, y], weight) = renderer.image_points(simd, ids);
+            let (x, y, weight): ([f64; LANES], [f64; LANES], [f32; LANES]) =
+                (x.into(), y.into(), weight.into());
+            points.extend_from_slice(&by_lane!(lane => [x[lane], y[lane]])[..ids.len()]);
+            weights.extend_from_slice(&weight[..ids.len()]);
+        }
+    }
+}
+
+/// Appends the rays of a linear camera for samples, and the filter's weights.
 struct LinearRays<'a> {
-    camera: &'a Camera,
-    eye: DVec3,
-    points: &'a [[f64; 2]],
+    renderer: &'a Renderer,
+    ids: &'a [SampleId],
     rays: &'a mut Vec<Ray>,
+    weights: &'a mut Vec<f32>,
 }
 
 impl Kernel for LinearRays<'_> {
@@ -105,20 +151,18 @@ impl Kernel for LinearRays<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { camera, eye, points, rays } = self;
-        rays.reserve(points.len());
-        for points in points.chunks(LANES) {
-            // Unused lanes repeat the last point.
-            let last = points.len() - 1;
-            let x = f64x8::load_array(simd, by_lane!(lane => points[lane.min(last)][0]));
-            let y = f64x8::load_array(simd, by_lane!(lane => points[lane.min(last)][1]));
-            let [a, direction] = camera.linear_ray([x, y]);
-            let eye = Vector { x: x.like(eye.x), y: x.like(eye.y), z: x.like(eye.z) };
+        let Self { renderer, ids, rays, weights } = self;
+        rays.reserve(ids.len());
+        weights.reserve(ids.len());
+        let eye = Vector::from(renderer.eye.to_array().map(|x| f64x8::splat(simd, x)));
+        for ids in ids.chunks(LANES) {
+            let (point, weight) = renderer.image_points(simd, ids);
+            let [a, direction] = renderer.view.camera.linear_ray(point);
             let origins = scatter(Vector::<f32x8<S>>::narrow(eye + a));
             let directions = scatter(Vector::<f32x8<S>>::narrow(direction));
-            for lane in 0..points.len() {
-                rays.push(Ray::new(origins[lane], directions[lane]));
-            }
+            rays.extend_from_slice(&by_lane!(lane => Ray::new(origins[lane], directions[lane]))[..ids.len()]);
+            let weight: [f32; LANES] = weight.into();
+            weights.extend_from_slice(&weight[..ids.len()]);
         }
     }
 }

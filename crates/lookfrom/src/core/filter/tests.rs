@@ -1,6 +1,11 @@
 //! Tests that filter samples and weights reproduce the filter.
 
+use lookfrom_scene::settings::Sampler as Kind;
+use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, prelude::*};
+
 use super::*;
+use crate::core::lanes::LANES;
+use crate::core::sampler::Sampler;
 use crate::core::statistics::chi_square_deviate;
 
 fn all() -> [Shape; 8] {
@@ -88,7 +93,7 @@ fn samples_follow_the_magnitude_of_the_filter() {
         let total: f64 = expected.iter().sum();
         expected.iter_mut().for_each(|e| *e *= f64::from(SAMPLES) / total);
         // Count samples, whose weights must have the sign of f.
-        let sampler = crate::core::sampler::Sampler::new(lookfrom_scene::settings::Sampler::Independent, 3);
+        let sampler = Sampler::new(Kind::Independent, 3);
         let mut observed = vec![0; CELLS * CELLS];
         let mut wrong_signs = 0;
         for i in 0..SAMPLES {
@@ -122,7 +127,7 @@ fn tables_agree_with_bisection() {
         for i in 0..1000 {
             let share = i as f32 / 1000.0;
             let slow = running.partition_point(|&part| part < f64::from(share) * sum) as f64 / f64::from(N);
-            let (fast, _) = table.invert(share);
+            let fast = table.invert(share).abs();
             assert!(
                 (f64::from(fast) - slow).abs() <= 1.0 / CELLS as f64,
                 "{shape:?} at {share}: {fast}, {slow}"
@@ -193,4 +198,36 @@ fn bits_are_pinned() {
         [0xbe80_b004, 0x3f1a_1f28, 0x3f92_8a09]
     );
     assert_eq!(bits(Shape::Gaussian { radius: 1.5, sigma: 0.5 }), [0xbe83_9e3c, 0x3f1f_9f5d, 0x3f80_0000]);
+}
+
+struct Eight<'a>(&'a Filter, [[f32; LANES]; 2]);
+
+impl Kernel for Eight<'_> {
+    type Output = [[f32; LANES]; 3];
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let ([x, y], weight) = self.0.sample(self.1.map(|u| f32x8::load_array(simd, u)));
+        [x.into(), y.into(), weight.into()]
+    }
+}
+
+#[test]
+fn eight_at_once_are_eight_one_by_one() {
+    let sampler = Sampler::new(Kind::Sobol, 5);
+    for shape in all() {
+        let filter = Filter::new(shape);
+        for round in 0..2000 {
+            let u: [[f32; 2]; LANES] = std::array::from_fn(|lane| sampler.two([lane as u32, 0], round, 0));
+            let [x, y, weight] = dispatch(level(), Eight(&filter, [0, 1].map(|axis| u.map(|u| u[axis]))));
+            for lane in 0..LANES {
+                let bits = |([x, y], weight): ([f32; 2], f32)| [x, y, weight].map(f32::to_bits);
+                assert_eq!(
+                    bits(([x[lane], y[lane]], weight[lane])),
+                    bits(filter.sample(u[lane])),
+                    "{shape:?}"
+                );
+            }
+        }
+    }
 }

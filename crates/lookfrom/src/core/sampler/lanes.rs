@@ -21,6 +21,12 @@ impl<S: Simd> PixelSamplers<S> {
         Self { kind: samplers[0].kind, keys: u64x8::load_array(simd, by_lane!(lane => samplers[lane].key)) }
     }
 
+    /// Those of pixels, the columns in the lower halves and the rows in the upper ones.
+    #[inline(always)]
+    pub(crate) fn of_pixels(sampler: &Sampler, pixels: u64x8<S>) -> Self {
+        Self { kind: sampler.kind, keys: mix(pixels ^ sampler.key) }
+    }
+
     /// As [`PixelSampler::two`], for a sample and a dimension (below 2³²) in each lane.
     #[inline(always)]
     pub(crate) fn two(&self, sample: u32x8<S>, dimension: u64x8<S>) -> [f32x8<S>; 2] {
@@ -63,9 +69,9 @@ impl<F: Fn(usize) -> ([u32; 2], u32)> Kernel for Each<'_, F> {
             let addresses = by_lane!(lane => address((first + lane).min(count - 1)));
             let pixels =
                 by_lane!(lane => u64::from(addresses[lane].0[0]) | u64::from(addresses[lane].0[1]) << 32);
-            let keys = mix(u64x8::load_array(simd, pixels) ^ sampler.key);
+            let samplers = PixelSamplers::of_pixels(sampler, u64x8::load_array(simd, pixels));
             let sample = u32x8::load_array(simd, by_lane!(lane => addresses[lane].1));
-            let [a, b] = PixelSamplers { kind: sampler.kind, keys }.two(sample, dimension);
+            let [a, b] = samplers.two(sample, dimension);
             let (a, b): ([f32; LANES], [f32; LANES]) = (a.into(), b.into());
             for (lane, number) in numbers.iter_mut().enumerate() {
                 *number = [a[lane], b[lane]];
