@@ -17,7 +17,7 @@ mod tests;
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::Point;
 use lookfrom_scene::light::Falloff;
-use lookfrom_simd::{Simd, f32x8, prelude::*};
+use lookfrom_simd::{Float, Real, Simd, f32x8, prelude::*};
 
 use crate::core::lanes::{LANES, by_lane};
 use crate::core::spectrum::Spectrum;
@@ -197,7 +197,7 @@ impl Light {
         match self {
             Self::Point { position, intensity, falloff } => {
                 let (wi, distance) = toward(from, *position)?;
-                let li = intensity.even(textures, lanes) * fade(*falloff, distance);
+                let li = intensity.even(textures, lanes) * fade::<f32>(*falloff, distance);
                 Some(LightSample::of_point(wi, li, *position))
             }
             Self::Distant { toward, irradiance } => {
@@ -210,7 +210,7 @@ impl Light {
                 if cone <= 0.0 {
                     return None;
                 }
-                let li = intensity.even(textures, lanes) * (fade(*falloff, distance) * cone);
+                let li = intensity.even(textures, lanes) * (fade::<f32>(*falloff, distance) * cone);
                 Some(LightSample::of_point(wi, li, *position))
             }
             Self::Projection(projection) => projection.sample(textures, from, lanes),
@@ -301,12 +301,14 @@ fn toward(from: DVec3, to: DVec3) -> Option<(Vec3, f64)> {
 }
 
 /// The attenuation of a light at a distance.
-pub(crate) fn fade(falloff: Falloff, distance: f64) -> f32 {
-    match falloff {
-        Falloff::None => 1.0,
-        Falloff::Linear => (1.0 / distance) as f32,
-        Falloff::Quadratic => (1.0 / (distance * distance)) as f32,
-    }
+#[inline(always)]
+pub(crate) fn fade<R: Real>(falloff: Falloff, distance: R::Double) -> R {
+    let one = Float::like(distance, 1.0);
+    R::narrow(match falloff {
+        Falloff::None => one,
+        Falloff::Linear => one / distance,
+        Falloff::Quadratic => one / (distance * distance),
+    })
 }
 
 /// 0 up to `low`, 1 from `high`, a cubic between.

@@ -191,6 +191,7 @@ pub(crate) fn scatter_f64<S: Simd>(v: Vector<f64x8<S>>) -> [[f64; 3]; LANES] {
 }
 
 /// The spectra of the lanes.
+#[cfg(test)]
 #[inline(always)]
 pub(crate) fn scatter_spectrum<S: Simd>(s: Spectrum<f32x8<S>>) -> [Spectrum; LANES] {
     let [a, b, c, d]: [[f32; LANES]; 4] = [s.0[0].into(), s.0[1].into(), s.0[2].into(), s.0[3].into()];

@@ -2,14 +2,16 @@
 
 mod arriving;
 mod branches;
+mod coefficients;
+mod columns;
 mod lanes;
 mod plain;
 mod surfaces;
+mod waiting;
 
 use glam::DVec3;
 use lookfrom_bvh::Hit;
 
-use crate::core::lanes::LANES;
 use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
 use crate::light::{IncompletePdf, LightSampleContext};
 use crate::shading::interaction::SurfaceInteraction;
@@ -19,9 +21,14 @@ use crate::world::World;
 pub(super) use branches::same_side;
 pub(super) use lanes::PlainBranch;
 use lanes::PlainSteps;
+use waiting::Waiting;
 
-/// [`Integrator::step`] for all paths of a batch, in their order; plain hits of eight consecutive paths are shaded side
-/// by side, and `grow` is called with the branches there. A probe that listens is told of each step by itself.
+/// Number of paths whose plain hits are shaded before their results are used: enough for groups of eight of one material,
+/// few enough for the cache.
+const TOGETHER: usize = 512;
+
+/// [`Integrator::step`] for all paths of a batch, in their order; plain hits are shaded eight side by side, and `grow` is
+/// called with the branches there. A probe that listens is told of each step by itself.
 pub(super) fn step_all<I: Integrator, P: Probe>(
     integrator: &I,
     world: &World,
@@ -32,18 +39,20 @@ pub(super) fn step_all<I: Integrator, P: Probe>(
     grow: impl Fn(&Path, &PlainBranch, &mut Vec<Path>),
 ) {
     let in_lanes = !P::LISTENS && output.light_paths.is_none() && PlainSteps::are_for(world);
-    let mut steps = PlainSteps::default();
-    for (paths, hits) in paths.chunks(LANES).zip(hits.chunks(LANES)) {
+    let (mut steps, mut waiting) = (PlainSteps::default(), Waiting::default());
+    for (paths, hits) in paths.chunks(TOGETHER).zip(hits.chunks(TOGETHER)) {
+        steps.clear(paths.len());
         if in_lanes {
-            steps.compute(world, &stream, paths, hits, &output.queues.lanes);
+            steps.compute(world, &stream, (paths, hits), &output.queues.lanes, &mut waiting);
         }
-        for (lane, (path, hit)) in paths.iter().zip(hits).enumerate() {
-            if steps.add_light(world, lane, path, hit, output) {
-                steps.branches(lane).for_each(|branch| grow(path, &branch, &mut output.queues.paths));
-            } else {
+        for ((path, hit), plain) in paths.iter().zip(hits).zip(steps.of_each()) {
+            let Some(plain) = plain else {
                 output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
                 integrator.step(world, &stream(path), path, hit, output);
-            }
+                continue;
+            };
+            plain.add_light(world, path, hit, output);
+            plain.for_each_branch(|branch| grow(path, &branch, &mut output.queues.paths));
         }
     }
 }

@@ -49,7 +49,9 @@ impl Integrator for Whitted {
         output: &mut StepOutput<'_, P>,
     ) {
         direct::step_all(self, world, stream, paths, hits, output, |path, branch, paths| {
-            paths.extend(self.grown(world, path, branch));
+            if let Some(child) = self.grown(world, path, branch) {
+                paths.push(child);
+            }
         });
     }
 

@@ -4,14 +4,13 @@ use std::f32::consts::PI;
 
 use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
-use crate::core::lanes::{LANES, bitmask, by_lane, gather_spectrum};
+use super::coefficients::Modes;
+use crate::core::lanes::LANES;
 use crate::core::points::Points;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::integrator::SampleStream;
 use crate::integrator::sample_streams::SampleStreams;
 use crate::light::{AreaLight, Light, fade, sample_area_lights};
-use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// Light that arrives at eight points.
@@ -37,15 +36,16 @@ pub(super) enum Ends<S: Simd> {
 }
 
 impl<S: Simd> Arriving<S> {
-    /// The light of a source, by its index; `None` for kinds that are not sampled in lanes.
+    /// The light of a source; `None` for kinds that are not sampled in lanes. `streams` has the random numbers where the
+    /// source needs some.
     #[inline(always)]
     pub(super) fn from(
         simd: S,
         (source, index): (&Light, u32),
         world: &World,
-        streams: &[SampleStream; LANES],
+        streams: impl FnOnce() -> SampleStreams<S>,
         points: Vector<f64x8<S>>,
-        modes: &[&SpectralMode; LANES],
+        modes: &Modes<'_>,
     ) -> Option<Self> {
         let pi = f32x8::splat(simd, PI);
         match source {
@@ -54,29 +54,21 @@ impl<S: Simd> Arriving<S> {
                 let way = position - points;
                 let distance = way.length();
                 let wi = Vector { x: way.x / distance, y: way.y / distance, z: way.z / distance };
-                let distances: [f64; LANES] = distance.into();
-                let li = by_lane!(lane =>
-                    intensity.even(&world.textures, modes[lane]) * fade(*falloff, distances[lane]));
+                let intensity = modes.even(simd, |mode| intensity.even(&world.textures, mode));
                 Some(Self {
                     wi: Vector::narrow(wi),
-                    li: gather_spectrum(simd, &li) / pi,
+                    li: intensity * fade::<f32x8<S>>(*falloff, distance) / pi,
                     exists: pi.narrow_mask(distance.gt(f64x8::splat(simd, 0.0))),
                     target: Ends::Points(position),
                 })
             }
-            Light::Distant { toward, irradiance } => {
-                let li = by_lane!(lane => irradiance.even(&world.textures, modes[lane]));
-                Some(Self {
-                    wi: Vector::narrow(splat(simd, toward.as_dvec3().to_array())),
-                    li: gather_spectrum(simd, &li) / pi,
-                    exists: mask32x8::splat(simd, true),
-                    target: Ends::Nowhere,
-                })
-            }
-            Light::Area(light) => {
-                let streams = SampleStreams::new(simd, &by_lane!(lane => &streams[lane]));
-                Self::from_area(simd, light, world, streams.two(index), points, modes)
-            }
+            Light::Distant { toward, irradiance } => Some(Self {
+                wi: Vector::narrow(splat(simd, toward.as_dvec3().to_array())),
+                li: modes.even(simd, |mode| irradiance.even(&world.textures, mode)) / pi,
+                exists: mask32x8::splat(simd, true),
+                target: Ends::Nowhere,
+            }),
+            Light::Area(light) => Self::from_area(simd, light, world, streams().two(index), points, modes),
             _ => None,
         }
     }
@@ -88,20 +80,19 @@ impl<S: Simd> Arriving<S> {
         world: &World,
         u: [f32x8<S>; 2],
         points: Vector<f64x8<S>>,
-        modes: &[&SpectralMode; LANES],
+        modes: &Modes<'_>,
     ) -> Option<Self> {
         let (samples, in_lanes) = sample_area_lights(simd, &[Some(light); LANES], u, points);
         let samples = samples?;
-        let li = by_lane!(lane => light.radiance.even(&world.textures, modes[lane]));
+        let li = modes.even(simd, |mode| light.radiance.even(&world.textures, mode));
         let is_front = samples.normal.dot(samples.wi.widen()).lt(f64x8::splat(simd, 0.0));
-        let is_bright = bitmask(&by_lane!(lane => !li[lane].is_black())) & in_lanes;
-        let mut exists = samples.is_valid & mask32x8::from_bitmask(simd, is_bright.into());
+        let mut exists = samples.is_valid & !li.is_black() & mask32x8::from_bitmask(simd, in_lanes.into());
         if !light.two_sided {
             exists &= samples.pdf.narrow_mask(is_front);
         }
         Some(Self {
             wi: samples.wi,
-            li: gather_spectrum(simd, &li) / (samples.pdf * PI),
+            li: li / (samples.pdf * PI),
             exists,
             target: Ends::Surfaces(samples.points, samples.normal),
         })

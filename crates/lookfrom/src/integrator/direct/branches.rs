@@ -3,90 +3,92 @@
 
 use lookfrom_simd::{Float, Real, Simd, f32x8, mask32x8, prelude::*};
 
+use super::coefficients::CoefficientColumns;
+use super::columns::Columns;
 use super::surfaces::Surfaces;
-use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_spectrum};
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::shading::material::Coefficients;
 
 /// The reflected and the refracted rays of eight surfaces.
+#[derive(Clone, Copy)]
 pub(super) struct Branches {
     pub(super) mirrored: Rays,
     pub(super) refracted: Rays,
 }
 
 /// The rays of one kind.
+#[derive(Clone, Copy)]
 pub(super) struct Rays {
     /// Bit i for lane i: whether there is a ray at all.
     pub(super) exist: u32,
     /// The throughput of the path that goes on.
-    pub(super) beta: [Spectrum; LANES],
-    pub(super) origin: [[f32; 3]; LANES],
-    pub(super) direction: [[f32; 3]; LANES],
+    pub(super) beta: Columns<4>,
+    pub(super) origin: Columns<3>,
+    pub(super) direction: Columns<3>,
 }
 
 impl Branches {
-    /// The branches where any of the surfaces has some.
+    pub(super) const NONE: Self = Self { mirrored: Rays::NONE, refracted: Rays::NONE };
+
+    /// Replaces the branches by those of other surfaces.
     #[inline(always)]
-    pub(super) fn of<S: Simd>(
+    pub(super) fn set<S: Simd>(
+        &mut self,
         simd: S,
-        coefficients: &[Coefficients; LANES],
+        coefficients: &CoefficientColumns<S>,
         surfaces: &Surfaces<S>,
         beta: Spectrum<f32x8<S>>,
-    ) -> Option<Self> {
-        if coefficients.iter().all(|k| k.mirror.is_black() && k.transmission.is_black()) {
-            return None;
-        }
-        let k_r = gather_spectrum(simd, &by_lane!(lane => coefficients[lane].mirror));
-        let k_t = gather_spectrum(simd, &by_lane!(lane => coefficients[lane].transmission));
+    ) {
+        let (k_r, k_t) = (coefficients.mirror, coefficients.transmission);
         let (no_mirror, no_transmission) = (k_r.is_black(), k_t.is_black());
         let has_branches = !(no_mirror & no_transmission);
-        let Surfaces { wo, ns_facing: n, front, .. } = *surfaces;
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let ior = f32x8::load_array(simd, by_lane!(lane => coefficients[lane].ior));
-        let front = mask32x8::from_bitmask(simd, front.to_bitmask());
-        let eta = f32x8::select(front, ior, one / ior);
-        let (bent, is_bent) = optics::refract(wo, n, eta);
-        let part = optics::fresnel_dielectric(n.dot(wo), eta);
-        let greater = Spectrum([
-            Float::max(k_r.0[0], k_t.0[0]),
-            Float::max(k_r.0[1], k_t.0[1]),
-            Float::max(k_r.0[2], k_t.0[2]),
-            Float::max(k_r.0[3], k_t.0[3]),
-        ]);
-        let black = Spectrum::splat(zero);
-        let is_fresnel =
-            f32x8::load_array(simd, by_lane!(lane => if coefficients[lane].fresnel { 1.0 } else { 0.0 }))
-                .gt(zero);
-        let total = !is_bent & !no_transmission;
-        let mirror = Spectrum::select(is_fresnel, greater * part, Spectrum::select(total, k_r + k_t, k_r));
-        let transmission =
-            Spectrum::select(is_fresnel, k_t * (one - part), Spectrum::select(total, black, k_t));
+        (self.mirrored.exist, self.refracted.exist) = (0, 0);
+        if !has_branches.any_true() {
+            return;
+        }
+        let Surfaces { wo, ns_facing: n, .. } = *surfaces;
+        let (one, black) = (f32x8::splat(simd, 1.0), Spectrum::splat(f32x8::splat(simd, 0.0)));
+        let mut mirror = k_r;
+        let is_fresnel = coefficients.is_fresnel;
+        if !no_transmission.all_true() || is_fresnel.any_true() {
+            let front = mask32x8::from_bitmask(simd, surfaces.front.to_bitmask());
+            let eta = f32x8::select(front, coefficients.ior, one / coefficients.ior);
+            let (bent, is_bent) = optics::refract(wo, n, eta);
+            let total = !is_bent & !no_transmission;
+            mirror = Spectrum::select(total, k_r + k_t, k_r);
+            let mut transmission = Spectrum::select(total, black, k_t);
+            if is_fresnel.any_true() {
+                let part = optics::fresnel_dielectric(n.dot(wo), eta);
+                let greater = k_r.zip(k_t, Float::max);
+                mirror = Spectrum::select(is_fresnel, greater * part, mirror);
+                transmission = Spectrum::select(is_fresnel, k_t * (one - part), transmission);
+            }
+            let refracted = same_side(bent.normalize(), surfaces.ng_facing, -one);
+            let is_refracted = has_branches & is_bent & !transmission.is_black();
+            self.refracted.set(surfaces, is_refracted, refracted, beta * transmission);
+        }
         let mirrored = same_side(optics::reflect(wo, n).normalize(), surfaces.ng_facing, one);
-        let refracted = same_side(bent.normalize(), surfaces.ng_facing, -one);
-        let is_refracted = has_branches & is_bent & !transmission.is_black();
-        Some(Self {
-            mirrored: Rays::of(surfaces, has_branches, mirrored, beta * mirror),
-            refracted: Rays::of(surfaces, is_refracted, refracted, beta * transmission),
-        })
+        self.mirrored.set(surfaces, has_branches, mirrored, beta * mirror);
     }
 }
 
 impl Rays {
+    const NONE: Self =
+        Self { exist: 0, beta: Columns::ZERO, origin: Columns::ZERO, direction: Columns::ZERO };
+
     #[inline(always)]
-    fn of<S: Simd>(
+    fn set<S: Simd>(
+        &mut self,
         surfaces: &Surfaces<S>,
         exist: mask32x8<S>,
         direction: Vector<f32x8<S>>,
         beta: Spectrum<f32x8<S>>,
-    ) -> Self {
-        Self {
-            exist: exist.to_bitmask() as u32,
-            beta: scatter_spectrum(beta),
-            origin: scatter(surfaces.points.leave(surfaces.ng, direction)),
-            direction: scatter(direction),
-        }
+    ) {
+        self.exist = exist.to_bitmask() as u32;
+        self.beta = Columns::of_spectrum(beta);
+        self.origin = Columns::of(surfaces.points.leave(surfaces.ng, direction));
+        self.direction = Columns::of(direction);
     }
 }
 

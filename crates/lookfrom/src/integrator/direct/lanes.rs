@@ -1,4 +1,4 @@
-//! Steps of Whitted's model for eight plain hits side by side, from the hit on: direct light and branches. The bits are
+//! Steps of Whitted's model for plain hits, eight side by side, from the hit on: direct light and branches. The bits are
 //! those of [`super::local_light`] and of Whitted's step.
 
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
@@ -6,31 +6,70 @@ use lookfrom_simd::{Float, Kernel, Mask, Simd, dispatch, f32x8, f64x8, level, pr
 
 use super::arriving::{Arriving, Ends};
 use super::branches::Branches;
+use super::coefficients::{CoefficientColumns, Modes};
+use super::columns::Columns;
 use super::plain::PlainHit;
 use super::surfaces::Surfaces;
-use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64, scatter_spectrum};
+use super::waiting::Waiting;
+use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::math;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
+use crate::integrator::sample_streams::SampleStreams;
 use crate::integrator::{Branch, Path, Probe, SampleStream, Shadow, StepOutput, Term};
 use crate::light::Light;
-use crate::shading::material::Coefficients;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
-/// The steps of eight paths, of which only those with plain hits count: memory that is reused.
+/// The steps of the paths of a batch that have plain hits: memory that is reused.
 #[derive(Default)]
 pub(in crate::integrator) struct PlainSteps {
-    /// Bit i for lane i: whether its hit is plain.
-    plain: u32,
-    /// `k_a I_a` times the throughput.
-    ambient: [Spectrum; LANES],
-    /// For each light that illuminates any of them.
+    groups: Vec<Group>,
+    /// Number of groups that count.
+    group_count: usize,
     lights: Vec<FromLight>,
-    branches: Option<Branches>,
+    /// Number of those that count.
+    light_count: usize,
+    /// For each path the number of its group times eight and its lane there; [`NOT_PLAIN`] for others.
+    places: Vec<u32>,
+}
+
+/// The place of a path whose hit is not plain.
+const NOT_PLAIN: u32 = u32::MAX;
+
+/// The steps of eight paths.
+#[derive(Clone, Copy)]
+struct Group {
+    /// `k_a I_a` times the throughput.
+    ambient: Columns<4>,
+    /// The first of the lights that illuminate any of them, and the end.
+    lights: [usize; 2],
+    branches: Branches,
     materials: [u32; LANES],
-    /// Whether the ray hit the outside.
+    /// Bit i for lane i: whether the ray hit the outside.
     front: u32,
+}
+
+/// The light of one source on eight surfaces.
+#[derive(Clone, Copy)]
+struct FromLight {
+    light: u32,
+    /// Bit i for lane i: whether it contributes light, unless it is occluded.
+    lit: u32,
+    /// Whether the way to it crosses the surface.
+    crosses: u32,
+    contribution: Columns<4>,
+    origin: Columns<3>,
+    /// To the light, where `t` is `t_max`.
+    direction: Columns<3>,
+    t_max: f32,
+}
+
+/// The step of one path with a plain hit.
+pub(in crate::integrator) struct PlainStep<'a> {
+    group: &'a Group,
+    lights: &'a [FromLight],
+    lane: usize,
 }
 
 /// A path that may go on from a plain surface.
@@ -47,20 +86,6 @@ pub(in crate::integrator) struct PlainBranch {
     pub(in crate::integrator) front: bool,
 }
 
-/// The light of one source on eight surfaces.
-struct FromLight {
-    light: u32,
-    /// Bit i for lane i: whether it contributes light, unless it is occluded.
-    lit: u32,
-    /// Whether the way to it crosses the surface.
-    crosses: u32,
-    contribution: [Spectrum; LANES],
-    origin: [[f32; 3]; LANES],
-    /// To the light, where `t` is `t_max`.
-    direction: [[f32; 3]; LANES],
-    t_max: f32,
-}
-
 impl PlainSteps {
     /// Whether steps are computed in lanes at all: if all lights are of kinds that are sampled there.
     pub(in crate::integrator) fn are_for(world: &World) -> bool {
@@ -71,55 +96,91 @@ impl PlainSteps {
         })
     }
 
-    /// Computes the steps of up to eight paths; `modes` by slot.
+    /// Prepares for a number of other paths, of which none has a plain hit yet.
+    pub(in crate::integrator) fn clear(&mut self, path_count: usize) {
+        (self.group_count, self.light_count) = (0, 0);
+        self.places.clear();
+        self.places.resize(path_count, NOT_PLAIN);
+    }
+
+    /// Computes the steps of plain hits; `modes` by slot. `waiting` is memory.
     #[inline]
-    pub(in crate::integrator) fn compute(
+    pub(in crate::integrator) fn compute<'a>(
+        &mut self,
+        world: &'a World,
+        stream: &impl Fn(&Path) -> SampleStream,
+        (paths, hits): (&'a [Path], &'a [Hit]),
+        modes: &[SpectralMode],
+        waiting: &mut Waiting<'a>,
+    ) {
+        self.groups.reserve(paths.len().div_ceil(LANES) + 1);
+        self.lights.reserve(paths.len().div_ceil(LANES) + 1);
+        for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
+            if let Some(plain) = PlainHit::of(world, index, path, hit) {
+                waiting.push(plain, |plain| self.shade(world, stream, plain, modes));
+            }
+        }
+        waiting.flush(|plain| self.shade(world, stream, plain, modes));
+    }
+
+    /// Adds the steps of up to eight hits on one kind of shape.
+    #[inline(never)]
+    fn shade(
         &mut self,
         world: &World,
         stream: &impl Fn(&Path) -> SampleStream,
-        paths: &[Path],
-        hits: &[Hit],
+        plain: &[PlainHit<'_>],
         modes: &[SpectralMode],
     ) {
-        self.plain = 0;
-        self.lights.clear();
-        let mut found = [None; LANES];
-        for (lane, (path, hit)) in paths.iter().zip(hits).enumerate() {
-            found[lane] = PlainHit::of(world, path, hit, &modes[path.slot as usize]);
-            self.plain |= u32::from(found[lane].is_some()) << lane;
+        let repeated;
+        let eight = match plain.first_chunk::<LANES>() {
+            Some(eight) => eight,
+            // Unused lanes repeat the last hit.
+            None => {
+                repeated = by_lane!(lane => plain[lane.min(plain.len() - 1)]);
+                &repeated
+            }
+        };
+        for (lane, plain) in plain.iter().enumerate() {
+            self.places[plain.index as usize] = (self.group_count * LANES + lane) as u32;
         }
-        let Some(any) = found.iter().flatten().next() else { return };
-        // Other lanes repeat one that is plain.
-        let eight = by_lane!(lane => found[lane].unwrap_or(*any));
-        let streams = by_lane!(lane => stream(eight[lane].path));
-        PlainKernel { world, eight: &eight, streams: &streams, modes, steps: self }.run_at_level();
+        dispatch(level(), PlainKernel { world, eight, stream, modes, steps: self });
     }
 
-    /// Adds the light of a lane to the sample of its path; false if its hit is not plain.
-    #[inline]
+    /// The step of each path, in their order, if its hit is plain.
+    #[inline(always)]
+    pub(in crate::integrator) fn of_each(&self) -> impl Iterator<Item = Option<PlainStep<'_>>> {
+        self.places.iter().map(|&place| {
+            let group = self.groups.get(place as usize / LANES)?;
+            let [first, end] = group.lights;
+            Some(PlainStep { group, lights: &self.lights[first..end], lane: place as usize % LANES })
+        })
+    }
+}
+
+impl PlainStep<'_> {
+    /// Adds the light to the sample of its path.
+    #[inline(always)]
     pub(in crate::integrator) fn add_light<P: Probe>(
         &self,
         world: &World,
-        lane: usize,
         path: &Path,
         hit: &Hit,
         output: &mut StepOutput<'_, P>,
-    ) -> bool {
-        let bit = 1 << lane;
-        if self.plain & bit == 0 {
-            return false;
-        }
-        output.add(path, Term::Ambient, self.ambient[lane]);
+    ) {
+        let (lane, bit) = (self.lane, 1 << self.lane);
+        output.add(path, Term::Ambient, self.group.ambient.spectrum(lane));
         for from in self.lights.iter().filter(|from| from.lit & bit != 0) {
+            let direction = from.direction.row(lane);
             let mut interior = path.interior;
             if from.crosses & bit != 0 {
                 let surface = world.surface(&path.ray, hit);
-                interior = interior.leaving(&world.materials, &surface, from.direction[lane].into(), true);
+                interior = interior.leaving(&world.materials, &surface, direction.into(), true);
             }
             output.queues.shadows.push(Shadow {
-                ray: Ray { t_max: from.t_max, ..Ray::new(from.origin[lane], from.direction[lane]) },
+                ray: Ray { t_max: from.t_max, ..Ray::new(from.origin.row(lane), direction) },
                 origin_primitive: OriginPrimitive::of(hit),
-                contribution: from.contribution[lane],
+                contribution: from.contribution.spectrum(lane),
                 slot: path.slot,
                 address: path.address,
                 term: Term::Light(from.light),
@@ -127,80 +188,96 @@ impl PlainSteps {
                 last_scattering: Shadow::NO_SCATTERING,
             });
         }
-        true
     }
 
-    /// The paths that may go on from a lane with a plain hit: first the reflected one.
-    #[inline]
-    pub(in crate::integrator) fn branches(&self, lane: usize) -> impl Iterator<Item = PlainBranch> {
-        let kinds = self.branches.iter().flat_map(|branches| {
-            [(Branch::Mirrored, &branches.mirrored), (Branch::Refracted, &branches.refracted)]
-        });
-        kinds.filter(move |(_, rays)| rays.exist & 1 << lane != 0).map(move |(branch, rays)| PlainBranch {
-            branch,
-            beta: rays.beta[lane],
-            ray: Ray::new(rays.origin[lane], rays.direction[lane]),
-            material: self.materials[lane],
-            front: self.front & 1 << lane != 0,
-        })
+    /// Calls `grow` with the paths that may go on: first the reflected one.
+    #[inline(always)]
+    pub(in crate::integrator) fn for_each_branch(&self, mut grow: impl FnMut(PlainBranch)) {
+        let (lane, bit) = (self.lane, 1 << self.lane);
+        let Group { branches: Branches { mirrored, refracted }, materials, front, .. } = self.group;
+        for (branch, rays) in [(Branch::Mirrored, mirrored), (Branch::Refracted, refracted)] {
+            if rays.exist & bit != 0 {
+                grow(PlainBranch {
+                    branch,
+                    beta: rays.beta.spectrum(lane),
+                    ray: Ray::new(rays.origin.row(lane), rays.direction.row(lane)),
+                    material: materials[lane],
+                    front: front & bit != 0,
+                });
+            }
+        }
     }
 }
 
-struct PlainKernel<'a> {
+/// The next of the values of a memory that is reused.
+#[inline(always)]
+fn next<'a, T: Copy>(memory: &'a mut Vec<T>, count: &mut usize, empty: T) -> &'a mut T {
+    if *count == memory.len() {
+        memory.push(empty);
+    }
+    *count += 1;
+    &mut memory[*count - 1]
+}
+
+impl Group {
+    const EMPTY: Self = Self {
+        ambient: Columns::ZERO,
+        lights: [0; 2],
+        branches: Branches::NONE,
+        materials: [0; LANES],
+        front: 0,
+    };
+}
+
+impl FromLight {
+    const NONE: Self = Self {
+        light: 0,
+        lit: 0,
+        crosses: 0,
+        contribution: Columns::ZERO,
+        origin: Columns::ZERO,
+        direction: Columns::ZERO,
+        t_max: 0.0,
+    };
+}
+
+struct PlainKernel<'a, F> {
     world: &'a World,
     eight: &'a [PlainHit<'a>; LANES],
-    streams: &'a [SampleStream; LANES],
+    stream: &'a F,
     /// By slot.
     modes: &'a [SpectralMode],
     steps: &'a mut PlainSteps,
 }
 
-impl PlainKernel<'_> {
-    #[inline(never)]
-    fn run_at_level(self) {
-        dispatch(level(), self);
-    }
-}
-
-impl Kernel for PlainKernel<'_> {
+impl<F: Fn(&Path) -> SampleStream> Kernel for PlainKernel<'_, F> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { world, eight, streams, modes, steps } = self;
-        let modes = by_lane!(lane => &modes[eight[lane].path.slot as usize]);
+        let Self { world, eight, stream, modes, steps } = self;
+        let PlainSteps { groups, group_count, lights, light_count, .. } = steps;
+        let group = next(groups, group_count, Group::EMPTY);
+        let modes = Modes::of(eight, modes);
         let surfaces = Surfaces::of(simd, eight);
         let Surfaces { points, ng, ng_facing, ns_facing, wo, front } = surfaces;
-        steps.materials = by_lane!(lane => eight[lane].material);
-        steps.front = front.to_bitmask() as u32;
-        let (positions, normals) = (scatter_f64(points.position), scatter(Vector::<f32x8<S>>::narrow(ng)));
-        // Groups of one material whose coefficients are the same everywhere are common.
-        let is_even = matches!(modes[0], SpectralMode::Rgb) && PlainHit::are_even(world, eight);
-        let coefficients = match is_even {
-            true => [eight[0].coefficients(world, positions[0], normals[0], modes[0]); LANES],
-            false => {
-                by_lane!(lane => eight[lane].coefficients(world, positions[lane], normals[lane], modes[lane]))
-            }
-        };
-        steps.ambient = by_lane!(lane =>
-            eight[lane].beta * coefficients[lane].ambient * world.ambient(modes[lane]));
-        let beta = gather_spectrum(simd, &by_lane!(lane => eight[lane].beta));
-        steps.branches = Branches::of(simd, &coefficients, &surfaces, beta);
-        let (diffuse, specular) = match is_even {
-            true => {
-                let Coefficients { diffuse, specular, .. } = coefficients[0];
-                (splat_spectrum(simd, diffuse), splat_spectrum(simd, specular))
-            }
-            false => (
-                gather_spectrum(simd, &by_lane!(lane => coefficients[lane].diffuse)),
-                gather_spectrum(simd, &by_lane!(lane => coefficients[lane].specular)),
-            ),
-        };
+        let coefficients = CoefficientColumns::of(simd, world, eight, (points.position, ng), &modes);
+        let beta = gather_spectrum(simd, &by_lane!(lane => eight[lane].throughput(world, modes.lane(lane))));
+        let ambient = beta * coefficients.ambient * modes.even(simd, |mode| world.ambient(mode));
+        group.ambient = Columns::of_spectrum(ambient);
+        group.materials = by_lane!(lane => eight[lane].material);
+        group.front = front.to_bitmask() as u32;
+        group.branches.set(simd, &coefficients, &surfaces, beta);
+        let CoefficientColumns { diffuse, specular, shininess, .. } = coefficients;
         let has_highlights = !specular.is_black().all();
-        let shininess = f32x8::load_array(simd, by_lane!(lane => coefficients[lane].shininess));
         let zero = f32x8::splat(simd, 0.0);
 
+        group.lights = [*light_count; 2];
         for (index, source) in world.lights.iter().enumerate() {
+            let streams = || {
+                let streams = by_lane!(lane => stream(eight[lane].path));
+                SampleStreams::new(simd, &by_lane!(lane => &streams[lane]))
+            };
             let Some(Arriving { wi, li, exists, target }) =
                 Arriving::from(simd, (source, index as u32), world, streams, points.position, &modes)
             else {
@@ -209,13 +286,13 @@ impl Kernel for PlainKernel<'_> {
             let n_dot_l = ns_facing.dot(wi);
             let mut lit =
                 exists & ng_facing.dot(wi).gt(zero) & !(n_dot_l.lt(zero) | Float::eq(n_dot_l, zero));
-            let (half, has_half) = (wo + wi).try_normalize();
-            let cos = f32x8::select(has_half, Float::max(ns_facing.dot(half), zero), zero);
             if !lit.any() {
                 continue;
             }
             let mut reflected = diffuse * n_dot_l;
             if has_highlights {
+                let (half, has_half) = (wo + wi).try_normalize();
+                let cos = f32x8::select(has_half, Float::max(ns_facing.dot(half), zero), zero);
                 reflected += specular * math::power(cos, shininess);
             }
             let contribution = beta * reflected * li;
@@ -228,21 +305,15 @@ impl Kernel for PlainKernel<'_> {
                 Ends::Surfaces(points, normal) => (points.just_before(normal, wi, origin), 1.0),
             };
             let is_outside = ng.dot(wide).gt(f64x8::splat(simd, 0.0));
-            steps.lights.push(FromLight {
-                light: index as u32,
-                lit: lit.to_bitmask() as u32,
-                crosses: (is_outside.to_bitmask() ^ front.to_bitmask()) as u32,
-                contribution: scatter_spectrum(contribution),
-                origin: scatter(origin),
-                direction: scatter(direction),
-                t_max,
-            });
+            let from = next(lights, light_count, FromLight::NONE);
+            from.light = index as u32;
+            from.lit = lit.to_bitmask() as u32;
+            from.crosses = (is_outside.to_bitmask() ^ front.to_bitmask()) as u32;
+            from.contribution = Columns::of_spectrum(contribution);
+            from.origin = Columns::of(origin);
+            from.direction = Columns::of(direction);
+            from.t_max = t_max;
+            group.lights[1] = *light_count;
         }
     }
-}
-
-/// The same spectrum in each lane.
-#[inline(always)]
-fn splat_spectrum<S: Simd>(simd: S, Spectrum([a, b, c, d]): Spectrum) -> Spectrum<f32x8<S>> {
-    Spectrum([f32x8::splat(simd, a), f32x8::splat(simd, b), f32x8::splat(simd, c), f32x8::splat(simd, d)])
 }

@@ -3,10 +3,10 @@
 use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask64x8, prelude::*};
 
 use super::plain::{PlainHit, PlainShape};
-use crate::core::lanes::{LANES, bitmask, by_lane, gather};
+use crate::core::lanes::{LANES, by_lane, gather};
 use crate::core::points::Points;
 use crate::core::vector::Vector;
-use crate::primitive::{Mesh, gather_triangles};
+use crate::primitive::{Mesh, Tangent, TrianglePoints, Triangles, gather_triangles};
 
 /// Eight surfaces, as [`World::surface`](crate::world::World::surface) has them.
 pub(super) struct Surfaces<S: Simd> {
@@ -18,25 +18,17 @@ pub(super) struct Surfaces<S: Simd> {
     pub(super) front: mask64x8<S>,
 }
 
+/// Points, geometric and shading normals.
+type Shapes<S> = (Points<f32x8<S>>, Vector<f64x8<S>>, Vector<f64x8<S>>);
+
 impl<S: Simd> Surfaces<S> {
+    /// The surfaces of hits on one kind of shape.
     #[inline(always)]
     pub(super) fn of(simd: S, eight: &[PlainHit<'_>; LANES]) -> Self {
         let direction = gather(simd, &by_lane!(lane => eight[lane].path.ray.direction)).widen();
-        let triangles = by_lane!(lane => match eight[lane].shape {
-            PlainShape::Triangle(mesh) => Some((mesh, eight[lane].hit.primitive)),
-            PlainShape::Sphere(..) => None,
-        });
-        let spheres = bitmask(&by_lane!(lane => triangles[lane].is_none()));
-        let (points, ng, ns) = match triangles.iter().flatten().next() {
-            None => on_spheres(simd, eight, direction),
-            Some(any) => {
-                let flat = on_triangles(simd, eight, &by_lane!(lane => triangles[lane].unwrap_or(*any)));
-                if spheres == 0 {
-                    flat
-                } else {
-                    blended(simd, spheres, on_spheres(simd, eight, direction), flat)
-                }
-            }
+        let (points, ng, ns) = match eight[0].shape {
+            PlainShape::Triangle(mesh) => on_triangles(simd, eight, mesh),
+            PlainShape::Sphere(..) => on_spheres(simd, eight, direction),
         };
         let wo = -direction.normalize();
         let front = ng.dot(wo).gt(f64x8::splat(simd, 0.0));
@@ -49,34 +41,67 @@ impl<S: Simd> Surfaces<S> {
     }
 }
 
-/// Points, geometric and shading normals.
-type Shapes<S> = (Points<f32x8<S>>, Vector<f64x8<S>>, Vector<f64x8<S>>);
-
-/// The first where a bit of the mask is set, the second elsewhere.
-#[inline(always)]
-fn blended<S: Simd>(simd: S, mask: u32, yes: Shapes<S>, no: Shapes<S>) -> Shapes<S> {
-    let mask = mask64x8::from_bitmask(simd, mask.into());
-    let position = Vector::select(mask, yes.0.position, no.0.position);
-    let error = Vector::select(mask, yes.0.error, no.0.error);
-    (Points { position, error }, Vector::select(mask, yes.1, no.1), Vector::select(mask, yes.2, no.2))
-}
-
 /// The points of hits on triangles of meshes.
 #[inline(always)]
-fn on_triangles<S: Simd>(
-    simd: S,
-    eight: &[PlainHit<'_>; LANES],
-    triangles: &[(&Mesh, u32); LANES],
-) -> Shapes<S> {
-    let meshes = by_lane!(lane => triangles[lane].0);
-    let indices = by_lane!(lane => triangles[lane].1);
+fn on_triangles<S: Simd>(simd: S, eight: &[PlainHit<'_>; LANES], first: &Mesh) -> Shapes<S> {
     let u = f32x8::load_array(simd, by_lane!(lane => eight[lane].hit.u));
     let v = f32x8::load_array(simd, by_lane!(lane => eight[lane].hit.v));
-    let at = gather_triangles(simd, &meshes, &indices, false).points(u, v);
-    (at.points, at.ng, at.ns)
+    let indices = by_lane!(lane => eight[lane].hit.primitive);
+    let (mut is_one, mut lane) = (true, 0);
+    while lane < LANES {
+        is_one &= indices[lane] == indices[0] && eight[lane].hit.geometry == eight[0].hit.geometry;
+        lane += 1;
+    }
+    if is_one {
+        return at(&repeated_triangle(simd, first, indices[0]), u, v);
+    }
+    let meshes = by_lane!(lane => match eight[lane].shape {
+        PlainShape::Triangle(mesh) => mesh,
+        PlainShape::Sphere(..) => first,
+    });
+    at(&gather_triangles(simd, &meshes, &indices, false), u, v)
 }
 
-/// The points of lanes that hit spheres.
+/// The points on triangles.
+#[inline(always)]
+fn at<S: Simd>(triangles: &Triangles<f32x8<S>>, u: f32x8<S>, v: f32x8<S>) -> Shapes<S> {
+    let TrianglePoints { points, ng, ns, .. } = triangles.points(u, v);
+    (points, ng, ns)
+}
+
+/// One triangle in all lanes, without texture coordinates and tangents.
+#[inline(always)]
+fn repeated_triangle<S: Simd>(simd: S, mesh: &Mesh, index: u32) -> Triangles<f32x8<S>> {
+    let zero = f32x8::splat(simd, 0.0);
+    let none = Vector { x: zero, y: zero, z: zero };
+    let vertices = mesh.triangles[index as usize];
+    let has_normals = !mesh.normals.is_empty();
+    let (mut positions, mut normals) = ([none; 3], [none; 3]);
+    for corner in 0..3 {
+        let vertex = vertices[corner] as usize;
+        positions[corner] = splat(simd, mesh.positions[vertex]);
+        if has_normals {
+            normals[corner] = splat(simd, mesh.normals[vertex].to_array());
+        }
+    }
+    Triangles {
+        positions,
+        orientation: f64x8::splat(simd, if mesh.flip { -1.0 } else { 1.0 }),
+        normals,
+        uvs: [[zero; 2]; 3],
+        tangents: [Tangent { along: none, sign: zero }; 3],
+        have_normals: mask64x8::splat(simd, has_normals),
+        have_tangents: mask64x8::splat(simd, false),
+        want_derivatives: mask64x8::splat(simd, false),
+    }
+}
+
+#[inline(always)]
+fn splat<S: Simd>(simd: S, [x, y, z]: [f32; 3]) -> Vector<f32x8<S>> {
+    Vector { x: f32x8::splat(simd, x), y: f32x8::splat(simd, y), z: f32x8::splat(simd, z) }
+}
+
+/// The points of hits on spheres.
 #[inline(always)]
 fn on_spheres<S: Simd>(simd: S, eight: &[PlainHit<'_>; LANES], direction: Vector<f64x8<S>>) -> Shapes<S> {
     let rows = by_lane!(lane => match eight[lane].shape {
