@@ -216,7 +216,7 @@ impl AreaLight {
 
     /// Whether its emission is the same everywhere and in all directions.
     fn is_uniform(&self) -> bool {
-        self.radiance.color.is_constant() && self.alpha.or(self.coat).is_none()
+        !self.radiance.color.varies() && self.alpha.or(self.coat).is_none()
     }
 
     /// The inputs of an emission texture; the position in the world is not among them.

@@ -18,8 +18,7 @@ impl Textures {
         colors: &[&SpectrumTexture; LANES],
         modes: &[&SpectralMode; LANES],
     ) -> Spectrum<f32x8<S>> {
-        let lift = Lift::new(colors, modes);
-        if lift.others == 0 {
+        if let Some(lift) = Lift::new(self, colors, modes) {
             return lift.spectra(simd);
         }
         let mut spectra = [[0.0; LANES]; 4];
@@ -36,41 +35,46 @@ struct Lift {
     coefficients: Columns<3>,
     scale: [f32; LANES],
     lambda: [Spectrum; LANES],
-    /// What the sigmoids are multiplied by: of illuminants, daylight.
+    /// What the sigmoids are multiplied by: of illuminants, daylight; of curves, their values.
     factor: [Spectrum; LANES],
-    /// Lanes whose colour is no constant that was uplifted, and lanes of RGB.
-    others: u32,
 }
 
 impl Lift {
+    /// `None` where a colour varies or was not uplifted, and in RGB.
     #[inline(always)]
-    fn new(colors: &[&SpectrumTexture; LANES], modes: &[&SpectralMode; LANES]) -> Self {
+    fn new(
+        textures: &Textures,
+        colors: &[&SpectrumTexture; LANES],
+        modes: &[&SpectralMode; LANES],
+    ) -> Option<Self> {
         let mut lift = Self {
             coefficients: [[0.0; LANES]; 3],
             scale: [1.0; LANES],
             lambda: [Spectrum::BLACK; LANES],
             factor: [Spectrum([1.0; 4]); LANES],
-            others: 0,
         };
         for lane in 0..LANES {
-            let SpectrumTexture { input, spectrum_type, .. } = colors[lane];
-            let (
-                Input::Constant(Constant { uplifts: Some(uplifts), .. }),
-                SpectralMode::Spectral(wavelengths),
-            ) = (input, modes[lane])
-            else {
-                lift.others |= 1 << lane;
-                continue;
-            };
+            let SpectralMode::Spectral(wavelengths) = modes[lane] else { return None };
             lift.lambda[lane] = Spectrum(wavelengths.lambda);
-            if *spectrum_type == SpectrumType::Illuminant {
-                lift.factor[lane] = wavelengths.daylight;
-            }
-            let Unbounded { scale, sigmoid: Sigmoid(coefficients) } = uplifts.of(*spectrum_type);
-            set_row(&mut lift.coefficients, lane, *coefficients);
-            lift.scale[lane] = *scale;
+            let SpectrumTexture { input, spectrum_type, .. } = colors[lane];
+            let uplift = match input {
+                Input::Constant(Constant { uplifts: Some(uplifts), .. }) => {
+                    if *spectrum_type == SpectrumType::Illuminant {
+                        lift.factor[lane] = wavelengths.daylight;
+                    }
+                    *uplifts.of(*spectrum_type)
+                }
+                Input::Curve(id) => {
+                    lift.factor[lane] = textures.curve(*id).at_sampled(wavelengths);
+                    Unbounded::gray(1.0)
+                }
+                _ => return None,
+            };
+            let Unbounded { scale, sigmoid: Sigmoid(coefficients) } = uplift;
+            set_row(&mut lift.coefficients, lane, coefficients);
+            lift.scale[lane] = scale;
         }
-        lift
+        Some(lift)
     }
 
     #[inline(always)]
@@ -86,7 +90,9 @@ impl Lift {
 #[cfg(test)]
 mod tests {
     use lookfrom_scene::material::Color;
+    use lookfrom_scene::scene::CurveId;
     use lookfrom_scene::settings::ColorMode;
+    use lookfrom_scene::spectrum::named;
     use lookfrom_simd::{Kernel, Level, dispatch};
 
     use super::*;
@@ -110,7 +116,7 @@ mod tests {
         }
     }
 
-    /// Colours of any size, greys among them, as reflectances, other quantities and light, in RGB and at wavelengths.
+    /// Colours of any size, greys and curves among them, as reflectances, other quantities and light, in RGB and at wavelengths.
     #[test]
     fn eight_at_once_are_eight_one_by_one() {
         let mut count = 0_u64;
@@ -124,14 +130,16 @@ mod tests {
         for round in 0..500 {
             let is_spectral = round % 4 != 0;
             let color_mode = if is_spectral { ColorMode::Spectral } else { ColorMode::Rgb };
-            let textures = Textures::new(&[], Vec::new(), Vec::new(), color_mode);
+            let curve = named("stdillum-A").expect("a curve of our own");
+            let textures = Textures::new(&[], Vec::new(), vec![curve], color_mode);
             let colors = std::array::from_fn(|lane| {
                 let size = libm::exp2f(8.0 * number() - 6.0);
                 let gray = [size * number(); 3];
                 let rgb =
                     if number() < 0.2 { gray } else { [number(), number(), number()].map(|c| size * c) };
+                let color = if number() < 0.2 { Color::Curve(CurveId(0)) } else { Color::Value(rgb) };
                 let types = [SpectrumType::Albedo, SpectrumType::Unbounded, SpectrumType::Illuminant];
-                textures.spectrum_texture(Color::Value(rgb), types[(round + lane) % 3])
+                textures.spectrum_texture(color, types[(round + lane) % 3])
             });
             let modes = std::array::from_fn(|_| match is_spectral {
                 true => SpectralMode::Spectral(Wavelengths::sample_visible(number())),

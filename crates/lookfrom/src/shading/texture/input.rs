@@ -110,12 +110,6 @@ impl SpectrumTexture {
         Self { input, spectrum_type, rgb }
     }
 
-    /// True if it is one colour everywhere.
-    #[inline]
-    pub fn is_constant(&self) -> bool {
-        matches!(self.input, Input::Constant(_))
-    }
-
     /// True if it varies over the surface.
     #[inline]
     pub fn varies(&self) -> bool {
