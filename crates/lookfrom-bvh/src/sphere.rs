@@ -6,7 +6,7 @@
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
 use crate::exact::{ExactRay, Rounded};
 use crate::vector::{dot, subtract, wide};
-use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, mask32x8};
+use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
 /// A sphere's surface: rays hit it from both sides.
 ///
@@ -49,7 +49,8 @@ impl Sphere {
 /// Both hits of the whole line with the sphere, the smaller t first. `None` where the line misses it.
 pub(crate) fn intersect_exact<T: Rounded>(ray: &ExactRay<T>, sphere: &Sphere) -> Option<[T; 2]> {
     let radius = f64::from(sphere.radius);
-    let quadratic = Quadratic::new(ray.origin, ray.direction, wide(sphere.center), radius);
+    let line = Line::new(ray.origin, ray.direction);
+    let quadratic = Quadratic::new(&line, wide(sphere.center), radius);
     if !(quadratic.discriminant >= 0.0) {
         return None;
     }
@@ -57,24 +58,32 @@ pub(crate) fn intersect_exact<T: Rounded>(ray: &ExactRay<T>, sphere: &Sphere) ->
     Some(if t1 <= t2 { [t1, t2] } else { [t2, t1] })
 }
 
-/// The same for eight rays, of which those of a mask count: those whose lines hit the sphere, and both hits. `None` where
-/// there are none.
+/// The lines of eight rays.
+#[inline(always)]
+pub(crate) fn lines<S: Simd>(origin: [f32x8<S>; 3], direction: [f32x8<S>; 3]) -> Line<f64x8<S>> {
+    Line::new(
+        [Real::widen(origin[0]), Real::widen(origin[1]), Real::widen(origin[2])],
+        [Real::widen(direction[0]), Real::widen(direction[1]), Real::widen(direction[2])],
+    )
+}
+
+/// The same for eight lines, of which those of a mask count: those that hit the sphere, and both hits. `None` where there
+/// are none.
 #[inline(always)]
 pub(crate) fn intersect_lanes<S: Simd>(
-    origin: [f32x8<S>; 3],
-    direction: [f32x8<S>; 3],
+    simd: S,
+    lines: &Line<f64x8<S>>,
     sphere: &Sphere,
     rays: mask32x8<S>,
 ) -> Option<(mask32x8<S>, [f32x8<S>; 2])> {
-    let [ox, oy, oz]: [f64x8<S>; 3] =
-        [Real::widen(origin[0]), Real::widen(origin[1]), Real::widen(origin[2])];
-    let direction = [Real::widen(direction[0]), Real::widen(direction[1]), Real::widen(direction[2])];
+    let like = lines.a;
+    let like_f32 = f32x8::splat(simd, 0.0);
     let [x, y, z] = sphere.center.map(f64::from);
-    let radius = ox.like(f64::from(sphere.radius));
-    let quadratic = Quadratic::new([ox, oy, oz], direction, [ox.like(x), ox.like(y), ox.like(z)], radius);
-    let hit = Float::lt(quadratic.discriminant, ox.like(0.0));
+    let radius = like.like(f64::from(sphere.radius));
+    let quadratic = Quadratic::new(lines, [like.like(x), like.like(y), like.like(z)], radius);
+    let hit = Float::lt(quadratic.discriminant, like.like(0.0));
     let hit = Float::eq(quadratic.discriminant, quadratic.discriminant) & !hit;
-    let hit = origin[0].narrow_mask(hit) & rays;
+    let hit = like_f32.narrow_mask(hit) & rays;
     if !hit.any() {
         return None;
     }
@@ -82,6 +91,21 @@ pub(crate) fn intersect_lanes<S: Simd>(
     let [t1, t2]: [f32x8<S>; 2] = [Real::narrow(t1), Real::narrow(t2)];
     let turned = Float::gt(t1, t2);
     Some((hit, [Float::select(turned, t2, t1), Float::select(turned, t1, t2)]))
+}
+
+/// A line that is tested against spheres.
+pub(crate) struct Line<T> {
+    origin: [T; 3],
+    d: [T; 3],
+    /// The square of the direction's length.
+    a: T,
+}
+
+impl<T: Float<Scalar = f64>> Line<T> {
+    #[inline(always)]
+    fn new(origin: [T; 3], d: [T; 3]) -> Self {
+        Self { origin, d, a: dot(d, d) }
+    }
 }
 
 /// The quadratic equation of a line and a sphere.
@@ -95,9 +119,8 @@ struct Quadratic<T> {
 
 impl<T: Float<Scalar = f64>> Quadratic<T> {
     #[inline(always)]
-    fn new(origin: [T; 3], d: [T; 3], center: [T; 3], radius: T) -> Self {
+    fn new(&Line { origin, d, a }: &Line<T>, center: [T; 3], radius: T) -> Self {
         let f = subtract(origin, center);
-        let a = dot(d, d);
         let b = dot(f, d);
 
         // The discriminant from the line's point nearest to the centre: no cancellation for small or distant

@@ -5,21 +5,23 @@ use crate::bvh::SphereItem;
 use crate::collector::PacketCollector;
 use crate::ray::{Hit, NONE};
 use crate::ray8::{GROUPS, LANES, Ray8};
-use crate::sphere;
+use crate::sphere::{self, Line};
 use crate::visibility::{Faces, Visibility};
-use lookfrom_simd::{LaneMask, Simd, mask32x8, prelude::*};
+use lookfrom_simd::{LaneMask, Simd, f64x8, mask32x8, prelude::*};
 
 impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V> {
     /// Tests spheres against those rays of each group that hit their box.
     #[inline(always)]
     pub(super) fn spheres(&mut self, simd: S, spheres: &[SphereItem], meeting: &[u32; GROUPS]) {
-        for item in spheres {
-            if V::SELECTS && !V::of(self.settings, 0).shows(item.geometry, item.primitive) {
+        for index in 0..GROUPS {
+            if meeting[index] == 0 {
                 continue;
             }
-            for index in 0..GROUPS {
-                if meeting[index] != 0 {
-                    self.sphere(simd, item, index, meeting[index]);
+            let Ray8 { origin, direction, .. } = &self.groups[index];
+            let lines = sphere::lines(*origin, *direction);
+            for item in spheres {
+                if !V::SELECTS || V::of(self.settings, 0).shows(item.geometry, item.primitive) {
+                    self.sphere(simd, item, &lines, index, meeting[index]);
                 }
             }
         }
@@ -27,12 +29,10 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
 
     /// Tests a sphere against some rays of a group.
     #[inline(always)]
-    fn sphere(&mut self, simd: S, item: &SphereItem, index: usize, rays: u32) {
+    fn sphere(&mut self, simd: S, item: &SphereItem, lines: &Line<f64x8<S>>, index: usize, rays: u32) {
         let group = &mut self.groups[index];
-        let Ray8 { origin, direction, .. } = *group;
         let rays = mask32x8::from_bitmask(simd, u64::from(rays));
-        let Some((is_hit, [near, far])) = sphere::intersect_lanes(origin, direction, &item.shape, rays)
-        else {
+        let Some((is_hit, [near, far])) = sphere::intersect_lanes(simd, lines, &item.shape, rays) else {
             return;
         };
         let [t_min, t_max] = group.range;
