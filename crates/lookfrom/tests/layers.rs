@@ -32,7 +32,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("distribution", &["sampler"]),
     ("camera", &["math", "vector", "warp"]),
     ("interior_stack", &[]),
-    ("texture", &["color", "hash", "lanes", "noise", "spectrum"]),
+    ("texture", &["color", "hash", "lanes", "noise", "spectrum", "vector"]),
     ("interaction", &["interior_stack", "math", "texture"]),
     (
         "material",

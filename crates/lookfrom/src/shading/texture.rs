@@ -11,6 +11,7 @@
 mod constants;
 mod evaluation;
 mod input;
+pub(crate) mod lanes;
 mod look_ups;
 mod mapping;
 mod node;

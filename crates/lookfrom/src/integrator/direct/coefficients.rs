@@ -1,16 +1,16 @@
-//! Whitted's coefficients at eight plain hits side by side. The bits are those of [`Coefficients`].
-//!
-//! [`Coefficients`]: crate::shading::material::Coefficients
+//! Whitted's coefficients at eight plain hits side by side. The bits are those of [`Coefficients::at`].
 
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::Hit;
 use lookfrom_simd::{Float, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
 use super::plain::{PlainHit, PlainShape};
+use super::surfaces::Surfaces;
 use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::shading::material::Whitted;
+use crate::shading::material::{Coefficients, Whitted};
+use crate::shading::texture::lanes::{TexturePoints, splat};
 use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint, sphere_uv};
 use crate::world::World;
 
@@ -58,32 +58,38 @@ impl<'a> Modes<'a> {
         at: impl Fn(&SpectralMode) -> Spectrum,
     ) -> Spectrum<f32x8<S>> {
         match self.are_rgb {
-            true => splat_spectrum(simd, at(self.by_lane[0])),
+            true => splat(simd, at(self.by_lane[0])),
             false => gather_spectrum(simd, &by_lane!(lane => at(self.by_lane[lane]))),
         }
     }
 
-    /// The spectra of a texture that does not vary.
+    /// The spectra of a texture that is evaluated side by side.
     #[inline(always)]
-    fn of_constant<S: Simd>(&self, simd: S, world: &World, texture: &SpectrumTexture) -> Spectrum<f32x8<S>> {
-        self.even(simd, |mode| world.textures.spectrum(texture, &TexturePoint::NOWHERE, mode))
+    fn spectra<S: Simd>(
+        &self,
+        simd: S,
+        world: &World,
+        texture: &SpectrumTexture,
+        surfaces: &Surfaces<S>,
+    ) -> Option<Spectrum<f32x8<S>>> {
+        if !self.are_rgb {
+            return None;
+        }
+        let position = surfaces.points.position;
+        let [x, y, z] = world.origin.to_array().map(|x| f64x8::splat(simd, x));
+        let at = TexturePoints { uv: surfaces.uv, world: Vector { x, y, z } + position };
+        world.textures.spectra(simd, texture, &at)
     }
 }
 
-/// The same spectrum in each lane.
-#[inline(always)]
-fn splat_spectrum<S: Simd>(simd: S, Spectrum([a, b, c, d]): Spectrum) -> Spectrum<f32x8<S>> {
-    Spectrum([f32x8::splat(simd, a), f32x8::splat(simd, b), f32x8::splat(simd, c), f32x8::splat(simd, d)])
-}
-
 impl<S: Simd> CoefficientColumns<S> {
-    /// The coefficients at positions in render space, with their geometric normals.
+    /// The coefficients at eight surfaces.
     #[inline(always)]
     pub(super) fn of(
         simd: S,
         world: &World,
         eight: &[PlainHit<'_>; LANES],
-        points: (Vector<f64x8<S>>, Vector<f64x8<S>>),
+        surfaces: &Surfaces<S>,
         modes: &Modes<'_>,
     ) -> Self {
         let (mut is_one, mut lane) = (true, 0);
@@ -91,75 +97,97 @@ impl<S: Simd> CoefficientColumns<S> {
             is_one &= eight[lane].material == eight[0].material;
             lane += 1;
         }
-        let first = &world.materials[eight[0].material as usize].whitted;
-        match is_one && !varies(first) {
-            true => Self::of_one(simd, world, first, modes),
-            false => Self::of_each(simd, world, (eight, is_one), points, modes),
+        match is_one {
+            true => Self::of_one(simd, world, eight, surfaces, modes),
+            false => Self::of_each(simd, world, eight, surfaces, modes),
         }
     }
 
-    /// The coefficients of a material that has the same everywhere.
+    /// Those of one material.
     #[inline(always)]
-    fn of_one(simd: S, world: &World, material: &Whitted, modes: &Modes<'_>) -> Self {
-        let spectrum = |texture: &SpectrumTexture| modes.of_constant(simd, world, texture);
-        let diffuse = spectrum(&material.diffuse);
+    fn of_one(
+        simd: S,
+        world: &World,
+        eight: &[PlainHit<'_>; LANES],
+        surfaces: &Surfaces<S>,
+        modes: &Modes<'_>,
+    ) -> Self {
+        let material = &world.materials[eight[0].material as usize].whitted;
+        let mut points = None;
+        macro_rules! spectra {
+            ($texture:expr) => {{
+                let texture: &SpectrumTexture = $texture;
+                if !texture.varies() {
+                    modes.even(simd, |mode| world.textures.spectrum(texture, &TexturePoint::NOWHERE, mode))
+                } else if let Some(spectra) = modes.spectra(simd, world, texture, surfaces) {
+                    spectra
+                } else {
+                    let points = points.get_or_insert_with(|| texture_points(world, eight, surfaces));
+                    gather_spectrum(simd, &by_lane!(lane =>
+                        world.textures.spectrum(texture, &points[lane], modes.by_lane[lane])))
+                }
+            }};
+        }
+        let diffuse = spectra!(&material.diffuse);
         Self {
-            ambient: material.ambient.as_ref().map_or(diffuse, spectrum),
+            ambient: match &material.ambient {
+                Some(ambient) => spectra!(ambient),
+                None => diffuse,
+            },
             diffuse,
-            specular: spectrum(&material.specular),
+            specular: spectra!(&material.specular),
             shininess: f32x8::splat(simd, material.shininess),
-            mirror: spectrum(&material.mirror),
-            transmission: spectrum(&material.transmission),
+            mirror: spectra!(&material.mirror),
+            transmission: spectra!(&material.transmission),
             ior: f32x8::splat(simd, material.ior),
             is_fresnel: mask32x8::splat(simd, material.fresnel),
         }
     }
 
-    /// The coefficients of materials, which may be one, point by point where they vary.
+    /// Those of several materials, one by one.
     #[inline(always)]
     fn of_each(
         simd: S,
         world: &World,
-        (eight, is_one): (&[PlainHit<'_>; LANES], bool),
-        (position, ng): (Vector<f64x8<S>>, Vector<f64x8<S>>),
+        eight: &[PlainHit<'_>; LANES],
+        surfaces: &Surfaces<S>,
         modes: &Modes<'_>,
     ) -> Self {
-        let materials = by_lane!(lane => &world.materials[eight[lane].material as usize].whitted);
-        let positions = scatter_f64(position);
-        let normals = scatter(Vector::<f32x8<S>>::narrow(ng));
-        let points = by_lane!(lane => match varies(materials[lane]) {
-            true => texture_point(world, &eight[lane], positions[lane], normals[lane]),
-            false => TexturePoint::NOWHERE,
+        let points = texture_points(world, eight, surfaces);
+        let rows = by_lane!(lane => {
+            let material = &world.materials[eight[lane].material as usize].whitted;
+            Coefficients::at(material, &world.textures, &points[lane], modes.by_lane[lane])
         });
-        macro_rules! spectra {
-            ($material:ident => $texture:expr) => {{
-                let $material = materials[0];
-                match is_one && !$texture.varies() {
-                    true => modes.of_constant(simd, world, $texture),
-                    false => gather_spectrum(simd, &by_lane!(lane => {
-                        let $material = materials[lane];
-                        world.textures.spectrum($texture, &points[lane], modes.by_lane[lane])
-                    })),
-                }
-            }};
-        }
-        let diffuse = spectra!(material => &material.diffuse);
-        let ambient = match materials.iter().all(|material| material.ambient.is_none()) {
-            true => diffuse,
-            false => spectra!(material => material.ambient.as_ref().unwrap_or(&material.diffuse)),
-        };
-        let is_fresnel = by_lane!(lane => if materials[lane].fresnel { 1.0 } else { 0.0 });
+        let is_fresnel = by_lane!(lane => if rows[lane].fresnel { 1.0 } else { 0.0 });
         Self {
-            ambient,
-            diffuse,
-            specular: spectra!(material => &material.specular),
-            shininess: f32x8::load_array(simd, by_lane!(lane => materials[lane].shininess)),
-            mirror: spectra!(material => &material.mirror),
-            transmission: spectra!(material => &material.transmission),
-            ior: f32x8::load_array(simd, by_lane!(lane => materials[lane].ior)),
+            ambient: gather_spectrum(simd, &by_lane!(lane => rows[lane].ambient)),
+            diffuse: gather_spectrum(simd, &by_lane!(lane => rows[lane].diffuse)),
+            specular: gather_spectrum(simd, &by_lane!(lane => rows[lane].specular)),
+            shininess: f32x8::load_array(simd, by_lane!(lane => rows[lane].shininess)),
+            mirror: gather_spectrum(simd, &by_lane!(lane => rows[lane].mirror)),
+            transmission: gather_spectrum(simd, &by_lane!(lane => rows[lane].transmission)),
+            ior: f32x8::load_array(simd, by_lane!(lane => rows[lane].ior)),
             is_fresnel: f32x8::load_array(simd, is_fresnel).gt(f32x8::splat(simd, 0.0)),
         }
     }
+}
+
+/// Where textures are read, lane by lane.
+#[inline(always)]
+fn texture_points<'a, S: Simd>(
+    world: &World,
+    eight: &[PlainHit<'_>; LANES],
+    surfaces: &Surfaces<S>,
+) -> [TexturePoint<'a>; LANES] {
+    let positions = scatter_f64(surfaces.points.position);
+    let normals = scatter(Vector::<f32x8<S>>::narrow(surfaces.ng));
+    let mut points = [TexturePoint::NOWHERE; LANES];
+    for (lane, point) in points.iter_mut().enumerate() {
+        if varies(&world.materials[eight[lane].material as usize].whitted) {
+            *point = texture_point(world, &eight[lane], positions[lane], normals[lane]);
+        }
+    }
+    points
 }
 
 /// Whether any of the coefficients varies over a surface.

@@ -113,8 +113,10 @@ impl PlainSteps {
         modes: &[SpectralMode],
         waiting: &mut Waiting<'a>,
     ) {
-        self.groups.reserve(paths.len().div_ceil(LANES) + 1);
-        self.lights.reserve(paths.len().div_ceil(LANES) + 1);
+        // Beside full groups there is one of each kind of shape at most.
+        let most_groups = paths.len() / LANES + 2;
+        self.groups.reserve(most_groups.saturating_sub(self.groups.len()));
+        self.lights.reserve(most_groups.saturating_sub(self.lights.len()));
         for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
             if let Some(plain) = PlainHit::of(world, index, path, hit) {
                 waiting.push(plain, |plain| self.shade(world, stream, plain, modes));
@@ -260,8 +262,8 @@ impl<F: Fn(&Path) -> SampleStream> Kernel for PlainKernel<'_, F> {
         let group = next(groups, group_count, Group::EMPTY);
         let modes = Modes::of(eight, modes);
         let surfaces = Surfaces::of(simd, eight);
-        let Surfaces { points, ng, ng_facing, ns_facing, wo, front } = surfaces;
-        let coefficients = CoefficientColumns::of(simd, world, eight, (points.position, ng), &modes);
+        let Surfaces { points, ng, ng_facing, ns_facing, wo, front, .. } = surfaces;
+        let coefficients = CoefficientColumns::of(simd, world, eight, &surfaces, &modes);
         let beta = gather_spectrum(simd, &by_lane!(lane => eight[lane].throughput(world, modes.lane(lane))));
         let ambient = beta * coefficients.ambient * modes.even(simd, |mode| world.ambient(mode));
         group.ambient = Columns::of_spectrum(ambient);

@@ -51,9 +51,10 @@ impl<'a> PlainHit<'a> {
     /// The path's throughput, attenuated by the medium on the way.
     #[inline(always)]
     pub(super) fn throughput(&self, world: &World, mode: &SpectralMode) -> Spectrum {
-        match self.path.interior.is_empty() {
-            true => self.path.beta,
-            false => self.path.absorbed(world, self.hit, mode).beta,
+        let Path { beta, interior, .. } = *self.path;
+        match interior.is_empty() {
+            true => beta,
+            false => beta * world.transmittance(interior, self.path.length_to(self.hit), mode),
         }
     }
 

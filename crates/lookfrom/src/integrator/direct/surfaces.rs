@@ -16,17 +16,19 @@ pub(super) struct Surfaces<S: Simd> {
     pub(super) ns_facing: Vector<f32x8<S>>,
     pub(super) wo: Vector<f32x8<S>>,
     pub(super) front: mask64x8<S>,
+    /// Texture coordinates on triangles.
+    pub(super) uv: Option<[f32x8<S>; 2]>,
 }
 
-/// Points, geometric and shading normals.
-type Shapes<S> = (Points<f32x8<S>>, Vector<f64x8<S>>, Vector<f64x8<S>>);
+/// Points, geometric and shading normals, and texture coordinates where they are known.
+type Shapes<S> = (Points<f32x8<S>>, Vector<f64x8<S>>, Vector<f64x8<S>>, Option<[f32x8<S>; 2]>);
 
 impl<S: Simd> Surfaces<S> {
     /// The surfaces of hits on one kind of shape.
     #[inline(always)]
     pub(super) fn of(simd: S, eight: &[PlainHit<'_>; LANES]) -> Self {
         let direction = gather(simd, &by_lane!(lane => eight[lane].path.ray.direction)).widen();
-        let (points, ng, ns) = match eight[0].shape {
+        let (points, ng, ns, uv) = match eight[0].shape {
             PlainShape::Triangle(mesh) => on_triangles(simd, eight, mesh),
             PlainShape::Sphere(..) => on_spheres(simd, eight, direction),
         };
@@ -37,7 +39,7 @@ impl<S: Simd> Surfaces<S> {
         let ns_facing = Vector::<f32x8<S>>::narrow(ns.negate_where(!front));
         let is_facing = ns_facing.dot(wo).gt(f32x8::splat(simd, 0.0));
         let ns_facing = Vector::select(is_facing, ns_facing, ng_facing);
-        Self { points, ng, ng_facing, ns_facing, wo, front }
+        Self { points, ng, ng_facing, ns_facing, wo, front, uv }
     }
 }
 
@@ -65,17 +67,18 @@ fn on_triangles<S: Simd>(simd: S, eight: &[PlainHit<'_>; LANES], first: &Mesh) -
 /// The points on triangles.
 #[inline(always)]
 fn at<S: Simd>(triangles: &Triangles<f32x8<S>>, u: f32x8<S>, v: f32x8<S>) -> Shapes<S> {
-    let TrianglePoints { points, ng, ns, .. } = triangles.points(u, v);
-    (points, ng, ns)
+    let TrianglePoints { points, ng, ns, uv, .. } = triangles.points(u, v);
+    (points, ng, ns, Some(uv))
 }
 
-/// One triangle in all lanes, without texture coordinates and tangents.
+/// One triangle in all lanes, without tangents.
 #[inline(always)]
 fn repeated_triangle<S: Simd>(simd: S, mesh: &Mesh, index: u32) -> Triangles<f32x8<S>> {
     let zero = f32x8::splat(simd, 0.0);
     let none = Vector { x: zero, y: zero, z: zero };
     let vertices = mesh.triangles[index as usize];
     let has_normals = !mesh.normals.is_empty();
+    let uvs = mesh.corner_uvs(index as usize);
     let (mut positions, mut normals) = ([none; 3], [none; 3]);
     for corner in 0..3 {
         let vertex = vertices[corner] as usize;
@@ -88,7 +91,7 @@ fn repeated_triangle<S: Simd>(simd: S, mesh: &Mesh, index: u32) -> Triangles<f32
         positions,
         orientation: f64x8::splat(simd, if mesh.flip { -1.0 } else { 1.0 }),
         normals,
-        uvs: [[zero; 2]; 3],
+        uvs: [0, 1, 2].map(|corner| uvs[corner].to_array().map(|x| f32x8::splat(simd, x))),
         tangents: [Tangent { along: none, sign: zero }; 3],
         have_normals: mask64x8::splat(simd, has_normals),
         have_tangents: mask64x8::splat(simd, false),
@@ -116,5 +119,5 @@ fn on_spheres<S: Simd>(simd: S, eight: &[PlainHit<'_>; LANES], direction: Vector
     let points = Points::<f32x8<S>>::on_spheres(center, radius, near);
     let flip = f64x8::load_array(simd, by_lane!(lane => rows[lane].2));
     let ng = (points.position - center).normalize() * flip;
-    (points, ng, ng)
+    (points, ng, ng, None)
 }

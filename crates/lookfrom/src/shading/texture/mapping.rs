@@ -9,7 +9,10 @@ use lookfrom_simd::{Float, Real};
 use super::TexturePoint;
 
 /// Coordinates are clamped to this; single-precision numbers of this size have long lost their fraction.
-const FARTHEST: f64 = 1_073_741_824.0;
+pub(super) const FARTHEST: f64 = 1_073_741_824.0;
+
+/// The shift of patterns in space, along each axis.
+pub(super) const OFF_BORDER: f64 = 1.0 / 8192.0;
 
 /// The coordinates in the pattern: (s, t, 0), or x, y and z for [`Mapping::World`]. Always finite.
 pub(super) fn coordinates(mapping: &Mapping, at: &TexturePoint) -> DVec3 {
@@ -54,7 +57,7 @@ pub(super) fn bounded<R: Real>(x: R) -> R {
 /// border of two cells (a floor at y = 0) do not flicker between them.
 pub(super) fn off_border(mapping: &Mapping, at: &TexturePoint) -> DVec3 {
     let p = coordinates(mapping, at);
-    if matches!(mapping, Mapping::World { .. }) { p + DVec3::splat(1.0 / 8192.0) } else { p }
+    if matches!(mapping, Mapping::World { .. }) { p + DVec3::splat(OFF_BORDER) } else { p }
 }
 
 /// (θ/π, φ/2π), both 0 to 1.
