@@ -3,7 +3,6 @@
 mod arriving;
 mod branches;
 mod coefficients;
-mod columns;
 mod lanes;
 mod plain;
 mod surfaces;

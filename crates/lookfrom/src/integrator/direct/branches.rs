@@ -4,8 +4,8 @@
 use lookfrom_simd::{Float, Real, Simd, f32x8, mask32x8, prelude::*};
 
 use super::coefficients::CoefficientColumns;
-use super::columns::Columns;
 use super::surfaces::Surfaces;
+use crate::core::lanes::{Columns, LANES, store, store_spectrum};
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -75,7 +75,7 @@ impl Branches {
 
 impl Rays {
     const NONE: Self =
-        Self { exist: 0, beta: Columns::ZERO, origin: Columns::ZERO, direction: Columns::ZERO };
+        Self { exist: 0, beta: [[0.0; LANES]; 4], origin: [[0.0; LANES]; 3], direction: [[0.0; LANES]; 3] };
 
     #[inline(always)]
     fn set<S: Simd>(
@@ -86,9 +86,9 @@ impl Rays {
         beta: Spectrum<f32x8<S>>,
     ) {
         self.exist = exist.to_bitmask() as u32;
-        self.beta = Columns::of_spectrum(beta);
-        self.origin = Columns::of(surfaces.points.leave(surfaces.ng, direction));
-        self.direction = Columns::of(direction);
+        self.beta = store_spectrum(beta);
+        self.origin = store(surfaces.points.leave(surfaces.ng, direction));
+        self.direction = store(direction);
     }
 }
 

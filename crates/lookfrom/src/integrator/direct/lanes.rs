@@ -7,11 +7,10 @@ use lookfrom_simd::{Float, Kernel, Mask, Simd, dispatch, f32x8, f64x8, level, pr
 use super::arriving::{Arriving, Ends};
 use super::branches::Branches;
 use super::coefficients::{CoefficientColumns, Modes};
-use super::columns::Columns;
 use super::plain::PlainHit;
 use super::surfaces::Surfaces;
 use super::waiting::Waiting;
-use crate::core::lanes::{LANES, by_lane, gather_spectrum};
+use crate::core::lanes::{Columns, LANES, by_lane, gather_spectrum, row, store, store_spectrum};
 use crate::core::math;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -171,18 +170,18 @@ impl PlainStep<'_> {
         output: &mut StepOutput<'_, P>,
     ) {
         let (lane, bit) = (self.lane, 1 << self.lane);
-        output.add(path, Term::Ambient, self.group.ambient.spectrum(lane));
+        output.add(path, Term::Ambient, Spectrum(row(&self.group.ambient, lane)));
         for from in self.lights.iter().filter(|from| from.lit & bit != 0) {
-            let direction = from.direction.row(lane);
+            let direction = row(&from.direction, lane);
             let mut interior = path.interior;
             if from.crosses & bit != 0 {
                 let surface = world.surface(&path.ray, hit);
                 interior = interior.leaving(&world.materials, &surface, direction.into(), true);
             }
             output.queues.shadows.push(Shadow {
-                ray: Ray { t_max: from.t_max, ..Ray::new(from.origin.row(lane), direction) },
+                ray: Ray { t_max: from.t_max, ..Ray::new(row(&from.origin, lane), direction) },
                 origin_primitive: OriginPrimitive::of(hit),
-                contribution: from.contribution.spectrum(lane),
+                contribution: Spectrum(row(&from.contribution, lane)),
                 slot: path.slot,
                 address: path.address,
                 term: Term::Light(from.light),
@@ -201,8 +200,8 @@ impl PlainStep<'_> {
             if rays.exist & bit != 0 {
                 grow(PlainBranch {
                     branch,
-                    beta: rays.beta.spectrum(lane),
-                    ray: Ray::new(rays.origin.row(lane), rays.direction.row(lane)),
+                    beta: Spectrum(row(&rays.beta, lane)),
+                    ray: Ray::new(row(&rays.origin, lane), row(&rays.direction, lane)),
                     material: materials[lane],
                     front: front & bit != 0,
                 });
@@ -223,7 +222,7 @@ fn next<'a, T: Copy>(memory: &'a mut Vec<T>, count: &mut usize, empty: T) -> &'a
 
 impl Group {
     const EMPTY: Self = Self {
-        ambient: Columns::ZERO,
+        ambient: [[0.0; LANES]; 4],
         lights: [0; 2],
         branches: Branches::NONE,
         materials: [0; LANES],
@@ -236,9 +235,9 @@ impl FromLight {
         light: 0,
         lit: 0,
         crosses: 0,
-        contribution: Columns::ZERO,
-        origin: Columns::ZERO,
-        direction: Columns::ZERO,
+        contribution: [[0.0; LANES]; 4],
+        origin: [[0.0; LANES]; 3],
+        direction: [[0.0; LANES]; 3],
         t_max: 0.0,
     };
 }
@@ -266,7 +265,7 @@ impl<F: Fn(&Path) -> SampleStream> Kernel for PlainKernel<'_, F> {
         let coefficients = CoefficientColumns::of(simd, world, eight, &surfaces, &modes);
         let beta = gather_spectrum(simd, &by_lane!(lane => eight[lane].throughput(world, modes.lane(lane))));
         let ambient = beta * coefficients.ambient * modes.even(simd, |mode| world.ambient(mode));
-        group.ambient = Columns::of_spectrum(ambient);
+        group.ambient = store_spectrum(ambient);
         group.materials = by_lane!(lane => eight[lane].material);
         group.front = front.to_bitmask() as u32;
         group.branches.set(simd, &coefficients, &surfaces, beta);
@@ -311,9 +310,9 @@ impl<F: Fn(&Path) -> SampleStream> Kernel for PlainKernel<'_, F> {
             from.light = index as u32;
             from.lit = lit.to_bitmask() as u32;
             from.crosses = (is_outside.to_bitmask() ^ front.to_bitmask()) as u32;
-            from.contribution = Columns::of_spectrum(contribution);
-            from.origin = Columns::of(origin);
-            from.direction = Columns::of(direction);
+            from.contribution = store_spectrum(contribution);
+            from.origin = store(origin);
+            from.direction = store(direction);
             from.t_max = t_max;
             group.lights[1] = *light_count;
         }
