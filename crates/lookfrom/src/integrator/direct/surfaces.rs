@@ -61,7 +61,7 @@ fn on_triangles<S: Simd>(simd: S, eight: &[PlainHit<'_>; LANES], first: &Mesh) -
         PlainShape::Triangle(mesh) => mesh,
         PlainShape::Sphere(..) => first,
     });
-    at(&gather_triangles(simd, &meshes, &indices, false), u, v)
+    at(&gather_triangles(simd, &meshes, &indices, true), u, v)
 }
 
 /// The points on triangles.
@@ -78,11 +78,13 @@ fn repeated_triangle<S: Simd>(simd: S, mesh: &Mesh, index: u32) -> Triangles<f32
     let none = Vector { x: zero, y: zero, z: zero };
     let vertices = mesh.triangles[index as usize];
     let has_normals = !mesh.normals.is_empty();
-    let uvs = mesh.corner_uvs(index as usize);
-    let (mut positions, mut normals) = ([none; 3], [none; 3]);
+    let corner_uvs = mesh.corner_uvs(index as usize);
+    let (mut positions, mut normals, mut uvs) = ([none; 3], [none; 3], [[zero; 2]; 3]);
     for corner in 0..3 {
         let vertex = vertices[corner] as usize;
         positions[corner] = splat(simd, mesh.positions[vertex]);
+        let [u, v] = corner_uvs[corner].to_array();
+        uvs[corner] = [f32x8::splat(simd, u), f32x8::splat(simd, v)];
         if has_normals {
             normals[corner] = splat(simd, mesh.normals[vertex].to_array());
         }
@@ -91,7 +93,7 @@ fn repeated_triangle<S: Simd>(simd: S, mesh: &Mesh, index: u32) -> Triangles<f32
         positions,
         orientation: f64x8::splat(simd, if mesh.flip { -1.0 } else { 1.0 }),
         normals,
-        uvs: [0, 1, 2].map(|corner| uvs[corner].to_array().map(|x| f32x8::splat(simd, x))),
+        uvs,
         tangents: [Tangent { along: none, sign: zero }; 3],
         have_normals: mask64x8::splat(simd, has_normals),
         have_tangents: mask64x8::splat(simd, false),
